@@ -22,10 +22,10 @@ from sebody.scenes import hinged_beam, spherical_beam
 from sebody.scenes.scene import Scene
 
 VARIANTS = {    # of one superelement: arguments of the scenes
-    "node at the base": {"frame": "node", "inertia": "b"},
-    "node at the tip": {"frame": "node", "frame_node": 1, "inertia": "b"},
-    "mean frame, A": {"inertia": "a"},
-    "mean frame, B": {"inertia": "b"},
+    "node at the base": {"frame": "node", "inertia": "material"},
+    "node at the tip": {"frame": "node", "frame_node": 1, "inertia": "material"},
+    "mean frame, A": {"inertia": "frame_axes"},
+    "mean frame, B": {"inertia": "material"},
 }
 BEAMS, REFERENCE = "5 nonlinear beams", "32 nonlinear beams"
 HINGED = {
@@ -59,8 +59,8 @@ def run(scene: Scene, finer: int = 1) -> Run:
 def runs(build) -> dict[str, Run]:
     """All variants of a scene, five nonlinear beams, and the reference."""
     found = {name: run(build(**arguments)) for name, arguments in VARIANTS.items()}
-    found[BEAMS] = run(build(bodies=5, elements=5, modes=0, inertia="b"))
-    found[REFERENCE] = run(build(bodies=32, elements=32, modes=0, inertia="b"), finer=4)
+    found[BEAMS] = run(build(bodies=5, elements=5, modes=0, inertia="material"))
+    found[REFERENCE] = run(build(bodies=32, elements=32, modes=0, inertia="material"), finer=4)
     return found
 
 

@@ -1,6 +1,6 @@
 """The paper's beam on a spherical joint (section 8.2) under its own slow loads.
 
-The joint is a fixed position triplet: the system has no constraint and no multiplier.
+The joint is a fixed position DOF block: the system has no constraint and no multiplier.
 """
 
 from sebody import Model

@@ -25,7 +25,7 @@ def multipliers_first(number):
 
         def moved(firsts):
             return {key: place.get(first, first) for key, first in firsts.items()}
-        return old._replace(triplets=moved(old.triplets), modes=moved(old.modes),
+        return old._replace(dof_blocks=moved(old.dof_blocks), modes=moved(old.modes),
                             multipliers=moved(old.multipliers),
                             names=[old.names[i] for i in order])
     return changed

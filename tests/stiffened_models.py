@@ -62,7 +62,7 @@ def divided_elbow(count):
     model = Model()
     a, b, c = (model.node(f"n{k}", x) for k, x in enumerate(ELBOW))
     for name, ends, part in (("long", (a, b), 2 * count), ("short", (b, c), count)):
-        model.beam(name, ends, ARMS, part, part, 0, inertia="b", up=TURN[:, 2])
+        model.beam(name, ends, ARMS, part, part, 0, inertia="material", up=TURN[:, 2])
     model.fix("n0")
     return model
 

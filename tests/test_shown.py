@@ -55,8 +55,8 @@ def everything():
     field = result.field("beam")
     return {
         "scene": scene, "model": model, "node": model.nodes["tip"], "body": fitted,
-        "triplet": model.nodes["tip"].position, "reduced body": body, "joint": model.joints[0],
-        "load": model.loads[0], "history": model.loads[0].history, "beam": model.beams[0],
+        "dof_block": model.nodes["tip"].position, "reduced body": body, "joint": model.joints[0],
+        "load": model.loads[0], "history": model.loads[0].time_function, "beam": model.beams[0],
         "spring": oscillator().loads[0], "mass": oscillator().rigid_bodies["mass"],
         "drive": four_bar.build().model.joints[-1], "crank": slider_crank.build().model,
         "result": result, "simulation": run, "scheme": generalized_alpha(), "ensemble": ensemble,
@@ -89,7 +89,7 @@ def test_lines_say_what_things_are(objects):
     said = {
         "model": "<spatial model: 1 superelement, 2 nodes, 1 joint, 1 load>",
         "node": "<Node 'tip' at (100, 100, 0): position 3 unknowns, rotation 3 unknowns>",
-        "triplet": "<tip.position: 3 unknowns>",
+        "dof_block": "<tip.position: 3 unknowns>",
         "joint": "<revolute 'revolute at base' of base to ground at base: 2 equations>",
         "load": "<torque 'torque on base.rotation' on base: 4 pieces, t = 0 to 7.5>",
         "beam": "<Beam 'beam' from base to tip: 20 elements in 1 superelement>",

@@ -51,7 +51,7 @@ _SIZES = {"rows": WHOLE, "columns": WHOLE}
 _BOUND = {"bound": WHOLE, "bound_free": WHOLE, "free": WHOLE}
 
 PADDED = _function("abi", "padded", Gives.WHOLE, n=WHOLE)
-HIDDEN = _function("abi", "hidden", Gives.WHOLE, number=WHOLE)
+OPAQUE = _function("abi", "opaque", Gives.WHOLE, number=WHOLE)
 PACKED_ROOM = _function("packed_products", "packed_room", Gives.WHOLE, count=WHOLE, **_SIZES)
 
 # products

@@ -16,8 +16,8 @@ class Loop(NamedTuple):
     end: Whole
 
 
-class Triplets(NamedTuple):
-    """Coordinates of nodes, in triplets or pairs or alone, one node after the other."""
+class DofBlocks(NamedTuple):
+    """Coordinates of nodes, in DOF blocks or pairs or alone, one node after the other."""
 
     index: Count
     count: Count            # of the nodes
@@ -25,9 +25,9 @@ class Triplets(NamedTuple):
     begin: Whole            # where those of the first one do
 
 
-TRIPLETS = {
-    "position": Triplets(counts.i, counts.POSITIONS, counts.i3, Number(0)),
-    "rotation": Triplets(counts.j, counts.ROTATIONS, counts.j3, counts.FIRST_ROTATION),
+DOF_BLOCKS = {
+    "position": DofBlocks(counts.i, counts.POSITIONS, counts.i3, Number(0)),
+    "rotation": DofBlocks(counts.j, counts.ROTATIONS, counts.j3, counts.FIRST_ROTATION),
 }
 LOOPS = {
     "position": Loop(counts.i, Number(0), counts.POSITIONS),

@@ -6,7 +6,7 @@ import sympy as sp
 from sebody.derive.form import counts
 from sebody.derive.form.arrays import Array, pointed
 from sebody.derive.form.counts import agreed
-from sebody.derive.form.functions import HIDDEN
+from sebody.derive.form.functions import OPAQUE
 from sebody.derive.form.loops import size_of
 from sebody.derive.form.statements import For, If, Let, Point, Remark, Set, Statement, compared
 from sebody.derive.form.whole import Applied, Number, Quotient, Whole, whole
@@ -38,9 +38,9 @@ def known_counts(layout: Layout) -> dict:
             counts.FIRST_ROTATION: layout.first_rotation, counts.FIRST_MODE: layout.first_mode}
 
 
-def hidden(number: counts.Count) -> Applied:
+def opaque(number: counts.Count) -> Applied:
     """A number that the compiler is to know nothing of."""
-    return Applied(HIDDEN, (number,))
+    return Applied(OPAQUE, (number,))
 
 
 def pointers(reference: bool) -> tuple[Statement, ...]:

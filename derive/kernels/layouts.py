@@ -1,4 +1,4 @@
-"""Layouts: which triplets each boundary node of a superelement keeps (23), (39)."""
+"""Layouts: which DOF blocks each boundary node of a superelement keeps (23), (39)."""
 
 import re
 from collections.abc import Mapping
@@ -26,13 +26,13 @@ class Layout(NamedTuple):
     """Boundary nodes of a superelement and the space it moves in.
 
     The local coordinates are ordered ``y = (positions, rotations, internal modes)``; a kernel
-    therefore depends on the two counts of triplets alone, never on the order of the nodes. The
+    therefore depends on the two counts of DOF blocks alone, never on the order of the nodes. The
     number of internal modes is a run-time size, unless a layout pins it: constant sizes are faster.
-    In a general layout the counts of triplets are run-time sizes, too, and None here.
+    In a general layout the counts of DOF blocks are run-time sizes, too, and None here.
     """
 
     nodes: tuple[str, ...] | None   # what each boundary node keeps: full, translation or rotation
-    planar: bool = False        # motion in a plane: (x, y) and one angle in place of triplets
+    planar: bool = False        # motion in a plane: (x, y) and one angle in place of DOF blocks
     modes: int | None = None    # number of internal modes, where it is pinned
     damped: bool = False        # with structural damping: twice the tangent, so only where wanted
 

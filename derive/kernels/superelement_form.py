@@ -33,8 +33,8 @@ from sebody.derive.kernels.bodies import (
     STATE,
     columns,
     gathered,
-    hidden,
     known_counts,
+    opaque,
     pointers,
     port,
     read_counts,
@@ -64,7 +64,7 @@ def superelement_form(kernel: Superelement) -> Kernel:
     always = [p for p in memory.points if p.array in (*STATE, *of_forces)]
     matrix = If(compared(counts.task, "==", agreed("TANGENT")), (
         *_coefficients(), Point(MATRIX, ARGUMENTS["matrices"].at(counts.element * n * n)),
-        *([Let((counts.row,), (hidden(counts.row),))] if layout.modes is None else ()),
+        *([Let((counts.row,), (opaque(counts.row),))] if layout.modes is None else ()),
         *(point for point in memory.points if point not in always), *prepared,
         columns(layout.planar, DIRECTIONS, tangent)))
     constants = chain(kernel.constants, layout.planar, kernel.read)
@@ -92,7 +92,7 @@ def _sizes(kernel: Superelement, memory: Memory) -> tuple[Let, Let]:
     otherwise it computes a hundred places in scratch memory before every loop.
     """
     layout = kernel.layout
-    n = (hidden(counts.width) if layout.modes is None else
+    n = (opaque(counts.width) if layout.modes is None else
          whole(layout.first_mode + layout.modes))
     return Let((counts.n,), (n,)), Let((counts.row,), (row_size(memory.squares, MARGIN),))
 

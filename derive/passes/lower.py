@@ -8,7 +8,7 @@ import sympy as sp
 from sebody.derive.form import counts
 from sebody.derive.form.arrays import pointed
 from sebody.derive.form.functions import ARROW_TIMES, COLUMNS_TIMES, INVERSE_3
-from sebody.derive.form.loops import ELEMENT, LOOPS, TRIPLETS, size_of
+from sebody.derive.form.loops import DOF_BLOCKS, ELEMENT, LOOPS, size_of
 from sebody.derive.form.spaces import Quantity, Space
 from sebody.derive.form.statements import (
     Change,
@@ -98,7 +98,7 @@ class Lowering:
             target = self.target(entry.quantity, entry.symbol)
             body.append(Update(target, Change.ADD, value) if entry.adds else
                         Set((target,), (value,)))
-        return self._wrap(over, body, indexed or any(_by_triplet(e.quantity) for e in stored))
+        return self._wrap(over, body, indexed or any(_by_dof_block(e.quantity) for e in stored))
 
     def _named(self, entries: Iterable[Entry]) -> list[Entry]:
         """Entries with named functions, without those that add nothing."""
@@ -110,8 +110,8 @@ class Lowering:
         """A loop over what carries the values; `indexed`: its first coordinate is used."""
         if over == ELEMENT:
             return body
-        if over in TRIPLETS and indexed:
-            of = TRIPLETS[over]
+        if over in DOF_BLOCKS and indexed:
+            of = DOF_BLOCKS[over]
             place = of.begin + size_of(over, self.space.planar) * of.index
             body = [Let((of.place,), (place,)), *body]
         return [For(*LOOPS[over], tuple(body), over)]
@@ -122,7 +122,7 @@ class Lowering:
         for quantity in sorted(self.space.known.values(), key=lambda q: q.kept[0] in values):
             if quantity.home in (over, ELEMENT) and quantity.array and used & set(quantity.kept):
                 found.append(self.load(quantity))
-                indexed |= _by_triplet(quantity)
+                indexed |= _by_dof_block(quantity)
         return found, indexed
 
     def load(self, quantity: Quantity) -> Set:
@@ -147,7 +147,7 @@ class Lowering:
             return 9 * node + k
         if quantity.kind == "scalar":
             return LOOPS[quantity.home].index
-        return TRIPLETS[quantity.home].place + k
+        return DOF_BLOCKS[quantity.home].place + k
 
     def _product(self, step: Product) -> list[Statement]:
         square = step.rows == step.columns
@@ -237,7 +237,7 @@ class Lowering:
         square = sum(s**2 for s in step.of.kept)
         body = [self.load(step.of)] if step.of.array else []
         return self._wrap(step.of.home, [*body, invoked(
-            step.function, (square,), outputs, operations=step.operations)], _by_triplet(step.of))
+            step.function, (square,), outputs, operations=step.operations)], _by_dof_block(step.of))
 
     def _shift(self, step: Shift) -> list[Statement]:
         change = Change.ADD if step.adds else Change.SUBTRACT
@@ -267,14 +267,14 @@ def _shared(expressions: tuple, start: int) -> tuple[list, list]:
     return sp.cse(expressions, sp.numbered_symbols("t", start=start), order="canonical")
 
 
-def _by_triplet(quantity: Quantity) -> bool:
-    """Whether its values stand in triplets (or pairs), node after node, or follow their places."""
-    if not quantity.array or quantity.home not in TRIPLETS:
+def _by_dof_block(quantity: Quantity) -> bool:
+    """Whether its values stand in blocks (or pairs), node after node, or follow their places."""
+    if not quantity.array or quantity.home not in DOF_BLOCKS:
         return False
     if quantity.place is None:
         return quantity.kind in ("vector", "axial")
     start = whole(quantity.place.start)
-    return replaced(start, {TRIPLETS[quantity.home].place: Number(0)}) != start
+    return replaced(start, {DOF_BLOCKS[quantity.home].place: Number(0)}) != start
 
 
 def _sum(symbol: sp.Symbol, value: sp.Expr) -> Entry:

@@ -8,14 +8,9 @@ from sebody.assembly.numbering import Numbering, record_counts, stretch
 from sebody.contract.layout import COEFFICIENTS, ENERGIES, FIELD, LANES, whole_vectors
 from sebody.engine.newton import SLOWEST
 from sebody.engine.state import (
-    AUX_STEP,
     CLOCKS,
-    CONTRACTION,
     CONTROLS,
-    CURRENT_STEP,
     EVALUATED,
-    STEP,
-    WANTED,
     State,
 )
 from sebody.engine.system import System
@@ -41,9 +36,9 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
     zeros = np.zeros
     acting = int(system.at_g[-1] - system.at_g[system.first_power[0]]) + len(system.prescribed)
     clock, control = zeros(CLOCKS), np.zeros(CONTROLS, dtype=np.int64)
-    clock[STEP] = clock[CURRENT_STEP] = clock[AUX_STEP] = h
-    clock[CONTRACTION] = SLOWEST
-    control[WANTED] = EVALUATED
+    clock.step = clock.current_step = clock.aux_step = h
+    clock.contraction = SLOWEST
+    control.wanted = EVALUATED
     coefficients = zeros(COEFFICIENTS.size(counts))
     coefficients[FIELD:FIELD + model.dimension] = model.gravity_field
     state = State.of(
@@ -64,7 +59,7 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
         error_weights=zeros(total), expansion=zeros(_expansion_size(system)),
         matrix=zeros(system.rows.size + 1), scale=np.ones(total + LANES), weight=zeros(total),
         inverse=zeros((n, whole_vectors(n)) if dense else (1, 1)),
-        relaxation=zeros(total), pulls=zeros(system.pulls.size), projected=zeros(total),
+        regularization=zeros(total), constraint_columns=zeros(system.constraint_columns.size), projected=zeros(total),
         pulled=zeros(total),
         column=zeros(LANES * system.slot_unknowns.size), work=zeros(work_size(model)),
         energy=zeros(ENERGIES.size(counts)), clock=clock, control=control)
@@ -78,12 +73,12 @@ def _start(model: Mechanism, numbering: Numbering) -> tuple[NDArray, NDArray]:
     """Initial values and velocities of all coordinates."""
     q, v = np.zeros((2, numbering.total))
     for node in (*model.nodes.values(), *model.grounds):
-        for triplet in (node.position, node.rotation):
-            if triplet is not None and id(triplet) in numbering.triplets:
-                at = stretch(numbering, triplet)
+        for dof_block in (node.position, node.rotation):
+            if dof_block is not None and dof_block in numbering.dof_blocks:
+                at = stretch(numbering, dof_block)
                 # of a rotation in space R has it, and q the increment in a step
-                q[at] = 0.0 if id(triplet) in numbering.rotations else triplet.start
-                v[at] = triplet.rate if triplet.solved else 0.0
+                q[at] = 0.0 if dof_block in numbering.rotations else dof_block.start
+                v[at] = dof_block.rate if dof_block.solved else 0.0
     for body in model.bodies.values():
         first = numbering.modes[body.name]
         v[first:first + body.body.modes] = body.mode_rates
@@ -93,10 +88,10 @@ def _start(model: Mechanism, numbering: Numbering) -> tuple[NDArray, NDArray]:
 def _rotations(model: Mechanism, numbering: Numbering) -> NDArray:
     """Initial rotation matrices, row by row."""
     found = _identities(9 * len(numbering.rotations))
-    for triplet in model.triplets():
-        if id(triplet) in numbering.rotations and triplet.start.any():
-            at = 9 * numbering.rotations[id(triplet)]
-            rotate(found, at, *triplet.start, found, at)
+    for dof_block in model.dof_blocks():
+        if dof_block in numbering.rotations and dof_block.start.any():
+            at = 9 * numbering.rotations[dof_block]
+            rotate(found, at, *dof_block.start, found, at)
     return found
 
 

@@ -19,11 +19,11 @@ def frames(model: Mechanism, numbering: Numbering) -> dict[int, int]:
     """First coordinates of positions -> number of the frame they are solved for in."""
     frame_of: dict[int, int] = {}
     for k, body in enumerate(model.bodies.values()):
-        for triplet in body.positions:
-            if triplet.solved:
-                frame_of.setdefault(numbering.triplets[id(triplet)], k)
-    for triplet in numbering.dependent:
-        frame_of[numbering.triplets[id(triplet)]] = -1
+        for dof_block in body.positions:
+            if dof_block.solved:
+                frame_of.setdefault(numbering.dof_blocks[dof_block], k)
+    for dof_block in numbering.dependent:
+        frame_of[numbering.dof_blocks[dof_block]] = -1
     return frame_of
 
 

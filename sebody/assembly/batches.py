@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody.assembly.body_axes import ROUNDING
-from sebody.assembly.carried import carried_constants
 from sebody.assembly.contracts import (
     check_element,
     check_superelement,
@@ -21,6 +20,7 @@ from sebody.assembly.contracts import (
 )
 from sebody.assembly.floating import floating_constants, frame_conditions
 from sebody.assembly.numbering import Numbering, coordinates
+from sebody.assembly.rigid_part import rigid_part_constants
 from sebody.contract.layout import AT_POSITIONS, AT_ROTATIONS, whole_vectors
 from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.loader import element_kernel, load
@@ -98,7 +98,7 @@ def make_batches(model: Mechanism, numbering: Numbering) -> Batches:
     elements = [*model.rigid_bodies.values(), *model.constraints, *model.loads]
     idle = [e for e in elements if not element_kernel(e.kind).POWER]
     working = [e for e in elements if element_kernel(e.kind).POWER]
-    frames = {id(body): k for k, body in enumerate(model.bodies.values())}
+    frames = {body: k for k, body in enumerate(model.bodies.values())}
     joints = _element_batches(numbering, constants, idle, frames)
     loads = _element_batches(numbering, constants, working, frames)
     return Batches(bodies + joints + loads, len(bodies), len(bodies) + len(joints),
@@ -112,7 +112,7 @@ def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants)
         kernel = load(body.kernel)
         check_superelement(body, kernel)
         how = body.kernel, body.stiffening, tuple(body.alpha), tuple(body.alpha_r)
-        key = id(body.body), *how
+        key = body.body, *how
         if key not in known:
             rows = _rows.setdefault(body.body, {})
             if how not in rows:
@@ -125,9 +125,9 @@ def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants)
         first = numbering.modes[body.name]
         unknowns += range(first, first + body.body.modes)
         row = index_row(body.name, kernel, unknowns, constants=at_constants, frame=frame,
-                        port=numbering.ports.get(id(body), 0), positions=len(body.positions),
-                        nodes=[numbering.rotations.get(id(t), 0) for t in body.rotations])
-        _append(batches, kernel, frame, row, unknowns, id(body), full)
+                        port=numbering.ports.get(body, 0), positions=len(body.positions),
+                        nodes=[numbering.rotations.get(t, 0) for t in body.rotations])
+        _append(batches, kernel, frame, row, unknowns, body, full)
     return list(batches.values())
 
 
@@ -138,15 +138,15 @@ def _element_batches(numbering: Numbering, constants: _Constants, elements: Iter
     for element in elements:
         kernel, unknowns = element_kernel(element.kind), element_unknowns(numbering, element)
         check_element(element, kernel, len(unknowns), numbering)
-        frame = -1 if element.body is None else frames[id(element.body)]
+        frame = -1 if element.body is None else frames[element.body]
         row = index_row(element.name, kernel, unknowns,
-                        frame=numbering.memories.get(id(element), max(frame, 0)),
+                        frame=numbering.memories.get(element, max(frame, 0)),
                         constants=constants.add(_element_constants(element, kernel)),
-                        port=numbering.ports.get(id(element), 0), positions=positions_of(element),
+                        port=numbering.ports.get(element, 0), positions=positions_of(element),
                         nodes=_matrices(numbering, element))
         function = [] if element.function is None else [element.function.address]
         modes = 0 if element.body is None else element.body.body.modes
-        _append(batches, kernel, frame, row + function, unknowns, id(element),
+        _append(batches, kernel, frame, row + function, unknowns, element,
                 len(unknowns) - modes)
     return list(batches.values())
 
@@ -162,8 +162,8 @@ def _element_constants(element: Element, kernel: ModuleType) -> NDArray:
 def _matrices(numbering: Numbering, element: Element) -> list[int]:
     """Numbers of the rotation matrices; a load on a planar body counts its angles by zeros."""
     if element.body is not None:
-        return [numbering.rotations.get(id(t), 0) for t in element.body.rotations]
-    return [numbering.rotations[id(t)] for t in element.triplets if id(t) in numbering.rotations]
+        return [numbering.rotations.get(t, 0) for t in element.body.rotations]
+    return [numbering.rotations[t] for t in element.dof_blocks if t in numbering.rotations]
 
 
 def _append(batches: dict[tuple, Batch], kernel: ModuleType, frame: int, row: list[int],
@@ -179,14 +179,14 @@ def _append(batches: dict[tuple, Batch], kernel: ModuleType, frame: int, row: li
 
 def element_unknowns(numbering: Numbering, element: Element) -> list[int]:
     """Coordinates of an element, then its multipliers."""
-    unknowns = [c for t in element.triplets for c in coordinates(numbering, t)]
+    unknowns = [c for t in element.dof_blocks for c in coordinates(numbering, t)]
     if element.body is not None:
         first = numbering.modes[element.body.name]
         unknowns += range(first, first + element.body.body.modes)
     if element.mode is not None:
         unknowns.append(numbering.modes[element.mode[0]] + element.mode[1])
     if element.multipliers:
-        first = numbering.multipliers[id(element)]
+        first = numbering.multipliers[element]
         unknowns += range(first, first + element.multipliers)
     return unknowns
 
@@ -206,7 +206,7 @@ def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
     if not option.rates:
         return values
     if not option.field:
-        return values | carried_constants(reduced)
+        return values | rigid_part_constants(reduced)
     counts = counts_of(body)
     frame = FRAMES[body.frame]
     invariants = body.invariants.about(origin)

@@ -45,10 +45,10 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
         constants=batches.constants, rotation_at=_rotation_starts(numbering),
         routines=np.zeros(2, dtype=np.int64),
         dimension=np.array([model.dimension]), part=_parts(model, numbering),
-        inertias=np.zeros(numbering.total), thin=np.zeros(numbering.total),
+        inertias=np.zeros(numbering.total), massless_axes=np.zeros(numbering.total),
         magnitude=_magnitude(model, numbering),
-        **port_arrays(numbering.histories, numbering.prescribed, numbering.jumps),
-        relaxed=np.zeros(1, dtype=np.int64), massless=np.zeros(1, dtype=np.int64),
+        **port_arrays(numbering.time_functions, numbering.prescribed, numbering.jumps),
+        regularized=np.zeros(1, dtype=np.int64), massless=np.zeros(1, dtype=np.int64),
         damped=np.array([int(any(b.body.damping is not None for b in model.bodies.values()))]))
     owners = [owner for batch in batches.all for owner in batch.owners]
     first_force = starts(b.width for b in batches.all for _ in b.rows).tolist()
@@ -60,8 +60,8 @@ def _structure(model: Mechanism, numbering: Numbering, batches: Batches, ends: E
     return Structure(
         numbering.free, numbering.total, numbering.free <= DENSE_LIMIT,
         tuple(numbering.groups.tolist()),
-        tuple([(numbering.multipliers[id(c)], c.multipliers) for c in model.constraints]),
-        any(len(c.triplets) > 1 for c in model.constraints),
+        tuple([(numbering.multipliers[c], c.multipliers) for c in model.constraints]),
+        any(len(c.dof_blocks) > 1 for c in model.constraints),
         tuple(frames(model, numbering).items()), ends,
         tuple([batch.shape for batch in batches.all]), batches.first_joint, batches.first_power)
 
@@ -75,7 +75,7 @@ def work_size(model: Mechanism) -> int:
                                  len(body.rotations)))
     rows += [scratch_size(element_kernel(one.kind).WORK_ROWS, 0, len(one.body.body.stiffness),
                           len(one.body.rotations)) for one in model.loads if one.body is not None]
-    elements = max((sum(t.start.size for t in one.triplets) for one in model.loads), default=0)
+    elements = max((sum(t.start.size for t in one.dof_blocks) for one in model.loads), default=0)
     return max([*rows, 64, 4 * elements])
 
 
@@ -83,12 +83,12 @@ def _parts(model: Mechanism, numbering: Numbering) -> NDArray:
     """First coordinate of the position, rotation or equation each coordinate belongs to."""
     found = np.arange(numbering.total)
     for node in model.nodes.values():
-        for triplet in (node.position, node.rotation):
-            if triplet is not None and id(triplet) in numbering.triplets:
-                own = stretch(numbering, triplet)
+        for dof_block in (node.position, node.rotation):
+            if dof_block is not None and dof_block in numbering.dof_blocks:
+                own = stretch(numbering, dof_block)
                 found[own] = own.start
     for equation in model.constraints:
-        first = numbering.multipliers[id(equation)]
+        first = numbering.multipliers[equation]
         found[first:first + equation.multipliers] = first
     return found
 
@@ -97,7 +97,7 @@ def _rotation_starts(numbering: Numbering) -> NDArray:
     """First coordinate of every rotation matrix."""
     found = np.zeros(len(numbering.rotations), dtype=np.int64)
     for key, k in numbering.rotations.items():
-        found[k] = numbering.triplets[key]
+        found[k] = numbering.dof_blocks[key]
     return found
 
 
@@ -106,7 +106,7 @@ def _magnitude(model: Mechanism, numbering: Numbering) -> NDArray:
     length = extent(model)
     size = np.zeros(numbering.total)
     for node in model.nodes.values():
-        for triplet, magnitude in ((node.position, length), (node.rotation, 1.0)):
-            if triplet is not None and id(triplet) in numbering.triplets:
-                size[stretch(numbering, triplet)] = magnitude
+        for dof_block, magnitude in ((node.position, length), (node.rotation, 1.0)):
+            if dof_block is not None and dof_block in numbering.dof_blocks:
+                size[stretch(numbering, dof_block)] = magnitude
     return size

@@ -18,9 +18,9 @@ from sebody.contract.layout import (
     Row,
     axes_of,
     bound_counts,
-    carried_counts,
     first_mode,
     floating_counts,
+    rigid_part_counts,
     superelement_counts,
 )
 from sebody.errors import InputError
@@ -39,17 +39,17 @@ def check_element(element: Element, kernel: ModuleType, unknowns: int,
     InputError
         What it has is not what its kernel reads; the message names both.
     """
-    matrices = sum(id(t) in numbering.rotations for t in element.triplets)
+    matrices = sum(t in numbering.rotations for t in element.dof_blocks)
     wrong = _different((("unknowns", unknowns, kernel.WIDTH),
                         ("multipliers", element.multipliers, kernel.MULTIPLIERS),
                         ("numbers kept", int(element.keeps_angle), kernel.MEMORY),
                         ("positions", positions_of(element), kernel.N_POSITIONS),
                         ("rotation matrices", matrices, kernel.N_ROTATIONS)))
-    if kernel.DRIVEN and element.history is None:
+    if kernel.DRIVEN and element.time_function is None:
         wrong.append("it has no time function, but the kernel reads one")
-    if element.history is not None and not kernel.POWER:
+    if element.time_function is not None and not kernel.POWER:
         wrong.append("it has a time function, but the kernel reads none")
-    if kernel.POWER != (id(element) in numbering.ports):
+    if kernel.POWER != (element in numbering.ports):
         wrong.append("it has no power port and the kernel writes power" if kernel.POWER else
                      "it has a power port and the kernel writes no power")
     if wrong:
@@ -124,7 +124,7 @@ def index_row(name: str, kernel: ModuleType, unknowns: list[int], nodes: list[in
 
 def positions_of(element: Element) -> int:
     """How many positions an element is on; an internal mode counts as one."""
-    return sum(not t.rotational for t in element.triplets) + (element.mode is not None)
+    return sum(not t.rotational for t in element.dof_blocks) + (element.mode is not None)
 
 
 def frame_counts(body: Superelement) -> Counts:
@@ -145,7 +145,8 @@ def counts_of(body: Superelement) -> Counts:
                                      reduced.planar) | floating_counts(
             reduced.planar, _width(body), body.invariants.slaved, body.invariants.resultants,
             damped)
-    return counts | carried_counts(reduced.planar, _width(body), damped) if option.rates else counts
+    return counts | rigid_part_counts(reduced.planar, _width(body),
+                                      damped) if option.rates else counts
 
 
 def _width(body: Superelement) -> int:

@@ -1,6 +1,6 @@
 """Order of the bodies in the elimination: minimum degree, so that the factors fill in little.
 
-Triplets that bodies share, or that joints and springs couple, are the items of a graph; those of
+DOF blocks that bodies share, or that joints and springs couple, are the items of a graph; those of
 one body alone are left out. The elimination of an item couples all its neighbours; the next one is
 always an item with the fewest unknowns around it (Tinney and Walker, Proc. IEEE 55: 1801-1809,
 1967). The bodies it belongs to come next in the order, for an item is eliminated with the last of
@@ -16,11 +16,11 @@ REMEMBERED = 32         # orders
 
 
 class Coupling(NamedTuple):
-    """What couples triplets: the equations of a joint, a spring."""
+    """What couples DOF blocks: the equations of a joint, a spring."""
 
-    keys: Iterable[int]             # of the triplets
+    keys: Iterable[int]             # of the DOF blocks
     multipliers: int = 0
-    awaited: Iterable[int] = ()     # triplets that are eliminated before the multipliers
+    awaited: Iterable[int] = ()     # DOF blocks that are eliminated before the multipliers
 
 
 def elimination_order(bodies: Sequence[Mapping[int, int]],
@@ -30,7 +30,7 @@ def elimination_order(bodies: Sequence[Mapping[int, int]],
     Parameters
     ----------
     bodies : sequence of mappings
-        Keys of the unknown triplets of every body, and their numbers of coordinates.
+        Keys of the unknown DOF blocks of every body, and their numbers of coordinates.
     couplings : iterable of Coupling
         Of the same keys.
 
@@ -128,9 +128,9 @@ class _Graph:
 
 def _fill(graph: _Graph, bodies: Sequence[Mapping[int, int]],
           couplings: Iterable[Coupling]) -> None:
-    """Add the items: triplets in the same bodies and couplings are one, as are multipliers."""
+    """Add the items: DOF blocks in the same bodies and couplings are one, as are multipliers."""
     sizes: dict[int, int] = {}
-    member: dict[int, list[int]] = {}       # numbers of bodies, then of couplings, of a triplet
+    member: dict[int, list[int]] = {}       # numbers of bodies, then of couplings, of a DOF block
     for number, body in enumerate(bodies):
         sizes.update(body)
         for key in body:

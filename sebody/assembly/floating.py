@@ -117,7 +117,7 @@ def frame_conditions(frame: str, counts: Counts, values: Mapping[str, ArrayLike]
     key = frame, D == 2
     if key not in CONDITIONS:
         raise InputError(f"frame {frame!r} declares no linear condition of the local coordinates, "
-                         "which inertia='c' needs: use another frame or option")
+                         "which inertia='floating_field' needs: use another frame or option")
     condition, first = CONDITIONS[key], first_rotation(counts["N_POSITIONS"], D == 2)
     found = np.zeros((D + turns, counts["n"]))
     found[:D, :first] = np.kron(values["alphas"], np.eye(D))

@@ -23,13 +23,13 @@ class Ends(NamedTuple):
 def link_ends(model: Mechanism, numbering: Numbering) -> tuple[Ends, NDArray]:
     """Ends of the links of a model, and the member `arm_vectors` of `Links`."""
     dependent, arms, vectors = [], [], []
-    for triplet in numbering.dependent:
+    for dof_block in numbering.dependent:
         first = len(arms)
-        for rotation, arm in triplet.arms:
-            arms.append((numbering.rotations.get(id(rotation), 0),
-                         numbering.triplets[id(rotation)]))
+        for rotation, arm in dof_block.arms:
+            arms.append((numbering.rotations.get(rotation, 0),
+                         numbering.dof_blocks[rotation]))
             vectors.append(arm)
-        dependent.append((numbering.triplets[id(triplet)], numbering.triplets[id(triplet.root)],
+        dependent.append((numbering.dof_blocks[dof_block], numbering.dof_blocks[dof_block.root],
                           first, len(arms)))
     return (Ends(tuple(dependent), tuple(arms), model.dimension, model.rotation_size),
             np.array(vectors, dtype=float).reshape(-1, model.dimension))

@@ -66,7 +66,7 @@ def _group(name: str, bodies: list[Superelement], numbering: Numbering, places: 
     rows: dict[tuple, int] = {}         # where the constants of equal bodies begin
     constants, index, end = [], [], 0
     for body in bodies:
-        key = id(body.body), tuple(body.alpha), tuple(body.alpha_r)
+        key = body.body, tuple(body.alpha), tuple(body.alpha_r)
         if key not in rows:
             rows[key] = end
             constants.append(constants_row(body.name, kernel, counts, frame_constants(body)))
@@ -78,7 +78,7 @@ def _group(name: str, bodies: list[Superelement], numbering: Numbering, places: 
         index.append(index_row(
             body.name, kernel, unknowns, constants=rows[key], frame=places[body.name], port=0,
             positions=len(body.positions),
-            nodes=[numbering.rotations.get(id(t), 0) for t in body.rotations]))
+            nodes=[numbering.rotations.get(t, 0) for t in body.rotations]))
     return Motions(kernel.kernel.address, [body.name for body in bodies], counts,
                    np.array(index, dtype=np.int64), np.concatenate(constants),
                    scratch_size(kernel.WORK_ROWS, 0, counts["n"], counts["N_ROTATIONS"]))

@@ -8,76 +8,77 @@ from numpy.typing import NDArray
 
 from sebody.engine.tables import AMPLITUDE, PIECE, POLYNOMIAL
 from sebody.kernels.loader import element_kernel
-from sebody.model.histories import History, same_waves
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element
+from sebody.model.time_functions import TimeFunction, same_waves
 
 
 class Ports(NamedTuple):
     """Power ports: of loads, springs and drives, of damped bodies, of prescribed motions."""
 
-    of: dict[int, int]              # id(constraint, load, spring or body) -> port
+    of: dict[int, int]              # constraint, load, spring or body -> port
     names: list[str]
-    histories: list[History]
+    time_functions: list[TimeFunction]
     prescribed: list[tuple[int, int, int, float]]   # coordinate, port, 1 for a rotation, factor
-    jumps: list[list[float]]        # times at which accelerations jump with the port's history
+    jumps: list[list[float]]        # times at which accelerations jump with the port's time function
 
 
 def number_ports(model: Mechanism, at: dict[int, int]) -> Ports:
-    """Power ports of a model; `at` is the first coordinate of each triplet, by id."""
+    """Power ports of a model; `at` is the first coordinate of each DOF block, by id."""
     found = Ports({}, [], [], [], [])
 
-    def add(name: str, history: History | None, jumps: list[float]) -> int:
+    def add(name: str, time_function: TimeFunction | None, jumps: list[float]) -> int:
         found.names.append(name)
-        found.histories.append(history or History())
+        found.time_functions.append(time_function or TimeFunction())
         found.jumps.append(jumps)
         return len(found.names) - 1
 
     for element in (*model.constraints, *model.loads):
         if element_kernel(element.kind).POWER:
-            found.of[id(element)] = add(element.name, element.history, _jumps(element))
+            found.of[element] = add(element.name, element.time_function, _jumps(element))
     for body in model.bodies.values():
         if body.body.damping is not None:
-            found.of[id(body)] = add(f"damping of {body.name}", None, [])
-    for triplet in model.triplets():
-        rotational = int(triplet.rotational and not model.planar)
-        for motion in triplet.motions:
-            port = add(motion.name, motion.history, motion.history.abrupt(2))
-            found.prescribed.extend((at[id(triplet)] + k, port, rotational, d)
+            found.of[body] = add(f"damping of {body.name}", None, [])
+    for dof_block in model.dof_blocks():
+        rotational = int(dof_block.rotational and not model.planar)
+        for motion in dof_block.motions:
+            port = add(motion.name, motion.time_function, motion.time_function.abrupt(2))
+            found.prescribed.extend((at[dof_block] + k, port, rotational, d)
                                     for k, d in enumerate(motion.direction) if d != 0.0)
     return found
 
 
 def _jumps(element: Element) -> list[float]:
     """Times at which an element makes accelerations jump."""
-    if element.history is None:
+    if element.time_function is None:
         return []
     if element.function is not None:        # of its corners: what it does there is not known
-        return list(element.history.corners)
-    return element.history.abrupt(2 if element.multipliers else 0)
+        return list(element.time_function.corners)
+    return element.time_function.abrupt(2 if element.multipliers else 0)
 
 
-def port_arrays(histories: list[History], prescribed: list[tuple[int, int, int, float]],
+def port_arrays(time_functions: list[TimeFunction], prescribed: list[tuple[int, int, int, float]],
                 jumps: list[list[float]]) -> dict[str, NDArray]:
-    """The members of `System` for histories of ports and for prescribed coordinates."""
+    """The members of `System` for time functions of ports and for prescribed coordinates."""
     jumping = {t for times in jumps for t in times}
-    corners = sorted(jumping.union(*(h.corners for h in histories)))
-    return {"table_at": np.array([0, *accumulate(len(h.times) for h in histories)], dtype=np.int64),
-            "table_times": np.array([t for h in histories for t in h.times], dtype=float),
-            "table_pieces": _pieces(histories),
+    corners = sorted(jumping.union(*(h.corners for h in time_functions)))
+    return {"table_at": np.array([0, *accumulate(len(h.times) for h in time_functions)],
+                                 dtype=np.int64),
+            "table_times": np.array([t for h in time_functions for t in h.times], dtype=float),
+            "table_pieces": _pieces(time_functions),
             "corners": np.array(corners, dtype=float),
             "jumps": np.array([int(t in jumping) for t in corners], dtype=np.int64),
-            "functions": np.array([h.addresses for h in histories],
+            "functions": np.array([h.addresses for h in time_functions],
                                   dtype=np.int64).reshape(-1, 3),
             "prescribed": np.array([row[:3] for row in prescribed], dtype=np.int64).reshape(-1, 3),
             "prescribed_factor": np.array([row[3] for row in prescribed], dtype=float)}
 
 
-def _pieces(histories: list[History]) -> NDArray:
-    """Polynomials and harmonics of all pieces of all histories, (pieces, PIECE)."""
-    found = np.zeros((sum(len(h.pieces) for h in histories), PIECE))
-    if histories:
-        found[:, :POLYNOMIAL] = np.concatenate([h.polynomials() for h in histories])
-    if waves := same_waves(histories):
+def _pieces(time_functions: list[TimeFunction]) -> NDArray:
+    """Polynomials and harmonics of all pieces of all time functions, (pieces, PIECE)."""
+    found = np.zeros((sum(len(h.pieces) for h in time_functions), PIECE))
+    if time_functions:
+        found[:, :POLYNOMIAL] = np.concatenate([h.polynomials() for h in time_functions])
+    if waves := same_waves(time_functions):
         found[:, AMPLITUDE:] = waves
     return found

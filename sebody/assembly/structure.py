@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from sebody.assembly.axes import rotated_blocks, summands
 from sebody.assembly.batches import Shape, starts
 from sebody.assembly.links import Ends, link_tables
-from sebody.assembly.places import dense_layout, element_places, sparse_layout
+from sebody.assembly.scatter import dense_layout, element_scatter, sparse_layout
 from sebody.contract.layout import LANES
 
 REMEMBERED = 16         # structures
@@ -28,7 +28,7 @@ class Structure(NamedTuple):
     dense: bool                     # whether the loop keeps an inverse of the iteration matrix
     groups: tuple[int, ...]         # where the unknowns of each body begin
     equations: tuple[tuple[int, int], ...]      # first multiplier and number of them
-    coupling: bool                  # whether an equation acts on several triplets
+    coupling: bool                  # whether an equation acts on several DOF blocks
     frame_of: tuple[tuple[int, int], ...]       # of positions: first coordinate, frame or -1
     ends: Ends
     shapes: tuple[Shape, ...]       # of all batches
@@ -47,7 +47,7 @@ class Indices(NamedTuple):
 def indices(of: Structure) -> Indices:
     """The index arrays of a structure."""
     is_multiplier = _multipliers(of)
-    own_row, own_column = element_places(of.shapes, of.total)
+    own_row, own_column = element_scatter(of.shapes, of.total)
     rotated, blocks = rotated_blocks(of.shapes, dict(of.frame_of))
     links, linked_row, linked_column = link_tables(of.shapes, of.ends, rotated, of.total)
     row = np.concatenate([own_row, linked_row])
@@ -63,7 +63,7 @@ def indices(of: Structure) -> Indices:
     return Indices(
         {**_batch_arrays(of.shapes), **matrix, "J_place": places,
          "J_entry": own_entries[kept].astype(np.int32), "is_multiplier": is_multiplier,
-         "pulls": _pulls(matrix, is_multiplier, of.free), "rotated": rotated,
+         "constraint_columns": _constraint_columns(matrix, is_multiplier, of.free), "rotated": rotated,
          "rotated_blocks": blocks, "summands": table, "linked": np.array([int(linked)]),
          "first_joint": np.array([of.first_joint]), "first_power": np.array([of.first_power])},
         {**links, "entries": linked_entries[:arms], "arm_entries": linked_entries[arms:]})
@@ -88,7 +88,7 @@ def _multipliers(of: Structure) -> NDArray:
     return found
 
 
-def _pulls(matrix: dict[str, NDArray], is_multiplier: NDArray, free: int) -> NDArray:
+def _constraint_columns(matrix: dict[str, NDArray], is_multiplier: NDArray, free: int) -> NDArray:
     """Entries in rows of coordinates and columns of multipliers."""
     moving, pulling = is_multiplier == 0.0, is_multiplier > 0.0
     moving[free:] = pulling[free:] = False

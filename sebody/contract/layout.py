@@ -308,7 +308,7 @@ def packed_size(count: int, rows: int, columns: int) -> int:
     return count * height * (width + width // 4) + 2 * width + 1
 
 
-def carried_counts(planar: bool, unknowns: int, damped: bool = False) -> dict[str, int]:
+def rigid_part_counts(planar: bool, unknowns: int, damped: bool = False) -> dict[str, int]:
     """The further counts of option D."""
     return axes_of(planar) | {"damped": unknowns * damped}
 
@@ -379,7 +379,7 @@ class Condition(NamedTuple):
     coefficients: Callable      # (rows, components) of the constants of a node, in this order
 
 
-LETTERS = {"full": "f", "translation": "t", "rotation": "r"}    # by kept triplets of a node
+LETTERS = {"full": "f", "translation": "t", "rotation": "r"}    # by kept DOF blocks of a node
 
 
 def layout_name(keeps: Iterable[str], planar: bool) -> str:

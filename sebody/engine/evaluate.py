@@ -7,7 +7,7 @@ from numba.extending import intrinsic
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import C_DAMPING, CLOCK, OK, RESIDUAL, VELOCITY
 from sebody.engine.links import place_dependent, pull_back
-from sebody.engine.tables import history_at
+from sebody.engine.tables import time_function_at
 from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
 from sebody.kernels.rotations import rotate, tangent_operator
 
@@ -56,7 +56,7 @@ def set_loads_beside(system, loads, t, beside):
     """The same before a jump at t, with a short negative time `beside`, or after it."""
     for k in range(system.functions.shape[0]):
         if system.functions[k, 0] == 0:
-            history_at(system.table_times, system.table_pieces, system.table_at[k],
+            time_function_at(system.table_times, system.table_pieces, system.table_at[k],
                        system.table_at[k + 1] - 1, t, beside, loads, 3 * k)
             continue
         if system.functions[k, 0] == CLOCK:     # what is read at this time may jump

@@ -5,10 +5,10 @@ constraints turn. The time loop takes them out when it evaluates new matrices; b
 they drift. Here they are taken out of any one state, by factors of
 
     [ D   G^T          ]
-    [ G   -RELAXATION W ]
+    [ G   -REGULARIZATION W ]
 
 with the squared norms W of the multipliers. The diagonal D of the coordinates only makes all
-constraints about equally strong. See `sebody.engine.relaxation`.
+constraints about equally strong. See `sebody.engine.regularization`.
 """
 
 import numpy as np
@@ -26,11 +26,11 @@ from sebody.contract.layout import (
 from sebody.engine import elimination
 from sebody.engine.evaluate import run_kernels, set_loads, set_tangent_operators
 from sebody.engine.matrix import clear_matrix, sum_element
-from sebody.engine.relaxation import RELAXATION, spread
+from sebody.engine.regularization import REGULARIZATION, spread
 from sebody.engine.vectors import copy
 from sebody.kernels.abi import pointer_to
 
-PASSES = 2          # the first leaves rounding over RELAXATION, the second its square
+PASSES = 2          # the first leaves rounding over REGULARIZATION, the second its square
 
 
 @compiled
@@ -77,8 +77,9 @@ def _factorize(system, state, norms, dense):
         sum_element(system, state, element)
     for i in range(n):
         state.scale[i] = 1.0 / np.sqrt(norms[i])
-        state.relaxation[i] = -RELAXATION * norms[i] * system.is_multiplier[i]
-        state.matrix[system.diagonal[i]] += (state.relaxation[i] if system.is_multiplier[i] > 0.0
+        state.regularization[i] = -REGULARIZATION * norms[i] * system.is_multiplier[i]
+        state.matrix[system.diagonal[i]] += (state.regularization[i]
+                                             if system.is_multiplier[i] > 0.0
                                              else norms[i])
     if not dense:
         elimination.eliminate(

@@ -20,43 +20,29 @@ from sebody.engine.evaluate import (
 from sebody.engine.matrix import solve
 from sebody.engine.newton import apply_correction, begin_with_matrix, count_matrix, want_matrix
 from sebody.engine.state import (
-    ADAPTIVE,
     BEGIN,
-    CHOSEN,
     CHUNK,
     CONVERGED,
     DONE,
-    DUE,
     EVALUATED,
     FACTOR,
     FACTORED,
     FAILED,
-    FRESH,
     GAP,
     GIVE_UP,
-    GRID,
     INACCURATE,
     ITERATE,
-    ITERATION,
     KEPT,
-    LAST_NORM,
     LEAVES_GAP,
     NEW_MATRIX,
     NO_REASON,
     NOT_FINITE,
-    PHASE,
-    PIVOTED,
     PROJECT,
     PROJECTED,
     READY,
-    REASON,
-    RESTART,
     SLOW,
     SOLVE,
     SOLVED,
-    STEP,
-    TARGET,
-    WANTED,
 )
 from sebody.engine.step import accept, back, begin_step, cut_step, write_record
 from sebody.engine.step_control import (
@@ -84,59 +70,59 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
     reason = np.int64(NO_REASON)
     while True:
         if reason != NO_REASON:
-            control[REASON] = reason
+            control.reason = reason
             back(state)
             if reason == INACCURATE or not cut_step(state):     # an inaccurate step is cut already
                 return FAILED
             reason = np.int64(NO_REASON)
-        if control[PHASE] == BEGIN and control[ADAPTIVE] == 1:
+        if control.phase == BEGIN and control.adaptive == 1:
             write_between(system, state, record, last_grid)
-        if control[RESTART] != 0:
+        if control.restart != 0:
             code = call_restart(system.routines[1], system, state, lead, dense)
             if code != DONE:
                 return code
-            if control[DUE] == 1:
+            if control.due == 1:
                 write_record(state, record)
             continue
-        if control[PHASE] == BEGIN:
-            if control[GRID] >= last_grid:
+        if control.phase == BEGIN:
+            if control.grid >= last_grid:
                 return DONE
             if steps >= chunk:
                 return CHUNK
             steps += 1
-            if control[ADAPTIVE] == 1:
+            if control.adaptive == 1:
                 choose_step(system, state)
             elif system.corners.size > 0:
                 choose_part(system, state)
             begin_step(system, state, scheme)
             begin_with_matrix(state)
-            control[PHASE] = ITERATE
-        if control[PHASE] == ITERATE:
-            wanted = control[WANTED]
+            control.phase = ITERATE
+        if control.phase == ITERATE:
+            wanted = control.wanted
             reason = _evaluate(system, state, scheme, wanted, mixed)
             if reason != NO_REASON:
                 continue
-            control[PHASE] = FACTORED
+            control.phase = FACTORED
             if wanted != KEPT:
                 count_matrix(state, wanted)
                 if not call_refactorize(system.routines[0], system, state, wanted, dense):
                     reason = np.int64(NOT_FINITE)
                     continue
-                if control[PIVOTED] == 1:
+                if control.pivoted == 1:
                     return FACTOR
-        if control[PHASE] == FACTORED:
-            control[PHASE] = READY
+        if control.phase == FACTORED:
+            control.phase = READY
             if scheme.stabilized:
                 swap(state.residual, state.constraint_residuals)
-                control[PHASE] = PROJECT
-        if control[PHASE] == PROJECT or control[PHASE] == READY:
-            control[PHASE] = PROJECTED if control[PHASE] == PROJECT else SOLVED
-            if control[PIVOTED] == 1:
+                control.phase = PROJECT
+        if control.phase == PROJECT or control.phase == READY:
+            control.phase = PROJECTED if control.phase == PROJECT else SOLVED
+            if control.pivoted == 1:
                 return SOLVE
             solve(system, state, dense)     # the only call: with two calls it would not be inlined
-        if control[PHASE] == PROJECTED:
+        if control.phase == PROJECTED:
             _take_shift(system, state)
-            control[PHASE] = READY
+            control.phase = READY
             continue
         verdict = apply_correction(system, state, scheme, mixed)
         reason = np.int64(_conclude(system, state, record, scheme, verdict))
@@ -147,9 +133,9 @@ def _evaluate(system, state, scheme, wanted, mixed):
     """Evaluate forces and wanted element matrices of the iterate; returns the kernels' status."""
     if wanted == EVALUATED:
         set_tangent_operators(system, state)
-    if (wanted == KEPT and state.control[ITERATION] > 1 and mixed
+    if (wanted == KEPT and state.control.iteration > 1 and mixed
             and system.links.dependent.shape[0] == 0):
-        status = assemble_moved(system, state, UNMOVED * state.clock[TARGET])
+        status = assemble_moved(system, state, UNMOVED * state.clock.target)
     else:
         status = assemble(TANGENT if wanted == EVALUATED else RESIDUAL,
                           RESIDUAL if wanted == KEPT else TANGENT, system, state, state.residual)
@@ -170,19 +156,19 @@ def _evaluate(system, state, scheme, wanted, mixed):
 def _conclude(system, state, record, scheme, verdict):
     """Act on the verdict about a correction; returns the reason if the step fails."""
     control, clock = state.control, state.clock
-    control[PHASE] = ITERATE
+    control.phase = ITERATE
     if verdict == CONVERGED:
-        if control[ADAPTIVE] == 1 and not accurate(system, state, scheme):
+        if control.adaptive == 1 and not accurate(system, state, scheme):
             back(state)
-            return INACCURATE if clock[CHOSEN] < SHORTEST * clock[STEP] else NO_REASON
+            return INACCURATE if clock.chosen < SHORTEST * clock.step else NO_REASON
         accept(system, state, record)
-        control[PHASE] = BEGIN
+        control.phase = BEGIN
     elif verdict == NEW_MATRIX:
         want_matrix(system, state)
     elif verdict == GIVE_UP or verdict == LEAVES_GAP:
-        if not np.isfinite(clock[LAST_NORM]):
+        if not np.isfinite(clock.last_norm):
             return NOT_FINITE
-        if control[FRESH] > 0:
+        if control.fresh > 0:
             return SLOW if verdict == GIVE_UP else GAP
         back(state)         # perhaps because of the old matrix: repeat the step with a new one
     return NO_REASON

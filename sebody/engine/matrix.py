@@ -6,16 +6,16 @@ from sebody.compiler.decorators import compiled
 from sebody.contract.layout import C_MASS, C_STIFFNESS
 from sebody.engine import elimination
 from sebody.engine.links import add_expanded, add_second_order
-from sebody.engine.relaxation import (
+from sebody.engine.regularization import (
     EXCHANGED,
-    RELAXATION,
+    REGULARIZATION,
     WEAKEST,
     project,
     project_inverse,
-    relax,
+    regularize,
     spread,
 )
-from sebody.engine.state import EVALUATED, FLOOR, PIVOTED, RELAXED
+from sebody.engine.state import EVALUATED
 from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.dense import columns_times
 
@@ -122,11 +122,11 @@ def equilibrate(system, state):
         state.weight[i] = 1.0 / state.scale[i]
         size = max(system.magnitude[i], abs(state.q[i])) * state.weight[i]
         floor += size * size * (1.0 if system.magnitude[i] > 0.0 else 0.0)
-    state.clock[FLOOR] = ROUNDING * np.sqrt(floor)      # left by rounding of positions
+    state.clock.floor = ROUNDING * np.sqrt(floor)      # left by rounding of positions
 
 
 @compiled
-def invert_dense(system, state, n, relaxed, wanted):
+def invert_dense(system, state, n, regularized, wanted):
     """Invert a small matrix, by columns, scales included; False if it is singular."""
     dense = np.empty((n, n))
     size = inverse_size = 0.0
@@ -145,12 +145,12 @@ def invert_dense(system, state, n, relaxed, wanted):
             inverse_size += abs(inverse[j, i])
     if not size * inverse_size < 1e16 * n:
         return False
-    if relaxed:
+    if regularized:
         if wanted == EVALUATED:
             spread(system, state, inverse, True)
         project_inverse(system, state, inverse, n)
     for j in range(n):
-        if (not relaxed and system.is_multiplier[j] > 0.0
+        if (not regularized and system.is_multiplier[j] > 0.0
                 and WEAKEST * abs(inverse[j, j]) > 1.0):
             return False
         for i in range(n):
@@ -166,29 +166,29 @@ def refactorize(system, state, wanted, dense):
     set and `State.matrix` holds the sum, for a factorization with row exchanges. The scales are
     those of the last matrix of new element matrices.
     """
-    relaxed = system.relaxed[0] == 1
+    regularized = system.regularized[0] == 1
     sum_matrices(system, state, state.forces)
     if wanted == EVALUATED:
         equilibrate(system, state)
-    state.control[RELAXED] = 0
+    state.control.regularized = 0
     if dense:
         n = system.diagonal.size
-        if not relaxed and invert_dense(system, state, n, False, wanted):
+        if not regularized and invert_dense(system, state, n, False, wanted):
             return True
-        relax(system, state, EXCHANGED)
+        regularize(system, state, EXCHANGED)
         return invert_dense(system, state, n, True, wanted)
-    if relaxed:
-        relax(system, state, RELAXATION)
+    if regularized:
+        regularize(system, state, REGULARIZATION)
     done = elimination.eliminate(
         system.block_diagonal.size, pointer_to(system.block_starts), pointer_to(system.block_rows),
         pointer_to(system.block_diagonal), pointer_to(system.slot_unknowns),
         pointer_to(state.matrix), pointer_to(state.column), pointer_to(state.scale))
-    state.control[PIVOTED] = 0 if done else 1
+    state.control.pivoted = 0 if done else 1
     if not done:
         sum_matrices(system, state, state.forces)
-        if relaxed:
-            relax(system, state, RELAXATION)
-    elif relaxed and wanted == EVALUATED:
+        if regularized:
+            regularize(system, state, REGULARIZATION)
+    elif regularized and wanted == EVALUATED:
         spread(system, state, state.inverse, False)
     return True
 
@@ -202,5 +202,5 @@ def solve(system, state, dense):
                       pointer_to(state.correction), n, n)
     else:
         elimination.solve(system, state, state.residual, state.correction)
-        if state.control[RELAXED] == 1:
+        if state.control.regularized == 1:
             project(system, state)

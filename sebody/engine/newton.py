@@ -9,36 +9,16 @@ from sebody.compiler.decorators import compiled
 from sebody.contract.layout import C_DAMPING, C_MASS
 from sebody.engine.evaluate import to_body_axes, update_rotations
 from sebody.engine.matrix import ROUNDING
-from sebody.engine.relaxation import relaxed_norms
+from sebody.engine.regularization import regularized_norms
 from sebody.engine.state import (
-    ACCELERATION_NORM,
-    AGE,
-    BACK_OFF,
-    BACK_OFF_LEFT,
-    BASELINE_CONTRACTION,
-    CONTRACTION,
     CONVERGED,
-    CURRENT_STEP,
     EVALUATED,
-    EXCESS,
-    FACTOR_STEP,
-    FLOOR,
-    FRESH,
     GIVE_UP,
     GO_ON,
-    ITERATION,
-    ITERATIONS,
     KEPT,
-    LAST_NORM,
     LEAVES_GAP,
-    MATRICES,
     NEW_MATRIX,
-    RELAXED,
     ROTATED,
-    SECANT,
-    SPAN,
-    TARGET,
-    WANTED,
 )
 
 MAX_ITERATIONS = 12     # of a step
@@ -62,23 +42,23 @@ QUICK = 0.05            # a contraction rate below this needs no acceleration by
 def apply_correction(system, state, scheme, mixed):
     """Subtract the solved correction; returns the verdict on the step, CONVERGED to GIVE_UP."""
     n = system.diagonal.size
-    relaxed = state.control[RELAXED] == 1
-    norm, size, accelerations = (relaxed_norms(system, state, n) if relaxed else
+    regularized = state.control.regularized == 1
+    norm, size, accelerations = (regularized_norms(system, state, n) if regularized else
                                  _norms(system, state, n))
     if not np.isfinite(norm):
-        state.clock[LAST_NORM] = norm
+        state.clock.last_norm = norm
         return GIVE_UP
     left_norm = accelerate(system, state, n, norm) if mixed else norm
     _subtract(system, state, scheme, n)
     accelerations = max(
-        scheme.beta * state.clock[CURRENT_STEP] * state.clock[CURRENT_STEP] * accelerations,
-        state.clock[ACCELERATION_NORM])
+        scheme.beta * state.clock.current_step * state.clock.current_step * accelerations,
+        state.clock.acceleration_norm)
     target = min(scheme.tolerance * size,
-                 ACCELERATION_TOLERANCE * scheme.tolerance * accelerations) + state.clock[FLOOR]
-    state.clock[ACCELERATION_NORM], state.clock[TARGET] = accelerations, target
+                 ACCELERATION_TOLERANCE * scheme.tolerance * accelerations) + state.clock.floor
+    state.clock.acceleration_norm, state.clock.target = accelerations, target
     verdict = _verdict(system, state, norm, left_norm, target)
     ended = verdict == CONVERGED or verdict == GIVE_UP
-    if ended and relaxed and leaves_gap(system, state, norm, scheme.stabilized):
+    if ended and regularized and leaves_gap(system, state, norm, scheme.stabilized):
         return LEAVES_GAP
     return verdict
 
@@ -96,7 +76,7 @@ def leaves_gap(system, state, norm, stabilized):
         if stabilized:
             residual += state.constraint_residuals[i]
         left += residual * residual * state.scale[i] * state.scale[i]
-    return np.sqrt(left) > n * norm + WIDEST_GAP / ROUNDING * state.clock[FLOOR]
+    return np.sqrt(left) > n * norm + WIDEST_GAP / ROUNDING * state.clock.floor
 
 
 @compiled(forceinline=True)
@@ -117,7 +97,7 @@ def _norms(system, state, n):
 @compiled(forceinline=True)
 def _subtract(system, state, scheme, n):
     """Subtract the correction, in global axes, and the shift that moves positions alone."""
-    h = state.clock[CURRENT_STEP]
+    h = state.clock.current_step
     to_body_axes(system, state.frames, state.correction, True)
     if scheme.stabilized:
         to_body_axes(system, state.frames, state.shift, True)
@@ -138,24 +118,24 @@ def _subtract(system, state, scheme, n):
 def _verdict(system, state, norm, left_norm, target):
     """Count the iteration; convergence or the next action from its contraction rate."""
     clock, control = state.clock, state.control
-    iteration, last, rate = control[ITERATION], clock[LAST_NORM], clock[CONTRACTION]
+    iteration, last, rate = control.iteration, clock.last_norm, clock.contraction
     if iteration == 0:
-        clock[SPAN] = np.log(norm / target)
+        clock.span = np.log(norm / target)
     if iteration > 0 and last > 0.0:
         rate = norm / last
-        clock[CONTRACTION] = rate
-    control[ITERATION] = iteration + 1
-    control[ITERATIONS] += 1
-    clock[LAST_NORM] = left_norm
+        clock.contraction = rate
+    control.iteration = iteration + 1
+    control.iterations += 1
+    clock.last_norm = left_norm
     rate = min(max(rate, UNSURE if iteration == 0 else FASTEST), SLOWEST)
     if rate / (1.0 - rate) * left_norm <= target:
         return CONVERGED
     left = MAX_ITERATIONS - iteration - 1
-    if iteration > 2 and control[FRESH] > 2 and rate > 0.9:
+    if iteration > 2 and control.fresh > 2 and rate > 0.9:
         return CONVERGED if left_norm <= ROUNDED * target else GIVE_UP
     if left <= 0:
         return GIVE_UP
-    if iteration == 0 or control[FRESH] >= MOST_MATRICES:
+    if iteration == 0 or control.fresh >= MOST_MATRICES:
         return GO_ON
     cost = REFACTORIZATION_COST if next_matrix(system, state) == EVALUATED else ROTATED_COST
     slow = rate > POOR or np.log(target / norm) / np.log(rate) > min(cost, left)
@@ -172,10 +152,10 @@ def accelerate(system, state, n, norm):
     """
     correction, last, change = state.correction, state.last_correction, state.last_change
     along = square = mix = 0.0
-    relaxed = state.control[RELAXED] == 1
-    if state.control[SECANT] == 1 and norm > QUICK * state.clock[LAST_NORM]:
+    regularized = state.control.regularized == 1
+    if state.control.secant == 1 and norm > QUICK * state.clock.last_norm:
         for i in range(n):
-            if relaxed and system.is_multiplier[i] > 0.0:
+            if regularized and system.is_multiplier[i] > 0.0:
                 continue
             w = state.weight[i]
             difference = (correction[i] - last[i]) * w
@@ -184,7 +164,7 @@ def accelerate(system, state, n, norm):
         if square > 0.0 and abs(along) < square:
             mix = along / square
             norm = np.sqrt(max(norm * norm - along * mix, 0.0))
-    state.control[SECANT] = 1
+    state.control.secant = 1
     for i in range(n):
         d = correction[i]
         change[i] = correction[i] = d - mix * (change[i] + d - last[i])
@@ -195,19 +175,19 @@ def accelerate(system, state, n, norm):
 @compiled(forceinline=True)
 def next_matrix(system, state):
     """Matrices of a refactorization within a step: rotated ones first, if they help, then new."""
-    return ROTATED if system.linked[0] == 1 and state.control[FRESH] == 0 else EVALUATED
+    return ROTATED if system.linked[0] == 1 and state.control.fresh == 0 else EVALUATED
 
 
 @compiled(forceinline=True)
 def begin_with_matrix(state):
     """Choose whether a step refactorizes before its first iteration, and from which matrices."""
     clock, control = state.clock, state.control
-    control[FRESH] = 0
-    if clock[FACTOR_STEP] != clock[CURRENT_STEP]:
-        control[WANTED] = EVALUATED
-    if control[WANTED] == KEPT and control[BACK_OFF_LEFT] > 0:
-        control[BACK_OFF_LEFT] -= 1
-        control[WANTED] = ROTATED
+    control.fresh = 0
+    if clock.factor_step != clock.current_step:
+        control.wanted = EVALUATED
+    if control.wanted == KEPT and control.back_off_left > 0:
+        control.back_off_left -= 1
+        control.wanted = ROTATED
 
 
 @compiled(forceinline=True)
@@ -218,10 +198,10 @@ def want_matrix(system, state):
     their number, doubles until a step converges without any refactorization.
     """
     control = state.control
-    control[WANTED] = next_matrix(system, state)
-    if control[WANTED] == ROTATED:
-        control[BACK_OFF] = min(2 * control[BACK_OFF] + 1, LONGEST_BACK_OFF)
-        control[BACK_OFF_LEFT] = control[BACK_OFF]
+    control.wanted = next_matrix(system, state)
+    if control.wanted == ROTATED:
+        control.back_off = min(2 * control.back_off + 1, LONGEST_BACK_OFF)
+        control.back_off_left = control.back_off
 
 
 @compiled(forceinline=True)
@@ -229,12 +209,12 @@ def count_matrix(state, wanted):
     """Reset what belongs to the old matrix, before the new one is factorized."""
     clock, control = state.clock, state.control
     if wanted == EVALUATED:
-        control[AGE], clock[BASELINE_CONTRACTION], clock[EXCESS] = 0, 0.5, 0.0
-        clock[FACTOR_STEP] = clock[CURRENT_STEP]
-    control[WANTED] = KEPT
-    control[SECANT] = 0
-    control[FRESH] += 1
-    control[MATRICES] += 1
+        control.age, clock.baseline_contraction, clock.excess = 0, 0.5, 0.0
+        clock.factor_step = clock.current_step
+    control.wanted = KEPT
+    control.secant = 0
+    control.fresh += 1
+    control.matrices += 1
 
 
 @compiled(forceinline=True)
@@ -247,16 +227,16 @@ def watch_age(state):
     matrices take half a percent of the time.
     """
     clock, control = state.clock, state.control
-    control[AGE] += 1
-    if control[AGE] > OLDEST:
-        control[WANTED] = EVALUATED
-    if control[ITERATION] < 2:
+    control.age += 1
+    if control.age > OLDEST:
+        control.wanted = EVALUATED
+    if control.iteration < 2:
         return
-    if control[AGE] <= BASELINE_STEPS:
-        clock[BASELINE_CONTRACTION] = min(clock[BASELINE_CONTRACTION],
-                                          max(clock[CONTRACTION], FASTEST))
+    if control.age <= BASELINE_STEPS:
+        clock.baseline_contraction = min(clock.baseline_contraction,
+                                          max(clock.contraction, FASTEST))
         return
-    needed = 1.0 + max(clock[SPAN], 0.0) / -np.log(clock[BASELINE_CONTRACTION])
-    clock[EXCESS] += max(control[ITERATION] - np.ceil(needed), 0.0)
-    if clock[EXCESS] > REFACTORIZATION_COST:
-        control[WANTED] = EVALUATED
+    needed = 1.0 + max(clock.span, 0.0) / -np.log(clock.baseline_contraction)
+    clock.excess += max(control.iteration - np.ceil(needed), 0.0)
+    if clock.excess > REFACTORIZATION_COST:
+        control.wanted = EVALUATED

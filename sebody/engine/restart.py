@@ -39,33 +39,17 @@ from sebody.engine.newton import SLOWEST
 from sebody.engine.state import (
     AHEAD,
     ASKED,
-    AUX_STEP,
     BEGIN,
-    BESIDE,
-    CONTRACTION,
-    CURRENT_STEP,
     DONE,
     EVALUATED,
     FACTOR,
     FACTORED,
     FAILED,
-    FLOOR,
-    FRESH,
     ITERATE,
-    ITERATION,
     KEPT,
-    LAST_NORM,
-    MATRICES,
     NO_START,
-    PHASE,
-    PIVOTED,
-    REASON,
-    RELAXED,
-    RESTART,
     SOLVE,
     SOLVED,
-    TIME,
-    WANTED,
 )
 from sebody.engine.vectors import copy
 from sebody.engine.work import set_acting
@@ -98,25 +82,25 @@ def restart(system, state, lead, dense):
     """
     control = state.control
     while True:
-        if control[PHASE] == BEGIN:
+        if control.phase == BEGIN:
             _begin(system, state)
-            control[PHASE] = ITERATE
-        if control[PHASE] == ITERATE:
-            wanted = control[WANTED]
+            control.phase = ITERATE
+        if control.phase == ITERATE:
+            wanted = control.wanted
             status = _evaluate(system, state, wanted)
             if status != OK:
                 return _fail(state, status)
-            control[PHASE] = FACTORED
+            control.phase = FACTORED
             if wanted != KEPT:
                 if not _factorize(system, state, dense):
                     return FACTOR
-        if control[PHASE] == FACTORED:
-            control[PHASE] = SOLVED
-            if control[PIVOTED] == 1:
+        if control.phase == FACTORED:
+            control.phase = SOLVED
+            if control.pivoted == 1:
                 return SOLVE
             solve(system, state, dense)
-        control[PHASE] = ITERATE
-        if control[RESTART] == AHEAD:
+        control.phase = ITERATE
+        if control.restart == AHEAD:
             _take_rates(system, state, lead)
             return _end(system, state)
         verdict = _correct(system, state)
@@ -125,7 +109,7 @@ def restart(system, state, lead, dense):
         if verdict == DONE:
             if lead == 0.0:
                 copy(state.a, state.aux)
-                state.clock[AUX_STEP] = state.clock[CURRENT_STEP]
+                state.clock.aux_step = state.clock.current_step
                 return _end(system, state)
             _look_ahead(system, state)
 
@@ -134,20 +118,20 @@ def restart(system, state, lead, dense):
 def _factorize(system, state, dense):
     """Factorize masses and constraints; False where Python has to."""
     control = state.control
-    control[WANTED] = KEPT
-    control[FRESH] += 1
-    control[MATRICES] += 1
+    control.wanted = KEPT
+    control.fresh += 1
+    control.matrices += 1
     done = call_refactorize(system.routines[0], system, state, EVALUATED, dense)
     if not done or system.massless[0] == 1:
-        control[PIVOTED] = 1
-    return control[PIVOTED] == 0
+        control.pivoted = 1
+    return control.pivoted == 0
 
 
 @compiled
 def _begin(system, state):
     """Set the loads after the jump and the coefficients of masses and constraints."""
     clock, control, c = state.clock, state.control, state.coefficients
-    set_loads_beside(system, state.loads, clock[TIME], -clock[BESIDE])
+    set_loads_beside(system, state.loads, clock.time, -clock.beside)
     for k in range(system.prescribed.shape[0]):
         state.a[system.prescribed[k, 0]] = 0.0
     for k in range(system.prescribed.shape[0]):
@@ -157,9 +141,9 @@ def _begin(system, state):
     c[C_MASS], c[C_DAMPING], c[C_STIFFNESS], c[C_GEO], c[C_CONSTRAINT] = 1.0, 0.0, 0.0, 1.0, 1.0
     for i in range(state.T.size):       # the unknowns are accelerations, not increments
         state.T[i] = 1.0 if i % 9 % 4 == 0 else 0.0
-    control[WANTED], control[RESTART] = EVALUATED, ASKED
-    control[FRESH] = control[ITERATION] = 0
-    clock[LAST_NORM] = 0.0
+    control.wanted, control.restart = EVALUATED, ASKED
+    control.fresh = control.iteration = 0
+    clock.last_norm = 0.0
 
 
 @compiled
@@ -196,22 +180,22 @@ def _correct(system, state):
             state.a[i] -= state.correction[i]
     place_dependent(system.links, state.q, state.v, state.a, state.R)
     size = max(np.sqrt(size), norm)
-    rate = norm / clock[LAST_NORM] if control[ITERATION] > 0 else 0.0
-    clock[LAST_NORM] = norm
-    control[ITERATION] += 1
+    rate = norm / clock.last_norm if control.iteration > 0 else 0.0
+    clock.last_norm = norm
+    control.iteration += 1
     if not np.isfinite(norm):
         return FAILED
     none = max(ACCURATE, ROUNDED if rate > HARDLY else 0.0) * size + _rounding(system, state)
     if norm <= none:
         # what the corrections of a regularized matrix leave is a contradiction, or a force on
         # something without mass
-        gap = (control[RELAXED] == 1 and system.massless[0] == 0
+        gap = (control.regularized == 1 and system.massless[0] == 0
                and np.sqrt(left) > n * norm + CONTRADICTION * size)
         return FAILED if gap else DONE
     if rate > POOR:
-        control[WANTED] = EVALUATED
-    ended = control[ITERATION] >= MOST_CORRECTIONS or (rate > POOR
-                                                       and control[FRESH] >= MOST_MATRICES)
+        control.wanted = EVALUATED
+    ended = control.iteration >= MOST_CORRECTIONS or (rate > POOR
+                                                       and control.fresh >= MOST_MATRICES)
     return FAILED if ended else SOLVE
 
 
@@ -222,18 +206,18 @@ def _rounding(system, state):
     They move positions by less than their rounding in a step, or are rounding of what the
     velocities make.
     """
-    speed, h = 0.0, state.clock[CURRENT_STEP]
+    speed, h = 0.0, state.clock.current_step
     for i in range(state.v.size):
         if system.magnitude[i] > 0.0:
             speed = max(speed, abs(state.v[i]) / system.magnitude[i])
-    return state.clock[FLOOR] * (1.0 / (h * h) + SUMMANDS * speed * speed)
+    return state.clock.floor * (1.0 / (h * h) + SUMMANDS * speed * speed)
 
 
 @compiled
 def _look_ahead(system, state):
     """Move the state by a short time, for one more correction."""
     clock = state.clock
-    dt = SHORT * clock[CURRENT_STEP]
+    dt = SHORT * clock.current_step
     copy(state.now, state.kept)
     copy(state.R, state.R_old)
     copy(state.frames, state.frames_old)
@@ -242,16 +226,16 @@ def _look_ahead(system, state):
         state.dq[i] = dt * (state.v[i] + 0.5 * dt * state.a[i]) * (1.0 - system.is_multiplier[i])
         state.q[i] += state.dq[i]
         state.v[i] += dt * state.a[i]
-    set_loads_beside(system, state.loads, clock[TIME] + dt, -clock[BESIDE])
+    set_loads_beside(system, state.loads, clock.time + dt, -clock.beside)
     move_prescribed(system, state)
     update_rotations(system, state)
-    state.control[RESTART] = AHEAD
+    state.control.restart = AHEAD
 
 
 @compiled
 def _take_rates(system, state, lead):
     """Return to the state reached; set auxiliary accelerations to those of a later time."""
-    h = state.clock[CURRENT_STEP]
+    h = state.clock.current_step
     to_body_axes(system, state.frames, state.correction, True)
     copy(state.kept, state.now)
     copy(state.loads_old, state.loads)
@@ -259,7 +243,7 @@ def _take_rates(system, state, lead):
     for i in range(system.diagonal.size):
         if system.is_multiplier[i] == 0.0:
             state.aux[i] -= lead / SHORT * state.correction[i]
-    state.clock[AUX_STEP] = h
+    state.clock.aux_step = h
 
 
 @compiled
@@ -267,9 +251,9 @@ def _end(system, state):
     """Let the next step begin from here."""
     control = state.control
     set_acting(system, state)
-    control[WANTED], control[PIVOTED], control[FRESH] = EVALUATED, 0, 0
-    control[RESTART], control[PHASE] = 0, BEGIN
-    state.clock[CONTRACTION] = SLOWEST      # nothing is known of the next step
+    control.wanted, control.pivoted, control.fresh = EVALUATED, 0, 0
+    control.restart, control.phase = 0, BEGIN
+    state.clock.contraction = SLOWEST      # nothing is known of the next step
     return DONE
 
 
@@ -277,5 +261,5 @@ def _end(system, state):
 def _fail(state, reason):
     """Give up: a later call begins anew."""
     control = state.control
-    control[REASON], control[PHASE], control[RESTART] = reason, BEGIN, ASKED
+    control.reason, control.phase, control.restart = reason, BEGIN, ASKED
     return FAILED

@@ -111,8 +111,8 @@ class State(Arrays):
     scale                 (N, padded) of the unknowns: the scaled matrix has a unit diagonal
     weight                (N,) one over `scale`: norms of corrections are weighted by these
     inverse               (n, padded n) inverse of a small matrix, scales included, by columns
-    relaxation            (N,) R + L of a regularized matrix, see `sebody.engine.relaxation`
-    pulls                 entries `System.pulls` of the matrix, before elimination
+    regularization            (N,) R + L of a regularized matrix, see `sebody.engine.regularization`
+    constraint_columns    entries `System.constraint_columns` of the matrix, before elimination
     projected, pulled     (N,) scratch memory of projections
     column                scratch memory of the elimination for a column of blocks
     --------------------  --------------------------------------------------------------------------
@@ -167,8 +167,8 @@ class State(Arrays):
     scale: NDArray
     weight: NDArray
     inverse: NDArray
-    relaxation: NDArray
-    pulls: NDArray
+    regularization: NDArray
+    constraint_columns: NDArray
     projected: NDArray
     pulled: NDArray
     column: NDArray

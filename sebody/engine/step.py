@@ -18,42 +18,12 @@ from sebody.contract.layout import (
 from sebody.engine.evaluate import move_prescribed, set_loads_beside, update_rotations
 from sebody.engine.newton import SLOWEST, watch_age
 from sebody.engine.state import (
-    ACCELERATION_NORM,
-    ADAPTIVE,
     ASKED,
-    AUX_STEP,
-    BACK_OFF,
     BEGIN,
-    BESIDE,
-    CHOSEN,
-    CONTRACTION,
-    CURRENT_STEP,
-    CUTS,
-    DUE,
-    END,
     EVALUATED,
     FINEST,
-    FRESH,
-    GRID,
-    HELD,
-    INSIDE,
-    ITERATION,
-    ITERATIONS,
     JUMP,
     KEPT,
-    LAST_NORM,
-    LEVEL,
-    MEETS,
-    PHASE,
-    RECORDED,
-    RESTART,
-    SECANT,
-    SPLIT,
-    STEP,
-    STEPS,
-    TIME,
-    UNIT,
-    WANTED,
 )
 from sebody.engine.step_control import LONGEST, NEAR, SHORTEST, go_on, set_end
 from sebody.engine.vectors import copy
@@ -68,7 +38,7 @@ MEMORY = 0.99           # factor of the largest norm of accelerations, in every 
 @compiled(forceinline=True)
 def begin_step(system, state, scheme):
     """Remember the accepted state, predict the next one at the end of the step."""
-    h = state.clock[CURRENT_STEP]
+    h = state.clock.current_step
     set_end(system, state)
     for i in range(state.R.size):
         state.R_old[i] = state.R[i]
@@ -77,9 +47,9 @@ def begin_step(system, state, scheme):
     alpha_m, beta, gamma = scheme.alpha_m, scheme.beta, scheme.gamma
     to_a = 1.0 / (1.0 - scheme.alpha_f)
     # auxiliary accelerations belong to a time that is later by (alpha_m - alpha_f) h
-    offset = h / state.clock[AUX_STEP]
-    state.clock[AUX_STEP] = h
-    kept = state.control[FRESH] == 0 and state.control[WANTED] == KEPT and offset == 1.0
+    offset = h / state.clock.aux_step
+    state.clock.aux_step = h
+    kept = state.control.fresh == 0 and state.control.wanted == KEPT and offset == 1.0
     follow = 1.0 if _steady(system, state) and kept else 0.0
     for i in range(state.dq.size):
         q, v, a, aux = state.q[i], state.v[i], state.a[i], state.aux[i]
@@ -93,12 +63,12 @@ def begin_step(system, state, scheme):
         state.a[i] = to_a * (aux + (1.0 - alpha_m) * change - scheme.alpha_f * a)
         state.aux[i] = aux + change
     copy(state.loads, state.loads_old)
-    set_loads_beside(system, state.loads, state.clock[END], state.clock[BESIDE])
+    set_loads_beside(system, state.loads, state.clock.end, state.clock.beside)
     set_coefficients(state, scheme, h)
     move_prescribed(system, state)
     update_rotations(system, state)
-    state.control[ITERATION], state.control[SECANT] = 0, 0
-    state.clock[LAST_NORM] = 0.0
+    state.control.iteration, state.control.secant = 0, 0
+    state.clock.last_norm = 0.0
 
 
 @compiled(forceinline=True)
@@ -134,17 +104,17 @@ def set_coefficients(state, scheme, h):
 def accept(system, state, record):
     """End a converged step: orthogonal rotations, work of the power ports, output."""
     clock, control = state.clock, state.control
-    h = clock[CURRENT_STEP]
-    if control[STEPS] % ORTHOGONAL == 0:
+    h = clock.current_step
+    if control.steps % ORTHOGONAL == 0:
         for r in range(system.rotation_at.size):
             _orthogonalize(at(pointer_to(state.R), 9 * r))
     add_work(system, state, h)
     watch_age(state)
-    if control[FRESH] == 0:
-        control[BACK_OFF] = 0
-    clock[ACCELERATION_NORM] *= MEMORY
-    control[STEPS] += 1
-    if control[ADAPTIVE] == 1:
+    if control.fresh == 0:
+        control.back_off = 0
+    clock.acceleration_norm *= MEMORY
+    control.steps += 1
+    if control.adaptive == 1:
         go_on(state)
     else:
         go_on_grid(state, record)
@@ -158,27 +128,27 @@ def go_on_grid(state, record):
     have not settled in it would spoil the next step.
     """
     clock, control = state.clock, state.control
-    short = clock[STEP] / (1 << control[LEVEL]) > LONGEST * clock[CURRENT_STEP]
-    if control[MEETS] == JUMP or (control[INSIDE] == 1 and short):
-        control[RESTART] = ASKED
-    if control[SPLIT] == 1:
-        clock[TIME], control[INSIDE] = clock[END], 1
-        control[UNIT] = np.int64(FINEST * (clock[TIME] / clock[STEP] - control[GRID]) + NEAR)
+    short = clock.step / (1 << control.level) > LONGEST * clock.current_step
+    if control.meets == JUMP or (control.inside == 1 and short):
+        control.restart = ASKED
+    if control.split == 1:
+        clock.time, control.inside = clock.end, 1
+        control.unit = np.int64(FINEST * (clock.time / clock.step - control.grid) + NEAR)
         return
-    size = FINEST >> control[LEVEL]
-    control[UNIT], control[INSIDE] = (control[UNIT] // size + 1) * size, 0
-    if control[UNIT] >= FINEST:             # back on the output grid
-        control[UNIT] = 0
-        control[GRID] += 1
-        control[DUE] = np.int64(control[GRID] % record.every[0] == 0)
-    clock[TIME] = (control[GRID] + control[UNIT] / FINEST) * clock[STEP]
-    if control[MEETS] == JUMP:
-        clock[TIME] = clock[END]
-    if control[DUE] == 1 and control[RESTART] == 0:
+    size = FINEST >> control.level
+    control.unit, control.inside = (control.unit // size + 1) * size, 0
+    if control.unit >= FINEST:             # back on the output grid
+        control.unit = 0
+        control.grid += 1
+        control.due = np.int64(control.grid % record.every[0] == 0)
+    clock.time = (control.grid + control.unit / FINEST) * clock.step
+    if control.meets == JUMP:
+        clock.time = clock.end
+    if control.due == 1 and control.restart == 0:
         write_record(state, record)
-    while control[LEVEL] > 0 and control[UNIT] % (FINEST >> (control[LEVEL] - 1)) == 0:
-        control[LEVEL] -= 1                 # try the longer step again
-    clock[CURRENT_STEP] = clock[STEP] / (1 << control[LEVEL])
+    while control.level > 0 and control.unit % (FINEST >> (control.level - 1)) == 0:
+        control.level -= 1                 # try the longer step again
+    clock.current_step = clock.step / (1 << control.level)
 
 
 @compiled(forceinline=True)
@@ -202,12 +172,12 @@ def _orthogonalize(R):
 @compiled(forceinline=True)
 def write_record(state, record):
     """Store the accepted state."""
-    k = state.control[RECORDED]
-    state.now[RECORD_T] = state.clock[TIME]
-    state.now[RECORD_ITERATIONS] = state.control[ITERATIONS]
+    k = state.control.recorded
+    state.now[RECORD_T] = state.clock.time
+    state.now[RECORD_ITERATIONS] = state.control.iterations
     for i in range(state.now.size):     # one block: nine separate copies cost as much as a step
         record.rows[k, i] = state.now[i]
-    state.control[RECORDED], state.control[DUE] = k + 1, 0
+    state.control.recorded, state.control.due = k + 1, 0
 
 
 @compiled
@@ -223,25 +193,25 @@ def back(state):
     for i in range(state.frames.size):
         state.frames[i] = state.frames_old[i]
     copy(state.loads_old, state.loads)
-    state.control[PHASE] = BEGIN
-    state.control[WANTED] = EVALUATED
-    state.clock[CONTRACTION] = SLOWEST      # nothing is known of the next attempt
+    state.control.phase = BEGIN
+    state.control.wanted = EVALUATED
+    state.clock.contraction = SLOWEST      # nothing is known of the next attempt
 
 
 @compiled
 def cut_step(state):
     """Halve the step; False when no shorter step is allowed."""
     clock, control = state.clock, state.control
-    control[CUTS] += 1
-    if control[ADAPTIVE] == 1:
-        clock[CHOSEN] = 0.5 * clock[CURRENT_STEP]
-        control[HELD] = 0
-        return clock[CHOSEN] > SHORTEST * clock[STEP]
-    tried = clock[CURRENT_STEP]
-    while clock[CURRENT_STEP] >= tried and (1 << control[LEVEL]) <= FINEST:
-        control[LEVEL] += 1
-        clock[CURRENT_STEP] = clock[STEP] / (1 << control[LEVEL])
-    if (1 << control[LEVEL]) <= FINEST:
+    control.cuts += 1
+    if control.adaptive == 1:
+        clock.chosen = 0.5 * clock.current_step
+        control.held = 0
+        return clock.chosen > SHORTEST * clock.step
+    tried = clock.current_step
+    while clock.current_step >= tried and (1 << control.level) <= FINEST:
+        control.level += 1
+        clock.current_step = clock.step / (1 << control.level)
+    if (1 << control.level) <= FINEST:
         return True
-    control[LEVEL] -= 1         # of the finest parts, should the run be resumed
+    control.level -= 1         # of the finest parts, should the run be resumed
     return False

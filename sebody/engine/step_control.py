@@ -19,32 +19,11 @@ from sebody.contract.layout import (
 )
 from sebody.engine.links import place_dependent
 from sebody.engine.state import (
-    ADAPTIVE,
     ASKED,
-    AUX_STEP,
     BEND,
-    BESIDE,
-    CHOSEN,
-    CORNER,
-    CURRENT_STEP,
-    END,
     FINEST,
-    GRID,
-    HELD,
-    INSIDE,
-    ITERATIONS,
     JUMP,
-    LARGEST_ERROR,
-    LEVEL,
-    MEETS,
     NOTHING,
-    RECORDED,
-    REJECTED,
-    RESTART,
-    SPLIT,
-    STEP,
-    TIME,
-    UNIT,
 )
 from sebody.engine.vectors import copy
 from sebody.engine.work import set_powers
@@ -71,7 +50,7 @@ def accurate(system, state, scheme):
     of the acceleration, estimated from the change of the auxiliary acceleration in the step.
     """
     clock, control = state.clock, state.control
-    h = clock[CURRENT_STEP]
+    h = clock.current_step
     error = 0.0
     aux, old = pointer_to(state.aux), pointer_to(state.aux_old)
     error_weights = pointer_to(state.error_weights)
@@ -81,21 +60,21 @@ def accurate(system, state, scheme):
             error = e
     error *= abs(scheme.beta + 0.5 * (scheme.alpha_m - scheme.alpha_f) - 1.0 / 6.0) * h * h
     if not error <= 1.0:
-        clock[CHOSEN] = h * max(SHORT, (AIM / error) ** (1.0 / 3.0))
-        clock[LARGEST_ERROR] = AIM
-        control[HELD] = 0
-        control[REJECTED] += 1
+        clock.chosen = h * max(SHORT, (AIM / error) ** (1.0 / 3.0))
+        clock.largest_error = AIM
+        control.held = 0
+        control.rejected += 1
         return False
-    same = h / clock[CHOSEN]            # the step is shorter than chosen before a corner
-    largest = max(error / max(same * same * same, 1e-3), MEMORY * clock[LARGEST_ERROR])
-    control[HELD] += 1
-    gain = GAIN if control[HELD] >= PATIENCE else LONGEST
+    same = h / clock.chosen            # the step is shorter than chosen before a corner
+    largest = max(error / max(same * same * same, 1e-3), MEMORY * clock.largest_error)
+    control.held += 1
+    gain = GAIN if control.held >= PATIENCE else LONGEST
     if largest * gain * gain * gain <= AIM:
         factor = min(LONGEST, (AIM / max(largest, 1e-300)) ** (1.0 / 3.0))
-        clock[CHOSEN] *= factor
+        clock.chosen *= factor
         largest *= factor * factor * factor
-        control[HELD] = 0
-    clock[LARGEST_ERROR] = largest
+        control.held = 0
+    clock.largest_error = largest
     return True
 
 
@@ -103,38 +82,38 @@ def accurate(system, state, scheme):
 def choose_step(system, state):
     """Set the length of a step: as the error allows, but so that it meets corners of loads."""
     clock = state.clock
-    last, h = clock[CURRENT_STEP], clock[CHOSEN]
-    left = next_corner(system, state) - clock[TIME]
+    last, h = clock.current_step, clock.chosen
+    left = next_corner(system, state) - clock.time
     if left < np.inf:
         parts = np.ceil(left / h - 1e-6)
         if parts < FAR:         # equal steps share a matrix, so rounding must not change h
             h = last if abs(parts * last - left) < 1e-9 * left else left / parts
-    clock[CURRENT_STEP] = h
+    clock.current_step = h
 
 
 @compiled
 def choose_part(system, state):
     """Set the length of a fixed step: a part of an output step, or what a jump leaves of it."""
     clock, control = state.clock, state.control
-    corner, size = next_corner(system, state), FINEST >> control[LEVEL]
-    h = clock[STEP] / (1 << control[LEVEL])
-    end, near = clock[TIME] + h, NEAR * h
-    if control[INSIDE] == 1:
-        end = (control[GRID] + (control[UNIT] // size + 1) * size / FINEST) * clock[STEP]
-        h = end - clock[TIME]
-    control[SPLIT] = np.int64(corner < end - near)
-    clock[CURRENT_STEP] = corner - clock[TIME] if control[SPLIT] == 1 else h
+    corner, size = next_corner(system, state), FINEST >> control.level
+    h = clock.step / (1 << control.level)
+    end, near = clock.time + h, NEAR * h
+    if control.inside == 1:
+        end = (control.grid + (control.unit // size + 1) * size / FINEST) * clock.step
+        h = end - clock.time
+    control.split = np.int64(corner < end - near)
+    clock.current_step = corner - clock.time if control.split == 1 else h
 
 
 @compiled
 def next_corner(system, state):
     """The next time at which steps end, fixed ones where accelerations jump; if none, infinity."""
     control, corners = state.control, system.corners
-    fixed = control[ADAPTIVE] == 0
-    while control[CORNER] < corners.size and (corners[control[CORNER]] <= state.clock[TIME] or (
-            fixed and system.jumps[control[CORNER]] == 0)):
-        control[CORNER] += 1
-    return corners[control[CORNER]] if control[CORNER] < corners.size else np.inf
+    fixed = control.adaptive == 0
+    while control.corner < corners.size and (corners[control.corner] <= state.clock.time or (
+            fixed and system.jumps[control.corner] == 0)):
+        control.corner += 1
+    return corners[control.corner] if control.corner < corners.size else np.inf
 
 
 @compiled
@@ -144,15 +123,15 @@ def set_end(system, state):
     A step that ends at a jump reads its loads before that.
     """
     clock, control, corners = state.clock, state.control, system.corners
-    end, near = clock[TIME] + clock[CURRENT_STEP], NEAR * clock[CURRENT_STEP]
-    clock[END], clock[BESIDE], control[MEETS] = end, 0.0, NOTHING
-    k = control[CORNER]
+    end, near = clock.time + clock.current_step, NEAR * clock.current_step
+    clock.end, clock.beside, control.meets = end, 0.0, NOTHING
+    k = control.corner
     while k < corners.size and corners[k] < end + near:
-        clock[END] = corners[k]
-        control[MEETS] = max(control[MEETS], JUMP if system.jumps[k] == 1 else BEND)
+        clock.end = corners[k]
+        control.meets = max(control.meets, JUMP if system.jumps[k] == 1 else BEND)
         k += 1
-    if control[MEETS] == JUMP:
-        clock[BESIDE] = -BEFORE * near
+    if control.meets == JUMP:
+        clock.beside = -BEFORE * near
 
 
 @compiled
@@ -164,34 +143,34 @@ def go_on(state):
     the rate of a short pulse on.
     """
     clock, control = state.clock, state.control
-    clock[TIME] = clock[END]
-    if control[MEETS] != NOTHING:
-        clock[AUX_STEP] = np.inf
-    if control[MEETS] == JUMP:
-        control[RESTART] = ASKED
+    clock.time = clock.end
+    if control.meets != NOTHING:
+        clock.aux_step = np.inf
+    if control.meets == JUMP:
+        control.restart = ASKED
 
 
 @compiled
 def write_between(system, state, record, last_grid):
     """Write output at the grid times within the last step; at its end after a restart."""
     clock, control = state.clock, state.control
-    h = clock[CURRENT_STEP]
-    while control[GRID] < last_grid:
-        t = (control[GRID] + 1) * clock[STEP]
-        if t > clock[TIME] or (t == clock[TIME] and control[RESTART] != 0):
+    h = clock.current_step
+    while control.grid < last_grid:
+        t = (control.grid + 1) * clock.step
+        if t > clock.time or (t == clock.time and control.restart != 0):
             return
-        control[GRID] += 1
-        if control[GRID] % record.every[0] == 0:
-            _write_row(system, state, record.rows[control[RECORDED]], record.at, t,
-                       1.0 - (clock[TIME] - t) / h, h)
-            control[RECORDED] += 1
+        control.grid += 1
+        if control.grid % record.every[0] == 0:
+            _write_row(system, state, record.rows[control.recorded], record.at, t,
+                       1.0 - (clock.time - t) / h, h)
+            control.recorded += 1
 
 
 @compiled
 def _write_row(system, state, row, at, t, s, h):
     """Interpolate the state at a share `s` of the last step, by cubics through values and rates."""
     copy(state.now, row)
-    row[RECORD_T], row[RECORD_ITERATIONS] = t, state.control[ITERATIONS]
+    row[RECORD_T], row[RECORD_ITERATIONS] = t, state.control.iterations
     if s == 1.0:
         return
     set_powers(system, state, h)

@@ -38,7 +38,7 @@ class System(Arrays):
     ------------------------------------------------------------------------------------------------
     rows, columns       of every stored entry
     diagonal            (n,) entry on the diagonal of each unknown
-    pulls               entries in columns of multipliers, without their diagonal
+    constraint_columns  entries in columns of multipliers, without their diagonal
     padding             entries with ones: the diagonal of free slots
     block_starts        pattern of the blocks, see `sebody.engine.elimination`; empty for a small
     block_rows          matrix, as the next ones
@@ -54,7 +54,7 @@ class System(Arrays):
                         the equation, that each belongs to
     inertias            (N,) largest mass or moment of inertia of that position or rotation at the
                         start, which sets it
-    thin                (N,) the same where about some axis there is nearly none, zero elsewhere
+    massless_axes       (N,) the same where about some axis there is nearly none, zero elsewhere
     magnitude           (N,) size of each coordinate, for tolerances and rounding: of positions the
                         characteristic length, 1 of rotations, 0 of modes and multipliers
     rotated             (k, 2) positions not solved for in global axes: first unknown, axes
@@ -71,9 +71,9 @@ class System(Arrays):
     table_at            (p + 1,) where the table of each port begins
     table_times         times of the tables, ascending in each
     table_pieces        (times, PIECE) see `sebody.engine.tables`
-    functions           (p, 3) addresses of a compiled history and its rates, 0 for a table; CLOCK
-                        where the history is the time itself
-    corners             times at which a history has a corner, ascending
+    functions           (p, 3) addresses of a compiled time function and its rates, 0 for a table; CLOCK
+                        where the time function is the time itself
+    corners             times at which a time function has a corner, ascending
     jumps               1 for those of them at which accelerations jump
     prescribed          (k, 3) coordinate, port, 1 for rotations
     prescribed_factor   (k,) motion of the coordinate by that of the port
@@ -81,7 +81,7 @@ class System(Arrays):
     others
     ------------------------------------------------------------------------------------------------
     links               rigid links
-    relaxed             (1,) 1 where constraints are redundant or something without mass can move
+    regularized             (1,) 1 where constraints are redundant or something without mass can move
     massless            (1,) 1 where a motion has stiffness and no mass: Python solves for
                         accelerations
     damped              (1,) 1 where a superelement has structural damping
@@ -106,7 +106,7 @@ class System(Arrays):
     rows: NDArray
     columns: NDArray
     diagonal: NDArray
-    pulls: NDArray
+    constraint_columns: NDArray
     padding: NDArray
     block_starts: NDArray
     block_rows: NDArray
@@ -121,7 +121,7 @@ class System(Arrays):
     dimension: NDArray
     part: NDArray
     inertias: NDArray
-    thin: NDArray
+    massless_axes: NDArray
     magnitude: NDArray
     table_at: NDArray
     table_times: NDArray
@@ -132,7 +132,7 @@ class System(Arrays):
     prescribed: NDArray
     prescribed_factor: NDArray
     links: Links
-    relaxed: NDArray
+    regularized: NDArray
     massless: NDArray
     damped: NDArray
     routines: NDArray

@@ -12,7 +12,7 @@ PIECE = POLYNOMIAL + 3
 
 
 @compiled
-def history_at(times, pieces, first, last, t, beside, out, at):
+def time_function_at(times, pieces, first, last, t, beside, out, at):
     """Value and two rates at t of the pieces `first` to `last`; constant before the first.
 
     At the time of a piece the value and rates are those of this piece: a motion that starts from

@@ -41,7 +41,7 @@ def at(typingctx, pointer, first):
 
 
 @intrinsic
-def hidden(typingctx, number):
+def opaque(typingctx, number):
     """The same number, which the compiler knows nothing of: no instructions."""
     def codegen(context, builder, sig, args):
         kind = args[0].type

@@ -36,7 +36,7 @@ def limits_of(bodies: Iterable[Superelement]) -> dict[str, Limits]:
     known: dict[tuple, Limits] = {}
     found = {}
     for body in bodies:
-        key = id(body.body), body.frame, body.inertia, body.stiffening, tuple(body.alpha_r)
+        key = body.body, body.frame, body.inertia, body.stiffening, tuple(body.alpha_r)
         if key not in known:
             known[key] = Limits(np.inf if body.stiffening else FAST * cautious_limit(body),
                                 _off_line(body), Axial.of(body))
@@ -96,7 +96,7 @@ def local_rotations(y: NDArray, counts: Counts) -> NDArray:
 def _off_line(body: Superelement) -> bool:
     """Whether a body of option C has its frame on rotations, and its mass off the nodes' line."""
     on_rotations = FRAMES[body.frame].traits.needs_rotations
-    return body.inertia == "c" and on_rotations and mass_off_line(body.body)
+    return body.inertia == "floating_field" and on_rotations and mass_off_line(body.body)
 
 
 def _too_fast(body: Superelement, spin: NDArray, speed: float) -> Iterator[Finding]:
@@ -132,8 +132,8 @@ def remedy(body: Superelement) -> str:
     """What to do about a spin, or an axial force."""
     if body.body.invariants is None:
         return "divide the body in two, or reduce it from an FE model with its mass"
-    if body.inertia != "c":
-        return "divide the body in two, or take inertia='c'"
+    if body.inertia != "floating_field":
+        return "divide the body in two, or take inertia='floating_field'"
     if body.body.invariants.stiffens:
         return "divide the body in two, or let it stiffen with stiffening=True"
     return "divide the body in two, or give its FE model a geometric stiffness"

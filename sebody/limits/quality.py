@@ -9,7 +9,6 @@ from sebody.assembly.evaluation import matrix
 from sebody.assembly.numbering import record_counts
 from sebody.contract.layout import ENERGIES, RECORD_T
 from sebody.engine.evaluate import to_body_axes
-from sebody.engine.state import ADAPTIVE, CUTS, STEPS
 from sebody.errors import InputError
 from sebody.limits.thresholds import CUT, EXCITED, GROWN, PERIOD
 from sebody.model.parts import Element
@@ -37,9 +36,9 @@ def remarks(run: Recording) -> dict[str, str]:
     except InputError:          # the last state of a run that failed
         return _steps(run)
     message = energy_balance.warning(run.energy_balance(),
-                                     bool(run.state.control[ADAPTIVE]))
+                                     bool(run.state.control.adaptive))
     found = ({"balance": message} if message else {}) | _steps(run)
-    if run.failure or run.state.control[ADAPTIVE]:
+    if run.failure or run.state.control.adaptive:
         return found
     columns = ENERGIES.slices(record_counts(run.numbering))
     kinetic, strain, potential = (run.energies[:, columns[name]][:, 0]
@@ -55,7 +54,7 @@ def remarks(run: Recording) -> dict[str, str]:
             "the others")
     if kinetic.max() > NO_MOTION * (np.abs(potential).max() + strain.max()):
         states = {int(np.argmax(kinetic)), int(np.argmax(strain))}
-        h = float(run.rows[-1, RECORD_T]) / max(int(run.state.control[STEPS]), 1)
+        h = float(run.rows[-1, RECORD_T]) / max(int(run.state.control.steps), 1)
         found |= _vibrations(part, sorted(states), h, kinetic.max())
     if run.numbering.multipliers:
         chosen = np.unique(np.linspace(0, len(run.rows) - 1, LOOKED_AT).astype(int))
@@ -81,7 +80,7 @@ def growth(energy: NDArray, work: NDArray) -> float:
 
 def _steps(run: Recording) -> dict[str, str]:
     """Whether many steps were rejected."""
-    steps, cuts = int(run.state.control[STEPS]), int(run.state.control[CUTS])
+    steps, cuts = int(run.state.control.steps), int(run.state.control.cuts)
     if cuts <= CUT * steps:
         return {}
     return {"cuts": f"{cuts} rejected steps, {steps} accepted (limit of the ratio {CUT:g}): "
@@ -93,7 +92,7 @@ def _constraints(part: Recording) -> dict[str, str]:
     """Whether the constraints hold, rotational ones compared with one radian."""
     equations: list[Element] = part.model.constraints
     extent = part.system.magnitude.max()
-    turning = all(t.rotational for c in equations for t in c.triplets)
+    turning = all(t.rotational for c in equations for t in c.dof_blocks)
     size = 1.0 if turning or not extent > 0.0 else extent
     off = part.constraint_residuals[:, 0].max() / size
     if off <= DRIFT:

@@ -27,9 +27,9 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh, null_space
 
 from sebody.assembly.batches import frame_constants
-from sebody.assembly.carried import carried_constants
 from sebody.assembly.contracts import frame_counts
 from sebody.assembly.floating import frame_conditions
+from sebody.assembly.rigid_part import rigid_part_constants
 from sebody.generated.options import INERTIA_OPTIONS
 from sebody.model.frames import FRAMES
 from sebody.model.parts import Superelement
@@ -226,7 +226,7 @@ def _of_nodes(body: ReducedBody, material: bool, held: Held) -> Carriers:
 
 def _rigid_part(body: ReducedBody, held: Held) -> Carriers:
     """The centre of mass and the mean rotation of option D."""
-    rows = carried_constants(body)["rigid_rows"]
+    rows = rigid_part_constants(body)["rigid_rows"]
     d, n = body.coordinates.shape[1], len(body.mass)
     axes = slice(2, 3) if body.planar else slice(0, 3)
     moved, rotated, mass = np.zeros((1, 3, n)), np.zeros((1, 3, n)), np.zeros((6, 6))

@@ -12,7 +12,7 @@ Built = TypeVar("Built")
 def atomic(build: Callable[Arguments, Built]) -> Callable[Arguments, Built]:
     """A builder that leaves its model, the first argument, as it was where it raises.
 
-    What it adds is taken out again; triplets that exist are changed only when nothing more is
+    What it adds is taken out again; DOF blocks that exist are changed only when nothing more is
     checked.
     """
     @wraps(build)

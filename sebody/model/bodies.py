@@ -16,7 +16,7 @@ from sebody.io.body_file import load_body
 from sebody.kernels.loader import superelement_kernel_name
 from sebody.model.frames import check_frame, default_frame, frame_weights, known_frame
 from sebody.model.inertias import chosen_inertia, needs_damped_kernel
-from sebody.model.inputs import known, refuse_taken, triplet, vector
+from sebody.model.inputs import dof_block, known, refuse_taken, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement, positions, rotations
 from sebody.reduction import ReducedBody
@@ -112,7 +112,7 @@ def rigid_body(model: Mechanism, name: str, node: Node | str, mass: float, inert
     mass = _check_rigid(model, name, mass)
     node = known(model, node)
     for kind in ("position", "rotation"):
-        triplet(node, kind)
+        dof_block(node, kind)
     centre = node.point if centre is None else vector(model, centre, f"centre of {name!r}")
     arm = centre - node.point
     J = _inertia(model, name, inertia)
@@ -136,7 +136,7 @@ def point_mass(model: Mechanism, name: str, node: Node | str, mass: float) -> El
     """
     mass = _check_rigid(model, name, mass)
     node = known(model, node)
-    triplet(node, "position")
+    dof_block(node, "position")
     return _add(model, Element(name, model.kind_of("point_mass"), positions(node),
                                {"mass": mass}))
 
@@ -192,7 +192,7 @@ def _check_place(name: str, body: ReducedBody, nodes: tuple[Node, ...]) -> None:
     for node, keep in zip(nodes, body.keeps, strict=True):
         for kind, other in (("position", "rotation"), ("rotation", "translation")):
             if keep != other:
-                triplet(node, kind)
+                dof_block(node, kind)
     points = np.array([n.point for n in nodes])
     offset = points - body.coordinates
     error = np.abs(offset - offset.mean(axis=0)).max()

@@ -10,21 +10,21 @@ from sebody.model import motions
 from sebody.model.inputs import (
     along,
     chosen_name,
+    dof_block,
     known,
     rotation_vector,
-    triplet,
     turning_axes,
     vector,
 )
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import pair
 from sebody.model.parts import (
+    Attachment,
     Axes,
     Element,
     Joint,
     Motion,
     Node,
-    Place,
     positions,
     rotations,
 )
@@ -46,11 +46,12 @@ def drive_angle(model: Mechanism, node: Node | str, motion: object,
         rate that it has at t = 0 is that of the start. See `sebody.model.motions.motion`.
     """
     a, b = pair(model, node, to, "drive", ("rotation",))
-    history = motions.motion(motion)
+    time_function = motions.motion(motion)
     vectors = turning_axes(model, axis, "drive", a, signed=True)
     constants = dict(zip(("n", "m"), vectors[1:], strict=True)) if vectors else {}
     name = chosen_name(model, name, f"angle at {a.name}")
-    equation = Element(name, model.kind_of("turn_drive"), rotations(a, b), constants, 1, history)
+    equation = Element(name, model.kind_of("turn_drive"), rotations(a, b), constants, 1,
+                       time_function)
     return _drive(model, Joint(name, (equation,), a, b, Axes.of(a, vectors), "drive"))
 
 
@@ -66,10 +67,10 @@ def drive_slide(model: Mechanism, node: Node | str, motion: object, axis: ArrayL
     a, b = pair(model, node, to, "drive")
     vectors = along(model, axis, "drive", a)
     constants = {"e": vectors[0], "start": vectors[0] @ (b.point - a.point)}
-    history = motions.motion(motion)
+    time_function = motions.motion(motion)
     name = chosen_name(model, name, f"slide at {a.name}")
     equation = Element(name, model.kind_of("slide_drive"), positions(a, b) + rotations(a),
-                       constants, 1, history)
+                       constants, 1, time_function)
     return _drive(model, Joint(name, (equation,), a, b, Axes.of(a, vectors), "drive"))
 
 
@@ -94,7 +95,7 @@ def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: objec
     node = known(model, node)
     if not isinstance(what, str) or what not in ("position", "rotation"):
         raise InputError(f"cannot move {what!r}: use position or rotation")
-    moved = triplet(node, what)
+    moved = dof_block(node, what)
     if what == "position":
         way = vector(model, direction, f"motion of {moved.name}")
     else:
@@ -105,11 +106,11 @@ def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: objec
     if not np.linalg.norm(way) > 0:
         raise InputError(f"motion of {moved.name} has the direction {direction}: give one "
                          "that is not zero")
-    history = motions.motion(motion)
+    time_function = motions.motion(motion)
     count = len(moved.motions) + 1
     name = chosen_name(model, name, f"motion{f' {count}' * (count > 1)} of {moved.name}")
     hold(model, node, what)
-    moved.motions.append(Motion(name, way, history, Place(node, what)))
+    moved.motions.append(Motion(name, way, time_function, Attachment(node, what)))
     return moved.motions[-1]
 
 

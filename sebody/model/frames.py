@@ -86,7 +86,7 @@ def mass_off_line(body: ReducedBody) -> bool:
 
 
 def check_frame(name: str, body: ReducedBody, frame: str) -> None:
-    """Refuse a frame that the kept triplets cannot define."""
+    """Refuse a frame that the kept DOF blocks cannot define."""
     traits = FRAMES[frame].traits
     if traits.modes:
         moments = np.linalg.eigvalsh(central_inertia(body))

@@ -29,7 +29,7 @@ def chosen_inertia(name: str, body: ReducedBody, frame: str, inertia: str | None
     if body.invariants is None:
         raise InputError(f"superelement {name!r}: inertia {option!r} needs the mass and modes of "
                          "the FE model, and the body has reduced matrices alone: reduce it from a "
-                         "model, use inertia='d', or use inertia='b' as the paper does")
+                         "model, use inertia='rigid_part', or use inertia='material' as the paper does")
     return option, body.invariants.stiffens if stiffening is None else stiffening
 
 
@@ -66,7 +66,7 @@ def _check_stiffening(name: str, body: ReducedBody, inertia: str, frame: str) ->
                          "and the body has reduced matrices alone: reduce it from a model, or "
                          "divide the body")
     if not options.INERTIA_OPTIONS[inertia].field:
-        raise InputError(f"{what} is a part of inertia 'c', not of {inertia!r}: leave inertia "
+        raise InputError(f"{what} is a part of inertia 'floating_field', not of {inertia!r}: leave inertia "
                          "out, or stiffening")
     if not body.invariants.stiffens:
         raise InputError(f"{what} needs a geometric stiffness, and the FE model of the body has "

@@ -6,7 +6,7 @@ from numpy.typing import ArrayLike, NDArray
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Element, Joint, Motion, Node, Superelement, Triplet
+from sebody.model.parts import DofBlock, Element, Joint, Motion, Node, Superelement
 from sebody.spelling import unknown
 
 PLANE = 1e-9        # largest part of an axis in the plane that is rounding
@@ -24,8 +24,8 @@ def known(model: Mechanism, node: Node | str) -> Node:
     return model.nodes[name]
 
 
-def triplet(node: Node, kind: str) -> Triplet:
-    """A triplet of a node, which must have it."""
+def dof_block(node: Node, kind: str) -> DofBlock:
+    """A DOF block of a node, which must have it."""
     found = getattr(node, kind)
     if found is None:
         raise InputError(f"node {node.name!r} has no {kind}: make it with keeps='full'")

@@ -1,6 +1,6 @@
 """Joints of a model, built from a small family of generated constraints.
 
-A joint takes no equation where its nodes can share a triplet instead. With ``explicit=True`` it is
+A joint takes no equation where its nodes can share a DOF block instead. With ``explicit=True`` it is
 built from equations alone. Every joint takes a name, by default its kind and its node. Its force
 and its moment are those on `node`, the first of its arguments, from `to` or the ground, see
 `sebody.Result`; a joint with an axis has axes whose first direction is this axis.
@@ -16,16 +16,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.model.inputs import along, axes, chosen_name, known, triplet, turning_axes
+from sebody.model.inputs import along, axes, chosen_name, dof_block, known, turning_axes
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import NEAR, check_together, pair
 from sebody.model.parts import (
+    Attachment,
     Axes,
     Connection,
     Element,
     Joint,
     Node,
-    Place,
     positions,
     rotations,
 )
@@ -36,13 +36,13 @@ class Equations(NamedTuple):
     """A constraint of a joint that has no name yet."""
 
     kind: str
-    places: tuple[Place, ...]
+    attachments: tuple[Attachment, ...]
     constants: Mapping[str, ArrayLike]
     multipliers: int
 
 
 def fix(model: Mechanism, node: Node | str, what: str = "both") -> None:
-    """Fix a node's position, rotation or both: fixed triplets are no unknowns.
+    """Fix a node's position, rotation or both: fixed DOF blocks are no unknowns.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def fix(model: Mechanism, node: Node | str, what: str = "both") -> None:
         raise InputError(f"cannot fix {what!r}: use position, rotation or both")
     kinds = ("position", "rotation") if what == "both" else (what,)
     for kind in kinds:
-        triplet(node, kind)
+        dof_block(node, kind)
     for kind in kinds:
         hold(model, node, kind)
 
@@ -126,7 +126,7 @@ def slider(model: Mechanism, node: Node | str, axis: ArrayLike,
     what = "slider"
     b, a = pair(model, node, to, what, ("position",))
     vectors = along(model, axis, what, b)
-    triplet(a, "rotation")
+    dof_block(a, "rotation")
     equations = [_on_line(model, what, a, b, vectors[1:])]
     return _joint(model, what, _named(model, name, what, a), b, a, equations,
                   Axes.of(a, vectors))
@@ -162,7 +162,7 @@ def spherical(model: Mechanism, node: Node | str, to: Node | str | None = None,
 
 def weld(model: Mechanism, node: Node | str, to: Node | str | None = None,
          explicit: bool = False, name: str | None = None) -> Joint:
-    """Join two nodes rigidly: they share both triplets, or with ``explicit=True`` by equations."""
+    """Join two nodes rigidly: they share both blocks, or with ``explicit=True`` by equations."""
     a, b = pair(model, node, to, "weld")
     name = _named(model, name, "weld", a)
     equations = _together(model, a, b, to, "weld", explicit)
@@ -196,7 +196,7 @@ def _named(model: Mechanism, name: str | None, what: str, a: Node) -> str:
 
 def _joint(model: Mechanism, what: str, name: str, node: Node, to: Node,
            equations: list[Equations], axes: Axes | None, shared: tuple[str, ...] = ()) -> Joint:
-    """Add a joint between two nodes, some of whose triplets are shared or fixed."""
+    """Add a joint between two nodes, some of whose DOF blocks are shared or fixed."""
     joint = Joint(name, tuple(Element(name, *one) for one in equations), node, to, axes,
                   what.removesuffix(" joint"))
     model.joints.append(joint)

@@ -11,35 +11,35 @@ from sebody.contract.names import body_load_kind
 from sebody.errors import InputError
 from sebody.model.frames import FRAMES
 from sebody.model.functions import compiled_force
-from sebody.model.histories import History, clock, history
-from sebody.model.inputs import chosen_name, known, rotation_vector, triplet, vector
+from sebody.model.inputs import chosen_name, dof_block, known, rotation_vector, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement, positions, rotations
+from sebody.model.time_functions import TimeFunction, clock, time_function
 from sebody.spelling import offered, unknown
 
 
 def force(model: Mechanism, node: Node | str, direction: ArrayLike,
-          amplitude: ArrayLike | Callable[[float], float] | History | None = None,
+          amplitude: ArrayLike | Callable[[float], float] | TimeFunction | None = None,
           follower: bool = False, name: str | None = None) -> Element:
     """Force on a node: `direction` times a number, a table, a function of time or a profile.
 
     The direction is one of space, or with ``follower=True`` turns with the node.
     """
     node = known(model, node)
-    on = triplet(node, "position")
+    on = dof_block(node, "position")
     constants = {"d": vector(model, direction, f"force on {on.name}")}
-    places = positions(node)
+    attachments = positions(node)
     if inputs.flag(follower, "follower"):
-        triplet(node, "rotation")
-        places += rotations(node)
+        dof_block(node, "rotation")
+        attachments += rotations(node)
     kind = model.kind_of("follower_" * follower + "force")
-    course = history(amplitude)
+    course = time_function(amplitude)
     name = chosen_name(model, name, f"force on {on.name}")
-    return _add(model, Element(name, kind, places, constants, history=course))
+    return _add(model, Element(name, kind, attachments, constants, time_function=course))
 
 
 def torque(model: Mechanism, node: Node | str, direction: ArrayLike,
-           amplitude: ArrayLike | Callable[[float], float] | History | None = None,
+           amplitude: ArrayLike | Callable[[float], float] | TimeFunction | None = None,
            follower: bool = False, name: str | None = None) -> Element:
     """Torque on a node: `direction` times a number, a table, a function of time or a profile.
 
@@ -48,17 +48,17 @@ def torque(model: Mechanism, node: Node | str, direction: ArrayLike,
     The direction is one of space, or with ``follower=True`` turns with the node.
     """
     node = known(model, node)
-    on = triplet(node, "rotation")
+    on = dof_block(node, "rotation")
     constants = {"d": rotation_vector(model, direction, f"torque on {on.name}")}
     follower = inputs.flag(follower, "follower")
     kind = model.kind_of("follower_" * (follower and not model.planar) + "torque")
-    course = history(amplitude)
+    course = time_function(amplitude)
     name = chosen_name(model, name, f"torque on {on.name}")
-    return _add(model, Element(name, kind, rotations(node), constants, history=course))
+    return _add(model, Element(name, kind, rotations(node), constants, time_function=course))
 
 
 def mode_force(model: Mechanism, body: str, mode: int, factor: float,
-               amplitude: ArrayLike | Callable[[float], float] | History | None = None,
+               amplitude: ArrayLike | Callable[[float], float] | TimeFunction | None = None,
                name: str | None = None) -> Element:
     """Force on an internal mode of a superelement: `factor` times a time function.
 
@@ -69,17 +69,17 @@ def mode_force(model: Mechanism, body: str, mode: int, factor: float,
     if not 0 <= mode < count:
         raise InputError(f"superelement {body!r} has no mode {mode!r}: it has {count}, from 0")
     factor = inputs.number(factor, f"force on mode {mode} of {body!r}")
-    course = history(amplitude)
+    course = time_function(amplitude)
     name = chosen_name(model, name, f"force on mode {mode} of {body}")
-    return _add(model, Element(name, "mode_force", (), {"factor": factor}, history=course,
+    return _add(model, Element(name, "mode_force", (), {"factor": factor}, time_function=course,
                                mode=(body, mode)))
 
 
 def body_load(model: Mechanism, body: str, load: str,
-              amplitude: ArrayLike | Callable[[float], float] | History | None = None,
+              amplitude: ArrayLike | Callable[[float], float] | TimeFunction | None = None,
               name: str | None = None) -> Element:
     """A load that was reduced with a superelement: pressure, traction, a force inside, times a
-    history.
+    time function.
 
     The load turns with the frame of the body. Its parts act on the boundary nodes where these are,
     and on the internal modes.
@@ -103,9 +103,10 @@ def body_load(model: Mechanism, body: str, load: str,
                          + offered(load, loads, "it has", "it was reduced without loads, give "
                                    "craig_bampton loads={...}"))
     kind = body_load_kind(FRAMES[placed.frame].kernel, model.planar)
-    course = history(amplitude)
+    course = time_function(amplitude)
     name = chosen_name(model, name, f"{load} on {body}")
-    return _add(model, Element(name, kind, placed.places, {"P": loads[load]}, history=course,
+    return _add(model, Element(name, kind, placed.attachments, {"P": loads[load]},
+                               time_function=course,
                                body=placed))
 
 
@@ -129,15 +130,15 @@ def user_force(model: Mechanism, name: str, nodes: Iterable[Node | str],
         A function that cannot be compiled, no nodes, or corners that are no times.
     """
     inputs.name(name, "name of a user force")
-    places = positions(*(known(model, n) for n in inputs.items(
+    attachments = positions(*(known(model, n) for n in inputs.items(
         nodes, f"nodes of user force {name!r}", "give a list of nodes")))
-    for place in places:
-        triplet(place.node, "position")
-    if not places:
+    for place in attachments:
+        dof_block(place.node, "position")
+    if not attachments:
         raise InputError(f"user force {name!r} has no nodes: give those it acts on")
-    compiled = compiled_force(function, name, model.dimension * len(places))
+    compiled = compiled_force(function, name, model.dimension * len(attachments))
     name = chosen_name(model, name, "user force")
-    return _add(model, Element(name, "user_force", places, {}, history=clock(corners),
+    return _add(model, Element(name, "user_force", attachments, {}, time_function=clock(corners),
                                function=compiled))
 
 

@@ -14,12 +14,12 @@ from sebody.errors import InputError
 from sebody.model.parts import (
     Beam,
     Connection,
+    DofBlock,
     Element,
     Joint,
     Motion,
     Node,
     Superelement,
-    Triplet,
 )
 from sebody.model.plane import Plane
 from sebody.spelling import unknown
@@ -78,9 +78,9 @@ class Mechanism:
         """Kind of an element in this model's dimension: planar elements have their own kernels."""
         return "planar_" + name if self.planar else name
 
-    def triplets(self) -> list[Triplet]:
-        """All triplets, each once."""
-        return list({id(t): t for n in (*self.nodes.values(), *self.grounds)
+    def dof_blocks(self) -> list[DofBlock]:
+        """All DOF blocks, each once."""
+        return list({t: t for n in (*self.nodes.values(), *self.grounds)
                      for t in (n.position, n.rotation) if t is not None}.values())
 
     def size(self) -> float:
@@ -90,8 +90,8 @@ class Mechanism:
     def elements(self) -> Iterator[Superelement | Element | Joint | Motion]:
         """Everything with a name but the nodes: bodies, joints, loads, springs and drives."""
         yield from (*self.bodies.values(), *self.rigid_bodies.values(), *self.joints, *self.loads)
-        for triplet in self.triplets():
-            yield from triplet.motions
+        for dof_block in self.dof_blocks():
+            yield from dof_block.motions
 
     def element(self, name: str) -> Superelement | Element | Joint | Motion:
         """A body, joint, load, spring or drive by its name.

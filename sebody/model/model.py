@@ -1,8 +1,8 @@
-"""What a user builds: nodes made of triplets, superelements on them, joints and loads.
+"""What a user builds: nodes made of DOF blocks, superelements on them, joints and loads.
 
-A node is a position triplet and a rotation triplet, two separate blocks of unknowns. Bodies that
-share a position triplet have a spherical joint between them without a multiplier, and a fixed
-triplet has no unknowns.
+A node is a position block and a rotation block, two separate blocks of unknowns. Bodies that
+share a position DOF block have a spherical joint between them without a multiplier, and a fixed
+DOF block has no unknowns.
 """
 
 from html import escape

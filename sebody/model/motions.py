@@ -9,19 +9,19 @@ from sebody.compiler.user_functions import UserFunction
 from sebody.errors import InputError
 from sebody.model.derivatives import rates_of
 from sebody.model.functions import compiled_history
-from sebody.model.histories import (
+from sebody.model.history_rows import table
+from sebody.model.time_functions import (
     MOTION,
-    History,
     Source,
+    TimeFunction,
     is_function_with_rates,
     spline_of,
 )
-from sebody.model.history_rows import table
 
 SAMPLES = (0.137, 0.61, 1.13, 2.71)     # times at which rates given by a user are tested
 
 
-def motion(source: Source) -> History:
+def motion(source: Source) -> TimeFunction:
     """The motion of a drive: a position and its first two derivatives, less its value at t = 0.
 
     Parameters
@@ -37,7 +37,7 @@ def motion(source: Source) -> History:
         None of these, functions that are not each other's derivatives, a function that cannot be
         compiled or differentiated, a position or rate that jumps.
     """
-    if isinstance(source, History):
+    if isinstance(source, TimeFunction):
         if len(source.functions) == 1:
             value = source.functions[0]
             rates = (compiled_history(f, MOTION) for f in rates_of(value.function, MOTION))
@@ -50,7 +50,7 @@ def motion(source: Source) -> History:
     if is_function_with_rates(source):
         functions = tuple(compiled_history(f, MOTION) for f in source)
         _check_rates(functions)
-        return History(functions=functions).from_zero()
+        return TimeFunction(functions=functions).from_zero()
     if isinstance(source, Number):
         raise InputError(f"motion of a drive is the constant {inputs.shown(source)}: give a "
                          "table, a function of time or a ready profile, or fix the node")
@@ -61,7 +61,7 @@ def motion(source: Source) -> History:
     return spline_of(times, values, (0.0, 0.0)).from_zero().with_corners()
 
 
-def _refuse_jumps(given: History) -> None:
+def _refuse_jumps(given: TimeFunction) -> None:
     """Refuse a motion that no body can follow."""
     for t, before, after in given.jumps():
         for k, what in enumerate(("position", "rate")):

@@ -1,4 +1,4 @@
-"""Nodes of a model: positions, shared triplets, rigid links and initial velocities."""
+"""Nodes of a model: positions, shared DOF blocks, rigid links and initial velocities."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.model.inputs import known, rotation_vector, triplet, vector
+from sebody.model.inputs import dof_block, known, rotation_vector, vector
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Connection, Node, Triplet
+from sebody.model.parts import Connection, DofBlock, Node
 from sebody.spelling import unknown
 
 RESERVED = ("constraints", "energy")    # first parts of quantities of the whole model
@@ -28,7 +28,7 @@ def node(model: Mechanism, name: str, point: ArrayLike, keeps: str = "full",
         Initial position, global axes [length].
     keeps : {'full', 'translation', 'rotation'}
     at : Node or str, optional
-        Share the position triplet of this node: a spherical joint with no multiplier.
+        Share the position DOF block of this node: a spherical joint with no multiplier.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def node(model: Mechanism, name: str, point: ArrayLike, keeps: str = "full",
                          f"{at.name!r} at {at.point}: give both the same point")
     position = None if keeps == "rotation" else (
         at.position if at is not None else
-        Triplet(f"{name}.position", point, np.zeros(model.dimension)))
+        DofBlock(f"{name}.position", point, np.zeros(model.dimension)))
     rotation = None if keeps == "translation" else _rotation(model, f"{name}.rotation")
     added = model.nodes[name] = Node(name, point, position, rotation)
     if at is not None:
@@ -63,15 +63,15 @@ def attach(model: Mechanism, name: str, point: ArrayLike, to: Node | str) -> Nod
     Raises
     ------
     InputError
-        Name taken, or `to` lacks a triplet.
+        Name taken, or `to` lacks a DOF block.
     """
     master = known(model, to)
     _check_new(model, name)
     point = vector(model, point, f"point of node {name!r}")
-    position, rotation = (triplet(master, k) for k in ("position", "rotation"))
+    position, rotation = (dof_block(master, k) for k in ("position", "rotation"))
     root = position if position.root is None else position.root
     arms = (*position.arms, (rotation, point - master.point))
-    dependent = Triplet(f"{name}.position", point, np.zeros(model.dimension), root=root, arms=arms)
+    dependent = DofBlock(f"{name}.position", point, np.zeros(model.dimension), root=root, arms=arms)
     added = model.nodes[name] = Node(name, point, dependent, rotation)
     model.connections += [Connection(kind, added, master) for kind in ("position", "rotation")]
     return added
@@ -80,7 +80,7 @@ def attach(model: Mechanism, name: str, point: ArrayLike, to: Node | str) -> Nod
 def ground(model: Mechanism, node: Node) -> Node:
     """A fixed node at the position of another one."""
     fixed = Node(f"ground at {node.name}", node.point,
-                 Triplet("ground.position", node.point, np.zeros(model.dimension), fixed=True),
+                 DofBlock("ground.position", node.point, np.zeros(model.dimension), fixed=True),
                  _rotation(model, "ground.rotation", fixed=True))
     model.grounds.append(fixed)
     return fixed
@@ -97,7 +97,7 @@ def initial_velocity(model: Mechanism, node: Node | str, linear: ArrayLike | Non
                                ("rotation", angular, rotation_vector)):
         if value is None:
             continue
-        moving = triplet(node, kind)
+        moving = dof_block(node, kind)
         rate = check(model, value, f"initial rate of {moving.name}")
         if not moving.solved and np.any(rate):
             raise InputError(f"initial rate of {moving.name} is {value}, but it is fixed, "
@@ -156,11 +156,11 @@ def _moved(model: Mechanism, body: str | None,
         raise InputError("rigid_velocity takes body= or nodes=: leave one of them out")
     named = {beam.name: beam.nodes for beam in model.beams}
     named |= {one.name: one.nodes for one in model.bodies.values()}
-    named |= {one.name: [place.node for place in one.places]
+    named |= {one.name: [place.node for place in one.attachments]
               for one in model.rigid_bodies.values()}
     if not isinstance(body, str) or body not in named:
         raise unknown("body", body, named, "the model has", "the model has none")
-    return list({id(node): node for node in named[body]}.values())
+    return list({node: node for node in named[body]}.values())
 
 
 def _check_new(model: Mechanism, name: str) -> None:
@@ -172,6 +172,6 @@ def _check_new(model: Mechanism, name: str) -> None:
         raise InputError(f"node {name!r} exists already: give every node its own name")
 
 
-def _rotation(model: Mechanism, name: str, fixed: bool = False) -> Triplet:
-    return Triplet(name, np.zeros(model.rotation_size), np.zeros(model.rotation_size), fixed,
+def _rotation(model: Mechanism, name: str, fixed: bool = False) -> DofBlock:
+    return DofBlock(name, np.zeros(model.rotation_size), np.zeros(model.rotation_size), fixed,
                    rotational=True)

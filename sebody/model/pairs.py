@@ -3,7 +3,7 @@
 import numpy as np
 
 from sebody.errors import InputError
-from sebody.model.inputs import known, triplet
+from sebody.model.inputs import dof_block, known
 from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import ground
 from sebody.model.parts import Node
@@ -19,8 +19,8 @@ def pair(model: Mechanism, node: Node | str, to: Node | str | None, what: str,
     if a is b:
         raise InputError(f"{what}: node {a.name!r} is joined to itself: give two nodes")
     for kind in kinds:
-        triplet(a, kind)
-        triplet(b, kind)
+        dof_block(a, kind)
+        dof_block(b, kind)
     return a, b
 
 

@@ -1,4 +1,4 @@
-"""What a mechanism is made of: triplets and nodes, bodies, the elements and joints between them."""
+"""What a mechanism is made of: blocks and nodes, bodies, the elements and joints between them."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody.fem.section import AnySection
-from sebody.model.histories import History
+from sebody.model.time_functions import TimeFunction
 from sebody.reduction import ReducedBody
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.tabular import counted, vector
@@ -19,18 +19,18 @@ class Motion(NamedTuple):
 
     name: str
     direction: NDArray
-    history: History
-    place: "Place"
+    time_function: TimeFunction
+    place: "Attachment"
 
     def __repr__(self) -> str:
-        return f"<Motion {self.name!r} along {vector(self.direction)}: {self.history.described()}>"
+        return f"<Motion {self.name!r} along {vector(self.direction)}: {self.time_function.described()}>"
 
 
 @dataclass(eq=False, repr=False)
-class Triplet:
+class DofBlock:
     """A block of unknowns: a position or a rotation (in a plane two coordinates or an angle).
 
-    A triplet is free, fixed or prescribed. A position may also be dependent: at the end of a chain
+    A block is free, fixed or prescribed. A position may also be dependent: at the end of a chain
     of rigid arms that rotate with nodes and begins at a root.
     """
 
@@ -40,7 +40,7 @@ class Triplet:
     fixed: bool = False             # not solved for: at rest or prescribed
     motions: list[Motion] = field(default_factory=list)
     root: "Triplet | None" = None   # of a dependent position
-    arms: tuple[tuple["Triplet", NDArray], ...] = ()     # rotations, and arms in their axes
+    arms: tuple[tuple["DofBlock", NDArray], ...] = ()     # rotations, and arms in their axes
     given: bool = False             # whether the user gave the initial velocity
     rotational: bool = False        # whether it is a rotation
 
@@ -49,8 +49,8 @@ class Triplet:
         """Whether its coordinates are unknowns."""
         return not self.fixed and self.root is None
 
-    def parents(self) -> list["Triplet"]:
-        """The triplets that determine this one: itself, or root and rotations of the arms."""
+    def parents(self) -> list["DofBlock"]:
+        """The DOF blocks that determine this one: itself, or root and rotations of the arms."""
         return [self] if self.root is None else [self.root, *(r for r, _ in self.arms)]
 
     @property
@@ -68,12 +68,12 @@ class Triplet:
 
 @dataclass(eq=False, repr=False)
 class Node:
-    """A named point of the model; either triplet may be absent or shared with another node."""
+    """A named point of the model; either DOF block may be absent or shared with another node."""
 
     name: str
     point: NDArray
-    position: Triplet | None
-    rotation: Triplet | None
+    position: DofBlock | None
+    rotation: DofBlock | None
 
     def __repr__(self) -> str:
         states = ", ".join(f"{kind} {getattr(self, kind).state}" for kind in (
@@ -81,21 +81,21 @@ class Node:
         return f"<Node {self.name!r} at {vector(self.point)}: {states}>"
 
 
-class Place(NamedTuple):
-    """Where an element acts: one of the two triplets of a node, which other nodes may share."""
+class Attachment(NamedTuple):
+    """Where an element acts: one of the two DOF blocks of a node, which other nodes may share."""
 
     node: Node
     kind: str       # position or rotation
 
 
-def positions(*nodes: Node) -> tuple[Place, ...]:
+def positions(*nodes: Node) -> tuple[Attachment, ...]:
     """The positions of some nodes, as an element takes them."""
-    return tuple(Place(node, "position") for node in nodes)
+    return tuple(Attachment(node, "position") for node in nodes)
 
 
-def rotations(*nodes: Node) -> tuple[Place, ...]:
+def rotations(*nodes: Node) -> tuple[Attachment, ...]:
     """The rotations of some nodes, as an element takes them: behind the positions."""
-    return tuple(Place(node, "rotation") for node in nodes)
+    return tuple(Attachment(node, "rotation") for node in nodes)
 
 
 @dataclass(eq=False, repr=False)
@@ -127,17 +127,17 @@ class Superelement:
         return found if found is None or self.stiffening else found.unstiffened
 
     @property
-    def positions(self) -> list[Triplet]:
-        """Position triplets in the order of the reduced coordinates."""
+    def positions(self) -> list[DofBlock]:
+        """Position DOF blocks in the order of the reduced coordinates."""
         return [self.nodes[i].position for i in self.body.position_nodes]
 
     @property
-    def rotations(self) -> list[Triplet]:
-        """Rotation triplets in the order of the reduced coordinates."""
+    def rotations(self) -> list[DofBlock]:
+        """Rotation DOF blocks in the order of the reduced coordinates."""
         return [self.nodes[i].rotation for i in self.body.rotation_nodes]
 
     @property
-    def places(self) -> tuple[Place, ...]:
+    def attachments(self) -> tuple[Attachment, ...]:
         """Where its reduced coordinates are, without internal modes."""
         return (positions(*(self.nodes[i] for i in self.body.position_nodes))
                 + rotations(*(self.nodes[i] for i in self.body.rotation_nodes)))
@@ -145,22 +145,22 @@ class Superelement:
 
 @dataclass(eq=False, repr=False)
 class Element:
-    """A rigid body, load, spring, or constraint of a joint: a generated kernel on triplets."""
+    """A rigid body, load, spring, or constraint of a joint: a generated kernel on DOF blocks."""
 
     name: str
     kind: str                       # name of its kernel without the prefix
-    places: tuple[Place, ...]       # positions first, then rotations
+    attachments: tuple[Attachment, ...]       # positions first, then rotations
     constants: Mapping[str, ArrayLike]      # by the names that the kernel has for them
     multipliers: int = 0
-    history: History | None = None
+    time_function: TimeFunction | None = None
     keeps_angle: bool = False               # from step to step, to count its turns
     mode: tuple[str, int] | None = None     # superelement and internal mode of a mode force
     function: object = None                 # compiled function of a user force, kept alive
     body: Superelement | None = None        # on all whose coordinates a load on a body acts
-    triplets: tuple[Triplet, ...] = field(init=False)       # those of the places
+    dof_blocks: tuple[DofBlock, ...] = field(init=False)       # those of the places
 
     def __post_init__(self) -> None:
-        self.triplets = tuple(getattr(node, kind) for node, kind in self.places)
+        self.dof_blocks = tuple(getattr(node, kind) for node, kind in self.attachments)
 
     @property
     def direction(self) -> NDArray:
@@ -168,10 +168,10 @@ class Element:
         return self.constants["d"]
 
     def __repr__(self) -> str:
-        nodes = dict.fromkeys(place.node.name for place in self.places)
+        nodes = dict.fromkeys(place.node.name for place in self.attachments)
         numbers = [f"{name} {np.asarray(value).item():.6g}" for name, value in
                    self.constants.items() if np.size(value) == 1]
-        course = [self.history.described()] if self.history and self.function is None else []
+        course = [self.time_function.described()] if self.time_function and self.function is None else []
         said = "; ".join([", ".join(numbers), *course]).strip("; ")
         return (f"<{self.kind.replace('_', ' ')} {self.name!r}"
                 + f" on {', '.join(nodes)}" * bool(nodes) + f": {said}" * bool(said) + ">")
@@ -209,7 +209,7 @@ class Axes(NamedTuple):
 
 @dataclass(eq=False, repr=False)
 class Joint:
-    """A joint or drive: its constraints; none if its nodes are fixed or share triplets."""
+    """A joint or drive: its constraints; none if its nodes are fixed or share DOF blocks."""
 
     name: str
     constraints: tuple[Element, ...]
@@ -219,7 +219,7 @@ class Joint:
     kind: str           # revolute, universal, ..., weld, distance; drive
 
     def __repr__(self) -> str:
-        course = f"; {self.history.described()}" if self.history else ""
+        course = f"; {self.time_function.described()}" if self.time_function else ""
         return (f"<{self.kind} {self.name!r} of {self.node.name} to {self.to.name}: "
                 f"{counted(self.multipliers, 'equation')}{course}>")
 
@@ -229,13 +229,13 @@ class Joint:
         return sum(c.multipliers for c in self.constraints)
 
     @property
-    def history(self) -> History | None:
+    def time_function(self) -> TimeFunction | None:
         """The motion of a drive."""
-        return next((c.history for c in self.constraints), None)
+        return next((c.time_function for c in self.constraints), None)
 
 
 class Connection(NamedTuple):
-    """Two nodes with a triplet in common, or at the ends of a rigid link.
+    """Two nodes with a DOF block in common, or at the ends of a rigid link.
 
     What one passes to the other takes no equation: it is found from the balance of the nodes.
     """

@@ -82,7 +82,7 @@ class Plane:
         name : str
             Of the quantity, such as ``"tip.position"``, see `sebody.Result`.
         values : (n, ...)
-            Its history in the planar run.
+            Its time function in the planar run.
 
         Raises
         ------

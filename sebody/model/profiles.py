@@ -15,13 +15,13 @@ from numpy.typing import ArrayLike
 
 from sebody.errors import InputError
 from sebody.inputs import array, items, number, shown
-from sebody.model.histories import COEFFICIENTS, History, of_cubics, same_waves, spline_of
+from sebody.model.time_functions import COEFFICIENTS, TimeFunction, of_cubics, same_waves, spline_of
 
 SHORTEST = 1e-9     # time at constant speed, relative to that of the rise, which is left out
 
 
 def rest_to_rest(distance: float, duration: float, start: float = 0.0,
-                 origin: float = 0.0) -> History:
+                 origin: float = 0.0) -> TimeFunction:
     """From rest to rest, smooth in speed and acceleration, by a polynomial of degree five.
 
     ``origin + distance (10 u^3 - 15 u^4 + 6 u^5)`` with ``u = (t - start) / duration``. The
@@ -34,13 +34,13 @@ def rest_to_rest(distance: float, duration: float, start: float = 0.0,
     """
     d, origin = number(distance, "distance"), number(origin, "origin")
     T, start = number(duration, "duration", above=0.0), number(start, "start")
-    return History((start, start + T),
+    return TimeFunction((start, start + T),
                    ((origin, 0.0, 0.0, 10.0 * d / T**3, -15.0 * d / T**4, 6.0 * d / T**5),
                     (origin + d,)))
 
 
 def trapezoidal(distance: float, speed: float, acceleration: float, start: float = 0.0,
-                origin: float = 0.0) -> History:
+                origin: float = 0.0) -> TimeFunction:
     """From rest to rest with a speed that rises, is constant and falls.
 
     Where the distance is too short for the speed, it falls as soon as it has risen.
@@ -71,10 +71,11 @@ def trapezoidal(distance: float, speed: float, acceleration: float, start: float
               (origin + d,)]
     if level < SHORTEST * rise:
         del times[1], pieces[1]
-    return History(tuple(times), tuple(pieces)).with_corners()
+    return TimeFunction(tuple(times), tuple(pieces)).with_corners()
 
 
-def ramp(rate: float, duration: float = inf, start: float = 0.0, origin: float = 0.0) -> History:
+def ramp(rate: float, duration: float = inf, start: float = 0.0,
+         origin: float = 0.0) -> TimeFunction:
     """A constant rate for a while, without end by default: ``origin + rate (t - start)``.
 
     For a drive: a constant speed from t = 0 on, at which the simulation starts.
@@ -87,12 +88,12 @@ def ramp(rate: float, duration: float = inf, start: float = 0.0, origin: float =
     r, origin, start = (number(v, what) for v, what in (
         (rate, "rate"), (origin, "origin"), (start, "start")))
     if duration == inf:
-        return History((start,), ((origin, r),)).with_corners()
+        return TimeFunction((start,), ((origin, r),)).with_corners()
     T = number(duration, "duration", above=0.0)
-    return History((start, start + T), ((origin, r), (origin + r * T,))).with_corners()
+    return TimeFunction((start, start + T), ((origin, r), (origin + r * T,))).with_corners()
 
 
-def harmonic(amplitude: float, omega: float, phase: float = 0.0, mean: float = 0.0) -> History:
+def harmonic(amplitude: float, omega: float, phase: float = 0.0, mean: float = 0.0) -> TimeFunction:
     """``mean + amplitude sin(omega t + phase)``, omega the angular frequency [rad/time].
 
     Raises
@@ -102,10 +103,10 @@ def harmonic(amplitude: float, omega: float, phase: float = 0.0, mean: float = 0
     """
     A, w, p, mean = (number(v, what) for v, what in (
         (amplitude, "amplitude"), (omega, "omega"), (phase, "phase"), (mean, "mean")))
-    return History((0.0,), ((mean,),), ((A, w, p),))
+    return TimeFunction((0.0,), ((mean,),), ((A, w, p),))
 
 
-def spline(rows: ArrayLike, rates: tuple[float, float] = (0.0, 0.0)) -> History:
+def spline(rows: ArrayLike, rates: tuple[float, float] = (0.0, 0.0)) -> TimeFunction:
     """A table as a cubic spline, or with its rates.
 
     Parameters
@@ -136,7 +137,7 @@ def spline(rows: ArrayLike, rates: tuple[float, float] = (0.0, 0.0)) -> History:
     return of_cubics(table[:, 0], CubicHermiteSpline(*table.T).c, table[-1, 1]).with_corners()
 
 
-def piecewise(*parts: tuple[float, History | float]) -> History:
+def piecewise(*parts: tuple[float, TimeFunction | float]) -> TimeFunction:
     """Profiles one after the other: from each time on the one beside it, or a constant number.
 
     ``piecewise((0, rest_to_rest(2.0, 1.0)), (3, rest_to_rest(-2.0, 1.0, start=3, origin=2.0)))``
@@ -163,28 +164,28 @@ def piecewise(*parts: tuple[float, History | float]) -> History:
         raise InputError(f"times of {what} must increase: they are {shown(times)}")
     cut = [_between(profile, *interval) for profile, *interval in zip(
         profiles, times, [*times[1:], inf], strict=True)]
-    return History(tuple(t for part in cut for t in part.times),
+    return TimeFunction(tuple(t for part in cut for t in part.times),
                    tuple(piece for part in cut for piece in part.pieces),
                    same_waves(cut)).with_corners()
 
 
-def _profile(given: object) -> History:
-    if isinstance(given, History):
+def _profile(given: object) -> TimeFunction:
+    if isinstance(given, TimeFunction):
         if given.functions:
             raise InputError("part of a piecewise function is a compiled function: give a ready "
                              "profile or a number")
         return given
-    return History((0.0,), ((number(given, "part of a piecewise function",
+    return TimeFunction((0.0,), ((number(given, "part of a piecewise function",
                                     remedy="give a ready profile or a number"),),))
 
 
-def _between(profile: History, first: float, last: float) -> History:
+def _between(profile: TimeFunction, first: float, last: float) -> TimeFunction:
     """The pieces of a profile in an interval, the first one moved to where this begins."""
     if first < profile.times[0]:
-        constant = History((first,), ((profile.at(first)[0],),))
+        constant = TimeFunction((first,), ((profile.at(first)[0],),))
         rest = _between(profile, profile.times[0], last)
         parts = [constant, rest] if profile.times[0] < last else [constant]
-        return History(sum((p.times for p in parts), ()), sum((p.pieces for p in parts), ()),
+        return TimeFunction(sum((p.times for p in parts), ()), sum((p.pieces for p in parts), ()),
                        same_waves(parts))
     k = int(np.searchsorted(profile.times, first, side="right")) - 1
     x = first - profile.times[k]
@@ -196,4 +197,5 @@ def _between(profile: History, first: float, last: float) -> History:
     if profile.waves:
         A, w, p = profile.waves[k]
         waves = ((A, w, p + w * x), *profile.waves[k + 1:end])
-    return History((first, *profile.times[k + 1:end]), (moved, *profile.pieces[k + 1:end]), waves)
+    return TimeFunction((first, *profile.times[k + 1:end]), (moved, *profile.pieces[k + 1:end]),
+                        waves)

@@ -1,17 +1,17 @@
-"""Fixed and shared triplets: joints without equations."""
+"""Fixed and shared DOF blocks: joints without equations."""
 
 import numpy as np
 
 from sebody.errors import InputError
 from sebody.inputs import shown
-from sebody.model.inputs import triplet
+from sebody.model.inputs import dof_block
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Connection, Node, Triplet
+from sebody.model.parts import Connection, DofBlock, Node
 
 
-def hold(model: Mechanism, node: Node, kind: str) -> Triplet:
-    """Fix a triplet of a node, which must not be a dependent position."""
-    held = triplet(node, kind)
+def hold(model: Mechanism, node: Node, kind: str) -> DofBlock:
+    """Fix a DOF block of a node, which must not be a dependent position."""
+    held = dof_block(node, kind)
     if held.root is not None:
         raise InputError(f"{held.name} follows another node by a rigid link: fix or move "
                          f"{held.root.name} and its rotation instead")
@@ -20,8 +20,8 @@ def hold(model: Mechanism, node: Node, kind: str) -> Triplet:
     return held
 
 
-def can_share(one: Triplet, other: Triplet) -> bool:
-    """Whether two triplets can be one: at most one of them is fixed or follows another node.
+def can_share(one: DofBlock, other: DofBlock) -> bool:
+    """Whether two DOF blocks can be one: at most one of them is fixed or follows another node.
 
     Two that are fixed at one place and not moved are one already. One that follows the other by
     links closes a loop.
@@ -34,8 +34,8 @@ def can_share(one: Triplet, other: Triplet) -> bool:
     return all(still) or any(t.solved for t in (one, other))
 
 
-def share(model: Mechanism, gone: Triplet, kept: Triplet, kind: str) -> None:
-    """Replace one triplet by another at every node, joint and load."""
+def share(model: Mechanism, gone: DofBlock, kept: DofBlock, kind: str) -> None:
+    """Replace one DOF block by another at every node, joint and load."""
     if gone is kept:
         return
     if not gone.solved:
@@ -50,8 +50,8 @@ def share(model: Mechanism, gone: Triplet, kept: Triplet, kind: str) -> None:
         if getattr(node, kind) is gone:
             setattr(node, kind, kept)
     for element in (*model.constraints, *model.loads, *model.rigid_bodies.values()):
-        element.triplets = tuple(kept if t is gone else t for t in element.triplets)
-    for one in model.triplets():
+        element.dof_blocks = tuple(kept if t is gone else t for t in element.dof_blocks)
+    for one in model.dof_blocks():
         if one.root is gone:
             one.root, one.arms = kept.root or kept, (*kept.arms, *one.arms)
         one.arms = tuple((kept if r is gone else r, arm) for r, arm in one.arms)

@@ -10,7 +10,7 @@ from sebody.errors import InputError
 from sebody.model.inputs import chosen_name, known, turning_axes
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import check_together, pair
-from sebody.model.parts import Element, Node, Place, positions, rotations
+from sebody.model.parts import Attachment, Element, Node, positions, rotations
 
 
 def spring(model: Mechanism, node: Node | str, to: Node | str, stiffness: float = 0.0,
@@ -94,11 +94,12 @@ def bushing(model: Mechanism, node: Node | str, to: Node | str | None = None,
     return _add(model, name, "bushing", a, positions(a, b) + rotations(a, b), constants)
 
 
-def _add(model: Mechanism, name: str | None, what: str, a: Node, places: tuple[Place, ...],
+def _add(model: Mechanism, name: str | None, what: str, a: Node,
+         attachments: tuple[Attachment, ...],
          constants: dict[str, ArrayLike], keeps_angle: bool = False) -> Element:
     name = chosen_name(model, name, f"{what} at {a.name}")
     kind = model.kind_of(what.replace(" ", "_"))
-    model.loads.append(Element(name, kind, places, constants, keeps_angle=keeps_angle))
+    model.loads.append(Element(name, kind, attachments, constants, keeps_angle=keeps_angle))
     return model.loads[-1]
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Element, Node, Triplet
+from sebody.model.parts import DofBlock, Element, Node
 from sebody.model.ties import untied
 from sebody.tabular import counted, table, text, vector
 
@@ -19,7 +19,7 @@ class Unknowns(NamedTuple):
 
 def unknowns(model: Mechanism) -> Unknowns:
     """Unknowns of a model: coordinates of nodes, amplitudes of modes, multipliers."""
-    return Unknowns(sum(t.start.size for t in model.triplets() if t.solved),
+    return Unknowns(sum(t.start.size for t in model.dof_blocks() if t.solved),
                     sum(body.body.modes for body in model.bodies.values()),
                     sum(joint.multipliers for joint in model.joints))
 
@@ -70,14 +70,15 @@ def _bodies(model: Mechanism) -> list[tuple]:
               + ("; damped" if body.body.damping is not None else ""))
              for body in model.bodies.values()]
     return found + [(body.name, _plain(body), f"{body.constants['mass']:.6g}",
-                     _named({place.node.name: place.node for place in body.places}.values()), "")
+                     _named({place.node.name: place.node
+                             for place in body.attachments}.values()), "")
                     for body in model.rigid_bodies.values()]
 
 
 def _nodes(model: Mechanism) -> list[tuple]:
-    first: dict[int, str] = {}      # triplet -> the node it is told of
+    first: dict[int, str] = {}      # DOF block -> the node it is told of
     return [(node.name, vector(node.point),
-             *(_state(first, node, triplet) for triplet in (node.position, node.rotation)),
+             *(_state(first, node, dof_block) for dof_block in (node.position, node.rotation)),
              _rates(node)) for node in model.nodes.values()]
 
 
@@ -88,14 +89,14 @@ def _rates(node: Node) -> str:
                      if one is not None and one.solved and (one.given or one.rate.any()))
 
 
-def _state(first: dict[int, str], node: Node, triplet: Triplet | None) -> str:
+def _state(first: dict[int, str], node: Node, dof_block: DofBlock | None) -> str:
     """Whether the coordinates of a node are unknowns, and why not."""
-    if triplet is None:
+    if dof_block is None:
         return "none"
-    owner = first.setdefault(id(triplet), node.name)
+    owner = first.setdefault(dof_block, node.name)
     if owner != node.name:
         return f"that of {owner}"
-    return triplet.state
+    return dof_block.state
 
 
 def _joints(model: Mechanism) -> list[tuple]:
@@ -109,9 +110,9 @@ def _joints(model: Mechanism) -> list[tuple]:
 
 def _loads(model: Mechanism) -> list[tuple]:
     return [(load.name, _plain(load),
-             _named({place.node.name: place.node for place in load.places}.values())
+             _named({place.node.name: place.node for place in load.attachments}.values())
              or (load.mode[0] if load.mode else ""),
-             load.history.described() if load.history and load.function is None else "")
+             load.time_function.described() if load.time_function and load.function is None else "")
             for load in model.loads]
 
 

@@ -5,7 +5,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Element, Superelement, Triplet
+from sebody.model.parts import DofBlock, Element, Superelement
 
 
 def untied(model: Mechanism) -> list[list[str]]:
@@ -15,31 +15,31 @@ def untied(model: Mechanism) -> list[list[str]]:
     nodes that bodies share.
     """
     bodies = {**model.bodies, **model.rigid_bodies}
-    places: dict[int, int] = {}     # number of each triplet, by its id
+    places: dict[int, int] = {}     # number of each DOF block, by its id
     pairs = []
     for element in (*bodies.values(), *model.constraints, *model.loads):
-        numbers = [places.setdefault(id(one), len(places)) for one in _tied(element)]
+        numbers = [places.setdefault(one, len(places)) for one in _tied(element)]
         pairs += [(numbers[0], number) for number in numbers]
-    held = {id(t) for t in model.triplets() if t.fixed and not t.rotational}
+    held = {t for t in model.dof_blocks() if t.fixed and not t.rotational}
     holding = [c for joint in model.joints if model.nodes.get(joint.to.name) is not joint.to
                for c in joint.constraints]
     holding += [load for load in model.loads if load.function is not None]  # perhaps supports
-    held |= {id(one) for element in holding for one in _tied(element)}
+    held |= {one for element in holding for one in _tied(element)}
     rows, columns = np.array(pairs, dtype=int).reshape(-1, 2).T
     links = coo_array((np.ones(len(rows)), (rows, columns)), shape=(len(places), len(places)))
     groups = connected_components(links, directed=False)[1]
     grounded = {groups[places[key]] for key in held if key in places}
     found: dict[int, list[str]] = {}
     for name, body in bodies.items():
-        if (group := groups[places[id(_tied(body)[0])]]) not in grounded:
+        if (group := groups[places[_tied(body)[0]]]) not in grounded:
             found.setdefault(group, []).append(name)
     return list(found.values())
 
 
-def _tied(element: Superelement | Element) -> list[Triplet]:
-    """Triplets that an element ties together; none if it acts on rotations alone."""
-    triplets = ((*element.positions, *element.rotations) if isinstance(element, Superelement) else
-                element.triplets)
-    if all(one.rotational for one in triplets):
+def _tied(element: Superelement | Element) -> list[DofBlock]:
+    """DOF blocks that an element ties together; none if it acts on rotations alone."""
+    dof_blocks = ((*element.positions, *element.rotations) if isinstance(element, Superelement) else
+                element.dof_blocks)
+    if all(one.rotational for one in dof_blocks):
         return []
-    return [parent for one in triplets for parent in one.parents()]
+    return [parent for one in dof_blocks for parent in one.parents()]

@@ -39,13 +39,13 @@ def arrows(result: Result, states: NDArray, nodes: set[str], bodies: set[str]) -
 
 def _on_nodes(result: Result, load: Element, states: NDArray, nodes: set[str]) -> list[Arrow]:
     return [Arrow(KINDS[kind], load.name, node.name, False, _on(result, load, node, kind, states))
-            for node, kind in load.places if node.name in nodes]
+            for node, kind in load.attachments if node.name in nodes]
 
 
 def _resultant(result: Result, load: Element, states: NDArray) -> Arrow:
     """The sum of the forces on the boundary, which is that of the load: see `Model.body_load`."""
     total = sum(_on(result, load, node, kind, states)
-                for node, kind in load.places if kind == "position")
+                for node, kind in load.attachments if kind == "position")
     return Arrow("force", load.name, load.body.name, True, total)
 
 

@@ -140,7 +140,7 @@ def rigid(model: Mechanism, body: Element, position: NDArray, rotation: NDArray 
     if model.planar:
         length = np.sqrt(12 * max(constants["J_zz"] / mass - centre @ centre, 0.0))
         sides = length * np.array([1.0, SLENDER, SLENDER])
-        axes = _along(model, body.places[0].node, centre)
+        axes = _along(model, body.attachments[0].node, centre)
     else:
         J = np.array([[constants[f"J_{min(a, b)}{max(a, b)}"] for b in "xyz"] for a in "xyz"])
         J = J / mass - (centre @ centre * np.eye(3) - np.outer(centre, centre))
@@ -148,7 +148,7 @@ def rigid(model: Mechanism, body: Element, position: NDArray, rotation: NDArray 
         sides = np.sqrt(np.maximum(6 * (moments.sum() - 2 * moments), 0.0))
     frames = len(position)
     rotation = rotation if rotation is not None else np.tile([0, 0, 0, 1.0], (frames, 1))
-    node = body.places[0].node
+    node = body.attachments[0].node
     return DrawnBody(body.name, box(sides, centre, axes), spatial(node.point), position, rotation,
                      np.zeros((frames, 0)), (HeldNode(node.name, np.zeros(3)),))
 

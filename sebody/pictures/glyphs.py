@@ -44,7 +44,7 @@ def links(model: Mechanism, nodes: set[str], drawn: set[str]) -> list[Link]:
               if c.kind == "position" and c.to and not np.array_equal(c.to.point, c.node.point)]
     found += [Link("distance", (joint.node.name, joint.to.name)) for joint in model.joints
               if joint.kind == "distance"]
-    found += [Link("spring", (load.places[0].node.name, load.places[1].node.name))
+    found += [Link("spring", (load.attachments[0].node.name, load.attachments[1].node.name))
               for load in model.loads if load.kind in SPRINGS]
     return [link for link in dict.fromkeys(found) if set(link.ends) <= nodes]
 
@@ -64,7 +64,8 @@ def signs(model: Mechanism, nodes: set[str]) -> list[Sign]:
         if node.position is not None and node.position.fixed:
             kind = "drive" if node.position.motions else "ground"
             found.append(Sign(kind, node.name, node.name, ABOUT_Z, node.name))
-    found += [Sign("mass", body.name, body.places[0].node.name, ABOUT_Z, body.places[0].node.name)
+    found += [Sign("mass", body.name, body.attachments[0].node.name, ABOUT_Z,
+                   body.attachments[0].node.name)
               for body in model.rigid_bodies.values() if body.kind.endswith("point_mass")]
     return [sign for sign in found if {sign.node, sign.carrier} <= nodes]
 

@@ -131,9 +131,9 @@ def _unknowns(result: Result) -> str:
     counts = Counter(_part(name) for name in free)
     owners: dict[str, list[str]] = {}
     for node in model.nodes.values():
-        for triplet in (node.position, node.rotation):
-            if triplet is not None:
-                owners.setdefault(triplet.name, []).append(node.name)
+        for dof_block in (node.position, node.rotation):
+            if dof_block is not None:
+                owners.setdefault(dof_block.name, []).append(node.name)
     rows = [(part, count, _why(part, owners)) for part, count in counts.items()]
     fixed = numbering.total - numbering.free
     text = (f"<p>{numbering.free} unknowns; {fixed} coordinates are fixed, prescribed or at the "

@@ -92,7 +92,7 @@ def scenery(result: Result, most: int, stressed: bool = False, reference: str | 
     bodies = _bodies(result, states, extent(nodes), reference)
     if stressed:
         bodies = [with_stress(result, body, states) for body in bodies]
-    bodies += [rigid(model, part, *nodes[part.places[0].node.name][1:])
+    bodies += [rigid(model, part, *nodes[part.attachments[0].node.name][1:])
                for part in model.rigid_bodies.values() if part.kind.endswith("rigid_body")]
     drawn = {body.name for body in bodies}
     lines = links(model, set(nodes), drawn)
@@ -170,10 +170,10 @@ def _node(result: Result, node: Node, states: NDArray) -> DrawnNode | None:
         return None
     if node.name not in result.model.nodes:         # of the ground
         return DrawnNode(node.name, np.tile(spatial(node.point), (len(states), 1)), None)
-    known = result.numbering.triplets
-    if id(node.position) not in known:
+    known = result.numbering.dof_blocks
+    if node.position not in known:
         return None
-    rotated = node.rotation is not None and id(node.rotation) in known
+    rotated = node.rotation is not None and node.rotation in known
     return DrawnNode(node.name, spatial(result[f"{node.name}.position"][states]),
                      quaternions(result[f"{node.name}.rotation"][states]) if rotated else None)
 

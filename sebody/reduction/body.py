@@ -37,9 +37,9 @@ def _read_only(array: NDArray) -> NDArray:
 class ReducedBody:
     """Reduced stiffness and mass of a free body, in the axes of its FE model (24), (37).
 
-    The reduced coordinates are ordered ``y = (u_B, psi_B, y_I)``: position triplets of the
-    boundary nodes that keep them, in node order, rotation triplets likewise, internal modes.
-    Planar bodies have (x, y) and one angle instead of triplets.
+    The reduced coordinates are ordered ``y = (u_B, psi_B, y_I)``: position DOF blocks of the
+    boundary nodes that keep them, in node order, rotation DOF blocks likewise, internal modes.
+    Planar bodies have (x, y) and one angle instead of DOF blocks.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class ReducedBody:
     coordinates : (n_nodes, 3), planar (n_nodes, 2)
         Boundary nodes in the FE axes [length].
     keeps : tuple of 'full', 'translation' or 'rotation', one per boundary node
-        Triplets kept at each node (23), (39).
+        DOF blocks kept at each node (23), (39).
     modes : int
         Number of internal modes.
     damping : (n, n), optional

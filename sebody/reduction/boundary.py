@@ -101,7 +101,7 @@ def boundary_of(fe_model: FEModel, items: Items) -> Boundary:
     Raises
     ------
     InputError
-        Unknown or repeated nodes, or triplets that nodes do not have.
+        Unknown or repeated nodes, or DOF blocks that nodes do not have.
     """
     pairs = _pairs(fe_model, items)
     rigid = [item for item, _ in pairs if isinstance(item, RigidFace)]

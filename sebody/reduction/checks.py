@@ -21,7 +21,7 @@ RIGID_LIMIT = 1e-6
 
 
 def check_layout(coordinates: NDArray, keeps: tuple[str, ...]) -> None:
-    """Raise InputError unless coordinates and kept triplets describe a body."""
+    """Raise InputError unless coordinates and kept DOF blocks describe a body."""
     if coordinates.ndim != 2 or coordinates.shape[1] not in (2, 3) or not len(coordinates):
         raise InputError(
             f"coordinates have shape {coordinates.shape}; give one row per boundary node, "

@@ -15,7 +15,7 @@ from sebody.reduction.watch import SILENT, Watch
 _DENSE_LIMIT = 1000  # internal DOFs up to which the dense eigenvalue solver is used
 _REPEATED = 1e-6  # relative distance below which eigenvalues or components count as equal
 _HELD = 1e-10  # singular value of the means of free motions below which a motion is not held
-_REMEDY = "keep more boundary nodes or triplets, or connect loose parts"
+_REMEDY = "keep more boundary nodes or DOF blocks, or connect loose parts"
 
 
 class ClampedInterior:

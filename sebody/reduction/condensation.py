@@ -1,4 +1,4 @@
-"""A triplet of a reduced body that nothing needs, left to follow the others.
+"""A DOF block of a reduced body that nothing needs, left to follow the others.
 
 Where no force acts on boundary coordinates e but the body's own, they follow the other boundary
 coordinates statically (R.J. Guyan, AIAA Journal 3, 1965, p. 380): ``K_eb y_b + K_ee y_e = 0``. What
@@ -28,7 +28,7 @@ _MASSLESS = 1e-14       # squared periods, relative to the largest, of motions w
 
 
 class Released(NamedTuple):
-    """A body without one of its triplets.
+    """A body without one of its DOF blocks.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def released(body: ReducedBody, node: int, kind: str, modes: int | None = None) 
     Raises
     ------
     InputError
-        The node does not keep this triplet, no position would be left, or nothing resists the
+        The node does not keep this DOF block, no position would be left, or nothing resists the
         released motion.
     """
     gone = coordinates_of(body, node, kind)
@@ -96,7 +96,7 @@ def released(body: ReducedBody, node: int, kind: str, modes: int | None = None) 
 
 
 def coordinates_of(body: ReducedBody, node: int, kind: str) -> NDArray:
-    """Places of the reduced coordinates of a triplet that may be released.
+    """Places of the reduced coordinates of a DOF block that may be released.
 
     Raises
     ------

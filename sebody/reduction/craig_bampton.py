@@ -43,7 +43,7 @@ def craig_bampton(
     fe_model : FEModel
         Free FE model.
     boundary : mapping or pairs of node index and 'full', 'translation' or 'rotation'
-        Boundary nodes, in the order wanted, and the triplets kept there. A triplet not kept is
+        Boundary nodes, in the order wanted, and the DOF blocks kept there. A DOF block not kept is
         an internal DOF. In place of a node, a `RigidFace` ties FE nodes to a boundary node, and a
         `MeanFace` is the mean motion of FE nodes.
     modes : int or Accuracy
@@ -62,7 +62,7 @@ def craig_bampton(
     Raises
     ------
     InputError
-        Unknown or repeated boundary node, a triplet the nodes do not have, more modes than there
+        Unknown or repeated boundary node, a DOF block the nodes do not have, more modes than there
         are, boundary nodes that leave a mechanism inside, or loads of another length.
     """
     return reduce(fe_model, boundary, modes, "craig-bampton", select, recover, loads,

@@ -63,8 +63,8 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     fe_model : FEModel
         Free FE model.
     boundary : mapping or pairs of interface and 'full', 'translation' or 'rotation'
-        Interfaces in the order wanted and the triplets kept there: indices of FE nodes,
-        `RigidFace` or `MeanFace`. A triplet not kept is an internal DOF.
+        Interfaces in the order wanted and the DOF blocks kept there: indices of FE nodes,
+        `RigidFace` or `MeanFace`. A DOF block not kept is an internal DOF.
     modes : int or Accuracy
         Number of vibration modes, from the lowest frequency up: of the clamped body, for 'macneal'
         and 'rubin' elastic ones of the free body, beside which there are up to 6 (planar 3) more
@@ -96,7 +96,7 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     Raises
     ------
     InputError
-        Unknown or repeated interfaces, triplets that nodes do not have, more modes than there are,
+        Unknown or repeated interfaces, blocks that nodes do not have, more modes than there are,
         a boundary that leaves a mechanism inside, or loads of another length.
     """
     inputs.instance(fe_model, "fe_model", FEModel, "give an FEModel")

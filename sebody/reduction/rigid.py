@@ -13,7 +13,7 @@ def rigid_motions(coordinates: NDArray, keeps: tuple[str, ...], size: int,
     coordinates : (n_nodes, 3), planar (n_nodes, 2)
         Boundary nodes.
     keeps : tuple of str
-        Triplets that they keep.
+        DOF blocks that they keep.
     size : int
         Number of reduced coordinates.
 
@@ -46,7 +46,7 @@ def strainless_coordinates(keeps: tuple[str, ...], dimension: int) -> NDArray:
     Parameters
     ----------
     keeps : tuple of str
-        Triplets kept at the boundary nodes.
+        DOF blocks kept at the boundary nodes.
     dimension : int
         Of the body, 2 or 3.
     """

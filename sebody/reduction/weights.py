@@ -55,7 +55,7 @@ def frame_weights(coordinates: ArrayLike, centre_of_mass: ArrayLike) -> NDArray:
 
 
 def body_weights(body: ReducedBody) -> tuple[NDArray, NDArray]:
-    """Weights of the position triplets and of the rotation triplets (remark of section 3.1).
+    """Weights of the position DOF blocks and of the rotation DOF blocks (remark of section 3.1).
 
     Returns
     -------

@@ -112,7 +112,7 @@ def _fastest(result: Recording, size: float) -> float:
     moving = np.abs(result.recorded("v")).max(axis=0)
     turning = rotational(result.model, result.numbering)
     multipliers = [first + k for constraint in result.model.constraints
-                   for first in (result.numbering.multipliers[id(constraint)],)
+                   for first in (result.numbering.multipliers[constraint],)
                    for k in range(constraint.multipliers)]
     moving[multipliers] = 0.0
     return float((np.where(turning, size, 1.0) * moving).max(initial=0.0))
@@ -132,7 +132,7 @@ def _acting(result: Recording) -> tuple[NDArray, NDArray]:
     for body in forces.bodies(result).values():
         own, arm = _mass(body)
         mass, first = mass + own, first + arm
-        for place in body.places:
+        for place in body.attachments:
             values = -result.balance.on(body, *place)
             if place.kind == "rotation":
                 moment += values
@@ -158,7 +158,7 @@ def _mass(body: Superelement | Element) -> tuple[float, NDArray]:
         shift = np.mean([node.point for node in held], axis=0) - body.body.coordinates[
             list(body.body.position_nodes)].mean(axis=0)
         return body.body.total_mass, body.body.total_mass * (body.body.centre_of_mass + shift)
-    mass, node = body.constants["mass"], body.places[0].node
+    mass, node = body.constants["mass"], body.attachments[0].node
     return mass, mass * node.point + np.asarray(body.constants.get("mc", 0.0))
 
 

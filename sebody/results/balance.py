@@ -1,7 +1,7 @@
 """Forces and moments on nodes, and what nodes pass to each other without an equation.
 
 Elements, joints with equations and loads give each node what their kernels say: minus their entries
-in the residual. Joints from shared and fixed triplets, supports and rigid links take no equation:
+in the residual. Joints from shared and fixed DOF blocks, supports and rigid links take no equation:
 what they pass follows from the balance of every node. Where several of them join the same nodes,
 such as two hinges to the ground on one node, this has many solutions: the one of least norm is
 taken, as for multipliers of redundant constraints.
@@ -16,7 +16,7 @@ from scipy.sparse.linalg import splu
 
 from sebody.assembly.numbering import Numbering, stretch
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Connection, Element, Joint, Node, Superelement, Triplet
+from sebody.model.parts import Connection, DofBlock, Element, Joint, Node, Superelement
 
 Part = Element | Superelement
 
@@ -41,21 +41,21 @@ class Balance:
         self._passed: dict[str, tuple[list[Connection], NDArray]] = {}
         for kind in ("position", "rotation"):
             own = [c for c in kept if c.kind == kind]
-            given = {id(node): sums for node, k, sums in at if k == kind}
+            given = {node: sums for node, k, sums in at if k == kind}
             if kind == "rotation":
                 self._add_levers(given)
             self._passed[kind] = own, self._solve(own, given)
 
-    def rotation(self, triplet: Triplet | None) -> NDArray:
-        """Rotation matrices of a triplet, (n, 3, 3), in a plane (n, 2, 2); of none, no rotation."""
+    def rotation(self, dof_block: DofBlock | None) -> NDArray:
+        """Rotation matrices of a block, (n, 3, 3), in a plane (n, 2, 2); of none, no rotation."""
         d, n = self._model.dimension, len(self._q)
-        if triplet is None or id(triplet) not in self._numbering.triplets:
+        if dof_block is None or dof_block not in self._numbering.dof_blocks:
             return np.broadcast_to(np.eye(d), (n, d, d))
         if d == 2:
-            angle = self._q[:, self._numbering.triplets[id(triplet)]]
+            angle = self._q[:, self._numbering.dof_blocks[dof_block]]
             c, s = np.cos(angle), np.sin(angle)
             return np.stack([c, -s, s, c], axis=1).reshape(n, 2, 2)
-        k = self._numbering.rotations[id(triplet)]
+        k = self._numbering.rotations[dof_block]
         return self._R[:, 9 * k:9 * k + 9].reshape(n, 3, 3)
 
     def position(self, node: Node) -> NDArray:
@@ -69,8 +69,8 @@ class Balance:
         everything else on the body.
         """
         found = np.zeros((len(self._q), self._size(kind)))
-        first = self._numbering.forces_at[id(part)]
-        for place in part.places:
+        first = self._numbering.forces_at[part]
+        for place in part.attachments:
             own = getattr(place.node, place.kind)
             size = own.start.size
             if place.node is node and place.kind == kind:
@@ -111,13 +111,13 @@ class Balance:
                          ) -> list[tuple[Node, str, NDArray]]:
         """Sums over all elements on the nodes that are joined without an equation."""
         model = self._model
-        wanted = {(id(node), c.kind): (node, c.kind, np.zeros((len(self._q), self._size(c.kind))))
+        wanted = {(node, c.kind): (node, c.kind, np.zeros((len(self._q), self._size(c.kind))))
                   for c in connections for node in (c.node, c.to) if node is not None}
         for part in (*model.bodies.values(), *model.rigid_bodies.values(), *model.constraints,
                      *model.loads):
-            for node, kind in dict.fromkeys((p.node, p.kind) for p in part.places):
-                if (id(node), kind) in wanted:
-                    wanted[id(node), kind][2][:] += self.on(part, node, kind)
+            for node, kind in dict.fromkeys((p.node, p.kind) for p in part.attachments):
+                if (node, kind) in wanted:
+                    wanted[node, kind][2][:] += self.on(part, node, kind)
         return list(wanted.values())
 
     def _solve(self, connections: list[Connection], given: dict[int, NDArray]) -> NDArray:
@@ -130,9 +130,9 @@ class Balance:
             return np.zeros((len(self._q), 0, 1))
         without = _representatives(connections)
         rows = {key: k for k, key in enumerate(key for key in given if key not in without)}
-        entries = [(rows[id(node)], k, sign) for k, c in enumerate(connections)
+        entries = [(rows[node], k, sign) for k, c in enumerate(connections)
                    for node, sign in ((c.node, 1.0), (c.to, -1.0))
-                   if node is not None and id(node) in rows]
+                   if node is not None and node in rows]
         row, column, sign = zip(*entries, strict=True)
         B = csc_matrix((sign, (row, column)), shape=(len(rows), len(connections)))
         demand = np.stack([-given[key] for key in rows])
@@ -147,9 +147,9 @@ class Balance:
         """
         connections, forces = self._passed["position"]
         for k, c in enumerate(connections):
-            if c.to is not None and id(c.to) in moments and id(c.node) in moments:
+            if c.to is not None and c.to in moments and c.node in moments:
                 r = self.position(c.node) - self.position(c.to)
-                moments[id(c.to)] -= moment_of(r, forces[:, k])
+                moments[c.to] -= moment_of(r, forces[:, k])
 
 
 def moment_of(r: NDArray, force: NDArray) -> NDArray:
@@ -167,7 +167,7 @@ class _Groups:
 
     def of(self, node: Node | None) -> int | None:
         """Representative of the group of a node; the ground represents its own group."""
-        key = None if node is None else id(node)
+        key = None if node is None else node
         while (above := self._above.get(key, key)) != key:
             key = above
         return key

@@ -20,7 +20,7 @@ def load_amplitudes(recording: Recording, body: Superelement, motion: BodyMotion
         if element.body is not body:
             continue
         P = np.asarray(element.constants["P"])
-        first = recording.numbering.forces_at[id(element)]
+        first = recording.numbering.forces_at[element]
         forces = recording.forces.elements[:, first:first + len(P)]
         count, D = len(body.positions), motion.origin.shape[1]
         local = forces[:, :count * D].reshape(-1, count, D) @ motion.rotation

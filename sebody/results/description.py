@@ -1,6 +1,6 @@
 """A model as text and numbers, for a file of results, and the model again.
 
-Parts of the model (nodes, triplets, bodies, joints, loads) are listed in the order in which they
+Parts of the model (nodes, DOF blocks, bodies, joints, loads) are listed in the order in which they
 are met, each once; one that belongs to another is given by its place in the list. Compiled
 functions are left out: what they gave is in the recorded states.
 """
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from sebody.assembly import numbering
 from sebody.assembly.numbering import Numbering
 from sebody.fem import materials
-from sebody.model import histories, mechanism, parts
+from sebody.model import mechanism, parts
 from sebody.model.mechanism import Mechanism
 from sebody.reduction import invariants, recovery
 from sebody.results.saved_checks import check_numbering, check_part, check_tuple

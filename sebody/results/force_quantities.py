@@ -18,7 +18,7 @@ def bodies(recording: Recording) -> dict[str, Superelement | Element]:
 def nodes_of_bodies(recording: Recording) -> dict[str, tuple[str, Node]]:
     """Body and node by ``<body>.<node>``."""
     return {f"{name}.{place.node.name}": (name, place.node)
-            for name, body in bodies(recording).items() for place in body.places}
+            for name, body in bodies(recording).items() for place in body.attachments}
 
 
 def joints(recording: Recording) -> dict[str, Joint]:
@@ -29,24 +29,24 @@ def joints(recording: Recording) -> dict[str, Joint]:
 def drives(recording: Recording) -> dict[str, Joint | Motion]:
     """Drives by equations, and prescribed motions."""
     found: dict[str, Joint | Motion] = {name: joint for name, joint in joints(recording).items()
-                                        if joint.history is not None}
-    return found | {motion.name: motion for triplet in recording.model.triplets()
-                    for motion in triplet.motions}
+                                        if joint.time_function is not None}
+    return found | {motion.name: motion for dof_block in recording.model.dof_blocks()
+                    for motion in dof_block.motions}
 
 
 def loads(recording: Recording) -> dict[str, Element]:
     """Loads, springs and dampers on nodes."""
-    return {load.name: load for load in recording.model.loads if load.places}
+    return {load.name: load for load in recording.model.loads if load.attachments}
 
 
 def of_body(recording: Recording, name: str) -> NDArray:
     """Forces of everything else on a body: of its places, then on its modes, (n, coordinates)."""
     body = bodies(recording)[name]
-    first = recording.numbering.forces_at[id(body)]
+    first = recording.numbering.forces_at[body]
     modes = body.body.modes if isinstance(body, Superelement) else 0
-    size = sum(t.start.size for t in (getattr(*place) for place in body.places))
+    size = sum(t.start.size for t in (getattr(*place) for place in body.attachments))
     return np.hstack([
-        *(-recording.balance.on(body, *place) for place in body.places),
+        *(-recording.balance.on(body, *place) for place in body.attachments),
         recording.forces.elements[:, first + size:first + size + modes]])
 
 
@@ -72,7 +72,7 @@ def in_joint_axes(kind: str, recording: Recording, name: str) -> NDArray:
 def of_load(kind: str, recording: Recording, name: str) -> NDArray:
     """Force or moment of a load or spring on its node, the first if it has several."""
     load = loads(recording)[name]
-    return _flat(recording, kind, recording.balance.on(load, load.places[0].node, kind))
+    return _flat(recording, kind, recording.balance.on(load, load.attachments[0].node, kind))
 
 
 def effort(what: str, recording: Recording, name: str) -> NDArray:
@@ -88,9 +88,9 @@ def effort(what: str, recording: Recording, name: str) -> NDArray:
             return -np.einsum("ni,ni->n", values, recording.balance.axes(drive)[:, :, 0])
         return values[:, 0] if recording.model.planar else np.einsum(
             "ni,ni->n", values, recording.balance.axes(drive)[:, :, 0])
-    triplet = getattr(*drive.place)
-    first = recording.numbering.triplets[id(triplet)]
-    return recording.forces.sums[:, first:first + triplet.start.size] @ drive.direction
+    dof_block = getattr(*drive.place)
+    first = recording.numbering.dof_blocks[dof_block]
+    return recording.forces.sums[:, first:first + dof_block.start.size] @ drive.direction
 
 
 def multipliers(recording: Recording, name: str) -> NDArray:
@@ -100,7 +100,7 @@ def multipliers(recording: Recording, name: str) -> NDArray:
         raise InputError(f"joint {name!r} has no equations and so no multipliers, since its nodes "
                          "share coordinates or are fixed; the force on a fixed node is its "
                          f"reaction, the force of the joint is {name}.force")
-    firsts = [(recording.numbering.multipliers[id(c)], c.multipliers) for c in equations]
+    firsts = [(recording.numbering.multipliers[c], c.multipliers) for c in equations]
     q = recording.unique_rows[:, RECORD.slices(record_counts(recording.numbering))["q"]]
     return q[:, [first + k for first, count in firsts for k in range(count)]]
 
@@ -119,7 +119,7 @@ def driven(drive: Joint | Motion) -> str:
     """Whether a drive moves a position or a rotation."""
     if isinstance(drive, Motion):
         return drive.place.kind
-    return drive.constraints[0].places[0].kind
+    return drive.constraints[0].attachments[0].kind
 
 
 def _flat(recording: Recording, kind: str, values: NDArray) -> NDArray:

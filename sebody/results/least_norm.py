@@ -49,7 +49,7 @@ def _norms(model: Mechanism, numbering: Numbering) -> NDArray:
     square = arm(model)**2
     found = np.where(rotational(model, numbering), square, 1.0)
     for equation in model.constraints:
-        first = numbering.multipliers[id(equation)]
-        if all(place.kind == "rotation" for place in equation.places):
+        first = numbering.multipliers[equation]
+        if all(place.kind == "rotation" for place in equation.attachments):
             found[first:first + equation.multipliers] = 1.0 / square
     return found[:numbering.free]

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from sebody.assembly.numbering import record_counts
 from sebody.contract.layout import ENERGIES
 from sebody.errors import InputError
-from sebody.model.parts import Triplet
+from sebody.model.parts import DofBlock
 from sebody.results import field_quantities as fields
 from sebody.results import force_quantities as forces
 from sebody.results.envelopes import ENVELOPES
@@ -26,10 +26,10 @@ OF_FIELD = (*fields.QUANTITIES, "strain", "principal")
 
 
 class NodeQuantity(NamedTuple):
-    """A history of one of the two triplets of a node."""
+    """A history of one of the two DOF blocks of a node."""
 
     rotational: bool        # of the rotation, else of the position
-    read: Callable[[Recording, Triplet, slice], NDArray]    # slice of its coordinates
+    read: Callable[[Recording, DofBlock, slice], NDArray]    # slice of its coordinates
     saved: bool = True      # part of the output file
 
 
@@ -127,8 +127,8 @@ def saved(recording: Recording) -> list[str]:
     names = ["t"]
     for name, node in recording.model.nodes.items():
         for quantity, (rotational, _, kept) in OF_NODE.items():
-            triplet = node.rotation if rotational else node.position
-            if kept and triplet is not None and id(triplet) in recording.numbering.triplets:
+            dof_block = node.rotation if rotational else node.position
+            if kept and dof_block is not None and dof_block in recording.numbering.dof_blocks:
                 names.append(f"{name}.{quantity}")
     return [*names, "energy.kinetic", "energy.strain", "energy.potential", "energy.external_work",
             "momentum", "angular_momentum"]
@@ -159,45 +159,45 @@ OF_MODEL: dict[str, Callable[[Recording], NDArray]] = {
 # nodes
 
 
-def _coordinates(part: str, recording: Recording, triplet: Triplet, at: slice) -> NDArray:
+def _coordinates(part: str, recording: Recording, dof_block: DofBlock, at: slice) -> NDArray:
     return recording.recorded(part)[:, at]
 
 
-def _rotation(recording: Recording, triplet: Triplet, at: slice) -> NDArray:
+def _rotation(recording: Recording, dof_block: DofBlock, at: slice) -> NDArray:
     """Rotation matrices, (n, 3, 3); in a plane angles."""
     if recording.model.planar:
         return recording.recorded("q")[:, at.start]
-    k = recording.numbering.rotations[id(triplet)]
+    k = recording.numbering.rotations[dof_block]
     return recording.recorded("R")[:, 9 * k:9 * k + 9].reshape(-1, 3, 3)
 
 
-def _angular(part: str, recording: Recording, triplet: Triplet, at: slice) -> NDArray:
+def _angular(part: str, recording: Recording, dof_block: DofBlock, at: slice) -> NDArray:
     """Angular velocity or acceleration in global axes; both are recorded in material ones."""
     values = recording.recorded(part)
     if recording.model.planar:
         return values[:, at.start]
-    return np.einsum("nij,nj->ni", _rotation(recording, triplet, at), values[:, at])
+    return np.einsum("nij,nj->ni", _rotation(recording, dof_block, at), values[:, at])
 
 
-def _reaction(recording: Recording, triplet: Triplet, at: slice) -> NDArray:
-    """Force or moment of the support of a fixed or prescribed triplet, in global axes."""
-    if not triplet.fixed:
-        raise InputError(f"{triplet.name} is free: only fixed and prescribed nodes have a "
+def _reaction(recording: Recording, dof_block: DofBlock, at: slice) -> NDArray:
+    """Force or moment of the support of a fixed or prescribed DOF block, in global axes."""
+    if not dof_block.fixed:
+        raise InputError(f"{dof_block.name} is free: only fixed and prescribed nodes have a "
                          "reaction; the force of a joint is <joint>.force")
     values = recording.forces.sums[:, at]
-    if id(triplet) not in recording.numbering.rotations:
-        return values[:, 0] if triplet.rotational else values       # in a plane
-    return np.einsum("nij,nj->ni", _rotation(recording, triplet, at), values)
+    if dof_block not in recording.numbering.rotations:
+        return values[:, 0] if dof_block.rotational else values       # in a plane
+    return np.einsum("nij,nj->ni", _rotation(recording, dof_block, at), values)
 
 
 def _of_node(quantity: str, recording: Recording, name: str) -> NDArray:
     node, numbering = recording.model.nodes[name], recording.numbering
     rotational, read, _ = OF_NODE[quantity]
-    triplet = node.rotation if rotational else node.position
-    if triplet is None or id(triplet) not in numbering.triplets:
-        raise InputError(f"node {name!r} has no {quantity}: the triplet is not in the model")
-    first = numbering.triplets[id(triplet)]
-    return read(recording, triplet, slice(first, first + triplet.start.size))
+    dof_block = node.rotation if rotational else node.position
+    if dof_block is None or dof_block not in numbering.dof_blocks:
+        raise InputError(f"node {name!r} has no {quantity}: the DOF block is not in the model")
+    first = numbering.dof_blocks[dof_block]
+    return read(recording, dof_block, slice(first, first + dof_block.start.size))
 
 
 OF_NODE = {
@@ -256,20 +256,20 @@ def _has(recording: Recording, kind: str, owner: str, quantity: str) -> bool:
     model = recording.model
     place = "rotation" if quantity.endswith("moment") else "position"
     if kind == "node":
-        triplet = getattr(model.nodes[owner], "rotation" if OF_NODE[quantity].rotational else
+        dof_block = getattr(model.nodes[owner], "rotation" if OF_NODE[quantity].rotational else
                           "position")
-        return (triplet is not None and id(triplet) in recording.numbering.triplets
-                and (triplet.fixed or not quantity.startswith("reaction")))
+        return (dof_block is not None and dof_block in recording.numbering.dof_blocks
+                and (dof_block.fixed or not quantity.startswith("reaction")))
     if quantity == "modes":
         return owner in model.bodies and model.bodies[owner].body.modes > 0
     if kind == "node of a body":
         body, node = forces.nodes_of_bodies(recording)[owner]
-        return (node, place) in forces.bodies(recording)[body].places
+        return (node, place) in forces.bodies(recording)[body].attachments
     if quantity == "multipliers":
         return bool(forces.joints(recording)[owner].constraints)
     if kind == "drive":
         return (quantity == "torque") == (forces.driven(forces.drives(recording)[owner])
                                           == "rotation")
     if kind == "spring or load":
-        return any(kept == place for _, kept in forces.loads(recording)[owner].places)
+        return any(kept == place for _, kept in forces.loads(recording)[owner].attachments)
     return True

@@ -29,7 +29,7 @@ from sebody.results.postprocessing import (
 class Start(NamedTuple):
     """What a simulation changed or found before its first step."""
 
-    changed: dict[str, float]       # triplets whose velocity was solved for, with its change
+    changed: dict[str, float]       # DOF blocks whose velocity was solved for, with its change
     redundant: tuple[str, ...]      # joints with constraints that others contain
     shared: tuple[str, ...] = ()    # joints whose multipliers are not unique at the start
 
@@ -67,7 +67,7 @@ class Recording:
 
         In the states of the loop these contain a part that exerts no force, and jumps.
         """
-        if self.system is None or not self.system.relaxed[0]:
+        if self.system is None or not self.system.regularized[0]:
             return self.rows
         return least_norm(self.model, self.numbering, self.system, self.state, self.rows)
 

@@ -48,10 +48,10 @@ def undeformed(recording: Recording, body: Superelement, rotation: NDArray, orig
     states : slice or (n,) of int
         Recorded states in which they are.
     """
-    known = recording.numbering.triplets
+    known = recording.numbering.dof_blocks
     held = np.array([body.nodes[i].point for i in body.body.position_nodes])
     arm = body.alpha @ held - node.point        # from the node to the frame, both undeformed
-    first = known[id(node.position)]
+    first = known[node.position]
     place = recording.recorded("q")[states, first:first + node.position.start.size]
     turned = (_rotations(recording, node, states)
               if node not in body.nodes or node in _full(body) else rotation)
@@ -79,7 +79,7 @@ def together(model: Mechanism) -> dict[str, Set]:
             union.join(one.node.name, one.to.name)
     for node in nodes:
         if node.position is not None:
-            union.join(id(node.position), node.name)
+            union.join(node.position, node.name)
     roots = {node.name: union.root(node.name) for node in nodes}
     fixed = {roots[node.name] for node in nodes if node.position is not None
              and node.position.fixed}
@@ -172,7 +172,7 @@ class Welded:
         sharing: dict[int, set[Hashable]] = {}
         for node in self._model.nodes.values():
             if node.position is not None:
-                sharing.setdefault(id(node.position), set()).add(self._cluster(node))
+                sharing.setdefault(node.position, set()).add(self._cluster(node))
         return found.union(*(group for group in sharing.values() if len(group) > 1))
 
     def _cluster(self, node: Node) -> Hashable:
@@ -203,7 +203,7 @@ def _key(node: Node) -> tuple[int, int]:
     if position is not None and position.root is not None and all(
             rotation is node.rotation for rotation, _ in position.arms):
         position = position.root
-    return id(node.rotation), id(position) if node.rotation is not None else id(node)
+    return node.rotation, position if node.rotation is not None else node
 
 
 def _full(body: Superelement) -> list[Node]:
@@ -214,9 +214,9 @@ def _full(body: Superelement) -> list[Node]:
 def _rotations(recording: Recording, node: Node, states: slice | NDArray) -> NDArray:
     """Rotation matrices (n, D, D) of a node."""
     if recording.model.planar:
-        first = recording.numbering.triplets[id(node.rotation)]
+        first = recording.numbering.dof_blocks[node.rotation]
         angle = recording.recorded("q")[states, first]
         c, s = np.cos(angle), np.sin(angle)
         return np.stack([c, -s, s, c], axis=1).reshape(-1, 2, 2)
-    k = recording.numbering.rotations[id(node.rotation)]
+    k = recording.numbering.rotations[node.rotation]
     return recording.recorded("R")[states, 9 * k:9 * k + 9].reshape(-1, 3, 3)

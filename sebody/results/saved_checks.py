@@ -159,13 +159,13 @@ def check_numbering(model: Any, numbering: Any) -> None:
     if not (0 <= numbering.free <= total == len(numbering.names)):
         raise ValueError(f"{numbering.free} unknowns of {total} coordinates, of which "
                          f"{len(numbering.names)} have names")
-    sizes = {id(triplet): triplet.start.size for triplet in model.triplets()}
-    ends = [first + sizes.get(key, 1) for key, first in numbering.triplets.items()]
+    sizes = {dof_block: dof_block.start.size for dof_block in model.dof_blocks()}
+    ends = [first + sizes.get(key, 1) for key, first in numbering.dof_blocks.items()]
     ends += [numbering.modes.get(name, total + 1) + body.body.modes
              for name, body in model.bodies.items()]
-    ends += [numbering.multipliers.get(id(c), total + 1) + c.multipliers
+    ends += [numbering.multipliers.get(c, total + 1) + c.multipliers
              for c in model.constraints]
-    if max(ends, default=0) > total or min(numbering.triplets.values(), default=0) < 0:
+    if max(ends, default=0) > total or min(numbering.dof_blocks.values(), default=0) < 0:
         raise ValueError("a coordinate does not belong to the model")
     if len(numbering.histories) != len(numbering.port_names):
         raise ValueError("a power port has no name")
@@ -186,9 +186,9 @@ def member_lengths(model: Mechanism, numbering: Numbering) -> dict[str, int]:
               *model.loads)
     ends = [0]
     for one in owners:
-        if id(one) not in numbering.forces_at:
+        if one not in numbering.forces_at:
             raise InputError(f"the forces of {one.name!r} have no place")
-        ends.append(numbering.forces_at[id(one)] + _width(one))
+        ends.append(numbering.forces_at[one] + _width(one))
     return {"width": RECORD.size(counts), "energies": ENERGIES.size(counts),
             "ports": counts["ports"], "supports": numbering.total - numbering.free,
             "forces": max(ends)}
@@ -200,5 +200,5 @@ def _width(one: Any) -> int:
         return len(one.body.stiffness)
     if one.body is not None:
         return len(one.body.body.stiffness)
-    return sum(triplet.start.size for triplet in one.triplets) + one.multipliers + (
+    return sum(dof_block.start.size for dof_block in one.dof_blocks) + one.multipliers + (
         one.mode is not None)

@@ -122,8 +122,8 @@ def _nodes(recording: Recording, state: int) -> tuple[NDArray, NDArray]:
     """Places and velocities of the nodes of the model, (n, 3)."""
     numbering, found = recording.numbering, []
     for node in recording.model.nodes.values():
-        if node.position is not None and id(node.position) in numbering.triplets:
-            first = numbering.triplets[id(node.position)]
+        if node.position is not None and node.position in numbering.dof_blocks:
+            first = numbering.dof_blocks[node.position]
             found.append(np.arange(first, first + node.position.start.size))
     at = np.array(found, dtype=int).reshape(-1, recording.model.dimension)
     return tuple(_spatial(recording.recorded(name)[state][at]) for name in "qv")

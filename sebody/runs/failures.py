@@ -2,15 +2,10 @@
 
 from sebody.assembly.numbering import Numbering
 from sebody.engine.state import (
-    ADAPTIVE,
-    CHOSEN,
     FINEST,
     GAP,
     NO_START,
-    REASON,
     REASONS,
-    STEP,
-    TIME,
     State,
 )
 from sebody.engine.system import System
@@ -23,7 +18,7 @@ KEPT = "results up to this time are kept"
 
 def explained(model: Model, system: System, state: State, numbering: Numbering) -> str:
     """The message of a run whose last step failed."""
-    time, reason = float(state.clock[TIME]), int(state.control[REASON])
+    time, reason = float(state.clock.time), int(state.control.reason)
     stopped = f"stopped at t = {time:.6g}"
     if fault := user_faults.fault(model, time):
         return f"{stopped}: {fault}; {KEPT}"
@@ -32,8 +27,8 @@ def explained(model: Model, system: System, state: State, numbering: Numbering) 
     if reason == NO_START:
         return (f"{stopped}, where loads jump: {REASONS[reason]}; {KEPT}. Check loads and joints "
                 "at this time")
-    variable = state.control[ADAPTIVE] == 1
-    shortest = state.clock[CHOSEN] if variable else state.clock[STEP] / FINEST
+    variable = state.control.adaptive == 1
+    shortest = state.clock.chosen if variable else state.clock.step / FINEST
     remedy = "a larger tolerance" if variable else "a smaller step"
     return (f"{stopped}: {REASONS[reason]}, even with the step reduced to {shortest:.3g}; {KEPT}. "
             f"Use {remedy}, check the loads, or split the body into more superelements")

@@ -32,12 +32,12 @@ def take(model: Mechanism, numbering: Numbering, state: State, given: Result) ->
                          "this one, with the same nodes, bodies and joints")
     row, parts = given.rows[-1], RECORD.slices(record_counts(numbering))
     q, R, v = (row[parts[name]].copy() for name in ("q", "R", "v"))
-    for triplet in model.triplets():
-        if id(triplet) not in numbering.triplets:
+    for dof_block in model.dof_blocks():
+        if dof_block not in numbering.dof_blocks:
             continue
-        own, k = stretch(numbering, triplet), numbering.rotations.get(id(triplet))
-        is_given = triplet.given or bool(triplet.rate.any())
-        if is_given or not triplet.solved:
+        own, k = stretch(numbering, dof_block), numbering.rotations.get(dof_block)
+        is_given = dof_block.given or bool(dof_block.rate.any())
+        if is_given or not dof_block.solved:
             v[own] = state.v[own]
         if k is not None:
             q[own] = 0.0        # in space R has the rotation, and q the increment in a step
@@ -57,15 +57,15 @@ def _check_held(model: Mechanism, numbering: Numbering, state: State, q: NDArray
                 R: NDArray) -> None:
     """Refuse a state whose fixed and driven positions and rotations are not those of t = 0."""
     length = extent(model)
-    for triplet in model.triplets():
-        if not triplet.fixed or id(triplet) not in numbering.triplets:
+    for dof_block in model.dof_blocks():
+        if not dof_block.fixed or dof_block not in numbering.dof_blocks:
             continue
-        own, k = coordinates(numbering, triplet), numbering.rotations.get(id(triplet))
-        apart = np.abs(q[own] - state.q[own]).max() / (1.0 if triplet.rotational else
+        own, k = coordinates(numbering, dof_block), numbering.rotations.get(dof_block)
+        apart = np.abs(q[own] - state.q[own]).max() / (1.0 if dof_block.rotational else
                                                        max(length, 1e-300))
         if k is not None:
             apart = np.abs(R[9 * k:9 * k + 9] - state.R[9 * k:9 * k + 9]).max()
         if apart > APART:
-            raise InputError(f"start: {triplet.name} is not where the model holds or moves it at "
+            raise InputError(f"start: {dof_block.name} is not where the model holds or moves it at "
                              "t = 0: give a state at which drives have not moved yet, such as the "
                              "equilibrium at t = 0")

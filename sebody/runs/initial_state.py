@@ -11,7 +11,7 @@ from sebody.assembly.numbering import Numbering, coordinates
 from sebody.contract.layout import ACCELERATION, RESIDUAL, VELOCITY
 from sebody.engine.evaluate import move_prescribed, set_loads, to_body_axes
 from sebody.engine.links import place_dependent
-from sebody.engine.state import ASKED, RESTART, State
+from sebody.engine.state import ASKED, State
 from sebody.engine.system import System
 from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
@@ -55,8 +55,8 @@ def begin(model: Mechanism, system: System, numbering: Numbering, state: State) 
     if solver.redundant:
         _check_accelerations(system, numbering, state, solver)
     state.frames_old[:] = state.frames
-    system.relaxed[0], system.massless[0] = int(bool(solver.redundant)), int(solver.massless)
-    state.control[RESTART] = ASKED
+    system.regularized[0], system.massless[0] = int(bool(solver.redundant)), int(solver.massless)
+    state.control.restart = ASKED
     return Start(changed, solver.redundant, solver.shared)
 
 
@@ -81,8 +81,8 @@ def _lengths(model: Mechanism, system: System, numbering: Numbering, state: Stat
     """What residuals of constraints are compared with: sizes of positions, or one radian."""
     found = np.full(numbering.total, max(np.abs(state.q).max(), system.magnitude.max()))
     for equation in model.constraints:
-        if all(triplet.rotational for triplet in equation.triplets):
-            first = numbering.multipliers[id(equation)]
+        if all(dof_block.rotational for dof_block in equation.dof_blocks):
+            first = numbering.multipliers[equation]
             found[first:first + equation.multipliers] = 1.0
     return found
 
@@ -103,7 +103,7 @@ def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, stat
                     multipliers: NDArray) -> dict[str, float]:
     """Fit velocities by the smallest change in the norm of kinetic energy; given ones are kept.
 
-    Returns the triplets whose velocity changed, and by how much.
+    Returns the DOF blocks whose velocity changed, and by how much.
     """
     if not multipliers.size:
         return {}
@@ -111,9 +111,10 @@ def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, stat
     rates = _rates(system, state, multipliers)
     if np.abs(rates).max() <= SMALL * size:
         return {}
-    triplets = [t for t in model.triplets() if t.solved and id(t) in numbering.triplets]
-    given = [t for t in triplets if t.given]
-    held = np.array([i for triplet in given for i in coordinates(numbering, triplet)], dtype=int)
+    dof_blocks = [t for t in model.dof_blocks() if t.solved and t in numbering.dof_blocks]
+    given = [t for t in dof_blocks if t.given]
+    held = np.array([i for dof_block in given for i in coordinates(numbering, dof_block)],
+                    dtype=int)
     demand = np.zeros(numbering.free)
     demand[multipliers] = -rates
     answer = np.zeros(numbering.total)
@@ -125,17 +126,17 @@ def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, stat
     state.v[:] += answer
     place_dependent(system.links, state.q, state.v, state.a, state.R)
     size = max(size, np.abs(state.v).max())     # everything may have been at rest before
-    for triplet in given:
-        change = np.abs(answer[coordinates(numbering, triplet)]).max()
+    for dof_block in given:
+        change = np.abs(answer[coordinates(numbering, dof_block)]).max()
         if change > 1e-6 * size:
-            demanded = _shown(state.v[coordinates(numbering, triplet)])
-            raise InputError(f"the given initial velocity of {triplet.name}, "
-                             f"{_shown(triplet.rate)}, contradicts joints, drives or other initial "
+            demanded = _shown(state.v[coordinates(numbering, dof_block)])
+            raise InputError(f"the given initial velocity of {dof_block.name}, "
+                             f"{_shown(dof_block.rate)}, contradicts joints, drives or other initial "
                              f"velocities, which demand {demanded}: leave some of them out, they "
                              "are solved for")
     _check(_rates(system, state, multipliers), size, "velocity", multipliers, numbering,
            "no velocities satisfy all joints, drives and initial velocities; change one of them")
-    changes = {t.name: float(np.abs(answer[coordinates(numbering, t)]).max()) for t in triplets}
+    changes = {t.name: float(np.abs(answer[coordinates(numbering, t)]).max()) for t in dof_blocks}
     return {name: change for name, change in changes.items() if change > SMALL * size}
 
 

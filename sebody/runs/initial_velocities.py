@@ -9,12 +9,12 @@ from sebody.assembly.numbering import Numbering, coordinates
 from sebody.engine.state import State
 from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Superelement, Triplet
+from sebody.model.parts import DofBlock, Superelement
 from sebody.reduction import ReducedBody
 
 SMALL = 1e-6        # difference of velocities, of the largest one
 STRAINED = 1e-4     # share of the kinetic energy in deformation: speeds off by a hundredth
-MOST = 4            # triplets that a message lists
+MOST = 4            # DOF blocks that a message lists
 
 
 def refuse_contradicted(model: Mechanism, numbering: Numbering, state: State) -> None:
@@ -25,11 +25,11 @@ def refuse_contradicted(model: Mechanism, numbering: Numbering, state: State) ->
     InputError
         It has another velocity; the message names both.
     """
-    for triplet, actual in _triplets(model, numbering, state):
-        if triplet.given and not triplet.solved and _differ(state, triplet.rate, actual):
+    for dof_block, actual in _dof_blocks(model, numbering, state):
+        if dof_block.given and not dof_block.solved and _differ(state, dof_block.rate, actual):
             raise InputError(
-                f"{triplet.name} is given the initial velocity {_shown(triplet.rate)}, but "
-                f"{_holds(triplet)}, so it has {_shown(actual)}: leave one of them out, or give "
+                f"{dof_block.name} is given the initial velocity {_shown(dof_block.rate)}, but "
+                f"{_holds(dof_block)}, so it has {_shown(actual)}: leave one of them out, or give "
                 "both the same velocity")
 
 
@@ -38,10 +38,10 @@ def changed(model: Mechanism, numbering: Numbering, state: State) -> str:
 
     Nothing where they do not.
     """
-    found = [f"{triplet.name} {_shown(_round(state, actual))} in place of {_shown(triplet.rate)}"
-             for triplet, actual in _triplets(model, numbering, state)
-             if triplet.solved and not triplet.given and triplet.rate.any()
-             and _differ(state, triplet.rate, actual)]
+    found = [f"{dof_block.name} {_shown(_round(state, actual))} in place of {_shown(dof_block.rate)}"
+             for dof_block, actual in _dof_blocks(model, numbering, state)
+             if dof_block.solved and not dof_block.given and dof_block.rate.any()
+             and _differ(state, dof_block.rate, actual)]
     if not found:
         return ""
     return ("rigid_velocity contradicts the initial velocities that joints and drives demand: "
@@ -59,7 +59,7 @@ def strained(model: Mechanism, numbering: Numbering, state: State) -> str:
     if not found:
         return ""
     first, others = found[0], [repr(body.name) for body in found[1:]]
-    own = {id(t): t for t in (*first.positions, *first.rotations)}.values()
+    own = {t: t for t in (*first.positions, *first.rotations)}.values()
     values = [(t, _round(state, state.v[coordinates(numbering, t)])) for t in own]
     given = [f"{t.name} {_shown(v)}" for t, v in values if _is_given(t)]
     rest = [f"{t.name} {_shown(v) if v.any() else 'at rest'}" for t, v in values
@@ -71,24 +71,24 @@ def strained(model: Mechanism, numbering: Numbering, state: State) -> str:
             "velocity, zero where it rests")
 
 
-def _triplets(model: Mechanism, numbering: Numbering,
-              state: State) -> Iterator[tuple[Triplet, NDArray]]:
-    """Triplets of a model with the velocities a run starts with."""
-    for triplet in model.triplets():
-        if id(triplet) in numbering.triplets:
-            yield triplet, state.v[coordinates(numbering, triplet)]
+def _dof_blocks(model: Mechanism, numbering: Numbering,
+              state: State) -> Iterator[tuple[DofBlock, NDArray]]:
+    """DOF blocks of a model with the velocities a run starts with."""
+    for dof_block in model.dof_blocks():
+        if dof_block in numbering.dof_blocks:
+            yield dof_block, state.v[coordinates(numbering, dof_block)]
 
 
 def _differ(state: State, one: NDArray, other: NDArray) -> bool:
     return bool(np.abs(one - other).max() > SMALL * max(np.abs(state.v).max(), np.abs(one).max()))
 
 
-def _holds(triplet: Triplet) -> str:
-    """What gives a triplet that is not solved for its velocity."""
-    if triplet.root is not None:
-        return f"it follows {triplet.root.name} by a rigid link"
-    if triplet.motions:
-        return f"{', '.join(repr(motion.name) for motion in triplet.motions)} moves it"
+def _holds(dof_block: DofBlock) -> str:
+    """What gives a DOF block that is not solved for its velocity."""
+    if dof_block.root is not None:
+        return f"it follows {dof_block.root.name} by a rigid link"
+    if dof_block.motions:
+        return f"{', '.join(repr(motion.name) for motion in dof_block.motions)} moves it"
     return "it is fixed"
 
 
@@ -115,9 +115,9 @@ def _deformation(reduced: ReducedBody) -> NDArray:
     return reduced.mass - momentum @ np.linalg.pinv(r.T @ momentum) @ momentum.T
 
 
-def _is_given(triplet: Triplet) -> bool:
+def _is_given(dof_block: DofBlock) -> bool:
     """Whether `initial_velocity` or `rigid_velocity` has set the velocity, the latter not to 0."""
-    return triplet.given or bool(triplet.rate.any())
+    return dof_block.given or bool(dof_block.rate.any())
 
 
 def _round(state: State, values: NDArray) -> NDArray:

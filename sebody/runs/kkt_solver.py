@@ -9,14 +9,14 @@ from scipy.sparse import csc_matrix, diags
 from scipy.sparse.csgraph import structural_rank
 from scipy.sparse.linalg import SuperLU, splu
 
-from sebody.engine.relaxation import LIGHT
+from sebody.engine.regularization import LIGHT
 from sebody.engine.system import System
 
 SMALL = 100         # unknowns up to which LAPACK takes less time than SciPy to call SuperLU
 SINGULAR = 1e-13    # smallest pivot of a regular matrix, relative to the largest
 SUSPICIOUS = 1e-6   # pivot below which constraints are looked into, relative to the largest
-RELAXATION = 1e-8   # of regularized matrices as in the engine, but never of an older state
-ATTEMPTS = 20       # refinements: each leaves 2 RELAXATION / s of a part of strength s
+REGULARIZATION = 1e-8   # of regularized matrices as in the engine, but never of an older state
+ATTEMPTS = 20       # refinements: each leaves 2 REGULARIZATION / s of a part of strength s
 SETTLED = 1e-15     # change of the last refinement, relative to the solution
 
 
@@ -127,7 +127,7 @@ class Scaled:
 class Relaxed:
     """A singular matrix of masses and constraints, by regularized factors.
 
-    See `sebody.engine.relaxation`. The system says which unknowns are multipliers, which belong
+    See `sebody.engine.regularization`. The system says which unknowns are multipliers, which belong
     together and which bodies are thin.
 
     Parameters
@@ -149,27 +149,27 @@ class Relaxed:
         sizes[multipliers] = largest[part[multipliers]]
         sizes[sizes == 0.0] = 1.0
         self.scale = 1.0 / np.sqrt(sizes)
-        self.relaxation = LIGHT * system.thin[:n]
-        self.relaxation[multipliers] = -RELAXATION * sizes[multipliers]
-        scaled = diags(self.scale) @ (self.matrix + diags(self.relaxation)) @ diags(self.scale)
+        self.regularization = LIGHT * system.massless_axes[:n]
+        self.regularization[multipliers] = -REGULARIZATION * sizes[multipliers]
+        scaled = diags(self.scale) @ (self.matrix + diags(self.regularization)) @ diags(self.scale)
         self.factors = splu(csc_matrix(scaled), permc_spec="NATURAL", diag_pivot_thresh=0.0,
                             options={"SymmetricMode": True})
 
     @property
     def pivots(self) -> NDArray:
-        """Pivots of the scaled matrix: of a redundant constraint RELAXATION."""
+        """Pivots of the scaled matrix: of a redundant constraint REGULARIZATION."""
         return np.abs(self.factors.U.diagonal())
 
     def unmoved(self, vector: NDArray) -> NDArray:
         """The part of a vector, in scaled unknowns, on which the matrix does not act."""
-        return self.factors.solve(self.scale**2 * self.relaxation * vector)
+        return self.factors.solve(self.scale**2 * self.regularization * vector)
 
     def least(self, right: NDArray) -> tuple[NDArray, NDArray]:
         """Solution of least norm, and the scaled residuals that remain."""
         answer = np.zeros(len(right))
         for _ in range(ATTEMPTS):
             found = self._solve(right - self.matrix @ answer)
-            found -= self._solve(self.relaxation * found)
+            found -= self._solve(self.regularization * found)
             answer += found
             if np.abs(found / self.scale).max() <= SETTLED * np.abs(answer / self.scale).max():
                 break

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.numbering import Numbering
-from sebody.model.histories import History
+from sebody.model.time_functions import TimeFunction
 
 MISSED = 0.2            # share of the largest value by which a peak may exceed what steps see
 ON_GRID = 1e-6          # of a step: nearer times are those of the step
@@ -28,15 +28,15 @@ def unseen(numbering: Numbering, h: float, begin: float, end: float) -> Iterator
     begin, end : float
         Of the run [time].
     """
-    for name, history in zip(numbering.port_names, numbering.histories, strict=True):
-        times = _known(history)
+    for name, time_function in zip(numbering.port_names, numbering.time_functions, strict=True):
+        times = _known(time_function)
         times = times[(times > begin) & (times < end)]
         if not times.size:
             continue
         steps = times / h
         before = np.floor(steps + ON_GRID) * h
-        seen = np.sort([history.values(before), history.values(before + h)], axis=0)
-        values = history.values(times)
+        seen = np.sort([time_function.values(before), time_function.values(before + h)], axis=0)
+        values = time_function.values(times)
         excess = np.maximum(values - seen[1], seen[0] - values)
         on_grid = np.abs(steps - np.round(steps)) < ON_GRID
         missed = np.flatnonzero(~on_grid & (excess > MISSED * np.abs(values).max()))
@@ -58,9 +58,9 @@ def untold(numbering: Numbering, h: float, begin: float, end: float) -> Iterator
         Of the run [time].
     """
     times = np.linspace(begin, end, min(SAMPLES, max(2, round((end - begin) / h) + 1)))
-    for name, history in zip(numbering.port_names, numbering.histories, strict=True):
-        if history.functions and not history.corners:
-            found = _jump(history.functions[-1].ctypes, times)
+    for name, time_function in zip(numbering.port_names, numbering.time_functions, strict=True):
+        if time_function.functions and not time_function.corners:
+            found = _jump(time_function.functions[-1].ctypes, times)
             if found:
                 yield name, (f"the function of {name} jumps from {found[1]:.4g} to {found[2]:.4g} "
                              f"at t = {found[0]:.9g}, which is not declared: give it as "
@@ -90,9 +90,9 @@ def _jump(function: Callable[[float], float],
     return None
 
 
-def _known(history: History) -> NDArray:
+def _known(time_function: TimeFunction) -> NDArray:
     """Times at which a time function may have a peak."""
-    if not history.functions:
-        return np.array(history.times)
-    corners = np.array(history.corners)
+    if not time_function.functions:
+        return np.array(time_function.times)
+    corners = np.array(time_function.corners)
     return np.concatenate([corners, (corners[1:] + corners[:-1]) / 2])

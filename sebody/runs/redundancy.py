@@ -17,7 +17,7 @@ WEAK = 1e-6             # pivot of a redundant constraint; of another one, its s
 CONTRADICTION = 1e-7    # residual that contradicting constraints leave, relative to the largest
 MASSLESS = 1e-13        # inertia of a motion that has none, relative to that of its body
 SHARED = 0.1            # residual of a constraint that has part in a contradiction, of the largest
-SHARPENED = 3           # times that `Relaxed.unmoved` leaves RELAXATION of what exerts a force
+SHARPENED = 3           # times that `Relaxed.unmoved` leaves REGULARIZATION of what exerts a force
 UNSHARED = 1e-6         # part in what exerts no force that is rounding, of the largest
 PROBES = 8              # iterations after which the motion with the least inertia is left
 HALF = 0.5              # of such a motion, `Relaxed.unmoved` leaves all; of others little
@@ -35,8 +35,8 @@ def least(matrix: csc_matrix, system: System,
     direct = direct or Scaled(matrix)
     if direct.regular:
         return direct.solve
-    relaxed = Relaxed(matrix, part_sizes(matrix, system), system)
-    return lambda demand: relaxed.least(demand)[0]
+    regularized = Relaxed(matrix, part_sizes(matrix, system), system)
+    return lambda demand: regularized.least(demand)[0]
 
 
 def part_sizes(matrix: csc_matrix, system: System) -> NDArray:
@@ -82,10 +82,10 @@ class Solver:
         self.system, self.names = Scaled(matrix), numbering.names
         self.redundant: tuple[str, ...] = ()
         self.shared: tuple[str, ...] = ()
-        self.relaxed: Relaxed | None = None
+        self.regularized: Relaxed | None = None
         if self.system.suspicious:
-            system.thin[:matrix.shape[0]] = thin_parts(matrix, system)
-            self.relaxed = Relaxed(matrix, part_sizes(matrix, system), system)
+            system.massless_axes[:matrix.shape[0]] = massless_axes(matrix, system)
+            self.regularized = Relaxed(matrix, part_sizes(matrix, system), system)
             self._check_mass(system)
             self._find_redundant(system)
 
@@ -107,8 +107,9 @@ class Solver:
         InputError
             Constraints that contradict each other.
         """
-        _, left = self.relaxed.least(residual)
-        if left.max() > CONTRADICTION * max(np.abs(self.relaxed.scale * residual).max(), 1e-300):
+        _, left = self.regularized.least(residual)
+        if left.max() > CONTRADICTION * max(np.abs(self.regularized.scale * residual).max(),
+                                            1e-300):
             raise InputError(f"the constraints contradict each other at "
                              f"{self.names[int(np.argmax(left))]}: they demand different values "
                              "of the same acceleration; remove a joint or a drive")
@@ -116,13 +117,13 @@ class Solver:
     def _find_redundant(self, system: System) -> None:
         """Joints with constraints whose pivots are those of the regularization."""
         multipliers = multiplying(system)
-        weak = (self.relaxed.pivots < WEAK) & multipliers
+        weak = (self.regularized.pivots < WEAK) & multipliers
         self.redundant = joints(self.names, weak)
         if not self.redundant:
             return
         part = np.where(multipliers, np.random.default_rng(0).normal(size=weak.size), 0.0)
         for _ in range(SHARPENED):      # one without force has, at random, part of every such one
-            part = np.where(multipliers, self.relaxed.unmoved(part), 0.0)
+            part = np.where(multipliers, self.regularized.unmoved(part), 0.0)
         self.shared = joints(self.names, np.abs(part) > UNSHARED * np.abs(part).max())
 
     def _check_mass(self, system: System) -> None:
@@ -131,11 +132,11 @@ class Solver:
         probe = np.where(moving, np.random.default_rng(0).normal(size=moving.size), 0.0)
         for _ in range(PROBES):
             probe /= np.linalg.norm(probe)
-            probe = np.where(moving, self.relaxed.unmoved(probe), 0.0)
+            probe = np.where(moving, self.regularized.unmoved(probe), 0.0)
             if not probe.any():
                 return
-        shape = self.relaxed.scale * probe / np.linalg.norm(probe)
-        if np.linalg.norm(probe) > HALF and shape @ (self.relaxed.matrix @ shape) < MASSLESS:
+        shape = self.regularized.scale * probe / np.linalg.norm(probe)
+        if np.linalg.norm(probe) > HALF and shape @ (self.regularized.matrix @ shape) < MASSLESS:
             name = self.names[int(np.argmax(np.abs(probe)))]
             raise InputError(f"the mass matrix is singular: {name} moves no mass; add mass or "
                              "inertia there, fix it, or leave it out")
@@ -160,7 +161,7 @@ def joints(names: list[str], chosen: NDArray) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names[k].partition(" of ")[2] for k in np.flatnonzero(chosen)))
 
 
-def thin_parts(matrix: csc_matrix, system: System) -> NDArray:
+def massless_axes(matrix: csc_matrix, system: System) -> NDArray:
     """Sizes of the positions and rotations with nearly no inertia along an axis, zeros else."""
     n = matrix.shape[0]
     part, inertias = system.part[:n], system.inertias[:n]

@@ -19,7 +19,6 @@ from sebody.engine.state import (
     DUE,
     EVALUATED,
     FINEST,
-    GRID,
     INSIDE,
     JUMP,
     LEVEL,
@@ -54,7 +53,7 @@ from sebody.runs.tolerance import Tolerance
 VERSION = 3
 TARGET = "restart file", (".npz",)      # see `files.check_target`
 SETTINGS = {"h", "every", "seconds", "scheme", "tolerance", "model"}
-OF_START = "relaxed", "massless", "inertias", "thin"    # of the system, found at the start
+OF_START = "regularized", "massless", "inertias", "massless_axes"    # of the system, found at the start
 REMEDY, REPEAT = "give one that was saved by sebody.analysis.save_state", "run the model again"
 OFF = 1e-6          # of a step, by which rounding may put a time off
 # largest values of counters; others count steps, of which no run has more than MOST_STEPS
@@ -116,7 +115,7 @@ def resume(model: Model, path: str | Path) -> Simulation:
         getattr(run.system, name)[:] = arrays[name]
     run.rows = [arrays["rows"]]
     run.seconds = settings["seconds"]
-    if run.state.control[PIVOTED]:
+    if run.state.control.pivoted:
         run.exchanges.factorize()
     return run
 
@@ -160,9 +159,9 @@ def _other_model(file: str) -> InputError:
 
 def _members(run: Simulation) -> dict[str, Member]:
     """What the members of a file of this run are; scratch memory may hold anything."""
-    found = {"rows": Member((None, "width")), "relaxed": Member((1,), "i", least=0),
+    found = {"rows": Member((None, "width")), "regularized": Member((1,), "i", least=0),
              "massless": Member((1,), "i", least=0)}
-    for name in ("inertias", "thin"):
+    for name in ("inertias", "massless_axes"):
         found[name] = Member(getattr(run.system, name).shape, least=0)
     for field in fields(State):
         array = getattr(run.state, field.name)
@@ -180,13 +179,13 @@ def _check_numbers(table: Table, run: Simulation, arrays: Mapping[str, NDArray])
     for k in (TIME, STEP, CURRENT_STEP):
         if not np.isfinite(clock[k]):
             raise table.fault("holds numbers in clock that are not finite")
-    t, grid, h = rows[:, RECORD_T], control[GRID], run.h
-    reached = (grid + control[UNIT] / FINEST) * h
+    t, grid, h = rows[:, RECORD_T], control.grid, run.h
+    reached = (grid + control.unit / FINEST) * h
     past = OFF * h if run.tolerance is None else np.inf     # variable steps go past the grid
-    if clock[STEP] != h or not reached - OFF * h <= clock[TIME] <= reached + past:
-        raise table.fault(f"holds the time {clock[TIME]:g} after {grid} steps of {clock[STEP]:g}")
-    if not 0.0 < clock[CURRENT_STEP] <= h + past:
-        raise table.fault(f"holds a step of {clock[CURRENT_STEP]:g} with an output grid of {h:g}")
-    if not len(t) or not (np.diff(t) > 0).all() or t[-1] > clock[TIME] + OFF * h:
+    if clock.step != h or not reached - OFF * h <= clock.time <= reached + past:
+        raise table.fault(f"holds the time {clock.time:g} after {grid} steps of {clock.step:g}")
+    if not 0.0 < clock.current_step <= h + past:
+        raise table.fault(f"holds a step of {clock.current_step:g} with an output grid of {h:g}")
+    if not len(t) or not (np.diff(t) > 0).all() or t[-1] > clock.time + OFF * h:
         raise table.fault("holds states that are not in the order of their times up to "
-                          f"{clock[TIME]:g}")
+                          f"{clock.time:g}")

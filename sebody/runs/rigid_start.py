@@ -29,14 +29,14 @@ from sebody.engine.links import place_dependent
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Superelement, Triplet
+from sebody.model.parts import DofBlock, Superelement
 from sebody.runs.kkt_solver import factors
 from sebody.runs.redundancy import part_sizes
 
 YIELDING = 1e-8         # of D, relative to how easily a deformation gives
-RELAXATION = 1e-12      # at constraints, relative to their strength, and of masses that are none
+REGULARIZATION = 1e-12      # at constraints, relative to their strength, and of masses that are none
 PASSES = 3              # each leaves YIELDING of a deformation that need not be
-REFINED = 6             # corrections of a pass by factors with RELAXATION
+REFINED = 6             # corrections of a pass by factors with REGULARIZATION
 SETTLED = 1e-15         # change of the last one, relative to the solution
 SMALL = 1e-8            # change of a velocity, relative, that is none
 HEAVY = 1e20            # added mass, relative, that keeps velocities the user gave
@@ -47,7 +47,7 @@ def follow_drives(model: Mechanism, system: System, numbering: Numbering, state:
                   masses: csc_matrix, rates: NDArray) -> dict[str, float]:
     """Change the free velocities so that flexible bodies follow drives that start from speed.
 
-    Returns the triplets whose velocity changed, and by how much.
+    Returns the DOF blocks whose velocity changed, and by how much.
 
     Parameters
     ----------
@@ -61,8 +61,8 @@ def follow_drives(model: Mechanism, system: System, numbering: Numbering, state:
     multipliers, n = np.flatnonzero(system.is_multiplier), numbering.free
     bodies = [_Deformation.of(model, body, numbering, state) for body in model.bodies.values()]
     held = np.zeros(n)
-    triplets = [t for t in model.triplets() if t.solved and id(t) in numbering.triplets]
-    if given := [c for t in triplets if t.given for c in coordinates(numbering, t)]:
+    dof_blocks = [t for t in model.dof_blocks() if t.solved and t in numbering.dof_blocks]
+    if given := [c for t in dof_blocks if t.given for c in coordinates(numbering, t)]:
         held[given] = HEAVY * np.abs(masses.diagonal()).max()
     sizes = _sizes(masses, placed(model, numbering) + rotational(model, numbering).astype(int),
                    system)
@@ -78,15 +78,15 @@ def follow_drives(model: Mechanism, system: System, numbering: Numbering, state:
         state.v[:] += answer
         place_dependent(system.links, state.q, state.v, state.a, state.R)
     changes = {t.name: float(np.abs((state.v - before)[coordinates(numbering, t)]).max())
-               for t in triplets}
+               for t in dof_blocks}
     return {name: change for name, change in changes.items()
             if change > SMALL * np.abs(state.v).max()}
 
 
 def _starting_from_speed(model: Mechanism, system: System, numbering: Numbering,
                          state: State) -> bool:
-    ports = [*system.prescribed[:, 1], *(numbering.ports[id(c)] for c in model.constraints
-                                         if c.history is not None)]
+    ports = [*system.prescribed[:, 1], *(numbering.ports[c] for c in model.constraints
+                                         if c.time_function is not None)]
     return any(state.loads[3 * port + 1] != 0.0 for port in ports)
 
 
@@ -128,9 +128,9 @@ class _Saddle:
         whole = bmat([[masses, F.T], [F, None]], format="csc") + diags(
             np.concatenate([held, -YIELDING * giving]))
         self._matrix = csc_matrix(diags(scale) @ whole @ diags(scale))
-        relaxed = RELAXATION * np.where(fixed, -1.0, own / sizes)
+        regularized = REGULARIZATION * np.where(fixed, -1.0, own / sizes)
         self._factors = factors(csc_matrix(
-            self._matrix + diags(np.concatenate([relaxed, np.zeros(len(giving))]))))
+            self._matrix + diags(np.concatenate([regularized, np.zeros(len(giving))]))))
         self._scale, self._n = scale, n
 
     def __call__(self, right: NDArray, deformation: NDArray) -> NDArray:
@@ -159,11 +159,11 @@ class _Deformation(NamedTuple):
            state: State) -> "_Deformation":
         """That of a superelement where it is."""
         reduced, first = body.body, numbering.modes[body.name]
-        triplets = (*body.positions, *body.rotations)
-        own = [c for t in triplets for c in coordinates(numbering, t)]
+        dof_blocks = (*body.positions, *body.rotations)
+        own = [c for t in dof_blocks for c in coordinates(numbering, t)]
         own = np.array([*own, *range(first, first + reduced.modes)])
-        weights = np.sqrt(_weights(reduced.mass.diagonal(), triplets))
-        rows = null_space((weights[:, None] * _rigid(model, triplets, numbering, state,
+        weights = np.sqrt(_weights(reduced.mass.diagonal(), dof_blocks))
+        rows = null_space((weights[:, None] * _rigid(model, dof_blocks, numbering, state,
                                                      len(own))).T).T * weights
         modes = rows[:, len(own) - reduced.modes:] @ body.mode_rates
         return cls(rows, own, *_by_unknowns(model, body, numbering, state), modes)
@@ -173,39 +173,39 @@ class _Deformation(NamedTuple):
         return self.rows @ v[self.own] - self.modes
 
 
-def _weights(masses: NDArray, triplets: tuple[Triplet, ...]) -> NDArray:
+def _weights(masses: NDArray, dof_blocks: tuple[DofBlock, ...]) -> NDArray:
     """Masses of a body's coordinates, the same for all axes of a position or rotation."""
     found, row = np.maximum(masses, LEAST * np.abs(masses).mean()), 0
-    for triplet in triplets:
-        size = triplet.start.size
+    for dof_block in dof_blocks:
+        size = dof_block.start.size
         found[row:row + size] = found[row:row + size].mean()
         row += size
     return found
 
 
-def _rigid(model: Mechanism, triplets: tuple[Triplet, ...], numbering: Numbering, state: State,
+def _rigid(model: Mechanism, dof_blocks: tuple[DofBlock, ...], numbering: Numbering, state: State,
            count: int) -> NDArray:
     """Velocities of a body's coordinates in rigid motions of where it is, (count, motions)."""
     d, turns = model.dimension, model.rotation_size
     found, row = np.zeros((count, d + turns)), 0
-    middle = np.mean([state.q[stretch(numbering, t)] for t in triplets if not t.rotational]
+    middle = np.mean([state.q[stretch(numbering, t)] for t in dof_blocks if not t.rotational]
                      or [np.zeros(d)], axis=0)
-    for triplet in triplets:
-        if triplet.rotational:
-            found[row:row + turns, d:] = _orientation(model, triplet, numbering, state).T
+    for dof_block in dof_blocks:
+        if dof_block.rotational:
+            found[row:row + turns, d:] = _orientation(model, dof_block, numbering, state).T
         else:
             found[row:row + d, :d] = np.eye(d)
-            found[row:row + d, d:] = _turned(state.q[stretch(numbering, triplet)] - middle)
-        row += triplet.start.size
+            found[row:row + d, d:] = _turned(state.q[stretch(numbering, dof_block)] - middle)
+        row += dof_block.start.size
     return found
 
 
-def _orientation(model: Mechanism, triplet: Triplet, numbering: Numbering,
+def _orientation(model: Mechanism, dof_block: DofBlock, numbering: Numbering,
                  state: State) -> NDArray:
     """Matrix from the axes of a rotation's angular velocity to global ones."""
     if model.planar:
         return np.eye(1)
-    k = numbering.rotations.get(id(triplet))
+    k = numbering.rotations.get(dof_block)
     return np.eye(3) if k is None else state.R[9 * k:9 * k + 9].reshape(3, 3)
 
 
@@ -241,22 +241,22 @@ def _by_unknowns(model: Mechanism, body: Superelement, numbering: Numbering,
     column: dict[int, int] = {}     # unknown -> its column
     blocks = []                     # first row, columns, velocities
 
-    def add(row: int, triplet: Triplet, block: NDArray) -> None:
-        if triplet.solved:
-            own = [column.setdefault(c, len(column)) for c in coordinates(numbering, triplet)]
+    def add(row: int, dof_block: DofBlock, block: NDArray) -> None:
+        if dof_block.solved:
+            own = [column.setdefault(c, len(column)) for c in coordinates(numbering, dof_block)]
             blocks.append((row, own, block))
 
     row = 0
-    for triplet in (*body.positions, *body.rotations):
-        size = triplet.start.size
-        if triplet.root is None:
-            add(row, triplet, np.eye(size))
+    for dof_block in (*body.positions, *body.rotations):
+        size = dof_block.start.size
+        if dof_block.root is None:
+            add(row, dof_block, np.eye(size))
         else:
-            add(row, triplet.root, np.eye(size))
-            for rotation, arm in triplet.arms:
+            add(row, dof_block.root, np.eye(size))
+            for rotation, arm in dof_block.arms:
                 R = _orientation(model, rotation, numbering, state)
                 if model.planar:
-                    c, s = np.cos(angle := state.q[numbering.triplets[id(rotation)]]), np.sin(angle)
+                    c, s = np.cos(angle := state.q[numbering.dof_blocks[rotation]]), np.sin(angle)
                     add(row, rotation, _turned(np.array([[c, -s], [s, c]]) @ arm))
                 else:
                     add(row, rotation, _turned(R @ arm) @ R)

@@ -14,7 +14,7 @@ from scipy.sparse import csc_matrix
 from sebody import inputs
 from sebody.assembly.numbering import coordinates
 from sebody.contract.layout import AT_FRAME, AT_POSITIONS
-from sebody.model.parts import Triplet
+from sebody.model.parts import DofBlock
 from sebody.results.result import Result
 from sebody.runs.simulation import Simulation
 
@@ -60,9 +60,9 @@ class Spin:
         state.v[:], state.a[:] = 0.0, 0.0
         if not self.rotates:
             return
-        for triplet, at in _triplets(run):
-            if triplet.rotational:
-                state.v[at] = self.velocity if self.planar else _material(run, triplet, self)
+        for dof_block, at in _dof_blocks(run):
+            if dof_block.rotational:
+                state.v[at] = self.velocity if self.planar else _material(run, dof_block, self)
             else:
                 state.v[at] = self.across @ state.q[at]
                 state.a[at] = self.across @ state.v[at]
@@ -80,14 +80,14 @@ class Spin:
         Of all coordinates, in global axes.
         """
         velocity, place, rate = (_Blocks() for _ in range(3))
-        for triplet, at in _triplets(run):
-            if not triplet.rotational:
+        for dof_block, at in _dof_blocks(run):
+            if not dof_block.rotational:
                 own = self.across
                 velocity.add(at, at, own)
                 place.add(at, at, own @ own)
                 rate.add(at, at, 2.0 * own)
             elif not self.planar:
-                own = skew(_material(run, triplet, self))
+                own = skew(_material(run, dof_block, self))
                 velocity.add(at, at, own)
                 rate.add(at, at, own)
         total = run.numbering.total
@@ -109,11 +109,11 @@ def motion(run: Simulation | Result) -> csc_matrix:
         blocks.add(at, at, own)
     ones = np.flatnonzero(ordinary)
     blocks.add_entries(ones, ones, np.ones(len(ones)))
-    for triplet in numbering.dependent:
-        at, root = (coordinates(numbering, t) for t in (triplet, triplet.root))
-        if triplet.root.solved:
+    for dof_block in numbering.dependent:
+        at, root = (coordinates(numbering, t) for t in (dof_block, dof_block.root))
+        if dof_block.root.solved:
             blocks.add(at, root, axes.get(root[0], np.eye(len(at))))
-        for rotation, arm in triplet.arms:
+        for rotation, arm in dof_block.arms:
             if rotation.solved:
                 blocks.add(at, coordinates(numbering, rotation), _lever(run, rotation, arm))
     return blocks.matrix(numbering.total, numbering.free)
@@ -148,9 +148,9 @@ def of_levers(run: Simulation | Result, forces: NDArray) -> csc_matrix:
         Sums of the element forces, in global axes.
     """
     numbering, blocks = run.numbering, _Blocks()
-    for triplet in numbering.dependent:
-        force = forces[coordinates(numbering, triplet)]
-        for rotation, arm in triplet.arms:
+    for dof_block in numbering.dependent:
+        force = forces[coordinates(numbering, dof_block)]
+        for rotation, arm in dof_block.arms:
             if not rotation.solved:
                 continue
             at = coordinates(numbering, rotation)
@@ -192,27 +192,27 @@ class _Blocks:
         return csc_matrix((values, (rows, columns)), shape=(height, width))
 
 
-def _triplets(run: Simulation | Result) -> list[tuple[Triplet, list[int]]]:
-    """Triplets of the model's nodes that are in it, with their coordinates."""
+def _dof_blocks(run: Simulation | Result) -> list[tuple[DofBlock, list[int]]]:
+    """DOF blocks of the model's nodes that are in it, with their coordinates."""
     nodes = run.model.nodes.values()
-    triplets = {id(t): t for n in nodes for t in (n.position, n.rotation) if t is not None}
-    return [(t, coordinates(run.numbering, t)) for key, t in triplets.items()
-            if key in run.numbering.triplets]
+    dof_blocks = {t: t for n in nodes for t in (n.position, n.rotation) if t is not None}
+    return [(t, coordinates(run.numbering, t)) for key, t in dof_blocks.items()
+            if key in run.numbering.dof_blocks]
 
 
-def _rotation(run: Simulation | Result, triplet: Triplet) -> NDArray:
+def _rotation(run: Simulation | Result, dof_block: DofBlock) -> NDArray:
     if run.model.planar:
-        angle = run.state.q[run.numbering.triplets[id(triplet)]]
+        angle = run.state.q[run.numbering.dof_blocks[dof_block]]
         return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    k = run.numbering.rotations[id(triplet)]
+    k = run.numbering.rotations[dof_block]
     return run.state.R[9 * k:9 * k + 9].reshape(3, 3)
 
 
-def _material(run: Simulation | Result, triplet: Triplet, spin: Spin) -> NDArray:
-    return _rotation(run, triplet).T @ spin.velocity
+def _material(run: Simulation | Result, dof_block: DofBlock, spin: Spin) -> NDArray:
+    return _rotation(run, dof_block).T @ spin.velocity
 
 
-def _lever(run: Simulation | Result, rotation: Triplet, arm: NDArray) -> NDArray:
+def _lever(run: Simulation | Result, rotation: DofBlock, arm: NDArray) -> NDArray:
     """``R (theta x r)`` by theta."""
     R = _rotation(run, rotation)
     if run.model.planar:

@@ -8,8 +8,8 @@ from scipy.sparse import csc_matrix, diags
 
 from sebody.assembly.evaluation import assembled
 from sebody.engine.matrix import sum_matrices
-from sebody.engine.relaxation import PROJECTIONS, RELAXATION, relax
-from sebody.engine.state import FACTORED, PHASE, PROJECTED, RELAXED, RESTART, SOLVED, State
+from sebody.engine.regularization import PROJECTIONS, REGULARIZATION, regularize
+from sebody.engine.state import FACTORED, PROJECTED, SOLVED, State
 from sebody.engine.system import System
 from sebody.runs.kkt_solver import SINGULAR, Scaled, factors
 from sebody.runs.redundancy import least
@@ -27,7 +27,7 @@ class RowExchanges:
 
     def serve(self) -> None:
         """Factorize or solve if the loop waits for it, perhaps since an interrupted call."""
-        phase = self.state.control[PHASE]
+        phase = self.state.control.phase
         if phase == FACTORED:
             self.factorize()
         elif phase in (PROJECTED, SOLVED):
@@ -36,10 +36,10 @@ class RowExchanges:
     def factorize(self) -> None:
         """Factorize the sum in `State.matrix`."""
         self._solver = None
-        if self.state.control[RESTART]:
+        if self.state.control.restart:
             self._solver = self._of_masses()
         elif not self._factorized():
-            relax(self.system, self.state, RELAXATION)
+            regularize(self.system, self.state, REGULARIZATION)
             self._factorized()
 
     def solve(self) -> None:
@@ -49,9 +49,9 @@ class RowExchanges:
             state.correction[:n] = self._solver(state.residual[:n].copy())
             return
         correction = self._solved(state.residual[:n])
-        if state.control[RELAXED]:
+        if state.control.regularized:
             for _ in range(PROJECTIONS):
-                correction -= self._solved(state.relaxation[:n] * self.system.is_multiplier[:n]
+                correction -= self._solved(state.regularization[:n] * self.system.is_multiplier[:n]
                                            * correction)
         state.correction[:n] = correction
 
@@ -64,7 +64,7 @@ class RowExchanges:
         """
         sum_matrices(self.system, self.state, self.state.forces)
         masses = assembled(self.system, self.state)
-        if self.system.relaxed[0]:
+        if self.system.regularized[0]:
             return least(masses, self.system)
         scaled = Scaled(masses)
         return scaled.solve if scaled.regular else lambda right: scaled.least(right)[0]

@@ -16,19 +16,10 @@ from sebody.assembly.numbering import placed, rotational
 from sebody.engine.loop import advance
 from sebody.engine.routines import addresses
 from sebody.engine.state import (
-    ADAPTIVE,
-    CHOSEN,
     CHUNK,
-    CURRENT_STEP,
     DONE,
     FAILED,
-    GRID,
-    LARGEST_ERROR,
-    MATRICES,
-    REASON,
     REASONS,
-    RECORDED,
-    TIME,
     Record,
     Scheme,
 )
@@ -131,7 +122,7 @@ class Simulation:
         if tolerance is not None:
             self._choose_steps(tolerance)
         first = Record.of(self.state, 1, self.every)
-        self.state.control[RECORDED] = 0
+        self.state.control.recorded = 0
         write_record(self.state, first)
         self.rows.append(first.rows)
 
@@ -142,7 +133,7 @@ class Simulation:
     @property
     def time(self) -> float:
         """Time reached."""
-        return float(self.state.clock[TIME])
+        return float(self.state.clock.time)
 
     def run_to(self, t_end: float,
                progress: Callable[[float], None] | bool | None = None) -> Simulation:
@@ -171,13 +162,13 @@ class Simulation:
         if abs(t_end / self.h - last) > OFF_GRID:
             self.watch.say("end", f"t = {t_end:.9g} is not a multiple of the step {self.h:.9g}: "
                            f"the run ends at t = {last * self.h:.9g}")
-        if self.state.control[ADAPTIVE] == 0:
+        if self.state.control.adaptive == 0:
             for name, message in unseen(self.numbering, self.h, self.time, t_end):
                 self.watch.say(f"peak {name}", message)
             for name, message in untold(self.numbering, self.h, self.time, t_end):
                 self.watch.say(f"jump {name}", message)
         record = self._room(last)
-        self.state.control[RECORDED] = 0
+        self.state.control.recorded = 0
         code = CHUNK
         try:
             with showing(progress, t_end) as show:
@@ -185,7 +176,7 @@ class Simulation:
         except KeyboardInterrupt:
             pass                        # the rows come first
         finally:
-            self.rows.append(record.rows[:self.state.control[RECORDED]])
+            self.rows.append(record.rows[:self.state.control.recorded])
         self.watch.look(self.model, self.numbering, self.rows[-1])
         if code == FAILED:
             self.failure = explained(self.model, self.system, self.state, self.numbering)
@@ -208,10 +199,10 @@ class Simulation:
         t_end = inputs.number(t_end, "t_end", remedy=past)
         check_steps(t_end, self.h)
         steps = t_end / self.h
-        if round(steps) < self.state.control[GRID]:
+        if round(steps) < self.state.control.grid:
             raise InputError(past)
         there = abs(t_end - self.time) <= OFF_GRID * min(self.h, max(t_end, self.time))
-        if round(steps) == self.state.control[GRID] and not there:
+        if round(steps) == self.state.control.grid and not there:
             raise InputError(f"cannot run to t_end = {t_end:g} from t = {self.time:g}: the step is "
                              f"{self.h:g}; give a later time or a smaller step (the step comes "
                              "first)")
@@ -219,7 +210,7 @@ class Simulation:
 
     def _room(self, last: int) -> Record:
         """An empty record for the states up to a step of the grid."""
-        count = last // self.every - int(self.state.control[GRID]) // self.every
+        count = last // self.every - int(self.state.control.grid) // self.every
         memory.check(8.0 * count * self.state.now.size, f"a record of {count} states",
                      "keep fewer with output_every, or give an earlier t_end")
         return Record.of(self.state, count, self.every)
@@ -272,9 +263,9 @@ class Simulation:
         state.error_weights[own] = 1.0 / tolerance.allowed(
             sizes, rotational(self.model, self.numbering)[own])
         bend = np.abs(state.a[:n] * state.error_weights[:n]).max()
-        state.clock[CHOSEN] = min(self.h, 0.1 / np.sqrt(bend)) if bend > 0 else FIRST_STEP * self.h
-        state.clock[LARGEST_ERROR] = 0.0
-        state.control[ADAPTIVE] = 1
+        state.clock.chosen = min(self.h, 0.1 / np.sqrt(bend)) if bend > 0 else FIRST_STEP * self.h
+        state.clock.largest_error = 0.0
+        state.control.adaptive = 1
 
     def _accelerate(self) -> None:
         """Solve for the accelerations and multipliers of the start, by the loop without a step.
@@ -284,16 +275,16 @@ class Simulation:
         state, code = self.state, CHUNK
         self.system.routines[:] = addresses(self.system, state)
         if self.tolerance is not None:
-            state.clock[CURRENT_STEP] = FIRST_STEP * self.h     # so far ahead it looks
+            state.clock.current_step = FIRST_STEP * self.h     # so far ahead it looks
         none = Record.of(state, 0, self.every)
         while code not in (DONE, FAILED):
             self.exchanges.serve()
             code = advance(self.system, state, none, self.scheme, 0, 0, self.dense)
         if code == FAILED:
             raise InputError("the initial state has no accelerations: "
-                             f"{REASONS[int(state.control[REASON])]}; check the loads and the "
+                             f"{REASONS[int(state.control.reason)]}; check the loads and the "
                              "joints at t = 0")
-        state.control[MATRICES] = 0
+        state.control.matrices = 0
         state.aux_old[:] = state.aux
 
 

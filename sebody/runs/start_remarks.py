@@ -38,4 +38,5 @@ def _falling(model: Mechanism) -> str:
 def _rates(model: Mechanism, names: list[str]) -> list[NDArray]:
     """Initial velocities that bodies were given."""
     bodies = {**model.bodies, **model.rigid_bodies}
-    return [getattr(place.node, place.kind).rate for name in names for place in bodies[name].places]
+    return [getattr(place.node, place.kind).rate for name in names
+            for place in bodies[name].attachments]

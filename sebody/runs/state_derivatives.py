@@ -6,7 +6,7 @@ from scipy.sparse import csc_matrix
 
 from sebody.assembly.evaluation import matrix
 from sebody.engine.evaluate import to_body_axes
-from sebody.engine.state import EVALUATED, WANTED
+from sebody.engine.state import EVALUATED
 from sebody.results.result import Result
 from sebody.runs.rotating_frame import Spin, motion, of_levers, summed
 from sebody.runs.simulation import Simulation
@@ -20,7 +20,7 @@ def derivative(run: Simulation | Result, mass: float, damping: float,
     and rotations. Constraints go with the last.
     """
     state = run.state
-    state.control[WANTED] = EVALUATED     # a run that goes on needs its own matrix again
+    state.control.wanted = EVALUATED     # a run that goes on needs its own matrix again
     state.T[:] = np.tile(np.eye(3).ravel(), len(state.T) // 9)
     return matrix(run.system, state, "the state", mass=mass, damping=damping,
                   stiffness=stiffness, constraint=stiffness)

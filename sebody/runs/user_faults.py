@@ -16,12 +16,12 @@ def functions(model: Mechanism) -> Iterator[tuple[str, UserFunction]]:
     for element in (*model.constraints, *model.loads):
         if element.function is not None:
             yield f"user force {element.name!r}", element.function
-        if element.history is not None:
-            for function in element.history.functions:
+        if element.time_function is not None:
+            for function in element.time_function.functions:
                 yield f"the function of {element.name!r}", function
-    for triplet in model.triplets():
-        for motion in triplet.motions:
-            for function in motion.history.functions:
+    for dof_block in model.dof_blocks():
+        for motion in dof_block.motions:
+            for function in motion.time_function.functions:
                 yield f"the function of {motion.name!r}", function
 
 

@@ -3,7 +3,7 @@
 The load has the amplitude ``exp(i omega t)``; the unknowns, multipliers included, answer with
 ``(-omega^2 M + i omega C + K) X = F``, with the exact derivatives of `linearization` and F that of
 the forces by the load's amplitude. A quantity follows from its values in states moved a little
-along X, in positions, velocities, accelerations and load: whatever has a history has an answer.
+along X, in positions, velocities, accelerations and load: whatever has a time function has an answer.
 """
 
 from __future__ import annotations
@@ -145,7 +145,7 @@ def frequency_response(run: Simulation | Result, load: str, quantities: str | It
 
 
 def _load(run: Simulation | Result, name: str) -> Element:
-    loads = {load.name: load for load in run.model.loads if load.history is not None}
+    loads = {load.name: load for load in run.model.loads if load.time_function is not None}
     if not loads:
         raise InputError("the model has no force or torque whose amplitude could vary: add one, "
                          "of amplitude 0 if it shall not act at rest")
@@ -157,7 +157,7 @@ def _by_amplitude(run: Simulation | Result, load: Element) -> Forces:
 
     Loads are linear in their amplitude, so the difference is exact.
     """
-    state, at = run.state, 3 * run.numbering.ports[id(load)]
+    state, at = run.state, 3 * run.numbering.ports[load]
     kept, found = state.loads.copy(), []
     set_loads(run.system, state.loads, state.now[RECORD_T])
     for step in (0.5, -1.0):
@@ -208,12 +208,12 @@ def _moved_states(run: Simulation | Result, spin: Spin, X: NDArray, omega: NDArr
     extent = np.full(numbering.total, np.inf)   # of what has no size of its own: any
     rotated = {}
     for node in (*run.model.nodes.values(), *run.model.grounds):
-        for triplet in (node.position, node.rotation):
-            if triplet is not None and id(triplet) in numbering.triplets:
-                own = coordinates(numbering, triplet)
-                extent[own] = 1.0 if triplet.rotational else run.model.size()
-                if triplet.rotational and not run.model.planar:
-                    rotated[numbering.rotations[id(triplet)]] = own
+        for dof_block in (node.position, node.rotation):
+            if dof_block is not None and dof_block in numbering.dof_blocks:
+                own = coordinates(numbering, dof_block)
+                extent[own] = 1.0 if dof_block.rotational else run.model.size()
+                if dof_block.rotational and not run.model.planar:
+                    rotated[numbering.rotations[dof_block]] = own
     largest = (np.abs(moved) / extent).max(axis=1)
     scale = SMALL / np.where(largest > 0, largest, 1.0)
     parts, rows = state.recorded_parts, []

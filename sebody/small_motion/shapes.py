@@ -50,13 +50,13 @@ class Shapes:
         if quantity == "modes" and owner in model.bodies:
             first = numbering.modes[owner]
             return shapes[first:first + model.bodies[owner].body.modes]
-        triplet = (getattr(model.nodes.get(owner), quantity, None)
+        dof_block = (getattr(model.nodes.get(owner), quantity, None)
                    if quantity in ("position", "rotation") else None)
-        if triplet is None or id(triplet) not in numbering.triplets:
+        if dof_block is None or dof_block not in numbering.dof_blocks:
             return None
-        first = numbering.triplets[id(triplet)]
-        found = self._motion[first:first + triplet.start.size] @ shapes
-        if triplet.rotational and not model.planar:
-            k = numbering.rotations[id(triplet)]
+        first = numbering.dof_blocks[dof_block]
+        found = self._motion[first:first + dof_block.start.size] @ shapes
+        if dof_block.rotational and not model.planar:
+            k = numbering.rotations[dof_block]
             found = self._R[9 * k:9 * k + 9].reshape(3, 3) @ found
         return np.asarray(found)

@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 from sebody import Model
 from sebody.assembly import contracts
 from sebody.assembly.batches import superelement_constants
-from sebody.assembly.carried import carried_constants
+from sebody.assembly.rigid_part import rigid_part_constants
 from sebody.contract.layout import ENERGY, KINETIC, STRAIN
 from sebody.fem import StiffnessSection, frame, planar_beam, straight_beam
 from sebody.kernels.loader import load
@@ -39,7 +39,7 @@ def planar():
 def test_rigid_modes_are_recognised(body):
     """Translations have all the mass and no mean rotation, unit rotations are their own."""
     d = body.coordinates.shape[1]
-    constants = carried_constants(body)
+    constants = rigid_part_constants(body)
     rigid = body.rigid_modes_about(body.centre_of_mass)
     found = constants["rigid_rows"] @ rigid
     expected = np.diag([body.total_mass] * d + [1.0] * (rigid.shape[1] - d))
@@ -52,7 +52,7 @@ def test_the_rest_has_a_mass_that_is_not_negative(inertia):
     """A body without inertia about its axis, too, of which it turns nothing with the body."""
     body = craig_bampton(straight_beam(SHIFT, SHIFT + TURN[:, 0], section(inertia), 4),
                          [(0, "full"), (4, "full")], 3)
-    rows = carried_constants(body)["rigid_rows"]
+    rows = rigid_part_constants(body)["rigid_rows"]
     first, angle = rows[:3], rows[3:]
     rigid = body.rigid_modes_about(body.centre_of_mass)[:, 3:]
     J = rigid.T @ body.mass @ rigid

@@ -12,7 +12,7 @@ from sebody.assembly.build import build
 from sebody.contract.layout import INDEX, Row
 from sebody.fem import Section, straight_beam
 from sebody.kernels.loader import element_kernel, load
-from sebody.model.histories import history
+from sebody.model.time_functions import time_function
 from sebody.reduction import ReducedBody, craig_bampton
 from sebody.scenes import hinged_beam
 
@@ -36,7 +36,7 @@ def driven():
 def beam():
     model = Model()
     ends = model.node("base", (0, 0, 0)), model.node("tip", (1.0, 0, 0))
-    model.beam("beam", ends, SECTION, 1, inertia="b")
+    model.beam("beam", ends, SECTION, 1, inertia="material")
     return model
 
 
@@ -54,15 +54,15 @@ def more_multipliers(m):
 
 def fewer_triplets(m):
     one = constraint(m, "hinge", 1)
-    one.triplets = one.triplets[:1]
+    one.dof_blocks = one.dof_blocks[:1]
 
 
 def no_history(m):
-    constraint(m, "drive").history = None
+    constraint(m, "drive").time_function = None
 
 
 def a_history(m):
-    constraint(m, "hinge").history = history(None)
+    constraint(m, "hinge").time_function = time_function(None)
 
 
 def short_row(m):
@@ -122,11 +122,12 @@ def test_a_joint_built_with_a_multiplier_too_few(monkeypatch):
 
 
 @pytest.mark.parametrize("kernel, message", [
-    ("superelement_f2t1_converged_mean_b",
+    ("superelement_f2t1_converged_mean_material",
      "'beam' does not fit its kernel .*: it has 2 positions and the kernel 3"),
-    ("superelement_f2m4_converged_mean_b", "it has 0 modes and the kernel 4"),
-    ("superelement_f2d_converged_mean_b", "it has no damping matrix and the kernel reads one"),
-    ("superelement_planar_f2_converged_mean_b", "it is spatial and the kernel is not")])
+    ("superelement_f2m4_converged_mean_material", "it has 0 modes and the kernel 4"),
+    ("superelement_f2d_converged_mean_material",
+     "it has no damping matrix and the kernel reads one"),
+    ("superelement_planar_f2_converged_mean_material", "it is spatial and the kernel is not")])
 def test_superelements_that_do_not_fit_their_kernel(kernel, message):
     model = beam()
     model.element("beam").kernel = kernel
@@ -139,8 +140,8 @@ def test_a_superelement_of_more_nodes_than_its_kernel():
                          [(0, "full"), (1, "full"), (2, "full")], modes=0)
     model = Model()
     nodes = [model.node(f"node {k}", (x, 0, 0)) for k, x in enumerate((0.0, 0.5, 1.0))]
-    model.superelement("beam", body, nodes, inertia="b")
-    model.element("beam").kernel = "superelement_f2_converged_mean_b"
+    model.superelement("beam", body, nodes, inertia="material")
+    model.element("beam").kernel = "superelement_f2_converged_mean_material"
     with pytest.raises(InputError, match="it has 3 positions and the kernel 2; it has 3 rotations "
                                          "and the kernel 2"):
         build(model)
@@ -169,7 +170,7 @@ def test_rows_are_those_of_the_table():
     counts = {"N_ROTATIONS": 2, "n": 6}
     index = INDEX.unpack(counts, system.index[system.at_index[k]:][:INDEX.size(counts)])
     assert index["port"] == numbering.port_names.index("spring")
-    assert index["nodes"].tolist() == [numbering.rotations[id(t)] for t in spring.triplets]
+    assert index["nodes"].tolist() == [numbering.rotations[t] for t in spring.dof_blocks]
     row = Row("constants", kernel.CONSTANTS)
     constants = row.unpack({}, system.constants[int(index["constants"]):][:row.size({})])
     assert constants["k"] == 3.0 and constants["m"].tolist() == spring.constants["m"].tolist()
@@ -202,7 +203,7 @@ def test_bodies_tell_how_much_of_their_matrices_is_filled(modes, filled):
 
 def test_coupled_modes_are_not_taken_for_uncoupled_ones():
     """A body whose modes are mixed with each other moves as before, with option B."""
-    scene = hinged_beam.build(modes=10, inertia="b")
+    scene = hinged_beam.build(modes=10, inertia="material")
     body = scene.model.bodies["beam"]
     plain, reduced = body.body, body.body
     n = len(reduced.mass)
@@ -212,6 +213,7 @@ def test_coupled_modes_are_not_taken_for_uncoupled_ones():
                             plain.coordinates, plain.keeps, plain.modes)
     assert superelement_constants(body)["full"] == [n]
     mixed = simulate(scene.model, 0.01, 1.0)["tip.position"]
-    exact = simulate(hinged_beam.build(modes=10, inertia="b").model, 0.01, 1.0)["tip.position"]
+    exact = simulate(hinged_beam.build(modes=10, inertia="material").model, 0.01,
+                     1.0)["tip.position"]
     # Newton's tolerance, 1e-8 of the increment of a step, in a hundred steps
     assert np.abs(mixed - exact).max() < 1e-6 * np.abs(exact - exact[0]).max()

@@ -5,10 +5,9 @@ import pytest
 from benchmarks import bench_order
 
 from sebody import Model, Simulation
+from sebody.assembly.elimination_order import sequence
 from sebody.assembly.fill_order import Coupling, elimination_order
 from sebody.assembly.numbering import number
-from sebody.assembly.sequence import sequence
-from sebody.engine.state import PIVOTED
 
 # bodies, and how far fill may be above that of SuperLU's minimum degree on the unknowns
 FILL = {"tree": (60, 1.15), "star": (60, 1.15), "grid": (100, 1.3), "ladder": (60, 1.3)}
@@ -24,7 +23,7 @@ def test_fill_does_not_depend_on_the_order_of_creation(name):
 
 
 def test_the_best_order_of_a_path_is_kept():
-    """A path is eliminated from its ends; springs and joints couple as shared triplets do."""
+    """A path is eliminated from its ends; springs and joints couple as shared DOF blocks do."""
     bodies = [{k: 3} for k in range(6)]
     path = [0, 3, 1, 5, 2, 4]
     couplings = [Coupling(pair) for pair in zip(path, path[1:], strict=False)]
@@ -39,7 +38,7 @@ def test_the_best_order_of_a_path_is_kept():
 
 
 def test_an_order_is_remembered_by_structure_and_size():
-    """Keys of triplets differ from model to model; an order may not be that of another model."""
+    """Keys of DOF blocks differ from model to model; an order may not be that of another model."""
     path = [0, 3, 1, 5, 2, 4]
 
     def ordered(keys, path, size=3):
@@ -74,10 +73,10 @@ def pinned(pairs, order=None, masses=None):
 
 
 def followed(model):
-    """Of every joint the bodies whose triplets its multipliers wait for."""
-    names = {id(t): body.name for body in model.rigid_bodies.values() for t in body.triplets}
+    """Of every joint the bodies whose DOF blocks its multipliers wait for."""
+    names = {t: body.name for body in model.rigid_bodies.values() for t in body.dof_blocks}
     awaited = sequence(model)[1]
-    return {joint.name: {names[key] for c in joint.constraints for key in awaited[id(c)]}
+    return {joint.name: {names[key] for c in joint.constraints for key in awaited[c]}
             for joint in model.joints}
 
 
@@ -101,7 +100,7 @@ def test_any_order_gives_the_same_motion(pairs):
                   for order in (range(10), (3, 9, 0, 7, 1, 8, 2, 6, 4, 5)))
     assert number(one.model).names != number(other.model).names
     for run in (one, other):
-        assert not run.state.control[PIVOTED]
+        assert not run.state.control.pivoted
     for k in range(10):
         a, b = (run.result()[f"node {k}.position"] for run in (one, other))
         # Newton's tolerance is 1e-8 of a step's increment, and there are 30 steps

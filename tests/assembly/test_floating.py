@@ -46,7 +46,7 @@ def reference_body(frame):
 
 def reference_case(frame, state):
     """The kernel in a state of the reference."""
-    kernel = load("superelement_f2_converged_mean_c")
+    kernel = load("superelement_f2_converged_mean_floating_field")
     body, stiffness, X = reference_body(frame)
     weights = np.array([0.5, 0.5] if frame == "mean" else [1.0, 0.0])
     s = {name[5:]: value[state] for name, value in DATA.items() if name.startswith(f"{frame}.")}
@@ -76,8 +76,8 @@ def test_forces_and_energies_of_an_independent_code(frame):
         assert energy[[KINETIC, STRAIN]] == pytest.approx([expected["T"], expected["V"]], rel=1e-12)
 
 
-@pytest.mark.parametrize("name", ["f2_converged_mean_b", "f2t1_positions_b",
-                                  "planar_f2_converged_mean_b", "planar_f2_positions_b"])
+@pytest.mark.parametrize("name", ["f2_converged_mean_material", "f2t1_positions_material",
+                                  "planar_f2_converged_mean_material", "planar_f2_positions_material"])
 def test_local_coordinates_follow_from_those_that_are_kept(name):
     """Coordinates found by SciPy obey the conditions, with unequal weights and nodes."""
     case = superelement_case(load(f"superelement_{name}"), 3)
@@ -94,7 +94,7 @@ SECTION = Section(area=0.01, inertia_y=3e-6, inertia_z=5e-6, torsion=4e-6, young
                   poisson_ratio=0.3, density=7800.0)
 
 
-def beam(frame="converged_mean", inertia="c"):
+def beam(frame="converged_mean", inertia="floating_field"):
     """An oblique beam away from the origin."""
     model = Model()
     ends = model.node("a", (3.0, -1.0, 2.0)), model.node("b", (4.0, 0.5, 2.5))
@@ -152,19 +152,19 @@ def test_constants_of_a_beam_have_the_same_zeros_in_any_place_and_unit(modes):
 
 @pytest.mark.parametrize("frame", ["mean", "mean_small"])
 def test_frames_that_depend_on_the_last_step_are_refused(frame):
-    with pytest.raises(InputError, match=f"inertia 'c' needs the exact rates of a frame .* which "
+    with pytest.raises(InputError, match=f"inertia 'floating_field' needs the exact rates of a frame .* which "
                                          f"'{frame}' does not: use one of converged_mean, mean"):
         beam(frame)
 
 
 def test_a_body_of_reduced_matrices_alone_is_refused():
-    one = replace(beam(inertia="b").body, invariants=None)
+    one = replace(beam(inertia="material").body, invariants=None)
     model = Model()
     ends = [model.node(f"n{k}", x) for k, x in enumerate(one.coordinates)]
-    with pytest.raises(InputError, match="'one': inertia 'c' needs the mass and modes of the FE "
+    with pytest.raises(InputError, match="'one': inertia 'floating_field' needs the mass and modes of the FE "
                                          "model, .*reduced matrices alone: reduce it .*or use "
-                                         "inertia='b'"):
-        model.superelement("one", one, ends, inertia="c")
+                                         "inertia='material'"):
+        model.superelement("one", one, ends, inertia="floating_field")
 
 
 def test_more_slaved_coordinates_than_a_kernel_has_memory_for():

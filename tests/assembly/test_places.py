@@ -36,11 +36,11 @@ def mechanism(body, linked=False):
     model = Model()
     ends = [np.array(end) for end in ENDS]
     base, middle = model.node("base", ends[0]), model.node("middle", ends[1])
-    model.superelement("first", body, [base, middle], inertia="b")
+    model.superelement("first", body, [base, middle], inertia="material")
     shift = ends[1] - ends[0] + linked * np.array([0.0, 0.05, -0.02])
     root = model.attach("root", ends[0] + shift, middle) if linked else middle
     tip = model.node("tip", ends[1] + shift)
-    model.superelement("second", body, [root, tip], inertia="b")
+    model.superelement("second", body, [root, tip], inertia="material")
     model.revolute(base, axis=(0, 0, 1))
     model.gravity((0.0, -9.81, 0.0))
     return Simulation(model, h=1e-4).run_to(3e-3)

@@ -18,11 +18,11 @@ from sebody.reduction import craig_bampton
 INDICES = [f.name for f in fields(System) if f.name not in (
     "address", "index", "constants", "rotation_at", "dimension", "part", "inertias", "thin",
     "magnitude", "table_at", "table_times", "table_pieces", "corners", "jumps", "functions",
-    "prescribed", "prescribed_factor", "links", "relaxed", "massless", "damped", "routines")]
+    "prescribed", "prescribed_factor", "links", "regularized", "massless", "damped", "routines")]
 OF_LINKS = [f.name for f in fields(Links) if f.name != "arm_vectors"]
 CHANGES = {
     "support of another node": {"support": 1}, "another support": {"fixed": True},
-    "none": {"support": None}, "fewer modes": {"modes": 2}, "other zeros": {"inertia": "b"},
+    "none": {"support": None}, "fewer modes": {"modes": 2}, "other zeros": {"inertia": "material"},
     "other bodies first": {"order": (1, 0, 2)}, "a spring elsewhere": {"spring": (0, 2)},
     "no spring": {"spring": None}, "an arm elsewhere": {"linked": 2}, "no arm": {"linked": None},
     "two arms": {"arms": 2}, "a joint of bodies": {"joint": True}}
@@ -36,7 +36,8 @@ def beam(x, modes, modulus):
                          [(0, "full"), (4, "full")], modes=modes)
 
 
-def row(modes=4, inertia="c", order=(0, 1, 2), support=0, fixed=False, spring=(1, 2), linked=1,
+def row(modes=4, inertia="floating_field", order=(0, 1, 2), support=0, fixed=False, spring=(1, 2),
+        linked=1,
         arms=1, joint=False, arm=0.2, modulus=7e10, gravity=9.81, prefix="node"):
     """Beams and a weight that share nodes, or are pinned; a spring, and a force on a rigid arm."""
     model = Model(planar=True)

@@ -24,7 +24,7 @@ from struck_frames import NAMED, at_random, energies, vibration
 STEPS = (1e-3, 5e-4, 2e-4)
 OPTIONS = {"default": {}, "on rotations": {"frame": "converged_mean"}}
 OTHERS = {"on rotations, no stiffening": {"frame": "converged_mean", "stiffening": False},
-          "D": {"inertia": "d"}, "B": {"inertia": "b"}}
+          "D": {"inertia": "rigid_part"}, "B": {"inertia": "material"}}
 RANDOM = 24
 T_END = 1.0
 

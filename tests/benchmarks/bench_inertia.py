@@ -48,7 +48,7 @@ def beam(modes, inertia, planar):
     ends = [model.node(name, place[:2] if planar else place)
             for name, place in (("a", (0.0, 0.0, 0.0)), ("b", (100.0, 100.0, 30.0)))]
     model.beam("beam", ends, SECTION, 20, 1, modes,
-               inertia="b" if inertia == "b" else "c")
+               inertia="material" if inertia == "material" else "c")
     if inertia == "plain c":
         body = model.bodies["beam"]
         model.bodies["beam"] = replace(body, body=without_stiffening(body.body))

@@ -20,8 +20,8 @@ from sebody.assembly.axes import frames, rotated_blocks
 from sebody.assembly.batches import make_batches
 from sebody.assembly.links import link_ends, link_tables
 from sebody.assembly.numbering import number
-from sebody.assembly.places import element_places
-from sebody.engine.state import EVALUATED, WANTED
+from sebody.assembly.scatter import element_scatter
+from sebody.engine.state import EVALUATED
 from sebody.fem import Section, planar_beam
 from sebody.reduction import craig_bampton
 
@@ -121,7 +121,7 @@ def fill(model: Model) -> tuple[int, int]:
     """
     numbering = number(model)
     shapes = [batch.shape for batch in make_batches(model, numbering).all]
-    row, column = element_places(shapes, numbering.total)
+    row, column = element_scatter(shapes, numbering.total)
     rotated, _ = rotated_blocks(shapes, frames(model, numbering))
     _, linked_row, linked_column = link_tables(shapes, link_ends(model, numbering)[0], rotated,
                                                numbering.total)
@@ -140,7 +140,7 @@ def microseconds(run: Simulation) -> float:
     """Time of a step, the quickest of some stretches; each begins with a new matrix."""
     quickest = float("inf")
     for _ in range(REPEATS):
-        run.state.control[WANTED] = EVALUATED
+        run.state.control.wanted = EVALUATED
         began = run.seconds
         run.run_to(run.time + STEPS * STEP)
         quickest = min(quickest, (run.seconds - began) / STEPS)

@@ -43,8 +43,8 @@ from stiffened_models import (
     plate_frequencies,
 )
 
-OPTIONS = {"B": {"inertia": "b"}, "D": {"inertia": "d"},
-           "C": {"inertia": "c", "stiffening": False}, "C + stiffening": {"inertia": "c"}}
+OPTIONS = {"B": {"inertia": "material"}, "D": {"inertia": "rigid_part"},
+           "C": {"inertia": "floating_field", "stiffening": False}, "C + stiffening": {"inertia": "floating_field"}}
 ETA = 6.0
 GROWTH = 1e-3           # rate of small motion that is no rounding error, of the lowest frequency
 Values = dict[str, float]
@@ -278,7 +278,7 @@ def coupler(option: dict) -> Values:
 
 def divided_coupler() -> Values:
     """The same of sixteen bodies."""
-    result = linkage({"inertia": "b"}, 16, 0)
+    result = linkage({"inertia": "material"}, 16, 0)
     return {"idle spin": idle_spin(result), "peak strain": result["energy.strain"].max()}
 
 

@@ -23,8 +23,9 @@ from sebody.derive.names import kernel_of  # noqa: E402
 from sebody.derive.printing.c.files import file_text  # noqa: E402
 from sebody.kernels.loader import element_kernel  # noqa: E402
 
-OTHERS = (("f1r2", "converged_mean", "d"), ("t4", "positions", "c"),
-          ("planar-t3", "positions", "d"), ("f2t1", "mean", "b"), ("f3d", "mean_small", "a"))
+OTHERS = (("f1r2", "converged_mean", "rigid_part"), ("t4", "positions", "floating_field"),
+          ("planar-t3", "positions", "rigid_part"), ("f2t1", "mean", "material"), ("f3d",
+                                                                                   "mean_small", "frame_axes"))
 DAMPING = 0.3
 WITHOUT = {"a", "b"}        # options whose kernels have no damping unless their layout says so
 

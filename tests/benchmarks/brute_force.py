@@ -17,7 +17,7 @@ table. Four rules save runs; no indicator of advise is used.
 As `advise` does, the search wants a choice to be within the tolerance with half its step, too;
 what is so by luck is counted apart.
 
-Planar models, shared and dropped triplets are to change nothing but the time: they are taken
+Planar models, shared and dropped DOF blocks are to change nothing but the time: they are taken
 where they can be made, agree with the reference model and take less time.
 """
 

@@ -158,7 +158,7 @@ def test_list_shows_every_scene_and_kernel(capsys):
 
 
 def test_list_shows_the_kernels_of_the_user(capsys, monkeypatch, tmp_path):
-    (tmp_path / "superelement_f9_mean_a.py").write_text(
+    (tmp_path / "superelement_f9_mean_frame_axes.py").write_text(
         'LAYOUT = "f9"\nFRAME = "mean"\nINERTIA = "a"\nraise RuntimeError("imported")\n')
     monkeypatch.setenv("SEBODY_KERNELS", str(tmp_path))
     assert main(["list"]) == 0

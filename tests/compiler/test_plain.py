@@ -7,7 +7,7 @@ from plain_numbers import compared
 
 KERNELS = ("element_planar_spring", "element_planar_on_line", "element_distance",
            "element_coincident_ground", "element_slide_drive", "element_planar_rigid_body",
-           "superelement_planar_f2_converged_mean_b")
+           "superelement_planar_f2_converged_mean_material")
 ROUNDING = 1e-12        # of numbers up to one: products and sums are fused in other places
 
 

@@ -23,7 +23,8 @@ from sebody.reduction import craig_bampton
 from sebody.scenes.hinged_beam import SECTION
 
 TIP = np.array([100.0, 100.0, 0.0])
-FORMS = (("mean", "a"), ("node", "b"), ("mean", "b"))     # frame, inertia option
+FORMS = (("mean", "frame_axes"), ("node", "material"),
+         ("mean", "material"))     # frame, inertia option
 STEP, END, AFTER = 0.0025, 30.0, 15.2
 TINY = 1e-30            # complex step
 
@@ -85,7 +86,7 @@ class Superelement:
         arm = (to_frame @ x2[..., None])[..., 0] - TIP
         velocity = (to_frame @ ((after[1] - before[1]) / h)[..., None])[..., 0]
         spins = [phi1 / h, phi2 / h]
-        if self.inertia == "a":
+        if self.inertia == "frame_axes":
             spins = [(to_frame @ R @ spin[..., None])[..., 0]
                      for R, spin in zip((R1, R2), spins, strict=True)]
         y = np.concatenate(np.broadcast_arrays(

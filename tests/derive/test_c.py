@@ -44,7 +44,8 @@ def test_numbers_are_those_of_numba(library, kind):
 def test_kernels_of_bodies_are_c_too(tmp_path):
     """Every name is declared before it is used, every call has operands of the right types."""
     source = tmp_path / "body.c"
-    source.write_text(file_text([statements_of(Variant("planar-f2d", "converged_mean", "b"))]))
+    source.write_text(file_text([statements_of(Variant("planar-f2d", "converged_mean",
+                                                       "material"))]))
     checked(source, "-fsyntax-only")
 
 

@@ -16,7 +16,7 @@ from sebody.kernels.loader import load
 from sebody.scenes.hinged_beam import build
 from sebody.verify.check import definitions, states, superelements
 
-KERNEL = "superelement_f2_converged_mean_b"
+KERNEL = "superelement_f2_converged_mean_material"
 
 
 def skew(a):
@@ -130,7 +130,7 @@ def printed_kernel(tmp_path_factory):
     forget()
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(option_b, "position_part", printed)
-        text = compile_kernel(Variant("f2", "converged_mean", "b"), shipped=False)
+        text = compile_kernel(Variant("f2", "converged_mean", "material"), shipped=False)
     forget()
     folder = tmp_path_factory.mktemp("kernels")
     (folder / "printed_sign.py").write_text(text)
@@ -171,7 +171,7 @@ def test_erratum_1_power_of_the_printed_kernel(printed_kernel):
 
 def energy_spread(kernel, h):
     """Spread of the energy of the freely spinning hinged beam, 8 < t < 12."""
-    scene = build(inertia="b")
+    scene = build(inertia="material")
     scene.model.bodies["beam"].kernel = kernel
     result = Simulation(scene.model, h, generalized_alpha(0.9, 1e-10)).run_to(12.0).result()
     energy = (result["energy.kinetic"] + result["energy.strain"])[result.t > 8.0]

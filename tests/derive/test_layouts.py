@@ -14,7 +14,7 @@ from sebody.derive.names import kernel_of
     ("f12", 12, 12, 36, 72), ("planar-f2", 2, 2, 4, 6), ("planar-f1t2r3", 3, 4, 6, 10),
     ("planar-t4", 4, 0, 8, 8)])
 def test_counts_of_coordinates(name, positions, rotations, first_rotation, first_mode):
-    """Triplets in space; in a plane two coordinates a position and one a rotation."""
+    """DOF blocks in space; in a plane two coordinates a position and one a rotation."""
     layout = Layout.parse(name)
     assert (layout.positions, layout.rotations) == (positions, rotations)
     assert (layout.first_rotation, layout.first_mode) == (first_rotation, first_mode)
@@ -74,10 +74,12 @@ def test_layouts_a_frame_cannot_carry(name, frame, message):
 
 
 @pytest.mark.parametrize("text, variant", [
-    ("f2", ("f2", "converged_mean", "b")), ("t8", ("t8", "positions", "b")),
-    ("f3:mean", ("f3", "mean", "b")), ("planar-f02::a", None),
-    ("f2t1:positions:a", ("f2t1", "positions", "a")), ("any", ("any", "converged_mean", "b")),
-    ("planar-f2", ("planar-f2", "converged_mean", "b")), ("distance", "distance"),
+    ("f2", ("f2", "converged_mean", "material")), ("t8", ("t8", "positions", "material")),
+    ("f3:mean", ("f3", "mean", "material")), ("planar-f02::a", None),
+    ("f2t1:positions:a", ("f2t1", "positions", "frame_axes")), ("any",
+                                                                ("any", "converged_mean",
+                                                                 "material")),
+    ("planar-f2", ("planar-f2", "converged_mean", "material")), ("distance", "distance"),
     ("planar_body_load_positions", "planar_body_load_positions")])
 def test_variant_of_the_command_line(text, variant):
     if variant is None:
@@ -99,6 +101,6 @@ def test_variant_that_cannot_be_read(text, message):
 
 
 def test_kernel_name_is_a_module_name():
-    name = superelement_name(Layout.parse("planar-f2t1").name, "converged_mean", "a")
-    assert name == "superelement_planar_f2t1_converged_mean_a"
+    name = superelement_name(Layout.parse("planar-f2t1").name, "converged_mean", "frame_axes")
+    assert name == "superelement_planar_f2t1_converged_mean_frame_axes"
     assert name.isidentifier()

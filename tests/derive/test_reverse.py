@@ -26,8 +26,9 @@ from sebody.verify.check.superelements import superelement_case
 
 
 @pytest.mark.parametrize("layout, frame, inertia, options", [
-    ("f2", "converged_mean", "b", {}), ("planar-f2d", "converged_mean", "b", {"damping": 0.3}),
-    ("planar-f2m2", "converged_mean", "c", {"damping": 0.3})])
+    ("f2", "converged_mean", "material", {}), ("planar-f2d", "converged_mean", "material",
+                                               {"damping": 0.3}),
+    ("planar-f2m2", "converged_mean", "floating_field", {"damping": 0.3})])
 def test_superelements(layout, frame, inertia, options):
     assert superelement_error(Variant(layout, frame, inertia), **options) <= ROUNDING
 
@@ -42,9 +43,9 @@ def test_elements(kind):
 
 def test_plain_python_is_what_the_compiled_kernel_does():
     """What the products are compared with: forces and matrix of a shipped kernel of option C."""
-    module = load("superelement_planar_f2_converged_mean_c")
+    module = load("superelement_planar_f2_converged_mean_floating_field")
     case = superelement_case(module, 0, gravity=3.0, damping=0.3)
-    plain = executed(compile_kernel(Variant("planar-f2", "converged_mean", "c")))
+    plain = executed(compile_kernel(Variant("planar-f2", "converged_mean", "floating_field")))
     factors = (0.7, 0.4, 1.3, 1, 1)
     mine = evaluated(case._replace(module=plain), TANGENT, factors)
     forces, matrix, _ = evaluate(case, TANGENT, factors)

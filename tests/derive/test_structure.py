@@ -58,7 +58,8 @@ def code(text: str) -> str:
 
 
 @pytest.mark.parametrize("variant", [
-    Variant("planar-f2d", "converged_mean", "a"), Variant("planar-f2", "positions", "b")])
+    Variant("planar-f2d", "converged_mean", "frame_axes"), Variant("planar-f2", "positions",
+                                                                   "material")])
 def test_titles_are_comments(variant, monkeypatch, fresh):
     """With every title reworded a kernel differs in its comments alone."""
     before = compile_kernel(variant)
@@ -120,7 +121,7 @@ def test_a_frame_declares_its_constants_and_scratch_rows(monkeypatch):
 
 
 @pytest.mark.parametrize("variant, name", [
-    (Variant("planar-f2", "mean", "a"), "superelement_planar_f2_mean_a.py"),
+    (Variant("planar-f2", "mean", "frame_axes"), "superelement_planar_f2_mean_frame_axes.py"),
     ("distance", "element_distance.py")])
 def test_file_names(variant, name):
     assert file_name(variant) == name

@@ -20,12 +20,12 @@ ROOT = Path(__file__).parents[2]
 FOLDERS = {"sebody": "", "derive": "derive", "generated": "generated", "examples": "scenes"}
 MANIFEST = '''"""A small manifest."""
 
-SUPERELEMENTS = (("planar-f2", "positions", "b"),)
+SUPERELEMENTS = (("planar-f2", "positions", "material"),)
 ELEMENTS = ("force", "torque", "planar_force", "planar_torque", "motion_planar_positions")
 '''
 SHIPPED = ["element_force.py", "element_planar_force.py", "element_planar_torque.py",
            "element_torque.py", "motion_planar_positions.py",
-           "superelement_planar_f2_positions_b.py"]
+           "superelement_planar_f2_positions_material.py"]
 
 # An editable installation would serve what a copy lacks from the checkout.
 ISOLATED = '''
@@ -52,12 +52,12 @@ kept = np.linspace(0, 4, count).round().astype(int)
 body = craig_bampton(fe_model, [(int(k), "full") for k in kept], 0)
 model = Model(planar=True)
 nodes = [model.node(f"n{k}", fe_model.coordinates[k, :2]) for k in kept]
-model.superelement("beam", body, nodes, frame="positions", inertia="b")
+model.superelement("beam", body, nodes, frame="positions", inertia="material")
 model.force(nodes[-1], (0.0, 1.0))
 system, numbering = build(model)
 q = np.zeros(numbering.total)
 for n in nodes:
-    first = numbering.triplets[id(n.position)]
+    first = numbering.dof_blocks[n.position]
     q[first:first + 2] = n.point
 q[first] += 0.1         # stretched
 g, J, work, energy = np.zeros(99), np.zeros(999), np.zeros(9999), np.zeros(10)

@@ -11,7 +11,7 @@ from sebody import Simulation, generalized_alpha
 from sebody.assembly import build as assembly
 from sebody.assembly import elimination_pattern
 from sebody.contract.layout import LANES, RESIDUAL
-from sebody.engine import elimination, state
+from sebody.engine import elimination
 from sebody.engine.evaluate import assemble, assemble_moved
 from sebody.kernels.abi import pointer_to
 from sebody.scenes import chain
@@ -138,7 +138,7 @@ def test_superlu_takes_over_at_small_pivots(monkeypatch, index):
     own = Simulation(chain.build(links=8).model, 0.01, scheme).run_to(0.3)
     monkeypatch.setattr(assembly, "number", multipliers_first(assembly.number))
     exchanged = Simulation(chain.build(links=8).model, 0.01, scheme).run_to(0.3)
-    assert own.state.control[state.PIVOTED] == 0 and exchanged.state.control[state.PIVOTED] == 1
+    assert own.state.control.pivoted == 0 and exchanged.state.control.pivoted == 1
     for name in ("tip.position", "energy.strain", "energy.kinetic"):
         a, b = own.result()[name], exchanged.result()[name]
         assert np.abs(a - b).max() < 1e-9 * np.abs(a).max(), name

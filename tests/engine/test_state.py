@@ -8,7 +8,7 @@ from sebody.contract import layout
 from sebody.contract.layout import COEFFICIENTS, RECORD
 from sebody.engine import state as codes
 from sebody.engine.loop import advance
-from sebody.engine.state import CHOSEN, ITERATIONS, REASONS, RECORDED, Record
+from sebody.engine.state import REASONS, Record
 from sebody.runs.tolerance import Tolerance
 from sebody.scenes import chain, heavy_top, hinged_beam
 
@@ -37,12 +37,12 @@ def test_a_row_at_the_end_of_a_step_is_the_state_there(build):
     """Output between steps has every part in its place: at the end of one it is the state's."""
     h = 1e-3
     run = Simulation(build().model, h, tolerance=Tolerance(1.0))
-    run.state.error_weights[:], run.state.clock[CHOSEN], run.state.control[RECORDED] = 0.0, h, 0
+    run.state.error_weights[:], run.state.clock.chosen, run.state.control.recorded = 0.0, h, 0
     record = Record.of(run.state, 1)
     advance(run.system, run.state, record, run.scheme, 1, 1, run.dense)
-    assert run.time == h and run.state.control[RECORDED] == 1
+    assert run.time == h and run.state.control.recorded == 1
     for name, part in run.state.recorded_parts.items():
-        now = {"t": run.time, "iterations": run.state.control[ITERATIONS]}.get(
+        now = {"t": run.time, "iterations": run.state.control.iterations}.get(
             name, run.state.now[part])
         size = max(np.abs(now).max(), 1e-9) if part.stop > part.start else 1.0
         assert np.abs(record.rows[0, part] - now).max(initial=0.0) < 1e-12 * size, name

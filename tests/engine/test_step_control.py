@@ -14,14 +14,6 @@ from sebody import (
 )
 from sebody.engine import loop
 from sebody.engine.state import (
-    AUX_STEP,
-    CHOSEN,
-    CORNER,
-    CURRENT_STEP,
-    RECORDED,
-    REJECTED,
-    STEPS,
-    TIME,
     Record,
 )
 from sebody.runs.accuracy import difference, simulate_within
@@ -41,12 +33,12 @@ def driven(model, sequence, carried=True):
     """A run with given steps; `carried` takes auxiliary accelerations over to the next length."""
     run = Simulation(model, 1.0, STRICT, tolerance=Tolerance(1.0))
     run.state.error_weights[:] = 0.0
-    run.state.control[CORNER] = run.system.corners.size
+    run.state.control.corner = run.system.corners.size
     record = Record.of(run.state, 0, 10**9)
     for h in sequence:
-        run.state.clock[CHOSEN] = h
+        run.state.clock.chosen = h
         if not carried:
-            run.state.clock[AUX_STEP] = h
+            run.state.clock.aux_step = h
         loop.advance(run.system, run.state, record, run.scheme, 10**9, 1, run.dense)
     return run
 
@@ -58,7 +50,7 @@ def errors(build, t_end, counts, read, **options):
     for n in counts:
         run = driven(build().model, np.tile([1.0, 2.0], n) * t_end / (3 * n), **options)
         assert run.time == pytest.approx(t_end, rel=1e-9)
-        assert run.state.control[STEPS] == 2 * n
+        assert run.state.control.steps == 2 * n
         found.append(np.abs(read(run.state) - read(fine.state)).max())
     return found
 
@@ -122,12 +114,12 @@ def test_output_between_steps_is_of_third_order():
         h = 0.004 * share
         run = Simulation(heavy_top.build().model, h / 4, tolerance=Tolerance(1.0))
         run.state.error_weights[:] = 0.0
-        run.state.clock[CHOSEN], run.state.control[RECORDED] = h, 0
+        run.state.clock.chosen, run.state.control.recorded = h, 0
         run.scheme = run.scheme._replace(tolerance=1e-12)
         record = Record.of(run.state, 8)
         loop.advance(run.system, run.state, record, run.scheme, 8, 1, run.dense)
         start, end = run.state.R_old.copy(), run.state.R.copy()
-        assert run.state.clock[CURRENT_STEP] == h == run.state.clock[TIME]
+        assert run.state.clock.current_step == h == run.state.clock.time
         R = record.rows[:4, run.state.recorded_parts["R"]]
         # the increment again, through cubics and a logarithm: some hundred EPS
         assert R[3] == pytest.approx(end, abs=1e-13) and not np.allclose(R[1], start)
@@ -157,10 +149,10 @@ def test_work_and_energy_between_steps():
 def test_an_impulse_shortens_the_steps():
     run = Simulation(spherical_beam_strong.build(modes=0).model, 0.05, tolerance=Tolerance(1e-3))
     run.run_to(14.9)
-    calm = run.state.clock[CHOSEN]
+    calm = run.state.clock.chosen
     run.run_to(15.2)
-    assert run.state.clock[CHOSEN] < 0.5 * calm
-    assert run.state.control[REJECTED] > 0
+    assert run.state.clock.chosen < 0.5 * calm
+    assert run.state.control.rejected > 0
 
 
 @pytest.mark.parametrize("width", [1e-4, 0.02])
@@ -213,14 +205,14 @@ def test_the_error_of_a_run_is_within_its_tolerance(name):
 def test_a_chaotic_motion_is_said_to_be_one():
     """One body with option B, struck hard: a push of 1e-10 grows to the size of the beam."""
     def tip(push):
-        scene = spherical_beam_strong.build(inertia="b")
+        scene = spherical_beam_strong.build(inertia="material")
         scene.model.force("tip", (0, 0, push), [(14.0, 0.0), (14.1, 1.0), (14.2, 0.0)])
         run = Simulation(scene.model, 0.0025, output_every=40).run_to(30.0).result()
         return run["tip.position"]
     apart = np.linalg.norm(tip(2e-7) - tip(0.0), axis=1) / 141.42
     assert apart[:150].max() < 1e-7 and apart[200:].max() > 1e-3
     with pytest.raises(SimulationError, match="does not decrease with the step.*may be chaotic"):
-        simulate_within(spherical_beam_strong.build(inertia="b").model, 0.1, 30.0,
+        simulate_within(spherical_beam_strong.build(inertia="material").model, 0.1, 30.0,
                         Tolerance(1e-3))
 
 

@@ -214,7 +214,7 @@ def test_a_reference_knows_its_error_and_where_it_does_not_fall():
 
 
 def test_operations_are_those_of_the_kernels():
-    name = "superelement_planar_f2_converged_mean_b"
+    name = "superelement_planar_f2_converged_mean_material"
     assert operations(name) == load(name).OPERATIONS["residual"]
 
 

@@ -11,8 +11,8 @@ from numpy.testing import assert_allclose
 from sebody import Model, Simulation, simulate
 from sebody.analysis import equilibrium, modes
 from sebody.explore.advice.forms import parts_of
-from sebody.explore.advice.indicators.carried import carried
 from sebody.explore.advice.indicators.omission import omission
+from sebody.explore.advice.indicators.propagated import propagated
 from sebody.explore.advice.indicators.recorded import Recorded
 from sebody.explore.advice.indicators.rigidity import rigidity
 from sebody.explore.advice.indicators.stiffening import SPIN, stiffening
@@ -82,7 +82,8 @@ def test_a_frequency_of_an_arm_that_turns_with_option_d():
     model, spin = arm(), 0.1 * first_of(arm())
     found = []
     for inertia in ("c", "d"):
-        own = with_options(model, "arm", inertia=inertia, stiffening=inertia == "c").model
+        own = with_options(model, "arm", inertia=inertia,
+                           stiffening=inertia == "floating_field").model
         found.append(modes(equilibrium(own, 2, spin=spin), spin).omega.min())
     off = abs(found[1] / found[0] - 1) / (spin / found[0])**2
     assert 0.5 < SPIN["d"] / 2 / off < 2.0
@@ -116,6 +117,6 @@ def test_an_error_that_oscillates(quantity, power):
     t = reference.result.t[::reference.every]
     shifts, turns = np.zeros((len(t), 2, 2)), np.zeros((len(t), 2, 1))
     shifts[:, 1] = size * (2.0 + np.sin(omega * t))[:, None] * (0.6, 0.8)
-    found = carried(reference, part, shifts, turns) * reference.sizes[0]
+    found = propagated(reference, part, shifts, turns) * reference.sizes[0]
     # differences of a grid of 1 / 30 of a radian
     assert_allclose(found, size * (omega**power if power else 3.0), rtol=2e-2)

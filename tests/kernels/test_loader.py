@@ -10,11 +10,11 @@ from sebody.kernels import loader
 
 KERNEL = '''LAYOUT = "planar-f9"
 FRAME = "mean"
-INERTIA = "a"
+INERTIA = "frame_axes"
 ROOM = "{room}"     # of today
 TOUCHED = True
 '''
-NAME = "superelement_planar_f9_mean_a"
+NAME = "superelement_planar_f9_mean_frame_axes"
 
 
 @pytest.fixture
@@ -27,28 +27,29 @@ def mine(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("layout, modes, damped, name", [
-    ("planar-f2", 4, False, "superelement_planar_f2m4_converged_mean_b"),
-    ("planar-f2", 3, False, "superelement_planar_f2_converged_mean_b"),
-    ("f2", 8, True, "superelement_f2d_converged_mean_b"),
-    ("f5t1", 4, False, "superelement_any_converged_mean_b"),
-    ("planar-f4", 0, False, "superelement_planar_any_converged_mean_b")])
+    ("planar-f2", 4, False, "superelement_planar_f2m4_converged_mean_material"),
+    ("planar-f2", 3, False, "superelement_planar_f2_converged_mean_material"),
+    ("f2", 8, True, "superelement_f2d_converged_mean_material"),
+    ("f5t1", 4, False, "superelement_any_converged_mean_material"),
+    ("planar-f4", 0, False, "superelement_planar_any_converged_mean_material")])
 def test_a_kernel_for_the_number_of_modes_or_of_nodes_or_for_any(layout, modes, damped, name):
-    assert loader.superelement_kernel_name(layout, "converged_mean", "b", modes, damped) == name
+    assert loader.superelement_kernel_name(layout, "converged_mean", "material", modes,
+                                           damped) == name
 
 
 def test_names_are_found_without_import(monkeypatch):
     monkeypatch.setattr(loader, "import_module", None)
-    assert loader.superelement_kernel_name("t8", "positions", "b", 0)
+    assert loader.superelement_kernel_name("t8", "positions", "material", 0)
     for kind in ("planar_on_line", "user_force"):
         assert loader.element_kernel_name(kind) == f"element_{kind}"
 
 
 def test_missing_kernels(mine):
     with pytest.raises(InputError, match="there is no kernel for layout 'f9d', frame 'mean', "
-                       "inertia 'a': make it with\n    python -m sebody.derive f9d:mean:a"):
-        loader.superelement_kernel_name("f9", "mean", "a", 0, True)
+                       "inertia 'frame_axes': make it with\n    python -m sebody.derive f9d:mean:a"):
+        loader.superelement_kernel_name("f9", "mean", "frame_axes", 0, True)
     with pytest.raises(InputError, match="python -m sebody.derive f5d:mean:b"):
-        loader.superelement_kernel_name("f5", "mean", "b", 2, True)
+        loader.superelement_kernel_name("f5", "mean", "material", 2, True)
     with pytest.raises(InputError, match="there is no kernel for element 'sail': reinstall"):
         loader.element_kernel_name("sail")
     assert loader.load("element_sail") is None
@@ -56,7 +57,7 @@ def test_missing_kernels(mine):
 
 def test_kernel_of_the_user(mine):
     (mine / f"{NAME}.py").write_text(KERNEL.format(room=room_hash(*TEXT)))
-    assert loader.superelement_kernel_name("planar-f9", "mean", "a", 2) == NAME
+    assert loader.superelement_kernel_name("planar-f9", "mean", "frame_axes", 2) == NAME
     assert loader.load(NAME).TOUCHED
 
 

@@ -20,7 +20,7 @@ EULER = np.pi**2
 UNITS = {"one": (1.0, 1.0), "small": (2e-3, 5.0)}      # length, E I
 
 
-def rod(inertia="b", frame="converged_mean", units=(1.0, 1.0), nodes=(0, 8), backwards=False,
+def rod(inertia="material", frame="converged_mean", units=(1.0, 1.0), nodes=(0, 8), backwards=False,
         modes=0, ends="pinned"):
     """A turned rod of eight elements, one body that keeps some nodes; its model and unit of force.
 
@@ -91,7 +91,7 @@ def test_limits_of_a_rod(frame, limit, backwards, units):
 LAYOUTS = {"two nodes": {"frame": "converged_mean"}, "on one node": {"frame": "node"},
            "three nodes": {"nodes": (0, 3, 8)}, "four, backwards": {"nodes": (0, 1, 5, 8),
                                                                      "backwards": True},
-           "option D": {"inertia": "d"}}
+           "option D": {"inertia": "rigid_part"}}
 
 
 @pytest.mark.parametrize("options", LAYOUTS.values(), ids=LAYOUTS)
@@ -112,7 +112,7 @@ def test_straight_rods_lose_their_stiffness_at_the_limit(options):
                            r"body 'rod' folds up in its frame under tension .* \(limit .*\), as "
                            "its stiffness does not grow with tension: divide the body in two, or "
                            "take "
-                           "inertia='c'"):
+                           "inertia='floating_field'"):
             equilibrium(pulled(1.02 * limit, **options)[0], 1)
 
 
@@ -149,7 +149,7 @@ def test_clamped_rods_stretch_rightly_and_warn(backwards):
         "tension 5 in body 'rod' counts 1.7 times as much as its own bending stiffness (limit a "
         "third), which does not depend on it: bending has errors of 10 % and more, and under 3 the "
         "body folds up in its frame unless its ends are clamped; divide the body in two, or take "
-        "inertia='c'")
+        "inertia='floating_field'")
 
 
 @pytest.mark.parametrize("inertia", "bd")
@@ -184,7 +184,7 @@ def test_runs_and_small_motion_warn_once():
                                inertia_x=2e-3, inertia_y=1e-3, inertia_z=1e-3)
     model = Model()
     ends = [model.node(name, PLACE + s * E) for name, s in (("a", 0.0), ("b", 4.0))]
-    model.beam("rod", ends, section, 8, 4, 0, up=UP, inertia="b")
+    model.beam("rod", ends, section, 8, 4, 0, up=UP, inertia="material")
     model.fix("a")
     model.force("b", 2.0 * E)
     for node, more in zip(["rod 2", "rod 4"], (0.2, 0.1), strict=False):

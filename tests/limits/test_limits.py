@@ -37,7 +37,7 @@ def test_the_worst_pivot_counts(masses, axis):
     model = Model(planar=True)
     ends = model.node("left", (0.0, 0.0)), model.node("right", (LENGTH, 0.0))
     body = model.superelement("bar", ReducedBody(bar.stiffness, mass, bar.coordinates, bar.keeps),
-                              ends, frame="node", inertia="b")
+                              ends, frame="node", inertia="material")
     stiffness = 3 * SLENDER.youngs_modulus * SLENDER.inertia_z / LENGTH**3
     assert stiffness < SLENDER.youngs_modulus * SLENDER.area / LENGTH
     assert spin_limit(body, axis) == pytest.approx(np.sqrt(stiffness / max(masses)), rel=1e-9)
@@ -46,7 +46,8 @@ def test_the_worst_pivot_counts(masses, axis):
 TURN = Rotation.from_rotvec([0.7, -0.4, 0.9]).as_matrix()
 
 
-def blade(frame="converged_mean", inertia="b", torsion=0.1, stiffened=True, modes=0, length=1.0,
+def blade(frame="converged_mean", inertia="material", torsion=0.1, stiffened=True, modes=0,
+          length=1.0,
           mass=1.0, held="root"):
     """A turned cantilever of unit bending stiffness over cubed length and mass, any units."""
     force = mass * length           # in seconds
@@ -86,11 +87,14 @@ def test_torsion_of_option_b(units, frame, square, torsion):
     assert found == pytest.approx(np.sqrt(square * torsion), rel=1e-4)
 
 
-GROWS = [("converged_mean", "b", 0.1, True, "root"), ("converged_mean", "b", 1e3, True, "tip"),
-         ("converged_mean", "a", 0.1, True, "tip"), ("converged_mean", "c", 0.1, False, "root"),
-         ("node", "b", 0.1, True, "root"), ("node", "b", 1e3, True, "tip"),
-         ("node", "c", 0.1, False, "tip"), ("converged_mean", "d", 0.01, True, "root"),
-         ("node", "d", 0.01, True, "tip")]
+GROWS = [("converged_mean", "material", 0.1, True, "root"),
+         ("converged_mean", "material", 1e3, True, "tip"),
+         ("converged_mean", "frame_axes", 0.1, True, "tip"), ("converged_mean", "floating_field",
+                                                              0.1, False, "root"),
+         ("node", "material", 0.1, True, "root"), ("node", "material", 1e3, True, "tip"),
+         ("node", "floating_field", 0.1, False, "tip"), ("converged_mean", "rigid_part", 0.01,
+                                                         True, "root"),
+         ("node", "rigid_part", 0.01, True, "tip")]
 
 
 @pytest.mark.parametrize(("frame", "inertia", "torsion", "stiffened", "held"), GROWS)
@@ -122,7 +126,7 @@ def test_the_cautious_limit_is_below_all():
     axes = np.vstack([np.eye(3), np.random.default_rng(4).normal(size=(3, 3))])
     for frame in ("converged_mean", "node"):
         for inertia, torsion in itertools.product("abcd", (1e-3, 0.1, 1e3)):
-            if (frame, inertia) == ("node", "a"):
+            if (frame, inertia) == ("node", "frame_axes"):
                 continue
             model = blade(frame, inertia, torsion, stiffened=False)
             body = model.bodies["blade"]
@@ -155,14 +159,14 @@ def test_equilibria_and_small_motion_are_warned_of_the_limit(frame):
     for messages in turning((0, 0, 1), 1.01 * limit, frame=frame, torsion=0.01):
         assert len(messages) == 1 and messages[0].startswith(
             f"spin {1.01 * limit:.3g} rad/s is above the limit {limit:.3g} of body 'blade'")
-        assert messages[0].endswith("divide the body in two, or take inertia='c'")
-    plain = {"frame": frame, "inertia": "c", "stiffened": False}
+        assert messages[0].endswith("divide the body in two, or take inertia='floating_field'")
+    plain = {"frame": frame, "inertia": "floating_field", "stiffened": False}
     limit = limit_of(blade(modes=4, **plain), (0, 0, 1))
     assert all(messages[0].endswith("divide the body in two, or give its FE model a geometric "
                                     "stiffness")
                for messages in turning((0, 0, 1), 1.01 * limit, **plain))
     assert turning((1, 0, 0), 2 * limit, **plain) == ([], [])
-    assert turning((0, 0, 1), 6.0, frame=frame, inertia="c", torsion=1e-3) == ([], [])
+    assert turning((0, 0, 1), 6.0, frame=frame, inertia="floating_field", torsion=1e-3) == ([], [])
 
 
 def test_a_free_blade_is_warned_of_while_it_is_straight():
@@ -175,8 +179,8 @@ def test_a_free_blade_is_warned_of_while_it_is_straight():
     assert len(messages) == 1 and f"is above the limit {limit:.3g} of body 'blade'" in messages[0]
 
 
-@pytest.mark.parametrize("option", [{"inertia": "b"}, {"inertia": "d"},
-                                    {"inertia": "c", "stiffened": False}])
+@pytest.mark.parametrize("option", [{"inertia": "material"}, {"inertia": "rigid_part"},
+                                    {"inertia": "floating_field", "stiffened": False}])
 def test_fast_spins_without_stiffening_are_warned_of(option):
     """At a quarter of the first frequency flapping is off by a per cent: Southwell's coefficient.
 
@@ -204,8 +208,8 @@ def test_a_blade_with_soft_torsion_is_warned_of_before_it_diverges():
         assert "more than a quarter of 0.283, where it diverges" in messages[0]
 
 
-@pytest.mark.parametrize("option", [{"inertia": "b"}, {"inertia": "d"},
-                                    {"inertia": "c", "stiffening": False}])
+@pytest.mark.parametrize("option", [{"inertia": "material"}, {"inertia": "rigid_part"},
+                                    {"inertia": "floating_field", "stiffening": False}])
 def test_a_body_without_a_kept_rotation_is_warned_of(option):
     """Its spin is found from its corners, which fly, too; the part that stresses it counts."""
     body, axis = block(option).bodies["block"], TURNED[:, 2]
@@ -221,8 +225,9 @@ def test_a_body_without_a_kept_rotation_is_warned_of(option):
     speed = 1.02 * limit / felt
     text, = messages(speed)
     assert text.startswith(f"spin {speed:.3g} rad/s is above the limit {limit:.3g} of body 'block'")
-    assert text.endswith("let it stiffen with stiffening=True" if option["inertia"] == "c" else
-                         "take inertia='c'")
+    assert text.endswith("let it stiffen with stiffening=True"
+                         if option["inertia"] == "floating_field" else
+                         "take inertia='floating_field'")
 
 
 def test_a_planar_beam_known_by_its_ends_is_warned_of():
@@ -231,7 +236,7 @@ def test_a_planar_beam_known_by_its_ends_is_warned_of():
                                      8), [(0, "translation"), (8, "translation")], 2)
     model = Model(planar=True)
     ends = [model.node(f"n{k}", x, "translation") for k, x in enumerate(body.coordinates)]
-    beam = model.superelement("beam", body, ends, frame="positions", inertia="b")
+    beam = model.superelement("beam", body, ends, frame="positions", inertia="material")
     speed = -1.01 * FAST * min(spin_limit(beam, None), first_frequency(beam))
     model.rigid_velocity((3.0, -1.0), speed)
     text, = said(lambda: Simulation(model, 1e-4).run_to(1e-3))

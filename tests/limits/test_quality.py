@@ -217,6 +217,6 @@ def test_equilibria_and_what_is_linearised_about_them_are_looked_at(force, count
 
 
 def test_an_equilibrium_that_spins_too_fast():
-    message, = said(lambda: equilibrium(bent(0.0, inertia="b"), spin=12.0))
+    message, = said(lambda: equilibrium(bent(0.0, inertia="material"), spin=12.0))
     assert message.startswith("spin 12 rad/s is above the limit")
     assert "divide the body in two" in message

@@ -227,7 +227,7 @@ RESULT = {
     "an unknown class": Packed("is damaged or no results file", _part(
         "Node", lambda part: part.__setitem__(0, "Colour"))),
     "a part of another class": Packed("of class Triplet for its node", _part(
-        "Node", lambda part: part.__setitem__(0, "Triplet"))),
+        "Node", lambda part: part.__setitem__(0, "DofBlock"))),
     "a part with a field too few": Packed("a Node lacks point", _part(
         "Node", lambda part: part[1].pop("point"))),
     "a part with a field too many": Packed("a Node has colour", _field("Node", "colour", 3)),

@@ -37,9 +37,9 @@ RESTART = {
     "texts for velocities": Packed("in v_old, in place of real numbers", member(
         "v_old", lambda old: old.astype(str))),
     "another velocity": Packed("differs from what was saved in v_old", entry("v_old", 1, 5.0)),
-    "relaxed in words": Packed("in relaxed, in place of whole numbers", member(
-        "relaxed", np.array(["no"]))),
-    "negative relaxed": Packed("holds -1 in relaxed", member("relaxed", np.array([-1]))),
+    "regularized in words": Packed("in regularized, in place of whole numbers", member(
+        "regularized", np.array(["no"]))),
+    "negative regularized": Packed("holds -1 in regularized", member("regularized", np.array([-1]))),
     "no settings": Packed("no text settings", without("settings")),
     "settings of brackets": Packed("brackets are nested deeper than 100", raw(
         "settings", "[" * 300_000)),

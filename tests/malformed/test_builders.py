@@ -16,9 +16,10 @@ def described(model: Model) -> list:
         model.nodes.values(), model.bodies.values(), model.rigid_bodies.values(), model.joints,
         model.loads, model.grounds)]
     parts.append([id(one) for one in model.connections])
-    for triplet in model.triplets():
-        parts.append([triplet.name, triplet.fixed, triplet.given, id(triplet.root), triplet.rate,
-                      len(triplet.arms), [motion.name for motion in triplet.motions]])
+    for dof_block in model.dof_blocks():
+        parts.append([dof_block.name, dof_block.fixed, dof_block.given, id(dof_block.root),
+                      dof_block.rate,
+                      len(dof_block.arms), [motion.name for motion in dof_block.motions]])
     return parts
 
 

@@ -46,7 +46,7 @@ def test_files_are_refused(right, argument, value, said, folder, monkeypatch):
     assert {path.name for path in folder.iterdir()} == before
 
 
-@pytest.mark.parametrize("other", [{"frame": "node"}, {"inertia": "a"}, {"elements": 4}])
+@pytest.mark.parametrize("other", [{"frame": "node"}, {"inertia": "frame_axes"}, {"elements": 4}])
 def test_a_state_goes_on_with_its_own_superelement_only(other, tmp_path):
     """Of another frame, inertia option or division: the unknowns are the same."""
     right = {"modes": 0, "elements": 2}

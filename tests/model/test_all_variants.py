@@ -87,9 +87,10 @@ SMALL = {"copied": 0.0, "divide": 2e-3, "keep_modes": 2e-3, "with_options": 2e-3
 
 def mutable(model: Model) -> set[int]:
     """Everything of a model that can change, by its id."""
-    triplets = model.triplets()
-    parts = [*model.nodes.values(), *model.grounds, *triplets, *(t.rate for t in triplets),
-             *(t.start for t in triplets), *(t.motions for t in triplets), *model.bodies.values(),
+    dof_blocks = model.dof_blocks()
+    parts = [*model.nodes.values(), *model.grounds, *dof_blocks, *(t.rate for t in dof_blocks),
+             *(t.start for t in dof_blocks), *(t.motions
+                                               for t in dof_blocks), *model.bodies.values(),
              *(body.mode_rates for body in model.bodies.values()), *model.rigid_bodies.values(),
              *model.constraints, *model.loads, *model.joints, model.connections, model.beams,
              model.own_names, model.default_names, model.gravity_field, model.nodes, model.bodies,
@@ -168,7 +169,7 @@ def test_solids_and_bodies_from_files(tmp_path: Path, bare):
     moved = np.abs(before - before[0]).max()
     assert can_be_dropped(model) == [("solid", "d", "rotation")]
     for made, limit in ((planar(model), 1e-7), (keep_modes(model, "solid", 4), 1e-3),
-                        (with_options(model, "solid", inertia="d"), 1e-3),
+                        (with_options(model, "solid", inertia="rigid_part"), 1e-3),
                         (drop_triplet(model, "solid", "d"), 1e-3), (rigid(model, "solid"), 0.1),
                         (planar(keep_modes(drop_triplet(model, "solid", "d").model, "solid",
                                            4).model), 1e-3)):

@@ -51,9 +51,9 @@ def test_strain_energy_is_that_of_simo_and_reissner(section):
         0.4 * random.normal(size=(2, 3)))
     x = random.normal(size=3) + np.array([[0, 0, 0], turns[0].apply([length, 0.5, -0.3])])
     for node, place, turn in zip(ends, x, turns, strict=True):
-        first = run.numbering.triplets[id(node.position)]
+        first = run.numbering.dof_blocks[node.position]
         run.state.q[first:first + 3] = place
-        k = run.numbering.rotations[id(node.rotation)]
+        k = run.numbering.rotations[node.rotation]
         run.state.R[9 * k:9 * k + 9] = turn.as_matrix().ravel()
     run.state.frames_old[:] = turns[0].as_matrix().ravel()
     run.state.energy[:] = 0.0
@@ -106,7 +106,7 @@ def test_strong_impulse_against_the_reference():
     model.fix("base", "position")
     for load in scene.model.loads:
         node = "base" if "rotation" in load.name else "tip"
-        getattr(model, load.kind)(node, load.direction, load.history)
+        getattr(model, load.kind)(node, load.direction, load.time_function)
     h = 0.00125
     result = simulate(model, h, 20.0, output_every=40)
     assert result.cuts == 0

@@ -35,4 +35,4 @@ print(len(compiled) - before, kernels, model.element("beam 1").kernel)
 def test_building_a_model_compiles_nothing(tmp_path):
     done = subprocess.run([sys.executable, "-c", BUILD], capture_output=True, text=True, check=True,
                           env=os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)})
-    assert done.stdout.split() == ["0", "[]", "superelement_f2_converged_mean_c"]
+    assert done.stdout.split() == ["0", "[]", "superelement_f2_converged_mean_floating_field"]

@@ -1,4 +1,4 @@
-"""Triplets that nothing needs are left to follow: as in a body reduced anew without them."""
+"""DOF blocks that nothing needs are left to follow: as in a body reduced anew without them."""
 
 import numpy as np
 import pytest

@@ -145,7 +145,7 @@ def test_bodies_of_equal_width_and_other_counts_have_batches_of_their_own():
 def test_scratch_memory_is_that_of_the_nodes():
     """Rows hold nine numbers for each rotation where that is more than the unknowns: 45, not 32."""
     model = Model()
-    place(model, "long", beam(["full"] * 5), (0, 0, 0), inertia="b")
+    place(model, "long", beam(["full"] * 5), (0, 0, 0), inertia="material")
     assert work_size(model) == load(model.element("long").kernel).WORK_ROWS * 48
 
 
@@ -154,18 +154,19 @@ def test_a_specialised_kernel_of_the_user_comes_first(monkeypatch, tmp_path):
     from sebody.compiler.sources import TEXT, room_hash
 
     monkeypatch.setenv("SEBODY_KERNELS", str(tmp_path))
-    kernel = tmp_path / "superelement_f5_converged_mean_c.py"
+    kernel = tmp_path / "superelement_f5_converged_mean_floating_field.py"
     kernel.write_text(f'ROOM = "{room_hash(*TEXT)}"')
     model = Model()
     place(model, "long", beam(["full"] * 5), (0, 0, 0))
-    assert model.element("long").kernel == "superelement_f5_converged_mean_c"
+    assert model.element("long").kernel == "superelement_f5_converged_mean_floating_field"
 
 
 def test_a_frame_the_nodes_cannot_define_is_refused():
     for option, message in (
             ({"frame": "positions"}, "lie on a line, so the frame 'positions' cannot determine"),
-            ({"inertia": "a"}, "there is no kernel for layout 'f5', frame 'converged_mean', "
-                               "inertia 'a': make it with")):
+            ({"inertia": "frame_axes"},
+             "there is no kernel for layout 'f5', frame 'converged_mean', "
+                               "inertia 'frame_axes': make it with")):
         with pytest.raises(InputError, match=message):
             place(Model(), "long", beam(["full"] * 5), (0, 0, 0), **option)
 
@@ -181,7 +182,7 @@ def test_four_full_nodes_have_option_b_with_every_frame(frame, damping):
                          [(k, "full") for k in range(4)], 1)
     model = Model()
     nodes = place(model, "bent", body.damped(damping) if damping else body, (0, 0, 0),
-                  frame=frame, inertia="b")
+                  frame=frame, inertia="material")
     model.gravity(GRAVITY)
     result = simulate(model, 0.02, 0.2)
     assert len(nodes) == 4 and result.steps == 10 and result.cuts == 0

@@ -42,10 +42,11 @@ def placed(fe_model, **options):
     (beam, {}, ("c", True)), (unstressed, {}, ("c", False)), (matrices, {}, ("d", False)),
     (beam, {"frame": "node"}, ("c", True)), (beam, {"frame": "mean"}, ("b", False)),
     (beam, {"frame": "mean_small"}, ("b", False)), (beam, {"stiffening": False}, ("c", False)),
-    (beam, {"stiffening": True}, ("c", True)), (beam, {"inertia": "b"}, ("b", False)),
-    (beam, {"inertia": "a", "stiffening": False}, ("a", False)),
-    (unstressed, {"inertia": "c"}, ("c", False)), (matrices, {"stiffening": False}, ("d", False)),
-    (matrices, {"frame": "mean"}, ("b", False)), (matrices, {"inertia": "b"}, ("b", False))])
+    (beam, {"stiffening": True}, ("c", True)), (beam, {"inertia": "material"}, ("b", False)),
+    (beam, {"inertia": "frame_axes", "stiffening": False}, ("a", False)),
+    (unstressed, {"inertia": "floating_field"}, ("c", False)), (matrices, {"stiffening": False},
+                                                                ("d", False)),
+    (matrices, {"frame": "mean"}, ("b", False)), (matrices, {"inertia": "material"}, ("b", False))])
 def test_what_a_body_gets(fe_model, options, expected):
     body = placed(fe_model(), **options)
     assert (body.inertia, body.stiffening) == expected
@@ -66,7 +67,7 @@ def test_a_body_on_positions_alone():
                      r"has none, or a negligible one: give it as FEModel\(geometric_stiffness"),
     (matrices, {}, "'arm': stiffening needs the mass, modes and geometric stiffness of the FE "
                    "model, and the body has reduced matrices alone: reduce it from a model, or"),
-    (beam, {"inertia": "b"}, "'arm': stiffening is a part of inertia 'c', not of 'b': leave"),
+    (beam, {"inertia": "material"}, "'arm': stiffening is a part of inertia 'floating_field', not of 'b': leave"),
     (beam, {"frame": "mean"}, "'arm': stiffening needs a frame that depends on the state alone, "
                               "which 'mean' does not: use one of converged_mean, mean_axes, node, "
                               "positions")])

@@ -1,4 +1,4 @@
-"""Joints: shared triplets against explicit constraints, revolute joints against planar motion."""
+"""Joints: shared DOF blocks against explicit constraints, revolute joints against planar motion."""
 
 import numpy as np
 import pytest
@@ -16,14 +16,14 @@ TORQUE = [(0.0, 0.0), (0.5, 4000.0), (1.0, 0.0)]
 def free_base_beam():
     scene = build(modes=4)
     scene.model.nodes["base"].position.fixed = False
-    scene.model.loads[1].history.__dict__["times"] = (0.0, 0.2, 0.4)
+    scene.model.loads[1].time_function.__dict__["times"] = (0.0, 0.2, 0.4)
     return scene.model
 
 
 @pytest.mark.parametrize("t_end", [2.0])
 def test_explicit_spherical_joint_equals_a_fixed_position(t_end):
     fixed = build(modes=4).model
-    fixed.loads[1].history.__dict__["times"] = (0.0, 0.2, 0.4)
+    fixed.loads[1].time_function.__dict__["times"] = (0.0, 0.2, 0.4)
     explicit = free_base_beam()
     explicit.spherical("base")
     a, b = simulate(fixed, 0.01, t_end, EXACT), simulate(explicit, 0.01, t_end, EXACT)

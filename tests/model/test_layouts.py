@@ -1,4 +1,4 @@
-"""Layouts with absent triplets against the full layout, planar against spatial, finer divisions."""
+"""Layouts with absent blocks against the full layout, planar against spatial, finer divisions."""
 
 
 import numpy as np
@@ -121,14 +121,14 @@ def test_sparse_solver_gives_the_motion_of_the_dense_one(monkeypatch):
     ("planar_f2m2", 2, planar_hinged_beam), ("planar_f2m4", 4, planar_hinged_beam)])
 def test_pinned_number_of_modes_changes_speed_alone(monkeypatch, pinned, modes, make):
     """Same text with a constant in place of a number read at run time."""
-    own = make(modes=modes, inertia="b")
+    own = make(modes=modes, inertia="material")
     body, = own.bodies.values()
-    assert body.kernel == f"superelement_{pinned}_converged_mean_b"
+    assert body.kernel == f"superelement_{pinned}_converged_mean_material"
     fast = simulate(own, 0.01, 1.0)
     monkeypatch.setattr(model_bodies, "superelement_kernel_name",
                         lambda layout, frame, inertia, *_: superelement_kernel_name(
                             layout, frame, inertia, -1))
-    free = make(modes=modes, inertia="b")
+    free = make(modes=modes, inertia="material")
     body, = free.bodies.values()
     assert load(body.kernel).N_MODES is None
     assert np.abs(fast["tip.position"] - simulate(free, 0.01, 1.0)["tip.position"]).max() < 1e-9

@@ -1,4 +1,4 @@
-"""Load histories: tables and compiled functions, and what is said about those that fail."""
+"""Load time functions: tables and compiled functions, and what is said about those that fail."""
 
 import functools
 
@@ -8,8 +8,8 @@ from scipy.interpolate import CubicSpline
 
 from sebody import InputError, Model, Simulation, simulate
 from sebody.engine import evaluate
-from sebody.model.histories import History, history, with_corners
 from sebody.model.motions import motion
+from sebody.model.time_functions import TimeFunction, time_function, with_corners
 from sebody.scenes.hinged_beam import build
 
 TABLE = [(0.0, 0.0), (0.05, 1.0e4), (0.15, -2.0e3)]
@@ -47,7 +47,7 @@ def two_nodes():
 ])
 def test_wrong_tables(table, message):
     with pytest.raises(InputError, match=message):
-        history(table)
+        time_function(table)
 
 
 def opens_a_file(t):
@@ -63,7 +63,7 @@ def test_function_that_cannot_be_compiled(function):
     with pytest.raises(InputError, match=f"time function of a load '{function.__name__}' cannot "
                                          f"be compiled: "
                                          "use only arithmetic, math and numpy in it"):
-        history(function)
+        time_function(function)
 
 
 @pytest.mark.parametrize("source", [
@@ -72,7 +72,7 @@ def test_function_that_cannot_be_compiled(function):
     pytest.param("abc", id="text"), pytest.param([(0, 1), (1,)], id="ragged rows")])
 def test_histories_to_be_refused(source):
     with pytest.raises(InputError, match="time function of a load"):
-        history(source)
+        time_function(source)
 
 
 @pytest.mark.parametrize("action, message", [
@@ -101,12 +101,12 @@ def test_planar_torque_is_one_number():
 
 
 def test_histories():
-    assert history(None) == History((0.0,), ((1.0, 0.0, 0.0, 0.0),))
-    table = history(np.array(TABLE))
+    assert time_function(None) == TimeFunction((0.0,), ((1.0, 0.0, 0.0, 0.0),))
+    table = time_function(np.array(TABLE))
     assert table.times == (0.0, 0.05, 0.15)
     assert [row[0] for row in table.pieces] == [0.0, 1.0e4, -2.0e3]
-    assert table.addresses == (0, 0, 0) and history(table) is table
-    assert history(ramps).addresses[0] != 0
+    assert table.addresses == (0, 0, 0) and time_function(table) is table
+    assert time_function(ramps).addresses[0] != 0
 
 
 def amplitudes(run, t):
@@ -249,7 +249,7 @@ def test_a_dead_torque_stays_in_space_while_its_node_turns():
 def test_a_function_keeps_the_corners_it_is_given():
     found = with_corners(ramps, [0.05, 0.15])
     assert found.corners == (0.05, 0.15) and found.addresses[0] != 0
-    assert history(ramps).corners == ()
+    assert time_function(ramps).corners == ()
     model = two_nodes()
     model.fix("base")
     model.rigid_body("body", "tip", 1.0, (1.0, 1.0, 1.0))
@@ -268,11 +268,11 @@ def test_further_arguments_keep_their_defaults():
 
     def raised(x, k):
         return x**k
-    made = [history(lambda t, F=F, w=0.5: F * np.cos(w * t)) for F in (1.0, -2.5, 4.0)]
+    made = [time_function(lambda t, F=F, w=0.5: F * np.cos(w * t)) for F in (1.0, -2.5, 4.0)]
     times = np.array([0.0, 0.7, 2.0])
     for F, one in zip((1.0, -2.5, 4.0), made, strict=True):
         assert one.values(times) == pytest.approx(F * np.cos(0.5 * times), rel=1e-15)
-    assert history(helped).values(times) == pytest.approx(2.0 * times**3, rel=1e-15)
+    assert time_function(helped).values(times) == pytest.approx(2.0 * times**3, rel=1e-15)
     driven = motion(lambda t, A=0.3: A * np.sin(2.0 * t))
     assert driven.at(0.4) == pytest.approx(0.3 * np.array(
         [np.sin(0.8), 2.0 * np.cos(0.8), -4.0 * np.sin(0.8)]), rel=1e-14)
@@ -283,12 +283,12 @@ def test_further_arguments_keep_their_defaults():
 def test_a_force_keeps_the_defaults_of_further_arguments():
     rest = np.array([0.1, -0.2, 0.3])
 
-    def pulls(t, x, v, force, k=7.0, rest=rest):
+    def constraint_columns(t, x, v, force, k=7.0, rest=rest):
         for i in range(3):
             force[i] = k * (rest[i] - x[i])
     model = Model()
     model.point_mass("body", model.node("body", (1.0, 2.0, 3.0), "translation"), 2.0)
-    model.user_force("pull", ["body"], pulls)
+    model.user_force("pull", ["body"], constraint_columns)
     start = Simulation(model, 0.01).result()["body.acceleration"][0]
     assert start == pytest.approx(3.5 * np.array([-0.9, -2.2, -2.7]), rel=1e-14)
 
@@ -299,4 +299,4 @@ def test_further_arguments_without_a_value_are_named(function, arguments):
     with pytest.raises(InputError, match=f"time function of a load '<lambda>' has the arguments "
                                          rf"\({arguments}\): give a function of \(t\); further "
                                          "arguments need defaults"):
-        history(function)
+        time_function(function)

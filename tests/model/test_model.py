@@ -112,7 +112,7 @@ def test_frames_are_judged_by_what_they_need(monkeypatch):
     with pytest.raises(InputError, match="lie on a line, so the frame 'fits' cannot determine "):
         place(frame="fits")(model_with_nodes())
     placed_body = place(frame="turns", frame_node=1)(model_with_nodes())
-    assert placed_body.kernel == "superelement_f2_converged_mean_c"
+    assert placed_body.kernel == "superelement_f2_converged_mean_floating_field"
     assert placed_body.alpha.tolist() == [0.0, 1.0]
 
 
@@ -121,10 +121,10 @@ def test_missing_kernel_says_the_command_that_makes_it(monkeypatch, tmp_path):
     model = model_with_nodes()
     model.node("middle", (30.0, 0, 0), "rotation")
     with pytest.raises(InputError, match=r"there is no kernel for layout 'f2r1', frame 'mean', "
-                                         r"inertia 'a': make it with\s+"
+                                         r"inertia 'frame_axes': make it with\s+"
                                          r"python -m sebody.derive f2r1:mean:a$"):
         model.superelement("b", beam(middle="rotation"), ["base", "tip", "middle"], frame="mean",
-                           inertia="a")
+                           inertia="frame_axes")
 
 
 def half_node(keeps):
@@ -220,7 +220,7 @@ def test_refused_joint_leaves_the_model_as_it_was():
     (lambda m: None, 12), (lambda m: m.fix("base"), 6), (lambda m: m.fix("base", "position"), 9),
     (lambda m: m.revolute("base"), 9 + 2), (lambda m: m.spherical("base"), 12 + 3)])
 def test_number_of_unknowns(joints, unknowns):
-    """Fixed triplets are no unknowns, multipliers are."""
+    """Fixed DOF blocks are no unknowns, multipliers are."""
     model = placed()
     joints(model)
     assert number(model).free == unknowns

@@ -10,7 +10,7 @@ from numba import njit
 
 from sebody import InputError, Model, Simulation, simulate, with_corners
 from sebody.analysis import Ensemble, equilibrium
-from sebody.model.histories import history
+from sebody.model.time_functions import time_function
 from sebody.runs.fingerprint import described
 
 gain = 2.0
@@ -107,7 +107,7 @@ def test_a_value_that_has_changed_is_refused(kind, monkeypatch):
         change(patch)
         for again in (lambda: simulate(model, 0.1, 0.2), lambda: begun.run_to(0.4),
                       lambda: ensemble.run({}, 0.2, {"x": "ball.position"}),
-                      lambda: simulate(pushed(model.loads[0].history), 0.1, 0.2)):
+                      lambda: simulate(pushed(model.loads[0].time_function), 0.1, 0.2)):
             with pytest.raises(InputError) as caught:
                 again()
             assert str(caught.value).startswith(f"the function of 'push' {said}")
@@ -122,8 +122,8 @@ def test_a_value_that_has_changed_is_refused(kind, monkeypatch):
 
 def test_a_helper_that_was_compiled_earlier_is_compiled_with_what_it_reads_now(monkeypatch):
     monkeypatch.setitem(globals(), "gain", 5.0)
-    assert history(lambda t: compiled_helper(t)).at(2.0)[0] == 10.0
-    assert history(compiled_helper).at(2.0)[0] == 10.0
+    assert time_function(lambda t: compiled_helper(t)).at(2.0)[0] == 10.0
+    assert time_function(compiled_helper).at(2.0)[0] == 10.0
 
 
 def test_drives_and_forces_of_users_are_watched_too(monkeypatch):
@@ -185,7 +185,7 @@ def last(t, /, a=3.0, *, b=2, c=(1.0, 2.0)):
     lambda t, table=((0.0, 1.0), (2.0, 5.0)): table[1][1] * t])
 def test_default_arguments_are_values_of_the_function(function):
     called = getattr(function, "py_func", function)
-    assert history(function).at(1.5)[0] == pytest.approx(called(1.5), rel=1e-15)
+    assert time_function(function).at(1.5)[0] == pytest.approx(called(1.5), rel=1e-15)
 
 
 def test_default_arguments_of_forces():
@@ -251,7 +251,7 @@ own = Constants()
 ])
 def test_what_cannot_be_compiled_in_is_refused_in_words(function, said):
     with pytest.raises(InputError) as caught:
-        history(function)
+        time_function(function)
     message = str(caught.value)
     assert message.startswith(f"time function of a load {said}")
     assert "\n" not in message and len(message) < 400 and "nopython" not in message
@@ -272,6 +272,6 @@ def test_forces_are_refused_likewise():
 
 
 def test_a_function_is_known_by_the_library_function_it_calls():
-    assert described(history(math.sin).functions[0].function) != described(
-        history(math.cos).functions[0].function)
+    assert described(time_function(math.sin).functions[0].function) != described(
+        time_function(math.cos).functions[0].function)
     assert described(lambda t: settings.gain) == described(lambda t: settings.gain)

@@ -34,7 +34,7 @@ QUANTITIES = ("tip.position", "tip.velocity", "tip.rotation", "base.angular_velo
 
 
 @pytest.mark.parametrize("section", [FLAT, SQUARE])
-@pytest.mark.parametrize("options", [{}, {"inertia": "b"}, {"inertia": "d"},
+@pytest.mark.parametrize("options", [{}, {"inertia": "material"}, {"inertia": "rigid_part"},
                                      {"frame": "node", "frame_node": 1}])
 def test_a_beam_moves_in_its_plane_as_in_space(section, options):
     model = beam(section, **options)
@@ -140,7 +140,7 @@ POINTS = [(0, 0, 0), (50, 0, 0), (60, 30, 0), (10, 40, 0)]
 
 @pytest.mark.parametrize(("keeps", "frame", "inertia"), [
     (("full", "translation", "rotation", "translation"), "converged_mean", None),
-    (("full", "translation", "rotation", "translation"), "converged_mean", "d"),
+    (("full", "translation", "rotation", "translation"), "converged_mean", "rigid_part"),
     (("translation",) * 4, "positions", None)])
 def test_frames_of_beams_with_any_boundary(keeps, frame, inertia):
     """A closed frame in the plane, of whose modes some move in it and others out of it."""

@@ -1,4 +1,4 @@
-"""Ready histories: closed forms, rates against SymPy and differences, starts and jumps."""
+"""Ready time functions: closed forms, rates against SymPy and differences, starts and jumps."""
 
 import math
 
@@ -21,8 +21,8 @@ from sebody import (
     with_corners,
 )
 from sebody.engine.evaluate import set_loads
-from sebody.model.histories import history
 from sebody.model.motions import motion
+from sebody.model.time_functions import time_function
 
 t = sp.Symbol("t")
 u = (t - sp.Rational(1, 4)) / 2
@@ -122,7 +122,7 @@ def test_a_plain_function_drives():
         assert drive.at(time) == pytest.approx(expected, abs=1e-12)
     inner = motion(with_corners(lambda time: scale * time, [0.5]))
     assert inner.at(0.7) == pytest.approx([2.1, 3.0, 0.0]) and inner.corners == (0.5,)
-    assert history((plain, plain, plain)).at(2.0)[0] == pytest.approx(plain(2.0))
+    assert time_function((plain, plain, plain)).at(2.0)[0] == pytest.approx(plain(2.0))
 
 
 def test_profiles_of_any_numbers_drive():

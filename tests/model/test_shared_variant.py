@@ -1,4 +1,4 @@
-"""Shared triplets in the place of a joint's equations: the same motion with fewer unknowns."""
+"""Shared DOF blocks in the place of a joint's equations: the same motion with fewer unknowns."""
 
 import numpy as np
 import pytest

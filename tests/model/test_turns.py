@@ -113,9 +113,9 @@ def test_ensembles_count_turns():
     speeds = np.array([3.0, 9.0, 14.0])
     found = Ensemble(wheels(), 5e-3).run(
         {"a.angular_velocity": speeds[:, None] * AXIS}, 1.0, {"moment": "spring.moment"})
-    for speed, history in zip(speeds, found["moment"], strict=True):
+    for speed, time_function in zip(speeds, found["moment"], strict=True):
         angle, rate = relative(np.linspace(0.0, 1.0, 201), speed)
-        assert history @ AXIS == pytest.approx(-(K * (angle - REST) + C * rate), abs=5e-3)
+        assert time_function @ AXIS == pytest.approx(-(K * (angle - REST) + C * rate), abs=5e-3)
 
 
 @pytest.mark.parametrize("turn", [3.3, -9.0, 20.0])
@@ -152,7 +152,7 @@ def test_bushings_along_any_axes():
     E = Rotation.random(random_state=5).as_matrix()
     run = Simulation(bushed(E), 0.01)
     found, node = linearize(run), run.model.nodes["body"]
-    at = [stretch(run.numbering, triplet) for triplet in (node.position, node.rotation)]
+    at = [stretch(run.numbering, dof_block) for dof_block in (node.position, node.rotation)]
     stiffness = [E @ np.diag(k) @ E.T for k in ((900.0, 40.0, 300.0), (700.0, 80.0, 500.0))]
     damping = [E @ np.diag(c) @ E.T for c in ((0.0, 3.0, 1.0), (1.0, 0.0, 2.0))]
     for own, parts in ((found.stiffness, stiffness), (found.damping, damping)):

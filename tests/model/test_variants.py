@@ -104,9 +104,9 @@ def motion(model: Model, names=("base", "elbow", "elbow2", "hook", "tip")) -> di
 
 
 def assert_same(found: dict, expected: dict) -> None:
-    for name, history in expected.items():
-        moved = np.abs(history - history[0]).max()
-        assert np.abs(found[name] - history).max() <= CLOSE * max(moved, 1.0), name
+    for name, time_function in expected.items():
+        moved = np.abs(time_function - time_function[0]).max()
+        assert np.abs(found[name] - time_function).max() <= CLOSE * max(moved, 1.0), name
 
 
 @pytest.fixture(scope="module")
@@ -121,8 +121,8 @@ def before(original) -> dict:
 
 def test_a_copy_runs_like_its_model_and_shares_nothing_that_changes(original, before):
     copy = copied(original)
-    for name, history in motion(copy).items():
-        assert np.array_equal(history, before[name])
+    for name, time_function in motion(copy).items():
+        assert np.array_equal(time_function, before[name])
     ours, theirs = ({id(one) for node in model.nodes.values()
                      for one in (node, node.position, node.rotation, node.position.rate)}
                     for model in (original, copy))
@@ -132,13 +132,14 @@ def test_a_copy_runs_like_its_model_and_shares_nothing_that_changes(original, be
     copy.nodes["tip"].position.rate[:] = 5.0
     copy.loads[0].constants["k"] = 0.0
     copy.move("anchor", TURN @ (1, 0, 0), harmonic(1.0, 3.0))
-    for name, history in motion(original).items():
-        assert np.array_equal(history, before[name])
+    for name, time_function in motion(original).items():
+        assert np.array_equal(time_function, before[name])
 
 
 @pytest.mark.parametrize(("name", "change", "sentence", "by_hand"), [
-    ("options", {"inertia": "b"}, "first has inertia 'b' instead of 'c' and does not stiffen with "
-     "its stresses", lambda: linkage(options={"inertia": "b"})),
+    ("options", {"inertia": "material"},
+     "first has inertia 'material' instead of 'c' and does not stiffen with "
+     "its stresses", lambda: linkage(options={"inertia": "material"})),
     ("options", {"stiffening": False}, "first does not stiffen with its stresses",
      lambda: linkage(options={"stiffening": False})),
     ("options", {"frame": "node"}, "first has frame 'node' instead of 'converged_mean'",
@@ -152,8 +153,8 @@ def test_a_variant_is_the_model_built_that_way(original, before, name, change, s
     assert variant.model.bodies["first"].kernel == expected.bodies["first"].kernel
     assert_same(found, motion(expected))
     assert np.abs(found["tip.position"] - before["tip.position"]).max() > 1e-4
-    for quantity, history in motion(original).items():
-        assert np.array_equal(history, before[quantity])
+    for quantity, time_function in motion(original).items():
+        assert np.array_equal(time_function, before[quantity])
 
 
 def test_fewer_modes_are_those_of_a_new_reduction(original, before):
@@ -170,8 +171,8 @@ def test_fewer_modes_are_those_of_a_new_reduction(original, before):
     four = motion(unstiffened)
     assert np.abs(found["tip.position"] - four["tip.position"]).max() > 1e-5
     assert "keeps no internal modes" in keep_modes(original, "first", 0).change
-    for quantity, history in motion(original).items():
-        assert np.array_equal(history, before[quantity])
+    for quantity, time_function in motion(original).items():
+        assert np.array_equal(time_function, before[quantity])
 
 
 @pytest.mark.parametrize("names", [("first",), ("second",), ("first", "second"),
@@ -275,8 +276,8 @@ def test_a_beam_is_divided(before, after, planar):
     assert list(found.bodies) == list(expected.bodies)
     assert sorted(found.nodes) == sorted(names)
     assert_same(motion(found, names), motion(expected, names))
-    for name, history in motion(original, original.nodes).items():
-        assert np.array_equal(history, first[name])
+    for name, time_function in motion(original, original.nodes).items():
+        assert np.array_equal(time_function, first[name])
     back = divide(found, "rod", before, elements=8).model
     assert_same(motion(back, original.nodes), first)
 
@@ -285,7 +286,7 @@ def test_what_cannot_be_changed_is_said(original):
     cases = [
         (keep_modes, ("third", 1), "superelement 'third' is unknown: the model has second, first"),
         (keep_modes, ("first", 5), "it has 4: keep 0 to 4"),
-        (with_options, ("first", "mean"), "inertia 'c' needs the exact rates"),
+        (with_options, ("first", "mean"), "inertia 'floating_field' needs the exact rates"),
         (divide, ("first", 2), r"model.beam has built 0 beams 'first'.*\(it has built no beam\)"),
     ]
     for change, given, message in cases:

@@ -454,7 +454,7 @@ def matrices_alone():
     model = Model()
     for k, place in enumerate((0, 2, 4)):
         model.node(f"n{k}", fe_model.coordinates[place], "translation" if k == 1 else "full")
-    model.superelement("arm", body, ["n0", "n1", "n2"], inertia="b")
+    model.superelement("arm", body, ["n0", "n1", "n2"], inertia="material")
     model.revolute("n0", axis=(0, 1, 0))
     model.gravity((0, 0, -9.81))
     return simulate(model, 1e-4, 0.02)

@@ -290,5 +290,5 @@ def test_turned_body_with_one_position_kept(unit):
 
 
 def between(relative):
-    """Stiffness of two triplets of rotations that act by their difference."""
+    """Stiffness of two DOF blocks of rotations that act by their difference."""
     return np.kron([[1, -1], [-1, 1]], relative)

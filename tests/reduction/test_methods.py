@@ -190,7 +190,7 @@ def test_massless_motions_start_and_run():
         model = Model()
         model.node("tip", beam.coordinates[12])
         model.node("base", beam.coordinates[0])
-        model.superelement("arm", body, ["tip", "base"], inertia="b")
+        model.superelement("arm", body, ["tip", "base"], inertia="material")
         model.gravity(9.81 * np.cross(along, [0.48, 0.6, 0]))
         if pinned:
             model.fix("base", "position")

@@ -27,7 +27,7 @@ def beam(modes, recover=None):
     return craig_bampton(fe, [(ELEMENTS, "full"), (0, "full")], modes, recover=recover)
 
 
-def cantilever(body, inertia="b", root=(0.3, -1.0, 2.0)):
+def cantilever(body, inertia="material", root=(0.3, -1.0, 2.0)):
     """The beam clamped at a place and in axes that are not those of its FE model."""
     model = Model()
     a, b = model.node("a", root), model.node("b", root + TURN @ (LENGTH, 0, 0))

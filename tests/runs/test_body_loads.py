@@ -100,7 +100,8 @@ SECTION = StiffnessSection(axial=1e6, bending_y=50.0, bending_z=70.0, torsion=40
                            inertia_x=2e-3, inertia_y=1e-3, inertia_z=1e-3)
 
 
-def clamped(frame="converged_mean", turn=TURN, shift=SHIFT, amplitude=1e-4, inertia="c"):
+def clamped(frame="converged_mean", turn=TURN, shift=SHIFT, amplitude=1e-4,
+            inertia="floating_field"):
     """The plate, held at one end, turned and shifted."""
     _, reduced = body()
     model = Model()

@@ -27,7 +27,7 @@ def cantilever(planar=False, frame="converged_mean", section=SLENDER, elements=2
     d = 2 if planar else 3
     model = Model(planar=planar)
     ends = model.node("root", np.zeros(d)), model.node("tip", np.eye(d)[0])
-    model.beam("arm", ends, section, elements, 1, 4, frame=frame, inertia="c")
+    model.beam("arm", ends, section, elements, 1, 4, frame=frame, inertia="floating_field")
     model.fix("root")
     return model
 
@@ -50,7 +50,7 @@ def test_spinning_solid():
     model = Model()
     nodes = model.node("root", (0, 0, 0)), model.node("tip", (40, 0, 0))
     model.superelement("arm", craig_bampton(bricks, [(end, "full") for end in ends], 6), nodes,
-                       inertia="c")
+                       inertia="floating_field")
     model.fix("root")
     unit = np.sqrt(4.0 * 40.0**4 / (1e6 * 2.0**4 / 12))     # sqrt(rho A L^4 / E I)
     spin = (0.0, 0.0, 6.0 / unit)
@@ -101,7 +101,7 @@ def test_shaft_at_half_its_frequency():
     """8.2: in axes that turn with it, 0.5 and 1.5; option B shows 0.575 and 1.385."""
     model = Model()
     ends = model.node("a", (0, 0, 0)), model.node("b", (1, 0, 0))
-    model.beam("shaft", ends, SLENDER, 24, 1, 4, inertia="c")
+    model.beam("shaft", ends, SLENDER, 24, 1, 4, inertia="floating_field")
     model.fix("a", "position")
     model.fix("b", "position")
     first = vibrations(equilibrium(model, 1)).omega
@@ -128,7 +128,7 @@ def test_hinged_beam_at_its_spin():
     model = Model()
     ends = model.node("base", (0, 0, 0)), model.node("tip", (100 * 2**0.5, 0, 0))
     model.beam("beam", ends, replace(hinged_beam.SECTION, shear_factor=5 / 6), 40, 1, 8,
-               inertia="c")
+               inertia="floating_field")
     model.revolute("base", (0, 0, 1))
     spin = (0.0, 0.0, 0.906)
     omega = modes(equilibrium(model, 1, spin=spin), spin).omega
@@ -138,7 +138,7 @@ def test_hinged_beam_at_its_spin():
 def test_hinged_beam_against_the_reference():
     """Tip within 3e-4 at h = 0.01, where option B has 9e-4."""
     exact = references.reference("hinged_beam")["tip_position"]
-    scene = hinged_beam.build(inertia="c")
+    scene = hinged_beam.build(inertia="floating_field")
     tip = simulate(scene.model, scene.h, scene.t_end)["tip.position"]
     assert np.linalg.norm(tip - exact) < 3e-4 * np.linalg.norm(exact)
 
@@ -158,7 +158,7 @@ def test_rod_of_the_slider_crank():
 
     8 quadratic elements, 4800 steps a turn, an error of 3e-5 of them.
     """
-    scene = slider_crank.build(modes=5, inertia="c")
+    scene = slider_crank.build(modes=5, inertia="floating_field")
     result = simulate(scene.model, scene.h, scene.t_end)
     found = middle_of_the_rod(result, scene.model.bodies["rod"])
     assert (found.max(), found.min()) == pytest.approx((0.015422, -0.015543), rel=5e-3)
@@ -167,7 +167,7 @@ def test_rod_of_the_slider_crank():
 @pytest.mark.parametrize(("case", "deepest"), [("kane", -0.53366), ("simo", -0.57392)])
 def test_spin_up_of_one_body(case, deepest):
     """Deflection of the tip at its deepest; 12 quadratic elements. Linear bodies diverge."""
-    scene = spin_up.build(case, bodies=1, modes=2, inertia="c")
+    scene = spin_up.build(case, bodies=1, modes=2, inertia="floating_field")
     result = simulate(scene.model, scene.h, 10.0)
     _, speed = spin_up.CASES[case][:2]
     angle = np.array([spin_up.turning(speed)[0](t) for t in result.t])

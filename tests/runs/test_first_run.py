@@ -114,10 +114,11 @@ def test_small_tasks_are_not_worth_processes(run):
 
 def test_what_others_wait_for_begins_first():
     """A long kernel goes beside the parts of the loop; the loop begins before what is short."""
-    kernels = {name: find(name) for name in ("element_force", "superelement_f2_converged_mean_c")}
+    kernels = {name: find(name) for name in ("element_force",
+                                             "superelement_f2_converged_mean_floating_field")}
     names = [task.name for task in longest_first(first_run._jobs(kernels, list(first_run.PARTS)))]
     assert sorted(names) == sorted([*kernels, *first_run.PARTS])
     for name, part in first_run.PARTS.items():
         assert all(names.index(before) < names.index(name) for before in part.after)
-    assert names[0] == "superelement_f2_converged_mean_c"
+    assert names[0] == "superelement_f2_converged_mean_floating_field"
     assert names.index("loop") < min(map(names.index, ("records", "energies", "element_force")))

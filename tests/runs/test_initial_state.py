@@ -37,9 +37,9 @@ def hinged(torque=(0, 0, TORQUE), stiffer=1.0):
 
 def accelerations(run):
     """In the order of the reduced body: positions, then rotations; zero where fixed."""
-    nodes, at = run.model.nodes.values(), run.numbering.triplets
-    triplets = [n.position for n in nodes] + [n.rotation for n in nodes]
-    return np.concatenate([run.state.a[at[id(t)]:at[id(t)] + 3] for t in triplets])
+    nodes, at = run.model.nodes.values(), run.numbering.dof_blocks
+    dof_blocks = [n.position for n in nodes] + [n.rotation for n in nodes]
+    return np.concatenate([run.state.a[at[t]:at[t] + 3] for t in dof_blocks])
 
 
 @pytest.mark.parametrize("h", [0.0, -0.01, np.nan, np.inf])
@@ -186,7 +186,7 @@ def test_velocities_that_are_not_given_are_solved_for():
     model.rigid_velocity((0, 0, 0), (0.5, 0.0, 1.0))
     run = Simulation(model, 0.01)
     assert run.start.changed["base.rotation"] == pytest.approx(0.5, rel=1e-6)
-    assert run.state.v[run.numbering.triplets[id(model.nodes["base"].rotation)]] == (
+    assert run.state.v[run.numbering.dof_blocks[model.nodes["base"].rotation]] == (
         pytest.approx(0.0, abs=1e-12))      # one regular solution, of velocities of order one
     assert "solved for           initial velocity of base.rotation (by 0.5)" in (
         run.run_to(0.02).result().summary())

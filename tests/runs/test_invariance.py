@@ -103,7 +103,7 @@ def strain_energy(run, turned_by):
     system, state = run.system, run.state
     R = Rotation.from_rotvec(turned_by).as_matrix()
     saved = state.q.copy(), state.R.copy(), state.frames.copy()
-    first = [run.numbering.triplets[id(n.position)] for n in run.model.nodes.values()]
+    first = [run.numbering.dof_blocks[n.position] for n in run.model.nodes.values()]
     for at in first:
         state.q[at:at + 3] = R @ state.q[at:at + 3]
     state.R[:] = (R @ state.R.reshape(-1, 3, 3)).ravel()

@@ -62,7 +62,7 @@ def blade(planar=False, kind="converged_mean", stiffened=True, units=(1.0, 1.0, 
     scene = Model(planar=planar)
     nodes = [scene.node(name, x, keep) for name, x, keep in zip(
         "abc", body.coordinates, body.keeps, strict=False)]
-    part = scene.superelement("blade", body, nodes, frame=kind, inertia="c")
+    part = scene.superelement("blade", body, nodes, frame=kind, inertia="floating_field")
     assert part.kernel.endswith("_c") and bool(body.invariants.resultants) == stiffened
     return scene
 

@@ -7,7 +7,6 @@ from helpers import multipliers_first
 from sebody import InputError, Model, Simulation, Tolerance, generalized_alpha
 from sebody.analysis import resume, save_state
 from sebody.assembly import build as assembly
-from sebody.engine.state import PIVOTED
 from sebody.scenes import chain, hinged_beam, spherical_beam_strong
 
 
@@ -34,7 +33,7 @@ def test_factors_with_row_exchanges_are_made_again(tmp_path, monkeypatch):
     monkeypatch.setattr(assembly, "number", multipliers_first(assembly.number))
     whole = Simulation(chain.build(4).model, 1e-3).run_to(6e-3).run_to(12e-3)
     first = Simulation(chain.build(4).model, 1e-3).run_to(6e-3)
-    assert first.state.control[PIVOTED] == 1
+    assert first.state.control.pivoted == 1
     again = resume(chain.build(4).model, save_state(first, tmp_path / "half.npz")).run_to(12e-3)
     assert np.array_equal(again.result().rows, whole.result().rows)
 
@@ -101,16 +100,16 @@ def test_a_state_goes_on_with_its_own_model_only(tmp_path, change):
 
 def test_a_state_goes_on_with_its_own_kernels_only(tmp_path):
     """Two inertia options have the same unknowns and the same constants."""
-    run = Simulation(hinged_beam.build(modes=0, inertia="a").model, 0.01).run_to(0.1)
+    run = Simulation(hinged_beam.build(modes=0, inertia="frame_axes").model, 0.01).run_to(0.1)
     path = save_state(run, tmp_path / "state.npz")
     with pytest.raises(InputError, match="is of another model"):
-        resume(hinged_beam.build(modes=0, inertia="b").model, path)
+        resume(hinged_beam.build(modes=0, inertia="material").model, path)
 
 
 def test_the_file_says_which_constraints_are_redundant(tmp_path):
     """Found from ranks, where rounding decides: another machine may see another number.
 
-    A hinge, relaxed by hand where this machine would not, is on file as such, and a run that goes
+    A hinge, regularized by hand where this machine would not, is on file as such, and a run that goes
     on from the file is that of the state saved, bit for bit.
     """
     def hinged():
@@ -121,10 +120,10 @@ def test_the_file_says_which_constraints_are_redundant(tmp_path):
         return model
     first = Simulation(hinged(), 0.01)
     assert not first.start.redundant
-    first.system.relaxed[0] = 1
+    first.system.regularized[0] = 1
     path = save_state(first.run_to(0.5), tmp_path / "half.npz")
     second = resume(hinged(), path)
-    assert second.system.relaxed[0] == 1
+    assert second.system.regularized[0] == 1
     whole, rest = first.run_to(1.0).result(), second.run_to(1.0).result()
     assert np.array_equal(rest.rows, whole.rows)
     assert not np.array_equal(rest.rows, Simulation(hinged(), 0.01).run_to(1.0).result().rows)

@@ -42,7 +42,7 @@ def thrown(spin, velocity=(0.0, 0.0, 0.0), rates=0.0):
     nodes = [model.node(f"n{k}", SHIFT + x, "translation") for k, x in enumerate(points)]
     for node, x in zip(nodes, points, strict=True):
         model.initial_velocity(node, velocity + np.cross(spin, x))
-    placed = model.superelement("block", body, nodes, "positions", "d", rotation=TURN)
+    placed = model.superelement("block", body, nodes, "positions", "rigid_part", rotation=TURN)
     placed.mode_rates[:] = rates
     return model, points
 
@@ -78,7 +78,7 @@ def test_accelerations_of_an_unstrained_block():
     for velocity in ((0.0, 0.0, 0.0), (30.0, 4.0, -5.0)):
         model, points = thrown(spin, velocity)
         run = Simulation(model, 1e-3)
-        at = [run.numbering.triplets[id(node.position)] for node in model.nodes.values()]
+        at = [run.numbering.dof_blocks[node.position] for node in model.nodes.values()]
         found = np.array([run.state.a[k:k + 3] for k in at])
         expected = np.cross(spin, np.cross(spin, points))
         # stiffness 1e6 times rounding of positions of 60, for masses of ten: 1e-9 of 150
@@ -99,7 +99,7 @@ def test_a_superposed_velocity_changes_nothing():
     assert np.ptp(H, axis=0).max() < 2e-5 * np.abs(H).max()
 
 
-def blade(torsion=1.0, turn=IDENTITY, body_modes=6, planar=False, damping=0.0, inertia="d",
+def blade(torsion=1.0, turn=IDENTITY, body_modes=6, planar=False, damping=0.0, inertia="rigid_part",
           shift=0.0):
     """A cantilever of unit length, mass and bending stiffness."""
     section = StiffnessSection(axial=1e5, bending_y=1.0, bending_z=1.0, torsion=torsion, mass=1.0,
@@ -133,7 +133,7 @@ def test_blade_with_soft_torsion(torsion):
 def test_hinged_beam_against_the_reference(count, expected):
     """Errors of an independent code with this option; option B has 8.4e-4 and 9.0e-4."""
     exact = references.reference("hinged_beam")["tip_position"]
-    scene = hinged_beam.build(inertia="d", modes=count)
+    scene = hinged_beam.build(inertia="rigid_part", modes=count)
     tip = simulate(scene.model, 0.01, 30.0)["tip.position"]
     assert np.linalg.norm(tip - exact) / np.linalg.norm(exact) == pytest.approx(expected, rel=0.03)
 
@@ -179,7 +179,7 @@ def test_rigid_links_gravity_and_energy():
         body = alone(craig_bampton(straight_beam(np.zeros(3), [1.0, 0, 0], section, 6),
                                    [(0, "full"), (6, "full")], 2))
         ends = model.node("root", SHIFT), model.node("tip", SHIFT + TURN[:, 0])
-        model.superelement("arm", body, ends, inertia="d", rotation=TURN)
+        model.superelement("arm", body, ends, inertia="rigid_part", rotation=TURN)
         model.attach("end", SHIFT + TURN @ (1.2, 0.1, 0.3), "tip")
         model.point_mass("load", "end", 0.1)
         model.fix("root", "position")
@@ -193,7 +193,8 @@ def test_rigid_links_gravity_and_energy():
 
 
 def test_a_plane_and_space_agree():
-    planar, spatial = (simulate(build(inertia="d", modes=m).model, 0.01, 6.0)["tip.position"]
+    planar, spatial = (simulate(build(inertia="rigid_part", modes=m).model, 0.01,
+                                6.0)["tip.position"]
                        for build, m in ((planar_hinged_beam.build, 2), (hinged_beam.build, 4)))
     # Newton's tolerance
     assert np.abs(planar - spatial[:, :2]).max() < 1e-5 * np.abs(planar).max()
@@ -201,7 +202,7 @@ def test_a_plane_and_space_agree():
 
 def test_restart(tmp_path):
     def build():
-        return hinged_beam.build(inertia="d").model
+        return hinged_beam.build(inertia="rigid_part").model
     whole = Simulation(build(), 0.01).run_to(1.0).run_to(2.0).result()
     path = save_state(Simulation(build(), 0.01).run_to(1.0), tmp_path / "half.npz")
     assert np.array_equal(resume(build(), path).run_to(2.0).result().rows, whole.rows)
@@ -209,16 +210,16 @@ def test_restart(tmp_path):
 
 @pytest.mark.parametrize("frame", ["mean", "mean_small"])
 def test_frames_that_depend_on_the_last_step_are_refused(frame):
-    with pytest.raises(InputError, match=f"inertia 'd' needs the exact rates of a frame .* which "
+    with pytest.raises(InputError, match=f"inertia 'rigid_part' needs the exact rates of a frame .* which "
                                          f"'{frame}' does not: use one of converged_mean, mean"):
-        hinged_beam.build(inertia="d", frame=frame)
+        hinged_beam.build(inertia="rigid_part", frame=frame)
 
 
 def test_a_body_of_reduced_matrices_says_once_how_fast_it_may_spin():
     """From a quarter of 3.516 on, its first frequency with a node held."""
     spin = TURN @ (0.0, 0.0, 1.2)
     found = equilibrium(blade(turn=TURN, inertia=None), 2, spin=spin)
-    assert found.model.bodies["arm"].inertia == "d"
+    assert found.model.bodies["arm"].inertia == "rigid_part"
     said = (r"body 'arm' spins at 1\.2 rad/s, more than a quarter of 3\.52, .*: its stiffness does "
             "not grow with the spin, .*; divide the body in two, or reduce it from an FE model "
             "with its "

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from sebody import InputError, Model, Simulation, SimulationError, generalized_alpha
-from sebody.engine.state import CUTS
-from sebody.model.histories import history
+from sebody.model.time_functions import history
 from sebody.scenes.hinged_beam import build
 
 
@@ -78,7 +77,7 @@ def test_failed_run_keeps_what_it_has():
     assert 0.09 < kept.t[-1] < 0.12
     assert np.isfinite(kept["tip.position"]).all()
     assert "FAILED" in kept.summary()
-    assert run.state.control[CUTS] >= 12
+    assert run.state.control.cuts >= 12
 
 
 def test_cannot_run_backwards():
@@ -105,7 +104,7 @@ def stronger(model):
 
 
 def sooner(model):
-    model.loads[0].history = history([(0.0, 0.0), (1.0, 1.2e4)])
+    model.loads[0].time_function = history([(0.0, 0.0), (1.0, 1.2e4)])
 
 
 def stiffer(model):

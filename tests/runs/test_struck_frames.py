@@ -67,7 +67,8 @@ def test_bodies_with_positions_off_a_line_have_their_frame_on_them():
         return struck.model(**options).bodies["frame"].frame
     assert chosen(t_frame(0)) == "positions"
     assert chosen(u_frame(0)) == "mean_axes"            # two positions
-    assert chosen(t_frame(0), inertia="d") == chosen(t_frame(0), inertia="b") == "converged_mean"
+    assert chosen(t_frame(0), inertia="rigid_part") == chosen(t_frame(0),
+                                                              inertia="material") == "converged_mean"
     assert chosen(t_frame(0), frame="node") == "node"
     straight = Struck(np.array([[0, 0, 0], [0.5, 0, 0], [1.0, 0, 0]]), [(0, 1), (1, 2)], [0, 1, 2],
                       0)

@@ -30,7 +30,7 @@ def tip_error(result):
 def test_tip_against_geometrically_exact_beam():
     """8e-5 are left with small steps; at 0.005 a part of it and of the error in time cancel."""
     assert tip_error(run()) <= 3e-4
-    assert tip_error(run(inertia="b")) <= 9.5e-4
+    assert tip_error(run(inertia="material")) <= 9.5e-4
     fine = run(h=0.005)
     exact = references.reference("hinged_beam")["tip_position"]
     assert np.linalg.norm(fine["tip.position"][::2] - exact) <= 1.2e-4 * np.linalg.norm(exact)
@@ -38,7 +38,7 @@ def test_tip_against_geometrically_exact_beam():
 
 def test_node_frame_is_less_accurate_with_option_b():
     """The paper's claim: the frame at the base costs a factor of three (2.9e-3)."""
-    assert 2.5e-3 < tip_error(run("node", inertia="b")) < 3.3e-3
+    assert 2.5e-3 < tip_error(run("node", inertia="material")) < 3.3e-3
 
 
 @pytest.mark.parametrize("alpha, expected", [(-0.05, 9.3e-4), (-0.1, 9.6e-4)])
@@ -47,7 +47,7 @@ def test_hht_tip_error(alpha, expected):
 
     Neither follows from a formula; 5 % allow for the two digits and the other reference.
     """
-    assert tip_error(run(alpha=alpha, inertia="b")) == pytest.approx(expected, rel=0.05)
+    assert tip_error(run(alpha=alpha, inertia="material")) == pytest.approx(expected, rel=0.05)
 
 
 def test_energy_is_constant_after_the_torque():
@@ -79,7 +79,7 @@ def test_motion_stays_in_the_plane():
 
 
 def test_mean_and_converged_mean_agree():
-    tips = [run(frame, inertia="b")["tip.position"] for frame in ("mean", "converged_mean")]
+    tips = [run(frame, inertia="material")["tip.position"] for frame in ("mean", "converged_mean")]
     assert np.linalg.norm(tips[0] - tips[1]) / np.linalg.norm(tips[1]) <= 1e-5
 
 

@@ -50,7 +50,7 @@ def test_a_damped_oscillator():
 LENGTH, HEIGHT, E, RHO = 2.0, 0.02, 7e10, 2700.0
 
 
-def cantilever(inertia="b"):
+def cantilever(inertia="material"):
     """Without shear and almost without rotary inertia, in general position."""
     model = Model()
     root = np.array([1.0, -2.0, 0.5])

@@ -87,7 +87,7 @@ def test_steady_extension(case, inertia):
         found.append(equilibrium(model, 4, spin=speed)["tip.position"][-1, 0] - length)
     rotary = mass * bending / axial
     pull, softening = speed**2 * mass * length**2 / 3, speed**2 * mass * length / 3
-    if inertia == "b":
+    if inertia == "material":
         pull = speed**2 * (0.35 * mass * length**2 + rotary)
         softening = speed**2 * (13 / 35 * mass * length + 1.2 * rotary / length)
     assert found[0] == pytest.approx(pull / (axial / length - softening), rel=1e-6)
@@ -107,8 +107,8 @@ def test_a_turning_equilibrium_goes_on_turning():
     for part in ("q", "v", "a"):
         for node in arm.nodes.values():
             for own in (node.position, node.rotation):
-                if id(own) in free.numbering.triplets and id(own) in run.numbering.triplets:
-                    to, of = free.numbering.triplets[id(own)], run.numbering.triplets[id(own)]
+                if own in free.numbering.dof_blocks and own in run.numbering.dof_blocks:
+                    to, of = free.numbering.dof_blocks[own], run.numbering.dof_blocks[own]
                     getattr(free.state, part)[to:to + own.start.size] = getattr(run.state, part)[
                         of:of + own.start.size]
     free.state.aux[:] = free.state.a
@@ -127,7 +127,7 @@ def test_flapping_converges_as_predicted(frame, theory):
     """3.1 at eta = 6: with the bodies, as the theory of linear bodies with option B says."""
     errors = {}
     for n in (2, 4, 8):
-        found, spin = turning(n, 6.0, frame, internal=2, inertia="b")
+        found, spin = turning(n, 6.0, frame, internal=2, inertia="material")
         omega = modes(found, spin).omega
         predicted, exact_inertia = (flap(cantilever(n, theory), 6.0, b) for b in (True, False))
         near = omega[np.argmin(np.abs(omega - predicted))]
@@ -144,7 +144,7 @@ def test_spurious_divergence(frame, theory, bodies):
     limit = divergence(cantilever(bodies, theory), option_b=True)
     for factor, stable in ((0.985, True), (1.015, False)):
         found, spin = turning(bodies, factor * limit, frame, planar=True, axial=1e8,
-                              inertia="b")
+                              inertia="material")
         assert (modes(found, spin).growth.max() < 1e-3) == stable
 
 

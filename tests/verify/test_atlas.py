@@ -88,7 +88,7 @@ def test_regular_scenes_are_not_warned(name):
 
 
 def test_spin_is_warned_of_once():
-    scene = spin_up.build("kane", 1, frame="node", inertia="b")
+    scene = spin_up.build("kane", 1, frame="node", inertia="material")
     run = Simulation(scene.model, 0.01)
 
     def go():
@@ -112,7 +112,7 @@ def test_the_limit_of_one_body_is_that_of_theory(frame):
 
 
 def test_spin_about_any_axis_of_a_beam_in_space():
-    run = Simulation(spherical_beam_strong.build(inertia="b").model, 0.005)
+    run = Simulation(spherical_beam_strong.build(inertia="material").model, 0.005)
     messages = warned(lambda: run.run_to(30.0))
     assert any("of body 'beam'" in m and m.startswith("spin") for m in messages)
 

@@ -28,7 +28,7 @@ def test_kernel_is_consistent(name):
 
 
 def test_small_increments_differ_to_second_order():
-    rows = [r for r in check.check_kernels(["superelement_f2_mean_small_b"]) if r.slope]
+    rows = [r for r in check.check_kernels(["superelement_f2_mean_small_material"]) if r.slope]
     assert rows and all(1.8 < row.slope < 2.3 and row.error > 1e-5 for row in rows)
 
 
@@ -64,7 +64,8 @@ CRITERIA = {*superelements.EXACT_FORCE.values(), *superelements.TANGENTS.values(
             *superelements.ENERGY_SUMS.values()}
 
 
-@pytest.mark.parametrize("name", ["planar_f2_converged_mean_b", "f2_mean_b", "f2t1_positions_b"])
+@pytest.mark.parametrize("name", ["planar_f2_converged_mean_material", "f2_mean_material",
+                                  "f2t1_positions_material"])
 @pytest.mark.parametrize("criterion", sorted(CRITERIA, key=lambda c: c.__name__))
 def test_check_notices_a_wrong_superelement(criterion, name, monkeypatch):
     case = superelements.superelement_case(load("superelement_" + name), 0)
@@ -75,7 +76,7 @@ def test_check_notices_a_wrong_superelement(criterion, name, monkeypatch):
 
 @pytest.mark.parametrize("motion", ["q", "v", "a"])
 def test_check_notices_modes_that_meet(motion, monkeypatch):
-    case = superelements.superelement_case(load("superelement_f2_converged_mean_b"), 0)
+    case = superelements.superelement_case(load("superelement_f2_converged_mean_material"), 0)
     assert states.mode_coupling(case) < 1e-14
     right = states.evaluate
 
@@ -123,14 +124,16 @@ def mutant(name, old, new, folder):
     ("dg[j3] = alpha_r*dwp_z + dm_z + dpwd_z", "dg[j3] = alpha_r*dwp_z + dm_z",
      {"tangent, velocity (61)", "tangent, mass (60)"})])
 def test_check_notices_a_changed_line(old, new, failing, tmp_path):
-    name = "superelement_planar_f2_converged_mean_b"
+    name = "superelement_planar_f2_converged_mean_material"
     rows = superelements.check_superelement(name, mutant(name, old, new, tmp_path))
     assert failing <= {row.criterion for row in rows if not row.passed}
 
 
 @pytest.mark.parametrize("name, claim", [
-    ("f2_converged_mean_b", {"INERTIA": "a"}), ("f2_converged_mean_a", {"INERTIA": "b"}),
-    ("f2_converged_mean_b", {"FRAME": "mean"}), ("f2t1_positions_b", {"FRAME": "converged_mean"})])
+    ("f2_converged_mean_material", {"INERTIA": "frame_axes"}), ("f2_converged_mean_frame_axes",
+                                                                {"INERTIA": "material"}),
+    ("f2_converged_mean_material", {"FRAME": "mean"}), ("f2t1_positions_material",
+                                                        {"FRAME": "converged_mean"})])
 def test_check_notices_a_kernel_that_is_not_what_it_says(name, claim):
     """Forces and tangents fit the energies of the other frame or option just as well."""
     module = types.SimpleNamespace(**vars(load("superelement_" + name)) | claim)
@@ -141,7 +144,7 @@ def test_check_notices_a_kernel_that_is_not_what_it_says(name, claim):
 
 
 def test_asymmetric_stiffness_has_no_potential():
-    case = superelements.superelement_case(load("superelement_f2_converged_mean_b"), 0)
+    case = superelements.superelement_case(load("superelement_f2_converged_mean_material"), 0)
     S = states.constants_of(case)["S"].copy()
     S[1, 0] *= 1.01
     case = states.changed(case, S=S)
@@ -149,7 +152,8 @@ def test_asymmetric_stiffness_has_no_potential():
     assert superelements.asymmetry(case) > states.LIMIT
 
 
-@pytest.mark.parametrize("name", ["superelement_f2_mean_b", "superelement_planar_f2_positions_b"])
+@pytest.mark.parametrize("name", ["superelement_f2_mean_material",
+                                  "superelement_planar_f2_positions_material"])
 def test_matrix_is_linear_in_its_coefficients(name):
     case = superelements.superelement_case(load(name), 1)
     parts = [states.evaluate(case, 1, c)[1] for c in ((1, 0, 0, 1, 1), (0, 1, 0, 1, 1),
@@ -178,8 +182,8 @@ def test_paper_tangent_lacks_a_term_that_falls_with_the_deformation(name):
 
 def test_planar_kernel_equals_the_spatial_one_on_planar_states():
     """Positions, angles and matrices embedded in space; equal to rounding."""
-    planar = load("superelement_planar_f2_converged_mean_b")
-    spatial = load("superelement_f2_converged_mean_b")
+    planar = load("superelement_planar_f2_converged_mean_material")
+    spatial = load("superelement_f2_converged_mean_material")
     flat = superelements.superelement_case(planar, 5, gravity=1.0)
     keep = [0, 1, 3, 4, 8, 11, 12, 13, 14]      # of x, y, z; x, y, z; rotations; modes
     n, given = 15, states.constants_of(flat)

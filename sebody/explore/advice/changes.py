@@ -122,7 +122,7 @@ class Builder:
     model : Model
     parts : list of Part
     kept : set of str
-        Names of nodes whose triplets are not dropped.
+        Names of nodes whose DOF blocks are not dropped.
     """
 
     def __init__(self, model: Model, parts: list[Part], kept: Collection[str] = ()):

@@ -107,19 +107,19 @@ class Scales(NamedTuple):
 
 def _solved(run: Result, rotational: bool) -> NDArray:
     """Coordinates of all positions, or rotations, that are solved for."""
-    found = [range(run.numbering.free)[stretch(run.numbering, triplet)]
-             for triplet in run.model.triplets()
-             if triplet.solved and triplet.rotational == rotational]
+    found = [range(run.numbering.free)[stretch(run.numbering, dof_block)]
+             for dof_block in run.model.dof_blocks()
+             if dof_block.solved and dof_block.rotational == rotational]
     return np.array([k for one in found for k in one], dtype=int)
 
 
 def disturbed(model: Model, scales: Scales) -> Model:
     """A model with small random velocities and forces at all nodes that are free to move."""
     found, rng = copied(model), np.random.default_rng(29)
-    for triplet in found.triplets():
-        if triplet.solved:
-            size = scales.spin if triplet.rotational else scales.speed
-            triplet.rate = triplet.rate + SMALL * size * rng.standard_normal(triplet.rate.shape)
+    for dof_block in found.dof_blocks():
+        if dof_block.solved:
+            size = scales.spin if dof_block.rotational else scales.speed
+            dof_block.rate = dof_block.rate + SMALL * size * rng.standard_normal(dof_block.rate.shape)
     free = [node for node in found.nodes.values() if node.position and node.position.solved]
     for node in free if scales.force > 0.0 else ():
         direction = rng.standard_normal(node.position.start.shape)

@@ -11,7 +11,7 @@ def in_words(part: Part, form: Form) -> str:
     """A form with its inertia."""
     if form.rigid:
         return "rigid"
-    stiffening = "" if form.inertia != "c" else (
+    stiffening = "" if form.inertia != "floating_field" else (
         ", stiffening" if form.stiffening else ", not stiffening")
     return f"{_size(part, form)}, inertia {form.inertia}{stiffening}"
 
@@ -37,7 +37,7 @@ def in_brief(parts: list[Part], choice: Choice) -> str:
     told = [f"{', '.join(name for name, _ in group)}: {words}"
             for words, group in groupby(pairs, key=lambda pair: pair[1])]
     whole = {"planar": choice.planar, "joints shared": choice.shared,
-             "triplets dropped": choice.dropped}
+             "DOF blocks dropped": choice.dropped}
     return "; ".join([*told, *(name for name, made in whole.items() if made)]) or "all as it is"
 
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.model.histories import History
+from sebody.model.time_functions import TimeFunction
 
 SEEN = 0.01             # share of a load's strongest line that reference steps may miss
 OFF_GRID = 0.9137       # samples of a load are so much denser, so that they are on no step's grid
@@ -30,7 +30,8 @@ class Missed(NamedTuple):
     time: float
 
 
-def missed(names: Iterable[str], histories: Iterable[History], h: float, t_end: float) -> Missed:
+def missed(names: Iterable[str], time_functions: Iterable[TimeFunction], h: float,
+           t_end: float) -> Missed:
     """The load or drive of which steps of a length miss most.
 
     Parameters
@@ -38,22 +39,23 @@ def missed(names: Iterable[str], histories: Iterable[History], h: float, t_end: 
     h, t_end : float
         Step and end of a run [time].
     """
-    found = [Missed(name, *_share(history, h, t_end))
-             for name, history in zip(names, histories, strict=True) if not _is_constant(history)]
+    found = [Missed(name, *_share(time_function, h, t_end))
+             for name, time_function in zip(names, time_functions,
+                                            strict=True) if not _is_constant(time_function)]
     return max(found, key=lambda one: one.share, default=Missed("", 0.0, 0.0))
 
 
-def _is_constant(history: History) -> bool:
-    return not history.functions and not history.waves and not any(
-        any(piece[1:]) for piece in history.pieces) and len(history.pieces) == 1
+def _is_constant(time_function: TimeFunction) -> bool:
+    return not time_function.functions and not time_function.waves and not any(
+        any(piece[1:]) for piece in time_function.pieces) and len(time_function.pieces) == 1
 
 
 @lru_cache(maxsize=512)
-def _share(history: History, h: float, t_end: float) -> tuple[float, float]:
-    """The share of a history that steps miss, and the time where they miss most."""
-    times, values = _sampled(history, h, t_end)
+def _share(time_function: TimeFunction, h: float, t_end: float) -> tuple[float, float]:
+    """The share of a time function that steps miss, and the time where they miss most."""
+    times, values = _sampled(time_function, h, t_end)
     steps = np.arange(0.0, t_end + h, h)
-    off = values - np.interp(times, steps, history.values(steps))
+    off = values - np.interp(times, steps, time_function.values(steps))
     cells = np.linspace(0.0, t_end, min(MOST, int(DENSE * OFF_GRID * t_end / h) + 2))
     load, lost = (np.abs(np.fft.rfft(_means(times, one, cells))) for one in (values, off))
     if load.max() == 0.0:
@@ -61,18 +63,19 @@ def _share(history: History, h: float, t_end: float) -> tuple[float, float]:
     return float(lost.max() / load.max()), float(times[np.argmax(np.abs(off))])
 
 
-def _sampled(history: History, h: float, t_end: float) -> tuple[NDArray, NDArray]:
-    """Values on no step's grid, and on both sides of all times where the history bends or jumps."""
+def _sampled(time_function: TimeFunction, h: float, t_end: float) -> tuple[NDArray, NDArray]:
+    """Values on no step's grid, and on both sides of all times where the time function bends or jumps."""
     count = min(MOST, int(DENSE * OFF_GRID * t_end / h) + 2)
-    known = np.array(history.corners if history.functions else history.times, dtype=float)
+    known = np.array(time_function.corners if time_function.functions else time_function.times,
+                     dtype=float)
     known = known[(known > 0.0) & (known < t_end)]
     middles = (known[1:] + known[:-1]) / 2
     before = known - SIDE * t_end / count
     times = np.unique(np.concatenate([np.linspace(0.0, t_end, count), known, before, middles]))
-    return times, history.values(times)
+    return times, time_function.values(times)
 
 
 def _means(times: NDArray, values: NDArray, cells: NDArray) -> NDArray:
-    """Means of a history over cells, by trapezia."""
+    """Means of a time function over cells, by trapezia."""
     whole = np.concatenate([[0.0], np.cumsum(np.diff(times) * (values[1:] + values[:-1]) / 2)])
     return np.diff(np.interp(cells, times, whole)) / np.diff(cells)

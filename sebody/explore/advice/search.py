@@ -82,7 +82,7 @@ class Search:
                                          shared=self.shared, dropped=self.dropped)
 
     def _exact(self) -> None:
-        """Try what should change nothing: shared and dropped triplets, a planar model."""
+        """Try what should change nothing: shared and dropped DOF blocks, a planar model."""
         for name in ("shared", "dropped", "planar"):
             changed = self.base._replace(**{name: True})
             if name == "planar" and self.lab.unstable:

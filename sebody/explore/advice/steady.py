@@ -31,7 +31,8 @@ def steady_frequencies(result: Result) -> NDArray:
     if np.any(velocities):
         spin = _spin(places, velocities)
         return modes(equilibrium(model, spin=spin), spin).omega
-    loaded = any(one.history is not None and one.history.at(0.0)[0] for one in model.loads)
+    loaded = any(one.time_function is not None and one.time_function.at(0.0)[0]
+                 for one in model.loads)
     if loaded or np.any(model.gravity_field):
         return modes(equilibrium(model)).omega
     return modes(Simulation(model, STEP)).omega

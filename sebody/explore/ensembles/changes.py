@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.model.histories import History, history
 from sebody.model.history_rows import rows_of
 from sebody.model.model import Model
-from sebody.model.parts import Element, Joint, Motion, Node, Superelement, Triplet
+from sebody.model.parts import DofBlock, Element, Joint, Motion, Node, Superelement
+from sebody.model.time_functions import TimeFunction, time_function
 from sebody.model.variants.copying import exchange
 from sebody.reduction import ReducedBody
 from sebody.reduction.scaling import scaled
@@ -128,7 +128,7 @@ def joint_position(model: Model, joint: Joint, name: str) -> Handle:
     return _attribute(fixed, "start", MOTION)
 
 
-def _triplet(node: Node, kind: str, name: str) -> Triplet:
+def _triplet(node: Node, kind: str, name: str) -> DofBlock:
     found = getattr(node, kind)
     if found is None:
         raise InputError(f"{name}: node {node.name!r} has no {kind}; give another node")
@@ -138,13 +138,13 @@ def _triplet(node: Node, kind: str, name: str) -> Triplet:
     return found
 
 
-def _rate(triplet: Triplet, name: str) -> Handle:
-    if triplet.fixed:
-        raise InputError(f"{name}: {triplet.name} is fixed or moved: vary its drive")
-    base, given = triplet.rate, triplet.given
+def _rate(dof_block: DofBlock, name: str) -> Handle:
+    if dof_block.fixed:
+        raise InputError(f"{name}: {dof_block.name} is fixed or moved: vary its drive")
+    base, given = dof_block.rate, dof_block.given
 
     def assign(rate: NDArray, is_given: bool) -> None:
-        triplet.rate, triplet.given = rate, is_given
+        dof_block.rate, dof_block.given = rate, is_given
     return Handle(np.array(base, dtype=float), lambda value: assign(np.array(value), True),
                   lambda: assign(base, given), MOTION)
 
@@ -243,44 +243,44 @@ def spring_constant(quantity: str) -> Callable[[Model, Element, str], Handle]:
 
 def load_table(model: Model, load: Element, name: str) -> Handle:
     """Values of a load's table, at its times."""
-    if load.history is None:
+    if load.time_function is None:
         raise InputError(f"{name}: {load.name!r} has no time function")
     return _table(load, name, LOADS)
 
 
 def _table(element: Element, name: str, touches: str) -> Handle:
-    before = element.history
+    before = element.time_function
     rows = None if before.functions or before.waves else rows_of(before.times, before.pieces)
     if rows is None or len(rows) < 2:
         raise InputError(f"{name}: the time function of {element.name!r} is not a table of values: "
                          "vary the amplitude instead")
 
-    def made(values: NDArray) -> History:
+    def made(values: NDArray) -> TimeFunction:
         # the corners of the table as built: runs that have the same ones begin with a copy
-        return replace(history(np.column_stack([rows[:, 0], values])), corners=before.corners)
-    return _attribute(element, "history", touches, rows[:, 1], made)
+        return replace(time_function(np.column_stack([rows[:, 0], values])), corners=before.corners)
+    return _attribute(element, "time_function", touches, rows[:, 1], made)
 
 
-def drive_amplitude(model: Model, drive: Joint | tuple[Triplet, Motion], name: str) -> Handle:
+def drive_amplitude(model: Model, drive: Joint | tuple[DofBlock, Motion], name: str) -> Handle:
     """Factor of a prescribed motion."""
     motion = drive if isinstance(drive, Joint) else drive[1]
-    before = motion.history
+    before = motion.time_function
     if before.functions:
         raise InputError(f"{name}: the motion of {motion.name!r} is a function of time: give a "
                          "table or a ready profile to vary its amplitude")
 
-    def made(factor: NDArray) -> History:
+    def made(factor: NDArray) -> TimeFunction:
         f = float(factor)
         return replace(before, pieces=tuple(tuple(f * c for c in p) for p in before.pieces),
                        waves=tuple((f * A, w, p) for A, w, p in before.waves))
     if isinstance(drive, Joint):
-        return _attribute(drive.constraints[0], "history", MOTION, np.array(1.0), made)
-    triplet, motions = drive[0], list(drive[0].motions)
+        return _attribute(drive.constraints[0], "time_function", MOTION, np.array(1.0), made)
+    dof_block, motions = drive[0], list(drive[0].motions)
 
     def assign(value: NDArray) -> None:
-        triplet.motions = [motion._replace(history=made(value)) if m is motion else m
-                           for m in triplet.motions]
+        dof_block.motions = [motion._replace(time_function=made(value)) if m is motion else m
+                           for m in dof_block.motions]
 
     def put_back() -> None:
-        triplet.motions = motions
+        dof_block.motions = motions
     return Handle(np.array(1.0), assign, put_back, MOTION)

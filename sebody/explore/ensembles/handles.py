@@ -77,8 +77,8 @@ def _springs(model: Model) -> dict[str, Any]:
 
 
 def _drives(model: Model) -> dict[str, Any]:
-    moved = {m.name: (t, m) for t in model.triplets() for m in t.motions}
-    return moved | {j.name: j for j in model.joints if j.history is not None}
+    moved = {m.name: (t, m) for t in model.dof_blocks() for m in t.motions}
+    return moved | {j.name: j for j in model.joints if j.time_function is not None}
 
 
 KINDS = (

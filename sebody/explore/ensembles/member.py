@@ -14,11 +14,7 @@ from sebody.engine.state import (
     ASKED,
     DONE,
     FAILED,
-    REASON,
     REASONS,
-    RECORDED,
-    RESTART,
-    TIME,
     Record,
     State,
 )
@@ -44,8 +40,8 @@ class Copies:
         one = image.template
         self.image, self.dense = image, one.dense
         self.floats = image.floats.copy()
-        self.system: System = image.places.packed(one.system, self.floats)
-        state = image.places.packed(one.state, self.floats)
+        self.system: System = image.offsets.packed(one.system, self.floats)
+        state = image.offsets.packed(one.state, self.floats)
         self.control, self.moved = one.state.control.copy(), one.state.moved.copy()
         self.state: State = _with_own_integers(state)
         self.exchanges = RowExchanges(self.system, self.state)
@@ -81,11 +77,11 @@ class Copies:
         state.loads_old[:] = state.loads
         move_prescribed(system, state)
         place_dependent(system.links, state.q, state.v, state.a, state.R)
-        state.control[RESTART] = ASKED
+        state.control.restart = ASKED
         code = advance(system, state, self.none, self.scheme, 0, 0, self.dense)
         if code == FAILED:
             raise InputError("the initial state has no accelerations: "
-                             f"{REASONS[int(state.control[REASON])]}")
+                             f"{REASONS[int(state.control.reason)]}")
         state.control[:] = self.control
         state.frames_old[:] = state.frames
         state.aux_old[:] = state.aux
@@ -129,18 +125,18 @@ class Course:
         rows = max(2, min(last // self.every + 1, MOST_NUMBERS // state.now.size))
         record = run.record(rows, self.every) if isinstance(run, Copies) else Record.of(
             state, rows, self.every)
-        state.control[RECORDED] = 0
+        state.control.recorded = 0
         write_record(state, record)
         reached, code = 0, DONE
         while reached < last and code == DONE:
-            room = rows - int(state.control[RECORDED])
+            room = rows - int(state.control.recorded)
             reached = min(last, (reached // self.every + room) * self.every)
             code = self._advance(record, reached, stop)
-            self._take(record.rows[:state.control[RECORDED]])
-            state.control[RECORDED] = 0
+            self._take(record.rows[:state.control.recorded])
+            state.control.recorded = 0
         if code == FAILED:
-            reason = REASONS[int(state.control[REASON])]
-            self.reason = f"stopped at t = {state.clock[TIME]:.6g}: {reason}"
+            reason = REASONS[int(state.control.reason)]
+            self.reason = f"stopped at t = {state.clock.time:.6g}: {reason}"
         return code in (DONE, FAILED) or run is None
 
     def _advance(self, record: Record, last: int, stop: Stop) -> int:

@@ -15,7 +15,7 @@ from scipy.sparse import csr_array
 
 from sebody.assembly.allocation import allocate
 from sebody.assembly.build import build
-from sebody.engine.packing import Places, patterns
+from sebody.engine.offsets import Offsets, patterns
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.errors import InputError
@@ -53,10 +53,10 @@ class Image:
         self.lines = None
         if not handles:         # a single run of the model as it is
             return
-        self.places = Places(template.system, template.state)
-        self.floats = np.zeros(self.places.size)
-        self.places.packed(template.system, self.floats)
-        self.places.packed(template.state, self.floats)
+        self.offsets = Offsets(template.system, template.state)
+        self.floats = np.zeros(self.offsets.size)
+        self.offsets.packed(template.system, self.floats)
+        self.offsets.packed(template.state, self.floats)
         self.lines = self._lines(handles) if self._can_copy(handles) else None
 
     @property
@@ -70,7 +70,7 @@ class Image:
         constrained = bool(one.numbering.multipliers) or bool(one.system.prescribed.size)
         touched = {handle.touches for handle in handles.values()}
         return not (any(handle.whole for handle in handles.values())
-                    or one.scheme.stabilized or one.system.relaxed[0]
+                    or one.scheme.stabilized or one.system.regularized[0]
                     or ((constrained or one.begun) and MOTION in touched)
                     or (one.start.changed and touched & {BODIES, MOTION}))
 
@@ -123,8 +123,8 @@ class Image:
         state = allocate(one.model, system, numbering, one.h, one.dense)
         if not (_alike(system, one.system) and _alike(state, one.state, sizes_only=True)):
             return None
-        found = np.zeros(self.places.size)
-        same = Places(system, state)
+        found = np.zeros(self.offsets.size)
+        same = Offsets(system, state)
         same.packed(system, found)
         same.packed(state, found)
         return found

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.engine.state import TIME
 from sebody.errors import InputError
 from sebody.explore.ensembles.member import Copies, Course
 from sebody.explore.ensembles.outcome import Outcome
@@ -103,7 +102,7 @@ class Work:
             return
         if not ended or course.reason:
             self.outcome.failures[run] = course.reason or INTERRUPTED
-        self.outcome.reached[run] = begun.state.clock[TIME]
+        self.outcome.reached[run] = begun.state.clock.time
         for name, value in course.values().items():
             if value is None:
                 continue

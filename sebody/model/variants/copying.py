@@ -27,7 +27,7 @@ class Variant(NamedTuple):
 def copied(model: Mechanism) -> Mechanism:
     """A copy of a model.
 
-    Reduced bodies, sections, histories and compiled functions of users never change: both models
+    Reduced bodies, sections, time functions and compiled functions of users never change: both models
     have them.
 
     Raises
@@ -39,10 +39,11 @@ def copied(model: Mechanism) -> Mechanism:
     elements = (*model.constraints, *model.loads)
     constant = [body.body for body in model.bodies.values()]
     constant += [one for beam in model.beams for one in (beam.section, *beam.bodies)]
-    constant += [one for element in elements for one in (element.history, element.function)
+    constant += [one for element in elements for one in (element.time_function, element.function)
                  if one is not None]
-    constant += [motion.history for triplet in model.triplets() for motion in triplet.motions]
-    return deepcopy(model, {id(one): one for one in constant})
+    constant += [motion.time_function for dof_block in model.dof_blocks()
+                 for motion in dof_block.motions]
+    return deepcopy(model, {one: one for one in constant})
 
 
 def checked(model: Mechanism) -> Mechanism:
@@ -102,13 +103,13 @@ def exchange(model: Mechanism, old: Superelement, body: ReducedBody, frame: str,
     del model.bodies[old.name]
     model.own_names.discard(old.name)
     made = superelement(model, old.name, body, nodes, frame=frame, inertia=inertia,
-                        frame_node=[id(n) for n in nodes].index(id(carrier)) if on_node else 0,
+                        frame_node=[n for n in nodes].index(carrier) if on_node else 0,
                         stiffening=stiffening)
     made.mode_rates = old.mode_rates[:body.modes].copy()
     model.bodies = {name: model.bodies[name] for name in order}
     kind = body_load_kind(FRAMES[frame].kernel, model.planar)
     model.loads = [
-        replace(one, kind=kind, places=made.places, body=made,
+        replace(one, kind=kind, attachments=made.attachments, body=made,
                 constants={"P": body.loads[load_name(one)]}) if one.body is old else one
         for one in model.loads]
     return made

@@ -7,28 +7,28 @@ from sebody.errors import InputError
 from sebody.model.joints import spherical
 from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import attach
-from sebody.model.parts import Connection, Node, Triplet
+from sebody.model.parts import Connection, DofBlock, Node
 from sebody.model.sharing import can_share, share
 
 
-def is_held(position: Triplet) -> bool:
+def is_held(position: DofBlock) -> bool:
     """Whether a position is fixed, prescribed, or at the end of links that begin at such a one."""
     return position.fixed if position.root is None else position.root.fixed
 
 
-def start_rate(triplet: Triplet) -> NDArray:
+def start_rate(dof_block: DofBlock) -> NDArray:
     """Initial velocity: of what is prescribed that of its motions, at the end of links by these."""
-    if triplet.root is not None:
-        return start_rate(triplet.root) + sum(
-            _velocity(start_rate(rotation), arm) for rotation, arm in triplet.arms)
-    if not triplet.fixed:
-        return triplet.rate
-    return sum((motion.direction * motion.history.at(0.0)[1] for motion in triplet.motions),
-               np.zeros_like(triplet.rate))
+    if dof_block.root is not None:
+        return start_rate(dof_block.root) + sum(
+            _velocity(start_rate(rotation), arm) for rotation, arm in dof_block.arms)
+    if not dof_block.fixed:
+        return dof_block.rate
+    return sum((motion.direction * motion.time_function.at(0.0)[1] for motion in dof_block.motions),
+               np.zeros_like(dof_block.rate))
 
 
 def make_dependent(model: Mechanism, node: Node, carrier: Node, keep: str, body: str) -> bool:
-    """Put a node at the end of a rigid link, with all that it shares triplets with.
+    """Put a node at the end of a rigid link, with all that it shares DOF blocks with.
 
     Where links lead from one to the other already, or both to what is held, the link gets an end of
     its own, which equations keep at the node.
@@ -36,7 +36,7 @@ def make_dependent(model: Mechanism, node: Node, carrier: Node, keep: str, body:
     Parameters
     ----------
     keep : {'full', 'translation', 'rotation'}
-        Which of its triplets.
+        Which of its DOF blocks.
     body : str
         Whose link it is.
 
@@ -95,7 +95,7 @@ def _link(model: Mechanism, node: Node, carrier: Node) -> None:
     model.connections.append(Connection("position", node, carrier))
 
 
-def _begin_at(model: Mechanism, position: Triplet) -> None:
+def _begin_at(model: Mechanism, position: DofBlock) -> None:
     """Let links begin at a position that was at the end of some: these are passed backwards."""
     root, arms = position.root, position.arms
     if root.given and not all(rotation.given or rotation.fixed for rotation, _ in arms):
@@ -112,9 +112,9 @@ def _velocity(rate: NDArray, arm: NDArray) -> NDArray:
     return rate[0] * np.array([-arm[1], arm[0]]) if len(arm) == 2 else np.cross(rate, arm)
 
 
-def _move_root(model: Mechanism, old: Triplet, new: Triplet, arms: tuple) -> None:
+def _move_root(model: Mechanism, old: DofBlock, new: DofBlock, arms: tuple) -> None:
     """Put a root at the end of links from another one, with all links that begin there."""
-    for other in model.triplets():
+    for other in model.dof_blocks():
         if other.root is old:
             other.root, other.arms = new, _shortened((*arms, *other.arms))
     old.root, old.arms = new, arms

@@ -9,7 +9,7 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.model.beams import beam
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Beam, Node, Triplet
+from sebody.model.parts import Beam, DofBlock, Node
 from sebody.model.variants.copying import Variant, checked, copied, loads_on
 
 
@@ -95,7 +95,7 @@ def _described(model: Mechanism, name: str) -> Beam:
                              "nodes")
     used = _used(model, own)
     for node in own.nodes[1:-1]:
-        if used & {id(node), id(node.position), id(node.rotation)} or any(
+        if used & {node, node.position, node.rotation} or any(
                 t.fixed or t.given for t in (node.position, node.rotation)):
             raise InputError(f"{what}something else acts on or holds its node {node.name!r}; build "
                              "two beams that meet there")
@@ -103,23 +103,23 @@ def _described(model: Mechanism, name: str) -> Beam:
 
 
 def _used(model: Mechanism, own: Beam) -> set[int]:
-    """Nodes and triplets, by id, that anything but a beam needs."""
+    """Nodes and DOF blocks, by id, that anything but a beam needs."""
     found: set[int] = set()
     for element in (*model.constraints, *model.loads, *model.rigid_bodies.values()):
-        found |= {id(place.node) for place in element.places}
+        found |= {place.node for place in element.attachments}
     for joint in model.joints:
-        found |= {id(joint.node), id(joint.to)}
+        found |= {joint.node, joint.to}
     for body in model.bodies.values():
         if body not in own.parts:
-            found |= {id(node) for node in body.nodes}
+            found |= {node for node in body.nodes}
     for one in model.connections:
-        found |= {id(one.node), id(one.to)}
-    for triplet in model.triplets():
-        if triplet.root is not None:
-            found |= {id(parent) for parent in triplet.parents()}
+        found |= {one.node, one.to}
+    for dof_block in model.dof_blocks():
+        if dof_block.root is not None:
+            found |= {parent for parent in dof_block.parents()}
     for node in (*model.nodes.values(), *model.grounds):
         if node not in own.nodes:
-            found |= {id(t) for t in (node.position, node.rotation) if t is not None}
+            found |= {t for t in (node.position, node.rotation) if t is not None}
     return found
 
 
@@ -129,7 +129,7 @@ def _start_like(nodes: list[Node], before: tuple[Node, ...]) -> None:
         place = k * (len(before) - 1) / (len(nodes) - 1)
         first = min(int(place), len(before) - 2)
         for kind in ("position", "rotation"):
-            ends: list[Triplet] = [getattr(before[first + i], kind) for i in (0, 1)]
+            ends: list[DofBlock] = [getattr(before[first + i], kind) for i in (0, 1)]
             getattr(node, kind).rate = _between(ends[0].rate, ends[1].rate, place - first)
 
 

@@ -1,4 +1,4 @@
-"""Triplets that no joint or load needs, left to follow the others of their body."""
+"""DOF blocks that no joint or load needs, left to follow the others of their body."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from scipy.linalg import eigh, null_space
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.model.inputs import known, triplet
+from sebody.model.inputs import dof_block, known
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Node, Superelement, Triplet
+from sebody.model.parts import DofBlock, Node, Superelement
 from sebody.model.variants.copying import (
     Variant,
     checked,
@@ -50,12 +50,12 @@ def drop_triplet(model: Mechanism, name: str, node: Node | str, what: str = "rot
     Raises
     ------
     InputError
-        An unknown superelement or node, a triplet that something else needs, or a body whose frame
+        An unknown superelement or node, a block that something else needs, or a body whose frame
         needs it.
     """
     body, node = placed(model, name), known(model, node)
     inputs.choice(what, "what is dropped", _KINDS)
-    own = triplet(node, what)
+    own = dof_block(node, what)
     _check_unused(model, body, node, what, own)
     place = body.nodes.index(node)
     made = copied(model)
@@ -80,7 +80,7 @@ def drop_triplet(model: Mechanism, name: str, node: Node | str, what: str = "rot
 
 
 def can_be_dropped(model: Mechanism) -> list[tuple[str, str, str]]:
-    """Superelement, node and kind of triplets that `drop_triplet` can drop, one after the other.
+    """Superelement, node and kind of DOF blocks that `drop_triplet` can drop, one after the other.
 
     Of those of which one must stay, such as the last rotation of a body, the first are listed;
     rotations come first. Positions whose stresses stiffen their body stay.
@@ -101,8 +101,8 @@ def can_be_dropped(model: Mechanism) -> list[tuple[str, str, str]]:
 
 
 def _check_unused(model: Mechanism, body: Superelement, node: Node, what: str,
-                  own: Triplet) -> None:
-    """Refuse a triplet that anything but the body needs."""
+                  own: DofBlock) -> None:
+    """Refuse a DOF block that anything but the body needs."""
     kept = body.positions if what == "position" else body.rotations
     if not any(t is own for t in kept):
         raise InputError(f"superelement {body.name!r} does not keep {own.name}")
@@ -115,12 +115,12 @@ def _check_unused(model: Mechanism, body: Superelement, node: Node, what: str,
             raise InputError(f"{needed} superelement {other.name!r}")
     acting = loads_on(model, body)
     for element in (*model.rigid_bodies.values(), *model.constraints, *model.loads):
-        if element not in acting and any(t is own for t in element.triplets):
+        if element not in acting and any(t is own for t in element.dof_blocks):
             raise InputError(f"{needed} {element.name!r}")
     for other in model.nodes.values():
         if other is not node and getattr(other, what) is own:
             raise InputError(f"{needed} node {other.name!r}, which shares it")
-    for other in model.triplets():
+    for other in model.dof_blocks():
         if other.root is not None and any(t is own for t in other.parents()):
             raise InputError(f"{needed} {other.name}, which follows it by a rigid link")
     for load in acting:

@@ -28,8 +28,8 @@ def flat_element(flat: Flattening, element: Element) -> Element:
         raise InputError(f"{element.name!r} is a function of yours, whose symmetry is unknown: "
                          "build the planar model by hand")
     kind, constants = _ELEMENTS[element.kind](flat, element)
-    return Element(element.name, kind, tuple(flat.place(p) for p in element.places), constants,
-                   history=element.history)
+    return Element(element.name, kind, tuple(flat.place(p) for p in element.attachments), constants,
+                   time_function=element.time_function)
 
 
 def flat_joint(flat: Flattening, joint: Joint) -> Joint:
@@ -52,7 +52,8 @@ def flat_joint(flat: Flattening, joint: Joint) -> Joint:
     if any(e.kind == "planar_turn_drive" for e in equations) and (
             flat.plane.normal @ joint.axes.columns[:, 0] < 0):
         node, to = to, node     # it turns `to` about the normal as `node` about its axis
-        equations = [Element(e.name, e.kind, e.places[::-1], e.constants, e.multipliers, e.history)
+        equations = [Element(e.name, e.kind, e.attachments[::-1], e.constants, e.multipliers,
+                             e.time_function)
                      for e in equations]
     return Joint(joint.name, tuple(equations), node, to, _axes(flat, joint), joint.kind)
 
@@ -71,9 +72,10 @@ def _axes(flat: Flattening, joint: Joint) -> Axes | None:
 
 
 def _equation(flat: Flattening, one: Element, kind: str, multipliers: int,
-              constants: dict | None = None, places: tuple | None = None) -> Element:
-    places = tuple(flat.place(p) for p in one.places) if places is None else places
-    return Element(one.name, kind, places, constants or {}, multipliers, one.history)
+              constants: dict | None = None, attachments: tuple | None = None) -> Element:
+    attachments = tuple(flat.place(p)
+                        for p in one.attachments) if attachments is None else attachments
+    return Element(one.name, kind, attachments, constants or {}, multipliers, one.time_function)
 
 
 def _coincident(flat: Flattening, joint: Joint, one: Element) -> Element:
@@ -102,14 +104,14 @@ def _aligned(flat: Flattening, joint: Joint, one: Element, symmetric: bool) -> E
     if not symmetric and joint.kind not in TURNING_TOGETHER:
         raise InputError(f"the axis of {joint.name!r} is neither in the plane nor normal to it")
     return _equation(flat, one, "planar_aligned", 1,
-                     places=rotations(flat.node(joint.node), flat.node(joint.to)))
+                     attachments=rotations(flat.node(joint.node), flat.node(joint.to)))
 
 
 def _on_line(flat: Flattening, joint: Joint, one: Element) -> Element:
     axis = np.cross(one.constants["n1"], one.constants["n2"])
     if flat.is_normal(axis):
         return _equation(flat, one, "planar_coincident", 2,
-                         places=positions(*(flat.node(p.node) for p in one.places[:2])))
+                         attachments=positions(*(flat.node(p.node) for p in one.attachments[:2])))
     e = flat.vector(axis, f"the axis of {joint.name!r}")
     return _equation(flat, one, "planar_on_line", 1, {"n1": np.array([-e[1], e[0]])})
 

@@ -1,11 +1,11 @@
-"""Nodes, triplets and vectors of a spatial model in a plane, each refused that is not in it."""
+"""Nodes, DOF blocks and vectors of a spatial model in a plane, each refused that is not in it."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody.errors import InputError
 from sebody.model.pairs import NEAR
-from sebody.model.parts import Motion, Node, Place, Triplet
+from sebody.model.parts import Attachment, DofBlock, Motion, Node
 from sebody.model.plane import Plane
 
 _SAME = 1e-9            # a direction is in the plane, or normal to it, but for this part of it
@@ -24,7 +24,7 @@ class Flattening:
     def __init__(self, plane: Plane, size: float) -> None:
         self.plane, self._near = plane, NEAR * size
         self._nodes: dict[int, Node] = {}
-        self._triplets: dict[int, Triplet] = {}
+        self._dof_blocks: dict[int, DofBlock] = {}
 
     def point(self, point: NDArray, what: str) -> NDArray:
         """Planar coordinates of a point, (2,).
@@ -77,35 +77,36 @@ class Flattening:
 
     def node(self, node: Node) -> Node:
         """The planar node, the same for the same node."""
-        if id(node) not in self._nodes:
-            self._nodes[id(node)] = Node(
+        if node not in self._nodes:
+            self._nodes[node] = Node(
                 node.name, self.point(node.point, f"node {node.name!r}"),
-                *(None if triplet is None else self.triplet(triplet)
-                  for triplet in (node.position, node.rotation)))
-        return self._nodes[id(node)]
+                *(None if dof_block is None else self.dof_block(dof_block)
+                  for dof_block in (node.position, node.rotation)))
+        return self._nodes[node]
 
-    def place(self, place: Place) -> Place:
+    def place(self, place: Attachment) -> Attachment:
         """The planar place."""
-        return Place(self.node(place.node), place.kind)
+        return Attachment(self.node(place.node), place.kind)
 
-    def triplet(self, triplet: Triplet) -> Triplet:
-        """The planar triplet, without motions, the same for the same triplet."""
-        if id(triplet) not in self._triplets:
-            what = f"initial velocity of {triplet.name}"
-            if triplet.rotational:
-                start, rate = np.zeros(1), np.array([self.axial(triplet.rate, what)])
+    def dof_block(self, dof_block: DofBlock) -> DofBlock:
+        """The planar DOF block, without motions, the same for the same DOF block."""
+        if dof_block not in self._dof_blocks:
+            what = f"initial velocity of {dof_block.name}"
+            if dof_block.rotational:
+                start, rate = np.zeros(1), np.array([self.axial(dof_block.rate, what)])
             else:
-                start = self.point(triplet.start, triplet.name)
-                rate = self.vector(triplet.rate, what)
-            made = self._triplets[id(triplet)] = Triplet(
-                triplet.name, start, rate, triplet.fixed, given=triplet.given,
-                rotational=triplet.rotational)
-            if triplet.root is not None:
-                made.root = self.triplet(triplet.root)
+                start = self.point(dof_block.start, dof_block.name)
+                rate = self.vector(dof_block.rate, what)
+            made = self._dof_blocks[dof_block] = DofBlock(
+                dof_block.name, start, rate, dof_block.fixed, given=dof_block.given,
+                rotational=dof_block.rotational)
+            if dof_block.root is not None:
+                made.root = self.dof_block(dof_block.root)
                 made.arms = tuple(
-                    (self.triplet(rotation), self.vector(arm, f"the rigid link to {triplet.name}"))
-                    for rotation, arm in triplet.arms)
-        return self._triplets[id(triplet)]
+                    (self.dof_block(rotation),
+                     self.vector(arm, f"the rigid link to {dof_block.name}"))
+                    for rotation, arm in dof_block.arms)
+        return self._dof_blocks[dof_block]
 
     def motion(self, motion: Motion) -> Motion:
         """The planar prescribed motion."""

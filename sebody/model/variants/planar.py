@@ -94,9 +94,9 @@ def _normals(model: Mechanism) -> Iterator[NDArray]:
     inside = [node.point - next(iter(model.nodes.values())).point for node in model.nodes.values()]
     inside += [model.gravity_field]
     inside += [one.direction for one in model.loads if one.kind in ("force", "follower_force")]
-    for triplet in model.triplets():
-        own = [triplet.rate, *(motion.direction for motion in triplet.motions)]
-        (axial if triplet.rotational else inside).extend(own)
+    for dof_block in model.dof_blocks():
+        own = [dof_block.rate, *(motion.direction for motion in dof_block.motions)]
+        (axial if dof_block.rotational else inside).extend(own)
     rows = [v / np.linalg.norm(v) for v in inside if np.any(v)]
     _, values, directions = np.linalg.svd(np.vstack([*rows, np.zeros((3, 3))]))
     around = np.eye(3) if values[1] <= _SAME * values[0] else ()     # all nodes are on a line
@@ -136,24 +136,25 @@ class _Flat(NamedTuple):
         made.nodes = {name: flat.node(node) for name, node in model.nodes.items()}
         made.grounds = [flat.node(node) for node in model.grounds]
         made.gravity_field = flat.vector(model.gravity_field, "gravity")
-        for triplet in model.triplets():
-            flat.triplet(triplet).motions = [flat.motion(motion) for motion in triplet.motions]
+        for dof_block in model.dof_blocks():
+            flat.dof_block(dof_block).motions = [flat.motion(motion)
+                                                 for motion in dof_block.motions]
         made.joints = [flat_joint(flat, joint) for joint in model.joints]
         made.rigid_bodies = {name: flat_element(flat, one)
                              for name, one in model.rigid_bodies.items()}
         joints = dict(zip(map(id, model.joints), made.joints, strict=True))
         made.connections = [
             Connection(one.kind, flat.node(one.node), one.to and flat.node(one.to),
-                       one.joint and joints[id(one.joint)], one.spare)
+                       one.joint and joints[one.joint], one.spare)
             for one in model.connections]
-        on_nodes = {id(load): [flat_element(flat, load)] for load in model.loads
+        on_nodes = {load: [flat_element(flat, load)] for load in model.loads
                     if load.mode is None and load.body is None}
         bodies = {name: planar_body(body.body, flat.plane.axes, f"superelement {name!r}")
                   for name, body in model.bodies.items()}
         rates = {name: _rates(body, bodies[name]) for name, body in model.bodies.items()}
         for load in model.loads:
             if load.mode is not None:
-                on_nodes[id(load)] = _mode_forces(load, bodies[load.mode[0]])
+                on_nodes[load] = _mode_forces(load, bodies[load.mode[0]])
             elif load.body is not None and load_name(load) in bodies[load.body.name].odd_loads:
                 raise InputError(f"{load.name!r} has a part out of the plane")
         return cls(flat, made, bodies, rates, on_nodes)
@@ -162,7 +163,7 @@ class _Flat(NamedTuple):
 def _rates(old: Superelement, found: PlanarBody) -> NDArray:
     """Initial velocities of the planar modes."""
     rates = found.modes.T @ old.mode_rates
-    bound = [triplet.rate for triplet in (*old.positions, *old.rotations)]
+    bound = [dof_block.rate for dof_block in (*old.positions, *old.rotations)]
     odd = np.concatenate([0.0 * v for v in bound] + [old.mode_rates - found.modes @ rates])
     every = np.concatenate([*bound, old.mode_rates])
     if odd @ old.body.mass @ odd > _ODD**2 * (every @ old.body.mass @ every):
@@ -180,7 +181,8 @@ def _mode_forces(load: Element, found: PlanarBody) -> list[Element]:
                          "out of the plane")
     own = np.flatnonzero(np.abs(parts) > _SAME)
     return [Element(load.name if len(own) == 1 else f"{load.name} ({k + 1})", "mode_force", (),
-                    {"factor": load.constants["factor"] * parts[m]}, history=load.history,
+                    {"factor": load.constants["factor"]
+                     * parts[m]}, time_function=load.time_function,
                     mode=(name, int(m))) for k, m in enumerate(own)]
 
 
@@ -191,12 +193,12 @@ def _built(model: Mechanism, flat_model: _Flat) -> Mechanism:
         _add_body(made, old, flat_model)
     for load in model.loads:
         if load.body is None:
-            made.loads += flat_model.loads[id(load)]
+            made.loads += flat_model.loads[load]
         else:
             body = made.bodies[load.body.name]
             made.loads.append(Element(
-                load.name, body_load_kind(FRAMES[body.frame].kernel, True), body.places,
-                {"P": body.body.loads[load_name(load)]}, history=load.history, body=body))
+                load.name, body_load_kind(FRAMES[body.frame].kernel, True), body.attachments,
+                {"P": body.body.loads[load_name(load)]}, time_function=load.time_function, body=body))
     made.own_names, made.default_names = set(model.own_names), model.default_names.copy()
     made.beams = flat_beams(model, made, flat_model.flat)
     return made

@@ -79,7 +79,7 @@ def _carrier(body: Superelement) -> Node:
     """The node that the others follow by rigid links."""
     what = f"superelement {body.name!r} cannot be made rigid"
     own = list(zip(body.nodes, body.body.keeps, strict=True))
-    held = {id(node.position): node for node, keep in own
+    held = {node.position: node for node, keep in own
             if keep != "rotation" and is_held(node.position)}.values()
     still = [node for node in held if node.position.fixed]
     if len(still) > 1:
@@ -131,6 +131,6 @@ def _add_resultant(model: Mechanism, load: Element, carrier: Node) -> None:
     at = body.coordinates[load.body.nodes.index(carrier)]
     total = body.rigid_modes_about(at).T @ body.loads[load_name(load)]
     model.own_names.discard(load.name)
-    loads.force(model, carrier, total[:size], load.history, follower=True, name=load.name)
-    loads.torque(model, carrier, total[size:], load.history, follower=True,
+    loads.force(model, carrier, total[:size], load.time_function, follower=True, name=load.name)
+    loads.torque(model, carrier, total[size:], load.time_function, follower=True,
                  name=f"{load.name} (moment)")

@@ -1,11 +1,11 @@
-"""Shared triplets in the place of a joint's equations."""
+"""Shared DOF blocks in the place of a joint's equations."""
 
 import numpy as np
 
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Connection, Element, Joint, Node, Triplet
+from sebody.model.parts import Connection, DofBlock, Element, Joint, Node
 from sebody.model.sharing import can_share, share
 from sebody.model.variants.copying import Variant, checked, copied, fewer
 from sebody.spelling import unknown
@@ -15,7 +15,7 @@ _NAMES = {"position": "positions", "rotation": "rotations"}
 
 
 def shared(model: Mechanism, name: str | None = None) -> Variant:
-    """The model with shared or fixed triplets in the place of equations of a joint.
+    """The model with shared or fixed DOF blocks in the place of equations of a joint.
 
     Positions that equations hold together become one, and rotations of welds and prismatic joints:
     the motion stays the same with fewer unknowns. What the joint passes is found from the balance
@@ -77,7 +77,7 @@ def _is_free(model: Mechanism, node: Node) -> bool:
 
 
 def _kinds(model: Mechanism, joint: Joint) -> list[str]:
-    """Which triplets of its nodes may become one."""
+    """Which DOF blocks of its nodes may become one."""
     return [kind for kind in ("position", "rotation")
             if _replaced(joint, kind) and _can_share(model, joint, kind)]
 
@@ -98,15 +98,15 @@ def _can_share(model: Mechanism, joint: Joint, kind: str) -> bool:
     return can_share(one, other) if _is_free(model, joint.to) else one.solved
 
 
-def _keeps_rate(one: Triplet, other: Triplet) -> bool:
-    """Whether an initial velocity that the user gave stays if the triplets become one."""
+def _keeps_rate(one: DofBlock, other: DofBlock) -> bool:
+    """Whether an initial velocity that the user gave stays if the DOF blocks become one."""
     if not one.given or not np.any(one.rate):
         return True
     return other.solved and (not other.given or np.array_equal(one.rate, other.rate))
 
 
 def _share(model: Mechanism, joint: Joint, kind: str) -> None:
-    """Put one triplet in the place of two, and take the equations away."""
+    """Put one DOF block in the place of two, and take the equations away."""
     gone, one, other = _replaced(joint, kind), getattr(joint.node, kind), getattr(joint.to, kind)
     joint.constraints = tuple(c for c in joint.constraints if c not in gone)
     free = _is_free(model, joint.to)

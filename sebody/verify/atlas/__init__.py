@@ -35,12 +35,16 @@ CASES: dict[str, Callable[[], Finding]] = {
 # kernels of all cases, to compile them at once; what a case needs besides it compiles itself
 KERNELS = tuple(
     superelement_name(*names) for names in (
-        ("f2", "converged_mean", "a"), ("f2", "converged_mean", "b"), ("f2", "mean", "b"),
-        ("f2", "mean_small", "b"), ("f2m4", "converged_mean", "b"), ("f2t1", "positions", "b"),
-        ("planar-f2", "converged_mean", "b"), ("planar-f2m2", "converged_mean", "b"),
-        ("planar-f2m4", "converged_mean", "b"), ("f2", "converged_mean", "c"),
-        ("planar-f2", "converged_mean", "c"), ("planar-f2m2", "converged_mean", "c"),
-        ("any", "converged_mean", "c"), ("any", "positions", "c"))) + tuple(
+        ("f2", "converged_mean", "frame_axes"), ("f2", "converged_mean", "material"), ("f2",
+                                                                                       "mean", "material"),
+        ("f2", "mean_small", "material"), ("f2m4", "converged_mean", "material"), ("f2t1",
+                                                                                   "positions", "material"),
+        ("planar-f2", "converged_mean", "material"), ("planar-f2m2", "converged_mean", "material"),
+        ("planar-f2m4", "converged_mean", "material"), ("f2", "converged_mean", "floating_field"),
+        ("planar-f2", "converged_mean", "floating_field"), ("planar-f2m2", "converged_mean",
+                                                            "floating_field"),
+        ("any", "converged_mean", "floating_field"), ("any", "positions",
+                                                      "floating_field"))) + tuple(
     element_name(kind) for kind in (
         "force", "torque", "planar_force", "planar_follower_force", "planar_on_line",
         "planar_point_mass", "planar_torque"))

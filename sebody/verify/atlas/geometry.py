@@ -28,7 +28,7 @@ def _beam(model: Model, length: float = 10.0, first: int = 0, last: int = 4,
 def _rotated(model: Model, angle: float) -> tuple[Simulation, int]:
     """A run with the second node rotated [deg], and the status of the kernel."""
     run = Simulation(model, 0.01)
-    k = run.numbering.rotations[id(model.nodes["b"].rotation)]
+    k = run.numbering.rotations[model.nodes["b"].rotation]
     run.state.R[9 * k:9 * k + 9] = exp_map(0.0, 0.0, np.radians(angle))
     return run, assemble(RESIDUAL, RESIDUAL, run.system, run.state, run.state.residual)
 
@@ -88,7 +88,7 @@ def collinear() -> Finding:
     for offset in offsets:
         model = triangle(offset)
         run = Simulation(model, 0.01)
-        at = run.numbering.triplets[id(model.nodes["c"].position)]
+        at = run.numbering.dof_blocks[model.nodes["c"].position]
         run.state.q[at + 2] += 1e-6
         assemble(RESIDUAL, RESIDUAL, run.system, run.state, run.state.residual)
         frame = run.state.frames[:9].reshape(3, 3)
@@ -170,7 +170,7 @@ def _struck(share: float) -> np.ndarray:
     model = Model()
     ends = model.node("a", (0, 0, 0)), model.node("b", (10.0, 0, 0))
     model.superelement("beam", ReducedBody(body.stiffness, mass, body.coordinates, body.keeps),
-                       ends, inertia="b")
+                       ends, inertia="material")
     model.fix("a", "position")
     model.rigid_velocity((0.0, 0.0, 0.0), (2.0, 0.5, 1.0))
     model.force("b", (0, 1.0, 0), [(0.0, 0.0), (0.5, 40.0), (1.0, 0.0)])

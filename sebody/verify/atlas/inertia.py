@@ -100,7 +100,7 @@ def _force_difference(angle: float) -> float:
         axis = np.array([0.3, 0.5, 0.8]) / np.sqrt(0.98)
         for k, node in enumerate(ends):
             turn = (-0.5 + k) * angle * axis
-            at = run.numbering.rotations[id(node.rotation)]
+            at = run.numbering.rotations[node.rotation]
             run.state.R[9 * at:9 * at + 9] = exp_map(*turn)
         run.state.a[:] = 0.0
         assemble(RESIDUAL, RESIDUAL, run.system, run.state, run.state.residual)

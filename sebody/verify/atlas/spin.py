@@ -73,7 +73,7 @@ def frequencies() -> Finding:
     finding.curves["beam"] = line, [lag(eta) for eta in line]
     kinds = {"one body with stiffening": {"inertia": None},
              "exact inertia, no stiffening": {"inertia": None, "stiffening": False},
-             "option B": {"inertia": "b"}}
+             "option B": {"inertia": "material"}}
     for name, kind in kinds.items():
         found = [_lowest(arm(1, "mean", MODES, **kind), eta) for eta in SPINS]
         stable = SPINS[:found.index(0.0) + 1] if 0.0 in found else SPINS

@@ -46,7 +46,7 @@ def soft_torsion() -> Finding:
         limits = []
         for torsion in SOFTNESS:
             theory = np.sqrt(square * torsion)
-            model = blade(torsion, frame, {"inertia": "b"})
+            model = blade(torsion, frame, {"inertia": "material"})
             limits.append(spin_limit(model.bodies["blade"], (0.0, 0.0, 1.0)))
             finding.rows.append(Row(f"{frame} frame, G J / E I {torsion:g}: limit of the body",
                                     theory, limits[-1], 1e-3))

@@ -48,7 +48,8 @@ def _together(inertia: str | None, runs: int) -> Measurement:
     seconds = min(ensemble.run(parameters, T_END, outputs).seconds for _ in range(2))
     steps = round(T_END / scene.h)
     efficiency = alone * runs / len(few["beam.stiffness"]) / (processors() * seconds)
-    return Measurement(SCENE, f"{processors()} threads" + (OPTION_B if inertia == "b" else ""),
+    return Measurement(SCENE, f"{processors()} threads" + (OPTION_B
+                                                           if inertia == "material" else ""),
                        _unknowns(scene), scene.h, 1e6 * seconds / (runs * steps), None, None,
                        seconds, thread_efficiency=efficiency)
 
@@ -59,7 +60,7 @@ def _unknowns(scene) -> int:
 
 def _one_by_one(runs: int) -> Measurement:
     """A `Simulation` for each run, which is what a loop in a script does; scaled to all runs."""
-    scene = builder("hinged-beam")(inertia="b")
+    scene = builder("hinged-beam")(inertia="material")
     began, inside, count = time.perf_counter(), 0.0, min(ALONE, runs)
     for _ in range(count):
         run = Simulation(scene.model, scene.h).run_to(T_END)

@@ -59,7 +59,7 @@ def cases(scene: str) -> list[Case]:
         name = "spherical_beam" if scene == "spherical-beam" else "hinged_beam"
         found = [Case(scene, "superelement", {}, 0.0, name, 9)]
     return [one for case in found for one in (case, case._replace(
-        variant=case.variant + OPTION_B, parameters=case.parameters | {"inertia": "b"}))]
+        variant=case.variant + OPTION_B, parameters=case.parameters | {"inertia": "material"}))]
 
 
 def measure(case: Case) -> Measurement:

@@ -108,7 +108,7 @@ class _Chart:
         ways = {f"{name}.{what}": np.abs(x - x[0]).max() for what in ("position", "rotation")
                 for name, node in self.model.nodes.items()
                 if getattr(node, what) is not None
-                and id(getattr(node, what)) in result.numbering.triplets
+                and getattr(node, what) in result.numbering.dof_blocks
                 for x in [result[f"{name}.{what}"]]}
         usual = f"{tip}.position"
         if ways.get(usual, 0.0) > 0.0:

@@ -38,8 +38,8 @@ def _frames(planar: bool) -> list[Variant]:
     frames = ["node", "converged_mean"] + ([] if planar else ["mean", "mean_small"])
     titles = {"node": "frame at a node", "converged_mean": "mean frame",
               "mean": "mean frame, one iteration", "mean_small": "mean frame, linear increments"}
-    found = [(f"{titles[f]}, option b", {"frame": f, "inertia": "b"}) for f in frames]
-    found += [("mean frame, option a", {"inertia": "a"}),
+    found = [(f"{titles[f]}, option b", {"frame": f, "inertia": "material"}) for f in frames]
+    found += [("mean frame, option a", {"inertia": "frame_axes"}),
               ("frame at a node, option c", {"frame": "node"}), ("mean frame, option c", {}),
               ("mean frame, option c, no stiffening", {"stiffening": False})]
     return [Variant("frames and inertia", *one) for one in found]
@@ -48,7 +48,7 @@ def _frames(planar: bool) -> list[Variant]:
 def _divisions() -> list[Variant]:
     found = [Variant("modes" + of, f"1 body, {m} modes" + of.replace("B", "option b"),
                      {"modes": m, "bodies": 1} | given)
-             for of, given in (("", {}), (", B", {"inertia": "b"})) for m in (0, 1, 2, 4, 8)]
+             for of, given in (("", {}), (", B", {"inertia": "material"})) for m in (0, 1, 2, 4, 8)]
     found += [Variant("bodies", f"{n} bodies, {m} modes", {"bodies": n, "modes": m,
                                                            "elements": 24})
               for n in (2, 4, 8) for m in (0, 2)]

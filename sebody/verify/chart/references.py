@@ -23,7 +23,7 @@ MEMBERS = {"values": Member((None, ...)), "error": Member((), least=0)}
 
 
 class Reference(NamedTuple):
-    """A history on the grid of a chart and the estimate of its relative L2 error."""
+    """A time function on the grid of a chart and the estimate of its relative L2 error."""
 
     values: NDArray
     error: float
@@ -41,9 +41,9 @@ def reference(scene: str, folder: Path | None = None) -> Reference:
         return kept(path)
     except InputError:      # none, or a damaged one
         pass
-    coarse = history(scene, ELEMENTS, FINER)
-    finer_beams = history(scene, 2 * ELEMENTS, FINER)
-    finer_steps = history(scene, ELEMENTS, 2 * FINER)
+    coarse = time_function(scene, ELEMENTS, FINER)
+    finer_beams = time_function(scene, 2 * ELEMENTS, FINER)
+    finer_steps = time_function(scene, ELEMENTS, 2 * FINER)
     correction = (finer_beams - coarse) / 3 + (finer_steps - coarse) * 4 / 3
     values = finer_beams + correction
     found = Reference(values, float(np.linalg.norm(correction) / np.linalg.norm(values)))
@@ -70,12 +70,12 @@ def kept(path: Path) -> Reference:
     return Reference(found["values"], float(found["error"]))
 
 
-def history(scene: str, elements: int, finer: int) -> NDArray:
+def time_function(scene: str, elements: int, finer: int) -> NDArray:
     """The compared quantity of nonlinear beams, on the grid of the chart.
 
     Their limit does not depend on the inertia option; B is the fastest.
     """
-    built = builder(scene)(bodies=elements, modes=0, elements=elements, inertia="b")
+    built = builder(scene)(bodies=elements, modes=0, elements=elements, inertia="material")
     result = simulate(built.model, built.h / finer, built.t_end, generalized_alpha(0.9, 1e-9),
                       output_every=COARSEST * finer)
     return result[SCENES[scene]]
@@ -86,8 +86,8 @@ def _key(scene: str) -> str:
     built = builder(scene)()
     text = [built.h, built.t_end, ELEMENTS, FINER, COARSEST]
     text += [(load.name, [(k, np.asarray(v).tolist()) for k, v in load.constants.items()],
-              load.history.times, load.history.pieces,
-               load.history.waves) for load in built.model.loads]
+              load.time_function.times, load.time_function.pieces,
+               load.time_function.waves) for load in built.model.loads]
     text += [b.body.stiffness.tobytes() + b.body.mass.tobytes()
              for b in built.model.bodies.values()]
     return hashlib.sha256(repr(text).encode()).hexdigest()[:12]

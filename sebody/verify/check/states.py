@@ -23,10 +23,10 @@ from sebody.contract.layout import (
     TANGENT,
     Row,
     bound_counts,
-    carried_counts,
     first_mode,
     first_rotation,
     floating_counts,
+    rigid_part_counts,
     scratch_size,
     superelement_counts,
 )
@@ -114,7 +114,7 @@ class Case(NamedTuple):
             return counts | bound_counts(
                 self.n_positions, self.n_rotations, self.planar) | floating_counts(
                 self.planar, self.n, self.slaved, self.resultants, self.damped)
-        return counts | carried_counts(self.planar, self.n, self.damped)
+        return counts | rigid_part_counts(self.planar, self.n, self.damped)
 
     @property
     def row(self) -> Row:
@@ -123,7 +123,7 @@ class Case(NamedTuple):
 
     @property
     def rotations(self) -> list[int]:
-        """First unknown of each rotation triplet."""
+        """First unknown of each rotation DOF block."""
         first = self.first_rotation
         return [] if not self.R.size else [first + 3 * j for j in range(self.n_rotations)]
 

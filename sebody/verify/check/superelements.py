@@ -19,8 +19,7 @@ from sebody.contract.layout import (
     first_mode,
 )
 from sebody.generated.options import INERTIA_OPTIONS
-from sebody.verify.check import carried
-from sebody.verify.check.carried import is_carried
+from sebody.verify.check import rigid_part
 from sebody.verify.check.definitions import (
     frame_rotation,
     frame_traits,
@@ -38,6 +37,7 @@ from sebody.verify.check.floating import (
     strain,
     without_stiffness,
 )
+from sebody.verify.check.rigid_part import has_rigid_part
 from sebody.verify.check.states import (
     LIMIT,
     STATES,
@@ -145,9 +145,9 @@ def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: flo
         slaved, resultants = FOLLOWING[seed % len(FOLLOWING)]
         case = case._replace(slaved=slaved, resultants=resultants, damped=damping > 0)
         values |= generic_constants(random, case, values, damping)
-    elif is_carried(case):
+    elif has_rigid_part(case):
         case = case._replace(damped=damping > 0)
-        values |= carried.generic_constants(random, case, M, damping)
+        values |= rigid_part.generic_constants(random, case, M, damping)
     return with_constants(case, values | _declared(case, values, random))
 
 
@@ -226,8 +226,8 @@ def energies(case: Case) -> float:
     d, V = case.dimension, y @ constants["S"] @ y / 2
     if is_floating(case):
         terms, V, moment = kinetic_terms(case), strain(case, y), first_moment(case, y)
-    elif is_carried(case):
-        terms, moment = carried.kinetic_terms(case), carried.first_moment(case, y)
+    elif has_rigid_part(case):
+        terms, moment = rigid_part.kinetic_terms(case), rigid_part.first_moment(case, y)
     else:
         yd = local_velocities(case)
         terms = np.array([yd @ constants["M"] @ yd / 2])

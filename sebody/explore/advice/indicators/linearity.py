@@ -3,7 +3,7 @@
 import numpy as np
 
 from sebody.explore.advice.forms import Form, Part
-from sebody.explore.advice.indicators.carried import carried
+from sebody.explore.advice.indicators.propagated import propagated
 from sebody.explore.advice.indicators.recorded import Recorded
 from sebody.explore.advice.indicators.vibration import strain_force
 
@@ -31,5 +31,5 @@ def bent(recorded: Recorded, part: Part, bodies: int) -> float:
     whole = recorded.deformation(recorded.nodes(part))
     found = np.array(local_rotations(recorded, part, bodies))
     square = (found**3).sum() / max(found.sum(), 1e-300)
-    return min(MISSED * square, 1.0) * carried(recorded, part, whole.shifts, whole.turns,
+    return min(MISSED * square, 1.0) * propagated(recorded, part, whole.shifts, whole.turns,
                                                strain_force(recorded, part))

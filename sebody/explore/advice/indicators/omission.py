@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh
 
 from sebody.explore.advice.forms import Form, Part
-from sebody.explore.advice.indicators.carried import Force, carried
 from sebody.explore.advice.indicators.coordinates import flat, nodal
+from sebody.explore.advice.indicators.propagated import Force, propagated
 from sebody.explore.advice.indicators.recorded import Recorded
 from sebody.explore.advice.indicators.vibration import detuned
 from sebody.reduction import ReducedBody
@@ -53,7 +53,7 @@ def omission(recorded: Recorded, part: Part, form: Form) -> float:
     off = [min(COUPLED * (omega / slowest)**2, 1.0) for omega in recorded.frequencies]
     if added == 0.0:
         return max(off, default=0.0)
-    return max([carried(recorded, part, shifts, turns, force)
+    return max([propagated(recorded, part, shifts, turns, force)
                 + detuned(recorded, part, min(added / max(kept, 1e-300) / 2, 1.0)), *off])
 
 

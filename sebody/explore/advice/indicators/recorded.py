@@ -54,7 +54,7 @@ class Recorded:
         """Nodes of a part in the reference model; of a beam from end to end."""
         bodies = self.result.model.bodies
         found = [node for name in part.superelements(part.detailed) for node in bodies[name].nodes]
-        return list({id(node): node for node in found}.values())
+        return list({node: node for node in found}.values())
 
     def bodies(self, part: Part, count: int) -> list[tuple[list[Node], ReducedBody]]:
         """Bodies of a part divided into so many, with all modes; their nodes in the reference."""
@@ -118,10 +118,10 @@ class Recorded:
         return Deformation(shifts, np.stack(found, axis=1), axes)
 
     def read(self, node: Node, quantity: str) -> NDArray | None:
-        """A history of a node at the examined states; None without this triplet."""
-        triplet = getattr(node, "rotation" if "rotation" in quantity or "angular" in quantity
+        """A history of a node at the examined states; None without this DOF block."""
+        dof_block = getattr(node, "rotation" if "rotation" in quantity or "angular" in quantity
                           else "position")
-        if triplet is None or id(triplet) not in self.result.numbering.triplets:
+        if dof_block is None or dof_block not in self.result.numbering.dof_blocks:
             return None
         return self.result[f"{node.name}.{quantity}"][::self.every]
 

@@ -1,7 +1,7 @@
 """The deformation that a rigid body lacks."""
 
 from sebody.explore.advice.forms import Form, Part
-from sebody.explore.advice.indicators.carried import carried
+from sebody.explore.advice.indicators.propagated import propagated
 from sebody.explore.advice.indicators.recorded import Recorded
 from sebody.explore.advice.indicators.vibration import first_frequency
 
@@ -13,5 +13,5 @@ def rigidity(recorded: Recorded, part: Part, form: Form) -> float:
     """
     (_, body), *_ = recorded.bodies(part, 1)
     first = first_frequency(body)
-    return max([carried(recorded, part, *recorded.deformation(recorded.nodes(part))[:2]),
+    return max([propagated(recorded, part, *recorded.deformation(recorded.nodes(part))[:2]),
                 *(min((omega / first)**2, 1.0) for omega in recorded.frequencies)])

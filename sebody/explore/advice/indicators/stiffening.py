@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.explore.advice.forms import Form, Part
-from sebody.explore.advice.indicators.carried import Force, carried
 from sebody.explore.advice.indicators.coordinates import compliance, flat, nodal
+from sebody.explore.advice.indicators.propagated import Force, propagated
 from sebody.explore.advice.indicators.recorded import Recorded
 from sebody.explore.advice.indicators.vibration import detuned, first_frequency, strain_force
 from sebody.reduction import ReducedBody
@@ -42,7 +42,7 @@ def stiffening(recorded: Recorded, part: Part, form: Form) -> float:
         energy += np.einsum("ni,ij,nj->n", y, body.stiffness[:n, :n], y).mean()
         work += float((y * forces).sum(axis=1).mean())
         force = force.with_(Force.of(body, forces))
-    return (carried(recorded, part, shifts, turns, force)
+    return (propagated(recorded, part, shifts, turns, force)
             + detuned(recorded, part, min(abs(work) / max(energy, 1e-300) / 2, 1.0)))
 
 
@@ -67,6 +67,6 @@ def spin(recorded: Recorded, part: Part, form: Form) -> float:
     change = max(share * (float(np.abs(recorded.spins(nodes)).max()) / first_frequency(body))**2
                  for nodes, body in recorded.bodies(part, form.bodies))
     whole = recorded.deformation(recorded.nodes(part))
-    return (min(change, 1.0) * carried(recorded, part, whole.shifts, whole.turns,
+    return (min(change, 1.0) * propagated(recorded, part, whole.shifts, whole.turns,
                                        strain_force(recorded, part))
             + detuned(recorded, part, min(change / 2, 1.0)))

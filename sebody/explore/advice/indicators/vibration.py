@@ -5,8 +5,8 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh
 
 from sebody.explore.advice.forms import Part
-from sebody.explore.advice.indicators.carried import Force, carried
 from sebody.explore.advice.indicators.coordinates import flat
+from sebody.explore.advice.indicators.propagated import Force, propagated
 from sebody.explore.advice.indicators.recorded import Recorded
 from sebody.reduction import ReducedBody
 
@@ -23,7 +23,8 @@ def detuned(recorded: Recorded, part: Part, change: float, most: float = MOST) -
     found = recorded.deformation(recorded.nodes(part))
     shifts, turns = (one - one.mean(axis=0) for one in found[:2])
     phase = abs(change) * frequency(recorded, shifts) * recorded.duration
-    return carried(recorded, part, shifts, turns, strain_force(recorded, part)) * min(most, phase)
+    return propagated(recorded, part, shifts, turns, strain_force(recorded, part)) * min(most,
+                                                                                         phase)
 
 
 def strain_force(recorded: Recorded, part: Part) -> Force:

@@ -2,21 +2,21 @@
 
 With redundant constraints the iteration matrix M is singular, and a residual has parts that no
 correction removes: rounding, or a small misfit of the joints. The factors are those of
-``A = M + R + L``. The diagonal R is negative at multipliers, `RELAXATION` times the strength of
+``A = M + R + L``. The diagonal R is negative at multipliers, `REGULARIZATION` times the strength of
 their constraints; L is positive at bodies with nearly no inertia about an axis. A matrix of this
 kind has factors in any order of elimination (Vanderbei 1995). The correction is
 
     z = (I - A^-1 R)^k A^-1 r    with k `PROJECTIONS`.
 
-Where the constraints act with the strength s relative to R / RELAXATION, this is the solution times
-``(s / (s + RELAXATION))^(k + 1)``: all of it where s is far above RELAXATION, nothing where s is
+Where the constraints act with the strength s relative to R / REGULARIZATION, this is the solution times
+``(s / (s + REGULARIZATION))^(k + 1)``: all of it where s is far above REGULARIZATION, nothing where s is
 rounding. So no rank is decided upon, multipliers get no part that exerts no force, and the motion
 does not depend on R. R has one size for all multipliers of an equation, L for all axes of a
 rotation: neither depends on the directions of axes. What L changes, at most `LIGHT` of a
 correction, further iterations correct; where something without mass can move it leaves that alone.
 
-Rounding in the factors is divided by RELAXATION^(k + 1) and multiplied by its own power k, so
-RELAXATION must stay well above that rounding, which thin bodies increase by 1 / LIGHT.
+Rounding in the factors is divided by REGULARIZATION^(k + 1) and multiplied by its own power k, so
+REGULARIZATION must stay well above that rounding, which thin bodies increase by 1 / LIGHT.
 """
 
 import numpy as np
@@ -24,9 +24,8 @@ import numpy as np
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import C_MASS
 from sebody.engine import elimination
-from sebody.engine.state import RELAXED
 
-RELAXATION = 1e-8       # of R at multipliers, for elimination without row exchanges
+REGULARIZATION = 1e-8       # of R at multipliers, for elimination without row exchanges
 EXCHANGED = 1e-10       # the same for inverses, which rounding spoils less
 LIGHT = 1e-3            # of R at thin bodies, relative to their largest moment of inertia
 WEAKEST = 1e-7          # strength of constraints below which a small matrix is regularized
@@ -34,20 +33,20 @@ PROJECTIONS = 2         # of corrections and of multipliers
 
 
 @compiled
-def relax(system, state, relaxation):
+def regularize(system, state, regularization):
     """Add R and L to the iteration matrix."""
-    for k in range(system.pulls.size):
-        state.pulls[k] = state.matrix[system.pulls[k]]
-    _set_relaxation(system, state, relaxation)
+    for k in range(system.constraint_columns.size):
+        state.constraint_columns[k] = state.matrix[system.constraint_columns[k]]
+    _set_relaxation(system, state, regularization)
     for i in range(system.diagonal.size):
-        state.matrix[system.diagonal[i]] += state.relaxation[i]
-    state.control[RELAXED] = 1
+        state.matrix[system.diagonal[i]] += state.regularization[i]
+    state.control.regularized = 1
 
 
 @compiled
-def _set_relaxation(system, state, relaxation):
+def _set_relaxation(system, state, regularization):
     """R and L from the rows of the constraints and the masses, and scales by equations."""
-    n, size, R = system.diagonal.size, state.projected, state.relaxation
+    n, size, R = system.diagonal.size, state.projected, state.regularization
     mass = state.coefficients[C_MASS]
     for i in range(n):
         size[i] = R[i] = 0.0
@@ -65,11 +64,11 @@ def _set_relaxation(system, state, relaxation):
             size[system.part[i]] = max(size[system.part[i]], R[i])
     for i in range(n):
         if system.is_multiplier[i] == 0.0:
-            R[i] = LIGHT * mass * system.thin[i]
+            R[i] = LIGHT * mass * system.massless_axes[i]
         else:
             strength = size[system.part[i]]
             strength = strength if strength > 0.0 else 1.0
-            R[i] = -relaxation * strength
+            R[i] = -regularization * strength
             state.weight[i] = np.sqrt(strength)
             state.scale[i] = 1.0 / state.weight[i]
 
@@ -80,7 +79,7 @@ def project_inverse(system, state, inverse, n):
     R, result, row = np.empty((n, n)), np.empty((n, n)), np.empty(n)
     for k in range(n):
         for j in range(n):
-            R[k, j] = (state.relaxation[k] * system.is_multiplier[k] * state.scale[k]
+            R[k, j] = (state.regularization[k] * system.is_multiplier[k] * state.scale[k]
                        * state.scale[k] * inverse[k, j])
             result[k, j] = inverse[k, j]
     for _ in range(PROJECTIONS):
@@ -101,7 +100,7 @@ def project(system, state):
     n = system.diagonal.size
     for _ in range(PROJECTIONS):
         for i in range(n):
-            state.projected[i] = (state.relaxation[i] * system.is_multiplier[i]
+            state.projected[i] = (state.regularization[i] * system.is_multiplier[i]
                                   * state.correction[i])
         elimination.solve(system, state, state.projected, state.projected)
         for i in range(n):
@@ -113,14 +112,14 @@ def spread(system, state, inverse, dense):
     """Take from the multipliers the part that exerts no force: what is left is of least norm.
 
     That part grows as the constraints turn. It is what ``A^-1 R`` leaves as it is; of all other
-    parts that leaves ``RELAXATION / s``, so it is applied several times.
+    parts that leaves ``REGULARIZATION / s``, so it is applied several times.
     """
     n, part = system.diagonal.size, state.projected
     for i in range(n):
         part[i] = state.q[i] * system.is_multiplier[i]
     for _ in range(PROJECTIONS):
         for i in range(n):
-            part[i] *= state.relaxation[i] * system.is_multiplier[i]
+            part[i] *= state.regularization[i] * system.is_multiplier[i]
         if dense:
             _times_inverse(state, inverse, part, n)
         else:
@@ -145,7 +144,7 @@ def _times_inverse(state, inverse, x, n):
 
 
 @compiled
-def relaxed_norms(system, state, n):
+def regularized_norms(system, state, n):
     """Norms of a correction by a regularized matrix, of the increment and of the accelerations.
 
     Of multipliers count their forces, divided by the scales of the matrix as corrections of
@@ -155,10 +154,10 @@ def relaxed_norms(system, state, n):
     norm = size = accelerations = 0.0
     for i in range(n):
         change[i] = force[i] = 0.0
-    for k in range(system.pulls.size):
-        i, j = system.rows[system.pulls[k]], system.columns[system.pulls[k]]
-        change[i] += state.pulls[k] * state.correction[j]
-        force[i] += state.pulls[k] * state.q[j]
+    for k in range(system.constraint_columns.size):
+        i, j = system.rows[system.constraint_columns[k]], system.columns[system.constraint_columns[k]]
+        change[i] += state.constraint_columns[k] * state.correction[j]
+        force[i] += state.constraint_columns[k] * state.q[j]
     for i in range(n):
         if system.is_multiplier[i] > 0.0:
             continue

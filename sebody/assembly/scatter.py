@@ -10,7 +10,7 @@ from sebody.assembly.batches import Shape
 from sebody.contract.layout import LANES
 
 
-def element_places(shapes: Iterable[Shape], unused: int) -> tuple[NDArray, NDArray]:
+def element_scatter(shapes: Iterable[Shape], unused: int) -> tuple[NDArray, NDArray]:
     """Row and column of every entry of the element matrices.
 
     The row is `unused` where the entry is zero in all states: between the internal modes of a

@@ -10,7 +10,7 @@ from sebody.verify.check.definitions import frame_rotation, local_coordinates
 from sebody.verify.check.states import Case, along_path, constants_of, derivative
 
 
-def is_carried(case: Case) -> bool:
+def has_rigid_part(case: Case) -> bool:
     """Whether the kernel has a rigid part that turns by itself."""
     option = INERTIA_OPTIONS[case.module.INERTIA]
     return option.rates and not option.field

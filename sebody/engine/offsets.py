@@ -14,7 +14,7 @@ ALIGNED = 8     # numbers of a cache line: arrays begin at whole ones
 Group = TypeVar("Group", bound=Arrays)
 
 
-class Places:
+class Offsets:
     """Where the arrays of floats of some groups lie in one buffer, by group, member and size.
 
     Parameters

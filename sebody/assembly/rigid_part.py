@@ -7,7 +7,7 @@ from sebody.reduction import ReducedBody
 from sebody.reduction.mean_rotation import central_inertia, mean_rotation
 
 
-def carried_constants(body: ReducedBody) -> dict[str, ArrayLike]:
+def rigid_part_constants(body: ReducedBody) -> dict[str, ArrayLike]:
     """Values by name.
 
     Displacements are split into rigid ones and a rest, orthogonal in the mass.

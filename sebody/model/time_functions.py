@@ -1,7 +1,7 @@
 """Time functions of loads and drives: pieces of formulas, or functions of a user.
 
 A time function of pieces is on each interval a polynomial of at most degree five plus a harmonic:
-see `History`. Loads need the value alone, drives its first two derivatives, too.
+see `TimeFunction`. Loads need the value alone, drives its first two derivatives, too.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ Source = "ArrayLike | Callable | tuple[Callable, Callable, Callable] | History |
 
 
 @dataclass(frozen=True)
-class History:
+class TimeFunction:
     """A function of time with its first two derivatives.
 
     From the time t_i on, and until the next one, the value is
@@ -136,11 +136,11 @@ class History:
             return [t for t, before, after in self.jumps() if before[rate] != after[rate]]
         return [t for t in self.corners if t > 0.0 and _jumps(self.functions[rate].ctypes, t)]
 
-    def with_corners(self) -> History:
-        """This history of pieces, its corners where its value or a rate jumps."""
+    def with_corners(self) -> TimeFunction:
+        """This time function of pieces, its corners where its value or a rate jumps."""
         return replace(self, corners=tuple(t for t, *_ in self.jumps()))
 
-    def from_zero(self) -> History:
+    def from_zero(self) -> TimeFunction:
         """The same less its value at t = 0."""
         value = self.at(0.0)[0]
         if value == 0.0 or not np.isfinite(value):
@@ -151,7 +151,7 @@ class History:
         return replace(self, pieces=tuple((c[0] - value, *c[1:]) for c in self.pieces))
 
 
-def history(source: Source) -> History:
+def time_function(source: Source) -> TimeFunction:
     """A time function from None (1), a number, a table, a Python function or a ready profile.
 
     A table ``[(t, value), ...]`` is interpolated linearly and keeps its end values outside; two
@@ -164,21 +164,21 @@ def history(source: Source) -> History:
         A table whose times decrease or that is not finite, or a function Numba cannot compile.
     """
     if source is None:
-        return History()
+        return TimeFunction()
     if isinstance(source, Number):
-        return History(pieces=((inputs.number(source, LOAD),),))
-    if isinstance(source, History):
+        return TimeFunction(pieces=((inputs.number(source, LOAD),),))
+    if isinstance(source, TimeFunction):
         return source
     if is_function_with_rates(source):
         source = source[0]
     if callable(source):
-        return History(functions=(compiled_history(source, LOAD),))
+        return TimeFunction(functions=(compiled_history(source, LOAD),))
     times, pieces, corners = linear(*table(source, LOAD, jumping=True))
-    return History(times, pieces, corners=corners)
+    return TimeFunction(times, pieces, corners=corners)
 
 
 def with_corners(function: Callable[[float], float] | tuple[Callable, Callable, Callable],
-                 corners: Sequence[float]) -> History:
+                 corners: Sequence[float]) -> TimeFunction:
     """A function of time and the times at which it is not smooth: steps meet them.
 
     Variable steps end at all of them. Fixed ones do where accelerations jump, at a jump of a load
@@ -198,7 +198,8 @@ def with_corners(function: Callable[[float], float] | tuple[Callable, Callable, 
     given = function if is_function_with_rates(function) else (function,)
     for one in given:
         inputs.function(one, "function", "give a function of time")
-    return History(functions=tuple(compiled_history(one, LOAD) for one in given), corners=times)
+    return TimeFunction(functions=tuple(compiled_history(one, LOAD) for one in given),
+                        corners=times)
 
 
 def corners_of(given: Sequence[float]) -> tuple[float, ...]:
@@ -213,12 +214,12 @@ def corners_of(given: Sequence[float]) -> tuple[float, ...]:
     return tuple(np.unique(inputs.vector(given, "corners", remedy=remedy)).tolist())
 
 
-def clock(corners: Sequence[float] = ()) -> History:
-    """A history whose value is the time itself, with corners of what depends on it."""
-    return History((0.0,), ((0.0, 1.0),), corners=corners_of(corners), is_time=True)
+def clock(corners: Sequence[float] = ()) -> TimeFunction:
+    """A time function whose value is the time itself, with corners of what depends on it."""
+    return TimeFunction((0.0,), ((0.0, 1.0),), corners=corners_of(corners), is_time=True)
 
 
-def spline_of(times: NDArray, values: NDArray, rates: tuple[float, float]) -> History:
+def spline_of(times: NDArray, values: NDArray, rates: tuple[float, float]) -> TimeFunction:
     """A cubic spline with these rates at its ends, constant outside."""
     from scipy.interpolate import CubicSpline  # takes 0.2 s to import
 
@@ -226,14 +227,14 @@ def spline_of(times: NDArray, values: NDArray, rates: tuple[float, float]) -> Hi
     return of_cubics(times, spline.c, values[-1])
 
 
-def of_cubics(times: NDArray, coefficients: NDArray, last: float) -> History:
-    """A history of SciPy's cubics (4, intervals), highest power first, then constant."""
-    return History(tuple(times.tolist()), (*map(tuple, coefficients[::-1].T.tolist()),
+def of_cubics(times: NDArray, coefficients: NDArray, last: float) -> TimeFunction:
+    """A time function of SciPy's cubics (4, intervals), highest power first, then constant."""
+    return TimeFunction(tuple(times.tolist()), (*map(tuple, coefficients[::-1].T.tolist()),
                                            (float(last),)))
 
 
-def same_waves(parts: Sequence[History]) -> tuple[tuple[float, float, float], ...]:
-    """Harmonics of all pieces of some histories, zeros where one has none."""
+def same_waves(parts: Sequence[TimeFunction]) -> tuple[tuple[float, float, float], ...]:
+    """Harmonics of all pieces of some time functions, zeros where one has none."""
     if not any(part.waves for part in parts):
         return ()
     none = (0.0, 0.0, 0.0)

@@ -13,70 +13,70 @@ from typing import NamedTuple
 
 from sebody.assembly.fill_order import Coupling, elimination_order
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Joint, Triplet
+from sebody.model.parts import DofBlock, Joint
 
 
 class Part(NamedTuple):
     """A body as the numbering sees it."""
 
     name: str
-    parents: list[Triplet]      # that it depends on, each once, those of rotations first
+    parents: list[DofBlock]      # that it depends on, each once, those of rotations first
     modes: int
 
 
-Owners = Mapping[int, list[int]]        # id(triplet) -> parts it belongs to
+Owners = Mapping[int, list[int]]        # DOF block -> parts it belongs to
 
 
-def parents(triplets: Iterable[Triplet]) -> list[Triplet]:
-    """The triplets that positions and rotations of some triplets depend on."""
-    return [p for t in triplets for p in t.parents()]
+def parents(dof_blocks: Iterable[DofBlock]) -> list[DofBlock]:
+    """The DOF blocks that positions and rotations of some DOF blocks depend on."""
+    return [p for t in dof_blocks for p in t.parents()]
 
 
 def sequence(model: Mechanism) -> tuple[list[Part], dict[int, set[int]]]:
-    """Bodies in the order of the elimination, and the triplets that multipliers follow.
+    """Bodies in the order of the elimination, and the DOF blocks that multipliers follow.
 
     Returns
     -------
     parts : list of Part
     awaited : dict
-        id of a constraint -> ids of its triplets that are numbered before its multipliers.
+        id of a constraint -> ids of its DOF blocks that are numbered before its multipliers.
     """
     parts = [_part(b.name, [*b.rotations, *b.positions], b.body.modes)
              for b in model.bodies.values()]
-    parts += [_part(e.name, e.triplets[::-1], 0) for e in model.rigid_bodies.values()]
+    parts += [_part(e.name, e.dof_blocks[::-1], 0) for e in model.rigid_bodies.values()]
     owners: dict[int, list[int]] = {}
     for k, part in enumerate(parts):
-        for triplet in part.parents:
-            owners.setdefault(id(triplet), []).append(k)
+        for dof_block in part.parents:
+            owners.setdefault(dof_block, []).append(k)
     awaited = _awaited(model, parts, owners)
     if len(parts) < 3:
         return parts, awaited
-    bodies = [{id(p): p.start.size for p in part.parents if p.solved} for part in parts]
+    bodies = [{p: p.start.size for p in part.parents if p.solved} for part in parts]
     order = elimination_order(bodies, _couplings(model, owners, awaited))
     return [parts[k] for k in order], awaited
 
 
-def _part(name: str, triplets: Iterable[Triplet], modes: int) -> Part:
-    return Part(name, list({id(p): p for p in parents(triplets)}.values()), modes)
+def _part(name: str, dof_blocks: Iterable[DofBlock], modes: int) -> Part:
+    return Part(name, list({p: p for p in parents(dof_blocks)}.values()), modes)
 
 
 def _couplings(model: Mechanism, owners: Owners, awaited: dict[int, set[int]]) -> list[Coupling]:
-    """What couples several bodies beside the triplets they share."""
+    """What couples several bodies beside the DOF blocks they share."""
     found = []
     for element in (*model.constraints, *model.loads):
-        keys = {id(p): None for p in parents(element.triplets) if p.solved and id(p) in owners}
+        keys = {p: None for p in parents(element.dof_blocks) if p.solved and p in owners}
         if len({k for key in keys for k in owners[key]}) > 1:
-            # a triplet without a body is refused by the numbering, which names it
-            known = [key for key in awaited.get(id(element), ()) if key in owners]
+            # a DOF block without a body is refused by the numbering, which names it
+            known = [key for key in awaited.get(element, ()) if key in owners]
             found.append(Coupling(keys, element.multipliers, known))
     return found
 
 
 def _awaited(model: Mechanism, parts: list[Part], owners: Owners) -> dict[int, set[int]]:
-    """Of every constraint the triplets that its multipliers follow."""
-    awaited = {id(c): {id(p) for p in parents(c.triplets) if p.solved} for c in model.constraints}
+    """Of every constraint the DOF blocks that its multipliers follow."""
+    awaited = {c: {p for p in parents(c.dof_blocks) if p.solved} for c in model.constraints}
     joints = [joint for joint in model.joints if joint.constraints]
-    of_joint = [{k for c in joint.constraints for key in awaited[id(c)]
+    of_joint = [{k for c in joint.constraints for key in awaited[c]
                  for k in owners.get(key, ())} for joint in joints]
     of_part: list[set[int]] = [set() for _ in parts]
     for number, bodies in enumerate(of_joint):
@@ -99,11 +99,11 @@ def _awaited(model: Mechanism, parts: list[Part], owners: Owners) -> dict[int, s
 
 
 def _side(joint: Joint, part: int, owners: Owners) -> dict[int, set[int]] | None:
-    """The triplets of every equation on one body; None unless all are free and of this one."""
+    """The DOF blocks of every equation on one body; None unless all are free and of this one."""
     found = {}
     for constraint in joint.constraints:
-        own = [p for p in parents(constraint.triplets) if part in owners.get(id(p), ())]
-        if not own or not all(p.solved and len(owners[id(p)]) == 1 for p in own):
+        own = [p for p in parents(constraint.dof_blocks) if part in owners.get(p, ())]
+        if not own or not all(p.solved and len(owners[p]) == 1 for p in own):
             return None
-        found[id(constraint)] = {id(p) for p in own}
+        found[constraint] = {p for p in own}
     return found

@@ -31,7 +31,7 @@ class Force(NamedTuple):
         return Force(*map(max, self, other))
 
 
-def carried(recorded: Recorded, part: Part, shifts: NDArray, turns: NDArray,
+def propagated(recorded: Recorded, part: Part, shifts: NDArray, turns: NDArray,
             force: Force | None = None) -> float:
     """Relative error of the quantities, the largest, from errors in a part.
 
