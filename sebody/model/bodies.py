@@ -40,8 +40,8 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
         others of inertia c whose mass is off the line of their nodes; else the mean of the nodes'
         rotations, 'converged_mean'.
     inertia : {'a', 'b', 'c', 'd'}, optional
-        By default c, the velocities of the whole displacement field, of bodies that know it:
-        `craig_bampton` returns such bodies where the FE model knows the points of its mass. Of
+        By default c, the velocities of the whole displacement field, for bodies that have it:
+        `craig_bampton` returns such bodies if the FE model has a mass field. Of
         reduced matrices alone d, in which the rigid part of the motion is exact. With the paper's
         frames 'mean' and 'mean_small' b, the paper's interpolation of velocities from the boundary
         nodes.
@@ -58,8 +58,8 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
     ------
     InputError
         A body file that cannot be used, nodes that do not fit the body, unknown options,
-        stiffening asked of a body without geometric stiffness, or no kernel for the layout (the
-        message says how to make it).
+        stiffening requested for a body without geometric stiffness, or no kernel for the layout
+        (the message says how to make it).
     """
     _check_name(model, name, "superelement")
     nodes = tuple(known(model, n) for n in inputs.items(

@@ -11,7 +11,7 @@ INERTIAS = tuple(options.INERTIA_OPTIONS)
 
 def chosen_inertia(name: str, body: ReducedBody, frame: str, inertia: str | None,
                    stiffening: bool | None) -> tuple[str, bool]:
-    """The option and the stiffening of a body; what is None follows from what the body knows.
+    """The option and the stiffening of a body; what is None follows from the data of the body.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What stresses and a spin do to the stiffness of bodies that do not know of it."""
+"""Change of stiffness by stresses and spin that a form of a body neglects."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ SPIN = {"a": 1.0, "b": 1.0, "d": 0.3, "c": 0.0}     # of the square of spin over
 
 
 def stiffening(recorded: Recorded, part: Part, form: Form) -> float:
-    """Error from forces of second order that a form does not know of.
+    """Error from forces of second order that a form neglects.
 
     With the recorded boundary deformation y of a body the strains of its resultants are
     ``e = E . y + y . Ghat y / (2 lam)``. Their forces ``sum e Ghat y`` stiffen: the body gives way
