@@ -133,7 +133,7 @@ def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants)
 
 def _element_batches(numbering: Numbering, constants: _Constants, elements: Iterable[Element],
                      frames: Mapping[Superelement, int]) -> list[Batch]:
-    """Batches of elements; those on bodies know the frame of theirs, by id of the body."""
+    """Batches of elements; those on bodies use the frame of their body."""
     batches: dict[tuple, Batch] = {}
     for element in elements:
         kernel, unknowns = element_kernel(element.kind), element_unknowns(numbering, element)

@@ -41,7 +41,7 @@ def compiled_force(function: Callable[..., None], name: str, coordinates: int) -
 
 
 def compilable(function: FunctionType) -> FunctionType:
-    """A function whose helpers, and theirs, and values of default arguments are Numba's to see."""
+    """A function whose helpers, their helpers, and default arguments Numba can compile."""
     made: dict[int, Callable] = {}
 
     def compiled(value: object) -> object:
@@ -63,7 +63,7 @@ def rebuilt(function: FunctionType, replaced: Callable[[object], object]) -> Fun
     Parameters
     ----------
     replaced : callable
-        What stands for a value of a global or enclosing variable.
+        Replaces a value of a global or enclosing variable.
     """
     inner = dict(function.__globals__)
     copy = FunctionType(function.__code__, inner, function.__name__, function.__defaults__,

@@ -166,7 +166,7 @@ class _Groups:
         self._above: dict[int | None, int | None] = {}
 
     def of(self, node: Node | None) -> int | None:
-        """What stands for the group of a node; the ground for its own group."""
+        """Representative of the group of a node; the ground represents its own group."""
         key = None if node is None else node
         while (above := self._above.get(key, key)) != key:
             key = above

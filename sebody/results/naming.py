@@ -1,4 +1,4 @@
-"""The grammar of quantities, in one place: what ``tip.position.y`` stands for, everywhere.
+"""The grammar of quantities, in one place: the meaning of ``tip.position.y`` everywhere.
 
 =======================  =========================================================================
 ``tip.position``         a quantity, by the tables of `sebody.results.quantities`

@@ -90,7 +90,7 @@ def unknown_quantity(recording: Recording, name: str) -> InputError:
 
 
 def _of_field(recording: Recording, body: str, quantity: str) -> InputError:
-    """The exception for a quantity of the FE nodes of a body that is asked of the body."""
+    """The exception for a quantity of FE nodes that is requested for a whole body."""
     recovery = recording.model.bodies[body].body.recovery
     if recovery is None:
         return InputError(f"'{body}.{quantity}' is unknown: {body!r} was reduced without the "

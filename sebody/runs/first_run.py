@@ -1,7 +1,7 @@
 """What a first run compiles: the kernels of its models and the time loop, side by side.
 
 The parts of the loop are compiled for the types of a small model's arrays, which are those of
-every model. Kernels are known by name. Nothing is said or done where all is in the cache.
+every model. Kernels are known by name. Nothing is printed or done if everything is in the cache.
 """
 
 from collections.abc import Callable, Iterable

@@ -143,7 +143,7 @@ class Simulation:
         ----------
         progress : callable or bool, optional
             Called several times a second with the part of the run that is done. What it raises
-            stops the run between two steps; a later call goes on from there. True shows a bar on
+            stops the run between two steps; a later call continues from there. True shows a bar on
             a terminal or in a notebook once the run takes longer than a second.
 
         Raises

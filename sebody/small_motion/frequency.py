@@ -70,7 +70,7 @@ class FrequencyResponse:
                        f"{self.omega[k] / (2 * np.pi):.6g}")
 
     def __getitem__(self, name: str) -> NDArray:
-        """Answer of one of the quantities asked for."""
+        """Response of one of the requested quantities."""
         return self.answers[inputs.choice(name, "quantity of the response", self.answers)]
 
     def save_picture(self, path: str | Path) -> Path:
@@ -86,7 +86,7 @@ class FrequencyResponse:
 
 def frequency_response(run: Simulation | Result, load: str, quantities: str | Iterable[str],
                        omega: ArrayLike, spin: ArrayLike | None = None) -> FrequencyResponse:
-    """Answers of quantities to a harmonic amplitude of a load, about the state of a run.
+    """Response of quantities to a load of harmonic amplitude, about the state of a run.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def frequency_response(run: Simulation | Result, load: str, quantities: str | It
     ------
     InputError
         No such load or quantity, a state that cannot be evaluated, or a frequency at which the
-        answer is infinite.
+        response is infinite.
     """
     inputs.instance(run, "run", Simulation | Result, "give a Simulation, or the Result of a run or "
                     "of an equilibrium")
@@ -169,7 +169,7 @@ def _by_amplitude(run: Simulation | Result, load: Element) -> Forces:
 
 
 def _answers(matrices: tuple[NDArray, ...], push: NDArray, omega: NDArray) -> NDArray:
-    """Answers of the unknowns, (m, unknowns)."""
+    """Responses of the unknowns, (m, unknowns)."""
     mass, damping, stiffness = matrices
     # unknowns of different units: rows and columns of one size, for the judgment of solvability
     size = np.sqrt(np.abs(stiffness).max(axis=1) + np.abs(mass).max(axis=1))
@@ -193,9 +193,9 @@ def _answers(matrices: tuple[NDArray, ...], push: NDArray, omega: NDArray) -> ND
 
 def _moved_states(run: Simulation | Result, spin: Spin, X: NDArray, omega: NDArray
                   ) -> tuple[Result, NDArray]:
-    """States moved forth and back along the real and the imaginary part of every answer.
+    """States moved both ways along the real and the imaginary part of every response.
 
-    Returns their recording and by how much of the answer they are moved, (m,).
+    Returns their recording and the share of the response by which they are moved, (m,).
     """
     numbering, state = run.numbering, run.state
     moved = X @ motion(run).toarray().T         # (m, coordinates), in global axes

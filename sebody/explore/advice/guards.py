@@ -130,7 +130,7 @@ def disturbed(model: Model, scales: Scales) -> Model:
 
 
 def amplified(run: Result, still: Result, scales: Scales) -> Doubt:
-    """What a disturbance of a real system would make of the motion, if it grows.
+    """Effect of a disturbance of a real system on the motion, if it grows.
 
     Parameters
     ----------
@@ -144,5 +144,5 @@ def amplified(run: Result, still: Result, scales: Scales) -> Doubt:
     return Doubt(min(REAL * factor, 1.0) if growing else 0.0,
                  f"the motion is unstable: a small disturbance of all velocities and loads grows "
                  f"to {factor:.2g} times its size",
-                 "give the model the imperfection that it has, such as a small force aside, or "
+                 "give the model the imperfection that it has, such as a small lateral force, or "
                  "an earlier end")

@@ -25,7 +25,7 @@ def flat_element(flat: Flattening, element: Element) -> Element:
         It is not symmetric about the plane.
     """
     if element.kind not in _ELEMENTS:
-        raise InputError(f"{element.name!r} is a function of yours, of which no symmetry is known: "
+        raise InputError(f"{element.name!r} is a function of yours, whose symmetry is unknown: "
                          "build the planar model by hand")
     kind, constants = _ELEMENTS[element.kind](flat, element)
     return Element(element.name, kind, tuple(flat.place(p) for p in element.attachments), constants,

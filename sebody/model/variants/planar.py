@@ -57,7 +57,7 @@ def planar(model: Mechanism) -> Variant:
     if checked(model).planar:
         raise InputError("the model is planar already")
     if not model.nodes:
-        raise InputError("the model has no nodes, so it is in no plane")
+        raise InputError("the model has no nodes, so it has no plane")
     refused = None
     for normal in _normals(model):
         plane = Plane.through(next(iter(model.nodes.values())).point, normal)
