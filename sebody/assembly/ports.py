@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.contract.layout import INPUT
 from sebody.engine.tables import AMPLITUDE, PIECE, POLYNOMIAL
 from sebody.kernels.loader import element_kernel
 from sebody.model.histories import History, same_waves
@@ -58,8 +59,11 @@ def _jumps(element: Element) -> list[float]:
 
 
 def port_arrays(histories: list[History], prescribed: list[tuple[int, int, int, float]],
-                jumps: list[list[float]]) -> dict[str, NDArray]:
-    """The members of `System` for histories of ports and for prescribed coordinates."""
+                jumps: list[list[float]], inputs: dict[int, int]) -> dict[str, NDArray]:
+    """The members of `System` for histories of ports and for prescribed coordinates.
+
+    `inputs` are the places in `State.frames` of ports that are inputs.
+    """
     jumping = {t for times in jumps for t in times}
     corners = sorted(jumping.union(*(h.corners for h in histories)))
     return {"table_at": np.array([0, *accumulate(len(h.times) for h in histories)], dtype=np.int64),
@@ -67,8 +71,9 @@ def port_arrays(histories: list[History], prescribed: list[tuple[int, int, int, 
             "table_pieces": _pieces(histories),
             "corners": np.array(corners, dtype=float),
             "jumps": np.array([int(t in jumping) for t in corners], dtype=np.int64),
-            "functions": np.array([h.addresses for h in histories],
-                                  dtype=np.int64).reshape(-1, 3),
+            "functions": np.array([
+                (INPUT, inputs[port], 0) if port in inputs else h.addresses
+                for port, h in enumerate(histories)], dtype=np.int64).reshape(-1, 3),
             "prescribed": np.array([row[:3] for row in prescribed], dtype=np.int64).reshape(-1, 3),
             "prescribed_factor": np.array([row[3] for row in prescribed], dtype=float)}
 

@@ -9,7 +9,8 @@ import numpy as np
 
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import OK, RESIDUAL, TANGENT
-from sebody.engine.calls import call_refactorize, call_restart
+from sebody.engine.calls import call_refactorize, call_restart, call_sample
+from sebody.engine.control_data import NEXT
 from sebody.engine.evaluate import (
     assemble,
     assemble_moved,
@@ -56,6 +57,7 @@ from sebody.engine.state import (
     SOLVED,
     STEP,
     TARGET,
+    TIME,
     WANTED,
 )
 from sebody.engine.step import accept, back, begin_step, cut_step, write_record
@@ -92,7 +94,11 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
         if control[PHASE] == BEGIN and control[ADAPTIVE] == 1:
             write_between(system, state, record, last_grid)
         if control[RESTART] != 0:
-            code = call_restart(system.routines[1], system, state, lead, dense)
+            code = np.int64(DONE)
+            if control[PHASE] == BEGIN and state.memory[NEXT] <= state.clock[TIME]:
+                code = call_sample(system.routines[2], system, state)
+            if code == DONE and control[RESTART] != 0:
+                code = call_restart(system.routines[1], system, state, lead, dense)
             if code != DONE:
                 return code
             if control[DUE] == 1:

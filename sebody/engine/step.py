@@ -39,7 +39,6 @@ from sebody.engine.state import (
     INSIDE,
     ITERATION,
     ITERATIONS,
-    JUMP,
     KEPT,
     LAST_NORM,
     LEVEL,
@@ -47,6 +46,7 @@ from sebody.engine.state import (
     PHASE,
     RECORDED,
     RESTART,
+    SAMPLED,
     SECANT,
     SPLIT,
     STEP,
@@ -93,7 +93,7 @@ def begin_step(system, state, scheme):
         state.a[i] = to_a * (aux + (1.0 - alpha_m) * change - scheme.alpha_f * a)
         state.aux[i] = aux + change
     copy(state.loads, state.loads_old)
-    set_loads_beside(system, state.loads, state.clock[END], state.clock[BESIDE])
+    set_loads_beside(system, state.frames, state.loads, state.clock[END], state.clock[BESIDE])
     set_coefficients(state, scheme, h)
     move_prescribed(system, state)
     update_rotations(system, state)
@@ -159,7 +159,7 @@ def go_on_grid(state, record):
     """
     clock, control = state.clock, state.control
     short = clock[STEP] / (1 << control[LEVEL]) > LONGEST * clock[CURRENT_STEP]
-    if control[MEETS] == JUMP or (control[INSIDE] == 1 and short):
+    if control[MEETS] >= SAMPLED or (control[INSIDE] == 1 and short):
         control[RESTART] = ASKED
     if control[SPLIT] == 1:
         clock[TIME], control[INSIDE] = clock[END], 1
@@ -172,7 +172,7 @@ def go_on_grid(state, record):
         control[GRID] += 1
         control[DUE] = np.int64(control[GRID] % record.every[0] == 0)
     clock[TIME] = (control[GRID] + control[UNIT] / FINEST) * clock[STEP]
-    if control[MEETS] == JUMP:
+    if control[MEETS] >= SAMPLED:
         clock[TIME] = clock[END]
     if control[DUE] == 1 and control[RESTART] == 0:
         write_record(state, record)

@@ -17,6 +17,7 @@ from sebody.contract.layout import (
     RECORD_WORKS,
     V_PART,
 )
+from sebody.engine.control_data import NEXT
 from sebody.engine.links import place_dependent
 from sebody.engine.state import (
     ADAPTIVE,
@@ -41,6 +42,7 @@ from sebody.engine.state import (
     RECORDED,
     REJECTED,
     RESTART,
+    SAMPLED,
     SPLIT,
     STEP,
     TIME,
@@ -104,7 +106,7 @@ def choose_step(system, state):
     """Set the length of a step: as the error allows, but so that it meets corners of loads."""
     clock = state.clock
     last, h = clock[CURRENT_STEP], clock[CHOSEN]
-    left = next_corner(system, state) - clock[TIME]
+    left = min(next_corner(system, state), state.memory[NEXT]) - clock[TIME]
     if left < np.inf:
         parts = np.ceil(left / h - 1e-6)
         if parts < FAR:         # equal steps share a matrix, so rounding must not change h
@@ -151,6 +153,9 @@ def set_end(system, state):
         clock[END] = corners[k]
         control[MEETS] = max(control[MEETS], JUMP if system.jumps[k] == 1 else BEND)
         k += 1
+    if state.memory[NEXT] < end + near:
+        clock[END] = state.memory[NEXT]
+        control[MEETS] = max(control[MEETS], SAMPLED)
     if control[MEETS] == JUMP:
         clock[BESIDE] = -BEFORE * near
 
@@ -167,7 +172,7 @@ def go_on(state):
     clock[TIME] = clock[END]
     if control[MEETS] != NOTHING:
         clock[AUX_STEP] = np.inf
-    if control[MEETS] == JUMP:
+    if control[MEETS] >= SAMPLED:
         control[RESTART] = ASKED
 
 

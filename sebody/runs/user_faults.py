@@ -19,6 +19,8 @@ def functions(model: Mechanism) -> Iterator[tuple[str, UserFunction]]:
         if element.history is not None:
             for function in element.history.functions:
                 yield f"the function of {element.name!r}", function
+    for name, controller in model.controllers.items():
+        yield f"controller {name!r}", controller.function
     for triplet in model.triplets():
         for motion in triplet.motions:
             for function in motion.history.functions:

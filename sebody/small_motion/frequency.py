@@ -150,7 +150,7 @@ def by_amplitude(run: Simulation | Result, load: Element) -> tuple[NDArray, NDAr
     """
     state, at = run.state, 3 * run.numbering.ports[id(load)]
     kept, found = state.loads.copy(), []
-    set_loads(run.system, state.loads, state.now[RECORD_T])
+    set_loads(run.system, state.frames, state.loads, state.now[RECORD_T])
     for step in (0.5, -1.0):
         state.loads[at] += step
         evaluate(run.system, state, RESIDUAL, RESIDUAL, "the state")

@@ -75,7 +75,7 @@ def _by_drive(run: Simulation | Result, drive: Element) -> tuple[NDArray, NDArra
     """Derivatives by the amplitude of a drive as of `by_amplitude`, by extrapolated differences."""
     state, at = run.state, 3 * run.numbering.ports[id(drive)]
     kept = state.loads.copy()
-    set_loads(run.system, state.loads, state.now[RECORD_T])
+    set_loads(run.system, state.frames, state.loads, state.now[RECORD_T])
     middle, table = state.loads[at], []
     for step in STEPS:
         ends = []

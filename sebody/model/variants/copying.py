@@ -41,6 +41,7 @@ def copied(model: Mechanism) -> Mechanism:
     constant += [one for beam in model.beams for one in (beam.section, *beam.bodies)]
     constant += [one for element in elements for one in (element.history, element.function)
                  if one is not None]
+    constant += [*model.controllers.values(), *model.sensors.values()]
     constant += [motion.history for triplet in model.triplets() for motion in triplet.motions]
     return deepcopy(model, {id(one): one for one in constant})
 
