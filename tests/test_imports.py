@@ -32,7 +32,8 @@ ROOMS = {
     "fem": set(),
     "reduction": {"fem"},
     "io": {"fem", "reduction"},
-    "model": {*COMPILED, "fem", "reduction", "io"},     # of generated the options alone
+    "control": set(),
+    "model": {*COMPILED, "fem", "reduction", "io", "control"},     # of generated the options alone
     "assembly": {*COMPILED, "engine", "reduction", "model"},        # the options likewise
     "results": {*COMPILED, "engine", "fem", "reduction", "model", "assembly"},
     "pictures": {"fem", "reduction", "model", "results"},
@@ -71,6 +72,7 @@ OTHERS = {"io/nastran": {"pyyeti"}, "io/ansys_apart": {"ansys"}, "io/ngsolve_spa
           "results/hdf5": {"h5py"}, "files/hdf5": {"h5py"}, "results/tables": {"pandas", "xarray"},
           "results/hot_spots": {"pandas"},
           "results/vtk_series": {"meshio"}, "pictures/film": {"PIL", "imageio"},
+          "small_motion/state_space": {"control"},
           "explore/executors": {"distributed"}, "explore/table": {"pandas"}}
 
 

@@ -117,14 +117,15 @@ class _Channels:
                          carrier.position, -way, start)
 
     def _sum(self, part: str, one: Triplet | None, factors: NDArray,
-             other: Triplet | None = None, others: NDArray = np.zeros(0), start: float = 0.0
+             other: Triplet | None = None, others: NDArray | None = None, start: float = 0.0
              ) -> Channel | None:
         """``start + factors . x + others . y`` of coordinates of two triplets."""
         if not self._known(one):
             return None
         numbers = np.zeros(CHANNEL_NUMBERS)
         numbers[0], numbers[1:1 + len(factors)] = start, factors
-        numbers[4:4 + len(others)] = others
+        if others is not None:
+            numbers[4:4 + len(others)] = others
         first = self._place(part, one)
         return _made(DOT, (first, first if other is None else self._place(part, other)), numbers)
 

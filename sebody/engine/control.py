@@ -53,9 +53,8 @@ from sebody.engine.state import (
     STEP,
     TIME,
 )
+from sebody.engine.step_control import NEAR
 from sebody.kernels.abi import at, pointer_to
-
-NEAR = 1e-6             # of a step: nearer times are one
 
 
 @compiled

@@ -62,6 +62,7 @@ from sebody.engine.state import (
 )
 from sebody.engine.step import accept, back, begin_step, cut_step, write_record
 from sebody.engine.step_control import (
+    NEAR,
     SHORTEST,
     accurate,
     choose_part,
@@ -95,7 +96,8 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
             write_between(system, state, record, last_grid)
         if control[RESTART] != 0:
             code = np.int64(DONE)
-            if control[PHASE] == BEGIN and state.memory[NEXT] <= state.clock[TIME]:
+            if control[PHASE] == BEGIN and (
+                    state.memory[NEXT] <= state.clock[TIME] + NEAR * state.clock[STEP]):
                 code = call_sample(system.routines[2], system, state)
             if code == DONE and control[RESTART] != 0:
                 code = call_restart(system.routines[1], system, state, lead, dense)

@@ -39,6 +39,7 @@ from sebody.engine.state import (
     INSIDE,
     ITERATION,
     ITERATIONS,
+    JUMP,
     KEPT,
     LAST_NORM,
     LEVEL,
@@ -172,7 +173,7 @@ def go_on_grid(state, record):
         control[GRID] += 1
         control[DUE] = np.int64(control[GRID] % record.every[0] == 0)
     clock[TIME] = (control[GRID] + control[UNIT] / FINEST) * clock[STEP]
-    if control[MEETS] >= SAMPLED:
+    if control[MEETS] == JUMP:
         clock[TIME] = clock[END]
     if control[DUE] == 1 and control[RESTART] == 0:
         write_record(state, record)

@@ -108,7 +108,7 @@ def choose_step(system, state):
     last, h = clock[CURRENT_STEP], clock[CHOSEN]
     left = min(next_corner(system, state), state.memory[NEXT]) - clock[TIME]
     if left < np.inf:
-        parts = np.ceil(left / h - 1e-6)
+        parts = max(np.ceil(left / h - 1e-6), 1.0)
         if parts < FAR:         # equal steps share a matrix, so rounding must not change h
             h = last if abs(parts * last - left) < 1e-9 * left else left / parts
     clock[CURRENT_STEP] = h
@@ -154,7 +154,8 @@ def set_end(system, state):
         control[MEETS] = max(control[MEETS], JUMP if system.jumps[k] == 1 else BEND)
         k += 1
     if state.memory[NEXT] < end + near:
-        clock[END] = state.memory[NEXT]
+        if control[ADAPTIVE] == 1:      # fixed steps end there anyway
+            clock[END] = state.memory[NEXT]
         control[MEETS] = max(control[MEETS], SAMPLED)
     if control[MEETS] == JUMP:
         clock[BESIDE] = -BEFORE * near

@@ -135,11 +135,11 @@ class Simulation:
                 self.watch.say(key, message)
         self.tolerance = tolerance
         self._accelerate()
+        if tolerance is not None:
+            self._choose_steps(tolerance)
         self.sampling.check(self.h, tolerance is None)
         if self.sampling.begin():
             self._accelerate()
-        if tolerance is not None:
-            self._choose_steps(tolerance)
         first = Record.of(self.state, 1, self.every)
         self.state.control[RECORDED] = 0
         write_record(self.state, first)
