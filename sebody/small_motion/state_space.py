@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 DEPENDENT = 1e-9    # pivot, of the largest, of constraints that others contain
 MASSLESS = 1e-13    # likewise, of the masses
 ACCELERATED, RATE = "{}.acceleration", "{}.rate"
+RATES = {"position": "velocity", "rotation": "angular_velocity", "modes": "mode_rates"}
 
 
 class StateSpace(NamedTuple):
@@ -56,6 +57,30 @@ class StateSpace(NamedTuple):
     values: NDArray         # (p,) the outputs in the state itself
 
     __repr__ = brief
+
+    @property
+    def measurements(self) -> tuple[str, ...]:
+        """Names of the quantities that are the states, and their rates, for `state_feedback`.
+
+        Positions, modes and, in a plane, rotations. A regulator subtracts their values in the state
+        of the matrices.
+
+        Raises
+        ------
+        InputError
+            States that no quantity is: rotations in space, drives, and those of `minimal` and
+            `reduce`.
+        """
+        found = []
+        for name in self.states:
+            whole, rate = name.removesuffix(".rate"), name.endswith(".rate")
+            owner, kind, component = [*whole.split("."), "", ""][:3]
+            if kind not in RATES or (kind == "rotation" and component):
+                raise InputError(f"no quantity is the state {name!r}: use outputs, of which "
+                                 "measurements determine the states")
+            parts = owner, RATES[kind] if rate else kind, component
+            found.append(".".join(part for part in parts if part))
+        return tuple(found)
 
     @property
     def poles(self) -> NDArray:
