@@ -40,8 +40,8 @@ def test_a_motor_in_a_hinge_is_a_pair_of_torques():
     assert_allclose(found["angular_momentum"], found["angular_momentum"][[0]] * np.ones((501, 1)),
                     rtol=0, atol=1e-5)      # as the scheme keeps it, of second order
     energy = found["energy.kinetic"] - found["energy.kinetic"][0]
-    assert_allclose(found["motor.work"], energy, atol=2e-6)
-    assert_allclose(found["motor.work"], 0.7 * found["hinge.angle"], atol=2e-6)
+    assert_allclose(found["motor.work"], energy, atol=1e-5)
+    assert_allclose(found["motor.work"], 0.7 * found["hinge.angle"], atol=1e-5)
     along = np.einsum("ni,nij,j->n", found["hinge.moment"], found["a.rotation"], AXIS)
     assert np.abs(along).max() < 1e-9       # the joint itself exerts no moment about its axis
 
@@ -119,7 +119,7 @@ def test_a_force_along_an_axis(planar, kind):
     assert_allclose(result["rail.displacement"], 0.5 * a * result["t"]**2, rtol=1e-9, atol=1e-12)
     assert_allclose(result["rail.speed"], a * result["t"], rtol=1e-9, atol=1e-12)
     assert_allclose(result["motor.work"][-1], 0.5 * (2.0 + ratio**2 * J) * a**2, rtol=1e-6)
-    assert np.abs(result["rail.force"]).max() < 1e-8        # all of it is the actuator's
+    assert np.abs(result["rail.force"]).max() < 1e-6        # rounding of positions over h^2
 
 
 def test_a_cylinder_between_two_levers():
