@@ -1,6 +1,8 @@
 """Elements by the name of their kernel."""
 
-from sebody.derive.formulas import forces, joints, rigid
+from functools import partial
+
+from sebody.derive.formulas import actuators, forces, joints, rigid
 
 ELEMENTS = {
     "parallel_ground": lambda: joints.parallel(True),
@@ -38,4 +40,7 @@ ELEMENTS = {
     "planar_torsion_spring": lambda: forces.torsion_spring(True),
     "bushing": lambda: forces.bushing(False),
     "planar_bushing": lambda: forces.bushing(True),
+    **{"planar_" * planar + f"{way}_{part.__name__}": partial(part, way, planar)
+       for way in actuators.WAYS for part in (actuators.motor, actuators.rotor)
+       for planar in (False, True)},
 }

@@ -140,7 +140,7 @@ def _element_batches(numbering: Numbering, constants: _Constants, elements: Iter
         check_element(element, kernel, len(unknowns), numbering)
         frame = -1 if element.body is None else frames[element.body]
         row = index_row(element.name, kernel, unknowns,
-                        frame=numbering.memories.get(element, max(frame, 0)),
+                        frame=numbering.kept.memories.get(element, max(frame, 0)),
                         constants=constants.add(_element_constants(element, kernel)),
                         port=numbering.ports.get(element, 0), positions=positions_of(element),
                         nodes=_matrices(numbering, element))

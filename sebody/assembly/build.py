@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.axes import frames
 from sebody.assembly.batches import Batches, make_batches, starts
+from sebody.assembly.control import control_arrays
 from sebody.assembly.links import Ends, link_ends
 from sebody.assembly.numbering import Numbering, number, stretch
 from sebody.assembly.ports import port_arrays
@@ -38,16 +39,18 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
     batches = make_batches(model, numbering)
     ends, vectors = link_ends(model, numbering)
     own = indices(_structure(model, numbering, batches, ends))
+    ports = port_arrays(numbering.time_functions, numbering.prescribed, numbering.jumps,
+                        numbering.kept.inputs)
     system = System(
-        **own.system, links=Links(arm_vectors=vectors, **own.links),
+        **own.system, **ports, links=Links(arm_vectors=vectors, **own.links),
+        control=control_arrays(model, numbering, ports["table_at"]),
         address=np.array([batch.kernel.kernel.address for batch in batches.all]),
         index=np.array([i for batch in batches.all for row in batch.rows for i in row]),
         constants=batches.constants, rotation_at=_rotation_starts(numbering),
-        routines=np.zeros(2, dtype=np.int64),
+        routines=np.zeros(3, dtype=np.int64),
         dimension=np.array([model.dimension]), part=_parts(model, numbering),
         inertias=np.zeros(numbering.total), massless_axes=np.zeros(numbering.total),
         magnitude=_magnitude(model, numbering),
-        **port_arrays(numbering.time_functions, numbering.prescribed, numbering.jumps),
         regularized=np.zeros(1, dtype=np.int64), massless=np.zeros(1, dtype=np.int64),
         damped=np.array([int(any(b.body.damping is not None for b in model.bodies.values()))]))
     owners = [owner for batch in batches.all for owner in batch.owners]

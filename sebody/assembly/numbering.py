@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.elimination_order import elimination_order, parents
+from sebody.assembly.kept import Kept, kept
 from sebody.assembly.ports import number_ports
 from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
@@ -32,7 +33,7 @@ class Numbering(NamedTuple):
     groups: NDArray                     # where the unknowns of each body begin
     # body, constraint or load -> its first force in State.g
     forces_at: dict[Element | Superelement, int] = {}
-    memories: dict[Element, int] = {}   # element -> first number it keeps, in State.frames
+    kept: Kept | None = None            # what is kept from step to step
     jumps: list[list[float]] = []       # of every power port: when accelerations jump with it
 
 
@@ -46,11 +47,6 @@ def stretch(numbering: Numbering, dof_block: DofBlock) -> slice:
     """Coordinates of a DOF block, as a slice."""
     first = numbering.dof_blocks[dof_block]
     return slice(first, first + dof_block.start.size)
-
-
-def kept_frames(numbering: Numbering) -> int:
-    """Length of `State.frames`: frames of the superelements, and one number of each element."""
-    return 9 * len(numbering.modes) + len(numbering.memories)
 
 
 def rotational(model: Mechanism, numbering: Numbering) -> NDArray:
@@ -113,7 +109,7 @@ def number(model: Mechanism) -> Numbering:
     return Numbering(free, len(order.names), order.at, rotations, modes, order.multipliers,
                      order.names, dependent, ports.of, ports.names, ports.time_functions,
                      ports.prescribed, np.array(groups), jumps=ports.jumps,
-                     memories=_memories(model))
+                     kept=kept(model, ports.of))
 
 
 class _Order:
@@ -146,12 +142,6 @@ class _Order:
         self.multipliers[constraint] = len(self.names)
         self.names.extend(f"multiplier {j} of {constraint.name}"
                           for j in range(constraint.multipliers))
-
-
-def _memories(model: Mechanism) -> dict[Element, int]:
-    """Places, behind the frames of all superelements, of what elements keep."""
-    return {element: 9 * len(model.bodies) + k for k, element in enumerate(
-        load for load in model.loads if load.keeps_angle)}
 
 
 def _coupled(model: Mechanism, last: dict[DofBlock, int]) -> dict[DofBlock, int]:
@@ -213,4 +203,4 @@ def _used(model: Mechanism) -> list[DofBlock]:
 def record_counts(numbering: Numbering) -> dict[str, int]:
     """The counts of a model that sizes in `layout.RECORD` and `layout.ENERGIES` refer to."""
     return {"ports": len(numbering.time_functions), "coordinates": numbering.total,
-            "rotations": len(numbering.rotations), "kept": kept_frames(numbering)}
+            "rotations": len(numbering.rotations), "kept": numbering.kept.size}

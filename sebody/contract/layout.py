@@ -273,7 +273,10 @@ SUPERELEMENT_CONSTANTS = (
     Part("full", (1,), "leading rows and columns of S, M and C that are not diagonal"),
     Part("masses", (1,), "mass"),
 )
-CLOCK = 1       # in place of the address of a function of time: the time itself
+# in place of the address of a function of time: the time itself, or what was last set as an input
+CLOCK, INPUT = 1, 2
+# of an input, in State.frames: the value that was set, when, and the force or torque at that time
+INPUT_NUMBERS = 3
 MOST_SLAVED = 12        # coordinates that may follow the unknowns: load modes of three
 # translations, three rotations and six products of angular velocities
 MARGIN = MOST_SLAVED + 6    # what scratch rows of option C have beyond n: these, a force, a moment

@@ -9,7 +9,8 @@ import numpy as np
 
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import OK, RESIDUAL, TANGENT
-from sebody.engine.calls import call_refactorize, call_restart
+from sebody.engine.calls import call_refactorize, call_restart, call_sample
+from sebody.engine.control_data import NEXT
 from sebody.engine.evaluate import (
     assemble,
     assemble_moved,
@@ -46,6 +47,7 @@ from sebody.engine.state import (
 )
 from sebody.engine.step import accept, back, begin_step, cut_step, write_record
 from sebody.engine.step_control import (
+    NEAR,
     SHORTEST,
     accurate,
     choose_part,
@@ -78,7 +80,12 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
         if control.phase == BEGIN and control.adaptive == 1:
             write_between(system, state, record, last_grid)
         if control.restart != 0:
-            code = call_restart(system.routines[1], system, state, lead, dense)
+            code = np.int64(DONE)
+            if control.phase == BEGIN and (
+                    state.memory[NEXT] <= state.clock.time + NEAR * state.clock.step):
+                code = call_sample(system.routines[2], system, state)
+            if code == DONE and control.restart != 0:
+                code = call_restart(system.routines[1], system, state, lead, dense)
             if code != DONE:
                 return code
             if control.due == 1:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from numpy.typing import NDArray
 
 from sebody.engine.arrays import Arrays
+from sebody.engine.control_data import Control
 from sebody.engine.links import Links
 
 
@@ -81,11 +82,13 @@ class System(Arrays):
     others
     ------------------------------------------------------------------------------------------------
     links               rigid links
+    control             sensors, controllers and inputs
     regularized         (1,) 1 where constraints are redundant or something without mass can move
     massless            (1,) 1 where a motion has stiffness and no mass: Python solves for
                         accelerations
     damped              (1,) 1 where a superelement has structural damping
-    routines            (2,) addresses of `refactorize` and `restart`, see `sebody.engine.routines`
+    routines            (3,) addresses of `refactorize`, `restart` and `sample`: see
+                        `engine.routines`
     ==================  ============================================================================
     """
 
@@ -132,6 +135,7 @@ class System(Arrays):
     prescribed: NDArray
     prescribed_factor: NDArray
     links: Links
+    control: Control
     regularized: NDArray
     massless: NDArray
     damped: NDArray

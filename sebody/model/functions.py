@@ -8,11 +8,18 @@ import numpy as np
 from numba import njit
 
 from sebody import inputs
-from sebody.compiler.user_functions import UserFunction, compile_force, compile_history
+from sebody.compiler.user_functions import (
+    UserFunction,
+    compile_controller,
+    compile_force,
+    compile_history,
+)
 from sebody.errors import InputError
 from sebody.model.outside import defaults, is_helper, refuse, values_read
 
-OF_TIME, FORCE = ("t",), ("t", "x", "v", "force")       # arguments
+# arguments
+OF_TIME, FORCE = ("t",), ("t", "x", "v", "force")
+CONTROL = "t", "y", "x", "u", "parameters"
 
 
 def compiled_history(function: Callable[[float], float], what: str) -> UserFunction:
@@ -38,6 +45,22 @@ def compiled_force(function: Callable[..., None], name: str, coordinates: int) -
     """
     own = _python(function, f"user force {name!r}", f"user force {name!r}", FORCE)
     return _remembered(compile_force(name, compilable(own), coordinates), own)
+
+
+def compiled_controller(function: Callable[..., None], name: str, sizes: tuple[int, int, int, int]
+                        ) -> UserFunction:
+    """A controller's ``controller(t, y, x, u, parameters)``, compiled for the time loop.
+
+    `sizes` are those of y, x, u and the parameters.
+
+    Raises
+    ------
+    InputError
+        As of `compiled_history`.
+    """
+    what = f"controller {name!r}"
+    own = _python(function, what, what, CONTROL)
+    return _remembered(compile_controller(name, compilable(own), sizes), own)
 
 
 def compilable(function: FunctionType) -> FunctionType:

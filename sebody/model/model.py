@@ -7,7 +7,17 @@ DOF block has no unknowns.
 
 from html import escape
 
-from sebody.model import beams, bodies, drives, joints, loads, nodes, springs
+from sebody.model import (
+    actuators,
+    beams,
+    bodies,
+    controllers,
+    drives,
+    joints,
+    loads,
+    nodes,
+    springs,
+)
 from sebody.model.atomic import atomic
 from sebody.model.mechanism import Mechanism
 from sebody.model.tables import described, model_tables, summary
@@ -75,6 +85,10 @@ class Model(Mechanism):
     body_load = atomic(loads.body_load)
     user_force = atomic(loads.user_force)
     gravity = atomic(loads.gravity)
+
+    actuator = atomic(actuators.actuator)
+    sensor = atomic(controllers.sensor)
+    controller = atomic(controllers.controller)
 
     spring = atomic(springs.spring)
     torsion_spring = atomic(springs.torsion_spring)

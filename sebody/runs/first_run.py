@@ -72,7 +72,7 @@ PARTS = {name: part for name, part in LOOP.items() if part.function} | {
                      ("forces in the loop",)),
     "reactions": Part(postprocessing._evaluate_forces, "system state table table table", 0.4,
                       ("forces in the loop",)),
-    "loads": Part(evaluate.set_loads, "system vector number", 0.3),
+    "loads": Part(evaluate.set_loads, "system vector vector number", 0.3),
     "motions": Part(evaluate.move_prescribed, "system state", 0.2),
     "links": Part(links.place_dependent, "links vector vector vector vector", 0.3),
     "axes": Part(evaluate.to_body_axes, "system vector vector flag", 0.2),

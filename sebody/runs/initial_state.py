@@ -36,7 +36,7 @@ def begin(model: Mechanism, system: System, numbering: Numbering, state: State) 
         Initial positions violate a joint, given velocities do not fit, constraints contradict
         each other, or an unknown has no mass.
     """
-    set_loads(system, state.loads, 0.0)
+    set_loads(system, state.frames, state.loads, 0.0)
     state.loads_old[:] = state.loads
     move_prescribed(system, state)
     place_dependent(system.links, state.q, state.v, state.a, state.R)

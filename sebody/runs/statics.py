@@ -62,7 +62,7 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     steady = Spin.of(run, spin)
     state.v[:], state.a[:], state.aux[:] = 0.0, 0.0, 0.0
     state.q[run.system.is_multiplier[:state.q.size] > 0] = 0.0
-    set_loads(run.system, state.loads, t)
+    set_loads(run.system, state.frames, state.loads, t)
     loads = state.loads.copy()
     run.rows = [state.now[None].copy()]
     tensions = Tensions.of(run)
