@@ -49,7 +49,8 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
         magnitude=_magnitude(model, numbering),
         **port_arrays(numbering.histories, numbering.prescribed, numbering.jumps),
         relaxed=np.zeros(1, dtype=np.int64), massless=np.zeros(1, dtype=np.int64),
-        damped=np.array([int(any(b.body.damping is not None for b in model.bodies.values()))]))
+        damped=np.array([int(any(b.body.damping is not None for b in model.bodies.values()))]),
+        guarded=_guarded(model, numbering))
     owners = [owner for batch in batches.all for owner in batch.owners]
     first_force = starts(b.width for b in batches.all for _ in b.rows).tolist()
     return system, numbering._replace(forces_at=dict(zip(owners, first_force, strict=False)))
@@ -91,6 +92,13 @@ def _parts(model: Mechanism, numbering: Numbering) -> NDArray:
         first = numbering.multipliers[id(equation)]
         found[first:first + equation.multipliers] = first
     return found
+
+
+def _guarded(model: Mechanism, numbering: Numbering) -> NDArray:
+    """Places of the rates that contacts keep."""
+    kept = ((element_kernel(e.kind).MEMORY, numbering.memories.get(id(e))) for e in model.loads)
+    return np.array([own.start + names.index("rate") for names, own in kept if "rate" in names],
+                    dtype=np.int64)
 
 
 def _rotation_starts(numbering: Numbering) -> NDArray:

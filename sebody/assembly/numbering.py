@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from sebody.assembly.ports import number_ports
 from sebody.assembly.sequence import parents, sequence
 from sebody.errors import InputError
+from sebody.kernels.loader import element_kernel
 from sebody.model.histories import History
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Triplet
@@ -31,7 +32,8 @@ class Numbering(NamedTuple):
     prescribed: list[tuple[int, int, int, float]]   # coordinate, port, 1 for a rotation, factor
     groups: NDArray                     # where the unknowns of each body begin
     forces_at: dict[int, int] = {}      # id(body, constraint or load) -> its first force in State.g
-    memories: dict[int, int] = {}       # id(element) -> first number it keeps, in State.frames
+    memories: dict[int, slice] = {}     # id(element) -> the numbers it keeps, in State.frames
+    reads: dict[int, list[int]] = {}    # id(element) -> multipliers of a joint that it reads
     jumps: list[list[float]] = []       # of every power port: when accelerations jump with it
 
 
@@ -48,8 +50,8 @@ def stretch(numbering: Numbering, triplet: Triplet) -> slice:
 
 
 def kept_frames(numbering: Numbering) -> int:
-    """Length of `State.frames`: frames of the superelements, and one number of each element."""
-    return 9 * len(numbering.modes) + len(numbering.memories)
+    """Length of `State.frames`: frames of the superelements, and what elements keep."""
+    return 9 * len(numbering.modes) + sum(m.stop - m.start for m in numbering.memories.values())
 
 
 def rotational(model: Mechanism, numbering: Numbering) -> NDArray:
@@ -112,7 +114,7 @@ def number(model: Mechanism) -> Numbering:
     return Numbering(free, len(order.names), order.at, rotations, modes, order.multipliers,
                      order.names, dependent, ports.of, ports.names, ports.histories,
                      ports.prescribed, np.array(groups), jumps=ports.jumps,
-                     memories=_memories(model))
+                     memories=_memories(model), reads=_reads(model, order.multipliers))
 
 
 class _Order:
@@ -147,10 +149,21 @@ class _Order:
                           for j in range(constraint.multipliers))
 
 
-def _memories(model: Mechanism) -> dict[int, int]:
+def _memories(model: Mechanism) -> dict[int, slice]:
     """Places, behind the frames of all superelements, of what elements keep."""
-    return {id(element): 9 * len(model.bodies) + k for k, element in enumerate(
-        load for load in model.loads if load.keeps_angle)}
+    found, first = {}, 9 * len(model.bodies)
+    for load in model.loads:
+        if count := len(element_kernel(load.kind).MEMORY):
+            found[id(load)] = slice(first, first + count)
+            first += count
+    return found
+
+
+def _reads(model: Mechanism, multipliers: dict[int, int]) -> dict[int, list[int]]:
+    """Multipliers of the joint whose reaction presses an element."""
+    return {id(load): [multipliers[id(c)] + k for c in load.pressed_by.constraints
+                       for k in range(c.multipliers)]
+            for load in model.loads if load.pressed_by is not None}
 
 
 def _coupled(model: Mechanism, last: dict[int, int]) -> dict[int, int]:

@@ -16,6 +16,10 @@ class _CodePrinter(Powers, PythonCodePrinter):
     def _print_Entry(self, expr):
         return f"{expr.array.name}[{whole_code(expr.place)}]"
 
+    def _print_choose(self, expr):
+        x, yes, no = map(self._print, expr.args)
+        return f"({yes} if {x} > 0.0 else {no})"
+
 
 _PRINTER = _CodePrinter({"fully_qualified_modules": False})
 
