@@ -9,7 +9,7 @@ from sebody.assembly.links import Ends, link_ends
 from sebody.assembly.numbering import Numbering, number, stretch
 from sebody.assembly.ports import port_arrays
 from sebody.assembly.structure import Structure, indices
-from sebody.contract.layout import scratch_size
+from sebody.contract.layout import AT_CONSTANTS, scratch_size
 from sebody.engine.links import Links
 from sebody.engine.system import System
 from sebody.errors import InputError
@@ -53,7 +53,10 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
         guarded=_guarded(model, numbering))
     owners = [owner for batch in batches.all for owner in batch.owners]
     first_force = starts(b.width for b in batches.all for _ in b.rows).tolist()
-    return system, numbering._replace(forces_at=dict(zip(owners, first_force, strict=False)))
+    rows = [row[AT_CONSTANTS] for batch in batches.all for row in batch.rows]
+    return system, numbering._replace(
+        forces_at=dict(zip(owners, first_force, strict=False)),
+        constants_at=dict(zip(owners, rows, strict=True)))
 
 
 def _structure(model: Mechanism, numbering: Numbering, batches: Batches, ends: Ends) -> Structure:

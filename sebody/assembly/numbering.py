@@ -32,6 +32,7 @@ class Numbering(NamedTuple):
     prescribed: list[tuple[int, int, int, float]]   # coordinate, port, 1 for a rotation, factor
     groups: NDArray                     # where the unknowns of each body begin
     forces_at: dict[int, int] = {}      # id(body, constraint or load) -> its first force in State.g
+    constants_at: dict[int, int] = {}   # id(body or element) -> its row in System.constants
     memories: dict[int, slice] = {}     # id(element) -> the numbers it keeps, in State.frames
     reads: dict[int, list[int]] = {}    # id(element) -> multipliers of a joint that it reads
     jumps: list[list[float]] = []       # of every power port: when accelerations jump with it

@@ -44,6 +44,8 @@ def cases(module: ModuleType, case: Case) -> dict[str, Case]:
     """The case in every branch of its law."""
     names = {part.name for part in module.CONSTANTS}
     case = _remembering(module, case)
+    directions = {name: constants_of(case)[name] for name in names & {"e", "n"}}
+    case = changed(case, **{name: v / np.linalg.norm(v) for name, v in directions.items()})
     contact = "level" in names or "size" in names or "upper" in names
     found = {"": _with(case, PRESSED) if contact else case}
     if "static" in names:
@@ -90,7 +92,8 @@ def power(case: Case) -> float:
     stored = gradient(case, lambda c: evaluate(c, ENERGY)[2][STRAIN], SMALL)
     lost = -(evaluate(case, RESIDUAL)[0] - stored) @ case.v
     forces, _, sums = evaluate(case, ENERGY)
-    scale = max(np.abs(evaluate(case, RESIDUAL)[0] * case.v).max(), 1e-9)
+    scale = max(np.abs(evaluate(case, RESIDUAL)[0] * case.v).max(),
+                np.abs(stored * case.v).max(), 1e-9)
     return float(max(abs(sums[POWERS] - lost), abs(-forces @ case.v - lost)) / scale)
 
 

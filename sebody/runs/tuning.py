@@ -1,0 +1,215 @@
+"""Bristles of friction: stiffness from the mass they hold, and the force they carry at the start.
+
+A bristle that is much stiffer than ``m/h^2`` makes steps of the length h fail, one that is much
+softer gives way. Its stiffness is ``m/h^2`` unless it is given, where m is the mass that resists a
+force along it, ``1/(B M^-1 B^T)`` with the joints as they are.
+
+At the start bristles of joints at rest must carry what holds them: unloaded ones would give way.
+Their forces are those at which nothing that they hold is accelerated, found by Newton's iteration,
+since normal forces depend on them; what needs more than the static limit slides from the start.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_matrix
+
+from sebody.assembly.numbering import Numbering, stretch
+from sebody.contract.layout import Row
+from sebody.engine.evaluate import to_body_axes
+from sebody.engine.state import STEP, State
+from sebody.engine.system import System
+from sebody.kernels.loader import element_kernel
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Element, Triplet
+from sebody.runs.redundancy import least
+
+AT_REST = 1e-9          # rate of a joint at rest, relative to that of the model
+HELD = 1e-12            # acceleration of what is held, relative to that without friction
+MOST = 30               # iterations for the forces at the start
+BEYOND = 2.0            # of the static limit: force of a bristle that is to slide
+
+
+def tune(model: Mechanism, system: System, numbering: Numbering, state: State,
+         masses: csc_matrix) -> None:
+    """Set stiffness and damping of bristles, and the stiffness of gear teeth, that are not given.
+
+    Parameters
+    ----------
+    masses : (n, n)
+        Masses and constraints at the start.
+    """
+    tuned = [load for load in model.loads if load.tuned]
+    if not tuned:
+        return
+    solve = least(masses, system)
+    for load in tuned:
+        constants = _Constants(load, system, numbering)
+        rows = directions(load, numbering, state)
+        mass = 1.0 / max(max(response(row, solve, system, state, numbering.free) @ row
+                             for row in rows), 1e-300)
+        natural = mass / state.clock[STEP]**2
+        if "teeth" in load.tuned:
+            constants["stiffness"] = natural
+            continue
+        stiffness = constants["bristle"] = load.constants["bristle"] or natural
+        constants["bristle_damping"] = 2.0 * load.tuned["damping"] * np.sqrt(stiffness * mass)
+
+
+def response(row: NDArray, solve, system: System, state: State, free: int) -> NDArray:
+    """Accelerations by a unit force along a direction, (coordinates,)."""
+    force = row.copy()
+    to_body_axes(system, state.frames, force, False)
+    found = np.zeros(len(row))
+    found[:free] = solve(force[:free])
+    found *= system.is_multiplier[:len(row)] == 0.0
+    to_body_axes(system, state.frames, found, True)
+    return found
+
+
+class _Constants:
+    """The constants of an element in a system, by name."""
+
+    def __init__(self, element: Element, system: System, numbering: Numbering) -> None:
+        kernel = element_kernel(element.kind)
+        self.places = Row(element.name, kernel.CONSTANTS).slices({})
+        self.all, self.first = system.constants, numbering.constants_at[id(element)]
+
+    def __setitem__(self, name: str, value: float) -> None:
+        self.all[self.first + self.places[name].start] = value
+
+    def __getitem__(self, name: str) -> float:
+        return float(self.all[self.first + self.places[name].start])
+
+
+def directions(element: Element, numbering: Numbering, state: State) -> list[NDArray]:
+    """Directions of an element's measures among all coordinates: rates are ``row . v``.
+
+    Of contacts the axes of space at its nodes: of the centre against the surface.
+    """
+    c, size = element.constants, len(element.triplets[0].start)
+    kind = element.kind.removeprefix("planar_")
+    places = [t for t in element.triplets if not t.rotational]
+    turns = [t for t in element.triplets if t.rotational]
+    if kind.startswith(("sphere_on", "point_on")):
+        return [_pair(numbering, places, axis, [axis, axis]) for axis in np.eye(size)]
+    if kind.startswith("friction_slide"):
+        return [_slide(numbering, state, places, turns[0], c["e"])]
+    if kind.startswith("friction_cylindrical"):
+        return [_slide(numbering, state, places, turns[0], c["e"]),
+                c["radius"] * _turn(numbering, turns, np.cross(c["n"], c["m"]))]
+    if kind.startswith("friction_spherical"):
+        Ra, Rb = (_rotation(numbering, state, t) for t in turns)
+        return [_pair(numbering, turns, axis, [Ra.T @ Rb @ axis, axis]) for axis in np.eye(3)]
+    if kind == "gear_play":
+        return [_turn(numbering, turns[:2], np.cross(c["n1"], c["m1"]) if "n1" in c else None)]
+    return [_turn(numbering, turns, np.cross(c["n"], c["m"]) if "n" in c else None)]
+
+
+def _turn(numbering: Numbering, turns: list[Triplet], axis: NDArray | None) -> NDArray:
+    axis = np.ones(1) if axis is None else axis
+    return _pair(numbering, turns, axis, [axis, axis])
+
+
+def _slide(numbering: Numbering, state: State, places: list[Triplet], carrier: Triplet,
+           e: NDArray) -> NDArray:
+    along = _rotation(numbering, state, carrier) @ e
+    return _pair(numbering, places[::-1], along, [along, along])
+
+
+def _pair(numbering: Numbering, triplets: list[Triplet], axis: NDArray,
+          vectors: list[NDArray]) -> NDArray:
+    """A row that takes the rate of the second triplet from that of the first."""
+    row = np.zeros(numbering.total)
+    for triplet, sign, vector in zip(triplets, (1.0, -1.0), vectors, strict=True):
+        own = triplet.root if triplet.root is not None else triplet
+        row[stretch(numbering, own)] += sign * vector
+    return row
+
+
+def _rotation(numbering: Numbering, state: State, triplet: Triplet) -> NDArray:
+    """Rotation matrix of a triplet in space; in a plane (2, 2)."""
+    if id(triplet) in numbering.rotations:
+        k = numbering.rotations[id(triplet)]
+        return state.R[9 * k:9 * k + 9].reshape(3, 3)
+    angle = state.q[numbering.triplets[id(triplet)]]
+    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+
+class _Held(NamedTuple):
+    """Friction of a joint at rest."""
+
+    constants: _Constants
+    rows: list[NDArray]
+    memory: slice
+    bent: list[int]         # places of the bristles in `State.frames`
+    normal: int             # place of the normal force
+
+
+class LoadedBristles:
+    """Forces of bristles of joints at rest; `solve_again` solves for accelerations.
+
+    Parameters
+    ----------
+    model : Mechanism
+    system, numbering, state
+        Of a run, its accelerations solved for.
+    """
+
+    def __init__(self, model: Mechanism, system: System, numbering: Numbering, state: State):
+        self.system, self.numbering, self.state = system, numbering, state
+        self.held = [one for load in model.loads if load.tuned and load.kind.removeprefix(
+            "planar_").startswith("friction") for one in self._held(load)]
+
+    def _held(self, load: Element) -> list[_Held]:
+        """The friction, if its joint is at rest and its bristles are not bent yet."""
+        constants = _Constants(load, self.system, self.numbering)
+        rows = directions(load, self.numbering, self.state)
+        memory, names = self.numbering.memories[id(load)], element_kernel(load.kind).MEMORY
+        bent = [memory.start + k for k, name in enumerate(names) if name.startswith("bent")]
+        fastest = np.abs(self.state.v).max()
+        moves = any(abs(row @ self.state.v) > AT_REST * fastest for row in rows)
+        if moves or constants["speed"] > 0 or self.state.frames[bent].any():
+            return []
+        return [_Held(constants, rows, memory, bent, memory.start + names.index("normal"))]
+
+    def load(self, masses: csc_matrix, solve_again) -> None:
+        """Bend the bristles so that what they hold stays at rest."""
+        rows = [row for one in self.held for row in one.rows]
+        if not rows:
+            return
+        B, state = np.array(rows), self.state
+        solve = least(masses, self.system)
+        W = B @ np.array([response(row, solve, self.system, state, self.numbering.free)
+                          for row in rows]).T
+        forces, slides = np.zeros(len(rows)), np.zeros(len(rows), dtype=bool)
+        # weightless frictionless joints have nothing to hold
+        first = np.abs(B @ state.a).max()
+        for _ in range(MOST):
+            acceleration = B @ state.a
+            sticks = ~slides
+            if np.abs(acceleration[sticks]).max(initial=0.0) <= HELD * first:
+                return
+            change = np.linalg.lstsq(W[np.ix_(sticks, sticks)], acceleration[sticks],
+                                     rcond=1e-12)[0]
+            forces[sticks] += change
+            self._bend(forces, slides)
+            solve_again()
+
+    def _bend(self, forces: NDArray, slides: NDArray) -> None:
+        """Set the bristles; those that would be bent beyond their limit slide."""
+        at = 0
+        for one in self.held:
+            own = slice(at, at + len(one.rows))
+            at = own.stop
+            lever = 1.0 if "e" in one.constants.places and len(one.rows) == 2 else (
+                one.constants["radius"])
+            limit = one.constants["static"] * lever * self.state.frames[one.normal]
+            size = np.linalg.norm(forces[own])
+            if size > limit * (1.0 + 1e-12):
+                slides[own] = True
+                forces[own] *= BEYOND * max(limit, 1e-300) / size
+            else:
+                slides[own] = False
+            self.state.frames_old[one.bent] = forces[own] / one.constants["bristle"]
