@@ -10,6 +10,7 @@ from sebody.compiler.decorators import compiled
 from sebody.contract.layout import AT_IMPACT, AT_RATE
 
 LARGEST = 0.1           # change of the rate in a step, relative to the speed of the impact
+AT_ENDS = 0.03          # the same in the steps in which it begins and opens, whose force is not smooth
 
 
 @compiled
@@ -17,7 +18,8 @@ def contact_too_fast(system, state):
     """Whether the step that has converged is too long for a contact."""
     for k in range(system.guarded.size):
         rate, impact = system.guarded[k] + AT_RATE, system.guarded[k] + AT_IMPACT
-        speed = max(state.frames[impact], state.frames_old[impact])
-        if abs(state.frames[rate] - state.frames_old[rate]) > LARGEST * speed > 0.0:
+        now, before = state.frames[impact], state.frames_old[impact]
+        allowed = LARGEST * now if now > 0.0 and before > 0.0 else AT_ENDS * max(now, before)
+        if abs(state.frames[rate] - state.frames_old[rate]) > allowed > 0.0:
             return True
     return False
