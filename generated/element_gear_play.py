@@ -33,6 +33,7 @@ CONSTANTS = (
     Part("stiffness", (), "stiffness k of k d^n (1 + c d')"),
     Part("exponent", (), "exponent n"),
     Part("damping", (), "damping c [time/length]"),
+    Part("slow", (), "speed of impacts so slow that steps do not look at them"),
     Part("lower", (), "lower limit"),
     Part("upper", (), "upper limit"),
     Part("ratio", (), "turns of the first for one turn of the second"),
@@ -68,27 +69,28 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         stiffness = constant[0]
         exponent = constant[1]
         damping = constant[2]
-        lower = constant[3]
-        upper = constant[4]
-        ratio = constant[5]
-        d1_x = constant[6]
-        d1_y = constant[7]
-        d1_z = constant[8]
-        n1_x = constant[9]
-        n1_y = constant[10]
-        n1_z = constant[11]
-        m1_x = constant[12]
-        m1_y = constant[13]
-        m1_z = constant[14]
-        d2_x = constant[15]
-        d2_y = constant[16]
-        d2_z = constant[17]
-        n2_x = constant[18]
-        n2_y = constant[19]
-        n2_z = constant[20]
-        m2_x = constant[21]
-        m2_y = constant[22]
-        m2_z = constant[23]
+        slow = constant[3]
+        lower = constant[4]
+        upper = constant[5]
+        ratio = constant[6]
+        d1_x = constant[7]
+        d1_y = constant[8]
+        d1_z = constant[9]
+        n1_x = constant[10]
+        n1_y = constant[11]
+        n1_z = constant[12]
+        m1_x = constant[13]
+        m1_y = constant[14]
+        m1_z = constant[15]
+        d2_x = constant[16]
+        d2_y = constant[17]
+        d2_z = constant[18]
+        n2_x = constant[19]
+        n2_y = constant[20]
+        n2_z = constant[21]
+        m2_x = constant[22]
+        m2_y = constant[23]
+        m2_z = constant[24]
         Ra_xx = R[9*nodes[0]]
         Ra_xy = R[9*nodes[0] + 1]
         Ra_xz = R[9*nodes[0] + 2]
@@ -258,6 +260,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t89 = (kept_rate if kept_rate > 0.0 else -kept_rate)
         t90 = (speed_beyond if speed_beyond > 0.0 else -speed_beyond)
         t91 = (t90 if -t89 + t90 > 0.0 else t89)
+        t92 = (t91 if -kept_impact + t91 > 0.0 else kept_impact)
         g[0] = t56*(-t44*(n1_x*t47 + n1_y*t50 + n1_z*t53) + t54*(m1_x*t47 + m1_y*t50 + m1_z*t53))
         g[1] = t56*(-t44*(n1_x*t58 + n1_y*t60 + n1_z*t62) + t54*(m1_x*t58 + m1_y*t60 + m1_z*t62))
         g[2] = t56*(-t44*(n1_x*t63 + n1_y*t64 + n1_z*t65) + t54*(m1_x*t63 + m1_y*t64 + m1_z*t65))
@@ -283,8 +286,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             6.283185307179586*floor(0.15915494309189535*kept_angle_2 - 0.15915494309189535*t88 +
             0.5))
         frames[index[first + AT_FRAME] + 2] = speed_beyond
-        frames[index[first + AT_FRAME] + 3] = (((t91 if -kept_impact + t91 > 0.0 else kept_impact)
-            if touches - 0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 3] = (((t92 if -slow + t92 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0))
         frames[index[first + AT_FRAME] + 4] = beyond
         frames[index[first + AT_FRAME] + 5] = push
         if task == ENERGY:
@@ -397,75 +400,75 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             du = at(work, WIDTH)
-            t92 = angle_1_seen_1*m1_x + angle_1_seen_2*m1_y + angle_1_seen_3*m1_z
-            t93 = angle_1_seen_1*n1_x + angle_1_seen_2*n1_y + angle_1_seen_3*n1_z
-            t94 = 1/(t92*t92 + t93*t93)
-            t95 = t93*t94
-            t96 = -t92*t94
-            t97 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
-            t98 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
-            t99 = 1/(t97*t97 + t98*t98)
-            t100 = t98*t99
-            t101 = -t97*t99
-            dvalue_by_angle_1_seen_1 = m1_x*t95 + n1_x*t96
-            dvalue_by_angle_1_seen_2 = m1_y*t95 + n1_y*t96
-            dvalue_by_angle_1_seen_3 = m1_z*t95 + n1_z*t96
-            dvalue_by_angle_2_seen_1 = -ratio*(m2_x*t100 + n2_x*t101)
-            dvalue_by_angle_2_seen_2 = -ratio*(m2_y*t100 + n2_y*t101)
-            dvalue_by_angle_2_seen_3 = -ratio*(m2_z*t100 + n2_z*t101)
-            t102 = (1 if -lower - upper + 2*value > 0.0 else -1)
-            dbeyond_by_angle_1_seen_1 = dvalue_by_angle_1_seen_1*t102
-            dbeyond_by_angle_1_seen_2 = dvalue_by_angle_1_seen_2*t102
-            dbeyond_by_angle_1_seen_3 = dvalue_by_angle_1_seen_3*t102
-            dbeyond_by_angle_2_seen_1 = dvalue_by_angle_2_seen_1*t102
-            dbeyond_by_angle_2_seen_2 = dvalue_by_angle_2_seen_2*t102
-            dbeyond_by_angle_2_seen_3 = dvalue_by_angle_2_seen_3*t102
-            t103 = angle_1_seen_1*m1_x + angle_1_seen_2*m1_y + angle_1_seen_3*m1_z
-            t104 = angle_1_seen_1*n1_x + angle_1_seen_2*n1_y + angle_1_seen_3*n1_z
-            t105 = t103*t103 + t104*t104
-            t106 = 1/t105
-            t107 = 2*t103
+            t93 = angle_1_seen_1*m1_x + angle_1_seen_2*m1_y + angle_1_seen_3*m1_z
+            t94 = angle_1_seen_1*n1_x + angle_1_seen_2*n1_y + angle_1_seen_3*n1_z
+            t95 = 1/(t93*t93 + t94*t94)
+            t96 = t94*t95
+            t97 = -t93*t95
+            t98 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
+            t99 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
+            t100 = 1/(t98*t98 + t99*t99)
+            t101 = t100*t99
+            t102 = -t100*t98
+            dvalue_by_angle_1_seen_1 = m1_x*t96 + n1_x*t97
+            dvalue_by_angle_1_seen_2 = m1_y*t96 + n1_y*t97
+            dvalue_by_angle_1_seen_3 = m1_z*t96 + n1_z*t97
+            dvalue_by_angle_2_seen_1 = -ratio*(m2_x*t101 + n2_x*t102)
+            dvalue_by_angle_2_seen_2 = -ratio*(m2_y*t101 + n2_y*t102)
+            dvalue_by_angle_2_seen_3 = -ratio*(m2_z*t101 + n2_z*t102)
+            t103 = (1 if -lower - upper + 2*value > 0.0 else -1)
+            dbeyond_by_angle_1_seen_1 = dvalue_by_angle_1_seen_1*t103
+            dbeyond_by_angle_1_seen_2 = dvalue_by_angle_1_seen_2*t103
+            dbeyond_by_angle_1_seen_3 = dvalue_by_angle_1_seen_3*t103
+            dbeyond_by_angle_2_seen_1 = dvalue_by_angle_2_seen_1*t103
+            dbeyond_by_angle_2_seen_2 = dvalue_by_angle_2_seen_2*t103
+            dbeyond_by_angle_2_seen_3 = dvalue_by_angle_2_seen_3*t103
+            t104 = angle_1_seen_1*m1_x + angle_1_seen_2*m1_y + angle_1_seen_3*m1_z
+            t105 = angle_1_seen_1*n1_x + angle_1_seen_2*n1_y + angle_1_seen_3*n1_z
+            t106 = t104*t104 + t105*t105
+            t107 = 1/t106
             t108 = 2*t104
-            t109 = (angle_1_along_m*t104 - angle_1_along_n*t103)/(t105*t105)
-            t110 = side*t106
-            t111 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
-            t112 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
-            t113 = t111*t111 + t112*t112
-            t114 = ratio/t113
-            t115 = 2*t111
+            t109 = 2*t105
+            t110 = (angle_1_along_m*t105 - angle_1_along_n*t104)/(t106*t106)
+            t111 = side*t107
+            t112 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
+            t113 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
+            t114 = t112*t112 + t113*t113
+            t115 = ratio/t114
             t116 = 2*t112
-            t117 = (ratio*(angle_2_along_m*t112 - angle_2_along_n*t111))/(t113*t113)
-            t118 = side*t114
-            dspeed_beyond_by_angle_1_seen_1 = (side*(t106*(angle_1_along_m*n1_x -
-                angle_1_along_n*m1_x) + t109*(-m1_x*t107 - n1_x*t108)))
-            dspeed_beyond_by_angle_1_seen_2 = (side*(t106*(angle_1_along_m*n1_y -
-                angle_1_along_n*m1_y) + t109*(-m1_y*t107 - n1_y*t108)))
-            dspeed_beyond_by_angle_1_seen_3 = (side*(t106*(angle_1_along_m*n1_z -
-                angle_1_along_n*m1_z) + t109*(-m1_z*t107 - n1_z*t108)))
-            dspeed_beyond_by_angle_1_along_n = -t103*t110
-            dspeed_beyond_by_angle_1_along_m = t104*t110
-            dspeed_beyond_by_angle_2_seen_1 = (side*(-t114*(angle_2_along_m*n2_x -
-                angle_2_along_n*m2_x) - t117*(-m2_x*t115 - n2_x*t116)))
-            dspeed_beyond_by_angle_2_seen_2 = (side*(-t114*(angle_2_along_m*n2_y -
-                angle_2_along_n*m2_y) - t117*(-m2_y*t115 - n2_y*t116)))
-            dspeed_beyond_by_angle_2_seen_3 = (side*(-t114*(angle_2_along_m*n2_z -
-                angle_2_along_n*m2_z) - t117*(-m2_z*t115 - n2_z*t116)))
-            dspeed_beyond_by_angle_2_along_n = t111*t118
-            dspeed_beyond_by_angle_2_along_m = -t112*t118
-            t119 = (1 if beyond > 0.0 else 0)
-            ddepth_by_angle_1_seen_1 = dbeyond_by_angle_1_seen_1*t119
-            ddepth_by_angle_1_seen_2 = dbeyond_by_angle_1_seen_2*t119
-            ddepth_by_angle_1_seen_3 = dbeyond_by_angle_1_seen_3*t119
-            ddepth_by_angle_2_seen_1 = dbeyond_by_angle_2_seen_1*t119
-            ddepth_by_angle_2_seen_2 = dbeyond_by_angle_2_seen_2*t119
-            ddepth_by_angle_2_seen_3 = dbeyond_by_angle_2_seen_3*t119
-            t120 = depth**exponent*exponent*stiffness/depth
-            delastic_by_angle_1_seen_1 = ddepth_by_angle_1_seen_1*t120
-            delastic_by_angle_1_seen_2 = ddepth_by_angle_1_seen_2*t120
-            delastic_by_angle_1_seen_3 = ddepth_by_angle_1_seen_3*t120
-            delastic_by_angle_2_seen_1 = ddepth_by_angle_2_seen_1*t120
-            delastic_by_angle_2_seen_2 = ddepth_by_angle_2_seen_2*t120
-            delastic_by_angle_2_seen_3 = ddepth_by_angle_2_seen_3*t120
+            t117 = 2*t113
+            t118 = (ratio*(angle_2_along_m*t113 - angle_2_along_n*t112))/(t114*t114)
+            t119 = side*t115
+            dspeed_beyond_by_angle_1_seen_1 = (side*(t107*(angle_1_along_m*n1_x -
+                angle_1_along_n*m1_x) + t110*(-m1_x*t108 - n1_x*t109)))
+            dspeed_beyond_by_angle_1_seen_2 = (side*(t107*(angle_1_along_m*n1_y -
+                angle_1_along_n*m1_y) + t110*(-m1_y*t108 - n1_y*t109)))
+            dspeed_beyond_by_angle_1_seen_3 = (side*(t107*(angle_1_along_m*n1_z -
+                angle_1_along_n*m1_z) + t110*(-m1_z*t108 - n1_z*t109)))
+            dspeed_beyond_by_angle_1_along_n = -t104*t111
+            dspeed_beyond_by_angle_1_along_m = t105*t111
+            dspeed_beyond_by_angle_2_seen_1 = (side*(-t115*(angle_2_along_m*n2_x -
+                angle_2_along_n*m2_x) - t118*(-m2_x*t116 - n2_x*t117)))
+            dspeed_beyond_by_angle_2_seen_2 = (side*(-t115*(angle_2_along_m*n2_y -
+                angle_2_along_n*m2_y) - t118*(-m2_y*t116 - n2_y*t117)))
+            dspeed_beyond_by_angle_2_seen_3 = (side*(-t115*(angle_2_along_m*n2_z -
+                angle_2_along_n*m2_z) - t118*(-m2_z*t116 - n2_z*t117)))
+            dspeed_beyond_by_angle_2_along_n = t112*t119
+            dspeed_beyond_by_angle_2_along_m = -t113*t119
+            t120 = (1 if beyond > 0.0 else 0)
+            ddepth_by_angle_1_seen_1 = dbeyond_by_angle_1_seen_1*t120
+            ddepth_by_angle_1_seen_2 = dbeyond_by_angle_1_seen_2*t120
+            ddepth_by_angle_1_seen_3 = dbeyond_by_angle_1_seen_3*t120
+            ddepth_by_angle_2_seen_1 = dbeyond_by_angle_2_seen_1*t120
+            ddepth_by_angle_2_seen_2 = dbeyond_by_angle_2_seen_2*t120
+            ddepth_by_angle_2_seen_3 = dbeyond_by_angle_2_seen_3*t120
+            t121 = depth**exponent*exponent*stiffness/depth
+            delastic_by_angle_1_seen_1 = ddepth_by_angle_1_seen_1*t121
+            delastic_by_angle_1_seen_2 = ddepth_by_angle_1_seen_2*t121
+            delastic_by_angle_1_seen_3 = ddepth_by_angle_1_seen_3*t121
+            delastic_by_angle_2_seen_1 = ddepth_by_angle_2_seen_1*t121
+            delastic_by_angle_2_seen_2 = ddepth_by_angle_2_seen_2*t121
+            delastic_by_angle_2_seen_3 = ddepth_by_angle_2_seen_3*t121
             dfactor_by_angle_1_seen_1 = damping*dspeed_beyond_by_angle_1_seen_1
             dfactor_by_angle_1_seen_2 = damping*dspeed_beyond_by_angle_1_seen_2
             dfactor_by_angle_1_seen_3 = damping*dspeed_beyond_by_angle_1_seen_3
@@ -476,24 +479,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dfactor_by_angle_2_seen_3 = damping*dspeed_beyond_by_angle_2_seen_3
             dfactor_by_angle_2_along_n = damping*dspeed_beyond_by_angle_2_along_n
             dfactor_by_angle_2_along_m = damping*dspeed_beyond_by_angle_2_along_m
-            t121 = (factor if factor > 0.0 else 0)
-            t122 = (elastic if factor > 0.0 else 0)
-            dpush_by_angle_1_seen_1 = (delastic_by_angle_1_seen_1*t121 +
-                dfactor_by_angle_1_seen_1*t122)
-            dpush_by_angle_1_seen_2 = (delastic_by_angle_1_seen_2*t121 +
-                dfactor_by_angle_1_seen_2*t122)
-            dpush_by_angle_1_seen_3 = (delastic_by_angle_1_seen_3*t121 +
-                dfactor_by_angle_1_seen_3*t122)
-            dpush_by_angle_1_along_n = dfactor_by_angle_1_along_n*t122
-            dpush_by_angle_1_along_m = dfactor_by_angle_1_along_m*t122
-            dpush_by_angle_2_seen_1 = (delastic_by_angle_2_seen_1*t121 +
-                dfactor_by_angle_2_seen_1*t122)
-            dpush_by_angle_2_seen_2 = (delastic_by_angle_2_seen_2*t121 +
-                dfactor_by_angle_2_seen_2*t122)
-            dpush_by_angle_2_seen_3 = (delastic_by_angle_2_seen_3*t121 +
-                dfactor_by_angle_2_seen_3*t122)
-            dpush_by_angle_2_along_n = dfactor_by_angle_2_along_n*t122
-            dpush_by_angle_2_along_m = dfactor_by_angle_2_along_m*t122
+            t122 = (factor if factor > 0.0 else 0)
+            t123 = (elastic if factor > 0.0 else 0)
+            dpush_by_angle_1_seen_1 = (delastic_by_angle_1_seen_1*t122 +
+                dfactor_by_angle_1_seen_1*t123)
+            dpush_by_angle_1_seen_2 = (delastic_by_angle_1_seen_2*t122 +
+                dfactor_by_angle_1_seen_2*t123)
+            dpush_by_angle_1_seen_3 = (delastic_by_angle_1_seen_3*t122 +
+                dfactor_by_angle_1_seen_3*t123)
+            dpush_by_angle_1_along_n = dfactor_by_angle_1_along_n*t123
+            dpush_by_angle_1_along_m = dfactor_by_angle_1_along_m*t123
+            dpush_by_angle_2_seen_1 = (delastic_by_angle_2_seen_1*t122 +
+                dfactor_by_angle_2_seen_1*t123)
+            dpush_by_angle_2_seen_2 = (delastic_by_angle_2_seen_2*t122 +
+                dfactor_by_angle_2_seen_2*t123)
+            dpush_by_angle_2_seen_3 = (delastic_by_angle_2_seen_3*t122 +
+                dfactor_by_angle_2_seen_3*t123)
+            dpush_by_angle_2_along_n = dfactor_by_angle_2_along_n*t123
+            dpush_by_angle_2_along_m = dfactor_by_angle_2_along_m*t123
             for column in range(12):
                 for i in range(12):
                     dq[i] = 0.0
@@ -526,263 +529,263 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthd_x = du[9]
                 uthd_y = du[10]
                 uthd_z = du[11]
-                t123 = angle_1_seen_1*m1_x + angle_1_seen_2*m1_y + angle_1_seen_3*m1_z
-                t124 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t125 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t126 = d1_y*t124 - d1_z*t125
-                t127 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t128 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t129 = d1_y*t127 - d1_z*t128
-                t130 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t131 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t132 = d1_y*t130 - d1_z*t131
-                t133 = n1_x*t126 + n1_y*t129 + n1_z*t132
-                t134 = angle_1_seen_1*n1_x + angle_1_seen_2*n1_y + angle_1_seen_3*n1_z
-                t135 = m1_x*t126 + m1_y*t129 + m1_z*t132
-                t136 = -t123*t133 + t134*t135
-                t137 = t123*t123 + t134*t134
-                t138 = side/t137
-                t139 = -d1_x*utha_y + d1_y*utha_x
-                t140 = d1_x*utha_z - d1_z*utha_x
-                t141 = -d1_y*utha_z + d1_z*utha_y
-                t142 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t143 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t144 = d1_x*t143 + d1_y*t128 + d1_z*t127
-                t145 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t146 = d1_x*t145 + d1_y*t131 + d1_z*t130
-                t147 = t124*t139 + t125*t140 + t141*t142 + t144*uthb_z - t146*uthb_y
-                t148 = d1_x*t142 + d1_y*t125 + d1_z*t124
-                t149 = t127*t139 + t128*t140 + t141*t143 + t146*uthb_x - t148*uthb_z
-                t150 = t130*t139 + t131*t140 + t141*t145 - t144*uthb_x + t148*uthb_y
-                t151 = -d2_x*uthc_y + d2_y*uthc_x
-                t152 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
-                t153 = d2_x*uthc_z - d2_z*uthc_x
-                t154 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
-                t155 = -d2_y*uthc_z + d2_z*uthc_y
-                t156 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
-                t157 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
-                t158 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
-                t159 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
-                t160 = d2_x*t157 + d2_y*t158 + d2_z*t159
-                t161 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
-                t162 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
-                t163 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
-                t164 = d2_x*t161 + d2_y*t162 + d2_z*t163
-                t165 = t151*t152 + t153*t154 + t155*t156 + t160*uthd_z - t164*uthd_y
-                t166 = d2_x*t156 + d2_y*t154 + d2_z*t152
-                t167 = t151*t159 + t153*t158 + t155*t157 + t164*uthd_x - t166*uthd_z
-                t168 = t151*t163 + t153*t162 + t155*t161 - t160*uthd_x + t166*uthd_y
-                t169 = (c_damping*(dpush_by_angle_1_along_m*(m1_x*t147 + m1_y*t149 + m1_z*t150) +
-                    dpush_by_angle_1_along_n*(n1_x*t147 + n1_y*t149 + n1_z*t150) +
-                    dpush_by_angle_2_along_m*(m2_x*t165 + m2_y*t167 + m2_z*t168) +
-                    dpush_by_angle_2_along_n*(n2_x*t165 + n2_y*t167 + n2_z*t168)))
-                t170 = t138*t169
-                t171 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t172 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t173 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t174 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t175 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t176 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t177 = Ra_xx*t171 + Ra_yx*t172 + Ra_zx*t173 + Rb_xx*t174 + Rb_yx*t175 + Rb_zx*t176
-                t178 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t179 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t180 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t181 = Ra_xy*t171 + Ra_yy*t172 + Ra_zy*t173 + Rb_xx*t178 + Rb_yx*t179 + Rb_zx*t180
-                t182 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t183 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t184 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t185 = Ra_xz*t171 + Ra_yz*t172 + Ra_zz*t173 + Rb_xx*t182 + Rb_yx*t183 + Rb_zx*t184
-                t186 = d1_x*t177 + d1_y*t181 + d1_z*t185
-                t187 = m1_x*t186
-                t188 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t189 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t190 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t191 = Ra_xx*t188 + Ra_yx*t189 + Ra_zx*t190 + Rb_xy*t174 + Rb_yy*t175 + Rb_zy*t176
-                t192 = Ra_xy*t188 + Ra_yy*t189 + Ra_zy*t190 + Rb_xy*t178 + Rb_yy*t179 + Rb_zy*t180
-                t193 = Ra_xz*t188 + Ra_yz*t189 + Ra_zz*t190 + Rb_xy*t182 + Rb_yy*t183 + Rb_zy*t184
-                t194 = d1_x*t191 + d1_y*t192 + d1_z*t193
-                t195 = m1_y*t194
-                t196 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t197 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t198 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t199 = Ra_xx*t196 + Ra_yx*t197 + Ra_zx*t198 + Rb_xz*t174 + Rb_yz*t175 + Rb_zz*t176
-                t200 = Ra_xy*t196 + Ra_yy*t197 + Ra_zy*t198 + Rb_xz*t178 + Rb_yz*t179 + Rb_zz*t180
-                t201 = Ra_xz*t196 + Ra_yz*t197 + Ra_zz*t198 + Rb_xz*t182 + Rb_yz*t183 + Rb_zz*t184
-                t202 = d1_x*t199 + d1_y*t200 + d1_z*t201
-                t203 = m1_z*t202
-                t204 = n1_x*t186
-                t205 = n1_y*t194
-                t206 = n1_z*t202
-                t207 = push*side
-                t208 = ((t207*(-t123*(2*t187 + 2*t195 + 2*t203) - t134*(2*t204 + 2*t205 +
-                    2*t206)))/(t137*t137))
-                t209 = d1_y*t185 - d1_z*t181
-                t210 = d1_y*t193 - d1_z*t192
-                t211 = d1_y*t201 - d1_z*t200
-                t212 = t187 + t195 + t203
-                t213 = t204 + t205 + t206
-                t214 = push*t138
-                t215 = Rd_xy*dthd_z - Rd_xz*dthd_y
-                t216 = Rd_yy*dthd_z - Rd_yz*dthd_y
-                t217 = Rd_zy*dthd_z - Rd_zz*dthd_y
-                t218 = Rc_xy*dthc_z - Rc_xz*dthc_y
-                t219 = Rc_yy*dthc_z - Rc_yz*dthc_y
-                t220 = Rc_zy*dthc_z - Rc_zz*dthc_y
-                t221 = Rc_xx*t215 + Rc_yx*t216 + Rc_zx*t217 + Rd_xx*t218 + Rd_yx*t219 + Rd_zx*t220
-                t222 = -Rc_xx*dthc_z + Rc_xz*dthc_x
-                t223 = -Rc_yx*dthc_z + Rc_yz*dthc_x
-                t224 = -Rc_zx*dthc_z + Rc_zz*dthc_x
-                t225 = Rc_xy*t215 + Rc_yy*t216 + Rc_zy*t217 + Rd_xx*t222 + Rd_yx*t223 + Rd_zx*t224
-                t226 = Rc_xx*dthc_y - Rc_xy*dthc_x
-                t227 = Rc_yx*dthc_y - Rc_yy*dthc_x
-                t228 = Rc_zx*dthc_y - Rc_zy*dthc_x
-                t229 = Rc_xz*t215 + Rc_yz*t216 + Rc_zz*t217 + Rd_xx*t226 + Rd_yx*t227 + Rd_zx*t228
-                t230 = d2_x*t221 + d2_y*t225 + d2_z*t229
-                t231 = -Rd_xx*dthd_z + Rd_xz*dthd_x
-                t232 = -Rd_yx*dthd_z + Rd_yz*dthd_x
-                t233 = -Rd_zx*dthd_z + Rd_zz*dthd_x
-                t234 = Rc_xx*t231 + Rc_yx*t232 + Rc_zx*t233 + Rd_xy*t218 + Rd_yy*t219 + Rd_zy*t220
-                t235 = Rc_xy*t231 + Rc_yy*t232 + Rc_zy*t233 + Rd_xy*t222 + Rd_yy*t223 + Rd_zy*t224
-                t236 = Rc_xz*t231 + Rc_yz*t232 + Rc_zz*t233 + Rd_xy*t226 + Rd_yy*t227 + Rd_zy*t228
-                t237 = d2_x*t234 + d2_y*t235 + d2_z*t236
-                t238 = Rd_xx*dthd_y - Rd_xy*dthd_x
-                t239 = Rd_yx*dthd_y - Rd_yy*dthd_x
-                t240 = Rd_zx*dthd_y - Rd_zy*dthd_x
-                t241 = Rc_xx*t238 + Rc_yx*t239 + Rc_zx*t240 + Rd_xz*t218 + Rd_yz*t219 + Rd_zz*t220
-                t242 = Rc_xy*t238 + Rc_yy*t239 + Rc_zy*t240 + Rd_xz*t222 + Rd_yz*t223 + Rd_zz*t224
-                t243 = Rc_xz*t238 + Rc_yz*t239 + Rc_zz*t240 + Rd_xz*t226 + Rd_yz*t227 + Rd_zz*t228
-                t244 = d2_x*t241 + d2_y*t242 + d2_z*t243
-                t245 = Oma_x*d1_y - Oma_y*d1_x
-                t246 = -Oma_x*d1_z + Oma_z*d1_x
-                t247 = Oma_y*d1_z - Oma_z*d1_y
-                t248 = -Omb_y*t202 + Omb_z*t194 + t177*t247 + t181*t246 + t185*t245
-                t249 = Omb_x*t202 - Omb_z*t186 + t191*t247 + t192*t246 + t193*t245
-                t250 = -Omb_x*t194 + Omb_y*t186 + t199*t247 + t200*t246 + t201*t245
-                t251 = Omc_x*d2_y - Omc_y*d2_x
-                t252 = -Omc_x*d2_z + Omc_z*d2_x
-                t253 = Omc_y*d2_z - Omc_z*d2_y
-                t254 = -Omd_y*t244 + Omd_z*t237 + t221*t253 + t225*t252 + t229*t251
-                t255 = Omd_x*t244 - Omd_z*t230 + t234*t253 + t235*t252 + t236*t251
-                t256 = -Omd_x*t237 + Omd_y*t230 + t241*t253 + t242*t252 + t243*t251
-                t257 = (dpush_by_angle_1_along_m*(m1_x*t248 + m1_y*t249 + m1_z*t250) +
-                    dpush_by_angle_1_along_n*(n1_x*t248 + n1_y*t249 + n1_z*t250) +
-                    dpush_by_angle_1_seen_1*t186 + dpush_by_angle_1_seen_2*t194 +
-                    dpush_by_angle_1_seen_3*t202 + dpush_by_angle_2_along_m*(m2_x*t254 + m2_y*t255
-                    + m2_z*t256) + dpush_by_angle_2_along_n*(n2_x*t254 + n2_y*t255 + n2_z*t256) +
-                    dpush_by_angle_2_seen_1*t230 + dpush_by_angle_2_seen_2*t237 +
-                    dpush_by_angle_2_seen_3*t244)
-                t258 = t138*t257
-                t259 = -d1_x*t124 + d1_z*t142
-                t260 = -d1_x*t127 + d1_z*t143
-                t261 = -d1_x*t130 + d1_z*t145
-                t262 = n1_x*t259 + n1_y*t260 + n1_z*t261
-                t263 = m1_x*t259 + m1_y*t260 + m1_z*t261
-                t264 = -t123*t262 + t134*t263
-                t265 = -d1_x*t185 + d1_z*t177
-                t266 = -d1_x*t193 + d1_z*t191
-                t267 = -d1_x*t201 + d1_z*t199
-                t268 = d1_x*t125 - d1_y*t142
-                t269 = d1_x*t128 - d1_y*t143
-                t270 = d1_x*t131 - d1_y*t145
-                t271 = n1_x*t268 + n1_y*t269 + n1_z*t270
-                t272 = m1_x*t268 + m1_y*t269 + m1_z*t270
-                t273 = -t123*t271 + t134*t272
-                t274 = d1_x*t181 - d1_y*t177
-                t275 = d1_x*t192 - d1_y*t191
-                t276 = d1_x*t200 - d1_y*t199
-                t277 = -angle_1_seen_2*m1_z + angle_1_seen_3*m1_y
-                t278 = -angle_1_seen_2*n1_z + angle_1_seen_3*n1_y
-                t279 = -t123*t278 + t134*t277
-                t280 = angle_1_seen_1*m1_z - angle_1_seen_3*m1_x
-                t281 = angle_1_seen_1*n1_z - angle_1_seen_3*n1_x
-                t282 = -t123*t281 + t134*t280
-                t283 = -angle_1_seen_1*m1_y + angle_1_seen_2*m1_x
-                t284 = -angle_1_seen_1*n1_y + angle_1_seen_2*n1_x
-                t285 = -t123*t284 + t134*t283
-                t286 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
-                t287 = d2_y*t152 - d2_z*t154
-                t288 = d2_y*t159 - d2_z*t158
-                t289 = d2_y*t163 - d2_z*t162
-                t290 = n2_x*t287 + n2_y*t288 + n2_z*t289
-                t291 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
-                t292 = m2_x*t287 + m2_y*t288 + m2_z*t289
-                t293 = -t286*t290 + t291*t292
-                t294 = t286*t286 + t291*t291
-                t295 = ratio/t294
-                t296 = side*t295
-                t297 = t169*t296
-                t298 = m2_x*t230
-                t299 = m2_y*t237
-                t300 = m2_z*t244
-                t301 = n2_x*t230
-                t302 = n2_y*t237
-                t303 = n2_z*t244
-                t304 = ((ratio*t207*(-t286*(2*t298 + 2*t299 + 2*t300) - t291*(2*t301 + 2*t302 +
-                    2*t303)))/(t294*t294))
-                t305 = d2_y*t229 - d2_z*t225
-                t306 = d2_y*t236 - d2_z*t235
-                t307 = d2_y*t243 - d2_z*t242
-                t308 = t298 + t299 + t300
-                t309 = t301 + t302 + t303
-                t310 = t207*t295
-                t311 = t257*t296
-                t312 = -d2_x*t152 + d2_z*t156
-                t313 = -d2_x*t159 + d2_z*t157
-                t314 = -d2_x*t163 + d2_z*t161
-                t315 = n2_x*t312 + n2_y*t313 + n2_z*t314
-                t316 = m2_x*t312 + m2_y*t313 + m2_z*t314
-                t317 = -t286*t315 + t291*t316
-                t318 = -d2_x*t229 + d2_z*t221
-                t319 = -d2_x*t236 + d2_z*t234
-                t320 = -d2_x*t243 + d2_z*t241
-                t321 = d2_x*t154 - d2_y*t156
-                t322 = d2_x*t158 - d2_y*t157
-                t323 = d2_x*t162 - d2_y*t161
-                t324 = n2_x*t321 + n2_y*t322 + n2_z*t323
-                t325 = m2_x*t321 + m2_y*t322 + m2_z*t323
-                t326 = -t286*t324 + t291*t325
-                t327 = d2_x*t225 - d2_y*t221
-                t328 = d2_x*t235 - d2_y*t234
-                t329 = d2_x*t242 - d2_y*t241
-                t330 = -angle_2_seen_2*m2_z + angle_2_seen_3*m2_y
-                t331 = -angle_2_seen_2*n2_z + angle_2_seen_3*n2_y
-                t332 = -t286*t331 + t291*t330
-                t333 = angle_2_seen_1*m2_z - angle_2_seen_3*m2_x
-                t334 = angle_2_seen_1*n2_z - angle_2_seen_3*n2_x
-                t335 = -t286*t334 + t291*t333
-                t336 = -angle_2_seen_1*m2_y + angle_2_seen_2*m2_x
-                t337 = -angle_2_seen_1*n2_y + angle_2_seen_2*n2_x
-                t338 = -t286*t337 + t291*t336
-                J[column] = (c_stiffness*(t136*t208 + t136*t258 + t214*(-t123*(n1_x*t209 +
-                    n1_y*t210 + n1_z*t211) - t133*t212 + t134*(m1_x*t209 + m1_y*t210 + m1_z*t211)
-                    + t135*t213)) + t136*t170)
-                J[12 + column] = (c_stiffness*(t208*t264 + t214*(-t123*(n1_x*t265 + n1_y*t266 +
-                    n1_z*t267) + t134*(m1_x*t265 + m1_y*t266 + m1_z*t267) - t212*t262 + t213*t263)
-                    + t258*t264) + t170*t264)
-                J[24 + column] = (c_stiffness*(t208*t273 + t214*(-t123*(n1_x*t274 + n1_y*t275 +
-                    n1_z*t276) + t134*(m1_x*t274 + m1_y*t275 + m1_z*t276) - t212*t271 + t213*t272)
-                    + t258*t273) + t170*t273)
-                J[36 + column] = (c_stiffness*(t208*t279 + t214*(-t123*(n1_y*t202 - n1_z*t194) +
-                    t134*(m1_y*t202 - m1_z*t194) - t212*t278 + t213*t277) + t258*t279) + t170*t279)
-                J[48 + column] = (c_stiffness*(t208*t282 + t214*(-t123*(-n1_x*t202 + n1_z*t186) +
-                    t134*(-m1_x*t202 + m1_z*t186) - t212*t281 + t213*t280) + t258*t282) +
-                    t170*t282)
-                J[60 + column] = (c_stiffness*(t208*t285 + t214*(-t123*(n1_x*t194 - n1_y*t186) +
-                    t134*(m1_x*t194 - m1_y*t186) - t212*t284 + t213*t283) + t258*t285) + t170*t285)
-                J[72 + column] = (c_stiffness*(-t293*t304 - t293*t311 - t310*(-t286*(n2_x*t305 +
-                    n2_y*t306 + n2_z*t307) - t290*t308 + t291*(m2_x*t305 + m2_y*t306 + m2_z*t307)
-                    + t292*t309)) - t293*t297)
-                J[84 + column] = (c_stiffness*(-t304*t317 - t310*(-t286*(n2_x*t318 + n2_y*t319 +
-                    n2_z*t320) + t291*(m2_x*t318 + m2_y*t319 + m2_z*t320) - t308*t315 + t309*t316)
-                    - t311*t317) - t297*t317)
-                J[96 + column] = (c_stiffness*(-t304*t326 - t310*(-t286*(n2_x*t327 + n2_y*t328 +
-                    n2_z*t329) + t291*(m2_x*t327 + m2_y*t328 + m2_z*t329) - t308*t324 + t309*t325)
-                    - t311*t326) - t297*t326)
-                J[108 + column] = (c_stiffness*(-t304*t332 - t310*(-t286*(n2_y*t244 - n2_z*t237) +
-                    t291*(m2_y*t244 - m2_z*t237) - t308*t331 + t309*t330) - t311*t332) - t297*t332)
-                J[120 + column] = (c_stiffness*(-t304*t335 - t310*(-t286*(-n2_x*t244 + n2_z*t230)
-                    + t291*(-m2_x*t244 + m2_z*t230) - t308*t334 + t309*t333) - t311*t335) -
-                    t297*t335)
-                J[132 + column] = (c_stiffness*(-t304*t338 - t310*(-t286*(n2_x*t237 - n2_y*t230) +
-                    t291*(m2_x*t237 - m2_y*t230) - t308*t337 + t309*t336) - t311*t338) - t297*t338)
+                t124 = angle_1_seen_1*m1_x + angle_1_seen_2*m1_y + angle_1_seen_3*m1_z
+                t125 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t126 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t127 = d1_y*t125 - d1_z*t126
+                t128 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t129 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t130 = d1_y*t128 - d1_z*t129
+                t131 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t132 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t133 = d1_y*t131 - d1_z*t132
+                t134 = n1_x*t127 + n1_y*t130 + n1_z*t133
+                t135 = angle_1_seen_1*n1_x + angle_1_seen_2*n1_y + angle_1_seen_3*n1_z
+                t136 = m1_x*t127 + m1_y*t130 + m1_z*t133
+                t137 = -t124*t134 + t135*t136
+                t138 = t124*t124 + t135*t135
+                t139 = side/t138
+                t140 = -d1_x*utha_y + d1_y*utha_x
+                t141 = d1_x*utha_z - d1_z*utha_x
+                t142 = -d1_y*utha_z + d1_z*utha_y
+                t143 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t144 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t145 = d1_x*t144 + d1_y*t129 + d1_z*t128
+                t146 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t147 = d1_x*t146 + d1_y*t132 + d1_z*t131
+                t148 = t125*t140 + t126*t141 + t142*t143 + t145*uthb_z - t147*uthb_y
+                t149 = d1_x*t143 + d1_y*t126 + d1_z*t125
+                t150 = t128*t140 + t129*t141 + t142*t144 + t147*uthb_x - t149*uthb_z
+                t151 = t131*t140 + t132*t141 + t142*t146 - t145*uthb_x + t149*uthb_y
+                t152 = -d2_x*uthc_y + d2_y*uthc_x
+                t153 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
+                t154 = d2_x*uthc_z - d2_z*uthc_x
+                t155 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
+                t156 = -d2_y*uthc_z + d2_z*uthc_y
+                t157 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
+                t158 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
+                t159 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
+                t160 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
+                t161 = d2_x*t158 + d2_y*t159 + d2_z*t160
+                t162 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
+                t163 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
+                t164 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
+                t165 = d2_x*t162 + d2_y*t163 + d2_z*t164
+                t166 = t152*t153 + t154*t155 + t156*t157 + t161*uthd_z - t165*uthd_y
+                t167 = d2_x*t157 + d2_y*t155 + d2_z*t153
+                t168 = t152*t160 + t154*t159 + t156*t158 + t165*uthd_x - t167*uthd_z
+                t169 = t152*t164 + t154*t163 + t156*t162 - t161*uthd_x + t167*uthd_y
+                t170 = (c_damping*(dpush_by_angle_1_along_m*(m1_x*t148 + m1_y*t150 + m1_z*t151) +
+                    dpush_by_angle_1_along_n*(n1_x*t148 + n1_y*t150 + n1_z*t151) +
+                    dpush_by_angle_2_along_m*(m2_x*t166 + m2_y*t168 + m2_z*t169) +
+                    dpush_by_angle_2_along_n*(n2_x*t166 + n2_y*t168 + n2_z*t169)))
+                t171 = t139*t170
+                t172 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t173 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t174 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t175 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t176 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t177 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t178 = Ra_xx*t172 + Ra_yx*t173 + Ra_zx*t174 + Rb_xx*t175 + Rb_yx*t176 + Rb_zx*t177
+                t179 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t180 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t181 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t182 = Ra_xy*t172 + Ra_yy*t173 + Ra_zy*t174 + Rb_xx*t179 + Rb_yx*t180 + Rb_zx*t181
+                t183 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t184 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t185 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t186 = Ra_xz*t172 + Ra_yz*t173 + Ra_zz*t174 + Rb_xx*t183 + Rb_yx*t184 + Rb_zx*t185
+                t187 = d1_x*t178 + d1_y*t182 + d1_z*t186
+                t188 = m1_x*t187
+                t189 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t190 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t191 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t192 = Ra_xx*t189 + Ra_yx*t190 + Ra_zx*t191 + Rb_xy*t175 + Rb_yy*t176 + Rb_zy*t177
+                t193 = Ra_xy*t189 + Ra_yy*t190 + Ra_zy*t191 + Rb_xy*t179 + Rb_yy*t180 + Rb_zy*t181
+                t194 = Ra_xz*t189 + Ra_yz*t190 + Ra_zz*t191 + Rb_xy*t183 + Rb_yy*t184 + Rb_zy*t185
+                t195 = d1_x*t192 + d1_y*t193 + d1_z*t194
+                t196 = m1_y*t195
+                t197 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t198 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t199 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t200 = Ra_xx*t197 + Ra_yx*t198 + Ra_zx*t199 + Rb_xz*t175 + Rb_yz*t176 + Rb_zz*t177
+                t201 = Ra_xy*t197 + Ra_yy*t198 + Ra_zy*t199 + Rb_xz*t179 + Rb_yz*t180 + Rb_zz*t181
+                t202 = Ra_xz*t197 + Ra_yz*t198 + Ra_zz*t199 + Rb_xz*t183 + Rb_yz*t184 + Rb_zz*t185
+                t203 = d1_x*t200 + d1_y*t201 + d1_z*t202
+                t204 = m1_z*t203
+                t205 = n1_x*t187
+                t206 = n1_y*t195
+                t207 = n1_z*t203
+                t208 = push*side
+                t209 = ((t208*(-t124*(2*t188 + 2*t196 + 2*t204) - t135*(2*t205 + 2*t206 +
+                    2*t207)))/(t138*t138))
+                t210 = d1_y*t186 - d1_z*t182
+                t211 = d1_y*t194 - d1_z*t193
+                t212 = d1_y*t202 - d1_z*t201
+                t213 = t188 + t196 + t204
+                t214 = t205 + t206 + t207
+                t215 = push*t139
+                t216 = Rd_xy*dthd_z - Rd_xz*dthd_y
+                t217 = Rd_yy*dthd_z - Rd_yz*dthd_y
+                t218 = Rd_zy*dthd_z - Rd_zz*dthd_y
+                t219 = Rc_xy*dthc_z - Rc_xz*dthc_y
+                t220 = Rc_yy*dthc_z - Rc_yz*dthc_y
+                t221 = Rc_zy*dthc_z - Rc_zz*dthc_y
+                t222 = Rc_xx*t216 + Rc_yx*t217 + Rc_zx*t218 + Rd_xx*t219 + Rd_yx*t220 + Rd_zx*t221
+                t223 = -Rc_xx*dthc_z + Rc_xz*dthc_x
+                t224 = -Rc_yx*dthc_z + Rc_yz*dthc_x
+                t225 = -Rc_zx*dthc_z + Rc_zz*dthc_x
+                t226 = Rc_xy*t216 + Rc_yy*t217 + Rc_zy*t218 + Rd_xx*t223 + Rd_yx*t224 + Rd_zx*t225
+                t227 = Rc_xx*dthc_y - Rc_xy*dthc_x
+                t228 = Rc_yx*dthc_y - Rc_yy*dthc_x
+                t229 = Rc_zx*dthc_y - Rc_zy*dthc_x
+                t230 = Rc_xz*t216 + Rc_yz*t217 + Rc_zz*t218 + Rd_xx*t227 + Rd_yx*t228 + Rd_zx*t229
+                t231 = d2_x*t222 + d2_y*t226 + d2_z*t230
+                t232 = -Rd_xx*dthd_z + Rd_xz*dthd_x
+                t233 = -Rd_yx*dthd_z + Rd_yz*dthd_x
+                t234 = -Rd_zx*dthd_z + Rd_zz*dthd_x
+                t235 = Rc_xx*t232 + Rc_yx*t233 + Rc_zx*t234 + Rd_xy*t219 + Rd_yy*t220 + Rd_zy*t221
+                t236 = Rc_xy*t232 + Rc_yy*t233 + Rc_zy*t234 + Rd_xy*t223 + Rd_yy*t224 + Rd_zy*t225
+                t237 = Rc_xz*t232 + Rc_yz*t233 + Rc_zz*t234 + Rd_xy*t227 + Rd_yy*t228 + Rd_zy*t229
+                t238 = d2_x*t235 + d2_y*t236 + d2_z*t237
+                t239 = Rd_xx*dthd_y - Rd_xy*dthd_x
+                t240 = Rd_yx*dthd_y - Rd_yy*dthd_x
+                t241 = Rd_zx*dthd_y - Rd_zy*dthd_x
+                t242 = Rc_xx*t239 + Rc_yx*t240 + Rc_zx*t241 + Rd_xz*t219 + Rd_yz*t220 + Rd_zz*t221
+                t243 = Rc_xy*t239 + Rc_yy*t240 + Rc_zy*t241 + Rd_xz*t223 + Rd_yz*t224 + Rd_zz*t225
+                t244 = Rc_xz*t239 + Rc_yz*t240 + Rc_zz*t241 + Rd_xz*t227 + Rd_yz*t228 + Rd_zz*t229
+                t245 = d2_x*t242 + d2_y*t243 + d2_z*t244
+                t246 = Oma_x*d1_y - Oma_y*d1_x
+                t247 = -Oma_x*d1_z + Oma_z*d1_x
+                t248 = Oma_y*d1_z - Oma_z*d1_y
+                t249 = -Omb_y*t203 + Omb_z*t195 + t178*t248 + t182*t247 + t186*t246
+                t250 = Omb_x*t203 - Omb_z*t187 + t192*t248 + t193*t247 + t194*t246
+                t251 = -Omb_x*t195 + Omb_y*t187 + t200*t248 + t201*t247 + t202*t246
+                t252 = Omc_x*d2_y - Omc_y*d2_x
+                t253 = -Omc_x*d2_z + Omc_z*d2_x
+                t254 = Omc_y*d2_z - Omc_z*d2_y
+                t255 = -Omd_y*t245 + Omd_z*t238 + t222*t254 + t226*t253 + t230*t252
+                t256 = Omd_x*t245 - Omd_z*t231 + t235*t254 + t236*t253 + t237*t252
+                t257 = -Omd_x*t238 + Omd_y*t231 + t242*t254 + t243*t253 + t244*t252
+                t258 = (dpush_by_angle_1_along_m*(m1_x*t249 + m1_y*t250 + m1_z*t251) +
+                    dpush_by_angle_1_along_n*(n1_x*t249 + n1_y*t250 + n1_z*t251) +
+                    dpush_by_angle_1_seen_1*t187 + dpush_by_angle_1_seen_2*t195 +
+                    dpush_by_angle_1_seen_3*t203 + dpush_by_angle_2_along_m*(m2_x*t255 + m2_y*t256
+                    + m2_z*t257) + dpush_by_angle_2_along_n*(n2_x*t255 + n2_y*t256 + n2_z*t257) +
+                    dpush_by_angle_2_seen_1*t231 + dpush_by_angle_2_seen_2*t238 +
+                    dpush_by_angle_2_seen_3*t245)
+                t259 = t139*t258
+                t260 = -d1_x*t125 + d1_z*t143
+                t261 = -d1_x*t128 + d1_z*t144
+                t262 = -d1_x*t131 + d1_z*t146
+                t263 = n1_x*t260 + n1_y*t261 + n1_z*t262
+                t264 = m1_x*t260 + m1_y*t261 + m1_z*t262
+                t265 = -t124*t263 + t135*t264
+                t266 = -d1_x*t186 + d1_z*t178
+                t267 = -d1_x*t194 + d1_z*t192
+                t268 = -d1_x*t202 + d1_z*t200
+                t269 = d1_x*t126 - d1_y*t143
+                t270 = d1_x*t129 - d1_y*t144
+                t271 = d1_x*t132 - d1_y*t146
+                t272 = n1_x*t269 + n1_y*t270 + n1_z*t271
+                t273 = m1_x*t269 + m1_y*t270 + m1_z*t271
+                t274 = -t124*t272 + t135*t273
+                t275 = d1_x*t182 - d1_y*t178
+                t276 = d1_x*t193 - d1_y*t192
+                t277 = d1_x*t201 - d1_y*t200
+                t278 = -angle_1_seen_2*m1_z + angle_1_seen_3*m1_y
+                t279 = -angle_1_seen_2*n1_z + angle_1_seen_3*n1_y
+                t280 = -t124*t279 + t135*t278
+                t281 = angle_1_seen_1*m1_z - angle_1_seen_3*m1_x
+                t282 = angle_1_seen_1*n1_z - angle_1_seen_3*n1_x
+                t283 = -t124*t282 + t135*t281
+                t284 = -angle_1_seen_1*m1_y + angle_1_seen_2*m1_x
+                t285 = -angle_1_seen_1*n1_y + angle_1_seen_2*n1_x
+                t286 = -t124*t285 + t135*t284
+                t287 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
+                t288 = d2_y*t153 - d2_z*t155
+                t289 = d2_y*t160 - d2_z*t159
+                t290 = d2_y*t164 - d2_z*t163
+                t291 = n2_x*t288 + n2_y*t289 + n2_z*t290
+                t292 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
+                t293 = m2_x*t288 + m2_y*t289 + m2_z*t290
+                t294 = -t287*t291 + t292*t293
+                t295 = t287*t287 + t292*t292
+                t296 = ratio/t295
+                t297 = side*t296
+                t298 = t170*t297
+                t299 = m2_x*t231
+                t300 = m2_y*t238
+                t301 = m2_z*t245
+                t302 = n2_x*t231
+                t303 = n2_y*t238
+                t304 = n2_z*t245
+                t305 = ((ratio*t208*(-t287*(2*t299 + 2*t300 + 2*t301) - t292*(2*t302 + 2*t303 +
+                    2*t304)))/(t295*t295))
+                t306 = d2_y*t230 - d2_z*t226
+                t307 = d2_y*t237 - d2_z*t236
+                t308 = d2_y*t244 - d2_z*t243
+                t309 = t299 + t300 + t301
+                t310 = t302 + t303 + t304
+                t311 = t208*t296
+                t312 = t258*t297
+                t313 = -d2_x*t153 + d2_z*t157
+                t314 = -d2_x*t160 + d2_z*t158
+                t315 = -d2_x*t164 + d2_z*t162
+                t316 = n2_x*t313 + n2_y*t314 + n2_z*t315
+                t317 = m2_x*t313 + m2_y*t314 + m2_z*t315
+                t318 = -t287*t316 + t292*t317
+                t319 = -d2_x*t230 + d2_z*t222
+                t320 = -d2_x*t237 + d2_z*t235
+                t321 = -d2_x*t244 + d2_z*t242
+                t322 = d2_x*t155 - d2_y*t157
+                t323 = d2_x*t159 - d2_y*t158
+                t324 = d2_x*t163 - d2_y*t162
+                t325 = n2_x*t322 + n2_y*t323 + n2_z*t324
+                t326 = m2_x*t322 + m2_y*t323 + m2_z*t324
+                t327 = -t287*t325 + t292*t326
+                t328 = d2_x*t226 - d2_y*t222
+                t329 = d2_x*t236 - d2_y*t235
+                t330 = d2_x*t243 - d2_y*t242
+                t331 = -angle_2_seen_2*m2_z + angle_2_seen_3*m2_y
+                t332 = -angle_2_seen_2*n2_z + angle_2_seen_3*n2_y
+                t333 = -t287*t332 + t292*t331
+                t334 = angle_2_seen_1*m2_z - angle_2_seen_3*m2_x
+                t335 = angle_2_seen_1*n2_z - angle_2_seen_3*n2_x
+                t336 = -t287*t335 + t292*t334
+                t337 = -angle_2_seen_1*m2_y + angle_2_seen_2*m2_x
+                t338 = -angle_2_seen_1*n2_y + angle_2_seen_2*n2_x
+                t339 = -t287*t338 + t292*t337
+                J[column] = (c_stiffness*(t137*t209 + t137*t259 + t215*(-t124*(n1_x*t210 +
+                    n1_y*t211 + n1_z*t212) - t134*t213 + t135*(m1_x*t210 + m1_y*t211 + m1_z*t212)
+                    + t136*t214)) + t137*t171)
+                J[12 + column] = (c_stiffness*(t209*t265 + t215*(-t124*(n1_x*t266 + n1_y*t267 +
+                    n1_z*t268) + t135*(m1_x*t266 + m1_y*t267 + m1_z*t268) - t213*t263 + t214*t264)
+                    + t259*t265) + t171*t265)
+                J[24 + column] = (c_stiffness*(t209*t274 + t215*(-t124*(n1_x*t275 + n1_y*t276 +
+                    n1_z*t277) + t135*(m1_x*t275 + m1_y*t276 + m1_z*t277) - t213*t272 + t214*t273)
+                    + t259*t274) + t171*t274)
+                J[36 + column] = (c_stiffness*(t209*t280 + t215*(-t124*(n1_y*t203 - n1_z*t195) +
+                    t135*(m1_y*t203 - m1_z*t195) - t213*t279 + t214*t278) + t259*t280) + t171*t280)
+                J[48 + column] = (c_stiffness*(t209*t283 + t215*(-t124*(-n1_x*t203 + n1_z*t187) +
+                    t135*(-m1_x*t203 + m1_z*t187) - t213*t282 + t214*t281) + t259*t283) +
+                    t171*t283)
+                J[60 + column] = (c_stiffness*(t209*t286 + t215*(-t124*(n1_x*t195 - n1_y*t187) +
+                    t135*(m1_x*t195 - m1_y*t187) - t213*t285 + t214*t284) + t259*t286) + t171*t286)
+                J[72 + column] = (c_stiffness*(-t294*t305 - t294*t312 - t311*(-t287*(n2_x*t306 +
+                    n2_y*t307 + n2_z*t308) - t291*t309 + t292*(m2_x*t306 + m2_y*t307 + m2_z*t308)
+                    + t293*t310)) - t294*t298)
+                J[84 + column] = (c_stiffness*(-t305*t318 - t311*(-t287*(n2_x*t319 + n2_y*t320 +
+                    n2_z*t321) + t292*(m2_x*t319 + m2_y*t320 + m2_z*t321) - t309*t316 + t310*t317)
+                    - t312*t318) - t298*t318)
+                J[96 + column] = (c_stiffness*(-t305*t327 - t311*(-t287*(n2_x*t328 + n2_y*t329 +
+                    n2_z*t330) + t292*(m2_x*t328 + m2_y*t329 + m2_z*t330) - t309*t325 + t310*t326)
+                    - t312*t327) - t298*t327)
+                J[108 + column] = (c_stiffness*(-t305*t333 - t311*(-t287*(n2_y*t245 - n2_z*t238) +
+                    t292*(m2_y*t245 - m2_z*t238) - t309*t332 + t310*t331) - t312*t333) - t298*t333)
+                J[120 + column] = (c_stiffness*(-t305*t336 - t311*(-t287*(-n2_x*t245 + n2_z*t231)
+                    + t292*(-m2_x*t245 + m2_z*t231) - t309*t335 + t310*t334) - t312*t336) -
+                    t298*t336)
+                J[132 + column] = (c_stiffness*(-t305*t339 - t311*(-t287*(n2_x*t238 - n2_y*t231) +
+                    t292*(m2_x*t238 - m2_y*t231) - t309*t338 + t310*t337) - t312*t339) - t298*t339)
     return OK

@@ -31,6 +31,7 @@ CONSTANTS = (
     Part("stiffness", (), "stiffness k of k d^n (1 + c d')"),
     Part("exponent", (), "exponent n"),
     Part("damping", (), "damping c [time/length]"),
+    Part("slow", (), "speed of impacts so slow that steps do not look at them"),
     Part("lower", (), "lower limit"),
     Part("upper", (), "upper limit"),
     Part("ratio", (), "turns of the first for one turn of the second"),
@@ -60,9 +61,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         stiffness = constant[0]
         exponent = constant[1]
         damping = constant[2]
-        lower = constant[3]
-        upper = constant[4]
-        ratio = constant[5]
+        slow = constant[3]
+        lower = constant[4]
+        upper = constant[5]
+        ratio = constant[6]
         tha = q[unknowns[0]]
         Oma_z = v[unknowns[0]]
         thb = q[unknowns[1]]
@@ -93,6 +95,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t4 = (kept_rate if kept_rate > 0.0 else -kept_rate)
         t5 = (speed_beyond if speed_beyond > 0.0 else -speed_beyond)
         t6 = (t5 if -t4 + t5 > 0.0 else t4)
+        t7 = (t6 if -kept_impact + t6 > 0.0 else kept_impact)
         g[0] = t2
         g[1] = -t2
         g[2] = -t3
@@ -100,8 +103,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME]] = angle_1
         frames[index[first + AT_FRAME] + 1] = angle_2
         frames[index[first + AT_FRAME] + 2] = speed_beyond
-        frames[index[first + AT_FRAME] + 3] = (((t6 if -kept_impact + t6 > 0.0 else kept_impact)
-            if touches - 0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 3] = (((t7 if -slow + t7 > 0.0 else 0.0) if touches - 0.5
+            > 0.0 else 0.0))
         frames[index[first + AT_FRAME] + 4] = beyond
         frames[index[first + AT_FRAME] + 5] = push
         if task == ENERGY:
@@ -125,25 +128,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             du = at(work, WIDTH)
             dvalue_by_angle_1 = 1
             dvalue_by_angle_2 = -ratio
-            t7 = (1 if -lower - upper + 2*value > 0.0 else -1)
-            dbeyond_by_angle_1 = dvalue_by_angle_1*t7
-            dbeyond_by_angle_2 = dvalue_by_angle_2*t7
+            t8 = (1 if -lower - upper + 2*value > 0.0 else -1)
+            dbeyond_by_angle_1 = dvalue_by_angle_1*t8
+            dbeyond_by_angle_2 = dvalue_by_angle_2*t8
             dspeed_beyond_by_angle_1_rate = side
             dspeed_beyond_by_angle_2_rate = -ratio*side
-            t8 = (1 if beyond > 0.0 else 0)
-            ddepth_by_angle_1 = dbeyond_by_angle_1*t8
-            ddepth_by_angle_2 = dbeyond_by_angle_2*t8
-            t9 = depth**exponent*exponent*stiffness/depth
-            delastic_by_angle_1 = ddepth_by_angle_1*t9
-            delastic_by_angle_2 = ddepth_by_angle_2*t9
+            t9 = (1 if beyond > 0.0 else 0)
+            ddepth_by_angle_1 = dbeyond_by_angle_1*t9
+            ddepth_by_angle_2 = dbeyond_by_angle_2*t9
+            t10 = depth**exponent*exponent*stiffness/depth
+            delastic_by_angle_1 = ddepth_by_angle_1*t10
+            delastic_by_angle_2 = ddepth_by_angle_2*t10
             dfactor_by_angle_1_rate = damping*dspeed_beyond_by_angle_1_rate
             dfactor_by_angle_2_rate = damping*dspeed_beyond_by_angle_2_rate
-            t10 = (factor if factor > 0.0 else 0)
-            t11 = (elastic if factor > 0.0 else 0)
-            dpush_by_angle_1 = delastic_by_angle_1*t10
-            dpush_by_angle_1_rate = dfactor_by_angle_1_rate*t11
-            dpush_by_angle_2 = delastic_by_angle_2*t10
-            dpush_by_angle_2_rate = dfactor_by_angle_2_rate*t11
+            t11 = (factor if factor > 0.0 else 0)
+            t12 = (elastic if factor > 0.0 else 0)
+            dpush_by_angle_1 = delastic_by_angle_1*t11
+            dpush_by_angle_1_rate = dfactor_by_angle_1_rate*t12
+            dpush_by_angle_2 = delastic_by_angle_2*t11
+            dpush_by_angle_2_rate = dfactor_by_angle_2_rate*t12
             for column in range(4):
                 for i in range(4):
                     dq[i] = 0.0
@@ -158,14 +161,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_z = du[1]
                 uthc_z = du[2]
                 uthd_z = du[3]
-                t12 = (c_damping*side*(dpush_by_angle_1_rate*(utha_z - uthb_z) +
+                t13 = (c_damping*side*(dpush_by_angle_1_rate*(utha_z - uthb_z) +
                     dpush_by_angle_2_rate*(uthc_z - uthd_z)))
-                t13 = (c_stiffness*side*(dpush_by_angle_1*(dtha_z - dthb_z) +
+                t14 = (c_stiffness*side*(dpush_by_angle_1*(dtha_z - dthb_z) +
                     dpush_by_angle_2*(dthc_z - dthd_z)))
-                t14 = t12 + t13
-                t15 = ratio*t12 + ratio*t13
-                J[column] = t14
-                J[4 + column] = -t14
-                J[8 + column] = -t15
-                J[12 + column] = t15
+                t15 = t13 + t14
+                t16 = ratio*t13 + ratio*t14
+                J[column] = t15
+                J[4 + column] = -t15
+                J[8 + column] = -t16
+                J[12 + column] = t16
     return OK

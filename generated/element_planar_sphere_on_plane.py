@@ -33,6 +33,7 @@ CONSTANTS = (
     Part("stiffness", (), "stiffness k of k d^n (1 + c d')"),
     Part("exponent", (), "exponent n"),
     Part("damping", (), "damping c [time/length]"),
+    Part("slow", (), "speed of impacts so slow that steps do not look at them"),
     Part("bristle", (), "stiffness of the bristles"),
     Part("bristle_damping", (), "their damping"),
     Part("coefficient", (), "coefficient of friction"),
@@ -68,15 +69,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         stiffness = constant[0]
         exponent = constant[1]
         damping = constant[2]
-        bristle = constant[3]
-        bristle_damping = constant[4]
-        coefficient = constant[5]
-        static = constant[6]
-        speed = constant[7]
-        radius = constant[8]
-        n_x = constant[9]
-        n_y = constant[10]
-        level = constant[11]
+        slow = constant[3]
+        bristle = constant[4]
+        bristle_damping = constant[5]
+        coefficient = constant[6]
+        static = constant[7]
+        speed = constant[8]
+        radius = constant[9]
+        n_x = constant[10]
+        n_y = constant[11]
+        level = constant[12]
         xa_x = q[unknowns[0]]
         xa_y = q[unknowns[1]]
         va_x = v[unknowns[0]]
@@ -166,7 +168,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t28 = (closing if closing > 0.0 else -closing)
         t29 = (kept_rate if kept_rate > 0.0 else -kept_rate)
         t30 = (t28 if t28 - t29 > 0.0 else t29)
-        t31 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+        t31 = (t30 if -kept_impact + t30 > 0.0 else kept_impact)
+        t32 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
             dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0)))
         g[0] = t24
         g[1] = t25
@@ -179,11 +182,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME] + 1] = place_2
         frames[index[first + AT_FRAME] + 2] = tha - thb
         frames[index[first + AT_FRAME] + 3] = closing
-        frames[index[first + AT_FRAME] + 4] = (((t30 if -kept_impact + t30 > 0.0 else kept_impact)
-            if touches - 0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 4] = (((t31 if -slow + t31 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0))
         frames[index[first + AT_FRAME] + 5] = gap_closed
-        frames[index[first + AT_FRAME] + 6] = t31*z_1
-        frames[index[first + AT_FRAME] + 7] = t31*z_2
+        frames[index[first + AT_FRAME] + 6] = t32*z_1
+        frames[index[first + AT_FRAME] + 7] = t32*z_2
         frames[index[first + AT_FRAME] + 8] = slips
         frames[index[first + AT_FRAME] + 9] = 1.0
         frames[index[first + AT_FRAME] + 10] = push
@@ -227,60 +230,60 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             du = at(work, WIDTH)
             dgap_closed_by_place_1 = -n_x
             dgap_closed_by_place_2 = -n_y
-            t32 = normal_1*normal_1
-            t33 = 1 - t32
-            t34 = -normal_1*normal_2
-            t35 = normal_2*radius
-            t36 = t32*t35 + t33*t35
-            t37 = normal_2*normal_2
-            t38 = 1 - t37
-            t39 = normal_1*radius
-            t40 = -t37*t39 - t38*t39
+            t33 = normal_1*normal_1
+            t34 = 1 - t33
+            t35 = -normal_1*normal_2
+            t36 = normal_2*radius
+            t37 = t33*t36 + t34*t36
+            t38 = normal_2*normal_2
+            t39 = 1 - t38
+            t40 = normal_1*radius
+            t41 = -t38*t40 - t39*t40
             dclosing_by_rate_1 = -normal_1
             dclosing_by_rate_2 = -normal_2
-            dslip_1_by_rate_1 = t33
-            dslip_1_by_rate_2 = t34
-            dslip_1_by_spin_3 = t36
-            dslip_2_by_rate_1 = t34
-            dslip_2_by_rate_2 = t38
-            dslip_2_by_spin_3 = t40
-            dincrement_1_by_place_1 = t33
-            dincrement_1_by_place_2 = t34
-            dincrement_1_by_turned_3 = t36
-            dincrement_2_by_place_1 = t34
-            dincrement_2_by_place_2 = t38
-            dincrement_2_by_turned_3 = t40
-            t41 = (1 if gap_closed > 0.0 else 0)
-            ddepth_by_place_1 = dgap_closed_by_place_1*t41
-            ddepth_by_place_2 = dgap_closed_by_place_2*t41
-            t42 = depth**exponent*exponent*stiffness/depth
-            delastic_by_place_1 = ddepth_by_place_1*t42
-            delastic_by_place_2 = ddepth_by_place_2*t42
+            dslip_1_by_rate_1 = t34
+            dslip_1_by_rate_2 = t35
+            dslip_1_by_spin_3 = t37
+            dslip_2_by_rate_1 = t35
+            dslip_2_by_rate_2 = t39
+            dslip_2_by_spin_3 = t41
+            dincrement_1_by_place_1 = t34
+            dincrement_1_by_place_2 = t35
+            dincrement_1_by_turned_3 = t37
+            dincrement_2_by_place_1 = t35
+            dincrement_2_by_place_2 = t39
+            dincrement_2_by_turned_3 = t41
+            t42 = (1 if gap_closed > 0.0 else 0)
+            ddepth_by_place_1 = dgap_closed_by_place_1*t42
+            ddepth_by_place_2 = dgap_closed_by_place_2*t42
+            t43 = depth**exponent*exponent*stiffness/depth
+            delastic_by_place_1 = ddepth_by_place_1*t43
+            delastic_by_place_2 = ddepth_by_place_2*t43
             dfactor_by_rate_1 = damping*dclosing_by_rate_1
             dfactor_by_rate_2 = damping*dclosing_by_rate_2
-            t43 = (factor if factor > 0.0 else 0)
-            t44 = (elastic if factor > 0.0 else 0)
-            dpush_by_place_1 = delastic_by_place_1*t43
-            dpush_by_place_2 = delastic_by_place_2*t43
-            dpush_by_rate_1 = dfactor_by_rate_1*t44
-            dpush_by_rate_2 = dfactor_by_rate_2*t44
-            t45 = kept_begun*normal_1*normal_2
-            t46 = kept_begun*(1 - normal_1*normal_1)
-            t47 = 1 - normal_2*normal_2
-            dz_1_by_place_1 = dincrement_1_by_place_1*t46 - dincrement_2_by_place_1*t45
-            dz_1_by_place_2 = dincrement_1_by_place_2*t46 - dincrement_2_by_place_2*t45
-            dz_1_by_turned_3 = dincrement_1_by_turned_3*t46 - dincrement_2_by_turned_3*t45
-            dz_2_by_place_1 = -dincrement_1_by_place_1*t45 + dincrement_2_by_place_1*kept_begun*t47
-            dz_2_by_place_2 = -dincrement_1_by_place_2*t45 + dincrement_2_by_place_2*kept_begun*t47
-            dz_2_by_turned_3 = (-dincrement_1_by_turned_3*t45 +
-                dincrement_2_by_turned_3*kept_begun*t47)
+            t44 = (factor if factor > 0.0 else 0)
+            t45 = (elastic if factor > 0.0 else 0)
+            dpush_by_place_1 = delastic_by_place_1*t44
+            dpush_by_place_2 = delastic_by_place_2*t44
+            dpush_by_rate_1 = dfactor_by_rate_1*t45
+            dpush_by_rate_2 = dfactor_by_rate_2*t45
+            t46 = kept_begun*normal_1*normal_2
+            t47 = kept_begun*(1 - normal_1*normal_1)
+            t48 = 1 - normal_2*normal_2
+            dz_1_by_place_1 = dincrement_1_by_place_1*t47 - dincrement_2_by_place_1*t46
+            dz_1_by_place_2 = dincrement_1_by_place_2*t47 - dincrement_2_by_place_2*t46
+            dz_1_by_turned_3 = dincrement_1_by_turned_3*t47 - dincrement_2_by_turned_3*t46
+            dz_2_by_place_1 = -dincrement_1_by_place_1*t46 + dincrement_2_by_place_1*kept_begun*t48
+            dz_2_by_place_2 = -dincrement_1_by_place_2*t46 + dincrement_2_by_place_2*kept_begun*t48
+            dz_2_by_turned_3 = (-dincrement_1_by_turned_3*t46 +
+                dincrement_2_by_turned_3*kept_begun*t48)
             ddynamic_limit_by_place_1 = coefficient*dpush_by_place_1
             ddynamic_limit_by_place_2 = coefficient*dpush_by_place_2
             ddynamic_limit_by_rate_1 = coefficient*dpush_by_rate_1
             ddynamic_limit_by_rate_2 = coefficient*dpush_by_rate_2
-            t48 = 1/sqrt(slip_1*slip_1 + slip_2*slip_2 + 1e-12*speed*speed + 1e-300)
-            t49 = slip_1*t48
-            t50 = slip_2*t48
+            t49 = 1/sqrt(slip_1*slip_1 + slip_2*slip_2 + 1e-12*speed*speed + 1e-300)
+            t50 = slip_1*t49
+            t51 = slip_2*t49
             dtrial_1_by_place_1 = bristle*dz_1_by_place_1
             dtrial_1_by_place_2 = bristle*dz_1_by_place_2
             dtrial_1_by_turned_3 = bristle*dz_1_by_turned_3
@@ -293,68 +296,68 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dtrial_2_by_rate_1 = bristle_damping*dslip_2_by_rate_1
             dtrial_2_by_rate_2 = bristle_damping*dslip_2_by_rate_2
             dtrial_2_by_spin_3 = bristle_damping*dslip_2_by_spin_3
-            dslip_speed_by_rate_1 = dslip_1_by_rate_1*t49 + dslip_2_by_rate_1*t50
-            dslip_speed_by_rate_2 = dslip_1_by_rate_2*t49 + dslip_2_by_rate_2*t50
-            dslip_speed_by_spin_3 = dslip_1_by_spin_3*t49 + dslip_2_by_spin_3*t50
-            t51 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + 1e-300)
-            t52 = t51*trial_1
-            t53 = t51*trial_2
-            t54 = 1/slip_speed
-            t55 = 1/speed
-            t56 = slip_speed*t55
-            t57 = tanh(4*t56)
-            t58 = slip_speed*slip_speed
-            t59 = 0.75 + ((0.25)*t58)/(speed*speed)
-            t60 = -coefficient + static
-            t61 = t60/(t59*t59)
-            t62 = coefficient*t57 + t56*t61
-            t63 = (t54*t62 if speed > 0.0 else 0)
-            t64 = ((push*t54*(4*coefficient*t55*(1 - t57*t57) + t55*t61 +
-                (-t58*t60)/(speed*speed*speed*t59*t59*t59)) - push*t62/t58 if speed > 0.0 else 0))
-            dtrial_size_by_place_1 = dtrial_1_by_place_1*t52 + dtrial_2_by_place_1*t53
-            dtrial_size_by_place_2 = dtrial_1_by_place_2*t52 + dtrial_2_by_place_2*t53
-            dtrial_size_by_turned_3 = dtrial_1_by_turned_3*t52 + dtrial_2_by_turned_3*t53
-            dtrial_size_by_rate_1 = dtrial_1_by_rate_1*t52 + dtrial_2_by_rate_1*t53
-            dtrial_size_by_rate_2 = dtrial_1_by_rate_2*t52 + dtrial_2_by_rate_2*t53
-            dtrial_size_by_spin_3 = dtrial_1_by_spin_3*t52 + dtrial_2_by_spin_3*t53
-            ddrag_by_place_1 = dpush_by_place_1*t63
-            ddrag_by_place_2 = dpush_by_place_2*t63
-            ddrag_by_rate_1 = dpush_by_rate_1*t63 + dslip_speed_by_rate_1*t64
-            ddrag_by_rate_2 = dpush_by_rate_2*t63 + dslip_speed_by_rate_2*t64
-            ddrag_by_spin_3 = dslip_speed_by_spin_3*t64
-            t65 = (slip_1 if speed > 0.0 else 0)
-            t66 = -static_limit + trial_size
-            t67 = 1/trial_size
-            t68 = (0 if speed > 0.0 else (t67*trial_1 if t66 > 0.0 else 0))
-            t69 = (0 if speed > 0.0 else (dynamic_limit*t67 if t66 > 0.0 else 1))
-            t70 = dynamic_limit/(trial_size*trial_size)
-            t71 = (0 if speed > 0.0 else (-t70*trial_1 if t66 > 0.0 else 0))
-            t72 = (drag if speed > 0.0 else 0)
-            t73 = (slip_2 if speed > 0.0 else 0)
-            t74 = (0 if speed > 0.0 else (t67*trial_2 if t66 > 0.0 else 0))
-            t75 = (0 if speed > 0.0 else (-t70*trial_2 if t66 > 0.0 else 0))
-            dfriction_1_by_place_1 = (ddrag_by_place_1*t65 + ddynamic_limit_by_place_1*t68 +
-                dtrial_1_by_place_1*t69 + dtrial_size_by_place_1*t71)
-            dfriction_1_by_place_2 = (ddrag_by_place_2*t65 + ddynamic_limit_by_place_2*t68 +
-                dtrial_1_by_place_2*t69 + dtrial_size_by_place_2*t71)
-            dfriction_1_by_turned_3 = dtrial_1_by_turned_3*t69 + dtrial_size_by_turned_3*t71
-            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t65 + ddynamic_limit_by_rate_1*t68 +
-                dslip_1_by_rate_1*t72 + dtrial_1_by_rate_1*t69 + dtrial_size_by_rate_1*t71)
-            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t65 + ddynamic_limit_by_rate_2*t68 +
-                dslip_1_by_rate_2*t72 + dtrial_1_by_rate_2*t69 + dtrial_size_by_rate_2*t71)
-            dfriction_1_by_spin_3 = (ddrag_by_spin_3*t65 + dslip_1_by_spin_3*t72 +
-                dtrial_1_by_spin_3*t69 + dtrial_size_by_spin_3*t71)
-            dfriction_2_by_place_1 = (ddrag_by_place_1*t73 + ddynamic_limit_by_place_1*t74 +
-                dtrial_2_by_place_1*t69 + dtrial_size_by_place_1*t75)
-            dfriction_2_by_place_2 = (ddrag_by_place_2*t73 + ddynamic_limit_by_place_2*t74 +
-                dtrial_2_by_place_2*t69 + dtrial_size_by_place_2*t75)
-            dfriction_2_by_turned_3 = dtrial_2_by_turned_3*t69 + dtrial_size_by_turned_3*t75
-            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t73 + ddynamic_limit_by_rate_1*t74 +
-                dslip_2_by_rate_1*t72 + dtrial_2_by_rate_1*t69 + dtrial_size_by_rate_1*t75)
-            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t73 + ddynamic_limit_by_rate_2*t74 +
-                dslip_2_by_rate_2*t72 + dtrial_2_by_rate_2*t69 + dtrial_size_by_rate_2*t75)
-            dfriction_2_by_spin_3 = (ddrag_by_spin_3*t73 + dslip_2_by_spin_3*t72 +
-                dtrial_2_by_spin_3*t69 + dtrial_size_by_spin_3*t75)
+            dslip_speed_by_rate_1 = dslip_1_by_rate_1*t50 + dslip_2_by_rate_1*t51
+            dslip_speed_by_rate_2 = dslip_1_by_rate_2*t50 + dslip_2_by_rate_2*t51
+            dslip_speed_by_spin_3 = dslip_1_by_spin_3*t50 + dslip_2_by_spin_3*t51
+            t52 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + 1e-300)
+            t53 = t52*trial_1
+            t54 = t52*trial_2
+            t55 = 1/slip_speed
+            t56 = 1/speed
+            t57 = slip_speed*t56
+            t58 = tanh(4*t57)
+            t59 = slip_speed*slip_speed
+            t60 = 0.75 + ((0.25)*t59)/(speed*speed)
+            t61 = -coefficient + static
+            t62 = t61/(t60*t60)
+            t63 = coefficient*t58 + t57*t62
+            t64 = (t55*t63 if speed > 0.0 else 0)
+            t65 = ((push*t55*(4*coefficient*t56*(1 - t58*t58) + t56*t62 +
+                (-t59*t61)/(speed*speed*speed*t60*t60*t60)) - push*t63/t59 if speed > 0.0 else 0))
+            dtrial_size_by_place_1 = dtrial_1_by_place_1*t53 + dtrial_2_by_place_1*t54
+            dtrial_size_by_place_2 = dtrial_1_by_place_2*t53 + dtrial_2_by_place_2*t54
+            dtrial_size_by_turned_3 = dtrial_1_by_turned_3*t53 + dtrial_2_by_turned_3*t54
+            dtrial_size_by_rate_1 = dtrial_1_by_rate_1*t53 + dtrial_2_by_rate_1*t54
+            dtrial_size_by_rate_2 = dtrial_1_by_rate_2*t53 + dtrial_2_by_rate_2*t54
+            dtrial_size_by_spin_3 = dtrial_1_by_spin_3*t53 + dtrial_2_by_spin_3*t54
+            ddrag_by_place_1 = dpush_by_place_1*t64
+            ddrag_by_place_2 = dpush_by_place_2*t64
+            ddrag_by_rate_1 = dpush_by_rate_1*t64 + dslip_speed_by_rate_1*t65
+            ddrag_by_rate_2 = dpush_by_rate_2*t64 + dslip_speed_by_rate_2*t65
+            ddrag_by_spin_3 = dslip_speed_by_spin_3*t65
+            t66 = (slip_1 if speed > 0.0 else 0)
+            t67 = -static_limit + trial_size
+            t68 = 1/trial_size
+            t69 = (0 if speed > 0.0 else (t68*trial_1 if t67 > 0.0 else 0))
+            t70 = (0 if speed > 0.0 else (dynamic_limit*t68 if t67 > 0.0 else 1))
+            t71 = dynamic_limit/(trial_size*trial_size)
+            t72 = (0 if speed > 0.0 else (-t71*trial_1 if t67 > 0.0 else 0))
+            t73 = (drag if speed > 0.0 else 0)
+            t74 = (slip_2 if speed > 0.0 else 0)
+            t75 = (0 if speed > 0.0 else (t68*trial_2 if t67 > 0.0 else 0))
+            t76 = (0 if speed > 0.0 else (-t71*trial_2 if t67 > 0.0 else 0))
+            dfriction_1_by_place_1 = (ddrag_by_place_1*t66 + ddynamic_limit_by_place_1*t69 +
+                dtrial_1_by_place_1*t70 + dtrial_size_by_place_1*t72)
+            dfriction_1_by_place_2 = (ddrag_by_place_2*t66 + ddynamic_limit_by_place_2*t69 +
+                dtrial_1_by_place_2*t70 + dtrial_size_by_place_2*t72)
+            dfriction_1_by_turned_3 = dtrial_1_by_turned_3*t70 + dtrial_size_by_turned_3*t72
+            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t66 + ddynamic_limit_by_rate_1*t69 +
+                dslip_1_by_rate_1*t73 + dtrial_1_by_rate_1*t70 + dtrial_size_by_rate_1*t72)
+            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t66 + ddynamic_limit_by_rate_2*t69 +
+                dslip_1_by_rate_2*t73 + dtrial_1_by_rate_2*t70 + dtrial_size_by_rate_2*t72)
+            dfriction_1_by_spin_3 = (ddrag_by_spin_3*t66 + dslip_1_by_spin_3*t73 +
+                dtrial_1_by_spin_3*t70 + dtrial_size_by_spin_3*t72)
+            dfriction_2_by_place_1 = (ddrag_by_place_1*t74 + ddynamic_limit_by_place_1*t75 +
+                dtrial_2_by_place_1*t70 + dtrial_size_by_place_1*t76)
+            dfriction_2_by_place_2 = (ddrag_by_place_2*t74 + ddynamic_limit_by_place_2*t75 +
+                dtrial_2_by_place_2*t70 + dtrial_size_by_place_2*t76)
+            dfriction_2_by_turned_3 = dtrial_2_by_turned_3*t70 + dtrial_size_by_turned_3*t76
+            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t74 + ddynamic_limit_by_rate_1*t75 +
+                dslip_2_by_rate_1*t73 + dtrial_2_by_rate_1*t70 + dtrial_size_by_rate_1*t76)
+            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t74 + ddynamic_limit_by_rate_2*t75 +
+                dslip_2_by_rate_2*t73 + dtrial_2_by_rate_2*t70 + dtrial_size_by_rate_2*t76)
+            dfriction_2_by_spin_3 = (ddrag_by_spin_3*t74 + dslip_2_by_spin_3*t73 +
+                dtrial_2_by_spin_3*t70 + dtrial_size_by_spin_3*t76)
             for column in range(6):
                 for i in range(6):
                     dq[i] = 0.0
@@ -373,64 +376,64 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uxb_y = du[3]
                 utha_z = du[4]
                 uthb_z = du[5]
-                t76 = uxa_x - uxb_x
-                t77 = uxa_y - uxb_y
-                t78 = xa_y - xb_y
-                t79 = Rb_cos*t78
-                t80 = xa_x - xb_x
-                t81 = Rb_sin*t80
-                t82 = Rb_cos*t76 + Rb_sin*t77 + uthb_z*(t79 - t81)
-                t83 = Rb_cos*t80
-                t84 = Rb_sin*t78
-                t85 = t83 + t84
-                t86 = Rb_cos*t77 - Rb_sin*t76 - t85*uthb_z
-                t87 = dpush_by_rate_1*t82 + dpush_by_rate_2*t86
-                t88 = utha_z - uthb_z
-                t89 = (dfriction_2_by_rate_1*t82 + dfriction_2_by_rate_2*t86 +
-                    dfriction_2_by_spin_3*t88)
-                t90 = normal_1*normal_2
-                t91 = 1 - normal_1*normal_1
-                t92 = (dfriction_1_by_rate_1*t82 + dfriction_1_by_rate_2*t86 +
-                    dfriction_1_by_spin_3*t88)
-                t93 = -normal_1*t87 - t89*t90 + t91*t92
-                t94 = 1 - normal_2*normal_2
-                t95 = -normal_2*t87 + t89*t94 - t90*t92
-                t96 = Rb_cos*t93 - Rb_sin*t95
-                t97 = -friction_1*t90 + friction_2*t94 - normal_2*push
-                t98 = Rb_cos*dthb_z
-                t99 = friction_1*t91 - friction_2*t90 - normal_1*push
-                t100 = Rb_sin*dthb_z
-                t101 = dxa_x - dxb_x
-                t102 = dxa_y - dxb_y
-                t103 = Rb_cos*t101 + Rb_sin*t102 + dthb_z*t79 - dthb_z*t81
-                t104 = Rb_cos*t102 - Rb_sin*t101 - dthb_z*t83 - dthb_z*t84
-                t105 = va_y - vb_y
-                t106 = va_x - vb_x
-                t107 = Omb_z*t104 - t100*t106 + t105*t98
-                t108 = -Omb_z*t103 - t100*t105 - t106*t98
-                t109 = (dpush_by_place_1*t103 + dpush_by_place_2*t104 + dpush_by_rate_1*t107 +
-                    dpush_by_rate_2*t108)
-                t110 = dtha_z - dthb_z
-                t111 = (dfriction_1_by_place_1*t103 + dfriction_1_by_place_2*t104 +
-                    dfriction_1_by_rate_1*t107 + dfriction_1_by_rate_2*t108 +
-                    dfriction_1_by_turned_3*t110)
-                t112 = (dfriction_2_by_place_1*t103 + dfriction_2_by_place_2*t104 +
-                    dfriction_2_by_rate_1*t107 + dfriction_2_by_rate_2*t108 +
-                    dfriction_2_by_turned_3*t110)
-                t113 = -normal_2*t109 - t111*t90 + t112*t94
-                t114 = -normal_1*t109 + t111*t91 - t112*t90
-                t115 = -Rb_cos*t114 + Rb_sin*t113 + t100*t99 + t97*t98
-                t116 = Rb_cos*t95 + Rb_sin*t93
-                t117 = Rb_cos*t113 + Rb_sin*t114 - t100*t97 + t98*t99
-                t118 = normal_1*radius
-                t119 = normal_1*radius - t85
-                t120 = Rb_cos*t78 - normal_2*radius - t81
-                J[column] = c_damping*t96 - c_stiffness*t115
-                J[6 + column] = c_damping*t116 + c_stiffness*t117
-                J[12 + column] = -c_damping*t96 + c_stiffness*t115
-                J[18 + column] = -c_damping*t116 - c_stiffness*t117
-                J[24 + column] = (c_damping*(normal_2*radius*t93 - t118*t95) +
-                    c_stiffness*(normal_2*radius*t114 - t113*t118))
-                J[30 + column] = (c_damping*(t119*t95 + t120*t93) + c_stiffness*(-t103*t97 +
-                    t104*t99 + t113*t119 + t114*t120))
+                t77 = uxa_x - uxb_x
+                t78 = uxa_y - uxb_y
+                t79 = xa_y - xb_y
+                t80 = Rb_cos*t79
+                t81 = xa_x - xb_x
+                t82 = Rb_sin*t81
+                t83 = Rb_cos*t77 + Rb_sin*t78 + uthb_z*(t80 - t82)
+                t84 = Rb_cos*t81
+                t85 = Rb_sin*t79
+                t86 = t84 + t85
+                t87 = Rb_cos*t78 - Rb_sin*t77 - t86*uthb_z
+                t88 = dpush_by_rate_1*t83 + dpush_by_rate_2*t87
+                t89 = utha_z - uthb_z
+                t90 = (dfriction_2_by_rate_1*t83 + dfriction_2_by_rate_2*t87 +
+                    dfriction_2_by_spin_3*t89)
+                t91 = normal_1*normal_2
+                t92 = 1 - normal_1*normal_1
+                t93 = (dfriction_1_by_rate_1*t83 + dfriction_1_by_rate_2*t87 +
+                    dfriction_1_by_spin_3*t89)
+                t94 = -normal_1*t88 - t90*t91 + t92*t93
+                t95 = 1 - normal_2*normal_2
+                t96 = -normal_2*t88 + t90*t95 - t91*t93
+                t97 = Rb_cos*t94 - Rb_sin*t96
+                t98 = -friction_1*t91 + friction_2*t95 - normal_2*push
+                t99 = Rb_cos*dthb_z
+                t100 = friction_1*t92 - friction_2*t91 - normal_1*push
+                t101 = Rb_sin*dthb_z
+                t102 = dxa_x - dxb_x
+                t103 = dxa_y - dxb_y
+                t104 = Rb_cos*t102 + Rb_sin*t103 + dthb_z*t80 - dthb_z*t82
+                t105 = Rb_cos*t103 - Rb_sin*t102 - dthb_z*t84 - dthb_z*t85
+                t106 = va_y - vb_y
+                t107 = va_x - vb_x
+                t108 = Omb_z*t105 - t101*t107 + t106*t99
+                t109 = -Omb_z*t104 - t101*t106 - t107*t99
+                t110 = (dpush_by_place_1*t104 + dpush_by_place_2*t105 + dpush_by_rate_1*t108 +
+                    dpush_by_rate_2*t109)
+                t111 = dtha_z - dthb_z
+                t112 = (dfriction_1_by_place_1*t104 + dfriction_1_by_place_2*t105 +
+                    dfriction_1_by_rate_1*t108 + dfriction_1_by_rate_2*t109 +
+                    dfriction_1_by_turned_3*t111)
+                t113 = (dfriction_2_by_place_1*t104 + dfriction_2_by_place_2*t105 +
+                    dfriction_2_by_rate_1*t108 + dfriction_2_by_rate_2*t109 +
+                    dfriction_2_by_turned_3*t111)
+                t114 = -normal_2*t110 - t112*t91 + t113*t95
+                t115 = -normal_1*t110 + t112*t92 - t113*t91
+                t116 = -Rb_cos*t115 + Rb_sin*t114 + t100*t101 + t98*t99
+                t117 = Rb_cos*t96 + Rb_sin*t94
+                t118 = Rb_cos*t114 + Rb_sin*t115 + t100*t99 - t101*t98
+                t119 = normal_1*radius
+                t120 = normal_1*radius - t86
+                t121 = Rb_cos*t79 - normal_2*radius - t82
+                J[column] = c_damping*t97 - c_stiffness*t116
+                J[6 + column] = c_damping*t117 + c_stiffness*t118
+                J[12 + column] = -c_damping*t97 + c_stiffness*t116
+                J[18 + column] = -c_damping*t117 - c_stiffness*t118
+                J[24 + column] = (c_damping*(normal_2*radius*t94 - t119*t96) +
+                    c_stiffness*(normal_2*radius*t115 - t114*t119))
+                J[30 + column] = (c_damping*(t120*t96 + t121*t94) + c_stiffness*(t100*t105 -
+                    t104*t98 + t114*t120 + t115*t121))
     return OK

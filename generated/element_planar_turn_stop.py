@@ -31,6 +31,7 @@ CONSTANTS = (
     Part("stiffness", (), "stiffness k of k d^n (1 + c d')"),
     Part("exponent", (), "exponent n"),
     Part("damping", (), "damping c [time/length]"),
+    Part("slow", (), "speed of impacts so slow that steps do not look at them"),
     Part("lower", (), "lower limit"),
     Part("upper", (), "upper limit"),
 )
@@ -59,8 +60,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         stiffness = constant[0]
         exponent = constant[1]
         damping = constant[2]
-        lower = constant[3]
-        upper = constant[4]
+        slow = constant[3]
+        lower = constant[4]
+        upper = constant[5]
         tha = q[unknowns[0]]
         Oma_z = v[unknowns[0]]
         thb = q[unknowns[1]]
@@ -84,12 +86,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t3 = (kept_rate if kept_rate > 0.0 else -kept_rate)
         t4 = (speed_beyond if speed_beyond > 0.0 else -speed_beyond)
         t5 = (t4 if -t3 + t4 > 0.0 else t3)
+        t6 = (t5 if -kept_impact + t5 > 0.0 else kept_impact)
         g[0] = t2
         g[1] = -t2
         frames[index[first + AT_FRAME]] = angle
         frames[index[first + AT_FRAME] + 1] = speed_beyond
-        frames[index[first + AT_FRAME] + 2] = (((t5 if -kept_impact + t5 > 0.0 else kept_impact)
-            if touches - 0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 2] = (((t6 if -slow + t6 > 0.0 else 0.0) if touches - 0.5
+            > 0.0 else 0.0))
         frames[index[first + AT_FRAME] + 3] = beyond
         frames[index[first + AT_FRAME] + 4] = push
         if task == ENERGY:
@@ -125,8 +128,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dthb_z = dq[1]
                 utha_z = du[0]
                 uthb_z = du[1]
-                t6 = (c_damping*dpush_by_angle_rate*side*(utha_z - uthb_z) +
+                t7 = (c_damping*dpush_by_angle_rate*side*(utha_z - uthb_z) +
                     c_stiffness*dpush_by_angle*side*(dtha_z - dthb_z))
-                J[column] = t6
-                J[2 + column] = -t6
+                J[column] = t7
+                J[2 + column] = -t7
     return OK

@@ -33,6 +33,7 @@ CONSTANTS = (
     Part("stiffness", (), "stiffness k of k d^n (1 + c d')"),
     Part("exponent", (), "exponent n"),
     Part("damping", (), "damping c [time/length]"),
+    Part("slow", (), "speed of impacts so slow that steps do not look at them"),
     Part("bristle", (), "stiffness of the bristles"),
     Part("bristle_damping", (), "their damping"),
     Part("coefficient", (), "coefficient of friction"),
@@ -68,16 +69,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         stiffness = constant[0]
         exponent = constant[1]
         damping = constant[2]
-        bristle = constant[3]
-        bristle_damping = constant[4]
-        coefficient = constant[5]
-        static = constant[6]
-        speed = constant[7]
-        radius = constant[8]
-        n_x = constant[9]
-        n_y = constant[10]
-        n_z = constant[11]
-        level = constant[12]
+        slow = constant[3]
+        bristle = constant[4]
+        bristle_damping = constant[5]
+        coefficient = constant[6]
+        static = constant[7]
+        speed = constant[8]
+        radius = constant[9]
+        n_x = constant[10]
+        n_y = constant[11]
+        n_z = constant[12]
+        level = constant[13]
         xa_x = q[unknowns[0]]
         xa_y = q[unknowns[1]]
         xa_z = q[unknowns[2]]
@@ -247,7 +249,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t65 = (closing if closing > 0.0 else -closing)
         t66 = (kept_rate if kept_rate > 0.0 else -kept_rate)
         t67 = (t65 if t65 - t66 > 0.0 else t66)
-        t68 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+        t68 = (t67 if -kept_impact + t67 > 0.0 else kept_impact)
+        t69 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
             dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0)))
         g[0] = t44
         g[1] = t45
@@ -268,12 +271,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME] + 1] = place_2
         frames[index[first + AT_FRAME] + 2] = place_3
         frames[index[first + AT_FRAME] + 3] = closing
-        frames[index[first + AT_FRAME] + 4] = (((t67 if -kept_impact + t67 > 0.0 else kept_impact)
-            if touches - 0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 4] = (((t68 if -slow + t68 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0))
         frames[index[first + AT_FRAME] + 5] = gap_closed
-        frames[index[first + AT_FRAME] + 6] = t68*z_1
-        frames[index[first + AT_FRAME] + 7] = t68*z_2
-        frames[index[first + AT_FRAME] + 8] = t68*z_3
+        frames[index[first + AT_FRAME] + 6] = t69*z_1
+        frames[index[first + AT_FRAME] + 7] = t69*z_2
+        frames[index[first + AT_FRAME] + 8] = t69*z_3
         frames[index[first + AT_FRAME] + 9] = slips
         frames[index[first + AT_FRAME] + 10] = 1.0
         frames[index[first + AT_FRAME] + 11] = push
@@ -366,125 +369,126 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dgap_closed_by_place_1 = -n_x
             dgap_closed_by_place_2 = -n_y
             dgap_closed_by_place_3 = -n_z
-            t69 = normal_1*normal_1
-            t70 = 1 - t69
-            t71 = -normal_1*normal_2
-            t72 = -normal_1*normal_3
-            t73 = normal_3*radius
-            t74 = -t69*t73 - t70*t73
-            t75 = normal_2*radius
-            t76 = t69*t75 + t70*t75
-            t77 = normal_2*normal_2
-            t78 = 1 - t77
-            t79 = -normal_2*normal_3
-            t80 = t73*t77 + t73*t78
-            t81 = normal_1*radius
-            t82 = -t77*t81 - t78*t81
-            t83 = normal_3*normal_3
-            t84 = 1 - t83
-            t85 = -t75*t83 - t75*t84
-            t86 = t81*t83 + t81*t84
+            t70 = normal_1*normal_1
+            t71 = 1 - t70
+            t72 = -normal_1*normal_2
+            t73 = -normal_1*normal_3
+            t74 = normal_3*radius
+            t75 = -t70*t74 - t71*t74
+            t76 = normal_2*radius
+            t77 = t70*t76 + t71*t76
+            t78 = normal_2*normal_2
+            t79 = 1 - t78
+            t80 = -normal_2*normal_3
+            t81 = t74*t78 + t74*t79
+            t82 = normal_1*radius
+            t83 = -t78*t82 - t79*t82
+            t84 = normal_3*normal_3
+            t85 = 1 - t84
+            t86 = -t76*t84 - t76*t85
+            t87 = t82*t84 + t82*t85
             dclosing_by_rate_1 = -normal_1
             dclosing_by_rate_2 = -normal_2
             dclosing_by_rate_3 = -normal_3
-            dslip_1_by_rate_1 = t70
-            dslip_1_by_rate_2 = t71
-            dslip_1_by_rate_3 = t72
-            dslip_1_by_spin_2 = t74
-            dslip_1_by_spin_3 = t76
-            dslip_2_by_rate_1 = t71
-            dslip_2_by_rate_2 = t78
-            dslip_2_by_rate_3 = t79
-            dslip_2_by_spin_1 = t80
-            dslip_2_by_spin_3 = t82
-            dslip_3_by_rate_1 = t72
-            dslip_3_by_rate_2 = t79
-            dslip_3_by_rate_3 = t84
-            dslip_3_by_spin_1 = t85
-            dslip_3_by_spin_2 = t86
-            dincrement_1_by_place_1 = t70
-            dincrement_1_by_place_2 = t71
-            dincrement_1_by_place_3 = t72
-            dincrement_1_by_turned_2 = t74
-            dincrement_1_by_turned_3 = t76
-            dincrement_2_by_place_1 = t71
-            dincrement_2_by_place_2 = t78
-            dincrement_2_by_place_3 = t79
-            dincrement_2_by_turned_1 = t80
-            dincrement_2_by_turned_3 = t82
-            dincrement_3_by_place_1 = t72
-            dincrement_3_by_place_2 = t79
-            dincrement_3_by_place_3 = t84
-            dincrement_3_by_turned_1 = t85
-            dincrement_3_by_turned_2 = t86
-            t87 = (1 if gap_closed > 0.0 else 0)
-            ddepth_by_place_1 = dgap_closed_by_place_1*t87
-            ddepth_by_place_2 = dgap_closed_by_place_2*t87
-            ddepth_by_place_3 = dgap_closed_by_place_3*t87
-            t88 = depth**exponent*exponent*stiffness/depth
-            delastic_by_place_1 = ddepth_by_place_1*t88
-            delastic_by_place_2 = ddepth_by_place_2*t88
-            delastic_by_place_3 = ddepth_by_place_3*t88
+            dslip_1_by_rate_1 = t71
+            dslip_1_by_rate_2 = t72
+            dslip_1_by_rate_3 = t73
+            dslip_1_by_spin_2 = t75
+            dslip_1_by_spin_3 = t77
+            dslip_2_by_rate_1 = t72
+            dslip_2_by_rate_2 = t79
+            dslip_2_by_rate_3 = t80
+            dslip_2_by_spin_1 = t81
+            dslip_2_by_spin_3 = t83
+            dslip_3_by_rate_1 = t73
+            dslip_3_by_rate_2 = t80
+            dslip_3_by_rate_3 = t85
+            dslip_3_by_spin_1 = t86
+            dslip_3_by_spin_2 = t87
+            dincrement_1_by_place_1 = t71
+            dincrement_1_by_place_2 = t72
+            dincrement_1_by_place_3 = t73
+            dincrement_1_by_turned_2 = t75
+            dincrement_1_by_turned_3 = t77
+            dincrement_2_by_place_1 = t72
+            dincrement_2_by_place_2 = t79
+            dincrement_2_by_place_3 = t80
+            dincrement_2_by_turned_1 = t81
+            dincrement_2_by_turned_3 = t83
+            dincrement_3_by_place_1 = t73
+            dincrement_3_by_place_2 = t80
+            dincrement_3_by_place_3 = t85
+            dincrement_3_by_turned_1 = t86
+            dincrement_3_by_turned_2 = t87
+            t88 = (1 if gap_closed > 0.0 else 0)
+            ddepth_by_place_1 = dgap_closed_by_place_1*t88
+            ddepth_by_place_2 = dgap_closed_by_place_2*t88
+            ddepth_by_place_3 = dgap_closed_by_place_3*t88
+            t89 = depth**exponent*exponent*stiffness/depth
+            delastic_by_place_1 = ddepth_by_place_1*t89
+            delastic_by_place_2 = ddepth_by_place_2*t89
+            delastic_by_place_3 = ddepth_by_place_3*t89
             dfactor_by_rate_1 = damping*dclosing_by_rate_1
             dfactor_by_rate_2 = damping*dclosing_by_rate_2
             dfactor_by_rate_3 = damping*dclosing_by_rate_3
-            t89 = (factor if factor > 0.0 else 0)
-            t90 = (elastic if factor > 0.0 else 0)
-            dpush_by_place_1 = delastic_by_place_1*t89
-            dpush_by_place_2 = delastic_by_place_2*t89
-            dpush_by_place_3 = delastic_by_place_3*t89
-            dpush_by_rate_1 = dfactor_by_rate_1*t90
-            dpush_by_rate_2 = dfactor_by_rate_2*t90
-            dpush_by_rate_3 = dfactor_by_rate_3*t90
-            t91 = kept_begun*normal_1
-            t92 = normal_2*t91
-            t93 = normal_3*t91
-            t94 = 1 - normal_1*normal_1
-            t95 = kept_begun*t94
-            t96 = kept_begun*normal_2*normal_3
-            t97 = 1 - normal_2*normal_2
-            t98 = 1 - normal_3*normal_3
-            dz_1_by_place_1 = (dincrement_1_by_place_1*kept_begun*t94 -
-                dincrement_2_by_place_1*t92 - dincrement_3_by_place_1*t93)
-            dz_1_by_place_2 = (dincrement_1_by_place_2*kept_begun*t94 -
-                dincrement_2_by_place_2*t92 - dincrement_3_by_place_2*t93)
-            dz_1_by_place_3 = (dincrement_1_by_place_3*kept_begun*t94 -
-                dincrement_2_by_place_3*t92 - dincrement_3_by_place_3*t93)
-            dz_1_by_turned_1 = -dincrement_2_by_turned_1*t92 - dincrement_3_by_turned_1*t93
-            dz_1_by_turned_2 = dincrement_1_by_turned_2*t95 - dincrement_3_by_turned_2*t93
-            dz_1_by_turned_3 = dincrement_1_by_turned_3*t95 - dincrement_2_by_turned_3*t92
-            dz_2_by_place_1 = (-dincrement_1_by_place_1*t92 +
-                dincrement_2_by_place_1*kept_begun*t97 - dincrement_3_by_place_1*t96)
-            dz_2_by_place_2 = (-dincrement_1_by_place_2*t92 +
-                dincrement_2_by_place_2*kept_begun*t97 - dincrement_3_by_place_2*t96)
-            dz_2_by_place_3 = (-dincrement_1_by_place_3*t92 +
-                dincrement_2_by_place_3*kept_begun*t97 - dincrement_3_by_place_3*t96)
-            dz_2_by_turned_1 = (dincrement_2_by_turned_1*kept_begun*t97 -
-                dincrement_3_by_turned_1*t96)
-            dz_2_by_turned_2 = -dincrement_1_by_turned_2*t92 - dincrement_3_by_turned_2*t96
-            dz_2_by_turned_3 = (-dincrement_1_by_turned_3*t92 +
-                dincrement_2_by_turned_3*kept_begun*t97)
-            dz_3_by_place_1 = (-dincrement_1_by_place_1*t93 - dincrement_2_by_place_1*t96 +
-                dincrement_3_by_place_1*kept_begun*t98)
-            dz_3_by_place_2 = (-dincrement_1_by_place_2*t93 - dincrement_2_by_place_2*t96 +
-                dincrement_3_by_place_2*kept_begun*t98)
-            dz_3_by_place_3 = (-dincrement_1_by_place_3*t93 - dincrement_2_by_place_3*t96 +
-                dincrement_3_by_place_3*kept_begun*t98)
-            dz_3_by_turned_1 = (-dincrement_2_by_turned_1*t96 +
-                dincrement_3_by_turned_1*kept_begun*t98)
-            dz_3_by_turned_2 = (-dincrement_1_by_turned_2*t93 +
-                dincrement_3_by_turned_2*kept_begun*t98)
-            dz_3_by_turned_3 = -dincrement_1_by_turned_3*t93 - dincrement_2_by_turned_3*t96
+            t90 = (factor if factor > 0.0 else 0)
+            t91 = (elastic if factor > 0.0 else 0)
+            dpush_by_place_1 = delastic_by_place_1*t90
+            dpush_by_place_2 = delastic_by_place_2*t90
+            dpush_by_place_3 = delastic_by_place_3*t90
+            dpush_by_rate_1 = dfactor_by_rate_1*t91
+            dpush_by_rate_2 = dfactor_by_rate_2*t91
+            dpush_by_rate_3 = dfactor_by_rate_3*t91
+            t92 = kept_begun*normal_1
+            t93 = normal_2*t92
+            t94 = normal_3*t92
+            t95 = 1 - normal_1*normal_1
+            t96 = kept_begun*t95
+            t97 = kept_begun*normal_2*normal_3
+            t98 = 1 - normal_2*normal_2
+            t99 = 1 - normal_3*normal_3
+            dz_1_by_place_1 = (dincrement_1_by_place_1*kept_begun*t95 -
+                dincrement_2_by_place_1*t93 - dincrement_3_by_place_1*t94)
+            dz_1_by_place_2 = (dincrement_1_by_place_2*kept_begun*t95 -
+                dincrement_2_by_place_2*t93 - dincrement_3_by_place_2*t94)
+            dz_1_by_place_3 = (dincrement_1_by_place_3*kept_begun*t95 -
+                dincrement_2_by_place_3*t93 - dincrement_3_by_place_3*t94)
+            dz_1_by_turned_1 = -dincrement_2_by_turned_1*t93 - dincrement_3_by_turned_1*t94
+            dz_1_by_turned_2 = dincrement_1_by_turned_2*t96 - dincrement_3_by_turned_2*t94
+            dz_1_by_turned_3 = dincrement_1_by_turned_3*t96 - dincrement_2_by_turned_3*t93
+            dz_2_by_place_1 = (-dincrement_1_by_place_1*t93 +
+                dincrement_2_by_place_1*kept_begun*t98 - dincrement_3_by_place_1*t97)
+            dz_2_by_place_2 = (-dincrement_1_by_place_2*t93 +
+                dincrement_2_by_place_2*kept_begun*t98 - dincrement_3_by_place_2*t97)
+            dz_2_by_place_3 = (-dincrement_1_by_place_3*t93 +
+                dincrement_2_by_place_3*kept_begun*t98 - dincrement_3_by_place_3*t97)
+            dz_2_by_turned_1 = (dincrement_2_by_turned_1*kept_begun*t98 -
+                dincrement_3_by_turned_1*t97)
+            dz_2_by_turned_2 = -dincrement_1_by_turned_2*t93 - dincrement_3_by_turned_2*t97
+            dz_2_by_turned_3 = (-dincrement_1_by_turned_3*t93 +
+                dincrement_2_by_turned_3*kept_begun*t98)
+            dz_3_by_place_1 = (-dincrement_1_by_place_1*t94 - dincrement_2_by_place_1*t97 +
+                dincrement_3_by_place_1*kept_begun*t99)
+            dz_3_by_place_2 = (-dincrement_1_by_place_2*t94 - dincrement_2_by_place_2*t97 +
+                dincrement_3_by_place_2*kept_begun*t99)
+            dz_3_by_place_3 = (-dincrement_1_by_place_3*t94 - dincrement_2_by_place_3*t97 +
+                dincrement_3_by_place_3*kept_begun*t99)
+            dz_3_by_turned_1 = (-dincrement_2_by_turned_1*t97 +
+                dincrement_3_by_turned_1*kept_begun*t99)
+            dz_3_by_turned_2 = (-dincrement_1_by_turned_2*t94 +
+                dincrement_3_by_turned_2*kept_begun*t99)
+            dz_3_by_turned_3 = -dincrement_1_by_turned_3*t94 - dincrement_2_by_turned_3*t97
             ddynamic_limit_by_place_1 = coefficient*dpush_by_place_1
             ddynamic_limit_by_place_2 = coefficient*dpush_by_place_2
             ddynamic_limit_by_place_3 = coefficient*dpush_by_place_3
             ddynamic_limit_by_rate_1 = coefficient*dpush_by_rate_1
             ddynamic_limit_by_rate_2 = coefficient*dpush_by_rate_2
             ddynamic_limit_by_rate_3 = coefficient*dpush_by_rate_3
-            t99 = 1/sqrt(slip_1*slip_1 + slip_2*slip_2 + slip_3*slip_3 + 1e-12*speed*speed + 1e-300)
-            t100 = slip_1*t99
-            t101 = slip_2*t99
-            t102 = slip_3*t99
+            t100 = (1/sqrt(slip_1*slip_1 + slip_2*slip_2 + slip_3*slip_3 + 1e-12*speed*speed +
+                1e-300))
+            t101 = slip_1*t100
+            t102 = slip_2*t100
+            t103 = slip_3*t100
             dtrial_1_by_place_1 = bristle*dz_1_by_place_1
             dtrial_1_by_place_2 = bristle*dz_1_by_place_2
             dtrial_1_by_place_3 = bristle*dz_1_by_place_3
@@ -518,136 +522,136 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dtrial_3_by_rate_3 = bristle_damping*dslip_3_by_rate_3
             dtrial_3_by_spin_1 = bristle_damping*dslip_3_by_spin_1
             dtrial_3_by_spin_2 = bristle_damping*dslip_3_by_spin_2
-            dslip_speed_by_rate_1 = (dslip_1_by_rate_1*t100 + dslip_2_by_rate_1*t101 +
-                dslip_3_by_rate_1*t102)
-            dslip_speed_by_rate_2 = (dslip_1_by_rate_2*t100 + dslip_2_by_rate_2*t101 +
-                dslip_3_by_rate_2*t102)
-            dslip_speed_by_rate_3 = (dslip_1_by_rate_3*t100 + dslip_2_by_rate_3*t101 +
-                dslip_3_by_rate_3*t102)
-            dslip_speed_by_spin_1 = dslip_2_by_spin_1*t101 + dslip_3_by_spin_1*t102
-            dslip_speed_by_spin_2 = dslip_1_by_spin_2*t100 + dslip_3_by_spin_2*t102
-            dslip_speed_by_spin_3 = dslip_1_by_spin_3*t100 + dslip_2_by_spin_3*t101
-            t103 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
-            t104 = t103*trial_1
-            t105 = t103*trial_2
-            t106 = t103*trial_3
-            t107 = 1/slip_speed
-            t108 = 1/speed
-            t109 = slip_speed*t108
-            t110 = tanh(4*t109)
-            t111 = slip_speed*slip_speed
-            t112 = 0.75 + ((0.25)*t111)/(speed*speed)
-            t113 = -coefficient + static
-            t114 = t113/(t112*t112)
-            t115 = coefficient*t110 + t109*t114
-            t116 = (t107*t115 if speed > 0.0 else 0)
-            t117 = ((push*t107*(4*coefficient*t108*(1 - t110*t110) + t108*t114 +
-                (-t111*t113)/(speed*speed*speed*t112*t112*t112)) - push*t115/t111 if speed > 0.0
+            dslip_speed_by_rate_1 = (dslip_1_by_rate_1*t101 + dslip_2_by_rate_1*t102 +
+                dslip_3_by_rate_1*t103)
+            dslip_speed_by_rate_2 = (dslip_1_by_rate_2*t101 + dslip_2_by_rate_2*t102 +
+                dslip_3_by_rate_2*t103)
+            dslip_speed_by_rate_3 = (dslip_1_by_rate_3*t101 + dslip_2_by_rate_3*t102 +
+                dslip_3_by_rate_3*t103)
+            dslip_speed_by_spin_1 = dslip_2_by_spin_1*t102 + dslip_3_by_spin_1*t103
+            dslip_speed_by_spin_2 = dslip_1_by_spin_2*t101 + dslip_3_by_spin_2*t103
+            dslip_speed_by_spin_3 = dslip_1_by_spin_3*t101 + dslip_2_by_spin_3*t102
+            t104 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
+            t105 = t104*trial_1
+            t106 = t104*trial_2
+            t107 = t104*trial_3
+            t108 = 1/slip_speed
+            t109 = 1/speed
+            t110 = slip_speed*t109
+            t111 = tanh(4*t110)
+            t112 = slip_speed*slip_speed
+            t113 = 0.75 + ((0.25)*t112)/(speed*speed)
+            t114 = -coefficient + static
+            t115 = t114/(t113*t113)
+            t116 = coefficient*t111 + t110*t115
+            t117 = (t108*t116 if speed > 0.0 else 0)
+            t118 = ((push*t108*(4*coefficient*t109*(1 - t111*t111) + t109*t115 +
+                (-t112*t114)/(speed*speed*speed*t113*t113*t113)) - push*t116/t112 if speed > 0.0
                 else 0))
-            dtrial_size_by_place_1 = (dtrial_1_by_place_1*t104 + dtrial_2_by_place_1*t105 +
-                dtrial_3_by_place_1*t106)
-            dtrial_size_by_place_2 = (dtrial_1_by_place_2*t104 + dtrial_2_by_place_2*t105 +
-                dtrial_3_by_place_2*t106)
-            dtrial_size_by_place_3 = (dtrial_1_by_place_3*t104 + dtrial_2_by_place_3*t105 +
-                dtrial_3_by_place_3*t106)
-            dtrial_size_by_turned_1 = (dtrial_1_by_turned_1*t104 + dtrial_2_by_turned_1*t105 +
-                dtrial_3_by_turned_1*t106)
-            dtrial_size_by_turned_2 = (dtrial_1_by_turned_2*t104 + dtrial_2_by_turned_2*t105 +
-                dtrial_3_by_turned_2*t106)
-            dtrial_size_by_turned_3 = (dtrial_1_by_turned_3*t104 + dtrial_2_by_turned_3*t105 +
-                dtrial_3_by_turned_3*t106)
-            dtrial_size_by_rate_1 = (dtrial_1_by_rate_1*t104 + dtrial_2_by_rate_1*t105 +
-                dtrial_3_by_rate_1*t106)
-            dtrial_size_by_rate_2 = (dtrial_1_by_rate_2*t104 + dtrial_2_by_rate_2*t105 +
-                dtrial_3_by_rate_2*t106)
-            dtrial_size_by_rate_3 = (dtrial_1_by_rate_3*t104 + dtrial_2_by_rate_3*t105 +
-                dtrial_3_by_rate_3*t106)
-            dtrial_size_by_spin_1 = dtrial_2_by_spin_1*t105 + dtrial_3_by_spin_1*t106
-            dtrial_size_by_spin_2 = dtrial_1_by_spin_2*t104 + dtrial_3_by_spin_2*t106
-            dtrial_size_by_spin_3 = dtrial_1_by_spin_3*t104 + dtrial_2_by_spin_3*t105
-            ddrag_by_place_1 = dpush_by_place_1*t116
-            ddrag_by_place_2 = dpush_by_place_2*t116
-            ddrag_by_place_3 = dpush_by_place_3*t116
-            ddrag_by_rate_1 = dpush_by_rate_1*t116 + dslip_speed_by_rate_1*t117
-            ddrag_by_rate_2 = dpush_by_rate_2*t116 + dslip_speed_by_rate_2*t117
-            ddrag_by_rate_3 = dpush_by_rate_3*t116 + dslip_speed_by_rate_3*t117
-            ddrag_by_spin_1 = dslip_speed_by_spin_1*t117
-            ddrag_by_spin_2 = dslip_speed_by_spin_2*t117
-            ddrag_by_spin_3 = dslip_speed_by_spin_3*t117
-            t118 = (slip_1 if speed > 0.0 else 0)
-            t119 = -static_limit + trial_size
-            t120 = 1/trial_size
-            t121 = (0 if speed > 0.0 else (t120*trial_1 if t119 > 0.0 else 0))
-            t122 = (0 if speed > 0.0 else (dynamic_limit*t120 if t119 > 0.0 else 1))
-            t123 = dynamic_limit/(trial_size*trial_size)
-            t124 = (0 if speed > 0.0 else (-t123*trial_1 if t119 > 0.0 else 0))
-            t125 = (drag if speed > 0.0 else 0)
-            t126 = (slip_2 if speed > 0.0 else 0)
-            t127 = (0 if speed > 0.0 else (t120*trial_2 if t119 > 0.0 else 0))
-            t128 = (0 if speed > 0.0 else (-t123*trial_2 if t119 > 0.0 else 0))
-            t129 = (slip_3 if speed > 0.0 else 0)
-            t130 = (0 if speed > 0.0 else (t120*trial_3 if t119 > 0.0 else 0))
-            t131 = (0 if speed > 0.0 else (-t123*trial_3 if t119 > 0.0 else 0))
-            dfriction_1_by_place_1 = (ddrag_by_place_1*t118 + ddynamic_limit_by_place_1*t121 +
-                dtrial_1_by_place_1*t122 + dtrial_size_by_place_1*t124)
-            dfriction_1_by_place_2 = (ddrag_by_place_2*t118 + ddynamic_limit_by_place_2*t121 +
-                dtrial_1_by_place_2*t122 + dtrial_size_by_place_2*t124)
-            dfriction_1_by_place_3 = (ddrag_by_place_3*t118 + ddynamic_limit_by_place_3*t121 +
-                dtrial_1_by_place_3*t122 + dtrial_size_by_place_3*t124)
-            dfriction_1_by_turned_1 = dtrial_1_by_turned_1*t122 + dtrial_size_by_turned_1*t124
-            dfriction_1_by_turned_2 = dtrial_1_by_turned_2*t122 + dtrial_size_by_turned_2*t124
-            dfriction_1_by_turned_3 = dtrial_1_by_turned_3*t122 + dtrial_size_by_turned_3*t124
-            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t118 + ddynamic_limit_by_rate_1*t121 +
-                dslip_1_by_rate_1*t125 + dtrial_1_by_rate_1*t122 + dtrial_size_by_rate_1*t124)
-            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t118 + ddynamic_limit_by_rate_2*t121 +
-                dslip_1_by_rate_2*t125 + dtrial_1_by_rate_2*t122 + dtrial_size_by_rate_2*t124)
-            dfriction_1_by_rate_3 = (ddrag_by_rate_3*t118 + ddynamic_limit_by_rate_3*t121 +
-                dslip_1_by_rate_3*t125 + dtrial_1_by_rate_3*t122 + dtrial_size_by_rate_3*t124)
-            dfriction_1_by_spin_1 = ddrag_by_spin_1*t118 + dtrial_size_by_spin_1*t124
-            dfriction_1_by_spin_2 = (ddrag_by_spin_2*t118 + dslip_1_by_spin_2*t125 +
-                dtrial_1_by_spin_2*t122 + dtrial_size_by_spin_2*t124)
-            dfriction_1_by_spin_3 = (ddrag_by_spin_3*t118 + dslip_1_by_spin_3*t125 +
-                dtrial_1_by_spin_3*t122 + dtrial_size_by_spin_3*t124)
-            dfriction_2_by_place_1 = (ddrag_by_place_1*t126 + ddynamic_limit_by_place_1*t127 +
-                dtrial_2_by_place_1*t122 + dtrial_size_by_place_1*t128)
-            dfriction_2_by_place_2 = (ddrag_by_place_2*t126 + ddynamic_limit_by_place_2*t127 +
-                dtrial_2_by_place_2*t122 + dtrial_size_by_place_2*t128)
-            dfriction_2_by_place_3 = (ddrag_by_place_3*t126 + ddynamic_limit_by_place_3*t127 +
-                dtrial_2_by_place_3*t122 + dtrial_size_by_place_3*t128)
-            dfriction_2_by_turned_1 = dtrial_2_by_turned_1*t122 + dtrial_size_by_turned_1*t128
-            dfriction_2_by_turned_2 = dtrial_2_by_turned_2*t122 + dtrial_size_by_turned_2*t128
-            dfriction_2_by_turned_3 = dtrial_2_by_turned_3*t122 + dtrial_size_by_turned_3*t128
-            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t126 + ddynamic_limit_by_rate_1*t127 +
-                dslip_2_by_rate_1*t125 + dtrial_2_by_rate_1*t122 + dtrial_size_by_rate_1*t128)
-            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t126 + ddynamic_limit_by_rate_2*t127 +
-                dslip_2_by_rate_2*t125 + dtrial_2_by_rate_2*t122 + dtrial_size_by_rate_2*t128)
-            dfriction_2_by_rate_3 = (ddrag_by_rate_3*t126 + ddynamic_limit_by_rate_3*t127 +
-                dslip_2_by_rate_3*t125 + dtrial_2_by_rate_3*t122 + dtrial_size_by_rate_3*t128)
-            dfriction_2_by_spin_1 = (ddrag_by_spin_1*t126 + dslip_2_by_spin_1*t125 +
-                dtrial_2_by_spin_1*t122 + dtrial_size_by_spin_1*t128)
-            dfriction_2_by_spin_2 = ddrag_by_spin_2*t126 + dtrial_size_by_spin_2*t128
-            dfriction_2_by_spin_3 = (ddrag_by_spin_3*t126 + dslip_2_by_spin_3*t125 +
-                dtrial_2_by_spin_3*t122 + dtrial_size_by_spin_3*t128)
-            dfriction_3_by_place_1 = (ddrag_by_place_1*t129 + ddynamic_limit_by_place_1*t130 +
-                dtrial_3_by_place_1*t122 + dtrial_size_by_place_1*t131)
-            dfriction_3_by_place_2 = (ddrag_by_place_2*t129 + ddynamic_limit_by_place_2*t130 +
-                dtrial_3_by_place_2*t122 + dtrial_size_by_place_2*t131)
-            dfriction_3_by_place_3 = (ddrag_by_place_3*t129 + ddynamic_limit_by_place_3*t130 +
-                dtrial_3_by_place_3*t122 + dtrial_size_by_place_3*t131)
-            dfriction_3_by_turned_1 = dtrial_3_by_turned_1*t122 + dtrial_size_by_turned_1*t131
-            dfriction_3_by_turned_2 = dtrial_3_by_turned_2*t122 + dtrial_size_by_turned_2*t131
-            dfriction_3_by_turned_3 = dtrial_3_by_turned_3*t122 + dtrial_size_by_turned_3*t131
-            dfriction_3_by_rate_1 = (ddrag_by_rate_1*t129 + ddynamic_limit_by_rate_1*t130 +
-                dslip_3_by_rate_1*t125 + dtrial_3_by_rate_1*t122 + dtrial_size_by_rate_1*t131)
-            dfriction_3_by_rate_2 = (ddrag_by_rate_2*t129 + ddynamic_limit_by_rate_2*t130 +
-                dslip_3_by_rate_2*t125 + dtrial_3_by_rate_2*t122 + dtrial_size_by_rate_2*t131)
-            dfriction_3_by_rate_3 = (ddrag_by_rate_3*t129 + ddynamic_limit_by_rate_3*t130 +
-                dslip_3_by_rate_3*t125 + dtrial_3_by_rate_3*t122 + dtrial_size_by_rate_3*t131)
-            dfriction_3_by_spin_1 = (ddrag_by_spin_1*t129 + dslip_3_by_spin_1*t125 +
-                dtrial_3_by_spin_1*t122 + dtrial_size_by_spin_1*t131)
-            dfriction_3_by_spin_2 = (ddrag_by_spin_2*t129 + dslip_3_by_spin_2*t125 +
-                dtrial_3_by_spin_2*t122 + dtrial_size_by_spin_2*t131)
-            dfriction_3_by_spin_3 = ddrag_by_spin_3*t129 + dtrial_size_by_spin_3*t131
+            dtrial_size_by_place_1 = (dtrial_1_by_place_1*t105 + dtrial_2_by_place_1*t106 +
+                dtrial_3_by_place_1*t107)
+            dtrial_size_by_place_2 = (dtrial_1_by_place_2*t105 + dtrial_2_by_place_2*t106 +
+                dtrial_3_by_place_2*t107)
+            dtrial_size_by_place_3 = (dtrial_1_by_place_3*t105 + dtrial_2_by_place_3*t106 +
+                dtrial_3_by_place_3*t107)
+            dtrial_size_by_turned_1 = (dtrial_1_by_turned_1*t105 + dtrial_2_by_turned_1*t106 +
+                dtrial_3_by_turned_1*t107)
+            dtrial_size_by_turned_2 = (dtrial_1_by_turned_2*t105 + dtrial_2_by_turned_2*t106 +
+                dtrial_3_by_turned_2*t107)
+            dtrial_size_by_turned_3 = (dtrial_1_by_turned_3*t105 + dtrial_2_by_turned_3*t106 +
+                dtrial_3_by_turned_3*t107)
+            dtrial_size_by_rate_1 = (dtrial_1_by_rate_1*t105 + dtrial_2_by_rate_1*t106 +
+                dtrial_3_by_rate_1*t107)
+            dtrial_size_by_rate_2 = (dtrial_1_by_rate_2*t105 + dtrial_2_by_rate_2*t106 +
+                dtrial_3_by_rate_2*t107)
+            dtrial_size_by_rate_3 = (dtrial_1_by_rate_3*t105 + dtrial_2_by_rate_3*t106 +
+                dtrial_3_by_rate_3*t107)
+            dtrial_size_by_spin_1 = dtrial_2_by_spin_1*t106 + dtrial_3_by_spin_1*t107
+            dtrial_size_by_spin_2 = dtrial_1_by_spin_2*t105 + dtrial_3_by_spin_2*t107
+            dtrial_size_by_spin_3 = dtrial_1_by_spin_3*t105 + dtrial_2_by_spin_3*t106
+            ddrag_by_place_1 = dpush_by_place_1*t117
+            ddrag_by_place_2 = dpush_by_place_2*t117
+            ddrag_by_place_3 = dpush_by_place_3*t117
+            ddrag_by_rate_1 = dpush_by_rate_1*t117 + dslip_speed_by_rate_1*t118
+            ddrag_by_rate_2 = dpush_by_rate_2*t117 + dslip_speed_by_rate_2*t118
+            ddrag_by_rate_3 = dpush_by_rate_3*t117 + dslip_speed_by_rate_3*t118
+            ddrag_by_spin_1 = dslip_speed_by_spin_1*t118
+            ddrag_by_spin_2 = dslip_speed_by_spin_2*t118
+            ddrag_by_spin_3 = dslip_speed_by_spin_3*t118
+            t119 = (slip_1 if speed > 0.0 else 0)
+            t120 = -static_limit + trial_size
+            t121 = 1/trial_size
+            t122 = (0 if speed > 0.0 else (t121*trial_1 if t120 > 0.0 else 0))
+            t123 = (0 if speed > 0.0 else (dynamic_limit*t121 if t120 > 0.0 else 1))
+            t124 = dynamic_limit/(trial_size*trial_size)
+            t125 = (0 if speed > 0.0 else (-t124*trial_1 if t120 > 0.0 else 0))
+            t126 = (drag if speed > 0.0 else 0)
+            t127 = (slip_2 if speed > 0.0 else 0)
+            t128 = (0 if speed > 0.0 else (t121*trial_2 if t120 > 0.0 else 0))
+            t129 = (0 if speed > 0.0 else (-t124*trial_2 if t120 > 0.0 else 0))
+            t130 = (slip_3 if speed > 0.0 else 0)
+            t131 = (0 if speed > 0.0 else (t121*trial_3 if t120 > 0.0 else 0))
+            t132 = (0 if speed > 0.0 else (-t124*trial_3 if t120 > 0.0 else 0))
+            dfriction_1_by_place_1 = (ddrag_by_place_1*t119 + ddynamic_limit_by_place_1*t122 +
+                dtrial_1_by_place_1*t123 + dtrial_size_by_place_1*t125)
+            dfriction_1_by_place_2 = (ddrag_by_place_2*t119 + ddynamic_limit_by_place_2*t122 +
+                dtrial_1_by_place_2*t123 + dtrial_size_by_place_2*t125)
+            dfriction_1_by_place_3 = (ddrag_by_place_3*t119 + ddynamic_limit_by_place_3*t122 +
+                dtrial_1_by_place_3*t123 + dtrial_size_by_place_3*t125)
+            dfriction_1_by_turned_1 = dtrial_1_by_turned_1*t123 + dtrial_size_by_turned_1*t125
+            dfriction_1_by_turned_2 = dtrial_1_by_turned_2*t123 + dtrial_size_by_turned_2*t125
+            dfriction_1_by_turned_3 = dtrial_1_by_turned_3*t123 + dtrial_size_by_turned_3*t125
+            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t119 + ddynamic_limit_by_rate_1*t122 +
+                dslip_1_by_rate_1*t126 + dtrial_1_by_rate_1*t123 + dtrial_size_by_rate_1*t125)
+            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t119 + ddynamic_limit_by_rate_2*t122 +
+                dslip_1_by_rate_2*t126 + dtrial_1_by_rate_2*t123 + dtrial_size_by_rate_2*t125)
+            dfriction_1_by_rate_3 = (ddrag_by_rate_3*t119 + ddynamic_limit_by_rate_3*t122 +
+                dslip_1_by_rate_3*t126 + dtrial_1_by_rate_3*t123 + dtrial_size_by_rate_3*t125)
+            dfriction_1_by_spin_1 = ddrag_by_spin_1*t119 + dtrial_size_by_spin_1*t125
+            dfriction_1_by_spin_2 = (ddrag_by_spin_2*t119 + dslip_1_by_spin_2*t126 +
+                dtrial_1_by_spin_2*t123 + dtrial_size_by_spin_2*t125)
+            dfriction_1_by_spin_3 = (ddrag_by_spin_3*t119 + dslip_1_by_spin_3*t126 +
+                dtrial_1_by_spin_3*t123 + dtrial_size_by_spin_3*t125)
+            dfriction_2_by_place_1 = (ddrag_by_place_1*t127 + ddynamic_limit_by_place_1*t128 +
+                dtrial_2_by_place_1*t123 + dtrial_size_by_place_1*t129)
+            dfriction_2_by_place_2 = (ddrag_by_place_2*t127 + ddynamic_limit_by_place_2*t128 +
+                dtrial_2_by_place_2*t123 + dtrial_size_by_place_2*t129)
+            dfriction_2_by_place_3 = (ddrag_by_place_3*t127 + ddynamic_limit_by_place_3*t128 +
+                dtrial_2_by_place_3*t123 + dtrial_size_by_place_3*t129)
+            dfriction_2_by_turned_1 = dtrial_2_by_turned_1*t123 + dtrial_size_by_turned_1*t129
+            dfriction_2_by_turned_2 = dtrial_2_by_turned_2*t123 + dtrial_size_by_turned_2*t129
+            dfriction_2_by_turned_3 = dtrial_2_by_turned_3*t123 + dtrial_size_by_turned_3*t129
+            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t127 + ddynamic_limit_by_rate_1*t128 +
+                dslip_2_by_rate_1*t126 + dtrial_2_by_rate_1*t123 + dtrial_size_by_rate_1*t129)
+            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t127 + ddynamic_limit_by_rate_2*t128 +
+                dslip_2_by_rate_2*t126 + dtrial_2_by_rate_2*t123 + dtrial_size_by_rate_2*t129)
+            dfriction_2_by_rate_3 = (ddrag_by_rate_3*t127 + ddynamic_limit_by_rate_3*t128 +
+                dslip_2_by_rate_3*t126 + dtrial_2_by_rate_3*t123 + dtrial_size_by_rate_3*t129)
+            dfriction_2_by_spin_1 = (ddrag_by_spin_1*t127 + dslip_2_by_spin_1*t126 +
+                dtrial_2_by_spin_1*t123 + dtrial_size_by_spin_1*t129)
+            dfriction_2_by_spin_2 = ddrag_by_spin_2*t127 + dtrial_size_by_spin_2*t129
+            dfriction_2_by_spin_3 = (ddrag_by_spin_3*t127 + dslip_2_by_spin_3*t126 +
+                dtrial_2_by_spin_3*t123 + dtrial_size_by_spin_3*t129)
+            dfriction_3_by_place_1 = (ddrag_by_place_1*t130 + ddynamic_limit_by_place_1*t131 +
+                dtrial_3_by_place_1*t123 + dtrial_size_by_place_1*t132)
+            dfriction_3_by_place_2 = (ddrag_by_place_2*t130 + ddynamic_limit_by_place_2*t131 +
+                dtrial_3_by_place_2*t123 + dtrial_size_by_place_2*t132)
+            dfriction_3_by_place_3 = (ddrag_by_place_3*t130 + ddynamic_limit_by_place_3*t131 +
+                dtrial_3_by_place_3*t123 + dtrial_size_by_place_3*t132)
+            dfriction_3_by_turned_1 = dtrial_3_by_turned_1*t123 + dtrial_size_by_turned_1*t132
+            dfriction_3_by_turned_2 = dtrial_3_by_turned_2*t123 + dtrial_size_by_turned_2*t132
+            dfriction_3_by_turned_3 = dtrial_3_by_turned_3*t123 + dtrial_size_by_turned_3*t132
+            dfriction_3_by_rate_1 = (ddrag_by_rate_1*t130 + ddynamic_limit_by_rate_1*t131 +
+                dslip_3_by_rate_1*t126 + dtrial_3_by_rate_1*t123 + dtrial_size_by_rate_1*t132)
+            dfriction_3_by_rate_2 = (ddrag_by_rate_2*t130 + ddynamic_limit_by_rate_2*t131 +
+                dslip_3_by_rate_2*t126 + dtrial_3_by_rate_2*t123 + dtrial_size_by_rate_2*t132)
+            dfriction_3_by_rate_3 = (ddrag_by_rate_3*t130 + ddynamic_limit_by_rate_3*t131 +
+                dslip_3_by_rate_3*t126 + dtrial_3_by_rate_3*t123 + dtrial_size_by_rate_3*t132)
+            dfriction_3_by_spin_1 = (ddrag_by_spin_1*t130 + dslip_3_by_spin_1*t126 +
+                dtrial_3_by_spin_1*t123 + dtrial_size_by_spin_1*t132)
+            dfriction_3_by_spin_2 = (ddrag_by_spin_2*t130 + dslip_3_by_spin_2*t126 +
+                dtrial_3_by_spin_2*t123 + dtrial_size_by_spin_2*t132)
+            dfriction_3_by_spin_3 = ddrag_by_spin_3*t130 + dtrial_size_by_spin_3*t132
             for column in range(12):
                 for i in range(12):
                     dq[i] = 0.0
@@ -683,167 +687,167 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = du[9]
                 uthb_y = du[10]
                 uthb_z = du[11]
-                t132 = uxa_x - uxb_x
-                t133 = uxa_y - uxb_y
-                t134 = uxa_z - uxb_z
-                t135 = xa_x - xb_x
-                t136 = xa_y - xb_y
-                t137 = xa_z - xb_z
-                t138 = Rb_xy*t135 + Rb_yy*t136 + Rb_zy*t137
-                t139 = Rb_xz*t135 + Rb_yz*t136 + Rb_zz*t137
-                t140 = Rb_xx*t132 + Rb_yx*t133 + Rb_zx*t134 + t138*uthb_z - t139*uthb_y
-                t141 = Rb_xx*t135 + Rb_yx*t136 + Rb_zx*t137
-                t142 = Rb_xy*t132 + Rb_yy*t133 + Rb_zy*t134 + t139*uthb_x - t141*uthb_z
-                t143 = Rb_xz*t132 + Rb_yz*t133 + Rb_zz*t134 - t138*uthb_x + t141*uthb_y
-                t144 = dpush_by_rate_1*t140 + dpush_by_rate_2*t142 + dpush_by_rate_3*t143
-                t145 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t146 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t147 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t148 = t145*utha_x + t146*utha_y + t147*utha_z - uthb_x
-                t149 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t150 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t151 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t152 = t149*utha_x + t150*utha_y + t151*utha_z - uthb_y
-                t153 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t154 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t155 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t156 = t153*utha_x + t154*utha_y + t155*utha_z - uthb_z
-                t157 = (dfriction_2_by_rate_1*t140 + dfriction_2_by_rate_2*t142 +
-                    dfriction_2_by_rate_3*t143 + dfriction_2_by_spin_1*t148 +
-                    dfriction_2_by_spin_2*t152 + dfriction_2_by_spin_3*t156)
-                t158 = normal_1*normal_2
-                t159 = (dfriction_3_by_rate_1*t140 + dfriction_3_by_rate_2*t142 +
-                    dfriction_3_by_rate_3*t143 + dfriction_3_by_spin_1*t148 +
-                    dfriction_3_by_spin_2*t152 + dfriction_3_by_spin_3*t156)
-                t160 = normal_3*t159
-                t161 = 1 - normal_1*normal_1
-                t162 = (dfriction_1_by_rate_1*t140 + dfriction_1_by_rate_2*t142 +
-                    dfriction_1_by_rate_3*t143 + dfriction_1_by_spin_1*t148 +
-                    dfriction_1_by_spin_2*t152 + dfriction_1_by_spin_3*t156)
-                t163 = -normal_1*t144 - normal_1*t160 - t157*t158 + t161*t162
-                t164 = 1 - normal_2*normal_2
-                t165 = -normal_2*t144 - normal_2*t160 + t157*t164 - t158*t162
-                t166 = normal_1*normal_3
-                t167 = normal_2*normal_3
-                t168 = 1 - normal_3*normal_3
-                t169 = -normal_3*t144 - t157*t167 + t159*t168 - t162*t166
-                t170 = Rb_xx*t163 + Rb_xy*t165 + Rb_xz*t169
-                t171 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t172 = -friction_1*t166 - friction_2*t167 + friction_3*t168 - normal_3*push
-                t173 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t174 = -friction_1*t158 + friction_2*t164 - friction_3*t167 - normal_2*push
-                t175 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t176 = friction_1*t161 - friction_2*t158 - friction_3*t166 - normal_1*push
-                t177 = dxa_x - dxb_x
-                t178 = dxa_y - dxb_y
-                t179 = dxa_z - dxb_z
-                t180 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t181 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t182 = Rb_xx*t177 + Rb_yx*t178 + Rb_zx*t179 + t135*t175 + t136*t180 + t137*t181
-                t183 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t184 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t185 = Rb_xy*t177 + Rb_yy*t178 + Rb_zy*t179 + t135*t173 + t136*t183 + t137*t184
-                t186 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t187 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t188 = Rb_xz*t177 + Rb_yz*t178 + Rb_zz*t179 + t135*t171 + t136*t186 + t137*t187
-                t189 = va_x - vb_x
-                t190 = va_y - vb_y
-                t191 = va_z - vb_z
-                t192 = -Omb_y*t188 + Omb_z*t185 + t175*t189 + t180*t190 + t181*t191
-                t193 = Omb_x*t188 - Omb_z*t182 + t173*t189 + t183*t190 + t184*t191
-                t194 = -Omb_x*t185 + Omb_y*t182 + t171*t189 + t186*t190 + t187*t191
-                t195 = (dpush_by_place_1*t182 + dpush_by_place_2*t185 + dpush_by_place_3*t188 +
-                    dpush_by_rate_1*t192 + dpush_by_rate_2*t193 + dpush_by_rate_3*t194)
-                t196 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t197 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t198 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t199 = Ra_xx*t175 + Ra_yx*t180 + Ra_zx*t181 + Rb_xx*t196 + Rb_yx*t197 + Rb_zx*t198
-                t200 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t201 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t202 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t203 = Ra_xy*t175 + Ra_yy*t180 + Ra_zy*t181 + Rb_xx*t200 + Rb_yx*t201 + Rb_zx*t202
-                t204 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t205 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t206 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t207 = Ra_xz*t175 + Ra_yz*t180 + Ra_zz*t181 + Rb_xx*t204 + Rb_yx*t205 + Rb_zx*t206
-                t208 = Oma_x*t199 + Oma_y*t203 + Oma_z*t207
-                t209 = Ra_xx*t173 + Ra_yx*t183 + Ra_zx*t184 + Rb_xy*t196 + Rb_yy*t197 + Rb_zy*t198
-                t210 = Ra_xy*t173 + Ra_yy*t183 + Ra_zy*t184 + Rb_xy*t200 + Rb_yy*t201 + Rb_zy*t202
-                t211 = Ra_xz*t173 + Ra_yz*t183 + Ra_zz*t184 + Rb_xy*t204 + Rb_yy*t205 + Rb_zy*t206
-                t212 = Oma_x*t209 + Oma_y*t210 + Oma_z*t211
-                t213 = Ra_xx*t171 + Ra_yx*t186 + Ra_zx*t187 + Rb_xz*t196 + Rb_yz*t197 + Rb_zz*t198
-                t214 = Ra_xy*t171 + Ra_yy*t186 + Ra_zy*t187 + Rb_xz*t200 + Rb_yz*t201 + Rb_zz*t202
-                t215 = Ra_xz*t171 + Ra_yz*t186 + Ra_zz*t187 + Rb_xz*t204 + Rb_yz*t205 + Rb_zz*t206
-                t216 = Oma_x*t213 + Oma_y*t214 + Oma_z*t215
-                t217 = psia_x*t199 + psia_y*t203 + psia_z*t207 + t148
-                t218 = psia_x*t209 + psia_y*t210 + psia_z*t211 + t152
-                t219 = psia_x*t213 + psia_y*t214 + psia_z*t215 + t156
-                t220 = (dfriction_2_by_place_1*t182 + dfriction_2_by_place_2*t185 +
-                    dfriction_2_by_place_3*t188 + dfriction_2_by_rate_1*t192 +
-                    dfriction_2_by_rate_2*t193 + dfriction_2_by_rate_3*t194 +
-                    dfriction_2_by_spin_1*t208 + dfriction_2_by_spin_2*t212 +
-                    dfriction_2_by_spin_3*t216 + dfriction_2_by_turned_1*t217 +
-                    dfriction_2_by_turned_2*t218 + dfriction_2_by_turned_3*t219)
-                t221 = (dfriction_3_by_place_1*t182 + dfriction_3_by_place_2*t185 +
-                    dfriction_3_by_place_3*t188 + dfriction_3_by_rate_1*t192 +
-                    dfriction_3_by_rate_2*t193 + dfriction_3_by_rate_3*t194 +
-                    dfriction_3_by_spin_1*t208 + dfriction_3_by_spin_2*t212 +
-                    dfriction_3_by_spin_3*t216 + dfriction_3_by_turned_1*t217 +
-                    dfriction_3_by_turned_2*t218 + dfriction_3_by_turned_3*t219)
-                t222 = (dfriction_1_by_place_1*t182 + dfriction_1_by_place_2*t185 +
-                    dfriction_1_by_place_3*t188 + dfriction_1_by_rate_1*t192 +
-                    dfriction_1_by_rate_2*t193 + dfriction_1_by_rate_3*t194 +
-                    dfriction_1_by_spin_1*t208 + dfriction_1_by_spin_2*t212 +
-                    dfriction_1_by_spin_3*t216 + dfriction_1_by_turned_1*t217 +
-                    dfriction_1_by_turned_2*t218 + dfriction_1_by_turned_3*t219)
-                t223 = -normal_1*t195 - t158*t220 + t161*t222 - t166*t221
-                t224 = -normal_2*t195 - t158*t222 + t164*t220 - t167*t221
-                t225 = -normal_3*t195 - t166*t222 - t167*t220 + t168*t221
-                t226 = Rb_xx*t223 + Rb_xy*t224 + Rb_xz*t225 + t171*t172 + t173*t174 + t175*t176
-                t227 = Rb_yx*t163 + Rb_yy*t165 + Rb_yz*t169
-                t228 = Rb_yx*t223 + Rb_yy*t224 + Rb_yz*t225 + t172*t186 + t174*t183 + t176*t180
-                t229 = Rb_zx*t163 + Rb_zy*t165 + Rb_zz*t169
-                t230 = Rb_zx*t223 + Rb_zy*t224 + Rb_zz*t225 + t172*t187 + t174*t184 + t176*t181
-                t231 = radius*(-normal_1*t149 + normal_2*t145)
-                t232 = radius*(normal_1*t153 - normal_3*t145)
-                t233 = radius*(-normal_2*t153 + normal_3*t149)
-                t234 = radius*t174
-                t235 = radius*t172
-                t236 = radius*t176
-                t237 = radius*(-normal_1*t150 + normal_2*t146)
-                t238 = radius*(normal_1*t154 - normal_3*t146)
-                t239 = radius*(-normal_2*t154 + normal_3*t150)
-                t240 = radius*(-normal_1*t151 + normal_2*t147)
-                t241 = radius*(normal_1*t155 - normal_3*t147)
-                t242 = radius*(-normal_2*t155 + normal_3*t151)
-                t243 = -normal_3*radius + t139
-                t244 = -normal_2*radius + t138
-                t245 = -t244
-                t246 = -normal_1*radius + t141
-                t247 = -t243
-                t248 = -t246
-                J[column] = c_damping*t170 + c_stiffness*t226
-                J[12 + column] = c_damping*t227 + c_stiffness*t228
-                J[24 + column] = c_damping*t229 + c_stiffness*t230
-                J[36 + column] = -c_damping*t170 - c_stiffness*t226
-                J[48 + column] = -c_damping*t227 - c_stiffness*t228
-                J[60 + column] = -c_damping*t229 - c_stiffness*t230
-                J[72 + column] = (c_damping*(-t163*t233 - t165*t232 - t169*t231) +
-                    c_stiffness*(-t223*t233 - t224*t232 - t225*t231 - t234*(normal_1*t213 -
-                    normal_3*t199) - t235*(-normal_1*t209 + normal_2*t199) - t236*(-normal_2*t213
-                    + normal_3*t209)))
-                J[84 + column] = (c_damping*(-t163*t239 - t165*t238 - t169*t237) +
-                    c_stiffness*(-t223*t239 - t224*t238 - t225*t237 - t234*(normal_1*t214 -
-                    normal_3*t203) - t235*(-normal_1*t210 + normal_2*t203) - t236*(-normal_2*t214
+                t133 = uxa_x - uxb_x
+                t134 = uxa_y - uxb_y
+                t135 = uxa_z - uxb_z
+                t136 = xa_x - xb_x
+                t137 = xa_y - xb_y
+                t138 = xa_z - xb_z
+                t139 = Rb_xy*t136 + Rb_yy*t137 + Rb_zy*t138
+                t140 = Rb_xz*t136 + Rb_yz*t137 + Rb_zz*t138
+                t141 = Rb_xx*t133 + Rb_yx*t134 + Rb_zx*t135 + t139*uthb_z - t140*uthb_y
+                t142 = Rb_xx*t136 + Rb_yx*t137 + Rb_zx*t138
+                t143 = Rb_xy*t133 + Rb_yy*t134 + Rb_zy*t135 + t140*uthb_x - t142*uthb_z
+                t144 = Rb_xz*t133 + Rb_yz*t134 + Rb_zz*t135 - t139*uthb_x + t142*uthb_y
+                t145 = dpush_by_rate_1*t141 + dpush_by_rate_2*t143 + dpush_by_rate_3*t144
+                t146 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t147 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t148 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t149 = t146*utha_x + t147*utha_y + t148*utha_z - uthb_x
+                t150 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t151 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t152 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t153 = t150*utha_x + t151*utha_y + t152*utha_z - uthb_y
+                t154 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t155 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t156 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t157 = t154*utha_x + t155*utha_y + t156*utha_z - uthb_z
+                t158 = (dfriction_2_by_rate_1*t141 + dfriction_2_by_rate_2*t143 +
+                    dfriction_2_by_rate_3*t144 + dfriction_2_by_spin_1*t149 +
+                    dfriction_2_by_spin_2*t153 + dfriction_2_by_spin_3*t157)
+                t159 = normal_1*normal_2
+                t160 = (dfriction_3_by_rate_1*t141 + dfriction_3_by_rate_2*t143 +
+                    dfriction_3_by_rate_3*t144 + dfriction_3_by_spin_1*t149 +
+                    dfriction_3_by_spin_2*t153 + dfriction_3_by_spin_3*t157)
+                t161 = normal_3*t160
+                t162 = 1 - normal_1*normal_1
+                t163 = (dfriction_1_by_rate_1*t141 + dfriction_1_by_rate_2*t143 +
+                    dfriction_1_by_rate_3*t144 + dfriction_1_by_spin_1*t149 +
+                    dfriction_1_by_spin_2*t153 + dfriction_1_by_spin_3*t157)
+                t164 = -normal_1*t145 - normal_1*t161 - t158*t159 + t162*t163
+                t165 = 1 - normal_2*normal_2
+                t166 = -normal_2*t145 - normal_2*t161 + t158*t165 - t159*t163
+                t167 = normal_1*normal_3
+                t168 = normal_2*normal_3
+                t169 = 1 - normal_3*normal_3
+                t170 = -normal_3*t145 - t158*t168 + t160*t169 - t163*t167
+                t171 = Rb_xx*t164 + Rb_xy*t166 + Rb_xz*t170
+                t172 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t173 = -friction_1*t167 - friction_2*t168 + friction_3*t169 - normal_3*push
+                t174 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t175 = -friction_1*t159 + friction_2*t165 - friction_3*t168 - normal_2*push
+                t176 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t177 = friction_1*t162 - friction_2*t159 - friction_3*t167 - normal_1*push
+                t178 = dxa_x - dxb_x
+                t179 = dxa_y - dxb_y
+                t180 = dxa_z - dxb_z
+                t181 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t182 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t183 = Rb_xx*t178 + Rb_yx*t179 + Rb_zx*t180 + t136*t176 + t137*t181 + t138*t182
+                t184 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t185 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t186 = Rb_xy*t178 + Rb_yy*t179 + Rb_zy*t180 + t136*t174 + t137*t184 + t138*t185
+                t187 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t188 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t189 = Rb_xz*t178 + Rb_yz*t179 + Rb_zz*t180 + t136*t172 + t137*t187 + t138*t188
+                t190 = va_x - vb_x
+                t191 = va_y - vb_y
+                t192 = va_z - vb_z
+                t193 = -Omb_y*t189 + Omb_z*t186 + t176*t190 + t181*t191 + t182*t192
+                t194 = Omb_x*t189 - Omb_z*t183 + t174*t190 + t184*t191 + t185*t192
+                t195 = -Omb_x*t186 + Omb_y*t183 + t172*t190 + t187*t191 + t188*t192
+                t196 = (dpush_by_place_1*t183 + dpush_by_place_2*t186 + dpush_by_place_3*t189 +
+                    dpush_by_rate_1*t193 + dpush_by_rate_2*t194 + dpush_by_rate_3*t195)
+                t197 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t198 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t199 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t200 = Ra_xx*t176 + Ra_yx*t181 + Ra_zx*t182 + Rb_xx*t197 + Rb_yx*t198 + Rb_zx*t199
+                t201 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t202 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t203 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t204 = Ra_xy*t176 + Ra_yy*t181 + Ra_zy*t182 + Rb_xx*t201 + Rb_yx*t202 + Rb_zx*t203
+                t205 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t206 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t207 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t208 = Ra_xz*t176 + Ra_yz*t181 + Ra_zz*t182 + Rb_xx*t205 + Rb_yx*t206 + Rb_zx*t207
+                t209 = Oma_x*t200 + Oma_y*t204 + Oma_z*t208
+                t210 = Ra_xx*t174 + Ra_yx*t184 + Ra_zx*t185 + Rb_xy*t197 + Rb_yy*t198 + Rb_zy*t199
+                t211 = Ra_xy*t174 + Ra_yy*t184 + Ra_zy*t185 + Rb_xy*t201 + Rb_yy*t202 + Rb_zy*t203
+                t212 = Ra_xz*t174 + Ra_yz*t184 + Ra_zz*t185 + Rb_xy*t205 + Rb_yy*t206 + Rb_zy*t207
+                t213 = Oma_x*t210 + Oma_y*t211 + Oma_z*t212
+                t214 = Ra_xx*t172 + Ra_yx*t187 + Ra_zx*t188 + Rb_xz*t197 + Rb_yz*t198 + Rb_zz*t199
+                t215 = Ra_xy*t172 + Ra_yy*t187 + Ra_zy*t188 + Rb_xz*t201 + Rb_yz*t202 + Rb_zz*t203
+                t216 = Ra_xz*t172 + Ra_yz*t187 + Ra_zz*t188 + Rb_xz*t205 + Rb_yz*t206 + Rb_zz*t207
+                t217 = Oma_x*t214 + Oma_y*t215 + Oma_z*t216
+                t218 = psia_x*t200 + psia_y*t204 + psia_z*t208 + t149
+                t219 = psia_x*t210 + psia_y*t211 + psia_z*t212 + t153
+                t220 = psia_x*t214 + psia_y*t215 + psia_z*t216 + t157
+                t221 = (dfriction_2_by_place_1*t183 + dfriction_2_by_place_2*t186 +
+                    dfriction_2_by_place_3*t189 + dfriction_2_by_rate_1*t193 +
+                    dfriction_2_by_rate_2*t194 + dfriction_2_by_rate_3*t195 +
+                    dfriction_2_by_spin_1*t209 + dfriction_2_by_spin_2*t213 +
+                    dfriction_2_by_spin_3*t217 + dfriction_2_by_turned_1*t218 +
+                    dfriction_2_by_turned_2*t219 + dfriction_2_by_turned_3*t220)
+                t222 = (dfriction_3_by_place_1*t183 + dfriction_3_by_place_2*t186 +
+                    dfriction_3_by_place_3*t189 + dfriction_3_by_rate_1*t193 +
+                    dfriction_3_by_rate_2*t194 + dfriction_3_by_rate_3*t195 +
+                    dfriction_3_by_spin_1*t209 + dfriction_3_by_spin_2*t213 +
+                    dfriction_3_by_spin_3*t217 + dfriction_3_by_turned_1*t218 +
+                    dfriction_3_by_turned_2*t219 + dfriction_3_by_turned_3*t220)
+                t223 = (dfriction_1_by_place_1*t183 + dfriction_1_by_place_2*t186 +
+                    dfriction_1_by_place_3*t189 + dfriction_1_by_rate_1*t193 +
+                    dfriction_1_by_rate_2*t194 + dfriction_1_by_rate_3*t195 +
+                    dfriction_1_by_spin_1*t209 + dfriction_1_by_spin_2*t213 +
+                    dfriction_1_by_spin_3*t217 + dfriction_1_by_turned_1*t218 +
+                    dfriction_1_by_turned_2*t219 + dfriction_1_by_turned_3*t220)
+                t224 = -normal_1*t196 - t159*t221 + t162*t223 - t167*t222
+                t225 = -normal_2*t196 - t159*t223 + t165*t221 - t168*t222
+                t226 = -normal_3*t196 - t167*t223 - t168*t221 + t169*t222
+                t227 = Rb_xx*t224 + Rb_xy*t225 + Rb_xz*t226 + t172*t173 + t174*t175 + t176*t177
+                t228 = Rb_yx*t164 + Rb_yy*t166 + Rb_yz*t170
+                t229 = Rb_yx*t224 + Rb_yy*t225 + Rb_yz*t226 + t173*t187 + t175*t184 + t177*t181
+                t230 = Rb_zx*t164 + Rb_zy*t166 + Rb_zz*t170
+                t231 = Rb_zx*t224 + Rb_zy*t225 + Rb_zz*t226 + t173*t188 + t175*t185 + t177*t182
+                t232 = radius*(-normal_1*t150 + normal_2*t146)
+                t233 = radius*(normal_1*t154 - normal_3*t146)
+                t234 = radius*(-normal_2*t154 + normal_3*t150)
+                t235 = radius*t175
+                t236 = radius*t173
+                t237 = radius*t177
+                t238 = radius*(-normal_1*t151 + normal_2*t147)
+                t239 = radius*(normal_1*t155 - normal_3*t147)
+                t240 = radius*(-normal_2*t155 + normal_3*t151)
+                t241 = radius*(-normal_1*t152 + normal_2*t148)
+                t242 = radius*(normal_1*t156 - normal_3*t148)
+                t243 = radius*(-normal_2*t156 + normal_3*t152)
+                t244 = -normal_3*radius + t140
+                t245 = -normal_2*radius + t139
+                t246 = -t245
+                t247 = -normal_1*radius + t142
+                t248 = -t244
+                t249 = -t247
+                J[column] = c_damping*t171 + c_stiffness*t227
+                J[12 + column] = c_damping*t228 + c_stiffness*t229
+                J[24 + column] = c_damping*t230 + c_stiffness*t231
+                J[36 + column] = -c_damping*t171 - c_stiffness*t227
+                J[48 + column] = -c_damping*t228 - c_stiffness*t229
+                J[60 + column] = -c_damping*t230 - c_stiffness*t231
+                J[72 + column] = (c_damping*(-t164*t234 - t166*t233 - t170*t232) +
+                    c_stiffness*(-t224*t234 - t225*t233 - t226*t232 - t235*(normal_1*t214 -
+                    normal_3*t200) - t236*(-normal_1*t210 + normal_2*t200) - t237*(-normal_2*t214
                     + normal_3*t210)))
-                J[96 + column] = (c_damping*(-t163*t242 - t165*t241 - t169*t240) +
-                    c_stiffness*(-t223*t242 - t224*t241 - t225*t240 - t234*(normal_1*t215 -
-                    normal_3*t207) - t235*(-normal_1*t211 + normal_2*t207) - t236*(-normal_2*t215
+                J[84 + column] = (c_damping*(-t164*t240 - t166*t239 - t170*t238) +
+                    c_stiffness*(-t224*t240 - t225*t239 - t226*t238 - t235*(normal_1*t215 -
+                    normal_3*t204) - t236*(-normal_1*t211 + normal_2*t204) - t237*(-normal_2*t215
                     + normal_3*t211)))
-                J[108 + column] = (c_damping*(t165*t243 + t169*t245) + c_stiffness*(-t172*t185 +
-                    t174*t188 + t224*t243 + t225*t245))
-                J[120 + column] = (c_damping*(t163*t247 + t169*t246) + c_stiffness*(t172*t182 -
-                    t176*t188 + t223*t247 + t225*t246))
-                J[132 + column] = (c_damping*(t163*t244 + t165*t248) + c_stiffness*(-t174*t182 +
-                    t176*t185 + t223*t244 + t224*t248))
+                J[96 + column] = (c_damping*(-t164*t243 - t166*t242 - t170*t241) +
+                    c_stiffness*(-t224*t243 - t225*t242 - t226*t241 - t235*(normal_1*t216 -
+                    normal_3*t208) - t236*(-normal_1*t212 + normal_2*t208) - t237*(-normal_2*t216
+                    + normal_3*t212)))
+                J[108 + column] = (c_damping*(t166*t244 + t170*t246) + c_stiffness*(-t173*t186 +
+                    t175*t189 + t225*t244 + t226*t246))
+                J[120 + column] = (c_damping*(t164*t248 + t170*t247) + c_stiffness*(t173*t183 -
+                    t177*t189 + t224*t248 + t226*t247))
+                J[132 + column] = (c_damping*(t164*t245 + t166*t249) + c_stiffness*(-t175*t183 +
+                    t177*t186 + t224*t245 + t225*t249))
     return OK

@@ -33,6 +33,7 @@ CONSTANTS = (
     Part("stiffness", (), "stiffness k of k d^n (1 + c d')"),
     Part("exponent", (), "exponent n"),
     Part("damping", (), "damping c [time/length]"),
+    Part("slow", (), "speed of impacts so slow that steps do not look at them"),
     Part("bristle", (), "stiffness of the bristles"),
     Part("bristle_damping", (), "their damping"),
     Part("coefficient", (), "coefficient of friction"),
@@ -68,14 +69,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         stiffness = constant[0]
         exponent = constant[1]
         damping = constant[2]
-        bristle = constant[3]
-        bristle_damping = constant[4]
-        coefficient = constant[5]
-        static = constant[6]
-        speed = constant[7]
-        radius = constant[8]
-        size = constant[9]
-        side = constant[10]
+        slow = constant[3]
+        bristle = constant[4]
+        bristle_damping = constant[5]
+        coefficient = constant[6]
+        static = constant[7]
+        speed = constant[8]
+        radius = constant[9]
+        size = constant[10]
+        side = constant[11]
         xa_x = q[unknowns[0]]
         xa_y = q[unknowns[1]]
         xa_z = q[unknowns[2]]
@@ -247,7 +249,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t67 = (closing if closing > 0.0 else -closing)
         t68 = (kept_rate if kept_rate > 0.0 else -kept_rate)
         t69 = (t67 if t67 - t68 > 0.0 else t68)
-        t70 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+        t70 = (t69 if -kept_impact + t69 > 0.0 else kept_impact)
+        t71 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
             dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0)))
         g[0] = t46
         g[1] = t47
@@ -268,12 +271,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME] + 1] = place_2
         frames[index[first + AT_FRAME] + 2] = place_3
         frames[index[first + AT_FRAME] + 3] = closing
-        frames[index[first + AT_FRAME] + 4] = (((t69 if -kept_impact + t69 > 0.0 else kept_impact)
-            if touches - 0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 4] = (((t70 if -slow + t70 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0))
         frames[index[first + AT_FRAME] + 5] = gap_closed
-        frames[index[first + AT_FRAME] + 6] = t70*z_1
-        frames[index[first + AT_FRAME] + 7] = t70*z_2
-        frames[index[first + AT_FRAME] + 8] = t70*z_3
+        frames[index[first + AT_FRAME] + 6] = t71*z_1
+        frames[index[first + AT_FRAME] + 7] = t71*z_2
+        frames[index[first + AT_FRAME] + 8] = t71*z_3
         frames[index[first + AT_FRAME] + 9] = slips
         frames[index[first + AT_FRAME] + 10] = 1.0
         frames[index[first + AT_FRAME] + 11] = push
@@ -363,100 +366,100 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             du = at(work, WIDTH)
-            t71 = place_1*place_1
-            t72 = place_2*place_2
-            t73 = place_3*place_3
-            t74 = t71 + t72 + t73 + 1e-300
-            t75 = 1/sqrt(t74)
-            t76 = -side*t75
-            t77 = side/t74**(1.5)
-            t78 = place_1*t77
-            t79 = -place_2*t78
-            t80 = -place_3*t78
-            t81 = -place_2*place_3*t77
-            t82 = side*t75
-            dnormal_1_by_place_1 = -t71*t77 - t76
-            dnormal_1_by_place_2 = t79
-            dnormal_1_by_place_3 = t80
-            dnormal_2_by_place_1 = t79
-            dnormal_2_by_place_2 = -t72*t77 - t76
-            dnormal_2_by_place_3 = t81
-            dnormal_3_by_place_1 = t80
-            dnormal_3_by_place_2 = t81
-            dnormal_3_by_place_3 = -t73*t77 - t76
-            dgap_closed_by_place_1 = -place_1*t82
-            dgap_closed_by_place_2 = -place_2*t82
-            dgap_closed_by_place_3 = -place_3*t82
-            t83 = normal_3*spin_1
-            t84 = normal_1*radius
-            t85 = normal_1*normal_1
-            t86 = 1 - t85
-            t87 = radius*t86
-            t88 = normal_1*spin_3
-            t89 = -radius*(-t83 + t88) + rate_2
-            t90 = -normal_1*t89 + spin_3*t87 + t83*t84
-            t91 = normal_1*spin_2
-            t92 = -radius*(normal_2*spin_1 - t91) + rate_3
-            t93 = -normal_1*t92 - normal_2*spin_1*t84 - spin_2*t87
-            t94 = normal_3*radius
-            t95 = t91*t94
-            t96 = normal_2*radius
-            t97 = t88*t96
-            t98 = normal_2*t89
-            t99 = normal_3*t92
-            t100 = normal_2*spin_3
-            t101 = -radius*(normal_3*spin_2 - t100) + rate_1
-            t102 = normal_1*t101
-            t103 = -2*t102 - t95 + t97 - t98 - t99
-            t104 = normal_1*normal_2
-            t105 = -t104
-            t106 = normal_1*normal_3
-            t107 = -t106
-            t108 = radius*t85
-            t109 = -normal_3*t108 - normal_3*t87
-            t110 = normal_2*t108 + normal_2*t87
-            t111 = normal_2*normal_2
-            t112 = 1 - t111
-            t113 = radius*t112
-            t114 = -normal_2*t92 + spin_1*t113 + t91*t96
-            t115 = -normal_2*t101 - normal_3*spin_2*t96 - spin_3*t113
-            t116 = t83*t96
-            t117 = -t102 + t116 - t97 - 2*t98 - t99
-            t118 = normal_2*normal_3
-            t119 = -t118
-            t120 = radius*t111
-            t121 = normal_3*t113 + normal_3*t120
-            t122 = -normal_1*t113 - normal_1*t120
-            t123 = normal_3*normal_3
-            t124 = 1 - t123
-            t125 = radius*t124
-            t126 = -normal_3*t101 + spin_2*t125 + t100*t94
-            t127 = -normal_3*t89 - spin_1*t125 - t88*t94
-            t128 = -t102 - t116 + t95 - t98 - 2*t99
-            t129 = radius*t123
-            t130 = -normal_2*t125 - normal_2*t129
-            t131 = normal_1*t125 + normal_1*t129
-            t132 = radius*t106
-            t133 = -kept_place_2 + place_2 - radius*(normal_1*turned_3 - normal_3*turned_1)
-            t134 = -normal_1*t133 + t132*turned_1 + t87*turned_3
-            t135 = radius*t104
-            t136 = -kept_place_3 + place_3 - radius*(-normal_1*turned_2 + normal_2*turned_1)
-            t137 = -normal_1*t136 - t135*turned_1 - t87*turned_2
-            t138 = t132*turned_2
-            t139 = t135*turned_3
-            t140 = normal_2*t133
-            t141 = normal_3*t136
-            t142 = -kept_place_1 + place_1 - radius*(-normal_2*turned_3 + normal_3*turned_2)
-            t143 = normal_1*t142
-            t144 = -t138 + t139 - t140 - t141 - 2*t143
-            t145 = -normal_2*t136 + t113*turned_1 + t135*turned_2
-            t146 = radius*t118
-            t147 = -normal_2*t142 - t113*turned_3 - t146*turned_2
-            t148 = t146*turned_1
-            t149 = -t139 - 2*t140 - t141 - t143 + t148
-            t150 = -normal_3*t142 + t125*turned_2 + t146*turned_3
-            t151 = -normal_3*t133 - t125*turned_1 - t132*turned_3
-            t152 = t138 - t140 - 2*t141 - t143 - t148
+            t72 = place_1*place_1
+            t73 = place_2*place_2
+            t74 = place_3*place_3
+            t75 = t72 + t73 + t74 + 1e-300
+            t76 = 1/sqrt(t75)
+            t77 = -side*t76
+            t78 = side/t75**(1.5)
+            t79 = place_1*t78
+            t80 = -place_2*t79
+            t81 = -place_3*t79
+            t82 = -place_2*place_3*t78
+            t83 = side*t76
+            dnormal_1_by_place_1 = -t72*t78 - t77
+            dnormal_1_by_place_2 = t80
+            dnormal_1_by_place_3 = t81
+            dnormal_2_by_place_1 = t80
+            dnormal_2_by_place_2 = -t73*t78 - t77
+            dnormal_2_by_place_3 = t82
+            dnormal_3_by_place_1 = t81
+            dnormal_3_by_place_2 = t82
+            dnormal_3_by_place_3 = -t74*t78 - t77
+            dgap_closed_by_place_1 = -place_1*t83
+            dgap_closed_by_place_2 = -place_2*t83
+            dgap_closed_by_place_3 = -place_3*t83
+            t84 = normal_3*spin_1
+            t85 = normal_1*radius
+            t86 = normal_1*normal_1
+            t87 = 1 - t86
+            t88 = radius*t87
+            t89 = normal_1*spin_3
+            t90 = -radius*(-t84 + t89) + rate_2
+            t91 = -normal_1*t90 + spin_3*t88 + t84*t85
+            t92 = normal_1*spin_2
+            t93 = -radius*(normal_2*spin_1 - t92) + rate_3
+            t94 = -normal_1*t93 - normal_2*spin_1*t85 - spin_2*t88
+            t95 = normal_3*radius
+            t96 = t92*t95
+            t97 = normal_2*radius
+            t98 = t89*t97
+            t99 = normal_2*t90
+            t100 = normal_3*t93
+            t101 = normal_2*spin_3
+            t102 = -radius*(normal_3*spin_2 - t101) + rate_1
+            t103 = normal_1*t102
+            t104 = -t100 - 2*t103 - t96 + t98 - t99
+            t105 = normal_1*normal_2
+            t106 = -t105
+            t107 = normal_1*normal_3
+            t108 = -t107
+            t109 = radius*t86
+            t110 = -normal_3*t109 - normal_3*t88
+            t111 = normal_2*t109 + normal_2*t88
+            t112 = normal_2*normal_2
+            t113 = 1 - t112
+            t114 = radius*t113
+            t115 = -normal_2*t93 + spin_1*t114 + t92*t97
+            t116 = -normal_2*t102 - normal_3*spin_2*t97 - spin_3*t114
+            t117 = t84*t97
+            t118 = -t100 - t103 + t117 - t98 - 2*t99
+            t119 = normal_2*normal_3
+            t120 = -t119
+            t121 = radius*t112
+            t122 = normal_3*t114 + normal_3*t121
+            t123 = -normal_1*t114 - normal_1*t121
+            t124 = normal_3*normal_3
+            t125 = 1 - t124
+            t126 = radius*t125
+            t127 = -normal_3*t102 + spin_2*t126 + t101*t95
+            t128 = -normal_3*t90 - spin_1*t126 - t89*t95
+            t129 = -2*t100 - t103 - t117 + t96 - t99
+            t130 = radius*t124
+            t131 = -normal_2*t126 - normal_2*t130
+            t132 = normal_1*t126 + normal_1*t130
+            t133 = radius*t107
+            t134 = -kept_place_2 + place_2 - radius*(normal_1*turned_3 - normal_3*turned_1)
+            t135 = -normal_1*t134 + t133*turned_1 + t88*turned_3
+            t136 = radius*t105
+            t137 = -kept_place_3 + place_3 - radius*(-normal_1*turned_2 + normal_2*turned_1)
+            t138 = -normal_1*t137 - t136*turned_1 - t88*turned_2
+            t139 = t133*turned_2
+            t140 = t136*turned_3
+            t141 = normal_2*t134
+            t142 = normal_3*t137
+            t143 = -kept_place_1 + place_1 - radius*(-normal_2*turned_3 + normal_3*turned_2)
+            t144 = normal_1*t143
+            t145 = -t139 + t140 - t141 - t142 - 2*t144
+            t146 = -normal_2*t137 + t114*turned_1 + t136*turned_2
+            t147 = radius*t119
+            t148 = -normal_2*t143 - t114*turned_3 - t147*turned_2
+            t149 = t147*turned_1
+            t150 = -t140 - 2*t141 - t142 - t144 + t149
+            t151 = -normal_3*t143 + t126*turned_2 + t147*turned_3
+            t152 = -normal_3*t134 - t126*turned_1 - t133*turned_3
+            t153 = t139 - t141 - 2*t142 - t144 - t149
             dclosing_by_place_1 = (-dnormal_1_by_place_1*rate_1 - dnormal_2_by_place_1*rate_2 -
                 dnormal_3_by_place_1*rate_3)
             dclosing_by_place_2 = (-dnormal_1_by_place_2*rate_1 - dnormal_2_by_place_2*rate_2 -
@@ -466,159 +469,159 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dclosing_by_rate_1 = -normal_1
             dclosing_by_rate_2 = -normal_2
             dclosing_by_rate_3 = -normal_3
-            dslip_1_by_place_1 = (dnormal_1_by_place_1*t103 + dnormal_2_by_place_1*t90 +
-                dnormal_3_by_place_1*t93)
-            dslip_1_by_place_2 = (dnormal_1_by_place_2*t103 + dnormal_2_by_place_2*t90 +
-                dnormal_3_by_place_2*t93)
-            dslip_1_by_place_3 = (dnormal_1_by_place_3*t103 + dnormal_2_by_place_3*t90 +
-                dnormal_3_by_place_3*t93)
-            dslip_1_by_rate_1 = t86
-            dslip_1_by_rate_2 = t105
-            dslip_1_by_rate_3 = t107
-            dslip_1_by_spin_2 = t109
-            dslip_1_by_spin_3 = t110
-            dslip_2_by_place_1 = (dnormal_1_by_place_1*t115 + dnormal_2_by_place_1*t117 +
-                dnormal_3_by_place_1*t114)
-            dslip_2_by_place_2 = (dnormal_1_by_place_2*t115 + dnormal_2_by_place_2*t117 +
-                dnormal_3_by_place_2*t114)
-            dslip_2_by_place_3 = (dnormal_1_by_place_3*t115 + dnormal_2_by_place_3*t117 +
-                dnormal_3_by_place_3*t114)
-            dslip_2_by_rate_1 = t105
-            dslip_2_by_rate_2 = t112
-            dslip_2_by_rate_3 = t119
-            dslip_2_by_spin_1 = t121
-            dslip_2_by_spin_3 = t122
-            dslip_3_by_place_1 = (dnormal_1_by_place_1*t126 + dnormal_2_by_place_1*t127 +
-                dnormal_3_by_place_1*t128)
-            dslip_3_by_place_2 = (dnormal_1_by_place_2*t126 + dnormal_2_by_place_2*t127 +
-                dnormal_3_by_place_2*t128)
-            dslip_3_by_place_3 = (dnormal_1_by_place_3*t126 + dnormal_2_by_place_3*t127 +
-                dnormal_3_by_place_3*t128)
-            dslip_3_by_rate_1 = t107
-            dslip_3_by_rate_2 = t119
-            dslip_3_by_rate_3 = t124
-            dslip_3_by_spin_1 = t130
-            dslip_3_by_spin_2 = t131
-            dincrement_1_by_place_1 = (dnormal_1_by_place_1*t144 + dnormal_2_by_place_1*t134 +
-                dnormal_3_by_place_1*t137 - t85 + 1)
-            dincrement_1_by_place_2 = (dnormal_1_by_place_2*t144 + dnormal_2_by_place_2*t134 +
-                dnormal_3_by_place_2*t137 + t105)
-            dincrement_1_by_place_3 = (dnormal_1_by_place_3*t144 + dnormal_2_by_place_3*t134 +
-                dnormal_3_by_place_3*t137 + t107)
-            dincrement_1_by_turned_2 = t109
-            dincrement_1_by_turned_3 = t110
-            dincrement_2_by_place_1 = (dnormal_1_by_place_1*t147 + dnormal_2_by_place_1*t149 +
-                dnormal_3_by_place_1*t145 + t105)
-            dincrement_2_by_place_2 = (dnormal_1_by_place_2*t147 + dnormal_2_by_place_2*t149 +
-                dnormal_3_by_place_2*t145 - t111 + 1)
-            dincrement_2_by_place_3 = (dnormal_1_by_place_3*t147 + dnormal_2_by_place_3*t149 +
-                dnormal_3_by_place_3*t145 + t119)
-            dincrement_2_by_turned_1 = t121
-            dincrement_2_by_turned_3 = t122
-            dincrement_3_by_place_1 = (dnormal_1_by_place_1*t150 + dnormal_2_by_place_1*t151 +
-                dnormal_3_by_place_1*t152 + t107)
-            dincrement_3_by_place_2 = (dnormal_1_by_place_2*t150 + dnormal_2_by_place_2*t151 +
-                dnormal_3_by_place_2*t152 + t119)
-            dincrement_3_by_place_3 = (dnormal_1_by_place_3*t150 + dnormal_2_by_place_3*t151 +
-                dnormal_3_by_place_3*t152 - t123 + 1)
-            dincrement_3_by_turned_1 = t130
-            dincrement_3_by_turned_2 = t131
-            t153 = (1 if gap_closed > 0.0 else 0)
-            ddepth_by_place_1 = dgap_closed_by_place_1*t153
-            ddepth_by_place_2 = dgap_closed_by_place_2*t153
-            ddepth_by_place_3 = dgap_closed_by_place_3*t153
-            t154 = depth**exponent*exponent*stiffness/depth
-            delastic_by_place_1 = ddepth_by_place_1*t154
-            delastic_by_place_2 = ddepth_by_place_2*t154
-            delastic_by_place_3 = ddepth_by_place_3*t154
+            dslip_1_by_place_1 = (dnormal_1_by_place_1*t104 + dnormal_2_by_place_1*t91 +
+                dnormal_3_by_place_1*t94)
+            dslip_1_by_place_2 = (dnormal_1_by_place_2*t104 + dnormal_2_by_place_2*t91 +
+                dnormal_3_by_place_2*t94)
+            dslip_1_by_place_3 = (dnormal_1_by_place_3*t104 + dnormal_2_by_place_3*t91 +
+                dnormal_3_by_place_3*t94)
+            dslip_1_by_rate_1 = t87
+            dslip_1_by_rate_2 = t106
+            dslip_1_by_rate_3 = t108
+            dslip_1_by_spin_2 = t110
+            dslip_1_by_spin_3 = t111
+            dslip_2_by_place_1 = (dnormal_1_by_place_1*t116 + dnormal_2_by_place_1*t118 +
+                dnormal_3_by_place_1*t115)
+            dslip_2_by_place_2 = (dnormal_1_by_place_2*t116 + dnormal_2_by_place_2*t118 +
+                dnormal_3_by_place_2*t115)
+            dslip_2_by_place_3 = (dnormal_1_by_place_3*t116 + dnormal_2_by_place_3*t118 +
+                dnormal_3_by_place_3*t115)
+            dslip_2_by_rate_1 = t106
+            dslip_2_by_rate_2 = t113
+            dslip_2_by_rate_3 = t120
+            dslip_2_by_spin_1 = t122
+            dslip_2_by_spin_3 = t123
+            dslip_3_by_place_1 = (dnormal_1_by_place_1*t127 + dnormal_2_by_place_1*t128 +
+                dnormal_3_by_place_1*t129)
+            dslip_3_by_place_2 = (dnormal_1_by_place_2*t127 + dnormal_2_by_place_2*t128 +
+                dnormal_3_by_place_2*t129)
+            dslip_3_by_place_3 = (dnormal_1_by_place_3*t127 + dnormal_2_by_place_3*t128 +
+                dnormal_3_by_place_3*t129)
+            dslip_3_by_rate_1 = t108
+            dslip_3_by_rate_2 = t120
+            dslip_3_by_rate_3 = t125
+            dslip_3_by_spin_1 = t131
+            dslip_3_by_spin_2 = t132
+            dincrement_1_by_place_1 = (dnormal_1_by_place_1*t145 + dnormal_2_by_place_1*t135 +
+                dnormal_3_by_place_1*t138 - t86 + 1)
+            dincrement_1_by_place_2 = (dnormal_1_by_place_2*t145 + dnormal_2_by_place_2*t135 +
+                dnormal_3_by_place_2*t138 + t106)
+            dincrement_1_by_place_3 = (dnormal_1_by_place_3*t145 + dnormal_2_by_place_3*t135 +
+                dnormal_3_by_place_3*t138 + t108)
+            dincrement_1_by_turned_2 = t110
+            dincrement_1_by_turned_3 = t111
+            dincrement_2_by_place_1 = (dnormal_1_by_place_1*t148 + dnormal_2_by_place_1*t150 +
+                dnormal_3_by_place_1*t146 + t106)
+            dincrement_2_by_place_2 = (dnormal_1_by_place_2*t148 + dnormal_2_by_place_2*t150 +
+                dnormal_3_by_place_2*t146 - t112 + 1)
+            dincrement_2_by_place_3 = (dnormal_1_by_place_3*t148 + dnormal_2_by_place_3*t150 +
+                dnormal_3_by_place_3*t146 + t120)
+            dincrement_2_by_turned_1 = t122
+            dincrement_2_by_turned_3 = t123
+            dincrement_3_by_place_1 = (dnormal_1_by_place_1*t151 + dnormal_2_by_place_1*t152 +
+                dnormal_3_by_place_1*t153 + t108)
+            dincrement_3_by_place_2 = (dnormal_1_by_place_2*t151 + dnormal_2_by_place_2*t152 +
+                dnormal_3_by_place_2*t153 + t120)
+            dincrement_3_by_place_3 = (dnormal_1_by_place_3*t151 + dnormal_2_by_place_3*t152 +
+                dnormal_3_by_place_3*t153 - t124 + 1)
+            dincrement_3_by_turned_1 = t131
+            dincrement_3_by_turned_2 = t132
+            t154 = (1 if gap_closed > 0.0 else 0)
+            ddepth_by_place_1 = dgap_closed_by_place_1*t154
+            ddepth_by_place_2 = dgap_closed_by_place_2*t154
+            ddepth_by_place_3 = dgap_closed_by_place_3*t154
+            t155 = depth**exponent*exponent*stiffness/depth
+            delastic_by_place_1 = ddepth_by_place_1*t155
+            delastic_by_place_2 = ddepth_by_place_2*t155
+            delastic_by_place_3 = ddepth_by_place_3*t155
             dfactor_by_place_1 = damping*dclosing_by_place_1
             dfactor_by_place_2 = damping*dclosing_by_place_2
             dfactor_by_place_3 = damping*dclosing_by_place_3
             dfactor_by_rate_1 = damping*dclosing_by_rate_1
             dfactor_by_rate_2 = damping*dclosing_by_rate_2
             dfactor_by_rate_3 = damping*dclosing_by_rate_3
-            t155 = (factor if factor > 0.0 else 0)
-            t156 = (elastic if factor > 0.0 else 0)
-            dpush_by_place_1 = delastic_by_place_1*t155 + dfactor_by_place_1*t156
-            dpush_by_place_2 = delastic_by_place_2*t155 + dfactor_by_place_2*t156
-            dpush_by_place_3 = delastic_by_place_3*t155 + dfactor_by_place_3*t156
-            dpush_by_rate_1 = dfactor_by_rate_1*t156
-            dpush_by_rate_2 = dfactor_by_rate_2*t156
-            dpush_by_rate_3 = dfactor_by_rate_3*t156
-            t157 = kept_begun*normal_1
-            t158 = normal_2*t157
-            t159 = normal_3*t157
-            t160 = increment_2*kept_begun + kept_bent_2
-            t161 = normal_1*t160
-            t162 = increment_3*kept_begun + kept_bent_3
-            t163 = normal_1*t162
-            t164 = 1 - normal_1*normal_1
-            t165 = normal_2*t160
-            t166 = normal_3*t162
-            t167 = increment_1*kept_begun + kept_bent_1
-            t168 = normal_1*t167
-            t169 = -t165 - t166 - 2*t168
-            t170 = kept_begun*t164
-            t171 = kept_begun*normal_2*normal_3
-            t172 = normal_2*t167
-            t173 = normal_2*t162
-            t174 = 1 - normal_2*normal_2
-            t175 = -2*t165 - t166 - t168
-            t176 = normal_3*t167
-            t177 = normal_3*t160
-            t178 = 1 - normal_3*normal_3
-            t179 = -t165 - 2*t166 - t168
-            dz_1_by_place_1 = (dincrement_1_by_place_1*kept_begun*t164 -
-                dincrement_2_by_place_1*t158 - dincrement_3_by_place_1*t159 +
-                dnormal_1_by_place_1*t169 - dnormal_2_by_place_1*t161 - dnormal_3_by_place_1*t163)
-            dz_1_by_place_2 = (dincrement_1_by_place_2*kept_begun*t164 -
-                dincrement_2_by_place_2*t158 - dincrement_3_by_place_2*t159 +
-                dnormal_1_by_place_2*t169 - dnormal_2_by_place_2*t161 - dnormal_3_by_place_2*t163)
-            dz_1_by_place_3 = (dincrement_1_by_place_3*kept_begun*t164 -
-                dincrement_2_by_place_3*t158 - dincrement_3_by_place_3*t159 +
-                dnormal_1_by_place_3*t169 - dnormal_2_by_place_3*t161 - dnormal_3_by_place_3*t163)
-            dz_1_by_turned_1 = -dincrement_2_by_turned_1*t158 - dincrement_3_by_turned_1*t159
-            dz_1_by_turned_2 = dincrement_1_by_turned_2*t170 - dincrement_3_by_turned_2*t159
-            dz_1_by_turned_3 = dincrement_1_by_turned_3*t170 - dincrement_2_by_turned_3*t158
-            dz_2_by_place_1 = (-dincrement_1_by_place_1*t158 +
-                dincrement_2_by_place_1*kept_begun*t174 - dincrement_3_by_place_1*t171 -
-                dnormal_1_by_place_1*t172 + dnormal_2_by_place_1*t175 - dnormal_3_by_place_1*t173)
-            dz_2_by_place_2 = (-dincrement_1_by_place_2*t158 +
-                dincrement_2_by_place_2*kept_begun*t174 - dincrement_3_by_place_2*t171 -
-                dnormal_1_by_place_2*t172 + dnormal_2_by_place_2*t175 - dnormal_3_by_place_2*t173)
-            dz_2_by_place_3 = (-dincrement_1_by_place_3*t158 +
-                dincrement_2_by_place_3*kept_begun*t174 - dincrement_3_by_place_3*t171 -
-                dnormal_1_by_place_3*t172 + dnormal_2_by_place_3*t175 - dnormal_3_by_place_3*t173)
-            dz_2_by_turned_1 = (dincrement_2_by_turned_1*kept_begun*t174 -
-                dincrement_3_by_turned_1*t171)
-            dz_2_by_turned_2 = -dincrement_1_by_turned_2*t158 - dincrement_3_by_turned_2*t171
-            dz_2_by_turned_3 = (-dincrement_1_by_turned_3*t158 +
-                dincrement_2_by_turned_3*kept_begun*t174)
-            dz_3_by_place_1 = (-dincrement_1_by_place_1*t159 - dincrement_2_by_place_1*t171 +
-                dincrement_3_by_place_1*kept_begun*t178 - dnormal_1_by_place_1*t176 -
-                dnormal_2_by_place_1*t177 + dnormal_3_by_place_1*t179)
-            dz_3_by_place_2 = (-dincrement_1_by_place_2*t159 - dincrement_2_by_place_2*t171 +
-                dincrement_3_by_place_2*kept_begun*t178 - dnormal_1_by_place_2*t176 -
-                dnormal_2_by_place_2*t177 + dnormal_3_by_place_2*t179)
-            dz_3_by_place_3 = (-dincrement_1_by_place_3*t159 - dincrement_2_by_place_3*t171 +
-                dincrement_3_by_place_3*kept_begun*t178 - dnormal_1_by_place_3*t176 -
-                dnormal_2_by_place_3*t177 + dnormal_3_by_place_3*t179)
-            dz_3_by_turned_1 = (-dincrement_2_by_turned_1*t171 +
-                dincrement_3_by_turned_1*kept_begun*t178)
-            dz_3_by_turned_2 = (-dincrement_1_by_turned_2*t159 +
-                dincrement_3_by_turned_2*kept_begun*t178)
-            dz_3_by_turned_3 = -dincrement_1_by_turned_3*t159 - dincrement_2_by_turned_3*t171
+            t156 = (factor if factor > 0.0 else 0)
+            t157 = (elastic if factor > 0.0 else 0)
+            dpush_by_place_1 = delastic_by_place_1*t156 + dfactor_by_place_1*t157
+            dpush_by_place_2 = delastic_by_place_2*t156 + dfactor_by_place_2*t157
+            dpush_by_place_3 = delastic_by_place_3*t156 + dfactor_by_place_3*t157
+            dpush_by_rate_1 = dfactor_by_rate_1*t157
+            dpush_by_rate_2 = dfactor_by_rate_2*t157
+            dpush_by_rate_3 = dfactor_by_rate_3*t157
+            t158 = kept_begun*normal_1
+            t159 = normal_2*t158
+            t160 = normal_3*t158
+            t161 = increment_2*kept_begun + kept_bent_2
+            t162 = normal_1*t161
+            t163 = increment_3*kept_begun + kept_bent_3
+            t164 = normal_1*t163
+            t165 = 1 - normal_1*normal_1
+            t166 = normal_2*t161
+            t167 = normal_3*t163
+            t168 = increment_1*kept_begun + kept_bent_1
+            t169 = normal_1*t168
+            t170 = -t166 - t167 - 2*t169
+            t171 = kept_begun*t165
+            t172 = kept_begun*normal_2*normal_3
+            t173 = normal_2*t168
+            t174 = normal_2*t163
+            t175 = 1 - normal_2*normal_2
+            t176 = -2*t166 - t167 - t169
+            t177 = normal_3*t168
+            t178 = normal_3*t161
+            t179 = 1 - normal_3*normal_3
+            t180 = -t166 - 2*t167 - t169
+            dz_1_by_place_1 = (dincrement_1_by_place_1*kept_begun*t165 -
+                dincrement_2_by_place_1*t159 - dincrement_3_by_place_1*t160 +
+                dnormal_1_by_place_1*t170 - dnormal_2_by_place_1*t162 - dnormal_3_by_place_1*t164)
+            dz_1_by_place_2 = (dincrement_1_by_place_2*kept_begun*t165 -
+                dincrement_2_by_place_2*t159 - dincrement_3_by_place_2*t160 +
+                dnormal_1_by_place_2*t170 - dnormal_2_by_place_2*t162 - dnormal_3_by_place_2*t164)
+            dz_1_by_place_3 = (dincrement_1_by_place_3*kept_begun*t165 -
+                dincrement_2_by_place_3*t159 - dincrement_3_by_place_3*t160 +
+                dnormal_1_by_place_3*t170 - dnormal_2_by_place_3*t162 - dnormal_3_by_place_3*t164)
+            dz_1_by_turned_1 = -dincrement_2_by_turned_1*t159 - dincrement_3_by_turned_1*t160
+            dz_1_by_turned_2 = dincrement_1_by_turned_2*t171 - dincrement_3_by_turned_2*t160
+            dz_1_by_turned_3 = dincrement_1_by_turned_3*t171 - dincrement_2_by_turned_3*t159
+            dz_2_by_place_1 = (-dincrement_1_by_place_1*t159 +
+                dincrement_2_by_place_1*kept_begun*t175 - dincrement_3_by_place_1*t172 -
+                dnormal_1_by_place_1*t173 + dnormal_2_by_place_1*t176 - dnormal_3_by_place_1*t174)
+            dz_2_by_place_2 = (-dincrement_1_by_place_2*t159 +
+                dincrement_2_by_place_2*kept_begun*t175 - dincrement_3_by_place_2*t172 -
+                dnormal_1_by_place_2*t173 + dnormal_2_by_place_2*t176 - dnormal_3_by_place_2*t174)
+            dz_2_by_place_3 = (-dincrement_1_by_place_3*t159 +
+                dincrement_2_by_place_3*kept_begun*t175 - dincrement_3_by_place_3*t172 -
+                dnormal_1_by_place_3*t173 + dnormal_2_by_place_3*t176 - dnormal_3_by_place_3*t174)
+            dz_2_by_turned_1 = (dincrement_2_by_turned_1*kept_begun*t175 -
+                dincrement_3_by_turned_1*t172)
+            dz_2_by_turned_2 = -dincrement_1_by_turned_2*t159 - dincrement_3_by_turned_2*t172
+            dz_2_by_turned_3 = (-dincrement_1_by_turned_3*t159 +
+                dincrement_2_by_turned_3*kept_begun*t175)
+            dz_3_by_place_1 = (-dincrement_1_by_place_1*t160 - dincrement_2_by_place_1*t172 +
+                dincrement_3_by_place_1*kept_begun*t179 - dnormal_1_by_place_1*t177 -
+                dnormal_2_by_place_1*t178 + dnormal_3_by_place_1*t180)
+            dz_3_by_place_2 = (-dincrement_1_by_place_2*t160 - dincrement_2_by_place_2*t172 +
+                dincrement_3_by_place_2*kept_begun*t179 - dnormal_1_by_place_2*t177 -
+                dnormal_2_by_place_2*t178 + dnormal_3_by_place_2*t180)
+            dz_3_by_place_3 = (-dincrement_1_by_place_3*t160 - dincrement_2_by_place_3*t172 +
+                dincrement_3_by_place_3*kept_begun*t179 - dnormal_1_by_place_3*t177 -
+                dnormal_2_by_place_3*t178 + dnormal_3_by_place_3*t180)
+            dz_3_by_turned_1 = (-dincrement_2_by_turned_1*t172 +
+                dincrement_3_by_turned_1*kept_begun*t179)
+            dz_3_by_turned_2 = (-dincrement_1_by_turned_2*t160 +
+                dincrement_3_by_turned_2*kept_begun*t179)
+            dz_3_by_turned_3 = -dincrement_1_by_turned_3*t160 - dincrement_2_by_turned_3*t172
             ddynamic_limit_by_place_1 = coefficient*dpush_by_place_1
             ddynamic_limit_by_place_2 = coefficient*dpush_by_place_2
             ddynamic_limit_by_place_3 = coefficient*dpush_by_place_3
             ddynamic_limit_by_rate_1 = coefficient*dpush_by_rate_1
             ddynamic_limit_by_rate_2 = coefficient*dpush_by_rate_2
             ddynamic_limit_by_rate_3 = coefficient*dpush_by_rate_3
-            t180 = (1/sqrt(slip_1*slip_1 + slip_2*slip_2 + slip_3*slip_3 + 1e-12*speed*speed +
+            t181 = (1/sqrt(slip_1*slip_1 + slip_2*slip_2 + slip_3*slip_3 + 1e-12*speed*speed +
                 1e-300))
-            t181 = slip_1*t180
-            t182 = slip_2*t180
-            t183 = slip_3*t180
+            t182 = slip_1*t181
+            t183 = slip_2*t181
+            t184 = slip_3*t181
             dtrial_1_by_place_1 = bristle*dz_1_by_place_1 + bristle_damping*dslip_1_by_place_1
             dtrial_1_by_place_2 = bristle*dz_1_by_place_2 + bristle_damping*dslip_1_by_place_2
             dtrial_1_by_place_3 = bristle*dz_1_by_place_3 + bristle_damping*dslip_1_by_place_3
@@ -652,142 +655,142 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dtrial_3_by_rate_3 = bristle_damping*dslip_3_by_rate_3
             dtrial_3_by_spin_1 = bristle_damping*dslip_3_by_spin_1
             dtrial_3_by_spin_2 = bristle_damping*dslip_3_by_spin_2
-            dslip_speed_by_place_1 = (dslip_1_by_place_1*t181 + dslip_2_by_place_1*t182 +
-                dslip_3_by_place_1*t183)
-            dslip_speed_by_place_2 = (dslip_1_by_place_2*t181 + dslip_2_by_place_2*t182 +
-                dslip_3_by_place_2*t183)
-            dslip_speed_by_place_3 = (dslip_1_by_place_3*t181 + dslip_2_by_place_3*t182 +
-                dslip_3_by_place_3*t183)
-            dslip_speed_by_rate_1 = (dslip_1_by_rate_1*t181 + dslip_2_by_rate_1*t182 +
-                dslip_3_by_rate_1*t183)
-            dslip_speed_by_rate_2 = (dslip_1_by_rate_2*t181 + dslip_2_by_rate_2*t182 +
-                dslip_3_by_rate_2*t183)
-            dslip_speed_by_rate_3 = (dslip_1_by_rate_3*t181 + dslip_2_by_rate_3*t182 +
-                dslip_3_by_rate_3*t183)
-            dslip_speed_by_spin_1 = dslip_2_by_spin_1*t182 + dslip_3_by_spin_1*t183
-            dslip_speed_by_spin_2 = dslip_1_by_spin_2*t181 + dslip_3_by_spin_2*t183
-            dslip_speed_by_spin_3 = dslip_1_by_spin_3*t181 + dslip_2_by_spin_3*t182
-            t184 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
-            t185 = t184*trial_1
-            t186 = t184*trial_2
-            t187 = t184*trial_3
-            t188 = 1/slip_speed
-            t189 = 1/speed
-            t190 = slip_speed*t189
-            t191 = tanh(4*t190)
-            t192 = slip_speed*slip_speed
-            t193 = 0.75 + ((0.25)*t192)/(speed*speed)
-            t194 = -coefficient + static
-            t195 = t194/(t193*t193)
-            t196 = coefficient*t191 + t190*t195
-            t197 = (t188*t196 if speed > 0.0 else 0)
-            t198 = ((push*t188*(4*coefficient*t189*(1 - t191*t191) + t189*t195 +
-                (-t192*t194)/(speed*speed*speed*t193*t193*t193)) - push*t196/t192 if speed > 0.0
+            dslip_speed_by_place_1 = (dslip_1_by_place_1*t182 + dslip_2_by_place_1*t183 +
+                dslip_3_by_place_1*t184)
+            dslip_speed_by_place_2 = (dslip_1_by_place_2*t182 + dslip_2_by_place_2*t183 +
+                dslip_3_by_place_2*t184)
+            dslip_speed_by_place_3 = (dslip_1_by_place_3*t182 + dslip_2_by_place_3*t183 +
+                dslip_3_by_place_3*t184)
+            dslip_speed_by_rate_1 = (dslip_1_by_rate_1*t182 + dslip_2_by_rate_1*t183 +
+                dslip_3_by_rate_1*t184)
+            dslip_speed_by_rate_2 = (dslip_1_by_rate_2*t182 + dslip_2_by_rate_2*t183 +
+                dslip_3_by_rate_2*t184)
+            dslip_speed_by_rate_3 = (dslip_1_by_rate_3*t182 + dslip_2_by_rate_3*t183 +
+                dslip_3_by_rate_3*t184)
+            dslip_speed_by_spin_1 = dslip_2_by_spin_1*t183 + dslip_3_by_spin_1*t184
+            dslip_speed_by_spin_2 = dslip_1_by_spin_2*t182 + dslip_3_by_spin_2*t184
+            dslip_speed_by_spin_3 = dslip_1_by_spin_3*t182 + dslip_2_by_spin_3*t183
+            t185 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
+            t186 = t185*trial_1
+            t187 = t185*trial_2
+            t188 = t185*trial_3
+            t189 = 1/slip_speed
+            t190 = 1/speed
+            t191 = slip_speed*t190
+            t192 = tanh(4*t191)
+            t193 = slip_speed*slip_speed
+            t194 = 0.75 + ((0.25)*t193)/(speed*speed)
+            t195 = -coefficient + static
+            t196 = t195/(t194*t194)
+            t197 = coefficient*t192 + t191*t196
+            t198 = (t189*t197 if speed > 0.0 else 0)
+            t199 = ((push*t189*(4*coefficient*t190*(1 - t192*t192) + t190*t196 +
+                (-t193*t195)/(speed*speed*speed*t194*t194*t194)) - push*t197/t193 if speed > 0.0
                 else 0))
-            dtrial_size_by_place_1 = (dtrial_1_by_place_1*t185 + dtrial_2_by_place_1*t186 +
-                dtrial_3_by_place_1*t187)
-            dtrial_size_by_place_2 = (dtrial_1_by_place_2*t185 + dtrial_2_by_place_2*t186 +
-                dtrial_3_by_place_2*t187)
-            dtrial_size_by_place_3 = (dtrial_1_by_place_3*t185 + dtrial_2_by_place_3*t186 +
-                dtrial_3_by_place_3*t187)
-            dtrial_size_by_turned_1 = (dtrial_1_by_turned_1*t185 + dtrial_2_by_turned_1*t186 +
-                dtrial_3_by_turned_1*t187)
-            dtrial_size_by_turned_2 = (dtrial_1_by_turned_2*t185 + dtrial_2_by_turned_2*t186 +
-                dtrial_3_by_turned_2*t187)
-            dtrial_size_by_turned_3 = (dtrial_1_by_turned_3*t185 + dtrial_2_by_turned_3*t186 +
-                dtrial_3_by_turned_3*t187)
-            dtrial_size_by_rate_1 = (dtrial_1_by_rate_1*t185 + dtrial_2_by_rate_1*t186 +
-                dtrial_3_by_rate_1*t187)
-            dtrial_size_by_rate_2 = (dtrial_1_by_rate_2*t185 + dtrial_2_by_rate_2*t186 +
-                dtrial_3_by_rate_2*t187)
-            dtrial_size_by_rate_3 = (dtrial_1_by_rate_3*t185 + dtrial_2_by_rate_3*t186 +
-                dtrial_3_by_rate_3*t187)
-            dtrial_size_by_spin_1 = dtrial_2_by_spin_1*t186 + dtrial_3_by_spin_1*t187
-            dtrial_size_by_spin_2 = dtrial_1_by_spin_2*t185 + dtrial_3_by_spin_2*t187
-            dtrial_size_by_spin_3 = dtrial_1_by_spin_3*t185 + dtrial_2_by_spin_3*t186
-            ddrag_by_place_1 = dpush_by_place_1*t197 + dslip_speed_by_place_1*t198
-            ddrag_by_place_2 = dpush_by_place_2*t197 + dslip_speed_by_place_2*t198
-            ddrag_by_place_3 = dpush_by_place_3*t197 + dslip_speed_by_place_3*t198
-            ddrag_by_rate_1 = dpush_by_rate_1*t197 + dslip_speed_by_rate_1*t198
-            ddrag_by_rate_2 = dpush_by_rate_2*t197 + dslip_speed_by_rate_2*t198
-            ddrag_by_rate_3 = dpush_by_rate_3*t197 + dslip_speed_by_rate_3*t198
-            ddrag_by_spin_1 = dslip_speed_by_spin_1*t198
-            ddrag_by_spin_2 = dslip_speed_by_spin_2*t198
-            ddrag_by_spin_3 = dslip_speed_by_spin_3*t198
-            t199 = (slip_1 if speed > 0.0 else 0)
-            t200 = (drag if speed > 0.0 else 0)
-            t201 = -static_limit + trial_size
-            t202 = 1/trial_size
-            t203 = (0 if speed > 0.0 else (t202*trial_1 if t201 > 0.0 else 0))
-            t204 = (0 if speed > 0.0 else (dynamic_limit*t202 if t201 > 0.0 else 1))
-            t205 = dynamic_limit/(trial_size*trial_size)
-            t206 = (0 if speed > 0.0 else (-t205*trial_1 if t201 > 0.0 else 0))
-            t207 = (slip_2 if speed > 0.0 else 0)
-            t208 = (0 if speed > 0.0 else (t202*trial_2 if t201 > 0.0 else 0))
-            t209 = (0 if speed > 0.0 else (-t205*trial_2 if t201 > 0.0 else 0))
-            t210 = (slip_3 if speed > 0.0 else 0)
-            t211 = (0 if speed > 0.0 else (t202*trial_3 if t201 > 0.0 else 0))
-            t212 = (0 if speed > 0.0 else (-t205*trial_3 if t201 > 0.0 else 0))
-            dfriction_1_by_place_1 = (ddrag_by_place_1*t199 + ddynamic_limit_by_place_1*t203 +
-                dslip_1_by_place_1*t200 + dtrial_1_by_place_1*t204 + dtrial_size_by_place_1*t206)
-            dfriction_1_by_place_2 = (ddrag_by_place_2*t199 + ddynamic_limit_by_place_2*t203 +
-                dslip_1_by_place_2*t200 + dtrial_1_by_place_2*t204 + dtrial_size_by_place_2*t206)
-            dfriction_1_by_place_3 = (ddrag_by_place_3*t199 + ddynamic_limit_by_place_3*t203 +
-                dslip_1_by_place_3*t200 + dtrial_1_by_place_3*t204 + dtrial_size_by_place_3*t206)
-            dfriction_1_by_turned_1 = dtrial_1_by_turned_1*t204 + dtrial_size_by_turned_1*t206
-            dfriction_1_by_turned_2 = dtrial_1_by_turned_2*t204 + dtrial_size_by_turned_2*t206
-            dfriction_1_by_turned_3 = dtrial_1_by_turned_3*t204 + dtrial_size_by_turned_3*t206
-            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t199 + ddynamic_limit_by_rate_1*t203 +
-                dslip_1_by_rate_1*t200 + dtrial_1_by_rate_1*t204 + dtrial_size_by_rate_1*t206)
-            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t199 + ddynamic_limit_by_rate_2*t203 +
-                dslip_1_by_rate_2*t200 + dtrial_1_by_rate_2*t204 + dtrial_size_by_rate_2*t206)
-            dfriction_1_by_rate_3 = (ddrag_by_rate_3*t199 + ddynamic_limit_by_rate_3*t203 +
-                dslip_1_by_rate_3*t200 + dtrial_1_by_rate_3*t204 + dtrial_size_by_rate_3*t206)
-            dfriction_1_by_spin_1 = ddrag_by_spin_1*t199 + dtrial_size_by_spin_1*t206
-            dfriction_1_by_spin_2 = (ddrag_by_spin_2*t199 + dslip_1_by_spin_2*t200 +
-                dtrial_1_by_spin_2*t204 + dtrial_size_by_spin_2*t206)
-            dfriction_1_by_spin_3 = (ddrag_by_spin_3*t199 + dslip_1_by_spin_3*t200 +
-                dtrial_1_by_spin_3*t204 + dtrial_size_by_spin_3*t206)
-            dfriction_2_by_place_1 = (ddrag_by_place_1*t207 + ddynamic_limit_by_place_1*t208 +
-                dslip_2_by_place_1*t200 + dtrial_2_by_place_1*t204 + dtrial_size_by_place_1*t209)
-            dfriction_2_by_place_2 = (ddrag_by_place_2*t207 + ddynamic_limit_by_place_2*t208 +
-                dslip_2_by_place_2*t200 + dtrial_2_by_place_2*t204 + dtrial_size_by_place_2*t209)
-            dfriction_2_by_place_3 = (ddrag_by_place_3*t207 + ddynamic_limit_by_place_3*t208 +
-                dslip_2_by_place_3*t200 + dtrial_2_by_place_3*t204 + dtrial_size_by_place_3*t209)
-            dfriction_2_by_turned_1 = dtrial_2_by_turned_1*t204 + dtrial_size_by_turned_1*t209
-            dfriction_2_by_turned_2 = dtrial_2_by_turned_2*t204 + dtrial_size_by_turned_2*t209
-            dfriction_2_by_turned_3 = dtrial_2_by_turned_3*t204 + dtrial_size_by_turned_3*t209
-            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t207 + ddynamic_limit_by_rate_1*t208 +
-                dslip_2_by_rate_1*t200 + dtrial_2_by_rate_1*t204 + dtrial_size_by_rate_1*t209)
-            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t207 + ddynamic_limit_by_rate_2*t208 +
-                dslip_2_by_rate_2*t200 + dtrial_2_by_rate_2*t204 + dtrial_size_by_rate_2*t209)
-            dfriction_2_by_rate_3 = (ddrag_by_rate_3*t207 + ddynamic_limit_by_rate_3*t208 +
-                dslip_2_by_rate_3*t200 + dtrial_2_by_rate_3*t204 + dtrial_size_by_rate_3*t209)
-            dfriction_2_by_spin_1 = (ddrag_by_spin_1*t207 + dslip_2_by_spin_1*t200 +
-                dtrial_2_by_spin_1*t204 + dtrial_size_by_spin_1*t209)
-            dfriction_2_by_spin_2 = ddrag_by_spin_2*t207 + dtrial_size_by_spin_2*t209
-            dfriction_2_by_spin_3 = (ddrag_by_spin_3*t207 + dslip_2_by_spin_3*t200 +
-                dtrial_2_by_spin_3*t204 + dtrial_size_by_spin_3*t209)
-            dfriction_3_by_place_1 = (ddrag_by_place_1*t210 + ddynamic_limit_by_place_1*t211 +
-                dslip_3_by_place_1*t200 + dtrial_3_by_place_1*t204 + dtrial_size_by_place_1*t212)
-            dfriction_3_by_place_2 = (ddrag_by_place_2*t210 + ddynamic_limit_by_place_2*t211 +
-                dslip_3_by_place_2*t200 + dtrial_3_by_place_2*t204 + dtrial_size_by_place_2*t212)
-            dfriction_3_by_place_3 = (ddrag_by_place_3*t210 + ddynamic_limit_by_place_3*t211 +
-                dslip_3_by_place_3*t200 + dtrial_3_by_place_3*t204 + dtrial_size_by_place_3*t212)
-            dfriction_3_by_turned_1 = dtrial_3_by_turned_1*t204 + dtrial_size_by_turned_1*t212
-            dfriction_3_by_turned_2 = dtrial_3_by_turned_2*t204 + dtrial_size_by_turned_2*t212
-            dfriction_3_by_turned_3 = dtrial_3_by_turned_3*t204 + dtrial_size_by_turned_3*t212
-            dfriction_3_by_rate_1 = (ddrag_by_rate_1*t210 + ddynamic_limit_by_rate_1*t211 +
-                dslip_3_by_rate_1*t200 + dtrial_3_by_rate_1*t204 + dtrial_size_by_rate_1*t212)
-            dfriction_3_by_rate_2 = (ddrag_by_rate_2*t210 + ddynamic_limit_by_rate_2*t211 +
-                dslip_3_by_rate_2*t200 + dtrial_3_by_rate_2*t204 + dtrial_size_by_rate_2*t212)
-            dfriction_3_by_rate_3 = (ddrag_by_rate_3*t210 + ddynamic_limit_by_rate_3*t211 +
-                dslip_3_by_rate_3*t200 + dtrial_3_by_rate_3*t204 + dtrial_size_by_rate_3*t212)
-            dfriction_3_by_spin_1 = (ddrag_by_spin_1*t210 + dslip_3_by_spin_1*t200 +
-                dtrial_3_by_spin_1*t204 + dtrial_size_by_spin_1*t212)
-            dfriction_3_by_spin_2 = (ddrag_by_spin_2*t210 + dslip_3_by_spin_2*t200 +
-                dtrial_3_by_spin_2*t204 + dtrial_size_by_spin_2*t212)
-            dfriction_3_by_spin_3 = ddrag_by_spin_3*t210 + dtrial_size_by_spin_3*t212
+            dtrial_size_by_place_1 = (dtrial_1_by_place_1*t186 + dtrial_2_by_place_1*t187 +
+                dtrial_3_by_place_1*t188)
+            dtrial_size_by_place_2 = (dtrial_1_by_place_2*t186 + dtrial_2_by_place_2*t187 +
+                dtrial_3_by_place_2*t188)
+            dtrial_size_by_place_3 = (dtrial_1_by_place_3*t186 + dtrial_2_by_place_3*t187 +
+                dtrial_3_by_place_3*t188)
+            dtrial_size_by_turned_1 = (dtrial_1_by_turned_1*t186 + dtrial_2_by_turned_1*t187 +
+                dtrial_3_by_turned_1*t188)
+            dtrial_size_by_turned_2 = (dtrial_1_by_turned_2*t186 + dtrial_2_by_turned_2*t187 +
+                dtrial_3_by_turned_2*t188)
+            dtrial_size_by_turned_3 = (dtrial_1_by_turned_3*t186 + dtrial_2_by_turned_3*t187 +
+                dtrial_3_by_turned_3*t188)
+            dtrial_size_by_rate_1 = (dtrial_1_by_rate_1*t186 + dtrial_2_by_rate_1*t187 +
+                dtrial_3_by_rate_1*t188)
+            dtrial_size_by_rate_2 = (dtrial_1_by_rate_2*t186 + dtrial_2_by_rate_2*t187 +
+                dtrial_3_by_rate_2*t188)
+            dtrial_size_by_rate_3 = (dtrial_1_by_rate_3*t186 + dtrial_2_by_rate_3*t187 +
+                dtrial_3_by_rate_3*t188)
+            dtrial_size_by_spin_1 = dtrial_2_by_spin_1*t187 + dtrial_3_by_spin_1*t188
+            dtrial_size_by_spin_2 = dtrial_1_by_spin_2*t186 + dtrial_3_by_spin_2*t188
+            dtrial_size_by_spin_3 = dtrial_1_by_spin_3*t186 + dtrial_2_by_spin_3*t187
+            ddrag_by_place_1 = dpush_by_place_1*t198 + dslip_speed_by_place_1*t199
+            ddrag_by_place_2 = dpush_by_place_2*t198 + dslip_speed_by_place_2*t199
+            ddrag_by_place_3 = dpush_by_place_3*t198 + dslip_speed_by_place_3*t199
+            ddrag_by_rate_1 = dpush_by_rate_1*t198 + dslip_speed_by_rate_1*t199
+            ddrag_by_rate_2 = dpush_by_rate_2*t198 + dslip_speed_by_rate_2*t199
+            ddrag_by_rate_3 = dpush_by_rate_3*t198 + dslip_speed_by_rate_3*t199
+            ddrag_by_spin_1 = dslip_speed_by_spin_1*t199
+            ddrag_by_spin_2 = dslip_speed_by_spin_2*t199
+            ddrag_by_spin_3 = dslip_speed_by_spin_3*t199
+            t200 = (slip_1 if speed > 0.0 else 0)
+            t201 = (drag if speed > 0.0 else 0)
+            t202 = -static_limit + trial_size
+            t203 = 1/trial_size
+            t204 = (0 if speed > 0.0 else (t203*trial_1 if t202 > 0.0 else 0))
+            t205 = (0 if speed > 0.0 else (dynamic_limit*t203 if t202 > 0.0 else 1))
+            t206 = dynamic_limit/(trial_size*trial_size)
+            t207 = (0 if speed > 0.0 else (-t206*trial_1 if t202 > 0.0 else 0))
+            t208 = (slip_2 if speed > 0.0 else 0)
+            t209 = (0 if speed > 0.0 else (t203*trial_2 if t202 > 0.0 else 0))
+            t210 = (0 if speed > 0.0 else (-t206*trial_2 if t202 > 0.0 else 0))
+            t211 = (slip_3 if speed > 0.0 else 0)
+            t212 = (0 if speed > 0.0 else (t203*trial_3 if t202 > 0.0 else 0))
+            t213 = (0 if speed > 0.0 else (-t206*trial_3 if t202 > 0.0 else 0))
+            dfriction_1_by_place_1 = (ddrag_by_place_1*t200 + ddynamic_limit_by_place_1*t204 +
+                dslip_1_by_place_1*t201 + dtrial_1_by_place_1*t205 + dtrial_size_by_place_1*t207)
+            dfriction_1_by_place_2 = (ddrag_by_place_2*t200 + ddynamic_limit_by_place_2*t204 +
+                dslip_1_by_place_2*t201 + dtrial_1_by_place_2*t205 + dtrial_size_by_place_2*t207)
+            dfriction_1_by_place_3 = (ddrag_by_place_3*t200 + ddynamic_limit_by_place_3*t204 +
+                dslip_1_by_place_3*t201 + dtrial_1_by_place_3*t205 + dtrial_size_by_place_3*t207)
+            dfriction_1_by_turned_1 = dtrial_1_by_turned_1*t205 + dtrial_size_by_turned_1*t207
+            dfriction_1_by_turned_2 = dtrial_1_by_turned_2*t205 + dtrial_size_by_turned_2*t207
+            dfriction_1_by_turned_3 = dtrial_1_by_turned_3*t205 + dtrial_size_by_turned_3*t207
+            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t200 + ddynamic_limit_by_rate_1*t204 +
+                dslip_1_by_rate_1*t201 + dtrial_1_by_rate_1*t205 + dtrial_size_by_rate_1*t207)
+            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t200 + ddynamic_limit_by_rate_2*t204 +
+                dslip_1_by_rate_2*t201 + dtrial_1_by_rate_2*t205 + dtrial_size_by_rate_2*t207)
+            dfriction_1_by_rate_3 = (ddrag_by_rate_3*t200 + ddynamic_limit_by_rate_3*t204 +
+                dslip_1_by_rate_3*t201 + dtrial_1_by_rate_3*t205 + dtrial_size_by_rate_3*t207)
+            dfriction_1_by_spin_1 = ddrag_by_spin_1*t200 + dtrial_size_by_spin_1*t207
+            dfriction_1_by_spin_2 = (ddrag_by_spin_2*t200 + dslip_1_by_spin_2*t201 +
+                dtrial_1_by_spin_2*t205 + dtrial_size_by_spin_2*t207)
+            dfriction_1_by_spin_3 = (ddrag_by_spin_3*t200 + dslip_1_by_spin_3*t201 +
+                dtrial_1_by_spin_3*t205 + dtrial_size_by_spin_3*t207)
+            dfriction_2_by_place_1 = (ddrag_by_place_1*t208 + ddynamic_limit_by_place_1*t209 +
+                dslip_2_by_place_1*t201 + dtrial_2_by_place_1*t205 + dtrial_size_by_place_1*t210)
+            dfriction_2_by_place_2 = (ddrag_by_place_2*t208 + ddynamic_limit_by_place_2*t209 +
+                dslip_2_by_place_2*t201 + dtrial_2_by_place_2*t205 + dtrial_size_by_place_2*t210)
+            dfriction_2_by_place_3 = (ddrag_by_place_3*t208 + ddynamic_limit_by_place_3*t209 +
+                dslip_2_by_place_3*t201 + dtrial_2_by_place_3*t205 + dtrial_size_by_place_3*t210)
+            dfriction_2_by_turned_1 = dtrial_2_by_turned_1*t205 + dtrial_size_by_turned_1*t210
+            dfriction_2_by_turned_2 = dtrial_2_by_turned_2*t205 + dtrial_size_by_turned_2*t210
+            dfriction_2_by_turned_3 = dtrial_2_by_turned_3*t205 + dtrial_size_by_turned_3*t210
+            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t208 + ddynamic_limit_by_rate_1*t209 +
+                dslip_2_by_rate_1*t201 + dtrial_2_by_rate_1*t205 + dtrial_size_by_rate_1*t210)
+            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t208 + ddynamic_limit_by_rate_2*t209 +
+                dslip_2_by_rate_2*t201 + dtrial_2_by_rate_2*t205 + dtrial_size_by_rate_2*t210)
+            dfriction_2_by_rate_3 = (ddrag_by_rate_3*t208 + ddynamic_limit_by_rate_3*t209 +
+                dslip_2_by_rate_3*t201 + dtrial_2_by_rate_3*t205 + dtrial_size_by_rate_3*t210)
+            dfriction_2_by_spin_1 = (ddrag_by_spin_1*t208 + dslip_2_by_spin_1*t201 +
+                dtrial_2_by_spin_1*t205 + dtrial_size_by_spin_1*t210)
+            dfriction_2_by_spin_2 = ddrag_by_spin_2*t208 + dtrial_size_by_spin_2*t210
+            dfriction_2_by_spin_3 = (ddrag_by_spin_3*t208 + dslip_2_by_spin_3*t201 +
+                dtrial_2_by_spin_3*t205 + dtrial_size_by_spin_3*t210)
+            dfriction_3_by_place_1 = (ddrag_by_place_1*t211 + ddynamic_limit_by_place_1*t212 +
+                dslip_3_by_place_1*t201 + dtrial_3_by_place_1*t205 + dtrial_size_by_place_1*t213)
+            dfriction_3_by_place_2 = (ddrag_by_place_2*t211 + ddynamic_limit_by_place_2*t212 +
+                dslip_3_by_place_2*t201 + dtrial_3_by_place_2*t205 + dtrial_size_by_place_2*t213)
+            dfriction_3_by_place_3 = (ddrag_by_place_3*t211 + ddynamic_limit_by_place_3*t212 +
+                dslip_3_by_place_3*t201 + dtrial_3_by_place_3*t205 + dtrial_size_by_place_3*t213)
+            dfriction_3_by_turned_1 = dtrial_3_by_turned_1*t205 + dtrial_size_by_turned_1*t213
+            dfriction_3_by_turned_2 = dtrial_3_by_turned_2*t205 + dtrial_size_by_turned_2*t213
+            dfriction_3_by_turned_3 = dtrial_3_by_turned_3*t205 + dtrial_size_by_turned_3*t213
+            dfriction_3_by_rate_1 = (ddrag_by_rate_1*t211 + ddynamic_limit_by_rate_1*t212 +
+                dslip_3_by_rate_1*t201 + dtrial_3_by_rate_1*t205 + dtrial_size_by_rate_1*t213)
+            dfriction_3_by_rate_2 = (ddrag_by_rate_2*t211 + ddynamic_limit_by_rate_2*t212 +
+                dslip_3_by_rate_2*t201 + dtrial_3_by_rate_2*t205 + dtrial_size_by_rate_2*t213)
+            dfriction_3_by_rate_3 = (ddrag_by_rate_3*t211 + ddynamic_limit_by_rate_3*t212 +
+                dslip_3_by_rate_3*t201 + dtrial_3_by_rate_3*t205 + dtrial_size_by_rate_3*t213)
+            dfriction_3_by_spin_1 = (ddrag_by_spin_1*t211 + dslip_3_by_spin_1*t201 +
+                dtrial_3_by_spin_1*t205 + dtrial_size_by_spin_1*t213)
+            dfriction_3_by_spin_2 = (ddrag_by_spin_2*t211 + dslip_3_by_spin_2*t201 +
+                dtrial_3_by_spin_2*t205 + dtrial_size_by_spin_2*t213)
+            dfriction_3_by_spin_3 = ddrag_by_spin_3*t211 + dtrial_size_by_spin_3*t213
             for column in range(12):
                 for i in range(12):
                     dq[i] = 0.0
@@ -823,206 +826,206 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = du[9]
                 uthb_y = du[10]
                 uthb_z = du[11]
-                t213 = uxa_x - uxb_x
-                t214 = uxa_y - uxb_y
-                t215 = uxa_z - uxb_z
-                t216 = xa_x - xb_x
-                t217 = xa_y - xb_y
-                t218 = xa_z - xb_z
-                t219 = Rb_xy*t216 + Rb_yy*t217 + Rb_zy*t218
-                t220 = Rb_xz*t216 + Rb_yz*t217 + Rb_zz*t218
-                t221 = Rb_xx*t213 + Rb_yx*t214 + Rb_zx*t215 + t219*uthb_z - t220*uthb_y
-                t222 = Rb_xx*t216 + Rb_yx*t217 + Rb_zx*t218
-                t223 = Rb_xy*t213 + Rb_yy*t214 + Rb_zy*t215 + t220*uthb_x - t222*uthb_z
-                t224 = Rb_xz*t213 + Rb_yz*t214 + Rb_zz*t215 - t219*uthb_x + t222*uthb_y
-                t225 = dpush_by_rate_1*t221 + dpush_by_rate_2*t223 + dpush_by_rate_3*t224
-                t226 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t227 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t228 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t229 = t226*utha_x + t227*utha_y + t228*utha_z - uthb_x
-                t230 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t231 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t232 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t233 = t230*utha_x + t231*utha_y + t232*utha_z - uthb_y
-                t234 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t235 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t236 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t237 = t234*utha_x + t235*utha_y + t236*utha_z - uthb_z
-                t238 = (dfriction_2_by_rate_1*t221 + dfriction_2_by_rate_2*t223 +
-                    dfriction_2_by_rate_3*t224 + dfriction_2_by_spin_1*t229 +
-                    dfriction_2_by_spin_2*t233 + dfriction_2_by_spin_3*t237)
-                t239 = normal_1*normal_2
-                t240 = (dfriction_3_by_rate_1*t221 + dfriction_3_by_rate_2*t223 +
-                    dfriction_3_by_rate_3*t224 + dfriction_3_by_spin_1*t229 +
-                    dfriction_3_by_spin_2*t233 + dfriction_3_by_spin_3*t237)
-                t241 = normal_3*t240
-                t242 = 1 - normal_1*normal_1
-                t243 = (dfriction_1_by_rate_1*t221 + dfriction_1_by_rate_2*t223 +
-                    dfriction_1_by_rate_3*t224 + dfriction_1_by_spin_1*t229 +
-                    dfriction_1_by_spin_2*t233 + dfriction_1_by_spin_3*t237)
-                t244 = -normal_1*t225 - normal_1*t241 - t238*t239 + t242*t243
-                t245 = 1 - normal_2*normal_2
-                t246 = -normal_2*t225 - normal_2*t241 + t238*t245 - t239*t243
-                t247 = normal_1*normal_3
-                t248 = normal_2*normal_3
-                t249 = 1 - normal_3*normal_3
-                t250 = -normal_3*t225 - t238*t248 + t240*t249 - t243*t247
-                t251 = Rb_xx*t244 + Rb_xy*t246 + Rb_xz*t250
-                t252 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t253 = -friction_1*t247 - friction_2*t248 + friction_3*t249 - normal_3*push
-                t254 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t255 = -friction_1*t239 + friction_2*t245 - friction_3*t248 - normal_2*push
-                t256 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t257 = friction_1*t242 - friction_2*t239 - friction_3*t247 - normal_1*push
-                t258 = dxa_x - dxb_x
-                t259 = dxa_y - dxb_y
-                t260 = dxa_z - dxb_z
-                t261 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t262 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t263 = Rb_xx*t258 + Rb_yx*t259 + Rb_zx*t260 + t216*t256 + t217*t261 + t218*t262
-                t264 = dnormal_1_by_place_1*t263
-                t265 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t266 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t267 = Rb_xy*t258 + Rb_yy*t259 + Rb_zy*t260 + t216*t254 + t217*t265 + t218*t266
-                t268 = dnormal_1_by_place_2*t267
-                t269 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t270 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t271 = Rb_xz*t258 + Rb_yz*t259 + Rb_zz*t260 + t216*t252 + t217*t269 + t218*t270
-                t272 = dnormal_1_by_place_3*t271
-                t273 = t264 + t268 + t272
-                t274 = dnormal_2_by_place_1*t263
-                t275 = dnormal_2_by_place_2*t267
-                t276 = dnormal_2_by_place_3*t271
-                t277 = t274 + t275 + t276
-                t278 = friction_2*t277
-                t279 = normal_2*t273
-                t280 = dnormal_3_by_place_1*t263
-                t281 = dnormal_3_by_place_2*t267
-                t282 = dnormal_3_by_place_3*t271
-                t283 = t280 + t281 + t282
-                t284 = friction_3*t283
-                t285 = friction_3*normal_3
-                t286 = friction_1*normal_1
-                t287 = va_x - vb_x
-                t288 = va_y - vb_y
-                t289 = va_z - vb_z
-                t290 = -Omb_y*t271 + Omb_z*t267 + t256*t287 + t261*t288 + t262*t289
-                t291 = Omb_x*t271 - Omb_z*t263 + t254*t287 + t265*t288 + t266*t289
-                t292 = -Omb_x*t267 + Omb_y*t263 + t252*t287 + t269*t288 + t270*t289
-                t293 = (dpush_by_place_1*t263 + dpush_by_place_2*t267 + dpush_by_place_3*t271 +
-                    dpush_by_rate_1*t290 + dpush_by_rate_2*t291 + dpush_by_rate_3*t292)
-                t294 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t295 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t296 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t297 = Ra_xx*t256 + Ra_yx*t261 + Ra_zx*t262 + Rb_xx*t294 + Rb_yx*t295 + Rb_zx*t296
-                t298 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t299 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t300 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t301 = Ra_xy*t256 + Ra_yy*t261 + Ra_zy*t262 + Rb_xx*t298 + Rb_yx*t299 + Rb_zx*t300
-                t302 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t303 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t304 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t305 = Ra_xz*t256 + Ra_yz*t261 + Ra_zz*t262 + Rb_xx*t302 + Rb_yx*t303 + Rb_zx*t304
-                t306 = Oma_x*t297 + Oma_y*t301 + Oma_z*t305
-                t307 = Ra_xx*t254 + Ra_yx*t265 + Ra_zx*t266 + Rb_xy*t294 + Rb_yy*t295 + Rb_zy*t296
-                t308 = Ra_xy*t254 + Ra_yy*t265 + Ra_zy*t266 + Rb_xy*t298 + Rb_yy*t299 + Rb_zy*t300
-                t309 = Ra_xz*t254 + Ra_yz*t265 + Ra_zz*t266 + Rb_xy*t302 + Rb_yy*t303 + Rb_zy*t304
-                t310 = Oma_x*t307 + Oma_y*t308 + Oma_z*t309
-                t311 = Ra_xx*t252 + Ra_yx*t269 + Ra_zx*t270 + Rb_xz*t294 + Rb_yz*t295 + Rb_zz*t296
-                t312 = Ra_xy*t252 + Ra_yy*t269 + Ra_zy*t270 + Rb_xz*t298 + Rb_yz*t299 + Rb_zz*t300
-                t313 = Ra_xz*t252 + Ra_yz*t269 + Ra_zz*t270 + Rb_xz*t302 + Rb_yz*t303 + Rb_zz*t304
-                t314 = Oma_x*t311 + Oma_y*t312 + Oma_z*t313
-                t315 = psia_x*t297 + psia_y*t301 + psia_z*t305 + t229
-                t316 = psia_x*t307 + psia_y*t308 + psia_z*t309 + t233
-                t317 = psia_x*t311 + psia_y*t312 + psia_z*t313 + t237
-                t318 = (dfriction_2_by_place_1*t263 + dfriction_2_by_place_2*t267 +
-                    dfriction_2_by_place_3*t271 + dfriction_2_by_rate_1*t290 +
-                    dfriction_2_by_rate_2*t291 + dfriction_2_by_rate_3*t292 +
-                    dfriction_2_by_spin_1*t306 + dfriction_2_by_spin_2*t310 +
-                    dfriction_2_by_spin_3*t314 + dfriction_2_by_turned_1*t315 +
-                    dfriction_2_by_turned_2*t316 + dfriction_2_by_turned_3*t317)
-                t319 = (dfriction_3_by_place_1*t263 + dfriction_3_by_place_2*t267 +
-                    dfriction_3_by_place_3*t271 + dfriction_3_by_rate_1*t290 +
-                    dfriction_3_by_rate_2*t291 + dfriction_3_by_rate_3*t292 +
-                    dfriction_3_by_spin_1*t306 + dfriction_3_by_spin_2*t310 +
-                    dfriction_3_by_spin_3*t314 + dfriction_3_by_turned_1*t315 +
-                    dfriction_3_by_turned_2*t316 + dfriction_3_by_turned_3*t317)
-                t320 = (dfriction_1_by_place_1*t263 + dfriction_1_by_place_2*t267 +
-                    dfriction_1_by_place_3*t271 + dfriction_1_by_rate_1*t290 +
-                    dfriction_1_by_rate_2*t291 + dfriction_1_by_rate_3*t292 +
-                    dfriction_1_by_spin_1*t306 + dfriction_1_by_spin_2*t310 +
-                    dfriction_1_by_spin_3*t314 + dfriction_1_by_turned_1*t315 +
-                    dfriction_1_by_turned_2*t316 + dfriction_1_by_turned_3*t317)
-                t321 = (-friction_2*t279 - normal_1*t278 - normal_1*t284 - normal_1*t293 -
-                    push*t273 - t239*t318 + t242*t320 - t247*t319 - t273*t285 - t286*(2*t264 +
-                    2*t268 + 2*t272))
-                t322 = friction_2*normal_2
-                t323 = (-friction_1*t279 - normal_2*t284 - normal_2*t293 - push*t277 - t239*t320 +
-                    t245*t318 - t248*t319 - t277*t285 - t277*t286 - t322*(2*t274 + 2*t275 +
-                    2*t276))
-                t324 = (-friction_1*normal_3*t273 - normal_3*t278 - normal_3*t293 - push*t283 -
-                    t247*t320 - t248*t318 + t249*t319 - t283*t286 - t283*t322 - t285*(2*t280 +
-                    2*t281 + 2*t282))
-                t325 = Rb_xx*t321 + Rb_xy*t323 + Rb_xz*t324 + t252*t253 + t254*t255 + t256*t257
-                t326 = Rb_yx*t244 + Rb_yy*t246 + Rb_yz*t250
-                t327 = Rb_yx*t321 + Rb_yy*t323 + Rb_yz*t324 + t253*t269 + t255*t265 + t257*t261
-                t328 = Rb_zx*t244 + Rb_zy*t246 + Rb_zz*t250
-                t329 = Rb_zx*t321 + Rb_zy*t323 + Rb_zz*t324 + t253*t270 + t255*t266 + t257*t262
-                t330 = -t230
-                t331 = radius*(normal_1*t330 + normal_2*t226)
-                t332 = -t226
-                t333 = radius*(normal_1*t234 + normal_3*t332)
-                t334 = -t234
-                t335 = radius*(normal_2*t334 + normal_3*t230)
-                t336 = radius*t257
-                t337 = radius*t255
-                t338 = radius*t253
-                t339 = -t231
-                t340 = radius*(normal_1*t339 + normal_2*t227)
-                t341 = -t227
-                t342 = radius*(normal_1*t235 + normal_3*t341)
-                t343 = -t235
-                t344 = radius*(normal_2*t343 + normal_3*t231)
-                t345 = -t232
-                t346 = radius*(normal_1*t345 + normal_2*t228)
-                t347 = -t228
-                t348 = radius*(normal_1*t236 + normal_3*t347)
-                t349 = -t236
-                t350 = radius*(normal_2*t349 + normal_3*t232)
-                t351 = -normal_3*radius + t220
-                t352 = -normal_2*radius + t219
-                t353 = -t352
-                t354 = -radius*t283 + t271
-                t355 = -radius*t277 + t267
-                t356 = -normal_1*radius + t222
-                t357 = -t351
-                t358 = -radius*t273 + t263
-                t359 = -t356
-                J[column] = c_damping*t251 + c_stiffness*t325
-                J[12 + column] = c_damping*t326 + c_stiffness*t327
-                J[24 + column] = c_damping*t328 + c_stiffness*t329
-                J[36 + column] = -c_damping*t251 - c_stiffness*t325
-                J[48 + column] = -c_damping*t326 - c_stiffness*t327
-                J[60 + column] = -c_damping*t328 - c_stiffness*t329
-                J[72 + column] = (c_damping*(-t244*t335 - t246*t333 - t250*t331) +
-                    c_stiffness*(-t321*t335 - t323*t333 - t324*t331 - t336*(-normal_2*t311 +
-                    normal_3*t307 + t230*t283 + t277*t334) - t337*(normal_1*t311 - normal_3*t297 +
-                    t234*t273 + t283*t332) - t338*(-normal_1*t307 + normal_2*t297 + t226*t277 +
-                    t273*t330)))
-                J[84 + column] = (c_damping*(-t244*t344 - t246*t342 - t250*t340) +
-                    c_stiffness*(-t321*t344 - t323*t342 - t324*t340 - t336*(-normal_2*t312 +
-                    normal_3*t308 + t231*t283 + t277*t343) - t337*(normal_1*t312 - normal_3*t301 +
-                    t235*t273 + t283*t341) - t338*(-normal_1*t308 + normal_2*t301 + t227*t277 +
-                    t273*t339)))
-                J[96 + column] = (c_damping*(-t244*t350 - t246*t348 - t250*t346) +
-                    c_stiffness*(-t321*t350 - t323*t348 - t324*t346 - t336*(-normal_2*t313 +
-                    normal_3*t309 + t232*t283 + t277*t349) - t337*(normal_1*t313 - normal_3*t305 +
-                    t236*t273 + t283*t347) - t338*(-normal_1*t309 + normal_2*t305 + t228*t277 +
-                    t273*t345)))
-                J[108 + column] = (c_damping*(t246*t351 + t250*t353) + c_stiffness*(-t253*t355 +
-                    t255*t354 + t323*t351 + t324*t353))
-                J[120 + column] = (c_damping*(t244*t357 + t250*t356) + c_stiffness*(t253*t358 -
-                    t257*t354 + t321*t357 + t324*t356))
-                J[132 + column] = (c_damping*(t244*t352 + t246*t359) + c_stiffness*(-t255*t358 +
-                    t257*t355 + t321*t352 + t323*t359))
+                t214 = uxa_x - uxb_x
+                t215 = uxa_y - uxb_y
+                t216 = uxa_z - uxb_z
+                t217 = xa_x - xb_x
+                t218 = xa_y - xb_y
+                t219 = xa_z - xb_z
+                t220 = Rb_xy*t217 + Rb_yy*t218 + Rb_zy*t219
+                t221 = Rb_xz*t217 + Rb_yz*t218 + Rb_zz*t219
+                t222 = Rb_xx*t214 + Rb_yx*t215 + Rb_zx*t216 + t220*uthb_z - t221*uthb_y
+                t223 = Rb_xx*t217 + Rb_yx*t218 + Rb_zx*t219
+                t224 = Rb_xy*t214 + Rb_yy*t215 + Rb_zy*t216 + t221*uthb_x - t223*uthb_z
+                t225 = Rb_xz*t214 + Rb_yz*t215 + Rb_zz*t216 - t220*uthb_x + t223*uthb_y
+                t226 = dpush_by_rate_1*t222 + dpush_by_rate_2*t224 + dpush_by_rate_3*t225
+                t227 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t228 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t229 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t230 = t227*utha_x + t228*utha_y + t229*utha_z - uthb_x
+                t231 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t232 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t233 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t234 = t231*utha_x + t232*utha_y + t233*utha_z - uthb_y
+                t235 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t236 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t237 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t238 = t235*utha_x + t236*utha_y + t237*utha_z - uthb_z
+                t239 = (dfriction_2_by_rate_1*t222 + dfriction_2_by_rate_2*t224 +
+                    dfriction_2_by_rate_3*t225 + dfriction_2_by_spin_1*t230 +
+                    dfriction_2_by_spin_2*t234 + dfriction_2_by_spin_3*t238)
+                t240 = normal_1*normal_2
+                t241 = (dfriction_3_by_rate_1*t222 + dfriction_3_by_rate_2*t224 +
+                    dfriction_3_by_rate_3*t225 + dfriction_3_by_spin_1*t230 +
+                    dfriction_3_by_spin_2*t234 + dfriction_3_by_spin_3*t238)
+                t242 = normal_3*t241
+                t243 = 1 - normal_1*normal_1
+                t244 = (dfriction_1_by_rate_1*t222 + dfriction_1_by_rate_2*t224 +
+                    dfriction_1_by_rate_3*t225 + dfriction_1_by_spin_1*t230 +
+                    dfriction_1_by_spin_2*t234 + dfriction_1_by_spin_3*t238)
+                t245 = -normal_1*t226 - normal_1*t242 - t239*t240 + t243*t244
+                t246 = 1 - normal_2*normal_2
+                t247 = -normal_2*t226 - normal_2*t242 + t239*t246 - t240*t244
+                t248 = normal_1*normal_3
+                t249 = normal_2*normal_3
+                t250 = 1 - normal_3*normal_3
+                t251 = -normal_3*t226 - t239*t249 + t241*t250 - t244*t248
+                t252 = Rb_xx*t245 + Rb_xy*t247 + Rb_xz*t251
+                t253 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t254 = -friction_1*t248 - friction_2*t249 + friction_3*t250 - normal_3*push
+                t255 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t256 = -friction_1*t240 + friction_2*t246 - friction_3*t249 - normal_2*push
+                t257 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t258 = friction_1*t243 - friction_2*t240 - friction_3*t248 - normal_1*push
+                t259 = dxa_x - dxb_x
+                t260 = dxa_y - dxb_y
+                t261 = dxa_z - dxb_z
+                t262 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t263 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t264 = Rb_xx*t259 + Rb_yx*t260 + Rb_zx*t261 + t217*t257 + t218*t262 + t219*t263
+                t265 = dnormal_1_by_place_1*t264
+                t266 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t267 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t268 = Rb_xy*t259 + Rb_yy*t260 + Rb_zy*t261 + t217*t255 + t218*t266 + t219*t267
+                t269 = dnormal_1_by_place_2*t268
+                t270 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t271 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t272 = Rb_xz*t259 + Rb_yz*t260 + Rb_zz*t261 + t217*t253 + t218*t270 + t219*t271
+                t273 = dnormal_1_by_place_3*t272
+                t274 = t265 + t269 + t273
+                t275 = dnormal_2_by_place_1*t264
+                t276 = dnormal_2_by_place_2*t268
+                t277 = dnormal_2_by_place_3*t272
+                t278 = t275 + t276 + t277
+                t279 = friction_2*t278
+                t280 = normal_2*t274
+                t281 = dnormal_3_by_place_1*t264
+                t282 = dnormal_3_by_place_2*t268
+                t283 = dnormal_3_by_place_3*t272
+                t284 = t281 + t282 + t283
+                t285 = friction_3*t284
+                t286 = friction_3*normal_3
+                t287 = friction_1*normal_1
+                t288 = va_x - vb_x
+                t289 = va_y - vb_y
+                t290 = va_z - vb_z
+                t291 = -Omb_y*t272 + Omb_z*t268 + t257*t288 + t262*t289 + t263*t290
+                t292 = Omb_x*t272 - Omb_z*t264 + t255*t288 + t266*t289 + t267*t290
+                t293 = -Omb_x*t268 + Omb_y*t264 + t253*t288 + t270*t289 + t271*t290
+                t294 = (dpush_by_place_1*t264 + dpush_by_place_2*t268 + dpush_by_place_3*t272 +
+                    dpush_by_rate_1*t291 + dpush_by_rate_2*t292 + dpush_by_rate_3*t293)
+                t295 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t296 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t297 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t298 = Ra_xx*t257 + Ra_yx*t262 + Ra_zx*t263 + Rb_xx*t295 + Rb_yx*t296 + Rb_zx*t297
+                t299 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t300 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t301 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t302 = Ra_xy*t257 + Ra_yy*t262 + Ra_zy*t263 + Rb_xx*t299 + Rb_yx*t300 + Rb_zx*t301
+                t303 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t304 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t305 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t306 = Ra_xz*t257 + Ra_yz*t262 + Ra_zz*t263 + Rb_xx*t303 + Rb_yx*t304 + Rb_zx*t305
+                t307 = Oma_x*t298 + Oma_y*t302 + Oma_z*t306
+                t308 = Ra_xx*t255 + Ra_yx*t266 + Ra_zx*t267 + Rb_xy*t295 + Rb_yy*t296 + Rb_zy*t297
+                t309 = Ra_xy*t255 + Ra_yy*t266 + Ra_zy*t267 + Rb_xy*t299 + Rb_yy*t300 + Rb_zy*t301
+                t310 = Ra_xz*t255 + Ra_yz*t266 + Ra_zz*t267 + Rb_xy*t303 + Rb_yy*t304 + Rb_zy*t305
+                t311 = Oma_x*t308 + Oma_y*t309 + Oma_z*t310
+                t312 = Ra_xx*t253 + Ra_yx*t270 + Ra_zx*t271 + Rb_xz*t295 + Rb_yz*t296 + Rb_zz*t297
+                t313 = Ra_xy*t253 + Ra_yy*t270 + Ra_zy*t271 + Rb_xz*t299 + Rb_yz*t300 + Rb_zz*t301
+                t314 = Ra_xz*t253 + Ra_yz*t270 + Ra_zz*t271 + Rb_xz*t303 + Rb_yz*t304 + Rb_zz*t305
+                t315 = Oma_x*t312 + Oma_y*t313 + Oma_z*t314
+                t316 = psia_x*t298 + psia_y*t302 + psia_z*t306 + t230
+                t317 = psia_x*t308 + psia_y*t309 + psia_z*t310 + t234
+                t318 = psia_x*t312 + psia_y*t313 + psia_z*t314 + t238
+                t319 = (dfriction_2_by_place_1*t264 + dfriction_2_by_place_2*t268 +
+                    dfriction_2_by_place_3*t272 + dfriction_2_by_rate_1*t291 +
+                    dfriction_2_by_rate_2*t292 + dfriction_2_by_rate_3*t293 +
+                    dfriction_2_by_spin_1*t307 + dfriction_2_by_spin_2*t311 +
+                    dfriction_2_by_spin_3*t315 + dfriction_2_by_turned_1*t316 +
+                    dfriction_2_by_turned_2*t317 + dfriction_2_by_turned_3*t318)
+                t320 = (dfriction_3_by_place_1*t264 + dfriction_3_by_place_2*t268 +
+                    dfriction_3_by_place_3*t272 + dfriction_3_by_rate_1*t291 +
+                    dfriction_3_by_rate_2*t292 + dfriction_3_by_rate_3*t293 +
+                    dfriction_3_by_spin_1*t307 + dfriction_3_by_spin_2*t311 +
+                    dfriction_3_by_spin_3*t315 + dfriction_3_by_turned_1*t316 +
+                    dfriction_3_by_turned_2*t317 + dfriction_3_by_turned_3*t318)
+                t321 = (dfriction_1_by_place_1*t264 + dfriction_1_by_place_2*t268 +
+                    dfriction_1_by_place_3*t272 + dfriction_1_by_rate_1*t291 +
+                    dfriction_1_by_rate_2*t292 + dfriction_1_by_rate_3*t293 +
+                    dfriction_1_by_spin_1*t307 + dfriction_1_by_spin_2*t311 +
+                    dfriction_1_by_spin_3*t315 + dfriction_1_by_turned_1*t316 +
+                    dfriction_1_by_turned_2*t317 + dfriction_1_by_turned_3*t318)
+                t322 = (-friction_2*t280 - normal_1*t279 - normal_1*t285 - normal_1*t294 -
+                    push*t274 - t240*t319 + t243*t321 - t248*t320 - t274*t286 - t287*(2*t265 +
+                    2*t269 + 2*t273))
+                t323 = friction_2*normal_2
+                t324 = (-friction_1*t280 - normal_2*t285 - normal_2*t294 - push*t278 - t240*t321 +
+                    t246*t319 - t249*t320 - t278*t286 - t278*t287 - t323*(2*t275 + 2*t276 +
+                    2*t277))
+                t325 = (-friction_1*normal_3*t274 - normal_3*t279 - normal_3*t294 - push*t284 -
+                    t248*t321 - t249*t319 + t250*t320 - t284*t287 - t284*t323 - t286*(2*t281 +
+                    2*t282 + 2*t283))
+                t326 = Rb_xx*t322 + Rb_xy*t324 + Rb_xz*t325 + t253*t254 + t255*t256 + t257*t258
+                t327 = Rb_yx*t245 + Rb_yy*t247 + Rb_yz*t251
+                t328 = Rb_yx*t322 + Rb_yy*t324 + Rb_yz*t325 + t254*t270 + t256*t266 + t258*t262
+                t329 = Rb_zx*t245 + Rb_zy*t247 + Rb_zz*t251
+                t330 = Rb_zx*t322 + Rb_zy*t324 + Rb_zz*t325 + t254*t271 + t256*t267 + t258*t263
+                t331 = -t231
+                t332 = radius*(normal_1*t331 + normal_2*t227)
+                t333 = -t227
+                t334 = radius*(normal_1*t235 + normal_3*t333)
+                t335 = -t235
+                t336 = radius*(normal_2*t335 + normal_3*t231)
+                t337 = radius*t258
+                t338 = radius*t256
+                t339 = radius*t254
+                t340 = -t232
+                t341 = radius*(normal_1*t340 + normal_2*t228)
+                t342 = -t228
+                t343 = radius*(normal_1*t236 + normal_3*t342)
+                t344 = -t236
+                t345 = radius*(normal_2*t344 + normal_3*t232)
+                t346 = -t233
+                t347 = radius*(normal_1*t346 + normal_2*t229)
+                t348 = -t229
+                t349 = radius*(normal_1*t237 + normal_3*t348)
+                t350 = -t237
+                t351 = radius*(normal_2*t350 + normal_3*t233)
+                t352 = -normal_3*radius + t221
+                t353 = -normal_2*radius + t220
+                t354 = -t353
+                t355 = -radius*t284 + t272
+                t356 = -radius*t278 + t268
+                t357 = -normal_1*radius + t223
+                t358 = -t352
+                t359 = -radius*t274 + t264
+                t360 = -t357
+                J[column] = c_damping*t252 + c_stiffness*t326
+                J[12 + column] = c_damping*t327 + c_stiffness*t328
+                J[24 + column] = c_damping*t329 + c_stiffness*t330
+                J[36 + column] = -c_damping*t252 - c_stiffness*t326
+                J[48 + column] = -c_damping*t327 - c_stiffness*t328
+                J[60 + column] = -c_damping*t329 - c_stiffness*t330
+                J[72 + column] = (c_damping*(-t245*t336 - t247*t334 - t251*t332) +
+                    c_stiffness*(-t322*t336 - t324*t334 - t325*t332 - t337*(-normal_2*t312 +
+                    normal_3*t308 + t231*t284 + t278*t335) - t338*(normal_1*t312 - normal_3*t298 +
+                    t235*t274 + t284*t333) - t339*(-normal_1*t308 + normal_2*t298 + t227*t278 +
+                    t274*t331)))
+                J[84 + column] = (c_damping*(-t245*t345 - t247*t343 - t251*t341) +
+                    c_stiffness*(-t322*t345 - t324*t343 - t325*t341 - t337*(-normal_2*t313 +
+                    normal_3*t309 + t232*t284 + t278*t344) - t338*(normal_1*t313 - normal_3*t302 +
+                    t236*t274 + t284*t342) - t339*(-normal_1*t309 + normal_2*t302 + t228*t278 +
+                    t274*t340)))
+                J[96 + column] = (c_damping*(-t245*t351 - t247*t349 - t251*t347) +
+                    c_stiffness*(-t322*t351 - t324*t349 - t325*t347 - t337*(-normal_2*t314 +
+                    normal_3*t310 + t233*t284 + t278*t350) - t338*(normal_1*t314 - normal_3*t306 +
+                    t237*t274 + t284*t348) - t339*(-normal_1*t310 + normal_2*t306 + t229*t278 +
+                    t274*t346)))
+                J[108 + column] = (c_damping*(t247*t352 + t251*t354) + c_stiffness*(-t254*t356 +
+                    t256*t355 + t324*t352 + t325*t354))
+                J[120 + column] = (c_damping*(t245*t358 + t251*t357) + c_stiffness*(t254*t359 -
+                    t258*t355 + t322*t358 + t325*t357))
+                J[132 + column] = (c_damping*(t245*t353 + t247*t360) + c_stiffness*(-t256*t359 +
+                    t258*t356 + t322*t353 + t324*t360))
     return OK

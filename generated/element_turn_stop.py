@@ -33,6 +33,7 @@ CONSTANTS = (
     Part("stiffness", (), "stiffness k of k d^n (1 + c d')"),
     Part("exponent", (), "exponent n"),
     Part("damping", (), "damping c [time/length]"),
+    Part("slow", (), "speed of impacts so slow that steps do not look at them"),
     Part("lower", (), "lower limit"),
     Part("upper", (), "upper limit"),
     Part("d", (3,), "direction normal to the axis, in axes of body a"),
@@ -64,17 +65,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         stiffness = constant[0]
         exponent = constant[1]
         damping = constant[2]
-        lower = constant[3]
-        upper = constant[4]
-        d_x = constant[5]
-        d_y = constant[6]
-        d_z = constant[7]
-        n_x = constant[8]
-        n_y = constant[9]
-        n_z = constant[10]
-        m_x = constant[11]
-        m_y = constant[12]
-        m_z = constant[13]
+        slow = constant[3]
+        lower = constant[4]
+        upper = constant[5]
+        d_x = constant[6]
+        d_y = constant[7]
+        d_z = constant[8]
+        n_x = constant[9]
+        n_y = constant[10]
+        n_z = constant[11]
+        m_x = constant[12]
+        m_y = constant[13]
+        m_z = constant[14]
         Ra_xx = R[9*nodes[0]]
         Ra_xy = R[9*nodes[0] + 1]
         Ra_xz = R[9*nodes[0] + 2]
@@ -166,6 +168,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t45 = (kept_rate if kept_rate > 0.0 else -kept_rate)
         t46 = (speed_beyond if speed_beyond > 0.0 else -speed_beyond)
         t47 = (t46 if -t45 + t46 > 0.0 else t45)
+        t48 = (t47 if -kept_impact + t47 > 0.0 else kept_impact)
         g[0] = t34*(-t23*(n_x*t26 + n_y*t29 + n_z*t32) + t33*(m_x*t26 + m_y*t29 + m_z*t32))
         g[1] = t34*(-t23*(n_x*t36 + n_y*t38 + n_z*t40) + t33*(m_x*t36 + m_y*t38 + m_z*t40))
         g[2] = t34*(-t23*(n_x*t41 + n_y*t42 + n_z*t43) + t33*(m_x*t41 + m_y*t42 + m_z*t43))
@@ -179,8 +182,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             6.283185307179586*floor(0.15915494309189535*kept_angle - 0.15915494309189535*t44 +
             0.5))
         frames[index[first + AT_FRAME] + 1] = speed_beyond
-        frames[index[first + AT_FRAME] + 2] = (((t47 if -kept_impact + t47 > 0.0 else kept_impact)
-            if touches - 0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 2] = (((t48 if -slow + t48 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0))
         frames[index[first + AT_FRAME] + 3] = beyond
         frames[index[first + AT_FRAME] + 4] = push
         if task == ENERGY:
@@ -244,53 +247,53 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             du = at(work, WIDTH)
-            t48 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-            t49 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-            t50 = 1/(t48*t48 + t49*t49)
-            t51 = t49*t50
-            t52 = -t48*t50
-            dvalue_by_angle_seen_1 = m_x*t51 + n_x*t52
-            dvalue_by_angle_seen_2 = m_y*t51 + n_y*t52
-            dvalue_by_angle_seen_3 = m_z*t51 + n_z*t52
-            t53 = (1 if -lower - upper + 2*value > 0.0 else -1)
-            dbeyond_by_angle_seen_1 = dvalue_by_angle_seen_1*t53
-            dbeyond_by_angle_seen_2 = dvalue_by_angle_seen_2*t53
-            dbeyond_by_angle_seen_3 = dvalue_by_angle_seen_3*t53
-            t54 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-            t55 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-            t56 = t54*t54 + t55*t55
-            t57 = side/t56
-            t58 = 2*t54
+            t49 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+            t50 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+            t51 = 1/(t49*t49 + t50*t50)
+            t52 = t50*t51
+            t53 = -t49*t51
+            dvalue_by_angle_seen_1 = m_x*t52 + n_x*t53
+            dvalue_by_angle_seen_2 = m_y*t52 + n_y*t53
+            dvalue_by_angle_seen_3 = m_z*t52 + n_z*t53
+            t54 = (1 if -lower - upper + 2*value > 0.0 else -1)
+            dbeyond_by_angle_seen_1 = dvalue_by_angle_seen_1*t54
+            dbeyond_by_angle_seen_2 = dvalue_by_angle_seen_2*t54
+            dbeyond_by_angle_seen_3 = dvalue_by_angle_seen_3*t54
+            t55 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+            t56 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+            t57 = t55*t55 + t56*t56
+            t58 = side/t57
             t59 = 2*t55
-            t60 = (side*(angle_along_m*t55 - angle_along_n*t54))/(t56*t56)
-            dspeed_beyond_by_angle_seen_1 = (t57*(angle_along_m*n_x - angle_along_n*m_x) +
-                t60*(-m_x*t58 - n_x*t59))
-            dspeed_beyond_by_angle_seen_2 = (t57*(angle_along_m*n_y - angle_along_n*m_y) +
-                t60*(-m_y*t58 - n_y*t59))
-            dspeed_beyond_by_angle_seen_3 = (t57*(angle_along_m*n_z - angle_along_n*m_z) +
-                t60*(-m_z*t58 - n_z*t59))
-            dspeed_beyond_by_angle_along_n = -t54*t57
-            dspeed_beyond_by_angle_along_m = t55*t57
-            t61 = (1 if beyond > 0.0 else 0)
-            ddepth_by_angle_seen_1 = dbeyond_by_angle_seen_1*t61
-            ddepth_by_angle_seen_2 = dbeyond_by_angle_seen_2*t61
-            ddepth_by_angle_seen_3 = dbeyond_by_angle_seen_3*t61
-            t62 = depth**exponent*exponent*stiffness/depth
-            delastic_by_angle_seen_1 = ddepth_by_angle_seen_1*t62
-            delastic_by_angle_seen_2 = ddepth_by_angle_seen_2*t62
-            delastic_by_angle_seen_3 = ddepth_by_angle_seen_3*t62
+            t60 = 2*t56
+            t61 = (side*(angle_along_m*t56 - angle_along_n*t55))/(t57*t57)
+            dspeed_beyond_by_angle_seen_1 = (t58*(angle_along_m*n_x - angle_along_n*m_x) +
+                t61*(-m_x*t59 - n_x*t60))
+            dspeed_beyond_by_angle_seen_2 = (t58*(angle_along_m*n_y - angle_along_n*m_y) +
+                t61*(-m_y*t59 - n_y*t60))
+            dspeed_beyond_by_angle_seen_3 = (t58*(angle_along_m*n_z - angle_along_n*m_z) +
+                t61*(-m_z*t59 - n_z*t60))
+            dspeed_beyond_by_angle_along_n = -t55*t58
+            dspeed_beyond_by_angle_along_m = t56*t58
+            t62 = (1 if beyond > 0.0 else 0)
+            ddepth_by_angle_seen_1 = dbeyond_by_angle_seen_1*t62
+            ddepth_by_angle_seen_2 = dbeyond_by_angle_seen_2*t62
+            ddepth_by_angle_seen_3 = dbeyond_by_angle_seen_3*t62
+            t63 = depth**exponent*exponent*stiffness/depth
+            delastic_by_angle_seen_1 = ddepth_by_angle_seen_1*t63
+            delastic_by_angle_seen_2 = ddepth_by_angle_seen_2*t63
+            delastic_by_angle_seen_3 = ddepth_by_angle_seen_3*t63
             dfactor_by_angle_seen_1 = damping*dspeed_beyond_by_angle_seen_1
             dfactor_by_angle_seen_2 = damping*dspeed_beyond_by_angle_seen_2
             dfactor_by_angle_seen_3 = damping*dspeed_beyond_by_angle_seen_3
             dfactor_by_angle_along_n = damping*dspeed_beyond_by_angle_along_n
             dfactor_by_angle_along_m = damping*dspeed_beyond_by_angle_along_m
-            t63 = (factor if factor > 0.0 else 0)
-            t64 = (elastic if factor > 0.0 else 0)
-            dpush_by_angle_seen_1 = delastic_by_angle_seen_1*t63 + dfactor_by_angle_seen_1*t64
-            dpush_by_angle_seen_2 = delastic_by_angle_seen_2*t63 + dfactor_by_angle_seen_2*t64
-            dpush_by_angle_seen_3 = delastic_by_angle_seen_3*t63 + dfactor_by_angle_seen_3*t64
-            dpush_by_angle_along_n = dfactor_by_angle_along_n*t64
-            dpush_by_angle_along_m = dfactor_by_angle_along_m*t64
+            t64 = (factor if factor > 0.0 else 0)
+            t65 = (elastic if factor > 0.0 else 0)
+            dpush_by_angle_seen_1 = delastic_by_angle_seen_1*t64 + dfactor_by_angle_seen_1*t65
+            dpush_by_angle_seen_2 = delastic_by_angle_seen_2*t64 + dfactor_by_angle_seen_2*t65
+            dpush_by_angle_seen_3 = delastic_by_angle_seen_3*t64 + dfactor_by_angle_seen_3*t65
+            dpush_by_angle_along_n = dfactor_by_angle_along_n*t65
+            dpush_by_angle_along_m = dfactor_by_angle_along_m*t65
             for column in range(6):
                 for i in range(6):
                     dq[i] = 0.0
@@ -311,131 +314,131 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = du[3]
                 uthb_y = du[4]
                 uthb_z = du[5]
-                t65 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-                t66 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t67 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t68 = d_y*t66 - d_z*t67
-                t69 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t70 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t71 = d_y*t69 - d_z*t70
-                t72 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t73 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t74 = d_y*t72 - d_z*t73
-                t75 = n_x*t68 + n_y*t71 + n_z*t74
-                t76 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-                t77 = m_x*t68 + m_y*t71 + m_z*t74
-                t78 = -t65*t75 + t76*t77
-                t79 = -d_x*utha_y + d_y*utha_x
-                t80 = d_x*utha_z - d_z*utha_x
-                t81 = -d_y*utha_z + d_z*utha_y
-                t82 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t83 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t84 = d_x*t83 + d_y*t70 + d_z*t69
-                t85 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t86 = d_x*t85 + d_y*t73 + d_z*t72
-                t87 = t66*t79 + t67*t80 + t81*t82 + t84*uthb_z - t86*uthb_y
-                t88 = d_x*t82 + d_y*t67 + d_z*t66
-                t89 = t69*t79 + t70*t80 + t81*t83 + t86*uthb_x - t88*uthb_z
-                t90 = t72*t79 + t73*t80 + t81*t85 - t84*uthb_x + t88*uthb_y
-                t91 = t65*t65 + t76*t76
-                t92 = side/t91
-                t93 = (c_damping*t92*(dpush_by_angle_along_m*(m_x*t87 + m_y*t89 + m_z*t90) +
-                    dpush_by_angle_along_n*(n_x*t87 + n_y*t89 + n_z*t90)))
-                t94 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t95 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t96 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t97 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t98 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t99 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t100 = Ra_xx*t94 + Ra_yx*t95 + Ra_zx*t96 + Rb_xx*t97 + Rb_yx*t98 + Rb_zx*t99
-                t101 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t102 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t103 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t104 = Ra_xy*t94 + Ra_yy*t95 + Ra_zy*t96 + Rb_xx*t101 + Rb_yx*t102 + Rb_zx*t103
-                t105 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t106 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t107 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t108 = Ra_xz*t94 + Ra_yz*t95 + Ra_zz*t96 + Rb_xx*t105 + Rb_yx*t106 + Rb_zx*t107
-                t109 = d_x*t100 + d_y*t104 + d_z*t108
-                t110 = m_x*t109
-                t111 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t112 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t113 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t114 = Ra_xx*t111 + Ra_yx*t112 + Ra_zx*t113 + Rb_xy*t97 + Rb_yy*t98 + Rb_zy*t99
-                t115 = Ra_xy*t111 + Ra_yy*t112 + Ra_zy*t113 + Rb_xy*t101 + Rb_yy*t102 + Rb_zy*t103
-                t116 = Ra_xz*t111 + Ra_yz*t112 + Ra_zz*t113 + Rb_xy*t105 + Rb_yy*t106 + Rb_zy*t107
-                t117 = d_x*t114 + d_y*t115 + d_z*t116
-                t118 = m_y*t117
-                t119 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t120 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t121 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t122 = Ra_xx*t119 + Ra_yx*t120 + Ra_zx*t121 + Rb_xz*t97 + Rb_yz*t98 + Rb_zz*t99
-                t123 = Ra_xy*t119 + Ra_yy*t120 + Ra_zy*t121 + Rb_xz*t101 + Rb_yz*t102 + Rb_zz*t103
-                t124 = Ra_xz*t119 + Ra_yz*t120 + Ra_zz*t121 + Rb_xz*t105 + Rb_yz*t106 + Rb_zz*t107
-                t125 = d_x*t122 + d_y*t123 + d_z*t124
-                t126 = m_z*t125
-                t127 = n_x*t109
-                t128 = n_y*t117
-                t129 = n_z*t125
-                t130 = ((push*side*(-t65*(2*t110 + 2*t118 + 2*t126) - t76*(2*t127 + 2*t128 +
-                    2*t129)))/(t91*t91))
-                t131 = d_y*t108 - d_z*t104
-                t132 = d_y*t116 - d_z*t115
-                t133 = d_y*t124 - d_z*t123
-                t134 = t110 + t118 + t126
-                t135 = t127 + t128 + t129
-                t136 = push*t92
-                t137 = Oma_x*d_y - Oma_y*d_x
-                t138 = -Oma_x*d_z + Oma_z*d_x
-                t139 = Oma_y*d_z - Oma_z*d_y
-                t140 = -Omb_y*t125 + Omb_z*t117 + t100*t139 + t104*t138 + t108*t137
-                t141 = Omb_x*t125 - Omb_z*t109 + t114*t139 + t115*t138 + t116*t137
-                t142 = -Omb_x*t117 + Omb_y*t109 + t122*t139 + t123*t138 + t124*t137
-                t143 = (t92*(dpush_by_angle_along_m*(m_x*t140 + m_y*t141 + m_z*t142) +
-                    dpush_by_angle_along_n*(n_x*t140 + n_y*t141 + n_z*t142) +
-                    dpush_by_angle_seen_1*t109 + dpush_by_angle_seen_2*t117 +
-                    dpush_by_angle_seen_3*t125))
-                t144 = -d_x*t66 + d_z*t82
-                t145 = -d_x*t69 + d_z*t83
-                t146 = -d_x*t72 + d_z*t85
-                t147 = n_x*t144 + n_y*t145 + n_z*t146
-                t148 = m_x*t144 + m_y*t145 + m_z*t146
-                t149 = -t147*t65 + t148*t76
-                t150 = -d_x*t108 + d_z*t100
-                t151 = -d_x*t116 + d_z*t114
-                t152 = -d_x*t124 + d_z*t122
-                t153 = d_x*t67 - d_y*t82
-                t154 = d_x*t70 - d_y*t83
-                t155 = d_x*t73 - d_y*t85
-                t156 = n_x*t153 + n_y*t154 + n_z*t155
-                t157 = m_x*t153 + m_y*t154 + m_z*t155
-                t158 = -t156*t65 + t157*t76
-                t159 = d_x*t104 - d_y*t100
-                t160 = d_x*t115 - d_y*t114
-                t161 = d_x*t123 - d_y*t122
-                t162 = -angle_seen_2*m_z + angle_seen_3*m_y
-                t163 = -angle_seen_2*n_z + angle_seen_3*n_y
-                t164 = t162*t76 - t163*t65
-                t165 = angle_seen_1*m_z - angle_seen_3*m_x
-                t166 = angle_seen_1*n_z - angle_seen_3*n_x
-                t167 = t165*t76 - t166*t65
-                t168 = -angle_seen_1*m_y + angle_seen_2*m_x
-                t169 = -angle_seen_1*n_y + angle_seen_2*n_x
-                t170 = t168*t76 - t169*t65
-                J[column] = (c_stiffness*(t130*t78 + t136*(-t134*t75 + t135*t77 - t65*(n_x*t131 +
-                    n_y*t132 + n_z*t133) + t76*(m_x*t131 + m_y*t132 + m_z*t133)) + t143*t78) +
-                    t78*t93)
-                J[6 + column] = (c_stiffness*(t130*t149 + t136*(-t134*t147 + t135*t148 -
-                    t65*(n_x*t150 + n_y*t151 + n_z*t152) + t76*(m_x*t150 + m_y*t151 + m_z*t152)) +
-                    t143*t149) + t149*t93)
-                J[12 + column] = (c_stiffness*(t130*t158 + t136*(-t134*t156 + t135*t157 -
-                    t65*(n_x*t159 + n_y*t160 + n_z*t161) + t76*(m_x*t159 + m_y*t160 + m_z*t161)) +
-                    t143*t158) + t158*t93)
-                J[18 + column] = (c_stiffness*(t130*t164 + t136*(-t134*t163 + t135*t162 -
-                    t65*(n_y*t125 - n_z*t117) + t76*(m_y*t125 - m_z*t117)) + t143*t164) + t164*t93)
-                J[24 + column] = (c_stiffness*(t130*t167 + t136*(-t134*t166 + t135*t165 -
-                    t65*(-n_x*t125 + n_z*t109) + t76*(-m_x*t125 + m_z*t109)) + t143*t167) +
-                    t167*t93)
-                J[30 + column] = (c_stiffness*(t130*t170 + t136*(-t134*t169 + t135*t168 -
-                    t65*(n_x*t117 - n_y*t109) + t76*(m_x*t117 - m_y*t109)) + t143*t170) + t170*t93)
+                t66 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+                t67 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t68 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t69 = d_y*t67 - d_z*t68
+                t70 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t71 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t72 = d_y*t70 - d_z*t71
+                t73 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t74 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t75 = d_y*t73 - d_z*t74
+                t76 = n_x*t69 + n_y*t72 + n_z*t75
+                t77 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+                t78 = m_x*t69 + m_y*t72 + m_z*t75
+                t79 = -t66*t76 + t77*t78
+                t80 = -d_x*utha_y + d_y*utha_x
+                t81 = d_x*utha_z - d_z*utha_x
+                t82 = -d_y*utha_z + d_z*utha_y
+                t83 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t84 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t85 = d_x*t84 + d_y*t71 + d_z*t70
+                t86 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t87 = d_x*t86 + d_y*t74 + d_z*t73
+                t88 = t67*t80 + t68*t81 + t82*t83 + t85*uthb_z - t87*uthb_y
+                t89 = d_x*t83 + d_y*t68 + d_z*t67
+                t90 = t70*t80 + t71*t81 + t82*t84 + t87*uthb_x - t89*uthb_z
+                t91 = t73*t80 + t74*t81 + t82*t86 - t85*uthb_x + t89*uthb_y
+                t92 = t66*t66 + t77*t77
+                t93 = side/t92
+                t94 = (c_damping*t93*(dpush_by_angle_along_m*(m_x*t88 + m_y*t90 + m_z*t91) +
+                    dpush_by_angle_along_n*(n_x*t88 + n_y*t90 + n_z*t91)))
+                t95 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t96 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t97 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t98 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t99 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t100 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t101 = Ra_xx*t95 + Ra_yx*t96 + Ra_zx*t97 + Rb_xx*t98 + Rb_yx*t99 + Rb_zx*t100
+                t102 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t103 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t104 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t105 = Ra_xy*t95 + Ra_yy*t96 + Ra_zy*t97 + Rb_xx*t102 + Rb_yx*t103 + Rb_zx*t104
+                t106 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t107 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t108 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t109 = Ra_xz*t95 + Ra_yz*t96 + Ra_zz*t97 + Rb_xx*t106 + Rb_yx*t107 + Rb_zx*t108
+                t110 = d_x*t101 + d_y*t105 + d_z*t109
+                t111 = m_x*t110
+                t112 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t113 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t114 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t115 = Ra_xx*t112 + Ra_yx*t113 + Ra_zx*t114 + Rb_xy*t98 + Rb_yy*t99 + Rb_zy*t100
+                t116 = Ra_xy*t112 + Ra_yy*t113 + Ra_zy*t114 + Rb_xy*t102 + Rb_yy*t103 + Rb_zy*t104
+                t117 = Ra_xz*t112 + Ra_yz*t113 + Ra_zz*t114 + Rb_xy*t106 + Rb_yy*t107 + Rb_zy*t108
+                t118 = d_x*t115 + d_y*t116 + d_z*t117
+                t119 = m_y*t118
+                t120 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t121 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t122 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t123 = Ra_xx*t120 + Ra_yx*t121 + Ra_zx*t122 + Rb_xz*t98 + Rb_yz*t99 + Rb_zz*t100
+                t124 = Ra_xy*t120 + Ra_yy*t121 + Ra_zy*t122 + Rb_xz*t102 + Rb_yz*t103 + Rb_zz*t104
+                t125 = Ra_xz*t120 + Ra_yz*t121 + Ra_zz*t122 + Rb_xz*t106 + Rb_yz*t107 + Rb_zz*t108
+                t126 = d_x*t123 + d_y*t124 + d_z*t125
+                t127 = m_z*t126
+                t128 = n_x*t110
+                t129 = n_y*t118
+                t130 = n_z*t126
+                t131 = ((push*side*(-t66*(2*t111 + 2*t119 + 2*t127) - t77*(2*t128 + 2*t129 +
+                    2*t130)))/(t92*t92))
+                t132 = d_y*t109 - d_z*t105
+                t133 = d_y*t117 - d_z*t116
+                t134 = d_y*t125 - d_z*t124
+                t135 = t111 + t119 + t127
+                t136 = t128 + t129 + t130
+                t137 = push*t93
+                t138 = Oma_x*d_y - Oma_y*d_x
+                t139 = -Oma_x*d_z + Oma_z*d_x
+                t140 = Oma_y*d_z - Oma_z*d_y
+                t141 = -Omb_y*t126 + Omb_z*t118 + t101*t140 + t105*t139 + t109*t138
+                t142 = Omb_x*t126 - Omb_z*t110 + t115*t140 + t116*t139 + t117*t138
+                t143 = -Omb_x*t118 + Omb_y*t110 + t123*t140 + t124*t139 + t125*t138
+                t144 = (t93*(dpush_by_angle_along_m*(m_x*t141 + m_y*t142 + m_z*t143) +
+                    dpush_by_angle_along_n*(n_x*t141 + n_y*t142 + n_z*t143) +
+                    dpush_by_angle_seen_1*t110 + dpush_by_angle_seen_2*t118 +
+                    dpush_by_angle_seen_3*t126))
+                t145 = -d_x*t67 + d_z*t83
+                t146 = -d_x*t70 + d_z*t84
+                t147 = -d_x*t73 + d_z*t86
+                t148 = n_x*t145 + n_y*t146 + n_z*t147
+                t149 = m_x*t145 + m_y*t146 + m_z*t147
+                t150 = -t148*t66 + t149*t77
+                t151 = -d_x*t109 + d_z*t101
+                t152 = -d_x*t117 + d_z*t115
+                t153 = -d_x*t125 + d_z*t123
+                t154 = d_x*t68 - d_y*t83
+                t155 = d_x*t71 - d_y*t84
+                t156 = d_x*t74 - d_y*t86
+                t157 = n_x*t154 + n_y*t155 + n_z*t156
+                t158 = m_x*t154 + m_y*t155 + m_z*t156
+                t159 = -t157*t66 + t158*t77
+                t160 = d_x*t105 - d_y*t101
+                t161 = d_x*t116 - d_y*t115
+                t162 = d_x*t124 - d_y*t123
+                t163 = -angle_seen_2*m_z + angle_seen_3*m_y
+                t164 = -angle_seen_2*n_z + angle_seen_3*n_y
+                t165 = t163*t77 - t164*t66
+                t166 = angle_seen_1*m_z - angle_seen_3*m_x
+                t167 = angle_seen_1*n_z - angle_seen_3*n_x
+                t168 = t166*t77 - t167*t66
+                t169 = -angle_seen_1*m_y + angle_seen_2*m_x
+                t170 = -angle_seen_1*n_y + angle_seen_2*n_x
+                t171 = t169*t77 - t170*t66
+                J[column] = (c_stiffness*(t131*t79 + t137*(-t135*t76 + t136*t78 - t66*(n_x*t132 +
+                    n_y*t133 + n_z*t134) + t77*(m_x*t132 + m_y*t133 + m_z*t134)) + t144*t79) +
+                    t79*t94)
+                J[6 + column] = (c_stiffness*(t131*t150 + t137*(-t135*t148 + t136*t149 -
+                    t66*(n_x*t151 + n_y*t152 + n_z*t153) + t77*(m_x*t151 + m_y*t152 + m_z*t153)) +
+                    t144*t150) + t150*t94)
+                J[12 + column] = (c_stiffness*(t131*t159 + t137*(-t135*t157 + t136*t158 -
+                    t66*(n_x*t160 + n_y*t161 + n_z*t162) + t77*(m_x*t160 + m_y*t161 + m_z*t162)) +
+                    t144*t159) + t159*t94)
+                J[18 + column] = (c_stiffness*(t131*t165 + t137*(-t135*t164 + t136*t163 -
+                    t66*(n_y*t126 - n_z*t118) + t77*(m_y*t126 - m_z*t118)) + t144*t165) + t165*t94)
+                J[24 + column] = (c_stiffness*(t131*t168 + t137*(-t135*t167 + t136*t166 -
+                    t66*(-n_x*t126 + n_z*t110) + t77*(-m_x*t126 + m_z*t110)) + t144*t168) +
+                    t168*t94)
+                J[30 + column] = (c_stiffness*(t131*t171 + t137*(-t135*t170 + t136*t169 -
+                    t66*(n_x*t118 - n_y*t110) + t77*(m_x*t118 - m_y*t110)) + t144*t171) + t171*t94)
     return OK

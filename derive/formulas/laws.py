@@ -96,11 +96,12 @@ def friction(increments: Sequence[sp.Expr], rates: Sequence[sp.Expr], normal: sp
 
 
 def impact(depth: sp.Expr, rate: sp.Expr, stiffness: sp.Symbol, exponent: sp.Symbol,
-           damping: sp.Symbol) -> Law:
+           damping: sp.Symbol, slow: sp.Symbol) -> Law:
     """Hunt and Crossley's contact law, ``F = k d^n (1 + c d')`` where d > 0, and never a pull.
 
     It keeps the rate and the speed of the impact, by which the time loop judges the length of a
-    step: with longer steps the scheme makes energy (restitution 1.90 where 0.748 is right).
+    step: with longer steps the scheme makes energy (restitution 1.90 where 0.748 is right). Speeds
+    up to `slow` are none.
     """
     inside, touches = sp.symbols("depth touches")
     elastic, factor, push = sp.symbols("elastic factor push")
@@ -108,8 +109,9 @@ def impact(depth: sp.Expr, rate: sp.Expr, stiffness: sp.Symbol, exponent: sp.Sym
                (inside, choose(depth, depth, TINY))),
               ((elastic, stiffness * inside**exponent), (factor, 1 + damping * rate)),
               ((push, choose(factor, elastic * factor, sp.Float(0.0))),))
-    largest = _largest(_size(rate), _size(kept("rate")))
-    speed = choose(touches - sp.Rational(1, 2), _largest(largest, kept("impact")), sp.Float(0.0))
+    largest = _largest(_largest(_size(rate), _size(kept("rate"))), kept("impact"))
+    speed = choose(touches - sp.Rational(1, 2), choose(largest - slow, largest, sp.Float(0.0)),
+                   sp.Float(0.0))
     return Law((push,), stages, (("rate", rate), ("impact", speed), ("depth", depth)),
                stiffness * inside**(exponent + 1) / (exponent + 1), elastic)
 

@@ -18,7 +18,8 @@ from sebody.derive.formulas.law_elements import Forces, Measures, law_element
 from sebody.derive.formulas.laws import impact
 
 IMPACT = {"stiffness": "stiffness k of k d^n (1 + c d')", "exponent": "exponent n",
-          "damping": "damping c [time/length]"}
+          "damping": "damping c [time/length]",
+          "slow": "speed of impacts so slow that steps do not look at them"}
 LIMITS = {"lower": "lower limit", "upper": "upper limit"}
 
 

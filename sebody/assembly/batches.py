@@ -194,7 +194,7 @@ def element_unknowns(numbering: Numbering, element: Element) -> list[int]:
 def _kept_at(numbering: Numbering, element: Element, otherwise: int) -> int:
     """Where the numbers begin that an element keeps from step to step."""
     own = numbering.memories.get(id(element))
-    return otherwise if own is None else own.start
+    return otherwise if own is None else own[0]
 
 
 def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:

@@ -56,7 +56,7 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
     rows = [row[AT_CONSTANTS] for batch in batches.all for row in batch.rows]
     return system, numbering._replace(
         forces_at=dict(zip(owners, first_force, strict=False)),
-        constants_at=dict(zip(owners, rows, strict=True)))
+        constants_at=dict(zip(owners, rows, strict=True)), bristles={})
 
 
 def _structure(model: Mechanism, numbering: Numbering, batches: Batches, ends: Ends) -> Structure:
@@ -100,7 +100,7 @@ def _parts(model: Mechanism, numbering: Numbering) -> NDArray:
 def _guarded(model: Mechanism, numbering: Numbering) -> NDArray:
     """Places of the rates that contacts keep."""
     kept = ((element_kernel(e.kind).MEMORY, numbering.memories.get(id(e))) for e in model.loads)
-    return np.array([own.start + names.index("rate") for names, own in kept if "rate" in names],
+    return np.array([own[names.index("rate")] for names, own in kept if "rate" in names],
                     dtype=np.int64)
 
 

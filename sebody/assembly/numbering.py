@@ -33,7 +33,8 @@ class Numbering(NamedTuple):
     groups: NDArray                     # where the unknowns of each body begin
     forces_at: dict[int, int] = {}      # id(body, constraint or load) -> its first force in State.g
     constants_at: dict[int, int] = {}   # id(body or element) -> its row in System.constants
-    memories: dict[int, slice] = {}     # id(element) -> the numbers it keeps, in State.frames
+    memories: dict[int, list[int]] = {} # id(element) -> what it keeps: places in State.frames
+    bristles: dict[int, float] = {}     # id(element) -> stiffness of its bristles in the run
     reads: dict[int, list[int]] = {}    # id(element) -> multipliers of a joint that it reads
     jumps: list[list[float]] = []       # of every power port: when accelerations jump with it
 
@@ -52,7 +53,7 @@ def stretch(numbering: Numbering, triplet: Triplet) -> slice:
 
 def kept_frames(numbering: Numbering) -> int:
     """Length of `State.frames`: frames of the superelements, and what elements keep."""
-    return 9 * len(numbering.modes) + sum(m.stop - m.start for m in numbering.memories.values())
+    return 9 * len(numbering.modes) + sum(map(len, numbering.memories.values()))
 
 
 def rotational(model: Mechanism, numbering: Numbering) -> NDArray:
@@ -150,12 +151,12 @@ class _Order:
                           for j in range(constraint.multipliers))
 
 
-def _memories(model: Mechanism) -> dict[int, slice]:
+def _memories(model: Mechanism) -> dict[int, list[int]]:
     """Places, behind the frames of all superelements, of what elements keep."""
     found, first = {}, 9 * len(model.bodies)
     for load in model.loads:
         if count := len(element_kernel(load.kind).MEMORY):
-            found[id(load)] = slice(first, first + count)
+            found[id(load)] = list(range(first, first + count))
             first += count
     return found
 

@@ -39,12 +39,14 @@ def take_apart(model: Mechanism, joint: Joint) -> None:
         equation = Element(joint.name, model.kind_of("coincident_ground"), positions(node),
                            {"c": node.point}, model.dimension)
     else:
-        side = _side(model, to, node, others)
-        shared = to.position
+        side, shared = _side(model, to, node, others), to.position
+        if side is not None and _linked(side, others):      # it keeps the position of its link
+            side = _side(model, node, to, others)
+            side = None if side is None or _linked(side, others) else side
         if side is None or any(t.root is shared for t in model.triplets()) or shared.fixed:
             raise InputError(f"friction in {joint.name!r}: nodes {node.name!r} and {to.name!r} "
                              f"share their position in more than one way: {remedy}")
-        _separate(model, side, shared, f"{to.name}.position")
+        _separate(model, side, shared, f"{side[0].name}.position")
         equation = Element(joint.name, model.kind_of("coincident"), positions(node, to), {},
                            model.dimension)
     joint.constraints = (equation, *joint.constraints)
@@ -65,6 +67,12 @@ def _side(model: Mechanism, start: Node, end: Node, connections: list[Connection
                 found[id(other)] = other
                 left.append(other)
     return None if id(end) in found else list(found.values())
+
+
+def _linked(side: list[Node], connections: list[Connection]) -> bool:
+    """Whether one of some nodes is at the end of a rigid link from a node elsewhere."""
+    return any(c.to is not None and c.node in side and c.to.position is not c.node.position
+               for c in connections)
 
 
 def _separate(model: Mechanism, side: list[Node], shared: Triplet, name: str) -> None:

@@ -16,6 +16,7 @@ from sebody.model.parts import Element, Joint, Node, positions, rotations
 from sebody.model.surfaces import Surface
 
 DEEP = 0.1          # of its radius, or of the model: a start in deeper contact is refused
+SLOW = 1e-3         # of the given speed: the steps of slower impacts are not looked at
 TURNS = ("revolute",)
 SLIDES = ("prismatic", "slider", "cylindrical")
 
@@ -187,7 +188,7 @@ def _impact(what: str, restitution: float, at_speed: float, stiffness: float | N
         raise InputError(f"{what}: give stiffness=, the force at a depth of one")
     return {"stiffness": inputs.number(stiffness, f"{what}: stiffness", above=0),
             "exponent": inputs.number(exponent, f"{what}: exponent", least=1),
-            "damping": damping_of(restitution, at_speed, what)}
+            "damping": damping_of(restitution, at_speed, what), "slow": SLOW * at_speed}
 
 
 def _joint(model: Mechanism, joint: Joint | str, what: str) -> Joint:
@@ -228,6 +229,10 @@ def _carrier(model: Mechanism, on: Surface, a: Node, what: str) -> Node:
     if on.node is None:
         point = np.zeros(model.dimension) if on.point is None else vector(
             model, on.point, f"{what}: point of the {on.kind}")
+        if on.kind != "sphere":     # nearest to the node: in its plane of symmetry, if it has one
+            axis = direction(model, on.direction, what, a)
+            along = axis * (axis @ (a.point - point))
+            point = a.point - along if on.kind == "plane" else point + along
         return ground(model, Node(on.kind, point, None, None))
     b = known(model, on.node)
     if b is a:
@@ -244,7 +249,7 @@ def _shape(model: Mechanism, on: Surface, a: Node, b: Node, what: str
     s = a.point - b.point
     if on.kind == "plane":
         n = direction(model, on.direction, what, a)
-        level = 0.0 if on.point is None else float(n @ (vector(
+        level = 0.0 if on.point is None or on.node is None else float(n @ (vector(
             model, on.point, f"{what}: point of the plane") - b.point))
         return {"n": n, "level": level}, float(n @ s) - level
     side = -1.0 if on.inside else 1.0

@@ -25,9 +25,11 @@ from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Triplet
 from sebody.runs.redundancy import least
 
+STILL = 1e-9            # of the mobility of the parts alone: that of what a drive moves
 AT_REST = 1e-9          # rate of a joint at rest, relative to that of the model
 HELD = 1e-12            # acceleration of what is held, relative to that without friction
 MOST = 30               # iterations for the forces at the start
+RESOLVED = 0.1          # angular frequency of teeth in contact, times the step: the guard asks for it
 BEYOND = 2.0            # of the static limit: force of a bristle that is to slide
 
 
@@ -47,14 +49,25 @@ def tune(model: Mechanism, system: System, numbering: Numbering, state: State,
     for load in tuned:
         constants = _Constants(load, system, numbering)
         rows = directions(load, numbering, state)
-        mass = 1.0 / max(max(response(row, solve, system, state, numbering.free) @ row
-                             for row in rows), 1e-300)
+        mass = 1.0 / max(_mobility(row, solve, system, state, numbering.free) for row in rows)
         natural = mass / state.clock[STEP]**2
         if "teeth" in load.tuned:
-            constants["stiffness"] = natural
+            constants["stiffness"] = RESOLVED**2 * natural
             continue
         stiffness = constants["bristle"] = load.constants["bristle"] or natural
+        numbering.bristles[id(load)] = stiffness
         constants["bristle_damping"] = 2.0 * load.tuned["damping"] * np.sqrt(stiffness * mass)
+
+
+def _mobility(row: NDArray, solve, system: System, state: State, free: int) -> float:
+    """Acceleration along a direction by a unit force along it.
+
+    What a drive moves does not give way: it gets the mobility of its parts alone.
+    """
+    own = row[:free] != 0.0
+    alone = float((row[:free][own]**2 / np.maximum(system.inertias[:free][own], 1e-300)).sum())
+    found = float(response(row, solve, system, state, free) @ row)
+    return found if found > STILL * alone else max(alone, 1e-300)
 
 
 def response(row: NDArray, solve, system: System, state: State, free: int) -> NDArray:
@@ -142,7 +155,6 @@ class _Held(NamedTuple):
 
     constants: _Constants
     rows: list[NDArray]
-    memory: slice
     bent: list[int]         # places of the bristles in `State.frames`
     normal: int             # place of the normal force
 
@@ -167,12 +179,12 @@ class LoadedBristles:
         constants = _Constants(load, self.system, self.numbering)
         rows = directions(load, self.numbering, self.state)
         memory, names = self.numbering.memories[id(load)], element_kernel(load.kind).MEMORY
-        bent = [memory.start + k for k, name in enumerate(names) if name.startswith("bent")]
+        bent = [place for place, name in zip(memory, names, strict=True) if name.startswith("bent")]
         fastest = np.abs(self.state.v).max()
         moves = any(abs(row @ self.state.v) > AT_REST * fastest for row in rows)
         if moves or constants["speed"] > 0 or self.state.frames[bent].any():
             return []
-        return [_Held(constants, rows, memory, bent, memory.start + names.index("normal"))]
+        return [_Held(constants, rows, bent, memory[names.index("normal")])]
 
     def load(self, masses: csc_matrix, solve_again) -> None:
         """Bend the bristles so that what they hold stays at rest."""
