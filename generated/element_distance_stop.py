@@ -33,6 +33,7 @@ CONSTANTS = (
     Part("stiffness", (), "stiffness k of k d^n (1 + c d')"),
     Part("exponent", (), "exponent n"),
     Part("damping", (), "damping c [time/length]"),
+    Part("slow", (), "speed of impacts so slow that steps do not look at them"),
     Part("lower", (), "lower limit"),
     Part("upper", (), "upper limit"),
 )
@@ -46,7 +47,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (21, 0, 0, 0),
-              "column": (133, 0, 0, 0)}
+              "column": (96, 0, 0, 0)}
 
 
 @kernel_function
@@ -61,8 +62,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         stiffness = constant[0]
         exponent = constant[1]
         damping = constant[2]
-        lower = constant[3]
-        upper = constant[4]
+        slow = constant[3]
+        lower = constant[4]
+        upper = constant[5]
         xa_x = q[unknowns[0]]
         xa_y = q[unknowns[1]]
         xa_z = q[unknowns[2]]
@@ -105,6 +107,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t13 = (kept_rate if kept_rate > 0.0 else -kept_rate)
         t14 = (speed_beyond if speed_beyond > 0.0 else -speed_beyond)
         t15 = (t14 if -t13 + t14 > 0.0 else t13)
+        t16 = (t15 if -kept_impact + t15 > 0.0 else kept_impact)
         g[0] = t12*t6
         g[1] = t12*t8
         g[2] = t10*t12
@@ -113,8 +116,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         g[5] = t11*t12
         frames[index[first + AT_FRAME]] = way
         frames[index[first + AT_FRAME] + 1] = speed_beyond
-        frames[index[first + AT_FRAME] + 2] = (((t15 if -kept_impact + t15 > 0.0 else kept_impact)
-            if touches - 0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 2] = (((t16 if -slow + t16 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0))
         frames[index[first + AT_FRAME] + 3] = beyond
         frames[index[first + AT_FRAME] + 4] = push
         if task == ENERGY:
@@ -173,42 +176,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uxb_x = du[3]
                 uxb_y = du[4]
                 uxb_z = du[5]
-                t16 = xa_x - xb_x
-                t17 = side*t16
-                t18 = -t16
-                t19 = xa_y - xb_y
-                t20 = -t19
-                t21 = xa_z - xb_z
-                t22 = -t21
-                t23 = t18*t18 + t20*t20 + t22*t22
-                t24 = (0.5)*t18
-                t25 = (0.5)*t20
-                t26 = (0.5)*t22
-                t27 = (c_damping*dpush_by_way_rate*(t24*(-2*uxa_x + 2*uxb_x) + t25*(-2*uxa_y +
-                    2*uxb_y) + t26*(-2*uxa_z + 2*uxb_z))/t23)
-                t28 = dxa_x - dxb_x
-                t29 = 1/sqrt(t23)
-                t30 = side*t29
-                t31 = push*t30
-                t32 = t24*(-2*dxa_x + 2*dxb_x) + t25*(-2*dxa_y + 2*dxb_y) + t26*(-2*dxa_z + 2*dxb_z)
-                t33 = -t32/t23**(1.5)
-                t34 = push*t33
-                t35 = -t28
-                t36 = -va_x + vb_x
-                t37 = dxa_y - dxb_y
-                t38 = -t37
-                t39 = -va_y + vb_y
-                t40 = dxa_z - dxb_z
-                t41 = -t40
-                t42 = -va_z + vb_z
-                t43 = (t30*(dpush_by_way*t29*t32 + dpush_by_way_rate*(t29*(t35*t36 + t38*t39 +
-                    t41*t42) + t33*(t18*t36 + t20*t39 + t22*t42))))
-                t44 = side*t27
-                t45 = side*t34
-                J[column] = c_stiffness*(t16*t43 + t17*t34 + t28*t31) + t17*t27
-                J[6 + column] = c_stiffness*(t19*t43 + t19*t45 + t31*t37) + t19*t44
-                J[12 + column] = c_stiffness*(t21*t43 + t21*t45 + t31*t40) + t21*t44
-                J[18 + column] = c_stiffness*(t18*t43 + t18*t45 + t31*t35) + t18*t44
-                J[24 + column] = c_stiffness*(t20*t43 + t20*t45 + t31*t38) + t20*t44
-                J[30 + column] = c_stiffness*(t22*t43 + t22*t45 + t31*t41) + t22*t44
+                t17 = -xa_x + xb_x
+                t18 = -xa_y + xb_y
+                t19 = -xa_z + xb_z
+                t20 = t17*t17 + t18*t18 + t19*t19
+                t21 = 1/sqrt(t20)
+                t22 = (0.5)*t17
+                t23 = (0.5)*t18
+                t24 = (0.5)*t19
+                t25 = t22*(-2*dxa_x + 2*dxb_x) + t23*(-2*dxa_y + 2*dxb_y) + t24*(-2*dxa_z + 2*dxb_z)
+                t26 = -2*va_x + 2*vb_x
+                t27 = -2*va_y + 2*vb_y
+                t28 = -2*va_z + 2*vb_z
+                dway = t21*t25
+                dway_rate = (t21*((0.5)*t26*(-dxa_x + dxb_x) + (0.5)*t27*(-dxa_y + dxb_y) +
+                    (0.5)*t28*(-dxa_z + dxb_z)) - t25*(t22*t26 + t23*t27 + t24*t28)/t20**(1.5))
+                uway_rate = (t21*(t22*(-2*uxa_x + 2*uxb_x) + t23*(-2*uxa_y + 2*uxb_y) +
+                    t24*(-2*uxa_z + 2*uxb_z)))
+                t29 = xa_x - xb_x
+                t30 = -t29
+                t31 = xa_y - xb_y
+                t32 = -t31
+                t33 = xa_z - xb_z
+                t34 = -t33
+                t35 = t30*t30 + t32*t32 + t34*t34
+                t36 = side/sqrt(t35)
+                t37 = c_damping*dpush_by_way_rate*t36*uway_rate
+                t38 = dxa_x - dxb_x
+                t39 = push*t36
+                t40 = t36*(dpush_by_way*dway + dpush_by_way_rate*dway_rate)
+                t41 = (push*side*(-0.5*t30*(-2*dxa_x + 2*dxb_x) - 0.5*t32*(-2*dxa_y + 2*dxb_y) -
+                    0.5*t34*(-2*dxa_z + 2*dxb_z))/t35**(1.5))
+                t42 = dxa_y - dxb_y
+                t43 = dxa_z - dxb_z
+                J[column] = c_stiffness*(t29*t40 + t29*t41 + t38*t39) + t29*t37
+                J[6 + column] = c_stiffness*(t31*t40 + t31*t41 + t39*t42) + t31*t37
+                J[12 + column] = c_stiffness*(t33*t40 + t33*t41 + t39*t43) + t33*t37
+                J[18 + column] = c_stiffness*(t30*t40 + t30*t41 - t38*t39) + t30*t37
+                J[24 + column] = c_stiffness*(t32*t40 + t32*t41 - t39*t42) + t32*t37
+                J[30 + column] = c_stiffness*(t34*t40 + t34*t41 - t39*t43) + t34*t37
     return OK

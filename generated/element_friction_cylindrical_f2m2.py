@@ -53,7 +53,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (234, 0, 0, 0),
-              "column": (1033, 0, 0, 0)}
+              "column": (740, 0, 0, 0)}
 
 
 @kernel_function
@@ -516,204 +516,265 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = du[9]
                 uthb_y = du[10]
                 uthb_z = du[11]
-                t98 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
-                t99 = -t98
-                t100 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
-                t101 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
-                t102 = -xa_x + xb_x
-                t103 = -xa_y + xb_y
-                t104 = -xa_z + xb_z
-                t105 = (t100*(-uxa_y + uxb_y) + t101*(-uxa_z + uxb_z) + t102*(e_x*(Ra_xy*utha_z -
-                    Ra_xz*utha_y) + e_y*(-Ra_xx*utha_z + Ra_xz*utha_x) + e_z*(Ra_xx*utha_y -
-                    Ra_xy*utha_x)) + t103*(e_x*(Ra_yy*utha_z - Ra_yz*utha_y) + e_y*(-Ra_yx*utha_z
-                    + Ra_yz*utha_x) + e_z*(Ra_yx*utha_y - Ra_yy*utha_x)) + t104*(e_x*(Ra_zy*utha_z
-                    - Ra_zz*utha_y) + e_y*(-Ra_zx*utha_z + Ra_zz*utha_x) + e_z*(Ra_zx*utha_y -
-                    Ra_zy*utha_x)) + t98*(-uxa_x + uxb_x))
-                t106 = -d_x*utha_y + d_y*utha_x
-                t107 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t108 = d_x*utha_z - d_z*utha_x
-                t109 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t110 = -d_y*utha_z + d_z*utha_y
-                t111 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t112 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t113 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t114 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t115 = d_x*t112 + d_y*t113 + d_z*t114
-                t116 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t117 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t118 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t119 = d_x*t116 + d_y*t117 + d_z*t118
-                t120 = t106*t107 + t108*t109 + t110*t111 + t115*uthb_z - t119*uthb_y
-                t121 = d_x*t111 + d_y*t109 + d_z*t107
-                t122 = t106*t114 + t108*t113 + t110*t112 + t119*uthb_x - t121*uthb_z
-                t123 = t106*t118 + t108*t117 + t110*t116 - t115*uthb_x + t121*uthb_y
-                t124 = m_x*t120 + m_y*t122 + m_z*t123
-                t125 = n_x*t120 + n_y*t122 + n_z*t123
-                t126 = (dfriction_1_by_angle_along_m*t124 + dfriction_1_by_angle_along_n*t125 +
-                    dfriction_1_by_way_rate*t105)
-                t127 = c_damping*t126
-                t128 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t129 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t130 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t131 = e_x*t128 + e_y*t129 + e_z*t130
-                t132 = -dxa_x + dxb_x
-                t133 = -dxa_y + dxb_y
-                t134 = -dxa_z + dxb_z
-                t135 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t136 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t137 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t138 = e_x*t135 + e_y*t136 + e_z*t137
-                t139 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t140 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t141 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t142 = e_x*t139 + e_y*t140 + e_z*t141
-                t143 = t100*t133 + t101*t134 + t102*t131 + t103*t138 + t104*t142 + t132*t98
-                t144 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t145 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t146 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t147 = Ra_xx*t144 + Ra_yx*t145 + Ra_zx*t146 + Rb_xx*t128 + Rb_yx*t135 + Rb_zx*t139
-                t148 = Ra_xy*t144 + Ra_yy*t145 + Ra_zy*t146 + Rb_xx*t129 + Rb_yx*t136 + Rb_zx*t140
-                t149 = Ra_xz*t144 + Ra_yz*t145 + Ra_zz*t146 + Rb_xx*t130 + Rb_yx*t137 + Rb_zx*t141
-                t150 = d_x*t147 + d_y*t148 + d_z*t149
-                t151 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t152 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t153 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t154 = Ra_xx*t151 + Ra_yx*t152 + Ra_zx*t153 + Rb_xy*t128 + Rb_yy*t135 + Rb_zy*t139
-                t155 = Ra_xy*t151 + Ra_yy*t152 + Ra_zy*t153 + Rb_xy*t129 + Rb_yy*t136 + Rb_zy*t140
-                t156 = Ra_xz*t151 + Ra_yz*t152 + Ra_zz*t153 + Rb_xy*t130 + Rb_yy*t137 + Rb_zy*t141
-                t157 = d_x*t154 + d_y*t155 + d_z*t156
-                t158 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t159 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t160 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t161 = Ra_xx*t158 + Ra_yx*t159 + Ra_zx*t160 + Rb_xz*t128 + Rb_yz*t135 + Rb_zz*t139
-                t162 = Ra_xy*t158 + Ra_yy*t159 + Ra_zy*t160 + Rb_xz*t129 + Rb_yz*t136 + Rb_zz*t140
-                t163 = Ra_xz*t158 + Ra_yz*t159 + Ra_zz*t160 + Rb_xz*t130 + Rb_yz*t137 + Rb_zz*t141
-                t164 = d_x*t161 + d_y*t162 + d_z*t163
-                t165 = (t102*(e_x*(-Oma_y*t130 + Oma_z*t129) + e_y*(Oma_x*t130 - Oma_z*t128) +
-                    e_z*(-Oma_x*t129 + Oma_y*t128)) + t103*(e_x*(-Oma_y*t137 + Oma_z*t136) +
-                    e_y*(Oma_x*t137 - Oma_z*t135) + e_z*(-Oma_x*t136 + Oma_y*t135)) +
-                    t104*(e_x*(-Oma_y*t141 + Oma_z*t140) + e_y*(Oma_x*t141 - Oma_z*t139) +
-                    e_z*(-Oma_x*t140 + Oma_y*t139)) + t131*(-va_x + vb_x) +
-                    t132*(e_x*(-Oma_y*Ra_xz + Oma_z*Ra_xy) + e_y*(Oma_x*Ra_xz - Oma_z*Ra_xx) +
-                    e_z*(-Oma_x*Ra_xy + Oma_y*Ra_xx)) + t133*(e_x*(-Oma_y*Ra_yz + Oma_z*Ra_yy) +
-                    e_y*(Oma_x*Ra_yz - Oma_z*Ra_yx) + e_z*(-Oma_x*Ra_yy + Oma_y*Ra_yx)) +
-                    t134*(e_x*(-Oma_y*Ra_zz + Oma_z*Ra_zy) + e_y*(Oma_x*Ra_zz - Oma_z*Ra_zx) +
-                    e_z*(-Oma_x*Ra_zy + Oma_y*Ra_zx)) + t138*(-va_y + vb_y) + t142*(-va_z + vb_z))
-                t166 = Oma_x*d_y - Oma_y*d_x
-                t167 = -Oma_x*d_z + Oma_z*d_x
-                t168 = Oma_y*d_z - Oma_z*d_y
-                t169 = -Omb_y*t164 + Omb_z*t157 + t147*t168 + t148*t167 + t149*t166
-                t170 = Omb_x*t164 - Omb_z*t150 + t154*t168 + t155*t167 + t156*t166
-                t171 = -Omb_x*t157 + Omb_y*t150 + t161*t168 + t162*t167 + t163*t166
-                t172 = m_x*t169 + m_y*t170 + m_z*t171
-                t173 = n_x*t169 + n_y*t170 + n_z*t171
-                t174 = (dfriction_1_by_angle_along_m*t172 + dfriction_1_by_angle_along_n*t173 +
-                    dfriction_1_by_angle_seen_1*t150 + dfriction_1_by_angle_seen_2*t157 +
-                    dfriction_1_by_angle_seen_3*t164 + dfriction_1_by_way*t143 +
-                    dfriction_1_by_way_rate*t165)
-                t175 = -t100
-                t176 = -t101
-                t177 = -Ra_xy*e_z + Ra_xz*e_y
-                t178 = -Ra_yy*e_z + Ra_yz*e_y
-                t179 = -Ra_zy*e_z + Ra_zz*e_y
-                t180 = t102*t177 + t103*t178 + t104*t179
-                t181 = (dfriction_2_by_angle_along_m*t124 + dfriction_2_by_angle_along_n*t125 +
-                    dfriction_2_by_way_rate*t105)
-                t182 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-                t183 = d_y*t107 - d_z*t109
-                t184 = d_y*t114 - d_z*t113
-                t185 = d_y*t118 - d_z*t117
-                t186 = n_x*t183 + n_y*t184 + n_z*t185
-                t187 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-                t188 = m_x*t183 + m_y*t184 + m_z*t185
-                t189 = -t182*t186 + t187*t188
-                t190 = t182*t182 + t187*t187
-                t191 = radius/t190
-                t192 = t189*t191
-                t193 = m_x*t150
-                t194 = m_y*t157
-                t195 = m_z*t164
-                t196 = n_x*t150
-                t197 = n_y*t157
-                t198 = n_z*t164
-                t199 = ((friction_2*radius*(-t182*(2*t193 + 2*t194 + 2*t195) - t187*(2*t196 +
-                    2*t197 + 2*t198)))/(t190*t190))
-                t200 = d_y*t149 - d_z*t148
-                t201 = d_y*t156 - d_z*t155
-                t202 = d_y*t163 - d_z*t162
-                t203 = t193 + t194 + t195
-                t204 = t196 + t197 + t198
-                t205 = friction_2*t191
-                t206 = (dfriction_2_by_angle_along_m*t172 + dfriction_2_by_angle_along_n*t173 +
-                    dfriction_2_by_angle_seen_1*t150 + dfriction_2_by_angle_seen_2*t157 +
-                    dfriction_2_by_angle_seen_3*t164 + dfriction_2_by_way*t143 +
-                    dfriction_2_by_way_rate*t165)
-                t207 = Ra_xx*e_z - Ra_xz*e_x
-                t208 = Ra_yx*e_z - Ra_yz*e_x
-                t209 = Ra_zx*e_z - Ra_zz*e_x
-                t210 = t102*t207 + t103*t208 + t104*t209
-                t211 = -d_x*t107 + d_z*t111
-                t212 = -d_x*t114 + d_z*t112
-                t213 = -d_x*t118 + d_z*t116
-                t214 = n_x*t211 + n_y*t212 + n_z*t213
-                t215 = m_x*t211 + m_y*t212 + m_z*t213
-                t216 = -t182*t214 + t187*t215
-                t217 = t191*t216
-                t218 = -d_x*t149 + d_z*t147
-                t219 = -d_x*t156 + d_z*t154
-                t220 = -d_x*t163 + d_z*t161
-                t221 = -Ra_xx*e_y + Ra_xy*e_x
-                t222 = -Ra_yx*e_y + Ra_yy*e_x
-                t223 = -Ra_zx*e_y + Ra_zy*e_x
-                t224 = t102*t221 + t103*t222 + t104*t223
-                t225 = d_x*t109 - d_y*t111
-                t226 = d_x*t113 - d_y*t112
-                t227 = d_x*t117 - d_y*t116
-                t228 = n_x*t225 + n_y*t226 + n_z*t227
-                t229 = m_x*t225 + m_y*t226 + m_z*t227
-                t230 = -t182*t228 + t187*t229
-                t231 = t191*t230
-                t232 = d_x*t148 - d_y*t147
-                t233 = d_x*t155 - d_y*t154
-                t234 = d_x*t162 - d_y*t161
-                t235 = -angle_seen_2*m_z + angle_seen_3*m_y
-                t236 = -angle_seen_2*n_z + angle_seen_3*n_y
-                t237 = -t182*t236 + t187*t235
-                t238 = c_damping*t181*t191
-                t239 = t191*t206
-                t240 = angle_seen_1*m_z - angle_seen_3*m_x
-                t241 = angle_seen_1*n_z - angle_seen_3*n_x
-                t242 = -t182*t241 + t187*t240
-                t243 = -angle_seen_1*m_y + angle_seen_2*m_x
-                t244 = -angle_seen_1*n_y + angle_seen_2*n_x
-                t245 = -t182*t244 + t187*t243
-                J[column] = c_stiffness*(-friction_1*t131 + t174*t99) + t127*t99
-                J[16 + column] = c_stiffness*(-friction_1*t138 + t174*t175) + t127*t175
-                J[32 + column] = c_stiffness*(-friction_1*t142 + t174*t176) + t127*t176
-                J[48 + column] = c_stiffness*(friction_1*t131 + t174*t98) + t127*t98
-                J[64 + column] = c_stiffness*(friction_1*t138 + t100*t174) + t100*t127
-                J[80 + column] = c_stiffness*(friction_1*t142 + t101*t174) + t101*t127
-                J[96 + column] = (c_damping*(t126*t180 + t181*t192) +
-                    c_stiffness*(friction_1*(t102*(e_y*t130 - e_z*t129) + t103*(e_y*t137 -
-                    e_z*t136) + t104*(e_y*t141 - e_z*t140) + t132*t177 + t133*t178 + t134*t179) +
-                    t174*t180 + t189*t199 + t192*t206 + t205*(-t182*(n_x*t200 + n_y*t201 +
-                    n_z*t202) - t186*t203 + t187*(m_x*t200 + m_y*t201 + m_z*t202) + t188*t204)))
-                J[112 + column] = (c_damping*(t126*t210 + t181*t217) +
-                    c_stiffness*(friction_1*(t102*(-e_x*t130 + e_z*t128) + t103*(-e_x*t137 +
-                    e_z*t135) + t104*(-e_x*t141 + e_z*t139) + t132*t207 + t133*t208 + t134*t209) +
-                    t174*t210 + t199*t216 + t205*(-t182*(n_x*t218 + n_y*t219 + n_z*t220) +
-                    t187*(m_x*t218 + m_y*t219 + m_z*t220) - t203*t214 + t204*t215) + t206*t217))
-                J[128 + column] = (c_damping*(t126*t224 + t181*t231) +
-                    c_stiffness*(friction_1*(t102*(e_x*t129 - e_y*t128) + t103*(e_x*t136 -
-                    e_y*t135) + t104*(e_x*t140 - e_y*t139) + t132*t221 + t133*t222 + t134*t223) +
-                    t174*t224 + t199*t230 + t205*(-t182*(n_x*t232 + n_y*t233 + n_z*t234) +
-                    t187*(m_x*t232 + m_y*t233 + m_z*t234) - t203*t228 + t204*t229) + t206*t231))
-                J[144 + column] = (c_stiffness*(t199*t237 + t205*(-t182*(n_y*t164 - n_z*t157) +
-                    t187*(m_y*t164 - m_z*t157) - t203*t236 + t204*t235) + t237*t239) + t237*t238)
-                J[160 + column] = (c_stiffness*(t199*t242 + t205*(-t182*(-n_x*t164 + n_z*t150) +
-                    t187*(-m_x*t164 + m_z*t150) - t203*t241 + t204*t240) + t239*t242) + t238*t242)
-                J[176 + column] = (c_stiffness*(t199*t245 + t205*(-t182*(n_x*t157 - n_y*t150) +
-                    t187*(m_x*t157 - m_y*t150) - t203*t244 + t204*t243) + t239*t245) + t238*t245)
+                t98 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t99 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t100 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t101 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t102 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t103 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t104 = Ra_xx*t98 + Ra_yx*t99 + Ra_zx*t100 + Rb_xx*t101 + Rb_yx*t102 + Rb_zx*t103
+                t105 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t106 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t107 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t108 = Ra_xy*t98 + Ra_yy*t99 + Ra_zy*t100 + Rb_xx*t105 + Rb_yx*t106 + Rb_zx*t107
+                t109 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t110 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t111 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t112 = Ra_xz*t98 + Ra_yz*t99 + Ra_zz*t100 + Rb_xx*t109 + Rb_yx*t110 + Rb_zx*t111
+                t113 = d_x*t104 + d_y*t108 + d_z*t112
+                t114 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t115 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t116 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t117 = Ra_xx*t114 + Ra_yx*t115 + Ra_zx*t116 + Rb_xy*t101 + Rb_yy*t102 + Rb_zy*t103
+                t118 = Ra_xy*t114 + Ra_yy*t115 + Ra_zy*t116 + Rb_xy*t105 + Rb_yy*t106 + Rb_zy*t107
+                t119 = Ra_xz*t114 + Ra_yz*t115 + Ra_zz*t116 + Rb_xy*t109 + Rb_yy*t110 + Rb_zy*t111
+                t120 = d_x*t117 + d_y*t118 + d_z*t119
+                t121 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t122 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t123 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t124 = Ra_xx*t121 + Ra_yx*t122 + Ra_zx*t123 + Rb_xz*t101 + Rb_yz*t102 + Rb_zz*t103
+                t125 = Ra_xy*t121 + Ra_yy*t122 + Ra_zy*t123 + Rb_xz*t105 + Rb_yz*t106 + Rb_zz*t107
+                t126 = Ra_xz*t121 + Ra_yz*t122 + Ra_zz*t123 + Rb_xz*t109 + Rb_yz*t110 + Rb_zz*t111
+                t127 = d_x*t124 + d_y*t125 + d_z*t126
+                t128 = Oma_x*d_y - Oma_y*d_x
+                t129 = -Oma_x*d_z + Oma_z*d_x
+                t130 = Oma_y*d_z - Oma_z*d_y
+                t131 = -Omb_y*t127 + Omb_z*t120 + t104*t130 + t108*t129 + t112*t128
+                t132 = Omb_x*t127 - Omb_z*t113 + t117*t130 + t118*t129 + t119*t128
+                t133 = -Omb_x*t120 + Omb_y*t113 + t124*t130 + t125*t129 + t126*t128
+                t134 = -d_x*utha_y + d_y*utha_x
+                t135 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t136 = d_x*utha_z - d_z*utha_x
+                t137 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t138 = -d_y*utha_z + d_z*utha_y
+                t139 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t140 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t141 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t142 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t143 = d_x*t140 + d_y*t141 + d_z*t142
+                t144 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t145 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t146 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t147 = d_x*t144 + d_y*t145 + d_z*t146
+                t148 = t134*t135 + t136*t137 + t138*t139 + t143*uthb_z - t147*uthb_y
+                t149 = d_x*t139 + d_y*t137 + d_z*t135
+                t150 = t134*t142 + t136*t141 + t138*t140 + t147*uthb_x - t149*uthb_z
+                t151 = t134*t146 + t136*t145 + t138*t144 - t143*uthb_x + t149*uthb_y
+                t152 = -dxa_x + dxb_x
+                t153 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
+                t154 = -dxa_y + dxb_y
+                t155 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
+                t156 = -dxa_z + dxb_z
+                t157 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
+                t158 = -xa_x + xb_x
+                t159 = e_x*t101 + e_y*t105 + e_z*t109
+                t160 = -xa_y + xb_y
+                t161 = e_x*t102 + e_y*t106 + e_z*t110
+                t162 = -xa_z + xb_z
+                t163 = e_x*t103 + e_y*t107 + e_z*t111
+                dangle_seen_1 = t113
+                dangle_seen_2 = t120
+                dangle_seen_3 = t127
+                dangle_along_n = n_x*t131 + n_y*t132 + n_z*t133
+                uangle_along_n = n_x*t148 + n_y*t150 + n_z*t151
+                dangle_along_m = m_x*t131 + m_y*t132 + m_z*t133
+                uangle_along_m = m_x*t148 + m_y*t150 + m_z*t151
+                dway = t152*t153 + t154*t155 + t156*t157 + t158*t159 + t160*t161 + t162*t163
+                dway_rate = (t152*(e_x*(-Oma_y*Ra_xz + Oma_z*Ra_xy) + e_y*(Oma_x*Ra_xz -
+                    Oma_z*Ra_xx) + e_z*(-Oma_x*Ra_xy + Oma_y*Ra_xx)) + t154*(e_x*(-Oma_y*Ra_yz +
+                    Oma_z*Ra_yy) + e_y*(Oma_x*Ra_yz - Oma_z*Ra_yx) + e_z*(-Oma_x*Ra_yy +
+                    Oma_y*Ra_yx)) + t156*(e_x*(-Oma_y*Ra_zz + Oma_z*Ra_zy) + e_y*(Oma_x*Ra_zz -
+                    Oma_z*Ra_zx) + e_z*(-Oma_x*Ra_zy + Oma_y*Ra_zx)) + t158*(e_x*(-Oma_y*t109 +
+                    Oma_z*t105) + e_y*(Oma_x*t109 - Oma_z*t101) + e_z*(-Oma_x*t105 + Oma_y*t101))
+                    + t159*(-va_x + vb_x) + t160*(e_x*(-Oma_y*t110 + Oma_z*t106) + e_y*(Oma_x*t110
+                    - Oma_z*t102) + e_z*(-Oma_x*t106 + Oma_y*t102)) + t161*(-va_y + vb_y) +
+                    t162*(e_x*(-Oma_y*t111 + Oma_z*t107) + e_y*(Oma_x*t111 - Oma_z*t103) +
+                    e_z*(-Oma_x*t107 + Oma_y*t103)) + t163*(-va_z + vb_z))
+                uway_rate = (t153*(-uxa_x + uxb_x) + t155*(-uxa_y + uxb_y) + t157*(-uxa_z + uxb_z)
+                    + t158*(e_x*(Ra_xy*utha_z - Ra_xz*utha_y) + e_y*(-Ra_xx*utha_z + Ra_xz*utha_x)
+                    + e_z*(Ra_xx*utha_y - Ra_xy*utha_x)) + t160*(e_x*(Ra_yy*utha_z - Ra_yz*utha_y)
+                    + e_y*(-Ra_yx*utha_z + Ra_yz*utha_x) + e_z*(Ra_yx*utha_y - Ra_yy*utha_x)) +
+                    t162*(e_x*(Ra_zy*utha_z - Ra_zz*utha_y) + e_y*(-Ra_zx*utha_z + Ra_zz*utha_x) +
+                    e_z*(Ra_zx*utha_y - Ra_zy*utha_x)))
+                t164 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
+                t165 = -t164
+                t166 = (dfriction_1_by_angle_along_m*uangle_along_m +
+                    dfriction_1_by_angle_along_n*uangle_along_n +
+                    dfriction_1_by_way_rate*uway_rate)
+                t167 = c_damping*t166
+                t168 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t169 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t170 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t171 = e_x*t168 + e_y*t169 + e_z*t170
+                t172 = (dangle_along_m*dfriction_1_by_angle_along_m +
+                    dangle_along_n*dfriction_1_by_angle_along_n +
+                    dangle_seen_1*dfriction_1_by_angle_seen_1 +
+                    dangle_seen_2*dfriction_1_by_angle_seen_2 +
+                    dangle_seen_3*dfriction_1_by_angle_seen_3 + dfriction_1_by_way*dway +
+                    dfriction_1_by_way_rate*dway_rate)
+                t173 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
+                t174 = -t173
+                t175 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t176 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t177 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t178 = e_x*t175 + e_y*t176 + e_z*t177
+                t179 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
+                t180 = -t179
+                t181 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t182 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t183 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t184 = e_x*t181 + e_y*t182 + e_z*t183
+                t185 = -xa_x + xb_x
+                t186 = -Ra_xy*e_z + Ra_xz*e_y
+                t187 = -xa_y + xb_y
+                t188 = -Ra_yy*e_z + Ra_yz*e_y
+                t189 = -xa_z + xb_z
+                t190 = -Ra_zy*e_z + Ra_zz*e_y
+                t191 = t185*t186 + t187*t188 + t189*t190
+                t192 = (dfriction_2_by_angle_along_m*uangle_along_m +
+                    dfriction_2_by_angle_along_n*uangle_along_n +
+                    dfriction_2_by_way_rate*uway_rate)
+                t193 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+                t194 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t195 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t196 = d_y*t194 - d_z*t195
+                t197 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t198 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t199 = d_y*t197 - d_z*t198
+                t200 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t201 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t202 = d_y*t200 - d_z*t201
+                t203 = n_x*t196 + n_y*t199 + n_z*t202
+                t204 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+                t205 = m_x*t196 + m_y*t199 + m_z*t202
+                t206 = -t193*t203 + t204*t205
+                t207 = t193*t193 + t204*t204
+                t208 = radius/t207
+                t209 = t206*t208
+                t210 = -dxa_x + dxb_x
+                t211 = -dxa_y + dxb_y
+                t212 = -dxa_z + dxb_z
+                t213 = (dangle_along_m*dfriction_2_by_angle_along_m +
+                    dangle_along_n*dfriction_2_by_angle_along_n +
+                    dangle_seen_1*dfriction_2_by_angle_seen_1 +
+                    dangle_seen_2*dfriction_2_by_angle_seen_2 +
+                    dangle_seen_3*dfriction_2_by_angle_seen_3 + dfriction_2_by_way*dway +
+                    dfriction_2_by_way_rate*dway_rate)
+                t214 = dangle_seen_1*m_x
+                t215 = dangle_seen_2*m_y
+                t216 = dangle_seen_3*m_z
+                t217 = dangle_seen_1*n_x
+                t218 = dangle_seen_2*n_y
+                t219 = dangle_seen_3*n_z
+                t220 = ((friction_2*radius*(-t193*(2*t214 + 2*t215 + 2*t216) - t204*(2*t217 +
+                    2*t218 + 2*t219)))/(t207*t207))
+                t221 = t214 + t215 + t216
+                t222 = t217 + t218 + t219
+                t223 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t224 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t225 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t226 = Ra_xz*t223 + Ra_yz*t224 + Ra_zz*t225 + Rb_xx*t170 + Rb_yx*t177 + Rb_zx*t183
+                t227 = Ra_xy*t223 + Ra_yy*t224 + Ra_zy*t225 + Rb_xx*t169 + Rb_yx*t176 + Rb_zx*t182
+                t228 = d_y*t226 - d_z*t227
+                t229 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t230 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t231 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t232 = Ra_xz*t229 + Ra_yz*t230 + Ra_zz*t231 + Rb_xy*t170 + Rb_yy*t177 + Rb_zy*t183
+                t233 = Ra_xy*t229 + Ra_yy*t230 + Ra_zy*t231 + Rb_xy*t169 + Rb_yy*t176 + Rb_zy*t182
+                t234 = d_y*t232 - d_z*t233
+                t235 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t236 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t237 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t238 = Ra_xz*t235 + Ra_yz*t236 + Ra_zz*t237 + Rb_xz*t170 + Rb_yz*t177 + Rb_zz*t183
+                t239 = Ra_xy*t235 + Ra_yy*t236 + Ra_zy*t237 + Rb_xz*t169 + Rb_yz*t176 + Rb_zz*t182
+                t240 = d_y*t238 - d_z*t239
+                t241 = friction_2*t208
+                t242 = Ra_xx*e_z - Ra_xz*e_x
+                t243 = Ra_yx*e_z - Ra_yz*e_x
+                t244 = Ra_zx*e_z - Ra_zz*e_x
+                t245 = t185*t242 + t187*t243 + t189*t244
+                t246 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t247 = -d_x*t194 + d_z*t246
+                t248 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t249 = -d_x*t197 + d_z*t248
+                t250 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t251 = -d_x*t200 + d_z*t250
+                t252 = n_x*t247 + n_y*t249 + n_z*t251
+                t253 = m_x*t247 + m_y*t249 + m_z*t251
+                t254 = -t193*t252 + t204*t253
+                t255 = t208*t254
+                t256 = Ra_xx*t223 + Ra_yx*t224 + Ra_zx*t225 + Rb_xx*t168 + Rb_yx*t175 + Rb_zx*t181
+                t257 = -d_x*t226 + d_z*t256
+                t258 = Ra_xx*t229 + Ra_yx*t230 + Ra_zx*t231 + Rb_xy*t168 + Rb_yy*t175 + Rb_zy*t181
+                t259 = -d_x*t232 + d_z*t258
+                t260 = Ra_xx*t235 + Ra_yx*t236 + Ra_zx*t237 + Rb_xz*t168 + Rb_yz*t175 + Rb_zz*t181
+                t261 = -d_x*t238 + d_z*t260
+                t262 = -Ra_xx*e_y + Ra_xy*e_x
+                t263 = -Ra_yx*e_y + Ra_yy*e_x
+                t264 = -Ra_zx*e_y + Ra_zy*e_x
+                t265 = t185*t262 + t187*t263 + t189*t264
+                t266 = d_x*t195 - d_y*t246
+                t267 = d_x*t198 - d_y*t248
+                t268 = d_x*t201 - d_y*t250
+                t269 = n_x*t266 + n_y*t267 + n_z*t268
+                t270 = m_x*t266 + m_y*t267 + m_z*t268
+                t271 = -t193*t269 + t204*t270
+                t272 = t208*t271
+                t273 = d_x*t227 - d_y*t256
+                t274 = d_x*t233 - d_y*t258
+                t275 = d_x*t239 - d_y*t260
+                t276 = -angle_seen_2*m_z + angle_seen_3*m_y
+                t277 = -angle_seen_2*n_z + angle_seen_3*n_y
+                t278 = -t193*t277 + t204*t276
+                t279 = c_damping*t192*t208
+                t280 = t208*t213
+                t281 = angle_seen_1*m_z - angle_seen_3*m_x
+                t282 = angle_seen_1*n_z - angle_seen_3*n_x
+                t283 = -t193*t282 + t204*t281
+                t284 = -angle_seen_1*m_y + angle_seen_2*m_x
+                t285 = -angle_seen_1*n_y + angle_seen_2*n_x
+                t286 = -t193*t285 + t204*t284
+                J[column] = c_stiffness*(-friction_1*t171 + t165*t172) + t165*t167
+                J[16 + column] = c_stiffness*(-friction_1*t178 + t172*t174) + t167*t174
+                J[32 + column] = c_stiffness*(-friction_1*t184 + t172*t180) + t167*t180
+                J[48 + column] = c_stiffness*(friction_1*t171 + t164*t172) + t164*t167
+                J[64 + column] = c_stiffness*(friction_1*t178 + t172*t173) + t167*t173
+                J[80 + column] = c_stiffness*(friction_1*t184 + t172*t179) + t167*t179
+                J[96 + column] = (c_damping*(t166*t191 + t192*t209) +
+                    c_stiffness*(friction_1*(t185*(e_y*t170 - e_z*t169) + t186*t210 +
+                    t187*(e_y*t177 - e_z*t176) + t188*t211 + t189*(e_y*t183 - e_z*t182) +
+                    t190*t212) + t172*t191 + t206*t220 + t209*t213 + t241*(-t193*(n_x*t228 +
+                    n_y*t234 + n_z*t240) - t203*t221 + t204*(m_x*t228 + m_y*t234 + m_z*t240) +
+                    t205*t222)))
+                J[112 + column] = (c_damping*(t166*t245 + t192*t255) +
+                    c_stiffness*(friction_1*(t185*(-e_x*t170 + e_z*t168) + t187*(-e_x*t177 +
+                    e_z*t175) + t189*(-e_x*t183 + e_z*t181) + t210*t242 + t211*t243 + t212*t244) +
+                    t172*t245 + t213*t255 + t220*t254 + t241*(-t193*(n_x*t257 + n_y*t259 +
+                    n_z*t261) + t204*(m_x*t257 + m_y*t259 + m_z*t261) - t221*t252 + t222*t253)))
+                J[128 + column] = (c_damping*(t166*t265 + t192*t272) +
+                    c_stiffness*(friction_1*(t185*(e_x*t169 - e_y*t168) + t187*(e_x*t176 -
+                    e_y*t175) + t189*(e_x*t182 - e_y*t181) + t210*t262 + t211*t263 + t212*t264) +
+                    t172*t265 + t213*t272 + t220*t271 + t241*(-t193*(n_x*t273 + n_y*t274 +
+                    n_z*t275) + t204*(m_x*t273 + m_y*t274 + m_z*t275) - t221*t269 + t222*t270)))
+                J[144 + column] = (c_stiffness*(t220*t278 + t241*(-t193*(-dangle_seen_2*n_z +
+                    dangle_seen_3*n_y) + t204*(-dangle_seen_2*m_z + dangle_seen_3*m_y) - t221*t277
+                    + t222*t276) + t278*t280) + t278*t279)
+                J[160 + column] = (c_stiffness*(t220*t283 + t241*(-t193*(dangle_seen_1*n_z -
+                    dangle_seen_3*n_x) + t204*(dangle_seen_1*m_z - dangle_seen_3*m_x) - t221*t282
+                    + t222*t281) + t280*t283) + t279*t283)
+                J[176 + column] = (c_stiffness*(t220*t286 + t241*(-t193*(-dangle_seen_1*n_y +
+                    dangle_seen_2*n_x) + t204*(-dangle_seen_1*m_y + dangle_seen_2*m_x) - t221*t285
+                    + t222*t284) + t280*t286) + t279*t286)
                 J[192 + column] = 0.0
                 J[208 + column] = 0.0
                 J[224 + column] = 0.0

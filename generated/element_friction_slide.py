@@ -49,7 +49,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (72, 0, 0, 0),
-              "column": (398, 0, 0, 0)}
+              "column": (227, 0, 0, 0)}
 
 
 @kernel_function
@@ -245,73 +245,95 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 utha_x = du[6]
                 utha_y = du[7]
                 utha_z = du[8]
-                t24 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
-                t25 = -t24
-                t26 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
-                t27 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
-                t28 = -xa_x + xb_x
-                t29 = -xa_y + xb_y
-                t30 = -xa_z + xb_z
-                t31 = (c_damping*dfriction_by_way_rate*(t24*(-uxa_x + uxb_x) + t26*(-uxa_y +
-                    uxb_y) + t27*(-uxa_z + uxb_z) + t28*(e_x*(Ra_xy*utha_z - Ra_xz*utha_y) +
-                    e_y*(-Ra_xx*utha_z + Ra_xz*utha_x) + e_z*(Ra_xx*utha_y - Ra_xy*utha_x)) +
-                    t29*(e_x*(Ra_yy*utha_z - Ra_yz*utha_y) + e_y*(-Ra_yx*utha_z + Ra_yz*utha_x) +
-                    e_z*(Ra_yx*utha_y - Ra_yy*utha_x)) + t30*(e_x*(Ra_zy*utha_z - Ra_zz*utha_y) +
-                    e_y*(-Ra_zx*utha_z + Ra_zz*utha_x) + e_z*(Ra_zx*utha_y - Ra_zy*utha_x))))
-                t32 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t33 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t34 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t35 = e_x*t32 + e_y*t33 + e_z*t34
-                t36 = -dxa_x + dxb_x
-                t37 = -dxa_y + dxb_y
-                t38 = -dxa_z + dxb_z
-                t39 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t40 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t41 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t42 = e_x*t39 + e_y*t40 + e_z*t41
-                t43 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t44 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t45 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t46 = e_x*t43 + e_y*t44 + e_z*t45
-                t47 = (dfriction_by_way*(t24*t36 + t26*t37 + t27*t38 + t28*t35 + t29*t42 +
-                    t30*t46) + dfriction_by_way_rate*(t28*(e_x*(-Oma_y*t34 + Oma_z*t33) +
-                    e_y*(Oma_x*t34 - Oma_z*t32) + e_z*(-Oma_x*t33 + Oma_y*t32)) +
-                    t29*(e_x*(-Oma_y*t41 + Oma_z*t40) + e_y*(Oma_x*t41 - Oma_z*t39) +
-                    e_z*(-Oma_x*t40 + Oma_y*t39)) + t30*(e_x*(-Oma_y*t45 + Oma_z*t44) +
-                    e_y*(Oma_x*t45 - Oma_z*t43) + e_z*(-Oma_x*t44 + Oma_y*t43)) + t35*(-va_x +
-                    vb_x) + t36*(e_x*(-Oma_y*Ra_xz + Oma_z*Ra_xy) + e_y*(Oma_x*Ra_xz -
-                    Oma_z*Ra_xx) + e_z*(-Oma_x*Ra_xy + Oma_y*Ra_xx)) + t37*(e_x*(-Oma_y*Ra_yz +
+                t24 = -dxa_x + dxb_x
+                t25 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
+                t26 = -dxa_y + dxb_y
+                t27 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
+                t28 = -dxa_z + dxb_z
+                t29 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
+                t30 = -xa_x + xb_x
+                t31 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t32 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t33 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t34 = e_x*t31 + e_y*t32 + e_z*t33
+                t35 = -xa_y + xb_y
+                t36 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t37 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t38 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t39 = e_x*t36 + e_y*t37 + e_z*t38
+                t40 = -xa_z + xb_z
+                t41 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t42 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t43 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t44 = e_x*t41 + e_y*t42 + e_z*t43
+                dway = t24*t25 + t26*t27 + t28*t29 + t30*t34 + t35*t39 + t40*t44
+                dway_rate = (t24*(e_x*(-Oma_y*Ra_xz + Oma_z*Ra_xy) + e_y*(Oma_x*Ra_xz -
+                    Oma_z*Ra_xx) + e_z*(-Oma_x*Ra_xy + Oma_y*Ra_xx)) + t26*(e_x*(-Oma_y*Ra_yz +
                     Oma_z*Ra_yy) + e_y*(Oma_x*Ra_yz - Oma_z*Ra_yx) + e_z*(-Oma_x*Ra_yy +
-                    Oma_y*Ra_yx)) + t38*(e_x*(-Oma_y*Ra_zz + Oma_z*Ra_zy) + e_y*(Oma_x*Ra_zz -
-                    Oma_z*Ra_zx) + e_z*(-Oma_x*Ra_zy + Oma_y*Ra_zx)) + t42*(-va_y + vb_y) +
-                    t46*(-va_z + vb_z)))
-                t48 = -t26
-                t49 = -t27
-                t50 = -Ra_xy*e_z + Ra_xz*e_y
-                t51 = -Ra_yy*e_z + Ra_yz*e_y
-                t52 = -Ra_zy*e_z + Ra_zz*e_y
-                t53 = t28*t50 + t29*t51 + t30*t52
-                t54 = Ra_xx*e_z - Ra_xz*e_x
-                t55 = Ra_yx*e_z - Ra_yz*e_x
-                t56 = Ra_zx*e_z - Ra_zz*e_x
-                t57 = t28*t54 + t29*t55 + t30*t56
-                t58 = -Ra_xx*e_y + Ra_xy*e_x
-                t59 = -Ra_yx*e_y + Ra_yy*e_x
-                t60 = -Ra_zx*e_y + Ra_zy*e_x
-                t61 = t28*t58 + t29*t59 + t30*t60
-                J[column] = c_stiffness*(-friction*t35 + t25*t47) + t25*t31
-                J[9 + column] = c_stiffness*(-friction*t42 + t47*t48) + t31*t48
-                J[18 + column] = c_stiffness*(-friction*t46 + t47*t49) + t31*t49
-                J[27 + column] = c_stiffness*(friction*t35 + t24*t47) + t24*t31
-                J[36 + column] = c_stiffness*(friction*t42 + t26*t47) + t26*t31
-                J[45 + column] = c_stiffness*(friction*t46 + t27*t47) + t27*t31
-                J[54 + column] = (c_stiffness*(friction*(t28*(e_y*t34 - e_z*t33) + t29*(e_y*t41 -
-                    e_z*t40) + t30*(e_y*t45 - e_z*t44) + t36*t50 + t37*t51 + t38*t52) + t47*t53) +
-                    t31*t53)
-                J[63 + column] = (c_stiffness*(friction*(t28*(-e_x*t34 + e_z*t32) + t29*(-e_x*t41
-                    + e_z*t39) + t30*(-e_x*t45 + e_z*t43) + t36*t54 + t37*t55 + t38*t56) +
-                    t47*t57) + t31*t57)
-                J[72 + column] = (c_stiffness*(friction*(t28*(e_x*t33 - e_y*t32) + t29*(e_x*t40 -
-                    e_y*t39) + t30*(e_x*t44 - e_y*t43) + t36*t58 + t37*t59 + t38*t60) + t47*t61) +
-                    t31*t61)
+                    Oma_y*Ra_yx)) + t28*(e_x*(-Oma_y*Ra_zz + Oma_z*Ra_zy) + e_y*(Oma_x*Ra_zz -
+                    Oma_z*Ra_zx) + e_z*(-Oma_x*Ra_zy + Oma_y*Ra_zx)) + t30*(e_x*(-Oma_y*t33 +
+                    Oma_z*t32) + e_y*(Oma_x*t33 - Oma_z*t31) + e_z*(-Oma_x*t32 + Oma_y*t31)) +
+                    t34*(-va_x + vb_x) + t35*(e_x*(-Oma_y*t38 + Oma_z*t37) + e_y*(Oma_x*t38 -
+                    Oma_z*t36) + e_z*(-Oma_x*t37 + Oma_y*t36)) + t39*(-va_y + vb_y) +
+                    t40*(e_x*(-Oma_y*t43 + Oma_z*t42) + e_y*(Oma_x*t43 - Oma_z*t41) +
+                    e_z*(-Oma_x*t42 + Oma_y*t41)) + t44*(-va_z + vb_z))
+                uway_rate = (t25*(-uxa_x + uxb_x) + t27*(-uxa_y + uxb_y) + t29*(-uxa_z + uxb_z) +
+                    t30*(e_x*(Ra_xy*utha_z - Ra_xz*utha_y) + e_y*(-Ra_xx*utha_z + Ra_xz*utha_x) +
+                    e_z*(Ra_xx*utha_y - Ra_xy*utha_x)) + t35*(e_x*(Ra_yy*utha_z - Ra_yz*utha_y) +
+                    e_y*(-Ra_yx*utha_z + Ra_yz*utha_x) + e_z*(Ra_yx*utha_y - Ra_yy*utha_x)) +
+                    t40*(e_x*(Ra_zy*utha_z - Ra_zz*utha_y) + e_y*(-Ra_zx*utha_z + Ra_zz*utha_x) +
+                    e_z*(Ra_zx*utha_y - Ra_zy*utha_x)))
+                t45 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
+                t46 = -t45
+                t47 = c_damping*dfriction_by_way_rate*uway_rate
+                t48 = dfriction_by_way*dway + dfriction_by_way_rate*dway_rate
+                t49 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t50 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t51 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t52 = e_x*t49 + e_y*t50 + e_z*t51
+                t53 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
+                t54 = -t53
+                t55 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t56 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t57 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t58 = e_x*t55 + e_y*t56 + e_z*t57
+                t59 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
+                t60 = -t59
+                t61 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t62 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t63 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t64 = e_x*t61 + e_y*t62 + e_z*t63
+                t65 = -xa_x + xb_x
+                t66 = -Ra_xy*e_z + Ra_xz*e_y
+                t67 = -xa_y + xb_y
+                t68 = -Ra_yy*e_z + Ra_yz*e_y
+                t69 = -xa_z + xb_z
+                t70 = -Ra_zy*e_z + Ra_zz*e_y
+                t71 = t65*t66 + t67*t68 + t69*t70
+                t72 = -dxa_x + dxb_x
+                t73 = -dxa_y + dxb_y
+                t74 = -dxa_z + dxb_z
+                t75 = Ra_xx*e_z - Ra_xz*e_x
+                t76 = Ra_yx*e_z - Ra_yz*e_x
+                t77 = Ra_zx*e_z - Ra_zz*e_x
+                t78 = t65*t75 + t67*t76 + t69*t77
+                t79 = -Ra_xx*e_y + Ra_xy*e_x
+                t80 = -Ra_yx*e_y + Ra_yy*e_x
+                t81 = -Ra_zx*e_y + Ra_zy*e_x
+                t82 = t65*t79 + t67*t80 + t69*t81
+                J[column] = c_stiffness*(-friction*t52 + t46*t48) + t46*t47
+                J[9 + column] = c_stiffness*(-friction*t58 + t48*t54) + t47*t54
+                J[18 + column] = c_stiffness*(-friction*t64 + t48*t60) + t47*t60
+                J[27 + column] = c_stiffness*(friction*t52 + t45*t48) + t45*t47
+                J[36 + column] = c_stiffness*(friction*t58 + t48*t53) + t47*t53
+                J[45 + column] = c_stiffness*(friction*t64 + t48*t59) + t47*t59
+                J[54 + column] = (c_stiffness*(friction*(t65*(e_y*t51 - e_z*t50) + t66*t72 +
+                    t67*(e_y*t57 - e_z*t56) + t68*t73 + t69*(e_y*t63 - e_z*t62) + t70*t74) +
+                    t48*t71) + t47*t71)
+                J[63 + column] = (c_stiffness*(friction*(t65*(-e_x*t51 + e_z*t49) + t67*(-e_x*t57
+                    + e_z*t55) + t69*(-e_x*t63 + e_z*t61) + t72*t75 + t73*t76 + t74*t77) +
+                    t48*t78) + t47*t78)
+                J[72 + column] = (c_stiffness*(friction*(t65*(e_x*t50 - e_y*t49) + t67*(e_x*t56 -
+                    e_y*t55) + t69*(e_x*t62 - e_y*t61) + t72*t79 + t73*t80 + t74*t81) + t48*t82) +
+                    t47*t82)
     return OK

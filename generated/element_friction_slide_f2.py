@@ -50,7 +50,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (72, 0, 0, 0),
-              "column": (398, 0, 0, 0)}
+              "column": (227, 0, 0, 0)}
 
 
 @kernel_function
@@ -268,75 +268,97 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 utha_x = du[6]
                 utha_y = du[7]
                 utha_z = du[8]
-                t31 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
-                t32 = -t31
-                t33 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
-                t34 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
-                t35 = -xa_x + xb_x
-                t36 = -xa_y + xb_y
-                t37 = -xa_z + xb_z
-                t38 = (c_damping*dfriction_by_way_rate*(t31*(-uxa_x + uxb_x) + t33*(-uxa_y +
-                    uxb_y) + t34*(-uxa_z + uxb_z) + t35*(e_x*(Ra_xy*utha_z - Ra_xz*utha_y) +
-                    e_y*(-Ra_xx*utha_z + Ra_xz*utha_x) + e_z*(Ra_xx*utha_y - Ra_xy*utha_x)) +
-                    t36*(e_x*(Ra_yy*utha_z - Ra_yz*utha_y) + e_y*(-Ra_yx*utha_z + Ra_yz*utha_x) +
-                    e_z*(Ra_yx*utha_y - Ra_yy*utha_x)) + t37*(e_x*(Ra_zy*utha_z - Ra_zz*utha_y) +
-                    e_y*(-Ra_zx*utha_z + Ra_zz*utha_x) + e_z*(Ra_zx*utha_y - Ra_zy*utha_x))))
-                t39 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t40 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t41 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t42 = e_x*t39 + e_y*t40 + e_z*t41
-                t43 = -dxa_x + dxb_x
-                t44 = -dxa_y + dxb_y
-                t45 = -dxa_z + dxb_z
-                t46 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t47 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t48 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t49 = e_x*t46 + e_y*t47 + e_z*t48
-                t50 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t51 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t52 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t53 = e_x*t50 + e_y*t51 + e_z*t52
-                t54 = (dfriction_by_way*(t31*t43 + t33*t44 + t34*t45 + t35*t42 + t36*t49 +
-                    t37*t53) + dfriction_by_way_rate*(t35*(e_x*(-Oma_y*t41 + Oma_z*t40) +
-                    e_y*(Oma_x*t41 - Oma_z*t39) + e_z*(-Oma_x*t40 + Oma_y*t39)) +
-                    t36*(e_x*(-Oma_y*t48 + Oma_z*t47) + e_y*(Oma_x*t48 - Oma_z*t46) +
-                    e_z*(-Oma_x*t47 + Oma_y*t46)) + t37*(e_x*(-Oma_y*t52 + Oma_z*t51) +
-                    e_y*(Oma_x*t52 - Oma_z*t50) + e_z*(-Oma_x*t51 + Oma_y*t50)) + t42*(-va_x +
-                    vb_x) + t43*(e_x*(-Oma_y*Ra_xz + Oma_z*Ra_xy) + e_y*(Oma_x*Ra_xz -
-                    Oma_z*Ra_xx) + e_z*(-Oma_x*Ra_xy + Oma_y*Ra_xx)) + t44*(e_x*(-Oma_y*Ra_yz +
+                t31 = -dxa_x + dxb_x
+                t32 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
+                t33 = -dxa_y + dxb_y
+                t34 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
+                t35 = -dxa_z + dxb_z
+                t36 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
+                t37 = -xa_x + xb_x
+                t38 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t39 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t40 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t41 = e_x*t38 + e_y*t39 + e_z*t40
+                t42 = -xa_y + xb_y
+                t43 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t44 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t45 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t46 = e_x*t43 + e_y*t44 + e_z*t45
+                t47 = -xa_z + xb_z
+                t48 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t49 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t50 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t51 = e_x*t48 + e_y*t49 + e_z*t50
+                dway = t31*t32 + t33*t34 + t35*t36 + t37*t41 + t42*t46 + t47*t51
+                dway_rate = (t31*(e_x*(-Oma_y*Ra_xz + Oma_z*Ra_xy) + e_y*(Oma_x*Ra_xz -
+                    Oma_z*Ra_xx) + e_z*(-Oma_x*Ra_xy + Oma_y*Ra_xx)) + t33*(e_x*(-Oma_y*Ra_yz +
                     Oma_z*Ra_yy) + e_y*(Oma_x*Ra_yz - Oma_z*Ra_yx) + e_z*(-Oma_x*Ra_yy +
-                    Oma_y*Ra_yx)) + t45*(e_x*(-Oma_y*Ra_zz + Oma_z*Ra_zy) + e_y*(Oma_x*Ra_zz -
-                    Oma_z*Ra_zx) + e_z*(-Oma_x*Ra_zy + Oma_y*Ra_zx)) + t49*(-va_y + vb_y) +
-                    t53*(-va_z + vb_z)))
-                t55 = -t33
-                t56 = -t34
-                t57 = -Ra_xy*e_z + Ra_xz*e_y
-                t58 = -Ra_yy*e_z + Ra_yz*e_y
-                t59 = -Ra_zy*e_z + Ra_zz*e_y
-                t60 = t35*t57 + t36*t58 + t37*t59
-                t61 = Ra_xx*e_z - Ra_xz*e_x
-                t62 = Ra_yx*e_z - Ra_yz*e_x
-                t63 = Ra_zx*e_z - Ra_zz*e_x
-                t64 = t35*t61 + t36*t62 + t37*t63
-                t65 = -Ra_xx*e_y + Ra_xy*e_x
-                t66 = -Ra_yx*e_y + Ra_yy*e_x
-                t67 = -Ra_zx*e_y + Ra_zy*e_x
-                t68 = t35*t65 + t36*t66 + t37*t67
-                J[column] = c_stiffness*(-friction*t42 + t32*t54) + t32*t38
-                J[11 + column] = c_stiffness*(-friction*t49 + t54*t55) + t38*t55
-                J[22 + column] = c_stiffness*(-friction*t53 + t54*t56) + t38*t56
-                J[33 + column] = c_stiffness*(friction*t42 + t31*t54) + t31*t38
-                J[44 + column] = c_stiffness*(friction*t49 + t33*t54) + t33*t38
-                J[55 + column] = c_stiffness*(friction*t53 + t34*t54) + t34*t38
-                J[66 + column] = (c_stiffness*(friction*(t35*(e_y*t41 - e_z*t40) + t36*(e_y*t48 -
-                    e_z*t47) + t37*(e_y*t52 - e_z*t51) + t43*t57 + t44*t58 + t45*t59) + t54*t60) +
-                    t38*t60)
-                J[77 + column] = (c_stiffness*(friction*(t35*(-e_x*t41 + e_z*t39) + t36*(-e_x*t48
-                    + e_z*t46) + t37*(-e_x*t52 + e_z*t50) + t43*t61 + t44*t62 + t45*t63) +
-                    t54*t64) + t38*t64)
-                J[88 + column] = (c_stiffness*(friction*(t35*(e_x*t40 - e_y*t39) + t36*(e_x*t47 -
-                    e_y*t46) + t37*(e_x*t51 - e_y*t50) + t43*t65 + t44*t66 + t45*t67) + t54*t68) +
-                    t38*t68)
+                    Oma_y*Ra_yx)) + t35*(e_x*(-Oma_y*Ra_zz + Oma_z*Ra_zy) + e_y*(Oma_x*Ra_zz -
+                    Oma_z*Ra_zx) + e_z*(-Oma_x*Ra_zy + Oma_y*Ra_zx)) + t37*(e_x*(-Oma_y*t40 +
+                    Oma_z*t39) + e_y*(Oma_x*t40 - Oma_z*t38) + e_z*(-Oma_x*t39 + Oma_y*t38)) +
+                    t41*(-va_x + vb_x) + t42*(e_x*(-Oma_y*t45 + Oma_z*t44) + e_y*(Oma_x*t45 -
+                    Oma_z*t43) + e_z*(-Oma_x*t44 + Oma_y*t43)) + t46*(-va_y + vb_y) +
+                    t47*(e_x*(-Oma_y*t50 + Oma_z*t49) + e_y*(Oma_x*t50 - Oma_z*t48) +
+                    e_z*(-Oma_x*t49 + Oma_y*t48)) + t51*(-va_z + vb_z))
+                uway_rate = (t32*(-uxa_x + uxb_x) + t34*(-uxa_y + uxb_y) + t36*(-uxa_z + uxb_z) +
+                    t37*(e_x*(Ra_xy*utha_z - Ra_xz*utha_y) + e_y*(-Ra_xx*utha_z + Ra_xz*utha_x) +
+                    e_z*(Ra_xx*utha_y - Ra_xy*utha_x)) + t42*(e_x*(Ra_yy*utha_z - Ra_yz*utha_y) +
+                    e_y*(-Ra_yx*utha_z + Ra_yz*utha_x) + e_z*(Ra_yx*utha_y - Ra_yy*utha_x)) +
+                    t47*(e_x*(Ra_zy*utha_z - Ra_zz*utha_y) + e_y*(-Ra_zx*utha_z + Ra_zz*utha_x) +
+                    e_z*(Ra_zx*utha_y - Ra_zy*utha_x)))
+                t52 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
+                t53 = -t52
+                t54 = c_damping*dfriction_by_way_rate*uway_rate
+                t55 = dfriction_by_way*dway + dfriction_by_way_rate*dway_rate
+                t56 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t57 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t58 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t59 = e_x*t56 + e_y*t57 + e_z*t58
+                t60 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
+                t61 = -t60
+                t62 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t63 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t64 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t65 = e_x*t62 + e_y*t63 + e_z*t64
+                t66 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
+                t67 = -t66
+                t68 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t69 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t70 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t71 = e_x*t68 + e_y*t69 + e_z*t70
+                t72 = -xa_x + xb_x
+                t73 = -Ra_xy*e_z + Ra_xz*e_y
+                t74 = -xa_y + xb_y
+                t75 = -Ra_yy*e_z + Ra_yz*e_y
+                t76 = -xa_z + xb_z
+                t77 = -Ra_zy*e_z + Ra_zz*e_y
+                t78 = t72*t73 + t74*t75 + t76*t77
+                t79 = -dxa_x + dxb_x
+                t80 = -dxa_y + dxb_y
+                t81 = -dxa_z + dxb_z
+                t82 = Ra_xx*e_z - Ra_xz*e_x
+                t83 = Ra_yx*e_z - Ra_yz*e_x
+                t84 = Ra_zx*e_z - Ra_zz*e_x
+                t85 = t72*t82 + t74*t83 + t76*t84
+                t86 = -Ra_xx*e_y + Ra_xy*e_x
+                t87 = -Ra_yx*e_y + Ra_yy*e_x
+                t88 = -Ra_zx*e_y + Ra_zy*e_x
+                t89 = t72*t86 + t74*t87 + t76*t88
+                J[column] = c_stiffness*(-friction*t59 + t53*t55) + t53*t54
+                J[11 + column] = c_stiffness*(-friction*t65 + t55*t61) + t54*t61
+                J[22 + column] = c_stiffness*(-friction*t71 + t55*t67) + t54*t67
+                J[33 + column] = c_stiffness*(friction*t59 + t52*t55) + t52*t54
+                J[44 + column] = c_stiffness*(friction*t65 + t55*t60) + t54*t60
+                J[55 + column] = c_stiffness*(friction*t71 + t55*t66) + t54*t66
+                J[66 + column] = (c_stiffness*(friction*(t72*(e_y*t58 - e_z*t57) + t73*t79 +
+                    t74*(e_y*t64 - e_z*t63) + t75*t80 + t76*(e_y*t70 - e_z*t69) + t77*t81) +
+                    t55*t78) + t54*t78)
+                J[77 + column] = (c_stiffness*(friction*(t72*(-e_x*t58 + e_z*t56) + t74*(-e_x*t64
+                    + e_z*t62) + t76*(-e_x*t70 + e_z*t68) + t79*t82 + t80*t83 + t81*t84) +
+                    t55*t85) + t54*t85)
+                J[88 + column] = (c_stiffness*(friction*(t72*(e_x*t57 - e_y*t56) + t74*(e_x*t63 -
+                    e_y*t62) + t76*(e_x*t69 - e_y*t68) + t79*t86 + t80*t87 + t81*t88) + t55*t89) +
+                    t54*t89)
                 J[99 + column] = 0.0
                 J[110 + column] = 0.0
             t700 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z

@@ -50,7 +50,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (72, 0, 0, 0),
-              "column": (398, 0, 0, 0)}
+              "column": (227, 0, 0, 0)}
 
 
 @kernel_function
@@ -295,75 +295,97 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 utha_x = du[6]
                 utha_y = du[7]
                 utha_z = du[8]
-                t32 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
-                t33 = -t32
-                t34 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
-                t35 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
-                t36 = -xa_x + xb_x
-                t37 = -xa_y + xb_y
-                t38 = -xa_z + xb_z
-                t39 = (c_damping*dfriction_by_way_rate*(t32*(-uxa_x + uxb_x) + t34*(-uxa_y +
-                    uxb_y) + t35*(-uxa_z + uxb_z) + t36*(e_x*(Ra_xy*utha_z - Ra_xz*utha_y) +
-                    e_y*(-Ra_xx*utha_z + Ra_xz*utha_x) + e_z*(Ra_xx*utha_y - Ra_xy*utha_x)) +
-                    t37*(e_x*(Ra_yy*utha_z - Ra_yz*utha_y) + e_y*(-Ra_yx*utha_z + Ra_yz*utha_x) +
-                    e_z*(Ra_yx*utha_y - Ra_yy*utha_x)) + t38*(e_x*(Ra_zy*utha_z - Ra_zz*utha_y) +
-                    e_y*(-Ra_zx*utha_z + Ra_zz*utha_x) + e_z*(Ra_zx*utha_y - Ra_zy*utha_x))))
-                t40 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t41 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t42 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t43 = e_x*t40 + e_y*t41 + e_z*t42
-                t44 = -dxa_x + dxb_x
-                t45 = -dxa_y + dxb_y
-                t46 = -dxa_z + dxb_z
-                t47 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t48 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t49 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t50 = e_x*t47 + e_y*t48 + e_z*t49
-                t51 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t52 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t53 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t54 = e_x*t51 + e_y*t52 + e_z*t53
-                t55 = (dfriction_by_way*(t32*t44 + t34*t45 + t35*t46 + t36*t43 + t37*t50 +
-                    t38*t54) + dfriction_by_way_rate*(t36*(e_x*(-Oma_y*t42 + Oma_z*t41) +
-                    e_y*(Oma_x*t42 - Oma_z*t40) + e_z*(-Oma_x*t41 + Oma_y*t40)) +
-                    t37*(e_x*(-Oma_y*t49 + Oma_z*t48) + e_y*(Oma_x*t49 - Oma_z*t47) +
-                    e_z*(-Oma_x*t48 + Oma_y*t47)) + t38*(e_x*(-Oma_y*t53 + Oma_z*t52) +
-                    e_y*(Oma_x*t53 - Oma_z*t51) + e_z*(-Oma_x*t52 + Oma_y*t51)) + t43*(-va_x +
-                    vb_x) + t44*(e_x*(-Oma_y*Ra_xz + Oma_z*Ra_xy) + e_y*(Oma_x*Ra_xz -
-                    Oma_z*Ra_xx) + e_z*(-Oma_x*Ra_xy + Oma_y*Ra_xx)) + t45*(e_x*(-Oma_y*Ra_yz +
+                t32 = -dxa_x + dxb_x
+                t33 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
+                t34 = -dxa_y + dxb_y
+                t35 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
+                t36 = -dxa_z + dxb_z
+                t37 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
+                t38 = -xa_x + xb_x
+                t39 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t40 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t41 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t42 = e_x*t39 + e_y*t40 + e_z*t41
+                t43 = -xa_y + xb_y
+                t44 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t45 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t46 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t47 = e_x*t44 + e_y*t45 + e_z*t46
+                t48 = -xa_z + xb_z
+                t49 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t50 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t51 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t52 = e_x*t49 + e_y*t50 + e_z*t51
+                dway = t32*t33 + t34*t35 + t36*t37 + t38*t42 + t43*t47 + t48*t52
+                dway_rate = (t32*(e_x*(-Oma_y*Ra_xz + Oma_z*Ra_xy) + e_y*(Oma_x*Ra_xz -
+                    Oma_z*Ra_xx) + e_z*(-Oma_x*Ra_xy + Oma_y*Ra_xx)) + t34*(e_x*(-Oma_y*Ra_yz +
                     Oma_z*Ra_yy) + e_y*(Oma_x*Ra_yz - Oma_z*Ra_yx) + e_z*(-Oma_x*Ra_yy +
-                    Oma_y*Ra_yx)) + t46*(e_x*(-Oma_y*Ra_zz + Oma_z*Ra_zy) + e_y*(Oma_x*Ra_zz -
-                    Oma_z*Ra_zx) + e_z*(-Oma_x*Ra_zy + Oma_y*Ra_zx)) + t50*(-va_y + vb_y) +
-                    t54*(-va_z + vb_z)))
-                t56 = -t34
-                t57 = -t35
-                t58 = -Ra_xy*e_z + Ra_xz*e_y
-                t59 = -Ra_yy*e_z + Ra_yz*e_y
-                t60 = -Ra_zy*e_z + Ra_zz*e_y
-                t61 = t36*t58 + t37*t59 + t38*t60
-                t62 = Ra_xx*e_z - Ra_xz*e_x
-                t63 = Ra_yx*e_z - Ra_yz*e_x
-                t64 = Ra_zx*e_z - Ra_zz*e_x
-                t65 = t36*t62 + t37*t63 + t38*t64
-                t66 = -Ra_xx*e_y + Ra_xy*e_x
-                t67 = -Ra_yx*e_y + Ra_yy*e_x
-                t68 = -Ra_zx*e_y + Ra_zy*e_x
-                t69 = t36*t66 + t37*t67 + t38*t68
-                J[column] = c_stiffness*(-friction*t43 + t33*t55) + t33*t39
-                J[14 + column] = c_stiffness*(-friction*t50 + t55*t56) + t39*t56
-                J[28 + column] = c_stiffness*(-friction*t54 + t55*t57) + t39*t57
-                J[42 + column] = c_stiffness*(friction*t43 + t32*t55) + t32*t39
-                J[56 + column] = c_stiffness*(friction*t50 + t34*t55) + t34*t39
-                J[70 + column] = c_stiffness*(friction*t54 + t35*t55) + t35*t39
-                J[84 + column] = (c_stiffness*(friction*(t36*(e_y*t42 - e_z*t41) + t37*(e_y*t49 -
-                    e_z*t48) + t38*(e_y*t53 - e_z*t52) + t44*t58 + t45*t59 + t46*t60) + t55*t61) +
-                    t39*t61)
-                J[98 + column] = (c_stiffness*(friction*(t36*(-e_x*t42 + e_z*t40) + t37*(-e_x*t49
-                    + e_z*t47) + t38*(-e_x*t53 + e_z*t51) + t44*t62 + t45*t63 + t46*t64) +
-                    t55*t65) + t39*t65)
-                J[112 + column] = (c_stiffness*(friction*(t36*(e_x*t41 - e_y*t40) + t37*(e_x*t48 -
-                    e_y*t47) + t38*(e_x*t52 - e_y*t51) + t44*t66 + t45*t67 + t46*t68) + t55*t69) +
-                    t39*t69)
+                    Oma_y*Ra_yx)) + t36*(e_x*(-Oma_y*Ra_zz + Oma_z*Ra_zy) + e_y*(Oma_x*Ra_zz -
+                    Oma_z*Ra_zx) + e_z*(-Oma_x*Ra_zy + Oma_y*Ra_zx)) + t38*(e_x*(-Oma_y*t41 +
+                    Oma_z*t40) + e_y*(Oma_x*t41 - Oma_z*t39) + e_z*(-Oma_x*t40 + Oma_y*t39)) +
+                    t42*(-va_x + vb_x) + t43*(e_x*(-Oma_y*t46 + Oma_z*t45) + e_y*(Oma_x*t46 -
+                    Oma_z*t44) + e_z*(-Oma_x*t45 + Oma_y*t44)) + t47*(-va_y + vb_y) +
+                    t48*(e_x*(-Oma_y*t51 + Oma_z*t50) + e_y*(Oma_x*t51 - Oma_z*t49) +
+                    e_z*(-Oma_x*t50 + Oma_y*t49)) + t52*(-va_z + vb_z))
+                uway_rate = (t33*(-uxa_x + uxb_x) + t35*(-uxa_y + uxb_y) + t37*(-uxa_z + uxb_z) +
+                    t38*(e_x*(Ra_xy*utha_z - Ra_xz*utha_y) + e_y*(-Ra_xx*utha_z + Ra_xz*utha_x) +
+                    e_z*(Ra_xx*utha_y - Ra_xy*utha_x)) + t43*(e_x*(Ra_yy*utha_z - Ra_yz*utha_y) +
+                    e_y*(-Ra_yx*utha_z + Ra_yz*utha_x) + e_z*(Ra_yx*utha_y - Ra_yy*utha_x)) +
+                    t48*(e_x*(Ra_zy*utha_z - Ra_zz*utha_y) + e_y*(-Ra_zx*utha_z + Ra_zz*utha_x) +
+                    e_z*(Ra_zx*utha_y - Ra_zy*utha_x)))
+                t53 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
+                t54 = -t53
+                t55 = c_damping*dfriction_by_way_rate*uway_rate
+                t56 = dfriction_by_way*dway + dfriction_by_way_rate*dway_rate
+                t57 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t58 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t59 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t60 = e_x*t57 + e_y*t58 + e_z*t59
+                t61 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
+                t62 = -t61
+                t63 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t64 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t65 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t66 = e_x*t63 + e_y*t64 + e_z*t65
+                t67 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
+                t68 = -t67
+                t69 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t70 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t71 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t72 = e_x*t69 + e_y*t70 + e_z*t71
+                t73 = -xa_x + xb_x
+                t74 = -Ra_xy*e_z + Ra_xz*e_y
+                t75 = -xa_y + xb_y
+                t76 = -Ra_yy*e_z + Ra_yz*e_y
+                t77 = -xa_z + xb_z
+                t78 = -Ra_zy*e_z + Ra_zz*e_y
+                t79 = t73*t74 + t75*t76 + t77*t78
+                t80 = -dxa_x + dxb_x
+                t81 = -dxa_y + dxb_y
+                t82 = -dxa_z + dxb_z
+                t83 = Ra_xx*e_z - Ra_xz*e_x
+                t84 = Ra_yx*e_z - Ra_yz*e_x
+                t85 = Ra_zx*e_z - Ra_zz*e_x
+                t86 = t73*t83 + t75*t84 + t77*t85
+                t87 = -Ra_xx*e_y + Ra_xy*e_x
+                t88 = -Ra_yx*e_y + Ra_yy*e_x
+                t89 = -Ra_zx*e_y + Ra_zy*e_x
+                t90 = t73*t87 + t75*t88 + t77*t89
+                J[column] = c_stiffness*(-friction*t60 + t54*t56) + t54*t55
+                J[14 + column] = c_stiffness*(-friction*t66 + t56*t62) + t55*t62
+                J[28 + column] = c_stiffness*(-friction*t72 + t56*t68) + t55*t68
+                J[42 + column] = c_stiffness*(friction*t60 + t53*t56) + t53*t55
+                J[56 + column] = c_stiffness*(friction*t66 + t56*t61) + t55*t61
+                J[70 + column] = c_stiffness*(friction*t72 + t56*t67) + t55*t67
+                J[84 + column] = (c_stiffness*(friction*(t73*(e_y*t59 - e_z*t58) + t74*t80 +
+                    t75*(e_y*t65 - e_z*t64) + t76*t81 + t77*(e_y*t71 - e_z*t70) + t78*t82) +
+                    t56*t79) + t55*t79)
+                J[98 + column] = (c_stiffness*(friction*(t73*(-e_x*t59 + e_z*t57) + t75*(-e_x*t65
+                    + e_z*t63) + t77*(-e_x*t71 + e_z*t69) + t80*t83 + t81*t84 + t82*t85) +
+                    t56*t86) + t55*t86)
+                J[112 + column] = (c_stiffness*(friction*(t73*(e_x*t58 - e_y*t57) + t75*(e_x*t64 -
+                    e_y*t63) + t77*(e_x*t70 - e_y*t69) + t80*t87 + t81*t88 + t82*t89) + t56*t90) +
+                    t55*t90)
                 J[126 + column] = 0.0
                 J[140 + column] = 0.0
                 J[154 + column] = 0.0

@@ -48,7 +48,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (63, 0, 0, 0),
-              "column": (366, 0, 0, 0)}
+              "column": (315, 0, 0, 0)}
 
 
 @kernel_function
@@ -285,75 +285,109 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = du[3]
                 uthb_y = du[4]
                 uthb_z = du[5]
-                t36 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t37 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t38 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t39 = t36*utha_x + t37*utha_y + t38*utha_z - uthb_x
-                t40 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t41 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t42 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t43 = t40*utha_x + t41*utha_y + t42*utha_z - uthb_y
-                t44 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t45 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t46 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t47 = t44*utha_x + t45*utha_y + t46*utha_z - uthb_z
-                t48 = (dfriction_1_by_spin_1*t39 + dfriction_1_by_spin_2*t43 +
-                    dfriction_1_by_spin_3*t47)
-                t49 = (dfriction_2_by_spin_1*t39 + dfriction_2_by_spin_2*t43 +
-                    dfriction_2_by_spin_3*t47)
-                t50 = (dfriction_3_by_spin_1*t39 + dfriction_3_by_spin_2*t43 +
-                    dfriction_3_by_spin_3*t47)
-                t51 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t52 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t53 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t54 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t55 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t56 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t57 = Ra_xx*t51 + Ra_yx*t52 + Ra_zx*t53 + Rb_xx*t54 + Rb_yx*t55 + Rb_zx*t56
-                t58 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t59 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t60 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t61 = Ra_xx*t58 + Ra_yx*t59 + Ra_zx*t60 + Rb_xy*t54 + Rb_yy*t55 + Rb_zy*t56
-                t62 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t63 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t64 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t65 = Ra_xx*t62 + Ra_yx*t63 + Ra_zx*t64 + Rb_xz*t54 + Rb_yz*t55 + Rb_zz*t56
-                t66 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t67 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t68 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t69 = Ra_xy*t51 + Ra_yy*t52 + Ra_zy*t53 + Rb_xx*t66 + Rb_yx*t67 + Rb_zx*t68
-                t70 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t71 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t72 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t73 = Ra_xz*t51 + Ra_yz*t52 + Ra_zz*t53 + Rb_xx*t70 + Rb_yx*t71 + Rb_zx*t72
-                t74 = Oma_x*t57 + Oma_y*t69 + Oma_z*t73
-                t75 = Ra_xy*t58 + Ra_yy*t59 + Ra_zy*t60 + Rb_xy*t66 + Rb_yy*t67 + Rb_zy*t68
-                t76 = Ra_xz*t58 + Ra_yz*t59 + Ra_zz*t60 + Rb_xy*t70 + Rb_yy*t71 + Rb_zy*t72
-                t77 = Oma_x*t61 + Oma_y*t75 + Oma_z*t76
-                t78 = Ra_xy*t62 + Ra_yy*t63 + Ra_zy*t64 + Rb_xz*t66 + Rb_yz*t67 + Rb_zz*t68
-                t79 = Ra_xz*t62 + Ra_yz*t63 + Ra_zz*t64 + Rb_xz*t70 + Rb_yz*t71 + Rb_zz*t72
-                t80 = Oma_x*t65 + Oma_y*t78 + Oma_z*t79
-                t81 = psia_x*t57 + psia_y*t69 + psia_z*t73 + t39
-                t82 = psia_x*t61 + psia_y*t75 + psia_z*t76 + t43
-                t83 = psia_x*t65 + psia_y*t78 + psia_z*t79 + t47
-                t84 = (dfriction_1_by_spin_1*t74 + dfriction_1_by_spin_2*t77 +
-                    dfriction_1_by_spin_3*t80 + dfriction_1_by_turned_1*t81 +
-                    dfriction_1_by_turned_2*t82 + dfriction_1_by_turned_3*t83)
-                t85 = (dfriction_2_by_spin_1*t74 + dfriction_2_by_spin_2*t77 +
-                    dfriction_2_by_spin_3*t80 + dfriction_2_by_turned_1*t81 +
-                    dfriction_2_by_turned_2*t82 + dfriction_2_by_turned_3*t83)
-                t86 = (dfriction_3_by_spin_1*t74 + dfriction_3_by_spin_2*t77 +
-                    dfriction_3_by_spin_3*t80 + dfriction_3_by_turned_1*t81 +
-                    dfriction_3_by_turned_2*t82 + dfriction_3_by_turned_3*t83)
-                J[column] = (c_damping*(t36*t48 + t40*t49 + t44*t50) + c_stiffness*(friction_1*t57
-                    + friction_2*t61 + friction_3*t65 + t36*t84 + t40*t85 + t44*t86))
-                J[6 + column] = (c_damping*(t37*t48 + t41*t49 + t45*t50) +
-                    c_stiffness*(friction_1*t69 + friction_2*t75 + friction_3*t78 + t37*t84 +
-                    t41*t85 + t45*t86))
-                J[12 + column] = (c_damping*(t38*t48 + t42*t49 + t46*t50) +
-                    c_stiffness*(friction_1*t73 + friction_2*t76 + friction_3*t79 + t38*t84 +
-                    t42*t85 + t46*t86))
-                J[18 + column] = -c_damping*t48 - c_stiffness*t84
-                J[24 + column] = -c_damping*t49 - c_stiffness*t85
-                J[30 + column] = -c_damping*t50 - c_stiffness*t86
+                t36 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t37 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t38 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t39 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t40 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t41 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t42 = Ra_xx*t36 + Ra_yx*t37 + Ra_zx*t38 + Rb_xx*t39 + Rb_yx*t40 + Rb_zx*t41
+                t43 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t44 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t45 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t46 = Ra_xy*t36 + Ra_yy*t37 + Ra_zy*t38 + Rb_xx*t43 + Rb_yx*t44 + Rb_zx*t45
+                t47 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t48 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t49 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t50 = Ra_xz*t36 + Ra_yz*t37 + Ra_zz*t38 + Rb_xx*t47 + Rb_yx*t48 + Rb_zx*t49
+                t51 = (utha_x*(Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx) + utha_y*(Ra_xy*Rb_xx +
+                    Ra_yy*Rb_yx + Ra_zy*Rb_zx) + utha_z*(Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx)
+                    - uthb_x)
+                t52 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t53 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t54 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t55 = Ra_xx*t52 + Ra_yx*t53 + Ra_zx*t54 + Rb_xy*t39 + Rb_yy*t40 + Rb_zy*t41
+                t56 = Ra_xy*t52 + Ra_yy*t53 + Ra_zy*t54 + Rb_xy*t43 + Rb_yy*t44 + Rb_zy*t45
+                t57 = Ra_xz*t52 + Ra_yz*t53 + Ra_zz*t54 + Rb_xy*t47 + Rb_yy*t48 + Rb_zy*t49
+                t58 = (utha_x*(Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy) + utha_y*(Ra_xy*Rb_xy +
+                    Ra_yy*Rb_yy + Ra_zy*Rb_zy) + utha_z*(Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy)
+                    - uthb_y)
+                t59 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t60 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t61 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t62 = Ra_xx*t59 + Ra_yx*t60 + Ra_zx*t61 + Rb_xz*t39 + Rb_yz*t40 + Rb_zz*t41
+                t63 = Ra_xy*t59 + Ra_yy*t60 + Ra_zy*t61 + Rb_xz*t43 + Rb_yz*t44 + Rb_zz*t45
+                t64 = Ra_xz*t59 + Ra_yz*t60 + Ra_zz*t61 + Rb_xz*t47 + Rb_yz*t48 + Rb_zz*t49
+                t65 = (utha_x*(Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz) + utha_y*(Ra_xy*Rb_xz +
+                    Ra_yy*Rb_yz + Ra_zy*Rb_zz) + utha_z*(Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz)
+                    - uthb_z)
+                dturned_1 = psia_x*t42 + psia_y*t46 + psia_z*t50 + t51
+                dturned_2 = psia_x*t55 + psia_y*t56 + psia_z*t57 + t58
+                dturned_3 = psia_x*t62 + psia_y*t63 + psia_z*t64 + t65
+                dspin_1 = Oma_x*t42 + Oma_y*t46 + Oma_z*t50
+                uspin_1 = t51
+                dspin_2 = Oma_x*t55 + Oma_y*t56 + Oma_z*t57
+                uspin_2 = t58
+                dspin_3 = Oma_x*t62 + Oma_y*t63 + Oma_z*t64
+                uspin_3 = t65
+                t66 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t67 = (dfriction_1_by_spin_1*uspin_1 + dfriction_1_by_spin_2*uspin_2 +
+                    dfriction_1_by_spin_3*uspin_3)
+                t68 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t69 = (dfriction_2_by_spin_1*uspin_1 + dfriction_2_by_spin_2*uspin_2 +
+                    dfriction_2_by_spin_3*uspin_3)
+                t70 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t71 = (dfriction_3_by_spin_1*uspin_1 + dfriction_3_by_spin_2*uspin_2 +
+                    dfriction_3_by_spin_3*uspin_3)
+                t72 = (dfriction_1_by_spin_1*dspin_1 + dfriction_1_by_spin_2*dspin_2 +
+                    dfriction_1_by_spin_3*dspin_3 + dfriction_1_by_turned_1*dturned_1 +
+                    dfriction_1_by_turned_2*dturned_2 + dfriction_1_by_turned_3*dturned_3)
+                t73 = (dfriction_2_by_spin_1*dspin_1 + dfriction_2_by_spin_2*dspin_2 +
+                    dfriction_2_by_spin_3*dspin_3 + dfriction_2_by_turned_1*dturned_1 +
+                    dfriction_2_by_turned_2*dturned_2 + dfriction_2_by_turned_3*dturned_3)
+                t74 = (dfriction_3_by_spin_1*dspin_1 + dfriction_3_by_spin_2*dspin_2 +
+                    dfriction_3_by_spin_3*dspin_3 + dfriction_3_by_turned_1*dturned_1 +
+                    dfriction_3_by_turned_2*dturned_2 + dfriction_3_by_turned_3*dturned_3)
+                t75 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t76 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t77 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t78 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t79 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t80 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t81 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t82 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t83 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t84 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t85 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t86 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t87 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t88 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t89 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t90 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t91 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t92 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t93 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t94 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t95 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t96 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t97 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t98 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                J[column] = (c_damping*(t66*t67 + t68*t69 + t70*t71) +
+                    c_stiffness*(friction_1*(Ra_xx*t75 + Ra_yx*t76 + Ra_zx*t77 + Rb_xx*t78 +
+                    Rb_yx*t79 + Rb_zx*t80) + friction_2*(Ra_xx*t81 + Ra_yx*t82 + Ra_zx*t83 +
+                    Rb_xy*t78 + Rb_yy*t79 + Rb_zy*t80) + friction_3*(Ra_xx*t84 + Ra_yx*t85 +
+                    Ra_zx*t86 + Rb_xz*t78 + Rb_yz*t79 + Rb_zz*t80) + t66*t72 + t68*t73 + t70*t74))
+                J[6 + column] = (c_damping*(t67*t87 + t69*t88 + t71*t89) +
+                    c_stiffness*(friction_1*(Ra_xy*t75 + Ra_yy*t76 + Ra_zy*t77 + Rb_xx*t90 +
+                    Rb_yx*t91 + Rb_zx*t92) + friction_2*(Ra_xy*t81 + Ra_yy*t82 + Ra_zy*t83 +
+                    Rb_xy*t90 + Rb_yy*t91 + Rb_zy*t92) + friction_3*(Ra_xy*t84 + Ra_yy*t85 +
+                    Ra_zy*t86 + Rb_xz*t90 + Rb_yz*t91 + Rb_zz*t92) + t72*t87 + t73*t88 + t74*t89))
+                J[12 + column] = (c_damping*(t67*t93 + t69*t94 + t71*t95) +
+                    c_stiffness*(friction_1*(Ra_xz*t75 + Ra_yz*t76 + Ra_zz*t77 + Rb_xx*t96 +
+                    Rb_yx*t97 + Rb_zx*t98) + friction_2*(Ra_xz*t81 + Ra_yz*t82 + Ra_zz*t83 +
+                    Rb_xy*t96 + Rb_yy*t97 + Rb_zy*t98) + friction_3*(Ra_xz*t84 + Ra_yz*t85 +
+                    Ra_zz*t86 + Rb_xz*t96 + Rb_yz*t97 + Rb_zz*t98) + t72*t93 + t73*t94 + t74*t95))
+                J[18 + column] = -c_damping*t67 - c_stiffness*t72
+                J[24 + column] = -c_damping*t69 - c_stiffness*t73
+                J[30 + column] = -c_damping*t71 - c_stiffness*t74
     return OK

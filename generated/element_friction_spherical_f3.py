@@ -49,7 +49,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (63, 0, 0, 0),
-              "column": (366, 0, 0, 0)}
+              "column": (315, 0, 0, 0)}
 
 
 @kernel_function
@@ -324,77 +324,112 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = du[3]
                 uthb_y = du[4]
                 uthb_z = du[5]
-                t44 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t45 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t46 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t47 = t44*utha_x + t45*utha_y + t46*utha_z - uthb_x
-                t48 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t49 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t50 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t51 = t48*utha_x + t49*utha_y + t50*utha_z - uthb_y
-                t52 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t53 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t54 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t55 = t52*utha_x + t53*utha_y + t54*utha_z - uthb_z
-                t56 = (dfriction_1_by_spin_1*t47 + dfriction_1_by_spin_2*t51 +
-                    dfriction_1_by_spin_3*t55)
-                t57 = (dfriction_2_by_spin_1*t47 + dfriction_2_by_spin_2*t51 +
-                    dfriction_2_by_spin_3*t55)
-                t58 = (dfriction_3_by_spin_1*t47 + dfriction_3_by_spin_2*t51 +
-                    dfriction_3_by_spin_3*t55)
-                t59 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t60 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t61 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t62 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t63 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t64 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t65 = Ra_xx*t59 + Ra_yx*t60 + Ra_zx*t61 + Rb_xx*t62 + Rb_yx*t63 + Rb_zx*t64
-                t66 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t67 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t68 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t69 = Ra_xx*t66 + Ra_yx*t67 + Ra_zx*t68 + Rb_xy*t62 + Rb_yy*t63 + Rb_zy*t64
-                t70 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t71 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t72 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t73 = Ra_xx*t70 + Ra_yx*t71 + Ra_zx*t72 + Rb_xz*t62 + Rb_yz*t63 + Rb_zz*t64
-                t74 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t75 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t76 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t77 = Ra_xy*t59 + Ra_yy*t60 + Ra_zy*t61 + Rb_xx*t74 + Rb_yx*t75 + Rb_zx*t76
-                t78 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t79 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t80 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t81 = Ra_xz*t59 + Ra_yz*t60 + Ra_zz*t61 + Rb_xx*t78 + Rb_yx*t79 + Rb_zx*t80
-                t82 = Oma_x*t65 + Oma_y*t77 + Oma_z*t81
-                t83 = Ra_xy*t66 + Ra_yy*t67 + Ra_zy*t68 + Rb_xy*t74 + Rb_yy*t75 + Rb_zy*t76
-                t84 = Ra_xz*t66 + Ra_yz*t67 + Ra_zz*t68 + Rb_xy*t78 + Rb_yy*t79 + Rb_zy*t80
-                t85 = Oma_x*t69 + Oma_y*t83 + Oma_z*t84
-                t86 = Ra_xy*t70 + Ra_yy*t71 + Ra_zy*t72 + Rb_xz*t74 + Rb_yz*t75 + Rb_zz*t76
-                t87 = Ra_xz*t70 + Ra_yz*t71 + Ra_zz*t72 + Rb_xz*t78 + Rb_yz*t79 + Rb_zz*t80
-                t88 = Oma_x*t73 + Oma_y*t86 + Oma_z*t87
-                t89 = psia_x*t65 + psia_y*t77 + psia_z*t81 + t47
-                t90 = psia_x*t69 + psia_y*t83 + psia_z*t84 + t51
-                t91 = psia_x*t73 + psia_y*t86 + psia_z*t87 + t55
-                t92 = (dfriction_1_by_spin_1*t82 + dfriction_1_by_spin_2*t85 +
-                    dfriction_1_by_spin_3*t88 + dfriction_1_by_turned_1*t89 +
-                    dfriction_1_by_turned_2*t90 + dfriction_1_by_turned_3*t91)
-                t93 = (dfriction_2_by_spin_1*t82 + dfriction_2_by_spin_2*t85 +
-                    dfriction_2_by_spin_3*t88 + dfriction_2_by_turned_1*t89 +
-                    dfriction_2_by_turned_2*t90 + dfriction_2_by_turned_3*t91)
-                t94 = (dfriction_3_by_spin_1*t82 + dfriction_3_by_spin_2*t85 +
-                    dfriction_3_by_spin_3*t88 + dfriction_3_by_turned_1*t89 +
-                    dfriction_3_by_turned_2*t90 + dfriction_3_by_turned_3*t91)
-                J[column] = (c_damping*(t44*t56 + t48*t57 + t52*t58) + c_stiffness*(friction_1*t65
-                    + friction_2*t69 + friction_3*t73 + t44*t92 + t48*t93 + t52*t94))
-                J[9 + column] = (c_damping*(t45*t56 + t49*t57 + t53*t58) +
-                    c_stiffness*(friction_1*t77 + friction_2*t83 + friction_3*t86 + t45*t92 +
-                    t49*t93 + t53*t94))
-                J[18 + column] = (c_damping*(t46*t56 + t50*t57 + t54*t58) +
-                    c_stiffness*(friction_1*t81 + friction_2*t84 + friction_3*t87 + t46*t92 +
-                    t50*t93 + t54*t94))
-                J[27 + column] = -c_damping*t56 - c_stiffness*t92
-                J[36 + column] = -c_damping*t57 - c_stiffness*t93
-                J[45 + column] = -c_damping*t58 - c_stiffness*t94
+                t44 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t45 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t46 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t47 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t48 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t49 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t50 = Ra_xx*t44 + Ra_yx*t45 + Ra_zx*t46 + Rb_xx*t47 + Rb_yx*t48 + Rb_zx*t49
+                t51 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t52 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t53 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t54 = Ra_xy*t44 + Ra_yy*t45 + Ra_zy*t46 + Rb_xx*t51 + Rb_yx*t52 + Rb_zx*t53
+                t55 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t56 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t57 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t58 = Ra_xz*t44 + Ra_yz*t45 + Ra_zz*t46 + Rb_xx*t55 + Rb_yx*t56 + Rb_zx*t57
+                t59 = (utha_x*(Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx) + utha_y*(Ra_xy*Rb_xx +
+                    Ra_yy*Rb_yx + Ra_zy*Rb_zx) + utha_z*(Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx)
+                    - uthb_x)
+                t60 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t61 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t62 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t63 = Ra_xx*t60 + Ra_yx*t61 + Ra_zx*t62 + Rb_xy*t47 + Rb_yy*t48 + Rb_zy*t49
+                t64 = Ra_xy*t60 + Ra_yy*t61 + Ra_zy*t62 + Rb_xy*t51 + Rb_yy*t52 + Rb_zy*t53
+                t65 = Ra_xz*t60 + Ra_yz*t61 + Ra_zz*t62 + Rb_xy*t55 + Rb_yy*t56 + Rb_zy*t57
+                t66 = (utha_x*(Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy) + utha_y*(Ra_xy*Rb_xy +
+                    Ra_yy*Rb_yy + Ra_zy*Rb_zy) + utha_z*(Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy)
+                    - uthb_y)
+                t67 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t68 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t69 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t70 = Ra_xx*t67 + Ra_yx*t68 + Ra_zx*t69 + Rb_xz*t47 + Rb_yz*t48 + Rb_zz*t49
+                t71 = Ra_xy*t67 + Ra_yy*t68 + Ra_zy*t69 + Rb_xz*t51 + Rb_yz*t52 + Rb_zz*t53
+                t72 = Ra_xz*t67 + Ra_yz*t68 + Ra_zz*t69 + Rb_xz*t55 + Rb_yz*t56 + Rb_zz*t57
+                t73 = (utha_x*(Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz) + utha_y*(Ra_xy*Rb_xz +
+                    Ra_yy*Rb_yz + Ra_zy*Rb_zz) + utha_z*(Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz)
+                    - uthb_z)
+                dturned_1 = psia_x*t50 + psia_y*t54 + psia_z*t58 + t59
+                dturned_2 = psia_x*t63 + psia_y*t64 + psia_z*t65 + t66
+                dturned_3 = psia_x*t70 + psia_y*t71 + psia_z*t72 + t73
+                dspin_1 = Oma_x*t50 + Oma_y*t54 + Oma_z*t58
+                uspin_1 = t59
+                dspin_2 = Oma_x*t63 + Oma_y*t64 + Oma_z*t65
+                uspin_2 = t66
+                dspin_3 = Oma_x*t70 + Oma_y*t71 + Oma_z*t72
+                uspin_3 = t73
+                t74 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t75 = (dfriction_1_by_spin_1*uspin_1 + dfriction_1_by_spin_2*uspin_2 +
+                    dfriction_1_by_spin_3*uspin_3)
+                t76 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t77 = (dfriction_2_by_spin_1*uspin_1 + dfriction_2_by_spin_2*uspin_2 +
+                    dfriction_2_by_spin_3*uspin_3)
+                t78 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t79 = (dfriction_3_by_spin_1*uspin_1 + dfriction_3_by_spin_2*uspin_2 +
+                    dfriction_3_by_spin_3*uspin_3)
+                t80 = (dfriction_1_by_spin_1*dspin_1 + dfriction_1_by_spin_2*dspin_2 +
+                    dfriction_1_by_spin_3*dspin_3 + dfriction_1_by_turned_1*dturned_1 +
+                    dfriction_1_by_turned_2*dturned_2 + dfriction_1_by_turned_3*dturned_3)
+                t81 = (dfriction_2_by_spin_1*dspin_1 + dfriction_2_by_spin_2*dspin_2 +
+                    dfriction_2_by_spin_3*dspin_3 + dfriction_2_by_turned_1*dturned_1 +
+                    dfriction_2_by_turned_2*dturned_2 + dfriction_2_by_turned_3*dturned_3)
+                t82 = (dfriction_3_by_spin_1*dspin_1 + dfriction_3_by_spin_2*dspin_2 +
+                    dfriction_3_by_spin_3*dspin_3 + dfriction_3_by_turned_1*dturned_1 +
+                    dfriction_3_by_turned_2*dturned_2 + dfriction_3_by_turned_3*dturned_3)
+                t83 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t84 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t85 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t86 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t87 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t88 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t89 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t90 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t91 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t92 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t93 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t94 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t95 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t96 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t97 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t98 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t99 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t100 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t101 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t102 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t103 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t104 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t105 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t106 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                J[column] = (c_damping*(t74*t75 + t76*t77 + t78*t79) +
+                    c_stiffness*(friction_1*(Ra_xx*t83 + Ra_yx*t84 + Ra_zx*t85 + Rb_xx*t86 +
+                    Rb_yx*t87 + Rb_zx*t88) + friction_2*(Ra_xx*t89 + Ra_yx*t90 + Ra_zx*t91 +
+                    Rb_xy*t86 + Rb_yy*t87 + Rb_zy*t88) + friction_3*(Ra_xx*t92 + Ra_yx*t93 +
+                    Ra_zx*t94 + Rb_xz*t86 + Rb_yz*t87 + Rb_zz*t88) + t74*t80 + t76*t81 + t78*t82))
+                J[9 + column] = (c_damping*(t75*t95 + t77*t96 + t79*t97) +
+                    c_stiffness*(friction_1*(Ra_xy*t83 + Ra_yy*t84 + Ra_zy*t85 + Rb_xx*t98 +
+                    Rb_yx*t99 + Rb_zx*t100) + friction_2*(Ra_xy*t89 + Ra_yy*t90 + Ra_zy*t91 +
+                    Rb_xy*t98 + Rb_yy*t99 + Rb_zy*t100) + friction_3*(Ra_xy*t92 + Ra_yy*t93 +
+                    Ra_zy*t94 + Rb_xz*t98 + Rb_yz*t99 + Rb_zz*t100) + t80*t95 + t81*t96 + t82*t97))
+                J[18 + column] = (c_damping*(t101*t75 + t102*t77 + t103*t79) +
+                    c_stiffness*(friction_1*(Ra_xz*t83 + Ra_yz*t84 + Ra_zz*t85 + Rb_xx*t104 +
+                    Rb_yx*t105 + Rb_zx*t106) + friction_2*(Ra_xz*t89 + Ra_yz*t90 + Ra_zz*t91 +
+                    Rb_xy*t104 + Rb_yy*t105 + Rb_zy*t106) + friction_3*(Ra_xz*t92 + Ra_yz*t93 +
+                    Ra_zz*t94 + Rb_xz*t104 + Rb_yz*t105 + Rb_zz*t106) + t101*t80 + t102*t81 +
+                    t103*t82))
+                J[27 + column] = -c_damping*t75 - c_stiffness*t80
+                J[36 + column] = -c_damping*t77 - c_stiffness*t81
+                J[45 + column] = -c_damping*t79 - c_stiffness*t82
                 J[54 + column] = 0.0
                 J[63 + column] = 0.0
                 J[72 + column] = 0.0

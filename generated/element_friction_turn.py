@@ -51,7 +51,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (158, 0, 0, 0),
-              "column": (635, 0, 0, 0)}
+              "column": (513, 0, 0, 0)}
 
 
 @kernel_function
@@ -345,131 +345,179 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = du[3]
                 uthb_y = du[4]
                 uthb_z = du[5]
-                t68 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-                t69 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t70 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t71 = d_y*t69 - d_z*t70
-                t72 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t73 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t74 = d_y*t72 - d_z*t73
-                t75 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t76 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t77 = d_y*t75 - d_z*t76
-                t78 = n_x*t71 + n_y*t74 + n_z*t77
-                t79 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-                t80 = m_x*t71 + m_y*t74 + m_z*t77
-                t81 = -t68*t78 + t79*t80
-                t82 = t68*t68 + t79*t79
-                t83 = 1/t82
-                t84 = -d_x*utha_y + d_y*utha_x
-                t85 = d_x*utha_z - d_z*utha_x
-                t86 = -d_y*utha_z + d_z*utha_y
-                t87 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t88 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t89 = d_x*t88 + d_y*t73 + d_z*t72
-                t90 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t91 = d_x*t90 + d_y*t76 + d_z*t75
-                t92 = t69*t84 + t70*t85 + t86*t87 + t89*uthb_z - t91*uthb_y
-                t93 = d_x*t87 + d_y*t70 + d_z*t69
-                t94 = t72*t84 + t73*t85 + t86*t88 + t91*uthb_x - t93*uthb_z
-                t95 = t75*t84 + t76*t85 + t86*t90 - t89*uthb_x + t93*uthb_y
-                t96 = (c_damping*t83*(dfriction_by_angle_along_m*(m_x*t92 + m_y*t94 + m_z*t95) +
-                    dfriction_by_angle_along_n*(n_x*t92 + n_y*t94 + n_z*t95)))
-                t97 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t98 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t99 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t100 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t101 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t102 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t103 = Ra_xx*t97 + Ra_yx*t98 + Ra_zx*t99 + Rb_xx*t100 + Rb_yx*t101 + Rb_zx*t102
-                t104 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t105 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t106 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t107 = Ra_xy*t97 + Ra_yy*t98 + Ra_zy*t99 + Rb_xx*t104 + Rb_yx*t105 + Rb_zx*t106
-                t108 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t109 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t110 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t111 = Ra_xz*t97 + Ra_yz*t98 + Ra_zz*t99 + Rb_xx*t108 + Rb_yx*t109 + Rb_zx*t110
-                t112 = d_x*t103 + d_y*t107 + d_z*t111
-                t113 = m_x*t112
-                t114 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t115 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t116 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t117 = Ra_xx*t114 + Ra_yx*t115 + Ra_zx*t116 + Rb_xy*t100 + Rb_yy*t101 + Rb_zy*t102
-                t118 = Ra_xy*t114 + Ra_yy*t115 + Ra_zy*t116 + Rb_xy*t104 + Rb_yy*t105 + Rb_zy*t106
-                t119 = Ra_xz*t114 + Ra_yz*t115 + Ra_zz*t116 + Rb_xy*t108 + Rb_yy*t109 + Rb_zy*t110
-                t120 = d_x*t117 + d_y*t118 + d_z*t119
-                t121 = m_y*t120
-                t122 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t123 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t124 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t125 = Ra_xx*t122 + Ra_yx*t123 + Ra_zx*t124 + Rb_xz*t100 + Rb_yz*t101 + Rb_zz*t102
-                t126 = Ra_xy*t122 + Ra_yy*t123 + Ra_zy*t124 + Rb_xz*t104 + Rb_yz*t105 + Rb_zz*t106
-                t127 = Ra_xz*t122 + Ra_yz*t123 + Ra_zz*t124 + Rb_xz*t108 + Rb_yz*t109 + Rb_zz*t110
-                t128 = d_x*t125 + d_y*t126 + d_z*t127
-                t129 = m_z*t128
-                t130 = n_x*t112
-                t131 = n_y*t120
-                t132 = n_z*t128
-                t133 = ((friction*(-t68*(2*t113 + 2*t121 + 2*t129) - t79*(2*t130 + 2*t131 +
-                    2*t132)))/(t82*t82))
-                t134 = d_y*t111 - d_z*t107
-                t135 = d_y*t119 - d_z*t118
-                t136 = d_y*t127 - d_z*t126
-                t137 = t113 + t121 + t129
-                t138 = t130 + t131 + t132
-                t139 = friction*t83
-                t140 = Oma_x*d_y - Oma_y*d_x
-                t141 = -Oma_x*d_z + Oma_z*d_x
-                t142 = Oma_y*d_z - Oma_z*d_y
-                t143 = -Omb_y*t128 + Omb_z*t120 + t103*t142 + t107*t141 + t111*t140
-                t144 = Omb_x*t128 - Omb_z*t112 + t117*t142 + t118*t141 + t119*t140
-                t145 = -Omb_x*t120 + Omb_y*t112 + t125*t142 + t126*t141 + t127*t140
-                t146 = (t83*(dfriction_by_angle_along_m*(m_x*t143 + m_y*t144 + m_z*t145) +
-                    dfriction_by_angle_along_n*(n_x*t143 + n_y*t144 + n_z*t145) +
-                    dfriction_by_angle_seen_1*t112 + dfriction_by_angle_seen_2*t120 +
-                    dfriction_by_angle_seen_3*t128))
-                t147 = -d_x*t69 + d_z*t87
-                t148 = -d_x*t72 + d_z*t88
-                t149 = -d_x*t75 + d_z*t90
-                t150 = n_x*t147 + n_y*t148 + n_z*t149
-                t151 = m_x*t147 + m_y*t148 + m_z*t149
-                t152 = -t150*t68 + t151*t79
-                t153 = -d_x*t111 + d_z*t103
-                t154 = -d_x*t119 + d_z*t117
-                t155 = -d_x*t127 + d_z*t125
-                t156 = d_x*t70 - d_y*t87
-                t157 = d_x*t73 - d_y*t88
-                t158 = d_x*t76 - d_y*t90
-                t159 = n_x*t156 + n_y*t157 + n_z*t158
-                t160 = m_x*t156 + m_y*t157 + m_z*t158
-                t161 = -t159*t68 + t160*t79
-                t162 = d_x*t107 - d_y*t103
-                t163 = d_x*t118 - d_y*t117
-                t164 = d_x*t126 - d_y*t125
-                t165 = -angle_seen_2*m_z + angle_seen_3*m_y
-                t166 = -angle_seen_2*n_z + angle_seen_3*n_y
-                t167 = t165*t79 - t166*t68
-                t168 = angle_seen_1*m_z - angle_seen_3*m_x
-                t169 = angle_seen_1*n_z - angle_seen_3*n_x
-                t170 = t168*t79 - t169*t68
-                t171 = -angle_seen_1*m_y + angle_seen_2*m_x
-                t172 = -angle_seen_1*n_y + angle_seen_2*n_x
-                t173 = t171*t79 - t172*t68
-                J[column] = (c_stiffness*(t133*t81 + t139*(-t137*t78 + t138*t80 - t68*(n_x*t134 +
-                    n_y*t135 + n_z*t136) + t79*(m_x*t134 + m_y*t135 + m_z*t136)) + t146*t81) +
-                    t81*t96)
-                J[6 + column] = (c_stiffness*(t133*t152 + t139*(-t137*t150 + t138*t151 -
-                    t68*(n_x*t153 + n_y*t154 + n_z*t155) + t79*(m_x*t153 + m_y*t154 + m_z*t155)) +
-                    t146*t152) + t152*t96)
-                J[12 + column] = (c_stiffness*(t133*t161 + t139*(-t137*t159 + t138*t160 -
-                    t68*(n_x*t162 + n_y*t163 + n_z*t164) + t79*(m_x*t162 + m_y*t163 + m_z*t164)) +
-                    t146*t161) + t161*t96)
-                J[18 + column] = (c_stiffness*(t133*t167 + t139*(-t137*t166 + t138*t165 -
-                    t68*(n_y*t128 - n_z*t120) + t79*(m_y*t128 - m_z*t120)) + t146*t167) + t167*t96)
-                J[24 + column] = (c_stiffness*(t133*t170 + t139*(-t137*t169 + t138*t168 -
-                    t68*(-n_x*t128 + n_z*t112) + t79*(-m_x*t128 + m_z*t112)) + t146*t170) +
-                    t170*t96)
-                J[30 + column] = (c_stiffness*(t133*t173 + t139*(-t137*t172 + t138*t171 -
-                    t68*(n_x*t120 - n_y*t112) + t79*(m_x*t120 - m_y*t112)) + t146*t173) + t173*t96)
+                t68 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t69 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t70 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t71 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t72 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t73 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t74 = Ra_xx*t68 + Ra_yx*t69 + Ra_zx*t70 + Rb_xx*t71 + Rb_yx*t72 + Rb_zx*t73
+                t75 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t76 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t77 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t78 = Ra_xy*t68 + Ra_yy*t69 + Ra_zy*t70 + Rb_xx*t75 + Rb_yx*t76 + Rb_zx*t77
+                t79 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t80 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t81 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t82 = Ra_xz*t68 + Ra_yz*t69 + Ra_zz*t70 + Rb_xx*t79 + Rb_yx*t80 + Rb_zx*t81
+                t83 = d_x*t74 + d_y*t78 + d_z*t82
+                t84 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t85 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t86 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t87 = Ra_xx*t84 + Ra_yx*t85 + Ra_zx*t86 + Rb_xy*t71 + Rb_yy*t72 + Rb_zy*t73
+                t88 = Ra_xy*t84 + Ra_yy*t85 + Ra_zy*t86 + Rb_xy*t75 + Rb_yy*t76 + Rb_zy*t77
+                t89 = Ra_xz*t84 + Ra_yz*t85 + Ra_zz*t86 + Rb_xy*t79 + Rb_yy*t80 + Rb_zy*t81
+                t90 = d_x*t87 + d_y*t88 + d_z*t89
+                t91 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t92 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t93 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t94 = Ra_xx*t91 + Ra_yx*t92 + Ra_zx*t93 + Rb_xz*t71 + Rb_yz*t72 + Rb_zz*t73
+                t95 = Ra_xy*t91 + Ra_yy*t92 + Ra_zy*t93 + Rb_xz*t75 + Rb_yz*t76 + Rb_zz*t77
+                t96 = Ra_xz*t91 + Ra_yz*t92 + Ra_zz*t93 + Rb_xz*t79 + Rb_yz*t80 + Rb_zz*t81
+                t97 = d_x*t94 + d_y*t95 + d_z*t96
+                t98 = Oma_x*d_y - Oma_y*d_x
+                t99 = -Oma_x*d_z + Oma_z*d_x
+                t100 = Oma_y*d_z - Oma_z*d_y
+                t101 = -Omb_y*t97 + Omb_z*t90 + t100*t74 + t78*t99 + t82*t98
+                t102 = Omb_x*t97 - Omb_z*t83 + t100*t87 + t88*t99 + t89*t98
+                t103 = -Omb_x*t90 + Omb_y*t83 + t100*t94 + t95*t99 + t96*t98
+                t104 = -d_x*utha_y + d_y*utha_x
+                t105 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t106 = d_x*utha_z - d_z*utha_x
+                t107 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t108 = -d_y*utha_z + d_z*utha_y
+                t109 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t110 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t111 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t112 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t113 = d_x*t110 + d_y*t111 + d_z*t112
+                t114 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t115 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t116 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t117 = d_x*t114 + d_y*t115 + d_z*t116
+                t118 = t104*t105 + t106*t107 + t108*t109 + t113*uthb_z - t117*uthb_y
+                t119 = d_x*t109 + d_y*t107 + d_z*t105
+                t120 = t104*t112 + t106*t111 + t108*t110 + t117*uthb_x - t119*uthb_z
+                t121 = t104*t116 + t106*t115 + t108*t114 - t113*uthb_x + t119*uthb_y
+                dangle_seen_1 = t83
+                dangle_seen_2 = t90
+                dangle_seen_3 = t97
+                dangle_along_n = n_x*t101 + n_y*t102 + n_z*t103
+                uangle_along_n = n_x*t118 + n_y*t120 + n_z*t121
+                dangle_along_m = m_x*t101 + m_y*t102 + m_z*t103
+                uangle_along_m = m_x*t118 + m_y*t120 + m_z*t121
+                t122 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+                t123 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t124 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t125 = d_y*t123 - d_z*t124
+                t126 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t127 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t128 = d_y*t126 - d_z*t127
+                t129 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t130 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t131 = d_y*t129 - d_z*t130
+                t132 = n_x*t125 + n_y*t128 + n_z*t131
+                t133 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+                t134 = m_x*t125 + m_y*t128 + m_z*t131
+                t135 = -t122*t132 + t133*t134
+                t136 = t122*t122 + t133*t133
+                t137 = 1/t136
+                t138 = (c_damping*t137*(dfriction_by_angle_along_m*uangle_along_m +
+                    dfriction_by_angle_along_n*uangle_along_n))
+                t139 = (t137*(dangle_along_m*dfriction_by_angle_along_m +
+                    dangle_along_n*dfriction_by_angle_along_n +
+                    dangle_seen_1*dfriction_by_angle_seen_1 +
+                    dangle_seen_2*dfriction_by_angle_seen_2 +
+                    dangle_seen_3*dfriction_by_angle_seen_3))
+                t140 = dangle_seen_1*m_x
+                t141 = dangle_seen_2*m_y
+                t142 = dangle_seen_3*m_z
+                t143 = dangle_seen_1*n_x
+                t144 = dangle_seen_2*n_y
+                t145 = dangle_seen_3*n_z
+                t146 = ((friction*(-t122*(2*t140 + 2*t141 + 2*t142) - t133*(2*t143 + 2*t144 +
+                    2*t145)))/(t136*t136))
+                t147 = t140 + t141 + t142
+                t148 = t143 + t144 + t145
+                t149 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t150 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t151 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t152 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t153 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t154 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t155 = Ra_xz*t149 + Ra_yz*t150 + Ra_zz*t151 + Rb_xx*t152 + Rb_yx*t153 + Rb_zx*t154
+                t156 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t157 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t158 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t159 = Ra_xy*t149 + Ra_yy*t150 + Ra_zy*t151 + Rb_xx*t156 + Rb_yx*t157 + Rb_zx*t158
+                t160 = d_y*t155 - d_z*t159
+                t161 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t162 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t163 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t164 = Ra_xz*t161 + Ra_yz*t162 + Ra_zz*t163 + Rb_xy*t152 + Rb_yy*t153 + Rb_zy*t154
+                t165 = Ra_xy*t161 + Ra_yy*t162 + Ra_zy*t163 + Rb_xy*t156 + Rb_yy*t157 + Rb_zy*t158
+                t166 = d_y*t164 - d_z*t165
+                t167 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t168 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t169 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t170 = Ra_xz*t167 + Ra_yz*t168 + Ra_zz*t169 + Rb_xz*t152 + Rb_yz*t153 + Rb_zz*t154
+                t171 = Ra_xy*t167 + Ra_yy*t168 + Ra_zy*t169 + Rb_xz*t156 + Rb_yz*t157 + Rb_zz*t158
+                t172 = d_y*t170 - d_z*t171
+                t173 = friction*t137
+                t174 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t175 = -d_x*t123 + d_z*t174
+                t176 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t177 = -d_x*t126 + d_z*t176
+                t178 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t179 = -d_x*t129 + d_z*t178
+                t180 = n_x*t175 + n_y*t177 + n_z*t179
+                t181 = m_x*t175 + m_y*t177 + m_z*t179
+                t182 = -t122*t180 + t133*t181
+                t183 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t184 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t185 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t186 = Ra_xx*t149 + Ra_yx*t150 + Ra_zx*t151 + Rb_xx*t183 + Rb_yx*t184 + Rb_zx*t185
+                t187 = -d_x*t155 + d_z*t186
+                t188 = Ra_xx*t161 + Ra_yx*t162 + Ra_zx*t163 + Rb_xy*t183 + Rb_yy*t184 + Rb_zy*t185
+                t189 = -d_x*t164 + d_z*t188
+                t190 = Ra_xx*t167 + Ra_yx*t168 + Ra_zx*t169 + Rb_xz*t183 + Rb_yz*t184 + Rb_zz*t185
+                t191 = -d_x*t170 + d_z*t190
+                t192 = d_x*t124 - d_y*t174
+                t193 = d_x*t127 - d_y*t176
+                t194 = d_x*t130 - d_y*t178
+                t195 = n_x*t192 + n_y*t193 + n_z*t194
+                t196 = m_x*t192 + m_y*t193 + m_z*t194
+                t197 = -t122*t195 + t133*t196
+                t198 = d_x*t159 - d_y*t186
+                t199 = d_x*t165 - d_y*t188
+                t200 = d_x*t171 - d_y*t190
+                t201 = -angle_seen_2*m_z + angle_seen_3*m_y
+                t202 = -angle_seen_2*n_z + angle_seen_3*n_y
+                t203 = -t122*t202 + t133*t201
+                t204 = angle_seen_1*m_z - angle_seen_3*m_x
+                t205 = angle_seen_1*n_z - angle_seen_3*n_x
+                t206 = -t122*t205 + t133*t204
+                t207 = -angle_seen_1*m_y + angle_seen_2*m_x
+                t208 = -angle_seen_1*n_y + angle_seen_2*n_x
+                t209 = -t122*t208 + t133*t207
+                J[column] = (c_stiffness*(t135*t139 + t135*t146 + t173*(-t122*(n_x*t160 + n_y*t166
+                    + n_z*t172) - t132*t147 + t133*(m_x*t160 + m_y*t166 + m_z*t172) + t134*t148))
+                    + t135*t138)
+                J[6 + column] = (c_stiffness*(t139*t182 + t146*t182 + t173*(-t122*(n_x*t187 +
+                    n_y*t189 + n_z*t191) + t133*(m_x*t187 + m_y*t189 + m_z*t191) - t147*t180 +
+                    t148*t181)) + t138*t182)
+                J[12 + column] = (c_stiffness*(t139*t197 + t146*t197 + t173*(-t122*(n_x*t198 +
+                    n_y*t199 + n_z*t200) + t133*(m_x*t198 + m_y*t199 + m_z*t200) - t147*t195 +
+                    t148*t196)) + t138*t197)
+                J[18 + column] = (c_stiffness*(t139*t203 + t146*t203 +
+                    t173*(-t122*(-dangle_seen_2*n_z + dangle_seen_3*n_y) +
+                    t133*(-dangle_seen_2*m_z + dangle_seen_3*m_y) - t147*t202 + t148*t201)) +
+                    t138*t203)
+                J[24 + column] = (c_stiffness*(t139*t206 + t146*t206 +
+                    t173*(-t122*(dangle_seen_1*n_z - dangle_seen_3*n_x) + t133*(dangle_seen_1*m_z
+                    - dangle_seen_3*m_x) - t147*t205 + t148*t204)) + t138*t206)
+                J[30 + column] = (c_stiffness*(t139*t209 + t146*t209 +
+                    t173*(-t122*(-dangle_seen_1*n_y + dangle_seen_2*n_x) +
+                    t133*(-dangle_seen_1*m_y + dangle_seen_2*m_x) - t147*t208 + t148*t207)) +
+                    t138*t209)
     return OK

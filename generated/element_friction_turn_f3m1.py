@@ -52,7 +52,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (158, 0, 0, 0),
-              "column": (635, 0, 0, 0)}
+              "column": (513, 0, 0, 0)}
 
 
 @kernel_function
@@ -384,135 +384,181 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = du[3]
                 uthb_y = du[4]
                 uthb_z = du[5]
-                t74 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-                t75 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t76 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t77 = d_y*t75 - d_z*t76
-                t78 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t79 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t80 = d_y*t78 - d_z*t79
-                t81 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t82 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t83 = d_y*t81 - d_z*t82
-                t84 = n_x*t77 + n_y*t80 + n_z*t83
-                t85 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-                t86 = m_x*t77 + m_y*t80 + m_z*t83
-                t87 = -t74*t84 + t85*t86
-                t88 = t74*t74 + t85*t85
-                t89 = 1/t88
-                t90 = -d_x*utha_y + d_y*utha_x
-                t91 = d_x*utha_z - d_z*utha_x
-                t92 = -d_y*utha_z + d_z*utha_y
-                t93 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t94 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t95 = d_x*t94 + d_y*t79 + d_z*t78
-                t96 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t97 = d_x*t96 + d_y*t82 + d_z*t81
-                t98 = t75*t90 + t76*t91 + t92*t93 + t95*uthb_z - t97*uthb_y
-                t99 = d_x*t93 + d_y*t76 + d_z*t75
-                t100 = t78*t90 + t79*t91 + t92*t94 + t97*uthb_x - t99*uthb_z
-                t101 = t81*t90 + t82*t91 + t92*t96 - t95*uthb_x + t99*uthb_y
-                t102 = (c_damping*t89*(dfriction_by_angle_along_m*(m_x*t98 + m_y*t100 + m_z*t101)
-                    + dfriction_by_angle_along_n*(n_x*t98 + n_y*t100 + n_z*t101)))
-                t103 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t104 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t105 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t106 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t107 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t108 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t109 = Ra_xx*t103 + Ra_yx*t104 + Ra_zx*t105 + Rb_xx*t106 + Rb_yx*t107 + Rb_zx*t108
-                t110 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t111 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t112 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t113 = Ra_xy*t103 + Ra_yy*t104 + Ra_zy*t105 + Rb_xx*t110 + Rb_yx*t111 + Rb_zx*t112
-                t114 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t115 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t116 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t117 = Ra_xz*t103 + Ra_yz*t104 + Ra_zz*t105 + Rb_xx*t114 + Rb_yx*t115 + Rb_zx*t116
-                t118 = d_x*t109 + d_y*t113 + d_z*t117
-                t119 = m_x*t118
-                t120 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t121 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t122 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t123 = Ra_xx*t120 + Ra_yx*t121 + Ra_zx*t122 + Rb_xy*t106 + Rb_yy*t107 + Rb_zy*t108
-                t124 = Ra_xy*t120 + Ra_yy*t121 + Ra_zy*t122 + Rb_xy*t110 + Rb_yy*t111 + Rb_zy*t112
-                t125 = Ra_xz*t120 + Ra_yz*t121 + Ra_zz*t122 + Rb_xy*t114 + Rb_yy*t115 + Rb_zy*t116
-                t126 = d_x*t123 + d_y*t124 + d_z*t125
-                t127 = m_y*t126
-                t128 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t129 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t130 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t131 = Ra_xx*t128 + Ra_yx*t129 + Ra_zx*t130 + Rb_xz*t106 + Rb_yz*t107 + Rb_zz*t108
-                t132 = Ra_xy*t128 + Ra_yy*t129 + Ra_zy*t130 + Rb_xz*t110 + Rb_yz*t111 + Rb_zz*t112
-                t133 = Ra_xz*t128 + Ra_yz*t129 + Ra_zz*t130 + Rb_xz*t114 + Rb_yz*t115 + Rb_zz*t116
-                t134 = d_x*t131 + d_y*t132 + d_z*t133
-                t135 = m_z*t134
-                t136 = n_x*t118
-                t137 = n_y*t126
-                t138 = n_z*t134
-                t139 = ((friction*(-t74*(2*t119 + 2*t127 + 2*t135) - t85*(2*t136 + 2*t137 +
-                    2*t138)))/(t88*t88))
-                t140 = d_y*t117 - d_z*t113
-                t141 = d_y*t125 - d_z*t124
-                t142 = d_y*t133 - d_z*t132
-                t143 = t119 + t127 + t135
-                t144 = t136 + t137 + t138
-                t145 = friction*t89
-                t146 = Oma_x*d_y - Oma_y*d_x
-                t147 = -Oma_x*d_z + Oma_z*d_x
-                t148 = Oma_y*d_z - Oma_z*d_y
-                t149 = -Omb_y*t134 + Omb_z*t126 + t109*t148 + t113*t147 + t117*t146
-                t150 = Omb_x*t134 - Omb_z*t118 + t123*t148 + t124*t147 + t125*t146
-                t151 = -Omb_x*t126 + Omb_y*t118 + t131*t148 + t132*t147 + t133*t146
-                t152 = (t89*(dfriction_by_angle_along_m*(m_x*t149 + m_y*t150 + m_z*t151) +
-                    dfriction_by_angle_along_n*(n_x*t149 + n_y*t150 + n_z*t151) +
-                    dfriction_by_angle_seen_1*t118 + dfriction_by_angle_seen_2*t126 +
-                    dfriction_by_angle_seen_3*t134))
-                t153 = -d_x*t75 + d_z*t93
-                t154 = -d_x*t78 + d_z*t94
-                t155 = -d_x*t81 + d_z*t96
-                t156 = n_x*t153 + n_y*t154 + n_z*t155
-                t157 = m_x*t153 + m_y*t154 + m_z*t155
-                t158 = -t156*t74 + t157*t85
-                t159 = -d_x*t117 + d_z*t109
-                t160 = -d_x*t125 + d_z*t123
-                t161 = -d_x*t133 + d_z*t131
-                t162 = d_x*t76 - d_y*t93
-                t163 = d_x*t79 - d_y*t94
-                t164 = d_x*t82 - d_y*t96
-                t165 = n_x*t162 + n_y*t163 + n_z*t164
-                t166 = m_x*t162 + m_y*t163 + m_z*t164
-                t167 = -t165*t74 + t166*t85
-                t168 = d_x*t113 - d_y*t109
-                t169 = d_x*t124 - d_y*t123
-                t170 = d_x*t132 - d_y*t131
-                t171 = -angle_seen_2*m_z + angle_seen_3*m_y
-                t172 = -angle_seen_2*n_z + angle_seen_3*n_y
-                t173 = t171*t85 - t172*t74
-                t174 = angle_seen_1*m_z - angle_seen_3*m_x
-                t175 = angle_seen_1*n_z - angle_seen_3*n_x
-                t176 = t174*t85 - t175*t74
-                t177 = -angle_seen_1*m_y + angle_seen_2*m_x
-                t178 = -angle_seen_1*n_y + angle_seen_2*n_x
-                t179 = t177*t85 - t178*t74
-                J[column] = (c_stiffness*(t139*t87 + t145*(-t143*t84 + t144*t86 - t74*(n_x*t140 +
-                    n_y*t141 + n_z*t142) + t85*(m_x*t140 + m_y*t141 + m_z*t142)) + t152*t87) +
-                    t102*t87)
-                J[10 + column] = (c_stiffness*(t139*t158 + t145*(-t143*t156 + t144*t157 -
-                    t74*(n_x*t159 + n_y*t160 + n_z*t161) + t85*(m_x*t159 + m_y*t160 + m_z*t161)) +
-                    t152*t158) + t102*t158)
-                J[20 + column] = (c_stiffness*(t139*t167 + t145*(-t143*t165 + t144*t166 -
-                    t74*(n_x*t168 + n_y*t169 + n_z*t170) + t85*(m_x*t168 + m_y*t169 + m_z*t170)) +
-                    t152*t167) + t102*t167)
-                J[30 + column] = (c_stiffness*(t139*t173 + t145*(-t143*t172 + t144*t171 -
-                    t74*(n_y*t134 - n_z*t126) + t85*(m_y*t134 - m_z*t126)) + t152*t173) +
-                    t102*t173)
-                J[40 + column] = (c_stiffness*(t139*t176 + t145*(-t143*t175 + t144*t174 -
-                    t74*(-n_x*t134 + n_z*t118) + t85*(-m_x*t134 + m_z*t118)) + t152*t176) +
-                    t102*t176)
-                J[50 + column] = (c_stiffness*(t139*t179 + t145*(-t143*t178 + t144*t177 -
-                    t74*(n_x*t126 - n_y*t118) + t85*(m_x*t126 - m_y*t118)) + t152*t179) +
-                    t102*t179)
+                t74 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t75 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t76 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t77 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t78 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t79 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t80 = Ra_xx*t74 + Ra_yx*t75 + Ra_zx*t76 + Rb_xx*t77 + Rb_yx*t78 + Rb_zx*t79
+                t81 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t82 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t83 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t84 = Ra_xy*t74 + Ra_yy*t75 + Ra_zy*t76 + Rb_xx*t81 + Rb_yx*t82 + Rb_zx*t83
+                t85 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t86 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t87 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t88 = Ra_xz*t74 + Ra_yz*t75 + Ra_zz*t76 + Rb_xx*t85 + Rb_yx*t86 + Rb_zx*t87
+                t89 = d_x*t80 + d_y*t84 + d_z*t88
+                t90 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t91 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t92 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t93 = Ra_xx*t90 + Ra_yx*t91 + Ra_zx*t92 + Rb_xy*t77 + Rb_yy*t78 + Rb_zy*t79
+                t94 = Ra_xy*t90 + Ra_yy*t91 + Ra_zy*t92 + Rb_xy*t81 + Rb_yy*t82 + Rb_zy*t83
+                t95 = Ra_xz*t90 + Ra_yz*t91 + Ra_zz*t92 + Rb_xy*t85 + Rb_yy*t86 + Rb_zy*t87
+                t96 = d_x*t93 + d_y*t94 + d_z*t95
+                t97 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t98 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t99 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t100 = Ra_xx*t97 + Ra_yx*t98 + Ra_zx*t99 + Rb_xz*t77 + Rb_yz*t78 + Rb_zz*t79
+                t101 = Ra_xy*t97 + Ra_yy*t98 + Ra_zy*t99 + Rb_xz*t81 + Rb_yz*t82 + Rb_zz*t83
+                t102 = Ra_xz*t97 + Ra_yz*t98 + Ra_zz*t99 + Rb_xz*t85 + Rb_yz*t86 + Rb_zz*t87
+                t103 = d_x*t100 + d_y*t101 + d_z*t102
+                t104 = Oma_x*d_y - Oma_y*d_x
+                t105 = -Oma_x*d_z + Oma_z*d_x
+                t106 = Oma_y*d_z - Oma_z*d_y
+                t107 = -Omb_y*t103 + Omb_z*t96 + t104*t88 + t105*t84 + t106*t80
+                t108 = Omb_x*t103 - Omb_z*t89 + t104*t95 + t105*t94 + t106*t93
+                t109 = -Omb_x*t96 + Omb_y*t89 + t100*t106 + t101*t105 + t102*t104
+                t110 = -d_x*utha_y + d_y*utha_x
+                t111 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t112 = d_x*utha_z - d_z*utha_x
+                t113 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t114 = -d_y*utha_z + d_z*utha_y
+                t115 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t116 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t117 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t118 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t119 = d_x*t116 + d_y*t117 + d_z*t118
+                t120 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t121 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t122 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t123 = d_x*t120 + d_y*t121 + d_z*t122
+                t124 = t110*t111 + t112*t113 + t114*t115 + t119*uthb_z - t123*uthb_y
+                t125 = d_x*t115 + d_y*t113 + d_z*t111
+                t126 = t110*t118 + t112*t117 + t114*t116 + t123*uthb_x - t125*uthb_z
+                t127 = t110*t122 + t112*t121 + t114*t120 - t119*uthb_x + t125*uthb_y
+                dangle_seen_1 = t89
+                dangle_seen_2 = t96
+                dangle_seen_3 = t103
+                dangle_along_n = n_x*t107 + n_y*t108 + n_z*t109
+                uangle_along_n = n_x*t124 + n_y*t126 + n_z*t127
+                dangle_along_m = m_x*t107 + m_y*t108 + m_z*t109
+                uangle_along_m = m_x*t124 + m_y*t126 + m_z*t127
+                t128 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+                t129 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t130 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t131 = d_y*t129 - d_z*t130
+                t132 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t133 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t134 = d_y*t132 - d_z*t133
+                t135 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t136 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t137 = d_y*t135 - d_z*t136
+                t138 = n_x*t131 + n_y*t134 + n_z*t137
+                t139 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+                t140 = m_x*t131 + m_y*t134 + m_z*t137
+                t141 = -t128*t138 + t139*t140
+                t142 = t128*t128 + t139*t139
+                t143 = 1/t142
+                t144 = (c_damping*t143*(dfriction_by_angle_along_m*uangle_along_m +
+                    dfriction_by_angle_along_n*uangle_along_n))
+                t145 = (t143*(dangle_along_m*dfriction_by_angle_along_m +
+                    dangle_along_n*dfriction_by_angle_along_n +
+                    dangle_seen_1*dfriction_by_angle_seen_1 +
+                    dangle_seen_2*dfriction_by_angle_seen_2 +
+                    dangle_seen_3*dfriction_by_angle_seen_3))
+                t146 = dangle_seen_1*m_x
+                t147 = dangle_seen_2*m_y
+                t148 = dangle_seen_3*m_z
+                t149 = dangle_seen_1*n_x
+                t150 = dangle_seen_2*n_y
+                t151 = dangle_seen_3*n_z
+                t152 = ((friction*(-t128*(2*t146 + 2*t147 + 2*t148) - t139*(2*t149 + 2*t150 +
+                    2*t151)))/(t142*t142))
+                t153 = t146 + t147 + t148
+                t154 = t149 + t150 + t151
+                t155 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t156 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t157 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t158 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t159 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t160 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t161 = Ra_xz*t155 + Ra_yz*t156 + Ra_zz*t157 + Rb_xx*t158 + Rb_yx*t159 + Rb_zx*t160
+                t162 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t163 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t164 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t165 = Ra_xy*t155 + Ra_yy*t156 + Ra_zy*t157 + Rb_xx*t162 + Rb_yx*t163 + Rb_zx*t164
+                t166 = d_y*t161 - d_z*t165
+                t167 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t168 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t169 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t170 = Ra_xz*t167 + Ra_yz*t168 + Ra_zz*t169 + Rb_xy*t158 + Rb_yy*t159 + Rb_zy*t160
+                t171 = Ra_xy*t167 + Ra_yy*t168 + Ra_zy*t169 + Rb_xy*t162 + Rb_yy*t163 + Rb_zy*t164
+                t172 = d_y*t170 - d_z*t171
+                t173 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t174 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t175 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t176 = Ra_xz*t173 + Ra_yz*t174 + Ra_zz*t175 + Rb_xz*t158 + Rb_yz*t159 + Rb_zz*t160
+                t177 = Ra_xy*t173 + Ra_yy*t174 + Ra_zy*t175 + Rb_xz*t162 + Rb_yz*t163 + Rb_zz*t164
+                t178 = d_y*t176 - d_z*t177
+                t179 = friction*t143
+                t180 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t181 = -d_x*t129 + d_z*t180
+                t182 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t183 = -d_x*t132 + d_z*t182
+                t184 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t185 = -d_x*t135 + d_z*t184
+                t186 = n_x*t181 + n_y*t183 + n_z*t185
+                t187 = m_x*t181 + m_y*t183 + m_z*t185
+                t188 = -t128*t186 + t139*t187
+                t189 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t190 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t191 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t192 = Ra_xx*t155 + Ra_yx*t156 + Ra_zx*t157 + Rb_xx*t189 + Rb_yx*t190 + Rb_zx*t191
+                t193 = -d_x*t161 + d_z*t192
+                t194 = Ra_xx*t167 + Ra_yx*t168 + Ra_zx*t169 + Rb_xy*t189 + Rb_yy*t190 + Rb_zy*t191
+                t195 = -d_x*t170 + d_z*t194
+                t196 = Ra_xx*t173 + Ra_yx*t174 + Ra_zx*t175 + Rb_xz*t189 + Rb_yz*t190 + Rb_zz*t191
+                t197 = -d_x*t176 + d_z*t196
+                t198 = d_x*t130 - d_y*t180
+                t199 = d_x*t133 - d_y*t182
+                t200 = d_x*t136 - d_y*t184
+                t201 = n_x*t198 + n_y*t199 + n_z*t200
+                t202 = m_x*t198 + m_y*t199 + m_z*t200
+                t203 = -t128*t201 + t139*t202
+                t204 = d_x*t165 - d_y*t192
+                t205 = d_x*t171 - d_y*t194
+                t206 = d_x*t177 - d_y*t196
+                t207 = -angle_seen_2*m_z + angle_seen_3*m_y
+                t208 = -angle_seen_2*n_z + angle_seen_3*n_y
+                t209 = -t128*t208 + t139*t207
+                t210 = angle_seen_1*m_z - angle_seen_3*m_x
+                t211 = angle_seen_1*n_z - angle_seen_3*n_x
+                t212 = -t128*t211 + t139*t210
+                t213 = -angle_seen_1*m_y + angle_seen_2*m_x
+                t214 = -angle_seen_1*n_y + angle_seen_2*n_x
+                t215 = -t128*t214 + t139*t213
+                J[column] = (c_stiffness*(t141*t145 + t141*t152 + t179*(-t128*(n_x*t166 + n_y*t172
+                    + n_z*t178) - t138*t153 + t139*(m_x*t166 + m_y*t172 + m_z*t178) + t140*t154))
+                    + t141*t144)
+                J[10 + column] = (c_stiffness*(t145*t188 + t152*t188 + t179*(-t128*(n_x*t193 +
+                    n_y*t195 + n_z*t197) + t139*(m_x*t193 + m_y*t195 + m_z*t197) - t153*t186 +
+                    t154*t187)) + t144*t188)
+                J[20 + column] = (c_stiffness*(t145*t203 + t152*t203 + t179*(-t128*(n_x*t204 +
+                    n_y*t205 + n_z*t206) + t139*(m_x*t204 + m_y*t205 + m_z*t206) - t153*t201 +
+                    t154*t202)) + t144*t203)
+                J[30 + column] = (c_stiffness*(t145*t209 + t152*t209 +
+                    t179*(-t128*(-dangle_seen_2*n_z + dangle_seen_3*n_y) +
+                    t139*(-dangle_seen_2*m_z + dangle_seen_3*m_y) - t153*t208 + t154*t207)) +
+                    t144*t209)
+                J[40 + column] = (c_stiffness*(t145*t212 + t152*t212 +
+                    t179*(-t128*(dangle_seen_1*n_z - dangle_seen_3*n_x) + t139*(dangle_seen_1*m_z
+                    - dangle_seen_3*m_x) - t153*t211 + t154*t210)) + t144*t212)
+                J[50 + column] = (c_stiffness*(t145*t215 + t152*t215 +
+                    t179*(-t128*(-dangle_seen_1*n_y + dangle_seen_2*n_x) +
+                    t139*(-dangle_seen_1*m_y + dangle_seen_2*m_x) - t153*t214 + t154*t213)) +
+                    t144*t215)
                 J[60 + column] = 0.0
                 J[70 + column] = 0.0
                 J[80 + column] = 0.0

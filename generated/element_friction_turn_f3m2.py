@@ -52,7 +52,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (158, 0, 0, 0),
-              "column": (635, 0, 0, 0)}
+              "column": (513, 0, 0, 0)}
 
 
 @kernel_function
@@ -393,135 +393,181 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = du[3]
                 uthb_y = du[4]
                 uthb_z = du[5]
-                t75 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-                t76 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t77 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t78 = d_y*t76 - d_z*t77
-                t79 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t80 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t81 = d_y*t79 - d_z*t80
-                t82 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t83 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t84 = d_y*t82 - d_z*t83
-                t85 = n_x*t78 + n_y*t81 + n_z*t84
-                t86 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-                t87 = m_x*t78 + m_y*t81 + m_z*t84
-                t88 = -t75*t85 + t86*t87
-                t89 = t75*t75 + t86*t86
-                t90 = 1/t89
-                t91 = -d_x*utha_y + d_y*utha_x
-                t92 = d_x*utha_z - d_z*utha_x
-                t93 = -d_y*utha_z + d_z*utha_y
-                t94 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t95 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t96 = d_x*t95 + d_y*t80 + d_z*t79
-                t97 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t98 = d_x*t97 + d_y*t83 + d_z*t82
-                t99 = t76*t91 + t77*t92 + t93*t94 + t96*uthb_z - t98*uthb_y
-                t100 = d_x*t94 + d_y*t77 + d_z*t76
-                t101 = -t100*uthb_z + t79*t91 + t80*t92 + t93*t95 + t98*uthb_x
-                t102 = t100*uthb_y + t82*t91 + t83*t92 + t93*t97 - t96*uthb_x
-                t103 = (c_damping*t90*(dfriction_by_angle_along_m*(m_x*t99 + m_y*t101 + m_z*t102)
-                    + dfriction_by_angle_along_n*(n_x*t99 + n_y*t101 + n_z*t102)))
-                t104 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t105 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t106 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t107 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t108 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t109 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t110 = Ra_xx*t104 + Ra_yx*t105 + Ra_zx*t106 + Rb_xx*t107 + Rb_yx*t108 + Rb_zx*t109
-                t111 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t112 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t113 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t114 = Ra_xy*t104 + Ra_yy*t105 + Ra_zy*t106 + Rb_xx*t111 + Rb_yx*t112 + Rb_zx*t113
-                t115 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t116 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t117 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t118 = Ra_xz*t104 + Ra_yz*t105 + Ra_zz*t106 + Rb_xx*t115 + Rb_yx*t116 + Rb_zx*t117
-                t119 = d_x*t110 + d_y*t114 + d_z*t118
-                t120 = m_x*t119
-                t121 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t122 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t123 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t124 = Ra_xx*t121 + Ra_yx*t122 + Ra_zx*t123 + Rb_xy*t107 + Rb_yy*t108 + Rb_zy*t109
-                t125 = Ra_xy*t121 + Ra_yy*t122 + Ra_zy*t123 + Rb_xy*t111 + Rb_yy*t112 + Rb_zy*t113
-                t126 = Ra_xz*t121 + Ra_yz*t122 + Ra_zz*t123 + Rb_xy*t115 + Rb_yy*t116 + Rb_zy*t117
-                t127 = d_x*t124 + d_y*t125 + d_z*t126
-                t128 = m_y*t127
-                t129 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t130 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t131 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t132 = Ra_xx*t129 + Ra_yx*t130 + Ra_zx*t131 + Rb_xz*t107 + Rb_yz*t108 + Rb_zz*t109
-                t133 = Ra_xy*t129 + Ra_yy*t130 + Ra_zy*t131 + Rb_xz*t111 + Rb_yz*t112 + Rb_zz*t113
-                t134 = Ra_xz*t129 + Ra_yz*t130 + Ra_zz*t131 + Rb_xz*t115 + Rb_yz*t116 + Rb_zz*t117
-                t135 = d_x*t132 + d_y*t133 + d_z*t134
-                t136 = m_z*t135
-                t137 = n_x*t119
-                t138 = n_y*t127
-                t139 = n_z*t135
-                t140 = ((friction*(-t75*(2*t120 + 2*t128 + 2*t136) - t86*(2*t137 + 2*t138 +
-                    2*t139)))/(t89*t89))
-                t141 = d_y*t118 - d_z*t114
-                t142 = d_y*t126 - d_z*t125
-                t143 = d_y*t134 - d_z*t133
-                t144 = t120 + t128 + t136
-                t145 = t137 + t138 + t139
-                t146 = friction*t90
-                t147 = Oma_x*d_y - Oma_y*d_x
-                t148 = -Oma_x*d_z + Oma_z*d_x
-                t149 = Oma_y*d_z - Oma_z*d_y
-                t150 = -Omb_y*t135 + Omb_z*t127 + t110*t149 + t114*t148 + t118*t147
-                t151 = Omb_x*t135 - Omb_z*t119 + t124*t149 + t125*t148 + t126*t147
-                t152 = -Omb_x*t127 + Omb_y*t119 + t132*t149 + t133*t148 + t134*t147
-                t153 = (t90*(dfriction_by_angle_along_m*(m_x*t150 + m_y*t151 + m_z*t152) +
-                    dfriction_by_angle_along_n*(n_x*t150 + n_y*t151 + n_z*t152) +
-                    dfriction_by_angle_seen_1*t119 + dfriction_by_angle_seen_2*t127 +
-                    dfriction_by_angle_seen_3*t135))
-                t154 = -d_x*t76 + d_z*t94
-                t155 = -d_x*t79 + d_z*t95
-                t156 = -d_x*t82 + d_z*t97
-                t157 = n_x*t154 + n_y*t155 + n_z*t156
-                t158 = m_x*t154 + m_y*t155 + m_z*t156
-                t159 = -t157*t75 + t158*t86
-                t160 = -d_x*t118 + d_z*t110
-                t161 = -d_x*t126 + d_z*t124
-                t162 = -d_x*t134 + d_z*t132
-                t163 = d_x*t77 - d_y*t94
-                t164 = d_x*t80 - d_y*t95
-                t165 = d_x*t83 - d_y*t97
-                t166 = n_x*t163 + n_y*t164 + n_z*t165
-                t167 = m_x*t163 + m_y*t164 + m_z*t165
-                t168 = -t166*t75 + t167*t86
-                t169 = d_x*t114 - d_y*t110
-                t170 = d_x*t125 - d_y*t124
-                t171 = d_x*t133 - d_y*t132
-                t172 = -angle_seen_2*m_z + angle_seen_3*m_y
-                t173 = -angle_seen_2*n_z + angle_seen_3*n_y
-                t174 = t172*t86 - t173*t75
-                t175 = angle_seen_1*m_z - angle_seen_3*m_x
-                t176 = angle_seen_1*n_z - angle_seen_3*n_x
-                t177 = t175*t86 - t176*t75
-                t178 = -angle_seen_1*m_y + angle_seen_2*m_x
-                t179 = -angle_seen_1*n_y + angle_seen_2*n_x
-                t180 = t178*t86 - t179*t75
-                J[column] = (c_stiffness*(t140*t88 + t146*(-t144*t85 + t145*t87 - t75*(n_x*t141 +
-                    n_y*t142 + n_z*t143) + t86*(m_x*t141 + m_y*t142 + m_z*t143)) + t153*t88) +
-                    t103*t88)
-                J[11 + column] = (c_stiffness*(t140*t159 + t146*(-t144*t157 + t145*t158 -
-                    t75*(n_x*t160 + n_y*t161 + n_z*t162) + t86*(m_x*t160 + m_y*t161 + m_z*t162)) +
-                    t153*t159) + t103*t159)
-                J[22 + column] = (c_stiffness*(t140*t168 + t146*(-t144*t166 + t145*t167 -
-                    t75*(n_x*t169 + n_y*t170 + n_z*t171) + t86*(m_x*t169 + m_y*t170 + m_z*t171)) +
-                    t153*t168) + t103*t168)
-                J[33 + column] = (c_stiffness*(t140*t174 + t146*(-t144*t173 + t145*t172 -
-                    t75*(n_y*t135 - n_z*t127) + t86*(m_y*t135 - m_z*t127)) + t153*t174) +
-                    t103*t174)
-                J[44 + column] = (c_stiffness*(t140*t177 + t146*(-t144*t176 + t145*t175 -
-                    t75*(-n_x*t135 + n_z*t119) + t86*(-m_x*t135 + m_z*t119)) + t153*t177) +
-                    t103*t177)
-                J[55 + column] = (c_stiffness*(t140*t180 + t146*(-t144*t179 + t145*t178 -
-                    t75*(n_x*t127 - n_y*t119) + t86*(m_x*t127 - m_y*t119)) + t153*t180) +
-                    t103*t180)
+                t75 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t76 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t77 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t78 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t79 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t80 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t81 = Ra_xx*t75 + Ra_yx*t76 + Ra_zx*t77 + Rb_xx*t78 + Rb_yx*t79 + Rb_zx*t80
+                t82 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t83 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t84 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t85 = Ra_xy*t75 + Ra_yy*t76 + Ra_zy*t77 + Rb_xx*t82 + Rb_yx*t83 + Rb_zx*t84
+                t86 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t87 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t88 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t89 = Ra_xz*t75 + Ra_yz*t76 + Ra_zz*t77 + Rb_xx*t86 + Rb_yx*t87 + Rb_zx*t88
+                t90 = d_x*t81 + d_y*t85 + d_z*t89
+                t91 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t92 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t93 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t94 = Ra_xx*t91 + Ra_yx*t92 + Ra_zx*t93 + Rb_xy*t78 + Rb_yy*t79 + Rb_zy*t80
+                t95 = Ra_xy*t91 + Ra_yy*t92 + Ra_zy*t93 + Rb_xy*t82 + Rb_yy*t83 + Rb_zy*t84
+                t96 = Ra_xz*t91 + Ra_yz*t92 + Ra_zz*t93 + Rb_xy*t86 + Rb_yy*t87 + Rb_zy*t88
+                t97 = d_x*t94 + d_y*t95 + d_z*t96
+                t98 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t99 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t100 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t101 = Ra_xx*t98 + Ra_yx*t99 + Ra_zx*t100 + Rb_xz*t78 + Rb_yz*t79 + Rb_zz*t80
+                t102 = Ra_xy*t98 + Ra_yy*t99 + Ra_zy*t100 + Rb_xz*t82 + Rb_yz*t83 + Rb_zz*t84
+                t103 = Ra_xz*t98 + Ra_yz*t99 + Ra_zz*t100 + Rb_xz*t86 + Rb_yz*t87 + Rb_zz*t88
+                t104 = d_x*t101 + d_y*t102 + d_z*t103
+                t105 = Oma_x*d_y - Oma_y*d_x
+                t106 = -Oma_x*d_z + Oma_z*d_x
+                t107 = Oma_y*d_z - Oma_z*d_y
+                t108 = -Omb_y*t104 + Omb_z*t97 + t105*t89 + t106*t85 + t107*t81
+                t109 = Omb_x*t104 - Omb_z*t90 + t105*t96 + t106*t95 + t107*t94
+                t110 = -Omb_x*t97 + Omb_y*t90 + t101*t107 + t102*t106 + t103*t105
+                t111 = -d_x*utha_y + d_y*utha_x
+                t112 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t113 = d_x*utha_z - d_z*utha_x
+                t114 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t115 = -d_y*utha_z + d_z*utha_y
+                t116 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t117 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t118 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t119 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t120 = d_x*t117 + d_y*t118 + d_z*t119
+                t121 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t122 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t123 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t124 = d_x*t121 + d_y*t122 + d_z*t123
+                t125 = t111*t112 + t113*t114 + t115*t116 + t120*uthb_z - t124*uthb_y
+                t126 = d_x*t116 + d_y*t114 + d_z*t112
+                t127 = t111*t119 + t113*t118 + t115*t117 + t124*uthb_x - t126*uthb_z
+                t128 = t111*t123 + t113*t122 + t115*t121 - t120*uthb_x + t126*uthb_y
+                dangle_seen_1 = t90
+                dangle_seen_2 = t97
+                dangle_seen_3 = t104
+                dangle_along_n = n_x*t108 + n_y*t109 + n_z*t110
+                uangle_along_n = n_x*t125 + n_y*t127 + n_z*t128
+                dangle_along_m = m_x*t108 + m_y*t109 + m_z*t110
+                uangle_along_m = m_x*t125 + m_y*t127 + m_z*t128
+                t129 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+                t130 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t131 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t132 = d_y*t130 - d_z*t131
+                t133 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t134 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t135 = d_y*t133 - d_z*t134
+                t136 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t137 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t138 = d_y*t136 - d_z*t137
+                t139 = n_x*t132 + n_y*t135 + n_z*t138
+                t140 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+                t141 = m_x*t132 + m_y*t135 + m_z*t138
+                t142 = -t129*t139 + t140*t141
+                t143 = t129*t129 + t140*t140
+                t144 = 1/t143
+                t145 = (c_damping*t144*(dfriction_by_angle_along_m*uangle_along_m +
+                    dfriction_by_angle_along_n*uangle_along_n))
+                t146 = (t144*(dangle_along_m*dfriction_by_angle_along_m +
+                    dangle_along_n*dfriction_by_angle_along_n +
+                    dangle_seen_1*dfriction_by_angle_seen_1 +
+                    dangle_seen_2*dfriction_by_angle_seen_2 +
+                    dangle_seen_3*dfriction_by_angle_seen_3))
+                t147 = dangle_seen_1*m_x
+                t148 = dangle_seen_2*m_y
+                t149 = dangle_seen_3*m_z
+                t150 = dangle_seen_1*n_x
+                t151 = dangle_seen_2*n_y
+                t152 = dangle_seen_3*n_z
+                t153 = ((friction*(-t129*(2*t147 + 2*t148 + 2*t149) - t140*(2*t150 + 2*t151 +
+                    2*t152)))/(t143*t143))
+                t154 = t147 + t148 + t149
+                t155 = t150 + t151 + t152
+                t156 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t157 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t158 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t159 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t160 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t161 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t162 = Ra_xz*t156 + Ra_yz*t157 + Ra_zz*t158 + Rb_xx*t159 + Rb_yx*t160 + Rb_zx*t161
+                t163 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t164 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t165 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t166 = Ra_xy*t156 + Ra_yy*t157 + Ra_zy*t158 + Rb_xx*t163 + Rb_yx*t164 + Rb_zx*t165
+                t167 = d_y*t162 - d_z*t166
+                t168 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t169 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t170 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t171 = Ra_xz*t168 + Ra_yz*t169 + Ra_zz*t170 + Rb_xy*t159 + Rb_yy*t160 + Rb_zy*t161
+                t172 = Ra_xy*t168 + Ra_yy*t169 + Ra_zy*t170 + Rb_xy*t163 + Rb_yy*t164 + Rb_zy*t165
+                t173 = d_y*t171 - d_z*t172
+                t174 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t175 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t176 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t177 = Ra_xz*t174 + Ra_yz*t175 + Ra_zz*t176 + Rb_xz*t159 + Rb_yz*t160 + Rb_zz*t161
+                t178 = Ra_xy*t174 + Ra_yy*t175 + Ra_zy*t176 + Rb_xz*t163 + Rb_yz*t164 + Rb_zz*t165
+                t179 = d_y*t177 - d_z*t178
+                t180 = friction*t144
+                t181 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t182 = -d_x*t130 + d_z*t181
+                t183 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t184 = -d_x*t133 + d_z*t183
+                t185 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t186 = -d_x*t136 + d_z*t185
+                t187 = n_x*t182 + n_y*t184 + n_z*t186
+                t188 = m_x*t182 + m_y*t184 + m_z*t186
+                t189 = -t129*t187 + t140*t188
+                t190 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t191 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t192 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t193 = Ra_xx*t156 + Ra_yx*t157 + Ra_zx*t158 + Rb_xx*t190 + Rb_yx*t191 + Rb_zx*t192
+                t194 = -d_x*t162 + d_z*t193
+                t195 = Ra_xx*t168 + Ra_yx*t169 + Ra_zx*t170 + Rb_xy*t190 + Rb_yy*t191 + Rb_zy*t192
+                t196 = -d_x*t171 + d_z*t195
+                t197 = Ra_xx*t174 + Ra_yx*t175 + Ra_zx*t176 + Rb_xz*t190 + Rb_yz*t191 + Rb_zz*t192
+                t198 = -d_x*t177 + d_z*t197
+                t199 = d_x*t131 - d_y*t181
+                t200 = d_x*t134 - d_y*t183
+                t201 = d_x*t137 - d_y*t185
+                t202 = n_x*t199 + n_y*t200 + n_z*t201
+                t203 = m_x*t199 + m_y*t200 + m_z*t201
+                t204 = -t129*t202 + t140*t203
+                t205 = d_x*t166 - d_y*t193
+                t206 = d_x*t172 - d_y*t195
+                t207 = d_x*t178 - d_y*t197
+                t208 = -angle_seen_2*m_z + angle_seen_3*m_y
+                t209 = -angle_seen_2*n_z + angle_seen_3*n_y
+                t210 = -t129*t209 + t140*t208
+                t211 = angle_seen_1*m_z - angle_seen_3*m_x
+                t212 = angle_seen_1*n_z - angle_seen_3*n_x
+                t213 = -t129*t212 + t140*t211
+                t214 = -angle_seen_1*m_y + angle_seen_2*m_x
+                t215 = -angle_seen_1*n_y + angle_seen_2*n_x
+                t216 = -t129*t215 + t140*t214
+                J[column] = (c_stiffness*(t142*t146 + t142*t153 + t180*(-t129*(n_x*t167 + n_y*t173
+                    + n_z*t179) - t139*t154 + t140*(m_x*t167 + m_y*t173 + m_z*t179) + t141*t155))
+                    + t142*t145)
+                J[11 + column] = (c_stiffness*(t146*t189 + t153*t189 + t180*(-t129*(n_x*t194 +
+                    n_y*t196 + n_z*t198) + t140*(m_x*t194 + m_y*t196 + m_z*t198) - t154*t187 +
+                    t155*t188)) + t145*t189)
+                J[22 + column] = (c_stiffness*(t146*t204 + t153*t204 + t180*(-t129*(n_x*t205 +
+                    n_y*t206 + n_z*t207) + t140*(m_x*t205 + m_y*t206 + m_z*t207) - t154*t202 +
+                    t155*t203)) + t145*t204)
+                J[33 + column] = (c_stiffness*(t146*t210 + t153*t210 +
+                    t180*(-t129*(-dangle_seen_2*n_z + dangle_seen_3*n_y) +
+                    t140*(-dangle_seen_2*m_z + dangle_seen_3*m_y) - t154*t209 + t155*t208)) +
+                    t145*t210)
+                J[44 + column] = (c_stiffness*(t146*t213 + t153*t213 +
+                    t180*(-t129*(dangle_seen_1*n_z - dangle_seen_3*n_x) + t140*(dangle_seen_1*m_z
+                    - dangle_seen_3*m_x) - t154*t212 + t155*t211)) + t145*t213)
+                J[55 + column] = (c_stiffness*(t146*t216 + t153*t216 +
+                    t180*(-t129*(-dangle_seen_1*n_y + dangle_seen_2*n_x) +
+                    t140*(-dangle_seen_1*m_y + dangle_seen_2*m_x) - t154*t215 + t155*t214)) +
+                    t145*t216)
                 J[66 + column] = 0.0
                 J[77 + column] = 0.0
                 J[88 + column] = 0.0

@@ -54,7 +54,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (324, 0, 0, 0),
-              "column": (1280, 0, 0, 0)}
+              "column": (1036, 0, 0, 0)}
 
 
 @kernel_function
@@ -529,263 +529,362 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthd_x = du[9]
                 uthd_y = du[10]
                 uthd_z = du[11]
-                t124 = angle_1_seen_1*m1_x + angle_1_seen_2*m1_y + angle_1_seen_3*m1_z
-                t125 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t126 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t127 = d1_y*t125 - d1_z*t126
-                t128 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t129 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t130 = d1_y*t128 - d1_z*t129
-                t131 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t132 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t133 = d1_y*t131 - d1_z*t132
-                t134 = n1_x*t127 + n1_y*t130 + n1_z*t133
-                t135 = angle_1_seen_1*n1_x + angle_1_seen_2*n1_y + angle_1_seen_3*n1_z
-                t136 = m1_x*t127 + m1_y*t130 + m1_z*t133
-                t137 = -t124*t134 + t135*t136
-                t138 = t124*t124 + t135*t135
-                t139 = side/t138
-                t140 = -d1_x*utha_y + d1_y*utha_x
-                t141 = d1_x*utha_z - d1_z*utha_x
-                t142 = -d1_y*utha_z + d1_z*utha_y
-                t143 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t144 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t145 = d1_x*t144 + d1_y*t129 + d1_z*t128
-                t146 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t147 = d1_x*t146 + d1_y*t132 + d1_z*t131
-                t148 = t125*t140 + t126*t141 + t142*t143 + t145*uthb_z - t147*uthb_y
-                t149 = d1_x*t143 + d1_y*t126 + d1_z*t125
-                t150 = t128*t140 + t129*t141 + t142*t144 + t147*uthb_x - t149*uthb_z
-                t151 = t131*t140 + t132*t141 + t142*t146 - t145*uthb_x + t149*uthb_y
-                t152 = -d2_x*uthc_y + d2_y*uthc_x
-                t153 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
-                t154 = d2_x*uthc_z - d2_z*uthc_x
-                t155 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
-                t156 = -d2_y*uthc_z + d2_z*uthc_y
-                t157 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
-                t158 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
-                t159 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
-                t160 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
-                t161 = d2_x*t158 + d2_y*t159 + d2_z*t160
-                t162 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
-                t163 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
-                t164 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
-                t165 = d2_x*t162 + d2_y*t163 + d2_z*t164
-                t166 = t152*t153 + t154*t155 + t156*t157 + t161*uthd_z - t165*uthd_y
-                t167 = d2_x*t157 + d2_y*t155 + d2_z*t153
-                t168 = t152*t160 + t154*t159 + t156*t158 + t165*uthd_x - t167*uthd_z
-                t169 = t152*t164 + t154*t163 + t156*t162 - t161*uthd_x + t167*uthd_y
-                t170 = (c_damping*(dpush_by_angle_1_along_m*(m1_x*t148 + m1_y*t150 + m1_z*t151) +
-                    dpush_by_angle_1_along_n*(n1_x*t148 + n1_y*t150 + n1_z*t151) +
-                    dpush_by_angle_2_along_m*(m2_x*t166 + m2_y*t168 + m2_z*t169) +
-                    dpush_by_angle_2_along_n*(n2_x*t166 + n2_y*t168 + n2_z*t169)))
-                t171 = t139*t170
-                t172 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t173 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t174 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t175 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t176 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t177 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t178 = Ra_xx*t172 + Ra_yx*t173 + Ra_zx*t174 + Rb_xx*t175 + Rb_yx*t176 + Rb_zx*t177
-                t179 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t180 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t181 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t182 = Ra_xy*t172 + Ra_yy*t173 + Ra_zy*t174 + Rb_xx*t179 + Rb_yx*t180 + Rb_zx*t181
-                t183 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t184 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t185 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t186 = Ra_xz*t172 + Ra_yz*t173 + Ra_zz*t174 + Rb_xx*t183 + Rb_yx*t184 + Rb_zx*t185
-                t187 = d1_x*t178 + d1_y*t182 + d1_z*t186
-                t188 = m1_x*t187
-                t189 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t190 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t191 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t192 = Ra_xx*t189 + Ra_yx*t190 + Ra_zx*t191 + Rb_xy*t175 + Rb_yy*t176 + Rb_zy*t177
-                t193 = Ra_xy*t189 + Ra_yy*t190 + Ra_zy*t191 + Rb_xy*t179 + Rb_yy*t180 + Rb_zy*t181
-                t194 = Ra_xz*t189 + Ra_yz*t190 + Ra_zz*t191 + Rb_xy*t183 + Rb_yy*t184 + Rb_zy*t185
-                t195 = d1_x*t192 + d1_y*t193 + d1_z*t194
-                t196 = m1_y*t195
-                t197 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t198 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t199 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t200 = Ra_xx*t197 + Ra_yx*t198 + Ra_zx*t199 + Rb_xz*t175 + Rb_yz*t176 + Rb_zz*t177
-                t201 = Ra_xy*t197 + Ra_yy*t198 + Ra_zy*t199 + Rb_xz*t179 + Rb_yz*t180 + Rb_zz*t181
-                t202 = Ra_xz*t197 + Ra_yz*t198 + Ra_zz*t199 + Rb_xz*t183 + Rb_yz*t184 + Rb_zz*t185
-                t203 = d1_x*t200 + d1_y*t201 + d1_z*t202
-                t204 = m1_z*t203
-                t205 = n1_x*t187
-                t206 = n1_y*t195
-                t207 = n1_z*t203
-                t208 = push*side
-                t209 = ((t208*(-t124*(2*t188 + 2*t196 + 2*t204) - t135*(2*t205 + 2*t206 +
-                    2*t207)))/(t138*t138))
-                t210 = d1_y*t186 - d1_z*t182
-                t211 = d1_y*t194 - d1_z*t193
-                t212 = d1_y*t202 - d1_z*t201
-                t213 = t188 + t196 + t204
-                t214 = t205 + t206 + t207
-                t215 = push*t139
-                t216 = Rd_xy*dthd_z - Rd_xz*dthd_y
-                t217 = Rd_yy*dthd_z - Rd_yz*dthd_y
-                t218 = Rd_zy*dthd_z - Rd_zz*dthd_y
-                t219 = Rc_xy*dthc_z - Rc_xz*dthc_y
-                t220 = Rc_yy*dthc_z - Rc_yz*dthc_y
-                t221 = Rc_zy*dthc_z - Rc_zz*dthc_y
-                t222 = Rc_xx*t216 + Rc_yx*t217 + Rc_zx*t218 + Rd_xx*t219 + Rd_yx*t220 + Rd_zx*t221
-                t223 = -Rc_xx*dthc_z + Rc_xz*dthc_x
-                t224 = -Rc_yx*dthc_z + Rc_yz*dthc_x
-                t225 = -Rc_zx*dthc_z + Rc_zz*dthc_x
-                t226 = Rc_xy*t216 + Rc_yy*t217 + Rc_zy*t218 + Rd_xx*t223 + Rd_yx*t224 + Rd_zx*t225
-                t227 = Rc_xx*dthc_y - Rc_xy*dthc_x
-                t228 = Rc_yx*dthc_y - Rc_yy*dthc_x
-                t229 = Rc_zx*dthc_y - Rc_zy*dthc_x
-                t230 = Rc_xz*t216 + Rc_yz*t217 + Rc_zz*t218 + Rd_xx*t227 + Rd_yx*t228 + Rd_zx*t229
-                t231 = d2_x*t222 + d2_y*t226 + d2_z*t230
-                t232 = -Rd_xx*dthd_z + Rd_xz*dthd_x
-                t233 = -Rd_yx*dthd_z + Rd_yz*dthd_x
-                t234 = -Rd_zx*dthd_z + Rd_zz*dthd_x
-                t235 = Rc_xx*t232 + Rc_yx*t233 + Rc_zx*t234 + Rd_xy*t219 + Rd_yy*t220 + Rd_zy*t221
-                t236 = Rc_xy*t232 + Rc_yy*t233 + Rc_zy*t234 + Rd_xy*t223 + Rd_yy*t224 + Rd_zy*t225
-                t237 = Rc_xz*t232 + Rc_yz*t233 + Rc_zz*t234 + Rd_xy*t227 + Rd_yy*t228 + Rd_zy*t229
-                t238 = d2_x*t235 + d2_y*t236 + d2_z*t237
-                t239 = Rd_xx*dthd_y - Rd_xy*dthd_x
-                t240 = Rd_yx*dthd_y - Rd_yy*dthd_x
-                t241 = Rd_zx*dthd_y - Rd_zy*dthd_x
-                t242 = Rc_xx*t239 + Rc_yx*t240 + Rc_zx*t241 + Rd_xz*t219 + Rd_yz*t220 + Rd_zz*t221
-                t243 = Rc_xy*t239 + Rc_yy*t240 + Rc_zy*t241 + Rd_xz*t223 + Rd_yz*t224 + Rd_zz*t225
-                t244 = Rc_xz*t239 + Rc_yz*t240 + Rc_zz*t241 + Rd_xz*t227 + Rd_yz*t228 + Rd_zz*t229
-                t245 = d2_x*t242 + d2_y*t243 + d2_z*t244
-                t246 = Oma_x*d1_y - Oma_y*d1_x
-                t247 = -Oma_x*d1_z + Oma_z*d1_x
-                t248 = Oma_y*d1_z - Oma_z*d1_y
-                t249 = -Omb_y*t203 + Omb_z*t195 + t178*t248 + t182*t247 + t186*t246
-                t250 = Omb_x*t203 - Omb_z*t187 + t192*t248 + t193*t247 + t194*t246
-                t251 = -Omb_x*t195 + Omb_y*t187 + t200*t248 + t201*t247 + t202*t246
-                t252 = Omc_x*d2_y - Omc_y*d2_x
-                t253 = -Omc_x*d2_z + Omc_z*d2_x
-                t254 = Omc_y*d2_z - Omc_z*d2_y
-                t255 = -Omd_y*t245 + Omd_z*t238 + t222*t254 + t226*t253 + t230*t252
-                t256 = Omd_x*t245 - Omd_z*t231 + t235*t254 + t236*t253 + t237*t252
-                t257 = -Omd_x*t238 + Omd_y*t231 + t242*t254 + t243*t253 + t244*t252
-                t258 = (dpush_by_angle_1_along_m*(m1_x*t249 + m1_y*t250 + m1_z*t251) +
-                    dpush_by_angle_1_along_n*(n1_x*t249 + n1_y*t250 + n1_z*t251) +
-                    dpush_by_angle_1_seen_1*t187 + dpush_by_angle_1_seen_2*t195 +
-                    dpush_by_angle_1_seen_3*t203 + dpush_by_angle_2_along_m*(m2_x*t255 + m2_y*t256
-                    + m2_z*t257) + dpush_by_angle_2_along_n*(n2_x*t255 + n2_y*t256 + n2_z*t257) +
-                    dpush_by_angle_2_seen_1*t231 + dpush_by_angle_2_seen_2*t238 +
-                    dpush_by_angle_2_seen_3*t245)
-                t259 = t139*t258
-                t260 = -d1_x*t125 + d1_z*t143
-                t261 = -d1_x*t128 + d1_z*t144
-                t262 = -d1_x*t131 + d1_z*t146
-                t263 = n1_x*t260 + n1_y*t261 + n1_z*t262
-                t264 = m1_x*t260 + m1_y*t261 + m1_z*t262
-                t265 = -t124*t263 + t135*t264
-                t266 = -d1_x*t186 + d1_z*t178
-                t267 = -d1_x*t194 + d1_z*t192
-                t268 = -d1_x*t202 + d1_z*t200
-                t269 = d1_x*t126 - d1_y*t143
-                t270 = d1_x*t129 - d1_y*t144
-                t271 = d1_x*t132 - d1_y*t146
-                t272 = n1_x*t269 + n1_y*t270 + n1_z*t271
-                t273 = m1_x*t269 + m1_y*t270 + m1_z*t271
-                t274 = -t124*t272 + t135*t273
-                t275 = d1_x*t182 - d1_y*t178
-                t276 = d1_x*t193 - d1_y*t192
-                t277 = d1_x*t201 - d1_y*t200
-                t278 = -angle_1_seen_2*m1_z + angle_1_seen_3*m1_y
-                t279 = -angle_1_seen_2*n1_z + angle_1_seen_3*n1_y
-                t280 = -t124*t279 + t135*t278
-                t281 = angle_1_seen_1*m1_z - angle_1_seen_3*m1_x
-                t282 = angle_1_seen_1*n1_z - angle_1_seen_3*n1_x
-                t283 = -t124*t282 + t135*t281
-                t284 = -angle_1_seen_1*m1_y + angle_1_seen_2*m1_x
-                t285 = -angle_1_seen_1*n1_y + angle_1_seen_2*n1_x
-                t286 = -t124*t285 + t135*t284
-                t287 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
-                t288 = d2_y*t153 - d2_z*t155
-                t289 = d2_y*t160 - d2_z*t159
-                t290 = d2_y*t164 - d2_z*t163
-                t291 = n2_x*t288 + n2_y*t289 + n2_z*t290
-                t292 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
-                t293 = m2_x*t288 + m2_y*t289 + m2_z*t290
-                t294 = -t287*t291 + t292*t293
-                t295 = t287*t287 + t292*t292
-                t296 = ratio/t295
-                t297 = side*t296
-                t298 = t170*t297
-                t299 = m2_x*t231
-                t300 = m2_y*t238
-                t301 = m2_z*t245
-                t302 = n2_x*t231
-                t303 = n2_y*t238
-                t304 = n2_z*t245
-                t305 = ((ratio*t208*(-t287*(2*t299 + 2*t300 + 2*t301) - t292*(2*t302 + 2*t303 +
-                    2*t304)))/(t295*t295))
-                t306 = d2_y*t230 - d2_z*t226
-                t307 = d2_y*t237 - d2_z*t236
-                t308 = d2_y*t244 - d2_z*t243
-                t309 = t299 + t300 + t301
-                t310 = t302 + t303 + t304
-                t311 = t208*t296
-                t312 = t258*t297
-                t313 = -d2_x*t153 + d2_z*t157
-                t314 = -d2_x*t160 + d2_z*t158
-                t315 = -d2_x*t164 + d2_z*t162
-                t316 = n2_x*t313 + n2_y*t314 + n2_z*t315
-                t317 = m2_x*t313 + m2_y*t314 + m2_z*t315
-                t318 = -t287*t316 + t292*t317
-                t319 = -d2_x*t230 + d2_z*t222
-                t320 = -d2_x*t237 + d2_z*t235
-                t321 = -d2_x*t244 + d2_z*t242
-                t322 = d2_x*t155 - d2_y*t157
-                t323 = d2_x*t159 - d2_y*t158
-                t324 = d2_x*t163 - d2_y*t162
-                t325 = n2_x*t322 + n2_y*t323 + n2_z*t324
-                t326 = m2_x*t322 + m2_y*t323 + m2_z*t324
-                t327 = -t287*t325 + t292*t326
-                t328 = d2_x*t226 - d2_y*t222
-                t329 = d2_x*t236 - d2_y*t235
-                t330 = d2_x*t243 - d2_y*t242
-                t331 = -angle_2_seen_2*m2_z + angle_2_seen_3*m2_y
-                t332 = -angle_2_seen_2*n2_z + angle_2_seen_3*n2_y
-                t333 = -t287*t332 + t292*t331
-                t334 = angle_2_seen_1*m2_z - angle_2_seen_3*m2_x
-                t335 = angle_2_seen_1*n2_z - angle_2_seen_3*n2_x
-                t336 = -t287*t335 + t292*t334
-                t337 = -angle_2_seen_1*m2_y + angle_2_seen_2*m2_x
-                t338 = -angle_2_seen_1*n2_y + angle_2_seen_2*n2_x
-                t339 = -t287*t338 + t292*t337
-                J[column] = (c_stiffness*(t137*t209 + t137*t259 + t215*(-t124*(n1_x*t210 +
-                    n1_y*t211 + n1_z*t212) - t134*t213 + t135*(m1_x*t210 + m1_y*t211 + m1_z*t212)
-                    + t136*t214)) + t137*t171)
-                J[12 + column] = (c_stiffness*(t209*t265 + t215*(-t124*(n1_x*t266 + n1_y*t267 +
-                    n1_z*t268) + t135*(m1_x*t266 + m1_y*t267 + m1_z*t268) - t213*t263 + t214*t264)
-                    + t259*t265) + t171*t265)
-                J[24 + column] = (c_stiffness*(t209*t274 + t215*(-t124*(n1_x*t275 + n1_y*t276 +
-                    n1_z*t277) + t135*(m1_x*t275 + m1_y*t276 + m1_z*t277) - t213*t272 + t214*t273)
-                    + t259*t274) + t171*t274)
-                J[36 + column] = (c_stiffness*(t209*t280 + t215*(-t124*(n1_y*t203 - n1_z*t195) +
-                    t135*(m1_y*t203 - m1_z*t195) - t213*t279 + t214*t278) + t259*t280) + t171*t280)
-                J[48 + column] = (c_stiffness*(t209*t283 + t215*(-t124*(-n1_x*t203 + n1_z*t187) +
-                    t135*(-m1_x*t203 + m1_z*t187) - t213*t282 + t214*t281) + t259*t283) +
-                    t171*t283)
-                J[60 + column] = (c_stiffness*(t209*t286 + t215*(-t124*(n1_x*t195 - n1_y*t187) +
-                    t135*(m1_x*t195 - m1_y*t187) - t213*t285 + t214*t284) + t259*t286) + t171*t286)
-                J[72 + column] = (c_stiffness*(-t294*t305 - t294*t312 - t311*(-t287*(n2_x*t306 +
-                    n2_y*t307 + n2_z*t308) - t291*t309 + t292*(m2_x*t306 + m2_y*t307 + m2_z*t308)
-                    + t293*t310)) - t294*t298)
-                J[84 + column] = (c_stiffness*(-t305*t318 - t311*(-t287*(n2_x*t319 + n2_y*t320 +
-                    n2_z*t321) + t292*(m2_x*t319 + m2_y*t320 + m2_z*t321) - t309*t316 + t310*t317)
-                    - t312*t318) - t298*t318)
-                J[96 + column] = (c_stiffness*(-t305*t327 - t311*(-t287*(n2_x*t328 + n2_y*t329 +
-                    n2_z*t330) + t292*(m2_x*t328 + m2_y*t329 + m2_z*t330) - t309*t325 + t310*t326)
-                    - t312*t327) - t298*t327)
-                J[108 + column] = (c_stiffness*(-t305*t333 - t311*(-t287*(n2_y*t245 - n2_z*t238) +
-                    t292*(m2_y*t245 - m2_z*t238) - t309*t332 + t310*t331) - t312*t333) - t298*t333)
-                J[120 + column] = (c_stiffness*(-t305*t336 - t311*(-t287*(-n2_x*t245 + n2_z*t231)
-                    + t292*(-m2_x*t245 + m2_z*t231) - t309*t335 + t310*t334) - t312*t336) -
-                    t298*t336)
-                J[132 + column] = (c_stiffness*(-t305*t339 - t311*(-t287*(n2_x*t238 - n2_y*t231) +
-                    t292*(m2_x*t238 - m2_y*t231) - t309*t338 + t310*t337) - t312*t339) - t298*t339)
+                t124 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t125 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t126 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t127 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t128 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t129 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t130 = Ra_xx*t124 + Ra_yx*t125 + Ra_zx*t126 + Rb_xx*t127 + Rb_yx*t128 + Rb_zx*t129
+                t131 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t132 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t133 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t134 = Ra_xy*t124 + Ra_yy*t125 + Ra_zy*t126 + Rb_xx*t131 + Rb_yx*t132 + Rb_zx*t133
+                t135 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t136 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t137 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t138 = Ra_xz*t124 + Ra_yz*t125 + Ra_zz*t126 + Rb_xx*t135 + Rb_yx*t136 + Rb_zx*t137
+                t139 = d1_x*t130 + d1_y*t134 + d1_z*t138
+                t140 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t141 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t142 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t143 = Ra_xx*t140 + Ra_yx*t141 + Ra_zx*t142 + Rb_xy*t127 + Rb_yy*t128 + Rb_zy*t129
+                t144 = Ra_xy*t140 + Ra_yy*t141 + Ra_zy*t142 + Rb_xy*t131 + Rb_yy*t132 + Rb_zy*t133
+                t145 = Ra_xz*t140 + Ra_yz*t141 + Ra_zz*t142 + Rb_xy*t135 + Rb_yy*t136 + Rb_zy*t137
+                t146 = d1_x*t143 + d1_y*t144 + d1_z*t145
+                t147 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t148 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t149 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t150 = Ra_xx*t147 + Ra_yx*t148 + Ra_zx*t149 + Rb_xz*t127 + Rb_yz*t128 + Rb_zz*t129
+                t151 = Ra_xy*t147 + Ra_yy*t148 + Ra_zy*t149 + Rb_xz*t131 + Rb_yz*t132 + Rb_zz*t133
+                t152 = Ra_xz*t147 + Ra_yz*t148 + Ra_zz*t149 + Rb_xz*t135 + Rb_yz*t136 + Rb_zz*t137
+                t153 = d1_x*t150 + d1_y*t151 + d1_z*t152
+                t154 = Oma_x*d1_y - Oma_y*d1_x
+                t155 = -Oma_x*d1_z + Oma_z*d1_x
+                t156 = Oma_y*d1_z - Oma_z*d1_y
+                t157 = -Omb_y*t153 + Omb_z*t146 + t130*t156 + t134*t155 + t138*t154
+                t158 = Omb_x*t153 - Omb_z*t139 + t143*t156 + t144*t155 + t145*t154
+                t159 = -Omb_x*t146 + Omb_y*t139 + t150*t156 + t151*t155 + t152*t154
+                t160 = -d1_x*utha_y + d1_y*utha_x
+                t161 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t162 = d1_x*utha_z - d1_z*utha_x
+                t163 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t164 = -d1_y*utha_z + d1_z*utha_y
+                t165 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t166 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t167 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t168 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t169 = d1_x*t166 + d1_y*t167 + d1_z*t168
+                t170 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t171 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t172 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t173 = d1_x*t170 + d1_y*t171 + d1_z*t172
+                t174 = t160*t161 + t162*t163 + t164*t165 + t169*uthb_z - t173*uthb_y
+                t175 = d1_x*t165 + d1_y*t163 + d1_z*t161
+                t176 = t160*t168 + t162*t167 + t164*t166 + t173*uthb_x - t175*uthb_z
+                t177 = t160*t172 + t162*t171 + t164*t170 - t169*uthb_x + t175*uthb_y
+                t178 = Rd_xy*dthd_z - Rd_xz*dthd_y
+                t179 = Rd_yy*dthd_z - Rd_yz*dthd_y
+                t180 = Rd_zy*dthd_z - Rd_zz*dthd_y
+                t181 = Rc_xy*dthc_z - Rc_xz*dthc_y
+                t182 = Rc_yy*dthc_z - Rc_yz*dthc_y
+                t183 = Rc_zy*dthc_z - Rc_zz*dthc_y
+                t184 = Rc_xx*t178 + Rc_yx*t179 + Rc_zx*t180 + Rd_xx*t181 + Rd_yx*t182 + Rd_zx*t183
+                t185 = -Rc_xx*dthc_z + Rc_xz*dthc_x
+                t186 = -Rc_yx*dthc_z + Rc_yz*dthc_x
+                t187 = -Rc_zx*dthc_z + Rc_zz*dthc_x
+                t188 = Rc_xy*t178 + Rc_yy*t179 + Rc_zy*t180 + Rd_xx*t185 + Rd_yx*t186 + Rd_zx*t187
+                t189 = Rc_xx*dthc_y - Rc_xy*dthc_x
+                t190 = Rc_yx*dthc_y - Rc_yy*dthc_x
+                t191 = Rc_zx*dthc_y - Rc_zy*dthc_x
+                t192 = Rc_xz*t178 + Rc_yz*t179 + Rc_zz*t180 + Rd_xx*t189 + Rd_yx*t190 + Rd_zx*t191
+                t193 = d2_x*t184 + d2_y*t188 + d2_z*t192
+                t194 = -Rd_xx*dthd_z + Rd_xz*dthd_x
+                t195 = -Rd_yx*dthd_z + Rd_yz*dthd_x
+                t196 = -Rd_zx*dthd_z + Rd_zz*dthd_x
+                t197 = Rc_xx*t194 + Rc_yx*t195 + Rc_zx*t196 + Rd_xy*t181 + Rd_yy*t182 + Rd_zy*t183
+                t198 = Rc_xy*t194 + Rc_yy*t195 + Rc_zy*t196 + Rd_xy*t185 + Rd_yy*t186 + Rd_zy*t187
+                t199 = Rc_xz*t194 + Rc_yz*t195 + Rc_zz*t196 + Rd_xy*t189 + Rd_yy*t190 + Rd_zy*t191
+                t200 = d2_x*t197 + d2_y*t198 + d2_z*t199
+                t201 = Rd_xx*dthd_y - Rd_xy*dthd_x
+                t202 = Rd_yx*dthd_y - Rd_yy*dthd_x
+                t203 = Rd_zx*dthd_y - Rd_zy*dthd_x
+                t204 = Rc_xx*t201 + Rc_yx*t202 + Rc_zx*t203 + Rd_xz*t181 + Rd_yz*t182 + Rd_zz*t183
+                t205 = Rc_xy*t201 + Rc_yy*t202 + Rc_zy*t203 + Rd_xz*t185 + Rd_yz*t186 + Rd_zz*t187
+                t206 = Rc_xz*t201 + Rc_yz*t202 + Rc_zz*t203 + Rd_xz*t189 + Rd_yz*t190 + Rd_zz*t191
+                t207 = d2_x*t204 + d2_y*t205 + d2_z*t206
+                t208 = Omc_x*d2_y - Omc_y*d2_x
+                t209 = -Omc_x*d2_z + Omc_z*d2_x
+                t210 = Omc_y*d2_z - Omc_z*d2_y
+                t211 = -Omd_y*t207 + Omd_z*t200 + t184*t210 + t188*t209 + t192*t208
+                t212 = Omd_x*t207 - Omd_z*t193 + t197*t210 + t198*t209 + t199*t208
+                t213 = -Omd_x*t200 + Omd_y*t193 + t204*t210 + t205*t209 + t206*t208
+                t214 = -d2_x*uthc_y + d2_y*uthc_x
+                t215 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
+                t216 = d2_x*uthc_z - d2_z*uthc_x
+                t217 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
+                t218 = -d2_y*uthc_z + d2_z*uthc_y
+                t219 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
+                t220 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
+                t221 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
+                t222 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
+                t223 = d2_x*t220 + d2_y*t221 + d2_z*t222
+                t224 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
+                t225 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
+                t226 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
+                t227 = d2_x*t224 + d2_y*t225 + d2_z*t226
+                t228 = t214*t215 + t216*t217 + t218*t219 + t223*uthd_z - t227*uthd_y
+                t229 = d2_x*t219 + d2_y*t217 + d2_z*t215
+                t230 = t214*t222 + t216*t221 + t218*t220 + t227*uthd_x - t229*uthd_z
+                t231 = t214*t226 + t216*t225 + t218*t224 - t223*uthd_x + t229*uthd_y
+                dangle_1_seen_1 = t139
+                dangle_1_seen_2 = t146
+                dangle_1_seen_3 = t153
+                dangle_1_along_n = n1_x*t157 + n1_y*t158 + n1_z*t159
+                uangle_1_along_n = n1_x*t174 + n1_y*t176 + n1_z*t177
+                dangle_1_along_m = m1_x*t157 + m1_y*t158 + m1_z*t159
+                uangle_1_along_m = m1_x*t174 + m1_y*t176 + m1_z*t177
+                dangle_2_seen_1 = t193
+                dangle_2_seen_2 = t200
+                dangle_2_seen_3 = t207
+                dangle_2_along_n = n2_x*t211 + n2_y*t212 + n2_z*t213
+                uangle_2_along_n = n2_x*t228 + n2_y*t230 + n2_z*t231
+                dangle_2_along_m = m2_x*t211 + m2_y*t212 + m2_z*t213
+                uangle_2_along_m = m2_x*t228 + m2_y*t230 + m2_z*t231
+                t232 = angle_1_seen_1*m1_x + angle_1_seen_2*m1_y + angle_1_seen_3*m1_z
+                t233 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t234 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t235 = d1_y*t233 - d1_z*t234
+                t236 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t237 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t238 = d1_y*t236 - d1_z*t237
+                t239 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t240 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t241 = d1_y*t239 - d1_z*t240
+                t242 = n1_x*t235 + n1_y*t238 + n1_z*t241
+                t243 = angle_1_seen_1*n1_x + angle_1_seen_2*n1_y + angle_1_seen_3*n1_z
+                t244 = m1_x*t235 + m1_y*t238 + m1_z*t241
+                t245 = -t232*t242 + t243*t244
+                t246 = t232*t232 + t243*t243
+                t247 = side/t246
+                t248 = (c_damping*(dpush_by_angle_1_along_m*uangle_1_along_m +
+                    dpush_by_angle_1_along_n*uangle_1_along_n +
+                    dpush_by_angle_2_along_m*uangle_2_along_m +
+                    dpush_by_angle_2_along_n*uangle_2_along_n))
+                t249 = t247*t248
+                t250 = (dangle_1_along_m*dpush_by_angle_1_along_m +
+                    dangle_1_along_n*dpush_by_angle_1_along_n +
+                    dangle_1_seen_1*dpush_by_angle_1_seen_1 +
+                    dangle_1_seen_2*dpush_by_angle_1_seen_2 +
+                    dangle_1_seen_3*dpush_by_angle_1_seen_3 +
+                    dangle_2_along_m*dpush_by_angle_2_along_m +
+                    dangle_2_along_n*dpush_by_angle_2_along_n +
+                    dangle_2_seen_1*dpush_by_angle_2_seen_1 +
+                    dangle_2_seen_2*dpush_by_angle_2_seen_2 +
+                    dangle_2_seen_3*dpush_by_angle_2_seen_3)
+                t251 = t247*t250
+                t252 = dangle_1_seen_1*m1_x
+                t253 = dangle_1_seen_2*m1_y
+                t254 = dangle_1_seen_3*m1_z
+                t255 = dangle_1_seen_1*n1_x
+                t256 = dangle_1_seen_2*n1_y
+                t257 = dangle_1_seen_3*n1_z
+                t258 = push*side
+                t259 = ((t258*(-t232*(2*t252 + 2*t253 + 2*t254) - t243*(2*t255 + 2*t256 +
+                    2*t257)))/(t246*t246))
+                t260 = t252 + t253 + t254
+                t261 = t255 + t256 + t257
+                t262 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t263 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t264 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t265 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t266 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t267 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t268 = Ra_xz*t262 + Ra_yz*t263 + Ra_zz*t264 + Rb_xx*t265 + Rb_yx*t266 + Rb_zx*t267
+                t269 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t270 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t271 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t272 = Ra_xy*t262 + Ra_yy*t263 + Ra_zy*t264 + Rb_xx*t269 + Rb_yx*t270 + Rb_zx*t271
+                t273 = d1_y*t268 - d1_z*t272
+                t274 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t275 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t276 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t277 = Ra_xz*t274 + Ra_yz*t275 + Ra_zz*t276 + Rb_xy*t265 + Rb_yy*t266 + Rb_zy*t267
+                t278 = Ra_xy*t274 + Ra_yy*t275 + Ra_zy*t276 + Rb_xy*t269 + Rb_yy*t270 + Rb_zy*t271
+                t279 = d1_y*t277 - d1_z*t278
+                t280 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t281 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t282 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t283 = Ra_xz*t280 + Ra_yz*t281 + Ra_zz*t282 + Rb_xz*t265 + Rb_yz*t266 + Rb_zz*t267
+                t284 = Ra_xy*t280 + Ra_yy*t281 + Ra_zy*t282 + Rb_xz*t269 + Rb_yz*t270 + Rb_zz*t271
+                t285 = d1_y*t283 - d1_z*t284
+                t286 = push*t247
+                t287 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t288 = -d1_x*t233 + d1_z*t287
+                t289 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t290 = -d1_x*t236 + d1_z*t289
+                t291 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t292 = -d1_x*t239 + d1_z*t291
+                t293 = n1_x*t288 + n1_y*t290 + n1_z*t292
+                t294 = m1_x*t288 + m1_y*t290 + m1_z*t292
+                t295 = -t232*t293 + t243*t294
+                t296 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t297 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t298 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t299 = Ra_xx*t262 + Ra_yx*t263 + Ra_zx*t264 + Rb_xx*t296 + Rb_yx*t297 + Rb_zx*t298
+                t300 = -d1_x*t268 + d1_z*t299
+                t301 = Ra_xx*t274 + Ra_yx*t275 + Ra_zx*t276 + Rb_xy*t296 + Rb_yy*t297 + Rb_zy*t298
+                t302 = -d1_x*t277 + d1_z*t301
+                t303 = Ra_xx*t280 + Ra_yx*t281 + Ra_zx*t282 + Rb_xz*t296 + Rb_yz*t297 + Rb_zz*t298
+                t304 = -d1_x*t283 + d1_z*t303
+                t305 = d1_x*t234 - d1_y*t287
+                t306 = d1_x*t237 - d1_y*t289
+                t307 = d1_x*t240 - d1_y*t291
+                t308 = n1_x*t305 + n1_y*t306 + n1_z*t307
+                t309 = m1_x*t305 + m1_y*t306 + m1_z*t307
+                t310 = -t232*t308 + t243*t309
+                t311 = d1_x*t272 - d1_y*t299
+                t312 = d1_x*t278 - d1_y*t301
+                t313 = d1_x*t284 - d1_y*t303
+                t314 = -angle_1_seen_2*m1_z + angle_1_seen_3*m1_y
+                t315 = -angle_1_seen_2*n1_z + angle_1_seen_3*n1_y
+                t316 = -t232*t315 + t243*t314
+                t317 = angle_1_seen_1*m1_z - angle_1_seen_3*m1_x
+                t318 = angle_1_seen_1*n1_z - angle_1_seen_3*n1_x
+                t319 = -t232*t318 + t243*t317
+                t320 = -angle_1_seen_1*m1_y + angle_1_seen_2*m1_x
+                t321 = -angle_1_seen_1*n1_y + angle_1_seen_2*n1_x
+                t322 = -t232*t321 + t243*t320
+                t323 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
+                t324 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
+                t325 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
+                t326 = d2_y*t324 - d2_z*t325
+                t327 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
+                t328 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
+                t329 = d2_y*t327 - d2_z*t328
+                t330 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
+                t331 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
+                t332 = d2_y*t330 - d2_z*t331
+                t333 = n2_x*t326 + n2_y*t329 + n2_z*t332
+                t334 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
+                t335 = m2_x*t326 + m2_y*t329 + m2_z*t332
+                t336 = -t323*t333 + t334*t335
+                t337 = t323*t323 + t334*t334
+                t338 = ratio/t337
+                t339 = side*t338
+                t340 = t248*t339
+                t341 = t250*t339
+                t342 = dangle_2_seen_1*m2_x
+                t343 = dangle_2_seen_2*m2_y
+                t344 = dangle_2_seen_3*m2_z
+                t345 = dangle_2_seen_1*n2_x
+                t346 = dangle_2_seen_2*n2_y
+                t347 = dangle_2_seen_3*n2_z
+                t348 = ((ratio*t258*(-t323*(2*t342 + 2*t343 + 2*t344) - t334*(2*t345 + 2*t346 +
+                    2*t347)))/(t337*t337))
+                t349 = t342 + t343 + t344
+                t350 = t345 + t346 + t347
+                t351 = Rd_xy*dthd_z - Rd_xz*dthd_y
+                t352 = Rd_yy*dthd_z - Rd_yz*dthd_y
+                t353 = Rd_zy*dthd_z - Rd_zz*dthd_y
+                t354 = Rc_xx*dthc_y - Rc_xy*dthc_x
+                t355 = Rc_yx*dthc_y - Rc_yy*dthc_x
+                t356 = Rc_zx*dthc_y - Rc_zy*dthc_x
+                t357 = Rc_xz*t351 + Rc_yz*t352 + Rc_zz*t353 + Rd_xx*t354 + Rd_yx*t355 + Rd_zx*t356
+                t358 = -Rc_xx*dthc_z + Rc_xz*dthc_x
+                t359 = -Rc_yx*dthc_z + Rc_yz*dthc_x
+                t360 = -Rc_zx*dthc_z + Rc_zz*dthc_x
+                t361 = Rc_xy*t351 + Rc_yy*t352 + Rc_zy*t353 + Rd_xx*t358 + Rd_yx*t359 + Rd_zx*t360
+                t362 = d2_y*t357 - d2_z*t361
+                t363 = -Rd_xx*dthd_z + Rd_xz*dthd_x
+                t364 = -Rd_yx*dthd_z + Rd_yz*dthd_x
+                t365 = -Rd_zx*dthd_z + Rd_zz*dthd_x
+                t366 = Rc_xz*t363 + Rc_yz*t364 + Rc_zz*t365 + Rd_xy*t354 + Rd_yy*t355 + Rd_zy*t356
+                t367 = Rc_xy*t363 + Rc_yy*t364 + Rc_zy*t365 + Rd_xy*t358 + Rd_yy*t359 + Rd_zy*t360
+                t368 = d2_y*t366 - d2_z*t367
+                t369 = Rd_xx*dthd_y - Rd_xy*dthd_x
+                t370 = Rd_yx*dthd_y - Rd_yy*dthd_x
+                t371 = Rd_zx*dthd_y - Rd_zy*dthd_x
+                t372 = Rc_xz*t369 + Rc_yz*t370 + Rc_zz*t371 + Rd_xz*t354 + Rd_yz*t355 + Rd_zz*t356
+                t373 = Rc_xy*t369 + Rc_yy*t370 + Rc_zy*t371 + Rd_xz*t358 + Rd_yz*t359 + Rd_zz*t360
+                t374 = d2_y*t372 - d2_z*t373
+                t375 = t258*t338
+                t376 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
+                t377 = -d2_x*t324 + d2_z*t376
+                t378 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
+                t379 = -d2_x*t327 + d2_z*t378
+                t380 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
+                t381 = -d2_x*t330 + d2_z*t380
+                t382 = n2_x*t377 + n2_y*t379 + n2_z*t381
+                t383 = m2_x*t377 + m2_y*t379 + m2_z*t381
+                t384 = -t323*t382 + t334*t383
+                t385 = Rc_xy*dthc_z - Rc_xz*dthc_y
+                t386 = Rc_yy*dthc_z - Rc_yz*dthc_y
+                t387 = Rc_zy*dthc_z - Rc_zz*dthc_y
+                t388 = Rc_xx*t351 + Rc_yx*t352 + Rc_zx*t353 + Rd_xx*t385 + Rd_yx*t386 + Rd_zx*t387
+                t389 = -d2_x*t357 + d2_z*t388
+                t390 = Rc_xx*t363 + Rc_yx*t364 + Rc_zx*t365 + Rd_xy*t385 + Rd_yy*t386 + Rd_zy*t387
+                t391 = -d2_x*t366 + d2_z*t390
+                t392 = Rc_xx*t369 + Rc_yx*t370 + Rc_zx*t371 + Rd_xz*t385 + Rd_yz*t386 + Rd_zz*t387
+                t393 = -d2_x*t372 + d2_z*t392
+                t394 = d2_x*t325 - d2_y*t376
+                t395 = d2_x*t328 - d2_y*t378
+                t396 = d2_x*t331 - d2_y*t380
+                t397 = n2_x*t394 + n2_y*t395 + n2_z*t396
+                t398 = m2_x*t394 + m2_y*t395 + m2_z*t396
+                t399 = -t323*t397 + t334*t398
+                t400 = d2_x*t361 - d2_y*t388
+                t401 = d2_x*t367 - d2_y*t390
+                t402 = d2_x*t373 - d2_y*t392
+                t403 = -angle_2_seen_2*m2_z + angle_2_seen_3*m2_y
+                t404 = -angle_2_seen_2*n2_z + angle_2_seen_3*n2_y
+                t405 = -t323*t404 + t334*t403
+                t406 = angle_2_seen_1*m2_z - angle_2_seen_3*m2_x
+                t407 = angle_2_seen_1*n2_z - angle_2_seen_3*n2_x
+                t408 = -t323*t407 + t334*t406
+                t409 = -angle_2_seen_1*m2_y + angle_2_seen_2*m2_x
+                t410 = -angle_2_seen_1*n2_y + angle_2_seen_2*n2_x
+                t411 = -t323*t410 + t334*t409
+                J[column] = (c_stiffness*(t245*t251 + t245*t259 + t286*(-t232*(n1_x*t273 +
+                    n1_y*t279 + n1_z*t285) - t242*t260 + t243*(m1_x*t273 + m1_y*t279 + m1_z*t285)
+                    + t244*t261)) + t245*t249)
+                J[12 + column] = (c_stiffness*(t251*t295 + t259*t295 + t286*(-t232*(n1_x*t300 +
+                    n1_y*t302 + n1_z*t304) + t243*(m1_x*t300 + m1_y*t302 + m1_z*t304) - t260*t293
+                    + t261*t294)) + t249*t295)
+                J[24 + column] = (c_stiffness*(t251*t310 + t259*t310 + t286*(-t232*(n1_x*t311 +
+                    n1_y*t312 + n1_z*t313) + t243*(m1_x*t311 + m1_y*t312 + m1_z*t313) - t260*t308
+                    + t261*t309)) + t249*t310)
+                J[36 + column] = (c_stiffness*(t251*t316 + t259*t316 +
+                    t286*(-t232*(-dangle_1_seen_2*n1_z + dangle_1_seen_3*n1_y) +
+                    t243*(-dangle_1_seen_2*m1_z + dangle_1_seen_3*m1_y) - t260*t315 + t261*t314))
+                    + t249*t316)
+                J[48 + column] = (c_stiffness*(t251*t319 + t259*t319 +
+                    t286*(-t232*(dangle_1_seen_1*n1_z - dangle_1_seen_3*n1_x) +
+                    t243*(dangle_1_seen_1*m1_z - dangle_1_seen_3*m1_x) - t260*t318 + t261*t317)) +
+                    t249*t319)
+                J[60 + column] = (c_stiffness*(t251*t322 + t259*t322 +
+                    t286*(-t232*(-dangle_1_seen_1*n1_y + dangle_1_seen_2*n1_x) +
+                    t243*(-dangle_1_seen_1*m1_y + dangle_1_seen_2*m1_x) - t260*t321 + t261*t320))
+                    + t249*t322)
+                J[72 + column] = (c_stiffness*(-t336*t341 - t336*t348 - t375*(-t323*(n2_x*t362 +
+                    n2_y*t368 + n2_z*t374) - t333*t349 + t334*(m2_x*t362 + m2_y*t368 + m2_z*t374)
+                    + t335*t350)) - t336*t340)
+                J[84 + column] = (c_stiffness*(-t341*t384 - t348*t384 - t375*(-t323*(n2_x*t389 +
+                    n2_y*t391 + n2_z*t393) + t334*(m2_x*t389 + m2_y*t391 + m2_z*t393) - t349*t382
+                    + t350*t383)) - t340*t384)
+                J[96 + column] = (c_stiffness*(-t341*t399 - t348*t399 - t375*(-t323*(n2_x*t400 +
+                    n2_y*t401 + n2_z*t402) + t334*(m2_x*t400 + m2_y*t401 + m2_z*t402) - t349*t397
+                    + t350*t398)) - t340*t399)
+                J[108 + column] = (c_stiffness*(-t341*t405 - t348*t405 -
+                    t375*(-t323*(-dangle_2_seen_2*n2_z + dangle_2_seen_3*n2_y) +
+                    t334*(-dangle_2_seen_2*m2_z + dangle_2_seen_3*m2_y) - t349*t404 + t350*t403))
+                    - t340*t405)
+                J[120 + column] = (c_stiffness*(-t341*t408 - t348*t408 -
+                    t375*(-t323*(dangle_2_seen_1*n2_z - dangle_2_seen_3*n2_x) +
+                    t334*(dangle_2_seen_1*m2_z - dangle_2_seen_3*m2_x) - t349*t407 + t350*t406)) -
+                    t340*t408)
+                J[132 + column] = (c_stiffness*(-t341*t411 - t348*t411 -
+                    t375*(-t323*(-dangle_2_seen_1*n2_y + dangle_2_seen_2*n2_x) +
+                    t334*(-dangle_2_seen_1*m2_y + dangle_2_seen_2*m2_x) - t349*t410 + t350*t409))
+                    - t340*t411)
     return OK

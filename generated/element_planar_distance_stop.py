@@ -33,6 +33,7 @@ CONSTANTS = (
     Part("stiffness", (), "stiffness k of k d^n (1 + c d')"),
     Part("exponent", (), "exponent n"),
     Part("damping", (), "damping c [time/length]"),
+    Part("slow", (), "speed of impacts so slow that steps do not look at them"),
     Part("lower", (), "lower limit"),
     Part("upper", (), "upper limit"),
 )
@@ -46,7 +47,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (15, 0, 0, 0),
-              "column": (95, 0, 0, 0)}
+              "column": (69, 0, 0, 0)}
 
 
 @kernel_function
@@ -61,8 +62,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         stiffness = constant[0]
         exponent = constant[1]
         damping = constant[2]
-        lower = constant[3]
-        upper = constant[4]
+        slow = constant[3]
+        lower = constant[4]
+        upper = constant[5]
         xa_x = q[unknowns[0]]
         xa_y = q[unknowns[1]]
         va_x = v[unknowns[0]]
@@ -97,14 +99,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t10 = (kept_rate if kept_rate > 0.0 else -kept_rate)
         t11 = (speed_beyond if speed_beyond > 0.0 else -speed_beyond)
         t12 = (t11 if -t10 + t11 > 0.0 else t10)
+        t13 = (t12 if -kept_impact + t12 > 0.0 else kept_impact)
         g[0] = t5*t9
         g[1] = t7*t9
         g[2] = t6*t9
         g[3] = t8*t9
         frames[index[first + AT_FRAME]] = way
         frames[index[first + AT_FRAME] + 1] = speed_beyond
-        frames[index[first + AT_FRAME] + 2] = (((t12 if -kept_impact + t12 > 0.0 else kept_impact)
-            if touches - 0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 2] = (((t13 if -slow + t13 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0))
         frames[index[first + AT_FRAME] + 3] = beyond
         frames[index[first + AT_FRAME] + 4] = push
         if task == ENERGY:
@@ -154,34 +157,34 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uxa_y = du[1]
                 uxb_x = du[2]
                 uxb_y = du[3]
-                t13 = xa_x - xb_x
-                t14 = side*t13
-                t15 = -t13
-                t16 = xa_y - xb_y
-                t17 = -t16
-                t18 = t15*t15 + t17*t17
+                t14 = -xa_x + xb_x
+                t15 = -xa_y + xb_y
+                t16 = t14*t14 + t15*t15
+                t17 = 1/sqrt(t16)
+                t18 = (0.5)*t14
                 t19 = (0.5)*t15
-                t20 = (0.5)*t17
-                t21 = (c_damping*dpush_by_way_rate*(t19*(-2*uxa_x + 2*uxb_x) + t20*(-2*uxa_y +
-                    2*uxb_y))/t18)
-                t22 = dxa_x - dxb_x
-                t23 = 1/sqrt(t18)
-                t24 = side*t23
-                t25 = push*t24
-                t26 = t19*(-2*dxa_x + 2*dxb_x) + t20*(-2*dxa_y + 2*dxb_y)
-                t27 = -t26/t18**(1.5)
-                t28 = push*t27
-                t29 = -t22
-                t30 = -va_x + vb_x
-                t31 = dxa_y - dxb_y
-                t32 = -t31
-                t33 = -va_y + vb_y
-                t34 = (t24*(dpush_by_way*t23*t26 + dpush_by_way_rate*(t23*(t29*t30 + t32*t33) +
-                    t27*(t15*t30 + t17*t33))))
-                t35 = side*t21
-                t36 = side*t28
-                J[column] = c_stiffness*(t13*t34 + t14*t28 + t22*t25) + t14*t21
-                J[4 + column] = c_stiffness*(t16*t34 + t16*t36 + t25*t31) + t16*t35
-                J[8 + column] = c_stiffness*(t15*t34 + t15*t36 + t25*t29) + t15*t35
-                J[12 + column] = c_stiffness*(t17*t34 + t17*t36 + t25*t32) + t17*t35
+                t20 = t18*(-2*dxa_x + 2*dxb_x) + t19*(-2*dxa_y + 2*dxb_y)
+                t21 = -2*va_x + 2*vb_x
+                t22 = -2*va_y + 2*vb_y
+                dway = t17*t20
+                dway_rate = (t17*((0.5)*t21*(-dxa_x + dxb_x) + (0.5)*t22*(-dxa_y + dxb_y)) -
+                    t20*(t18*t21 + t19*t22)/t16**(1.5))
+                uway_rate = t17*(t18*(-2*uxa_x + 2*uxb_x) + t19*(-2*uxa_y + 2*uxb_y))
+                t23 = xa_x - xb_x
+                t24 = -t23
+                t25 = xa_y - xb_y
+                t26 = -t25
+                t27 = t24*t24 + t26*t26
+                t28 = side/sqrt(t27)
+                t29 = c_damping*dpush_by_way_rate*t28*uway_rate
+                t30 = dxa_x - dxb_x
+                t31 = push*t28
+                t32 = t28*(dpush_by_way*dway + dpush_by_way_rate*dway_rate)
+                t33 = (push*side*(-0.5*t24*(-2*dxa_x + 2*dxb_x) - 0.5*t26*(-2*dxa_y +
+                    2*dxb_y))/t27**(1.5))
+                t34 = dxa_y - dxb_y
+                J[column] = c_stiffness*(t23*t32 + t23*t33 + t30*t31) + t23*t29
+                J[4 + column] = c_stiffness*(t25*t32 + t25*t33 + t31*t34) + t25*t29
+                J[8 + column] = c_stiffness*(t24*t32 + t24*t33 - t30*t31) + t24*t29
+                J[12 + column] = c_stiffness*(t26*t32 + t26*t33 - t31*t34) + t26*t29
     return OK

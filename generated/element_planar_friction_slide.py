@@ -49,7 +49,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (18, 0, 0, 0),
-              "column": (118, 0, 0, 0)}
+              "column": (66, 0, 0, 0)}
 
 
 @kernel_function
@@ -196,36 +196,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uxb_x = du[2]
                 uxb_y = du[3]
                 utha_z = du[4]
-                t23 = Ra_cos*e_x
-                t24 = -Ra_sin*e_y + t23
-                t25 = -t24
-                t26 = Ra_cos*e_y
-                t27 = Ra_sin*e_x
-                t28 = t26 + t27
-                t29 = -xa_y + xb_y
-                t30 = Ra_sin*e_y
-                t31 = -xa_x + xb_x
-                t32 = (c_damping*dfriction_by_way_rate*(t24*(-uxa_x + uxb_x) + t28*(-uxa_y +
-                    uxb_y) + t29*(t23*utha_z - t30*utha_z) + t31*(-t26*utha_z - t27*utha_z)))
-                t33 = dtha_z*t26
-                t34 = dtha_z*t27
-                t35 = t33 + t34
-                t36 = -dxa_y + dxb_y
-                t37 = -dxa_x + dxb_x
-                t38 = dtha_z*t23
-                t39 = -dtha_z*t30 + t38
-                t40 = -t35
-                t41 = (dfriction_by_way*(t24*t37 + t28*t36 + t29*t39 + t31*t40) +
-                    dfriction_by_way_rate*(t29*(-Oma_z*t33 - Oma_z*t34) +
-                    t31*(Oma_z*Ra_sin*dtha_z*e_y - Oma_z*t38) + t36*(Oma_z*t23 - Oma_z*t30) +
-                    t37*(-Oma_z*t26 - Oma_z*t27) + t39*(-va_y + vb_y) + t40*(-va_x + vb_x)))
-                t42 = -t28
-                t43 = -t39
-                t44 = t24*t29 + t31*t42
-                J[column] = c_stiffness*(friction*t35 + t25*t41) + t25*t32
-                J[5 + column] = c_stiffness*(friction*t43 + t41*t42) + t32*t42
-                J[10 + column] = c_stiffness*(friction*t40 + t24*t41) + t24*t32
-                J[15 + column] = c_stiffness*(friction*t39 + t28*t41) + t28*t32
-                J[20 + column] = (c_stiffness*(friction*(t24*t36 + t29*t40 + t31*t43 + t37*t42) +
-                    t41*t44) + t32*t44)
+                t23 = -dxa_y + dxb_y
+                t24 = Ra_cos*e_y
+                t25 = Ra_sin*e_x
+                t26 = t24 + t25
+                t27 = -dxa_x + dxb_x
+                t28 = Ra_cos*e_x
+                t29 = Ra_sin*e_y
+                t30 = t28 - t29
+                t31 = -xa_y + xb_y
+                t32 = dtha_z*t28
+                t33 = -dtha_z*t29 + t32
+                t34 = -xa_x + xb_x
+                t35 = dtha_z*t24
+                t36 = dtha_z*t25
+                t37 = -t35 - t36
+                dway = t23*t26 + t27*t30 + t31*t33 + t34*t37
+                dway_rate = (t23*(Oma_z*t28 - Oma_z*t29) + t27*(-Oma_z*t24 - Oma_z*t25) +
+                    t31*(-Oma_z*t35 - Oma_z*t36) + t33*(-va_y + vb_y) +
+                    t34*(Oma_z*Ra_sin*dtha_z*e_y - Oma_z*t32) + t37*(-va_x + vb_x))
+                uway_rate = (t26*(-uxa_y + uxb_y) + t30*(-uxa_x + uxb_x) + t31*(t28*utha_z -
+                    t29*utha_z) + t34*(-t24*utha_z - t25*utha_z))
+                t38 = Ra_cos*e_x
+                t39 = -Ra_sin*e_y + t38
+                t40 = -t39
+                t41 = c_damping*dfriction_by_way_rate*uway_rate
+                t42 = Ra_cos*e_y
+                t43 = Ra_sin*e_x
+                t44 = dtha_z*t42 + dtha_z*t43
+                t45 = dfriction_by_way*dway + dfriction_by_way_rate*dway_rate
+                t46 = t42 + t43
+                t47 = -t46
+                t48 = -Ra_sin*dtha_z*e_y + dtha_z*t38
+                t49 = -t48
+                t50 = -t44
+                t51 = -xa_y + xb_y
+                t52 = -xa_x + xb_x
+                t53 = t39*t51 + t47*t52
+                J[column] = c_stiffness*(friction*t44 + t40*t45) + t40*t41
+                J[5 + column] = c_stiffness*(friction*t49 + t45*t47) + t41*t47
+                J[10 + column] = c_stiffness*(friction*t50 + t39*t45) + t39*t41
+                J[15 + column] = c_stiffness*(friction*t48 + t45*t46) + t41*t46
+                J[20 + column] = (c_stiffness*(friction*(t39*(-dxa_y + dxb_y) + t47*(-dxa_x +
+                    dxb_x) + t49*t52 + t50*t51) + t45*t53) + t41*t53)
     return OK

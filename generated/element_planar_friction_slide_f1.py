@@ -50,7 +50,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (18, 0, 0, 0),
-              "column": (118, 0, 0, 0)}
+              "column": (66, 0, 0, 0)}
 
 
 @kernel_function
@@ -209,38 +209,49 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uxb_x = du[2]
                 uxb_y = du[3]
                 utha_z = du[4]
-                t27 = Ra_cos*e_x
-                t28 = -Ra_sin*e_y + t27
-                t29 = -t28
-                t30 = Ra_cos*e_y
-                t31 = Ra_sin*e_x
-                t32 = t30 + t31
-                t33 = -xa_y + xb_y
-                t34 = Ra_sin*e_y
-                t35 = -xa_x + xb_x
-                t36 = (c_damping*dfriction_by_way_rate*(t28*(-uxa_x + uxb_x) + t32*(-uxa_y +
-                    uxb_y) + t33*(t27*utha_z - t34*utha_z) + t35*(-t30*utha_z - t31*utha_z)))
-                t37 = dtha_z*t30
-                t38 = dtha_z*t31
-                t39 = t37 + t38
-                t40 = -dxa_y + dxb_y
-                t41 = -dxa_x + dxb_x
-                t42 = dtha_z*t27
-                t43 = -dtha_z*t34 + t42
-                t44 = -t39
-                t45 = (dfriction_by_way*(t28*t41 + t32*t40 + t33*t43 + t35*t44) +
-                    dfriction_by_way_rate*(t33*(-Oma_z*t37 - Oma_z*t38) +
-                    t35*(Oma_z*Ra_sin*dtha_z*e_y - Oma_z*t42) + t40*(Oma_z*t27 - Oma_z*t34) +
-                    t41*(-Oma_z*t30 - Oma_z*t31) + t43*(-va_y + vb_y) + t44*(-va_x + vb_x)))
-                t46 = -t32
-                t47 = -t43
-                t48 = t28*t33 + t35*t46
-                J[column] = c_stiffness*(friction*t39 + t29*t45) + t29*t36
-                J[6 + column] = c_stiffness*(friction*t47 + t45*t46) + t36*t46
-                J[12 + column] = c_stiffness*(friction*t44 + t28*t45) + t28*t36
-                J[18 + column] = c_stiffness*(friction*t43 + t32*t45) + t32*t36
-                J[24 + column] = (c_stiffness*(friction*(t28*t40 + t33*t44 + t35*t47 + t41*t46) +
-                    t45*t48) + t36*t48)
+                t27 = -dxa_y + dxb_y
+                t28 = Ra_cos*e_y
+                t29 = Ra_sin*e_x
+                t30 = t28 + t29
+                t31 = -dxa_x + dxb_x
+                t32 = Ra_cos*e_x
+                t33 = Ra_sin*e_y
+                t34 = t32 - t33
+                t35 = -xa_y + xb_y
+                t36 = dtha_z*t32
+                t37 = -dtha_z*t33 + t36
+                t38 = -xa_x + xb_x
+                t39 = dtha_z*t28
+                t40 = dtha_z*t29
+                t41 = -t39 - t40
+                dway = t27*t30 + t31*t34 + t35*t37 + t38*t41
+                dway_rate = (t27*(Oma_z*t32 - Oma_z*t33) + t31*(-Oma_z*t28 - Oma_z*t29) +
+                    t35*(-Oma_z*t39 - Oma_z*t40) + t37*(-va_y + vb_y) +
+                    t38*(Oma_z*Ra_sin*dtha_z*e_y - Oma_z*t36) + t41*(-va_x + vb_x))
+                uway_rate = (t30*(-uxa_y + uxb_y) + t34*(-uxa_x + uxb_x) + t35*(t32*utha_z -
+                    t33*utha_z) + t38*(-t28*utha_z - t29*utha_z))
+                t42 = Ra_cos*e_x
+                t43 = -Ra_sin*e_y + t42
+                t44 = -t43
+                t45 = c_damping*dfriction_by_way_rate*uway_rate
+                t46 = Ra_cos*e_y
+                t47 = Ra_sin*e_x
+                t48 = dtha_z*t46 + dtha_z*t47
+                t49 = dfriction_by_way*dway + dfriction_by_way_rate*dway_rate
+                t50 = t46 + t47
+                t51 = -t50
+                t52 = -Ra_sin*dtha_z*e_y + dtha_z*t42
+                t53 = -t52
+                t54 = -t48
+                t55 = -xa_y + xb_y
+                t56 = -xa_x + xb_x
+                t57 = t43*t55 + t51*t56
+                J[column] = c_stiffness*(friction*t48 + t44*t49) + t44*t45
+                J[6 + column] = c_stiffness*(friction*t53 + t49*t51) + t45*t51
+                J[12 + column] = c_stiffness*(friction*t54 + t43*t49) + t43*t45
+                J[18 + column] = c_stiffness*(friction*t52 + t49*t50) + t45*t50
+                J[24 + column] = (c_stiffness*(friction*(t43*(-dxa_y + dxb_y) + t51*(-dxa_x +
+                    dxb_x) + t53*t56 + t54*t55) + t49*t57) + t45*t57)
                 J[30 + column] = 0.0
             t700 = Ra_cos*e_x - Ra_sin*e_y
             t701 = c_constraint*dfriction_by_force_1

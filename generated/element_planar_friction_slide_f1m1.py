@@ -50,7 +50,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (18, 0, 0, 0),
-              "column": (118, 0, 0, 0)}
+              "column": (66, 0, 0, 0)}
 
 
 @kernel_function
@@ -220,38 +220,49 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uxb_x = du[2]
                 uxb_y = du[3]
                 utha_z = du[4]
-                t29 = Ra_cos*e_x
-                t30 = -Ra_sin*e_y + t29
-                t31 = -t30
-                t32 = Ra_cos*e_y
-                t33 = Ra_sin*e_x
-                t34 = t32 + t33
-                t35 = -xa_y + xb_y
-                t36 = Ra_sin*e_y
-                t37 = -xa_x + xb_x
-                t38 = (c_damping*dfriction_by_way_rate*(t30*(-uxa_x + uxb_x) + t34*(-uxa_y +
-                    uxb_y) + t35*(t29*utha_z - t36*utha_z) + t37*(-t32*utha_z - t33*utha_z)))
-                t39 = dtha_z*t32
-                t40 = dtha_z*t33
-                t41 = t39 + t40
-                t42 = -dxa_y + dxb_y
-                t43 = -dxa_x + dxb_x
-                t44 = dtha_z*t29
-                t45 = -dtha_z*t36 + t44
-                t46 = -t41
-                t47 = (dfriction_by_way*(t30*t43 + t34*t42 + t35*t45 + t37*t46) +
-                    dfriction_by_way_rate*(t35*(-Oma_z*t39 - Oma_z*t40) +
-                    t37*(Oma_z*Ra_sin*dtha_z*e_y - Oma_z*t44) + t42*(Oma_z*t29 - Oma_z*t36) +
-                    t43*(-Oma_z*t32 - Oma_z*t33) + t45*(-va_y + vb_y) + t46*(-va_x + vb_x)))
-                t48 = -t34
-                t49 = -t45
-                t50 = t30*t35 + t37*t48
-                J[column] = c_stiffness*(friction*t41 + t31*t47) + t31*t38
-                J[7 + column] = c_stiffness*(friction*t49 + t47*t48) + t38*t48
-                J[14 + column] = c_stiffness*(friction*t46 + t30*t47) + t30*t38
-                J[21 + column] = c_stiffness*(friction*t45 + t34*t47) + t34*t38
-                J[28 + column] = (c_stiffness*(friction*(t30*t42 + t35*t46 + t37*t49 + t43*t48) +
-                    t47*t50) + t38*t50)
+                t29 = -dxa_y + dxb_y
+                t30 = Ra_cos*e_y
+                t31 = Ra_sin*e_x
+                t32 = t30 + t31
+                t33 = -dxa_x + dxb_x
+                t34 = Ra_cos*e_x
+                t35 = Ra_sin*e_y
+                t36 = t34 - t35
+                t37 = -xa_y + xb_y
+                t38 = dtha_z*t34
+                t39 = -dtha_z*t35 + t38
+                t40 = -xa_x + xb_x
+                t41 = dtha_z*t30
+                t42 = dtha_z*t31
+                t43 = -t41 - t42
+                dway = t29*t32 + t33*t36 + t37*t39 + t40*t43
+                dway_rate = (t29*(Oma_z*t34 - Oma_z*t35) + t33*(-Oma_z*t30 - Oma_z*t31) +
+                    t37*(-Oma_z*t41 - Oma_z*t42) + t39*(-va_y + vb_y) +
+                    t40*(Oma_z*Ra_sin*dtha_z*e_y - Oma_z*t38) + t43*(-va_x + vb_x))
+                uway_rate = (t32*(-uxa_y + uxb_y) + t36*(-uxa_x + uxb_x) + t37*(t34*utha_z -
+                    t35*utha_z) + t40*(-t30*utha_z - t31*utha_z))
+                t44 = Ra_cos*e_x
+                t45 = -Ra_sin*e_y + t44
+                t46 = -t45
+                t47 = c_damping*dfriction_by_way_rate*uway_rate
+                t48 = Ra_cos*e_y
+                t49 = Ra_sin*e_x
+                t50 = dtha_z*t48 + dtha_z*t49
+                t51 = dfriction_by_way*dway + dfriction_by_way_rate*dway_rate
+                t52 = t48 + t49
+                t53 = -t52
+                t54 = -Ra_sin*dtha_z*e_y + dtha_z*t44
+                t55 = -t54
+                t56 = -t50
+                t57 = -xa_y + xb_y
+                t58 = -xa_x + xb_x
+                t59 = t45*t57 + t53*t58
+                J[column] = c_stiffness*(friction*t50 + t46*t51) + t46*t47
+                J[7 + column] = c_stiffness*(friction*t55 + t51*t53) + t47*t53
+                J[14 + column] = c_stiffness*(friction*t56 + t45*t51) + t45*t47
+                J[21 + column] = c_stiffness*(friction*t54 + t51*t52) + t47*t52
+                J[28 + column] = (c_stiffness*(friction*(t45*(-dxa_y + dxb_y) + t53*(-dxa_x +
+                    dxb_x) + t55*t58 + t56*t57) + t51*t59) + t47*t59)
                 J[35 + column] = 0.0
                 J[42 + column] = 0.0
             t700 = Ra_cos*e_x - Ra_sin*e_y

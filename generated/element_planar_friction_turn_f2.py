@@ -49,7 +49,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (1, 0, 0, 0),
-              "column": (8, 0, 0, 0)}
+              "column": (6, 0, 0, 0)}
 
 
 @kernel_function
@@ -176,8 +176,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dthb_z = dq[1]
                 utha_z = du[0]
                 uthb_z = du[1]
-                t19 = (c_damping*dfriction_by_angle_rate*(utha_z - uthb_z) +
-                    c_stiffness*dfriction_by_angle*(dtha_z - dthb_z))
+                dangle = dtha_z - dthb_z
+                uangle_rate = utha_z - uthb_z
+                t19 = (c_damping*dfriction_by_angle_rate*uangle_rate +
+                    c_stiffness*dangle*dfriction_by_angle)
                 J[column] = t19
                 J[4 + column] = -t19
                 J[8 + column] = 0.0

@@ -46,7 +46,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (4, 0, 0, 0),
-              "column": (20, 0, 0, 0)}
+              "column": (16, 0, 0, 0)}
 
 
 @kernel_function
@@ -161,10 +161,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_z = du[1]
                 uthc_z = du[2]
                 uthd_z = du[3]
-                t13 = (c_damping*side*(dpush_by_angle_1_rate*(utha_z - uthb_z) +
-                    dpush_by_angle_2_rate*(uthc_z - uthd_z)))
-                t14 = (c_stiffness*side*(dpush_by_angle_1*(dtha_z - dthb_z) +
-                    dpush_by_angle_2*(dthc_z - dthd_z)))
+                dangle_1 = dtha_z - dthb_z
+                uangle_1_rate = utha_z - uthb_z
+                dangle_2 = dthc_z - dthd_z
+                uangle_2_rate = uthc_z - uthd_z
+                t13 = (c_damping*side*(dpush_by_angle_1_rate*uangle_1_rate +
+                    dpush_by_angle_2_rate*uangle_2_rate))
+                t14 = c_stiffness*side*(dangle_1*dpush_by_angle_1 + dangle_2*dpush_by_angle_2)
                 t15 = t13 + t14
                 t16 = ratio*t13 + ratio*t14
                 J[column] = t15

@@ -33,6 +33,7 @@ CONSTANTS = (
     Part("stiffness", (), "stiffness k of k d^n (1 + c d')"),
     Part("exponent", (), "exponent n"),
     Part("damping", (), "damping c [time/length]"),
+    Part("slow", (), "speed of impacts so slow that steps do not look at them"),
     Part("bristle", (), "stiffness of the bristles"),
     Part("bristle_damping", (), "their damping"),
     Part("coefficient", (), "coefficient of friction"),
@@ -53,7 +54,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (35, 0, 0, 0),
-              "column": (163, 0, 0, 0)}
+              "column": (139, 0, 0, 0)}
 
 
 @kernel_function
@@ -68,15 +69,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         stiffness = constant[0]
         exponent = constant[1]
         damping = constant[2]
-        bristle = constant[3]
-        bristle_damping = constant[4]
-        coefficient = constant[5]
-        static = constant[6]
-        speed = constant[7]
-        radius = constant[8]
-        n_x = constant[9]
-        n_y = constant[10]
-        level = constant[11]
+        slow = constant[3]
+        bristle = constant[4]
+        bristle_damping = constant[5]
+        coefficient = constant[6]
+        static = constant[7]
+        speed = constant[8]
+        radius = constant[9]
+        n_x = constant[10]
+        n_y = constant[11]
+        level = constant[12]
         xa_x = q[unknowns[0]]
         xa_y = q[unknowns[1]]
         va_x = v[unknowns[0]]
@@ -158,7 +160,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t26 = (closing if closing > 0.0 else -closing)
         t27 = (kept_rate if kept_rate > 0.0 else -kept_rate)
         t28 = (t26 if t26 - t27 > 0.0 else t27)
-        t29 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+        t29 = (t28 if -kept_impact + t28 > 0.0 else kept_impact)
+        t30 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
             dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0)))
         g[0] = t22
         g[1] = t23
@@ -168,11 +171,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME]] = place_1
         frames[index[first + AT_FRAME] + 1] = place_2
         frames[index[first + AT_FRAME] + 2] = closing
-        frames[index[first + AT_FRAME] + 3] = (((t28 if -kept_impact + t28 > 0.0 else kept_impact)
-            if touches - 0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 3] = (((t29 if -slow + t29 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0))
         frames[index[first + AT_FRAME] + 4] = gap_closed
-        frames[index[first + AT_FRAME] + 5] = t29*z_1
-        frames[index[first + AT_FRAME] + 6] = t29*z_2
+        frames[index[first + AT_FRAME] + 5] = t30*z_1
+        frames[index[first + AT_FRAME] + 6] = t30*z_2
         frames[index[first + AT_FRAME] + 7] = slips
         frames[index[first + AT_FRAME] + 8] = 1.0
         frames[index[first + AT_FRAME] + 9] = push
@@ -213,47 +216,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             du = at(work, WIDTH)
             dgap_closed_by_place_1 = -n_x
             dgap_closed_by_place_2 = -n_y
-            t30 = 1 - normal_1*normal_1
-            t31 = -normal_1*normal_2
-            t32 = 1 - normal_2*normal_2
+            t31 = 1 - normal_1*normal_1
+            t32 = -normal_1*normal_2
+            t33 = 1 - normal_2*normal_2
             dclosing_by_rate_1 = -normal_1
             dclosing_by_rate_2 = -normal_2
-            dslip_1_by_rate_1 = t30
-            dslip_1_by_rate_2 = t31
-            dslip_2_by_rate_1 = t31
-            dslip_2_by_rate_2 = t32
-            dincrement_1_by_place_1 = t30
-            dincrement_1_by_place_2 = t31
-            dincrement_2_by_place_1 = t31
-            dincrement_2_by_place_2 = t32
-            t33 = (1 if gap_closed > 0.0 else 0)
-            ddepth_by_place_1 = dgap_closed_by_place_1*t33
-            ddepth_by_place_2 = dgap_closed_by_place_2*t33
-            t34 = depth**exponent*exponent*stiffness/depth
-            delastic_by_place_1 = ddepth_by_place_1*t34
-            delastic_by_place_2 = ddepth_by_place_2*t34
+            dslip_1_by_rate_1 = t31
+            dslip_1_by_rate_2 = t32
+            dslip_2_by_rate_1 = t32
+            dslip_2_by_rate_2 = t33
+            dincrement_1_by_place_1 = t31
+            dincrement_1_by_place_2 = t32
+            dincrement_2_by_place_1 = t32
+            dincrement_2_by_place_2 = t33
+            t34 = (1 if gap_closed > 0.0 else 0)
+            ddepth_by_place_1 = dgap_closed_by_place_1*t34
+            ddepth_by_place_2 = dgap_closed_by_place_2*t34
+            t35 = depth**exponent*exponent*stiffness/depth
+            delastic_by_place_1 = ddepth_by_place_1*t35
+            delastic_by_place_2 = ddepth_by_place_2*t35
             dfactor_by_rate_1 = damping*dclosing_by_rate_1
             dfactor_by_rate_2 = damping*dclosing_by_rate_2
-            t35 = (factor if factor > 0.0 else 0)
-            t36 = (elastic if factor > 0.0 else 0)
-            dpush_by_place_1 = delastic_by_place_1*t35
-            dpush_by_place_2 = delastic_by_place_2*t35
-            dpush_by_rate_1 = dfactor_by_rate_1*t36
-            dpush_by_rate_2 = dfactor_by_rate_2*t36
-            t37 = kept_begun*normal_1*normal_2
-            t38 = kept_begun*(1 - normal_1*normal_1)
-            t39 = 1 - normal_2*normal_2
-            dz_1_by_place_1 = dincrement_1_by_place_1*t38 - dincrement_2_by_place_1*t37
-            dz_1_by_place_2 = dincrement_1_by_place_2*t38 - dincrement_2_by_place_2*t37
-            dz_2_by_place_1 = -dincrement_1_by_place_1*t37 + dincrement_2_by_place_1*kept_begun*t39
-            dz_2_by_place_2 = -dincrement_1_by_place_2*t37 + dincrement_2_by_place_2*kept_begun*t39
+            t36 = (factor if factor > 0.0 else 0)
+            t37 = (elastic if factor > 0.0 else 0)
+            dpush_by_place_1 = delastic_by_place_1*t36
+            dpush_by_place_2 = delastic_by_place_2*t36
+            dpush_by_rate_1 = dfactor_by_rate_1*t37
+            dpush_by_rate_2 = dfactor_by_rate_2*t37
+            t38 = kept_begun*normal_1*normal_2
+            t39 = kept_begun*(1 - normal_1*normal_1)
+            t40 = 1 - normal_2*normal_2
+            dz_1_by_place_1 = dincrement_1_by_place_1*t39 - dincrement_2_by_place_1*t38
+            dz_1_by_place_2 = dincrement_1_by_place_2*t39 - dincrement_2_by_place_2*t38
+            dz_2_by_place_1 = -dincrement_1_by_place_1*t38 + dincrement_2_by_place_1*kept_begun*t40
+            dz_2_by_place_2 = -dincrement_1_by_place_2*t38 + dincrement_2_by_place_2*kept_begun*t40
             ddynamic_limit_by_place_1 = coefficient*dpush_by_place_1
             ddynamic_limit_by_place_2 = coefficient*dpush_by_place_2
             ddynamic_limit_by_rate_1 = coefficient*dpush_by_rate_1
             ddynamic_limit_by_rate_2 = coefficient*dpush_by_rate_2
-            t40 = 1/sqrt(slip_1*slip_1 + slip_2*slip_2 + 1e-12*speed*speed + 1e-300)
-            t41 = slip_1*t40
-            t42 = slip_2*t40
+            t41 = 1/sqrt(slip_1*slip_1 + slip_2*slip_2 + 1e-12*speed*speed + 1e-300)
+            t42 = slip_1*t41
+            t43 = slip_2*t41
             dtrial_1_by_place_1 = bristle*dz_1_by_place_1
             dtrial_1_by_place_2 = bristle*dz_1_by_place_2
             dtrial_1_by_rate_1 = bristle_damping*dslip_1_by_rate_1
@@ -262,58 +265,58 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dtrial_2_by_place_2 = bristle*dz_2_by_place_2
             dtrial_2_by_rate_1 = bristle_damping*dslip_2_by_rate_1
             dtrial_2_by_rate_2 = bristle_damping*dslip_2_by_rate_2
-            dslip_speed_by_rate_1 = dslip_1_by_rate_1*t41 + dslip_2_by_rate_1*t42
-            dslip_speed_by_rate_2 = dslip_1_by_rate_2*t41 + dslip_2_by_rate_2*t42
-            t43 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + 1e-300)
-            t44 = t43*trial_1
-            t45 = t43*trial_2
-            t46 = 1/slip_speed
-            t47 = 1/speed
-            t48 = slip_speed*t47
-            t49 = tanh(4*t48)
-            t50 = slip_speed*slip_speed
-            t51 = 0.75 + ((0.25)*t50)/(speed*speed)
-            t52 = -coefficient + static
-            t53 = t52/(t51*t51)
-            t54 = coefficient*t49 + t48*t53
-            t55 = (t46*t54 if speed > 0.0 else 0)
-            t56 = ((push*t46*(4*coefficient*t47*(1 - t49*t49) + t47*t53 +
-                (-t50*t52)/(speed*speed*speed*t51*t51*t51)) - push*t54/t50 if speed > 0.0 else 0))
-            dtrial_size_by_place_1 = dtrial_1_by_place_1*t44 + dtrial_2_by_place_1*t45
-            dtrial_size_by_place_2 = dtrial_1_by_place_2*t44 + dtrial_2_by_place_2*t45
-            dtrial_size_by_rate_1 = dtrial_1_by_rate_1*t44 + dtrial_2_by_rate_1*t45
-            dtrial_size_by_rate_2 = dtrial_1_by_rate_2*t44 + dtrial_2_by_rate_2*t45
-            ddrag_by_place_1 = dpush_by_place_1*t55
-            ddrag_by_place_2 = dpush_by_place_2*t55
-            ddrag_by_rate_1 = dpush_by_rate_1*t55 + dslip_speed_by_rate_1*t56
-            ddrag_by_rate_2 = dpush_by_rate_2*t55 + dslip_speed_by_rate_2*t56
-            t57 = (slip_1 if speed > 0.0 else 0)
-            t58 = -static_limit + trial_size
-            t59 = 1/trial_size
-            t60 = (0 if speed > 0.0 else (t59*trial_1 if t58 > 0.0 else 0))
-            t61 = (0 if speed > 0.0 else (dynamic_limit*t59 if t58 > 0.0 else 1))
-            t62 = dynamic_limit/(trial_size*trial_size)
-            t63 = (0 if speed > 0.0 else (-t62*trial_1 if t58 > 0.0 else 0))
-            t64 = (drag if speed > 0.0 else 0)
-            t65 = (slip_2 if speed > 0.0 else 0)
-            t66 = (0 if speed > 0.0 else (t59*trial_2 if t58 > 0.0 else 0))
-            t67 = (0 if speed > 0.0 else (-t62*trial_2 if t58 > 0.0 else 0))
-            dfriction_1_by_place_1 = (ddrag_by_place_1*t57 + ddynamic_limit_by_place_1*t60 +
-                dtrial_1_by_place_1*t61 + dtrial_size_by_place_1*t63)
-            dfriction_1_by_place_2 = (ddrag_by_place_2*t57 + ddynamic_limit_by_place_2*t60 +
-                dtrial_1_by_place_2*t61 + dtrial_size_by_place_2*t63)
-            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t57 + ddynamic_limit_by_rate_1*t60 +
-                dslip_1_by_rate_1*t64 + dtrial_1_by_rate_1*t61 + dtrial_size_by_rate_1*t63)
-            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t57 + ddynamic_limit_by_rate_2*t60 +
-                dslip_1_by_rate_2*t64 + dtrial_1_by_rate_2*t61 + dtrial_size_by_rate_2*t63)
-            dfriction_2_by_place_1 = (ddrag_by_place_1*t65 + ddynamic_limit_by_place_1*t66 +
-                dtrial_2_by_place_1*t61 + dtrial_size_by_place_1*t67)
-            dfriction_2_by_place_2 = (ddrag_by_place_2*t65 + ddynamic_limit_by_place_2*t66 +
-                dtrial_2_by_place_2*t61 + dtrial_size_by_place_2*t67)
-            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t65 + ddynamic_limit_by_rate_1*t66 +
-                dslip_2_by_rate_1*t64 + dtrial_2_by_rate_1*t61 + dtrial_size_by_rate_1*t67)
-            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t65 + ddynamic_limit_by_rate_2*t66 +
-                dslip_2_by_rate_2*t64 + dtrial_2_by_rate_2*t61 + dtrial_size_by_rate_2*t67)
+            dslip_speed_by_rate_1 = dslip_1_by_rate_1*t42 + dslip_2_by_rate_1*t43
+            dslip_speed_by_rate_2 = dslip_1_by_rate_2*t42 + dslip_2_by_rate_2*t43
+            t44 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + 1e-300)
+            t45 = t44*trial_1
+            t46 = t44*trial_2
+            t47 = 1/slip_speed
+            t48 = 1/speed
+            t49 = slip_speed*t48
+            t50 = tanh(4*t49)
+            t51 = slip_speed*slip_speed
+            t52 = 0.75 + ((0.25)*t51)/(speed*speed)
+            t53 = -coefficient + static
+            t54 = t53/(t52*t52)
+            t55 = coefficient*t50 + t49*t54
+            t56 = (t47*t55 if speed > 0.0 else 0)
+            t57 = ((push*t47*(4*coefficient*t48*(1 - t50*t50) + t48*t54 +
+                (-t51*t53)/(speed*speed*speed*t52*t52*t52)) - push*t55/t51 if speed > 0.0 else 0))
+            dtrial_size_by_place_1 = dtrial_1_by_place_1*t45 + dtrial_2_by_place_1*t46
+            dtrial_size_by_place_2 = dtrial_1_by_place_2*t45 + dtrial_2_by_place_2*t46
+            dtrial_size_by_rate_1 = dtrial_1_by_rate_1*t45 + dtrial_2_by_rate_1*t46
+            dtrial_size_by_rate_2 = dtrial_1_by_rate_2*t45 + dtrial_2_by_rate_2*t46
+            ddrag_by_place_1 = dpush_by_place_1*t56
+            ddrag_by_place_2 = dpush_by_place_2*t56
+            ddrag_by_rate_1 = dpush_by_rate_1*t56 + dslip_speed_by_rate_1*t57
+            ddrag_by_rate_2 = dpush_by_rate_2*t56 + dslip_speed_by_rate_2*t57
+            t58 = (slip_1 if speed > 0.0 else 0)
+            t59 = -static_limit + trial_size
+            t60 = 1/trial_size
+            t61 = (0 if speed > 0.0 else (t60*trial_1 if t59 > 0.0 else 0))
+            t62 = (0 if speed > 0.0 else (dynamic_limit*t60 if t59 > 0.0 else 1))
+            t63 = dynamic_limit/(trial_size*trial_size)
+            t64 = (0 if speed > 0.0 else (-t63*trial_1 if t59 > 0.0 else 0))
+            t65 = (drag if speed > 0.0 else 0)
+            t66 = (slip_2 if speed > 0.0 else 0)
+            t67 = (0 if speed > 0.0 else (t60*trial_2 if t59 > 0.0 else 0))
+            t68 = (0 if speed > 0.0 else (-t63*trial_2 if t59 > 0.0 else 0))
+            dfriction_1_by_place_1 = (ddrag_by_place_1*t58 + ddynamic_limit_by_place_1*t61 +
+                dtrial_1_by_place_1*t62 + dtrial_size_by_place_1*t64)
+            dfriction_1_by_place_2 = (ddrag_by_place_2*t58 + ddynamic_limit_by_place_2*t61 +
+                dtrial_1_by_place_2*t62 + dtrial_size_by_place_2*t64)
+            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t58 + ddynamic_limit_by_rate_1*t61 +
+                dslip_1_by_rate_1*t65 + dtrial_1_by_rate_1*t62 + dtrial_size_by_rate_1*t64)
+            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t58 + ddynamic_limit_by_rate_2*t61 +
+                dslip_1_by_rate_2*t65 + dtrial_1_by_rate_2*t62 + dtrial_size_by_rate_2*t64)
+            dfriction_2_by_place_1 = (ddrag_by_place_1*t66 + ddynamic_limit_by_place_1*t67 +
+                dtrial_2_by_place_1*t62 + dtrial_size_by_place_1*t68)
+            dfriction_2_by_place_2 = (ddrag_by_place_2*t66 + ddynamic_limit_by_place_2*t67 +
+                dtrial_2_by_place_2*t62 + dtrial_size_by_place_2*t68)
+            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t66 + ddynamic_limit_by_rate_1*t67 +
+                dslip_2_by_rate_1*t65 + dtrial_2_by_rate_1*t62 + dtrial_size_by_rate_1*t68)
+            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t66 + ddynamic_limit_by_rate_2*t67 +
+                dslip_2_by_rate_2*t65 + dtrial_2_by_rate_2*t62 + dtrial_size_by_rate_2*t68)
             for column in range(5):
                 for i in range(5):
                     dq[i] = 0.0
@@ -330,55 +333,66 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uxb_x = du[2]
                 uxb_y = du[3]
                 uthb_z = du[4]
-                t68 = uxa_x - uxb_x
-                t69 = uxa_y - uxb_y
-                t70 = xa_y - xb_y
-                t71 = Rb_cos*t70
-                t72 = xa_x - xb_x
-                t73 = Rb_sin*t72
-                t74 = t71 - t73
-                t75 = Rb_cos*t68 + Rb_sin*t69 + t74*uthb_z
-                t76 = Rb_cos*t72
-                t77 = Rb_sin*t70
-                t78 = t76 + t77
-                t79 = Rb_cos*t69 - Rb_sin*t68 - t78*uthb_z
-                t80 = dpush_by_rate_1*t75 + dpush_by_rate_2*t79
-                t81 = dfriction_2_by_rate_1*t75 + dfriction_2_by_rate_2*t79
-                t82 = normal_1*normal_2
-                t83 = 1 - normal_1*normal_1
-                t84 = dfriction_1_by_rate_1*t75 + dfriction_1_by_rate_2*t79
-                t85 = -normal_1*t80 - t81*t82 + t83*t84
-                t86 = 1 - normal_2*normal_2
-                t87 = -normal_2*t80 + t81*t86 - t82*t84
-                t88 = Rb_cos*t85 - Rb_sin*t87
-                t89 = -friction_1*t82 + friction_2*t86 - normal_2*push
-                t90 = Rb_cos*dthb_z
-                t91 = friction_1*t83 - friction_2*t82 - normal_1*push
-                t92 = Rb_sin*dthb_z
-                t93 = dxa_x - dxb_x
-                t94 = dxa_y - dxb_y
-                t95 = Rb_cos*t93 + Rb_sin*t94 + dthb_z*t71 - dthb_z*t73
-                t96 = Rb_cos*t94 - Rb_sin*t93 - dthb_z*t76 - dthb_z*t77
-                t97 = va_y - vb_y
-                t98 = va_x - vb_x
-                t99 = Omb_z*t96 + t90*t97 - t92*t98
-                t100 = -Omb_z*t95 - t90*t98 - t92*t97
-                t101 = (dpush_by_place_1*t95 + dpush_by_place_2*t96 + dpush_by_rate_1*t99 +
-                    dpush_by_rate_2*t100)
-                t102 = (dfriction_1_by_place_1*t95 + dfriction_1_by_place_2*t96 +
-                    dfriction_1_by_rate_1*t99 + dfriction_1_by_rate_2*t100)
-                t103 = (dfriction_2_by_place_1*t95 + dfriction_2_by_place_2*t96 +
-                    dfriction_2_by_rate_1*t99 + dfriction_2_by_rate_2*t100)
-                t104 = -normal_2*t101 - t102*t82 + t103*t86
-                t105 = -normal_1*t101 + t102*t83 - t103*t82
-                t106 = -Rb_cos*t105 + Rb_sin*t104 + t89*t90 + t91*t92
-                t107 = Rb_cos*t87 + Rb_sin*t85
-                t108 = Rb_cos*t104 + Rb_sin*t105 - t89*t92 + t90*t91
-                t109 = -t78
-                J[column] = c_damping*t88 - c_stiffness*t106
-                J[5 + column] = c_damping*t107 + c_stiffness*t108
-                J[10 + column] = -c_damping*t88 + c_stiffness*t106
-                J[15 + column] = -c_damping*t107 - c_stiffness*t108
-                J[20 + column] = (c_damping*(t109*t87 + t74*t85) + c_stiffness*(t104*t109 +
-                    t105*t74 - t89*t95 + t91*t96))
+                t69 = dxa_x - dxb_x
+                t70 = dxa_y - dxb_y
+                t71 = xa_y - xb_y
+                t72 = Rb_cos*t71
+                t73 = xa_x - xb_x
+                t74 = Rb_sin*t73
+                t75 = Rb_cos*t69 + Rb_sin*t70 + dthb_z*t72 - dthb_z*t74
+                t76 = Rb_cos*t73
+                t77 = Rb_sin*t71
+                t78 = Rb_cos*t70 - Rb_sin*t69 - dthb_z*t76 - dthb_z*t77
+                t79 = va_y - vb_y
+                t80 = Rb_cos*dthb_z
+                t81 = va_x - vb_x
+                t82 = Rb_sin*dthb_z
+                t83 = uxa_x - uxb_x
+                t84 = uxa_y - uxb_y
+                dplace_1 = t75
+                dplace_2 = t78
+                drate_1 = Omb_z*t78 + t79*t80 - t81*t82
+                urate_1 = Rb_cos*t83 + Rb_sin*t84 + uthb_z*(t72 - t74)
+                drate_2 = -Omb_z*t75 - t79*t82 - t80*t81
+                urate_2 = Rb_cos*t84 - Rb_sin*t83 - uthb_z*(t76 + t77)
+                t85 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2
+                t86 = dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2
+                t87 = normal_1*normal_2
+                t88 = 1 - normal_1*normal_1
+                t89 = dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2
+                t90 = -normal_1*t85 - t86*t87 + t88*t89
+                t91 = 1 - normal_2*normal_2
+                t92 = -normal_2*t85 + t86*t91 - t87*t89
+                t93 = Rb_cos*t90 - Rb_sin*t92
+                t94 = -friction_1*t87 + friction_2*t91 - normal_2*push
+                t95 = Rb_cos*dthb_z
+                t96 = friction_1*t88 - friction_2*t87 - normal_1*push
+                t97 = Rb_sin*dthb_z
+                t98 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
+                    dpush_by_rate_1*drate_1 + dpush_by_rate_2*drate_2)
+                t99 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
+                    dfriction_1_by_rate_1*drate_1 + dfriction_1_by_rate_2*drate_2)
+                t100 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
+                    dfriction_2_by_rate_1*drate_1 + dfriction_2_by_rate_2*drate_2)
+                t101 = -normal_2*t98 + t100*t91 - t87*t99
+                t102 = -normal_1*t98 - t100*t87 + t88*t99
+                t103 = -Rb_cos*t102 + Rb_sin*t101 + t94*t95 + t96*t97
+                t104 = Rb_cos*t92 + Rb_sin*t90
+                t105 = Rb_cos*t101 + Rb_sin*t102 - t94*t97 + t95*t96
+                t106 = xa_y - xb_y
+                t107 = Rb_cos*t106
+                t108 = xa_x - xb_x
+                t109 = -Rb_sin*t108 + t107
+                t110 = Rb_cos*t108
+                t111 = Rb_sin*t106
+                t112 = -t110 - t111
+                t113 = dxa_x - dxb_x
+                t114 = dxa_y - dxb_y
+                J[column] = c_damping*t93 - c_stiffness*t103
+                J[5 + column] = c_damping*t104 + c_stiffness*t105
+                J[10 + column] = -c_damping*t93 + c_stiffness*t103
+                J[15 + column] = -c_damping*t104 - c_stiffness*t105
+                J[20 + column] = (c_damping*(t109*t90 + t112*t92) + c_stiffness*(t101*t112 +
+                    t102*t109 + t94*(-Rb_cos*t113 + Rb_sin*dthb_z*t108 - Rb_sin*t114 -
+                    dthb_z*t107) + t96*(Rb_cos*t114 - Rb_sin*t113 - dthb_z*t110 - dthb_z*t111)))
     return OK

@@ -33,6 +33,7 @@ CONSTANTS = (
     Part("stiffness", (), "stiffness k of k d^n (1 + c d')"),
     Part("exponent", (), "exponent n"),
     Part("damping", (), "damping c [time/length]"),
+    Part("slow", (), "speed of impacts so slow that steps do not look at them"),
     Part("bristle", (), "stiffness of the bristles"),
     Part("bristle_damping", (), "their damping"),
     Part("coefficient", (), "coefficient of friction"),
@@ -53,7 +54,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (35, 0, 0, 0),
-              "column": (195, 0, 0, 0)}
+              "column": (171, 0, 0, 0)}
 
 
 @kernel_function
@@ -68,14 +69,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         stiffness = constant[0]
         exponent = constant[1]
         damping = constant[2]
-        bristle = constant[3]
-        bristle_damping = constant[4]
-        coefficient = constant[5]
-        static = constant[6]
-        speed = constant[7]
-        radius = constant[8]
-        size = constant[9]
-        side = constant[10]
+        slow = constant[3]
+        bristle = constant[4]
+        bristle_damping = constant[5]
+        coefficient = constant[6]
+        static = constant[7]
+        speed = constant[8]
+        radius = constant[9]
+        size = constant[10]
+        side = constant[11]
         xa_x = q[unknowns[0]]
         xa_y = q[unknowns[1]]
         va_x = v[unknowns[0]]
@@ -159,7 +161,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t28 = (closing if closing > 0.0 else -closing)
         t29 = (kept_rate if kept_rate > 0.0 else -kept_rate)
         t30 = (t28 if t28 - t29 > 0.0 else t29)
-        t31 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+        t31 = (t30 if -kept_impact + t30 > 0.0 else kept_impact)
+        t32 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
             dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0)))
         g[0] = t24
         g[1] = t25
@@ -169,11 +172,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME]] = place_1
         frames[index[first + AT_FRAME] + 1] = place_2
         frames[index[first + AT_FRAME] + 2] = closing
-        frames[index[first + AT_FRAME] + 3] = (((t30 if -kept_impact + t30 > 0.0 else kept_impact)
-            if touches - 0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 3] = (((t31 if -slow + t31 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0))
         frames[index[first + AT_FRAME] + 4] = gap_closed
-        frames[index[first + AT_FRAME] + 5] = t31*z_1
-        frames[index[first + AT_FRAME] + 6] = t31*z_2
+        frames[index[first + AT_FRAME] + 5] = t32*z_1
+        frames[index[first + AT_FRAME] + 6] = t32*z_2
         frames[index[first + AT_FRAME] + 7] = slips
         frames[index[first + AT_FRAME] + 8] = 1.0
         frames[index[first + AT_FRAME] + 9] = push
@@ -212,100 +215,100 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             du = at(work, WIDTH)
-            t32 = place_1*place_1
-            t33 = place_2*place_2
-            t34 = t32 + t33 + 1e-300
-            t35 = 1/sqrt(t34)
-            t36 = -side*t35
-            t37 = side/t34**(1.5)
-            t38 = -place_1*place_2*t37
-            t39 = side*t35
-            dnormal_1_by_place_1 = -t32*t37 - t36
-            dnormal_1_by_place_2 = t38
-            dnormal_2_by_place_1 = t38
-            dnormal_2_by_place_2 = -t33*t37 - t36
-            dgap_closed_by_place_1 = -place_1*t39
-            dgap_closed_by_place_2 = -place_2*t39
-            t40 = dnormal_1_by_place_1*rate_1
-            t41 = dnormal_2_by_place_1*rate_2
-            t42 = dnormal_1_by_place_2*rate_1
-            t43 = dnormal_2_by_place_2*rate_2
-            t44 = normal_2*rate_2
-            t45 = normal_1*rate_1
-            t46 = -t44 - 2*t45
-            t47 = normal_1*normal_1
-            t48 = normal_1*normal_2
-            t49 = -t48
-            t50 = -2*t44 - t45
-            t51 = normal_2*normal_2 - 1
-            t52 = -kept_place_2 + place_2
-            t53 = normal_1*t52
-            t54 = normal_2*t52
-            t55 = -kept_place_1 + place_1
-            t56 = normal_1*t55
-            t57 = -t54 - 2*t56
-            t58 = normal_2*t55
-            t59 = -2*t54 - t56
-            dclosing_by_place_1 = -t40 - t41
-            dclosing_by_place_2 = -t42 - t43
+            t33 = place_1*place_1
+            t34 = place_2*place_2
+            t35 = t33 + t34 + 1e-300
+            t36 = 1/sqrt(t35)
+            t37 = -side*t36
+            t38 = side/t35**(1.5)
+            t39 = -place_1*place_2*t38
+            t40 = side*t36
+            dnormal_1_by_place_1 = -t33*t38 - t37
+            dnormal_1_by_place_2 = t39
+            dnormal_2_by_place_1 = t39
+            dnormal_2_by_place_2 = -t34*t38 - t37
+            dgap_closed_by_place_1 = -place_1*t40
+            dgap_closed_by_place_2 = -place_2*t40
+            t41 = dnormal_1_by_place_1*rate_1
+            t42 = dnormal_2_by_place_1*rate_2
+            t43 = dnormal_1_by_place_2*rate_1
+            t44 = dnormal_2_by_place_2*rate_2
+            t45 = normal_2*rate_2
+            t46 = normal_1*rate_1
+            t47 = -t45 - 2*t46
+            t48 = normal_1*normal_1
+            t49 = normal_1*normal_2
+            t50 = -t49
+            t51 = -2*t45 - t46
+            t52 = normal_2*normal_2 - 1
+            t53 = -kept_place_2 + place_2
+            t54 = normal_1*t53
+            t55 = normal_2*t53
+            t56 = -kept_place_1 + place_1
+            t57 = normal_1*t56
+            t58 = -t55 - 2*t57
+            t59 = normal_2*t56
+            t60 = -2*t55 - t57
+            dclosing_by_place_1 = -t41 - t42
+            dclosing_by_place_2 = -t43 - t44
             dclosing_by_rate_1 = -normal_1
             dclosing_by_rate_2 = -normal_2
-            dslip_1_by_place_1 = dnormal_1_by_place_1*t46 - normal_1*t41
-            dslip_1_by_place_2 = dnormal_1_by_place_2*t46 - normal_1*t43
-            dslip_1_by_rate_1 = 1 - t47
-            dslip_1_by_rate_2 = t49
-            dslip_2_by_place_1 = dnormal_2_by_place_1*t50 - normal_2*t40
-            dslip_2_by_place_2 = dnormal_2_by_place_2*t50 - normal_2*t42
-            dslip_2_by_rate_1 = t49
-            dslip_2_by_rate_2 = -t51
-            dincrement_1_by_place_1 = dnormal_1_by_place_1*t57 - dnormal_2_by_place_1*t53 - t47 + 1
-            dincrement_1_by_place_2 = dnormal_1_by_place_2*t57 - dnormal_2_by_place_2*t53 - t48
-            dincrement_2_by_place_1 = -dnormal_1_by_place_1*t58 + dnormal_2_by_place_1*t59 - t48
-            dincrement_2_by_place_2 = -dnormal_1_by_place_2*t58 + dnormal_2_by_place_2*t59 - t51
-            t60 = (1 if gap_closed > 0.0 else 0)
-            ddepth_by_place_1 = dgap_closed_by_place_1*t60
-            ddepth_by_place_2 = dgap_closed_by_place_2*t60
-            t61 = depth**exponent*exponent*stiffness/depth
-            delastic_by_place_1 = ddepth_by_place_1*t61
-            delastic_by_place_2 = ddepth_by_place_2*t61
+            dslip_1_by_place_1 = dnormal_1_by_place_1*t47 - normal_1*t42
+            dslip_1_by_place_2 = dnormal_1_by_place_2*t47 - normal_1*t44
+            dslip_1_by_rate_1 = 1 - t48
+            dslip_1_by_rate_2 = t50
+            dslip_2_by_place_1 = dnormal_2_by_place_1*t51 - normal_2*t41
+            dslip_2_by_place_2 = dnormal_2_by_place_2*t51 - normal_2*t43
+            dslip_2_by_rate_1 = t50
+            dslip_2_by_rate_2 = -t52
+            dincrement_1_by_place_1 = dnormal_1_by_place_1*t58 - dnormal_2_by_place_1*t54 - t48 + 1
+            dincrement_1_by_place_2 = dnormal_1_by_place_2*t58 - dnormal_2_by_place_2*t54 - t49
+            dincrement_2_by_place_1 = -dnormal_1_by_place_1*t59 + dnormal_2_by_place_1*t60 - t49
+            dincrement_2_by_place_2 = -dnormal_1_by_place_2*t59 + dnormal_2_by_place_2*t60 - t52
+            t61 = (1 if gap_closed > 0.0 else 0)
+            ddepth_by_place_1 = dgap_closed_by_place_1*t61
+            ddepth_by_place_2 = dgap_closed_by_place_2*t61
+            t62 = depth**exponent*exponent*stiffness/depth
+            delastic_by_place_1 = ddepth_by_place_1*t62
+            delastic_by_place_2 = ddepth_by_place_2*t62
             dfactor_by_place_1 = damping*dclosing_by_place_1
             dfactor_by_place_2 = damping*dclosing_by_place_2
             dfactor_by_rate_1 = damping*dclosing_by_rate_1
             dfactor_by_rate_2 = damping*dclosing_by_rate_2
-            t62 = (factor if factor > 0.0 else 0)
-            t63 = (elastic if factor > 0.0 else 0)
-            dpush_by_place_1 = delastic_by_place_1*t62 + dfactor_by_place_1*t63
-            dpush_by_place_2 = delastic_by_place_2*t62 + dfactor_by_place_2*t63
-            dpush_by_rate_1 = dfactor_by_rate_1*t63
-            dpush_by_rate_2 = dfactor_by_rate_2*t63
-            t64 = kept_begun*normal_1*normal_2
-            t65 = increment_2*kept_begun + kept_bent_2
-            t66 = normal_1*t65
-            t67 = kept_begun*(1 - normal_1*normal_1)
-            t68 = normal_2*t65
-            t69 = increment_1*kept_begun + kept_bent_1
-            t70 = normal_1*t69
-            t71 = -t68 - 2*t70
-            t72 = normal_2*t69
-            t73 = 1 - normal_2*normal_2
-            t74 = -2*t68 - t70
-            dz_1_by_place_1 = (dincrement_1_by_place_1*t67 - dincrement_2_by_place_1*t64 +
-                dnormal_1_by_place_1*t71 - dnormal_2_by_place_1*t66)
-            dz_1_by_place_2 = (dincrement_1_by_place_2*t67 - dincrement_2_by_place_2*t64 +
-                dnormal_1_by_place_2*t71 - dnormal_2_by_place_2*t66)
-            dz_2_by_place_1 = (-dincrement_1_by_place_1*t64 +
-                dincrement_2_by_place_1*kept_begun*t73 - dnormal_1_by_place_1*t72 +
-                dnormal_2_by_place_1*t74)
-            dz_2_by_place_2 = (-dincrement_1_by_place_2*t64 +
-                dincrement_2_by_place_2*kept_begun*t73 - dnormal_1_by_place_2*t72 +
-                dnormal_2_by_place_2*t74)
+            t63 = (factor if factor > 0.0 else 0)
+            t64 = (elastic if factor > 0.0 else 0)
+            dpush_by_place_1 = delastic_by_place_1*t63 + dfactor_by_place_1*t64
+            dpush_by_place_2 = delastic_by_place_2*t63 + dfactor_by_place_2*t64
+            dpush_by_rate_1 = dfactor_by_rate_1*t64
+            dpush_by_rate_2 = dfactor_by_rate_2*t64
+            t65 = kept_begun*normal_1*normal_2
+            t66 = increment_2*kept_begun + kept_bent_2
+            t67 = normal_1*t66
+            t68 = kept_begun*(1 - normal_1*normal_1)
+            t69 = normal_2*t66
+            t70 = increment_1*kept_begun + kept_bent_1
+            t71 = normal_1*t70
+            t72 = -t69 - 2*t71
+            t73 = normal_2*t70
+            t74 = 1 - normal_2*normal_2
+            t75 = -2*t69 - t71
+            dz_1_by_place_1 = (dincrement_1_by_place_1*t68 - dincrement_2_by_place_1*t65 +
+                dnormal_1_by_place_1*t72 - dnormal_2_by_place_1*t67)
+            dz_1_by_place_2 = (dincrement_1_by_place_2*t68 - dincrement_2_by_place_2*t65 +
+                dnormal_1_by_place_2*t72 - dnormal_2_by_place_2*t67)
+            dz_2_by_place_1 = (-dincrement_1_by_place_1*t65 +
+                dincrement_2_by_place_1*kept_begun*t74 - dnormal_1_by_place_1*t73 +
+                dnormal_2_by_place_1*t75)
+            dz_2_by_place_2 = (-dincrement_1_by_place_2*t65 +
+                dincrement_2_by_place_2*kept_begun*t74 - dnormal_1_by_place_2*t73 +
+                dnormal_2_by_place_2*t75)
             ddynamic_limit_by_place_1 = coefficient*dpush_by_place_1
             ddynamic_limit_by_place_2 = coefficient*dpush_by_place_2
             ddynamic_limit_by_rate_1 = coefficient*dpush_by_rate_1
             ddynamic_limit_by_rate_2 = coefficient*dpush_by_rate_2
-            t75 = 1/sqrt(slip_1*slip_1 + slip_2*slip_2 + 1e-12*speed*speed + 1e-300)
-            t76 = slip_1*t75
-            t77 = slip_2*t75
+            t76 = 1/sqrt(slip_1*slip_1 + slip_2*slip_2 + 1e-12*speed*speed + 1e-300)
+            t77 = slip_1*t76
+            t78 = slip_2*t76
             dtrial_1_by_place_1 = bristle*dz_1_by_place_1 + bristle_damping*dslip_1_by_place_1
             dtrial_1_by_place_2 = bristle*dz_1_by_place_2 + bristle_damping*dslip_1_by_place_2
             dtrial_1_by_rate_1 = bristle_damping*dslip_1_by_rate_1
@@ -314,60 +317,60 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dtrial_2_by_place_2 = bristle*dz_2_by_place_2 + bristle_damping*dslip_2_by_place_2
             dtrial_2_by_rate_1 = bristle_damping*dslip_2_by_rate_1
             dtrial_2_by_rate_2 = bristle_damping*dslip_2_by_rate_2
-            dslip_speed_by_place_1 = dslip_1_by_place_1*t76 + dslip_2_by_place_1*t77
-            dslip_speed_by_place_2 = dslip_1_by_place_2*t76 + dslip_2_by_place_2*t77
-            dslip_speed_by_rate_1 = dslip_1_by_rate_1*t76 + dslip_2_by_rate_1*t77
-            dslip_speed_by_rate_2 = dslip_1_by_rate_2*t76 + dslip_2_by_rate_2*t77
-            t78 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + 1e-300)
-            t79 = t78*trial_1
-            t80 = t78*trial_2
-            t81 = 1/slip_speed
-            t82 = 1/speed
-            t83 = slip_speed*t82
-            t84 = tanh(4*t83)
-            t85 = slip_speed*slip_speed
-            t86 = 0.75 + ((0.25)*t85)/(speed*speed)
-            t87 = -coefficient + static
-            t88 = t87/(t86*t86)
-            t89 = coefficient*t84 + t83*t88
-            t90 = (t81*t89 if speed > 0.0 else 0)
-            t91 = ((push*t81*(4*coefficient*t82*(1 - t84*t84) + t82*t88 +
-                (-t85*t87)/(speed*speed*speed*t86*t86*t86)) - push*t89/t85 if speed > 0.0 else 0))
-            dtrial_size_by_place_1 = dtrial_1_by_place_1*t79 + dtrial_2_by_place_1*t80
-            dtrial_size_by_place_2 = dtrial_1_by_place_2*t79 + dtrial_2_by_place_2*t80
-            dtrial_size_by_rate_1 = dtrial_1_by_rate_1*t79 + dtrial_2_by_rate_1*t80
-            dtrial_size_by_rate_2 = dtrial_1_by_rate_2*t79 + dtrial_2_by_rate_2*t80
-            ddrag_by_place_1 = dpush_by_place_1*t90 + dslip_speed_by_place_1*t91
-            ddrag_by_place_2 = dpush_by_place_2*t90 + dslip_speed_by_place_2*t91
-            ddrag_by_rate_1 = dpush_by_rate_1*t90 + dslip_speed_by_rate_1*t91
-            ddrag_by_rate_2 = dpush_by_rate_2*t90 + dslip_speed_by_rate_2*t91
-            t92 = (slip_1 if speed > 0.0 else 0)
-            t93 = (drag if speed > 0.0 else 0)
-            t94 = -static_limit + trial_size
-            t95 = 1/trial_size
-            t96 = (0 if speed > 0.0 else (t95*trial_1 if t94 > 0.0 else 0))
-            t97 = (0 if speed > 0.0 else (dynamic_limit*t95 if t94 > 0.0 else 1))
-            t98 = dynamic_limit/(trial_size*trial_size)
-            t99 = (0 if speed > 0.0 else (-t98*trial_1 if t94 > 0.0 else 0))
-            t100 = (slip_2 if speed > 0.0 else 0)
-            t101 = (0 if speed > 0.0 else (t95*trial_2 if t94 > 0.0 else 0))
-            t102 = (0 if speed > 0.0 else (-t98*trial_2 if t94 > 0.0 else 0))
-            dfriction_1_by_place_1 = (ddrag_by_place_1*t92 + ddynamic_limit_by_place_1*t96 +
-                dslip_1_by_place_1*t93 + dtrial_1_by_place_1*t97 + dtrial_size_by_place_1*t99)
-            dfriction_1_by_place_2 = (ddrag_by_place_2*t92 + ddynamic_limit_by_place_2*t96 +
-                dslip_1_by_place_2*t93 + dtrial_1_by_place_2*t97 + dtrial_size_by_place_2*t99)
-            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t92 + ddynamic_limit_by_rate_1*t96 +
-                dslip_1_by_rate_1*t93 + dtrial_1_by_rate_1*t97 + dtrial_size_by_rate_1*t99)
-            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t92 + ddynamic_limit_by_rate_2*t96 +
-                dslip_1_by_rate_2*t93 + dtrial_1_by_rate_2*t97 + dtrial_size_by_rate_2*t99)
-            dfriction_2_by_place_1 = (ddrag_by_place_1*t100 + ddynamic_limit_by_place_1*t101 +
-                dslip_2_by_place_1*t93 + dtrial_2_by_place_1*t97 + dtrial_size_by_place_1*t102)
-            dfriction_2_by_place_2 = (ddrag_by_place_2*t100 + ddynamic_limit_by_place_2*t101 +
-                dslip_2_by_place_2*t93 + dtrial_2_by_place_2*t97 + dtrial_size_by_place_2*t102)
-            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t100 + ddynamic_limit_by_rate_1*t101 +
-                dslip_2_by_rate_1*t93 + dtrial_2_by_rate_1*t97 + dtrial_size_by_rate_1*t102)
-            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t100 + ddynamic_limit_by_rate_2*t101 +
-                dslip_2_by_rate_2*t93 + dtrial_2_by_rate_2*t97 + dtrial_size_by_rate_2*t102)
+            dslip_speed_by_place_1 = dslip_1_by_place_1*t77 + dslip_2_by_place_1*t78
+            dslip_speed_by_place_2 = dslip_1_by_place_2*t77 + dslip_2_by_place_2*t78
+            dslip_speed_by_rate_1 = dslip_1_by_rate_1*t77 + dslip_2_by_rate_1*t78
+            dslip_speed_by_rate_2 = dslip_1_by_rate_2*t77 + dslip_2_by_rate_2*t78
+            t79 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + 1e-300)
+            t80 = t79*trial_1
+            t81 = t79*trial_2
+            t82 = 1/slip_speed
+            t83 = 1/speed
+            t84 = slip_speed*t83
+            t85 = tanh(4*t84)
+            t86 = slip_speed*slip_speed
+            t87 = 0.75 + ((0.25)*t86)/(speed*speed)
+            t88 = -coefficient + static
+            t89 = t88/(t87*t87)
+            t90 = coefficient*t85 + t84*t89
+            t91 = (t82*t90 if speed > 0.0 else 0)
+            t92 = ((push*t82*(4*coefficient*t83*(1 - t85*t85) + t83*t89 +
+                (-t86*t88)/(speed*speed*speed*t87*t87*t87)) - push*t90/t86 if speed > 0.0 else 0))
+            dtrial_size_by_place_1 = dtrial_1_by_place_1*t80 + dtrial_2_by_place_1*t81
+            dtrial_size_by_place_2 = dtrial_1_by_place_2*t80 + dtrial_2_by_place_2*t81
+            dtrial_size_by_rate_1 = dtrial_1_by_rate_1*t80 + dtrial_2_by_rate_1*t81
+            dtrial_size_by_rate_2 = dtrial_1_by_rate_2*t80 + dtrial_2_by_rate_2*t81
+            ddrag_by_place_1 = dpush_by_place_1*t91 + dslip_speed_by_place_1*t92
+            ddrag_by_place_2 = dpush_by_place_2*t91 + dslip_speed_by_place_2*t92
+            ddrag_by_rate_1 = dpush_by_rate_1*t91 + dslip_speed_by_rate_1*t92
+            ddrag_by_rate_2 = dpush_by_rate_2*t91 + dslip_speed_by_rate_2*t92
+            t93 = (slip_1 if speed > 0.0 else 0)
+            t94 = (drag if speed > 0.0 else 0)
+            t95 = -static_limit + trial_size
+            t96 = 1/trial_size
+            t97 = (0 if speed > 0.0 else (t96*trial_1 if t95 > 0.0 else 0))
+            t98 = (0 if speed > 0.0 else (dynamic_limit*t96 if t95 > 0.0 else 1))
+            t99 = dynamic_limit/(trial_size*trial_size)
+            t100 = (0 if speed > 0.0 else (-t99*trial_1 if t95 > 0.0 else 0))
+            t101 = (slip_2 if speed > 0.0 else 0)
+            t102 = (0 if speed > 0.0 else (t96*trial_2 if t95 > 0.0 else 0))
+            t103 = (0 if speed > 0.0 else (-t99*trial_2 if t95 > 0.0 else 0))
+            dfriction_1_by_place_1 = (ddrag_by_place_1*t93 + ddynamic_limit_by_place_1*t97 +
+                dslip_1_by_place_1*t94 + dtrial_1_by_place_1*t98 + dtrial_size_by_place_1*t100)
+            dfriction_1_by_place_2 = (ddrag_by_place_2*t93 + ddynamic_limit_by_place_2*t97 +
+                dslip_1_by_place_2*t94 + dtrial_1_by_place_2*t98 + dtrial_size_by_place_2*t100)
+            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t93 + ddynamic_limit_by_rate_1*t97 +
+                dslip_1_by_rate_1*t94 + dtrial_1_by_rate_1*t98 + dtrial_size_by_rate_1*t100)
+            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t93 + ddynamic_limit_by_rate_2*t97 +
+                dslip_1_by_rate_2*t94 + dtrial_1_by_rate_2*t98 + dtrial_size_by_rate_2*t100)
+            dfriction_2_by_place_1 = (ddrag_by_place_1*t101 + ddynamic_limit_by_place_1*t102 +
+                dslip_2_by_place_1*t94 + dtrial_2_by_place_1*t98 + dtrial_size_by_place_1*t103)
+            dfriction_2_by_place_2 = (ddrag_by_place_2*t101 + ddynamic_limit_by_place_2*t102 +
+                dslip_2_by_place_2*t94 + dtrial_2_by_place_2*t98 + dtrial_size_by_place_2*t103)
+            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t101 + ddynamic_limit_by_rate_1*t102 +
+                dslip_2_by_rate_1*t94 + dtrial_2_by_rate_1*t98 + dtrial_size_by_rate_1*t103)
+            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t101 + ddynamic_limit_by_rate_2*t102 +
+                dslip_2_by_rate_2*t94 + dtrial_2_by_rate_2*t98 + dtrial_size_by_rate_2*t103)
             for column in range(5):
                 for i in range(5):
                     dq[i] = 0.0
@@ -384,65 +387,77 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uxb_x = du[2]
                 uxb_y = du[3]
                 uthb_z = du[4]
-                t103 = uxa_x - uxb_x
-                t104 = uxa_y - uxb_y
-                t105 = xa_y - xb_y
-                t106 = Rb_cos*t105
-                t107 = xa_x - xb_x
-                t108 = Rb_sin*t107
-                t109 = t106 - t108
-                t110 = Rb_cos*t103 + Rb_sin*t104 + t109*uthb_z
-                t111 = Rb_cos*t107
-                t112 = Rb_sin*t105
-                t113 = t111 + t112
-                t114 = Rb_cos*t104 - Rb_sin*t103 - t113*uthb_z
-                t115 = dpush_by_rate_1*t110 + dpush_by_rate_2*t114
-                t116 = dfriction_2_by_rate_1*t110 + dfriction_2_by_rate_2*t114
-                t117 = normal_1*normal_2
-                t118 = 1 - normal_1*normal_1
-                t119 = dfriction_1_by_rate_1*t110 + dfriction_1_by_rate_2*t114
-                t120 = -normal_1*t115 - t116*t117 + t118*t119
-                t121 = 1 - normal_2*normal_2
-                t122 = -normal_2*t115 + t116*t121 - t117*t119
-                t123 = Rb_cos*t120 - Rb_sin*t122
-                t124 = -friction_1*t117 + friction_2*t121 - normal_2*push
-                t125 = Rb_cos*dthb_z
-                t126 = friction_1*t118 - friction_2*t117 - normal_1*push
-                t127 = Rb_sin*dthb_z
-                t128 = dxa_x - dxb_x
-                t129 = dxa_y - dxb_y
-                t130 = Rb_cos*t128 + Rb_sin*t129 + dthb_z*t106 - dthb_z*t108
-                t131 = dnormal_2_by_place_1*t130
-                t132 = Rb_cos*t129 - Rb_sin*t128 - dthb_z*t111 - dthb_z*t112
-                t133 = dnormal_2_by_place_2*t132
-                t134 = t131 + t133
-                t135 = friction_1*normal_1
-                t136 = dnormal_1_by_place_1*t130
-                t137 = dnormal_1_by_place_2*t132
-                t138 = t136 + t137
-                t139 = normal_2*t138
-                t140 = va_y - vb_y
-                t141 = va_x - vb_x
-                t142 = Omb_z*t132 + t125*t140 - t127*t141
-                t143 = -Omb_z*t130 - t125*t141 - t127*t140
-                t144 = (dpush_by_place_1*t130 + dpush_by_place_2*t132 + dpush_by_rate_1*t142 +
-                    dpush_by_rate_2*t143)
-                t145 = (dfriction_1_by_place_1*t130 + dfriction_1_by_place_2*t132 +
-                    dfriction_1_by_rate_1*t142 + dfriction_1_by_rate_2*t143)
-                t146 = (dfriction_2_by_place_1*t130 + dfriction_2_by_place_2*t132 +
-                    dfriction_2_by_rate_1*t142 + dfriction_2_by_rate_2*t143)
-                t147 = (-friction_1*t139 - friction_2*normal_2*(2*t131 + 2*t133) - normal_2*t144 -
-                    push*t134 - t117*t145 + t121*t146 - t134*t135)
-                t148 = (-friction_2*normal_1*t134 - friction_2*t139 - normal_1*t144 - push*t138 -
-                    t117*t146 + t118*t145 - t135*(2*t136 + 2*t137))
-                t149 = -Rb_cos*t148 + Rb_sin*t147 + t124*t125 + t126*t127
-                t150 = Rb_cos*t122 + Rb_sin*t120
-                t151 = Rb_cos*t147 + Rb_sin*t148 - t124*t127 + t125*t126
-                t152 = -t113
-                J[column] = c_damping*t123 - c_stiffness*t149
-                J[5 + column] = c_damping*t150 + c_stiffness*t151
-                J[10 + column] = -c_damping*t123 + c_stiffness*t149
-                J[15 + column] = -c_damping*t150 - c_stiffness*t151
-                J[20 + column] = (c_damping*(t109*t120 + t122*t152) + c_stiffness*(t109*t148 -
-                    t124*t130 + t126*t132 + t147*t152))
+                t104 = dxa_x - dxb_x
+                t105 = dxa_y - dxb_y
+                t106 = xa_y - xb_y
+                t107 = Rb_cos*t106
+                t108 = xa_x - xb_x
+                t109 = Rb_sin*t108
+                t110 = Rb_cos*t104 + Rb_sin*t105 + dthb_z*t107 - dthb_z*t109
+                t111 = Rb_cos*t108
+                t112 = Rb_sin*t106
+                t113 = Rb_cos*t105 - Rb_sin*t104 - dthb_z*t111 - dthb_z*t112
+                t114 = va_y - vb_y
+                t115 = Rb_cos*dthb_z
+                t116 = va_x - vb_x
+                t117 = Rb_sin*dthb_z
+                t118 = uxa_x - uxb_x
+                t119 = uxa_y - uxb_y
+                dplace_1 = t110
+                dplace_2 = t113
+                drate_1 = Omb_z*t113 + t114*t115 - t116*t117
+                urate_1 = Rb_cos*t118 + Rb_sin*t119 + uthb_z*(t107 - t109)
+                drate_2 = -Omb_z*t110 - t114*t117 - t115*t116
+                urate_2 = Rb_cos*t119 - Rb_sin*t118 - uthb_z*(t111 + t112)
+                t120 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2
+                t121 = dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2
+                t122 = normal_1*normal_2
+                t123 = 1 - normal_1*normal_1
+                t124 = dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2
+                t125 = -normal_1*t120 - t121*t122 + t123*t124
+                t126 = 1 - normal_2*normal_2
+                t127 = -normal_2*t120 + t121*t126 - t122*t124
+                t128 = Rb_cos*t125 - Rb_sin*t127
+                t129 = -friction_1*t122 + friction_2*t126 - normal_2*push
+                t130 = Rb_cos*dthb_z
+                t131 = friction_1*t123 - friction_2*t122 - normal_1*push
+                t132 = Rb_sin*dthb_z
+                t133 = dnormal_2_by_place_1*dplace_1
+                t134 = dnormal_2_by_place_2*dplace_2
+                t135 = t133 + t134
+                t136 = friction_1*normal_1
+                t137 = dnormal_1_by_place_1*dplace_1
+                t138 = dnormal_1_by_place_2*dplace_2
+                t139 = t137 + t138
+                t140 = normal_2*t139
+                t141 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
+                    dpush_by_rate_1*drate_1 + dpush_by_rate_2*drate_2)
+                t142 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
+                    dfriction_1_by_rate_1*drate_1 + dfriction_1_by_rate_2*drate_2)
+                t143 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
+                    dfriction_2_by_rate_1*drate_1 + dfriction_2_by_rate_2*drate_2)
+                t144 = (-friction_1*t140 - friction_2*normal_2*(2*t133 + 2*t134) - normal_2*t141 -
+                    push*t135 - t122*t142 + t126*t143 - t135*t136)
+                t145 = (-friction_2*normal_1*t135 - friction_2*t140 - normal_1*t141 - push*t139 -
+                    t122*t143 + t123*t142 - t136*(2*t137 + 2*t138))
+                t146 = -Rb_cos*t145 + Rb_sin*t144 + t129*t130 + t131*t132
+                t147 = Rb_cos*t127 + Rb_sin*t125
+                t148 = Rb_cos*t144 + Rb_sin*t145 - t129*t132 + t130*t131
+                t149 = xa_y - xb_y
+                t150 = Rb_cos*t149
+                t151 = xa_x - xb_x
+                t152 = -Rb_sin*t151 + t150
+                t153 = Rb_cos*t151
+                t154 = Rb_sin*t149
+                t155 = -t153 - t154
+                t156 = dxa_x - dxb_x
+                t157 = dxa_y - dxb_y
+                J[column] = c_damping*t128 - c_stiffness*t146
+                J[5 + column] = c_damping*t147 + c_stiffness*t148
+                J[10 + column] = -c_damping*t128 + c_stiffness*t146
+                J[15 + column] = -c_damping*t147 - c_stiffness*t148
+                J[20 + column] = (c_damping*(t125*t152 + t127*t155) +
+                    c_stiffness*(t129*(-Rb_cos*t156 + Rb_sin*dthb_z*t151 - Rb_sin*t157 -
+                    dthb_z*t150) + t131*(Rb_cos*t157 - Rb_sin*t156 - dthb_z*t153 - dthb_z*t154) +
+                    t144*t155 + t145*t152))
     return OK

@@ -33,6 +33,7 @@ CONSTANTS = (
     Part("stiffness", (), "stiffness k of k d^n (1 + c d')"),
     Part("exponent", (), "exponent n"),
     Part("damping", (), "damping c [time/length]"),
+    Part("slow", (), "speed of impacts so slow that steps do not look at them"),
     Part("lower", (), "lower limit"),
     Part("upper", (), "upper limit"),
     Part("e", (2,), "axis, in axes of the first body"),
@@ -48,7 +49,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (19, 0, 0, 0),
-              "column": (121, 0, 0, 0)}
+              "column": (69, 0, 0, 0)}
 
 
 @kernel_function
@@ -63,11 +64,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         stiffness = constant[0]
         exponent = constant[1]
         damping = constant[2]
-        lower = constant[3]
-        upper = constant[4]
-        e_x = constant[5]
-        e_y = constant[6]
-        start = constant[7]
+        slow = constant[3]
+        lower = constant[4]
+        upper = constant[5]
+        e_x = constant[6]
+        e_y = constant[7]
+        start = constant[8]
         xa_x = q[unknowns[0]]
         xa_y = q[unknowns[1]]
         va_x = v[unknowns[0]]
@@ -110,6 +112,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t14 = (kept_rate if kept_rate > 0.0 else -kept_rate)
         t15 = (speed_beyond if speed_beyond > 0.0 else -speed_beyond)
         t16 = (t15 if -t14 + t15 > 0.0 else t14)
+        t17 = (t16 if -kept_impact + t16 > 0.0 else kept_impact)
         g[0] = -t10*t11
         g[1] = t11*t13
         g[2] = t10*t11
@@ -117,8 +120,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         g[4] = t11*(t10*(-xa_y + xb_y) + t13*(-xa_x + xb_x))
         frames[index[first + AT_FRAME]] = way
         frames[index[first + AT_FRAME] + 1] = speed_beyond
-        frames[index[first + AT_FRAME] + 2] = (((t16 if -kept_impact + t16 > 0.0 else kept_impact)
-            if touches - 0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 2] = (((t17 if -slow + t17 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0))
         frames[index[first + AT_FRAME] + 3] = beyond
         frames[index[first + AT_FRAME] + 4] = push
         if task == ENERGY:
@@ -172,37 +175,48 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uxb_x = du[2]
                 uxb_y = du[3]
                 utha_z = du[4]
-                t17 = Ra_cos*e_x
-                t18 = -Ra_sin*e_y + t17
-                t19 = -t18
-                t20 = Ra_cos*e_y
-                t21 = Ra_sin*e_x
-                t22 = t20 + t21
-                t23 = -xa_y + xb_y
+                t18 = -dxa_y + dxb_y
+                t19 = Ra_cos*e_y
+                t20 = Ra_sin*e_x
+                t21 = t19 + t20
+                t22 = -dxa_x + dxb_x
+                t23 = Ra_cos*e_x
                 t24 = Ra_sin*e_y
-                t25 = -xa_x + xb_x
-                t26 = (c_damping*dpush_by_way_rate*side*(t18*(-uxa_x + uxb_x) + t22*(-uxa_y +
-                    uxb_y) + t23*(t17*utha_z - t24*utha_z) + t25*(-t20*utha_z - t21*utha_z)))
-                t27 = dtha_z*t20
-                t28 = dtha_z*t21
-                t29 = t27 + t28
-                t30 = push*side
-                t31 = -dxa_y + dxb_y
-                t32 = -dxa_x + dxb_x
-                t33 = dtha_z*t17
-                t34 = -dtha_z*t24 + t33
-                t35 = -t29
-                t36 = (side*(dpush_by_way*(t18*t32 + t22*t31 + t23*t34 + t25*t35) +
-                    dpush_by_way_rate*(t23*(-Oma_z*t27 - Oma_z*t28) + t25*(Oma_z*Ra_sin*dtha_z*e_y
-                    - Oma_z*t33) + t31*(Oma_z*t17 - Oma_z*t24) + t32*(-Oma_z*t20 - Oma_z*t21) +
-                    t34*(-va_y + vb_y) + t35*(-va_x + vb_x))))
-                t37 = -t22
-                t38 = -t34
-                t39 = t18*t23 + t25*t37
-                J[column] = c_stiffness*(t19*t36 + t29*t30) + t19*t26
-                J[5 + column] = c_stiffness*(t30*t38 + t36*t37) + t26*t37
-                J[10 + column] = c_stiffness*(t18*t36 + t30*t35) + t18*t26
-                J[15 + column] = c_stiffness*(t22*t36 + t30*t34) + t22*t26
-                J[20 + column] = (c_stiffness*(t30*(t18*t31 + t23*t35 + t25*t38 + t32*t37) +
-                    t36*t39) + t26*t39)
+                t25 = t23 - t24
+                t26 = -xa_y + xb_y
+                t27 = dtha_z*t23
+                t28 = -dtha_z*t24 + t27
+                t29 = -xa_x + xb_x
+                t30 = dtha_z*t19
+                t31 = dtha_z*t20
+                t32 = -t30 - t31
+                dway = t18*t21 + t22*t25 + t26*t28 + t29*t32
+                dway_rate = (t18*(Oma_z*t23 - Oma_z*t24) + t22*(-Oma_z*t19 - Oma_z*t20) +
+                    t26*(-Oma_z*t30 - Oma_z*t31) + t28*(-va_y + vb_y) +
+                    t29*(Oma_z*Ra_sin*dtha_z*e_y - Oma_z*t27) + t32*(-va_x + vb_x))
+                uway_rate = (t21*(-uxa_y + uxb_y) + t25*(-uxa_x + uxb_x) + t26*(t23*utha_z -
+                    t24*utha_z) + t29*(-t19*utha_z - t20*utha_z))
+                t33 = Ra_cos*e_x
+                t34 = -Ra_sin*e_y + t33
+                t35 = -t34
+                t36 = c_damping*dpush_by_way_rate*side*uway_rate
+                t37 = Ra_cos*e_y
+                t38 = Ra_sin*e_x
+                t39 = dtha_z*t37 + dtha_z*t38
+                t40 = push*side
+                t41 = side*(dpush_by_way*dway + dpush_by_way_rate*dway_rate)
+                t42 = t37 + t38
+                t43 = -t42
+                t44 = -Ra_sin*dtha_z*e_y + dtha_z*t33
+                t45 = -t44
+                t46 = -t39
+                t47 = -xa_y + xb_y
+                t48 = -xa_x + xb_x
+                t49 = t34*t47 + t43*t48
+                J[column] = c_stiffness*(t35*t41 + t39*t40) + t35*t36
+                J[5 + column] = c_stiffness*(t40*t45 + t41*t43) + t36*t43
+                J[10 + column] = c_stiffness*(t34*t41 + t40*t46) + t34*t36
+                J[15 + column] = c_stiffness*(t40*t44 + t41*t42) + t36*t42
+                J[20 + column] = (c_stiffness*(t40*(t34*(-dxa_y + dxb_y) + t43*(-dxa_x + dxb_x) +
+                    t45*t48 + t46*t47) + t41*t49) + t36*t49)
     return OK

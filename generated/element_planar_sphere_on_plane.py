@@ -54,7 +54,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (43, 0, 0, 0),
-              "column": (190, 0, 0, 0)}
+              "column": (163, 0, 0, 0)}
 
 
 @kernel_function
@@ -376,64 +376,75 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uxb_y = du[3]
                 utha_z = du[4]
                 uthb_z = du[5]
-                t77 = uxa_x - uxb_x
-                t78 = uxa_y - uxb_y
+                t77 = dxa_x - dxb_x
+                t78 = dxa_y - dxb_y
                 t79 = xa_y - xb_y
                 t80 = Rb_cos*t79
                 t81 = xa_x - xb_x
                 t82 = Rb_sin*t81
-                t83 = Rb_cos*t77 + Rb_sin*t78 + uthb_z*(t80 - t82)
+                t83 = Rb_cos*t77 + Rb_sin*t78 + dthb_z*t80 - dthb_z*t82
                 t84 = Rb_cos*t81
                 t85 = Rb_sin*t79
-                t86 = t84 + t85
-                t87 = Rb_cos*t78 - Rb_sin*t77 - t86*uthb_z
-                t88 = dpush_by_rate_1*t83 + dpush_by_rate_2*t87
-                t89 = utha_z - uthb_z
-                t90 = (dfriction_2_by_rate_1*t83 + dfriction_2_by_rate_2*t87 +
-                    dfriction_2_by_spin_3*t89)
-                t91 = normal_1*normal_2
-                t92 = 1 - normal_1*normal_1
-                t93 = (dfriction_1_by_rate_1*t83 + dfriction_1_by_rate_2*t87 +
-                    dfriction_1_by_spin_3*t89)
-                t94 = -normal_1*t88 - t90*t91 + t92*t93
-                t95 = 1 - normal_2*normal_2
-                t96 = -normal_2*t88 + t90*t95 - t91*t93
-                t97 = Rb_cos*t94 - Rb_sin*t96
-                t98 = -friction_1*t91 + friction_2*t95 - normal_2*push
-                t99 = Rb_cos*dthb_z
-                t100 = friction_1*t92 - friction_2*t91 - normal_1*push
-                t101 = Rb_sin*dthb_z
-                t102 = dxa_x - dxb_x
-                t103 = dxa_y - dxb_y
-                t104 = Rb_cos*t102 + Rb_sin*t103 + dthb_z*t80 - dthb_z*t82
-                t105 = Rb_cos*t103 - Rb_sin*t102 - dthb_z*t84 - dthb_z*t85
-                t106 = va_y - vb_y
-                t107 = va_x - vb_x
-                t108 = Omb_z*t105 - t101*t107 + t106*t99
-                t109 = -Omb_z*t104 - t101*t106 - t107*t99
-                t110 = (dpush_by_place_1*t104 + dpush_by_place_2*t105 + dpush_by_rate_1*t108 +
-                    dpush_by_rate_2*t109)
-                t111 = dtha_z - dthb_z
-                t112 = (dfriction_1_by_place_1*t104 + dfriction_1_by_place_2*t105 +
-                    dfriction_1_by_rate_1*t108 + dfriction_1_by_rate_2*t109 +
-                    dfriction_1_by_turned_3*t111)
-                t113 = (dfriction_2_by_place_1*t104 + dfriction_2_by_place_2*t105 +
-                    dfriction_2_by_rate_1*t108 + dfriction_2_by_rate_2*t109 +
-                    dfriction_2_by_turned_3*t111)
-                t114 = -normal_2*t110 - t112*t91 + t113*t95
-                t115 = -normal_1*t110 + t112*t92 - t113*t91
-                t116 = -Rb_cos*t115 + Rb_sin*t114 + t100*t101 + t98*t99
-                t117 = Rb_cos*t96 + Rb_sin*t94
-                t118 = Rb_cos*t114 + Rb_sin*t115 + t100*t99 - t101*t98
-                t119 = normal_1*radius
-                t120 = normal_1*radius - t86
-                t121 = Rb_cos*t79 - normal_2*radius - t82
-                J[column] = c_damping*t97 - c_stiffness*t116
-                J[6 + column] = c_damping*t117 + c_stiffness*t118
-                J[12 + column] = -c_damping*t97 + c_stiffness*t116
-                J[18 + column] = -c_damping*t117 - c_stiffness*t118
-                J[24 + column] = (c_damping*(normal_2*radius*t94 - t119*t96) +
-                    c_stiffness*(normal_2*radius*t115 - t114*t119))
-                J[30 + column] = (c_damping*(t120*t96 + t121*t94) + c_stiffness*(t100*t105 -
-                    t104*t98 + t114*t120 + t115*t121))
+                t86 = Rb_cos*t78 - Rb_sin*t77 - dthb_z*t84 - dthb_z*t85
+                t87 = va_y - vb_y
+                t88 = Rb_cos*dthb_z
+                t89 = va_x - vb_x
+                t90 = Rb_sin*dthb_z
+                t91 = uxa_x - uxb_x
+                t92 = uxa_y - uxb_y
+                dplace_1 = t83
+                dplace_2 = t86
+                dturned_3 = dtha_z - dthb_z
+                drate_1 = Omb_z*t86 + t87*t88 - t89*t90
+                urate_1 = Rb_cos*t91 + Rb_sin*t92 + uthb_z*(t80 - t82)
+                drate_2 = -Omb_z*t83 - t87*t90 - t88*t89
+                urate_2 = Rb_cos*t92 - Rb_sin*t91 - uthb_z*(t84 + t85)
+                uspin_3 = utha_z - uthb_z
+                t93 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2
+                t94 = (dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2 +
+                    dfriction_2_by_spin_3*uspin_3)
+                t95 = normal_1*normal_2
+                t96 = 1 - normal_1*normal_1
+                t97 = (dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2 +
+                    dfriction_1_by_spin_3*uspin_3)
+                t98 = -normal_1*t93 - t94*t95 + t96*t97
+                t99 = 1 - normal_2*normal_2
+                t100 = -normal_2*t93 + t94*t99 - t95*t97
+                t101 = Rb_cos*t98 - Rb_sin*t100
+                t102 = -friction_1*t95 + friction_2*t99 - normal_2*push
+                t103 = Rb_cos*dthb_z
+                t104 = friction_1*t96 - friction_2*t95 - normal_1*push
+                t105 = Rb_sin*dthb_z
+                t106 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
+                    dpush_by_rate_1*drate_1 + dpush_by_rate_2*drate_2)
+                t107 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
+                    dfriction_1_by_rate_1*drate_1 + dfriction_1_by_rate_2*drate_2 +
+                    dfriction_1_by_turned_3*dturned_3)
+                t108 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
+                    dfriction_2_by_rate_1*drate_1 + dfriction_2_by_rate_2*drate_2 +
+                    dfriction_2_by_turned_3*dturned_3)
+                t109 = -normal_2*t106 - t107*t95 + t108*t99
+                t110 = -normal_1*t106 + t107*t96 - t108*t95
+                t111 = -Rb_cos*t110 + Rb_sin*t109 + t102*t103 + t104*t105
+                t112 = Rb_cos*t100 + Rb_sin*t98
+                t113 = Rb_cos*t109 + Rb_sin*t110 - t102*t105 + t103*t104
+                t114 = normal_1*radius
+                t115 = xa_x - xb_x
+                t116 = Rb_cos*t115
+                t117 = xa_y - xb_y
+                t118 = Rb_sin*t117
+                t119 = normal_1*radius - t116 - t118
+                t120 = Rb_cos*t117 - Rb_sin*t115 - normal_2*radius
+                t121 = dxa_x - dxb_x
+                t122 = dxa_y - dxb_y
+                J[column] = c_damping*t101 - c_stiffness*t111
+                J[6 + column] = c_damping*t112 + c_stiffness*t113
+                J[12 + column] = -c_damping*t101 + c_stiffness*t111
+                J[18 + column] = -c_damping*t112 - c_stiffness*t113
+                J[24 + column] = (c_damping*(normal_2*radius*t98 - t100*t114) +
+                    c_stiffness*(normal_2*radius*t110 - t109*t114))
+                J[30 + column] = (c_damping*(t100*t119 + t120*t98) +
+                    c_stiffness*(t102*(-Rb_cos*dthb_z*t117 - Rb_cos*t121 + Rb_sin*dthb_z*t115 -
+                    Rb_sin*t122) + t104*(Rb_cos*t122 - Rb_sin*t121 - dthb_z*t116 - dthb_z*t118) +
+                    t109*t119 + t110*t120))
     return OK

@@ -33,6 +33,7 @@ CONSTANTS = (
     Part("stiffness", (), "stiffness k of k d^n (1 + c d')"),
     Part("exponent", (), "exponent n"),
     Part("damping", (), "damping c [time/length]"),
+    Part("slow", (), "speed of impacts so slow that steps do not look at them"),
     Part("bristle", (), "stiffness of the bristles"),
     Part("bristle_damping", (), "their damping"),
     Part("coefficient", (), "coefficient of friction"),
@@ -53,7 +54,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (43, 0, 0, 0),
-              "column": (234, 0, 0, 0)}
+              "column": (205, 0, 0, 0)}
 
 
 @kernel_function
@@ -68,14 +69,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         stiffness = constant[0]
         exponent = constant[1]
         damping = constant[2]
-        bristle = constant[3]
-        bristle_damping = constant[4]
-        coefficient = constant[5]
-        static = constant[6]
-        speed = constant[7]
-        radius = constant[8]
-        size = constant[9]
-        side = constant[10]
+        slow = constant[3]
+        bristle = constant[4]
+        bristle_damping = constant[5]
+        coefficient = constant[6]
+        static = constant[7]
+        speed = constant[8]
+        radius = constant[9]
+        size = constant[10]
+        side = constant[11]
         xa_x = q[unknowns[0]]
         xa_y = q[unknowns[1]]
         va_x = v[unknowns[0]]
@@ -167,7 +169,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t30 = (closing if closing > 0.0 else -closing)
         t31 = (kept_rate if kept_rate > 0.0 else -kept_rate)
         t32 = (t30 if t30 - t31 > 0.0 else t31)
-        t33 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+        t33 = (t32 if -kept_impact + t32 > 0.0 else kept_impact)
+        t34 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
             dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0)))
         g[0] = t26
         g[1] = t27
@@ -180,11 +183,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME] + 1] = place_2
         frames[index[first + AT_FRAME] + 2] = tha - thb
         frames[index[first + AT_FRAME] + 3] = closing
-        frames[index[first + AT_FRAME] + 4] = (((t32 if -kept_impact + t32 > 0.0 else kept_impact)
-            if touches - 0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 4] = (((t33 if -slow + t33 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0))
         frames[index[first + AT_FRAME] + 5] = gap_closed
-        frames[index[first + AT_FRAME] + 6] = t33*z_1
-        frames[index[first + AT_FRAME] + 7] = t33*z_2
+        frames[index[first + AT_FRAME] + 6] = t34*z_1
+        frames[index[first + AT_FRAME] + 7] = t34*z_2
         frames[index[first + AT_FRAME] + 8] = slips
         frames[index[first + AT_FRAME] + 9] = 1.0
         frames[index[first + AT_FRAME] + 10] = push
@@ -226,117 +229,117 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             du = at(work, WIDTH)
-            t34 = place_1*place_1
-            t35 = place_2*place_2
-            t36 = t34 + t35 + 1e-300
-            t37 = 1/sqrt(t36)
-            t38 = -side*t37
-            t39 = side/t36**(1.5)
-            t40 = -place_1*place_2*t39
-            t41 = side*t37
-            dnormal_1_by_place_1 = -t34*t39 - t38
-            dnormal_1_by_place_2 = t40
-            dnormal_2_by_place_1 = t40
-            dnormal_2_by_place_2 = -t35*t39 - t38
-            dgap_closed_by_place_1 = -place_1*t41
-            dgap_closed_by_place_2 = -place_2*t41
-            t42 = radius*spin_3
-            t43 = -normal_1*t42 + rate_2
-            t44 = normal_1*normal_1
-            t45 = 1 - t44
-            t46 = -normal_1*t43 + radius*spin_3*t45
-            t47 = normal_1*normal_2
-            t48 = t42*t47
-            t49 = normal_2*t42 + rate_1
-            t50 = normal_1*t49
-            t51 = normal_2*t43
-            t52 = t48 - 2*t50 - t51
-            t53 = -t47
-            t54 = normal_2*radius
-            t55 = t44*t54 + t45*t54
-            t56 = normal_2*normal_2
-            t57 = 1 - t56
-            t58 = -normal_2*t49 - t42*t57
-            t59 = -t48 - t50 - 2*t51
-            t60 = normal_1*radius
-            t61 = -t56*t60 - t57*t60
-            t62 = -kept_place_2 + place_2 - t60*turned_3
-            t63 = -normal_1*t62 + radius*t45*turned_3
-            t64 = radius*turned_3
-            t65 = t47*t64
-            t66 = -kept_place_1 + place_1 + t54*turned_3
-            t67 = normal_1*t66
-            t68 = normal_2*t62
-            t69 = t65 - 2*t67 - t68
-            t70 = -normal_2*t66 - t57*t64
-            t71 = -t65 - t67 - 2*t68
+            t35 = place_1*place_1
+            t36 = place_2*place_2
+            t37 = t35 + t36 + 1e-300
+            t38 = 1/sqrt(t37)
+            t39 = -side*t38
+            t40 = side/t37**(1.5)
+            t41 = -place_1*place_2*t40
+            t42 = side*t38
+            dnormal_1_by_place_1 = -t35*t40 - t39
+            dnormal_1_by_place_2 = t41
+            dnormal_2_by_place_1 = t41
+            dnormal_2_by_place_2 = -t36*t40 - t39
+            dgap_closed_by_place_1 = -place_1*t42
+            dgap_closed_by_place_2 = -place_2*t42
+            t43 = radius*spin_3
+            t44 = -normal_1*t43 + rate_2
+            t45 = normal_1*normal_1
+            t46 = 1 - t45
+            t47 = -normal_1*t44 + radius*spin_3*t46
+            t48 = normal_1*normal_2
+            t49 = t43*t48
+            t50 = normal_2*t43 + rate_1
+            t51 = normal_1*t50
+            t52 = normal_2*t44
+            t53 = t49 - 2*t51 - t52
+            t54 = -t48
+            t55 = normal_2*radius
+            t56 = t45*t55 + t46*t55
+            t57 = normal_2*normal_2
+            t58 = 1 - t57
+            t59 = -normal_2*t50 - t43*t58
+            t60 = -t49 - t51 - 2*t52
+            t61 = normal_1*radius
+            t62 = -t57*t61 - t58*t61
+            t63 = -kept_place_2 + place_2 - t61*turned_3
+            t64 = -normal_1*t63 + radius*t46*turned_3
+            t65 = radius*turned_3
+            t66 = t48*t65
+            t67 = -kept_place_1 + place_1 + t55*turned_3
+            t68 = normal_1*t67
+            t69 = normal_2*t63
+            t70 = t66 - 2*t68 - t69
+            t71 = -normal_2*t67 - t58*t65
+            t72 = -t66 - t68 - 2*t69
             dclosing_by_place_1 = -dnormal_1_by_place_1*rate_1 - dnormal_2_by_place_1*rate_2
             dclosing_by_place_2 = -dnormal_1_by_place_2*rate_1 - dnormal_2_by_place_2*rate_2
             dclosing_by_rate_1 = -normal_1
             dclosing_by_rate_2 = -normal_2
-            dslip_1_by_place_1 = dnormal_1_by_place_1*t52 + dnormal_2_by_place_1*t46
-            dslip_1_by_place_2 = dnormal_1_by_place_2*t52 + dnormal_2_by_place_2*t46
-            dslip_1_by_rate_1 = t45
-            dslip_1_by_rate_2 = t53
-            dslip_1_by_spin_3 = t55
-            dslip_2_by_place_1 = dnormal_1_by_place_1*t58 + dnormal_2_by_place_1*t59
-            dslip_2_by_place_2 = dnormal_1_by_place_2*t58 + dnormal_2_by_place_2*t59
-            dslip_2_by_rate_1 = t53
-            dslip_2_by_rate_2 = t57
-            dslip_2_by_spin_3 = t61
-            dincrement_1_by_place_1 = dnormal_1_by_place_1*t69 + dnormal_2_by_place_1*t63 - t44 + 1
-            dincrement_1_by_place_2 = dnormal_1_by_place_2*t69 + dnormal_2_by_place_2*t63 + t53
-            dincrement_1_by_turned_3 = t55
-            dincrement_2_by_place_1 = dnormal_1_by_place_1*t70 + dnormal_2_by_place_1*t71 + t53
-            dincrement_2_by_place_2 = dnormal_1_by_place_2*t70 + dnormal_2_by_place_2*t71 - t56 + 1
-            dincrement_2_by_turned_3 = t61
-            t72 = (1 if gap_closed > 0.0 else 0)
-            ddepth_by_place_1 = dgap_closed_by_place_1*t72
-            ddepth_by_place_2 = dgap_closed_by_place_2*t72
-            t73 = depth**exponent*exponent*stiffness/depth
-            delastic_by_place_1 = ddepth_by_place_1*t73
-            delastic_by_place_2 = ddepth_by_place_2*t73
+            dslip_1_by_place_1 = dnormal_1_by_place_1*t53 + dnormal_2_by_place_1*t47
+            dslip_1_by_place_2 = dnormal_1_by_place_2*t53 + dnormal_2_by_place_2*t47
+            dslip_1_by_rate_1 = t46
+            dslip_1_by_rate_2 = t54
+            dslip_1_by_spin_3 = t56
+            dslip_2_by_place_1 = dnormal_1_by_place_1*t59 + dnormal_2_by_place_1*t60
+            dslip_2_by_place_2 = dnormal_1_by_place_2*t59 + dnormal_2_by_place_2*t60
+            dslip_2_by_rate_1 = t54
+            dslip_2_by_rate_2 = t58
+            dslip_2_by_spin_3 = t62
+            dincrement_1_by_place_1 = dnormal_1_by_place_1*t70 + dnormal_2_by_place_1*t64 - t45 + 1
+            dincrement_1_by_place_2 = dnormal_1_by_place_2*t70 + dnormal_2_by_place_2*t64 + t54
+            dincrement_1_by_turned_3 = t56
+            dincrement_2_by_place_1 = dnormal_1_by_place_1*t71 + dnormal_2_by_place_1*t72 + t54
+            dincrement_2_by_place_2 = dnormal_1_by_place_2*t71 + dnormal_2_by_place_2*t72 - t57 + 1
+            dincrement_2_by_turned_3 = t62
+            t73 = (1 if gap_closed > 0.0 else 0)
+            ddepth_by_place_1 = dgap_closed_by_place_1*t73
+            ddepth_by_place_2 = dgap_closed_by_place_2*t73
+            t74 = depth**exponent*exponent*stiffness/depth
+            delastic_by_place_1 = ddepth_by_place_1*t74
+            delastic_by_place_2 = ddepth_by_place_2*t74
             dfactor_by_place_1 = damping*dclosing_by_place_1
             dfactor_by_place_2 = damping*dclosing_by_place_2
             dfactor_by_rate_1 = damping*dclosing_by_rate_1
             dfactor_by_rate_2 = damping*dclosing_by_rate_2
-            t74 = (factor if factor > 0.0 else 0)
-            t75 = (elastic if factor > 0.0 else 0)
-            dpush_by_place_1 = delastic_by_place_1*t74 + dfactor_by_place_1*t75
-            dpush_by_place_2 = delastic_by_place_2*t74 + dfactor_by_place_2*t75
-            dpush_by_rate_1 = dfactor_by_rate_1*t75
-            dpush_by_rate_2 = dfactor_by_rate_2*t75
-            t76 = kept_begun*normal_1*normal_2
-            t77 = increment_2*kept_begun + kept_bent_2
-            t78 = normal_1*t77
-            t79 = kept_begun*(1 - normal_1*normal_1)
-            t80 = normal_2*t77
-            t81 = increment_1*kept_begun + kept_bent_1
-            t82 = normal_1*t81
-            t83 = -t80 - 2*t82
-            t84 = normal_2*t81
-            t85 = 1 - normal_2*normal_2
-            t86 = -2*t80 - t82
-            dz_1_by_place_1 = (dincrement_1_by_place_1*t79 - dincrement_2_by_place_1*t76 +
-                dnormal_1_by_place_1*t83 - dnormal_2_by_place_1*t78)
-            dz_1_by_place_2 = (dincrement_1_by_place_2*t79 - dincrement_2_by_place_2*t76 +
-                dnormal_1_by_place_2*t83 - dnormal_2_by_place_2*t78)
-            dz_1_by_turned_3 = dincrement_1_by_turned_3*t79 - dincrement_2_by_turned_3*t76
-            dz_2_by_place_1 = (-dincrement_1_by_place_1*t76 +
-                dincrement_2_by_place_1*kept_begun*t85 - dnormal_1_by_place_1*t84 +
-                dnormal_2_by_place_1*t86)
-            dz_2_by_place_2 = (-dincrement_1_by_place_2*t76 +
-                dincrement_2_by_place_2*kept_begun*t85 - dnormal_1_by_place_2*t84 +
-                dnormal_2_by_place_2*t86)
-            dz_2_by_turned_3 = (-dincrement_1_by_turned_3*t76 +
-                dincrement_2_by_turned_3*kept_begun*t85)
+            t75 = (factor if factor > 0.0 else 0)
+            t76 = (elastic if factor > 0.0 else 0)
+            dpush_by_place_1 = delastic_by_place_1*t75 + dfactor_by_place_1*t76
+            dpush_by_place_2 = delastic_by_place_2*t75 + dfactor_by_place_2*t76
+            dpush_by_rate_1 = dfactor_by_rate_1*t76
+            dpush_by_rate_2 = dfactor_by_rate_2*t76
+            t77 = kept_begun*normal_1*normal_2
+            t78 = increment_2*kept_begun + kept_bent_2
+            t79 = normal_1*t78
+            t80 = kept_begun*(1 - normal_1*normal_1)
+            t81 = normal_2*t78
+            t82 = increment_1*kept_begun + kept_bent_1
+            t83 = normal_1*t82
+            t84 = -t81 - 2*t83
+            t85 = normal_2*t82
+            t86 = 1 - normal_2*normal_2
+            t87 = -2*t81 - t83
+            dz_1_by_place_1 = (dincrement_1_by_place_1*t80 - dincrement_2_by_place_1*t77 +
+                dnormal_1_by_place_1*t84 - dnormal_2_by_place_1*t79)
+            dz_1_by_place_2 = (dincrement_1_by_place_2*t80 - dincrement_2_by_place_2*t77 +
+                dnormal_1_by_place_2*t84 - dnormal_2_by_place_2*t79)
+            dz_1_by_turned_3 = dincrement_1_by_turned_3*t80 - dincrement_2_by_turned_3*t77
+            dz_2_by_place_1 = (-dincrement_1_by_place_1*t77 +
+                dincrement_2_by_place_1*kept_begun*t86 - dnormal_1_by_place_1*t85 +
+                dnormal_2_by_place_1*t87)
+            dz_2_by_place_2 = (-dincrement_1_by_place_2*t77 +
+                dincrement_2_by_place_2*kept_begun*t86 - dnormal_1_by_place_2*t85 +
+                dnormal_2_by_place_2*t87)
+            dz_2_by_turned_3 = (-dincrement_1_by_turned_3*t77 +
+                dincrement_2_by_turned_3*kept_begun*t86)
             ddynamic_limit_by_place_1 = coefficient*dpush_by_place_1
             ddynamic_limit_by_place_2 = coefficient*dpush_by_place_2
             ddynamic_limit_by_rate_1 = coefficient*dpush_by_rate_1
             ddynamic_limit_by_rate_2 = coefficient*dpush_by_rate_2
-            t87 = 1/sqrt(slip_1*slip_1 + slip_2*slip_2 + 1e-12*speed*speed + 1e-300)
-            t88 = slip_1*t87
-            t89 = slip_2*t87
+            t88 = 1/sqrt(slip_1*slip_1 + slip_2*slip_2 + 1e-12*speed*speed + 1e-300)
+            t89 = slip_1*t88
+            t90 = slip_2*t88
             dtrial_1_by_place_1 = bristle*dz_1_by_place_1 + bristle_damping*dslip_1_by_place_1
             dtrial_1_by_place_2 = bristle*dz_1_by_place_2 + bristle_damping*dslip_1_by_place_2
             dtrial_1_by_turned_3 = bristle*dz_1_by_turned_3
@@ -349,70 +352,70 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dtrial_2_by_rate_1 = bristle_damping*dslip_2_by_rate_1
             dtrial_2_by_rate_2 = bristle_damping*dslip_2_by_rate_2
             dtrial_2_by_spin_3 = bristle_damping*dslip_2_by_spin_3
-            dslip_speed_by_place_1 = dslip_1_by_place_1*t88 + dslip_2_by_place_1*t89
-            dslip_speed_by_place_2 = dslip_1_by_place_2*t88 + dslip_2_by_place_2*t89
-            dslip_speed_by_rate_1 = dslip_1_by_rate_1*t88 + dslip_2_by_rate_1*t89
-            dslip_speed_by_rate_2 = dslip_1_by_rate_2*t88 + dslip_2_by_rate_2*t89
-            dslip_speed_by_spin_3 = dslip_1_by_spin_3*t88 + dslip_2_by_spin_3*t89
-            t90 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + 1e-300)
-            t91 = t90*trial_1
-            t92 = t90*trial_2
-            t93 = 1/slip_speed
-            t94 = 1/speed
-            t95 = slip_speed*t94
-            t96 = tanh(4*t95)
-            t97 = slip_speed*slip_speed
-            t98 = 0.75 + ((0.25)*t97)/(speed*speed)
-            t99 = -coefficient + static
-            t100 = t99/(t98*t98)
-            t101 = coefficient*t96 + t100*t95
-            t102 = (t101*t93 if speed > 0.0 else 0)
-            t103 = ((-push*t101/t97 + push*t93*(4*coefficient*t94*(1 - t96*t96) + t100*t94 +
-                (-t97*t99)/(speed*speed*speed*t98*t98*t98)) if speed > 0.0 else 0))
-            dtrial_size_by_place_1 = dtrial_1_by_place_1*t91 + dtrial_2_by_place_1*t92
-            dtrial_size_by_place_2 = dtrial_1_by_place_2*t91 + dtrial_2_by_place_2*t92
-            dtrial_size_by_turned_3 = dtrial_1_by_turned_3*t91 + dtrial_2_by_turned_3*t92
-            dtrial_size_by_rate_1 = dtrial_1_by_rate_1*t91 + dtrial_2_by_rate_1*t92
-            dtrial_size_by_rate_2 = dtrial_1_by_rate_2*t91 + dtrial_2_by_rate_2*t92
-            dtrial_size_by_spin_3 = dtrial_1_by_spin_3*t91 + dtrial_2_by_spin_3*t92
-            ddrag_by_place_1 = dpush_by_place_1*t102 + dslip_speed_by_place_1*t103
-            ddrag_by_place_2 = dpush_by_place_2*t102 + dslip_speed_by_place_2*t103
-            ddrag_by_rate_1 = dpush_by_rate_1*t102 + dslip_speed_by_rate_1*t103
-            ddrag_by_rate_2 = dpush_by_rate_2*t102 + dslip_speed_by_rate_2*t103
-            ddrag_by_spin_3 = dslip_speed_by_spin_3*t103
-            t104 = (slip_1 if speed > 0.0 else 0)
-            t105 = (drag if speed > 0.0 else 0)
-            t106 = -static_limit + trial_size
-            t107 = 1/trial_size
-            t108 = (0 if speed > 0.0 else (t107*trial_1 if t106 > 0.0 else 0))
-            t109 = (0 if speed > 0.0 else (dynamic_limit*t107 if t106 > 0.0 else 1))
-            t110 = dynamic_limit/(trial_size*trial_size)
-            t111 = (0 if speed > 0.0 else (-t110*trial_1 if t106 > 0.0 else 0))
-            t112 = (slip_2 if speed > 0.0 else 0)
-            t113 = (0 if speed > 0.0 else (t107*trial_2 if t106 > 0.0 else 0))
-            t114 = (0 if speed > 0.0 else (-t110*trial_2 if t106 > 0.0 else 0))
-            dfriction_1_by_place_1 = (ddrag_by_place_1*t104 + ddynamic_limit_by_place_1*t108 +
-                dslip_1_by_place_1*t105 + dtrial_1_by_place_1*t109 + dtrial_size_by_place_1*t111)
-            dfriction_1_by_place_2 = (ddrag_by_place_2*t104 + ddynamic_limit_by_place_2*t108 +
-                dslip_1_by_place_2*t105 + dtrial_1_by_place_2*t109 + dtrial_size_by_place_2*t111)
-            dfriction_1_by_turned_3 = dtrial_1_by_turned_3*t109 + dtrial_size_by_turned_3*t111
-            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t104 + ddynamic_limit_by_rate_1*t108 +
-                dslip_1_by_rate_1*t105 + dtrial_1_by_rate_1*t109 + dtrial_size_by_rate_1*t111)
-            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t104 + ddynamic_limit_by_rate_2*t108 +
-                dslip_1_by_rate_2*t105 + dtrial_1_by_rate_2*t109 + dtrial_size_by_rate_2*t111)
-            dfriction_1_by_spin_3 = (ddrag_by_spin_3*t104 + dslip_1_by_spin_3*t105 +
-                dtrial_1_by_spin_3*t109 + dtrial_size_by_spin_3*t111)
-            dfriction_2_by_place_1 = (ddrag_by_place_1*t112 + ddynamic_limit_by_place_1*t113 +
-                dslip_2_by_place_1*t105 + dtrial_2_by_place_1*t109 + dtrial_size_by_place_1*t114)
-            dfriction_2_by_place_2 = (ddrag_by_place_2*t112 + ddynamic_limit_by_place_2*t113 +
-                dslip_2_by_place_2*t105 + dtrial_2_by_place_2*t109 + dtrial_size_by_place_2*t114)
-            dfriction_2_by_turned_3 = dtrial_2_by_turned_3*t109 + dtrial_size_by_turned_3*t114
-            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t112 + ddynamic_limit_by_rate_1*t113 +
-                dslip_2_by_rate_1*t105 + dtrial_2_by_rate_1*t109 + dtrial_size_by_rate_1*t114)
-            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t112 + ddynamic_limit_by_rate_2*t113 +
-                dslip_2_by_rate_2*t105 + dtrial_2_by_rate_2*t109 + dtrial_size_by_rate_2*t114)
-            dfriction_2_by_spin_3 = (ddrag_by_spin_3*t112 + dslip_2_by_spin_3*t105 +
-                dtrial_2_by_spin_3*t109 + dtrial_size_by_spin_3*t114)
+            dslip_speed_by_place_1 = dslip_1_by_place_1*t89 + dslip_2_by_place_1*t90
+            dslip_speed_by_place_2 = dslip_1_by_place_2*t89 + dslip_2_by_place_2*t90
+            dslip_speed_by_rate_1 = dslip_1_by_rate_1*t89 + dslip_2_by_rate_1*t90
+            dslip_speed_by_rate_2 = dslip_1_by_rate_2*t89 + dslip_2_by_rate_2*t90
+            dslip_speed_by_spin_3 = dslip_1_by_spin_3*t89 + dslip_2_by_spin_3*t90
+            t91 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + 1e-300)
+            t92 = t91*trial_1
+            t93 = t91*trial_2
+            t94 = 1/slip_speed
+            t95 = 1/speed
+            t96 = slip_speed*t95
+            t97 = tanh(4*t96)
+            t98 = slip_speed*slip_speed
+            t99 = 0.75 + ((0.25)*t98)/(speed*speed)
+            t100 = -coefficient + static
+            t101 = t100/(t99*t99)
+            t102 = coefficient*t97 + t101*t96
+            t103 = (t102*t94 if speed > 0.0 else 0)
+            t104 = ((-push*t102/t98 + push*t94*(4*coefficient*t95*(1 - t97*t97) + t101*t95 +
+                (-t100*t98)/(speed*speed*speed*t99*t99*t99)) if speed > 0.0 else 0))
+            dtrial_size_by_place_1 = dtrial_1_by_place_1*t92 + dtrial_2_by_place_1*t93
+            dtrial_size_by_place_2 = dtrial_1_by_place_2*t92 + dtrial_2_by_place_2*t93
+            dtrial_size_by_turned_3 = dtrial_1_by_turned_3*t92 + dtrial_2_by_turned_3*t93
+            dtrial_size_by_rate_1 = dtrial_1_by_rate_1*t92 + dtrial_2_by_rate_1*t93
+            dtrial_size_by_rate_2 = dtrial_1_by_rate_2*t92 + dtrial_2_by_rate_2*t93
+            dtrial_size_by_spin_3 = dtrial_1_by_spin_3*t92 + dtrial_2_by_spin_3*t93
+            ddrag_by_place_1 = dpush_by_place_1*t103 + dslip_speed_by_place_1*t104
+            ddrag_by_place_2 = dpush_by_place_2*t103 + dslip_speed_by_place_2*t104
+            ddrag_by_rate_1 = dpush_by_rate_1*t103 + dslip_speed_by_rate_1*t104
+            ddrag_by_rate_2 = dpush_by_rate_2*t103 + dslip_speed_by_rate_2*t104
+            ddrag_by_spin_3 = dslip_speed_by_spin_3*t104
+            t105 = (slip_1 if speed > 0.0 else 0)
+            t106 = (drag if speed > 0.0 else 0)
+            t107 = -static_limit + trial_size
+            t108 = 1/trial_size
+            t109 = (0 if speed > 0.0 else (t108*trial_1 if t107 > 0.0 else 0))
+            t110 = (0 if speed > 0.0 else (dynamic_limit*t108 if t107 > 0.0 else 1))
+            t111 = dynamic_limit/(trial_size*trial_size)
+            t112 = (0 if speed > 0.0 else (-t111*trial_1 if t107 > 0.0 else 0))
+            t113 = (slip_2 if speed > 0.0 else 0)
+            t114 = (0 if speed > 0.0 else (t108*trial_2 if t107 > 0.0 else 0))
+            t115 = (0 if speed > 0.0 else (-t111*trial_2 if t107 > 0.0 else 0))
+            dfriction_1_by_place_1 = (ddrag_by_place_1*t105 + ddynamic_limit_by_place_1*t109 +
+                dslip_1_by_place_1*t106 + dtrial_1_by_place_1*t110 + dtrial_size_by_place_1*t112)
+            dfriction_1_by_place_2 = (ddrag_by_place_2*t105 + ddynamic_limit_by_place_2*t109 +
+                dslip_1_by_place_2*t106 + dtrial_1_by_place_2*t110 + dtrial_size_by_place_2*t112)
+            dfriction_1_by_turned_3 = dtrial_1_by_turned_3*t110 + dtrial_size_by_turned_3*t112
+            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t105 + ddynamic_limit_by_rate_1*t109 +
+                dslip_1_by_rate_1*t106 + dtrial_1_by_rate_1*t110 + dtrial_size_by_rate_1*t112)
+            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t105 + ddynamic_limit_by_rate_2*t109 +
+                dslip_1_by_rate_2*t106 + dtrial_1_by_rate_2*t110 + dtrial_size_by_rate_2*t112)
+            dfriction_1_by_spin_3 = (ddrag_by_spin_3*t105 + dslip_1_by_spin_3*t106 +
+                dtrial_1_by_spin_3*t110 + dtrial_size_by_spin_3*t112)
+            dfriction_2_by_place_1 = (ddrag_by_place_1*t113 + ddynamic_limit_by_place_1*t114 +
+                dslip_2_by_place_1*t106 + dtrial_2_by_place_1*t110 + dtrial_size_by_place_1*t115)
+            dfriction_2_by_place_2 = (ddrag_by_place_2*t113 + ddynamic_limit_by_place_2*t114 +
+                dslip_2_by_place_2*t106 + dtrial_2_by_place_2*t110 + dtrial_size_by_place_2*t115)
+            dfriction_2_by_turned_3 = dtrial_2_by_turned_3*t110 + dtrial_size_by_turned_3*t115
+            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t113 + ddynamic_limit_by_rate_1*t114 +
+                dslip_2_by_rate_1*t106 + dtrial_2_by_rate_1*t110 + dtrial_size_by_rate_1*t115)
+            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t113 + ddynamic_limit_by_rate_2*t114 +
+                dslip_2_by_rate_2*t106 + dtrial_2_by_rate_2*t110 + dtrial_size_by_rate_2*t115)
+            dfriction_2_by_spin_3 = (ddrag_by_spin_3*t113 + dslip_2_by_spin_3*t106 +
+                dtrial_2_by_spin_3*t110 + dtrial_size_by_spin_3*t115)
             for column in range(6):
                 for i in range(6):
                     dq[i] = 0.0
@@ -431,77 +434,86 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uxb_y = du[3]
                 utha_z = du[4]
                 uthb_z = du[5]
-                t115 = uxa_x - uxb_x
-                t116 = uxa_y - uxb_y
-                t117 = xa_y - xb_y
-                t118 = Rb_cos*t117
-                t119 = xa_x - xb_x
-                t120 = Rb_sin*t119
-                t121 = Rb_cos*t115 + Rb_sin*t116 + uthb_z*(t118 - t120)
-                t122 = Rb_cos*t119
-                t123 = Rb_sin*t117
-                t124 = t122 + t123
-                t125 = Rb_cos*t116 - Rb_sin*t115 - t124*uthb_z
-                t126 = dpush_by_rate_1*t121 + dpush_by_rate_2*t125
-                t127 = utha_z - uthb_z
-                t128 = (dfriction_2_by_rate_1*t121 + dfriction_2_by_rate_2*t125 +
-                    dfriction_2_by_spin_3*t127)
-                t129 = normal_1*normal_2
-                t130 = 1 - normal_1*normal_1
-                t131 = (dfriction_1_by_rate_1*t121 + dfriction_1_by_rate_2*t125 +
-                    dfriction_1_by_spin_3*t127)
-                t132 = -normal_1*t126 - t128*t129 + t130*t131
-                t133 = 1 - normal_2*normal_2
-                t134 = -normal_2*t126 + t128*t133 - t129*t131
-                t135 = Rb_cos*t132 - Rb_sin*t134
-                t136 = -friction_1*t129 + friction_2*t133 - normal_2*push
-                t137 = Rb_cos*dthb_z
-                t138 = friction_1*t130 - friction_2*t129 - normal_1*push
-                t139 = Rb_sin*dthb_z
-                t140 = dxa_x - dxb_x
-                t141 = dxa_y - dxb_y
-                t142 = Rb_cos*t140 + Rb_sin*t141 + dthb_z*t118 - dthb_z*t120
-                t143 = dnormal_2_by_place_1*t142
-                t144 = -Rb_cos*t141 + Rb_sin*t140 + dthb_z*t122 + dthb_z*t123
-                t145 = -t144
-                t146 = dnormal_2_by_place_2*t145
-                t147 = t143 + t146
+                t116 = dxa_x - dxb_x
+                t117 = dxa_y - dxb_y
+                t118 = xa_y - xb_y
+                t119 = Rb_cos*t118
+                t120 = xa_x - xb_x
+                t121 = Rb_sin*t120
+                t122 = Rb_cos*t116 + Rb_sin*t117 + dthb_z*t119 - dthb_z*t121
+                t123 = Rb_cos*t120
+                t124 = Rb_sin*t118
+                t125 = Rb_cos*t117 - Rb_sin*t116 - dthb_z*t123 - dthb_z*t124
+                t126 = va_y - vb_y
+                t127 = Rb_cos*dthb_z
+                t128 = va_x - vb_x
+                t129 = Rb_sin*dthb_z
+                t130 = uxa_x - uxb_x
+                t131 = uxa_y - uxb_y
+                dplace_1 = t122
+                dplace_2 = t125
+                dturned_3 = dtha_z - dthb_z
+                drate_1 = Omb_z*t125 + t126*t127 - t128*t129
+                urate_1 = Rb_cos*t130 + Rb_sin*t131 + uthb_z*(t119 - t121)
+                drate_2 = -Omb_z*t122 - t126*t129 - t127*t128
+                urate_2 = Rb_cos*t131 - Rb_sin*t130 - uthb_z*(t123 + t124)
+                uspin_3 = utha_z - uthb_z
+                t132 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2
+                t133 = (dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2 +
+                    dfriction_2_by_spin_3*uspin_3)
+                t134 = normal_1*normal_2
+                t135 = 1 - normal_1*normal_1
+                t136 = (dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2 +
+                    dfriction_1_by_spin_3*uspin_3)
+                t137 = -normal_1*t132 - t133*t134 + t135*t136
+                t138 = 1 - normal_2*normal_2
+                t139 = -normal_2*t132 + t133*t138 - t134*t136
+                t140 = Rb_cos*t137 - Rb_sin*t139
+                t141 = -friction_1*t134 + friction_2*t138 - normal_2*push
+                t142 = Rb_cos*dthb_z
+                t143 = friction_1*t135 - friction_2*t134 - normal_1*push
+                t144 = Rb_sin*dthb_z
+                t145 = dnormal_2_by_place_1*dplace_1
+                t146 = dnormal_2_by_place_2*dplace_2
+                t147 = t145 + t146
                 t148 = friction_1*normal_1
-                t149 = dnormal_1_by_place_1*t142
-                t150 = dnormal_1_by_place_2*t145
+                t149 = dnormal_1_by_place_1*dplace_1
+                t150 = dnormal_1_by_place_2*dplace_2
                 t151 = t149 + t150
                 t152 = normal_2*t151
-                t153 = va_y - vb_y
-                t154 = va_x - vb_x
-                t155 = Omb_z*t145 + t137*t153 - t139*t154
-                t156 = -Omb_z*t142 - t137*t154 - t139*t153
-                t157 = (dpush_by_place_1*t142 + dpush_by_place_2*t145 + dpush_by_rate_1*t155 +
-                    dpush_by_rate_2*t156)
-                t158 = dtha_z - dthb_z
-                t159 = (dfriction_1_by_place_1*t142 + dfriction_1_by_place_2*t145 +
-                    dfriction_1_by_rate_1*t155 + dfriction_1_by_rate_2*t156 +
-                    dfriction_1_by_turned_3*t158)
-                t160 = (dfriction_2_by_place_1*t142 + dfriction_2_by_place_2*t145 +
-                    dfriction_2_by_rate_1*t155 + dfriction_2_by_rate_2*t156 +
-                    dfriction_2_by_turned_3*t158)
-                t161 = (-friction_1*t152 - friction_2*normal_2*(2*t143 + 2*t146) - normal_2*t157 -
-                    push*t147 - t129*t159 + t133*t160 - t147*t148)
-                t162 = (-friction_2*normal_1*t147 - friction_2*t152 - normal_1*t157 - push*t151 -
-                    t129*t160 + t130*t159 - t148*(2*t149 + 2*t150))
-                t163 = -Rb_cos*t162 + Rb_sin*t161 + t136*t137 + t138*t139
-                t164 = Rb_cos*t134 + Rb_sin*t132
-                t165 = Rb_cos*t161 + Rb_sin*t162 - t136*t139 + t137*t138
-                t166 = normal_1*radius
-                t167 = normal_1*radius - t124
-                t168 = Rb_cos*t117 - normal_2*radius - t120
-                J[column] = c_damping*t135 - c_stiffness*t163
-                J[6 + column] = c_damping*t164 + c_stiffness*t165
-                J[12 + column] = -c_damping*t135 + c_stiffness*t163
-                J[18 + column] = -c_damping*t164 - c_stiffness*t165
-                J[24 + column] = (c_damping*(normal_2*radius*t132 - t134*t166) +
-                    c_stiffness*(normal_2*radius*t162 - radius*t136*t151 + radius*t138*t147 -
-                    t161*t166))
-                J[30 + column] = (c_damping*(t132*t168 + t134*t167) +
-                    c_stiffness*(t136*(radius*t151 - t142) + t138*(-radius*t147 - t144) +
-                    t161*t167 + t162*t168))
+                t153 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
+                    dpush_by_rate_1*drate_1 + dpush_by_rate_2*drate_2)
+                t154 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
+                    dfriction_1_by_rate_1*drate_1 + dfriction_1_by_rate_2*drate_2 +
+                    dfriction_1_by_turned_3*dturned_3)
+                t155 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
+                    dfriction_2_by_rate_1*drate_1 + dfriction_2_by_rate_2*drate_2 +
+                    dfriction_2_by_turned_3*dturned_3)
+                t156 = (-friction_1*t152 - friction_2*normal_2*(2*t145 + 2*t146) - normal_2*t153 -
+                    push*t147 - t134*t154 + t138*t155 - t147*t148)
+                t157 = (-friction_2*normal_1*t147 - friction_2*t152 - normal_1*t153 - push*t151 -
+                    t134*t155 + t135*t154 - t148*(2*t149 + 2*t150))
+                t158 = -Rb_cos*t157 + Rb_sin*t156 + t141*t142 + t143*t144
+                t159 = Rb_cos*t139 + Rb_sin*t137
+                t160 = Rb_cos*t156 + Rb_sin*t157 - t141*t144 + t142*t143
+                t161 = normal_1*radius
+                t162 = xa_x - xb_x
+                t163 = Rb_cos*t162
+                t164 = xa_y - xb_y
+                t165 = Rb_sin*t164
+                t166 = normal_1*radius - t163 - t165
+                t167 = Rb_cos*t164 - Rb_sin*t162 - normal_2*radius
+                t168 = dxa_x - dxb_x
+                t169 = dxa_y - dxb_y
+                J[column] = c_damping*t140 - c_stiffness*t158
+                J[6 + column] = c_damping*t159 + c_stiffness*t160
+                J[12 + column] = -c_damping*t140 + c_stiffness*t158
+                J[18 + column] = -c_damping*t159 - c_stiffness*t160
+                J[24 + column] = (c_damping*(normal_2*radius*t137 - t139*t161) +
+                    c_stiffness*(normal_2*radius*t157 - radius*t141*t151 + radius*t143*t147 -
+                    t156*t161))
+                J[30 + column] = (c_damping*(t137*t167 + t139*t166) +
+                    c_stiffness*(t141*(-Rb_cos*dthb_z*t164 - Rb_cos*t168 + Rb_sin*dthb_z*t162 -
+                    Rb_sin*t169 + radius*t151) + t143*(Rb_cos*t169 - Rb_sin*t168 - dthb_z*t163 -
+                    dthb_z*t165 - radius*t147) + t156*t166 + t157*t167))
     return OK

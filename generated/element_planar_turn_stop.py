@@ -45,7 +45,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (2, 0, 0, 0),
-              "column": (10, 0, 0, 0)}
+              "column": (8, 0, 0, 0)}
 
 
 @kernel_function
@@ -128,8 +128,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dthb_z = dq[1]
                 utha_z = du[0]
                 uthb_z = du[1]
-                t7 = (c_damping*dpush_by_angle_rate*side*(utha_z - uthb_z) +
-                    c_stiffness*dpush_by_angle*side*(dtha_z - dthb_z))
+                dangle = dtha_z - dthb_z
+                uangle_rate = utha_z - uthb_z
+                t7 = (c_damping*dpush_by_angle_rate*side*uangle_rate +
+                    c_stiffness*dangle*dpush_by_angle*side)
                 J[column] = t7
                 J[2 + column] = -t7
     return OK

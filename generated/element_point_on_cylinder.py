@@ -33,6 +33,7 @@ CONSTANTS = (
     Part("stiffness", (), "stiffness k of k d^n (1 + c d')"),
     Part("exponent", (), "exponent n"),
     Part("damping", (), "damping c [time/length]"),
+    Part("slow", (), "speed of impacts so slow that steps do not look at them"),
     Part("bristle", (), "stiffness of the bristles"),
     Part("bristle_damping", (), "their damping"),
     Part("coefficient", (), "coefficient of friction"),
@@ -54,7 +55,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (76, 0, 0, 0),
-              "column": (462, 0, 0, 0)}
+              "column": (402, 0, 0, 0)}
 
 
 @kernel_function
@@ -69,17 +70,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         stiffness = constant[0]
         exponent = constant[1]
         damping = constant[2]
-        bristle = constant[3]
-        bristle_damping = constant[4]
-        coefficient = constant[5]
-        static = constant[6]
-        speed = constant[7]
-        radius = constant[8]
-        e_x = constant[9]
-        e_y = constant[10]
-        e_z = constant[11]
-        size = constant[12]
-        side = constant[13]
+        slow = constant[3]
+        bristle = constant[4]
+        bristle_damping = constant[5]
+        coefficient = constant[6]
+        static = constant[7]
+        speed = constant[8]
+        radius = constant[9]
+        e_x = constant[10]
+        e_y = constant[11]
+        e_z = constant[12]
+        size = constant[13]
+        side = constant[14]
         xa_x = q[unknowns[0]]
         xa_y = q[unknowns[1]]
         xa_z = q[unknowns[2]]
@@ -208,7 +210,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t48 = (closing if closing > 0.0 else -closing)
         t49 = (kept_rate if kept_rate > 0.0 else -kept_rate)
         t50 = (t48 if t48 - t49 > 0.0 else t49)
-        t51 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+        t51 = (t50 if -kept_impact + t50 > 0.0 else kept_impact)
+        t52 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
             dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0)))
         g[0] = t39
         g[1] = t40
@@ -223,12 +226,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME] + 1] = place_2
         frames[index[first + AT_FRAME] + 2] = place_3
         frames[index[first + AT_FRAME] + 3] = closing
-        frames[index[first + AT_FRAME] + 4] = (((t50 if -kept_impact + t50 > 0.0 else kept_impact)
-            if touches - 0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 4] = (((t51 if -slow + t51 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0))
         frames[index[first + AT_FRAME] + 5] = gap_closed
-        frames[index[first + AT_FRAME] + 6] = t51*z_1
-        frames[index[first + AT_FRAME] + 7] = t51*z_2
-        frames[index[first + AT_FRAME] + 8] = t51*z_3
+        frames[index[first + AT_FRAME] + 6] = t52*z_1
+        frames[index[first + AT_FRAME] + 7] = t52*z_2
+        frames[index[first + AT_FRAME] + 8] = t52*z_3
         frames[index[first + AT_FRAME] + 9] = slips
         frames[index[first + AT_FRAME] + 10] = 1.0
         frames[index[first + AT_FRAME] + 11] = push
@@ -289,202 +292,202 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             du = at(work, WIDTH)
-            t52 = e_x*e_x
-            t53 = e_x*place_1 + e_y*place_2 + e_z*place_3
-            t54 = -e_x*t53 + place_1
-            t55 = -e_y*t53 + place_2
-            t56 = -e_z*t53 + place_3
-            t57 = t54*t54 + t55*t55 + t56*t56 + 1e-300
-            t58 = side/sqrt(t57)
-            t59 = e_x*e_y
-            t60 = e_z*t56
-            t61 = e_x*t60 - 0.5*t54*(2 - 2*t52) + t55*t59
-            t62 = t57**(-1.5)
-            t63 = side*t62
-            t64 = t58*t59
-            t65 = e_y*e_y
-            t66 = e_y*t60 + t54*t59 - 0.5*t55*(2 - 2*t65)
-            t67 = e_x*e_z
-            t68 = t58*t67
-            t69 = e_y*e_z
-            t70 = e_z*e_z
-            t71 = t54*t67 + t55*t69 - 0.5*t56*(2 - 2*t70)
-            t72 = t58*t69
-            dnormal_1_by_place_1 = t54*t61*t63 + t58*(1 - t52)
-            dnormal_1_by_place_2 = side*t54*t62*t66 - t64
-            dnormal_1_by_place_3 = side*t54*t62*t71 - t68
-            dnormal_2_by_place_1 = side*t55*t61*t62 - t64
-            dnormal_2_by_place_2 = t55*t63*t66 + t58*(1 - t65)
-            dnormal_2_by_place_3 = side*t55*t62*t71 - t72
-            dnormal_3_by_place_1 = side*t56*t61*t62 - t68
-            dnormal_3_by_place_2 = side*t56*t62*t66 - t72
-            dnormal_3_by_place_3 = t56*t63*t71 + t58*(1 - t70)
-            dgap_closed_by_place_1 = t58*t61
-            dgap_closed_by_place_2 = t58*t66
-            dgap_closed_by_place_3 = t58*t71
-            t73 = dnormal_1_by_place_1*rate_1
-            t74 = dnormal_2_by_place_1*rate_2
-            t75 = dnormal_3_by_place_1*rate_3
-            t76 = dnormal_1_by_place_2*rate_1
-            t77 = dnormal_2_by_place_2*rate_2
-            t78 = dnormal_3_by_place_2*rate_3
-            t79 = dnormal_1_by_place_3*rate_1
-            t80 = dnormal_2_by_place_3*rate_2
-            t81 = dnormal_3_by_place_3*rate_3
-            t82 = normal_2*rate_2
-            t83 = normal_3*rate_3
-            t84 = normal_1*rate_1
-            t85 = -t82 - t83 - 2*t84
-            t86 = normal_1*normal_1 - 1
-            t87 = normal_1*normal_2
-            t88 = -t87
-            t89 = normal_1*normal_3
-            t90 = -t89
-            t91 = -2*t82 - t83 - t84
-            t92 = normal_2*normal_2 - 1
-            t93 = normal_2*normal_3
-            t94 = -t93
-            t95 = -t82 - 2*t83 - t84
-            t96 = normal_3*normal_3 - 1
-            t97 = -kept_place_2 + place_2
-            t98 = normal_2*t97
-            t99 = -kept_place_3 + place_3
-            t100 = normal_3*t99
-            t101 = -kept_place_1 + place_1
-            t102 = normal_1*t101
-            t103 = -t100 - 2*t102 - t98
-            t104 = normal_1*t97
-            t105 = normal_1*t99
-            t106 = normal_2*t101
-            t107 = normal_2*t99
-            t108 = -t100 - t102 - 2*t98
-            t109 = normal_3*t101
-            t110 = normal_3*t97
-            t111 = -2*t100 - t102 - t98
-            dclosing_by_place_1 = -t73 - t74 - t75
-            dclosing_by_place_2 = -t76 - t77 - t78
-            dclosing_by_place_3 = -t79 - t80 - t81
+            t53 = e_x*e_x
+            t54 = e_x*place_1 + e_y*place_2 + e_z*place_3
+            t55 = -e_x*t54 + place_1
+            t56 = -e_y*t54 + place_2
+            t57 = -e_z*t54 + place_3
+            t58 = t55*t55 + t56*t56 + t57*t57 + 1e-300
+            t59 = side/sqrt(t58)
+            t60 = e_x*e_y
+            t61 = e_z*t57
+            t62 = e_x*t61 - 0.5*t55*(2 - 2*t53) + t56*t60
+            t63 = t58**(-1.5)
+            t64 = side*t63
+            t65 = t59*t60
+            t66 = e_y*e_y
+            t67 = e_y*t61 + t55*t60 - 0.5*t56*(2 - 2*t66)
+            t68 = e_x*e_z
+            t69 = t59*t68
+            t70 = e_y*e_z
+            t71 = e_z*e_z
+            t72 = t55*t68 + t56*t70 - 0.5*t57*(2 - 2*t71)
+            t73 = t59*t70
+            dnormal_1_by_place_1 = t55*t62*t64 + t59*(1 - t53)
+            dnormal_1_by_place_2 = side*t55*t63*t67 - t65
+            dnormal_1_by_place_3 = side*t55*t63*t72 - t69
+            dnormal_2_by_place_1 = side*t56*t62*t63 - t65
+            dnormal_2_by_place_2 = t56*t64*t67 + t59*(1 - t66)
+            dnormal_2_by_place_3 = side*t56*t63*t72 - t73
+            dnormal_3_by_place_1 = side*t57*t62*t63 - t69
+            dnormal_3_by_place_2 = side*t57*t63*t67 - t73
+            dnormal_3_by_place_3 = t57*t64*t72 + t59*(1 - t71)
+            dgap_closed_by_place_1 = t59*t62
+            dgap_closed_by_place_2 = t59*t67
+            dgap_closed_by_place_3 = t59*t72
+            t74 = dnormal_1_by_place_1*rate_1
+            t75 = dnormal_2_by_place_1*rate_2
+            t76 = dnormal_3_by_place_1*rate_3
+            t77 = dnormal_1_by_place_2*rate_1
+            t78 = dnormal_2_by_place_2*rate_2
+            t79 = dnormal_3_by_place_2*rate_3
+            t80 = dnormal_1_by_place_3*rate_1
+            t81 = dnormal_2_by_place_3*rate_2
+            t82 = dnormal_3_by_place_3*rate_3
+            t83 = normal_2*rate_2
+            t84 = normal_3*rate_3
+            t85 = normal_1*rate_1
+            t86 = -t83 - t84 - 2*t85
+            t87 = normal_1*normal_1 - 1
+            t88 = normal_1*normal_2
+            t89 = -t88
+            t90 = normal_1*normal_3
+            t91 = -t90
+            t92 = -2*t83 - t84 - t85
+            t93 = normal_2*normal_2 - 1
+            t94 = normal_2*normal_3
+            t95 = -t94
+            t96 = -t83 - 2*t84 - t85
+            t97 = normal_3*normal_3 - 1
+            t98 = -kept_place_2 + place_2
+            t99 = normal_2*t98
+            t100 = -kept_place_3 + place_3
+            t101 = normal_3*t100
+            t102 = -kept_place_1 + place_1
+            t103 = normal_1*t102
+            t104 = -t101 - 2*t103 - t99
+            t105 = normal_1*t98
+            t106 = normal_1*t100
+            t107 = normal_2*t102
+            t108 = normal_2*t100
+            t109 = -t101 - t103 - 2*t99
+            t110 = normal_3*t102
+            t111 = normal_3*t98
+            t112 = -2*t101 - t103 - t99
+            dclosing_by_place_1 = -t74 - t75 - t76
+            dclosing_by_place_2 = -t77 - t78 - t79
+            dclosing_by_place_3 = -t80 - t81 - t82
             dclosing_by_rate_1 = -normal_1
             dclosing_by_rate_2 = -normal_2
             dclosing_by_rate_3 = -normal_3
-            dslip_1_by_place_1 = dnormal_1_by_place_1*t85 - normal_1*t74 - normal_1*t75
-            dslip_1_by_place_2 = dnormal_1_by_place_2*t85 - normal_1*t77 - normal_1*t78
-            dslip_1_by_place_3 = dnormal_1_by_place_3*t85 - normal_1*t80 - normal_1*t81
-            dslip_1_by_rate_1 = -t86
-            dslip_1_by_rate_2 = t88
-            dslip_1_by_rate_3 = t90
-            dslip_2_by_place_1 = dnormal_2_by_place_1*t91 - normal_2*t73 - normal_2*t75
-            dslip_2_by_place_2 = dnormal_2_by_place_2*t91 - normal_2*t76 - normal_2*t78
-            dslip_2_by_place_3 = dnormal_2_by_place_3*t91 - normal_2*t79 - normal_2*t81
-            dslip_2_by_rate_1 = t88
-            dslip_2_by_rate_2 = -t92
-            dslip_2_by_rate_3 = t94
-            dslip_3_by_place_1 = dnormal_3_by_place_1*t95 - normal_3*t73 - normal_3*t74
-            dslip_3_by_place_2 = dnormal_3_by_place_2*t95 - normal_3*t76 - normal_3*t77
-            dslip_3_by_place_3 = dnormal_3_by_place_3*t95 - normal_3*t79 - normal_3*t80
-            dslip_3_by_rate_1 = t90
-            dslip_3_by_rate_2 = t94
-            dslip_3_by_rate_3 = -t96
-            dincrement_1_by_place_1 = (dnormal_1_by_place_1*t103 - dnormal_2_by_place_1*t104 -
-                dnormal_3_by_place_1*t105 - t86)
-            dincrement_1_by_place_2 = (dnormal_1_by_place_2*t103 - dnormal_2_by_place_2*t104 -
-                dnormal_3_by_place_2*t105 - t87)
-            dincrement_1_by_place_3 = (dnormal_1_by_place_3*t103 - dnormal_2_by_place_3*t104 -
-                dnormal_3_by_place_3*t105 - t89)
-            dincrement_2_by_place_1 = (-dnormal_1_by_place_1*t106 + dnormal_2_by_place_1*t108 -
-                dnormal_3_by_place_1*t107 - t87)
-            dincrement_2_by_place_2 = (-dnormal_1_by_place_2*t106 + dnormal_2_by_place_2*t108 -
-                dnormal_3_by_place_2*t107 - t92)
-            dincrement_2_by_place_3 = (-dnormal_1_by_place_3*t106 + dnormal_2_by_place_3*t108 -
-                dnormal_3_by_place_3*t107 - t93)
-            dincrement_3_by_place_1 = (-dnormal_1_by_place_1*t109 - dnormal_2_by_place_1*t110 +
-                dnormal_3_by_place_1*t111 - t89)
-            dincrement_3_by_place_2 = (-dnormal_1_by_place_2*t109 - dnormal_2_by_place_2*t110 +
-                dnormal_3_by_place_2*t111 - t93)
-            dincrement_3_by_place_3 = (-dnormal_1_by_place_3*t109 - dnormal_2_by_place_3*t110 +
-                dnormal_3_by_place_3*t111 - t96)
-            t112 = (1 if gap_closed > 0.0 else 0)
-            ddepth_by_place_1 = dgap_closed_by_place_1*t112
-            ddepth_by_place_2 = dgap_closed_by_place_2*t112
-            ddepth_by_place_3 = dgap_closed_by_place_3*t112
-            t113 = depth**exponent*exponent*stiffness/depth
-            delastic_by_place_1 = ddepth_by_place_1*t113
-            delastic_by_place_2 = ddepth_by_place_2*t113
-            delastic_by_place_3 = ddepth_by_place_3*t113
+            dslip_1_by_place_1 = dnormal_1_by_place_1*t86 - normal_1*t75 - normal_1*t76
+            dslip_1_by_place_2 = dnormal_1_by_place_2*t86 - normal_1*t78 - normal_1*t79
+            dslip_1_by_place_3 = dnormal_1_by_place_3*t86 - normal_1*t81 - normal_1*t82
+            dslip_1_by_rate_1 = -t87
+            dslip_1_by_rate_2 = t89
+            dslip_1_by_rate_3 = t91
+            dslip_2_by_place_1 = dnormal_2_by_place_1*t92 - normal_2*t74 - normal_2*t76
+            dslip_2_by_place_2 = dnormal_2_by_place_2*t92 - normal_2*t77 - normal_2*t79
+            dslip_2_by_place_3 = dnormal_2_by_place_3*t92 - normal_2*t80 - normal_2*t82
+            dslip_2_by_rate_1 = t89
+            dslip_2_by_rate_2 = -t93
+            dslip_2_by_rate_3 = t95
+            dslip_3_by_place_1 = dnormal_3_by_place_1*t96 - normal_3*t74 - normal_3*t75
+            dslip_3_by_place_2 = dnormal_3_by_place_2*t96 - normal_3*t77 - normal_3*t78
+            dslip_3_by_place_3 = dnormal_3_by_place_3*t96 - normal_3*t80 - normal_3*t81
+            dslip_3_by_rate_1 = t91
+            dslip_3_by_rate_2 = t95
+            dslip_3_by_rate_3 = -t97
+            dincrement_1_by_place_1 = (dnormal_1_by_place_1*t104 - dnormal_2_by_place_1*t105 -
+                dnormal_3_by_place_1*t106 - t87)
+            dincrement_1_by_place_2 = (dnormal_1_by_place_2*t104 - dnormal_2_by_place_2*t105 -
+                dnormal_3_by_place_2*t106 - t88)
+            dincrement_1_by_place_3 = (dnormal_1_by_place_3*t104 - dnormal_2_by_place_3*t105 -
+                dnormal_3_by_place_3*t106 - t90)
+            dincrement_2_by_place_1 = (-dnormal_1_by_place_1*t107 + dnormal_2_by_place_1*t109 -
+                dnormal_3_by_place_1*t108 - t88)
+            dincrement_2_by_place_2 = (-dnormal_1_by_place_2*t107 + dnormal_2_by_place_2*t109 -
+                dnormal_3_by_place_2*t108 - t93)
+            dincrement_2_by_place_3 = (-dnormal_1_by_place_3*t107 + dnormal_2_by_place_3*t109 -
+                dnormal_3_by_place_3*t108 - t94)
+            dincrement_3_by_place_1 = (-dnormal_1_by_place_1*t110 - dnormal_2_by_place_1*t111 +
+                dnormal_3_by_place_1*t112 - t90)
+            dincrement_3_by_place_2 = (-dnormal_1_by_place_2*t110 - dnormal_2_by_place_2*t111 +
+                dnormal_3_by_place_2*t112 - t94)
+            dincrement_3_by_place_3 = (-dnormal_1_by_place_3*t110 - dnormal_2_by_place_3*t111 +
+                dnormal_3_by_place_3*t112 - t97)
+            t113 = (1 if gap_closed > 0.0 else 0)
+            ddepth_by_place_1 = dgap_closed_by_place_1*t113
+            ddepth_by_place_2 = dgap_closed_by_place_2*t113
+            ddepth_by_place_3 = dgap_closed_by_place_3*t113
+            t114 = depth**exponent*exponent*stiffness/depth
+            delastic_by_place_1 = ddepth_by_place_1*t114
+            delastic_by_place_2 = ddepth_by_place_2*t114
+            delastic_by_place_3 = ddepth_by_place_3*t114
             dfactor_by_place_1 = damping*dclosing_by_place_1
             dfactor_by_place_2 = damping*dclosing_by_place_2
             dfactor_by_place_3 = damping*dclosing_by_place_3
             dfactor_by_rate_1 = damping*dclosing_by_rate_1
             dfactor_by_rate_2 = damping*dclosing_by_rate_2
             dfactor_by_rate_3 = damping*dclosing_by_rate_3
-            t114 = (factor if factor > 0.0 else 0)
-            t115 = (elastic if factor > 0.0 else 0)
-            dpush_by_place_1 = delastic_by_place_1*t114 + dfactor_by_place_1*t115
-            dpush_by_place_2 = delastic_by_place_2*t114 + dfactor_by_place_2*t115
-            dpush_by_place_3 = delastic_by_place_3*t114 + dfactor_by_place_3*t115
-            dpush_by_rate_1 = dfactor_by_rate_1*t115
-            dpush_by_rate_2 = dfactor_by_rate_2*t115
-            dpush_by_rate_3 = dfactor_by_rate_3*t115
-            t116 = kept_begun*normal_1
-            t117 = normal_2*t116
-            t118 = normal_3*t116
-            t119 = increment_2*kept_begun + kept_bent_2
-            t120 = normal_1*t119
-            t121 = increment_3*kept_begun + kept_bent_3
-            t122 = normal_1*t121
-            t123 = 1 - normal_1*normal_1
-            t124 = normal_2*t119
-            t125 = normal_3*t121
-            t126 = increment_1*kept_begun + kept_bent_1
-            t127 = normal_1*t126
-            t128 = -t124 - t125 - 2*t127
-            t129 = kept_begun*normal_2*normal_3
-            t130 = normal_2*t126
-            t131 = normal_2*t121
-            t132 = 1 - normal_2*normal_2
-            t133 = -2*t124 - t125 - t127
-            t134 = normal_3*t126
-            t135 = normal_3*t119
-            t136 = 1 - normal_3*normal_3
-            t137 = -t124 - 2*t125 - t127
-            dz_1_by_place_1 = (dincrement_1_by_place_1*kept_begun*t123 -
-                dincrement_2_by_place_1*t117 - dincrement_3_by_place_1*t118 +
-                dnormal_1_by_place_1*t128 - dnormal_2_by_place_1*t120 - dnormal_3_by_place_1*t122)
-            dz_1_by_place_2 = (dincrement_1_by_place_2*kept_begun*t123 -
-                dincrement_2_by_place_2*t117 - dincrement_3_by_place_2*t118 +
-                dnormal_1_by_place_2*t128 - dnormal_2_by_place_2*t120 - dnormal_3_by_place_2*t122)
-            dz_1_by_place_3 = (dincrement_1_by_place_3*kept_begun*t123 -
-                dincrement_2_by_place_3*t117 - dincrement_3_by_place_3*t118 +
-                dnormal_1_by_place_3*t128 - dnormal_2_by_place_3*t120 - dnormal_3_by_place_3*t122)
-            dz_2_by_place_1 = (-dincrement_1_by_place_1*t117 +
-                dincrement_2_by_place_1*kept_begun*t132 - dincrement_3_by_place_1*t129 -
-                dnormal_1_by_place_1*t130 + dnormal_2_by_place_1*t133 - dnormal_3_by_place_1*t131)
-            dz_2_by_place_2 = (-dincrement_1_by_place_2*t117 +
-                dincrement_2_by_place_2*kept_begun*t132 - dincrement_3_by_place_2*t129 -
-                dnormal_1_by_place_2*t130 + dnormal_2_by_place_2*t133 - dnormal_3_by_place_2*t131)
-            dz_2_by_place_3 = (-dincrement_1_by_place_3*t117 +
-                dincrement_2_by_place_3*kept_begun*t132 - dincrement_3_by_place_3*t129 -
-                dnormal_1_by_place_3*t130 + dnormal_2_by_place_3*t133 - dnormal_3_by_place_3*t131)
-            dz_3_by_place_1 = (-dincrement_1_by_place_1*t118 - dincrement_2_by_place_1*t129 +
-                dincrement_3_by_place_1*kept_begun*t136 - dnormal_1_by_place_1*t134 -
-                dnormal_2_by_place_1*t135 + dnormal_3_by_place_1*t137)
-            dz_3_by_place_2 = (-dincrement_1_by_place_2*t118 - dincrement_2_by_place_2*t129 +
-                dincrement_3_by_place_2*kept_begun*t136 - dnormal_1_by_place_2*t134 -
-                dnormal_2_by_place_2*t135 + dnormal_3_by_place_2*t137)
-            dz_3_by_place_3 = (-dincrement_1_by_place_3*t118 - dincrement_2_by_place_3*t129 +
-                dincrement_3_by_place_3*kept_begun*t136 - dnormal_1_by_place_3*t134 -
-                dnormal_2_by_place_3*t135 + dnormal_3_by_place_3*t137)
+            t115 = (factor if factor > 0.0 else 0)
+            t116 = (elastic if factor > 0.0 else 0)
+            dpush_by_place_1 = delastic_by_place_1*t115 + dfactor_by_place_1*t116
+            dpush_by_place_2 = delastic_by_place_2*t115 + dfactor_by_place_2*t116
+            dpush_by_place_3 = delastic_by_place_3*t115 + dfactor_by_place_3*t116
+            dpush_by_rate_1 = dfactor_by_rate_1*t116
+            dpush_by_rate_2 = dfactor_by_rate_2*t116
+            dpush_by_rate_3 = dfactor_by_rate_3*t116
+            t117 = kept_begun*normal_1
+            t118 = normal_2*t117
+            t119 = normal_3*t117
+            t120 = increment_2*kept_begun + kept_bent_2
+            t121 = normal_1*t120
+            t122 = increment_3*kept_begun + kept_bent_3
+            t123 = normal_1*t122
+            t124 = 1 - normal_1*normal_1
+            t125 = normal_2*t120
+            t126 = normal_3*t122
+            t127 = increment_1*kept_begun + kept_bent_1
+            t128 = normal_1*t127
+            t129 = -t125 - t126 - 2*t128
+            t130 = kept_begun*normal_2*normal_3
+            t131 = normal_2*t127
+            t132 = normal_2*t122
+            t133 = 1 - normal_2*normal_2
+            t134 = -2*t125 - t126 - t128
+            t135 = normal_3*t127
+            t136 = normal_3*t120
+            t137 = 1 - normal_3*normal_3
+            t138 = -t125 - 2*t126 - t128
+            dz_1_by_place_1 = (dincrement_1_by_place_1*kept_begun*t124 -
+                dincrement_2_by_place_1*t118 - dincrement_3_by_place_1*t119 +
+                dnormal_1_by_place_1*t129 - dnormal_2_by_place_1*t121 - dnormal_3_by_place_1*t123)
+            dz_1_by_place_2 = (dincrement_1_by_place_2*kept_begun*t124 -
+                dincrement_2_by_place_2*t118 - dincrement_3_by_place_2*t119 +
+                dnormal_1_by_place_2*t129 - dnormal_2_by_place_2*t121 - dnormal_3_by_place_2*t123)
+            dz_1_by_place_3 = (dincrement_1_by_place_3*kept_begun*t124 -
+                dincrement_2_by_place_3*t118 - dincrement_3_by_place_3*t119 +
+                dnormal_1_by_place_3*t129 - dnormal_2_by_place_3*t121 - dnormal_3_by_place_3*t123)
+            dz_2_by_place_1 = (-dincrement_1_by_place_1*t118 +
+                dincrement_2_by_place_1*kept_begun*t133 - dincrement_3_by_place_1*t130 -
+                dnormal_1_by_place_1*t131 + dnormal_2_by_place_1*t134 - dnormal_3_by_place_1*t132)
+            dz_2_by_place_2 = (-dincrement_1_by_place_2*t118 +
+                dincrement_2_by_place_2*kept_begun*t133 - dincrement_3_by_place_2*t130 -
+                dnormal_1_by_place_2*t131 + dnormal_2_by_place_2*t134 - dnormal_3_by_place_2*t132)
+            dz_2_by_place_3 = (-dincrement_1_by_place_3*t118 +
+                dincrement_2_by_place_3*kept_begun*t133 - dincrement_3_by_place_3*t130 -
+                dnormal_1_by_place_3*t131 + dnormal_2_by_place_3*t134 - dnormal_3_by_place_3*t132)
+            dz_3_by_place_1 = (-dincrement_1_by_place_1*t119 - dincrement_2_by_place_1*t130 +
+                dincrement_3_by_place_1*kept_begun*t137 - dnormal_1_by_place_1*t135 -
+                dnormal_2_by_place_1*t136 + dnormal_3_by_place_1*t138)
+            dz_3_by_place_2 = (-dincrement_1_by_place_2*t119 - dincrement_2_by_place_2*t130 +
+                dincrement_3_by_place_2*kept_begun*t137 - dnormal_1_by_place_2*t135 -
+                dnormal_2_by_place_2*t136 + dnormal_3_by_place_2*t138)
+            dz_3_by_place_3 = (-dincrement_1_by_place_3*t119 - dincrement_2_by_place_3*t130 +
+                dincrement_3_by_place_3*kept_begun*t137 - dnormal_1_by_place_3*t135 -
+                dnormal_2_by_place_3*t136 + dnormal_3_by_place_3*t138)
             ddynamic_limit_by_place_1 = coefficient*dpush_by_place_1
             ddynamic_limit_by_place_2 = coefficient*dpush_by_place_2
             ddynamic_limit_by_place_3 = coefficient*dpush_by_place_3
             ddynamic_limit_by_rate_1 = coefficient*dpush_by_rate_1
             ddynamic_limit_by_rate_2 = coefficient*dpush_by_rate_2
             ddynamic_limit_by_rate_3 = coefficient*dpush_by_rate_3
-            t138 = (1/sqrt(slip_1*slip_1 + slip_2*slip_2 + slip_3*slip_3 + 1e-12*speed*speed +
+            t139 = (1/sqrt(slip_1*slip_1 + slip_2*slip_2 + slip_3*slip_3 + 1e-12*speed*speed +
                 1e-300))
-            t139 = slip_1*t138
-            t140 = slip_2*t138
-            t141 = slip_3*t138
+            t140 = slip_1*t139
+            t141 = slip_2*t139
+            t142 = slip_3*t139
             dtrial_1_by_place_1 = bristle*dz_1_by_place_1 + bristle_damping*dslip_1_by_place_1
             dtrial_1_by_place_2 = bristle*dz_1_by_place_2 + bristle_damping*dslip_1_by_place_2
             dtrial_1_by_place_3 = bristle*dz_1_by_place_3 + bristle_damping*dslip_1_by_place_3
@@ -503,103 +506,103 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dtrial_3_by_rate_1 = bristle_damping*dslip_3_by_rate_1
             dtrial_3_by_rate_2 = bristle_damping*dslip_3_by_rate_2
             dtrial_3_by_rate_3 = bristle_damping*dslip_3_by_rate_3
-            dslip_speed_by_place_1 = (dslip_1_by_place_1*t139 + dslip_2_by_place_1*t140 +
-                dslip_3_by_place_1*t141)
-            dslip_speed_by_place_2 = (dslip_1_by_place_2*t139 + dslip_2_by_place_2*t140 +
-                dslip_3_by_place_2*t141)
-            dslip_speed_by_place_3 = (dslip_1_by_place_3*t139 + dslip_2_by_place_3*t140 +
-                dslip_3_by_place_3*t141)
-            dslip_speed_by_rate_1 = (dslip_1_by_rate_1*t139 + dslip_2_by_rate_1*t140 +
-                dslip_3_by_rate_1*t141)
-            dslip_speed_by_rate_2 = (dslip_1_by_rate_2*t139 + dslip_2_by_rate_2*t140 +
-                dslip_3_by_rate_2*t141)
-            dslip_speed_by_rate_3 = (dslip_1_by_rate_3*t139 + dslip_2_by_rate_3*t140 +
-                dslip_3_by_rate_3*t141)
-            t142 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
-            t143 = t142*trial_1
-            t144 = t142*trial_2
-            t145 = t142*trial_3
-            t146 = 1/slip_speed
-            t147 = 1/speed
-            t148 = slip_speed*t147
-            t149 = tanh(4*t148)
-            t150 = slip_speed*slip_speed
-            t151 = 0.75 + ((0.25)*t150)/(speed*speed)
-            t152 = -coefficient + static
-            t153 = t152/(t151*t151)
-            t154 = coefficient*t149 + t148*t153
-            t155 = (t146*t154 if speed > 0.0 else 0)
-            t156 = ((push*t146*(4*coefficient*t147*(1 - t149*t149) + t147*t153 +
-                (-t150*t152)/(speed*speed*speed*t151*t151*t151)) - push*t154/t150 if speed > 0.0
+            dslip_speed_by_place_1 = (dslip_1_by_place_1*t140 + dslip_2_by_place_1*t141 +
+                dslip_3_by_place_1*t142)
+            dslip_speed_by_place_2 = (dslip_1_by_place_2*t140 + dslip_2_by_place_2*t141 +
+                dslip_3_by_place_2*t142)
+            dslip_speed_by_place_3 = (dslip_1_by_place_3*t140 + dslip_2_by_place_3*t141 +
+                dslip_3_by_place_3*t142)
+            dslip_speed_by_rate_1 = (dslip_1_by_rate_1*t140 + dslip_2_by_rate_1*t141 +
+                dslip_3_by_rate_1*t142)
+            dslip_speed_by_rate_2 = (dslip_1_by_rate_2*t140 + dslip_2_by_rate_2*t141 +
+                dslip_3_by_rate_2*t142)
+            dslip_speed_by_rate_3 = (dslip_1_by_rate_3*t140 + dslip_2_by_rate_3*t141 +
+                dslip_3_by_rate_3*t142)
+            t143 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
+            t144 = t143*trial_1
+            t145 = t143*trial_2
+            t146 = t143*trial_3
+            t147 = 1/slip_speed
+            t148 = 1/speed
+            t149 = slip_speed*t148
+            t150 = tanh(4*t149)
+            t151 = slip_speed*slip_speed
+            t152 = 0.75 + ((0.25)*t151)/(speed*speed)
+            t153 = -coefficient + static
+            t154 = t153/(t152*t152)
+            t155 = coefficient*t150 + t149*t154
+            t156 = (t147*t155 if speed > 0.0 else 0)
+            t157 = ((push*t147*(4*coefficient*t148*(1 - t150*t150) + t148*t154 +
+                (-t151*t153)/(speed*speed*speed*t152*t152*t152)) - push*t155/t151 if speed > 0.0
                 else 0))
-            dtrial_size_by_place_1 = (dtrial_1_by_place_1*t143 + dtrial_2_by_place_1*t144 +
-                dtrial_3_by_place_1*t145)
-            dtrial_size_by_place_2 = (dtrial_1_by_place_2*t143 + dtrial_2_by_place_2*t144 +
-                dtrial_3_by_place_2*t145)
-            dtrial_size_by_place_3 = (dtrial_1_by_place_3*t143 + dtrial_2_by_place_3*t144 +
-                dtrial_3_by_place_3*t145)
-            dtrial_size_by_rate_1 = (dtrial_1_by_rate_1*t143 + dtrial_2_by_rate_1*t144 +
-                dtrial_3_by_rate_1*t145)
-            dtrial_size_by_rate_2 = (dtrial_1_by_rate_2*t143 + dtrial_2_by_rate_2*t144 +
-                dtrial_3_by_rate_2*t145)
-            dtrial_size_by_rate_3 = (dtrial_1_by_rate_3*t143 + dtrial_2_by_rate_3*t144 +
-                dtrial_3_by_rate_3*t145)
-            ddrag_by_place_1 = dpush_by_place_1*t155 + dslip_speed_by_place_1*t156
-            ddrag_by_place_2 = dpush_by_place_2*t155 + dslip_speed_by_place_2*t156
-            ddrag_by_place_3 = dpush_by_place_3*t155 + dslip_speed_by_place_3*t156
-            ddrag_by_rate_1 = dpush_by_rate_1*t155 + dslip_speed_by_rate_1*t156
-            ddrag_by_rate_2 = dpush_by_rate_2*t155 + dslip_speed_by_rate_2*t156
-            ddrag_by_rate_3 = dpush_by_rate_3*t155 + dslip_speed_by_rate_3*t156
-            t157 = (slip_1 if speed > 0.0 else 0)
-            t158 = (drag if speed > 0.0 else 0)
-            t159 = -static_limit + trial_size
-            t160 = 1/trial_size
-            t161 = (0 if speed > 0.0 else (t160*trial_1 if t159 > 0.0 else 0))
-            t162 = (0 if speed > 0.0 else (dynamic_limit*t160 if t159 > 0.0 else 1))
-            t163 = dynamic_limit/(trial_size*trial_size)
-            t164 = (0 if speed > 0.0 else (-t163*trial_1 if t159 > 0.0 else 0))
-            t165 = (slip_2 if speed > 0.0 else 0)
-            t166 = (0 if speed > 0.0 else (t160*trial_2 if t159 > 0.0 else 0))
-            t167 = (0 if speed > 0.0 else (-t163*trial_2 if t159 > 0.0 else 0))
-            t168 = (slip_3 if speed > 0.0 else 0)
-            t169 = (0 if speed > 0.0 else (t160*trial_3 if t159 > 0.0 else 0))
-            t170 = (0 if speed > 0.0 else (-t163*trial_3 if t159 > 0.0 else 0))
-            dfriction_1_by_place_1 = (ddrag_by_place_1*t157 + ddynamic_limit_by_place_1*t161 +
-                dslip_1_by_place_1*t158 + dtrial_1_by_place_1*t162 + dtrial_size_by_place_1*t164)
-            dfriction_1_by_place_2 = (ddrag_by_place_2*t157 + ddynamic_limit_by_place_2*t161 +
-                dslip_1_by_place_2*t158 + dtrial_1_by_place_2*t162 + dtrial_size_by_place_2*t164)
-            dfriction_1_by_place_3 = (ddrag_by_place_3*t157 + ddynamic_limit_by_place_3*t161 +
-                dslip_1_by_place_3*t158 + dtrial_1_by_place_3*t162 + dtrial_size_by_place_3*t164)
-            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t157 + ddynamic_limit_by_rate_1*t161 +
-                dslip_1_by_rate_1*t158 + dtrial_1_by_rate_1*t162 + dtrial_size_by_rate_1*t164)
-            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t157 + ddynamic_limit_by_rate_2*t161 +
-                dslip_1_by_rate_2*t158 + dtrial_1_by_rate_2*t162 + dtrial_size_by_rate_2*t164)
-            dfriction_1_by_rate_3 = (ddrag_by_rate_3*t157 + ddynamic_limit_by_rate_3*t161 +
-                dslip_1_by_rate_3*t158 + dtrial_1_by_rate_3*t162 + dtrial_size_by_rate_3*t164)
-            dfriction_2_by_place_1 = (ddrag_by_place_1*t165 + ddynamic_limit_by_place_1*t166 +
-                dslip_2_by_place_1*t158 + dtrial_2_by_place_1*t162 + dtrial_size_by_place_1*t167)
-            dfriction_2_by_place_2 = (ddrag_by_place_2*t165 + ddynamic_limit_by_place_2*t166 +
-                dslip_2_by_place_2*t158 + dtrial_2_by_place_2*t162 + dtrial_size_by_place_2*t167)
-            dfriction_2_by_place_3 = (ddrag_by_place_3*t165 + ddynamic_limit_by_place_3*t166 +
-                dslip_2_by_place_3*t158 + dtrial_2_by_place_3*t162 + dtrial_size_by_place_3*t167)
-            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t165 + ddynamic_limit_by_rate_1*t166 +
-                dslip_2_by_rate_1*t158 + dtrial_2_by_rate_1*t162 + dtrial_size_by_rate_1*t167)
-            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t165 + ddynamic_limit_by_rate_2*t166 +
-                dslip_2_by_rate_2*t158 + dtrial_2_by_rate_2*t162 + dtrial_size_by_rate_2*t167)
-            dfriction_2_by_rate_3 = (ddrag_by_rate_3*t165 + ddynamic_limit_by_rate_3*t166 +
-                dslip_2_by_rate_3*t158 + dtrial_2_by_rate_3*t162 + dtrial_size_by_rate_3*t167)
-            dfriction_3_by_place_1 = (ddrag_by_place_1*t168 + ddynamic_limit_by_place_1*t169 +
-                dslip_3_by_place_1*t158 + dtrial_3_by_place_1*t162 + dtrial_size_by_place_1*t170)
-            dfriction_3_by_place_2 = (ddrag_by_place_2*t168 + ddynamic_limit_by_place_2*t169 +
-                dslip_3_by_place_2*t158 + dtrial_3_by_place_2*t162 + dtrial_size_by_place_2*t170)
-            dfriction_3_by_place_3 = (ddrag_by_place_3*t168 + ddynamic_limit_by_place_3*t169 +
-                dslip_3_by_place_3*t158 + dtrial_3_by_place_3*t162 + dtrial_size_by_place_3*t170)
-            dfriction_3_by_rate_1 = (ddrag_by_rate_1*t168 + ddynamic_limit_by_rate_1*t169 +
-                dslip_3_by_rate_1*t158 + dtrial_3_by_rate_1*t162 + dtrial_size_by_rate_1*t170)
-            dfriction_3_by_rate_2 = (ddrag_by_rate_2*t168 + ddynamic_limit_by_rate_2*t169 +
-                dslip_3_by_rate_2*t158 + dtrial_3_by_rate_2*t162 + dtrial_size_by_rate_2*t170)
-            dfriction_3_by_rate_3 = (ddrag_by_rate_3*t168 + ddynamic_limit_by_rate_3*t169 +
-                dslip_3_by_rate_3*t158 + dtrial_3_by_rate_3*t162 + dtrial_size_by_rate_3*t170)
+            dtrial_size_by_place_1 = (dtrial_1_by_place_1*t144 + dtrial_2_by_place_1*t145 +
+                dtrial_3_by_place_1*t146)
+            dtrial_size_by_place_2 = (dtrial_1_by_place_2*t144 + dtrial_2_by_place_2*t145 +
+                dtrial_3_by_place_2*t146)
+            dtrial_size_by_place_3 = (dtrial_1_by_place_3*t144 + dtrial_2_by_place_3*t145 +
+                dtrial_3_by_place_3*t146)
+            dtrial_size_by_rate_1 = (dtrial_1_by_rate_1*t144 + dtrial_2_by_rate_1*t145 +
+                dtrial_3_by_rate_1*t146)
+            dtrial_size_by_rate_2 = (dtrial_1_by_rate_2*t144 + dtrial_2_by_rate_2*t145 +
+                dtrial_3_by_rate_2*t146)
+            dtrial_size_by_rate_3 = (dtrial_1_by_rate_3*t144 + dtrial_2_by_rate_3*t145 +
+                dtrial_3_by_rate_3*t146)
+            ddrag_by_place_1 = dpush_by_place_1*t156 + dslip_speed_by_place_1*t157
+            ddrag_by_place_2 = dpush_by_place_2*t156 + dslip_speed_by_place_2*t157
+            ddrag_by_place_3 = dpush_by_place_3*t156 + dslip_speed_by_place_3*t157
+            ddrag_by_rate_1 = dpush_by_rate_1*t156 + dslip_speed_by_rate_1*t157
+            ddrag_by_rate_2 = dpush_by_rate_2*t156 + dslip_speed_by_rate_2*t157
+            ddrag_by_rate_3 = dpush_by_rate_3*t156 + dslip_speed_by_rate_3*t157
+            t158 = (slip_1 if speed > 0.0 else 0)
+            t159 = (drag if speed > 0.0 else 0)
+            t160 = -static_limit + trial_size
+            t161 = 1/trial_size
+            t162 = (0 if speed > 0.0 else (t161*trial_1 if t160 > 0.0 else 0))
+            t163 = (0 if speed > 0.0 else (dynamic_limit*t161 if t160 > 0.0 else 1))
+            t164 = dynamic_limit/(trial_size*trial_size)
+            t165 = (0 if speed > 0.0 else (-t164*trial_1 if t160 > 0.0 else 0))
+            t166 = (slip_2 if speed > 0.0 else 0)
+            t167 = (0 if speed > 0.0 else (t161*trial_2 if t160 > 0.0 else 0))
+            t168 = (0 if speed > 0.0 else (-t164*trial_2 if t160 > 0.0 else 0))
+            t169 = (slip_3 if speed > 0.0 else 0)
+            t170 = (0 if speed > 0.0 else (t161*trial_3 if t160 > 0.0 else 0))
+            t171 = (0 if speed > 0.0 else (-t164*trial_3 if t160 > 0.0 else 0))
+            dfriction_1_by_place_1 = (ddrag_by_place_1*t158 + ddynamic_limit_by_place_1*t162 +
+                dslip_1_by_place_1*t159 + dtrial_1_by_place_1*t163 + dtrial_size_by_place_1*t165)
+            dfriction_1_by_place_2 = (ddrag_by_place_2*t158 + ddynamic_limit_by_place_2*t162 +
+                dslip_1_by_place_2*t159 + dtrial_1_by_place_2*t163 + dtrial_size_by_place_2*t165)
+            dfriction_1_by_place_3 = (ddrag_by_place_3*t158 + ddynamic_limit_by_place_3*t162 +
+                dslip_1_by_place_3*t159 + dtrial_1_by_place_3*t163 + dtrial_size_by_place_3*t165)
+            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t158 + ddynamic_limit_by_rate_1*t162 +
+                dslip_1_by_rate_1*t159 + dtrial_1_by_rate_1*t163 + dtrial_size_by_rate_1*t165)
+            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t158 + ddynamic_limit_by_rate_2*t162 +
+                dslip_1_by_rate_2*t159 + dtrial_1_by_rate_2*t163 + dtrial_size_by_rate_2*t165)
+            dfriction_1_by_rate_3 = (ddrag_by_rate_3*t158 + ddynamic_limit_by_rate_3*t162 +
+                dslip_1_by_rate_3*t159 + dtrial_1_by_rate_3*t163 + dtrial_size_by_rate_3*t165)
+            dfriction_2_by_place_1 = (ddrag_by_place_1*t166 + ddynamic_limit_by_place_1*t167 +
+                dslip_2_by_place_1*t159 + dtrial_2_by_place_1*t163 + dtrial_size_by_place_1*t168)
+            dfriction_2_by_place_2 = (ddrag_by_place_2*t166 + ddynamic_limit_by_place_2*t167 +
+                dslip_2_by_place_2*t159 + dtrial_2_by_place_2*t163 + dtrial_size_by_place_2*t168)
+            dfriction_2_by_place_3 = (ddrag_by_place_3*t166 + ddynamic_limit_by_place_3*t167 +
+                dslip_2_by_place_3*t159 + dtrial_2_by_place_3*t163 + dtrial_size_by_place_3*t168)
+            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t166 + ddynamic_limit_by_rate_1*t167 +
+                dslip_2_by_rate_1*t159 + dtrial_2_by_rate_1*t163 + dtrial_size_by_rate_1*t168)
+            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t166 + ddynamic_limit_by_rate_2*t167 +
+                dslip_2_by_rate_2*t159 + dtrial_2_by_rate_2*t163 + dtrial_size_by_rate_2*t168)
+            dfriction_2_by_rate_3 = (ddrag_by_rate_3*t166 + ddynamic_limit_by_rate_3*t167 +
+                dslip_2_by_rate_3*t159 + dtrial_2_by_rate_3*t163 + dtrial_size_by_rate_3*t168)
+            dfriction_3_by_place_1 = (ddrag_by_place_1*t169 + ddynamic_limit_by_place_1*t170 +
+                dslip_3_by_place_1*t159 + dtrial_3_by_place_1*t163 + dtrial_size_by_place_1*t171)
+            dfriction_3_by_place_2 = (ddrag_by_place_2*t169 + ddynamic_limit_by_place_2*t170 +
+                dslip_3_by_place_2*t159 + dtrial_3_by_place_2*t163 + dtrial_size_by_place_2*t171)
+            dfriction_3_by_place_3 = (ddrag_by_place_3*t169 + ddynamic_limit_by_place_3*t170 +
+                dslip_3_by_place_3*t159 + dtrial_3_by_place_3*t163 + dtrial_size_by_place_3*t171)
+            dfriction_3_by_rate_1 = (ddrag_by_rate_1*t169 + ddynamic_limit_by_rate_1*t170 +
+                dslip_3_by_rate_1*t159 + dtrial_3_by_rate_1*t163 + dtrial_size_by_rate_1*t171)
+            dfriction_3_by_rate_2 = (ddrag_by_rate_2*t169 + ddynamic_limit_by_rate_2*t170 +
+                dslip_3_by_rate_2*t159 + dtrial_3_by_rate_2*t163 + dtrial_size_by_rate_2*t171)
+            dfriction_3_by_rate_3 = (ddrag_by_rate_3*t169 + ddynamic_limit_by_rate_3*t170 +
+                dslip_3_by_rate_3*t159 + dtrial_3_by_rate_3*t163 + dtrial_size_by_rate_3*t171)
             for column in range(9):
                 for i in range(9):
                     dq[i] = 0.0
@@ -629,116 +632,141 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = du[6]
                 uthb_y = du[7]
                 uthb_z = du[8]
-                t171 = uxa_x - uxb_x
-                t172 = uxa_y - uxb_y
-                t173 = uxa_z - uxb_z
-                t174 = xa_x - xb_x
-                t175 = xa_y - xb_y
-                t176 = xa_z - xb_z
-                t177 = Rb_xy*t174 + Rb_yy*t175 + Rb_zy*t176
-                t178 = Rb_xz*t174 + Rb_yz*t175 + Rb_zz*t176
-                t179 = Rb_xx*t171 + Rb_yx*t172 + Rb_zx*t173 + t177*uthb_z - t178*uthb_y
-                t180 = Rb_xx*t174 + Rb_yx*t175 + Rb_zx*t176
-                t181 = Rb_xy*t171 + Rb_yy*t172 + Rb_zy*t173 + t178*uthb_x - t180*uthb_z
-                t182 = Rb_xz*t171 + Rb_yz*t172 + Rb_zz*t173 - t177*uthb_x + t180*uthb_y
-                t183 = dpush_by_rate_1*t179 + dpush_by_rate_2*t181 + dpush_by_rate_3*t182
-                t184 = (dfriction_2_by_rate_1*t179 + dfriction_2_by_rate_2*t181 +
-                    dfriction_2_by_rate_3*t182)
-                t185 = normal_1*normal_2
-                t186 = (dfriction_3_by_rate_1*t179 + dfriction_3_by_rate_2*t181 +
-                    dfriction_3_by_rate_3*t182)
-                t187 = normal_3*t186
-                t188 = 1 - normal_1*normal_1
-                t189 = (dfriction_1_by_rate_1*t179 + dfriction_1_by_rate_2*t181 +
-                    dfriction_1_by_rate_3*t182)
-                t190 = -normal_1*t183 - normal_1*t187 - t184*t185 + t188*t189
-                t191 = 1 - normal_2*normal_2
-                t192 = -normal_2*t183 - normal_2*t187 + t184*t191 - t185*t189
-                t193 = normal_1*normal_3
-                t194 = normal_2*normal_3
-                t195 = 1 - normal_3*normal_3
-                t196 = -normal_3*t183 - t184*t194 + t186*t195 - t189*t193
-                t197 = Rb_xx*t190 + Rb_xy*t192 + Rb_xz*t196
-                t198 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t199 = -friction_1*t193 - friction_2*t194 + friction_3*t195 - normal_3*push
-                t200 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t201 = -friction_1*t185 + friction_2*t191 - friction_3*t194 - normal_2*push
-                t202 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t203 = friction_1*t188 - friction_2*t185 - friction_3*t193 - normal_1*push
-                t204 = dxa_x - dxb_x
-                t205 = dxa_y - dxb_y
-                t206 = dxa_z - dxb_z
-                t207 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t208 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t209 = Rb_xx*t204 + Rb_yx*t205 + Rb_zx*t206 + t174*t202 + t175*t207 + t176*t208
-                t210 = dnormal_1_by_place_1*t209
-                t211 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t212 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t213 = Rb_xy*t204 + Rb_yy*t205 + Rb_zy*t206 + t174*t200 + t175*t211 + t176*t212
-                t214 = dnormal_1_by_place_2*t213
-                t215 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t216 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t217 = Rb_xz*t204 + Rb_yz*t205 + Rb_zz*t206 + t174*t198 + t175*t215 + t176*t216
-                t218 = dnormal_1_by_place_3*t217
-                t219 = t210 + t214 + t218
-                t220 = dnormal_2_by_place_1*t209
-                t221 = dnormal_2_by_place_2*t213
-                t222 = dnormal_2_by_place_3*t217
+                t172 = dxa_x - dxb_x
+                t173 = dxa_y - dxb_y
+                t174 = dxa_z - dxb_z
+                t175 = xa_x - xb_x
+                t176 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t177 = xa_y - xb_y
+                t178 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t179 = xa_z - xb_z
+                t180 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t181 = Rb_xx*t172 + Rb_yx*t173 + Rb_zx*t174 + t175*t176 + t177*t178 + t179*t180
+                t182 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t183 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t184 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t185 = Rb_xy*t172 + Rb_yy*t173 + Rb_zy*t174 + t175*t182 + t177*t183 + t179*t184
+                t186 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t187 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t188 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t189 = Rb_xz*t172 + Rb_yz*t173 + Rb_zz*t174 + t175*t186 + t177*t187 + t179*t188
+                t190 = va_x - vb_x
+                t191 = va_y - vb_y
+                t192 = va_z - vb_z
+                t193 = uxa_x - uxb_x
+                t194 = uxa_y - uxb_y
+                t195 = uxa_z - uxb_z
+                t196 = Rb_xy*t175 + Rb_yy*t177 + Rb_zy*t179
+                t197 = Rb_xz*t175 + Rb_yz*t177 + Rb_zz*t179
+                t198 = Rb_xx*t175 + Rb_yx*t177 + Rb_zx*t179
+                dplace_1 = t181
+                dplace_2 = t185
+                dplace_3 = t189
+                drate_1 = -Omb_y*t189 + Omb_z*t185 + t176*t190 + t178*t191 + t180*t192
+                urate_1 = Rb_xx*t193 + Rb_yx*t194 + Rb_zx*t195 + t196*uthb_z - t197*uthb_y
+                drate_2 = Omb_x*t189 - Omb_z*t181 + t182*t190 + t183*t191 + t184*t192
+                urate_2 = Rb_xy*t193 + Rb_yy*t194 + Rb_zy*t195 + t197*uthb_x - t198*uthb_z
+                drate_3 = -Omb_x*t185 + Omb_y*t181 + t186*t190 + t187*t191 + t188*t192
+                urate_3 = Rb_xz*t193 + Rb_yz*t194 + Rb_zz*t195 - t196*uthb_x + t198*uthb_y
+                t199 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2 + dpush_by_rate_3*urate_3
+                t200 = (dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2 +
+                    dfriction_2_by_rate_3*urate_3)
+                t201 = normal_1*normal_2
+                t202 = (dfriction_3_by_rate_1*urate_1 + dfriction_3_by_rate_2*urate_2 +
+                    dfriction_3_by_rate_3*urate_3)
+                t203 = normal_3*t202
+                t204 = 1 - normal_1*normal_1
+                t205 = (dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2 +
+                    dfriction_1_by_rate_3*urate_3)
+                t206 = -normal_1*t199 - normal_1*t203 - t200*t201 + t204*t205
+                t207 = 1 - normal_2*normal_2
+                t208 = -normal_2*t199 - normal_2*t203 + t200*t207 - t201*t205
+                t209 = normal_1*normal_3
+                t210 = normal_2*normal_3
+                t211 = 1 - normal_3*normal_3
+                t212 = -normal_3*t199 - t200*t210 + t202*t211 - t205*t209
+                t213 = Rb_xx*t206 + Rb_xy*t208 + Rb_xz*t212
+                t214 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t215 = -friction_1*t209 - friction_2*t210 + friction_3*t211 - normal_3*push
+                t216 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t217 = -friction_1*t201 + friction_2*t207 - friction_3*t210 - normal_2*push
+                t218 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t219 = friction_1*t204 - friction_2*t201 - friction_3*t209 - normal_1*push
+                t220 = dnormal_1_by_place_1*dplace_1
+                t221 = dnormal_1_by_place_2*dplace_2
+                t222 = dnormal_1_by_place_3*dplace_3
                 t223 = t220 + t221 + t222
-                t224 = friction_2*t223
-                t225 = normal_2*t219
-                t226 = dnormal_3_by_place_1*t209
-                t227 = dnormal_3_by_place_2*t213
-                t228 = dnormal_3_by_place_3*t217
-                t229 = t226 + t227 + t228
-                t230 = friction_3*t229
-                t231 = friction_3*normal_3
-                t232 = friction_1*normal_1
-                t233 = va_x - vb_x
-                t234 = va_y - vb_y
-                t235 = va_z - vb_z
-                t236 = -Omb_y*t217 + Omb_z*t213 + t202*t233 + t207*t234 + t208*t235
-                t237 = Omb_x*t217 - Omb_z*t209 + t200*t233 + t211*t234 + t212*t235
-                t238 = -Omb_x*t213 + Omb_y*t209 + t198*t233 + t215*t234 + t216*t235
-                t239 = (dpush_by_place_1*t209 + dpush_by_place_2*t213 + dpush_by_place_3*t217 +
-                    dpush_by_rate_1*t236 + dpush_by_rate_2*t237 + dpush_by_rate_3*t238)
-                t240 = (dfriction_2_by_place_1*t209 + dfriction_2_by_place_2*t213 +
-                    dfriction_2_by_place_3*t217 + dfriction_2_by_rate_1*t236 +
-                    dfriction_2_by_rate_2*t237 + dfriction_2_by_rate_3*t238)
-                t241 = (dfriction_3_by_place_1*t209 + dfriction_3_by_place_2*t213 +
-                    dfriction_3_by_place_3*t217 + dfriction_3_by_rate_1*t236 +
-                    dfriction_3_by_rate_2*t237 + dfriction_3_by_rate_3*t238)
-                t242 = (dfriction_1_by_place_1*t209 + dfriction_1_by_place_2*t213 +
-                    dfriction_1_by_place_3*t217 + dfriction_1_by_rate_1*t236 +
-                    dfriction_1_by_rate_2*t237 + dfriction_1_by_rate_3*t238)
-                t243 = (-friction_2*t225 - normal_1*t224 - normal_1*t230 - normal_1*t239 -
-                    push*t219 - t185*t240 + t188*t242 - t193*t241 - t219*t231 - t232*(2*t210 +
-                    2*t214 + 2*t218))
-                t244 = friction_2*normal_2
-                t245 = (-friction_1*t225 - normal_2*t230 - normal_2*t239 - push*t223 - t185*t242 +
-                    t191*t240 - t194*t241 - t223*t231 - t223*t232 - t244*(2*t220 + 2*t221 +
-                    2*t222))
-                t246 = (-friction_1*normal_3*t219 - normal_3*t224 - normal_3*t239 - push*t229 -
-                    t193*t242 - t194*t240 + t195*t241 - t229*t232 - t229*t244 - t231*(2*t226 +
-                    2*t227 + 2*t228))
-                t247 = Rb_xx*t243 + Rb_xy*t245 + Rb_xz*t246 + t198*t199 + t200*t201 + t202*t203
-                t248 = Rb_yx*t190 + Rb_yy*t192 + Rb_yz*t196
-                t249 = Rb_yx*t243 + Rb_yy*t245 + Rb_yz*t246 + t199*t215 + t201*t211 + t203*t207
-                t250 = Rb_zx*t190 + Rb_zy*t192 + Rb_zz*t196
-                t251 = Rb_zx*t243 + Rb_zy*t245 + Rb_zz*t246 + t199*t216 + t201*t212 + t203*t208
-                t252 = -t177
-                t253 = -t178
-                t254 = -t180
-                J[column] = c_damping*t197 + c_stiffness*t247
-                J[9 + column] = c_damping*t248 + c_stiffness*t249
-                J[18 + column] = c_damping*t250 + c_stiffness*t251
-                J[27 + column] = -c_damping*t197 - c_stiffness*t247
-                J[36 + column] = -c_damping*t248 - c_stiffness*t249
-                J[45 + column] = -c_damping*t250 - c_stiffness*t251
-                J[54 + column] = (c_damping*(t178*t192 + t196*t252) + c_stiffness*(t178*t245 -
-                    t199*t213 + t201*t217 + t246*t252))
-                J[63 + column] = (c_damping*(t180*t196 + t190*t253) + c_stiffness*(t180*t246 +
-                    t199*t209 - t203*t217 + t243*t253))
-                J[72 + column] = (c_damping*(t177*t190 + t192*t254) + c_stiffness*(t177*t243 -
-                    t201*t209 + t203*t213 + t245*t254))
+                t224 = dnormal_2_by_place_1*dplace_1
+                t225 = dnormal_2_by_place_2*dplace_2
+                t226 = dnormal_2_by_place_3*dplace_3
+                t227 = t224 + t225 + t226
+                t228 = friction_2*t227
+                t229 = normal_2*t223
+                t230 = dnormal_3_by_place_1*dplace_1
+                t231 = dnormal_3_by_place_2*dplace_2
+                t232 = dnormal_3_by_place_3*dplace_3
+                t233 = t230 + t231 + t232
+                t234 = friction_3*t233
+                t235 = friction_3*normal_3
+                t236 = friction_1*normal_1
+                t237 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
+                    dplace_3*dpush_by_place_3 + dpush_by_rate_1*drate_1 + dpush_by_rate_2*drate_2
+                    + dpush_by_rate_3*drate_3)
+                t238 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
+                    dfriction_2_by_place_3*dplace_3 + dfriction_2_by_rate_1*drate_1 +
+                    dfriction_2_by_rate_2*drate_2 + dfriction_2_by_rate_3*drate_3)
+                t239 = (dfriction_3_by_place_1*dplace_1 + dfriction_3_by_place_2*dplace_2 +
+                    dfriction_3_by_place_3*dplace_3 + dfriction_3_by_rate_1*drate_1 +
+                    dfriction_3_by_rate_2*drate_2 + dfriction_3_by_rate_3*drate_3)
+                t240 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
+                    dfriction_1_by_place_3*dplace_3 + dfriction_1_by_rate_1*drate_1 +
+                    dfriction_1_by_rate_2*drate_2 + dfriction_1_by_rate_3*drate_3)
+                t241 = (-friction_2*t229 - normal_1*t228 - normal_1*t234 - normal_1*t237 -
+                    push*t223 - t201*t238 + t204*t240 - t209*t239 - t223*t235 - t236*(2*t220 +
+                    2*t221 + 2*t222))
+                t242 = friction_2*normal_2
+                t243 = (-friction_1*t229 - normal_2*t234 - normal_2*t237 - push*t227 - t201*t240 +
+                    t207*t238 - t210*t239 - t227*t235 - t227*t236 - t242*(2*t224 + 2*t225 +
+                    2*t226))
+                t244 = (-friction_1*normal_3*t223 - normal_3*t228 - normal_3*t237 - push*t233 -
+                    t209*t240 - t210*t238 + t211*t239 - t233*t236 - t233*t242 - t235*(2*t230 +
+                    2*t231 + 2*t232))
+                t245 = Rb_xx*t241 + Rb_xy*t243 + Rb_xz*t244 + t214*t215 + t216*t217 + t218*t219
+                t246 = Rb_yx*t206 + Rb_yy*t208 + Rb_yz*t212
+                t247 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t248 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t249 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t250 = Rb_yx*t241 + Rb_yy*t243 + Rb_yz*t244 + t215*t247 + t217*t248 + t219*t249
+                t251 = Rb_zx*t206 + Rb_zy*t208 + Rb_zz*t212
+                t252 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t253 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t254 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t255 = Rb_zx*t241 + Rb_zy*t243 + Rb_zz*t244 + t215*t252 + t217*t253 + t219*t254
+                t256 = xa_x - xb_x
+                t257 = xa_y - xb_y
+                t258 = xa_z - xb_z
+                t259 = Rb_xz*t256 + Rb_yz*t257 + Rb_zz*t258
+                t260 = Rb_xy*t256 + Rb_yy*t257 + Rb_zy*t258
+                t261 = -t260
+                t262 = dxa_x - dxb_x
+                t263 = dxa_y - dxb_y
+                t264 = dxa_z - dxb_z
+                t265 = Rb_xz*t262 + Rb_yz*t263 + Rb_zz*t264 + t214*t256 + t247*t257 + t252*t258
+                t266 = Rb_xy*t262 + Rb_yy*t263 + Rb_zy*t264 + t216*t256 + t248*t257 + t253*t258
+                t267 = Rb_xx*t256 + Rb_yx*t257 + Rb_zx*t258
+                t268 = -t259
+                t269 = Rb_xx*t262 + Rb_yx*t263 + Rb_zx*t264 + t218*t256 + t249*t257 + t254*t258
+                t270 = -t267
+                J[column] = c_damping*t213 + c_stiffness*t245
+                J[9 + column] = c_damping*t246 + c_stiffness*t250
+                J[18 + column] = c_damping*t251 + c_stiffness*t255
+                J[27 + column] = -c_damping*t213 - c_stiffness*t245
+                J[36 + column] = -c_damping*t246 - c_stiffness*t250
+                J[45 + column] = -c_damping*t251 - c_stiffness*t255
+                J[54 + column] = (c_damping*(t208*t259 + t212*t261) + c_stiffness*(-t215*t266 +
+                    t217*t265 + t243*t259 + t244*t261))
+                J[63 + column] = (c_damping*(t206*t268 + t212*t267) + c_stiffness*(t215*t269 -
+                    t219*t265 + t241*t268 + t244*t267))
+                J[72 + column] = (c_damping*(t206*t260 + t208*t270) + c_stiffness*(-t217*t269 +
+                    t219*t266 + t241*t260 + t243*t270))
     return OK

@@ -33,6 +33,7 @@ CONSTANTS = (
     Part("stiffness", (), "stiffness k of k d^n (1 + c d')"),
     Part("exponent", (), "exponent n"),
     Part("damping", (), "damping c [time/length]"),
+    Part("slow", (), "speed of impacts so slow that steps do not look at them"),
     Part("bristle", (), "stiffness of the bristles"),
     Part("bristle_damping", (), "their damping"),
     Part("coefficient", (), "coefficient of friction"),
@@ -53,7 +54,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (76, 0, 0, 0),
-              "column": (389, 0, 0, 0)}
+              "column": (329, 0, 0, 0)}
 
 
 @kernel_function
@@ -68,16 +69,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         stiffness = constant[0]
         exponent = constant[1]
         damping = constant[2]
-        bristle = constant[3]
-        bristle_damping = constant[4]
-        coefficient = constant[5]
-        static = constant[6]
-        speed = constant[7]
-        radius = constant[8]
-        n_x = constant[9]
-        n_y = constant[10]
-        n_z = constant[11]
-        level = constant[12]
+        slow = constant[3]
+        bristle = constant[4]
+        bristle_damping = constant[5]
+        coefficient = constant[6]
+        static = constant[7]
+        speed = constant[8]
+        radius = constant[9]
+        n_x = constant[10]
+        n_y = constant[11]
+        n_z = constant[12]
+        level = constant[13]
         xa_x = q[unknowns[0]]
         xa_y = q[unknowns[1]]
         xa_z = q[unknowns[2]]
@@ -200,7 +202,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t42 = (closing if closing > 0.0 else -closing)
         t43 = (kept_rate if kept_rate > 0.0 else -kept_rate)
         t44 = (t42 if t42 - t43 > 0.0 else t43)
-        t45 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+        t45 = (t44 if -kept_impact + t44 > 0.0 else kept_impact)
+        t46 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
             dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0)))
         g[0] = t33
         g[1] = t34
@@ -215,12 +218,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME] + 1] = place_2
         frames[index[first + AT_FRAME] + 2] = place_3
         frames[index[first + AT_FRAME] + 3] = closing
-        frames[index[first + AT_FRAME] + 4] = (((t44 if -kept_impact + t44 > 0.0 else kept_impact)
-            if touches - 0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 4] = (((t45 if -slow + t45 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0))
         frames[index[first + AT_FRAME] + 5] = gap_closed
-        frames[index[first + AT_FRAME] + 6] = t45*z_1
-        frames[index[first + AT_FRAME] + 7] = t45*z_2
-        frames[index[first + AT_FRAME] + 8] = t45*z_3
+        frames[index[first + AT_FRAME] + 6] = t46*z_1
+        frames[index[first + AT_FRAME] + 7] = t46*z_2
+        frames[index[first + AT_FRAME] + 8] = t46*z_3
         frames[index[first + AT_FRAME] + 9] = slips
         frames[index[first + AT_FRAME] + 10] = 1.0
         frames[index[first + AT_FRAME] + 11] = push
@@ -284,87 +287,87 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dgap_closed_by_place_1 = -n_x
             dgap_closed_by_place_2 = -n_y
             dgap_closed_by_place_3 = -n_z
-            t46 = 1 - normal_1*normal_1
-            t47 = -normal_1*normal_2
-            t48 = -normal_1*normal_3
-            t49 = 1 - normal_2*normal_2
-            t50 = -normal_2*normal_3
-            t51 = 1 - normal_3*normal_3
+            t47 = 1 - normal_1*normal_1
+            t48 = -normal_1*normal_2
+            t49 = -normal_1*normal_3
+            t50 = 1 - normal_2*normal_2
+            t51 = -normal_2*normal_3
+            t52 = 1 - normal_3*normal_3
             dclosing_by_rate_1 = -normal_1
             dclosing_by_rate_2 = -normal_2
             dclosing_by_rate_3 = -normal_3
-            dslip_1_by_rate_1 = t46
-            dslip_1_by_rate_2 = t47
-            dslip_1_by_rate_3 = t48
-            dslip_2_by_rate_1 = t47
-            dslip_2_by_rate_2 = t49
-            dslip_2_by_rate_3 = t50
-            dslip_3_by_rate_1 = t48
-            dslip_3_by_rate_2 = t50
-            dslip_3_by_rate_3 = t51
-            dincrement_1_by_place_1 = t46
-            dincrement_1_by_place_2 = t47
-            dincrement_1_by_place_3 = t48
-            dincrement_2_by_place_1 = t47
-            dincrement_2_by_place_2 = t49
-            dincrement_2_by_place_3 = t50
-            dincrement_3_by_place_1 = t48
-            dincrement_3_by_place_2 = t50
-            dincrement_3_by_place_3 = t51
-            t52 = (1 if gap_closed > 0.0 else 0)
-            ddepth_by_place_1 = dgap_closed_by_place_1*t52
-            ddepth_by_place_2 = dgap_closed_by_place_2*t52
-            ddepth_by_place_3 = dgap_closed_by_place_3*t52
-            t53 = depth**exponent*exponent*stiffness/depth
-            delastic_by_place_1 = ddepth_by_place_1*t53
-            delastic_by_place_2 = ddepth_by_place_2*t53
-            delastic_by_place_3 = ddepth_by_place_3*t53
+            dslip_1_by_rate_1 = t47
+            dslip_1_by_rate_2 = t48
+            dslip_1_by_rate_3 = t49
+            dslip_2_by_rate_1 = t48
+            dslip_2_by_rate_2 = t50
+            dslip_2_by_rate_3 = t51
+            dslip_3_by_rate_1 = t49
+            dslip_3_by_rate_2 = t51
+            dslip_3_by_rate_3 = t52
+            dincrement_1_by_place_1 = t47
+            dincrement_1_by_place_2 = t48
+            dincrement_1_by_place_3 = t49
+            dincrement_2_by_place_1 = t48
+            dincrement_2_by_place_2 = t50
+            dincrement_2_by_place_3 = t51
+            dincrement_3_by_place_1 = t49
+            dincrement_3_by_place_2 = t51
+            dincrement_3_by_place_3 = t52
+            t53 = (1 if gap_closed > 0.0 else 0)
+            ddepth_by_place_1 = dgap_closed_by_place_1*t53
+            ddepth_by_place_2 = dgap_closed_by_place_2*t53
+            ddepth_by_place_3 = dgap_closed_by_place_3*t53
+            t54 = depth**exponent*exponent*stiffness/depth
+            delastic_by_place_1 = ddepth_by_place_1*t54
+            delastic_by_place_2 = ddepth_by_place_2*t54
+            delastic_by_place_3 = ddepth_by_place_3*t54
             dfactor_by_rate_1 = damping*dclosing_by_rate_1
             dfactor_by_rate_2 = damping*dclosing_by_rate_2
             dfactor_by_rate_3 = damping*dclosing_by_rate_3
-            t54 = (factor if factor > 0.0 else 0)
-            t55 = (elastic if factor > 0.0 else 0)
-            dpush_by_place_1 = delastic_by_place_1*t54
-            dpush_by_place_2 = delastic_by_place_2*t54
-            dpush_by_place_3 = delastic_by_place_3*t54
-            dpush_by_rate_1 = dfactor_by_rate_1*t55
-            dpush_by_rate_2 = dfactor_by_rate_2*t55
-            dpush_by_rate_3 = dfactor_by_rate_3*t55
-            t56 = kept_begun*normal_1
-            t57 = normal_2*t56
-            t58 = normal_3*t56
-            t59 = 1 - normal_1*normal_1
-            t60 = kept_begun*normal_2*normal_3
-            t61 = 1 - normal_2*normal_2
-            t62 = 1 - normal_3*normal_3
-            dz_1_by_place_1 = (dincrement_1_by_place_1*kept_begun*t59 -
-                dincrement_2_by_place_1*t57 - dincrement_3_by_place_1*t58)
-            dz_1_by_place_2 = (dincrement_1_by_place_2*kept_begun*t59 -
-                dincrement_2_by_place_2*t57 - dincrement_3_by_place_2*t58)
-            dz_1_by_place_3 = (dincrement_1_by_place_3*kept_begun*t59 -
-                dincrement_2_by_place_3*t57 - dincrement_3_by_place_3*t58)
-            dz_2_by_place_1 = (-dincrement_1_by_place_1*t57 +
-                dincrement_2_by_place_1*kept_begun*t61 - dincrement_3_by_place_1*t60)
-            dz_2_by_place_2 = (-dincrement_1_by_place_2*t57 +
-                dincrement_2_by_place_2*kept_begun*t61 - dincrement_3_by_place_2*t60)
-            dz_2_by_place_3 = (-dincrement_1_by_place_3*t57 +
-                dincrement_2_by_place_3*kept_begun*t61 - dincrement_3_by_place_3*t60)
-            dz_3_by_place_1 = (-dincrement_1_by_place_1*t58 - dincrement_2_by_place_1*t60 +
-                dincrement_3_by_place_1*kept_begun*t62)
-            dz_3_by_place_2 = (-dincrement_1_by_place_2*t58 - dincrement_2_by_place_2*t60 +
-                dincrement_3_by_place_2*kept_begun*t62)
-            dz_3_by_place_3 = (-dincrement_1_by_place_3*t58 - dincrement_2_by_place_3*t60 +
-                dincrement_3_by_place_3*kept_begun*t62)
+            t55 = (factor if factor > 0.0 else 0)
+            t56 = (elastic if factor > 0.0 else 0)
+            dpush_by_place_1 = delastic_by_place_1*t55
+            dpush_by_place_2 = delastic_by_place_2*t55
+            dpush_by_place_3 = delastic_by_place_3*t55
+            dpush_by_rate_1 = dfactor_by_rate_1*t56
+            dpush_by_rate_2 = dfactor_by_rate_2*t56
+            dpush_by_rate_3 = dfactor_by_rate_3*t56
+            t57 = kept_begun*normal_1
+            t58 = normal_2*t57
+            t59 = normal_3*t57
+            t60 = 1 - normal_1*normal_1
+            t61 = kept_begun*normal_2*normal_3
+            t62 = 1 - normal_2*normal_2
+            t63 = 1 - normal_3*normal_3
+            dz_1_by_place_1 = (dincrement_1_by_place_1*kept_begun*t60 -
+                dincrement_2_by_place_1*t58 - dincrement_3_by_place_1*t59)
+            dz_1_by_place_2 = (dincrement_1_by_place_2*kept_begun*t60 -
+                dincrement_2_by_place_2*t58 - dincrement_3_by_place_2*t59)
+            dz_1_by_place_3 = (dincrement_1_by_place_3*kept_begun*t60 -
+                dincrement_2_by_place_3*t58 - dincrement_3_by_place_3*t59)
+            dz_2_by_place_1 = (-dincrement_1_by_place_1*t58 +
+                dincrement_2_by_place_1*kept_begun*t62 - dincrement_3_by_place_1*t61)
+            dz_2_by_place_2 = (-dincrement_1_by_place_2*t58 +
+                dincrement_2_by_place_2*kept_begun*t62 - dincrement_3_by_place_2*t61)
+            dz_2_by_place_3 = (-dincrement_1_by_place_3*t58 +
+                dincrement_2_by_place_3*kept_begun*t62 - dincrement_3_by_place_3*t61)
+            dz_3_by_place_1 = (-dincrement_1_by_place_1*t59 - dincrement_2_by_place_1*t61 +
+                dincrement_3_by_place_1*kept_begun*t63)
+            dz_3_by_place_2 = (-dincrement_1_by_place_2*t59 - dincrement_2_by_place_2*t61 +
+                dincrement_3_by_place_2*kept_begun*t63)
+            dz_3_by_place_3 = (-dincrement_1_by_place_3*t59 - dincrement_2_by_place_3*t61 +
+                dincrement_3_by_place_3*kept_begun*t63)
             ddynamic_limit_by_place_1 = coefficient*dpush_by_place_1
             ddynamic_limit_by_place_2 = coefficient*dpush_by_place_2
             ddynamic_limit_by_place_3 = coefficient*dpush_by_place_3
             ddynamic_limit_by_rate_1 = coefficient*dpush_by_rate_1
             ddynamic_limit_by_rate_2 = coefficient*dpush_by_rate_2
             ddynamic_limit_by_rate_3 = coefficient*dpush_by_rate_3
-            t63 = 1/sqrt(slip_1*slip_1 + slip_2*slip_2 + slip_3*slip_3 + 1e-12*speed*speed + 1e-300)
-            t64 = slip_1*t63
-            t65 = slip_2*t63
-            t66 = slip_3*t63
+            t64 = 1/sqrt(slip_1*slip_1 + slip_2*slip_2 + slip_3*slip_3 + 1e-12*speed*speed + 1e-300)
+            t65 = slip_1*t64
+            t66 = slip_2*t64
+            t67 = slip_3*t64
             dtrial_1_by_place_1 = bristle*dz_1_by_place_1
             dtrial_1_by_place_2 = bristle*dz_1_by_place_2
             dtrial_1_by_place_3 = bristle*dz_1_by_place_3
@@ -383,96 +386,96 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dtrial_3_by_rate_1 = bristle_damping*dslip_3_by_rate_1
             dtrial_3_by_rate_2 = bristle_damping*dslip_3_by_rate_2
             dtrial_3_by_rate_3 = bristle_damping*dslip_3_by_rate_3
-            dslip_speed_by_rate_1 = (dslip_1_by_rate_1*t64 + dslip_2_by_rate_1*t65 +
-                dslip_3_by_rate_1*t66)
-            dslip_speed_by_rate_2 = (dslip_1_by_rate_2*t64 + dslip_2_by_rate_2*t65 +
-                dslip_3_by_rate_2*t66)
-            dslip_speed_by_rate_3 = (dslip_1_by_rate_3*t64 + dslip_2_by_rate_3*t65 +
-                dslip_3_by_rate_3*t66)
-            t67 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
-            t68 = t67*trial_1
-            t69 = t67*trial_2
-            t70 = t67*trial_3
-            t71 = 1/slip_speed
-            t72 = 1/speed
-            t73 = slip_speed*t72
-            t74 = tanh(4*t73)
-            t75 = slip_speed*slip_speed
-            t76 = 0.75 + ((0.25)*t75)/(speed*speed)
-            t77 = -coefficient + static
-            t78 = t77/(t76*t76)
-            t79 = coefficient*t74 + t73*t78
-            t80 = (t71*t79 if speed > 0.0 else 0)
-            t81 = ((push*t71*(4*coefficient*t72*(1 - t74*t74) + t72*t78 +
-                (-t75*t77)/(speed*speed*speed*t76*t76*t76)) - push*t79/t75 if speed > 0.0 else 0))
-            dtrial_size_by_place_1 = (dtrial_1_by_place_1*t68 + dtrial_2_by_place_1*t69 +
-                dtrial_3_by_place_1*t70)
-            dtrial_size_by_place_2 = (dtrial_1_by_place_2*t68 + dtrial_2_by_place_2*t69 +
-                dtrial_3_by_place_2*t70)
-            dtrial_size_by_place_3 = (dtrial_1_by_place_3*t68 + dtrial_2_by_place_3*t69 +
-                dtrial_3_by_place_3*t70)
-            dtrial_size_by_rate_1 = (dtrial_1_by_rate_1*t68 + dtrial_2_by_rate_1*t69 +
-                dtrial_3_by_rate_1*t70)
-            dtrial_size_by_rate_2 = (dtrial_1_by_rate_2*t68 + dtrial_2_by_rate_2*t69 +
-                dtrial_3_by_rate_2*t70)
-            dtrial_size_by_rate_3 = (dtrial_1_by_rate_3*t68 + dtrial_2_by_rate_3*t69 +
-                dtrial_3_by_rate_3*t70)
-            ddrag_by_place_1 = dpush_by_place_1*t80
-            ddrag_by_place_2 = dpush_by_place_2*t80
-            ddrag_by_place_3 = dpush_by_place_3*t80
-            ddrag_by_rate_1 = dpush_by_rate_1*t80 + dslip_speed_by_rate_1*t81
-            ddrag_by_rate_2 = dpush_by_rate_2*t80 + dslip_speed_by_rate_2*t81
-            ddrag_by_rate_3 = dpush_by_rate_3*t80 + dslip_speed_by_rate_3*t81
-            t82 = (slip_1 if speed > 0.0 else 0)
-            t83 = -static_limit + trial_size
-            t84 = 1/trial_size
-            t85 = (0 if speed > 0.0 else (t84*trial_1 if t83 > 0.0 else 0))
-            t86 = (0 if speed > 0.0 else (dynamic_limit*t84 if t83 > 0.0 else 1))
-            t87 = dynamic_limit/(trial_size*trial_size)
-            t88 = (0 if speed > 0.0 else (-t87*trial_1 if t83 > 0.0 else 0))
-            t89 = (drag if speed > 0.0 else 0)
-            t90 = (slip_2 if speed > 0.0 else 0)
-            t91 = (0 if speed > 0.0 else (t84*trial_2 if t83 > 0.0 else 0))
-            t92 = (0 if speed > 0.0 else (-t87*trial_2 if t83 > 0.0 else 0))
-            t93 = (slip_3 if speed > 0.0 else 0)
-            t94 = (0 if speed > 0.0 else (t84*trial_3 if t83 > 0.0 else 0))
-            t95 = (0 if speed > 0.0 else (-t87*trial_3 if t83 > 0.0 else 0))
-            dfriction_1_by_place_1 = (ddrag_by_place_1*t82 + ddynamic_limit_by_place_1*t85 +
-                dtrial_1_by_place_1*t86 + dtrial_size_by_place_1*t88)
-            dfriction_1_by_place_2 = (ddrag_by_place_2*t82 + ddynamic_limit_by_place_2*t85 +
-                dtrial_1_by_place_2*t86 + dtrial_size_by_place_2*t88)
-            dfriction_1_by_place_3 = (ddrag_by_place_3*t82 + ddynamic_limit_by_place_3*t85 +
-                dtrial_1_by_place_3*t86 + dtrial_size_by_place_3*t88)
-            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t82 + ddynamic_limit_by_rate_1*t85 +
-                dslip_1_by_rate_1*t89 + dtrial_1_by_rate_1*t86 + dtrial_size_by_rate_1*t88)
-            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t82 + ddynamic_limit_by_rate_2*t85 +
-                dslip_1_by_rate_2*t89 + dtrial_1_by_rate_2*t86 + dtrial_size_by_rate_2*t88)
-            dfriction_1_by_rate_3 = (ddrag_by_rate_3*t82 + ddynamic_limit_by_rate_3*t85 +
-                dslip_1_by_rate_3*t89 + dtrial_1_by_rate_3*t86 + dtrial_size_by_rate_3*t88)
-            dfriction_2_by_place_1 = (ddrag_by_place_1*t90 + ddynamic_limit_by_place_1*t91 +
-                dtrial_2_by_place_1*t86 + dtrial_size_by_place_1*t92)
-            dfriction_2_by_place_2 = (ddrag_by_place_2*t90 + ddynamic_limit_by_place_2*t91 +
-                dtrial_2_by_place_2*t86 + dtrial_size_by_place_2*t92)
-            dfriction_2_by_place_3 = (ddrag_by_place_3*t90 + ddynamic_limit_by_place_3*t91 +
-                dtrial_2_by_place_3*t86 + dtrial_size_by_place_3*t92)
-            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t90 + ddynamic_limit_by_rate_1*t91 +
-                dslip_2_by_rate_1*t89 + dtrial_2_by_rate_1*t86 + dtrial_size_by_rate_1*t92)
-            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t90 + ddynamic_limit_by_rate_2*t91 +
-                dslip_2_by_rate_2*t89 + dtrial_2_by_rate_2*t86 + dtrial_size_by_rate_2*t92)
-            dfriction_2_by_rate_3 = (ddrag_by_rate_3*t90 + ddynamic_limit_by_rate_3*t91 +
-                dslip_2_by_rate_3*t89 + dtrial_2_by_rate_3*t86 + dtrial_size_by_rate_3*t92)
-            dfriction_3_by_place_1 = (ddrag_by_place_1*t93 + ddynamic_limit_by_place_1*t94 +
-                dtrial_3_by_place_1*t86 + dtrial_size_by_place_1*t95)
-            dfriction_3_by_place_2 = (ddrag_by_place_2*t93 + ddynamic_limit_by_place_2*t94 +
-                dtrial_3_by_place_2*t86 + dtrial_size_by_place_2*t95)
-            dfriction_3_by_place_3 = (ddrag_by_place_3*t93 + ddynamic_limit_by_place_3*t94 +
-                dtrial_3_by_place_3*t86 + dtrial_size_by_place_3*t95)
-            dfriction_3_by_rate_1 = (ddrag_by_rate_1*t93 + ddynamic_limit_by_rate_1*t94 +
-                dslip_3_by_rate_1*t89 + dtrial_3_by_rate_1*t86 + dtrial_size_by_rate_1*t95)
-            dfriction_3_by_rate_2 = (ddrag_by_rate_2*t93 + ddynamic_limit_by_rate_2*t94 +
-                dslip_3_by_rate_2*t89 + dtrial_3_by_rate_2*t86 + dtrial_size_by_rate_2*t95)
-            dfriction_3_by_rate_3 = (ddrag_by_rate_3*t93 + ddynamic_limit_by_rate_3*t94 +
-                dslip_3_by_rate_3*t89 + dtrial_3_by_rate_3*t86 + dtrial_size_by_rate_3*t95)
+            dslip_speed_by_rate_1 = (dslip_1_by_rate_1*t65 + dslip_2_by_rate_1*t66 +
+                dslip_3_by_rate_1*t67)
+            dslip_speed_by_rate_2 = (dslip_1_by_rate_2*t65 + dslip_2_by_rate_2*t66 +
+                dslip_3_by_rate_2*t67)
+            dslip_speed_by_rate_3 = (dslip_1_by_rate_3*t65 + dslip_2_by_rate_3*t66 +
+                dslip_3_by_rate_3*t67)
+            t68 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
+            t69 = t68*trial_1
+            t70 = t68*trial_2
+            t71 = t68*trial_3
+            t72 = 1/slip_speed
+            t73 = 1/speed
+            t74 = slip_speed*t73
+            t75 = tanh(4*t74)
+            t76 = slip_speed*slip_speed
+            t77 = 0.75 + ((0.25)*t76)/(speed*speed)
+            t78 = -coefficient + static
+            t79 = t78/(t77*t77)
+            t80 = coefficient*t75 + t74*t79
+            t81 = (t72*t80 if speed > 0.0 else 0)
+            t82 = ((push*t72*(4*coefficient*t73*(1 - t75*t75) + t73*t79 +
+                (-t76*t78)/(speed*speed*speed*t77*t77*t77)) - push*t80/t76 if speed > 0.0 else 0))
+            dtrial_size_by_place_1 = (dtrial_1_by_place_1*t69 + dtrial_2_by_place_1*t70 +
+                dtrial_3_by_place_1*t71)
+            dtrial_size_by_place_2 = (dtrial_1_by_place_2*t69 + dtrial_2_by_place_2*t70 +
+                dtrial_3_by_place_2*t71)
+            dtrial_size_by_place_3 = (dtrial_1_by_place_3*t69 + dtrial_2_by_place_3*t70 +
+                dtrial_3_by_place_3*t71)
+            dtrial_size_by_rate_1 = (dtrial_1_by_rate_1*t69 + dtrial_2_by_rate_1*t70 +
+                dtrial_3_by_rate_1*t71)
+            dtrial_size_by_rate_2 = (dtrial_1_by_rate_2*t69 + dtrial_2_by_rate_2*t70 +
+                dtrial_3_by_rate_2*t71)
+            dtrial_size_by_rate_3 = (dtrial_1_by_rate_3*t69 + dtrial_2_by_rate_3*t70 +
+                dtrial_3_by_rate_3*t71)
+            ddrag_by_place_1 = dpush_by_place_1*t81
+            ddrag_by_place_2 = dpush_by_place_2*t81
+            ddrag_by_place_3 = dpush_by_place_3*t81
+            ddrag_by_rate_1 = dpush_by_rate_1*t81 + dslip_speed_by_rate_1*t82
+            ddrag_by_rate_2 = dpush_by_rate_2*t81 + dslip_speed_by_rate_2*t82
+            ddrag_by_rate_3 = dpush_by_rate_3*t81 + dslip_speed_by_rate_3*t82
+            t83 = (slip_1 if speed > 0.0 else 0)
+            t84 = -static_limit + trial_size
+            t85 = 1/trial_size
+            t86 = (0 if speed > 0.0 else (t85*trial_1 if t84 > 0.0 else 0))
+            t87 = (0 if speed > 0.0 else (dynamic_limit*t85 if t84 > 0.0 else 1))
+            t88 = dynamic_limit/(trial_size*trial_size)
+            t89 = (0 if speed > 0.0 else (-t88*trial_1 if t84 > 0.0 else 0))
+            t90 = (drag if speed > 0.0 else 0)
+            t91 = (slip_2 if speed > 0.0 else 0)
+            t92 = (0 if speed > 0.0 else (t85*trial_2 if t84 > 0.0 else 0))
+            t93 = (0 if speed > 0.0 else (-t88*trial_2 if t84 > 0.0 else 0))
+            t94 = (slip_3 if speed > 0.0 else 0)
+            t95 = (0 if speed > 0.0 else (t85*trial_3 if t84 > 0.0 else 0))
+            t96 = (0 if speed > 0.0 else (-t88*trial_3 if t84 > 0.0 else 0))
+            dfriction_1_by_place_1 = (ddrag_by_place_1*t83 + ddynamic_limit_by_place_1*t86 +
+                dtrial_1_by_place_1*t87 + dtrial_size_by_place_1*t89)
+            dfriction_1_by_place_2 = (ddrag_by_place_2*t83 + ddynamic_limit_by_place_2*t86 +
+                dtrial_1_by_place_2*t87 + dtrial_size_by_place_2*t89)
+            dfriction_1_by_place_3 = (ddrag_by_place_3*t83 + ddynamic_limit_by_place_3*t86 +
+                dtrial_1_by_place_3*t87 + dtrial_size_by_place_3*t89)
+            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t83 + ddynamic_limit_by_rate_1*t86 +
+                dslip_1_by_rate_1*t90 + dtrial_1_by_rate_1*t87 + dtrial_size_by_rate_1*t89)
+            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t83 + ddynamic_limit_by_rate_2*t86 +
+                dslip_1_by_rate_2*t90 + dtrial_1_by_rate_2*t87 + dtrial_size_by_rate_2*t89)
+            dfriction_1_by_rate_3 = (ddrag_by_rate_3*t83 + ddynamic_limit_by_rate_3*t86 +
+                dslip_1_by_rate_3*t90 + dtrial_1_by_rate_3*t87 + dtrial_size_by_rate_3*t89)
+            dfriction_2_by_place_1 = (ddrag_by_place_1*t91 + ddynamic_limit_by_place_1*t92 +
+                dtrial_2_by_place_1*t87 + dtrial_size_by_place_1*t93)
+            dfriction_2_by_place_2 = (ddrag_by_place_2*t91 + ddynamic_limit_by_place_2*t92 +
+                dtrial_2_by_place_2*t87 + dtrial_size_by_place_2*t93)
+            dfriction_2_by_place_3 = (ddrag_by_place_3*t91 + ddynamic_limit_by_place_3*t92 +
+                dtrial_2_by_place_3*t87 + dtrial_size_by_place_3*t93)
+            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t91 + ddynamic_limit_by_rate_1*t92 +
+                dslip_2_by_rate_1*t90 + dtrial_2_by_rate_1*t87 + dtrial_size_by_rate_1*t93)
+            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t91 + ddynamic_limit_by_rate_2*t92 +
+                dslip_2_by_rate_2*t90 + dtrial_2_by_rate_2*t87 + dtrial_size_by_rate_2*t93)
+            dfriction_2_by_rate_3 = (ddrag_by_rate_3*t91 + ddynamic_limit_by_rate_3*t92 +
+                dslip_2_by_rate_3*t90 + dtrial_2_by_rate_3*t87 + dtrial_size_by_rate_3*t93)
+            dfriction_3_by_place_1 = (ddrag_by_place_1*t94 + ddynamic_limit_by_place_1*t95 +
+                dtrial_3_by_place_1*t87 + dtrial_size_by_place_1*t96)
+            dfriction_3_by_place_2 = (ddrag_by_place_2*t94 + ddynamic_limit_by_place_2*t95 +
+                dtrial_3_by_place_2*t87 + dtrial_size_by_place_2*t96)
+            dfriction_3_by_place_3 = (ddrag_by_place_3*t94 + ddynamic_limit_by_place_3*t95 +
+                dtrial_3_by_place_3*t87 + dtrial_size_by_place_3*t96)
+            dfriction_3_by_rate_1 = (ddrag_by_rate_1*t94 + ddynamic_limit_by_rate_1*t95 +
+                dslip_3_by_rate_1*t90 + dtrial_3_by_rate_1*t87 + dtrial_size_by_rate_1*t96)
+            dfriction_3_by_rate_2 = (ddrag_by_rate_2*t94 + ddynamic_limit_by_rate_2*t95 +
+                dslip_3_by_rate_2*t90 + dtrial_3_by_rate_2*t87 + dtrial_size_by_rate_2*t96)
+            dfriction_3_by_rate_3 = (ddrag_by_rate_3*t94 + ddynamic_limit_by_rate_3*t95 +
+                dslip_3_by_rate_3*t90 + dtrial_3_by_rate_3*t87 + dtrial_size_by_rate_3*t96)
             for column in range(9):
                 for i in range(9):
                     dq[i] = 0.0
@@ -502,92 +505,117 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = du[6]
                 uthb_y = du[7]
                 uthb_z = du[8]
-                t96 = uxa_x - uxb_x
-                t97 = uxa_y - uxb_y
-                t98 = uxa_z - uxb_z
-                t99 = xa_x - xb_x
-                t100 = xa_y - xb_y
-                t101 = xa_z - xb_z
-                t102 = Rb_xy*t99 + Rb_yy*t100 + Rb_zy*t101
-                t103 = Rb_xz*t99 + Rb_yz*t100 + Rb_zz*t101
-                t104 = Rb_xx*t96 + Rb_yx*t97 + Rb_zx*t98 + t102*uthb_z - t103*uthb_y
-                t105 = Rb_xx*t99 + Rb_yx*t100 + Rb_zx*t101
-                t106 = Rb_xy*t96 + Rb_yy*t97 + Rb_zy*t98 + t103*uthb_x - t105*uthb_z
-                t107 = Rb_xz*t96 + Rb_yz*t97 + Rb_zz*t98 - t102*uthb_x + t105*uthb_y
-                t108 = dpush_by_rate_1*t104 + dpush_by_rate_2*t106 + dpush_by_rate_3*t107
-                t109 = (dfriction_2_by_rate_1*t104 + dfriction_2_by_rate_2*t106 +
-                    dfriction_2_by_rate_3*t107)
-                t110 = normal_1*normal_2
-                t111 = (dfriction_3_by_rate_1*t104 + dfriction_3_by_rate_2*t106 +
-                    dfriction_3_by_rate_3*t107)
-                t112 = normal_3*t111
-                t113 = 1 - normal_1*normal_1
-                t114 = (dfriction_1_by_rate_1*t104 + dfriction_1_by_rate_2*t106 +
-                    dfriction_1_by_rate_3*t107)
-                t115 = -normal_1*t108 - normal_1*t112 - t109*t110 + t113*t114
-                t116 = 1 - normal_2*normal_2
-                t117 = -normal_2*t108 - normal_2*t112 + t109*t116 - t110*t114
-                t118 = normal_1*normal_3
-                t119 = normal_2*normal_3
-                t120 = 1 - normal_3*normal_3
-                t121 = -normal_3*t108 - t109*t119 + t111*t120 - t114*t118
-                t122 = Rb_xx*t115 + Rb_xy*t117 + Rb_xz*t121
-                t123 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t124 = -friction_1*t118 - friction_2*t119 + friction_3*t120 - normal_3*push
-                t125 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t126 = -friction_1*t110 + friction_2*t116 - friction_3*t119 - normal_2*push
-                t127 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t128 = friction_1*t113 - friction_2*t110 - friction_3*t118 - normal_1*push
-                t129 = dxa_x - dxb_x
-                t130 = dxa_y - dxb_y
-                t131 = dxa_z - dxb_z
-                t132 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t133 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t134 = Rb_xx*t129 + Rb_yx*t130 + Rb_zx*t131 + t100*t132 + t101*t133 + t127*t99
-                t135 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t136 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t137 = Rb_xy*t129 + Rb_yy*t130 + Rb_zy*t131 + t100*t135 + t101*t136 + t125*t99
-                t138 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t139 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t140 = Rb_xz*t129 + Rb_yz*t130 + Rb_zz*t131 + t100*t138 + t101*t139 + t123*t99
-                t141 = va_x - vb_x
-                t142 = va_y - vb_y
-                t143 = va_z - vb_z
-                t144 = -Omb_y*t140 + Omb_z*t137 + t127*t141 + t132*t142 + t133*t143
-                t145 = Omb_x*t140 - Omb_z*t134 + t125*t141 + t135*t142 + t136*t143
-                t146 = -Omb_x*t137 + Omb_y*t134 + t123*t141 + t138*t142 + t139*t143
-                t147 = (dpush_by_place_1*t134 + dpush_by_place_2*t137 + dpush_by_place_3*t140 +
-                    dpush_by_rate_1*t144 + dpush_by_rate_2*t145 + dpush_by_rate_3*t146)
-                t148 = (dfriction_2_by_place_1*t134 + dfriction_2_by_place_2*t137 +
-                    dfriction_2_by_place_3*t140 + dfriction_2_by_rate_1*t144 +
-                    dfriction_2_by_rate_2*t145 + dfriction_2_by_rate_3*t146)
-                t149 = (dfriction_3_by_place_1*t134 + dfriction_3_by_place_2*t137 +
-                    dfriction_3_by_place_3*t140 + dfriction_3_by_rate_1*t144 +
-                    dfriction_3_by_rate_2*t145 + dfriction_3_by_rate_3*t146)
-                t150 = (dfriction_1_by_place_1*t134 + dfriction_1_by_place_2*t137 +
-                    dfriction_1_by_place_3*t140 + dfriction_1_by_rate_1*t144 +
-                    dfriction_1_by_rate_2*t145 + dfriction_1_by_rate_3*t146)
-                t151 = -normal_1*t147 - t110*t148 + t113*t150 - t118*t149
-                t152 = -normal_2*t147 - t110*t150 + t116*t148 - t119*t149
-                t153 = -normal_3*t147 - t118*t150 - t119*t148 + t120*t149
-                t154 = Rb_xx*t151 + Rb_xy*t152 + Rb_xz*t153 + t123*t124 + t125*t126 + t127*t128
-                t155 = Rb_yx*t115 + Rb_yy*t117 + Rb_yz*t121
-                t156 = Rb_yx*t151 + Rb_yy*t152 + Rb_yz*t153 + t124*t138 + t126*t135 + t128*t132
-                t157 = Rb_zx*t115 + Rb_zy*t117 + Rb_zz*t121
-                t158 = Rb_zx*t151 + Rb_zy*t152 + Rb_zz*t153 + t124*t139 + t126*t136 + t128*t133
-                t159 = -t102
-                t160 = -t103
-                t161 = -t105
-                J[column] = c_damping*t122 + c_stiffness*t154
-                J[9 + column] = c_damping*t155 + c_stiffness*t156
-                J[18 + column] = c_damping*t157 + c_stiffness*t158
-                J[27 + column] = -c_damping*t122 - c_stiffness*t154
-                J[36 + column] = -c_damping*t155 - c_stiffness*t156
-                J[45 + column] = -c_damping*t157 - c_stiffness*t158
-                J[54 + column] = (c_damping*(t103*t117 + t121*t159) + c_stiffness*(t103*t152 -
-                    t124*t137 + t126*t140 + t153*t159))
-                J[63 + column] = (c_damping*(t105*t121 + t115*t160) + c_stiffness*(t105*t153 +
-                    t124*t134 - t128*t140 + t151*t160))
-                J[72 + column] = (c_damping*(t102*t115 + t117*t161) + c_stiffness*(t102*t151 -
-                    t126*t134 + t128*t137 + t152*t161))
+                t97 = dxa_x - dxb_x
+                t98 = dxa_y - dxb_y
+                t99 = dxa_z - dxb_z
+                t100 = xa_x - xb_x
+                t101 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t102 = xa_y - xb_y
+                t103 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t104 = xa_z - xb_z
+                t105 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t106 = Rb_xx*t97 + Rb_yx*t98 + Rb_zx*t99 + t100*t101 + t102*t103 + t104*t105
+                t107 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t108 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t109 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t110 = Rb_xy*t97 + Rb_yy*t98 + Rb_zy*t99 + t100*t107 + t102*t108 + t104*t109
+                t111 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t112 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t113 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t114 = Rb_xz*t97 + Rb_yz*t98 + Rb_zz*t99 + t100*t111 + t102*t112 + t104*t113
+                t115 = va_x - vb_x
+                t116 = va_y - vb_y
+                t117 = va_z - vb_z
+                t118 = uxa_x - uxb_x
+                t119 = uxa_y - uxb_y
+                t120 = uxa_z - uxb_z
+                t121 = Rb_xy*t100 + Rb_yy*t102 + Rb_zy*t104
+                t122 = Rb_xz*t100 + Rb_yz*t102 + Rb_zz*t104
+                t123 = Rb_xx*t100 + Rb_yx*t102 + Rb_zx*t104
+                dplace_1 = t106
+                dplace_2 = t110
+                dplace_3 = t114
+                drate_1 = -Omb_y*t114 + Omb_z*t110 + t101*t115 + t103*t116 + t105*t117
+                urate_1 = Rb_xx*t118 + Rb_yx*t119 + Rb_zx*t120 + t121*uthb_z - t122*uthb_y
+                drate_2 = Omb_x*t114 - Omb_z*t106 + t107*t115 + t108*t116 + t109*t117
+                urate_2 = Rb_xy*t118 + Rb_yy*t119 + Rb_zy*t120 + t122*uthb_x - t123*uthb_z
+                drate_3 = -Omb_x*t110 + Omb_y*t106 + t111*t115 + t112*t116 + t113*t117
+                urate_3 = Rb_xz*t118 + Rb_yz*t119 + Rb_zz*t120 - t121*uthb_x + t123*uthb_y
+                t124 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2 + dpush_by_rate_3*urate_3
+                t125 = (dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2 +
+                    dfriction_2_by_rate_3*urate_3)
+                t126 = normal_1*normal_2
+                t127 = (dfriction_3_by_rate_1*urate_1 + dfriction_3_by_rate_2*urate_2 +
+                    dfriction_3_by_rate_3*urate_3)
+                t128 = normal_3*t127
+                t129 = 1 - normal_1*normal_1
+                t130 = (dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2 +
+                    dfriction_1_by_rate_3*urate_3)
+                t131 = -normal_1*t124 - normal_1*t128 - t125*t126 + t129*t130
+                t132 = 1 - normal_2*normal_2
+                t133 = -normal_2*t124 - normal_2*t128 + t125*t132 - t126*t130
+                t134 = normal_1*normal_3
+                t135 = normal_2*normal_3
+                t136 = 1 - normal_3*normal_3
+                t137 = -normal_3*t124 - t125*t135 + t127*t136 - t130*t134
+                t138 = Rb_xx*t131 + Rb_xy*t133 + Rb_xz*t137
+                t139 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t140 = -friction_1*t134 - friction_2*t135 + friction_3*t136 - normal_3*push
+                t141 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t142 = -friction_1*t126 + friction_2*t132 - friction_3*t135 - normal_2*push
+                t143 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t144 = friction_1*t129 - friction_2*t126 - friction_3*t134 - normal_1*push
+                t145 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
+                    dplace_3*dpush_by_place_3 + dpush_by_rate_1*drate_1 + dpush_by_rate_2*drate_2
+                    + dpush_by_rate_3*drate_3)
+                t146 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
+                    dfriction_2_by_place_3*dplace_3 + dfriction_2_by_rate_1*drate_1 +
+                    dfriction_2_by_rate_2*drate_2 + dfriction_2_by_rate_3*drate_3)
+                t147 = (dfriction_3_by_place_1*dplace_1 + dfriction_3_by_place_2*dplace_2 +
+                    dfriction_3_by_place_3*dplace_3 + dfriction_3_by_rate_1*drate_1 +
+                    dfriction_3_by_rate_2*drate_2 + dfriction_3_by_rate_3*drate_3)
+                t148 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
+                    dfriction_1_by_place_3*dplace_3 + dfriction_1_by_rate_1*drate_1 +
+                    dfriction_1_by_rate_2*drate_2 + dfriction_1_by_rate_3*drate_3)
+                t149 = -normal_1*t145 - t126*t146 + t129*t148 - t134*t147
+                t150 = -normal_2*t145 - t126*t148 + t132*t146 - t135*t147
+                t151 = -normal_3*t145 - t134*t148 - t135*t146 + t136*t147
+                t152 = Rb_xx*t149 + Rb_xy*t150 + Rb_xz*t151 + t139*t140 + t141*t142 + t143*t144
+                t153 = Rb_yx*t131 + Rb_yy*t133 + Rb_yz*t137
+                t154 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t155 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t156 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t157 = Rb_yx*t149 + Rb_yy*t150 + Rb_yz*t151 + t140*t154 + t142*t155 + t144*t156
+                t158 = Rb_zx*t131 + Rb_zy*t133 + Rb_zz*t137
+                t159 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t160 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t161 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t162 = Rb_zx*t149 + Rb_zy*t150 + Rb_zz*t151 + t140*t159 + t142*t160 + t144*t161
+                t163 = xa_x - xb_x
+                t164 = xa_y - xb_y
+                t165 = xa_z - xb_z
+                t166 = Rb_xz*t163 + Rb_yz*t164 + Rb_zz*t165
+                t167 = Rb_xy*t163 + Rb_yy*t164 + Rb_zy*t165
+                t168 = -t167
+                t169 = dxa_x - dxb_x
+                t170 = dxa_y - dxb_y
+                t171 = dxa_z - dxb_z
+                t172 = Rb_xz*t169 + Rb_yz*t170 + Rb_zz*t171 + t139*t163 + t154*t164 + t159*t165
+                t173 = Rb_xy*t169 + Rb_yy*t170 + Rb_zy*t171 + t141*t163 + t155*t164 + t160*t165
+                t174 = Rb_xx*t163 + Rb_yx*t164 + Rb_zx*t165
+                t175 = -t166
+                t176 = Rb_xx*t169 + Rb_yx*t170 + Rb_zx*t171 + t143*t163 + t156*t164 + t161*t165
+                t177 = -t174
+                J[column] = c_damping*t138 + c_stiffness*t152
+                J[9 + column] = c_damping*t153 + c_stiffness*t157
+                J[18 + column] = c_damping*t158 + c_stiffness*t162
+                J[27 + column] = -c_damping*t138 - c_stiffness*t152
+                J[36 + column] = -c_damping*t153 - c_stiffness*t157
+                J[45 + column] = -c_damping*t158 - c_stiffness*t162
+                J[54 + column] = (c_damping*(t133*t166 + t137*t168) + c_stiffness*(-t140*t173 +
+                    t142*t172 + t150*t166 + t151*t168))
+                J[63 + column] = (c_damping*(t131*t175 + t137*t174) + c_stiffness*(t140*t176 -
+                    t144*t172 + t149*t175 + t151*t174))
+                J[72 + column] = (c_damping*(t131*t167 + t133*t177) + c_stiffness*(-t142*t176 +
+                    t144*t173 + t149*t167 + t150*t177))
     return OK

@@ -33,6 +33,7 @@ CONSTANTS = (
     Part("stiffness", (), "stiffness k of k d^n (1 + c d')"),
     Part("exponent", (), "exponent n"),
     Part("damping", (), "damping c [time/length]"),
+    Part("slow", (), "speed of impacts so slow that steps do not look at them"),
     Part("bristle", (), "stiffness of the bristles"),
     Part("bristle_damping", (), "their damping"),
     Part("coefficient", (), "coefficient of friction"),
@@ -53,7 +54,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (76, 0, 0, 0),
-              "column": (462, 0, 0, 0)}
+              "column": (402, 0, 0, 0)}
 
 
 @kernel_function
@@ -68,14 +69,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         stiffness = constant[0]
         exponent = constant[1]
         damping = constant[2]
-        bristle = constant[3]
-        bristle_damping = constant[4]
-        coefficient = constant[5]
-        static = constant[6]
-        speed = constant[7]
-        radius = constant[8]
-        size = constant[9]
-        side = constant[10]
+        slow = constant[3]
+        bristle = constant[4]
+        bristle_damping = constant[5]
+        coefficient = constant[6]
+        static = constant[7]
+        speed = constant[8]
+        radius = constant[9]
+        size = constant[10]
+        side = constant[11]
         xa_x = q[unknowns[0]]
         xa_y = q[unknowns[1]]
         xa_z = q[unknowns[2]]
@@ -200,7 +202,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t44 = (closing if closing > 0.0 else -closing)
         t45 = (kept_rate if kept_rate > 0.0 else -kept_rate)
         t46 = (t44 if t44 - t45 > 0.0 else t45)
-        t47 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+        t47 = (t46 if -kept_impact + t46 > 0.0 else kept_impact)
+        t48 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
             dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0)))
         g[0] = t35
         g[1] = t36
@@ -215,12 +218,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME] + 1] = place_2
         frames[index[first + AT_FRAME] + 2] = place_3
         frames[index[first + AT_FRAME] + 3] = closing
-        frames[index[first + AT_FRAME] + 4] = (((t46 if -kept_impact + t46 > 0.0 else kept_impact)
-            if touches - 0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 4] = (((t47 if -slow + t47 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0))
         frames[index[first + AT_FRAME] + 5] = gap_closed
-        frames[index[first + AT_FRAME] + 6] = t47*z_1
-        frames[index[first + AT_FRAME] + 7] = t47*z_2
-        frames[index[first + AT_FRAME] + 8] = t47*z_3
+        frames[index[first + AT_FRAME] + 6] = t48*z_1
+        frames[index[first + AT_FRAME] + 7] = t48*z_2
+        frames[index[first + AT_FRAME] + 8] = t48*z_3
         frames[index[first + AT_FRAME] + 9] = slips
         frames[index[first + AT_FRAME] + 10] = 1.0
         frames[index[first + AT_FRAME] + 11] = push
@@ -281,193 +284,193 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             du = at(work, WIDTH)
-            t48 = place_1*place_1
-            t49 = place_2*place_2
-            t50 = place_3*place_3
-            t51 = t48 + t49 + t50 + 1e-300
-            t52 = 1/sqrt(t51)
-            t53 = -side*t52
-            t54 = side/t51**(1.5)
-            t55 = place_1*t54
-            t56 = -place_2*t55
-            t57 = -place_3*t55
-            t58 = -place_2*place_3*t54
-            t59 = side*t52
-            dnormal_1_by_place_1 = -t48*t54 - t53
-            dnormal_1_by_place_2 = t56
-            dnormal_1_by_place_3 = t57
-            dnormal_2_by_place_1 = t56
-            dnormal_2_by_place_2 = -t49*t54 - t53
-            dnormal_2_by_place_3 = t58
-            dnormal_3_by_place_1 = t57
-            dnormal_3_by_place_2 = t58
-            dnormal_3_by_place_3 = -t50*t54 - t53
-            dgap_closed_by_place_1 = -place_1*t59
-            dgap_closed_by_place_2 = -place_2*t59
-            dgap_closed_by_place_3 = -place_3*t59
-            t60 = dnormal_1_by_place_1*rate_1
-            t61 = dnormal_2_by_place_1*rate_2
-            t62 = dnormal_3_by_place_1*rate_3
-            t63 = dnormal_1_by_place_2*rate_1
-            t64 = dnormal_2_by_place_2*rate_2
-            t65 = dnormal_3_by_place_2*rate_3
-            t66 = dnormal_1_by_place_3*rate_1
-            t67 = dnormal_2_by_place_3*rate_2
-            t68 = dnormal_3_by_place_3*rate_3
-            t69 = normal_2*rate_2
-            t70 = normal_3*rate_3
-            t71 = normal_1*rate_1
-            t72 = -t69 - t70 - 2*t71
-            t73 = normal_1*normal_1 - 1
-            t74 = normal_1*normal_2
-            t75 = -t74
-            t76 = normal_1*normal_3
-            t77 = -t76
-            t78 = -2*t69 - t70 - t71
-            t79 = normal_2*normal_2 - 1
-            t80 = normal_2*normal_3
-            t81 = -t80
-            t82 = -t69 - 2*t70 - t71
-            t83 = normal_3*normal_3 - 1
-            t84 = -kept_place_2 + place_2
-            t85 = normal_2*t84
-            t86 = -kept_place_3 + place_3
-            t87 = normal_3*t86
-            t88 = -kept_place_1 + place_1
-            t89 = normal_1*t88
-            t90 = -t85 - t87 - 2*t89
-            t91 = normal_1*t84
-            t92 = normal_1*t86
-            t93 = normal_2*t88
-            t94 = normal_2*t86
-            t95 = -2*t85 - t87 - t89
-            t96 = normal_3*t88
-            t97 = normal_3*t84
-            t98 = -t85 - 2*t87 - t89
-            dclosing_by_place_1 = -t60 - t61 - t62
-            dclosing_by_place_2 = -t63 - t64 - t65
-            dclosing_by_place_3 = -t66 - t67 - t68
+            t49 = place_1*place_1
+            t50 = place_2*place_2
+            t51 = place_3*place_3
+            t52 = t49 + t50 + t51 + 1e-300
+            t53 = 1/sqrt(t52)
+            t54 = -side*t53
+            t55 = side/t52**(1.5)
+            t56 = place_1*t55
+            t57 = -place_2*t56
+            t58 = -place_3*t56
+            t59 = -place_2*place_3*t55
+            t60 = side*t53
+            dnormal_1_by_place_1 = -t49*t55 - t54
+            dnormal_1_by_place_2 = t57
+            dnormal_1_by_place_3 = t58
+            dnormal_2_by_place_1 = t57
+            dnormal_2_by_place_2 = -t50*t55 - t54
+            dnormal_2_by_place_3 = t59
+            dnormal_3_by_place_1 = t58
+            dnormal_3_by_place_2 = t59
+            dnormal_3_by_place_3 = -t51*t55 - t54
+            dgap_closed_by_place_1 = -place_1*t60
+            dgap_closed_by_place_2 = -place_2*t60
+            dgap_closed_by_place_3 = -place_3*t60
+            t61 = dnormal_1_by_place_1*rate_1
+            t62 = dnormal_2_by_place_1*rate_2
+            t63 = dnormal_3_by_place_1*rate_3
+            t64 = dnormal_1_by_place_2*rate_1
+            t65 = dnormal_2_by_place_2*rate_2
+            t66 = dnormal_3_by_place_2*rate_3
+            t67 = dnormal_1_by_place_3*rate_1
+            t68 = dnormal_2_by_place_3*rate_2
+            t69 = dnormal_3_by_place_3*rate_3
+            t70 = normal_2*rate_2
+            t71 = normal_3*rate_3
+            t72 = normal_1*rate_1
+            t73 = -t70 - t71 - 2*t72
+            t74 = normal_1*normal_1 - 1
+            t75 = normal_1*normal_2
+            t76 = -t75
+            t77 = normal_1*normal_3
+            t78 = -t77
+            t79 = -2*t70 - t71 - t72
+            t80 = normal_2*normal_2 - 1
+            t81 = normal_2*normal_3
+            t82 = -t81
+            t83 = -t70 - 2*t71 - t72
+            t84 = normal_3*normal_3 - 1
+            t85 = -kept_place_2 + place_2
+            t86 = normal_2*t85
+            t87 = -kept_place_3 + place_3
+            t88 = normal_3*t87
+            t89 = -kept_place_1 + place_1
+            t90 = normal_1*t89
+            t91 = -t86 - t88 - 2*t90
+            t92 = normal_1*t85
+            t93 = normal_1*t87
+            t94 = normal_2*t89
+            t95 = normal_2*t87
+            t96 = -2*t86 - t88 - t90
+            t97 = normal_3*t89
+            t98 = normal_3*t85
+            t99 = -t86 - 2*t88 - t90
+            dclosing_by_place_1 = -t61 - t62 - t63
+            dclosing_by_place_2 = -t64 - t65 - t66
+            dclosing_by_place_3 = -t67 - t68 - t69
             dclosing_by_rate_1 = -normal_1
             dclosing_by_rate_2 = -normal_2
             dclosing_by_rate_3 = -normal_3
-            dslip_1_by_place_1 = dnormal_1_by_place_1*t72 - normal_1*t61 - normal_1*t62
-            dslip_1_by_place_2 = dnormal_1_by_place_2*t72 - normal_1*t64 - normal_1*t65
-            dslip_1_by_place_3 = dnormal_1_by_place_3*t72 - normal_1*t67 - normal_1*t68
-            dslip_1_by_rate_1 = -t73
-            dslip_1_by_rate_2 = t75
-            dslip_1_by_rate_3 = t77
-            dslip_2_by_place_1 = dnormal_2_by_place_1*t78 - normal_2*t60 - normal_2*t62
-            dslip_2_by_place_2 = dnormal_2_by_place_2*t78 - normal_2*t63 - normal_2*t65
-            dslip_2_by_place_3 = dnormal_2_by_place_3*t78 - normal_2*t66 - normal_2*t68
-            dslip_2_by_rate_1 = t75
-            dslip_2_by_rate_2 = -t79
-            dslip_2_by_rate_3 = t81
-            dslip_3_by_place_1 = dnormal_3_by_place_1*t82 - normal_3*t60 - normal_3*t61
-            dslip_3_by_place_2 = dnormal_3_by_place_2*t82 - normal_3*t63 - normal_3*t64
-            dslip_3_by_place_3 = dnormal_3_by_place_3*t82 - normal_3*t66 - normal_3*t67
-            dslip_3_by_rate_1 = t77
-            dslip_3_by_rate_2 = t81
-            dslip_3_by_rate_3 = -t83
-            dincrement_1_by_place_1 = (dnormal_1_by_place_1*t90 - dnormal_2_by_place_1*t91 -
-                dnormal_3_by_place_1*t92 - t73)
-            dincrement_1_by_place_2 = (dnormal_1_by_place_2*t90 - dnormal_2_by_place_2*t91 -
-                dnormal_3_by_place_2*t92 - t74)
-            dincrement_1_by_place_3 = (dnormal_1_by_place_3*t90 - dnormal_2_by_place_3*t91 -
-                dnormal_3_by_place_3*t92 - t76)
-            dincrement_2_by_place_1 = (-dnormal_1_by_place_1*t93 + dnormal_2_by_place_1*t95 -
-                dnormal_3_by_place_1*t94 - t74)
-            dincrement_2_by_place_2 = (-dnormal_1_by_place_2*t93 + dnormal_2_by_place_2*t95 -
-                dnormal_3_by_place_2*t94 - t79)
-            dincrement_2_by_place_3 = (-dnormal_1_by_place_3*t93 + dnormal_2_by_place_3*t95 -
-                dnormal_3_by_place_3*t94 - t80)
-            dincrement_3_by_place_1 = (-dnormal_1_by_place_1*t96 - dnormal_2_by_place_1*t97 +
-                dnormal_3_by_place_1*t98 - t76)
-            dincrement_3_by_place_2 = (-dnormal_1_by_place_2*t96 - dnormal_2_by_place_2*t97 +
-                dnormal_3_by_place_2*t98 - t80)
-            dincrement_3_by_place_3 = (-dnormal_1_by_place_3*t96 - dnormal_2_by_place_3*t97 +
-                dnormal_3_by_place_3*t98 - t83)
-            t99 = (1 if gap_closed > 0.0 else 0)
-            ddepth_by_place_1 = dgap_closed_by_place_1*t99
-            ddepth_by_place_2 = dgap_closed_by_place_2*t99
-            ddepth_by_place_3 = dgap_closed_by_place_3*t99
-            t100 = depth**exponent*exponent*stiffness/depth
-            delastic_by_place_1 = ddepth_by_place_1*t100
-            delastic_by_place_2 = ddepth_by_place_2*t100
-            delastic_by_place_3 = ddepth_by_place_3*t100
+            dslip_1_by_place_1 = dnormal_1_by_place_1*t73 - normal_1*t62 - normal_1*t63
+            dslip_1_by_place_2 = dnormal_1_by_place_2*t73 - normal_1*t65 - normal_1*t66
+            dslip_1_by_place_3 = dnormal_1_by_place_3*t73 - normal_1*t68 - normal_1*t69
+            dslip_1_by_rate_1 = -t74
+            dslip_1_by_rate_2 = t76
+            dslip_1_by_rate_3 = t78
+            dslip_2_by_place_1 = dnormal_2_by_place_1*t79 - normal_2*t61 - normal_2*t63
+            dslip_2_by_place_2 = dnormal_2_by_place_2*t79 - normal_2*t64 - normal_2*t66
+            dslip_2_by_place_3 = dnormal_2_by_place_3*t79 - normal_2*t67 - normal_2*t69
+            dslip_2_by_rate_1 = t76
+            dslip_2_by_rate_2 = -t80
+            dslip_2_by_rate_3 = t82
+            dslip_3_by_place_1 = dnormal_3_by_place_1*t83 - normal_3*t61 - normal_3*t62
+            dslip_3_by_place_2 = dnormal_3_by_place_2*t83 - normal_3*t64 - normal_3*t65
+            dslip_3_by_place_3 = dnormal_3_by_place_3*t83 - normal_3*t67 - normal_3*t68
+            dslip_3_by_rate_1 = t78
+            dslip_3_by_rate_2 = t82
+            dslip_3_by_rate_3 = -t84
+            dincrement_1_by_place_1 = (dnormal_1_by_place_1*t91 - dnormal_2_by_place_1*t92 -
+                dnormal_3_by_place_1*t93 - t74)
+            dincrement_1_by_place_2 = (dnormal_1_by_place_2*t91 - dnormal_2_by_place_2*t92 -
+                dnormal_3_by_place_2*t93 - t75)
+            dincrement_1_by_place_3 = (dnormal_1_by_place_3*t91 - dnormal_2_by_place_3*t92 -
+                dnormal_3_by_place_3*t93 - t77)
+            dincrement_2_by_place_1 = (-dnormal_1_by_place_1*t94 + dnormal_2_by_place_1*t96 -
+                dnormal_3_by_place_1*t95 - t75)
+            dincrement_2_by_place_2 = (-dnormal_1_by_place_2*t94 + dnormal_2_by_place_2*t96 -
+                dnormal_3_by_place_2*t95 - t80)
+            dincrement_2_by_place_3 = (-dnormal_1_by_place_3*t94 + dnormal_2_by_place_3*t96 -
+                dnormal_3_by_place_3*t95 - t81)
+            dincrement_3_by_place_1 = (-dnormal_1_by_place_1*t97 - dnormal_2_by_place_1*t98 +
+                dnormal_3_by_place_1*t99 - t77)
+            dincrement_3_by_place_2 = (-dnormal_1_by_place_2*t97 - dnormal_2_by_place_2*t98 +
+                dnormal_3_by_place_2*t99 - t81)
+            dincrement_3_by_place_3 = (-dnormal_1_by_place_3*t97 - dnormal_2_by_place_3*t98 +
+                dnormal_3_by_place_3*t99 - t84)
+            t100 = (1 if gap_closed > 0.0 else 0)
+            ddepth_by_place_1 = dgap_closed_by_place_1*t100
+            ddepth_by_place_2 = dgap_closed_by_place_2*t100
+            ddepth_by_place_3 = dgap_closed_by_place_3*t100
+            t101 = depth**exponent*exponent*stiffness/depth
+            delastic_by_place_1 = ddepth_by_place_1*t101
+            delastic_by_place_2 = ddepth_by_place_2*t101
+            delastic_by_place_3 = ddepth_by_place_3*t101
             dfactor_by_place_1 = damping*dclosing_by_place_1
             dfactor_by_place_2 = damping*dclosing_by_place_2
             dfactor_by_place_3 = damping*dclosing_by_place_3
             dfactor_by_rate_1 = damping*dclosing_by_rate_1
             dfactor_by_rate_2 = damping*dclosing_by_rate_2
             dfactor_by_rate_3 = damping*dclosing_by_rate_3
-            t101 = (factor if factor > 0.0 else 0)
-            t102 = (elastic if factor > 0.0 else 0)
-            dpush_by_place_1 = delastic_by_place_1*t101 + dfactor_by_place_1*t102
-            dpush_by_place_2 = delastic_by_place_2*t101 + dfactor_by_place_2*t102
-            dpush_by_place_3 = delastic_by_place_3*t101 + dfactor_by_place_3*t102
-            dpush_by_rate_1 = dfactor_by_rate_1*t102
-            dpush_by_rate_2 = dfactor_by_rate_2*t102
-            dpush_by_rate_3 = dfactor_by_rate_3*t102
-            t103 = kept_begun*normal_1
-            t104 = normal_2*t103
-            t105 = normal_3*t103
-            t106 = increment_2*kept_begun + kept_bent_2
-            t107 = normal_1*t106
-            t108 = increment_3*kept_begun + kept_bent_3
-            t109 = normal_1*t108
-            t110 = 1 - normal_1*normal_1
-            t111 = normal_2*t106
-            t112 = normal_3*t108
-            t113 = increment_1*kept_begun + kept_bent_1
-            t114 = normal_1*t113
-            t115 = -t111 - t112 - 2*t114
-            t116 = kept_begun*normal_2*normal_3
-            t117 = normal_2*t113
-            t118 = normal_2*t108
-            t119 = 1 - normal_2*normal_2
-            t120 = -2*t111 - t112 - t114
-            t121 = normal_3*t113
-            t122 = normal_3*t106
-            t123 = 1 - normal_3*normal_3
-            t124 = -t111 - 2*t112 - t114
-            dz_1_by_place_1 = (dincrement_1_by_place_1*kept_begun*t110 -
-                dincrement_2_by_place_1*t104 - dincrement_3_by_place_1*t105 +
-                dnormal_1_by_place_1*t115 - dnormal_2_by_place_1*t107 - dnormal_3_by_place_1*t109)
-            dz_1_by_place_2 = (dincrement_1_by_place_2*kept_begun*t110 -
-                dincrement_2_by_place_2*t104 - dincrement_3_by_place_2*t105 +
-                dnormal_1_by_place_2*t115 - dnormal_2_by_place_2*t107 - dnormal_3_by_place_2*t109)
-            dz_1_by_place_3 = (dincrement_1_by_place_3*kept_begun*t110 -
-                dincrement_2_by_place_3*t104 - dincrement_3_by_place_3*t105 +
-                dnormal_1_by_place_3*t115 - dnormal_2_by_place_3*t107 - dnormal_3_by_place_3*t109)
-            dz_2_by_place_1 = (-dincrement_1_by_place_1*t104 +
-                dincrement_2_by_place_1*kept_begun*t119 - dincrement_3_by_place_1*t116 -
-                dnormal_1_by_place_1*t117 + dnormal_2_by_place_1*t120 - dnormal_3_by_place_1*t118)
-            dz_2_by_place_2 = (-dincrement_1_by_place_2*t104 +
-                dincrement_2_by_place_2*kept_begun*t119 - dincrement_3_by_place_2*t116 -
-                dnormal_1_by_place_2*t117 + dnormal_2_by_place_2*t120 - dnormal_3_by_place_2*t118)
-            dz_2_by_place_3 = (-dincrement_1_by_place_3*t104 +
-                dincrement_2_by_place_3*kept_begun*t119 - dincrement_3_by_place_3*t116 -
-                dnormal_1_by_place_3*t117 + dnormal_2_by_place_3*t120 - dnormal_3_by_place_3*t118)
-            dz_3_by_place_1 = (-dincrement_1_by_place_1*t105 - dincrement_2_by_place_1*t116 +
-                dincrement_3_by_place_1*kept_begun*t123 - dnormal_1_by_place_1*t121 -
-                dnormal_2_by_place_1*t122 + dnormal_3_by_place_1*t124)
-            dz_3_by_place_2 = (-dincrement_1_by_place_2*t105 - dincrement_2_by_place_2*t116 +
-                dincrement_3_by_place_2*kept_begun*t123 - dnormal_1_by_place_2*t121 -
-                dnormal_2_by_place_2*t122 + dnormal_3_by_place_2*t124)
-            dz_3_by_place_3 = (-dincrement_1_by_place_3*t105 - dincrement_2_by_place_3*t116 +
-                dincrement_3_by_place_3*kept_begun*t123 - dnormal_1_by_place_3*t121 -
-                dnormal_2_by_place_3*t122 + dnormal_3_by_place_3*t124)
+            t102 = (factor if factor > 0.0 else 0)
+            t103 = (elastic if factor > 0.0 else 0)
+            dpush_by_place_1 = delastic_by_place_1*t102 + dfactor_by_place_1*t103
+            dpush_by_place_2 = delastic_by_place_2*t102 + dfactor_by_place_2*t103
+            dpush_by_place_3 = delastic_by_place_3*t102 + dfactor_by_place_3*t103
+            dpush_by_rate_1 = dfactor_by_rate_1*t103
+            dpush_by_rate_2 = dfactor_by_rate_2*t103
+            dpush_by_rate_3 = dfactor_by_rate_3*t103
+            t104 = kept_begun*normal_1
+            t105 = normal_2*t104
+            t106 = normal_3*t104
+            t107 = increment_2*kept_begun + kept_bent_2
+            t108 = normal_1*t107
+            t109 = increment_3*kept_begun + kept_bent_3
+            t110 = normal_1*t109
+            t111 = 1 - normal_1*normal_1
+            t112 = normal_2*t107
+            t113 = normal_3*t109
+            t114 = increment_1*kept_begun + kept_bent_1
+            t115 = normal_1*t114
+            t116 = -t112 - t113 - 2*t115
+            t117 = kept_begun*normal_2*normal_3
+            t118 = normal_2*t114
+            t119 = normal_2*t109
+            t120 = 1 - normal_2*normal_2
+            t121 = -2*t112 - t113 - t115
+            t122 = normal_3*t114
+            t123 = normal_3*t107
+            t124 = 1 - normal_3*normal_3
+            t125 = -t112 - 2*t113 - t115
+            dz_1_by_place_1 = (dincrement_1_by_place_1*kept_begun*t111 -
+                dincrement_2_by_place_1*t105 - dincrement_3_by_place_1*t106 +
+                dnormal_1_by_place_1*t116 - dnormal_2_by_place_1*t108 - dnormal_3_by_place_1*t110)
+            dz_1_by_place_2 = (dincrement_1_by_place_2*kept_begun*t111 -
+                dincrement_2_by_place_2*t105 - dincrement_3_by_place_2*t106 +
+                dnormal_1_by_place_2*t116 - dnormal_2_by_place_2*t108 - dnormal_3_by_place_2*t110)
+            dz_1_by_place_3 = (dincrement_1_by_place_3*kept_begun*t111 -
+                dincrement_2_by_place_3*t105 - dincrement_3_by_place_3*t106 +
+                dnormal_1_by_place_3*t116 - dnormal_2_by_place_3*t108 - dnormal_3_by_place_3*t110)
+            dz_2_by_place_1 = (-dincrement_1_by_place_1*t105 +
+                dincrement_2_by_place_1*kept_begun*t120 - dincrement_3_by_place_1*t117 -
+                dnormal_1_by_place_1*t118 + dnormal_2_by_place_1*t121 - dnormal_3_by_place_1*t119)
+            dz_2_by_place_2 = (-dincrement_1_by_place_2*t105 +
+                dincrement_2_by_place_2*kept_begun*t120 - dincrement_3_by_place_2*t117 -
+                dnormal_1_by_place_2*t118 + dnormal_2_by_place_2*t121 - dnormal_3_by_place_2*t119)
+            dz_2_by_place_3 = (-dincrement_1_by_place_3*t105 +
+                dincrement_2_by_place_3*kept_begun*t120 - dincrement_3_by_place_3*t117 -
+                dnormal_1_by_place_3*t118 + dnormal_2_by_place_3*t121 - dnormal_3_by_place_3*t119)
+            dz_3_by_place_1 = (-dincrement_1_by_place_1*t106 - dincrement_2_by_place_1*t117 +
+                dincrement_3_by_place_1*kept_begun*t124 - dnormal_1_by_place_1*t122 -
+                dnormal_2_by_place_1*t123 + dnormal_3_by_place_1*t125)
+            dz_3_by_place_2 = (-dincrement_1_by_place_2*t106 - dincrement_2_by_place_2*t117 +
+                dincrement_3_by_place_2*kept_begun*t124 - dnormal_1_by_place_2*t122 -
+                dnormal_2_by_place_2*t123 + dnormal_3_by_place_2*t125)
+            dz_3_by_place_3 = (-dincrement_1_by_place_3*t106 - dincrement_2_by_place_3*t117 +
+                dincrement_3_by_place_3*kept_begun*t124 - dnormal_1_by_place_3*t122 -
+                dnormal_2_by_place_3*t123 + dnormal_3_by_place_3*t125)
             ddynamic_limit_by_place_1 = coefficient*dpush_by_place_1
             ddynamic_limit_by_place_2 = coefficient*dpush_by_place_2
             ddynamic_limit_by_place_3 = coefficient*dpush_by_place_3
             ddynamic_limit_by_rate_1 = coefficient*dpush_by_rate_1
             ddynamic_limit_by_rate_2 = coefficient*dpush_by_rate_2
             ddynamic_limit_by_rate_3 = coefficient*dpush_by_rate_3
-            t125 = (1/sqrt(slip_1*slip_1 + slip_2*slip_2 + slip_3*slip_3 + 1e-12*speed*speed +
+            t126 = (1/sqrt(slip_1*slip_1 + slip_2*slip_2 + slip_3*slip_3 + 1e-12*speed*speed +
                 1e-300))
-            t126 = slip_1*t125
-            t127 = slip_2*t125
-            t128 = slip_3*t125
+            t127 = slip_1*t126
+            t128 = slip_2*t126
+            t129 = slip_3*t126
             dtrial_1_by_place_1 = bristle*dz_1_by_place_1 + bristle_damping*dslip_1_by_place_1
             dtrial_1_by_place_2 = bristle*dz_1_by_place_2 + bristle_damping*dslip_1_by_place_2
             dtrial_1_by_place_3 = bristle*dz_1_by_place_3 + bristle_damping*dslip_1_by_place_3
@@ -486,103 +489,103 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dtrial_3_by_rate_1 = bristle_damping*dslip_3_by_rate_1
             dtrial_3_by_rate_2 = bristle_damping*dslip_3_by_rate_2
             dtrial_3_by_rate_3 = bristle_damping*dslip_3_by_rate_3
-            dslip_speed_by_place_1 = (dslip_1_by_place_1*t126 + dslip_2_by_place_1*t127 +
-                dslip_3_by_place_1*t128)
-            dslip_speed_by_place_2 = (dslip_1_by_place_2*t126 + dslip_2_by_place_2*t127 +
-                dslip_3_by_place_2*t128)
-            dslip_speed_by_place_3 = (dslip_1_by_place_3*t126 + dslip_2_by_place_3*t127 +
-                dslip_3_by_place_3*t128)
-            dslip_speed_by_rate_1 = (dslip_1_by_rate_1*t126 + dslip_2_by_rate_1*t127 +
-                dslip_3_by_rate_1*t128)
-            dslip_speed_by_rate_2 = (dslip_1_by_rate_2*t126 + dslip_2_by_rate_2*t127 +
-                dslip_3_by_rate_2*t128)
-            dslip_speed_by_rate_3 = (dslip_1_by_rate_3*t126 + dslip_2_by_rate_3*t127 +
-                dslip_3_by_rate_3*t128)
-            t129 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
-            t130 = t129*trial_1
-            t131 = t129*trial_2
-            t132 = t129*trial_3
-            t133 = 1/slip_speed
-            t134 = 1/speed
-            t135 = slip_speed*t134
-            t136 = tanh(4*t135)
-            t137 = slip_speed*slip_speed
-            t138 = 0.75 + ((0.25)*t137)/(speed*speed)
-            t139 = -coefficient + static
-            t140 = t139/(t138*t138)
-            t141 = coefficient*t136 + t135*t140
-            t142 = (t133*t141 if speed > 0.0 else 0)
-            t143 = ((push*t133*(4*coefficient*t134*(1 - t136*t136) + t134*t140 +
-                (-t137*t139)/(speed*speed*speed*t138*t138*t138)) - push*t141/t137 if speed > 0.0
+            dslip_speed_by_place_1 = (dslip_1_by_place_1*t127 + dslip_2_by_place_1*t128 +
+                dslip_3_by_place_1*t129)
+            dslip_speed_by_place_2 = (dslip_1_by_place_2*t127 + dslip_2_by_place_2*t128 +
+                dslip_3_by_place_2*t129)
+            dslip_speed_by_place_3 = (dslip_1_by_place_3*t127 + dslip_2_by_place_3*t128 +
+                dslip_3_by_place_3*t129)
+            dslip_speed_by_rate_1 = (dslip_1_by_rate_1*t127 + dslip_2_by_rate_1*t128 +
+                dslip_3_by_rate_1*t129)
+            dslip_speed_by_rate_2 = (dslip_1_by_rate_2*t127 + dslip_2_by_rate_2*t128 +
+                dslip_3_by_rate_2*t129)
+            dslip_speed_by_rate_3 = (dslip_1_by_rate_3*t127 + dslip_2_by_rate_3*t128 +
+                dslip_3_by_rate_3*t129)
+            t130 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
+            t131 = t130*trial_1
+            t132 = t130*trial_2
+            t133 = t130*trial_3
+            t134 = 1/slip_speed
+            t135 = 1/speed
+            t136 = slip_speed*t135
+            t137 = tanh(4*t136)
+            t138 = slip_speed*slip_speed
+            t139 = 0.75 + ((0.25)*t138)/(speed*speed)
+            t140 = -coefficient + static
+            t141 = t140/(t139*t139)
+            t142 = coefficient*t137 + t136*t141
+            t143 = (t134*t142 if speed > 0.0 else 0)
+            t144 = ((push*t134*(4*coefficient*t135*(1 - t137*t137) + t135*t141 +
+                (-t138*t140)/(speed*speed*speed*t139*t139*t139)) - push*t142/t138 if speed > 0.0
                 else 0))
-            dtrial_size_by_place_1 = (dtrial_1_by_place_1*t130 + dtrial_2_by_place_1*t131 +
-                dtrial_3_by_place_1*t132)
-            dtrial_size_by_place_2 = (dtrial_1_by_place_2*t130 + dtrial_2_by_place_2*t131 +
-                dtrial_3_by_place_2*t132)
-            dtrial_size_by_place_3 = (dtrial_1_by_place_3*t130 + dtrial_2_by_place_3*t131 +
-                dtrial_3_by_place_3*t132)
-            dtrial_size_by_rate_1 = (dtrial_1_by_rate_1*t130 + dtrial_2_by_rate_1*t131 +
-                dtrial_3_by_rate_1*t132)
-            dtrial_size_by_rate_2 = (dtrial_1_by_rate_2*t130 + dtrial_2_by_rate_2*t131 +
-                dtrial_3_by_rate_2*t132)
-            dtrial_size_by_rate_3 = (dtrial_1_by_rate_3*t130 + dtrial_2_by_rate_3*t131 +
-                dtrial_3_by_rate_3*t132)
-            ddrag_by_place_1 = dpush_by_place_1*t142 + dslip_speed_by_place_1*t143
-            ddrag_by_place_2 = dpush_by_place_2*t142 + dslip_speed_by_place_2*t143
-            ddrag_by_place_3 = dpush_by_place_3*t142 + dslip_speed_by_place_3*t143
-            ddrag_by_rate_1 = dpush_by_rate_1*t142 + dslip_speed_by_rate_1*t143
-            ddrag_by_rate_2 = dpush_by_rate_2*t142 + dslip_speed_by_rate_2*t143
-            ddrag_by_rate_3 = dpush_by_rate_3*t142 + dslip_speed_by_rate_3*t143
-            t144 = (slip_1 if speed > 0.0 else 0)
-            t145 = (drag if speed > 0.0 else 0)
-            t146 = -static_limit + trial_size
-            t147 = 1/trial_size
-            t148 = (0 if speed > 0.0 else (t147*trial_1 if t146 > 0.0 else 0))
-            t149 = (0 if speed > 0.0 else (dynamic_limit*t147 if t146 > 0.0 else 1))
-            t150 = dynamic_limit/(trial_size*trial_size)
-            t151 = (0 if speed > 0.0 else (-t150*trial_1 if t146 > 0.0 else 0))
-            t152 = (slip_2 if speed > 0.0 else 0)
-            t153 = (0 if speed > 0.0 else (t147*trial_2 if t146 > 0.0 else 0))
-            t154 = (0 if speed > 0.0 else (-t150*trial_2 if t146 > 0.0 else 0))
-            t155 = (slip_3 if speed > 0.0 else 0)
-            t156 = (0 if speed > 0.0 else (t147*trial_3 if t146 > 0.0 else 0))
-            t157 = (0 if speed > 0.0 else (-t150*trial_3 if t146 > 0.0 else 0))
-            dfriction_1_by_place_1 = (ddrag_by_place_1*t144 + ddynamic_limit_by_place_1*t148 +
-                dslip_1_by_place_1*t145 + dtrial_1_by_place_1*t149 + dtrial_size_by_place_1*t151)
-            dfriction_1_by_place_2 = (ddrag_by_place_2*t144 + ddynamic_limit_by_place_2*t148 +
-                dslip_1_by_place_2*t145 + dtrial_1_by_place_2*t149 + dtrial_size_by_place_2*t151)
-            dfriction_1_by_place_3 = (ddrag_by_place_3*t144 + ddynamic_limit_by_place_3*t148 +
-                dslip_1_by_place_3*t145 + dtrial_1_by_place_3*t149 + dtrial_size_by_place_3*t151)
-            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t144 + ddynamic_limit_by_rate_1*t148 +
-                dslip_1_by_rate_1*t145 + dtrial_1_by_rate_1*t149 + dtrial_size_by_rate_1*t151)
-            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t144 + ddynamic_limit_by_rate_2*t148 +
-                dslip_1_by_rate_2*t145 + dtrial_1_by_rate_2*t149 + dtrial_size_by_rate_2*t151)
-            dfriction_1_by_rate_3 = (ddrag_by_rate_3*t144 + ddynamic_limit_by_rate_3*t148 +
-                dslip_1_by_rate_3*t145 + dtrial_1_by_rate_3*t149 + dtrial_size_by_rate_3*t151)
-            dfriction_2_by_place_1 = (ddrag_by_place_1*t152 + ddynamic_limit_by_place_1*t153 +
-                dslip_2_by_place_1*t145 + dtrial_2_by_place_1*t149 + dtrial_size_by_place_1*t154)
-            dfriction_2_by_place_2 = (ddrag_by_place_2*t152 + ddynamic_limit_by_place_2*t153 +
-                dslip_2_by_place_2*t145 + dtrial_2_by_place_2*t149 + dtrial_size_by_place_2*t154)
-            dfriction_2_by_place_3 = (ddrag_by_place_3*t152 + ddynamic_limit_by_place_3*t153 +
-                dslip_2_by_place_3*t145 + dtrial_2_by_place_3*t149 + dtrial_size_by_place_3*t154)
-            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t152 + ddynamic_limit_by_rate_1*t153 +
-                dslip_2_by_rate_1*t145 + dtrial_2_by_rate_1*t149 + dtrial_size_by_rate_1*t154)
-            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t152 + ddynamic_limit_by_rate_2*t153 +
-                dslip_2_by_rate_2*t145 + dtrial_2_by_rate_2*t149 + dtrial_size_by_rate_2*t154)
-            dfriction_2_by_rate_3 = (ddrag_by_rate_3*t152 + ddynamic_limit_by_rate_3*t153 +
-                dslip_2_by_rate_3*t145 + dtrial_2_by_rate_3*t149 + dtrial_size_by_rate_3*t154)
-            dfriction_3_by_place_1 = (ddrag_by_place_1*t155 + ddynamic_limit_by_place_1*t156 +
-                dslip_3_by_place_1*t145 + dtrial_3_by_place_1*t149 + dtrial_size_by_place_1*t157)
-            dfriction_3_by_place_2 = (ddrag_by_place_2*t155 + ddynamic_limit_by_place_2*t156 +
-                dslip_3_by_place_2*t145 + dtrial_3_by_place_2*t149 + dtrial_size_by_place_2*t157)
-            dfriction_3_by_place_3 = (ddrag_by_place_3*t155 + ddynamic_limit_by_place_3*t156 +
-                dslip_3_by_place_3*t145 + dtrial_3_by_place_3*t149 + dtrial_size_by_place_3*t157)
-            dfriction_3_by_rate_1 = (ddrag_by_rate_1*t155 + ddynamic_limit_by_rate_1*t156 +
-                dslip_3_by_rate_1*t145 + dtrial_3_by_rate_1*t149 + dtrial_size_by_rate_1*t157)
-            dfriction_3_by_rate_2 = (ddrag_by_rate_2*t155 + ddynamic_limit_by_rate_2*t156 +
-                dslip_3_by_rate_2*t145 + dtrial_3_by_rate_2*t149 + dtrial_size_by_rate_2*t157)
-            dfriction_3_by_rate_3 = (ddrag_by_rate_3*t155 + ddynamic_limit_by_rate_3*t156 +
-                dslip_3_by_rate_3*t145 + dtrial_3_by_rate_3*t149 + dtrial_size_by_rate_3*t157)
+            dtrial_size_by_place_1 = (dtrial_1_by_place_1*t131 + dtrial_2_by_place_1*t132 +
+                dtrial_3_by_place_1*t133)
+            dtrial_size_by_place_2 = (dtrial_1_by_place_2*t131 + dtrial_2_by_place_2*t132 +
+                dtrial_3_by_place_2*t133)
+            dtrial_size_by_place_3 = (dtrial_1_by_place_3*t131 + dtrial_2_by_place_3*t132 +
+                dtrial_3_by_place_3*t133)
+            dtrial_size_by_rate_1 = (dtrial_1_by_rate_1*t131 + dtrial_2_by_rate_1*t132 +
+                dtrial_3_by_rate_1*t133)
+            dtrial_size_by_rate_2 = (dtrial_1_by_rate_2*t131 + dtrial_2_by_rate_2*t132 +
+                dtrial_3_by_rate_2*t133)
+            dtrial_size_by_rate_3 = (dtrial_1_by_rate_3*t131 + dtrial_2_by_rate_3*t132 +
+                dtrial_3_by_rate_3*t133)
+            ddrag_by_place_1 = dpush_by_place_1*t143 + dslip_speed_by_place_1*t144
+            ddrag_by_place_2 = dpush_by_place_2*t143 + dslip_speed_by_place_2*t144
+            ddrag_by_place_3 = dpush_by_place_3*t143 + dslip_speed_by_place_3*t144
+            ddrag_by_rate_1 = dpush_by_rate_1*t143 + dslip_speed_by_rate_1*t144
+            ddrag_by_rate_2 = dpush_by_rate_2*t143 + dslip_speed_by_rate_2*t144
+            ddrag_by_rate_3 = dpush_by_rate_3*t143 + dslip_speed_by_rate_3*t144
+            t145 = (slip_1 if speed > 0.0 else 0)
+            t146 = (drag if speed > 0.0 else 0)
+            t147 = -static_limit + trial_size
+            t148 = 1/trial_size
+            t149 = (0 if speed > 0.0 else (t148*trial_1 if t147 > 0.0 else 0))
+            t150 = (0 if speed > 0.0 else (dynamic_limit*t148 if t147 > 0.0 else 1))
+            t151 = dynamic_limit/(trial_size*trial_size)
+            t152 = (0 if speed > 0.0 else (-t151*trial_1 if t147 > 0.0 else 0))
+            t153 = (slip_2 if speed > 0.0 else 0)
+            t154 = (0 if speed > 0.0 else (t148*trial_2 if t147 > 0.0 else 0))
+            t155 = (0 if speed > 0.0 else (-t151*trial_2 if t147 > 0.0 else 0))
+            t156 = (slip_3 if speed > 0.0 else 0)
+            t157 = (0 if speed > 0.0 else (t148*trial_3 if t147 > 0.0 else 0))
+            t158 = (0 if speed > 0.0 else (-t151*trial_3 if t147 > 0.0 else 0))
+            dfriction_1_by_place_1 = (ddrag_by_place_1*t145 + ddynamic_limit_by_place_1*t149 +
+                dslip_1_by_place_1*t146 + dtrial_1_by_place_1*t150 + dtrial_size_by_place_1*t152)
+            dfriction_1_by_place_2 = (ddrag_by_place_2*t145 + ddynamic_limit_by_place_2*t149 +
+                dslip_1_by_place_2*t146 + dtrial_1_by_place_2*t150 + dtrial_size_by_place_2*t152)
+            dfriction_1_by_place_3 = (ddrag_by_place_3*t145 + ddynamic_limit_by_place_3*t149 +
+                dslip_1_by_place_3*t146 + dtrial_1_by_place_3*t150 + dtrial_size_by_place_3*t152)
+            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t145 + ddynamic_limit_by_rate_1*t149 +
+                dslip_1_by_rate_1*t146 + dtrial_1_by_rate_1*t150 + dtrial_size_by_rate_1*t152)
+            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t145 + ddynamic_limit_by_rate_2*t149 +
+                dslip_1_by_rate_2*t146 + dtrial_1_by_rate_2*t150 + dtrial_size_by_rate_2*t152)
+            dfriction_1_by_rate_3 = (ddrag_by_rate_3*t145 + ddynamic_limit_by_rate_3*t149 +
+                dslip_1_by_rate_3*t146 + dtrial_1_by_rate_3*t150 + dtrial_size_by_rate_3*t152)
+            dfriction_2_by_place_1 = (ddrag_by_place_1*t153 + ddynamic_limit_by_place_1*t154 +
+                dslip_2_by_place_1*t146 + dtrial_2_by_place_1*t150 + dtrial_size_by_place_1*t155)
+            dfriction_2_by_place_2 = (ddrag_by_place_2*t153 + ddynamic_limit_by_place_2*t154 +
+                dslip_2_by_place_2*t146 + dtrial_2_by_place_2*t150 + dtrial_size_by_place_2*t155)
+            dfriction_2_by_place_3 = (ddrag_by_place_3*t153 + ddynamic_limit_by_place_3*t154 +
+                dslip_2_by_place_3*t146 + dtrial_2_by_place_3*t150 + dtrial_size_by_place_3*t155)
+            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t153 + ddynamic_limit_by_rate_1*t154 +
+                dslip_2_by_rate_1*t146 + dtrial_2_by_rate_1*t150 + dtrial_size_by_rate_1*t155)
+            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t153 + ddynamic_limit_by_rate_2*t154 +
+                dslip_2_by_rate_2*t146 + dtrial_2_by_rate_2*t150 + dtrial_size_by_rate_2*t155)
+            dfriction_2_by_rate_3 = (ddrag_by_rate_3*t153 + ddynamic_limit_by_rate_3*t154 +
+                dslip_2_by_rate_3*t146 + dtrial_2_by_rate_3*t150 + dtrial_size_by_rate_3*t155)
+            dfriction_3_by_place_1 = (ddrag_by_place_1*t156 + ddynamic_limit_by_place_1*t157 +
+                dslip_3_by_place_1*t146 + dtrial_3_by_place_1*t150 + dtrial_size_by_place_1*t158)
+            dfriction_3_by_place_2 = (ddrag_by_place_2*t156 + ddynamic_limit_by_place_2*t157 +
+                dslip_3_by_place_2*t146 + dtrial_3_by_place_2*t150 + dtrial_size_by_place_2*t158)
+            dfriction_3_by_place_3 = (ddrag_by_place_3*t156 + ddynamic_limit_by_place_3*t157 +
+                dslip_3_by_place_3*t146 + dtrial_3_by_place_3*t150 + dtrial_size_by_place_3*t158)
+            dfriction_3_by_rate_1 = (ddrag_by_rate_1*t156 + ddynamic_limit_by_rate_1*t157 +
+                dslip_3_by_rate_1*t146 + dtrial_3_by_rate_1*t150 + dtrial_size_by_rate_1*t158)
+            dfriction_3_by_rate_2 = (ddrag_by_rate_2*t156 + ddynamic_limit_by_rate_2*t157 +
+                dslip_3_by_rate_2*t146 + dtrial_3_by_rate_2*t150 + dtrial_size_by_rate_2*t158)
+            dfriction_3_by_rate_3 = (ddrag_by_rate_3*t156 + ddynamic_limit_by_rate_3*t157 +
+                dslip_3_by_rate_3*t146 + dtrial_3_by_rate_3*t150 + dtrial_size_by_rate_3*t158)
             for column in range(9):
                 for i in range(9):
                     dq[i] = 0.0
@@ -612,116 +615,141 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = du[6]
                 uthb_y = du[7]
                 uthb_z = du[8]
-                t158 = uxa_x - uxb_x
-                t159 = uxa_y - uxb_y
-                t160 = uxa_z - uxb_z
-                t161 = xa_x - xb_x
-                t162 = xa_y - xb_y
-                t163 = xa_z - xb_z
-                t164 = Rb_xy*t161 + Rb_yy*t162 + Rb_zy*t163
-                t165 = Rb_xz*t161 + Rb_yz*t162 + Rb_zz*t163
-                t166 = Rb_xx*t158 + Rb_yx*t159 + Rb_zx*t160 + t164*uthb_z - t165*uthb_y
-                t167 = Rb_xx*t161 + Rb_yx*t162 + Rb_zx*t163
-                t168 = Rb_xy*t158 + Rb_yy*t159 + Rb_zy*t160 + t165*uthb_x - t167*uthb_z
-                t169 = Rb_xz*t158 + Rb_yz*t159 + Rb_zz*t160 - t164*uthb_x + t167*uthb_y
-                t170 = dpush_by_rate_1*t166 + dpush_by_rate_2*t168 + dpush_by_rate_3*t169
-                t171 = (dfriction_2_by_rate_1*t166 + dfriction_2_by_rate_2*t168 +
-                    dfriction_2_by_rate_3*t169)
-                t172 = normal_1*normal_2
-                t173 = (dfriction_3_by_rate_1*t166 + dfriction_3_by_rate_2*t168 +
-                    dfriction_3_by_rate_3*t169)
-                t174 = normal_3*t173
-                t175 = 1 - normal_1*normal_1
-                t176 = (dfriction_1_by_rate_1*t166 + dfriction_1_by_rate_2*t168 +
-                    dfriction_1_by_rate_3*t169)
-                t177 = -normal_1*t170 - normal_1*t174 - t171*t172 + t175*t176
-                t178 = 1 - normal_2*normal_2
-                t179 = -normal_2*t170 - normal_2*t174 + t171*t178 - t172*t176
-                t180 = normal_1*normal_3
-                t181 = normal_2*normal_3
-                t182 = 1 - normal_3*normal_3
-                t183 = -normal_3*t170 - t171*t181 + t173*t182 - t176*t180
-                t184 = Rb_xx*t177 + Rb_xy*t179 + Rb_xz*t183
-                t185 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t186 = -friction_1*t180 - friction_2*t181 + friction_3*t182 - normal_3*push
-                t187 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t188 = -friction_1*t172 + friction_2*t178 - friction_3*t181 - normal_2*push
-                t189 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t190 = friction_1*t175 - friction_2*t172 - friction_3*t180 - normal_1*push
-                t191 = dxa_x - dxb_x
-                t192 = dxa_y - dxb_y
-                t193 = dxa_z - dxb_z
-                t194 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t195 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t196 = Rb_xx*t191 + Rb_yx*t192 + Rb_zx*t193 + t161*t189 + t162*t194 + t163*t195
-                t197 = dnormal_1_by_place_1*t196
-                t198 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t199 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t200 = Rb_xy*t191 + Rb_yy*t192 + Rb_zy*t193 + t161*t187 + t162*t198 + t163*t199
-                t201 = dnormal_1_by_place_2*t200
-                t202 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t203 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t204 = Rb_xz*t191 + Rb_yz*t192 + Rb_zz*t193 + t161*t185 + t162*t202 + t163*t203
-                t205 = dnormal_1_by_place_3*t204
-                t206 = t197 + t201 + t205
-                t207 = dnormal_2_by_place_1*t196
-                t208 = dnormal_2_by_place_2*t200
-                t209 = dnormal_2_by_place_3*t204
+                t159 = dxa_x - dxb_x
+                t160 = dxa_y - dxb_y
+                t161 = dxa_z - dxb_z
+                t162 = xa_x - xb_x
+                t163 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t164 = xa_y - xb_y
+                t165 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t166 = xa_z - xb_z
+                t167 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t168 = Rb_xx*t159 + Rb_yx*t160 + Rb_zx*t161 + t162*t163 + t164*t165 + t166*t167
+                t169 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t170 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t171 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t172 = Rb_xy*t159 + Rb_yy*t160 + Rb_zy*t161 + t162*t169 + t164*t170 + t166*t171
+                t173 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t174 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t175 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t176 = Rb_xz*t159 + Rb_yz*t160 + Rb_zz*t161 + t162*t173 + t164*t174 + t166*t175
+                t177 = va_x - vb_x
+                t178 = va_y - vb_y
+                t179 = va_z - vb_z
+                t180 = uxa_x - uxb_x
+                t181 = uxa_y - uxb_y
+                t182 = uxa_z - uxb_z
+                t183 = Rb_xy*t162 + Rb_yy*t164 + Rb_zy*t166
+                t184 = Rb_xz*t162 + Rb_yz*t164 + Rb_zz*t166
+                t185 = Rb_xx*t162 + Rb_yx*t164 + Rb_zx*t166
+                dplace_1 = t168
+                dplace_2 = t172
+                dplace_3 = t176
+                drate_1 = -Omb_y*t176 + Omb_z*t172 + t163*t177 + t165*t178 + t167*t179
+                urate_1 = Rb_xx*t180 + Rb_yx*t181 + Rb_zx*t182 + t183*uthb_z - t184*uthb_y
+                drate_2 = Omb_x*t176 - Omb_z*t168 + t169*t177 + t170*t178 + t171*t179
+                urate_2 = Rb_xy*t180 + Rb_yy*t181 + Rb_zy*t182 + t184*uthb_x - t185*uthb_z
+                drate_3 = -Omb_x*t172 + Omb_y*t168 + t173*t177 + t174*t178 + t175*t179
+                urate_3 = Rb_xz*t180 + Rb_yz*t181 + Rb_zz*t182 - t183*uthb_x + t185*uthb_y
+                t186 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2 + dpush_by_rate_3*urate_3
+                t187 = (dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2 +
+                    dfriction_2_by_rate_3*urate_3)
+                t188 = normal_1*normal_2
+                t189 = (dfriction_3_by_rate_1*urate_1 + dfriction_3_by_rate_2*urate_2 +
+                    dfriction_3_by_rate_3*urate_3)
+                t190 = normal_3*t189
+                t191 = 1 - normal_1*normal_1
+                t192 = (dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2 +
+                    dfriction_1_by_rate_3*urate_3)
+                t193 = -normal_1*t186 - normal_1*t190 - t187*t188 + t191*t192
+                t194 = 1 - normal_2*normal_2
+                t195 = -normal_2*t186 - normal_2*t190 + t187*t194 - t188*t192
+                t196 = normal_1*normal_3
+                t197 = normal_2*normal_3
+                t198 = 1 - normal_3*normal_3
+                t199 = -normal_3*t186 - t187*t197 + t189*t198 - t192*t196
+                t200 = Rb_xx*t193 + Rb_xy*t195 + Rb_xz*t199
+                t201 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t202 = -friction_1*t196 - friction_2*t197 + friction_3*t198 - normal_3*push
+                t203 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t204 = -friction_1*t188 + friction_2*t194 - friction_3*t197 - normal_2*push
+                t205 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t206 = friction_1*t191 - friction_2*t188 - friction_3*t196 - normal_1*push
+                t207 = dnormal_1_by_place_1*dplace_1
+                t208 = dnormal_1_by_place_2*dplace_2
+                t209 = dnormal_1_by_place_3*dplace_3
                 t210 = t207 + t208 + t209
-                t211 = friction_2*t210
-                t212 = normal_2*t206
-                t213 = dnormal_3_by_place_1*t196
-                t214 = dnormal_3_by_place_2*t200
-                t215 = dnormal_3_by_place_3*t204
-                t216 = t213 + t214 + t215
-                t217 = friction_3*t216
-                t218 = friction_3*normal_3
-                t219 = friction_1*normal_1
-                t220 = va_x - vb_x
-                t221 = va_y - vb_y
-                t222 = va_z - vb_z
-                t223 = -Omb_y*t204 + Omb_z*t200 + t189*t220 + t194*t221 + t195*t222
-                t224 = Omb_x*t204 - Omb_z*t196 + t187*t220 + t198*t221 + t199*t222
-                t225 = -Omb_x*t200 + Omb_y*t196 + t185*t220 + t202*t221 + t203*t222
-                t226 = (dpush_by_place_1*t196 + dpush_by_place_2*t200 + dpush_by_place_3*t204 +
-                    dpush_by_rate_1*t223 + dpush_by_rate_2*t224 + dpush_by_rate_3*t225)
-                t227 = (dfriction_2_by_place_1*t196 + dfriction_2_by_place_2*t200 +
-                    dfriction_2_by_place_3*t204 + dfriction_2_by_rate_1*t223 +
-                    dfriction_2_by_rate_2*t224 + dfriction_2_by_rate_3*t225)
-                t228 = (dfriction_3_by_place_1*t196 + dfriction_3_by_place_2*t200 +
-                    dfriction_3_by_place_3*t204 + dfriction_3_by_rate_1*t223 +
-                    dfriction_3_by_rate_2*t224 + dfriction_3_by_rate_3*t225)
-                t229 = (dfriction_1_by_place_1*t196 + dfriction_1_by_place_2*t200 +
-                    dfriction_1_by_place_3*t204 + dfriction_1_by_rate_1*t223 +
-                    dfriction_1_by_rate_2*t224 + dfriction_1_by_rate_3*t225)
-                t230 = (-friction_2*t212 - normal_1*t211 - normal_1*t217 - normal_1*t226 -
-                    push*t206 - t172*t227 + t175*t229 - t180*t228 - t206*t218 - t219*(2*t197 +
-                    2*t201 + 2*t205))
-                t231 = friction_2*normal_2
-                t232 = (-friction_1*t212 - normal_2*t217 - normal_2*t226 - push*t210 - t172*t229 +
-                    t178*t227 - t181*t228 - t210*t218 - t210*t219 - t231*(2*t207 + 2*t208 +
-                    2*t209))
-                t233 = (-friction_1*normal_3*t206 - normal_3*t211 - normal_3*t226 - push*t216 -
-                    t180*t229 - t181*t227 + t182*t228 - t216*t219 - t216*t231 - t218*(2*t213 +
-                    2*t214 + 2*t215))
-                t234 = Rb_xx*t230 + Rb_xy*t232 + Rb_xz*t233 + t185*t186 + t187*t188 + t189*t190
-                t235 = Rb_yx*t177 + Rb_yy*t179 + Rb_yz*t183
-                t236 = Rb_yx*t230 + Rb_yy*t232 + Rb_yz*t233 + t186*t202 + t188*t198 + t190*t194
-                t237 = Rb_zx*t177 + Rb_zy*t179 + Rb_zz*t183
-                t238 = Rb_zx*t230 + Rb_zy*t232 + Rb_zz*t233 + t186*t203 + t188*t199 + t190*t195
-                t239 = -t164
-                t240 = -t165
-                t241 = -t167
-                J[column] = c_damping*t184 + c_stiffness*t234
-                J[9 + column] = c_damping*t235 + c_stiffness*t236
-                J[18 + column] = c_damping*t237 + c_stiffness*t238
-                J[27 + column] = -c_damping*t184 - c_stiffness*t234
-                J[36 + column] = -c_damping*t235 - c_stiffness*t236
-                J[45 + column] = -c_damping*t237 - c_stiffness*t238
-                J[54 + column] = (c_damping*(t165*t179 + t183*t239) + c_stiffness*(t165*t232 -
-                    t186*t200 + t188*t204 + t233*t239))
-                J[63 + column] = (c_damping*(t167*t183 + t177*t240) + c_stiffness*(t167*t233 +
-                    t186*t196 - t190*t204 + t230*t240))
-                J[72 + column] = (c_damping*(t164*t177 + t179*t241) + c_stiffness*(t164*t230 -
-                    t188*t196 + t190*t200 + t232*t241))
+                t211 = dnormal_2_by_place_1*dplace_1
+                t212 = dnormal_2_by_place_2*dplace_2
+                t213 = dnormal_2_by_place_3*dplace_3
+                t214 = t211 + t212 + t213
+                t215 = friction_2*t214
+                t216 = normal_2*t210
+                t217 = dnormal_3_by_place_1*dplace_1
+                t218 = dnormal_3_by_place_2*dplace_2
+                t219 = dnormal_3_by_place_3*dplace_3
+                t220 = t217 + t218 + t219
+                t221 = friction_3*t220
+                t222 = friction_3*normal_3
+                t223 = friction_1*normal_1
+                t224 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
+                    dplace_3*dpush_by_place_3 + dpush_by_rate_1*drate_1 + dpush_by_rate_2*drate_2
+                    + dpush_by_rate_3*drate_3)
+                t225 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
+                    dfriction_2_by_place_3*dplace_3 + dfriction_2_by_rate_1*drate_1 +
+                    dfriction_2_by_rate_2*drate_2 + dfriction_2_by_rate_3*drate_3)
+                t226 = (dfriction_3_by_place_1*dplace_1 + dfriction_3_by_place_2*dplace_2 +
+                    dfriction_3_by_place_3*dplace_3 + dfriction_3_by_rate_1*drate_1 +
+                    dfriction_3_by_rate_2*drate_2 + dfriction_3_by_rate_3*drate_3)
+                t227 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
+                    dfriction_1_by_place_3*dplace_3 + dfriction_1_by_rate_1*drate_1 +
+                    dfriction_1_by_rate_2*drate_2 + dfriction_1_by_rate_3*drate_3)
+                t228 = (-friction_2*t216 - normal_1*t215 - normal_1*t221 - normal_1*t224 -
+                    push*t210 - t188*t225 + t191*t227 - t196*t226 - t210*t222 - t223*(2*t207 +
+                    2*t208 + 2*t209))
+                t229 = friction_2*normal_2
+                t230 = (-friction_1*t216 - normal_2*t221 - normal_2*t224 - push*t214 - t188*t227 +
+                    t194*t225 - t197*t226 - t214*t222 - t214*t223 - t229*(2*t211 + 2*t212 +
+                    2*t213))
+                t231 = (-friction_1*normal_3*t210 - normal_3*t215 - normal_3*t224 - push*t220 -
+                    t196*t227 - t197*t225 + t198*t226 - t220*t223 - t220*t229 - t222*(2*t217 +
+                    2*t218 + 2*t219))
+                t232 = Rb_xx*t228 + Rb_xy*t230 + Rb_xz*t231 + t201*t202 + t203*t204 + t205*t206
+                t233 = Rb_yx*t193 + Rb_yy*t195 + Rb_yz*t199
+                t234 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t235 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t236 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t237 = Rb_yx*t228 + Rb_yy*t230 + Rb_yz*t231 + t202*t234 + t204*t235 + t206*t236
+                t238 = Rb_zx*t193 + Rb_zy*t195 + Rb_zz*t199
+                t239 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t240 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t241 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t242 = Rb_zx*t228 + Rb_zy*t230 + Rb_zz*t231 + t202*t239 + t204*t240 + t206*t241
+                t243 = xa_x - xb_x
+                t244 = xa_y - xb_y
+                t245 = xa_z - xb_z
+                t246 = Rb_xz*t243 + Rb_yz*t244 + Rb_zz*t245
+                t247 = Rb_xy*t243 + Rb_yy*t244 + Rb_zy*t245
+                t248 = -t247
+                t249 = dxa_x - dxb_x
+                t250 = dxa_y - dxb_y
+                t251 = dxa_z - dxb_z
+                t252 = Rb_xz*t249 + Rb_yz*t250 + Rb_zz*t251 + t201*t243 + t234*t244 + t239*t245
+                t253 = Rb_xy*t249 + Rb_yy*t250 + Rb_zy*t251 + t203*t243 + t235*t244 + t240*t245
+                t254 = Rb_xx*t243 + Rb_yx*t244 + Rb_zx*t245
+                t255 = -t246
+                t256 = Rb_xx*t249 + Rb_yx*t250 + Rb_zx*t251 + t205*t243 + t236*t244 + t241*t245
+                t257 = -t254
+                J[column] = c_damping*t200 + c_stiffness*t232
+                J[9 + column] = c_damping*t233 + c_stiffness*t237
+                J[18 + column] = c_damping*t238 + c_stiffness*t242
+                J[27 + column] = -c_damping*t200 - c_stiffness*t232
+                J[36 + column] = -c_damping*t233 - c_stiffness*t237
+                J[45 + column] = -c_damping*t238 - c_stiffness*t242
+                J[54 + column] = (c_damping*(t195*t246 + t199*t248) + c_stiffness*(-t202*t253 +
+                    t204*t252 + t230*t246 + t231*t248))
+                J[63 + column] = (c_damping*(t193*t255 + t199*t254) + c_stiffness*(t202*t256 -
+                    t206*t252 + t228*t255 + t231*t254))
+                J[72 + column] = (c_damping*(t193*t247 + t195*t257) + c_stiffness*(-t204*t256 +
+                    t206*t253 + t228*t247 + t230*t257))
     return OK

@@ -31,6 +31,7 @@ CONSTANTS = (
     Part("stiffness", (), "stiffness k of k d^n (1 + c d')"),
     Part("exponent", (), "exponent n"),
     Part("damping", (), "damping c [time/length]"),
+    Part("slow", (), "speed of impacts so slow that steps do not look at them"),
     Part("lower", (), "lower limit"),
     Part("upper", (), "upper limit"),
     Part("e", (3,), "axis, in axes of the first body"),
@@ -46,7 +47,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (73, 0, 0, 0),
-              "column": (401, 0, 0, 0)}
+              "column": (230, 0, 0, 0)}
 
 
 @kernel_function
@@ -61,12 +62,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         stiffness = constant[0]
         exponent = constant[1]
         damping = constant[2]
-        lower = constant[3]
-        upper = constant[4]
-        e_x = constant[5]
-        e_y = constant[6]
-        e_z = constant[7]
-        start = constant[8]
+        slow = constant[3]
+        lower = constant[4]
+        upper = constant[5]
+        e_x = constant[6]
+        e_y = constant[7]
+        e_z = constant[8]
+        start = constant[9]
         xa_x = q[unknowns[0]]
         xa_y = q[unknowns[1]]
         xa_z = q[unknowns[2]]
@@ -126,6 +128,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t15 = (kept_rate if kept_rate > 0.0 else -kept_rate)
         t16 = (speed_beyond if speed_beyond > 0.0 else -speed_beyond)
         t17 = (t16 if -t15 + t16 > 0.0 else t15)
+        t18 = (t17 if -kept_impact + t17 > 0.0 else kept_impact)
         g[0] = -t8*t9
         g[1] = -t10*t9
         g[2] = -t11*t9
@@ -140,8 +143,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             + Ra_zy*e_x)))
         frames[index[first + AT_FRAME]] = way
         frames[index[first + AT_FRAME] + 1] = speed_beyond
-        frames[index[first + AT_FRAME] + 2] = (((t17 if -kept_impact + t17 > 0.0 else kept_impact)
-            if touches - 0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 2] = (((t18 if -slow + t18 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0))
         frames[index[first + AT_FRAME] + 3] = beyond
         frames[index[first + AT_FRAME] + 4] = push
         if task == ENERGY:
@@ -219,74 +222,96 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 utha_x = du[6]
                 utha_y = du[7]
                 utha_z = du[8]
-                t18 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
-                t19 = -t18
-                t20 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
-                t21 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
-                t22 = -xa_x + xb_x
-                t23 = -xa_y + xb_y
-                t24 = -xa_z + xb_z
-                t25 = (c_damping*dpush_by_way_rate*side*(t18*(-uxa_x + uxb_x) + t20*(-uxa_y +
-                    uxb_y) + t21*(-uxa_z + uxb_z) + t22*(e_x*(Ra_xy*utha_z - Ra_xz*utha_y) +
-                    e_y*(-Ra_xx*utha_z + Ra_xz*utha_x) + e_z*(Ra_xx*utha_y - Ra_xy*utha_x)) +
-                    t23*(e_x*(Ra_yy*utha_z - Ra_yz*utha_y) + e_y*(-Ra_yx*utha_z + Ra_yz*utha_x) +
-                    e_z*(Ra_yx*utha_y - Ra_yy*utha_x)) + t24*(e_x*(Ra_zy*utha_z - Ra_zz*utha_y) +
-                    e_y*(-Ra_zx*utha_z + Ra_zz*utha_x) + e_z*(Ra_zx*utha_y - Ra_zy*utha_x))))
+                t19 = -dxa_x + dxb_x
+                t20 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
+                t21 = -dxa_y + dxb_y
+                t22 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
+                t23 = -dxa_z + dxb_z
+                t24 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
+                t25 = -xa_x + xb_x
                 t26 = Ra_xy*dtha_z - Ra_xz*dtha_y
                 t27 = -Ra_xx*dtha_z + Ra_xz*dtha_x
                 t28 = Ra_xx*dtha_y - Ra_xy*dtha_x
                 t29 = e_x*t26 + e_y*t27 + e_z*t28
-                t30 = push*side
-                t31 = -dxa_x + dxb_x
-                t32 = -dxa_y + dxb_y
-                t33 = -dxa_z + dxb_z
-                t34 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t35 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t36 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t37 = e_x*t34 + e_y*t35 + e_z*t36
-                t38 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t39 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t40 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t41 = e_x*t38 + e_y*t39 + e_z*t40
-                t42 = (side*(dpush_by_way*(t18*t31 + t20*t32 + t21*t33 + t22*t29 + t23*t37 +
-                    t24*t41) + dpush_by_way_rate*(t22*(e_x*(-Oma_y*t28 + Oma_z*t27) +
-                    e_y*(Oma_x*t28 - Oma_z*t26) + e_z*(-Oma_x*t27 + Oma_y*t26)) +
-                    t23*(e_x*(-Oma_y*t36 + Oma_z*t35) + e_y*(Oma_x*t36 - Oma_z*t34) +
-                    e_z*(-Oma_x*t35 + Oma_y*t34)) + t24*(e_x*(-Oma_y*t40 + Oma_z*t39) +
-                    e_y*(Oma_x*t40 - Oma_z*t38) + e_z*(-Oma_x*t39 + Oma_y*t38)) + t29*(-va_x +
-                    vb_x) + t31*(e_x*(-Oma_y*Ra_xz + Oma_z*Ra_xy) + e_y*(Oma_x*Ra_xz -
-                    Oma_z*Ra_xx) + e_z*(-Oma_x*Ra_xy + Oma_y*Ra_xx)) + t32*(e_x*(-Oma_y*Ra_yz +
+                t30 = -xa_y + xb_y
+                t31 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t32 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t33 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t34 = e_x*t31 + e_y*t32 + e_z*t33
+                t35 = -xa_z + xb_z
+                t36 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t37 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t38 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t39 = e_x*t36 + e_y*t37 + e_z*t38
+                dway = t19*t20 + t21*t22 + t23*t24 + t25*t29 + t30*t34 + t35*t39
+                dway_rate = (t19*(e_x*(-Oma_y*Ra_xz + Oma_z*Ra_xy) + e_y*(Oma_x*Ra_xz -
+                    Oma_z*Ra_xx) + e_z*(-Oma_x*Ra_xy + Oma_y*Ra_xx)) + t21*(e_x*(-Oma_y*Ra_yz +
                     Oma_z*Ra_yy) + e_y*(Oma_x*Ra_yz - Oma_z*Ra_yx) + e_z*(-Oma_x*Ra_yy +
-                    Oma_y*Ra_yx)) + t33*(e_x*(-Oma_y*Ra_zz + Oma_z*Ra_zy) + e_y*(Oma_x*Ra_zz -
-                    Oma_z*Ra_zx) + e_z*(-Oma_x*Ra_zy + Oma_y*Ra_zx)) + t37*(-va_y + vb_y) +
-                    t41*(-va_z + vb_z))))
-                t43 = -t20
-                t44 = -t21
-                t45 = -Ra_xy*e_z + Ra_xz*e_y
-                t46 = -Ra_yy*e_z + Ra_yz*e_y
-                t47 = -Ra_zy*e_z + Ra_zz*e_y
-                t48 = t22*t45 + t23*t46 + t24*t47
-                t49 = Ra_xx*e_z - Ra_xz*e_x
-                t50 = Ra_yx*e_z - Ra_yz*e_x
-                t51 = Ra_zx*e_z - Ra_zz*e_x
-                t52 = t22*t49 + t23*t50 + t24*t51
-                t53 = -Ra_xx*e_y + Ra_xy*e_x
-                t54 = -Ra_yx*e_y + Ra_yy*e_x
-                t55 = -Ra_zx*e_y + Ra_zy*e_x
-                t56 = t22*t53 + t23*t54 + t24*t55
-                J[column] = c_stiffness*(t19*t42 - t29*t30) + t19*t25
-                J[9 + column] = c_stiffness*(-t30*t37 + t42*t43) + t25*t43
-                J[18 + column] = c_stiffness*(-t30*t41 + t42*t44) + t25*t44
-                J[27 + column] = c_stiffness*(t18*t42 + t29*t30) + t18*t25
-                J[36 + column] = c_stiffness*(t20*t42 + t30*t37) + t20*t25
-                J[45 + column] = c_stiffness*(t21*t42 + t30*t41) + t21*t25
-                J[54 + column] = (c_stiffness*(t30*(t22*(e_y*t28 - e_z*t27) + t23*(e_y*t36 -
-                    e_z*t35) + t24*(e_y*t40 - e_z*t39) + t31*t45 + t32*t46 + t33*t47) + t42*t48) +
-                    t25*t48)
-                J[63 + column] = (c_stiffness*(t30*(t22*(-e_x*t28 + e_z*t26) + t23*(-e_x*t36 +
-                    e_z*t34) + t24*(-e_x*t40 + e_z*t38) + t31*t49 + t32*t50 + t33*t51) + t42*t52)
-                    + t25*t52)
-                J[72 + column] = (c_stiffness*(t30*(t22*(e_x*t27 - e_y*t26) + t23*(e_x*t35 -
-                    e_y*t34) + t24*(e_x*t39 - e_y*t38) + t31*t53 + t32*t54 + t33*t55) + t42*t56) +
-                    t25*t56)
+                    Oma_y*Ra_yx)) + t23*(e_x*(-Oma_y*Ra_zz + Oma_z*Ra_zy) + e_y*(Oma_x*Ra_zz -
+                    Oma_z*Ra_zx) + e_z*(-Oma_x*Ra_zy + Oma_y*Ra_zx)) + t25*(e_x*(-Oma_y*t28 +
+                    Oma_z*t27) + e_y*(Oma_x*t28 - Oma_z*t26) + e_z*(-Oma_x*t27 + Oma_y*t26)) +
+                    t29*(-va_x + vb_x) + t30*(e_x*(-Oma_y*t33 + Oma_z*t32) + e_y*(Oma_x*t33 -
+                    Oma_z*t31) + e_z*(-Oma_x*t32 + Oma_y*t31)) + t34*(-va_y + vb_y) +
+                    t35*(e_x*(-Oma_y*t38 + Oma_z*t37) + e_y*(Oma_x*t38 - Oma_z*t36) +
+                    e_z*(-Oma_x*t37 + Oma_y*t36)) + t39*(-va_z + vb_z))
+                uway_rate = (t20*(-uxa_x + uxb_x) + t22*(-uxa_y + uxb_y) + t24*(-uxa_z + uxb_z) +
+                    t25*(e_x*(Ra_xy*utha_z - Ra_xz*utha_y) + e_y*(-Ra_xx*utha_z + Ra_xz*utha_x) +
+                    e_z*(Ra_xx*utha_y - Ra_xy*utha_x)) + t30*(e_x*(Ra_yy*utha_z - Ra_yz*utha_y) +
+                    e_y*(-Ra_yx*utha_z + Ra_yz*utha_x) + e_z*(Ra_yx*utha_y - Ra_yy*utha_x)) +
+                    t35*(e_x*(Ra_zy*utha_z - Ra_zz*utha_y) + e_y*(-Ra_zx*utha_z + Ra_zz*utha_x) +
+                    e_z*(Ra_zx*utha_y - Ra_zy*utha_x)))
+                t40 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
+                t41 = -t40
+                t42 = c_damping*dpush_by_way_rate*side*uway_rate
+                t43 = side*(dpush_by_way*dway + dpush_by_way_rate*dway_rate)
+                t44 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t45 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t46 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t47 = e_x*t44 + e_y*t45 + e_z*t46
+                t48 = push*side
+                t49 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
+                t50 = -t49
+                t51 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t52 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t53 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t54 = e_x*t51 + e_y*t52 + e_z*t53
+                t55 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
+                t56 = -t55
+                t57 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t58 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t59 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t60 = e_x*t57 + e_y*t58 + e_z*t59
+                t61 = -xa_x + xb_x
+                t62 = -Ra_xy*e_z + Ra_xz*e_y
+                t63 = -xa_y + xb_y
+                t64 = -Ra_yy*e_z + Ra_yz*e_y
+                t65 = -xa_z + xb_z
+                t66 = -Ra_zy*e_z + Ra_zz*e_y
+                t67 = t61*t62 + t63*t64 + t65*t66
+                t68 = -dxa_x + dxb_x
+                t69 = -dxa_y + dxb_y
+                t70 = -dxa_z + dxb_z
+                t71 = Ra_xx*e_z - Ra_xz*e_x
+                t72 = Ra_yx*e_z - Ra_yz*e_x
+                t73 = Ra_zx*e_z - Ra_zz*e_x
+                t74 = t61*t71 + t63*t72 + t65*t73
+                t75 = -Ra_xx*e_y + Ra_xy*e_x
+                t76 = -Ra_yx*e_y + Ra_yy*e_x
+                t77 = -Ra_zx*e_y + Ra_zy*e_x
+                t78 = t61*t75 + t63*t76 + t65*t77
+                J[column] = c_stiffness*(t41*t43 - t47*t48) + t41*t42
+                J[9 + column] = c_stiffness*(t43*t50 - t48*t54) + t42*t50
+                J[18 + column] = c_stiffness*(t43*t56 - t48*t60) + t42*t56
+                J[27 + column] = c_stiffness*(t40*t43 + t47*t48) + t40*t42
+                J[36 + column] = c_stiffness*(t43*t49 + t48*t54) + t42*t49
+                J[45 + column] = c_stiffness*(t43*t55 + t48*t60) + t42*t55
+                J[54 + column] = (c_stiffness*(t43*t67 + t48*(t61*(e_y*t46 - e_z*t45) + t62*t68 +
+                    t63*(e_y*t53 - e_z*t52) + t64*t69 + t65*(e_y*t59 - e_z*t58) + t66*t70)) +
+                    t42*t67)
+                J[63 + column] = (c_stiffness*(t43*t74 + t48*(t61*(-e_x*t46 + e_z*t44) +
+                    t63*(-e_x*t53 + e_z*t51) + t65*(-e_x*t59 + e_z*t57) + t68*t71 + t69*t72 +
+                    t70*t73)) + t42*t74)
+                J[72 + column] = (c_stiffness*(t43*t78 + t48*(t61*(e_x*t45 - e_y*t44) +
+                    t63*(e_x*t52 - e_y*t51) + t65*(e_x*t58 - e_y*t57) + t68*t75 + t69*t76 +
+                    t70*t77)) + t42*t78)
     return OK

@@ -33,6 +33,7 @@ CONSTANTS = (
     Part("stiffness", (), "stiffness k of k d^n (1 + c d')"),
     Part("exponent", (), "exponent n"),
     Part("damping", (), "damping c [time/length]"),
+    Part("slow", (), "speed of impacts so slow that steps do not look at them"),
     Part("bristle", (), "stiffness of the bristles"),
     Part("bristle_damping", (), "their damping"),
     Part("coefficient", (), "coefficient of friction"),
@@ -54,7 +55,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (175, 0, 0, 0),
-              "column": (924, 0, 0, 0)}
+              "column": (813, 0, 0, 0)}
 
 
 @kernel_function
@@ -69,17 +70,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         stiffness = constant[0]
         exponent = constant[1]
         damping = constant[2]
-        bristle = constant[3]
-        bristle_damping = constant[4]
-        coefficient = constant[5]
-        static = constant[6]
-        speed = constant[7]
-        radius = constant[8]
-        e_x = constant[9]
-        e_y = constant[10]
-        e_z = constant[11]
-        size = constant[12]
-        side = constant[13]
+        slow = constant[3]
+        bristle = constant[4]
+        bristle_damping = constant[5]
+        coefficient = constant[6]
+        static = constant[7]
+        speed = constant[8]
+        radius = constant[9]
+        e_x = constant[10]
+        e_y = constant[11]
+        e_z = constant[12]
+        size = constant[13]
+        side = constant[14]
         xa_x = q[unknowns[0]]
         xa_y = q[unknowns[1]]
         xa_z = q[unknowns[2]]
@@ -255,7 +257,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t71 = (closing if closing > 0.0 else -closing)
         t72 = (kept_rate if kept_rate > 0.0 else -kept_rate)
         t73 = (t71 if t71 - t72 > 0.0 else t72)
-        t74 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+        t74 = (t73 if -kept_impact + t73 > 0.0 else kept_impact)
+        t75 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
             dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0)))
         g[0] = t50
         g[1] = t51
@@ -276,12 +279,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME] + 1] = place_2
         frames[index[first + AT_FRAME] + 2] = place_3
         frames[index[first + AT_FRAME] + 3] = closing
-        frames[index[first + AT_FRAME] + 4] = (((t73 if -kept_impact + t73 > 0.0 else kept_impact)
-            if touches - 0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 4] = (((t74 if -slow + t74 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0))
         frames[index[first + AT_FRAME] + 5] = gap_closed
-        frames[index[first + AT_FRAME] + 6] = t74*z_1
-        frames[index[first + AT_FRAME] + 7] = t74*z_2
-        frames[index[first + AT_FRAME] + 8] = t74*z_3
+        frames[index[first + AT_FRAME] + 6] = t75*z_1
+        frames[index[first + AT_FRAME] + 7] = t75*z_2
+        frames[index[first + AT_FRAME] + 8] = t75*z_3
         frames[index[first + AT_FRAME] + 9] = slips
         frames[index[first + AT_FRAME] + 10] = 1.0
         frames[index[first + AT_FRAME] + 11] = push
@@ -371,109 +374,109 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             du = at(work, WIDTH)
-            t75 = e_x*e_x
-            t76 = e_x*place_1 + e_y*place_2 + e_z*place_3
-            t77 = -e_x*t76 + place_1
-            t78 = -e_y*t76 + place_2
-            t79 = -e_z*t76 + place_3
-            t80 = t77*t77 + t78*t78 + t79*t79 + 1e-300
-            t81 = side/sqrt(t80)
-            t82 = e_x*e_y
-            t83 = e_z*t79
-            t84 = e_x*t83 - 0.5*t77*(2 - 2*t75) + t78*t82
-            t85 = t80**(-1.5)
-            t86 = side*t85
-            t87 = t81*t82
-            t88 = e_y*e_y
-            t89 = e_y*t83 + t77*t82 - 0.5*t78*(2 - 2*t88)
-            t90 = e_x*e_z
-            t91 = t81*t90
-            t92 = e_y*e_z
-            t93 = e_z*e_z
-            t94 = t77*t90 + t78*t92 - 0.5*t79*(2 - 2*t93)
-            t95 = t81*t92
-            dnormal_1_by_place_1 = t77*t84*t86 + t81*(1 - t75)
-            dnormal_1_by_place_2 = side*t77*t85*t89 - t87
-            dnormal_1_by_place_3 = side*t77*t85*t94 - t91
-            dnormal_2_by_place_1 = side*t78*t84*t85 - t87
-            dnormal_2_by_place_2 = t78*t86*t89 + t81*(1 - t88)
-            dnormal_2_by_place_3 = side*t78*t85*t94 - t95
-            dnormal_3_by_place_1 = side*t79*t84*t85 - t91
-            dnormal_3_by_place_2 = side*t79*t85*t89 - t95
-            dnormal_3_by_place_3 = t79*t86*t94 + t81*(1 - t93)
-            dgap_closed_by_place_1 = t81*t84
-            dgap_closed_by_place_2 = t81*t89
-            dgap_closed_by_place_3 = t81*t94
-            t96 = normal_3*spin_1
-            t97 = normal_1*radius
-            t98 = normal_1*normal_1
-            t99 = 1 - t98
-            t100 = radius*t99
-            t101 = normal_1*spin_3
-            t102 = -radius*(t101 - t96) + rate_2
-            t103 = -normal_1*t102 + spin_3*t100 + t96*t97
-            t104 = normal_1*spin_2
-            t105 = -radius*(normal_2*spin_1 - t104) + rate_3
-            t106 = -normal_1*t105 - normal_2*spin_1*t97 - spin_2*t100
-            t107 = normal_3*radius
-            t108 = t104*t107
-            t109 = normal_2*radius
-            t110 = t101*t109
-            t111 = normal_2*t102
-            t112 = normal_3*t105
-            t113 = normal_2*spin_3
-            t114 = -radius*(normal_3*spin_2 - t113) + rate_1
-            t115 = normal_1*t114
-            t116 = -t108 + t110 - t111 - t112 - 2*t115
-            t117 = normal_1*normal_2
-            t118 = -t117
-            t119 = normal_1*normal_3
-            t120 = -t119
-            t121 = radius*t98
-            t122 = -normal_3*t100 - normal_3*t121
-            t123 = normal_2*t100 + normal_2*t121
-            t124 = normal_2*normal_2
-            t125 = 1 - t124
-            t126 = radius*t125
-            t127 = -normal_2*t105 + spin_1*t126 + t104*t109
-            t128 = -normal_2*t114 - normal_3*spin_2*t109 - spin_3*t126
-            t129 = t109*t96
-            t130 = -t110 - 2*t111 - t112 - t115 + t129
-            t131 = normal_2*normal_3
-            t132 = -t131
-            t133 = radius*t124
-            t134 = normal_3*t126 + normal_3*t133
-            t135 = -normal_1*t126 - normal_1*t133
-            t136 = normal_3*normal_3
-            t137 = 1 - t136
-            t138 = radius*t137
-            t139 = -normal_3*t114 + spin_2*t138 + t107*t113
-            t140 = -normal_3*t102 - spin_1*t138 - t101*t107
-            t141 = t108 - t111 - 2*t112 - t115 - t129
-            t142 = radius*t136
-            t143 = -normal_2*t138 - normal_2*t142
-            t144 = normal_1*t138 + normal_1*t142
-            t145 = radius*t119
-            t146 = -kept_place_2 + place_2 - radius*(normal_1*turned_3 - normal_3*turned_1)
-            t147 = -normal_1*t146 + t100*turned_3 + t145*turned_1
-            t148 = radius*t117
-            t149 = -kept_place_3 + place_3 - radius*(-normal_1*turned_2 + normal_2*turned_1)
-            t150 = -normal_1*t149 - t100*turned_2 - t148*turned_1
-            t151 = t145*turned_2
-            t152 = t148*turned_3
-            t153 = normal_2*t146
-            t154 = normal_3*t149
-            t155 = -kept_place_1 + place_1 - radius*(-normal_2*turned_3 + normal_3*turned_2)
-            t156 = normal_1*t155
-            t157 = -t151 + t152 - t153 - t154 - 2*t156
-            t158 = -normal_2*t149 + t126*turned_1 + t148*turned_2
-            t159 = radius*t131
-            t160 = -normal_2*t155 - t126*turned_3 - t159*turned_2
-            t161 = t159*turned_1
-            t162 = -t152 - 2*t153 - t154 - t156 + t161
-            t163 = -normal_3*t155 + t138*turned_2 + t159*turned_3
-            t164 = -normal_3*t146 - t138*turned_1 - t145*turned_3
-            t165 = t151 - t153 - 2*t154 - t156 - t161
+            t76 = e_x*e_x
+            t77 = e_x*place_1 + e_y*place_2 + e_z*place_3
+            t78 = -e_x*t77 + place_1
+            t79 = -e_y*t77 + place_2
+            t80 = -e_z*t77 + place_3
+            t81 = t78*t78 + t79*t79 + t80*t80 + 1e-300
+            t82 = side/sqrt(t81)
+            t83 = e_x*e_y
+            t84 = e_z*t80
+            t85 = e_x*t84 - 0.5*t78*(2 - 2*t76) + t79*t83
+            t86 = t81**(-1.5)
+            t87 = side*t86
+            t88 = t82*t83
+            t89 = e_y*e_y
+            t90 = e_y*t84 + t78*t83 - 0.5*t79*(2 - 2*t89)
+            t91 = e_x*e_z
+            t92 = t82*t91
+            t93 = e_y*e_z
+            t94 = e_z*e_z
+            t95 = t78*t91 + t79*t93 - 0.5*t80*(2 - 2*t94)
+            t96 = t82*t93
+            dnormal_1_by_place_1 = t78*t85*t87 + t82*(1 - t76)
+            dnormal_1_by_place_2 = side*t78*t86*t90 - t88
+            dnormal_1_by_place_3 = side*t78*t86*t95 - t92
+            dnormal_2_by_place_1 = side*t79*t85*t86 - t88
+            dnormal_2_by_place_2 = t79*t87*t90 + t82*(1 - t89)
+            dnormal_2_by_place_3 = side*t79*t86*t95 - t96
+            dnormal_3_by_place_1 = side*t80*t85*t86 - t92
+            dnormal_3_by_place_2 = side*t80*t86*t90 - t96
+            dnormal_3_by_place_3 = t80*t87*t95 + t82*(1 - t94)
+            dgap_closed_by_place_1 = t82*t85
+            dgap_closed_by_place_2 = t82*t90
+            dgap_closed_by_place_3 = t82*t95
+            t97 = normal_3*spin_1
+            t98 = normal_1*radius
+            t99 = normal_1*normal_1
+            t100 = 1 - t99
+            t101 = radius*t100
+            t102 = normal_1*spin_3
+            t103 = -radius*(t102 - t97) + rate_2
+            t104 = -normal_1*t103 + spin_3*t101 + t97*t98
+            t105 = normal_1*spin_2
+            t106 = -radius*(normal_2*spin_1 - t105) + rate_3
+            t107 = -normal_1*t106 - normal_2*spin_1*t98 - spin_2*t101
+            t108 = normal_3*radius
+            t109 = t105*t108
+            t110 = normal_2*radius
+            t111 = t102*t110
+            t112 = normal_2*t103
+            t113 = normal_3*t106
+            t114 = normal_2*spin_3
+            t115 = -radius*(normal_3*spin_2 - t114) + rate_1
+            t116 = normal_1*t115
+            t117 = -t109 + t111 - t112 - t113 - 2*t116
+            t118 = normal_1*normal_2
+            t119 = -t118
+            t120 = normal_1*normal_3
+            t121 = -t120
+            t122 = radius*t99
+            t123 = -normal_3*t101 - normal_3*t122
+            t124 = normal_2*t101 + normal_2*t122
+            t125 = normal_2*normal_2
+            t126 = 1 - t125
+            t127 = radius*t126
+            t128 = -normal_2*t106 + spin_1*t127 + t105*t110
+            t129 = -normal_2*t115 - normal_3*spin_2*t110 - spin_3*t127
+            t130 = t110*t97
+            t131 = -t111 - 2*t112 - t113 - t116 + t130
+            t132 = normal_2*normal_3
+            t133 = -t132
+            t134 = radius*t125
+            t135 = normal_3*t127 + normal_3*t134
+            t136 = -normal_1*t127 - normal_1*t134
+            t137 = normal_3*normal_3
+            t138 = 1 - t137
+            t139 = radius*t138
+            t140 = -normal_3*t115 + spin_2*t139 + t108*t114
+            t141 = -normal_3*t103 - spin_1*t139 - t102*t108
+            t142 = t109 - t112 - 2*t113 - t116 - t130
+            t143 = radius*t137
+            t144 = -normal_2*t139 - normal_2*t143
+            t145 = normal_1*t139 + normal_1*t143
+            t146 = radius*t120
+            t147 = -kept_place_2 + place_2 - radius*(normal_1*turned_3 - normal_3*turned_1)
+            t148 = -normal_1*t147 + t101*turned_3 + t146*turned_1
+            t149 = radius*t118
+            t150 = -kept_place_3 + place_3 - radius*(-normal_1*turned_2 + normal_2*turned_1)
+            t151 = -normal_1*t150 - t101*turned_2 - t149*turned_1
+            t152 = t146*turned_2
+            t153 = t149*turned_3
+            t154 = normal_2*t147
+            t155 = normal_3*t150
+            t156 = -kept_place_1 + place_1 - radius*(-normal_2*turned_3 + normal_3*turned_2)
+            t157 = normal_1*t156
+            t158 = -t152 + t153 - t154 - t155 - 2*t157
+            t159 = -normal_2*t150 + t127*turned_1 + t149*turned_2
+            t160 = radius*t132
+            t161 = -normal_2*t156 - t127*turned_3 - t160*turned_2
+            t162 = t160*turned_1
+            t163 = -t153 - 2*t154 - t155 - t157 + t162
+            t164 = -normal_3*t156 + t139*turned_2 + t160*turned_3
+            t165 = -normal_3*t147 - t139*turned_1 - t146*turned_3
+            t166 = t152 - t154 - 2*t155 - t157 - t162
             dclosing_by_place_1 = (-dnormal_1_by_place_1*rate_1 - dnormal_2_by_place_1*rate_2 -
                 dnormal_3_by_place_1*rate_3)
             dclosing_by_place_2 = (-dnormal_1_by_place_2*rate_1 - dnormal_2_by_place_2*rate_2 -
@@ -483,159 +486,159 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dclosing_by_rate_1 = -normal_1
             dclosing_by_rate_2 = -normal_2
             dclosing_by_rate_3 = -normal_3
-            dslip_1_by_place_1 = (dnormal_1_by_place_1*t116 + dnormal_2_by_place_1*t103 +
-                dnormal_3_by_place_1*t106)
-            dslip_1_by_place_2 = (dnormal_1_by_place_2*t116 + dnormal_2_by_place_2*t103 +
-                dnormal_3_by_place_2*t106)
-            dslip_1_by_place_3 = (dnormal_1_by_place_3*t116 + dnormal_2_by_place_3*t103 +
-                dnormal_3_by_place_3*t106)
-            dslip_1_by_rate_1 = t99
-            dslip_1_by_rate_2 = t118
-            dslip_1_by_rate_3 = t120
-            dslip_1_by_spin_2 = t122
-            dslip_1_by_spin_3 = t123
-            dslip_2_by_place_1 = (dnormal_1_by_place_1*t128 + dnormal_2_by_place_1*t130 +
-                dnormal_3_by_place_1*t127)
-            dslip_2_by_place_2 = (dnormal_1_by_place_2*t128 + dnormal_2_by_place_2*t130 +
-                dnormal_3_by_place_2*t127)
-            dslip_2_by_place_3 = (dnormal_1_by_place_3*t128 + dnormal_2_by_place_3*t130 +
-                dnormal_3_by_place_3*t127)
-            dslip_2_by_rate_1 = t118
-            dslip_2_by_rate_2 = t125
-            dslip_2_by_rate_3 = t132
-            dslip_2_by_spin_1 = t134
-            dslip_2_by_spin_3 = t135
-            dslip_3_by_place_1 = (dnormal_1_by_place_1*t139 + dnormal_2_by_place_1*t140 +
-                dnormal_3_by_place_1*t141)
-            dslip_3_by_place_2 = (dnormal_1_by_place_2*t139 + dnormal_2_by_place_2*t140 +
-                dnormal_3_by_place_2*t141)
-            dslip_3_by_place_3 = (dnormal_1_by_place_3*t139 + dnormal_2_by_place_3*t140 +
-                dnormal_3_by_place_3*t141)
-            dslip_3_by_rate_1 = t120
-            dslip_3_by_rate_2 = t132
-            dslip_3_by_rate_3 = t137
-            dslip_3_by_spin_1 = t143
-            dslip_3_by_spin_2 = t144
-            dincrement_1_by_place_1 = (dnormal_1_by_place_1*t157 + dnormal_2_by_place_1*t147 +
-                dnormal_3_by_place_1*t150 - t98 + 1)
-            dincrement_1_by_place_2 = (dnormal_1_by_place_2*t157 + dnormal_2_by_place_2*t147 +
-                dnormal_3_by_place_2*t150 + t118)
-            dincrement_1_by_place_3 = (dnormal_1_by_place_3*t157 + dnormal_2_by_place_3*t147 +
-                dnormal_3_by_place_3*t150 + t120)
-            dincrement_1_by_turned_2 = t122
-            dincrement_1_by_turned_3 = t123
-            dincrement_2_by_place_1 = (dnormal_1_by_place_1*t160 + dnormal_2_by_place_1*t162 +
-                dnormal_3_by_place_1*t158 + t118)
-            dincrement_2_by_place_2 = (dnormal_1_by_place_2*t160 + dnormal_2_by_place_2*t162 +
-                dnormal_3_by_place_2*t158 - t124 + 1)
-            dincrement_2_by_place_3 = (dnormal_1_by_place_3*t160 + dnormal_2_by_place_3*t162 +
-                dnormal_3_by_place_3*t158 + t132)
-            dincrement_2_by_turned_1 = t134
-            dincrement_2_by_turned_3 = t135
-            dincrement_3_by_place_1 = (dnormal_1_by_place_1*t163 + dnormal_2_by_place_1*t164 +
-                dnormal_3_by_place_1*t165 + t120)
-            dincrement_3_by_place_2 = (dnormal_1_by_place_2*t163 + dnormal_2_by_place_2*t164 +
-                dnormal_3_by_place_2*t165 + t132)
-            dincrement_3_by_place_3 = (dnormal_1_by_place_3*t163 + dnormal_2_by_place_3*t164 +
-                dnormal_3_by_place_3*t165 - t136 + 1)
-            dincrement_3_by_turned_1 = t143
-            dincrement_3_by_turned_2 = t144
-            t166 = (1 if gap_closed > 0.0 else 0)
-            ddepth_by_place_1 = dgap_closed_by_place_1*t166
-            ddepth_by_place_2 = dgap_closed_by_place_2*t166
-            ddepth_by_place_3 = dgap_closed_by_place_3*t166
-            t167 = depth**exponent*exponent*stiffness/depth
-            delastic_by_place_1 = ddepth_by_place_1*t167
-            delastic_by_place_2 = ddepth_by_place_2*t167
-            delastic_by_place_3 = ddepth_by_place_3*t167
+            dslip_1_by_place_1 = (dnormal_1_by_place_1*t117 + dnormal_2_by_place_1*t104 +
+                dnormal_3_by_place_1*t107)
+            dslip_1_by_place_2 = (dnormal_1_by_place_2*t117 + dnormal_2_by_place_2*t104 +
+                dnormal_3_by_place_2*t107)
+            dslip_1_by_place_3 = (dnormal_1_by_place_3*t117 + dnormal_2_by_place_3*t104 +
+                dnormal_3_by_place_3*t107)
+            dslip_1_by_rate_1 = t100
+            dslip_1_by_rate_2 = t119
+            dslip_1_by_rate_3 = t121
+            dslip_1_by_spin_2 = t123
+            dslip_1_by_spin_3 = t124
+            dslip_2_by_place_1 = (dnormal_1_by_place_1*t129 + dnormal_2_by_place_1*t131 +
+                dnormal_3_by_place_1*t128)
+            dslip_2_by_place_2 = (dnormal_1_by_place_2*t129 + dnormal_2_by_place_2*t131 +
+                dnormal_3_by_place_2*t128)
+            dslip_2_by_place_3 = (dnormal_1_by_place_3*t129 + dnormal_2_by_place_3*t131 +
+                dnormal_3_by_place_3*t128)
+            dslip_2_by_rate_1 = t119
+            dslip_2_by_rate_2 = t126
+            dslip_2_by_rate_3 = t133
+            dslip_2_by_spin_1 = t135
+            dslip_2_by_spin_3 = t136
+            dslip_3_by_place_1 = (dnormal_1_by_place_1*t140 + dnormal_2_by_place_1*t141 +
+                dnormal_3_by_place_1*t142)
+            dslip_3_by_place_2 = (dnormal_1_by_place_2*t140 + dnormal_2_by_place_2*t141 +
+                dnormal_3_by_place_2*t142)
+            dslip_3_by_place_3 = (dnormal_1_by_place_3*t140 + dnormal_2_by_place_3*t141 +
+                dnormal_3_by_place_3*t142)
+            dslip_3_by_rate_1 = t121
+            dslip_3_by_rate_2 = t133
+            dslip_3_by_rate_3 = t138
+            dslip_3_by_spin_1 = t144
+            dslip_3_by_spin_2 = t145
+            dincrement_1_by_place_1 = (dnormal_1_by_place_1*t158 + dnormal_2_by_place_1*t148 +
+                dnormal_3_by_place_1*t151 - t99 + 1)
+            dincrement_1_by_place_2 = (dnormal_1_by_place_2*t158 + dnormal_2_by_place_2*t148 +
+                dnormal_3_by_place_2*t151 + t119)
+            dincrement_1_by_place_3 = (dnormal_1_by_place_3*t158 + dnormal_2_by_place_3*t148 +
+                dnormal_3_by_place_3*t151 + t121)
+            dincrement_1_by_turned_2 = t123
+            dincrement_1_by_turned_3 = t124
+            dincrement_2_by_place_1 = (dnormal_1_by_place_1*t161 + dnormal_2_by_place_1*t163 +
+                dnormal_3_by_place_1*t159 + t119)
+            dincrement_2_by_place_2 = (dnormal_1_by_place_2*t161 + dnormal_2_by_place_2*t163 +
+                dnormal_3_by_place_2*t159 - t125 + 1)
+            dincrement_2_by_place_3 = (dnormal_1_by_place_3*t161 + dnormal_2_by_place_3*t163 +
+                dnormal_3_by_place_3*t159 + t133)
+            dincrement_2_by_turned_1 = t135
+            dincrement_2_by_turned_3 = t136
+            dincrement_3_by_place_1 = (dnormal_1_by_place_1*t164 + dnormal_2_by_place_1*t165 +
+                dnormal_3_by_place_1*t166 + t121)
+            dincrement_3_by_place_2 = (dnormal_1_by_place_2*t164 + dnormal_2_by_place_2*t165 +
+                dnormal_3_by_place_2*t166 + t133)
+            dincrement_3_by_place_3 = (dnormal_1_by_place_3*t164 + dnormal_2_by_place_3*t165 +
+                dnormal_3_by_place_3*t166 - t137 + 1)
+            dincrement_3_by_turned_1 = t144
+            dincrement_3_by_turned_2 = t145
+            t167 = (1 if gap_closed > 0.0 else 0)
+            ddepth_by_place_1 = dgap_closed_by_place_1*t167
+            ddepth_by_place_2 = dgap_closed_by_place_2*t167
+            ddepth_by_place_3 = dgap_closed_by_place_3*t167
+            t168 = depth**exponent*exponent*stiffness/depth
+            delastic_by_place_1 = ddepth_by_place_1*t168
+            delastic_by_place_2 = ddepth_by_place_2*t168
+            delastic_by_place_3 = ddepth_by_place_3*t168
             dfactor_by_place_1 = damping*dclosing_by_place_1
             dfactor_by_place_2 = damping*dclosing_by_place_2
             dfactor_by_place_3 = damping*dclosing_by_place_3
             dfactor_by_rate_1 = damping*dclosing_by_rate_1
             dfactor_by_rate_2 = damping*dclosing_by_rate_2
             dfactor_by_rate_3 = damping*dclosing_by_rate_3
-            t168 = (factor if factor > 0.0 else 0)
-            t169 = (elastic if factor > 0.0 else 0)
-            dpush_by_place_1 = delastic_by_place_1*t168 + dfactor_by_place_1*t169
-            dpush_by_place_2 = delastic_by_place_2*t168 + dfactor_by_place_2*t169
-            dpush_by_place_3 = delastic_by_place_3*t168 + dfactor_by_place_3*t169
-            dpush_by_rate_1 = dfactor_by_rate_1*t169
-            dpush_by_rate_2 = dfactor_by_rate_2*t169
-            dpush_by_rate_3 = dfactor_by_rate_3*t169
-            t170 = kept_begun*normal_1
-            t171 = normal_2*t170
-            t172 = normal_3*t170
-            t173 = increment_2*kept_begun + kept_bent_2
-            t174 = normal_1*t173
-            t175 = increment_3*kept_begun + kept_bent_3
-            t176 = normal_1*t175
-            t177 = 1 - normal_1*normal_1
-            t178 = normal_2*t173
-            t179 = normal_3*t175
-            t180 = increment_1*kept_begun + kept_bent_1
-            t181 = normal_1*t180
-            t182 = -t178 - t179 - 2*t181
-            t183 = kept_begun*t177
-            t184 = kept_begun*normal_2*normal_3
-            t185 = normal_2*t180
-            t186 = normal_2*t175
-            t187 = 1 - normal_2*normal_2
-            t188 = -2*t178 - t179 - t181
-            t189 = normal_3*t180
-            t190 = normal_3*t173
-            t191 = 1 - normal_3*normal_3
-            t192 = -t178 - 2*t179 - t181
-            dz_1_by_place_1 = (dincrement_1_by_place_1*kept_begun*t177 -
-                dincrement_2_by_place_1*t171 - dincrement_3_by_place_1*t172 +
-                dnormal_1_by_place_1*t182 - dnormal_2_by_place_1*t174 - dnormal_3_by_place_1*t176)
-            dz_1_by_place_2 = (dincrement_1_by_place_2*kept_begun*t177 -
-                dincrement_2_by_place_2*t171 - dincrement_3_by_place_2*t172 +
-                dnormal_1_by_place_2*t182 - dnormal_2_by_place_2*t174 - dnormal_3_by_place_2*t176)
-            dz_1_by_place_3 = (dincrement_1_by_place_3*kept_begun*t177 -
-                dincrement_2_by_place_3*t171 - dincrement_3_by_place_3*t172 +
-                dnormal_1_by_place_3*t182 - dnormal_2_by_place_3*t174 - dnormal_3_by_place_3*t176)
-            dz_1_by_turned_1 = -dincrement_2_by_turned_1*t171 - dincrement_3_by_turned_1*t172
-            dz_1_by_turned_2 = dincrement_1_by_turned_2*t183 - dincrement_3_by_turned_2*t172
-            dz_1_by_turned_3 = dincrement_1_by_turned_3*t183 - dincrement_2_by_turned_3*t171
-            dz_2_by_place_1 = (-dincrement_1_by_place_1*t171 +
-                dincrement_2_by_place_1*kept_begun*t187 - dincrement_3_by_place_1*t184 -
-                dnormal_1_by_place_1*t185 + dnormal_2_by_place_1*t188 - dnormal_3_by_place_1*t186)
-            dz_2_by_place_2 = (-dincrement_1_by_place_2*t171 +
-                dincrement_2_by_place_2*kept_begun*t187 - dincrement_3_by_place_2*t184 -
-                dnormal_1_by_place_2*t185 + dnormal_2_by_place_2*t188 - dnormal_3_by_place_2*t186)
-            dz_2_by_place_3 = (-dincrement_1_by_place_3*t171 +
-                dincrement_2_by_place_3*kept_begun*t187 - dincrement_3_by_place_3*t184 -
-                dnormal_1_by_place_3*t185 + dnormal_2_by_place_3*t188 - dnormal_3_by_place_3*t186)
-            dz_2_by_turned_1 = (dincrement_2_by_turned_1*kept_begun*t187 -
-                dincrement_3_by_turned_1*t184)
-            dz_2_by_turned_2 = -dincrement_1_by_turned_2*t171 - dincrement_3_by_turned_2*t184
-            dz_2_by_turned_3 = (-dincrement_1_by_turned_3*t171 +
-                dincrement_2_by_turned_3*kept_begun*t187)
-            dz_3_by_place_1 = (-dincrement_1_by_place_1*t172 - dincrement_2_by_place_1*t184 +
-                dincrement_3_by_place_1*kept_begun*t191 - dnormal_1_by_place_1*t189 -
-                dnormal_2_by_place_1*t190 + dnormal_3_by_place_1*t192)
-            dz_3_by_place_2 = (-dincrement_1_by_place_2*t172 - dincrement_2_by_place_2*t184 +
-                dincrement_3_by_place_2*kept_begun*t191 - dnormal_1_by_place_2*t189 -
-                dnormal_2_by_place_2*t190 + dnormal_3_by_place_2*t192)
-            dz_3_by_place_3 = (-dincrement_1_by_place_3*t172 - dincrement_2_by_place_3*t184 +
-                dincrement_3_by_place_3*kept_begun*t191 - dnormal_1_by_place_3*t189 -
-                dnormal_2_by_place_3*t190 + dnormal_3_by_place_3*t192)
-            dz_3_by_turned_1 = (-dincrement_2_by_turned_1*t184 +
-                dincrement_3_by_turned_1*kept_begun*t191)
-            dz_3_by_turned_2 = (-dincrement_1_by_turned_2*t172 +
-                dincrement_3_by_turned_2*kept_begun*t191)
-            dz_3_by_turned_3 = -dincrement_1_by_turned_3*t172 - dincrement_2_by_turned_3*t184
+            t169 = (factor if factor > 0.0 else 0)
+            t170 = (elastic if factor > 0.0 else 0)
+            dpush_by_place_1 = delastic_by_place_1*t169 + dfactor_by_place_1*t170
+            dpush_by_place_2 = delastic_by_place_2*t169 + dfactor_by_place_2*t170
+            dpush_by_place_3 = delastic_by_place_3*t169 + dfactor_by_place_3*t170
+            dpush_by_rate_1 = dfactor_by_rate_1*t170
+            dpush_by_rate_2 = dfactor_by_rate_2*t170
+            dpush_by_rate_3 = dfactor_by_rate_3*t170
+            t171 = kept_begun*normal_1
+            t172 = normal_2*t171
+            t173 = normal_3*t171
+            t174 = increment_2*kept_begun + kept_bent_2
+            t175 = normal_1*t174
+            t176 = increment_3*kept_begun + kept_bent_3
+            t177 = normal_1*t176
+            t178 = 1 - normal_1*normal_1
+            t179 = normal_2*t174
+            t180 = normal_3*t176
+            t181 = increment_1*kept_begun + kept_bent_1
+            t182 = normal_1*t181
+            t183 = -t179 - t180 - 2*t182
+            t184 = kept_begun*t178
+            t185 = kept_begun*normal_2*normal_3
+            t186 = normal_2*t181
+            t187 = normal_2*t176
+            t188 = 1 - normal_2*normal_2
+            t189 = -2*t179 - t180 - t182
+            t190 = normal_3*t181
+            t191 = normal_3*t174
+            t192 = 1 - normal_3*normal_3
+            t193 = -t179 - 2*t180 - t182
+            dz_1_by_place_1 = (dincrement_1_by_place_1*kept_begun*t178 -
+                dincrement_2_by_place_1*t172 - dincrement_3_by_place_1*t173 +
+                dnormal_1_by_place_1*t183 - dnormal_2_by_place_1*t175 - dnormal_3_by_place_1*t177)
+            dz_1_by_place_2 = (dincrement_1_by_place_2*kept_begun*t178 -
+                dincrement_2_by_place_2*t172 - dincrement_3_by_place_2*t173 +
+                dnormal_1_by_place_2*t183 - dnormal_2_by_place_2*t175 - dnormal_3_by_place_2*t177)
+            dz_1_by_place_3 = (dincrement_1_by_place_3*kept_begun*t178 -
+                dincrement_2_by_place_3*t172 - dincrement_3_by_place_3*t173 +
+                dnormal_1_by_place_3*t183 - dnormal_2_by_place_3*t175 - dnormal_3_by_place_3*t177)
+            dz_1_by_turned_1 = -dincrement_2_by_turned_1*t172 - dincrement_3_by_turned_1*t173
+            dz_1_by_turned_2 = dincrement_1_by_turned_2*t184 - dincrement_3_by_turned_2*t173
+            dz_1_by_turned_3 = dincrement_1_by_turned_3*t184 - dincrement_2_by_turned_3*t172
+            dz_2_by_place_1 = (-dincrement_1_by_place_1*t172 +
+                dincrement_2_by_place_1*kept_begun*t188 - dincrement_3_by_place_1*t185 -
+                dnormal_1_by_place_1*t186 + dnormal_2_by_place_1*t189 - dnormal_3_by_place_1*t187)
+            dz_2_by_place_2 = (-dincrement_1_by_place_2*t172 +
+                dincrement_2_by_place_2*kept_begun*t188 - dincrement_3_by_place_2*t185 -
+                dnormal_1_by_place_2*t186 + dnormal_2_by_place_2*t189 - dnormal_3_by_place_2*t187)
+            dz_2_by_place_3 = (-dincrement_1_by_place_3*t172 +
+                dincrement_2_by_place_3*kept_begun*t188 - dincrement_3_by_place_3*t185 -
+                dnormal_1_by_place_3*t186 + dnormal_2_by_place_3*t189 - dnormal_3_by_place_3*t187)
+            dz_2_by_turned_1 = (dincrement_2_by_turned_1*kept_begun*t188 -
+                dincrement_3_by_turned_1*t185)
+            dz_2_by_turned_2 = -dincrement_1_by_turned_2*t172 - dincrement_3_by_turned_2*t185
+            dz_2_by_turned_3 = (-dincrement_1_by_turned_3*t172 +
+                dincrement_2_by_turned_3*kept_begun*t188)
+            dz_3_by_place_1 = (-dincrement_1_by_place_1*t173 - dincrement_2_by_place_1*t185 +
+                dincrement_3_by_place_1*kept_begun*t192 - dnormal_1_by_place_1*t190 -
+                dnormal_2_by_place_1*t191 + dnormal_3_by_place_1*t193)
+            dz_3_by_place_2 = (-dincrement_1_by_place_2*t173 - dincrement_2_by_place_2*t185 +
+                dincrement_3_by_place_2*kept_begun*t192 - dnormal_1_by_place_2*t190 -
+                dnormal_2_by_place_2*t191 + dnormal_3_by_place_2*t193)
+            dz_3_by_place_3 = (-dincrement_1_by_place_3*t173 - dincrement_2_by_place_3*t185 +
+                dincrement_3_by_place_3*kept_begun*t192 - dnormal_1_by_place_3*t190 -
+                dnormal_2_by_place_3*t191 + dnormal_3_by_place_3*t193)
+            dz_3_by_turned_1 = (-dincrement_2_by_turned_1*t185 +
+                dincrement_3_by_turned_1*kept_begun*t192)
+            dz_3_by_turned_2 = (-dincrement_1_by_turned_2*t173 +
+                dincrement_3_by_turned_2*kept_begun*t192)
+            dz_3_by_turned_3 = -dincrement_1_by_turned_3*t173 - dincrement_2_by_turned_3*t185
             ddynamic_limit_by_place_1 = coefficient*dpush_by_place_1
             ddynamic_limit_by_place_2 = coefficient*dpush_by_place_2
             ddynamic_limit_by_place_3 = coefficient*dpush_by_place_3
             ddynamic_limit_by_rate_1 = coefficient*dpush_by_rate_1
             ddynamic_limit_by_rate_2 = coefficient*dpush_by_rate_2
             ddynamic_limit_by_rate_3 = coefficient*dpush_by_rate_3
-            t193 = (1/sqrt(slip_1*slip_1 + slip_2*slip_2 + slip_3*slip_3 + 1e-12*speed*speed +
+            t194 = (1/sqrt(slip_1*slip_1 + slip_2*slip_2 + slip_3*slip_3 + 1e-12*speed*speed +
                 1e-300))
-            t194 = slip_1*t193
-            t195 = slip_2*t193
-            t196 = slip_3*t193
+            t195 = slip_1*t194
+            t196 = slip_2*t194
+            t197 = slip_3*t194
             dtrial_1_by_place_1 = bristle*dz_1_by_place_1 + bristle_damping*dslip_1_by_place_1
             dtrial_1_by_place_2 = bristle*dz_1_by_place_2 + bristle_damping*dslip_1_by_place_2
             dtrial_1_by_place_3 = bristle*dz_1_by_place_3 + bristle_damping*dslip_1_by_place_3
@@ -669,142 +672,142 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dtrial_3_by_rate_3 = bristle_damping*dslip_3_by_rate_3
             dtrial_3_by_spin_1 = bristle_damping*dslip_3_by_spin_1
             dtrial_3_by_spin_2 = bristle_damping*dslip_3_by_spin_2
-            dslip_speed_by_place_1 = (dslip_1_by_place_1*t194 + dslip_2_by_place_1*t195 +
-                dslip_3_by_place_1*t196)
-            dslip_speed_by_place_2 = (dslip_1_by_place_2*t194 + dslip_2_by_place_2*t195 +
-                dslip_3_by_place_2*t196)
-            dslip_speed_by_place_3 = (dslip_1_by_place_3*t194 + dslip_2_by_place_3*t195 +
-                dslip_3_by_place_3*t196)
-            dslip_speed_by_rate_1 = (dslip_1_by_rate_1*t194 + dslip_2_by_rate_1*t195 +
-                dslip_3_by_rate_1*t196)
-            dslip_speed_by_rate_2 = (dslip_1_by_rate_2*t194 + dslip_2_by_rate_2*t195 +
-                dslip_3_by_rate_2*t196)
-            dslip_speed_by_rate_3 = (dslip_1_by_rate_3*t194 + dslip_2_by_rate_3*t195 +
-                dslip_3_by_rate_3*t196)
-            dslip_speed_by_spin_1 = dslip_2_by_spin_1*t195 + dslip_3_by_spin_1*t196
-            dslip_speed_by_spin_2 = dslip_1_by_spin_2*t194 + dslip_3_by_spin_2*t196
-            dslip_speed_by_spin_3 = dslip_1_by_spin_3*t194 + dslip_2_by_spin_3*t195
-            t197 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
-            t198 = t197*trial_1
-            t199 = t197*trial_2
-            t200 = t197*trial_3
-            t201 = 1/slip_speed
-            t202 = 1/speed
-            t203 = slip_speed*t202
-            t204 = tanh(4*t203)
-            t205 = slip_speed*slip_speed
-            t206 = 0.75 + ((0.25)*t205)/(speed*speed)
-            t207 = -coefficient + static
-            t208 = t207/(t206*t206)
-            t209 = coefficient*t204 + t203*t208
-            t210 = (t201*t209 if speed > 0.0 else 0)
-            t211 = ((push*t201*(4*coefficient*t202*(1 - t204*t204) + t202*t208 +
-                (-t205*t207)/(speed*speed*speed*t206*t206*t206)) - push*t209/t205 if speed > 0.0
+            dslip_speed_by_place_1 = (dslip_1_by_place_1*t195 + dslip_2_by_place_1*t196 +
+                dslip_3_by_place_1*t197)
+            dslip_speed_by_place_2 = (dslip_1_by_place_2*t195 + dslip_2_by_place_2*t196 +
+                dslip_3_by_place_2*t197)
+            dslip_speed_by_place_3 = (dslip_1_by_place_3*t195 + dslip_2_by_place_3*t196 +
+                dslip_3_by_place_3*t197)
+            dslip_speed_by_rate_1 = (dslip_1_by_rate_1*t195 + dslip_2_by_rate_1*t196 +
+                dslip_3_by_rate_1*t197)
+            dslip_speed_by_rate_2 = (dslip_1_by_rate_2*t195 + dslip_2_by_rate_2*t196 +
+                dslip_3_by_rate_2*t197)
+            dslip_speed_by_rate_3 = (dslip_1_by_rate_3*t195 + dslip_2_by_rate_3*t196 +
+                dslip_3_by_rate_3*t197)
+            dslip_speed_by_spin_1 = dslip_2_by_spin_1*t196 + dslip_3_by_spin_1*t197
+            dslip_speed_by_spin_2 = dslip_1_by_spin_2*t195 + dslip_3_by_spin_2*t197
+            dslip_speed_by_spin_3 = dslip_1_by_spin_3*t195 + dslip_2_by_spin_3*t196
+            t198 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
+            t199 = t198*trial_1
+            t200 = t198*trial_2
+            t201 = t198*trial_3
+            t202 = 1/slip_speed
+            t203 = 1/speed
+            t204 = slip_speed*t203
+            t205 = tanh(4*t204)
+            t206 = slip_speed*slip_speed
+            t207 = 0.75 + ((0.25)*t206)/(speed*speed)
+            t208 = -coefficient + static
+            t209 = t208/(t207*t207)
+            t210 = coefficient*t205 + t204*t209
+            t211 = (t202*t210 if speed > 0.0 else 0)
+            t212 = ((push*t202*(4*coefficient*t203*(1 - t205*t205) + t203*t209 +
+                (-t206*t208)/(speed*speed*speed*t207*t207*t207)) - push*t210/t206 if speed > 0.0
                 else 0))
-            dtrial_size_by_place_1 = (dtrial_1_by_place_1*t198 + dtrial_2_by_place_1*t199 +
-                dtrial_3_by_place_1*t200)
-            dtrial_size_by_place_2 = (dtrial_1_by_place_2*t198 + dtrial_2_by_place_2*t199 +
-                dtrial_3_by_place_2*t200)
-            dtrial_size_by_place_3 = (dtrial_1_by_place_3*t198 + dtrial_2_by_place_3*t199 +
-                dtrial_3_by_place_3*t200)
-            dtrial_size_by_turned_1 = (dtrial_1_by_turned_1*t198 + dtrial_2_by_turned_1*t199 +
-                dtrial_3_by_turned_1*t200)
-            dtrial_size_by_turned_2 = (dtrial_1_by_turned_2*t198 + dtrial_2_by_turned_2*t199 +
-                dtrial_3_by_turned_2*t200)
-            dtrial_size_by_turned_3 = (dtrial_1_by_turned_3*t198 + dtrial_2_by_turned_3*t199 +
-                dtrial_3_by_turned_3*t200)
-            dtrial_size_by_rate_1 = (dtrial_1_by_rate_1*t198 + dtrial_2_by_rate_1*t199 +
-                dtrial_3_by_rate_1*t200)
-            dtrial_size_by_rate_2 = (dtrial_1_by_rate_2*t198 + dtrial_2_by_rate_2*t199 +
-                dtrial_3_by_rate_2*t200)
-            dtrial_size_by_rate_3 = (dtrial_1_by_rate_3*t198 + dtrial_2_by_rate_3*t199 +
-                dtrial_3_by_rate_3*t200)
-            dtrial_size_by_spin_1 = dtrial_2_by_spin_1*t199 + dtrial_3_by_spin_1*t200
-            dtrial_size_by_spin_2 = dtrial_1_by_spin_2*t198 + dtrial_3_by_spin_2*t200
-            dtrial_size_by_spin_3 = dtrial_1_by_spin_3*t198 + dtrial_2_by_spin_3*t199
-            ddrag_by_place_1 = dpush_by_place_1*t210 + dslip_speed_by_place_1*t211
-            ddrag_by_place_2 = dpush_by_place_2*t210 + dslip_speed_by_place_2*t211
-            ddrag_by_place_3 = dpush_by_place_3*t210 + dslip_speed_by_place_3*t211
-            ddrag_by_rate_1 = dpush_by_rate_1*t210 + dslip_speed_by_rate_1*t211
-            ddrag_by_rate_2 = dpush_by_rate_2*t210 + dslip_speed_by_rate_2*t211
-            ddrag_by_rate_3 = dpush_by_rate_3*t210 + dslip_speed_by_rate_3*t211
-            ddrag_by_spin_1 = dslip_speed_by_spin_1*t211
-            ddrag_by_spin_2 = dslip_speed_by_spin_2*t211
-            ddrag_by_spin_3 = dslip_speed_by_spin_3*t211
-            t212 = (slip_1 if speed > 0.0 else 0)
-            t213 = (drag if speed > 0.0 else 0)
-            t214 = -static_limit + trial_size
-            t215 = 1/trial_size
-            t216 = (0 if speed > 0.0 else (t215*trial_1 if t214 > 0.0 else 0))
-            t217 = (0 if speed > 0.0 else (dynamic_limit*t215 if t214 > 0.0 else 1))
-            t218 = dynamic_limit/(trial_size*trial_size)
-            t219 = (0 if speed > 0.0 else (-t218*trial_1 if t214 > 0.0 else 0))
-            t220 = (slip_2 if speed > 0.0 else 0)
-            t221 = (0 if speed > 0.0 else (t215*trial_2 if t214 > 0.0 else 0))
-            t222 = (0 if speed > 0.0 else (-t218*trial_2 if t214 > 0.0 else 0))
-            t223 = (slip_3 if speed > 0.0 else 0)
-            t224 = (0 if speed > 0.0 else (t215*trial_3 if t214 > 0.0 else 0))
-            t225 = (0 if speed > 0.0 else (-t218*trial_3 if t214 > 0.0 else 0))
-            dfriction_1_by_place_1 = (ddrag_by_place_1*t212 + ddynamic_limit_by_place_1*t216 +
-                dslip_1_by_place_1*t213 + dtrial_1_by_place_1*t217 + dtrial_size_by_place_1*t219)
-            dfriction_1_by_place_2 = (ddrag_by_place_2*t212 + ddynamic_limit_by_place_2*t216 +
-                dslip_1_by_place_2*t213 + dtrial_1_by_place_2*t217 + dtrial_size_by_place_2*t219)
-            dfriction_1_by_place_3 = (ddrag_by_place_3*t212 + ddynamic_limit_by_place_3*t216 +
-                dslip_1_by_place_3*t213 + dtrial_1_by_place_3*t217 + dtrial_size_by_place_3*t219)
-            dfriction_1_by_turned_1 = dtrial_1_by_turned_1*t217 + dtrial_size_by_turned_1*t219
-            dfriction_1_by_turned_2 = dtrial_1_by_turned_2*t217 + dtrial_size_by_turned_2*t219
-            dfriction_1_by_turned_3 = dtrial_1_by_turned_3*t217 + dtrial_size_by_turned_3*t219
-            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t212 + ddynamic_limit_by_rate_1*t216 +
-                dslip_1_by_rate_1*t213 + dtrial_1_by_rate_1*t217 + dtrial_size_by_rate_1*t219)
-            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t212 + ddynamic_limit_by_rate_2*t216 +
-                dslip_1_by_rate_2*t213 + dtrial_1_by_rate_2*t217 + dtrial_size_by_rate_2*t219)
-            dfriction_1_by_rate_3 = (ddrag_by_rate_3*t212 + ddynamic_limit_by_rate_3*t216 +
-                dslip_1_by_rate_3*t213 + dtrial_1_by_rate_3*t217 + dtrial_size_by_rate_3*t219)
-            dfriction_1_by_spin_1 = ddrag_by_spin_1*t212 + dtrial_size_by_spin_1*t219
-            dfriction_1_by_spin_2 = (ddrag_by_spin_2*t212 + dslip_1_by_spin_2*t213 +
-                dtrial_1_by_spin_2*t217 + dtrial_size_by_spin_2*t219)
-            dfriction_1_by_spin_3 = (ddrag_by_spin_3*t212 + dslip_1_by_spin_3*t213 +
-                dtrial_1_by_spin_3*t217 + dtrial_size_by_spin_3*t219)
-            dfriction_2_by_place_1 = (ddrag_by_place_1*t220 + ddynamic_limit_by_place_1*t221 +
-                dslip_2_by_place_1*t213 + dtrial_2_by_place_1*t217 + dtrial_size_by_place_1*t222)
-            dfriction_2_by_place_2 = (ddrag_by_place_2*t220 + ddynamic_limit_by_place_2*t221 +
-                dslip_2_by_place_2*t213 + dtrial_2_by_place_2*t217 + dtrial_size_by_place_2*t222)
-            dfriction_2_by_place_3 = (ddrag_by_place_3*t220 + ddynamic_limit_by_place_3*t221 +
-                dslip_2_by_place_3*t213 + dtrial_2_by_place_3*t217 + dtrial_size_by_place_3*t222)
-            dfriction_2_by_turned_1 = dtrial_2_by_turned_1*t217 + dtrial_size_by_turned_1*t222
-            dfriction_2_by_turned_2 = dtrial_2_by_turned_2*t217 + dtrial_size_by_turned_2*t222
-            dfriction_2_by_turned_3 = dtrial_2_by_turned_3*t217 + dtrial_size_by_turned_3*t222
-            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t220 + ddynamic_limit_by_rate_1*t221 +
-                dslip_2_by_rate_1*t213 + dtrial_2_by_rate_1*t217 + dtrial_size_by_rate_1*t222)
-            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t220 + ddynamic_limit_by_rate_2*t221 +
-                dslip_2_by_rate_2*t213 + dtrial_2_by_rate_2*t217 + dtrial_size_by_rate_2*t222)
-            dfriction_2_by_rate_3 = (ddrag_by_rate_3*t220 + ddynamic_limit_by_rate_3*t221 +
-                dslip_2_by_rate_3*t213 + dtrial_2_by_rate_3*t217 + dtrial_size_by_rate_3*t222)
-            dfriction_2_by_spin_1 = (ddrag_by_spin_1*t220 + dslip_2_by_spin_1*t213 +
-                dtrial_2_by_spin_1*t217 + dtrial_size_by_spin_1*t222)
-            dfriction_2_by_spin_2 = ddrag_by_spin_2*t220 + dtrial_size_by_spin_2*t222
-            dfriction_2_by_spin_3 = (ddrag_by_spin_3*t220 + dslip_2_by_spin_3*t213 +
-                dtrial_2_by_spin_3*t217 + dtrial_size_by_spin_3*t222)
-            dfriction_3_by_place_1 = (ddrag_by_place_1*t223 + ddynamic_limit_by_place_1*t224 +
-                dslip_3_by_place_1*t213 + dtrial_3_by_place_1*t217 + dtrial_size_by_place_1*t225)
-            dfriction_3_by_place_2 = (ddrag_by_place_2*t223 + ddynamic_limit_by_place_2*t224 +
-                dslip_3_by_place_2*t213 + dtrial_3_by_place_2*t217 + dtrial_size_by_place_2*t225)
-            dfriction_3_by_place_3 = (ddrag_by_place_3*t223 + ddynamic_limit_by_place_3*t224 +
-                dslip_3_by_place_3*t213 + dtrial_3_by_place_3*t217 + dtrial_size_by_place_3*t225)
-            dfriction_3_by_turned_1 = dtrial_3_by_turned_1*t217 + dtrial_size_by_turned_1*t225
-            dfriction_3_by_turned_2 = dtrial_3_by_turned_2*t217 + dtrial_size_by_turned_2*t225
-            dfriction_3_by_turned_3 = dtrial_3_by_turned_3*t217 + dtrial_size_by_turned_3*t225
-            dfriction_3_by_rate_1 = (ddrag_by_rate_1*t223 + ddynamic_limit_by_rate_1*t224 +
-                dslip_3_by_rate_1*t213 + dtrial_3_by_rate_1*t217 + dtrial_size_by_rate_1*t225)
-            dfriction_3_by_rate_2 = (ddrag_by_rate_2*t223 + ddynamic_limit_by_rate_2*t224 +
-                dslip_3_by_rate_2*t213 + dtrial_3_by_rate_2*t217 + dtrial_size_by_rate_2*t225)
-            dfriction_3_by_rate_3 = (ddrag_by_rate_3*t223 + ddynamic_limit_by_rate_3*t224 +
-                dslip_3_by_rate_3*t213 + dtrial_3_by_rate_3*t217 + dtrial_size_by_rate_3*t225)
-            dfriction_3_by_spin_1 = (ddrag_by_spin_1*t223 + dslip_3_by_spin_1*t213 +
-                dtrial_3_by_spin_1*t217 + dtrial_size_by_spin_1*t225)
-            dfriction_3_by_spin_2 = (ddrag_by_spin_2*t223 + dslip_3_by_spin_2*t213 +
-                dtrial_3_by_spin_2*t217 + dtrial_size_by_spin_2*t225)
-            dfriction_3_by_spin_3 = ddrag_by_spin_3*t223 + dtrial_size_by_spin_3*t225
+            dtrial_size_by_place_1 = (dtrial_1_by_place_1*t199 + dtrial_2_by_place_1*t200 +
+                dtrial_3_by_place_1*t201)
+            dtrial_size_by_place_2 = (dtrial_1_by_place_2*t199 + dtrial_2_by_place_2*t200 +
+                dtrial_3_by_place_2*t201)
+            dtrial_size_by_place_3 = (dtrial_1_by_place_3*t199 + dtrial_2_by_place_3*t200 +
+                dtrial_3_by_place_3*t201)
+            dtrial_size_by_turned_1 = (dtrial_1_by_turned_1*t199 + dtrial_2_by_turned_1*t200 +
+                dtrial_3_by_turned_1*t201)
+            dtrial_size_by_turned_2 = (dtrial_1_by_turned_2*t199 + dtrial_2_by_turned_2*t200 +
+                dtrial_3_by_turned_2*t201)
+            dtrial_size_by_turned_3 = (dtrial_1_by_turned_3*t199 + dtrial_2_by_turned_3*t200 +
+                dtrial_3_by_turned_3*t201)
+            dtrial_size_by_rate_1 = (dtrial_1_by_rate_1*t199 + dtrial_2_by_rate_1*t200 +
+                dtrial_3_by_rate_1*t201)
+            dtrial_size_by_rate_2 = (dtrial_1_by_rate_2*t199 + dtrial_2_by_rate_2*t200 +
+                dtrial_3_by_rate_2*t201)
+            dtrial_size_by_rate_3 = (dtrial_1_by_rate_3*t199 + dtrial_2_by_rate_3*t200 +
+                dtrial_3_by_rate_3*t201)
+            dtrial_size_by_spin_1 = dtrial_2_by_spin_1*t200 + dtrial_3_by_spin_1*t201
+            dtrial_size_by_spin_2 = dtrial_1_by_spin_2*t199 + dtrial_3_by_spin_2*t201
+            dtrial_size_by_spin_3 = dtrial_1_by_spin_3*t199 + dtrial_2_by_spin_3*t200
+            ddrag_by_place_1 = dpush_by_place_1*t211 + dslip_speed_by_place_1*t212
+            ddrag_by_place_2 = dpush_by_place_2*t211 + dslip_speed_by_place_2*t212
+            ddrag_by_place_3 = dpush_by_place_3*t211 + dslip_speed_by_place_3*t212
+            ddrag_by_rate_1 = dpush_by_rate_1*t211 + dslip_speed_by_rate_1*t212
+            ddrag_by_rate_2 = dpush_by_rate_2*t211 + dslip_speed_by_rate_2*t212
+            ddrag_by_rate_3 = dpush_by_rate_3*t211 + dslip_speed_by_rate_3*t212
+            ddrag_by_spin_1 = dslip_speed_by_spin_1*t212
+            ddrag_by_spin_2 = dslip_speed_by_spin_2*t212
+            ddrag_by_spin_3 = dslip_speed_by_spin_3*t212
+            t213 = (slip_1 if speed > 0.0 else 0)
+            t214 = (drag if speed > 0.0 else 0)
+            t215 = -static_limit + trial_size
+            t216 = 1/trial_size
+            t217 = (0 if speed > 0.0 else (t216*trial_1 if t215 > 0.0 else 0))
+            t218 = (0 if speed > 0.0 else (dynamic_limit*t216 if t215 > 0.0 else 1))
+            t219 = dynamic_limit/(trial_size*trial_size)
+            t220 = (0 if speed > 0.0 else (-t219*trial_1 if t215 > 0.0 else 0))
+            t221 = (slip_2 if speed > 0.0 else 0)
+            t222 = (0 if speed > 0.0 else (t216*trial_2 if t215 > 0.0 else 0))
+            t223 = (0 if speed > 0.0 else (-t219*trial_2 if t215 > 0.0 else 0))
+            t224 = (slip_3 if speed > 0.0 else 0)
+            t225 = (0 if speed > 0.0 else (t216*trial_3 if t215 > 0.0 else 0))
+            t226 = (0 if speed > 0.0 else (-t219*trial_3 if t215 > 0.0 else 0))
+            dfriction_1_by_place_1 = (ddrag_by_place_1*t213 + ddynamic_limit_by_place_1*t217 +
+                dslip_1_by_place_1*t214 + dtrial_1_by_place_1*t218 + dtrial_size_by_place_1*t220)
+            dfriction_1_by_place_2 = (ddrag_by_place_2*t213 + ddynamic_limit_by_place_2*t217 +
+                dslip_1_by_place_2*t214 + dtrial_1_by_place_2*t218 + dtrial_size_by_place_2*t220)
+            dfriction_1_by_place_3 = (ddrag_by_place_3*t213 + ddynamic_limit_by_place_3*t217 +
+                dslip_1_by_place_3*t214 + dtrial_1_by_place_3*t218 + dtrial_size_by_place_3*t220)
+            dfriction_1_by_turned_1 = dtrial_1_by_turned_1*t218 + dtrial_size_by_turned_1*t220
+            dfriction_1_by_turned_2 = dtrial_1_by_turned_2*t218 + dtrial_size_by_turned_2*t220
+            dfriction_1_by_turned_3 = dtrial_1_by_turned_3*t218 + dtrial_size_by_turned_3*t220
+            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t213 + ddynamic_limit_by_rate_1*t217 +
+                dslip_1_by_rate_1*t214 + dtrial_1_by_rate_1*t218 + dtrial_size_by_rate_1*t220)
+            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t213 + ddynamic_limit_by_rate_2*t217 +
+                dslip_1_by_rate_2*t214 + dtrial_1_by_rate_2*t218 + dtrial_size_by_rate_2*t220)
+            dfriction_1_by_rate_3 = (ddrag_by_rate_3*t213 + ddynamic_limit_by_rate_3*t217 +
+                dslip_1_by_rate_3*t214 + dtrial_1_by_rate_3*t218 + dtrial_size_by_rate_3*t220)
+            dfriction_1_by_spin_1 = ddrag_by_spin_1*t213 + dtrial_size_by_spin_1*t220
+            dfriction_1_by_spin_2 = (ddrag_by_spin_2*t213 + dslip_1_by_spin_2*t214 +
+                dtrial_1_by_spin_2*t218 + dtrial_size_by_spin_2*t220)
+            dfriction_1_by_spin_3 = (ddrag_by_spin_3*t213 + dslip_1_by_spin_3*t214 +
+                dtrial_1_by_spin_3*t218 + dtrial_size_by_spin_3*t220)
+            dfriction_2_by_place_1 = (ddrag_by_place_1*t221 + ddynamic_limit_by_place_1*t222 +
+                dslip_2_by_place_1*t214 + dtrial_2_by_place_1*t218 + dtrial_size_by_place_1*t223)
+            dfriction_2_by_place_2 = (ddrag_by_place_2*t221 + ddynamic_limit_by_place_2*t222 +
+                dslip_2_by_place_2*t214 + dtrial_2_by_place_2*t218 + dtrial_size_by_place_2*t223)
+            dfriction_2_by_place_3 = (ddrag_by_place_3*t221 + ddynamic_limit_by_place_3*t222 +
+                dslip_2_by_place_3*t214 + dtrial_2_by_place_3*t218 + dtrial_size_by_place_3*t223)
+            dfriction_2_by_turned_1 = dtrial_2_by_turned_1*t218 + dtrial_size_by_turned_1*t223
+            dfriction_2_by_turned_2 = dtrial_2_by_turned_2*t218 + dtrial_size_by_turned_2*t223
+            dfriction_2_by_turned_3 = dtrial_2_by_turned_3*t218 + dtrial_size_by_turned_3*t223
+            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t221 + ddynamic_limit_by_rate_1*t222 +
+                dslip_2_by_rate_1*t214 + dtrial_2_by_rate_1*t218 + dtrial_size_by_rate_1*t223)
+            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t221 + ddynamic_limit_by_rate_2*t222 +
+                dslip_2_by_rate_2*t214 + dtrial_2_by_rate_2*t218 + dtrial_size_by_rate_2*t223)
+            dfriction_2_by_rate_3 = (ddrag_by_rate_3*t221 + ddynamic_limit_by_rate_3*t222 +
+                dslip_2_by_rate_3*t214 + dtrial_2_by_rate_3*t218 + dtrial_size_by_rate_3*t223)
+            dfriction_2_by_spin_1 = (ddrag_by_spin_1*t221 + dslip_2_by_spin_1*t214 +
+                dtrial_2_by_spin_1*t218 + dtrial_size_by_spin_1*t223)
+            dfriction_2_by_spin_2 = ddrag_by_spin_2*t221 + dtrial_size_by_spin_2*t223
+            dfriction_2_by_spin_3 = (ddrag_by_spin_3*t221 + dslip_2_by_spin_3*t214 +
+                dtrial_2_by_spin_3*t218 + dtrial_size_by_spin_3*t223)
+            dfriction_3_by_place_1 = (ddrag_by_place_1*t224 + ddynamic_limit_by_place_1*t225 +
+                dslip_3_by_place_1*t214 + dtrial_3_by_place_1*t218 + dtrial_size_by_place_1*t226)
+            dfriction_3_by_place_2 = (ddrag_by_place_2*t224 + ddynamic_limit_by_place_2*t225 +
+                dslip_3_by_place_2*t214 + dtrial_3_by_place_2*t218 + dtrial_size_by_place_2*t226)
+            dfriction_3_by_place_3 = (ddrag_by_place_3*t224 + ddynamic_limit_by_place_3*t225 +
+                dslip_3_by_place_3*t214 + dtrial_3_by_place_3*t218 + dtrial_size_by_place_3*t226)
+            dfriction_3_by_turned_1 = dtrial_3_by_turned_1*t218 + dtrial_size_by_turned_1*t226
+            dfriction_3_by_turned_2 = dtrial_3_by_turned_2*t218 + dtrial_size_by_turned_2*t226
+            dfriction_3_by_turned_3 = dtrial_3_by_turned_3*t218 + dtrial_size_by_turned_3*t226
+            dfriction_3_by_rate_1 = (ddrag_by_rate_1*t224 + ddynamic_limit_by_rate_1*t225 +
+                dslip_3_by_rate_1*t214 + dtrial_3_by_rate_1*t218 + dtrial_size_by_rate_1*t226)
+            dfriction_3_by_rate_2 = (ddrag_by_rate_2*t224 + ddynamic_limit_by_rate_2*t225 +
+                dslip_3_by_rate_2*t214 + dtrial_3_by_rate_2*t218 + dtrial_size_by_rate_2*t226)
+            dfriction_3_by_rate_3 = (ddrag_by_rate_3*t224 + ddynamic_limit_by_rate_3*t225 +
+                dslip_3_by_rate_3*t214 + dtrial_3_by_rate_3*t218 + dtrial_size_by_rate_3*t226)
+            dfriction_3_by_spin_1 = (ddrag_by_spin_1*t224 + dslip_3_by_spin_1*t214 +
+                dtrial_3_by_spin_1*t218 + dtrial_size_by_spin_1*t226)
+            dfriction_3_by_spin_2 = (ddrag_by_spin_2*t224 + dslip_3_by_spin_2*t214 +
+                dtrial_3_by_spin_2*t218 + dtrial_size_by_spin_2*t226)
+            dfriction_3_by_spin_3 = ddrag_by_spin_3*t224 + dtrial_size_by_spin_3*t226
             for column in range(12):
                 for i in range(12):
                     dq[i] = 0.0
@@ -840,206 +843,255 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = du[9]
                 uthb_y = du[10]
                 uthb_z = du[11]
-                t226 = uxa_x - uxb_x
-                t227 = uxa_y - uxb_y
-                t228 = uxa_z - uxb_z
-                t229 = xa_x - xb_x
-                t230 = xa_y - xb_y
-                t231 = xa_z - xb_z
-                t232 = Rb_xy*t229 + Rb_yy*t230 + Rb_zy*t231
-                t233 = Rb_xz*t229 + Rb_yz*t230 + Rb_zz*t231
-                t234 = Rb_xx*t226 + Rb_yx*t227 + Rb_zx*t228 + t232*uthb_z - t233*uthb_y
-                t235 = Rb_xx*t229 + Rb_yx*t230 + Rb_zx*t231
-                t236 = Rb_xy*t226 + Rb_yy*t227 + Rb_zy*t228 + t233*uthb_x - t235*uthb_z
-                t237 = Rb_xz*t226 + Rb_yz*t227 + Rb_zz*t228 - t232*uthb_x + t235*uthb_y
-                t238 = dpush_by_rate_1*t234 + dpush_by_rate_2*t236 + dpush_by_rate_3*t237
-                t239 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t240 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t241 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t242 = t239*utha_x + t240*utha_y + t241*utha_z - uthb_x
-                t243 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t244 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t245 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t246 = t243*utha_x + t244*utha_y + t245*utha_z - uthb_y
-                t247 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t248 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t249 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t250 = t247*utha_x + t248*utha_y + t249*utha_z - uthb_z
-                t251 = (dfriction_2_by_rate_1*t234 + dfriction_2_by_rate_2*t236 +
-                    dfriction_2_by_rate_3*t237 + dfriction_2_by_spin_1*t242 +
-                    dfriction_2_by_spin_2*t246 + dfriction_2_by_spin_3*t250)
-                t252 = normal_1*normal_2
-                t253 = (dfriction_3_by_rate_1*t234 + dfriction_3_by_rate_2*t236 +
-                    dfriction_3_by_rate_3*t237 + dfriction_3_by_spin_1*t242 +
-                    dfriction_3_by_spin_2*t246 + dfriction_3_by_spin_3*t250)
-                t254 = normal_3*t253
-                t255 = 1 - normal_1*normal_1
-                t256 = (dfriction_1_by_rate_1*t234 + dfriction_1_by_rate_2*t236 +
-                    dfriction_1_by_rate_3*t237 + dfriction_1_by_spin_1*t242 +
-                    dfriction_1_by_spin_2*t246 + dfriction_1_by_spin_3*t250)
-                t257 = -normal_1*t238 - normal_1*t254 - t251*t252 + t255*t256
-                t258 = 1 - normal_2*normal_2
-                t259 = -normal_2*t238 - normal_2*t254 + t251*t258 - t252*t256
-                t260 = normal_1*normal_3
-                t261 = normal_2*normal_3
-                t262 = 1 - normal_3*normal_3
-                t263 = -normal_3*t238 - t251*t261 + t253*t262 - t256*t260
-                t264 = Rb_xx*t257 + Rb_xy*t259 + Rb_xz*t263
-                t265 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t266 = -friction_1*t260 - friction_2*t261 + friction_3*t262 - normal_3*push
-                t267 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t268 = -friction_1*t252 + friction_2*t258 - friction_3*t261 - normal_2*push
-                t269 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t270 = friction_1*t255 - friction_2*t252 - friction_3*t260 - normal_1*push
-                t271 = dxa_x - dxb_x
-                t272 = dxa_y - dxb_y
-                t273 = dxa_z - dxb_z
-                t274 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t275 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t276 = Rb_xx*t271 + Rb_yx*t272 + Rb_zx*t273 + t229*t269 + t230*t274 + t231*t275
-                t277 = dnormal_1_by_place_1*t276
-                t278 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t279 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t280 = Rb_xy*t271 + Rb_yy*t272 + Rb_zy*t273 + t229*t267 + t230*t278 + t231*t279
-                t281 = dnormal_1_by_place_2*t280
-                t282 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t283 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t284 = Rb_xz*t271 + Rb_yz*t272 + Rb_zz*t273 + t229*t265 + t230*t282 + t231*t283
-                t285 = dnormal_1_by_place_3*t284
-                t286 = t277 + t281 + t285
-                t287 = dnormal_2_by_place_1*t276
-                t288 = dnormal_2_by_place_2*t280
-                t289 = dnormal_2_by_place_3*t284
-                t290 = t287 + t288 + t289
-                t291 = friction_2*t290
-                t292 = normal_2*t286
-                t293 = dnormal_3_by_place_1*t276
-                t294 = dnormal_3_by_place_2*t280
-                t295 = dnormal_3_by_place_3*t284
-                t296 = t293 + t294 + t295
-                t297 = friction_3*t296
-                t298 = friction_3*normal_3
-                t299 = friction_1*normal_1
-                t300 = va_x - vb_x
-                t301 = va_y - vb_y
-                t302 = va_z - vb_z
-                t303 = -Omb_y*t284 + Omb_z*t280 + t269*t300 + t274*t301 + t275*t302
-                t304 = Omb_x*t284 - Omb_z*t276 + t267*t300 + t278*t301 + t279*t302
-                t305 = -Omb_x*t280 + Omb_y*t276 + t265*t300 + t282*t301 + t283*t302
-                t306 = (dpush_by_place_1*t276 + dpush_by_place_2*t280 + dpush_by_place_3*t284 +
-                    dpush_by_rate_1*t303 + dpush_by_rate_2*t304 + dpush_by_rate_3*t305)
-                t307 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t308 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t309 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t310 = Ra_xx*t269 + Ra_yx*t274 + Ra_zx*t275 + Rb_xx*t307 + Rb_yx*t308 + Rb_zx*t309
-                t311 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t312 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t313 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t314 = Ra_xy*t269 + Ra_yy*t274 + Ra_zy*t275 + Rb_xx*t311 + Rb_yx*t312 + Rb_zx*t313
-                t315 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t316 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t317 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t318 = Ra_xz*t269 + Ra_yz*t274 + Ra_zz*t275 + Rb_xx*t315 + Rb_yx*t316 + Rb_zx*t317
-                t319 = Oma_x*t310 + Oma_y*t314 + Oma_z*t318
-                t320 = Ra_xx*t267 + Ra_yx*t278 + Ra_zx*t279 + Rb_xy*t307 + Rb_yy*t308 + Rb_zy*t309
-                t321 = Ra_xy*t267 + Ra_yy*t278 + Ra_zy*t279 + Rb_xy*t311 + Rb_yy*t312 + Rb_zy*t313
-                t322 = Ra_xz*t267 + Ra_yz*t278 + Ra_zz*t279 + Rb_xy*t315 + Rb_yy*t316 + Rb_zy*t317
-                t323 = Oma_x*t320 + Oma_y*t321 + Oma_z*t322
-                t324 = Ra_xx*t265 + Ra_yx*t282 + Ra_zx*t283 + Rb_xz*t307 + Rb_yz*t308 + Rb_zz*t309
-                t325 = Ra_xy*t265 + Ra_yy*t282 + Ra_zy*t283 + Rb_xz*t311 + Rb_yz*t312 + Rb_zz*t313
-                t326 = Ra_xz*t265 + Ra_yz*t282 + Ra_zz*t283 + Rb_xz*t315 + Rb_yz*t316 + Rb_zz*t317
-                t327 = Oma_x*t324 + Oma_y*t325 + Oma_z*t326
-                t328 = psia_x*t310 + psia_y*t314 + psia_z*t318 + t242
-                t329 = psia_x*t320 + psia_y*t321 + psia_z*t322 + t246
-                t330 = psia_x*t324 + psia_y*t325 + psia_z*t326 + t250
-                t331 = (dfriction_2_by_place_1*t276 + dfriction_2_by_place_2*t280 +
-                    dfriction_2_by_place_3*t284 + dfriction_2_by_rate_1*t303 +
-                    dfriction_2_by_rate_2*t304 + dfriction_2_by_rate_3*t305 +
-                    dfriction_2_by_spin_1*t319 + dfriction_2_by_spin_2*t323 +
-                    dfriction_2_by_spin_3*t327 + dfriction_2_by_turned_1*t328 +
-                    dfriction_2_by_turned_2*t329 + dfriction_2_by_turned_3*t330)
-                t332 = (dfriction_3_by_place_1*t276 + dfriction_3_by_place_2*t280 +
-                    dfriction_3_by_place_3*t284 + dfriction_3_by_rate_1*t303 +
-                    dfriction_3_by_rate_2*t304 + dfriction_3_by_rate_3*t305 +
-                    dfriction_3_by_spin_1*t319 + dfriction_3_by_spin_2*t323 +
-                    dfriction_3_by_spin_3*t327 + dfriction_3_by_turned_1*t328 +
-                    dfriction_3_by_turned_2*t329 + dfriction_3_by_turned_3*t330)
-                t333 = (dfriction_1_by_place_1*t276 + dfriction_1_by_place_2*t280 +
-                    dfriction_1_by_place_3*t284 + dfriction_1_by_rate_1*t303 +
-                    dfriction_1_by_rate_2*t304 + dfriction_1_by_rate_3*t305 +
-                    dfriction_1_by_spin_1*t319 + dfriction_1_by_spin_2*t323 +
-                    dfriction_1_by_spin_3*t327 + dfriction_1_by_turned_1*t328 +
-                    dfriction_1_by_turned_2*t329 + dfriction_1_by_turned_3*t330)
-                t334 = (-friction_2*t292 - normal_1*t291 - normal_1*t297 - normal_1*t306 -
-                    push*t286 - t252*t331 + t255*t333 - t260*t332 - t286*t298 - t299*(2*t277 +
-                    2*t281 + 2*t285))
-                t335 = friction_2*normal_2
-                t336 = (-friction_1*t292 - normal_2*t297 - normal_2*t306 - push*t290 - t252*t333 +
-                    t258*t331 - t261*t332 - t290*t298 - t290*t299 - t335*(2*t287 + 2*t288 +
-                    2*t289))
-                t337 = (-friction_1*normal_3*t286 - normal_3*t291 - normal_3*t306 - push*t296 -
-                    t260*t333 - t261*t331 + t262*t332 - t296*t299 - t296*t335 - t298*(2*t293 +
-                    2*t294 + 2*t295))
-                t338 = Rb_xx*t334 + Rb_xy*t336 + Rb_xz*t337 + t265*t266 + t267*t268 + t269*t270
-                t339 = Rb_yx*t257 + Rb_yy*t259 + Rb_yz*t263
-                t340 = Rb_yx*t334 + Rb_yy*t336 + Rb_yz*t337 + t266*t282 + t268*t278 + t270*t274
-                t341 = Rb_zx*t257 + Rb_zy*t259 + Rb_zz*t263
-                t342 = Rb_zx*t334 + Rb_zy*t336 + Rb_zz*t337 + t266*t283 + t268*t279 + t270*t275
-                t343 = -t243
-                t344 = radius*(normal_1*t343 + normal_2*t239)
-                t345 = -t239
-                t346 = radius*(normal_1*t247 + normal_3*t345)
-                t347 = -t247
-                t348 = radius*(normal_2*t347 + normal_3*t243)
-                t349 = radius*t270
-                t350 = radius*t268
-                t351 = radius*t266
-                t352 = -t244
-                t353 = radius*(normal_1*t352 + normal_2*t240)
-                t354 = -t240
-                t355 = radius*(normal_1*t248 + normal_3*t354)
-                t356 = -t248
-                t357 = radius*(normal_2*t356 + normal_3*t244)
-                t358 = -t245
-                t359 = radius*(normal_1*t358 + normal_2*t241)
-                t360 = -t241
-                t361 = radius*(normal_1*t249 + normal_3*t360)
-                t362 = -t249
-                t363 = radius*(normal_2*t362 + normal_3*t245)
-                t364 = -normal_3*radius + t233
-                t365 = -normal_2*radius + t232
-                t366 = -t365
-                t367 = -radius*t296 + t284
-                t368 = -radius*t290 + t280
-                t369 = -normal_1*radius + t235
-                t370 = -t364
-                t371 = -radius*t286 + t276
+                t227 = dxa_x - dxb_x
+                t228 = dxa_y - dxb_y
+                t229 = dxa_z - dxb_z
+                t230 = xa_x - xb_x
+                t231 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t232 = xa_y - xb_y
+                t233 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t234 = xa_z - xb_z
+                t235 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t236 = Rb_xx*t227 + Rb_yx*t228 + Rb_zx*t229 + t230*t231 + t232*t233 + t234*t235
+                t237 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t238 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t239 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t240 = Rb_xy*t227 + Rb_yy*t228 + Rb_zy*t229 + t230*t237 + t232*t238 + t234*t239
+                t241 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t242 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t243 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t244 = Rb_xz*t227 + Rb_yz*t228 + Rb_zz*t229 + t230*t241 + t232*t242 + t234*t243
+                t245 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t246 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t247 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t248 = Ra_xx*t231 + Ra_yx*t233 + Ra_zx*t235 + Rb_xx*t245 + Rb_yx*t246 + Rb_zx*t247
+                t249 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t250 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t251 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t252 = Ra_xy*t231 + Ra_yy*t233 + Ra_zy*t235 + Rb_xx*t249 + Rb_yx*t250 + Rb_zx*t251
+                t253 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t254 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t255 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t256 = Ra_xz*t231 + Ra_yz*t233 + Ra_zz*t235 + Rb_xx*t253 + Rb_yx*t254 + Rb_zx*t255
+                t257 = (utha_x*(Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx) + utha_y*(Ra_xy*Rb_xx +
+                    Ra_yy*Rb_yx + Ra_zy*Rb_zx) + utha_z*(Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx)
+                    - uthb_x)
+                t258 = Ra_xx*t237 + Ra_yx*t238 + Ra_zx*t239 + Rb_xy*t245 + Rb_yy*t246 + Rb_zy*t247
+                t259 = Ra_xy*t237 + Ra_yy*t238 + Ra_zy*t239 + Rb_xy*t249 + Rb_yy*t250 + Rb_zy*t251
+                t260 = Ra_xz*t237 + Ra_yz*t238 + Ra_zz*t239 + Rb_xy*t253 + Rb_yy*t254 + Rb_zy*t255
+                t261 = (utha_x*(Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy) + utha_y*(Ra_xy*Rb_xy +
+                    Ra_yy*Rb_yy + Ra_zy*Rb_zy) + utha_z*(Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy)
+                    - uthb_y)
+                t262 = Ra_xx*t241 + Ra_yx*t242 + Ra_zx*t243 + Rb_xz*t245 + Rb_yz*t246 + Rb_zz*t247
+                t263 = Ra_xy*t241 + Ra_yy*t242 + Ra_zy*t243 + Rb_xz*t249 + Rb_yz*t250 + Rb_zz*t251
+                t264 = Ra_xz*t241 + Ra_yz*t242 + Ra_zz*t243 + Rb_xz*t253 + Rb_yz*t254 + Rb_zz*t255
+                t265 = (utha_x*(Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz) + utha_y*(Ra_xy*Rb_xz +
+                    Ra_yy*Rb_yz + Ra_zy*Rb_zz) + utha_z*(Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz)
+                    - uthb_z)
+                t266 = va_x - vb_x
+                t267 = va_y - vb_y
+                t268 = va_z - vb_z
+                t269 = uxa_x - uxb_x
+                t270 = uxa_y - uxb_y
+                t271 = uxa_z - uxb_z
+                t272 = Rb_xy*t230 + Rb_yy*t232 + Rb_zy*t234
+                t273 = Rb_xz*t230 + Rb_yz*t232 + Rb_zz*t234
+                t274 = Rb_xx*t230 + Rb_yx*t232 + Rb_zx*t234
+                dplace_1 = t236
+                dplace_2 = t240
+                dplace_3 = t244
+                dturned_1 = psia_x*t248 + psia_y*t252 + psia_z*t256 + t257
+                dturned_2 = psia_x*t258 + psia_y*t259 + psia_z*t260 + t261
+                dturned_3 = psia_x*t262 + psia_y*t263 + psia_z*t264 + t265
+                drate_1 = -Omb_y*t244 + Omb_z*t240 + t231*t266 + t233*t267 + t235*t268
+                urate_1 = Rb_xx*t269 + Rb_yx*t270 + Rb_zx*t271 + t272*uthb_z - t273*uthb_y
+                drate_2 = Omb_x*t244 - Omb_z*t236 + t237*t266 + t238*t267 + t239*t268
+                urate_2 = Rb_xy*t269 + Rb_yy*t270 + Rb_zy*t271 + t273*uthb_x - t274*uthb_z
+                drate_3 = -Omb_x*t240 + Omb_y*t236 + t241*t266 + t242*t267 + t243*t268
+                urate_3 = Rb_xz*t269 + Rb_yz*t270 + Rb_zz*t271 - t272*uthb_x + t274*uthb_y
+                dspin_1 = Oma_x*t248 + Oma_y*t252 + Oma_z*t256
+                uspin_1 = t257
+                dspin_2 = Oma_x*t258 + Oma_y*t259 + Oma_z*t260
+                uspin_2 = t261
+                dspin_3 = Oma_x*t262 + Oma_y*t263 + Oma_z*t264
+                uspin_3 = t265
+                t275 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2 + dpush_by_rate_3*urate_3
+                t276 = (dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2 +
+                    dfriction_2_by_rate_3*urate_3 + dfriction_2_by_spin_1*uspin_1 +
+                    dfriction_2_by_spin_2*uspin_2 + dfriction_2_by_spin_3*uspin_3)
+                t277 = normal_1*normal_2
+                t278 = (dfriction_3_by_rate_1*urate_1 + dfriction_3_by_rate_2*urate_2 +
+                    dfriction_3_by_rate_3*urate_3 + dfriction_3_by_spin_1*uspin_1 +
+                    dfriction_3_by_spin_2*uspin_2 + dfriction_3_by_spin_3*uspin_3)
+                t279 = normal_3*t278
+                t280 = 1 - normal_1*normal_1
+                t281 = (dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2 +
+                    dfriction_1_by_rate_3*urate_3 + dfriction_1_by_spin_1*uspin_1 +
+                    dfriction_1_by_spin_2*uspin_2 + dfriction_1_by_spin_3*uspin_3)
+                t282 = -normal_1*t275 - normal_1*t279 - t276*t277 + t280*t281
+                t283 = 1 - normal_2*normal_2
+                t284 = -normal_2*t275 - normal_2*t279 + t276*t283 - t277*t281
+                t285 = normal_1*normal_3
+                t286 = normal_2*normal_3
+                t287 = 1 - normal_3*normal_3
+                t288 = -normal_3*t275 - t276*t286 + t278*t287 - t281*t285
+                t289 = Rb_xx*t282 + Rb_xy*t284 + Rb_xz*t288
+                t290 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t291 = -friction_1*t285 - friction_2*t286 + friction_3*t287 - normal_3*push
+                t292 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t293 = -friction_1*t277 + friction_2*t283 - friction_3*t286 - normal_2*push
+                t294 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t295 = friction_1*t280 - friction_2*t277 - friction_3*t285 - normal_1*push
+                t296 = dnormal_1_by_place_1*dplace_1
+                t297 = dnormal_1_by_place_2*dplace_2
+                t298 = dnormal_1_by_place_3*dplace_3
+                t299 = t296 + t297 + t298
+                t300 = dnormal_2_by_place_1*dplace_1
+                t301 = dnormal_2_by_place_2*dplace_2
+                t302 = dnormal_2_by_place_3*dplace_3
+                t303 = t300 + t301 + t302
+                t304 = friction_2*t303
+                t305 = normal_2*t299
+                t306 = dnormal_3_by_place_1*dplace_1
+                t307 = dnormal_3_by_place_2*dplace_2
+                t308 = dnormal_3_by_place_3*dplace_3
+                t309 = t306 + t307 + t308
+                t310 = friction_3*t309
+                t311 = friction_3*normal_3
+                t312 = friction_1*normal_1
+                t313 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
+                    dplace_3*dpush_by_place_3 + dpush_by_rate_1*drate_1 + dpush_by_rate_2*drate_2
+                    + dpush_by_rate_3*drate_3)
+                t314 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
+                    dfriction_2_by_place_3*dplace_3 + dfriction_2_by_rate_1*drate_1 +
+                    dfriction_2_by_rate_2*drate_2 + dfriction_2_by_rate_3*drate_3 +
+                    dfriction_2_by_spin_1*dspin_1 + dfriction_2_by_spin_2*dspin_2 +
+                    dfriction_2_by_spin_3*dspin_3 + dfriction_2_by_turned_1*dturned_1 +
+                    dfriction_2_by_turned_2*dturned_2 + dfriction_2_by_turned_3*dturned_3)
+                t315 = (dfriction_3_by_place_1*dplace_1 + dfriction_3_by_place_2*dplace_2 +
+                    dfriction_3_by_place_3*dplace_3 + dfriction_3_by_rate_1*drate_1 +
+                    dfriction_3_by_rate_2*drate_2 + dfriction_3_by_rate_3*drate_3 +
+                    dfriction_3_by_spin_1*dspin_1 + dfriction_3_by_spin_2*dspin_2 +
+                    dfriction_3_by_spin_3*dspin_3 + dfriction_3_by_turned_1*dturned_1 +
+                    dfriction_3_by_turned_2*dturned_2 + dfriction_3_by_turned_3*dturned_3)
+                t316 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
+                    dfriction_1_by_place_3*dplace_3 + dfriction_1_by_rate_1*drate_1 +
+                    dfriction_1_by_rate_2*drate_2 + dfriction_1_by_rate_3*drate_3 +
+                    dfriction_1_by_spin_1*dspin_1 + dfriction_1_by_spin_2*dspin_2 +
+                    dfriction_1_by_spin_3*dspin_3 + dfriction_1_by_turned_1*dturned_1 +
+                    dfriction_1_by_turned_2*dturned_2 + dfriction_1_by_turned_3*dturned_3)
+                t317 = (-friction_2*t305 - normal_1*t304 - normal_1*t310 - normal_1*t313 -
+                    push*t299 - t277*t314 + t280*t316 - t285*t315 - t299*t311 - t312*(2*t296 +
+                    2*t297 + 2*t298))
+                t318 = friction_2*normal_2
+                t319 = (-friction_1*t305 - normal_2*t310 - normal_2*t313 - push*t303 - t277*t316 +
+                    t283*t314 - t286*t315 - t303*t311 - t303*t312 - t318*(2*t300 + 2*t301 +
+                    2*t302))
+                t320 = (-friction_1*normal_3*t299 - normal_3*t304 - normal_3*t313 - push*t309 -
+                    t285*t316 - t286*t314 + t287*t315 - t309*t312 - t309*t318 - t311*(2*t306 +
+                    2*t307 + 2*t308))
+                t321 = Rb_xx*t317 + Rb_xy*t319 + Rb_xz*t320 + t290*t291 + t292*t293 + t294*t295
+                t322 = Rb_yx*t282 + Rb_yy*t284 + Rb_yz*t288
+                t323 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t324 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t325 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t326 = Rb_yx*t317 + Rb_yy*t319 + Rb_yz*t320 + t291*t323 + t293*t324 + t295*t325
+                t327 = Rb_zx*t282 + Rb_zy*t284 + Rb_zz*t288
+                t328 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t329 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t330 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t331 = Rb_zx*t317 + Rb_zy*t319 + Rb_zz*t320 + t291*t328 + t293*t329 + t295*t330
+                t332 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t333 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t334 = -t333
+                t335 = radius*(normal_1*t334 + normal_2*t332)
+                t336 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t337 = -t332
+                t338 = radius*(normal_1*t336 + normal_3*t337)
+                t339 = -t336
+                t340 = radius*(normal_2*t339 + normal_3*t333)
+                t341 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t342 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t343 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t344 = Ra_xx*t292 + Ra_yx*t324 + Ra_zx*t329 + Rb_xy*t341 + Rb_yy*t342 + Rb_zy*t343
+                t345 = Ra_xx*t290 + Ra_yx*t323 + Ra_zx*t328 + Rb_xz*t341 + Rb_yz*t342 + Rb_zz*t343
+                t346 = radius*t295
+                t347 = Ra_xx*t294 + Ra_yx*t325 + Ra_zx*t330 + Rb_xx*t341 + Rb_yx*t342 + Rb_zx*t343
+                t348 = radius*t293
+                t349 = radius*t291
+                t350 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t351 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t352 = -t351
+                t353 = radius*(normal_1*t352 + normal_2*t350)
+                t354 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t355 = -t350
+                t356 = radius*(normal_1*t354 + normal_3*t355)
+                t357 = -t354
+                t358 = radius*(normal_2*t357 + normal_3*t351)
+                t359 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t360 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t361 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t362 = Ra_xy*t292 + Ra_yy*t324 + Ra_zy*t329 + Rb_xy*t359 + Rb_yy*t360 + Rb_zy*t361
+                t363 = Ra_xy*t290 + Ra_yy*t323 + Ra_zy*t328 + Rb_xz*t359 + Rb_yz*t360 + Rb_zz*t361
+                t364 = Ra_xy*t294 + Ra_yy*t325 + Ra_zy*t330 + Rb_xx*t359 + Rb_yx*t360 + Rb_zx*t361
+                t365 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t366 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t367 = -t366
+                t368 = radius*(normal_1*t367 + normal_2*t365)
+                t369 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t370 = -t365
+                t371 = radius*(normal_1*t369 + normal_3*t370)
                 t372 = -t369
-                J[column] = c_damping*t264 + c_stiffness*t338
-                J[12 + column] = c_damping*t339 + c_stiffness*t340
-                J[24 + column] = c_damping*t341 + c_stiffness*t342
-                J[36 + column] = -c_damping*t264 - c_stiffness*t338
-                J[48 + column] = -c_damping*t339 - c_stiffness*t340
-                J[60 + column] = -c_damping*t341 - c_stiffness*t342
-                J[72 + column] = (c_damping*(-t257*t348 - t259*t346 - t263*t344) +
-                    c_stiffness*(-t334*t348 - t336*t346 - t337*t344 - t349*(-normal_2*t324 +
-                    normal_3*t320 + t243*t296 + t290*t347) - t350*(normal_1*t324 - normal_3*t310 +
-                    t247*t286 + t296*t345) - t351*(-normal_1*t320 + normal_2*t310 + t239*t290 +
-                    t286*t343)))
-                J[84 + column] = (c_damping*(-t257*t357 - t259*t355 - t263*t353) +
-                    c_stiffness*(-t334*t357 - t336*t355 - t337*t353 - t349*(-normal_2*t325 +
-                    normal_3*t321 + t244*t296 + t290*t356) - t350*(normal_1*t325 - normal_3*t314 +
-                    t248*t286 + t296*t354) - t351*(-normal_1*t321 + normal_2*t314 + t240*t290 +
-                    t286*t352)))
-                J[96 + column] = (c_damping*(-t257*t363 - t259*t361 - t263*t359) +
-                    c_stiffness*(-t334*t363 - t336*t361 - t337*t359 - t349*(-normal_2*t326 +
-                    normal_3*t322 + t245*t296 + t290*t362) - t350*(normal_1*t326 - normal_3*t318 +
-                    t249*t286 + t296*t360) - t351*(-normal_1*t322 + normal_2*t318 + t241*t290 +
-                    t286*t358)))
-                J[108 + column] = (c_damping*(t259*t364 + t263*t366) + c_stiffness*(-t266*t368 +
-                    t268*t367 + t336*t364 + t337*t366))
-                J[120 + column] = (c_damping*(t257*t370 + t263*t369) + c_stiffness*(t266*t371 -
-                    t270*t367 + t334*t370 + t337*t369))
-                J[132 + column] = (c_damping*(t257*t365 + t259*t372) + c_stiffness*(-t268*t371 +
-                    t270*t368 + t334*t365 + t336*t372))
+                t373 = radius*(normal_2*t372 + normal_3*t366)
+                t374 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t375 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t376 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t377 = Ra_xz*t292 + Ra_yz*t324 + Ra_zz*t329 + Rb_xy*t374 + Rb_yy*t375 + Rb_zy*t376
+                t378 = Ra_xz*t290 + Ra_yz*t323 + Ra_zz*t328 + Rb_xz*t374 + Rb_yz*t375 + Rb_zz*t376
+                t379 = Ra_xz*t294 + Ra_yz*t325 + Ra_zz*t330 + Rb_xx*t374 + Rb_yx*t375 + Rb_zx*t376
+                t380 = xa_x - xb_x
+                t381 = xa_y - xb_y
+                t382 = xa_z - xb_z
+                t383 = Rb_xz*t380 + Rb_yz*t381 + Rb_zz*t382 - normal_3*radius
+                t384 = Rb_xy*t380 + Rb_yy*t381 + Rb_zy*t382 - normal_2*radius
+                t385 = -t384
+                t386 = dxa_x - dxb_x
+                t387 = dxa_y - dxb_y
+                t388 = dxa_z - dxb_z
+                t389 = (Rb_xz*t386 + Rb_yz*t387 + Rb_zz*t388 - radius*t309 + t290*t380 + t323*t381
+                    + t328*t382)
+                t390 = (Rb_xy*t386 + Rb_yy*t387 + Rb_zy*t388 - radius*t303 + t292*t380 + t324*t381
+                    + t329*t382)
+                t391 = Rb_xx*t380 + Rb_yx*t381 + Rb_zx*t382 - normal_1*radius
+                t392 = -t383
+                t393 = (Rb_xx*t386 + Rb_yx*t387 + Rb_zx*t388 - radius*t299 + t294*t380 + t325*t381
+                    + t330*t382)
+                t394 = -t391
+                J[column] = c_damping*t289 + c_stiffness*t321
+                J[12 + column] = c_damping*t322 + c_stiffness*t326
+                J[24 + column] = c_damping*t327 + c_stiffness*t331
+                J[36 + column] = -c_damping*t289 - c_stiffness*t321
+                J[48 + column] = -c_damping*t322 - c_stiffness*t326
+                J[60 + column] = -c_damping*t327 - c_stiffness*t331
+                J[72 + column] = (c_damping*(-t282*t340 - t284*t338 - t288*t335) +
+                    c_stiffness*(-t317*t340 - t319*t338 - t320*t335 - t346*(-normal_2*t345 +
+                    normal_3*t344 + t303*t339 + t309*t333) - t348*(normal_1*t345 - normal_3*t347 +
+                    t299*t336 + t309*t337) - t349*(-normal_1*t344 + normal_2*t347 + t299*t334 +
+                    t303*t332)))
+                J[84 + column] = (c_damping*(-t282*t358 - t284*t356 - t288*t353) +
+                    c_stiffness*(-t317*t358 - t319*t356 - t320*t353 - t346*(-normal_2*t363 +
+                    normal_3*t362 + t303*t357 + t309*t351) - t348*(normal_1*t363 - normal_3*t364 +
+                    t299*t354 + t309*t355) - t349*(-normal_1*t362 + normal_2*t364 + t299*t352 +
+                    t303*t350)))
+                J[96 + column] = (c_damping*(-t282*t373 - t284*t371 - t288*t368) +
+                    c_stiffness*(-t317*t373 - t319*t371 - t320*t368 - t346*(-normal_2*t378 +
+                    normal_3*t377 + t303*t372 + t309*t366) - t348*(normal_1*t378 - normal_3*t379 +
+                    t299*t369 + t309*t370) - t349*(-normal_1*t377 + normal_2*t379 + t299*t367 +
+                    t303*t365)))
+                J[108 + column] = (c_damping*(t284*t383 + t288*t385) + c_stiffness*(-t291*t390 +
+                    t293*t389 + t319*t383 + t320*t385))
+                J[120 + column] = (c_damping*(t282*t392 + t288*t391) + c_stiffness*(t291*t393 -
+                    t295*t389 + t317*t392 + t320*t391))
+                J[132 + column] = (c_damping*(t282*t384 + t284*t394) + c_stiffness*(-t293*t393 +
+                    t295*t390 + t317*t384 + t319*t394))
     return OK

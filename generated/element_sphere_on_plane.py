@@ -54,7 +54,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (175, 0, 0, 0),
-              "column": (800, 0, 0, 0)}
+              "column": (689, 0, 0, 0)}
 
 
 @kernel_function
@@ -687,167 +687,216 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = du[9]
                 uthb_y = du[10]
                 uthb_z = du[11]
-                t133 = uxa_x - uxb_x
-                t134 = uxa_y - uxb_y
-                t135 = uxa_z - uxb_z
+                t133 = dxa_x - dxb_x
+                t134 = dxa_y - dxb_y
+                t135 = dxa_z - dxb_z
                 t136 = xa_x - xb_x
-                t137 = xa_y - xb_y
-                t138 = xa_z - xb_z
-                t139 = Rb_xy*t136 + Rb_yy*t137 + Rb_zy*t138
-                t140 = Rb_xz*t136 + Rb_yz*t137 + Rb_zz*t138
-                t141 = Rb_xx*t133 + Rb_yx*t134 + Rb_zx*t135 + t139*uthb_z - t140*uthb_y
-                t142 = Rb_xx*t136 + Rb_yx*t137 + Rb_zx*t138
-                t143 = Rb_xy*t133 + Rb_yy*t134 + Rb_zy*t135 + t140*uthb_x - t142*uthb_z
-                t144 = Rb_xz*t133 + Rb_yz*t134 + Rb_zz*t135 - t139*uthb_x + t142*uthb_y
-                t145 = dpush_by_rate_1*t141 + dpush_by_rate_2*t143 + dpush_by_rate_3*t144
-                t146 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t147 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t148 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t149 = t146*utha_x + t147*utha_y + t148*utha_z - uthb_x
-                t150 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t151 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t152 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t153 = t150*utha_x + t151*utha_y + t152*utha_z - uthb_y
-                t154 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t155 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t156 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t157 = t154*utha_x + t155*utha_y + t156*utha_z - uthb_z
-                t158 = (dfriction_2_by_rate_1*t141 + dfriction_2_by_rate_2*t143 +
-                    dfriction_2_by_rate_3*t144 + dfriction_2_by_spin_1*t149 +
-                    dfriction_2_by_spin_2*t153 + dfriction_2_by_spin_3*t157)
-                t159 = normal_1*normal_2
-                t160 = (dfriction_3_by_rate_1*t141 + dfriction_3_by_rate_2*t143 +
-                    dfriction_3_by_rate_3*t144 + dfriction_3_by_spin_1*t149 +
-                    dfriction_3_by_spin_2*t153 + dfriction_3_by_spin_3*t157)
-                t161 = normal_3*t160
-                t162 = 1 - normal_1*normal_1
-                t163 = (dfriction_1_by_rate_1*t141 + dfriction_1_by_rate_2*t143 +
-                    dfriction_1_by_rate_3*t144 + dfriction_1_by_spin_1*t149 +
-                    dfriction_1_by_spin_2*t153 + dfriction_1_by_spin_3*t157)
-                t164 = -normal_1*t145 - normal_1*t161 - t158*t159 + t162*t163
-                t165 = 1 - normal_2*normal_2
-                t166 = -normal_2*t145 - normal_2*t161 + t158*t165 - t159*t163
-                t167 = normal_1*normal_3
-                t168 = normal_2*normal_3
-                t169 = 1 - normal_3*normal_3
-                t170 = -normal_3*t145 - t158*t168 + t160*t169 - t163*t167
-                t171 = Rb_xx*t164 + Rb_xy*t166 + Rb_xz*t170
-                t172 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t173 = -friction_1*t167 - friction_2*t168 + friction_3*t169 - normal_3*push
-                t174 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t175 = -friction_1*t159 + friction_2*t165 - friction_3*t168 - normal_2*push
-                t176 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t177 = friction_1*t162 - friction_2*t159 - friction_3*t167 - normal_1*push
-                t178 = dxa_x - dxb_x
-                t179 = dxa_y - dxb_y
-                t180 = dxa_z - dxb_z
-                t181 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t182 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t183 = Rb_xx*t178 + Rb_yx*t179 + Rb_zx*t180 + t136*t176 + t137*t181 + t138*t182
-                t184 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t185 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t186 = Rb_xy*t178 + Rb_yy*t179 + Rb_zy*t180 + t136*t174 + t137*t184 + t138*t185
-                t187 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t188 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t189 = Rb_xz*t178 + Rb_yz*t179 + Rb_zz*t180 + t136*t172 + t137*t187 + t138*t188
-                t190 = va_x - vb_x
-                t191 = va_y - vb_y
-                t192 = va_z - vb_z
-                t193 = -Omb_y*t189 + Omb_z*t186 + t176*t190 + t181*t191 + t182*t192
-                t194 = Omb_x*t189 - Omb_z*t183 + t174*t190 + t184*t191 + t185*t192
-                t195 = -Omb_x*t186 + Omb_y*t183 + t172*t190 + t187*t191 + t188*t192
-                t196 = (dpush_by_place_1*t183 + dpush_by_place_2*t186 + dpush_by_place_3*t189 +
-                    dpush_by_rate_1*t193 + dpush_by_rate_2*t194 + dpush_by_rate_3*t195)
-                t197 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t198 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t199 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t200 = Ra_xx*t176 + Ra_yx*t181 + Ra_zx*t182 + Rb_xx*t197 + Rb_yx*t198 + Rb_zx*t199
-                t201 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t202 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t203 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t204 = Ra_xy*t176 + Ra_yy*t181 + Ra_zy*t182 + Rb_xx*t201 + Rb_yx*t202 + Rb_zx*t203
-                t205 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t206 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t207 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t208 = Ra_xz*t176 + Ra_yz*t181 + Ra_zz*t182 + Rb_xx*t205 + Rb_yx*t206 + Rb_zx*t207
-                t209 = Oma_x*t200 + Oma_y*t204 + Oma_z*t208
-                t210 = Ra_xx*t174 + Ra_yx*t184 + Ra_zx*t185 + Rb_xy*t197 + Rb_yy*t198 + Rb_zy*t199
-                t211 = Ra_xy*t174 + Ra_yy*t184 + Ra_zy*t185 + Rb_xy*t201 + Rb_yy*t202 + Rb_zy*t203
-                t212 = Ra_xz*t174 + Ra_yz*t184 + Ra_zz*t185 + Rb_xy*t205 + Rb_yy*t206 + Rb_zy*t207
-                t213 = Oma_x*t210 + Oma_y*t211 + Oma_z*t212
-                t214 = Ra_xx*t172 + Ra_yx*t187 + Ra_zx*t188 + Rb_xz*t197 + Rb_yz*t198 + Rb_zz*t199
-                t215 = Ra_xy*t172 + Ra_yy*t187 + Ra_zy*t188 + Rb_xz*t201 + Rb_yz*t202 + Rb_zz*t203
-                t216 = Ra_xz*t172 + Ra_yz*t187 + Ra_zz*t188 + Rb_xz*t205 + Rb_yz*t206 + Rb_zz*t207
-                t217 = Oma_x*t214 + Oma_y*t215 + Oma_z*t216
-                t218 = psia_x*t200 + psia_y*t204 + psia_z*t208 + t149
-                t219 = psia_x*t210 + psia_y*t211 + psia_z*t212 + t153
-                t220 = psia_x*t214 + psia_y*t215 + psia_z*t216 + t157
-                t221 = (dfriction_2_by_place_1*t183 + dfriction_2_by_place_2*t186 +
-                    dfriction_2_by_place_3*t189 + dfriction_2_by_rate_1*t193 +
-                    dfriction_2_by_rate_2*t194 + dfriction_2_by_rate_3*t195 +
-                    dfriction_2_by_spin_1*t209 + dfriction_2_by_spin_2*t213 +
-                    dfriction_2_by_spin_3*t217 + dfriction_2_by_turned_1*t218 +
-                    dfriction_2_by_turned_2*t219 + dfriction_2_by_turned_3*t220)
-                t222 = (dfriction_3_by_place_1*t183 + dfriction_3_by_place_2*t186 +
-                    dfriction_3_by_place_3*t189 + dfriction_3_by_rate_1*t193 +
-                    dfriction_3_by_rate_2*t194 + dfriction_3_by_rate_3*t195 +
-                    dfriction_3_by_spin_1*t209 + dfriction_3_by_spin_2*t213 +
-                    dfriction_3_by_spin_3*t217 + dfriction_3_by_turned_1*t218 +
-                    dfriction_3_by_turned_2*t219 + dfriction_3_by_turned_3*t220)
-                t223 = (dfriction_1_by_place_1*t183 + dfriction_1_by_place_2*t186 +
-                    dfriction_1_by_place_3*t189 + dfriction_1_by_rate_1*t193 +
-                    dfriction_1_by_rate_2*t194 + dfriction_1_by_rate_3*t195 +
-                    dfriction_1_by_spin_1*t209 + dfriction_1_by_spin_2*t213 +
-                    dfriction_1_by_spin_3*t217 + dfriction_1_by_turned_1*t218 +
-                    dfriction_1_by_turned_2*t219 + dfriction_1_by_turned_3*t220)
-                t224 = -normal_1*t196 - t159*t221 + t162*t223 - t167*t222
-                t225 = -normal_2*t196 - t159*t223 + t165*t221 - t168*t222
-                t226 = -normal_3*t196 - t167*t223 - t168*t221 + t169*t222
-                t227 = Rb_xx*t224 + Rb_xy*t225 + Rb_xz*t226 + t172*t173 + t174*t175 + t176*t177
-                t228 = Rb_yx*t164 + Rb_yy*t166 + Rb_yz*t170
-                t229 = Rb_yx*t224 + Rb_yy*t225 + Rb_yz*t226 + t173*t187 + t175*t184 + t177*t181
-                t230 = Rb_zx*t164 + Rb_zy*t166 + Rb_zz*t170
-                t231 = Rb_zx*t224 + Rb_zy*t225 + Rb_zz*t226 + t173*t188 + t175*t185 + t177*t182
-                t232 = radius*(-normal_1*t150 + normal_2*t146)
-                t233 = radius*(normal_1*t154 - normal_3*t146)
-                t234 = radius*(-normal_2*t154 + normal_3*t150)
-                t235 = radius*t175
-                t236 = radius*t173
-                t237 = radius*t177
-                t238 = radius*(-normal_1*t151 + normal_2*t147)
-                t239 = radius*(normal_1*t155 - normal_3*t147)
-                t240 = radius*(-normal_2*t155 + normal_3*t151)
-                t241 = radius*(-normal_1*t152 + normal_2*t148)
-                t242 = radius*(normal_1*t156 - normal_3*t148)
-                t243 = radius*(-normal_2*t156 + normal_3*t152)
-                t244 = -normal_3*radius + t140
-                t245 = -normal_2*radius + t139
-                t246 = -t245
-                t247 = -normal_1*radius + t142
-                t248 = -t244
-                t249 = -t247
-                J[column] = c_damping*t171 + c_stiffness*t227
-                J[12 + column] = c_damping*t228 + c_stiffness*t229
-                J[24 + column] = c_damping*t230 + c_stiffness*t231
-                J[36 + column] = -c_damping*t171 - c_stiffness*t227
-                J[48 + column] = -c_damping*t228 - c_stiffness*t229
-                J[60 + column] = -c_damping*t230 - c_stiffness*t231
-                J[72 + column] = (c_damping*(-t164*t234 - t166*t233 - t170*t232) +
-                    c_stiffness*(-t224*t234 - t225*t233 - t226*t232 - t235*(normal_1*t214 -
-                    normal_3*t200) - t236*(-normal_1*t210 + normal_2*t200) - t237*(-normal_2*t214
-                    + normal_3*t210)))
-                J[84 + column] = (c_damping*(-t164*t240 - t166*t239 - t170*t238) +
-                    c_stiffness*(-t224*t240 - t225*t239 - t226*t238 - t235*(normal_1*t215 -
-                    normal_3*t204) - t236*(-normal_1*t211 + normal_2*t204) - t237*(-normal_2*t215
-                    + normal_3*t211)))
-                J[96 + column] = (c_damping*(-t164*t243 - t166*t242 - t170*t241) +
-                    c_stiffness*(-t224*t243 - t225*t242 - t226*t241 - t235*(normal_1*t216 -
-                    normal_3*t208) - t236*(-normal_1*t212 + normal_2*t208) - t237*(-normal_2*t216
-                    + normal_3*t212)))
-                J[108 + column] = (c_damping*(t166*t244 + t170*t246) + c_stiffness*(-t173*t186 +
-                    t175*t189 + t225*t244 + t226*t246))
-                J[120 + column] = (c_damping*(t164*t248 + t170*t247) + c_stiffness*(t173*t183 -
-                    t177*t189 + t224*t248 + t226*t247))
-                J[132 + column] = (c_damping*(t164*t245 + t166*t249) + c_stiffness*(-t175*t183 +
-                    t177*t186 + t224*t245 + t225*t249))
+                t137 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t138 = xa_y - xb_y
+                t139 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t140 = xa_z - xb_z
+                t141 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t142 = Rb_xx*t133 + Rb_yx*t134 + Rb_zx*t135 + t136*t137 + t138*t139 + t140*t141
+                t143 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t144 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t145 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t146 = Rb_xy*t133 + Rb_yy*t134 + Rb_zy*t135 + t136*t143 + t138*t144 + t140*t145
+                t147 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t148 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t149 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t150 = Rb_xz*t133 + Rb_yz*t134 + Rb_zz*t135 + t136*t147 + t138*t148 + t140*t149
+                t151 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t152 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t153 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t154 = Ra_xx*t137 + Ra_yx*t139 + Ra_zx*t141 + Rb_xx*t151 + Rb_yx*t152 + Rb_zx*t153
+                t155 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t156 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t157 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t158 = Ra_xy*t137 + Ra_yy*t139 + Ra_zy*t141 + Rb_xx*t155 + Rb_yx*t156 + Rb_zx*t157
+                t159 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t160 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t161 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t162 = Ra_xz*t137 + Ra_yz*t139 + Ra_zz*t141 + Rb_xx*t159 + Rb_yx*t160 + Rb_zx*t161
+                t163 = (utha_x*(Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx) + utha_y*(Ra_xy*Rb_xx +
+                    Ra_yy*Rb_yx + Ra_zy*Rb_zx) + utha_z*(Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx)
+                    - uthb_x)
+                t164 = Ra_xx*t143 + Ra_yx*t144 + Ra_zx*t145 + Rb_xy*t151 + Rb_yy*t152 + Rb_zy*t153
+                t165 = Ra_xy*t143 + Ra_yy*t144 + Ra_zy*t145 + Rb_xy*t155 + Rb_yy*t156 + Rb_zy*t157
+                t166 = Ra_xz*t143 + Ra_yz*t144 + Ra_zz*t145 + Rb_xy*t159 + Rb_yy*t160 + Rb_zy*t161
+                t167 = (utha_x*(Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy) + utha_y*(Ra_xy*Rb_xy +
+                    Ra_yy*Rb_yy + Ra_zy*Rb_zy) + utha_z*(Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy)
+                    - uthb_y)
+                t168 = Ra_xx*t147 + Ra_yx*t148 + Ra_zx*t149 + Rb_xz*t151 + Rb_yz*t152 + Rb_zz*t153
+                t169 = Ra_xy*t147 + Ra_yy*t148 + Ra_zy*t149 + Rb_xz*t155 + Rb_yz*t156 + Rb_zz*t157
+                t170 = Ra_xz*t147 + Ra_yz*t148 + Ra_zz*t149 + Rb_xz*t159 + Rb_yz*t160 + Rb_zz*t161
+                t171 = (utha_x*(Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz) + utha_y*(Ra_xy*Rb_xz +
+                    Ra_yy*Rb_yz + Ra_zy*Rb_zz) + utha_z*(Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz)
+                    - uthb_z)
+                t172 = va_x - vb_x
+                t173 = va_y - vb_y
+                t174 = va_z - vb_z
+                t175 = uxa_x - uxb_x
+                t176 = uxa_y - uxb_y
+                t177 = uxa_z - uxb_z
+                t178 = Rb_xy*t136 + Rb_yy*t138 + Rb_zy*t140
+                t179 = Rb_xz*t136 + Rb_yz*t138 + Rb_zz*t140
+                t180 = Rb_xx*t136 + Rb_yx*t138 + Rb_zx*t140
+                dplace_1 = t142
+                dplace_2 = t146
+                dplace_3 = t150
+                dturned_1 = psia_x*t154 + psia_y*t158 + psia_z*t162 + t163
+                dturned_2 = psia_x*t164 + psia_y*t165 + psia_z*t166 + t167
+                dturned_3 = psia_x*t168 + psia_y*t169 + psia_z*t170 + t171
+                drate_1 = -Omb_y*t150 + Omb_z*t146 + t137*t172 + t139*t173 + t141*t174
+                urate_1 = Rb_xx*t175 + Rb_yx*t176 + Rb_zx*t177 + t178*uthb_z - t179*uthb_y
+                drate_2 = Omb_x*t150 - Omb_z*t142 + t143*t172 + t144*t173 + t145*t174
+                urate_2 = Rb_xy*t175 + Rb_yy*t176 + Rb_zy*t177 + t179*uthb_x - t180*uthb_z
+                drate_3 = -Omb_x*t146 + Omb_y*t142 + t147*t172 + t148*t173 + t149*t174
+                urate_3 = Rb_xz*t175 + Rb_yz*t176 + Rb_zz*t177 - t178*uthb_x + t180*uthb_y
+                dspin_1 = Oma_x*t154 + Oma_y*t158 + Oma_z*t162
+                uspin_1 = t163
+                dspin_2 = Oma_x*t164 + Oma_y*t165 + Oma_z*t166
+                uspin_2 = t167
+                dspin_3 = Oma_x*t168 + Oma_y*t169 + Oma_z*t170
+                uspin_3 = t171
+                t181 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2 + dpush_by_rate_3*urate_3
+                t182 = (dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2 +
+                    dfriction_2_by_rate_3*urate_3 + dfriction_2_by_spin_1*uspin_1 +
+                    dfriction_2_by_spin_2*uspin_2 + dfriction_2_by_spin_3*uspin_3)
+                t183 = normal_1*normal_2
+                t184 = (dfriction_3_by_rate_1*urate_1 + dfriction_3_by_rate_2*urate_2 +
+                    dfriction_3_by_rate_3*urate_3 + dfriction_3_by_spin_1*uspin_1 +
+                    dfriction_3_by_spin_2*uspin_2 + dfriction_3_by_spin_3*uspin_3)
+                t185 = normal_3*t184
+                t186 = 1 - normal_1*normal_1
+                t187 = (dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2 +
+                    dfriction_1_by_rate_3*urate_3 + dfriction_1_by_spin_1*uspin_1 +
+                    dfriction_1_by_spin_2*uspin_2 + dfriction_1_by_spin_3*uspin_3)
+                t188 = -normal_1*t181 - normal_1*t185 - t182*t183 + t186*t187
+                t189 = 1 - normal_2*normal_2
+                t190 = -normal_2*t181 - normal_2*t185 + t182*t189 - t183*t187
+                t191 = normal_1*normal_3
+                t192 = normal_2*normal_3
+                t193 = 1 - normal_3*normal_3
+                t194 = -normal_3*t181 - t182*t192 + t184*t193 - t187*t191
+                t195 = Rb_xx*t188 + Rb_xy*t190 + Rb_xz*t194
+                t196 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t197 = -friction_1*t191 - friction_2*t192 + friction_3*t193 - normal_3*push
+                t198 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t199 = -friction_1*t183 + friction_2*t189 - friction_3*t192 - normal_2*push
+                t200 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t201 = friction_1*t186 - friction_2*t183 - friction_3*t191 - normal_1*push
+                t202 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
+                    dplace_3*dpush_by_place_3 + dpush_by_rate_1*drate_1 + dpush_by_rate_2*drate_2
+                    + dpush_by_rate_3*drate_3)
+                t203 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
+                    dfriction_2_by_place_3*dplace_3 + dfriction_2_by_rate_1*drate_1 +
+                    dfriction_2_by_rate_2*drate_2 + dfriction_2_by_rate_3*drate_3 +
+                    dfriction_2_by_spin_1*dspin_1 + dfriction_2_by_spin_2*dspin_2 +
+                    dfriction_2_by_spin_3*dspin_3 + dfriction_2_by_turned_1*dturned_1 +
+                    dfriction_2_by_turned_2*dturned_2 + dfriction_2_by_turned_3*dturned_3)
+                t204 = (dfriction_3_by_place_1*dplace_1 + dfriction_3_by_place_2*dplace_2 +
+                    dfriction_3_by_place_3*dplace_3 + dfriction_3_by_rate_1*drate_1 +
+                    dfriction_3_by_rate_2*drate_2 + dfriction_3_by_rate_3*drate_3 +
+                    dfriction_3_by_spin_1*dspin_1 + dfriction_3_by_spin_2*dspin_2 +
+                    dfriction_3_by_spin_3*dspin_3 + dfriction_3_by_turned_1*dturned_1 +
+                    dfriction_3_by_turned_2*dturned_2 + dfriction_3_by_turned_3*dturned_3)
+                t205 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
+                    dfriction_1_by_place_3*dplace_3 + dfriction_1_by_rate_1*drate_1 +
+                    dfriction_1_by_rate_2*drate_2 + dfriction_1_by_rate_3*drate_3 +
+                    dfriction_1_by_spin_1*dspin_1 + dfriction_1_by_spin_2*dspin_2 +
+                    dfriction_1_by_spin_3*dspin_3 + dfriction_1_by_turned_1*dturned_1 +
+                    dfriction_1_by_turned_2*dturned_2 + dfriction_1_by_turned_3*dturned_3)
+                t206 = -normal_1*t202 - t183*t203 + t186*t205 - t191*t204
+                t207 = -normal_2*t202 - t183*t205 + t189*t203 - t192*t204
+                t208 = -normal_3*t202 - t191*t205 - t192*t203 + t193*t204
+                t209 = Rb_xx*t206 + Rb_xy*t207 + Rb_xz*t208 + t196*t197 + t198*t199 + t200*t201
+                t210 = Rb_yx*t188 + Rb_yy*t190 + Rb_yz*t194
+                t211 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t212 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t213 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t214 = Rb_yx*t206 + Rb_yy*t207 + Rb_yz*t208 + t197*t211 + t199*t212 + t201*t213
+                t215 = Rb_zx*t188 + Rb_zy*t190 + Rb_zz*t194
+                t216 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t217 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t218 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t219 = Rb_zx*t206 + Rb_zy*t207 + Rb_zz*t208 + t197*t216 + t199*t217 + t201*t218
+                t220 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t221 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t222 = radius*(-normal_1*t221 + normal_2*t220)
+                t223 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t224 = radius*(normal_1*t223 - normal_3*t220)
+                t225 = radius*(-normal_2*t223 + normal_3*t221)
+                t226 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t227 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t228 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t229 = Ra_xx*t196 + Ra_yx*t211 + Ra_zx*t216 + Rb_xz*t226 + Rb_yz*t227 + Rb_zz*t228
+                t230 = Ra_xx*t200 + Ra_yx*t213 + Ra_zx*t218 + Rb_xx*t226 + Rb_yx*t227 + Rb_zx*t228
+                t231 = radius*t199
+                t232 = Ra_xx*t198 + Ra_yx*t212 + Ra_zx*t217 + Rb_xy*t226 + Rb_yy*t227 + Rb_zy*t228
+                t233 = radius*t197
+                t234 = radius*t201
+                t235 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t236 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t237 = radius*(-normal_1*t236 + normal_2*t235)
+                t238 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t239 = radius*(normal_1*t238 - normal_3*t235)
+                t240 = radius*(-normal_2*t238 + normal_3*t236)
+                t241 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t242 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t243 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t244 = Ra_xy*t196 + Ra_yy*t211 + Ra_zy*t216 + Rb_xz*t241 + Rb_yz*t242 + Rb_zz*t243
+                t245 = Ra_xy*t200 + Ra_yy*t213 + Ra_zy*t218 + Rb_xx*t241 + Rb_yx*t242 + Rb_zx*t243
+                t246 = Ra_xy*t198 + Ra_yy*t212 + Ra_zy*t217 + Rb_xy*t241 + Rb_yy*t242 + Rb_zy*t243
+                t247 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t248 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t249 = radius*(-normal_1*t248 + normal_2*t247)
+                t250 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t251 = radius*(normal_1*t250 - normal_3*t247)
+                t252 = radius*(-normal_2*t250 + normal_3*t248)
+                t253 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t254 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t255 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t256 = Ra_xz*t196 + Ra_yz*t211 + Ra_zz*t216 + Rb_xz*t253 + Rb_yz*t254 + Rb_zz*t255
+                t257 = Ra_xz*t200 + Ra_yz*t213 + Ra_zz*t218 + Rb_xx*t253 + Rb_yx*t254 + Rb_zx*t255
+                t258 = Ra_xz*t198 + Ra_yz*t212 + Ra_zz*t217 + Rb_xy*t253 + Rb_yy*t254 + Rb_zy*t255
+                t259 = xa_x - xb_x
+                t260 = xa_y - xb_y
+                t261 = xa_z - xb_z
+                t262 = Rb_xz*t259 + Rb_yz*t260 + Rb_zz*t261 - normal_3*radius
+                t263 = Rb_xy*t259 + Rb_yy*t260 + Rb_zy*t261 - normal_2*radius
+                t264 = -t263
+                t265 = dxa_x - dxb_x
+                t266 = dxa_y - dxb_y
+                t267 = dxa_z - dxb_z
+                t268 = Rb_xz*t265 + Rb_yz*t266 + Rb_zz*t267 + t196*t259 + t211*t260 + t216*t261
+                t269 = Rb_xy*t265 + Rb_yy*t266 + Rb_zy*t267 + t198*t259 + t212*t260 + t217*t261
+                t270 = Rb_xx*t259 + Rb_yx*t260 + Rb_zx*t261 - normal_1*radius
+                t271 = -t262
+                t272 = Rb_xx*t265 + Rb_yx*t266 + Rb_zx*t267 + t200*t259 + t213*t260 + t218*t261
+                t273 = -t270
+                J[column] = c_damping*t195 + c_stiffness*t209
+                J[12 + column] = c_damping*t210 + c_stiffness*t214
+                J[24 + column] = c_damping*t215 + c_stiffness*t219
+                J[36 + column] = -c_damping*t195 - c_stiffness*t209
+                J[48 + column] = -c_damping*t210 - c_stiffness*t214
+                J[60 + column] = -c_damping*t215 - c_stiffness*t219
+                J[72 + column] = (c_damping*(-t188*t225 - t190*t224 - t194*t222) +
+                    c_stiffness*(-t206*t225 - t207*t224 - t208*t222 - t231*(normal_1*t229 -
+                    normal_3*t230) - t233*(-normal_1*t232 + normal_2*t230) - t234*(-normal_2*t229
+                    + normal_3*t232)))
+                J[84 + column] = (c_damping*(-t188*t240 - t190*t239 - t194*t237) +
+                    c_stiffness*(-t206*t240 - t207*t239 - t208*t237 - t231*(normal_1*t244 -
+                    normal_3*t245) - t233*(-normal_1*t246 + normal_2*t245) - t234*(-normal_2*t244
+                    + normal_3*t246)))
+                J[96 + column] = (c_damping*(-t188*t252 - t190*t251 - t194*t249) +
+                    c_stiffness*(-t206*t252 - t207*t251 - t208*t249 - t231*(normal_1*t256 -
+                    normal_3*t257) - t233*(-normal_1*t258 + normal_2*t257) - t234*(-normal_2*t256
+                    + normal_3*t258)))
+                J[108 + column] = (c_damping*(t190*t262 + t194*t264) + c_stiffness*(-t197*t269 +
+                    t199*t268 + t207*t262 + t208*t264))
+                J[120 + column] = (c_damping*(t188*t271 + t194*t270) + c_stiffness*(t197*t272 -
+                    t201*t268 + t206*t271 + t208*t270))
+                J[132 + column] = (c_damping*(t188*t263 + t190*t273) + c_stiffness*(-t199*t272 +
+                    t201*t269 + t206*t263 + t207*t273))
     return OK

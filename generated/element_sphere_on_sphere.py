@@ -54,7 +54,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (175, 0, 0, 0),
-              "column": (924, 0, 0, 0)}
+              "column": (813, 0, 0, 0)}
 
 
 @kernel_function
@@ -826,206 +826,255 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = du[9]
                 uthb_y = du[10]
                 uthb_z = du[11]
-                t214 = uxa_x - uxb_x
-                t215 = uxa_y - uxb_y
-                t216 = uxa_z - uxb_z
+                t214 = dxa_x - dxb_x
+                t215 = dxa_y - dxb_y
+                t216 = dxa_z - dxb_z
                 t217 = xa_x - xb_x
-                t218 = xa_y - xb_y
-                t219 = xa_z - xb_z
-                t220 = Rb_xy*t217 + Rb_yy*t218 + Rb_zy*t219
-                t221 = Rb_xz*t217 + Rb_yz*t218 + Rb_zz*t219
-                t222 = Rb_xx*t214 + Rb_yx*t215 + Rb_zx*t216 + t220*uthb_z - t221*uthb_y
-                t223 = Rb_xx*t217 + Rb_yx*t218 + Rb_zx*t219
-                t224 = Rb_xy*t214 + Rb_yy*t215 + Rb_zy*t216 + t221*uthb_x - t223*uthb_z
-                t225 = Rb_xz*t214 + Rb_yz*t215 + Rb_zz*t216 - t220*uthb_x + t223*uthb_y
-                t226 = dpush_by_rate_1*t222 + dpush_by_rate_2*t224 + dpush_by_rate_3*t225
-                t227 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t228 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t229 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t230 = t227*utha_x + t228*utha_y + t229*utha_z - uthb_x
-                t231 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t232 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t233 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t234 = t231*utha_x + t232*utha_y + t233*utha_z - uthb_y
-                t235 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t236 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t237 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t238 = t235*utha_x + t236*utha_y + t237*utha_z - uthb_z
-                t239 = (dfriction_2_by_rate_1*t222 + dfriction_2_by_rate_2*t224 +
-                    dfriction_2_by_rate_3*t225 + dfriction_2_by_spin_1*t230 +
-                    dfriction_2_by_spin_2*t234 + dfriction_2_by_spin_3*t238)
-                t240 = normal_1*normal_2
-                t241 = (dfriction_3_by_rate_1*t222 + dfriction_3_by_rate_2*t224 +
-                    dfriction_3_by_rate_3*t225 + dfriction_3_by_spin_1*t230 +
-                    dfriction_3_by_spin_2*t234 + dfriction_3_by_spin_3*t238)
-                t242 = normal_3*t241
-                t243 = 1 - normal_1*normal_1
-                t244 = (dfriction_1_by_rate_1*t222 + dfriction_1_by_rate_2*t224 +
-                    dfriction_1_by_rate_3*t225 + dfriction_1_by_spin_1*t230 +
-                    dfriction_1_by_spin_2*t234 + dfriction_1_by_spin_3*t238)
-                t245 = -normal_1*t226 - normal_1*t242 - t239*t240 + t243*t244
-                t246 = 1 - normal_2*normal_2
-                t247 = -normal_2*t226 - normal_2*t242 + t239*t246 - t240*t244
-                t248 = normal_1*normal_3
-                t249 = normal_2*normal_3
-                t250 = 1 - normal_3*normal_3
-                t251 = -normal_3*t226 - t239*t249 + t241*t250 - t244*t248
-                t252 = Rb_xx*t245 + Rb_xy*t247 + Rb_xz*t251
-                t253 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t254 = -friction_1*t248 - friction_2*t249 + friction_3*t250 - normal_3*push
-                t255 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t256 = -friction_1*t240 + friction_2*t246 - friction_3*t249 - normal_2*push
-                t257 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t258 = friction_1*t243 - friction_2*t240 - friction_3*t248 - normal_1*push
-                t259 = dxa_x - dxb_x
-                t260 = dxa_y - dxb_y
-                t261 = dxa_z - dxb_z
-                t262 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t263 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t264 = Rb_xx*t259 + Rb_yx*t260 + Rb_zx*t261 + t217*t257 + t218*t262 + t219*t263
-                t265 = dnormal_1_by_place_1*t264
-                t266 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t267 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t268 = Rb_xy*t259 + Rb_yy*t260 + Rb_zy*t261 + t217*t255 + t218*t266 + t219*t267
-                t269 = dnormal_1_by_place_2*t268
-                t270 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t271 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t272 = Rb_xz*t259 + Rb_yz*t260 + Rb_zz*t261 + t217*t253 + t218*t270 + t219*t271
-                t273 = dnormal_1_by_place_3*t272
-                t274 = t265 + t269 + t273
-                t275 = dnormal_2_by_place_1*t264
-                t276 = dnormal_2_by_place_2*t268
-                t277 = dnormal_2_by_place_3*t272
-                t278 = t275 + t276 + t277
-                t279 = friction_2*t278
-                t280 = normal_2*t274
-                t281 = dnormal_3_by_place_1*t264
-                t282 = dnormal_3_by_place_2*t268
-                t283 = dnormal_3_by_place_3*t272
-                t284 = t281 + t282 + t283
-                t285 = friction_3*t284
-                t286 = friction_3*normal_3
-                t287 = friction_1*normal_1
-                t288 = va_x - vb_x
-                t289 = va_y - vb_y
-                t290 = va_z - vb_z
-                t291 = -Omb_y*t272 + Omb_z*t268 + t257*t288 + t262*t289 + t263*t290
-                t292 = Omb_x*t272 - Omb_z*t264 + t255*t288 + t266*t289 + t267*t290
-                t293 = -Omb_x*t268 + Omb_y*t264 + t253*t288 + t270*t289 + t271*t290
-                t294 = (dpush_by_place_1*t264 + dpush_by_place_2*t268 + dpush_by_place_3*t272 +
-                    dpush_by_rate_1*t291 + dpush_by_rate_2*t292 + dpush_by_rate_3*t293)
-                t295 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t296 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t297 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t298 = Ra_xx*t257 + Ra_yx*t262 + Ra_zx*t263 + Rb_xx*t295 + Rb_yx*t296 + Rb_zx*t297
-                t299 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t300 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t301 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t302 = Ra_xy*t257 + Ra_yy*t262 + Ra_zy*t263 + Rb_xx*t299 + Rb_yx*t300 + Rb_zx*t301
-                t303 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t304 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t305 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t306 = Ra_xz*t257 + Ra_yz*t262 + Ra_zz*t263 + Rb_xx*t303 + Rb_yx*t304 + Rb_zx*t305
-                t307 = Oma_x*t298 + Oma_y*t302 + Oma_z*t306
-                t308 = Ra_xx*t255 + Ra_yx*t266 + Ra_zx*t267 + Rb_xy*t295 + Rb_yy*t296 + Rb_zy*t297
-                t309 = Ra_xy*t255 + Ra_yy*t266 + Ra_zy*t267 + Rb_xy*t299 + Rb_yy*t300 + Rb_zy*t301
-                t310 = Ra_xz*t255 + Ra_yz*t266 + Ra_zz*t267 + Rb_xy*t303 + Rb_yy*t304 + Rb_zy*t305
-                t311 = Oma_x*t308 + Oma_y*t309 + Oma_z*t310
-                t312 = Ra_xx*t253 + Ra_yx*t270 + Ra_zx*t271 + Rb_xz*t295 + Rb_yz*t296 + Rb_zz*t297
-                t313 = Ra_xy*t253 + Ra_yy*t270 + Ra_zy*t271 + Rb_xz*t299 + Rb_yz*t300 + Rb_zz*t301
-                t314 = Ra_xz*t253 + Ra_yz*t270 + Ra_zz*t271 + Rb_xz*t303 + Rb_yz*t304 + Rb_zz*t305
-                t315 = Oma_x*t312 + Oma_y*t313 + Oma_z*t314
-                t316 = psia_x*t298 + psia_y*t302 + psia_z*t306 + t230
-                t317 = psia_x*t308 + psia_y*t309 + psia_z*t310 + t234
-                t318 = psia_x*t312 + psia_y*t313 + psia_z*t314 + t238
-                t319 = (dfriction_2_by_place_1*t264 + dfriction_2_by_place_2*t268 +
-                    dfriction_2_by_place_3*t272 + dfriction_2_by_rate_1*t291 +
-                    dfriction_2_by_rate_2*t292 + dfriction_2_by_rate_3*t293 +
-                    dfriction_2_by_spin_1*t307 + dfriction_2_by_spin_2*t311 +
-                    dfriction_2_by_spin_3*t315 + dfriction_2_by_turned_1*t316 +
-                    dfriction_2_by_turned_2*t317 + dfriction_2_by_turned_3*t318)
-                t320 = (dfriction_3_by_place_1*t264 + dfriction_3_by_place_2*t268 +
-                    dfriction_3_by_place_3*t272 + dfriction_3_by_rate_1*t291 +
-                    dfriction_3_by_rate_2*t292 + dfriction_3_by_rate_3*t293 +
-                    dfriction_3_by_spin_1*t307 + dfriction_3_by_spin_2*t311 +
-                    dfriction_3_by_spin_3*t315 + dfriction_3_by_turned_1*t316 +
-                    dfriction_3_by_turned_2*t317 + dfriction_3_by_turned_3*t318)
-                t321 = (dfriction_1_by_place_1*t264 + dfriction_1_by_place_2*t268 +
-                    dfriction_1_by_place_3*t272 + dfriction_1_by_rate_1*t291 +
-                    dfriction_1_by_rate_2*t292 + dfriction_1_by_rate_3*t293 +
-                    dfriction_1_by_spin_1*t307 + dfriction_1_by_spin_2*t311 +
-                    dfriction_1_by_spin_3*t315 + dfriction_1_by_turned_1*t316 +
-                    dfriction_1_by_turned_2*t317 + dfriction_1_by_turned_3*t318)
-                t322 = (-friction_2*t280 - normal_1*t279 - normal_1*t285 - normal_1*t294 -
-                    push*t274 - t240*t319 + t243*t321 - t248*t320 - t274*t286 - t287*(2*t265 +
-                    2*t269 + 2*t273))
-                t323 = friction_2*normal_2
-                t324 = (-friction_1*t280 - normal_2*t285 - normal_2*t294 - push*t278 - t240*t321 +
-                    t246*t319 - t249*t320 - t278*t286 - t278*t287 - t323*(2*t275 + 2*t276 +
-                    2*t277))
-                t325 = (-friction_1*normal_3*t274 - normal_3*t279 - normal_3*t294 - push*t284 -
-                    t248*t321 - t249*t319 + t250*t320 - t284*t287 - t284*t323 - t286*(2*t281 +
-                    2*t282 + 2*t283))
-                t326 = Rb_xx*t322 + Rb_xy*t324 + Rb_xz*t325 + t253*t254 + t255*t256 + t257*t258
-                t327 = Rb_yx*t245 + Rb_yy*t247 + Rb_yz*t251
-                t328 = Rb_yx*t322 + Rb_yy*t324 + Rb_yz*t325 + t254*t270 + t256*t266 + t258*t262
-                t329 = Rb_zx*t245 + Rb_zy*t247 + Rb_zz*t251
-                t330 = Rb_zx*t322 + Rb_zy*t324 + Rb_zz*t325 + t254*t271 + t256*t267 + t258*t263
-                t331 = -t231
-                t332 = radius*(normal_1*t331 + normal_2*t227)
-                t333 = -t227
-                t334 = radius*(normal_1*t235 + normal_3*t333)
-                t335 = -t235
-                t336 = radius*(normal_2*t335 + normal_3*t231)
-                t337 = radius*t258
-                t338 = radius*t256
-                t339 = radius*t254
-                t340 = -t232
-                t341 = radius*(normal_1*t340 + normal_2*t228)
-                t342 = -t228
-                t343 = radius*(normal_1*t236 + normal_3*t342)
-                t344 = -t236
-                t345 = radius*(normal_2*t344 + normal_3*t232)
-                t346 = -t233
-                t347 = radius*(normal_1*t346 + normal_2*t229)
-                t348 = -t229
-                t349 = radius*(normal_1*t237 + normal_3*t348)
-                t350 = -t237
-                t351 = radius*(normal_2*t350 + normal_3*t233)
-                t352 = -normal_3*radius + t221
-                t353 = -normal_2*radius + t220
+                t218 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t219 = xa_y - xb_y
+                t220 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t221 = xa_z - xb_z
+                t222 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t223 = Rb_xx*t214 + Rb_yx*t215 + Rb_zx*t216 + t217*t218 + t219*t220 + t221*t222
+                t224 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t225 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t226 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t227 = Rb_xy*t214 + Rb_yy*t215 + Rb_zy*t216 + t217*t224 + t219*t225 + t221*t226
+                t228 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t229 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t230 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t231 = Rb_xz*t214 + Rb_yz*t215 + Rb_zz*t216 + t217*t228 + t219*t229 + t221*t230
+                t232 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t233 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t234 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t235 = Ra_xx*t218 + Ra_yx*t220 + Ra_zx*t222 + Rb_xx*t232 + Rb_yx*t233 + Rb_zx*t234
+                t236 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t237 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t238 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t239 = Ra_xy*t218 + Ra_yy*t220 + Ra_zy*t222 + Rb_xx*t236 + Rb_yx*t237 + Rb_zx*t238
+                t240 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t241 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t242 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t243 = Ra_xz*t218 + Ra_yz*t220 + Ra_zz*t222 + Rb_xx*t240 + Rb_yx*t241 + Rb_zx*t242
+                t244 = (utha_x*(Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx) + utha_y*(Ra_xy*Rb_xx +
+                    Ra_yy*Rb_yx + Ra_zy*Rb_zx) + utha_z*(Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx)
+                    - uthb_x)
+                t245 = Ra_xx*t224 + Ra_yx*t225 + Ra_zx*t226 + Rb_xy*t232 + Rb_yy*t233 + Rb_zy*t234
+                t246 = Ra_xy*t224 + Ra_yy*t225 + Ra_zy*t226 + Rb_xy*t236 + Rb_yy*t237 + Rb_zy*t238
+                t247 = Ra_xz*t224 + Ra_yz*t225 + Ra_zz*t226 + Rb_xy*t240 + Rb_yy*t241 + Rb_zy*t242
+                t248 = (utha_x*(Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy) + utha_y*(Ra_xy*Rb_xy +
+                    Ra_yy*Rb_yy + Ra_zy*Rb_zy) + utha_z*(Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy)
+                    - uthb_y)
+                t249 = Ra_xx*t228 + Ra_yx*t229 + Ra_zx*t230 + Rb_xz*t232 + Rb_yz*t233 + Rb_zz*t234
+                t250 = Ra_xy*t228 + Ra_yy*t229 + Ra_zy*t230 + Rb_xz*t236 + Rb_yz*t237 + Rb_zz*t238
+                t251 = Ra_xz*t228 + Ra_yz*t229 + Ra_zz*t230 + Rb_xz*t240 + Rb_yz*t241 + Rb_zz*t242
+                t252 = (utha_x*(Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz) + utha_y*(Ra_xy*Rb_xz +
+                    Ra_yy*Rb_yz + Ra_zy*Rb_zz) + utha_z*(Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz)
+                    - uthb_z)
+                t253 = va_x - vb_x
+                t254 = va_y - vb_y
+                t255 = va_z - vb_z
+                t256 = uxa_x - uxb_x
+                t257 = uxa_y - uxb_y
+                t258 = uxa_z - uxb_z
+                t259 = Rb_xy*t217 + Rb_yy*t219 + Rb_zy*t221
+                t260 = Rb_xz*t217 + Rb_yz*t219 + Rb_zz*t221
+                t261 = Rb_xx*t217 + Rb_yx*t219 + Rb_zx*t221
+                dplace_1 = t223
+                dplace_2 = t227
+                dplace_3 = t231
+                dturned_1 = psia_x*t235 + psia_y*t239 + psia_z*t243 + t244
+                dturned_2 = psia_x*t245 + psia_y*t246 + psia_z*t247 + t248
+                dturned_3 = psia_x*t249 + psia_y*t250 + psia_z*t251 + t252
+                drate_1 = -Omb_y*t231 + Omb_z*t227 + t218*t253 + t220*t254 + t222*t255
+                urate_1 = Rb_xx*t256 + Rb_yx*t257 + Rb_zx*t258 + t259*uthb_z - t260*uthb_y
+                drate_2 = Omb_x*t231 - Omb_z*t223 + t224*t253 + t225*t254 + t226*t255
+                urate_2 = Rb_xy*t256 + Rb_yy*t257 + Rb_zy*t258 + t260*uthb_x - t261*uthb_z
+                drate_3 = -Omb_x*t227 + Omb_y*t223 + t228*t253 + t229*t254 + t230*t255
+                urate_3 = Rb_xz*t256 + Rb_yz*t257 + Rb_zz*t258 - t259*uthb_x + t261*uthb_y
+                dspin_1 = Oma_x*t235 + Oma_y*t239 + Oma_z*t243
+                uspin_1 = t244
+                dspin_2 = Oma_x*t245 + Oma_y*t246 + Oma_z*t247
+                uspin_2 = t248
+                dspin_3 = Oma_x*t249 + Oma_y*t250 + Oma_z*t251
+                uspin_3 = t252
+                t262 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2 + dpush_by_rate_3*urate_3
+                t263 = (dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2 +
+                    dfriction_2_by_rate_3*urate_3 + dfriction_2_by_spin_1*uspin_1 +
+                    dfriction_2_by_spin_2*uspin_2 + dfriction_2_by_spin_3*uspin_3)
+                t264 = normal_1*normal_2
+                t265 = (dfriction_3_by_rate_1*urate_1 + dfriction_3_by_rate_2*urate_2 +
+                    dfriction_3_by_rate_3*urate_3 + dfriction_3_by_spin_1*uspin_1 +
+                    dfriction_3_by_spin_2*uspin_2 + dfriction_3_by_spin_3*uspin_3)
+                t266 = normal_3*t265
+                t267 = 1 - normal_1*normal_1
+                t268 = (dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2 +
+                    dfriction_1_by_rate_3*urate_3 + dfriction_1_by_spin_1*uspin_1 +
+                    dfriction_1_by_spin_2*uspin_2 + dfriction_1_by_spin_3*uspin_3)
+                t269 = -normal_1*t262 - normal_1*t266 - t263*t264 + t267*t268
+                t270 = 1 - normal_2*normal_2
+                t271 = -normal_2*t262 - normal_2*t266 + t263*t270 - t264*t268
+                t272 = normal_1*normal_3
+                t273 = normal_2*normal_3
+                t274 = 1 - normal_3*normal_3
+                t275 = -normal_3*t262 - t263*t273 + t265*t274 - t268*t272
+                t276 = Rb_xx*t269 + Rb_xy*t271 + Rb_xz*t275
+                t277 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t278 = -friction_1*t272 - friction_2*t273 + friction_3*t274 - normal_3*push
+                t279 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t280 = -friction_1*t264 + friction_2*t270 - friction_3*t273 - normal_2*push
+                t281 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t282 = friction_1*t267 - friction_2*t264 - friction_3*t272 - normal_1*push
+                t283 = dnormal_1_by_place_1*dplace_1
+                t284 = dnormal_1_by_place_2*dplace_2
+                t285 = dnormal_1_by_place_3*dplace_3
+                t286 = t283 + t284 + t285
+                t287 = dnormal_2_by_place_1*dplace_1
+                t288 = dnormal_2_by_place_2*dplace_2
+                t289 = dnormal_2_by_place_3*dplace_3
+                t290 = t287 + t288 + t289
+                t291 = friction_2*t290
+                t292 = normal_2*t286
+                t293 = dnormal_3_by_place_1*dplace_1
+                t294 = dnormal_3_by_place_2*dplace_2
+                t295 = dnormal_3_by_place_3*dplace_3
+                t296 = t293 + t294 + t295
+                t297 = friction_3*t296
+                t298 = friction_3*normal_3
+                t299 = friction_1*normal_1
+                t300 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
+                    dplace_3*dpush_by_place_3 + dpush_by_rate_1*drate_1 + dpush_by_rate_2*drate_2
+                    + dpush_by_rate_3*drate_3)
+                t301 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
+                    dfriction_2_by_place_3*dplace_3 + dfriction_2_by_rate_1*drate_1 +
+                    dfriction_2_by_rate_2*drate_2 + dfriction_2_by_rate_3*drate_3 +
+                    dfriction_2_by_spin_1*dspin_1 + dfriction_2_by_spin_2*dspin_2 +
+                    dfriction_2_by_spin_3*dspin_3 + dfriction_2_by_turned_1*dturned_1 +
+                    dfriction_2_by_turned_2*dturned_2 + dfriction_2_by_turned_3*dturned_3)
+                t302 = (dfriction_3_by_place_1*dplace_1 + dfriction_3_by_place_2*dplace_2 +
+                    dfriction_3_by_place_3*dplace_3 + dfriction_3_by_rate_1*drate_1 +
+                    dfriction_3_by_rate_2*drate_2 + dfriction_3_by_rate_3*drate_3 +
+                    dfriction_3_by_spin_1*dspin_1 + dfriction_3_by_spin_2*dspin_2 +
+                    dfriction_3_by_spin_3*dspin_3 + dfriction_3_by_turned_1*dturned_1 +
+                    dfriction_3_by_turned_2*dturned_2 + dfriction_3_by_turned_3*dturned_3)
+                t303 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
+                    dfriction_1_by_place_3*dplace_3 + dfriction_1_by_rate_1*drate_1 +
+                    dfriction_1_by_rate_2*drate_2 + dfriction_1_by_rate_3*drate_3 +
+                    dfriction_1_by_spin_1*dspin_1 + dfriction_1_by_spin_2*dspin_2 +
+                    dfriction_1_by_spin_3*dspin_3 + dfriction_1_by_turned_1*dturned_1 +
+                    dfriction_1_by_turned_2*dturned_2 + dfriction_1_by_turned_3*dturned_3)
+                t304 = (-friction_2*t292 - normal_1*t291 - normal_1*t297 - normal_1*t300 -
+                    push*t286 - t264*t301 + t267*t303 - t272*t302 - t286*t298 - t299*(2*t283 +
+                    2*t284 + 2*t285))
+                t305 = friction_2*normal_2
+                t306 = (-friction_1*t292 - normal_2*t297 - normal_2*t300 - push*t290 - t264*t303 +
+                    t270*t301 - t273*t302 - t290*t298 - t290*t299 - t305*(2*t287 + 2*t288 +
+                    2*t289))
+                t307 = (-friction_1*normal_3*t286 - normal_3*t291 - normal_3*t300 - push*t296 -
+                    t272*t303 - t273*t301 + t274*t302 - t296*t299 - t296*t305 - t298*(2*t293 +
+                    2*t294 + 2*t295))
+                t308 = Rb_xx*t304 + Rb_xy*t306 + Rb_xz*t307 + t277*t278 + t279*t280 + t281*t282
+                t309 = Rb_yx*t269 + Rb_yy*t271 + Rb_yz*t275
+                t310 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t311 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t312 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t313 = Rb_yx*t304 + Rb_yy*t306 + Rb_yz*t307 + t278*t310 + t280*t311 + t282*t312
+                t314 = Rb_zx*t269 + Rb_zy*t271 + Rb_zz*t275
+                t315 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t316 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t317 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t318 = Rb_zx*t304 + Rb_zy*t306 + Rb_zz*t307 + t278*t315 + t280*t316 + t282*t317
+                t319 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t320 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t321 = -t320
+                t322 = radius*(normal_1*t321 + normal_2*t319)
+                t323 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t324 = -t319
+                t325 = radius*(normal_1*t323 + normal_3*t324)
+                t326 = -t323
+                t327 = radius*(normal_2*t326 + normal_3*t320)
+                t328 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t329 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t330 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t331 = Ra_xx*t279 + Ra_yx*t311 + Ra_zx*t316 + Rb_xy*t328 + Rb_yy*t329 + Rb_zy*t330
+                t332 = Ra_xx*t277 + Ra_yx*t310 + Ra_zx*t315 + Rb_xz*t328 + Rb_yz*t329 + Rb_zz*t330
+                t333 = radius*t282
+                t334 = Ra_xx*t281 + Ra_yx*t312 + Ra_zx*t317 + Rb_xx*t328 + Rb_yx*t329 + Rb_zx*t330
+                t335 = radius*t280
+                t336 = radius*t278
+                t337 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t338 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t339 = -t338
+                t340 = radius*(normal_1*t339 + normal_2*t337)
+                t341 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t342 = -t337
+                t343 = radius*(normal_1*t341 + normal_3*t342)
+                t344 = -t341
+                t345 = radius*(normal_2*t344 + normal_3*t338)
+                t346 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t347 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t348 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t349 = Ra_xy*t279 + Ra_yy*t311 + Ra_zy*t316 + Rb_xy*t346 + Rb_yy*t347 + Rb_zy*t348
+                t350 = Ra_xy*t277 + Ra_yy*t310 + Ra_zy*t315 + Rb_xz*t346 + Rb_yz*t347 + Rb_zz*t348
+                t351 = Ra_xy*t281 + Ra_yy*t312 + Ra_zy*t317 + Rb_xx*t346 + Rb_yx*t347 + Rb_zx*t348
+                t352 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t353 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
                 t354 = -t353
-                t355 = -radius*t284 + t272
-                t356 = -radius*t278 + t268
-                t357 = -normal_1*radius + t223
-                t358 = -t352
-                t359 = -radius*t274 + t264
-                t360 = -t357
-                J[column] = c_damping*t252 + c_stiffness*t326
-                J[12 + column] = c_damping*t327 + c_stiffness*t328
-                J[24 + column] = c_damping*t329 + c_stiffness*t330
-                J[36 + column] = -c_damping*t252 - c_stiffness*t326
-                J[48 + column] = -c_damping*t327 - c_stiffness*t328
-                J[60 + column] = -c_damping*t329 - c_stiffness*t330
-                J[72 + column] = (c_damping*(-t245*t336 - t247*t334 - t251*t332) +
-                    c_stiffness*(-t322*t336 - t324*t334 - t325*t332 - t337*(-normal_2*t312 +
-                    normal_3*t308 + t231*t284 + t278*t335) - t338*(normal_1*t312 - normal_3*t298 +
-                    t235*t274 + t284*t333) - t339*(-normal_1*t308 + normal_2*t298 + t227*t278 +
-                    t274*t331)))
-                J[84 + column] = (c_damping*(-t245*t345 - t247*t343 - t251*t341) +
-                    c_stiffness*(-t322*t345 - t324*t343 - t325*t341 - t337*(-normal_2*t313 +
-                    normal_3*t309 + t232*t284 + t278*t344) - t338*(normal_1*t313 - normal_3*t302 +
-                    t236*t274 + t284*t342) - t339*(-normal_1*t309 + normal_2*t302 + t228*t278 +
-                    t274*t340)))
-                J[96 + column] = (c_damping*(-t245*t351 - t247*t349 - t251*t347) +
-                    c_stiffness*(-t322*t351 - t324*t349 - t325*t347 - t337*(-normal_2*t314 +
-                    normal_3*t310 + t233*t284 + t278*t350) - t338*(normal_1*t314 - normal_3*t306 +
-                    t237*t274 + t284*t348) - t339*(-normal_1*t310 + normal_2*t306 + t229*t278 +
-                    t274*t346)))
-                J[108 + column] = (c_damping*(t247*t352 + t251*t354) + c_stiffness*(-t254*t356 +
-                    t256*t355 + t324*t352 + t325*t354))
-                J[120 + column] = (c_damping*(t245*t358 + t251*t357) + c_stiffness*(t254*t359 -
-                    t258*t355 + t322*t358 + t325*t357))
-                J[132 + column] = (c_damping*(t245*t353 + t247*t360) + c_stiffness*(-t256*t359 +
-                    t258*t356 + t322*t353 + t324*t360))
+                t355 = radius*(normal_1*t354 + normal_2*t352)
+                t356 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t357 = -t352
+                t358 = radius*(normal_1*t356 + normal_3*t357)
+                t359 = -t356
+                t360 = radius*(normal_2*t359 + normal_3*t353)
+                t361 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t362 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t363 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t364 = Ra_xz*t279 + Ra_yz*t311 + Ra_zz*t316 + Rb_xy*t361 + Rb_yy*t362 + Rb_zy*t363
+                t365 = Ra_xz*t277 + Ra_yz*t310 + Ra_zz*t315 + Rb_xz*t361 + Rb_yz*t362 + Rb_zz*t363
+                t366 = Ra_xz*t281 + Ra_yz*t312 + Ra_zz*t317 + Rb_xx*t361 + Rb_yx*t362 + Rb_zx*t363
+                t367 = xa_x - xb_x
+                t368 = xa_y - xb_y
+                t369 = xa_z - xb_z
+                t370 = Rb_xz*t367 + Rb_yz*t368 + Rb_zz*t369 - normal_3*radius
+                t371 = Rb_xy*t367 + Rb_yy*t368 + Rb_zy*t369 - normal_2*radius
+                t372 = -t371
+                t373 = dxa_x - dxb_x
+                t374 = dxa_y - dxb_y
+                t375 = dxa_z - dxb_z
+                t376 = (Rb_xz*t373 + Rb_yz*t374 + Rb_zz*t375 - radius*t296 + t277*t367 + t310*t368
+                    + t315*t369)
+                t377 = (Rb_xy*t373 + Rb_yy*t374 + Rb_zy*t375 - radius*t290 + t279*t367 + t311*t368
+                    + t316*t369)
+                t378 = Rb_xx*t367 + Rb_yx*t368 + Rb_zx*t369 - normal_1*radius
+                t379 = -t370
+                t380 = (Rb_xx*t373 + Rb_yx*t374 + Rb_zx*t375 - radius*t286 + t281*t367 + t312*t368
+                    + t317*t369)
+                t381 = -t378
+                J[column] = c_damping*t276 + c_stiffness*t308
+                J[12 + column] = c_damping*t309 + c_stiffness*t313
+                J[24 + column] = c_damping*t314 + c_stiffness*t318
+                J[36 + column] = -c_damping*t276 - c_stiffness*t308
+                J[48 + column] = -c_damping*t309 - c_stiffness*t313
+                J[60 + column] = -c_damping*t314 - c_stiffness*t318
+                J[72 + column] = (c_damping*(-t269*t327 - t271*t325 - t275*t322) +
+                    c_stiffness*(-t304*t327 - t306*t325 - t307*t322 - t333*(-normal_2*t332 +
+                    normal_3*t331 + t290*t326 + t296*t320) - t335*(normal_1*t332 - normal_3*t334 +
+                    t286*t323 + t296*t324) - t336*(-normal_1*t331 + normal_2*t334 + t286*t321 +
+                    t290*t319)))
+                J[84 + column] = (c_damping*(-t269*t345 - t271*t343 - t275*t340) +
+                    c_stiffness*(-t304*t345 - t306*t343 - t307*t340 - t333*(-normal_2*t350 +
+                    normal_3*t349 + t290*t344 + t296*t338) - t335*(normal_1*t350 - normal_3*t351 +
+                    t286*t341 + t296*t342) - t336*(-normal_1*t349 + normal_2*t351 + t286*t339 +
+                    t290*t337)))
+                J[96 + column] = (c_damping*(-t269*t360 - t271*t358 - t275*t355) +
+                    c_stiffness*(-t304*t360 - t306*t358 - t307*t355 - t333*(-normal_2*t365 +
+                    normal_3*t364 + t290*t359 + t296*t353) - t335*(normal_1*t365 - normal_3*t366 +
+                    t286*t356 + t296*t357) - t336*(-normal_1*t364 + normal_2*t366 + t286*t354 +
+                    t290*t352)))
+                J[108 + column] = (c_damping*(t271*t370 + t275*t372) + c_stiffness*(-t278*t377 +
+                    t280*t376 + t306*t370 + t307*t372))
+                J[120 + column] = (c_damping*(t269*t379 + t275*t378) + c_stiffness*(t278*t380 -
+                    t282*t376 + t304*t379 + t307*t378))
+                J[132 + column] = (c_damping*(t269*t371 + t271*t381) + c_stiffness*(-t280*t380 +
+                    t282*t377 + t304*t371 + t306*t381))
     return OK

@@ -50,7 +50,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (159, 0, 0, 0),
-              "column": (636, 0, 0, 0)}
+              "column": (514, 0, 0, 0)}
 
 
 @kernel_function
@@ -314,131 +314,177 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = du[3]
                 uthb_y = du[4]
                 uthb_z = du[5]
-                t66 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-                t67 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t68 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t69 = d_y*t67 - d_z*t68
-                t70 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t71 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t72 = d_y*t70 - d_z*t71
-                t73 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t74 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t75 = d_y*t73 - d_z*t74
-                t76 = n_x*t69 + n_y*t72 + n_z*t75
-                t77 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-                t78 = m_x*t69 + m_y*t72 + m_z*t75
-                t79 = -t66*t76 + t77*t78
-                t80 = -d_x*utha_y + d_y*utha_x
-                t81 = d_x*utha_z - d_z*utha_x
-                t82 = -d_y*utha_z + d_z*utha_y
-                t83 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t84 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t85 = d_x*t84 + d_y*t71 + d_z*t70
-                t86 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t87 = d_x*t86 + d_y*t74 + d_z*t73
-                t88 = t67*t80 + t68*t81 + t82*t83 + t85*uthb_z - t87*uthb_y
-                t89 = d_x*t83 + d_y*t68 + d_z*t67
-                t90 = t70*t80 + t71*t81 + t82*t84 + t87*uthb_x - t89*uthb_z
-                t91 = t73*t80 + t74*t81 + t82*t86 - t85*uthb_x + t89*uthb_y
-                t92 = t66*t66 + t77*t77
-                t93 = side/t92
-                t94 = (c_damping*t93*(dpush_by_angle_along_m*(m_x*t88 + m_y*t90 + m_z*t91) +
-                    dpush_by_angle_along_n*(n_x*t88 + n_y*t90 + n_z*t91)))
-                t95 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t96 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t97 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t98 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t99 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t100 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t101 = Ra_xx*t95 + Ra_yx*t96 + Ra_zx*t97 + Rb_xx*t98 + Rb_yx*t99 + Rb_zx*t100
-                t102 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t103 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t104 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t105 = Ra_xy*t95 + Ra_yy*t96 + Ra_zy*t97 + Rb_xx*t102 + Rb_yx*t103 + Rb_zx*t104
-                t106 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t107 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t108 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t109 = Ra_xz*t95 + Ra_yz*t96 + Ra_zz*t97 + Rb_xx*t106 + Rb_yx*t107 + Rb_zx*t108
-                t110 = d_x*t101 + d_y*t105 + d_z*t109
-                t111 = m_x*t110
-                t112 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t113 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t114 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t115 = Ra_xx*t112 + Ra_yx*t113 + Ra_zx*t114 + Rb_xy*t98 + Rb_yy*t99 + Rb_zy*t100
-                t116 = Ra_xy*t112 + Ra_yy*t113 + Ra_zy*t114 + Rb_xy*t102 + Rb_yy*t103 + Rb_zy*t104
-                t117 = Ra_xz*t112 + Ra_yz*t113 + Ra_zz*t114 + Rb_xy*t106 + Rb_yy*t107 + Rb_zy*t108
-                t118 = d_x*t115 + d_y*t116 + d_z*t117
-                t119 = m_y*t118
-                t120 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t121 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t122 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t123 = Ra_xx*t120 + Ra_yx*t121 + Ra_zx*t122 + Rb_xz*t98 + Rb_yz*t99 + Rb_zz*t100
-                t124 = Ra_xy*t120 + Ra_yy*t121 + Ra_zy*t122 + Rb_xz*t102 + Rb_yz*t103 + Rb_zz*t104
-                t125 = Ra_xz*t120 + Ra_yz*t121 + Ra_zz*t122 + Rb_xz*t106 + Rb_yz*t107 + Rb_zz*t108
-                t126 = d_x*t123 + d_y*t124 + d_z*t125
-                t127 = m_z*t126
-                t128 = n_x*t110
-                t129 = n_y*t118
-                t130 = n_z*t126
-                t131 = ((push*side*(-t66*(2*t111 + 2*t119 + 2*t127) - t77*(2*t128 + 2*t129 +
-                    2*t130)))/(t92*t92))
-                t132 = d_y*t109 - d_z*t105
-                t133 = d_y*t117 - d_z*t116
-                t134 = d_y*t125 - d_z*t124
-                t135 = t111 + t119 + t127
-                t136 = t128 + t129 + t130
-                t137 = push*t93
-                t138 = Oma_x*d_y - Oma_y*d_x
-                t139 = -Oma_x*d_z + Oma_z*d_x
-                t140 = Oma_y*d_z - Oma_z*d_y
-                t141 = -Omb_y*t126 + Omb_z*t118 + t101*t140 + t105*t139 + t109*t138
-                t142 = Omb_x*t126 - Omb_z*t110 + t115*t140 + t116*t139 + t117*t138
-                t143 = -Omb_x*t118 + Omb_y*t110 + t123*t140 + t124*t139 + t125*t138
-                t144 = (t93*(dpush_by_angle_along_m*(m_x*t141 + m_y*t142 + m_z*t143) +
-                    dpush_by_angle_along_n*(n_x*t141 + n_y*t142 + n_z*t143) +
-                    dpush_by_angle_seen_1*t110 + dpush_by_angle_seen_2*t118 +
-                    dpush_by_angle_seen_3*t126))
-                t145 = -d_x*t67 + d_z*t83
-                t146 = -d_x*t70 + d_z*t84
-                t147 = -d_x*t73 + d_z*t86
-                t148 = n_x*t145 + n_y*t146 + n_z*t147
-                t149 = m_x*t145 + m_y*t146 + m_z*t147
-                t150 = -t148*t66 + t149*t77
-                t151 = -d_x*t109 + d_z*t101
-                t152 = -d_x*t117 + d_z*t115
-                t153 = -d_x*t125 + d_z*t123
-                t154 = d_x*t68 - d_y*t83
-                t155 = d_x*t71 - d_y*t84
-                t156 = d_x*t74 - d_y*t86
-                t157 = n_x*t154 + n_y*t155 + n_z*t156
-                t158 = m_x*t154 + m_y*t155 + m_z*t156
-                t159 = -t157*t66 + t158*t77
-                t160 = d_x*t105 - d_y*t101
-                t161 = d_x*t116 - d_y*t115
-                t162 = d_x*t124 - d_y*t123
-                t163 = -angle_seen_2*m_z + angle_seen_3*m_y
-                t164 = -angle_seen_2*n_z + angle_seen_3*n_y
-                t165 = t163*t77 - t164*t66
-                t166 = angle_seen_1*m_z - angle_seen_3*m_x
-                t167 = angle_seen_1*n_z - angle_seen_3*n_x
-                t168 = t166*t77 - t167*t66
-                t169 = -angle_seen_1*m_y + angle_seen_2*m_x
-                t170 = -angle_seen_1*n_y + angle_seen_2*n_x
-                t171 = t169*t77 - t170*t66
-                J[column] = (c_stiffness*(t131*t79 + t137*(-t135*t76 + t136*t78 - t66*(n_x*t132 +
-                    n_y*t133 + n_z*t134) + t77*(m_x*t132 + m_y*t133 + m_z*t134)) + t144*t79) +
-                    t79*t94)
-                J[6 + column] = (c_stiffness*(t131*t150 + t137*(-t135*t148 + t136*t149 -
-                    t66*(n_x*t151 + n_y*t152 + n_z*t153) + t77*(m_x*t151 + m_y*t152 + m_z*t153)) +
-                    t144*t150) + t150*t94)
-                J[12 + column] = (c_stiffness*(t131*t159 + t137*(-t135*t157 + t136*t158 -
-                    t66*(n_x*t160 + n_y*t161 + n_z*t162) + t77*(m_x*t160 + m_y*t161 + m_z*t162)) +
-                    t144*t159) + t159*t94)
-                J[18 + column] = (c_stiffness*(t131*t165 + t137*(-t135*t164 + t136*t163 -
-                    t66*(n_y*t126 - n_z*t118) + t77*(m_y*t126 - m_z*t118)) + t144*t165) + t165*t94)
-                J[24 + column] = (c_stiffness*(t131*t168 + t137*(-t135*t167 + t136*t166 -
-                    t66*(-n_x*t126 + n_z*t110) + t77*(-m_x*t126 + m_z*t110)) + t144*t168) +
-                    t168*t94)
-                J[30 + column] = (c_stiffness*(t131*t171 + t137*(-t135*t170 + t136*t169 -
-                    t66*(n_x*t118 - n_y*t110) + t77*(m_x*t118 - m_y*t110)) + t144*t171) + t171*t94)
+                t66 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t67 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t68 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t69 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t70 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t71 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t72 = Ra_xx*t66 + Ra_yx*t67 + Ra_zx*t68 + Rb_xx*t69 + Rb_yx*t70 + Rb_zx*t71
+                t73 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t74 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t75 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t76 = Ra_xy*t66 + Ra_yy*t67 + Ra_zy*t68 + Rb_xx*t73 + Rb_yx*t74 + Rb_zx*t75
+                t77 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t78 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t79 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t80 = Ra_xz*t66 + Ra_yz*t67 + Ra_zz*t68 + Rb_xx*t77 + Rb_yx*t78 + Rb_zx*t79
+                t81 = d_x*t72 + d_y*t76 + d_z*t80
+                t82 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t83 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t84 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t85 = Ra_xx*t82 + Ra_yx*t83 + Ra_zx*t84 + Rb_xy*t69 + Rb_yy*t70 + Rb_zy*t71
+                t86 = Ra_xy*t82 + Ra_yy*t83 + Ra_zy*t84 + Rb_xy*t73 + Rb_yy*t74 + Rb_zy*t75
+                t87 = Ra_xz*t82 + Ra_yz*t83 + Ra_zz*t84 + Rb_xy*t77 + Rb_yy*t78 + Rb_zy*t79
+                t88 = d_x*t85 + d_y*t86 + d_z*t87
+                t89 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t90 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t91 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t92 = Ra_xx*t89 + Ra_yx*t90 + Ra_zx*t91 + Rb_xz*t69 + Rb_yz*t70 + Rb_zz*t71
+                t93 = Ra_xy*t89 + Ra_yy*t90 + Ra_zy*t91 + Rb_xz*t73 + Rb_yz*t74 + Rb_zz*t75
+                t94 = Ra_xz*t89 + Ra_yz*t90 + Ra_zz*t91 + Rb_xz*t77 + Rb_yz*t78 + Rb_zz*t79
+                t95 = d_x*t92 + d_y*t93 + d_z*t94
+                t96 = Oma_x*d_y - Oma_y*d_x
+                t97 = -Oma_x*d_z + Oma_z*d_x
+                t98 = Oma_y*d_z - Oma_z*d_y
+                t99 = -Omb_y*t95 + Omb_z*t88 + t72*t98 + t76*t97 + t80*t96
+                t100 = Omb_x*t95 - Omb_z*t81 + t85*t98 + t86*t97 + t87*t96
+                t101 = -Omb_x*t88 + Omb_y*t81 + t92*t98 + t93*t97 + t94*t96
+                t102 = -d_x*utha_y + d_y*utha_x
+                t103 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t104 = d_x*utha_z - d_z*utha_x
+                t105 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t106 = -d_y*utha_z + d_z*utha_y
+                t107 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t108 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t109 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t110 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t111 = d_x*t108 + d_y*t109 + d_z*t110
+                t112 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t113 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t114 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t115 = d_x*t112 + d_y*t113 + d_z*t114
+                t116 = t102*t103 + t104*t105 + t106*t107 + t111*uthb_z - t115*uthb_y
+                t117 = d_x*t107 + d_y*t105 + d_z*t103
+                t118 = t102*t110 + t104*t109 + t106*t108 + t115*uthb_x - t117*uthb_z
+                t119 = t102*t114 + t104*t113 + t106*t112 - t111*uthb_x + t117*uthb_y
+                dangle_seen_1 = t81
+                dangle_seen_2 = t88
+                dangle_seen_3 = t95
+                dangle_along_n = n_x*t99 + n_y*t100 + n_z*t101
+                uangle_along_n = n_x*t116 + n_y*t118 + n_z*t119
+                dangle_along_m = m_x*t99 + m_y*t100 + m_z*t101
+                uangle_along_m = m_x*t116 + m_y*t118 + m_z*t119
+                t120 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+                t121 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t122 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t123 = d_y*t121 - d_z*t122
+                t124 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t125 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t126 = d_y*t124 - d_z*t125
+                t127 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t128 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t129 = d_y*t127 - d_z*t128
+                t130 = n_x*t123 + n_y*t126 + n_z*t129
+                t131 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+                t132 = m_x*t123 + m_y*t126 + m_z*t129
+                t133 = -t120*t130 + t131*t132
+                t134 = t120*t120 + t131*t131
+                t135 = side/t134
+                t136 = (c_damping*t135*(dpush_by_angle_along_m*uangle_along_m +
+                    dpush_by_angle_along_n*uangle_along_n))
+                t137 = (t135*(dangle_along_m*dpush_by_angle_along_m +
+                    dangle_along_n*dpush_by_angle_along_n + dangle_seen_1*dpush_by_angle_seen_1 +
+                    dangle_seen_2*dpush_by_angle_seen_2 + dangle_seen_3*dpush_by_angle_seen_3))
+                t138 = dangle_seen_1*m_x
+                t139 = dangle_seen_2*m_y
+                t140 = dangle_seen_3*m_z
+                t141 = dangle_seen_1*n_x
+                t142 = dangle_seen_2*n_y
+                t143 = dangle_seen_3*n_z
+                t144 = ((push*side*(-t120*(2*t138 + 2*t139 + 2*t140) - t131*(2*t141 + 2*t142 +
+                    2*t143)))/(t134*t134))
+                t145 = t138 + t139 + t140
+                t146 = t141 + t142 + t143
+                t147 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t148 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t149 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t150 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t151 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t152 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t153 = Ra_xz*t147 + Ra_yz*t148 + Ra_zz*t149 + Rb_xx*t150 + Rb_yx*t151 + Rb_zx*t152
+                t154 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t155 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t156 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t157 = Ra_xy*t147 + Ra_yy*t148 + Ra_zy*t149 + Rb_xx*t154 + Rb_yx*t155 + Rb_zx*t156
+                t158 = d_y*t153 - d_z*t157
+                t159 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t160 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t161 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t162 = Ra_xz*t159 + Ra_yz*t160 + Ra_zz*t161 + Rb_xy*t150 + Rb_yy*t151 + Rb_zy*t152
+                t163 = Ra_xy*t159 + Ra_yy*t160 + Ra_zy*t161 + Rb_xy*t154 + Rb_yy*t155 + Rb_zy*t156
+                t164 = d_y*t162 - d_z*t163
+                t165 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t166 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t167 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t168 = Ra_xz*t165 + Ra_yz*t166 + Ra_zz*t167 + Rb_xz*t150 + Rb_yz*t151 + Rb_zz*t152
+                t169 = Ra_xy*t165 + Ra_yy*t166 + Ra_zy*t167 + Rb_xz*t154 + Rb_yz*t155 + Rb_zz*t156
+                t170 = d_y*t168 - d_z*t169
+                t171 = push*t135
+                t172 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t173 = -d_x*t121 + d_z*t172
+                t174 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t175 = -d_x*t124 + d_z*t174
+                t176 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t177 = -d_x*t127 + d_z*t176
+                t178 = n_x*t173 + n_y*t175 + n_z*t177
+                t179 = m_x*t173 + m_y*t175 + m_z*t177
+                t180 = -t120*t178 + t131*t179
+                t181 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t182 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t183 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t184 = Ra_xx*t147 + Ra_yx*t148 + Ra_zx*t149 + Rb_xx*t181 + Rb_yx*t182 + Rb_zx*t183
+                t185 = -d_x*t153 + d_z*t184
+                t186 = Ra_xx*t159 + Ra_yx*t160 + Ra_zx*t161 + Rb_xy*t181 + Rb_yy*t182 + Rb_zy*t183
+                t187 = -d_x*t162 + d_z*t186
+                t188 = Ra_xx*t165 + Ra_yx*t166 + Ra_zx*t167 + Rb_xz*t181 + Rb_yz*t182 + Rb_zz*t183
+                t189 = -d_x*t168 + d_z*t188
+                t190 = d_x*t122 - d_y*t172
+                t191 = d_x*t125 - d_y*t174
+                t192 = d_x*t128 - d_y*t176
+                t193 = n_x*t190 + n_y*t191 + n_z*t192
+                t194 = m_x*t190 + m_y*t191 + m_z*t192
+                t195 = -t120*t193 + t131*t194
+                t196 = d_x*t157 - d_y*t184
+                t197 = d_x*t163 - d_y*t186
+                t198 = d_x*t169 - d_y*t188
+                t199 = -angle_seen_2*m_z + angle_seen_3*m_y
+                t200 = -angle_seen_2*n_z + angle_seen_3*n_y
+                t201 = -t120*t200 + t131*t199
+                t202 = angle_seen_1*m_z - angle_seen_3*m_x
+                t203 = angle_seen_1*n_z - angle_seen_3*n_x
+                t204 = -t120*t203 + t131*t202
+                t205 = -angle_seen_1*m_y + angle_seen_2*m_x
+                t206 = -angle_seen_1*n_y + angle_seen_2*n_x
+                t207 = -t120*t206 + t131*t205
+                J[column] = (c_stiffness*(t133*t137 + t133*t144 + t171*(-t120*(n_x*t158 + n_y*t164
+                    + n_z*t170) - t130*t145 + t131*(m_x*t158 + m_y*t164 + m_z*t170) + t132*t146))
+                    + t133*t136)
+                J[6 + column] = (c_stiffness*(t137*t180 + t144*t180 + t171*(-t120*(n_x*t185 +
+                    n_y*t187 + n_z*t189) + t131*(m_x*t185 + m_y*t187 + m_z*t189) - t145*t178 +
+                    t146*t179)) + t136*t180)
+                J[12 + column] = (c_stiffness*(t137*t195 + t144*t195 + t171*(-t120*(n_x*t196 +
+                    n_y*t197 + n_z*t198) + t131*(m_x*t196 + m_y*t197 + m_z*t198) - t145*t193 +
+                    t146*t194)) + t136*t195)
+                J[18 + column] = (c_stiffness*(t137*t201 + t144*t201 +
+                    t171*(-t120*(-dangle_seen_2*n_z + dangle_seen_3*n_y) +
+                    t131*(-dangle_seen_2*m_z + dangle_seen_3*m_y) - t145*t200 + t146*t199)) +
+                    t136*t201)
+                J[24 + column] = (c_stiffness*(t137*t204 + t144*t204 +
+                    t171*(-t120*(dangle_seen_1*n_z - dangle_seen_3*n_x) + t131*(dangle_seen_1*m_z
+                    - dangle_seen_3*m_x) - t145*t203 + t146*t202)) + t136*t204)
+                J[30 + column] = (c_stiffness*(t137*t207 + t144*t207 +
+                    t171*(-t120*(-dangle_seen_1*n_y + dangle_seen_2*n_x) +
+                    t131*(-dangle_seen_1*m_y + dangle_seen_2*m_x) - t145*t206 + t146*t205)) +
+                    t136*t207)
     return OK

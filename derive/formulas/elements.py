@@ -106,6 +106,7 @@ class Element(NamedTuple):
     reads: tuple[sp.Symbol, ...] = ()   # multipliers of other equations
     stages: tuple[Stage, ...] = ()      # what the force and the memory are made of, in this order
     slopes: tuple[Stage, ...] = ()      # derivatives of these, for the matrix
+    moves: tuple[Stage, ...] = ()       # of a column: what these move with its unknown
     linear: tuple[sp.Expr, ...] = ()    # a column of the matrix
     on_multipliers: sp.Matrix = sp.zeros(0, 0)  # derivative of the force by the multipliers
 
@@ -117,7 +118,8 @@ class Element(NamedTuple):
     @property
     def printed(self) -> list[sp.Expr]:
         """Every expression the kernel evaluates, the multipliers' columns apart."""
-        staged = [value for stage in (*self.stages, *self.slopes) for _, value in stage]
+        staged = [value for stage in (*self.stages, *self.slopes, *self.moves)
+                  for _, value in stage]
         return [*staged, *(value for _, value in self.memory), *self.residual, *self.linear, *self.velocity, *self.second, *self.sums.values(),
                 *([] if self.power is None else [self.power]), *self.losses]
 

@@ -106,14 +106,19 @@ def _with_column(found: Element, stages: Sequence[Stage]) -> Element:
     inputs = [s for s, _ in measured] + list(reads)
     slopes, of = _slopes(stages, inputs, used)
     vary = varied(blocks)
-    by_state = _through(of, {s: differential(e, vary) for s, e in measured}) | vary
-    by_rates = _through(of, {s: differential(e, rates) for s, e in measured})
+    moves, moved, turned = [], {}, {}
+    for symbol, value in measured:
+        for letter, rules, found_moves in (("d", vary, moved), ("u", rates, turned)):
+            if (move := differential(value, rules)) != 0:
+                found_moves[symbol] = sp.Symbol(f"{letter}{symbol}")
+                moves.append((found_moves[symbol], move))
+    by_state, by_rates = _through(of, moved) | vary, _through(of, turned)
     c_damping, c_stiffness = sp.symbols("c_damping c_stiffness")
     linear = [c_stiffness * differential(f, by_state) + c_damping * differential(f, by_rates)
               for f in force]
     columns = sp.Matrix(len(force), len(reads), lambda i, k: differential(
         force[i], _through(of, {reads[k]: sp.S.One})))
-    return found._replace(slopes=slopes, linear=(*linear, *(sp.S.Zero,) * len(reads)),
+    return found._replace(slopes=slopes, moves=(tuple(moves),), linear=(*linear, *(sp.S.Zero,) * len(reads)),
                           on_multipliers=columns)
 
 

@@ -182,10 +182,11 @@ def _state(block: Block, at: int, matrix: int, used: set) -> list[tuple[sp.Symbo
 def _matrix(element: Element, start: int) -> tuple[Statement, ...]:
     """Columns of the coordinates, then those of the multipliers."""
     width = len(element.residual)
-    used = used_symbols(element.linear)
+    used = used_symbols([*element.linear, *(v for stage in element.moves for _, v in stage)])
     varied = bool(used & {s for block in element.blocks for s in block.unit.kept})
     rows = (DIRECTION, UNIT) if varied else (DIRECTION,)
     slopes, start = staged(element.slopes, start)
+    moves, start = staged(element.moves, start)
     column, _ = stored(element.linear, [MATRIX[i * width + counts.column] for i in range(width)],
                         start)
     work, i = ARGUMENTS["work"], counts.i
@@ -197,7 +198,7 @@ def _matrix(element: Element, start: int) -> tuple[Statement, ...]:
         *(Point(row, work.at(k * counts.WIDTH)) for k, row in enumerate(rows)), *slopes,
         For(counts.column, Number(0), whole(element.coordinates), (
             clear, *(Set((row[counts.column],), (ONE,)) for row in rows[1:]),
-            *_seeds(element), *_directions(element, used), *column)),
+            *_seeds(element), *_directions(element, used), *moves, *column)),
         *_multiplier_columns(element))
 
 
