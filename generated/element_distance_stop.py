@@ -89,14 +89,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         value = way
         t4 = -lower - upper + 2*value
         t5 = -value
-        side = (1.0 if t4 > 0.0 else -1.0)
-        beyond = (-t5 - upper if t4 > 0.0 else lower + t5)
+        side = 1.0 if t4 > 0.0 else -1.0
+        beyond = -t5 - upper if t4 > 0.0 else lower + t5
         speed_beyond = side*way_rate
-        touches = (1.0 if beyond > 0.0 else 0.0)
-        depth = (beyond if beyond > 0.0 else 1e-300)
+        touches = 1.0 if beyond > 0.0 else 0.0
+        depth = beyond if beyond > 0.0 else 1e-300
         elastic = depth**exponent*stiffness
         factor = damping*speed_beyond + 1
-        push = (elastic*factor if factor > 0.0 else 0.0)
+        push = elastic*factor if factor > 0.0 else 0.0
         t6 = xa_x - xb_x
         t7 = -t6
         t8 = xa_y - xb_y
@@ -104,10 +104,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t10 = xa_z - xb_z
         t11 = -t10
         t12 = push*side/sqrt(t11*t11 + t7*t7 + t9*t9)
-        t13 = (kept_rate if kept_rate > 0.0 else -kept_rate)
-        t14 = (speed_beyond if speed_beyond > 0.0 else -speed_beyond)
-        t15 = (t14 if -t13 + t14 > 0.0 else t13)
-        t16 = (t15 if -kept_impact + t15 > 0.0 else kept_impact)
+        t13 = kept_rate if kept_rate > 0.0 else -kept_rate
+        t14 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
+        t15 = t14 if -t13 + t14 > 0.0 else t13
+        t16 = t15 if -kept_impact + t15 > 0.0 else kept_impact
         g[0] = t12*t6
         g[1] = t12*t8
         g[2] = t10*t12
@@ -116,8 +116,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         g[5] = t11*t12
         frames[index[first + AT_FRAME]] = way
         frames[index[first + AT_FRAME] + 1] = speed_beyond
-        frames[index[first + AT_FRAME] + 2] = (((t16 if -slow + t16 > 0.0 else 0.0) if touches -
-            0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 2] = ((t16 if -slow + t16 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 3] = beyond
         frames[index[first + AT_FRAME] + 4] = push
         if task == ENERGY:

@@ -187,15 +187,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         slip_speed = sqrt(slip_1*slip_1 + slip_2*slip_2 + 1e-12*speed*speed + 1e-300)
         t27 = slip_speed/speed
         trial_size = sqrt(trial_1*trial_1 + trial_2*trial_2 + 1e-300)
-        drag = ((pressed*(coefficient*tanh(4*t27) + (t27*(-coefficient +
+        drag = (pressed*(coefficient*tanh(4*t27) + (t27*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
-            0.0 else 0.0))
-        slips = (1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0))
+            0.0 else 0.0)
+        slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
         t28 = -static_limit + trial_size
         t29 = dynamic_limit/trial_size
-        friction_1 = (drag*slip_1 if speed > 0.0 else (t29*trial_1 if t28 > 0.0 else trial_1))
-        friction_2 = (drag*slip_2 if speed > 0.0 else (t29*trial_2 if t28 > 0.0 else trial_2))
+        friction_1 = drag*slip_1 if speed > 0.0 else (t29*trial_1 if t28 > 0.0 else trial_1)
+        friction_2 = drag*slip_2 if speed > 0.0 else (t29*trial_2 if t28 > 0.0 else trial_2)
         t30 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
         t31 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
         t32 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
@@ -224,8 +224,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t55 = d_x*t41 - d_y*t50
         t56 = d_x*t44 - d_y*t52
         t57 = atan2(t36, t46)
-        t58 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
-            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0)))
+        t58 = (0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0))
         g[0] = -friction_1*t30
         g[1] = -friction_1*t31
         g[2] = -friction_1*t32
@@ -414,10 +414,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t82 = (t77*t80)/(t81*t81)
             t83 = coefficient*t79 + slip_speed*t82
             t84 = 1/slip_speed
-            t85 = ((pressed*t84*(coefficient*t78*(1 - t79*t79) + t82 +
+            t85 = (pressed*t84*(coefficient*t78*(1 - t79*t79) + t82 +
                 (-t76*t80)/(speed*speed*speed*t81*t81*t81)) - pressed*t83/t76 if speed > 0.0 else
-                0))
-            t86 = (t83*t84 if speed > 0.0 else 0)
+                0)
+            t86 = t83*t84 if speed > 0.0 else 0
             dtrial_size_by_angle_seen_1 = dtrial_2_by_angle_seen_1*t74
             dtrial_size_by_angle_seen_2 = dtrial_2_by_angle_seen_2*t74
             dtrial_size_by_angle_seen_3 = dtrial_2_by_angle_seen_3*t74
@@ -435,17 +435,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ddrag_by_force_2 = dpressed_by_force_2*t86
             ddrag_by_moment_1 = dpressed_by_moment_1*t86
             ddrag_by_moment_2 = dpressed_by_moment_2*t86
-            t87 = (slip_1 if speed > 0.0 else 0)
+            t87 = slip_1 if speed > 0.0 else 0
             t88 = -static_limit + trial_size
             t89 = dynamic_limit/(trial_size*trial_size)
-            t90 = (0 if speed > 0.0 else (-t89*trial_1 if t88 > 0.0 else 0))
+            t90 = 0 if speed > 0.0 else (-t89*trial_1 if t88 > 0.0 else 0)
             t91 = 1/trial_size
-            t92 = (0 if speed > 0.0 else (dynamic_limit*t91 if t88 > 0.0 else 1))
-            t93 = (drag if speed > 0.0 else 0)
-            t94 = (0 if speed > 0.0 else (t91*trial_1 if t88 > 0.0 else 0))
-            t95 = (slip_2 if speed > 0.0 else 0)
-            t96 = (0 if speed > 0.0 else (-t89*trial_2 if t88 > 0.0 else 0))
-            t97 = (0 if speed > 0.0 else (t91*trial_2 if t88 > 0.0 else 0))
+            t92 = 0 if speed > 0.0 else (dynamic_limit*t91 if t88 > 0.0 else 1)
+            t93 = drag if speed > 0.0 else 0
+            t94 = 0 if speed > 0.0 else (t91*trial_1 if t88 > 0.0 else 0)
+            t95 = slip_2 if speed > 0.0 else 0
+            t96 = 0 if speed > 0.0 else (-t89*trial_2 if t88 > 0.0 else 0)
+            t97 = 0 if speed > 0.0 else (t91*trial_2 if t88 > 0.0 else 0)
             dfriction_1_by_angle_seen_1 = (ddrag_by_angle_seen_1*t87 +
                 dtrial_size_by_angle_seen_1*t90)
             dfriction_1_by_angle_seen_2 = (ddrag_by_angle_seen_2*t87 +

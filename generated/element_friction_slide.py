@@ -122,13 +122,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         slip_speed = sqrt(slip_1*slip_1 + 1e-12*speed*speed + 1e-300)
         t6 = slip_speed/speed
         trial_size = sqrt(trial*trial + 1e-300)
-        drag = ((pressed*(coefficient*tanh(4*t6) + (t6*(-coefficient +
+        drag = (pressed*(coefficient*tanh(4*t6) + (t6*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
-            0.0 else 0.0))
-        slips = (1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0))
-        friction = ((drag*slip_1 if speed > 0.0 else (dynamic_limit*trial/trial_size if
-            -static_limit + trial_size > 0.0 else trial)))
+            0.0 else 0.0)
+        slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
+        friction = (drag*slip_1 if speed > 0.0 else (dynamic_limit*trial/trial_size if
+            -static_limit + trial_size > 0.0 else trial))
         t7 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
         t8 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
         t9 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
@@ -209,9 +209,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 slip_speed*t20)/t14 + pressed*(coefficient*t16*(1 - t17*t17) + t20 +
                 (-t14*t18)/(speed*speed*speed*t19*t19*t19))/slip_speed if speed > 0.0 else 0))
             t21 = -static_limit + trial_size
-            t22 = (0 if speed > 0.0 else (dynamic_limit/trial_size if t21 > 0.0 else 1))
-            t23 = ((0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t21 >
-                0.0 else 0)))
+            t22 = 0 if speed > 0.0 else (dynamic_limit/trial_size if t21 > 0.0 else 1)
+            t23 = (0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t21 >
+                0.0 else 0))
             dfriction_by_way = dtrial_by_way*t22 + dtrial_size_by_way*t23
             dfriction_by_way_rate = (ddrag_by_way_rate*(slip_1 if speed > 0.0 else 0) +
                 dslip_1_by_way_rate*(drag if speed > 0.0 else 0) + dtrial_by_way_rate*t22 +

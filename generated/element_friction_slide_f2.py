@@ -125,13 +125,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         slip_speed = sqrt(slip_1*slip_1 + 1e-12*speed*speed + 1e-300)
         t6 = slip_speed/speed
         trial_size = sqrt(trial*trial + 1e-300)
-        drag = ((pressed*(coefficient*tanh(4*t6) + (t6*(-coefficient +
+        drag = (pressed*(coefficient*tanh(4*t6) + (t6*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
-            0.0 else 0.0))
-        slips = (1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0))
-        friction = ((drag*slip_1 if speed > 0.0 else (dynamic_limit*trial/trial_size if
-            -static_limit + trial_size > 0.0 else trial)))
+            0.0 else 0.0)
+        slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
+        friction = (drag*slip_1 if speed > 0.0 else (dynamic_limit*trial/trial_size if
+            -static_limit + trial_size > 0.0 else trial))
         t7 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
         t8 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
         t9 = Ra_zx*e_x + Ra_zy*e_y + Ra_zz*e_z
@@ -219,7 +219,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t21 = (t16*t19)/(t20*t20)
             t22 = coefficient*t18 + slip_speed*t21
             t23 = 1/slip_speed
-            t24 = (t22*t23 if speed > 0.0 else 0)
+            t24 = t22*t23 if speed > 0.0 else 0
             dtrial_size_by_way = dtrial_by_way*t14
             dtrial_size_by_way_rate = dtrial_by_way_rate*t14
             ddrag_by_way_rate = (dslip_speed_by_way_rate*(pressed*t23*(coefficient*t17*(1 -
@@ -229,11 +229,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ddrag_by_force_2 = dpressed_by_force_2*t24
             t25 = -static_limit + trial_size
             t26 = 1/trial_size
-            t27 = (0 if speed > 0.0 else (dynamic_limit*t26 if t25 > 0.0 else 1))
-            t28 = ((0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t25 >
-                0.0 else 0)))
-            t29 = (slip_1 if speed > 0.0 else 0)
-            t30 = (0 if speed > 0.0 else (t26*trial if t25 > 0.0 else 0))
+            t27 = 0 if speed > 0.0 else (dynamic_limit*t26 if t25 > 0.0 else 1)
+            t28 = (0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t25 >
+                0.0 else 0))
+            t29 = slip_1 if speed > 0.0 else 0
+            t30 = 0 if speed > 0.0 else (t26*trial if t25 > 0.0 else 0)
             dfriction_by_way = dtrial_by_way*t27 + dtrial_size_by_way*t28
             dfriction_by_way_rate = (ddrag_by_way_rate*t29 + dslip_1_by_way_rate*(drag if speed >
                 0.0 else 0) + dtrial_by_way_rate*t27 + dtrial_size_by_way_rate*t28)

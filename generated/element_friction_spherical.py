@@ -137,18 +137,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             1e-300))
         t9 = slip_speed/speed
         trial_size = sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
-        drag = ((pressed*(coefficient*tanh(4*t9) + (t9*(-coefficient +
+        drag = (pressed*(coefficient*tanh(4*t9) + (t9*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
-            0.0 else 0.0))
-        slips = (1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0))
+            0.0 else 0.0)
+        slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
         t10 = -static_limit + trial_size
         t11 = dynamic_limit/trial_size
-        friction_1 = (drag*slip_1 if speed > 0.0 else (t11*trial_1 if t10 > 0.0 else trial_1))
-        friction_2 = (drag*slip_2 if speed > 0.0 else (t11*trial_2 if t10 > 0.0 else trial_2))
-        friction_3 = (drag*slip_3 if speed > 0.0 else (t11*trial_3 if t10 > 0.0 else trial_3))
-        t12 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
-            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0)))
+        friction_1 = drag*slip_1 if speed > 0.0 else (t11*trial_1 if t10 > 0.0 else trial_1)
+        friction_2 = drag*slip_2 if speed > 0.0 else (t11*trial_2 if t10 > 0.0 else trial_2)
+        friction_3 = drag*slip_3 if speed > 0.0 else (t11*trial_3 if t10 > 0.0 else trial_3)
+        t12 = (0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0))
         g[0] = (friction_1*(Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx) + friction_2*(Ra_xx*Rb_xy +
             Ra_yx*Rb_yy + Ra_zx*Rb_zy) + friction_3*(Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz))
         g[1] = (friction_1*(Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx) + friction_2*(Ra_xy*Rb_xy +
@@ -222,9 +222,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t22 = -coefficient + static
             t23 = 0.75 + ((0.25)*t18)/(speed*speed)
             t24 = (t19*t22)/(t23*t23)
-            t25 = ((-pressed*(coefficient*t21 + slip_speed*t24)/t18 + pressed*(coefficient*t20*(1
-                - t21*t21) + t24 + (-t18*t22)/(speed*speed*speed*t23*t23*t23))/slip_speed if speed
-                > 0.0 else 0))
+            t25 = (-pressed*(coefficient*t21 + slip_speed*t24)/t18 + pressed*(coefficient*t20*(1 -
+                t21*t21) + t24 + (-t18*t22)/(speed*speed*speed*t23*t23*t23))/slip_speed if speed >
+                0.0 else 0)
             dtrial_size_by_turned_1 = dtrial_1_by_turned_1*t15
             dtrial_size_by_turned_2 = dtrial_2_by_turned_2*t16
             dtrial_size_by_turned_3 = dtrial_3_by_turned_3*t17
@@ -235,15 +235,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ddrag_by_spin_2 = dslip_speed_by_spin_2*t25
             ddrag_by_spin_3 = dslip_speed_by_spin_3*t25
             t26 = -static_limit + trial_size
-            t27 = (0 if speed > 0.0 else (dynamic_limit/trial_size if t26 > 0.0 else 1))
+            t27 = 0 if speed > 0.0 else (dynamic_limit/trial_size if t26 > 0.0 else 1)
             t28 = dynamic_limit/(trial_size*trial_size)
-            t29 = (0 if speed > 0.0 else (-t28*trial_1 if t26 > 0.0 else 0))
-            t30 = (slip_1 if speed > 0.0 else 0)
-            t31 = (drag if speed > 0.0 else 0)
-            t32 = (0 if speed > 0.0 else (-t28*trial_2 if t26 > 0.0 else 0))
-            t33 = (slip_2 if speed > 0.0 else 0)
-            t34 = (0 if speed > 0.0 else (-t28*trial_3 if t26 > 0.0 else 0))
-            t35 = (slip_3 if speed > 0.0 else 0)
+            t29 = 0 if speed > 0.0 else (-t28*trial_1 if t26 > 0.0 else 0)
+            t30 = slip_1 if speed > 0.0 else 0
+            t31 = drag if speed > 0.0 else 0
+            t32 = 0 if speed > 0.0 else (-t28*trial_2 if t26 > 0.0 else 0)
+            t33 = slip_2 if speed > 0.0 else 0
+            t34 = 0 if speed > 0.0 else (-t28*trial_3 if t26 > 0.0 else 0)
+            t35 = slip_3 if speed > 0.0 else 0
             dfriction_1_by_turned_1 = dtrial_1_by_turned_1*t27 + dtrial_size_by_turned_1*t29
             dfriction_1_by_turned_2 = dtrial_size_by_turned_2*t29
             dfriction_1_by_turned_3 = dtrial_size_by_turned_3*t29

@@ -142,18 +142,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             1e-300))
         t9 = slip_speed/speed
         trial_size = sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
-        drag = ((pressed*(coefficient*tanh(4*t9) + (t9*(-coefficient +
+        drag = (pressed*(coefficient*tanh(4*t9) + (t9*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
-            0.0 else 0.0))
-        slips = (1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0))
+            0.0 else 0.0)
+        slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
         t10 = -static_limit + trial_size
         t11 = dynamic_limit/trial_size
-        friction_1 = (drag*slip_1 if speed > 0.0 else (t11*trial_1 if t10 > 0.0 else trial_1))
-        friction_2 = (drag*slip_2 if speed > 0.0 else (t11*trial_2 if t10 > 0.0 else trial_2))
-        friction_3 = (drag*slip_3 if speed > 0.0 else (t11*trial_3 if t10 > 0.0 else trial_3))
-        t12 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
-            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0)))
+        friction_1 = drag*slip_1 if speed > 0.0 else (t11*trial_1 if t10 > 0.0 else trial_1)
+        friction_2 = drag*slip_2 if speed > 0.0 else (t11*trial_2 if t10 > 0.0 else trial_2)
+        friction_3 = drag*slip_3 if speed > 0.0 else (t11*trial_3 if t10 > 0.0 else trial_3)
+        t12 = (0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0))
         g[0] = (friction_1*(Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx) + friction_2*(Ra_xx*Rb_xy +
             Ra_yx*Rb_yy + Ra_zx*Rb_zy) + friction_3*(Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz))
         g[1] = (friction_1*(Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx) + friction_2*(Ra_xy*Rb_xy +
@@ -244,10 +244,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t25 = (t20*t23)/(t24*t24)
             t26 = coefficient*t22 + slip_speed*t25
             t27 = 1/slip_speed
-            t28 = ((pressed*t27*(coefficient*t21*(1 - t22*t22) + t25 +
+            t28 = (pressed*t27*(coefficient*t21*(1 - t22*t22) + t25 +
                 (-t19*t23)/(speed*speed*speed*t24*t24*t24)) - pressed*t26/t19 if speed > 0.0 else
-                0))
-            t29 = (t26*t27 if speed > 0.0 else 0)
+                0)
+            t29 = t26*t27 if speed > 0.0 else 0
             dtrial_size_by_turned_1 = dtrial_1_by_turned_1*t16
             dtrial_size_by_turned_2 = dtrial_2_by_turned_2*t17
             dtrial_size_by_turned_3 = dtrial_3_by_turned_3*t18
@@ -262,18 +262,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ddrag_by_force_3 = dpressed_by_force_3*t29
             t30 = -static_limit + trial_size
             t31 = 1/trial_size
-            t32 = (0 if speed > 0.0 else (dynamic_limit*t31 if t30 > 0.0 else 1))
+            t32 = 0 if speed > 0.0 else (dynamic_limit*t31 if t30 > 0.0 else 1)
             t33 = dynamic_limit/(trial_size*trial_size)
-            t34 = (0 if speed > 0.0 else (-t33*trial_1 if t30 > 0.0 else 0))
-            t35 = (slip_1 if speed > 0.0 else 0)
-            t36 = (drag if speed > 0.0 else 0)
-            t37 = (0 if speed > 0.0 else (t31*trial_1 if t30 > 0.0 else 0))
-            t38 = (0 if speed > 0.0 else (-t33*trial_2 if t30 > 0.0 else 0))
-            t39 = (slip_2 if speed > 0.0 else 0)
-            t40 = (0 if speed > 0.0 else (t31*trial_2 if t30 > 0.0 else 0))
-            t41 = (0 if speed > 0.0 else (-t33*trial_3 if t30 > 0.0 else 0))
-            t42 = (slip_3 if speed > 0.0 else 0)
-            t43 = (0 if speed > 0.0 else (t31*trial_3 if t30 > 0.0 else 0))
+            t34 = 0 if speed > 0.0 else (-t33*trial_1 if t30 > 0.0 else 0)
+            t35 = slip_1 if speed > 0.0 else 0
+            t36 = drag if speed > 0.0 else 0
+            t37 = 0 if speed > 0.0 else (t31*trial_1 if t30 > 0.0 else 0)
+            t38 = 0 if speed > 0.0 else (-t33*trial_2 if t30 > 0.0 else 0)
+            t39 = slip_2 if speed > 0.0 else 0
+            t40 = 0 if speed > 0.0 else (t31*trial_2 if t30 > 0.0 else 0)
+            t41 = 0 if speed > 0.0 else (-t33*trial_3 if t30 > 0.0 else 0)
+            t42 = slip_3 if speed > 0.0 else 0
+            t43 = 0 if speed > 0.0 else (t31*trial_3 if t30 > 0.0 else 0)
             dfriction_1_by_turned_1 = dtrial_1_by_turned_1*t32 + dtrial_size_by_turned_1*t34
             dfriction_1_by_turned_2 = dtrial_size_by_turned_2*t34
             dfriction_1_by_turned_3 = dtrial_size_by_turned_3*t34

@@ -145,13 +145,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         slip_speed = sqrt(slip_1*slip_1 + 1e-12*speed*speed + 1e-300)
         t21 = slip_speed/speed
         trial_size = sqrt(trial*trial + 1e-300)
-        drag = ((pressed*(coefficient*tanh(4*t21) + (t21*(-coefficient +
+        drag = (pressed*(coefficient*tanh(4*t21) + (t21*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
-            0.0 else 0.0))
-        slips = (1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0))
-        friction = ((drag*slip_1 if speed > 0.0 else (dynamic_limit*trial/trial_size if
-            -static_limit + trial_size > 0.0 else trial)))
+            0.0 else 0.0)
+        slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
+        friction = (drag*slip_1 if speed > 0.0 else (dynamic_limit*trial/trial_size if
+            -static_limit + trial_size > 0.0 else trial))
         t22 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
         t23 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
         t24 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
@@ -294,9 +294,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t59 = -coefficient + static
             t60 = 0.75 + ((0.25)*t55)/(speed*speed)
             t61 = (t56*t59)/(t60*t60)
-            t62 = ((-pressed*(coefficient*t58 + slip_speed*t61)/t55 + pressed*(coefficient*t57*(1
-                - t58*t58) + t61 + (-t55*t59)/(speed*speed*speed*t60*t60*t60))/slip_speed if speed
-                > 0.0 else 0))
+            t62 = (-pressed*(coefficient*t58 + slip_speed*t61)/t55 + pressed*(coefficient*t57*(1 -
+                t58*t58) + t61 + (-t55*t59)/(speed*speed*speed*t60*t60*t60))/slip_speed if speed >
+                0.0 else 0)
             dtrial_size_by_angle_seen_1 = dtrial_by_angle_seen_1*t54
             dtrial_size_by_angle_seen_2 = dtrial_by_angle_seen_2*t54
             dtrial_size_by_angle_seen_3 = dtrial_by_angle_seen_3*t54
@@ -307,12 +307,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ddrag_by_angle_seen_3 = dslip_speed_by_angle_seen_3*t62
             ddrag_by_angle_along_n = dslip_speed_by_angle_along_n*t62
             ddrag_by_angle_along_m = dslip_speed_by_angle_along_m*t62
-            t63 = (slip_1 if speed > 0.0 else 0)
-            t64 = (drag if speed > 0.0 else 0)
+            t63 = slip_1 if speed > 0.0 else 0
+            t64 = drag if speed > 0.0 else 0
             t65 = -static_limit + trial_size
-            t66 = (0 if speed > 0.0 else (dynamic_limit/trial_size if t65 > 0.0 else 1))
-            t67 = ((0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t65 >
-                0.0 else 0)))
+            t66 = 0 if speed > 0.0 else (dynamic_limit/trial_size if t65 > 0.0 else 1)
+            t67 = (0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t65 >
+                0.0 else 0))
             dfriction_by_angle_seen_1 = (ddrag_by_angle_seen_1*t63 + dslip_1_by_angle_seen_1*t64 +
                 dtrial_by_angle_seen_1*t66 + dtrial_size_by_angle_seen_1*t67)
             dfriction_by_angle_seen_2 = (ddrag_by_angle_seen_2*t63 + dslip_1_by_angle_seen_2*t64 +

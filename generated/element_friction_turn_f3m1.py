@@ -152,13 +152,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         slip_speed = sqrt(slip_1*slip_1 + 1e-12*speed*speed + 1e-300)
         t21 = slip_speed/speed
         trial_size = sqrt(trial*trial + 1e-300)
-        drag = ((pressed*(coefficient*tanh(4*t21) + (t21*(-coefficient +
+        drag = (pressed*(coefficient*tanh(4*t21) + (t21*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
-            0.0 else 0.0))
-        slips = (1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0))
-        friction = ((drag*slip_1 if speed > 0.0 else (dynamic_limit*trial/trial_size if
-            -static_limit + trial_size > 0.0 else trial)))
+            0.0 else 0.0)
+        slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
+        friction = (drag*slip_1 if speed > 0.0 else (dynamic_limit*trial/trial_size if
+            -static_limit + trial_size > 0.0 else trial))
         t22 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
         t23 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
         t24 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
@@ -322,10 +322,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t62 = (t57*t60)/(t61*t61)
             t63 = coefficient*t59 + slip_speed*t62
             t64 = 1/slip_speed
-            t65 = ((pressed*t64*(coefficient*t58*(1 - t59*t59) + t62 +
+            t65 = (pressed*t64*(coefficient*t58*(1 - t59*t59) + t62 +
                 (-t56*t60)/(speed*speed*speed*t61*t61*t61)) - pressed*t63/t56 if speed > 0.0 else
-                0))
-            t66 = (t63*t64 if speed > 0.0 else 0)
+                0)
+            t66 = t63*t64 if speed > 0.0 else 0
             dtrial_size_by_angle_seen_1 = dtrial_by_angle_seen_1*t55
             dtrial_size_by_angle_seen_2 = dtrial_by_angle_seen_2*t55
             dtrial_size_by_angle_seen_3 = dtrial_by_angle_seen_3*t55
@@ -340,14 +340,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ddrag_by_force_2 = dpressed_by_force_2*t66
             ddrag_by_force_3 = dpressed_by_force_3*t66
             ddrag_by_moment_1 = dpressed_by_moment_1*t66
-            t67 = (slip_1 if speed > 0.0 else 0)
-            t68 = (drag if speed > 0.0 else 0)
+            t67 = slip_1 if speed > 0.0 else 0
+            t68 = drag if speed > 0.0 else 0
             t69 = -static_limit + trial_size
             t70 = 1/trial_size
-            t71 = (0 if speed > 0.0 else (dynamic_limit*t70 if t69 > 0.0 else 1))
-            t72 = ((0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t69 >
-                0.0 else 0)))
-            t73 = (0 if speed > 0.0 else (t70*trial if t69 > 0.0 else 0))
+            t71 = 0 if speed > 0.0 else (dynamic_limit*t70 if t69 > 0.0 else 1)
+            t72 = (0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t69 >
+                0.0 else 0))
+            t73 = 0 if speed > 0.0 else (t70*trial if t69 > 0.0 else 0)
             dfriction_by_angle_seen_1 = (ddrag_by_angle_seen_1*t67 + dslip_1_by_angle_seen_1*t68 +
                 dtrial_by_angle_seen_1*t71 + dtrial_size_by_angle_seen_1*t72)
             dfriction_by_angle_seen_2 = (ddrag_by_angle_seen_2*t67 + dslip_1_by_angle_seen_2*t68 +

@@ -153,13 +153,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         slip_speed = sqrt(slip_1*slip_1 + 1e-12*speed*speed + 1e-300)
         t21 = slip_speed/speed
         trial_size = sqrt(trial*trial + 1e-300)
-        drag = ((pressed*(coefficient*tanh(4*t21) + (t21*(-coefficient +
+        drag = (pressed*(coefficient*tanh(4*t21) + (t21*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
-            0.0 else 0.0))
-        slips = (1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0))
-        friction = ((drag*slip_1 if speed > 0.0 else (dynamic_limit*trial/trial_size if
-            -static_limit + trial_size > 0.0 else trial)))
+            0.0 else 0.0)
+        slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
+        friction = (drag*slip_1 if speed > 0.0 else (dynamic_limit*trial/trial_size if
+            -static_limit + trial_size > 0.0 else trial))
         t22 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
         t23 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
         t24 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
@@ -329,10 +329,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t63 = (t58*t61)/(t62*t62)
             t64 = coefficient*t60 + slip_speed*t63
             t65 = 1/slip_speed
-            t66 = ((pressed*t65*(coefficient*t59*(1 - t60*t60) + t63 +
+            t66 = (pressed*t65*(coefficient*t59*(1 - t60*t60) + t63 +
                 (-t57*t61)/(speed*speed*speed*t62*t62*t62)) - pressed*t64/t57 if speed > 0.0 else
-                0))
-            t67 = (t64*t65 if speed > 0.0 else 0)
+                0)
+            t67 = t64*t65 if speed > 0.0 else 0
             dtrial_size_by_angle_seen_1 = dtrial_by_angle_seen_1*t56
             dtrial_size_by_angle_seen_2 = dtrial_by_angle_seen_2*t56
             dtrial_size_by_angle_seen_3 = dtrial_by_angle_seen_3*t56
@@ -348,14 +348,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ddrag_by_force_3 = dpressed_by_force_3*t67
             ddrag_by_moment_1 = dpressed_by_moment_1*t67
             ddrag_by_moment_2 = dpressed_by_moment_2*t67
-            t68 = (slip_1 if speed > 0.0 else 0)
-            t69 = (drag if speed > 0.0 else 0)
+            t68 = slip_1 if speed > 0.0 else 0
+            t69 = drag if speed > 0.0 else 0
             t70 = -static_limit + trial_size
             t71 = 1/trial_size
-            t72 = (0 if speed > 0.0 else (dynamic_limit*t71 if t70 > 0.0 else 1))
-            t73 = ((0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t70 >
-                0.0 else 0)))
-            t74 = (0 if speed > 0.0 else (t71*trial if t70 > 0.0 else 0))
+            t72 = 0 if speed > 0.0 else (dynamic_limit*t71 if t70 > 0.0 else 1)
+            t73 = (0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t70 >
+                0.0 else 0))
+            t74 = 0 if speed > 0.0 else (t71*trial if t70 > 0.0 else 0)
             dfriction_by_angle_seen_1 = (ddrag_by_angle_seen_1*t68 + dslip_1_by_angle_seen_1*t69 +
                 dtrial_by_angle_seen_1*t72 + dtrial_size_by_angle_seen_1*t73)
             dfriction_by_angle_seen_2 = (ddrag_by_angle_seen_2*t68 + dslip_1_by_angle_seen_2*t69 +

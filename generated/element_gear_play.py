@@ -199,19 +199,19 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             0.5))
         t38 = -lower - upper + 2*value
         t39 = -value
-        side = (1.0 if t38 > 0.0 else -1.0)
-        beyond = (-t39 - upper if t38 > 0.0 else lower + t39)
+        side = 1.0 if t38 > 0.0 else -1.0
+        beyond = -t39 - upper if t38 > 0.0 else lower + t39
         t40 = angle_1_seen_1*n1_x + angle_1_seen_2*n1_y + angle_1_seen_3*n1_z
         t41 = angle_1_seen_1*m1_x + angle_1_seen_2*m1_y + angle_1_seen_3*m1_z
         t42 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
         t43 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
         speed_beyond = (side*(-ratio*(angle_2_along_m*t42 - angle_2_along_n*t43)/(t42*t42 +
             t43*t43) + (angle_1_along_m*t40 - angle_1_along_n*t41)/(t40*t40 + t41*t41)))
-        touches = (1.0 if beyond > 0.0 else 0.0)
-        depth = (beyond if beyond > 0.0 else 1e-300)
+        touches = 1.0 if beyond > 0.0 else 0.0
+        depth = beyond if beyond > 0.0 else 1e-300
         elastic = depth**exponent*stiffness
         factor = damping*speed_beyond + 1
-        push = (elastic*factor if factor > 0.0 else 0.0)
+        push = elastic*factor if factor > 0.0 else 0.0
         t44 = angle_1_seen_1*m1_x + angle_1_seen_2*m1_y + angle_1_seen_3*m1_z
         t45 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
         t46 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
@@ -257,10 +257,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t86 = d2_x*t74 - d2_y*t82
         t87 = atan2(t44, t54)
         t88 = atan2(t66, t76)
-        t89 = (kept_rate if kept_rate > 0.0 else -kept_rate)
-        t90 = (speed_beyond if speed_beyond > 0.0 else -speed_beyond)
-        t91 = (t90 if -t89 + t90 > 0.0 else t89)
-        t92 = (t91 if -kept_impact + t91 > 0.0 else kept_impact)
+        t89 = kept_rate if kept_rate > 0.0 else -kept_rate
+        t90 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
+        t91 = t90 if -t89 + t90 > 0.0 else t89
+        t92 = t91 if -kept_impact + t91 > 0.0 else kept_impact
         g[0] = t56*(-t44*(n1_x*t47 + n1_y*t50 + n1_z*t53) + t54*(m1_x*t47 + m1_y*t50 + m1_z*t53))
         g[1] = t56*(-t44*(n1_x*t58 + n1_y*t60 + n1_z*t62) + t54*(m1_x*t58 + m1_y*t60 + m1_z*t62))
         g[2] = t56*(-t44*(n1_x*t63 + n1_y*t64 + n1_z*t65) + t54*(m1_x*t63 + m1_y*t64 + m1_z*t65))
@@ -286,8 +286,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             6.283185307179586*floor(0.15915494309189535*kept_angle_2 - 0.15915494309189535*t88 +
             0.5))
         frames[index[first + AT_FRAME] + 2] = speed_beyond
-        frames[index[first + AT_FRAME] + 3] = (((t92 if -slow + t92 > 0.0 else 0.0) if touches -
-            0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 3] = ((t92 if -slow + t92 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 4] = beyond
         frames[index[first + AT_FRAME] + 5] = push
         if task == ENERGY:
@@ -416,7 +416,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dvalue_by_angle_2_seen_1 = -ratio*(m2_x*t101 + n2_x*t102)
             dvalue_by_angle_2_seen_2 = -ratio*(m2_y*t101 + n2_y*t102)
             dvalue_by_angle_2_seen_3 = -ratio*(m2_z*t101 + n2_z*t102)
-            t103 = (1 if -lower - upper + 2*value > 0.0 else -1)
+            t103 = 1 if -lower - upper + 2*value > 0.0 else -1
             dbeyond_by_angle_1_seen_1 = dvalue_by_angle_1_seen_1*t103
             dbeyond_by_angle_1_seen_2 = dvalue_by_angle_1_seen_2*t103
             dbeyond_by_angle_1_seen_3 = dvalue_by_angle_1_seen_3*t103
@@ -455,7 +455,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 angle_2_along_n*m2_z) - t118*(-m2_z*t116 - n2_z*t117)))
             dspeed_beyond_by_angle_2_along_n = t112*t119
             dspeed_beyond_by_angle_2_along_m = -t113*t119
-            t120 = (1 if beyond > 0.0 else 0)
+            t120 = 1 if beyond > 0.0 else 0
             ddepth_by_angle_1_seen_1 = dbeyond_by_angle_1_seen_1*t120
             ddepth_by_angle_1_seen_2 = dbeyond_by_angle_1_seen_2*t120
             ddepth_by_angle_1_seen_3 = dbeyond_by_angle_1_seen_3*t120
@@ -479,8 +479,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dfactor_by_angle_2_seen_3 = damping*dspeed_beyond_by_angle_2_seen_3
             dfactor_by_angle_2_along_n = damping*dspeed_beyond_by_angle_2_along_n
             dfactor_by_angle_2_along_m = damping*dspeed_beyond_by_angle_2_along_m
-            t122 = (factor if factor > 0.0 else 0)
-            t123 = (elastic if factor > 0.0 else 0)
+            t122 = factor if factor > 0.0 else 0
+            t123 = elastic if factor > 0.0 else 0
             dpush_by_angle_1_seen_1 = (delastic_by_angle_1_seen_1*t122 +
                 dfactor_by_angle_1_seen_1*t123)
             dpush_by_angle_1_seen_2 = (delastic_by_angle_1_seen_2*t122 +

@@ -83,31 +83,31 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         value = way
         t3 = -lower - upper + 2*value
         t4 = -value
-        side = (1.0 if t3 > 0.0 else -1.0)
-        beyond = (-t4 - upper if t3 > 0.0 else lower + t4)
+        side = 1.0 if t3 > 0.0 else -1.0
+        beyond = -t4 - upper if t3 > 0.0 else lower + t4
         speed_beyond = side*way_rate
-        touches = (1.0 if beyond > 0.0 else 0.0)
-        depth = (beyond if beyond > 0.0 else 1e-300)
+        touches = 1.0 if beyond > 0.0 else 0.0
+        depth = beyond if beyond > 0.0 else 1e-300
         elastic = depth**exponent*stiffness
         factor = damping*speed_beyond + 1
-        push = (elastic*factor if factor > 0.0 else 0.0)
+        push = elastic*factor if factor > 0.0 else 0.0
         t5 = xa_x - xb_x
         t6 = -t5
         t7 = xa_y - xb_y
         t8 = -t7
         t9 = push*side/sqrt(t6*t6 + t8*t8)
-        t10 = (kept_rate if kept_rate > 0.0 else -kept_rate)
-        t11 = (speed_beyond if speed_beyond > 0.0 else -speed_beyond)
-        t12 = (t11 if -t10 + t11 > 0.0 else t10)
-        t13 = (t12 if -kept_impact + t12 > 0.0 else kept_impact)
+        t10 = kept_rate if kept_rate > 0.0 else -kept_rate
+        t11 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
+        t12 = t11 if -t10 + t11 > 0.0 else t10
+        t13 = t12 if -kept_impact + t12 > 0.0 else kept_impact
         g[0] = t5*t9
         g[1] = t7*t9
         g[2] = t6*t9
         g[3] = t8*t9
         frames[index[first + AT_FRAME]] = way
         frames[index[first + AT_FRAME] + 1] = speed_beyond
-        frames[index[first + AT_FRAME] + 2] = (((t13 if -slow + t13 > 0.0 else 0.0) if touches -
-            0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 2] = ((t13 if -slow + t13 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 3] = beyond
         frames[index[first + AT_FRAME] + 4] = push
         if task == ENERGY:

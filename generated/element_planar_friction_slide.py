@@ -107,13 +107,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         slip_speed = sqrt(slip_1*slip_1 + 1e-12*speed*speed + 1e-300)
         t8 = slip_speed/speed
         trial_size = sqrt(trial*trial + 1e-300)
-        drag = ((pressed*(coefficient*tanh(4*t8) + (t8*(-coefficient +
+        drag = (pressed*(coefficient*tanh(4*t8) + (t8*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
-            0.0 else 0.0))
-        slips = (1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0))
-        friction = ((drag*slip_1 if speed > 0.0 else (dynamic_limit*trial/trial_size if
-            -static_limit + trial_size > 0.0 else trial)))
+            0.0 else 0.0)
+        slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
+        friction = (drag*slip_1 if speed > 0.0 else (dynamic_limit*trial/trial_size if
+            -static_limit + trial_size > 0.0 else trial))
         t9 = Ra_cos*e_x - Ra_sin*e_y
         t10 = Ra_cos*e_y + Ra_sin*e_x
         t11 = -t10
@@ -173,9 +173,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 slip_speed*t19)/t13 + pressed*(coefficient*t15*(1 - t16*t16) + t19 +
                 (-t13*t17)/(speed*speed*speed*t18*t18*t18))/slip_speed if speed > 0.0 else 0))
             t20 = -static_limit + trial_size
-            t21 = (0 if speed > 0.0 else (dynamic_limit/trial_size if t20 > 0.0 else 1))
-            t22 = ((0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t20 >
-                0.0 else 0)))
+            t21 = 0 if speed > 0.0 else (dynamic_limit/trial_size if t20 > 0.0 else 1)
+            t22 = (0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t20 >
+                0.0 else 0))
             dfriction_by_way = dtrial_by_way*t21 + dtrial_size_by_way*t22
             dfriction_by_way_rate = (ddrag_by_way_rate*(slip_1 if speed > 0.0 else 0) +
                 dslip_1_by_way_rate*(drag if speed > 0.0 else 0) + dtrial_by_way_rate*t21 +

@@ -109,13 +109,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         slip_speed = sqrt(slip_1*slip_1 + 1e-12*speed*speed + 1e-300)
         t8 = slip_speed/speed
         trial_size = sqrt(trial*trial + 1e-300)
-        drag = ((pressed*(coefficient*tanh(4*t8) + (t8*(-coefficient +
+        drag = (pressed*(coefficient*tanh(4*t8) + (t8*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
-            0.0 else 0.0))
-        slips = (1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0))
-        friction = ((drag*slip_1 if speed > 0.0 else (dynamic_limit*trial/trial_size if
-            -static_limit + trial_size > 0.0 else trial)))
+            0.0 else 0.0)
+        slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
+        friction = (drag*slip_1 if speed > 0.0 else (dynamic_limit*trial/trial_size if
+            -static_limit + trial_size > 0.0 else trial))
         t9 = Ra_cos*e_x - Ra_sin*e_y
         t10 = Ra_cos*e_y + Ra_sin*e_x
         t11 = -t10
@@ -184,10 +184,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ddrag_by_force_1 = dpressed_by_force_1*(t20*t21 if speed > 0.0 else 0)
             t22 = -static_limit + trial_size
             t23 = 1/trial_size
-            t24 = (0 if speed > 0.0 else (dynamic_limit*t23 if t22 > 0.0 else 1))
-            t25 = ((0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t22 >
-                0.0 else 0)))
-            t26 = (slip_1 if speed > 0.0 else 0)
+            t24 = 0 if speed > 0.0 else (dynamic_limit*t23 if t22 > 0.0 else 1)
+            t25 = (0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t22 >
+                0.0 else 0))
+            t26 = slip_1 if speed > 0.0 else 0
             dfriction_by_way = dtrial_by_way*t24 + dtrial_size_by_way*t25
             dfriction_by_way_rate = (ddrag_by_way_rate*t26 + dslip_1_by_way_rate*(drag if speed >
                 0.0 else 0) + dtrial_by_way_rate*t24 + dtrial_size_by_way_rate*t25)

@@ -112,13 +112,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         slip_speed = sqrt(slip_1*slip_1 + 1e-12*speed*speed + 1e-300)
         t8 = slip_speed/speed
         trial_size = sqrt(trial*trial + 1e-300)
-        drag = ((pressed*(coefficient*tanh(4*t8) + (t8*(-coefficient +
+        drag = (pressed*(coefficient*tanh(4*t8) + (t8*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
-            0.0 else 0.0))
-        slips = (1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0))
-        friction = ((drag*slip_1 if speed > 0.0 else (dynamic_limit*trial/trial_size if
-            -static_limit + trial_size > 0.0 else trial)))
+            0.0 else 0.0)
+        slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
+        friction = (drag*slip_1 if speed > 0.0 else (dynamic_limit*trial/trial_size if
+            -static_limit + trial_size > 0.0 else trial))
         t9 = Ra_cos*e_x - Ra_sin*e_y
         t10 = Ra_cos*e_y + Ra_sin*e_x
         t11 = -t10
@@ -184,7 +184,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t19 = (t14*t17)/(t18*t18)
             t20 = coefficient*t16 + slip_speed*t19
             t21 = 1/slip_speed
-            t22 = (t20*t21 if speed > 0.0 else 0)
+            t22 = t20*t21 if speed > 0.0 else 0
             dtrial_size_by_way = dtrial_by_way*t12
             dtrial_size_by_way_rate = dtrial_by_way_rate*t12
             ddrag_by_way_rate = (dslip_speed_by_way_rate*(pressed*t21*(coefficient*t15*(1 -
@@ -194,11 +194,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ddrag_by_moment_1 = dpressed_by_moment_1*t22
             t23 = -static_limit + trial_size
             t24 = 1/trial_size
-            t25 = (0 if speed > 0.0 else (dynamic_limit*t24 if t23 > 0.0 else 1))
-            t26 = ((0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t23 >
-                0.0 else 0)))
-            t27 = (slip_1 if speed > 0.0 else 0)
-            t28 = (0 if speed > 0.0 else (t24*trial if t23 > 0.0 else 0))
+            t25 = 0 if speed > 0.0 else (dynamic_limit*t24 if t23 > 0.0 else 1)
+            t26 = (0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t23 >
+                0.0 else 0))
+            t27 = slip_1 if speed > 0.0 else 0
+            t28 = 0 if speed > 0.0 else (t24*trial if t23 > 0.0 else 0)
             dfriction_by_way = dtrial_by_way*t25 + dtrial_size_by_way*t26
             dfriction_by_way_rate = (ddrag_by_way_rate*t27 + dslip_1_by_way_rate*(drag if speed >
                 0.0 else 0) + dtrial_by_way_rate*t25 + dtrial_size_by_way_rate*t26)

@@ -88,13 +88,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         slip_speed = sqrt(slip_1*slip_1 + 1e-12*speed*speed + 1e-300)
         t0 = slip_speed/speed
         trial_size = sqrt(trial*trial + 1e-300)
-        drag = ((pressed*(coefficient*tanh(4*t0) + (t0*(-coefficient +
+        drag = (pressed*(coefficient*tanh(4*t0) + (t0*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
-            0.0 else 0.0))
-        slips = (1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0))
-        friction = ((drag*slip_1 if speed > 0.0 else (dynamic_limit*trial/trial_size if
-            -static_limit + trial_size > 0.0 else trial)))
+            0.0 else 0.0)
+        slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
+        friction = (drag*slip_1 if speed > 0.0 else (dynamic_limit*trial/trial_size if
+            -static_limit + trial_size > 0.0 else trial))
         g[0] = friction
         g[1] = -friction
         frames[index[first + AT_FRAME]] = angle
@@ -136,9 +136,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 slip_speed*t8)/t2 + pressed*(coefficient*t4*(1 - t5*t5) + t8 +
                 (-t2*t6)/(speed*speed*speed*t7*t7*t7))/slip_speed if speed > 0.0 else 0))
             t9 = -static_limit + trial_size
-            t10 = (0 if speed > 0.0 else (dynamic_limit/trial_size if t9 > 0.0 else 1))
-            t11 = ((0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t9 >
-                0.0 else 0)))
+            t10 = 0 if speed > 0.0 else (dynamic_limit/trial_size if t9 > 0.0 else 1)
+            t11 = (0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t9 >
+                0.0 else 0))
             dfriction_by_angle = dtrial_by_angle*t10 + dtrial_size_by_angle*t11
             dfriction_by_angle_rate = (ddrag_by_angle_rate*(slip_1 if speed > 0.0 else 0) +
                 dslip_1_by_angle_rate*(drag if speed > 0.0 else 0) + dtrial_by_angle_rate*t10 +

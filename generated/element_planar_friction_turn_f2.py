@@ -91,13 +91,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         slip_speed = sqrt(slip_1*slip_1 + 1e-12*speed*speed + 1e-300)
         t0 = slip_speed/speed
         trial_size = sqrt(trial*trial + 1e-300)
-        drag = ((pressed*(coefficient*tanh(4*t0) + (t0*(-coefficient +
+        drag = (pressed*(coefficient*tanh(4*t0) + (t0*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
-            0.0 else 0.0))
-        slips = (1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0))
-        friction = ((drag*slip_1 if speed > 0.0 else (dynamic_limit*trial/trial_size if
-            -static_limit + trial_size > 0.0 else trial)))
+            0.0 else 0.0)
+        slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
+        friction = (drag*slip_1 if speed > 0.0 else (dynamic_limit*trial/trial_size if
+            -static_limit + trial_size > 0.0 else trial))
         g[0] = friction
         g[1] = -friction
         g[2] = 0.0
@@ -146,7 +146,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t9 = (t4*t7)/(t8*t8)
             t10 = coefficient*t6 + slip_speed*t9
             t11 = 1/slip_speed
-            t12 = (t10*t11 if speed > 0.0 else 0)
+            t12 = t10*t11 if speed > 0.0 else 0
             dtrial_size_by_angle = dtrial_by_angle*t2
             dtrial_size_by_angle_rate = dtrial_by_angle_rate*t2
             ddrag_by_angle_rate = (dslip_speed_by_angle_rate*(-pressed*t10/t3 +
@@ -156,11 +156,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ddrag_by_force_2 = dpressed_by_force_2*t12
             t13 = -static_limit + trial_size
             t14 = 1/trial_size
-            t15 = (0 if speed > 0.0 else (dynamic_limit*t14 if t13 > 0.0 else 1))
-            t16 = ((0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t13 >
-                0.0 else 0)))
-            t17 = (slip_1 if speed > 0.0 else 0)
-            t18 = (0 if speed > 0.0 else (t14*trial if t13 > 0.0 else 0))
+            t15 = 0 if speed > 0.0 else (dynamic_limit*t14 if t13 > 0.0 else 1)
+            t16 = (0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t13 >
+                0.0 else 0))
+            t17 = slip_1 if speed > 0.0 else 0
+            t18 = 0 if speed > 0.0 else (t14*trial if t13 > 0.0 else 0)
             dfriction_by_angle = dtrial_by_angle*t15 + dtrial_size_by_angle*t16
             dfriction_by_angle_rate = (ddrag_by_angle_rate*t17 + dslip_1_by_angle_rate*(drag if
                 speed > 0.0 else 0) + dtrial_by_angle_rate*t15 + dtrial_size_by_angle_rate*t16)

@@ -82,20 +82,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         value = angle_1 - angle_2*ratio
         t0 = -lower - upper + 2*value
         t1 = -value
-        side = (1.0 if t0 > 0.0 else -1.0)
-        beyond = (-t1 - upper if t0 > 0.0 else lower + t1)
+        side = 1.0 if t0 > 0.0 else -1.0
+        beyond = -t1 - upper if t0 > 0.0 else lower + t1
         speed_beyond = side*(angle_1_rate - angle_2_rate*ratio)
-        touches = (1.0 if beyond > 0.0 else 0.0)
-        depth = (beyond if beyond > 0.0 else 1e-300)
+        touches = 1.0 if beyond > 0.0 else 0.0
+        depth = beyond if beyond > 0.0 else 1e-300
         elastic = depth**exponent*stiffness
         factor = damping*speed_beyond + 1
-        push = (elastic*factor if factor > 0.0 else 0.0)
+        push = elastic*factor if factor > 0.0 else 0.0
         t2 = push*side
         t3 = ratio*t2
-        t4 = (kept_rate if kept_rate > 0.0 else -kept_rate)
-        t5 = (speed_beyond if speed_beyond > 0.0 else -speed_beyond)
-        t6 = (t5 if -t4 + t5 > 0.0 else t4)
-        t7 = (t6 if -kept_impact + t6 > 0.0 else kept_impact)
+        t4 = kept_rate if kept_rate > 0.0 else -kept_rate
+        t5 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
+        t6 = t5 if -t4 + t5 > 0.0 else t4
+        t7 = t6 if -kept_impact + t6 > 0.0 else kept_impact
         g[0] = t2
         g[1] = -t2
         g[2] = -t3
@@ -103,8 +103,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME]] = angle_1
         frames[index[first + AT_FRAME] + 1] = angle_2
         frames[index[first + AT_FRAME] + 2] = speed_beyond
-        frames[index[first + AT_FRAME] + 3] = (((t7 if -slow + t7 > 0.0 else 0.0) if touches - 0.5
-            > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 3] = ((t7 if -slow + t7 > 0.0 else 0.0) if touches - 0.5
+            > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 4] = beyond
         frames[index[first + AT_FRAME] + 5] = push
         if task == ENERGY:
@@ -128,12 +128,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             du = at(work, WIDTH)
             dvalue_by_angle_1 = 1
             dvalue_by_angle_2 = -ratio
-            t8 = (1 if -lower - upper + 2*value > 0.0 else -1)
+            t8 = 1 if -lower - upper + 2*value > 0.0 else -1
             dbeyond_by_angle_1 = dvalue_by_angle_1*t8
             dbeyond_by_angle_2 = dvalue_by_angle_2*t8
             dspeed_beyond_by_angle_1_rate = side
             dspeed_beyond_by_angle_2_rate = -ratio*side
-            t9 = (1 if beyond > 0.0 else 0)
+            t9 = 1 if beyond > 0.0 else 0
             ddepth_by_angle_1 = dbeyond_by_angle_1*t9
             ddepth_by_angle_2 = dbeyond_by_angle_2*t9
             t10 = depth**exponent*exponent*stiffness/depth
@@ -141,8 +141,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             delastic_by_angle_2 = ddepth_by_angle_2*t10
             dfactor_by_angle_1_rate = damping*dspeed_beyond_by_angle_1_rate
             dfactor_by_angle_2_rate = damping*dspeed_beyond_by_angle_2_rate
-            t11 = (factor if factor > 0.0 else 0)
-            t12 = (elastic if factor > 0.0 else 0)
+            t11 = factor if factor > 0.0 else 0
+            t12 = elastic if factor > 0.0 else 0
             dpush_by_angle_1 = delastic_by_angle_1*t11
             dpush_by_angle_1_rate = dfactor_by_angle_1_rate*t12
             dpush_by_angle_2 = delastic_by_angle_2*t11

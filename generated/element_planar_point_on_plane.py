@@ -123,11 +123,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         slip_2 = -normal_2*t6 + rate_2*t9
         increment_1 = -t10*t11 + t12*t8
         increment_2 = t10*t9 - t11*t12
-        touches = (1.0 if gap_closed > 0.0 else 0.0)
-        depth = (gap_closed if gap_closed > 0.0 else 1e-300)
+        touches = 1.0 if gap_closed > 0.0 else 0.0
+        depth = gap_closed if gap_closed > 0.0 else 1e-300
         elastic = depth**exponent*stiffness
         factor = closing*damping + 1
-        push = (elastic*factor if factor > 0.0 else 0.0)
+        push = elastic*factor if factor > 0.0 else 0.0
         t13 = increment_2*kept_begun + kept_bent_2
         t14 = normal_1*normal_2
         t15 = increment_1*kept_begun + kept_bent_1
@@ -141,15 +141,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         slip_speed = sqrt(slip_1*slip_1 + slip_2*slip_2 + 1e-12*speed*speed + 1e-300)
         t16 = slip_speed/speed
         trial_size = sqrt(trial_1*trial_1 + trial_2*trial_2 + 1e-300)
-        drag = ((push*(coefficient*tanh(4*t16) + (t16*(-coefficient +
+        drag = (push*(coefficient*tanh(4*t16) + (t16*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
-            0.0 else 0.0))
-        slips = (1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0))
+            0.0 else 0.0)
+        slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
         t17 = -static_limit + trial_size
         t18 = dynamic_limit/trial_size
-        friction_1 = (drag*slip_1 if speed > 0.0 else (t18*trial_1 if t17 > 0.0 else trial_1))
-        friction_2 = (drag*slip_2 if speed > 0.0 else (t18*trial_2 if t17 > 0.0 else trial_2))
+        friction_1 = drag*slip_1 if speed > 0.0 else (t18*trial_1 if t17 > 0.0 else trial_1)
+        friction_2 = drag*slip_2 if speed > 0.0 else (t18*trial_2 if t17 > 0.0 else trial_2)
         t19 = normal_1*normal_2
         t20 = friction_1*(1 - normal_1*normal_1) - friction_2*t19 - normal_1*push
         t21 = -friction_1*t19 + friction_2*(1 - normal_2*normal_2) - normal_2*push
@@ -157,12 +157,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t23 = Rb_cos*t21 + Rb_sin*t20
         t24 = xa_y - xb_y
         t25 = xa_x - xb_x
-        t26 = (closing if closing > 0.0 else -closing)
-        t27 = (kept_rate if kept_rate > 0.0 else -kept_rate)
-        t28 = (t26 if t26 - t27 > 0.0 else t27)
-        t29 = (t28 if -kept_impact + t28 > 0.0 else kept_impact)
-        t30 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
-            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0)))
+        t26 = closing if closing > 0.0 else -closing
+        t27 = kept_rate if kept_rate > 0.0 else -kept_rate
+        t28 = t26 if t26 - t27 > 0.0 else t27
+        t29 = t28 if -kept_impact + t28 > 0.0 else kept_impact
+        t30 = (0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0))
         g[0] = t22
         g[1] = t23
         g[2] = -t22
@@ -171,8 +171,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME]] = place_1
         frames[index[first + AT_FRAME] + 1] = place_2
         frames[index[first + AT_FRAME] + 2] = closing
-        frames[index[first + AT_FRAME] + 3] = (((t29 if -slow + t29 > 0.0 else 0.0) if touches -
-            0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 3] = ((t29 if -slow + t29 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 4] = gap_closed
         frames[index[first + AT_FRAME] + 5] = t30*z_1
         frames[index[first + AT_FRAME] + 6] = t30*z_2
@@ -229,7 +229,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dincrement_1_by_place_2 = t32
             dincrement_2_by_place_1 = t32
             dincrement_2_by_place_2 = t33
-            t34 = (1 if gap_closed > 0.0 else 0)
+            t34 = 1 if gap_closed > 0.0 else 0
             ddepth_by_place_1 = dgap_closed_by_place_1*t34
             ddepth_by_place_2 = dgap_closed_by_place_2*t34
             t35 = depth**exponent*exponent*stiffness/depth
@@ -237,8 +237,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             delastic_by_place_2 = ddepth_by_place_2*t35
             dfactor_by_rate_1 = damping*dclosing_by_rate_1
             dfactor_by_rate_2 = damping*dclosing_by_rate_2
-            t36 = (factor if factor > 0.0 else 0)
-            t37 = (elastic if factor > 0.0 else 0)
+            t36 = factor if factor > 0.0 else 0
+            t37 = elastic if factor > 0.0 else 0
             dpush_by_place_1 = delastic_by_place_1*t36
             dpush_by_place_2 = delastic_by_place_2*t36
             dpush_by_rate_1 = dfactor_by_rate_1*t37
@@ -279,9 +279,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t53 = -coefficient + static
             t54 = t53/(t52*t52)
             t55 = coefficient*t50 + t49*t54
-            t56 = (t47*t55 if speed > 0.0 else 0)
-            t57 = ((push*t47*(4*coefficient*t48*(1 - t50*t50) + t48*t54 +
-                (-t51*t53)/(speed*speed*speed*t52*t52*t52)) - push*t55/t51 if speed > 0.0 else 0))
+            t56 = t47*t55 if speed > 0.0 else 0
+            t57 = (push*t47*(4*coefficient*t48*(1 - t50*t50) + t48*t54 +
+                (-t51*t53)/(speed*speed*speed*t52*t52*t52)) - push*t55/t51 if speed > 0.0 else 0)
             dtrial_size_by_place_1 = dtrial_1_by_place_1*t45 + dtrial_2_by_place_1*t46
             dtrial_size_by_place_2 = dtrial_1_by_place_2*t45 + dtrial_2_by_place_2*t46
             dtrial_size_by_rate_1 = dtrial_1_by_rate_1*t45 + dtrial_2_by_rate_1*t46
@@ -290,17 +290,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ddrag_by_place_2 = dpush_by_place_2*t56
             ddrag_by_rate_1 = dpush_by_rate_1*t56 + dslip_speed_by_rate_1*t57
             ddrag_by_rate_2 = dpush_by_rate_2*t56 + dslip_speed_by_rate_2*t57
-            t58 = (slip_1 if speed > 0.0 else 0)
+            t58 = slip_1 if speed > 0.0 else 0
             t59 = -static_limit + trial_size
             t60 = 1/trial_size
-            t61 = (0 if speed > 0.0 else (t60*trial_1 if t59 > 0.0 else 0))
-            t62 = (0 if speed > 0.0 else (dynamic_limit*t60 if t59 > 0.0 else 1))
+            t61 = 0 if speed > 0.0 else (t60*trial_1 if t59 > 0.0 else 0)
+            t62 = 0 if speed > 0.0 else (dynamic_limit*t60 if t59 > 0.0 else 1)
             t63 = dynamic_limit/(trial_size*trial_size)
-            t64 = (0 if speed > 0.0 else (-t63*trial_1 if t59 > 0.0 else 0))
-            t65 = (drag if speed > 0.0 else 0)
-            t66 = (slip_2 if speed > 0.0 else 0)
-            t67 = (0 if speed > 0.0 else (t60*trial_2 if t59 > 0.0 else 0))
-            t68 = (0 if speed > 0.0 else (-t63*trial_2 if t59 > 0.0 else 0))
+            t64 = 0 if speed > 0.0 else (-t63*trial_1 if t59 > 0.0 else 0)
+            t65 = drag if speed > 0.0 else 0
+            t66 = slip_2 if speed > 0.0 else 0
+            t67 = 0 if speed > 0.0 else (t60*trial_2 if t59 > 0.0 else 0)
+            t68 = 0 if speed > 0.0 else (-t63*trial_2 if t59 > 0.0 else 0)
             dfriction_1_by_place_1 = (ddrag_by_place_1*t58 + ddynamic_limit_by_place_1*t61 +
                 dtrial_1_by_place_1*t62 + dtrial_size_by_place_1*t64)
             dfriction_1_by_place_2 = (ddrag_by_place_2*t58 + ddynamic_limit_by_place_2*t61 +

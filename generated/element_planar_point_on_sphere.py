@@ -124,11 +124,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         slip_2 = -normal_2*t8 + rate_2*t11
         increment_1 = t10*t14 - t12*t13
         increment_2 = t11*t12 - t13*t14
-        touches = (1.0 if gap_closed > 0.0 else 0.0)
-        depth = (gap_closed if gap_closed > 0.0 else 1e-300)
+        touches = 1.0 if gap_closed > 0.0 else 0.0
+        depth = gap_closed if gap_closed > 0.0 else 1e-300
         elastic = depth**exponent*stiffness
         factor = closing*damping + 1
-        push = (elastic*factor if factor > 0.0 else 0.0)
+        push = elastic*factor if factor > 0.0 else 0.0
         t15 = increment_2*kept_begun + kept_bent_2
         t16 = normal_1*normal_2
         t17 = increment_1*kept_begun + kept_bent_1
@@ -142,15 +142,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         slip_speed = sqrt(slip_1*slip_1 + slip_2*slip_2 + 1e-12*speed*speed + 1e-300)
         t18 = slip_speed/speed
         trial_size = sqrt(trial_1*trial_1 + trial_2*trial_2 + 1e-300)
-        drag = ((push*(coefficient*tanh(4*t18) + (t18*(-coefficient +
+        drag = (push*(coefficient*tanh(4*t18) + (t18*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
-            0.0 else 0.0))
-        slips = (1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0))
+            0.0 else 0.0)
+        slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
         t19 = -static_limit + trial_size
         t20 = dynamic_limit/trial_size
-        friction_1 = (drag*slip_1 if speed > 0.0 else (t20*trial_1 if t19 > 0.0 else trial_1))
-        friction_2 = (drag*slip_2 if speed > 0.0 else (t20*trial_2 if t19 > 0.0 else trial_2))
+        friction_1 = drag*slip_1 if speed > 0.0 else (t20*trial_1 if t19 > 0.0 else trial_1)
+        friction_2 = drag*slip_2 if speed > 0.0 else (t20*trial_2 if t19 > 0.0 else trial_2)
         t21 = normal_1*normal_2
         t22 = friction_1*(1 - normal_1*normal_1) - friction_2*t21 - normal_1*push
         t23 = -friction_1*t21 + friction_2*(1 - normal_2*normal_2) - normal_2*push
@@ -158,12 +158,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t25 = Rb_cos*t23 + Rb_sin*t22
         t26 = xa_y - xb_y
         t27 = xa_x - xb_x
-        t28 = (closing if closing > 0.0 else -closing)
-        t29 = (kept_rate if kept_rate > 0.0 else -kept_rate)
-        t30 = (t28 if t28 - t29 > 0.0 else t29)
-        t31 = (t30 if -kept_impact + t30 > 0.0 else kept_impact)
-        t32 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
-            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0)))
+        t28 = closing if closing > 0.0 else -closing
+        t29 = kept_rate if kept_rate > 0.0 else -kept_rate
+        t30 = t28 if t28 - t29 > 0.0 else t29
+        t31 = t30 if -kept_impact + t30 > 0.0 else kept_impact
+        t32 = (0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0))
         g[0] = t24
         g[1] = t25
         g[2] = -t24
@@ -172,8 +172,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME]] = place_1
         frames[index[first + AT_FRAME] + 1] = place_2
         frames[index[first + AT_FRAME] + 2] = closing
-        frames[index[first + AT_FRAME] + 3] = (((t31 if -slow + t31 > 0.0 else 0.0) if touches -
-            0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 3] = ((t31 if -slow + t31 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 4] = gap_closed
         frames[index[first + AT_FRAME] + 5] = t32*z_1
         frames[index[first + AT_FRAME] + 6] = t32*z_2
@@ -265,7 +265,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dincrement_1_by_place_2 = dnormal_1_by_place_2*t58 - dnormal_2_by_place_2*t54 - t49
             dincrement_2_by_place_1 = -dnormal_1_by_place_1*t59 + dnormal_2_by_place_1*t60 - t49
             dincrement_2_by_place_2 = -dnormal_1_by_place_2*t59 + dnormal_2_by_place_2*t60 - t52
-            t61 = (1 if gap_closed > 0.0 else 0)
+            t61 = 1 if gap_closed > 0.0 else 0
             ddepth_by_place_1 = dgap_closed_by_place_1*t61
             ddepth_by_place_2 = dgap_closed_by_place_2*t61
             t62 = depth**exponent*exponent*stiffness/depth
@@ -275,8 +275,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dfactor_by_place_2 = damping*dclosing_by_place_2
             dfactor_by_rate_1 = damping*dclosing_by_rate_1
             dfactor_by_rate_2 = damping*dclosing_by_rate_2
-            t63 = (factor if factor > 0.0 else 0)
-            t64 = (elastic if factor > 0.0 else 0)
+            t63 = factor if factor > 0.0 else 0
+            t64 = elastic if factor > 0.0 else 0
             dpush_by_place_1 = delastic_by_place_1*t63 + dfactor_by_place_1*t64
             dpush_by_place_2 = delastic_by_place_2*t63 + dfactor_by_place_2*t64
             dpush_by_rate_1 = dfactor_by_rate_1*t64
@@ -333,9 +333,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t88 = -coefficient + static
             t89 = t88/(t87*t87)
             t90 = coefficient*t85 + t84*t89
-            t91 = (t82*t90 if speed > 0.0 else 0)
-            t92 = ((push*t82*(4*coefficient*t83*(1 - t85*t85) + t83*t89 +
-                (-t86*t88)/(speed*speed*speed*t87*t87*t87)) - push*t90/t86 if speed > 0.0 else 0))
+            t91 = t82*t90 if speed > 0.0 else 0
+            t92 = (push*t82*(4*coefficient*t83*(1 - t85*t85) + t83*t89 +
+                (-t86*t88)/(speed*speed*speed*t87*t87*t87)) - push*t90/t86 if speed > 0.0 else 0)
             dtrial_size_by_place_1 = dtrial_1_by_place_1*t80 + dtrial_2_by_place_1*t81
             dtrial_size_by_place_2 = dtrial_1_by_place_2*t80 + dtrial_2_by_place_2*t81
             dtrial_size_by_rate_1 = dtrial_1_by_rate_1*t80 + dtrial_2_by_rate_1*t81
@@ -344,17 +344,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ddrag_by_place_2 = dpush_by_place_2*t91 + dslip_speed_by_place_2*t92
             ddrag_by_rate_1 = dpush_by_rate_1*t91 + dslip_speed_by_rate_1*t92
             ddrag_by_rate_2 = dpush_by_rate_2*t91 + dslip_speed_by_rate_2*t92
-            t93 = (slip_1 if speed > 0.0 else 0)
-            t94 = (drag if speed > 0.0 else 0)
+            t93 = slip_1 if speed > 0.0 else 0
+            t94 = drag if speed > 0.0 else 0
             t95 = -static_limit + trial_size
             t96 = 1/trial_size
-            t97 = (0 if speed > 0.0 else (t96*trial_1 if t95 > 0.0 else 0))
-            t98 = (0 if speed > 0.0 else (dynamic_limit*t96 if t95 > 0.0 else 1))
+            t97 = 0 if speed > 0.0 else (t96*trial_1 if t95 > 0.0 else 0)
+            t98 = 0 if speed > 0.0 else (dynamic_limit*t96 if t95 > 0.0 else 1)
             t99 = dynamic_limit/(trial_size*trial_size)
-            t100 = (0 if speed > 0.0 else (-t99*trial_1 if t95 > 0.0 else 0))
-            t101 = (slip_2 if speed > 0.0 else 0)
-            t102 = (0 if speed > 0.0 else (t96*trial_2 if t95 > 0.0 else 0))
-            t103 = (0 if speed > 0.0 else (-t99*trial_2 if t95 > 0.0 else 0))
+            t100 = 0 if speed > 0.0 else (-t99*trial_1 if t95 > 0.0 else 0)
+            t101 = slip_2 if speed > 0.0 else 0
+            t102 = 0 if speed > 0.0 else (t96*trial_2 if t95 > 0.0 else 0)
+            t103 = 0 if speed > 0.0 else (-t99*trial_2 if t95 > 0.0 else 0)
             dfriction_1_by_place_1 = (ddrag_by_place_1*t93 + ddynamic_limit_by_place_1*t97 +
                 dslip_1_by_place_1*t94 + dtrial_1_by_place_1*t98 + dtrial_size_by_place_1*t100)
             dfriction_1_by_place_2 = (ddrag_by_place_2*t93 + ddynamic_limit_by_place_2*t97 +

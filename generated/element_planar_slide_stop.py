@@ -97,22 +97,22 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         value = way
         t8 = -lower - upper + 2*value
         t9 = -value
-        side = (1.0 if t8 > 0.0 else -1.0)
-        beyond = (-t9 - upper if t8 > 0.0 else lower + t9)
+        side = 1.0 if t8 > 0.0 else -1.0
+        beyond = -t9 - upper if t8 > 0.0 else lower + t9
         speed_beyond = side*way_rate
-        touches = (1.0 if beyond > 0.0 else 0.0)
-        depth = (beyond if beyond > 0.0 else 1e-300)
+        touches = 1.0 if beyond > 0.0 else 0.0
+        depth = beyond if beyond > 0.0 else 1e-300
         elastic = depth**exponent*stiffness
         factor = damping*speed_beyond + 1
-        push = (elastic*factor if factor > 0.0 else 0.0)
+        push = elastic*factor if factor > 0.0 else 0.0
         t10 = Ra_cos*e_x - Ra_sin*e_y
         t11 = push*side
         t12 = Ra_cos*e_y + Ra_sin*e_x
         t13 = -t12
-        t14 = (kept_rate if kept_rate > 0.0 else -kept_rate)
-        t15 = (speed_beyond if speed_beyond > 0.0 else -speed_beyond)
-        t16 = (t15 if -t14 + t15 > 0.0 else t14)
-        t17 = (t16 if -kept_impact + t16 > 0.0 else kept_impact)
+        t14 = kept_rate if kept_rate > 0.0 else -kept_rate
+        t15 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
+        t16 = t15 if -t14 + t15 > 0.0 else t14
+        t17 = t16 if -kept_impact + t16 > 0.0 else kept_impact
         g[0] = -t10*t11
         g[1] = t11*t13
         g[2] = t10*t11
@@ -120,8 +120,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         g[4] = t11*(t10*(-xa_y + xb_y) + t13*(-xa_x + xb_x))
         frames[index[first + AT_FRAME]] = way
         frames[index[first + AT_FRAME] + 1] = speed_beyond
-        frames[index[first + AT_FRAME] + 2] = (((t17 if -slow + t17 > 0.0 else 0.0) if touches -
-            0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 2] = ((t17 if -slow + t17 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 3] = beyond
         frames[index[first + AT_FRAME] + 4] = push
         if task == ENERGY:

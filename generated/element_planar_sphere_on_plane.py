@@ -131,11 +131,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         slip_2 = t11*t7 - t8*t9
         increment_1 = t10*t14 - t13*t8
         increment_2 = t11*t13 - t14*t8
-        touches = (1.0 if gap_closed > 0.0 else 0.0)
-        depth = (gap_closed if gap_closed > 0.0 else 1e-300)
+        touches = 1.0 if gap_closed > 0.0 else 0.0
+        depth = gap_closed if gap_closed > 0.0 else 1e-300
         elastic = depth**exponent*stiffness
         factor = closing*damping + 1
-        push = (elastic*factor if factor > 0.0 else 0.0)
+        push = elastic*factor if factor > 0.0 else 0.0
         t15 = increment_2*kept_begun + kept_bent_2
         t16 = normal_1*normal_2
         t17 = increment_1*kept_begun + kept_bent_1
@@ -149,15 +149,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         slip_speed = sqrt(slip_1*slip_1 + slip_2*slip_2 + 1e-12*speed*speed + 1e-300)
         t18 = slip_speed/speed
         trial_size = sqrt(trial_1*trial_1 + trial_2*trial_2 + 1e-300)
-        drag = ((push*(coefficient*tanh(4*t18) + (t18*(-coefficient +
+        drag = (push*(coefficient*tanh(4*t18) + (t18*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
-            0.0 else 0.0))
-        slips = (1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0))
+            0.0 else 0.0)
+        slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
         t19 = -static_limit + trial_size
         t20 = dynamic_limit/trial_size
-        friction_1 = (drag*slip_1 if speed > 0.0 else (t20*trial_1 if t19 > 0.0 else trial_1))
-        friction_2 = (drag*slip_2 if speed > 0.0 else (t20*trial_2 if t19 > 0.0 else trial_2))
+        friction_1 = drag*slip_1 if speed > 0.0 else (t20*trial_1 if t19 > 0.0 else trial_1)
+        friction_2 = drag*slip_2 if speed > 0.0 else (t20*trial_2 if t19 > 0.0 else trial_2)
         t21 = normal_1*normal_2
         t22 = friction_1*(1 - normal_1*normal_1) - friction_2*t21 - normal_1*push
         t23 = -friction_1*t21 + friction_2*(1 - normal_2*normal_2) - normal_2*push
@@ -165,12 +165,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t25 = Rb_cos*t23 + Rb_sin*t22
         t26 = xa_x - xb_x
         t27 = xa_y - xb_y
-        t28 = (closing if closing > 0.0 else -closing)
-        t29 = (kept_rate if kept_rate > 0.0 else -kept_rate)
-        t30 = (t28 if t28 - t29 > 0.0 else t29)
-        t31 = (t30 if -kept_impact + t30 > 0.0 else kept_impact)
-        t32 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
-            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0)))
+        t28 = closing if closing > 0.0 else -closing
+        t29 = kept_rate if kept_rate > 0.0 else -kept_rate
+        t30 = t28 if t28 - t29 > 0.0 else t29
+        t31 = t30 if -kept_impact + t30 > 0.0 else kept_impact
+        t32 = (0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0))
         g[0] = t24
         g[1] = t25
         g[2] = -t24
@@ -182,8 +182,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME] + 1] = place_2
         frames[index[first + AT_FRAME] + 2] = tha - thb
         frames[index[first + AT_FRAME] + 3] = closing
-        frames[index[first + AT_FRAME] + 4] = (((t31 if -slow + t31 > 0.0 else 0.0) if touches -
-            0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 4] = ((t31 if -slow + t31 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 5] = gap_closed
         frames[index[first + AT_FRAME] + 6] = t32*z_1
         frames[index[first + AT_FRAME] + 7] = t32*z_2
@@ -253,7 +253,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dincrement_2_by_place_1 = t35
             dincrement_2_by_place_2 = t39
             dincrement_2_by_turned_3 = t41
-            t42 = (1 if gap_closed > 0.0 else 0)
+            t42 = 1 if gap_closed > 0.0 else 0
             ddepth_by_place_1 = dgap_closed_by_place_1*t42
             ddepth_by_place_2 = dgap_closed_by_place_2*t42
             t43 = depth**exponent*exponent*stiffness/depth
@@ -261,8 +261,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             delastic_by_place_2 = ddepth_by_place_2*t43
             dfactor_by_rate_1 = damping*dclosing_by_rate_1
             dfactor_by_rate_2 = damping*dclosing_by_rate_2
-            t44 = (factor if factor > 0.0 else 0)
-            t45 = (elastic if factor > 0.0 else 0)
+            t44 = factor if factor > 0.0 else 0
+            t45 = elastic if factor > 0.0 else 0
             dpush_by_place_1 = delastic_by_place_1*t44
             dpush_by_place_2 = delastic_by_place_2*t44
             dpush_by_rate_1 = dfactor_by_rate_1*t45
@@ -311,9 +311,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t61 = -coefficient + static
             t62 = t61/(t60*t60)
             t63 = coefficient*t58 + t57*t62
-            t64 = (t55*t63 if speed > 0.0 else 0)
-            t65 = ((push*t55*(4*coefficient*t56*(1 - t58*t58) + t56*t62 +
-                (-t59*t61)/(speed*speed*speed*t60*t60*t60)) - push*t63/t59 if speed > 0.0 else 0))
+            t64 = t55*t63 if speed > 0.0 else 0
+            t65 = (push*t55*(4*coefficient*t56*(1 - t58*t58) + t56*t62 +
+                (-t59*t61)/(speed*speed*speed*t60*t60*t60)) - push*t63/t59 if speed > 0.0 else 0)
             dtrial_size_by_place_1 = dtrial_1_by_place_1*t53 + dtrial_2_by_place_1*t54
             dtrial_size_by_place_2 = dtrial_1_by_place_2*t53 + dtrial_2_by_place_2*t54
             dtrial_size_by_turned_3 = dtrial_1_by_turned_3*t53 + dtrial_2_by_turned_3*t54
@@ -325,17 +325,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ddrag_by_rate_1 = dpush_by_rate_1*t64 + dslip_speed_by_rate_1*t65
             ddrag_by_rate_2 = dpush_by_rate_2*t64 + dslip_speed_by_rate_2*t65
             ddrag_by_spin_3 = dslip_speed_by_spin_3*t65
-            t66 = (slip_1 if speed > 0.0 else 0)
+            t66 = slip_1 if speed > 0.0 else 0
             t67 = -static_limit + trial_size
             t68 = 1/trial_size
-            t69 = (0 if speed > 0.0 else (t68*trial_1 if t67 > 0.0 else 0))
-            t70 = (0 if speed > 0.0 else (dynamic_limit*t68 if t67 > 0.0 else 1))
+            t69 = 0 if speed > 0.0 else (t68*trial_1 if t67 > 0.0 else 0)
+            t70 = 0 if speed > 0.0 else (dynamic_limit*t68 if t67 > 0.0 else 1)
             t71 = dynamic_limit/(trial_size*trial_size)
-            t72 = (0 if speed > 0.0 else (-t71*trial_1 if t67 > 0.0 else 0))
-            t73 = (drag if speed > 0.0 else 0)
-            t74 = (slip_2 if speed > 0.0 else 0)
-            t75 = (0 if speed > 0.0 else (t68*trial_2 if t67 > 0.0 else 0))
-            t76 = (0 if speed > 0.0 else (-t71*trial_2 if t67 > 0.0 else 0))
+            t72 = 0 if speed > 0.0 else (-t71*trial_1 if t67 > 0.0 else 0)
+            t73 = drag if speed > 0.0 else 0
+            t74 = slip_2 if speed > 0.0 else 0
+            t75 = 0 if speed > 0.0 else (t68*trial_2 if t67 > 0.0 else 0)
+            t76 = 0 if speed > 0.0 else (-t71*trial_2 if t67 > 0.0 else 0)
             dfriction_1_by_place_1 = (ddrag_by_place_1*t66 + ddynamic_limit_by_place_1*t69 +
                 dtrial_1_by_place_1*t70 + dtrial_size_by_place_1*t72)
             dfriction_1_by_place_2 = (ddrag_by_place_2*t66 + ddynamic_limit_by_place_2*t69 +

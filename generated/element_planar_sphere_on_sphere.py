@@ -132,11 +132,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         slip_2 = -t10*t11 + t13*t9
         increment_1 = -t10*t15 + t12*t16
         increment_2 = -t10*t16 + t13*t15
-        touches = (1.0 if gap_closed > 0.0 else 0.0)
-        depth = (gap_closed if gap_closed > 0.0 else 1e-300)
+        touches = 1.0 if gap_closed > 0.0 else 0.0
+        depth = gap_closed if gap_closed > 0.0 else 1e-300
         elastic = depth**exponent*stiffness
         factor = closing*damping + 1
-        push = (elastic*factor if factor > 0.0 else 0.0)
+        push = elastic*factor if factor > 0.0 else 0.0
         t17 = increment_2*kept_begun + kept_bent_2
         t18 = normal_1*normal_2
         t19 = increment_1*kept_begun + kept_bent_1
@@ -150,15 +150,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         slip_speed = sqrt(slip_1*slip_1 + slip_2*slip_2 + 1e-12*speed*speed + 1e-300)
         t20 = slip_speed/speed
         trial_size = sqrt(trial_1*trial_1 + trial_2*trial_2 + 1e-300)
-        drag = ((push*(coefficient*tanh(4*t20) + (t20*(-coefficient +
+        drag = (push*(coefficient*tanh(4*t20) + (t20*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
-            0.0 else 0.0))
-        slips = (1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0))
+            0.0 else 0.0)
+        slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
         t21 = -static_limit + trial_size
         t22 = dynamic_limit/trial_size
-        friction_1 = (drag*slip_1 if speed > 0.0 else (t22*trial_1 if t21 > 0.0 else trial_1))
-        friction_2 = (drag*slip_2 if speed > 0.0 else (t22*trial_2 if t21 > 0.0 else trial_2))
+        friction_1 = drag*slip_1 if speed > 0.0 else (t22*trial_1 if t21 > 0.0 else trial_1)
+        friction_2 = drag*slip_2 if speed > 0.0 else (t22*trial_2 if t21 > 0.0 else trial_2)
         t23 = normal_1*normal_2
         t24 = friction_1*(1 - normal_1*normal_1) - friction_2*t23 - normal_1*push
         t25 = -friction_1*t23 + friction_2*(1 - normal_2*normal_2) - normal_2*push
@@ -166,12 +166,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t27 = Rb_cos*t25 + Rb_sin*t24
         t28 = xa_x - xb_x
         t29 = xa_y - xb_y
-        t30 = (closing if closing > 0.0 else -closing)
-        t31 = (kept_rate if kept_rate > 0.0 else -kept_rate)
-        t32 = (t30 if t30 - t31 > 0.0 else t31)
-        t33 = (t32 if -kept_impact + t32 > 0.0 else kept_impact)
-        t34 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
-            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0)))
+        t30 = closing if closing > 0.0 else -closing
+        t31 = kept_rate if kept_rate > 0.0 else -kept_rate
+        t32 = t30 if t30 - t31 > 0.0 else t31
+        t33 = t32 if -kept_impact + t32 > 0.0 else kept_impact
+        t34 = (0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0))
         g[0] = t26
         g[1] = t27
         g[2] = -t26
@@ -183,8 +183,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME] + 1] = place_2
         frames[index[first + AT_FRAME] + 2] = tha - thb
         frames[index[first + AT_FRAME] + 3] = closing
-        frames[index[first + AT_FRAME] + 4] = (((t33 if -slow + t33 > 0.0 else 0.0) if touches -
-            0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 4] = ((t33 if -slow + t33 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 5] = gap_closed
         frames[index[first + AT_FRAME] + 6] = t34*z_1
         frames[index[first + AT_FRAME] + 7] = t34*z_2
@@ -293,7 +293,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dincrement_2_by_place_1 = dnormal_1_by_place_1*t71 + dnormal_2_by_place_1*t72 + t54
             dincrement_2_by_place_2 = dnormal_1_by_place_2*t71 + dnormal_2_by_place_2*t72 - t57 + 1
             dincrement_2_by_turned_3 = t62
-            t73 = (1 if gap_closed > 0.0 else 0)
+            t73 = 1 if gap_closed > 0.0 else 0
             ddepth_by_place_1 = dgap_closed_by_place_1*t73
             ddepth_by_place_2 = dgap_closed_by_place_2*t73
             t74 = depth**exponent*exponent*stiffness/depth
@@ -303,8 +303,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dfactor_by_place_2 = damping*dclosing_by_place_2
             dfactor_by_rate_1 = damping*dclosing_by_rate_1
             dfactor_by_rate_2 = damping*dclosing_by_rate_2
-            t75 = (factor if factor > 0.0 else 0)
-            t76 = (elastic if factor > 0.0 else 0)
+            t75 = factor if factor > 0.0 else 0
+            t76 = elastic if factor > 0.0 else 0
             dpush_by_place_1 = delastic_by_place_1*t75 + dfactor_by_place_1*t76
             dpush_by_place_2 = delastic_by_place_2*t75 + dfactor_by_place_2*t76
             dpush_by_rate_1 = dfactor_by_rate_1*t76
@@ -369,9 +369,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t100 = -coefficient + static
             t101 = t100/(t99*t99)
             t102 = coefficient*t97 + t101*t96
-            t103 = (t102*t94 if speed > 0.0 else 0)
-            t104 = ((-push*t102/t98 + push*t94*(4*coefficient*t95*(1 - t97*t97) + t101*t95 +
-                (-t100*t98)/(speed*speed*speed*t99*t99*t99)) if speed > 0.0 else 0))
+            t103 = t102*t94 if speed > 0.0 else 0
+            t104 = (-push*t102/t98 + push*t94*(4*coefficient*t95*(1 - t97*t97) + t101*t95 +
+                (-t100*t98)/(speed*speed*speed*t99*t99*t99)) if speed > 0.0 else 0)
             dtrial_size_by_place_1 = dtrial_1_by_place_1*t92 + dtrial_2_by_place_1*t93
             dtrial_size_by_place_2 = dtrial_1_by_place_2*t92 + dtrial_2_by_place_2*t93
             dtrial_size_by_turned_3 = dtrial_1_by_turned_3*t92 + dtrial_2_by_turned_3*t93
@@ -383,17 +383,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ddrag_by_rate_1 = dpush_by_rate_1*t103 + dslip_speed_by_rate_1*t104
             ddrag_by_rate_2 = dpush_by_rate_2*t103 + dslip_speed_by_rate_2*t104
             ddrag_by_spin_3 = dslip_speed_by_spin_3*t104
-            t105 = (slip_1 if speed > 0.0 else 0)
-            t106 = (drag if speed > 0.0 else 0)
+            t105 = slip_1 if speed > 0.0 else 0
+            t106 = drag if speed > 0.0 else 0
             t107 = -static_limit + trial_size
             t108 = 1/trial_size
-            t109 = (0 if speed > 0.0 else (t108*trial_1 if t107 > 0.0 else 0))
-            t110 = (0 if speed > 0.0 else (dynamic_limit*t108 if t107 > 0.0 else 1))
+            t109 = 0 if speed > 0.0 else (t108*trial_1 if t107 > 0.0 else 0)
+            t110 = 0 if speed > 0.0 else (dynamic_limit*t108 if t107 > 0.0 else 1)
             t111 = dynamic_limit/(trial_size*trial_size)
-            t112 = (0 if speed > 0.0 else (-t111*trial_1 if t107 > 0.0 else 0))
-            t113 = (slip_2 if speed > 0.0 else 0)
-            t114 = (0 if speed > 0.0 else (t108*trial_2 if t107 > 0.0 else 0))
-            t115 = (0 if speed > 0.0 else (-t111*trial_2 if t107 > 0.0 else 0))
+            t112 = 0 if speed > 0.0 else (-t111*trial_1 if t107 > 0.0 else 0)
+            t113 = slip_2 if speed > 0.0 else 0
+            t114 = 0 if speed > 0.0 else (t108*trial_2 if t107 > 0.0 else 0)
+            t115 = 0 if speed > 0.0 else (-t111*trial_2 if t107 > 0.0 else 0)
             dfriction_1_by_place_1 = (ddrag_by_place_1*t105 + ddynamic_limit_by_place_1*t109 +
                 dslip_1_by_place_1*t106 + dtrial_1_by_place_1*t110 + dtrial_size_by_place_1*t112)
             dfriction_1_by_place_2 = (ddrag_by_place_2*t105 + ddynamic_limit_by_place_2*t109 +

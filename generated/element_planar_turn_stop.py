@@ -74,25 +74,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         value = angle
         t0 = -lower - upper + 2*value
         t1 = -value
-        side = (1.0 if t0 > 0.0 else -1.0)
-        beyond = (-t1 - upper if t0 > 0.0 else lower + t1)
+        side = 1.0 if t0 > 0.0 else -1.0
+        beyond = -t1 - upper if t0 > 0.0 else lower + t1
         speed_beyond = angle_rate*side
-        touches = (1.0 if beyond > 0.0 else 0.0)
-        depth = (beyond if beyond > 0.0 else 1e-300)
+        touches = 1.0 if beyond > 0.0 else 0.0
+        depth = beyond if beyond > 0.0 else 1e-300
         elastic = depth**exponent*stiffness
         factor = damping*speed_beyond + 1
-        push = (elastic*factor if factor > 0.0 else 0.0)
+        push = elastic*factor if factor > 0.0 else 0.0
         t2 = push*side
-        t3 = (kept_rate if kept_rate > 0.0 else -kept_rate)
-        t4 = (speed_beyond if speed_beyond > 0.0 else -speed_beyond)
-        t5 = (t4 if -t3 + t4 > 0.0 else t3)
-        t6 = (t5 if -kept_impact + t5 > 0.0 else kept_impact)
+        t3 = kept_rate if kept_rate > 0.0 else -kept_rate
+        t4 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
+        t5 = t4 if -t3 + t4 > 0.0 else t3
+        t6 = t5 if -kept_impact + t5 > 0.0 else kept_impact
         g[0] = t2
         g[1] = -t2
         frames[index[first + AT_FRAME]] = angle
         frames[index[first + AT_FRAME] + 1] = speed_beyond
-        frames[index[first + AT_FRAME] + 2] = (((t6 if -slow + t6 > 0.0 else 0.0) if touches - 0.5
-            > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 2] = ((t6 if -slow + t6 > 0.0 else 0.0) if touches - 0.5
+            > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 3] = beyond
         frames[index[first + AT_FRAME] + 4] = push
         if task == ENERGY:

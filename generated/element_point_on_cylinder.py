@@ -159,11 +159,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         increment_1 = -normal_1*t24 + t18*t25 - t21*t22
         increment_2 = -normal_2*t24 + t19*t21 - t22*t25
         increment_3 = -normal_1*normal_3*t25 - normal_2*normal_3*t21 + t20*t23
-        touches = (1.0 if gap_closed > 0.0 else 0.0)
-        depth = (gap_closed if gap_closed > 0.0 else 1e-300)
+        touches = 1.0 if gap_closed > 0.0 else 0.0
+        depth = gap_closed if gap_closed > 0.0 else 1e-300
         elastic = depth**exponent*stiffness
         factor = closing*damping + 1
-        push = (elastic*factor if factor > 0.0 else 0.0)
+        push = elastic*factor if factor > 0.0 else 0.0
         t26 = increment_2*kept_begun + kept_bent_2
         t27 = normal_1*normal_2
         t28 = increment_3*kept_begun + kept_bent_3
@@ -182,16 +182,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             1e-300))
         t31 = slip_speed/speed
         trial_size = sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
-        drag = ((push*(coefficient*tanh(4*t31) + (t31*(-coefficient +
+        drag = (push*(coefficient*tanh(4*t31) + (t31*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
-            0.0 else 0.0))
-        slips = (1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0))
+            0.0 else 0.0)
+        slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
         t32 = -static_limit + trial_size
         t33 = dynamic_limit/trial_size
-        friction_1 = (drag*slip_1 if speed > 0.0 else (t33*trial_1 if t32 > 0.0 else trial_1))
-        friction_2 = (drag*slip_2 if speed > 0.0 else (t33*trial_2 if t32 > 0.0 else trial_2))
-        friction_3 = (drag*slip_3 if speed > 0.0 else (t33*trial_3 if t32 > 0.0 else trial_3))
+        friction_1 = drag*slip_1 if speed > 0.0 else (t33*trial_1 if t32 > 0.0 else trial_1)
+        friction_2 = drag*slip_2 if speed > 0.0 else (t33*trial_2 if t32 > 0.0 else trial_2)
+        friction_3 = drag*slip_3 if speed > 0.0 else (t33*trial_3 if t32 > 0.0 else trial_3)
         t34 = normal_1*normal_2
         t35 = friction_3*normal_3
         t36 = friction_1*(1 - normal_1*normal_1) - friction_2*t34 - normal_1*push - normal_1*t35
@@ -207,12 +207,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t45 = Rb_xz*t42 + Rb_yz*t43 + Rb_zz*t44
         t46 = Rb_xy*t42 + Rb_yy*t43 + Rb_zy*t44
         t47 = Rb_xx*t42 + Rb_yx*t43 + Rb_zx*t44
-        t48 = (closing if closing > 0.0 else -closing)
-        t49 = (kept_rate if kept_rate > 0.0 else -kept_rate)
-        t50 = (t48 if t48 - t49 > 0.0 else t49)
-        t51 = (t50 if -kept_impact + t50 > 0.0 else kept_impact)
-        t52 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
-            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0)))
+        t48 = closing if closing > 0.0 else -closing
+        t49 = kept_rate if kept_rate > 0.0 else -kept_rate
+        t50 = t48 if t48 - t49 > 0.0 else t49
+        t51 = t50 if -kept_impact + t50 > 0.0 else kept_impact
+        t52 = (0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0))
         g[0] = t39
         g[1] = t40
         g[2] = t41
@@ -226,8 +226,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME] + 1] = place_2
         frames[index[first + AT_FRAME] + 2] = place_3
         frames[index[first + AT_FRAME] + 3] = closing
-        frames[index[first + AT_FRAME] + 4] = (((t51 if -slow + t51 > 0.0 else 0.0) if touches -
-            0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 4] = ((t51 if -slow + t51 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 5] = gap_closed
         frames[index[first + AT_FRAME] + 6] = t52*z_1
         frames[index[first + AT_FRAME] + 7] = t52*z_2
@@ -406,7 +406,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dnormal_3_by_place_2*t112 - t94)
             dincrement_3_by_place_3 = (-dnormal_1_by_place_3*t110 - dnormal_2_by_place_3*t111 +
                 dnormal_3_by_place_3*t112 - t97)
-            t113 = (1 if gap_closed > 0.0 else 0)
+            t113 = 1 if gap_closed > 0.0 else 0
             ddepth_by_place_1 = dgap_closed_by_place_1*t113
             ddepth_by_place_2 = dgap_closed_by_place_2*t113
             ddepth_by_place_3 = dgap_closed_by_place_3*t113
@@ -420,8 +420,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dfactor_by_rate_1 = damping*dclosing_by_rate_1
             dfactor_by_rate_2 = damping*dclosing_by_rate_2
             dfactor_by_rate_3 = damping*dclosing_by_rate_3
-            t115 = (factor if factor > 0.0 else 0)
-            t116 = (elastic if factor > 0.0 else 0)
+            t115 = factor if factor > 0.0 else 0
+            t116 = elastic if factor > 0.0 else 0
             dpush_by_place_1 = delastic_by_place_1*t115 + dfactor_by_place_1*t116
             dpush_by_place_2 = delastic_by_place_2*t115 + dfactor_by_place_2*t116
             dpush_by_place_3 = delastic_by_place_3*t115 + dfactor_by_place_3*t116
@@ -531,10 +531,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t153 = -coefficient + static
             t154 = t153/(t152*t152)
             t155 = coefficient*t150 + t149*t154
-            t156 = (t147*t155 if speed > 0.0 else 0)
-            t157 = ((push*t147*(4*coefficient*t148*(1 - t150*t150) + t148*t154 +
+            t156 = t147*t155 if speed > 0.0 else 0
+            t157 = (push*t147*(4*coefficient*t148*(1 - t150*t150) + t148*t154 +
                 (-t151*t153)/(speed*speed*speed*t152*t152*t152)) - push*t155/t151 if speed > 0.0
-                else 0))
+                else 0)
             dtrial_size_by_place_1 = (dtrial_1_by_place_1*t144 + dtrial_2_by_place_1*t145 +
                 dtrial_3_by_place_1*t146)
             dtrial_size_by_place_2 = (dtrial_1_by_place_2*t144 + dtrial_2_by_place_2*t145 +
@@ -553,20 +553,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ddrag_by_rate_1 = dpush_by_rate_1*t156 + dslip_speed_by_rate_1*t157
             ddrag_by_rate_2 = dpush_by_rate_2*t156 + dslip_speed_by_rate_2*t157
             ddrag_by_rate_3 = dpush_by_rate_3*t156 + dslip_speed_by_rate_3*t157
-            t158 = (slip_1 if speed > 0.0 else 0)
-            t159 = (drag if speed > 0.0 else 0)
+            t158 = slip_1 if speed > 0.0 else 0
+            t159 = drag if speed > 0.0 else 0
             t160 = -static_limit + trial_size
             t161 = 1/trial_size
-            t162 = (0 if speed > 0.0 else (t161*trial_1 if t160 > 0.0 else 0))
-            t163 = (0 if speed > 0.0 else (dynamic_limit*t161 if t160 > 0.0 else 1))
+            t162 = 0 if speed > 0.0 else (t161*trial_1 if t160 > 0.0 else 0)
+            t163 = 0 if speed > 0.0 else (dynamic_limit*t161 if t160 > 0.0 else 1)
             t164 = dynamic_limit/(trial_size*trial_size)
-            t165 = (0 if speed > 0.0 else (-t164*trial_1 if t160 > 0.0 else 0))
-            t166 = (slip_2 if speed > 0.0 else 0)
-            t167 = (0 if speed > 0.0 else (t161*trial_2 if t160 > 0.0 else 0))
-            t168 = (0 if speed > 0.0 else (-t164*trial_2 if t160 > 0.0 else 0))
-            t169 = (slip_3 if speed > 0.0 else 0)
-            t170 = (0 if speed > 0.0 else (t161*trial_3 if t160 > 0.0 else 0))
-            t171 = (0 if speed > 0.0 else (-t164*trial_3 if t160 > 0.0 else 0))
+            t165 = 0 if speed > 0.0 else (-t164*trial_1 if t160 > 0.0 else 0)
+            t166 = slip_2 if speed > 0.0 else 0
+            t167 = 0 if speed > 0.0 else (t161*trial_2 if t160 > 0.0 else 0)
+            t168 = 0 if speed > 0.0 else (-t164*trial_2 if t160 > 0.0 else 0)
+            t169 = slip_3 if speed > 0.0 else 0
+            t170 = 0 if speed > 0.0 else (t161*trial_3 if t160 > 0.0 else 0)
+            t171 = 0 if speed > 0.0 else (-t164*trial_3 if t160 > 0.0 else 0)
             dfriction_1_by_place_1 = (ddrag_by_place_1*t158 + ddynamic_limit_by_place_1*t162 +
                 dslip_1_by_place_1*t159 + dtrial_1_by_place_1*t163 + dtrial_size_by_place_1*t165)
             dfriction_1_by_place_2 = (ddrag_by_place_2*t158 + ddynamic_limit_by_place_2*t162 +

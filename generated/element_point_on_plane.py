@@ -151,11 +151,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         increment_1 = -normal_1*t18 + t12*t19 - t15*t16
         increment_2 = -normal_2*t18 + t13*t15 - t16*t19
         increment_3 = -normal_1*normal_3*t19 - normal_2*normal_3*t15 + t14*t17
-        touches = (1.0 if gap_closed > 0.0 else 0.0)
-        depth = (gap_closed if gap_closed > 0.0 else 1e-300)
+        touches = 1.0 if gap_closed > 0.0 else 0.0
+        depth = gap_closed if gap_closed > 0.0 else 1e-300
         elastic = depth**exponent*stiffness
         factor = closing*damping + 1
-        push = (elastic*factor if factor > 0.0 else 0.0)
+        push = elastic*factor if factor > 0.0 else 0.0
         t20 = increment_2*kept_begun + kept_bent_2
         t21 = normal_1*normal_2
         t22 = increment_3*kept_begun + kept_bent_3
@@ -174,16 +174,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             1e-300))
         t25 = slip_speed/speed
         trial_size = sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
-        drag = ((push*(coefficient*tanh(4*t25) + (t25*(-coefficient +
+        drag = (push*(coefficient*tanh(4*t25) + (t25*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
-            0.0 else 0.0))
-        slips = (1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0))
+            0.0 else 0.0)
+        slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
         t26 = -static_limit + trial_size
         t27 = dynamic_limit/trial_size
-        friction_1 = (drag*slip_1 if speed > 0.0 else (t27*trial_1 if t26 > 0.0 else trial_1))
-        friction_2 = (drag*slip_2 if speed > 0.0 else (t27*trial_2 if t26 > 0.0 else trial_2))
-        friction_3 = (drag*slip_3 if speed > 0.0 else (t27*trial_3 if t26 > 0.0 else trial_3))
+        friction_1 = drag*slip_1 if speed > 0.0 else (t27*trial_1 if t26 > 0.0 else trial_1)
+        friction_2 = drag*slip_2 if speed > 0.0 else (t27*trial_2 if t26 > 0.0 else trial_2)
+        friction_3 = drag*slip_3 if speed > 0.0 else (t27*trial_3 if t26 > 0.0 else trial_3)
         t28 = normal_1*normal_2
         t29 = friction_3*normal_3
         t30 = friction_1*(1 - normal_1*normal_1) - friction_2*t28 - normal_1*push - normal_1*t29
@@ -199,12 +199,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t39 = Rb_xz*t36 + Rb_yz*t37 + Rb_zz*t38
         t40 = Rb_xy*t36 + Rb_yy*t37 + Rb_zy*t38
         t41 = Rb_xx*t36 + Rb_yx*t37 + Rb_zx*t38
-        t42 = (closing if closing > 0.0 else -closing)
-        t43 = (kept_rate if kept_rate > 0.0 else -kept_rate)
-        t44 = (t42 if t42 - t43 > 0.0 else t43)
-        t45 = (t44 if -kept_impact + t44 > 0.0 else kept_impact)
-        t46 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
-            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0)))
+        t42 = closing if closing > 0.0 else -closing
+        t43 = kept_rate if kept_rate > 0.0 else -kept_rate
+        t44 = t42 if t42 - t43 > 0.0 else t43
+        t45 = t44 if -kept_impact + t44 > 0.0 else kept_impact
+        t46 = (0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0))
         g[0] = t33
         g[1] = t34
         g[2] = t35
@@ -218,8 +218,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME] + 1] = place_2
         frames[index[first + AT_FRAME] + 2] = place_3
         frames[index[first + AT_FRAME] + 3] = closing
-        frames[index[first + AT_FRAME] + 4] = (((t45 if -slow + t45 > 0.0 else 0.0) if touches -
-            0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 4] = ((t45 if -slow + t45 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 5] = gap_closed
         frames[index[first + AT_FRAME] + 6] = t46*z_1
         frames[index[first + AT_FRAME] + 7] = t46*z_2
@@ -314,7 +314,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dincrement_3_by_place_1 = t49
             dincrement_3_by_place_2 = t51
             dincrement_3_by_place_3 = t52
-            t53 = (1 if gap_closed > 0.0 else 0)
+            t53 = 1 if gap_closed > 0.0 else 0
             ddepth_by_place_1 = dgap_closed_by_place_1*t53
             ddepth_by_place_2 = dgap_closed_by_place_2*t53
             ddepth_by_place_3 = dgap_closed_by_place_3*t53
@@ -325,8 +325,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dfactor_by_rate_1 = damping*dclosing_by_rate_1
             dfactor_by_rate_2 = damping*dclosing_by_rate_2
             dfactor_by_rate_3 = damping*dclosing_by_rate_3
-            t55 = (factor if factor > 0.0 else 0)
-            t56 = (elastic if factor > 0.0 else 0)
+            t55 = factor if factor > 0.0 else 0
+            t56 = elastic if factor > 0.0 else 0
             dpush_by_place_1 = delastic_by_place_1*t55
             dpush_by_place_2 = delastic_by_place_2*t55
             dpush_by_place_3 = delastic_by_place_3*t55
@@ -405,9 +405,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t78 = -coefficient + static
             t79 = t78/(t77*t77)
             t80 = coefficient*t75 + t74*t79
-            t81 = (t72*t80 if speed > 0.0 else 0)
-            t82 = ((push*t72*(4*coefficient*t73*(1 - t75*t75) + t73*t79 +
-                (-t76*t78)/(speed*speed*speed*t77*t77*t77)) - push*t80/t76 if speed > 0.0 else 0))
+            t81 = t72*t80 if speed > 0.0 else 0
+            t82 = (push*t72*(4*coefficient*t73*(1 - t75*t75) + t73*t79 +
+                (-t76*t78)/(speed*speed*speed*t77*t77*t77)) - push*t80/t76 if speed > 0.0 else 0)
             dtrial_size_by_place_1 = (dtrial_1_by_place_1*t69 + dtrial_2_by_place_1*t70 +
                 dtrial_3_by_place_1*t71)
             dtrial_size_by_place_2 = (dtrial_1_by_place_2*t69 + dtrial_2_by_place_2*t70 +
@@ -426,20 +426,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ddrag_by_rate_1 = dpush_by_rate_1*t81 + dslip_speed_by_rate_1*t82
             ddrag_by_rate_2 = dpush_by_rate_2*t81 + dslip_speed_by_rate_2*t82
             ddrag_by_rate_3 = dpush_by_rate_3*t81 + dslip_speed_by_rate_3*t82
-            t83 = (slip_1 if speed > 0.0 else 0)
+            t83 = slip_1 if speed > 0.0 else 0
             t84 = -static_limit + trial_size
             t85 = 1/trial_size
-            t86 = (0 if speed > 0.0 else (t85*trial_1 if t84 > 0.0 else 0))
-            t87 = (0 if speed > 0.0 else (dynamic_limit*t85 if t84 > 0.0 else 1))
+            t86 = 0 if speed > 0.0 else (t85*trial_1 if t84 > 0.0 else 0)
+            t87 = 0 if speed > 0.0 else (dynamic_limit*t85 if t84 > 0.0 else 1)
             t88 = dynamic_limit/(trial_size*trial_size)
-            t89 = (0 if speed > 0.0 else (-t88*trial_1 if t84 > 0.0 else 0))
-            t90 = (drag if speed > 0.0 else 0)
-            t91 = (slip_2 if speed > 0.0 else 0)
-            t92 = (0 if speed > 0.0 else (t85*trial_2 if t84 > 0.0 else 0))
-            t93 = (0 if speed > 0.0 else (-t88*trial_2 if t84 > 0.0 else 0))
-            t94 = (slip_3 if speed > 0.0 else 0)
-            t95 = (0 if speed > 0.0 else (t85*trial_3 if t84 > 0.0 else 0))
-            t96 = (0 if speed > 0.0 else (-t88*trial_3 if t84 > 0.0 else 0))
+            t89 = 0 if speed > 0.0 else (-t88*trial_1 if t84 > 0.0 else 0)
+            t90 = drag if speed > 0.0 else 0
+            t91 = slip_2 if speed > 0.0 else 0
+            t92 = 0 if speed > 0.0 else (t85*trial_2 if t84 > 0.0 else 0)
+            t93 = 0 if speed > 0.0 else (-t88*trial_2 if t84 > 0.0 else 0)
+            t94 = slip_3 if speed > 0.0 else 0
+            t95 = 0 if speed > 0.0 else (t85*trial_3 if t84 > 0.0 else 0)
+            t96 = 0 if speed > 0.0 else (-t88*trial_3 if t84 > 0.0 else 0)
             dfriction_1_by_place_1 = (ddrag_by_place_1*t83 + ddynamic_limit_by_place_1*t86 +
                 dtrial_1_by_place_1*t87 + dtrial_size_by_place_1*t89)
             dfriction_1_by_place_2 = (ddrag_by_place_2*t83 + ddynamic_limit_by_place_2*t86 +

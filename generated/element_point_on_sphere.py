@@ -151,11 +151,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         increment_1 = -normal_1*t20 + t14*t21 - t17*t18
         increment_2 = -normal_2*t20 + t15*t17 - t18*t21
         increment_3 = -normal_1*normal_3*t21 - normal_2*normal_3*t17 + t16*t19
-        touches = (1.0 if gap_closed > 0.0 else 0.0)
-        depth = (gap_closed if gap_closed > 0.0 else 1e-300)
+        touches = 1.0 if gap_closed > 0.0 else 0.0
+        depth = gap_closed if gap_closed > 0.0 else 1e-300
         elastic = depth**exponent*stiffness
         factor = closing*damping + 1
-        push = (elastic*factor if factor > 0.0 else 0.0)
+        push = elastic*factor if factor > 0.0 else 0.0
         t22 = increment_2*kept_begun + kept_bent_2
         t23 = normal_1*normal_2
         t24 = increment_3*kept_begun + kept_bent_3
@@ -174,16 +174,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             1e-300))
         t27 = slip_speed/speed
         trial_size = sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
-        drag = ((push*(coefficient*tanh(4*t27) + (t27*(-coefficient +
+        drag = (push*(coefficient*tanh(4*t27) + (t27*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
-            0.0 else 0.0))
-        slips = (1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0))
+            0.0 else 0.0)
+        slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
         t28 = -static_limit + trial_size
         t29 = dynamic_limit/trial_size
-        friction_1 = (drag*slip_1 if speed > 0.0 else (t29*trial_1 if t28 > 0.0 else trial_1))
-        friction_2 = (drag*slip_2 if speed > 0.0 else (t29*trial_2 if t28 > 0.0 else trial_2))
-        friction_3 = (drag*slip_3 if speed > 0.0 else (t29*trial_3 if t28 > 0.0 else trial_3))
+        friction_1 = drag*slip_1 if speed > 0.0 else (t29*trial_1 if t28 > 0.0 else trial_1)
+        friction_2 = drag*slip_2 if speed > 0.0 else (t29*trial_2 if t28 > 0.0 else trial_2)
+        friction_3 = drag*slip_3 if speed > 0.0 else (t29*trial_3 if t28 > 0.0 else trial_3)
         t30 = normal_1*normal_2
         t31 = friction_3*normal_3
         t32 = friction_1*(1 - normal_1*normal_1) - friction_2*t30 - normal_1*push - normal_1*t31
@@ -199,12 +199,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t41 = Rb_xz*t38 + Rb_yz*t39 + Rb_zz*t40
         t42 = Rb_xy*t38 + Rb_yy*t39 + Rb_zy*t40
         t43 = Rb_xx*t38 + Rb_yx*t39 + Rb_zx*t40
-        t44 = (closing if closing > 0.0 else -closing)
-        t45 = (kept_rate if kept_rate > 0.0 else -kept_rate)
-        t46 = (t44 if t44 - t45 > 0.0 else t45)
-        t47 = (t46 if -kept_impact + t46 > 0.0 else kept_impact)
-        t48 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
-            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0)))
+        t44 = closing if closing > 0.0 else -closing
+        t45 = kept_rate if kept_rate > 0.0 else -kept_rate
+        t46 = t44 if t44 - t45 > 0.0 else t45
+        t47 = t46 if -kept_impact + t46 > 0.0 else kept_impact
+        t48 = (0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0))
         g[0] = t35
         g[1] = t36
         g[2] = t37
@@ -218,8 +218,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME] + 1] = place_2
         frames[index[first + AT_FRAME] + 2] = place_3
         frames[index[first + AT_FRAME] + 3] = closing
-        frames[index[first + AT_FRAME] + 4] = (((t47 if -slow + t47 > 0.0 else 0.0) if touches -
-            0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 4] = ((t47 if -slow + t47 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 5] = gap_closed
         frames[index[first + AT_FRAME] + 6] = t48*z_1
         frames[index[first + AT_FRAME] + 7] = t48*z_2
@@ -389,7 +389,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dnormal_3_by_place_2*t99 - t81)
             dincrement_3_by_place_3 = (-dnormal_1_by_place_3*t97 - dnormal_2_by_place_3*t98 +
                 dnormal_3_by_place_3*t99 - t84)
-            t100 = (1 if gap_closed > 0.0 else 0)
+            t100 = 1 if gap_closed > 0.0 else 0
             ddepth_by_place_1 = dgap_closed_by_place_1*t100
             ddepth_by_place_2 = dgap_closed_by_place_2*t100
             ddepth_by_place_3 = dgap_closed_by_place_3*t100
@@ -403,8 +403,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dfactor_by_rate_1 = damping*dclosing_by_rate_1
             dfactor_by_rate_2 = damping*dclosing_by_rate_2
             dfactor_by_rate_3 = damping*dclosing_by_rate_3
-            t102 = (factor if factor > 0.0 else 0)
-            t103 = (elastic if factor > 0.0 else 0)
+            t102 = factor if factor > 0.0 else 0
+            t103 = elastic if factor > 0.0 else 0
             dpush_by_place_1 = delastic_by_place_1*t102 + dfactor_by_place_1*t103
             dpush_by_place_2 = delastic_by_place_2*t102 + dfactor_by_place_2*t103
             dpush_by_place_3 = delastic_by_place_3*t102 + dfactor_by_place_3*t103
@@ -514,10 +514,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t140 = -coefficient + static
             t141 = t140/(t139*t139)
             t142 = coefficient*t137 + t136*t141
-            t143 = (t134*t142 if speed > 0.0 else 0)
-            t144 = ((push*t134*(4*coefficient*t135*(1 - t137*t137) + t135*t141 +
+            t143 = t134*t142 if speed > 0.0 else 0
+            t144 = (push*t134*(4*coefficient*t135*(1 - t137*t137) + t135*t141 +
                 (-t138*t140)/(speed*speed*speed*t139*t139*t139)) - push*t142/t138 if speed > 0.0
-                else 0))
+                else 0)
             dtrial_size_by_place_1 = (dtrial_1_by_place_1*t131 + dtrial_2_by_place_1*t132 +
                 dtrial_3_by_place_1*t133)
             dtrial_size_by_place_2 = (dtrial_1_by_place_2*t131 + dtrial_2_by_place_2*t132 +
@@ -536,20 +536,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ddrag_by_rate_1 = dpush_by_rate_1*t143 + dslip_speed_by_rate_1*t144
             ddrag_by_rate_2 = dpush_by_rate_2*t143 + dslip_speed_by_rate_2*t144
             ddrag_by_rate_3 = dpush_by_rate_3*t143 + dslip_speed_by_rate_3*t144
-            t145 = (slip_1 if speed > 0.0 else 0)
-            t146 = (drag if speed > 0.0 else 0)
+            t145 = slip_1 if speed > 0.0 else 0
+            t146 = drag if speed > 0.0 else 0
             t147 = -static_limit + trial_size
             t148 = 1/trial_size
-            t149 = (0 if speed > 0.0 else (t148*trial_1 if t147 > 0.0 else 0))
-            t150 = (0 if speed > 0.0 else (dynamic_limit*t148 if t147 > 0.0 else 1))
+            t149 = 0 if speed > 0.0 else (t148*trial_1 if t147 > 0.0 else 0)
+            t150 = 0 if speed > 0.0 else (dynamic_limit*t148 if t147 > 0.0 else 1)
             t151 = dynamic_limit/(trial_size*trial_size)
-            t152 = (0 if speed > 0.0 else (-t151*trial_1 if t147 > 0.0 else 0))
-            t153 = (slip_2 if speed > 0.0 else 0)
-            t154 = (0 if speed > 0.0 else (t148*trial_2 if t147 > 0.0 else 0))
-            t155 = (0 if speed > 0.0 else (-t151*trial_2 if t147 > 0.0 else 0))
-            t156 = (slip_3 if speed > 0.0 else 0)
-            t157 = (0 if speed > 0.0 else (t148*trial_3 if t147 > 0.0 else 0))
-            t158 = (0 if speed > 0.0 else (-t151*trial_3 if t147 > 0.0 else 0))
+            t152 = 0 if speed > 0.0 else (-t151*trial_1 if t147 > 0.0 else 0)
+            t153 = slip_2 if speed > 0.0 else 0
+            t154 = 0 if speed > 0.0 else (t148*trial_2 if t147 > 0.0 else 0)
+            t155 = 0 if speed > 0.0 else (-t151*trial_2 if t147 > 0.0 else 0)
+            t156 = slip_3 if speed > 0.0 else 0
+            t157 = 0 if speed > 0.0 else (t148*trial_3 if t147 > 0.0 else 0)
+            t158 = 0 if speed > 0.0 else (-t151*trial_3 if t147 > 0.0 else 0)
             dfriction_1_by_place_1 = (ddrag_by_place_1*t145 + ddynamic_limit_by_place_1*t149 +
                 dslip_1_by_place_1*t146 + dtrial_1_by_place_1*t150 + dtrial_size_by_place_1*t152)
             dfriction_1_by_place_2 = (ddrag_by_place_2*t145 + ddynamic_limit_by_place_2*t149 +

@@ -110,14 +110,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         value = way
         t6 = -lower - upper + 2*value
         t7 = -value
-        side = (1.0 if t6 > 0.0 else -1.0)
-        beyond = (-t7 - upper if t6 > 0.0 else lower + t7)
+        side = 1.0 if t6 > 0.0 else -1.0
+        beyond = -t7 - upper if t6 > 0.0 else lower + t7
         speed_beyond = side*way_rate
-        touches = (1.0 if beyond > 0.0 else 0.0)
-        depth = (beyond if beyond > 0.0 else 1e-300)
+        touches = 1.0 if beyond > 0.0 else 0.0
+        depth = beyond if beyond > 0.0 else 1e-300
         elastic = depth**exponent*stiffness
         factor = damping*speed_beyond + 1
-        push = (elastic*factor if factor > 0.0 else 0.0)
+        push = elastic*factor if factor > 0.0 else 0.0
         t8 = Ra_xx*e_x + Ra_xy*e_y + Ra_xz*e_z
         t9 = push*side
         t10 = Ra_yx*e_x + Ra_yy*e_y + Ra_yz*e_z
@@ -125,10 +125,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t12 = -xa_x + xb_x
         t13 = -xa_y + xb_y
         t14 = -xa_z + xb_z
-        t15 = (kept_rate if kept_rate > 0.0 else -kept_rate)
-        t16 = (speed_beyond if speed_beyond > 0.0 else -speed_beyond)
-        t17 = (t16 if -t15 + t16 > 0.0 else t15)
-        t18 = (t17 if -kept_impact + t17 > 0.0 else kept_impact)
+        t15 = kept_rate if kept_rate > 0.0 else -kept_rate
+        t16 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
+        t17 = t16 if -t15 + t16 > 0.0 else t15
+        t18 = t17 if -kept_impact + t17 > 0.0 else kept_impact
         g[0] = -t8*t9
         g[1] = -t10*t9
         g[2] = -t11*t9
@@ -143,8 +143,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             + Ra_zy*e_x)))
         frames[index[first + AT_FRAME]] = way
         frames[index[first + AT_FRAME] + 1] = speed_beyond
-        frames[index[first + AT_FRAME] + 2] = (((t18 if -slow + t18 > 0.0 else 0.0) if touches -
-            0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 2] = ((t18 if -slow + t18 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 3] = beyond
         frames[index[first + AT_FRAME] + 4] = push
         if task == ENERGY:

@@ -194,11 +194,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         increment_1 = -t25*t34 + t28*t36 - t31*t35
         increment_2 = -t25*t36 + t30*t34 - t32*t35
         increment_3 = -t31*t36 - t32*t34 + t33*t35
-        touches = (1.0 if gap_closed > 0.0 else 0.0)
-        depth = (gap_closed if gap_closed > 0.0 else 1e-300)
+        touches = 1.0 if gap_closed > 0.0 else 0.0
+        depth = gap_closed if gap_closed > 0.0 else 1e-300
         elastic = depth**exponent*stiffness
         factor = closing*damping + 1
-        push = (elastic*factor if factor > 0.0 else 0.0)
+        push = elastic*factor if factor > 0.0 else 0.0
         t37 = increment_2*kept_begun + kept_bent_2
         t38 = normal_1*normal_2
         t39 = increment_3*kept_begun + kept_bent_3
@@ -217,16 +217,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             1e-300))
         t42 = slip_speed/speed
         trial_size = sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
-        drag = ((push*(coefficient*tanh(4*t42) + (t42*(-coefficient +
+        drag = (push*(coefficient*tanh(4*t42) + (t42*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
-            0.0 else 0.0))
-        slips = (1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0))
+            0.0 else 0.0)
+        slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
         t43 = -static_limit + trial_size
         t44 = dynamic_limit/trial_size
-        friction_1 = (drag*slip_1 if speed > 0.0 else (t44*trial_1 if t43 > 0.0 else trial_1))
-        friction_2 = (drag*slip_2 if speed > 0.0 else (t44*trial_2 if t43 > 0.0 else trial_2))
-        friction_3 = (drag*slip_3 if speed > 0.0 else (t44*trial_3 if t43 > 0.0 else trial_3))
+        friction_1 = drag*slip_1 if speed > 0.0 else (t44*trial_1 if t43 > 0.0 else trial_1)
+        friction_2 = drag*slip_2 if speed > 0.0 else (t44*trial_2 if t43 > 0.0 else trial_2)
+        friction_3 = drag*slip_3 if speed > 0.0 else (t44*trial_3 if t43 > 0.0 else trial_3)
         t45 = normal_1*normal_2
         t46 = friction_3*normal_3
         t47 = friction_1*(1 - normal_1*normal_1) - friction_2*t45 - normal_1*push - normal_1*t46
@@ -254,12 +254,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t68 = Rb_xz*t65 + Rb_yz*t66 + Rb_zz*t67 - normal_3*radius
         t69 = Rb_xy*t65 + Rb_yy*t66 + Rb_zy*t67 - normal_2*radius
         t70 = Rb_xx*t65 + Rb_yx*t66 + Rb_zx*t67 - normal_1*radius
-        t71 = (closing if closing > 0.0 else -closing)
-        t72 = (kept_rate if kept_rate > 0.0 else -kept_rate)
-        t73 = (t71 if t71 - t72 > 0.0 else t72)
-        t74 = (t73 if -kept_impact + t73 > 0.0 else kept_impact)
-        t75 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
-            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0)))
+        t71 = closing if closing > 0.0 else -closing
+        t72 = kept_rate if kept_rate > 0.0 else -kept_rate
+        t73 = t71 if t71 - t72 > 0.0 else t72
+        t74 = t73 if -kept_impact + t73 > 0.0 else kept_impact
+        t75 = (0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0))
         g[0] = t50
         g[1] = t51
         g[2] = t52
@@ -279,8 +279,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME] + 1] = place_2
         frames[index[first + AT_FRAME] + 2] = place_3
         frames[index[first + AT_FRAME] + 3] = closing
-        frames[index[first + AT_FRAME] + 4] = (((t74 if -slow + t74 > 0.0 else 0.0) if touches -
-            0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 4] = ((t74 if -slow + t74 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 5] = gap_closed
         frames[index[first + AT_FRAME] + 6] = t75*z_1
         frames[index[first + AT_FRAME] + 7] = t75*z_2
@@ -543,7 +543,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dnormal_3_by_place_3*t166 - t137 + 1)
             dincrement_3_by_turned_1 = t144
             dincrement_3_by_turned_2 = t145
-            t167 = (1 if gap_closed > 0.0 else 0)
+            t167 = 1 if gap_closed > 0.0 else 0
             ddepth_by_place_1 = dgap_closed_by_place_1*t167
             ddepth_by_place_2 = dgap_closed_by_place_2*t167
             ddepth_by_place_3 = dgap_closed_by_place_3*t167
@@ -557,8 +557,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dfactor_by_rate_1 = damping*dclosing_by_rate_1
             dfactor_by_rate_2 = damping*dclosing_by_rate_2
             dfactor_by_rate_3 = damping*dclosing_by_rate_3
-            t169 = (factor if factor > 0.0 else 0)
-            t170 = (elastic if factor > 0.0 else 0)
+            t169 = factor if factor > 0.0 else 0
+            t170 = elastic if factor > 0.0 else 0
             dpush_by_place_1 = delastic_by_place_1*t169 + dfactor_by_place_1*t170
             dpush_by_place_2 = delastic_by_place_2*t169 + dfactor_by_place_2*t170
             dpush_by_place_3 = delastic_by_place_3*t169 + dfactor_by_place_3*t170
@@ -700,10 +700,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t208 = -coefficient + static
             t209 = t208/(t207*t207)
             t210 = coefficient*t205 + t204*t209
-            t211 = (t202*t210 if speed > 0.0 else 0)
-            t212 = ((push*t202*(4*coefficient*t203*(1 - t205*t205) + t203*t209 +
+            t211 = t202*t210 if speed > 0.0 else 0
+            t212 = (push*t202*(4*coefficient*t203*(1 - t205*t205) + t203*t209 +
                 (-t206*t208)/(speed*speed*speed*t207*t207*t207)) - push*t210/t206 if speed > 0.0
-                else 0))
+                else 0)
             dtrial_size_by_place_1 = (dtrial_1_by_place_1*t199 + dtrial_2_by_place_1*t200 +
                 dtrial_3_by_place_1*t201)
             dtrial_size_by_place_2 = (dtrial_1_by_place_2*t199 + dtrial_2_by_place_2*t200 +
@@ -734,20 +734,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ddrag_by_spin_1 = dslip_speed_by_spin_1*t212
             ddrag_by_spin_2 = dslip_speed_by_spin_2*t212
             ddrag_by_spin_3 = dslip_speed_by_spin_3*t212
-            t213 = (slip_1 if speed > 0.0 else 0)
-            t214 = (drag if speed > 0.0 else 0)
+            t213 = slip_1 if speed > 0.0 else 0
+            t214 = drag if speed > 0.0 else 0
             t215 = -static_limit + trial_size
             t216 = 1/trial_size
-            t217 = (0 if speed > 0.0 else (t216*trial_1 if t215 > 0.0 else 0))
-            t218 = (0 if speed > 0.0 else (dynamic_limit*t216 if t215 > 0.0 else 1))
+            t217 = 0 if speed > 0.0 else (t216*trial_1 if t215 > 0.0 else 0)
+            t218 = 0 if speed > 0.0 else (dynamic_limit*t216 if t215 > 0.0 else 1)
             t219 = dynamic_limit/(trial_size*trial_size)
-            t220 = (0 if speed > 0.0 else (-t219*trial_1 if t215 > 0.0 else 0))
-            t221 = (slip_2 if speed > 0.0 else 0)
-            t222 = (0 if speed > 0.0 else (t216*trial_2 if t215 > 0.0 else 0))
-            t223 = (0 if speed > 0.0 else (-t219*trial_2 if t215 > 0.0 else 0))
-            t224 = (slip_3 if speed > 0.0 else 0)
-            t225 = (0 if speed > 0.0 else (t216*trial_3 if t215 > 0.0 else 0))
-            t226 = (0 if speed > 0.0 else (-t219*trial_3 if t215 > 0.0 else 0))
+            t220 = 0 if speed > 0.0 else (-t219*trial_1 if t215 > 0.0 else 0)
+            t221 = slip_2 if speed > 0.0 else 0
+            t222 = 0 if speed > 0.0 else (t216*trial_2 if t215 > 0.0 else 0)
+            t223 = 0 if speed > 0.0 else (-t219*trial_2 if t215 > 0.0 else 0)
+            t224 = slip_3 if speed > 0.0 else 0
+            t225 = 0 if speed > 0.0 else (t216*trial_3 if t215 > 0.0 else 0)
+            t226 = 0 if speed > 0.0 else (-t219*trial_3 if t215 > 0.0 else 0)
             dfriction_1_by_place_1 = (ddrag_by_place_1*t213 + ddynamic_limit_by_place_1*t217 +
                 dslip_1_by_place_1*t214 + dtrial_1_by_place_1*t218 + dtrial_size_by_place_1*t220)
             dfriction_1_by_place_2 = (ddrag_by_place_2*t213 + ddynamic_limit_by_place_2*t217 +

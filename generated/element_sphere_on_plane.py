@@ -186,11 +186,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         increment_1 = -t19*t28 + t22*t30 - t25*t29
         increment_2 = -t19*t30 + t24*t28 - t26*t29
         increment_3 = -t25*t30 - t26*t28 + t27*t29
-        touches = (1.0 if gap_closed > 0.0 else 0.0)
-        depth = (gap_closed if gap_closed > 0.0 else 1e-300)
+        touches = 1.0 if gap_closed > 0.0 else 0.0
+        depth = gap_closed if gap_closed > 0.0 else 1e-300
         elastic = depth**exponent*stiffness
         factor = closing*damping + 1
-        push = (elastic*factor if factor > 0.0 else 0.0)
+        push = elastic*factor if factor > 0.0 else 0.0
         t31 = increment_2*kept_begun + kept_bent_2
         t32 = normal_1*normal_2
         t33 = increment_3*kept_begun + kept_bent_3
@@ -209,16 +209,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             1e-300))
         t36 = slip_speed/speed
         trial_size = sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
-        drag = ((push*(coefficient*tanh(4*t36) + (t36*(-coefficient +
+        drag = (push*(coefficient*tanh(4*t36) + (t36*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
-            0.0 else 0.0))
-        slips = (1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0))
+            0.0 else 0.0)
+        slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
         t37 = -static_limit + trial_size
         t38 = dynamic_limit/trial_size
-        friction_1 = (drag*slip_1 if speed > 0.0 else (t38*trial_1 if t37 > 0.0 else trial_1))
-        friction_2 = (drag*slip_2 if speed > 0.0 else (t38*trial_2 if t37 > 0.0 else trial_2))
-        friction_3 = (drag*slip_3 if speed > 0.0 else (t38*trial_3 if t37 > 0.0 else trial_3))
+        friction_1 = drag*slip_1 if speed > 0.0 else (t38*trial_1 if t37 > 0.0 else trial_1)
+        friction_2 = drag*slip_2 if speed > 0.0 else (t38*trial_2 if t37 > 0.0 else trial_2)
+        friction_3 = drag*slip_3 if speed > 0.0 else (t38*trial_3 if t37 > 0.0 else trial_3)
         t39 = normal_1*normal_2
         t40 = friction_3*normal_3
         t41 = friction_1*(1 - normal_1*normal_1) - friction_2*t39 - normal_1*push - normal_1*t40
@@ -246,12 +246,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t62 = Rb_xz*t59 + Rb_yz*t60 + Rb_zz*t61 - normal_3*radius
         t63 = Rb_xy*t59 + Rb_yy*t60 + Rb_zy*t61 - normal_2*radius
         t64 = Rb_xx*t59 + Rb_yx*t60 + Rb_zx*t61 - normal_1*radius
-        t65 = (closing if closing > 0.0 else -closing)
-        t66 = (kept_rate if kept_rate > 0.0 else -kept_rate)
-        t67 = (t65 if t65 - t66 > 0.0 else t66)
-        t68 = (t67 if -kept_impact + t67 > 0.0 else kept_impact)
-        t69 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
-            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0)))
+        t65 = closing if closing > 0.0 else -closing
+        t66 = kept_rate if kept_rate > 0.0 else -kept_rate
+        t67 = t65 if t65 - t66 > 0.0 else t66
+        t68 = t67 if -kept_impact + t67 > 0.0 else kept_impact
+        t69 = (0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0))
         g[0] = t44
         g[1] = t45
         g[2] = t46
@@ -271,8 +271,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME] + 1] = place_2
         frames[index[first + AT_FRAME] + 2] = place_3
         frames[index[first + AT_FRAME] + 3] = closing
-        frames[index[first + AT_FRAME] + 4] = (((t68 if -slow + t68 > 0.0 else 0.0) if touches -
-            0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 4] = ((t68 if -slow + t68 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 5] = gap_closed
         frames[index[first + AT_FRAME] + 6] = t69*z_1
         frames[index[first + AT_FRAME] + 7] = t69*z_2
@@ -420,7 +420,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dincrement_3_by_place_3 = t85
             dincrement_3_by_turned_1 = t86
             dincrement_3_by_turned_2 = t87
-            t88 = (1 if gap_closed > 0.0 else 0)
+            t88 = 1 if gap_closed > 0.0 else 0
             ddepth_by_place_1 = dgap_closed_by_place_1*t88
             ddepth_by_place_2 = dgap_closed_by_place_2*t88
             ddepth_by_place_3 = dgap_closed_by_place_3*t88
@@ -431,8 +431,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dfactor_by_rate_1 = damping*dclosing_by_rate_1
             dfactor_by_rate_2 = damping*dclosing_by_rate_2
             dfactor_by_rate_3 = damping*dclosing_by_rate_3
-            t90 = (factor if factor > 0.0 else 0)
-            t91 = (elastic if factor > 0.0 else 0)
+            t90 = factor if factor > 0.0 else 0
+            t91 = elastic if factor > 0.0 else 0
             dpush_by_place_1 = delastic_by_place_1*t90
             dpush_by_place_2 = delastic_by_place_2*t90
             dpush_by_place_3 = delastic_by_place_3*t90
@@ -544,10 +544,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t114 = -coefficient + static
             t115 = t114/(t113*t113)
             t116 = coefficient*t111 + t110*t115
-            t117 = (t108*t116 if speed > 0.0 else 0)
-            t118 = ((push*t108*(4*coefficient*t109*(1 - t111*t111) + t109*t115 +
+            t117 = t108*t116 if speed > 0.0 else 0
+            t118 = (push*t108*(4*coefficient*t109*(1 - t111*t111) + t109*t115 +
                 (-t112*t114)/(speed*speed*speed*t113*t113*t113)) - push*t116/t112 if speed > 0.0
-                else 0))
+                else 0)
             dtrial_size_by_place_1 = (dtrial_1_by_place_1*t105 + dtrial_2_by_place_1*t106 +
                 dtrial_3_by_place_1*t107)
             dtrial_size_by_place_2 = (dtrial_1_by_place_2*t105 + dtrial_2_by_place_2*t106 +
@@ -578,20 +578,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ddrag_by_spin_1 = dslip_speed_by_spin_1*t118
             ddrag_by_spin_2 = dslip_speed_by_spin_2*t118
             ddrag_by_spin_3 = dslip_speed_by_spin_3*t118
-            t119 = (slip_1 if speed > 0.0 else 0)
+            t119 = slip_1 if speed > 0.0 else 0
             t120 = -static_limit + trial_size
             t121 = 1/trial_size
-            t122 = (0 if speed > 0.0 else (t121*trial_1 if t120 > 0.0 else 0))
-            t123 = (0 if speed > 0.0 else (dynamic_limit*t121 if t120 > 0.0 else 1))
+            t122 = 0 if speed > 0.0 else (t121*trial_1 if t120 > 0.0 else 0)
+            t123 = 0 if speed > 0.0 else (dynamic_limit*t121 if t120 > 0.0 else 1)
             t124 = dynamic_limit/(trial_size*trial_size)
-            t125 = (0 if speed > 0.0 else (-t124*trial_1 if t120 > 0.0 else 0))
-            t126 = (drag if speed > 0.0 else 0)
-            t127 = (slip_2 if speed > 0.0 else 0)
-            t128 = (0 if speed > 0.0 else (t121*trial_2 if t120 > 0.0 else 0))
-            t129 = (0 if speed > 0.0 else (-t124*trial_2 if t120 > 0.0 else 0))
-            t130 = (slip_3 if speed > 0.0 else 0)
-            t131 = (0 if speed > 0.0 else (t121*trial_3 if t120 > 0.0 else 0))
-            t132 = (0 if speed > 0.0 else (-t124*trial_3 if t120 > 0.0 else 0))
+            t125 = 0 if speed > 0.0 else (-t124*trial_1 if t120 > 0.0 else 0)
+            t126 = drag if speed > 0.0 else 0
+            t127 = slip_2 if speed > 0.0 else 0
+            t128 = 0 if speed > 0.0 else (t121*trial_2 if t120 > 0.0 else 0)
+            t129 = 0 if speed > 0.0 else (-t124*trial_2 if t120 > 0.0 else 0)
+            t130 = slip_3 if speed > 0.0 else 0
+            t131 = 0 if speed > 0.0 else (t121*trial_3 if t120 > 0.0 else 0)
+            t132 = 0 if speed > 0.0 else (-t124*trial_3 if t120 > 0.0 else 0)
             dfriction_1_by_place_1 = (ddrag_by_place_1*t119 + ddynamic_limit_by_place_1*t122 +
                 dtrial_1_by_place_1*t123 + dtrial_size_by_place_1*t125)
             dfriction_1_by_place_2 = (ddrag_by_place_2*t119 + ddynamic_limit_by_place_2*t122 +

@@ -186,11 +186,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         increment_1 = -t21*t30 + t24*t32 - t27*t31
         increment_2 = -t21*t32 + t26*t30 - t28*t31
         increment_3 = -t27*t32 - t28*t30 + t29*t31
-        touches = (1.0 if gap_closed > 0.0 else 0.0)
-        depth = (gap_closed if gap_closed > 0.0 else 1e-300)
+        touches = 1.0 if gap_closed > 0.0 else 0.0
+        depth = gap_closed if gap_closed > 0.0 else 1e-300
         elastic = depth**exponent*stiffness
         factor = closing*damping + 1
-        push = (elastic*factor if factor > 0.0 else 0.0)
+        push = elastic*factor if factor > 0.0 else 0.0
         t33 = increment_2*kept_begun + kept_bent_2
         t34 = normal_1*normal_2
         t35 = increment_3*kept_begun + kept_bent_3
@@ -209,16 +209,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             1e-300))
         t38 = slip_speed/speed
         trial_size = sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
-        drag = ((push*(coefficient*tanh(4*t38) + (t38*(-coefficient +
+        drag = (push*(coefficient*tanh(4*t38) + (t38*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
-            0.0 else 0.0))
-        slips = (1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0))
+            0.0 else 0.0)
+        slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
         t39 = -static_limit + trial_size
         t40 = dynamic_limit/trial_size
-        friction_1 = (drag*slip_1 if speed > 0.0 else (t40*trial_1 if t39 > 0.0 else trial_1))
-        friction_2 = (drag*slip_2 if speed > 0.0 else (t40*trial_2 if t39 > 0.0 else trial_2))
-        friction_3 = (drag*slip_3 if speed > 0.0 else (t40*trial_3 if t39 > 0.0 else trial_3))
+        friction_1 = drag*slip_1 if speed > 0.0 else (t40*trial_1 if t39 > 0.0 else trial_1)
+        friction_2 = drag*slip_2 if speed > 0.0 else (t40*trial_2 if t39 > 0.0 else trial_2)
+        friction_3 = drag*slip_3 if speed > 0.0 else (t40*trial_3 if t39 > 0.0 else trial_3)
         t41 = normal_1*normal_2
         t42 = friction_3*normal_3
         t43 = friction_1*(1 - normal_1*normal_1) - friction_2*t41 - normal_1*push - normal_1*t42
@@ -246,12 +246,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t64 = Rb_xz*t61 + Rb_yz*t62 + Rb_zz*t63 - normal_3*radius
         t65 = Rb_xy*t61 + Rb_yy*t62 + Rb_zy*t63 - normal_2*radius
         t66 = Rb_xx*t61 + Rb_yx*t62 + Rb_zx*t63 - normal_1*radius
-        t67 = (closing if closing > 0.0 else -closing)
-        t68 = (kept_rate if kept_rate > 0.0 else -kept_rate)
-        t69 = (t67 if t67 - t68 > 0.0 else t68)
-        t70 = (t69 if -kept_impact + t69 > 0.0 else kept_impact)
-        t71 = ((0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
-            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0)))
+        t67 = closing if closing > 0.0 else -closing
+        t68 = kept_rate if kept_rate > 0.0 else -kept_rate
+        t69 = t67 if t67 - t68 > 0.0 else t68
+        t70 = t69 if -kept_impact + t69 > 0.0 else kept_impact
+        t71 = (0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+            dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0))
         g[0] = t46
         g[1] = t47
         g[2] = t48
@@ -271,8 +271,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME] + 1] = place_2
         frames[index[first + AT_FRAME] + 2] = place_3
         frames[index[first + AT_FRAME] + 3] = closing
-        frames[index[first + AT_FRAME] + 4] = (((t70 if -slow + t70 > 0.0 else 0.0) if touches -
-            0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 4] = ((t70 if -slow + t70 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 5] = gap_closed
         frames[index[first + AT_FRAME] + 6] = t71*z_1
         frames[index[first + AT_FRAME] + 7] = t71*z_2
@@ -526,7 +526,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dnormal_3_by_place_3*t153 - t124 + 1)
             dincrement_3_by_turned_1 = t131
             dincrement_3_by_turned_2 = t132
-            t154 = (1 if gap_closed > 0.0 else 0)
+            t154 = 1 if gap_closed > 0.0 else 0
             ddepth_by_place_1 = dgap_closed_by_place_1*t154
             ddepth_by_place_2 = dgap_closed_by_place_2*t154
             ddepth_by_place_3 = dgap_closed_by_place_3*t154
@@ -540,8 +540,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dfactor_by_rate_1 = damping*dclosing_by_rate_1
             dfactor_by_rate_2 = damping*dclosing_by_rate_2
             dfactor_by_rate_3 = damping*dclosing_by_rate_3
-            t156 = (factor if factor > 0.0 else 0)
-            t157 = (elastic if factor > 0.0 else 0)
+            t156 = factor if factor > 0.0 else 0
+            t157 = elastic if factor > 0.0 else 0
             dpush_by_place_1 = delastic_by_place_1*t156 + dfactor_by_place_1*t157
             dpush_by_place_2 = delastic_by_place_2*t156 + dfactor_by_place_2*t157
             dpush_by_place_3 = delastic_by_place_3*t156 + dfactor_by_place_3*t157
@@ -683,10 +683,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t195 = -coefficient + static
             t196 = t195/(t194*t194)
             t197 = coefficient*t192 + t191*t196
-            t198 = (t189*t197 if speed > 0.0 else 0)
-            t199 = ((push*t189*(4*coefficient*t190*(1 - t192*t192) + t190*t196 +
+            t198 = t189*t197 if speed > 0.0 else 0
+            t199 = (push*t189*(4*coefficient*t190*(1 - t192*t192) + t190*t196 +
                 (-t193*t195)/(speed*speed*speed*t194*t194*t194)) - push*t197/t193 if speed > 0.0
-                else 0))
+                else 0)
             dtrial_size_by_place_1 = (dtrial_1_by_place_1*t186 + dtrial_2_by_place_1*t187 +
                 dtrial_3_by_place_1*t188)
             dtrial_size_by_place_2 = (dtrial_1_by_place_2*t186 + dtrial_2_by_place_2*t187 +
@@ -717,20 +717,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ddrag_by_spin_1 = dslip_speed_by_spin_1*t199
             ddrag_by_spin_2 = dslip_speed_by_spin_2*t199
             ddrag_by_spin_3 = dslip_speed_by_spin_3*t199
-            t200 = (slip_1 if speed > 0.0 else 0)
-            t201 = (drag if speed > 0.0 else 0)
+            t200 = slip_1 if speed > 0.0 else 0
+            t201 = drag if speed > 0.0 else 0
             t202 = -static_limit + trial_size
             t203 = 1/trial_size
-            t204 = (0 if speed > 0.0 else (t203*trial_1 if t202 > 0.0 else 0))
-            t205 = (0 if speed > 0.0 else (dynamic_limit*t203 if t202 > 0.0 else 1))
+            t204 = 0 if speed > 0.0 else (t203*trial_1 if t202 > 0.0 else 0)
+            t205 = 0 if speed > 0.0 else (dynamic_limit*t203 if t202 > 0.0 else 1)
             t206 = dynamic_limit/(trial_size*trial_size)
-            t207 = (0 if speed > 0.0 else (-t206*trial_1 if t202 > 0.0 else 0))
-            t208 = (slip_2 if speed > 0.0 else 0)
-            t209 = (0 if speed > 0.0 else (t203*trial_2 if t202 > 0.0 else 0))
-            t210 = (0 if speed > 0.0 else (-t206*trial_2 if t202 > 0.0 else 0))
-            t211 = (slip_3 if speed > 0.0 else 0)
-            t212 = (0 if speed > 0.0 else (t203*trial_3 if t202 > 0.0 else 0))
-            t213 = (0 if speed > 0.0 else (-t206*trial_3 if t202 > 0.0 else 0))
+            t207 = 0 if speed > 0.0 else (-t206*trial_1 if t202 > 0.0 else 0)
+            t208 = slip_2 if speed > 0.0 else 0
+            t209 = 0 if speed > 0.0 else (t203*trial_2 if t202 > 0.0 else 0)
+            t210 = 0 if speed > 0.0 else (-t206*trial_2 if t202 > 0.0 else 0)
+            t211 = slip_3 if speed > 0.0 else 0
+            t212 = 0 if speed > 0.0 else (t203*trial_3 if t202 > 0.0 else 0)
+            t213 = 0 if speed > 0.0 else (-t206*trial_3 if t202 > 0.0 else 0)
             dfriction_1_by_place_1 = (ddrag_by_place_1*t200 + ddynamic_limit_by_place_1*t204 +
                 dslip_1_by_place_1*t201 + dtrial_1_by_place_1*t205 + dtrial_size_by_place_1*t207)
             dfriction_1_by_place_2 = (ddrag_by_place_2*t200 + ddynamic_limit_by_place_2*t204 +

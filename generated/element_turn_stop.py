@@ -133,16 +133,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             0.15915494309189535*t18 + 0.5))
         t19 = -lower - upper + 2*value
         t20 = -value
-        side = (1.0 if t19 > 0.0 else -1.0)
-        beyond = (-t20 - upper if t19 > 0.0 else lower + t20)
+        side = 1.0 if t19 > 0.0 else -1.0
+        beyond = -t20 - upper if t19 > 0.0 else lower + t20
         t21 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
         t22 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
         speed_beyond = side*(angle_along_m*t21 - angle_along_n*t22)/(t21*t21 + t22*t22)
-        touches = (1.0 if beyond > 0.0 else 0.0)
-        depth = (beyond if beyond > 0.0 else 1e-300)
+        touches = 1.0 if beyond > 0.0 else 0.0
+        depth = beyond if beyond > 0.0 else 1e-300
         elastic = depth**exponent*stiffness
         factor = damping*speed_beyond + 1
-        push = (elastic*factor if factor > 0.0 else 0.0)
+        push = elastic*factor if factor > 0.0 else 0.0
         t23 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
         t24 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
         t25 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
@@ -165,10 +165,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t42 = d_x*t28 - d_y*t37
         t43 = d_x*t31 - d_y*t39
         t44 = atan2(t23, t33)
-        t45 = (kept_rate if kept_rate > 0.0 else -kept_rate)
-        t46 = (speed_beyond if speed_beyond > 0.0 else -speed_beyond)
-        t47 = (t46 if -t45 + t46 > 0.0 else t45)
-        t48 = (t47 if -kept_impact + t47 > 0.0 else kept_impact)
+        t45 = kept_rate if kept_rate > 0.0 else -kept_rate
+        t46 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
+        t47 = t46 if -t45 + t46 > 0.0 else t45
+        t48 = t47 if -kept_impact + t47 > 0.0 else kept_impact
         g[0] = t34*(-t23*(n_x*t26 + n_y*t29 + n_z*t32) + t33*(m_x*t26 + m_y*t29 + m_z*t32))
         g[1] = t34*(-t23*(n_x*t36 + n_y*t38 + n_z*t40) + t33*(m_x*t36 + m_y*t38 + m_z*t40))
         g[2] = t34*(-t23*(n_x*t41 + n_y*t42 + n_z*t43) + t33*(m_x*t41 + m_y*t42 + m_z*t43))
@@ -182,8 +182,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             6.283185307179586*floor(0.15915494309189535*kept_angle - 0.15915494309189535*t44 +
             0.5))
         frames[index[first + AT_FRAME] + 1] = speed_beyond
-        frames[index[first + AT_FRAME] + 2] = (((t48 if -slow + t48 > 0.0 else 0.0) if touches -
-            0.5 > 0.0 else 0.0))
+        frames[index[first + AT_FRAME] + 2] = ((t48 if -slow + t48 > 0.0 else 0.0) if touches -
+            0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 3] = beyond
         frames[index[first + AT_FRAME] + 4] = push
         if task == ENERGY:
@@ -255,7 +255,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dvalue_by_angle_seen_1 = m_x*t52 + n_x*t53
             dvalue_by_angle_seen_2 = m_y*t52 + n_y*t53
             dvalue_by_angle_seen_3 = m_z*t52 + n_z*t53
-            t54 = (1 if -lower - upper + 2*value > 0.0 else -1)
+            t54 = 1 if -lower - upper + 2*value > 0.0 else -1
             dbeyond_by_angle_seen_1 = dvalue_by_angle_seen_1*t54
             dbeyond_by_angle_seen_2 = dvalue_by_angle_seen_2*t54
             dbeyond_by_angle_seen_3 = dvalue_by_angle_seen_3*t54
@@ -274,7 +274,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t61*(-m_z*t59 - n_z*t60))
             dspeed_beyond_by_angle_along_n = -t55*t58
             dspeed_beyond_by_angle_along_m = t56*t58
-            t62 = (1 if beyond > 0.0 else 0)
+            t62 = 1 if beyond > 0.0 else 0
             ddepth_by_angle_seen_1 = dbeyond_by_angle_seen_1*t62
             ddepth_by_angle_seen_2 = dbeyond_by_angle_seen_2*t62
             ddepth_by_angle_seen_3 = dbeyond_by_angle_seen_3*t62
@@ -287,8 +287,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dfactor_by_angle_seen_3 = damping*dspeed_beyond_by_angle_seen_3
             dfactor_by_angle_along_n = damping*dspeed_beyond_by_angle_along_n
             dfactor_by_angle_along_m = damping*dspeed_beyond_by_angle_along_m
-            t64 = (factor if factor > 0.0 else 0)
-            t65 = (elastic if factor > 0.0 else 0)
+            t64 = factor if factor > 0.0 else 0
+            t65 = elastic if factor > 0.0 else 0
             dpush_by_angle_seen_1 = delastic_by_angle_seen_1*t64 + dfactor_by_angle_seen_1*t65
             dpush_by_angle_seen_2 = delastic_by_angle_seen_2*t64 + dfactor_by_angle_seen_2*t65
             dpush_by_angle_seen_3 = delastic_by_angle_seen_3*t64 + dfactor_by_angle_seen_3*t65

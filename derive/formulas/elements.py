@@ -120,8 +120,9 @@ class Element(NamedTuple):
         """Every expression the kernel evaluates, the multipliers' columns apart."""
         staged = [value for stage in (*self.stages, *self.slopes, *self.moves)
                   for _, value in stage]
-        return [*staged, *(value for _, value in self.memory), *self.residual, *self.linear, *self.velocity, *self.second, *self.sums.values(),
-                *([] if self.power is None else [self.power]), *self.losses]
+        power = [] if self.power is None else [self.power]
+        return [*staged, *(value for _, value in self.memory), *self.residual, *self.linear,
+                *self.velocity, *self.second, *self.sums.values(), *power, *self.losses]
 
 
 def constant(space: Space, name: str, kind: str, meaning: str) -> Constant:

@@ -118,8 +118,8 @@ def _with_column(found: Element, stages: Sequence[Stage]) -> Element:
               for f in force]
     columns = sp.Matrix(len(force), len(reads), lambda i, k: differential(
         force[i], _through(of, {reads[k]: sp.S.One})))
-    return found._replace(slopes=slopes, moves=(tuple(moves),), linear=(*linear, *(sp.S.Zero,) * len(reads)),
-                          on_multipliers=columns)
+    return found._replace(slopes=slopes, moves=(tuple(moves),), on_multipliers=columns,
+                          linear=(*linear, *(sp.S.Zero,) * len(reads)))
 
 
 def _through(of: dict, moved: Rules) -> Rules:

@@ -7,7 +7,7 @@ from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, Element, Joint, Node, Triplet, positions
 
-FORCES = ("coincident", "coincident_ground", "on_line")      # equations whose multipliers are forces
+FORCES = ("coincident", "coincident_ground", "on_line")      # their multipliers are forces
 
 
 def has_forces(joint: Joint) -> bool:

@@ -1,5 +1,7 @@
 """Surfaces that spheres and points touch: planes, spheres and cylinders of the ground or a body."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 from numpy.typing import ArrayLike

@@ -29,7 +29,7 @@ STILL = 1e-9            # of the mobility of the parts alone: that of what a dri
 AT_REST = 1e-9          # rate of a joint at rest, relative to that of the model
 HELD = 1e-12            # acceleration of what is held, relative to that without friction
 MOST = 30               # iterations for the forces at the start
-RESOLVED = 0.1          # angular frequency of teeth in contact, times the step: the guard asks for it
+RESOLVED = 0.1          # angular frequency of teeth in contact, times the step, for the guard
 BEYOND = 2.0            # of the static limit: force of a bristle that is to slide
 
 

@@ -23,7 +23,6 @@ from sebody.verify.check.states import (
     difference,
     evaluate,
     gradient,
-    moved,
 )
 
 SMALL = 1e-4            # step of differences: branches end further away
