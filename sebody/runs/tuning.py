@@ -150,6 +150,16 @@ def _rotation(numbering: Numbering, state: State, triplet: Triplet) -> NDArray:
     return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
+def unbend(model: Mechanism, numbering: Numbering, state: State) -> None:
+    """Straighten all bristles: an equilibrium is sought from there."""
+    for load in model.loads:
+        if load.tuned:
+            names = element_kernel(load.kind).MEMORY
+            for place, name in zip(numbering.memories[id(load)], names, strict=True):
+                if name.startswith(("bent", "slid")):
+                    state.frames[place] = state.frames_old[place] = 0.0
+
+
 class _Held(NamedTuple):
     """Friction of a joint at rest."""
 
@@ -175,15 +185,16 @@ class LoadedBristles:
             "planar_").startswith("friction") for one in self._held(load)]
 
     def _held(self, load: Element) -> list[_Held]:
-        """The friction, if its joint is at rest and its bristles are not bent yet."""
+        """The friction, if its joint is at rest: its bristles are straight then."""
         constants = _Constants(load, self.system, self.numbering)
         rows = directions(load, self.numbering, self.state)
         memory, names = self.numbering.memories[id(load)], element_kernel(load.kind).MEMORY
         bent = [place for place, name in zip(memory, names, strict=True) if name.startswith("bent")]
         fastest = np.abs(self.state.v).max()
         moves = any(abs(row @ self.state.v) > AT_REST * fastest for row in rows)
-        if moves or constants["speed"] > 0 or self.state.frames[bent].any():
+        if moves or constants["speed"] > 0:
             return []
+        self.state.frames_old[bent] = self.state.frames_old[memory[names.index("slid")]] = 0.0
         return [_Held(constants, rows, bent, memory[names.index("normal")])]
 
     def load(self, masses: csc_matrix, solve_again) -> None:
