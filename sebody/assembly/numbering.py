@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from sebody.assembly.elimination_order import parents, sequence
 from sebody.assembly.ports import number_ports
 from sebody.errors import InputError
+from sebody.kernels.loader import element_kernel
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Element
 from sebody.model.time_functions import TimeFunction
@@ -31,7 +32,10 @@ class Numbering(NamedTuple):
     prescribed: list[tuple[int, int, int, float]]   # coordinate, port, 1 for a rotation, factor
     groups: NDArray                     # where the unknowns of each body begin
     forces_at: dict[int, int] = {}      # body, constraint or load -> its first force in State.g
-    memories: dict[int, int] = {}       # element -> first number it keeps, in State.frames
+    constants_at: dict[int, int] = {}   # body or element -> its row in System.constants
+    memories: dict[int, list[int]] = {} # element -> what it keeps: places in State.frames
+    bristles: dict[int, float] = {}     # element -> stiffness of its bristles in the run
+    reads: dict[int, list[int]] = {}    # element -> multipliers of a joint that it reads
     jumps: list[list[float]] = []       # of every power port: when accelerations jump with it
 
 
@@ -48,8 +52,8 @@ def stretch(numbering: Numbering, dof_block: DofBlock) -> slice:
 
 
 def kept_frames(numbering: Numbering) -> int:
-    """Length of `State.frames`: frames of the superelements, and one number of each element."""
-    return 9 * len(numbering.modes) + len(numbering.memories)
+    """Length of `State.frames`: frames of the superelements, and what elements keep."""
+    return 9 * len(numbering.modes) + sum(map(len, numbering.memories.values()))
 
 
 def rotational(model: Mechanism, numbering: Numbering) -> NDArray:
@@ -112,7 +116,7 @@ def number(model: Mechanism) -> Numbering:
     return Numbering(free, len(order.names), order.at, rotations, modes, order.multipliers,
                      order.names, dependent, ports.of, ports.names, ports.time_functions,
                      ports.prescribed, np.array(groups), jumps=ports.jumps,
-                     memories=_memories(model))
+                     memories=_memories(model), reads=_reads(model, order.multipliers))
 
 
 class _Order:
@@ -147,10 +151,21 @@ class _Order:
                           for j in range(constraint.multipliers))
 
 
-def _memories(model: Mechanism) -> dict[int, int]:
+def _memories(model: Mechanism) -> dict[int, list[int]]:
     """Places, behind the frames of all superelements, of what elements keep."""
-    return {element: 9 * len(model.bodies) + k for k, element in enumerate(
-        load for load in model.loads if load.keeps_angle)}
+    found, first = {}, 9 * len(model.bodies)
+    for load in model.loads:
+        if count := len(element_kernel(load.kind).MEMORY):
+            found[load] = list(range(first, first + count))
+            first += count
+    return found
+
+
+def _reads(model: Mechanism, multipliers: dict[int, int]) -> dict[int, list[int]]:
+    """Multipliers of the joint whose reaction presses an element."""
+    return {load: [multipliers[c] + k for c in load.pressed_by.constraints
+                       for k in range(c.multipliers)]
+            for load in model.loads if load.pressed_by is not None}
 
 
 def _coupled(model: Mechanism, last: dict[int, int]) -> dict[int, int]:

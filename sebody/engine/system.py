@@ -85,6 +85,8 @@ class System(Arrays):
     massless            (1,) 1 where a motion has stiffness and no mass: Python solves for
                         accelerations
     damped              (1,) 1 where a superelement has structural damping
+    guarded             places in `State.frames` of the rates of contacts, followed by the speeds of
+                        their impacts, see `sebody.engine.guard`
     routines            (2,) addresses of `refactorize` and `restart`, see `sebody.engine.routines`
     ==================  ============================================================================
     """
@@ -135,4 +137,5 @@ class System(Arrays):
     regularized: NDArray
     massless: NDArray
     damped: NDArray
+    guarded: NDArray
     routines: NDArray

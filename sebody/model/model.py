@@ -7,7 +7,17 @@ DOF block has no unknowns.
 
 from html import escape
 
-from sebody.model import beams, bodies, drives, joints, loads, nodes, springs
+from sebody.model import (
+    beams,
+    bodies,
+    contacts,
+    drives,
+    frictions,
+    joints,
+    loads,
+    nodes,
+    springs,
+)
 from sebody.model.atomic import atomic
 from sebody.model.mechanism import Mechanism
 from sebody.model.tables import described, model_tables, summary
@@ -79,3 +89,8 @@ class Model(Mechanism):
     spring = atomic(springs.spring)
     torsion_spring = atomic(springs.torsion_spring)
     bushing = atomic(springs.bushing)
+
+    friction = atomic(frictions.friction)
+    stop = atomic(contacts.stop)
+    gear = atomic(contacts.gear)
+    contact = atomic(contacts.contact)
