@@ -9,9 +9,10 @@ import pytest
 
 ROOMS = {
     "sebody": {"InputError", "Interrupted", "LimitWarning", "Model", "Result", "SebodyError",
-               "Simulation", "SimulationError", "Tolerance", "WriteError", "generalized_alpha",
-               "harmonic", "hht", "piecewise", "ramp", "rest_to_rest", "simulate",
-               "simulate_within", "spline", "trapezoidal", "with_corners"},
+               "Simulation", "SimulationError", "Tolerance", "WriteError", "cylinder",
+               "generalized_alpha", "harmonic", "hht", "piecewise", "plane", "ramp",
+               "rest_to_rest", "simulate", "simulate_within", "sphere", "spline", "trapezoidal",
+               "with_corners"},
     "sebody.analysis": {"Advice", "Campbell", "FrequencyResponse", "campbell",
                         "frequency_response", "Ensemble", "Linearization", "Modes", "Outcome",
                         "Output", "Unreached", "Vibrations", "advise", "at_time", "equilibrium",

@@ -10,7 +10,7 @@ from sebody.assembly.links import Ends, link_ends
 from sebody.assembly.numbering import Numbering, number, stretch
 from sebody.assembly.ports import port_arrays
 from sebody.assembly.structure import Structure, indices
-from sebody.contract.layout import scratch_size
+from sebody.contract.layout import AT_CONSTANTS, scratch_size
 from sebody.engine.links import Links
 from sebody.engine.system import System
 from sebody.errors import InputError
@@ -52,10 +52,14 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
         inertias=np.zeros(numbering.total), massless_axes=np.zeros(numbering.total),
         magnitude=_magnitude(model, numbering),
         regularized=np.zeros(1, dtype=np.int64), massless=np.zeros(1, dtype=np.int64),
-        damped=np.array([int(any(b.body.damping is not None for b in model.bodies.values()))]))
+        damped=np.array([int(any(b.body.damping is not None for b in model.bodies.values()))]),
+        guarded=_guarded(model, numbering))
     owners = [owner for batch in batches.all for owner in batch.owners]
     first_force = starts(b.width for b in batches.all for _ in b.rows).tolist()
-    return system, numbering._replace(forces_at=dict(zip(owners, first_force, strict=False)))
+    rows = [row[AT_CONSTANTS] for batch in batches.all for row in batch.rows]
+    return system, numbering._replace(
+        forces_at=dict(zip(owners, first_force, strict=False)),
+        constants_at=dict(zip(owners, rows, strict=True)), bristles={})
 
 
 def _structure(model: Mechanism, numbering: Numbering, batches: Batches, ends: Ends) -> Structure:
@@ -94,6 +98,13 @@ def _parts(model: Mechanism, numbering: Numbering) -> NDArray:
         first = numbering.multipliers[equation]
         found[first:first + equation.multipliers] = first
     return found
+
+
+def _guarded(model: Mechanism, numbering: Numbering) -> NDArray:
+    """Places of the rates that contacts keep."""
+    kept = ((element_kernel(e.kind).MEMORY, numbering.memories.get(e)) for e in model.loads)
+    return np.array([own[names.index("rate")] for names, own in kept if "rate" in names],
+                    dtype=np.int64)
 
 
 def _rotation_starts(numbering: Numbering) -> NDArray:

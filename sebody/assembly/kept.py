@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from sebody.contract.layout import INPUT_NUMBERS
 from sebody.errors import InputError
+from sebody.kernels.loader import element_kernel
 from sebody.model.control_parts import Controller, Sensor
 from sebody.model.controllers import actuators, signals
 from sebody.model.mechanism import Mechanism
@@ -19,7 +20,7 @@ from sebody.model.parts import Element, Superelement
 class Kept(NamedTuple):
     """Places in `State.frames`."""
 
-    memories: dict[Element, int]    # element -> the number that an element keeps
+    memories: dict[Element, list[int]]  # element -> the numbers that it keeps
     inputs: dict[int, int]      # port of an input -> its first number
     ports: dict[str, int]       # name of an input -> port
     sensors: list[Sensor]       # those of the model, then of quantities that controllers name
@@ -30,10 +31,11 @@ class Kept(NamedTuple):
 
 def kept(model: Mechanism, ports: Mapping[Element | Superelement, int]) -> Kept:
     """Number what is kept; `ports` are those of loads."""
-    keeping = [one for one in model.loads if one.keeps_angle]
-    first = 9 * len(model.bodies)
-    memories = {one: first + k for k, one in enumerate(keeping)}
-    first += len(keeping)
+    memories, first = {}, 9 * len(model.bodies)
+    for one in model.loads:
+        if count := len(element_kernel(one.kind).MEMORY):
+            memories[one] = list(range(first, first + count))
+            first += count
     inputs = {ports[one]: first + INPUT_NUMBERS * k
               for k, one in enumerate(actuators(model).values())}
     own = {name: ports[one] for name, one in actuators(model).items()}

@@ -34,7 +34,16 @@ class Numbering(NamedTuple):
     # body, constraint or load -> its first force in State.g
     forces_at: dict[Element | Superelement, int] = {}
     kept: Kept | None = None            # what is kept from step to step
+    # body or element -> its row in System.constants
+    constants_at: dict[Element | Superelement, int] = {}
+    bristles: dict[Element, float] = {}     # element -> stiffness of its bristles in the run
+    reads: dict[Element, list[int]] = {}    # element -> multipliers of a joint that it reads
     jumps: list[list[float]] = []       # of every power port: when accelerations jump with it
+
+    @property
+    def memories(self) -> dict[Element, list[int]]:
+        """What elements keep: places in `State.frames`."""
+        return self.kept.memories
 
 
 def coordinates(numbering: Numbering, dof_block: DofBlock) -> list[int]:
@@ -109,7 +118,7 @@ def number(model: Mechanism) -> Numbering:
     return Numbering(free, len(order.names), order.at, rotations, modes, order.multipliers,
                      order.names, dependent, ports.of, ports.names, ports.time_functions,
                      ports.prescribed, np.array(groups), jumps=ports.jumps,
-                     kept=kept(model, ports.of))
+                     kept=kept(model, ports.of), reads=_reads(model, order.multipliers))
 
 
 class _Order:
@@ -142,6 +151,13 @@ class _Order:
         self.multipliers[constraint] = len(self.names)
         self.names.extend(f"multiplier {j} of {constraint.name}"
                           for j in range(constraint.multipliers))
+
+
+def _reads(model: Mechanism, multipliers: dict[Element, int]) -> dict[Element, list[int]]:
+    """Multipliers of the joint whose reaction presses an element."""
+    return {load: [multipliers[c] + k for c in load.pressed_by.constraints
+                   for k in range(c.multipliers)]
+            for load in model.loads if load.pressed_by is not None}
 
 
 def _coupled(model: Mechanism, last: dict[DofBlock, int]) -> dict[DofBlock, int]:

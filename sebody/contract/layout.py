@@ -26,6 +26,9 @@ LANES = 4           # columns of a body's matrices are padded to whole vectors o
 
 # tasks of a kernel; VELOCITY and ACCELERATION are the constraints differentiated in time
 RESIDUAL, TANGENT, ENERGY, VELOCITY, ACCELERATION = range(5)
+# numbers that contacts keep beside each other, for the time loop: their rate, and the speed of the
+# impact under way
+AT_RATE, AT_IMPACT = range(2)
 # status that a kernel returns: HALF_TURN if a node is rotated by nearly half a turn against the
 # frame of its body, NO_FRAME if the search for this frame does not converge
 OK, HALF_TURN, NO_FRAME = range(3)

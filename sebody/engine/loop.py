@@ -18,11 +18,13 @@ from sebody.engine.evaluate import (
     take_rates,
     to_body_axes,
 )
+from sebody.engine.guard import contact_too_fast
 from sebody.engine.matrix import solve
 from sebody.engine.newton import apply_correction, begin_with_matrix, count_matrix, want_matrix
 from sebody.engine.state import (
     BEGIN,
     CHUNK,
+    CONTACT,
     CONVERGED,
     DONE,
     EVALUATED,
@@ -165,6 +167,8 @@ def _conclude(system, state, record, scheme, verdict):
     control, clock = state.control, state.clock
     control.phase = ITERATE
     if verdict == CONVERGED:
+        if system.guarded.size > 0 and contact_too_fast(system, state):
+            return CONTACT
         if control.adaptive == 1 and not accurate(system, state, scheme):
             back(state)
             return INACCURATE if clock.chosen < SHORTEST * clock.step else NO_REASON

@@ -89,6 +89,8 @@ class System(Arrays):
     damped              (1,) 1 where a superelement has structural damping
     routines            (3,) addresses of `refactorize`, `restart` and `sample`: see
                         `engine.routines`
+    guarded             places in `State.frames` of the rates of contacts, followed by the speeds of
+                        their impacts, see `sebody.engine.guard`
     ==================  ============================================================================
     """
 
@@ -139,4 +141,5 @@ class System(Arrays):
     regularized: NDArray
     massless: NDArray
     damped: NDArray
+    guarded: NDArray
     routines: NDArray

@@ -11,8 +11,10 @@ from sebody.model import (
     actuators,
     beams,
     bodies,
+    contacts,
     controllers,
     drives,
+    frictions,
     joints,
     loads,
     nodes,
@@ -93,3 +95,8 @@ class Model(Mechanism):
     spring = atomic(springs.spring)
     torsion_spring = atomic(springs.torsion_spring)
     bushing = atomic(springs.bushing)
+
+    friction = atomic(frictions.friction)
+    stop = atomic(contacts.stop)
+    gear = atomic(contacts.gear)
+    contact = atomic(contacts.contact)

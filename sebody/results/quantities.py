@@ -14,6 +14,7 @@ from sebody.assembly.numbering import record_counts
 from sebody.contract.layout import ENERGIES
 from sebody.errors import InputError
 from sebody.model.parts import DofBlock
+from sebody.results import contact_quantities as contacts
 from sebody.results import field_quantities as fields
 from sebody.results import force_quantities as forces
 from sebody.results import joint_motion
@@ -258,6 +259,10 @@ OWNERS = (
     Owner("spring or load", "of springs and loads {quantities}", forces.loads,
           {"force": partial(forces.of_load, "position"),
            "moment": partial(forces.of_load, "rotation")}),
+    Owner("contact, stop or friction", "of contacts, stops and friction {quantities}",
+          contacts.pressing,
+          {"normal_force": contacts.normal_force, "gap": contacts.gap, "sticks": contacts.sticks,
+           "dissipation": contacts.dissipation}),
     Owner("source of work", "of {names} {quantities}",
           lambda recording: recording.numbering.port_names,
           {"work": forces.work, "power": forces.power}),
@@ -298,6 +303,9 @@ def _has(recording: Recording, kind: str, owner: str, quantity: str) -> bool:
     if kind == "drive":
         return (quantity == "torque") == (forces.driven(forces.drives(recording)[owner])
                                           == "rotation")
+    if kind == "contact, stop or friction":
+        return quantity == "dissipation" or contacts.has(contacts.pressing(recording)[owner],
+                                                         quantity)
     if kind == "spring or load":
         return any(kept == place for _, kept in forces.loads(recording)[owner].attachments)
     return True

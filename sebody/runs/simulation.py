@@ -36,7 +36,7 @@ from sebody.runs import user_faults
 from sebody.runs.failures import explained
 from sebody.runs.first_run import prepare
 from sebody.runs.given_start import take
-from sebody.runs.initial_state import begin
+from sebody.runs.initial_state import begin, hold
 from sebody.runs.initial_velocities import refuse_contradicted
 from sebody.runs.progress import showing
 from sebody.runs.pulses import unseen, untold
@@ -124,6 +124,7 @@ class Simulation:
                 self.watch.say(key, message)
         self.tolerance = tolerance
         self._accelerate()
+        hold(model, self.system, self.numbering, self.state, self._accelerate_again)
         if tolerance is not None:
             self._choose_steps(tolerance)
         self.sampling.check(self.h, tolerance is None)
@@ -309,6 +310,11 @@ class Simulation:
         state.clock.chosen = min(self.h, 0.1 / np.sqrt(bend)) if bend > 0 else FIRST_STEP * self.h
         state.clock.largest_error = 0.0
         state.control.adaptive = 1
+
+    def _accelerate_again(self) -> None:
+        """Solve for them once more, after a change of what elements keep."""
+        self.state.control.restart = ASKED
+        self._accelerate()
 
     def _accelerate(self) -> None:
         """Solve for the accelerations and multipliers of the start, by the loop without a step.

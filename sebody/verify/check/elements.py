@@ -19,6 +19,7 @@ from sebody.contract.layout import (
     VELOCITY,
     Row,
 )
+from sebody.verify.check import laws
 from sebody.verify.check.states import (
     LIMIT,
     STATES,
@@ -42,7 +43,7 @@ AMPLITUDES = np.array([0.7, 0.3, -0.4])     # of a load or drive, with its rates
 def element_case(module: ModuleType, seed: int) -> Case:
     """A generic state: rotations of a radian, less than half a turn against each other."""
     random = np.random.default_rng(seed)
-    n, nrot = module.WIDTH, module.N_ROTATIONS
+    n, nrot, kept = module.WIDTH, module.N_ROTATIONS, len(module.MEMORY)
     base = Rotation.from_rotvec(random.normal(size=3))
     R = np.array([(base * Rotation.from_rotvec(0.5 * r)).as_matrix()
                   for r in random.normal(size=(nrot, 3))])
@@ -50,7 +51,8 @@ def element_case(module: ModuleType, seed: int) -> Case:
     size = Row(module.__name__, module.CONSTANTS).size({})
     return Case(module, n, index_row(n, module.N_POSITIONS, nrot),
                 1.0 + 0.5 * random.uniform(-1, 1, size=max(size, 1)), q, R.ravel(),
-                random.normal(size=n), random.normal(size=n), np.full(9, TURNED), np.zeros(9),
+                random.normal(size=n), random.normal(size=n),
+                np.r_[np.full(9, TURNED), np.zeros(kept)], np.zeros(9 + kept),
                 random.normal(size=3), AMPLITUDES)
 
 
@@ -168,6 +170,8 @@ def criteria(module: ModuleType) -> dict:
 def check_element(name: str, module: ModuleType) -> list[CheckRow]:
     """All criteria of a joint, body or force kernel."""
     rows = []
+    if laws.follows(module):
+        return laws.check_law(name, module, element_case)
     for seed in range(STATES):
         for criterion, measure in criteria(module).items():
             error = measure(element_case(module, seed))
