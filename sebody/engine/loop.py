@@ -17,6 +17,7 @@ from sebody.engine.evaluate import (
     take_rates,
     to_body_axes,
 )
+from sebody.engine.growth import grows
 from sebody.engine.matrix import solve
 from sebody.engine.newton import apply_correction, begin_with_matrix, count_matrix, want_matrix
 from sebody.engine.state import (
@@ -25,6 +26,7 @@ from sebody.engine.state import (
     CHOSEN,
     CHUNK,
     CONVERGED,
+    CURRENT_STEP,
     DONE,
     DUE,
     EVALUATED,
@@ -35,6 +37,7 @@ from sebody.engine.state import (
     GAP,
     GIVE_UP,
     GRID,
+    GROWS,
     INACCURATE,
     ITERATE,
     ITERATION,
@@ -67,6 +70,7 @@ from sebody.engine.step_control import (
     write_between,
 )
 from sebody.engine.vectors import swap
+from sebody.engine.work import add_work, take_back_work
 
 UNMOVED = 0.03          # share of the tolerance that elements may move and keep their forces
 
@@ -175,6 +179,10 @@ def _conclude(system, state, record, scheme, verdict):
         if control[ADAPTIVE] == 1 and not accurate(system, state, scheme):
             back(state)
             return INACCURATE if clock[CHOSEN] < SHORTEST * clock[STEP] else NO_REASON
+        add_work(system, state, clock[CURRENT_STEP])
+        if grows(system, state):
+            take_back_work(state)
+            return GROWS
         accept(system, state, record)
         control[PHASE] = BEGIN
     elif verdict == NEW_MATRIX:
