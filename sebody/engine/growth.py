@@ -4,7 +4,8 @@ Long steps can feed vibrations that they do not resolve. The balance ``kinetic +
 - work`` of a step shows it, since works are summed as the scheme does it (`engine.work`). Numerical
 damping only lowers the balance. It may rise above its lowest value so far by
 
-    SHARE * largest strain energy + TURNED * turn^2 * largest kinetic energy + WORKED * work done,
+    SHARE * largest strain energy + (KEPT + TURNED * turn^2) * largest kinetic energy
+    + WORKED * work done + ROUNDED * rounding,
 
 where turn is the largest rotation of a body's frame in the step: the trapezoidal rule keeps the
 energy of a rotating rigid body to the square of it. All three are the same in every frame of
@@ -20,13 +21,17 @@ import numpy as np
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import ENERGY, KINETIC, POTENTIAL, STRAIN
 from sebody.engine.evaluate import run_kernels
-from sebody.engine.state import ADAPTIVE, END, LARGEST_ERROR, LEVEL
+from sebody.engine.state import ADAPTIVE, END, FLOOR, LARGEST_ERROR, LEVEL
 from sebody.engine.step_control import AIM
 from sebody.kernels.abi import pointer_to
 
-SHARE = 0.01            # of the largest strain energy
-TURNED = 0.25           # of the kinetic energy times the square of the rotation in a step
+SHARE = 0.02            # of the largest strain energy
+KEPT = 5e-4             # of the largest kinetic energy: bodies hardly strained
+TURNED = 0.25           # of the same times the square of the rotation in a step
 WORKED = 0.01           # of the work in the step, for the error of contacts that last few steps
+ROUNDED = 100.0         # of what rounding of positions leaves of energies
+DRIVEN = 0.1            # part by which energies rise, and of that part, what is supplied: where loads
+                        # set something in motion, the first steps of it are not judged
 ATTENTIVE = 0.125       # share of the allowed rise from which on every step is looked at
 RAREST = 16.0           # steps between two looks, at most
 DEEPEST = 6.0           # times that steps are halved, at most
@@ -37,7 +42,7 @@ ENOUGH = 64.0           # shortest steps with a rise, after which the run goes o
 # State.guard: indices
 (OFF,                   # 1 for models without bodies that deform, and where shorter steps are of no use
  WAIT,                  # steps to the next look
- STRIDE,                # steps between looks; 0 before the first one
+ STRIDE,                # steps between looks
  BALANCE,               # at the last look
  LOWEST,                # lowest so far, plus what works allow
  MOST_STRAIN,           # largest strain energy so far
@@ -49,8 +54,9 @@ ENOUGH = 64.0           # shortest steps with a rise, after which the run goes o
  FIRST,                 # time of the first of them
  LAST,                  # and of the last
  MOST_HALVED,           # largest number of halvings so far
+ SUPPLIED,              # work of all ports since the last look, each counted as positive
  IN_VAIN,               # shortest steps in which it rose all the same
- ) = range(15)
+ ) = range(16)
 GUARDS = IN_VAIN + 1
 
 
@@ -61,7 +67,7 @@ def grows(system, state):
     if guard[OFF] == 1.0:
         return False
     for k in range(state.works.size):
-        guard[LOWEST] += WORKED * abs(state.works[k] - state.works_old[k])
+        guard[SUPPLIED] += abs(state.works[k] - state.works_old[k])
     guard[WAIT] -= 1.0
     cut = state.control[LEVEL] > guard[HALVED]      # Newton's iteration has not converged
     return (cut or guard[WAIT] <= 0.0) and _judge(system, state)
@@ -71,12 +77,16 @@ def grows(system, state):
 def _judge(system, state):
     """Look at the energies; whether the step is to be rejected."""
     guard = state.guard
+    before = guard[MOST_STRAIN] + guard[MOST_KINETIC]
     balance = _take_balance(system, state)
-    if guard[STRIDE] == 0.0:
-        guard[LOWEST] = guard[BALANCE] = balance
+    more = guard[MOST_STRAIN] + guard[MOST_KINETIC] - before
+    driven = more > DRIVEN * before and guard[SUPPLIED] > DRIVEN * more
+    guard[LOWEST] = balance if driven or before == 0.0 else guard[LOWEST] + WORKED * guard[SUPPLIED]
+    guard[SUPPLIED] = 0.0
     rise = balance - guard[LOWEST]
     turned = _turned(system, state)
-    allowed = SHARE * guard[MOST_STRAIN] + TURNED * turned * guard[MOST_KINETIC]
+    allowed = SHARE * guard[MOST_STRAIN] + (KEPT + TURNED * turned) * guard[MOST_KINETIC]
+    allowed += ROUNDED * state.clock[FLOOR] * state.clock[FLOOR]
     if rise > allowed:
         return _reject(state, balance)
     guard[CALM] += guard[STRIDE]
