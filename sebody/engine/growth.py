@@ -26,14 +26,14 @@ from sebody.engine.step_control import AIM
 from sebody.kernels.abi import pointer_to
 
 SHARE = 0.02            # of the largest strain energy
-KEPT = 5e-4             # of the largest kinetic energy: bodies hardly strained
+KEPT = 2e-3             # of the largest kinetic energy: bodies hardly strained
 TURNED = 0.25           # of the same times the square of the rotation in a step
 WORKED = 0.01           # of the work in the step, for the error of contacts that last few steps
 ROUNDED = 100.0         # of what rounding of positions leaves of energies
 DRIVEN = 0.1            # part by which energies rise, and of that part, what is supplied: where loads
                         # set something in motion, the first steps of it are not judged
 ATTENTIVE = 0.125       # share of the allowed rise from which on every step is looked at
-RAREST = 16.0           # steps between two looks, at most
+RAREST = 64.0           # steps between two looks, at most
 DEEPEST = 6.0           # times that steps are halved, at most
 PATIENCE = 64.0         # steps before the first attempt with longer ones; doubled by every rejection
 LONGEST_PATIENCE = 4096.0
