@@ -68,7 +68,8 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
         relaxation=zeros(total), pulls=zeros(system.pulls.size), projected=zeros(total),
         pulled=zeros(total),
         column=zeros(LANES * system.slot_unknowns.size), work=zeros(work_size(model)),
-        energy=zeros(ENERGIES.size(counts)), guard=new_guard(len(model.bodies)), clock=clock, control=control)
+        energy=zeros(ENERGIES.size(counts)), guard=new_guard(len(model.bodies)),
+        clock=clock, control=control)
     state.q[:], state.v[:], state.R[:] = q, v, R
     of_bodies = 9 * len(numbering.modes)
     state.frames[:of_bodies] = state.frames_old[:of_bodies] = _identities(of_bodies)

@@ -30,17 +30,17 @@ KEPT = 2e-3             # of the largest kinetic energy: bodies hardly strained
 TURNED = 0.25           # of the same times the square of the rotation in a step
 WORKED = 0.01           # of the work in the step, for the error of contacts that last few steps
 ROUNDED = 100.0         # of what rounding of positions leaves of energies
-DRIVEN = 0.1            # part by which energies rise, and of that part, what is supplied: where loads
-                        # set something in motion, the first steps of it are not judged
+DRIVEN = 0.1            # part by which energies rise, and part of this rise that is supplied:
+                        # the first steps of what loads set in motion are not judged
 ATTENTIVE = 0.125       # share of the allowed rise from which on every step is looked at
 RAREST = 64.0           # steps between two looks, at most
 DEEPEST = 6.0           # times that steps are halved, at most
-PATIENCE = 64.0         # steps before the first attempt with longer ones; doubled by every rejection
+PATIENCE = 64.0         # steps before longer ones are tried; doubled by every rejection
 LONGEST_PATIENCE = 4096.0
 ENOUGH = 64.0           # shortest steps with a rise, after which the run goes on without a guard
 
 # State.guard: indices
-(OFF,                   # 1 for models without bodies that deform, and where shorter steps are of no use
+(OFF,                   # 1 without bodies that deform, and where shorter steps are of no use
  WAIT,                  # steps to the next look
  STRIDE,                # steps between looks
  BALANCE,               # at the last look
