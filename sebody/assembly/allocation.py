@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from sebody.assembly.build import work_size
 from sebody.assembly.numbering import Numbering, record_counts, stretch
 from sebody.contract.layout import COEFFICIENTS, ENERGIES, FIELD, LANES, whole_vectors
+from sebody.engine.growth import new_guard
 from sebody.engine.newton import SLOWEST
 from sebody.engine.state import (
     CLOCKS,
@@ -62,7 +63,8 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
         regularization=zeros(total), constraint_columns=zeros(system.constraint_columns.size), projected=zeros(total),
         pulled=zeros(total),
         column=zeros(LANES * system.slot_unknowns.size), work=zeros(work_size(model)),
-        energy=zeros(ENERGIES.size(counts)), clock=clock, control=control)
+        energy=zeros(ENERGIES.size(counts)), guard=new_guard(len(model.bodies)),
+        clock=clock, control=control)
     state.q[:], state.v[:], state.R[:] = q, v, R
     of_bodies = 9 * len(numbering.modes)
     state.frames[:of_bodies] = state.frames_old[:of_bodies] = _identities(of_bodies)

@@ -21,7 +21,7 @@ CONVERGED, GO_ON, NEW_MATRIX, GIVE_UP, LEAVES_GAP = range(5)    # verdicts after
 NO_REASON = OK
 NOT_FINITE, SLOW, INACCURATE, GAP = range(max(HALF_TURN, NO_FRAME) + 1,
                                           max(HALF_TURN, NO_FRAME) + 5)
-NO_START = GAP + 1
+NO_START, GROWS = GAP + 1, GAP + 2
 REASONS = {
     HALF_TURN: "a node is rotated by nearly half a revolution relative to its body frame",
     NO_FRAME: "the iteration for a body frame did not converge",
@@ -29,6 +29,7 @@ REASONS = {
     SLOW: "Newton's iteration did not converge",
     INACCURATE: "the error of a step is above the tolerance",
     GAP: "the constraints cannot be satisfied",
+    GROWS: "energy grows",
     NO_START: "no accelerations were found that satisfy dynamics and constraints",
 }
 NOTHING, BEND, JUMP = range(3)  # what a step ends at; at a jump of accelerations is a restart
@@ -118,6 +119,7 @@ class State(Arrays):
     --------------------  --------------------------------------------------------------------------
     counters
     ------------------------------------------------------------------------------------------------
+    guard                 energies and counters of `sebody.engine.growth`
     clock                 floats, see the CLOCK indices
     control               integers, see the CONTROL indices
     ====================  ==========================================================================
@@ -175,6 +177,7 @@ class State(Arrays):
     work: NDArray
     energy: NDArray
     error_weights: NDArray
+    guard: NDArray
     clock: NDArray
     control: NDArray
 
