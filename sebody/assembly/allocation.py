@@ -7,6 +7,7 @@ from sebody.assembly.build import work_size
 from sebody.assembly.control import begin
 from sebody.assembly.numbering import Numbering, record_counts, stretch
 from sebody.contract.layout import COEFFICIENTS, ENERGIES, FIELD, LANES, whole_vectors
+from sebody.engine.growth import new_guard
 from sebody.engine.newton import SLOWEST
 from sebody.engine.scalars import record
 from sebody.engine.state import (
@@ -66,6 +67,7 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
         pulled=zeros(total),
         column=zeros(LANES * system.slot_unknowns.size), work=zeros(work_size(model)),
         energy=zeros(ENERGIES.size(counts)), memory=zeros(int(system.control.memory[0])),
+        energy=zeros(ENERGIES.size(counts)), guard=new_guard(len(model.bodies)),
         clock=clock, control=control)
     state.q[:], state.v[:], state.R[:] = q, v, R
     of_bodies = 9 * len(numbering.modes)

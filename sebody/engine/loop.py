@@ -18,6 +18,7 @@ from sebody.engine.evaluate import (
     take_rates,
     to_body_axes,
 )
+from sebody.engine.growth import grows
 from sebody.engine.guard import contact_too_fast
 from sebody.engine.matrix import solve
 from sebody.engine.newton import apply_correction, begin_with_matrix, count_matrix, want_matrix
@@ -33,6 +34,7 @@ from sebody.engine.state import (
     FAILED,
     GAP,
     GIVE_UP,
+    GROWS,
     INACCURATE,
     ITERATE,
     KEPT,
@@ -57,6 +59,7 @@ from sebody.engine.step_control import (
     write_between,
 )
 from sebody.engine.vectors import swap
+from sebody.engine.work import add_work, take_back_work
 
 UNMOVED = 0.03          # share of the tolerance that elements may move and keep their forces
 
@@ -172,6 +175,10 @@ def _conclude(system, state, record, scheme, verdict):
         if control.adaptive == 1 and not accurate(system, state, scheme):
             back(state)
             return INACCURATE if clock.chosen < SHORTEST * clock.step else NO_REASON
+        add_work(system, state, clock.current_step)
+        if grows(system, state):
+            take_back_work(state)
+            return GROWS
         accept(system, state, record)
         control.phase = BEGIN
     elif verdict == NEW_MATRIX:

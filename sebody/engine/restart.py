@@ -60,6 +60,7 @@ ACCURATE = 1e-10        # correction, relative to accelerations and multipliers,
 ROUNDED = 1e-6          # the same that may be left where new matrices do not help
 POOR = 0.3              # a contraction rate above this asks for a new matrix
 HARDLY = 0.5            # and above this rounding is all that is left, if little is
+STIFF = 1e3             # of rounding, the same: stiff bodies at rest have forces of rounding alone
 SUMMANDS = 10.0         # roundings in what velocities make of accelerations
 CONTRADICTION = 1e-7    # residual, relative to the solution, of constraints that contradict others
 SHORT = 1e-3            # of a step: how far to look ahead
@@ -185,7 +186,9 @@ def _correct(system, state):
     control.iteration += 1
     if not np.isfinite(norm):
         return FAILED
-    none = max(ACCURATE, ROUNDED if rate > HARDLY else 0.0) * size + _rounding(system, state)
+    stays = rate > HARDLY
+    none = (max(ACCURATE, ROUNDED if stays else 0.0) * size
+            + (STIFF if stays else 1.0) * _rounding(system, state))
     if norm <= none:
         # what the corrections of a regularized matrix leave is a contradiction, or a force on
         # something without mass

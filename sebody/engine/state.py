@@ -21,7 +21,7 @@ CONVERGED, GO_ON, NEW_MATRIX, GIVE_UP, LEAVES_GAP = range(5)    # verdicts after
 NO_REASON = OK
 NOT_FINITE, SLOW, INACCURATE, GAP = range(max(HALF_TURN, NO_FRAME) + 1,
                                           max(HALF_TURN, NO_FRAME) + 5)
-NO_START, BAD_CONTROL, CONTACT = range(GAP + 1, GAP + 4)
+NO_START, BAD_CONTROL, CONTACT, GROWS = range(GAP + 1, GAP + 5)
 REASONS = {
     HALF_TURN: "a node is rotated by nearly half a revolution relative to its body frame",
     NO_FRAME: "the iteration for a body frame did not converge",
@@ -31,6 +31,7 @@ REASONS = {
     GAP: "the constraints cannot be satisfied",
     BAD_CONTROL: "a controller gave what is not finite, or raised",
     CONTACT: "a contact or stop changes its rate by more than a tenth of the impact speed",
+    GROWS: "energy grows",
     NO_START: "no accelerations were found that satisfy dynamics and constraints",
 }
 # what a step ends at; at a sample and at a jump of accelerations is a restart
@@ -125,6 +126,7 @@ class State(Arrays):
     --------------------  --------------------------------------------------------------------------
     counters
     ------------------------------------------------------------------------------------------------
+    guard                 energies and counters of `sebody.engine.growth`
     clock                 times, lengths of steps and norms, see the fields `CLOCK`
     control               phases, counters and flags, see the fields `CONTROL`
     ====================  ==========================================================================
@@ -183,6 +185,7 @@ class State(Arrays):
     energy: NDArray
     error_weights: NDArray
     memory: NDArray
+    guard: NDArray
     clock: np.record
     control: np.record
 

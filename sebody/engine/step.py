@@ -16,6 +16,7 @@ from sebody.contract.layout import (
     RECORD_T,
 )
 from sebody.engine.evaluate import move_prescribed, set_loads_beside, update_rotations
+from sebody.engine.growth import HALVED
 from sebody.engine.newton import SLOWEST, watch_age
 from sebody.engine.state import (
     ASKED,
@@ -28,7 +29,6 @@ from sebody.engine.state import (
 )
 from sebody.engine.step_control import LONGEST, NEAR, SHORTEST, go_on, set_end
 from sebody.engine.vectors import copy
-from sebody.engine.work import add_work
 from sebody.kernels.abi import at, pointer_to
 
 ORTHOGONAL = 8          # steps after which rotation matrices are made orthogonal again
@@ -103,13 +103,11 @@ def set_coefficients(state, scheme, h):
 
 @compiled(forceinline=True)
 def accept(system, state, record):
-    """End a converged step: orthogonal rotations, work of the power ports, output."""
+    """End a converged step: orthogonal rotations, output."""
     clock, control = state.clock, state.control
-    h = clock.current_step
     if control.steps % ORTHOGONAL == 0:
         for r in range(system.rotation_at.size):
             _orthogonalize(at(pointer_to(state.R), 9 * r))
-    add_work(system, state, h)
     watch_age(state)
     if control.fresh == 0:
         control.back_off = 0
@@ -147,7 +145,8 @@ def go_on_grid(state, record):
         clock.time = clock.end
     if control.due == 1 and control.restart == 0:
         write_record(state, record)
-    while control.level > 0 and control.unit % (FINEST >> (control.level - 1)) == 0:
+    least = int(state.guard[HALVED])
+    while control.level > least and control.unit % (FINEST >> (control.level - 1)) == 0:
         control.level -= 1                 # try the longer step again
     clock.current_step = clock.step / (1 << control.level)
 

@@ -35,6 +35,14 @@ def add_work(system, state, h):
 
 
 @compiled
+def take_back_work(state):
+    """Take back the work of a step that is rejected after all."""
+    if state.works.size > 0:
+        copy(state.works_old, state.works)
+        copy(state.acting_old, state.acting)
+
+
+@compiled
 def set_acting(system, state):
     """Set the forces of the power ports in the current state: of elements, then of motions."""
     if state.works.size > 0:

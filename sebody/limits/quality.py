@@ -8,6 +8,7 @@ from sebody.assembly.allocation import allocate
 from sebody.assembly.evaluation import matrix
 from sebody.assembly.numbering import record_counts
 from sebody.contract.layout import ENERGIES, RECORD_T
+from sebody.engine import growth
 from sebody.engine.evaluate import to_body_axes
 from sebody.errors import InputError
 from sebody.limits.thresholds import CUT, EXCITED, GROWN, PERIOD
@@ -34,10 +35,10 @@ def remarks(run: Recording) -> dict[str, str]:
     try:
         run.energies = energies(run.system, scratch, run.rows)
     except InputError:          # the last state of a run that failed
-        return _steps(run)
+        return _steps(run) | _guarded(run)
     message = energy_balance.warning(run.energy_balance(),
                                      bool(run.state.control.adaptive))
-    found = ({"balance": message} if message else {}) | _steps(run)
+    found = ({"balance": message} if message else {}) | _steps(run) | _guarded(run)
     if run.failure or run.state.control.adaptive:
         return found
     columns = ENERGIES.slices(record_counts(run.numbering))
@@ -45,7 +46,7 @@ def remarks(run: Recording) -> dict[str, str]:
                                   for name in ("kinetic", "strain", "potential"))
     part = Recording(run.model, run.numbering, run.system, scratch, run.rows, 0.0)
     work = part.recorded("works").sum(axis=1)
-    grown = growth(kinetic + strain + potential, work) / max((kinetic + strain).max(), 1e-300)
+    grown = increase(kinetic + strain + potential, work) / max((kinetic + strain).max(), 1e-300)
     if grown > GROWN and "balance" not in found:
         found["growth"] = (
             f"energy grows by {grown:.2g} of its maximum although no work is done on the model "
@@ -63,7 +64,7 @@ def remarks(run: Recording) -> dict[str, str]:
     return found
 
 
-def growth(energy: NDArray, work: NDArray) -> float:
+def increase(energy: NDArray, work: NDArray) -> float:
     """Largest increase of an energy over stretches of states between which no work is done.
 
     Parameters
@@ -78,9 +79,31 @@ def growth(energy: NDArray, work: NDArray) -> float:
     return float(most)
 
 
+def _guarded(run: Recording) -> dict[str, str]:
+    """What the guard against energy that grows has done."""
+    guard, control = run.state.guard, run.state.control
+    count = int(guard[growth.REJECTIONS])
+    if not count:
+        return {}
+    parts = 2 ** int(guard[growth.MOST_HALVED])
+    share = f"{100.0 * growth.SHARE:g} %"
+    done = (f"energy grew by {share} of the strain energy although nothing supplied it: "
+            f"{count} steps from t = {guard[growth.FIRST]:.6g} to {guard[growth.LAST]:.6g} were "
+            f"repeated with shorter ones, down to 1/{parts}")
+    if guard[growth.IN_VAIN]:
+        done += f"; it grew in {int(guard[growth.IN_VAIN])} of the shortest steps, too"
+    if guard[growth.OFF]:
+        done += ", and then the run went on without this check"
+    remedy = ("a smaller tolerance" if control.adaptive else
+              f"a step of {float(run.state.clock.step) / parts:.2g}")
+    return {"guard": f"{done}. Steps do not resolve vibrations of a body that bends far or turns "
+            f"fast; take {remedy}, divide the body, or use its default inertia and frame"}
+
+
 def _steps(run: Recording) -> dict[str, str]:
-    """Whether many steps were rejected."""
-    steps, cuts = int(run.state.control.steps), int(run.state.control.cuts)
+    """Whether many steps were rejected, for other reasons than energy that grows."""
+    steps = int(run.state.control.steps)
+    cuts = int(run.state.control.cuts - run.state.guard[growth.REJECTIONS])
     if cuts <= CUT * steps:
         return {}
     return {"cuts": f"{cuts} rejected steps, {steps} accepted (limit of the ratio {CUT:g}): "

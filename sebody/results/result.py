@@ -89,7 +89,10 @@ class Result(Recording):
 
     @property
     def cuts(self) -> int:
-        """Rejected steps: Newton's iteration did not converge, and the step was made smaller."""
+        """Rejected steps, repeated with shorter ones.
+
+        Newton's iteration did not converge, or energy grew although nothing supplied it.
+        """
         return int(record(CONTROL, self.counters).cuts)
 
     @property

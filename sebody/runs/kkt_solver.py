@@ -5,7 +5,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgetrf, dgetrs
-from scipy.sparse import csc_matrix, diags
+from scipy.sparse import block_array, csc_matrix, diags, eye_array
 from scipy.sparse.csgraph import structural_rank
 from scipy.sparse.linalg import SuperLU, splu
 
@@ -17,6 +17,7 @@ SINGULAR = 1e-13    # smallest pivot of a regular matrix, relative to the larges
 SUSPICIOUS = 1e-6   # pivot below which constraints are looked into, relative to the largest
 REGULARIZATION = 1e-8   # of regularized matrices as in the engine, but never of an older state
 ATTEMPTS = 20       # refinements: each leaves 2 REGULARIZATION / s of a part of strength s
+DAMPED = 1e-8       # parts that are weaker, relative to the largest entry, are none
 SETTLED = 1e-15     # change of the last refinement, relative to the solution
 
 
@@ -118,10 +119,37 @@ class Scaled:
         return self.scale * self.factors.solve(self.scale * right)
 
     def least(self, right: NDArray) -> tuple[NDArray, NDArray]:
-        """Solution of least norm by dense algebra, and the scaled residuals that remain."""
+        """Solution of least norm, and the scaled residuals that remain."""
         demand = self.scale * right
-        answer = np.linalg.lstsq(self.matrix.toarray(), demand, rcond=1e-11)[0]
+        if len(right) <= SMALL:
+            answer = np.linalg.lstsq(self.matrix.toarray(), demand, rcond=1e-11)[0]
+        else:
+            answer = _least_squares(self.matrix, demand)
         return self.scale * answer, np.abs(self.matrix @ answer - demand)
+
+
+def _least_squares(matrix: csc_matrix, right: NDArray) -> NDArray:
+    """Least squares of least norm, by factors of a sparse matrix.
+
+    ``|A x - b|^2 + DAMPED^2 |x - x_0|^2`` is least where
+
+        [DAMPED  A     ] [y      ]   [b - A x_0]
+        [A^T    -DAMPED] [x - x_0] = [0        ]
+
+    a matrix whose condition is 1 / DAMPED. Repeated from x = 0, a part of strength s of A is left
+    by the factor ``DAMPED^2 / (s^2 + DAMPED^2)`` (K. Riley, Math. Tables and Other Aids to
+    Computation 9, 1955, p. 96).
+    """
+    n = len(right)
+    damped = DAMPED * eye_array(n)
+    solver = factors(csc_matrix(block_array([[damped, matrix], [matrix.T, -damped]])))
+    answer = np.zeros(n)
+    for _ in range(ATTEMPTS):
+        change = solver.solve(np.append(right - matrix @ answer, np.zeros(n)))[n:]
+        answer += change
+        if np.abs(change).max() <= SETTLED * np.abs(answer).max():
+            break
+    return answer
 
 
 class Relaxed:

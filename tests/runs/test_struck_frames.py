@@ -20,7 +20,7 @@ from struck_frames import (
 
 from sebody import LimitWarning, Model, SimulationError, simulate
 from sebody.fem import StiffnessSection, frame, planar_beam, straight_beam
-from sebody.limits.quality import growth
+from sebody.limits.quality import increase
 from sebody.model.frames import default_frame
 from sebody.reduction import craig_bampton
 from sebody.results.motion import body_motion
@@ -184,9 +184,9 @@ def test_straight_beams_do_not_warn_of_their_frame(planar):
 
 def test_growth_counts_what_nothing_gave():
     work = np.array([0.0, 1.0, 3.0, 3.0, 3.0, 3.0, 4.0])
-    assert growth(np.array([5.0, 6.0, 8.5, 8.5, 8.4, 8.9, 30.0]), work) == pytest.approx(0.5)
-    assert growth(np.array([5.0, 4.0, 3.0]), np.zeros(3)) == 0.0
-    assert growth(np.array([5.0, 5.0, 5.3, 5.1]), np.zeros(4)) == pytest.approx(0.3)
+    assert increase(np.array([5.0, 6.0, 8.5, 8.5, 8.4, 8.9, 30.0]), work) == pytest.approx(0.5)
+    assert increase(np.array([5.0, 4.0, 3.0]), np.zeros(3)) == 0.0
+    assert increase(np.array([5.0, 5.0, 5.3, 5.1]), np.zeros(4)) == pytest.approx(0.3)
 
 
 def test_a_run_whose_energy_grows_says_so():

@@ -31,7 +31,7 @@ def struck_frame() -> Finding:
         "tips, in contrast, move with the mass of the arms, and mean axes move with all mass.",
         "sebody uses the best-fit rotation of the positions if a body has three positions that "
         "are not on a line, and mean axes for other bodies that are not straight; it warns if a "
-        "body bends whose frame follows rotations, and if energy grows.",
+        "body bends whose frame follows rotations, and halves steps in which energy would grow.",
         "time [s]", "energy / energy after the impact")
     model = frame(POINTS, [(0, k) for k in range(1, 5)], SECTION, 8)
     body = craig_bampton(model, [(k, "full") for k in range(1, 5)], 12)

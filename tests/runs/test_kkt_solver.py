@@ -1,0 +1,29 @@
+"""Least squares of singular sparse systems, against dense algebra."""
+
+import numpy as np
+import pytest
+from scipy.sparse import csc_matrix, random_array
+
+from sebody.runs.kkt_solver import SMALL, Scaled
+
+
+@pytest.mark.parametrize("consistent", [True, False])
+@pytest.mark.parametrize("seed", [0, 1])
+def test_least_squares_of_least_norm(seed, consistent):
+    """Symmetric, 30 of 3 * SMALL motions without stiffness, loads on them or not; any units."""
+    random, n = np.random.default_rng(seed), 3 * SMALL
+    sparse = random_array((n, n - 30), density=0.02, rng=random).toarray()
+    sparse += np.eye(n, n - 30) + np.eye(n, n - 30, -30)        # no empty rows
+    units = 10.0 ** random.uniform(-3.0, 3.0, n)
+    matrix = units[:, None] * (sparse @ sparse.T) * units
+    right = matrix @ (random.normal(size=n) / units)
+    if not consistent:
+        right = right + units * random.normal(size=n)
+    solver = Scaled(csc_matrix(matrix))
+    found, left = solver.least(right)
+    scale = solver.scale
+    scaled = scale[:, None] * matrix * scale
+    exact = np.linalg.lstsq(scaled, scale * right, rcond=1e-11)[0]
+    assert found / scale == pytest.approx(exact, abs=1e-6 * np.abs(exact).max())
+    assert left == pytest.approx(np.abs(scaled @ exact - scale * right), abs=1e-7 * np.abs(
+        scale * right).max())
