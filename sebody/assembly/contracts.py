@@ -44,7 +44,8 @@ def check_joints(model: Mechanism) -> None:
     """
     own, other = ("planar", "spatial") if model.planar else ("spatial", "planar")
     remedy = "Model()" if model.planar else "Model(planar=True)"
-    for kind, joint in {c.kind: joint for joint in model.joints for c in joint.constraints}.items():
+    users = {c.kind: joint for joint in model.joints for c in joint.constraints}
+    for kind, joint in users.items():
         bare = kind.removeprefix(IN_PLANE)
         fitting, wrong = (model.kind_of(bare), bare if model.planar else IN_PLANE + bare)
         what = f"joint {joint.name!r} has an equation of kind {kind!r}"

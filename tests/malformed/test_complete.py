@@ -10,11 +10,12 @@ from pathlib import Path
 import pytest
 from malformed import model_cases
 
+import sebody.generated
 from sebody import Model
 from sebody.model.variants.flat_elements import ELEMENTS, EQUATIONS
-from sebody.pictures import glyphs, templates
+from sebody.pictures import glyphs
+from sebody.pictures.templates import filled
 
-ROOT = Path(__file__).parents[2]
 SPATIAL = model_cases.BODIES | model_cases.JOINTS | model_cases.LOADS
 BUILDERS = [name for name, value in vars(Model).items()
             if inspect.isfunction(value) and not name.startswith("_") and name != "summary"]
@@ -22,11 +23,15 @@ OF_BODIES = ("body_load_", "mode_force")        # on coordinates of a body, see 
 
 
 def variants(name):
-    """A right call, and with equations in place of shared coordinates where there is a choice."""
+    """A right call, and others by equations or to the ground, where there is a choice."""
     right = SPATIAL[name]
-    yield right.arguments
-    if "explicit" in inspect.signature(right.function).parameters:
-        yield {**right.arguments, "explicit": True}
+    parameters = inspect.signature(right.function).parameters
+    choices = [{}]
+    if "explicit" in parameters:
+        choices.append({"explicit": True})
+    if "to" in parameters and parameters["to"].default is None:
+        choices += [{**choice, "to": None} for choice in choices]
+    yield from ({**right.arguments, **choice} for choice in choices)
 
 
 def joints():
@@ -50,7 +55,7 @@ def test_every_builder_has_malformed_cases(name):
 def constraints_and_others():
     """Kinds of the spatial elements that are shipped: equations of joints, and all others."""
     kinds: dict[bool, set[str]] = {True: set(), False: set()}
-    for path in (ROOT / "generated").glob("element_*.py"):
+    for path in Path(sebody.generated.__file__).parent.glob("element_*.py"):
         kind = path.stem.removeprefix("element_")
         count = int(re.search(r"^MULTIPLIERS = (\d+)", path.read_text(), re.MULTILINE)[1])
         if not kind.startswith(("planar_", *OF_BODIES)):
@@ -74,7 +79,7 @@ def test_every_equation_is_built_by_a_case():
 
 def test_every_joint_is_drawn():
     """By a sign that the page has a shape for, or by lines between its nodes."""
-    text = templates.read("shapes.js")
+    text = filled("shapes.js", {})
     shapes = set(re.findall(r"^  (\w+): \[\[", text[text.index("const SIGNS"):], re.MULTILINE))
     assert {"revolute", "ground"} <= shapes
     for model, joint in joints():
