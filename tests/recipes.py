@@ -32,12 +32,12 @@ def recipe(title: str) -> list[Block]:
     text = (ROOT / ".github" / "CONTRIBUTING.md").read_text()
     section = re.split(rf"^## {title}$", text, flags=re.MULTILINE)[1]
     section = re.split(r"^## ", section, flags=re.MULTILINE)[0]
-    found = [Block(m["file"], m["side"], m["anchor"], dedent_by(m)) for m in PLACE.finditer(section)]
+    found = [Block(m["file"], m["side"], m["anchor"], _code(m)) for m in PLACE.finditer(section)]
     assert len(found) == section.count("```python"), "a block has no place that can be read"
     return found
 
 
-def dedent_by(match: re.Match) -> str:
+def _code(match: re.Match) -> str:
     """Code without the indentation of its fence, which may be in a list."""
     fence = re.search(r"^( *)```$", match[0].splitlines()[-1])[1]
     return re.sub(rf"^{fence}", "", match["code"], flags=re.MULTILINE)
