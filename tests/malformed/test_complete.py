@@ -67,8 +67,8 @@ def test_every_element_has_a_planar_form():
     equations, others = constraints_and_others()
     assert len(equations) > 8 and len(others) > 8
     unknown = (equations - EQUATIONS.keys()) | (others - ELEMENTS.keys())
-    assert not unknown, (f"{sorted(unknown)} have no planar form: add them to EQUATIONS or ELEMENTS "
-                         "in sebody/model/variants/flat_elements.py")
+    assert not unknown, (f"{sorted(unknown)} have no planar form: add them to EQUATIONS or "
+                         "ELEMENTS in sebody/model/variants/flat_elements.py")
 
 
 def test_every_equation_is_built_by_a_case():
