@@ -16,9 +16,12 @@ from sebody.model.variants.flat_elements import ELEMENTS, EQUATIONS
 from sebody.pictures import glyphs
 from sebody.pictures.templates import filled
 
-SPATIAL = model_cases.BODIES | model_cases.JOINTS | model_cases.LOADS
+SPATIAL = (model_cases.BODIES | model_cases.JOINTS | model_cases.LOADS
+           | model_cases.CONTROL)
 BUILDERS = [name for name, value in vars(Model).items()
             if inspect.isfunction(value) and not name.startswith("_") and name != "summary"]
+# refused by `planar(model)` by name: their planar kernels exist, the way from space is not written
+WITHOUT = {f"{way}_{part}" for way in ("line", "slide", "turn") for part in ("motor", "rotor")}
 OF_BODIES = ("body_load_", "mode_force")        # on coordinates of a body, see variants/planar.py
 
 
@@ -66,7 +69,7 @@ def constraints_and_others():
 def test_every_element_has_a_planar_form():
     equations, others = constraints_and_others()
     assert len(equations) > 8 and len(others) > 8
-    unknown = (equations - EQUATIONS.keys()) | (others - ELEMENTS.keys())
+    unknown = (equations - EQUATIONS.keys()) | (others - ELEMENTS.keys()) - WITHOUT
     assert not unknown, (f"{sorted(unknown)} have no planar form: add them to EQUATIONS or "
                          "ELEMENTS in sebody/model/variants/flat_elements.py")
 
