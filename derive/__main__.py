@@ -31,9 +31,12 @@ SECONDS = {True: 2.5, False: 0.4}       # to derive a superelement, or another e
 
 def shipped() -> dict[str, str]:
     """File name and text of every kernel of the manifest, and of the options' traits."""
-    return {"options.py": options_text(frame_traits(), inertia_traits(),
-                                          frame_conditions())} | files(
-        [*(Variant(*row) for row in SUPERELEMENTS), *ELEMENTS])
+    return _traits() | files([*(Variant(*row) for row in SUPERELEMENTS), *ELEMENTS])
+
+
+def _traits() -> dict[str, str]:
+    """The file of the traits of frames and inertia options."""
+    return {"options.py": options_text(frame_traits(), inertia_traits(), frame_conditions())}
 
 
 def files(kernels: Iterable[Variant | str], shipped: bool = True) -> dict[str, str]:
@@ -107,7 +110,8 @@ def main(arguments: list[str] | None = None) -> int:
         if options.kernels:
             own = os.access(directory, os.W_OK) and not os.environ.get("SEBODY_KERNELS")
             directory = directory if own else user_directory()
-            texts = files(_with_motions(map(kernel_of, options.kernels)), shipped=own)
+            texts = (_traits() if own else {}) | files(
+                _with_motions(map(kernel_of, options.kernels)), shipped=own)
         else:
             texts = shipped()
     except LayoutError as error:

@@ -67,7 +67,7 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
         pulled=zeros(total),
         column=zeros(LANES * system.slot_unknowns.size), work=zeros(work_size(model)),
         energy=zeros(ENERGIES.size(counts)), memory=zeros(int(system.control.memory[0])),
-        energy=zeros(ENERGIES.size(counts)), guard=new_guard(len(model.bodies)),
+        guard=new_guard(len(model.bodies)),
         clock=clock, control=control)
     state.q[:], state.v[:], state.R[:] = q, v, R
     of_bodies = 9 * len(numbering.modes)

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.axes import frames
 from sebody.assembly.batches import Batches, make_batches, starts
+from sebody.assembly.contracts import check_joints
 from sebody.assembly.control import control_arrays
 from sebody.assembly.links import Ends, link_ends
 from sebody.assembly.numbering import Numbering, number, stretch
@@ -33,6 +34,7 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
     if not (model.bodies or model.rigid_bodies):
         raise InputError("the model has no body: add one with model.superelement(...) or "
                          "model.rigid_body(...)")
+    check_joints(model)
     numbering = number(model)
     if numbering.free == sum(equation.multipliers for equation in model.constraints):
         raise InputError("every node of the model is fixed: nothing is left to move, free one")

@@ -23,11 +23,39 @@ from sebody.contract.layout import (
     rigid_part_counts,
     superelement_counts,
 )
+from sebody.contract.names import IN_PLANE, element_name
 from sebody.errors import InputError
 from sebody.generated.options import INERTIA_OPTIONS
+from sebody.kernels.loader import find
+from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Superelement
 
 REMEDY = "regenerate the kernels with python -m sebody.derive, or reinstall sebody"
+
+
+def check_joints(model: Mechanism) -> None:
+    """Check that the equations of all joints are made for models of this dimension.
+
+    Raises
+    ------
+    InputError
+        An equation exists only in planar models and the model is spatial, or the reverse; the
+        message names the joint.
+    """
+    own, other = ("planar", "spatial") if model.planar else ("spatial", "planar")
+    remedy = "Model()" if model.planar else "Model(planar=True)"
+    users = {c.kind: joint for joint in model.joints for c in joint.constraints}
+    for kind, joint in users.items():
+        bare = kind.removeprefix(IN_PLANE)
+        fitting, wrong = (model.kind_of(bare), bare if model.planar else IN_PLANE + bare)
+        what = f"joint {joint.name!r} has an equation of kind {kind!r}"
+        if find(element_name(fitting)):
+            if kind != fitting:
+                raise InputError(f"{what}, which is for {other} models, and this model is {own}: "
+                                 f"use {fitting!r}, the kind that model.kind_of({bare!r}) gives")
+        elif find(element_name(wrong)):
+            raise InputError(f"{what}: this joint exists only in {other} models, and this model is "
+                             f"{own}: build it with {remedy}, or use another joint")
 
 
 def check_element(element: Element, kernel: ModuleType, unknowns: int,

@@ -15,6 +15,7 @@ from numba import typeof
 
 from sebody.assembly.allocation import allocate
 from sebody.assembly.build import build
+from sebody.assembly.contracts import check_joints
 from sebody.assembly.motions import motion_kernel
 from sebody.compiler.choice import way
 from sebody.compiler.decorators import is_compiled
@@ -85,6 +86,8 @@ PARTS = {name: part for name, part in LOOP.items() if part.function} | {
 def prepare(models: Iterable[Mechanism]) -> None:
     """Compile what runs of models need and the cache lacks; a line says so."""
     models = list(models)
+    for model in models:
+        check_joints(model)
     bodies = [body for model in models for body in model.bodies.values()]
     kernels = {body.kernel for body in bodies} | {motion_kernel(body) for body in bodies}
     kernels |= {element_kernel_name(e.kind) for model in models

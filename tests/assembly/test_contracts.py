@@ -5,13 +5,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from sebody import InputError, Model, simulate
+from sebody import InputError, Model, Simulation, simulate
 from sebody.assembly import contracts
 from sebody.assembly.batches import superelement_constants
 from sebody.assembly.build import build
 from sebody.contract.layout import INDEX, Row
 from sebody.fem import Section, straight_beam
 from sebody.kernels.loader import element_kernel, load
+from sebody.model.parts import Attachment, Element, Joint
 from sebody.model.time_functions import time_function
 from sebody.reduction import ReducedBody, craig_bampton
 from sebody.scenes import hinged_beam
@@ -107,6 +108,34 @@ def test_elements_that_do_not_fit_their_kernel(damage, message):
     damage(model)
     with pytest.raises(InputError, match=message):
         build(model)
+
+
+@pytest.mark.parametrize("planar, kind, given, message", [
+    (False, "planar_aligned", "rotation", "joint 'gear' has an equation of kind 'planar_aligned': "
+     "this joint exists only in planar models, and this model is spatial: build it with "
+     "Model(planar=True), or use another joint"),
+    (False, "aligned", "rotation", "of kind 'aligned': this joint exists only in planar models"),
+    (True, "perpendicular", "rotation", "joint 'gear' has an equation of kind 'perpendicular': "
+     "this joint exists only in spatial models, and this model is planar: build it with Model(), "
+     "or use another joint"),
+    (True, "planar_perpendicular", "rotation", "this joint exists only in spatial models"),
+    (True, "distance", "position", "of kind 'distance', which is for spatial models, and this "
+     "model is planar: use 'planar_distance', the kind that model.kind_of('distance') gives"),
+    (False, "planar_distance", "position", "use 'distance', the kind that model.kind_of('distance")
+])
+def test_joints_of_the_other_dimension(planar, kind, given, message):
+    """Before anything is compiled: a run says so, too, and not that kernels are to be made."""
+    model = Model(planar=planar)
+    ends = [model.node(name, (float(k), 0.0, 0.0)[:model.dimension])
+            for k, name in enumerate("ab")]
+    for node in ends:
+        model.rigid_body(f"body {node.name}", node, 1.0, 1.0 if planar else (1.0, 1.0, 1.0))
+    equation = Element("gear", kind, tuple(Attachment(node, given) for node in ends), {}, 1)
+    model.joints.append(Joint("gear", (equation,), *ends, None, "gear"))
+    for act in (build, lambda model: Simulation(model, 0.01)):
+        with pytest.raises(InputError) as caught:
+            act(model)
+        assert message in str(caught.value) and "reinstall" not in str(caught.value)
 
 
 def test_a_joint_built_with_a_multiplier_too_few(monkeypatch):

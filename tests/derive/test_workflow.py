@@ -1,23 +1,17 @@
 """The workflow of changing a formula or a compiled function, rehearsed in copies of the tree.
 
-A copy has the folders as they are installed, sebody/derive inside sebody and so on, is the only
-one a new process finds, and ships few small kernels, so that a derivation takes seconds. What is
-compiled lies beside the sources, so that a copy begins with that of the original.
+A copy ships few small kernels, so that a derivation takes seconds, see `copies`. What is compiled
+lies beside the sources, so that a copy begins with that of the original.
 """
 
-import os
-import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from copies import ROOT, copy_sources, derive, duplicate, edit, python
 
 from sebody.compiler.sources import TEXT, room_hash
 from sebody.derive.compiler import compile_kernel
 
-ROOT = Path(__file__).parents[2]
-FOLDERS = {"sebody": "", "derive": "derive", "generated": "generated", "examples": "scenes"}
 MANIFEST = '''"""A small manifest."""
 
 SUPERELEMENTS = (("planar-f2", "positions", "material"),)
@@ -27,14 +21,6 @@ SHIPPED = ["element_force.py", "element_planar_force.py", "element_planar_torque
            "element_torque.py", "motion_planar_positions.py",
            "superelement_planar_f2_positions_material.py"]
 
-# An editable installation would serve what a copy lacks from the checkout.
-ISOLATED = '''
-import runpy
-import sys
-
-sys.meta_path[:] = [f for f in sys.meta_path if "editable" not in getattr(f, "__module__", "")]
-'''
-DERIVE = 'runpy.run_module("sebody.derive", run_name="__main__", alter_sys=True)'
 # Residuals of two kernels, called through their addresses: the time loop need not be compiled.
 DRIVER = '''
 import ctypes
@@ -126,19 +112,6 @@ print(*globals()[sys.argv[1]]() if sys.argv[1] != "column" else [padded(3)])
 '''
 
 
-def python(tree: Path, code: str, *arguments: str, **variables: str):
-    """Run code on a copy, in a process that knows no other one."""
-    environment = {**os.environ, "PYTHONPATH": str(tree), "SEBODY_KERNELS": "",
-                   "NUMBA_CACHE_DIR": "", "HOME": str(tree), **variables}
-    return subprocess.run([sys.executable, "-c", ISOLATED + code, *arguments], cwd=tree,
-                          env=environment, text=True, capture_output=True, timeout=200)
-
-
-def derive(tree: Path, *arguments: str, **variables: str):
-    """``python -m sebody.derive`` on a copy."""
-    return python(tree, DERIVE, *arguments, **variables)
-
-
 def residuals(tree: Path, nodes: int = 2, **variables: str) -> list[list[float]]:
     """Residuals of a stretched planar beam and of a force of 3 along y on its end."""
     done = python(tree, DRIVER, str(nodes), **variables)
@@ -153,23 +126,11 @@ def call(tree: Path, name: str) -> str:
     return done.stdout.strip()
 
 
-def edit(path: Path, old: str, new: str) -> None:
-    text = path.read_text()
-    assert old in text, f"{path.name} has changed: adapt this test"
-    path.write_text(text.replace(old, new))
-
-
-def duplicate(tree: Path, target: Path) -> Path:
-    return shutil.copytree(tree, target / "tree", ignore=shutil.ignore_patterns("*.part"))
-
-
 @pytest.fixture(scope="module")
 def original(tmp_path_factory) -> Path:
     """A copy of the tree with the small manifest and its kernels compiled; not to be changed."""
     tree = tmp_path_factory.mktemp("original")
-    for source, target in FOLDERS.items():
-        shutil.copytree(ROOT / source, tree / "sebody" / target, dirs_exist_ok=True,
-                        ignore=shutil.ignore_patterns("__pycache__"))
+    copy_sources(tree, "__pycache__")
     (tree / "sebody" / "derive" / "kernels" / "manifest.py").write_text(MANIFEST)
     for path in (tree / "sebody" / "generated").glob("*_*.py"):
         if path.name not in (*SHIPPED, "__init__.py"):

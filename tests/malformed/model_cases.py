@@ -245,6 +245,38 @@ LOADS = {
         "motion": have("motion of a drive", None, "abc", [(0.0, NAN)], []),
         "what": have("cannot move", "both", None, 3, [])}),
 }
+def _push(t, y, x, u, parameters):
+    u[0] = -y[0]
+
+
+MOTOR, GAUGE, PUSH = "actuator 'motor'", "sensor 'gauge'", "controller 'push'"
+CONTROL = {
+    "actuator": Right(Model.actuator, {"name": "motor", "node": "a", "direction": X}, {
+        "name": are("name of an actuator", *NO_NAME),
+        "node": [(None, f"{MOTOR} acts on nothing, or on several things"),
+                 *[pair for pair in nodes(foreign, lacks_place) if pair[0] is not None]],
+        "direction": have("give", None, (1.0, 2.0), "123"),
+        "ratio": are(f"{MOTOR}: ratio", *NO_NUMBER, 0.0),
+        "inertia": [*are(f"{MOTOR}: inertia", *NO_NUMBER, -1.0), (1.0, "no rotor turns with")],
+        "lag": are(f"{MOTOR}: lag", *NO_NUMBER, -1.0), "start": are(f"{MOTOR}: start", *NO_NUMBER),
+        "rate": [pair for pair in positive(f"{MOTOR}: rate") if pair[0] is not None],
+        "limit": [*are(f"{MOTOR}: limit", 0.0, -1.0, NAN, (2.0, 1.0), (1.0, 2.0, 3.0))]}),
+    "sensor": Right(Model.sensor, {"name": "gauge", "quantity": "a.position.x", "rate": 10.0}, {
+        "name": are("name of a sensor", *NO_NAME),
+        "quantity": are(f"{GAUGE}: quantity", *NO_NAME),
+        "rate": [pair for pair in positive(f"{GAUGE}: rate") if pair[0] is not None],
+        "delay": are(f"{GAUGE}: delay", *NO_COUNT, -1), "bias": are(f"{GAUGE}: bias", *NO_NUMBER),
+        "noise": are(f"{GAUGE}: noise", *NO_NUMBER, -1.0),
+        "seed": are(f"{GAUGE}: seed", *NO_COUNT, -1)}),
+    "controller": Right(Model.controller, {"name": "push", "law": _push, "period": 0.1, "inputs": [
+            "a.position.x"], "outputs": ["signal"]}, {
+        "name": are("name of a controller", *NO_NAME), "law": have(PUSH, None, 3, "sin"),
+        "inputs": have(f"inputs of {PUSH}", None, 3),
+        "outputs": have(f"outputs of {PUSH}", None, []),
+        "period": positive(f"{PUSH}: period"), "delay": are(f"{PUSH}: delay", *NO_COUNT, -1),
+        "states": have(f"{PUSH}: states", "ab", [NAN], [[1.0]]),
+        "parameters": have(f"{PUSH}: parameters", "ab", [INF], [[1.0]])}),
+}
 FLAT = {
     "planar node": Right(Model.node, {"name": "new", "point": (1.0, 2.0)},
                          {"point": vectors("point of node 'new'", 2)}),

@@ -6,7 +6,8 @@ from malformed.cases import alike, listed
 
 from sebody import InputError, Model
 
-SPATIAL = model_cases.BODIES | model_cases.JOINTS | model_cases.LOADS
+SPATIAL = (model_cases.BODIES | model_cases.JOINTS | model_cases.LOADS
+           | model_cases.CONTROL)
 
 
 def described(model: Model) -> list:
@@ -14,7 +15,8 @@ def described(model: Model) -> list:
     parts = [sorted(model.own_names), dict(model.default_names), model.gravity_field]
     parts += [[one.name for one in group] for group in (
         model.nodes.values(), model.bodies.values(), model.rigid_bodies.values(), model.joints,
-        model.loads, model.grounds)]
+        model.loads, model.grounds, model.sensors.values(),
+        model.controllers.values())]
     parts.append([id(one) for one in model.connections])
     for dof_block in model.dof_blocks():
         parts.append([dof_block.name, dof_block.fixed, dof_block.given, id(dof_block.root),

@@ -8,6 +8,7 @@ from in_plane import FLAT, TURN, X, Z, at, beam, rigid
 from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, harmonic
+from sebody.model.parts import Element, Joint, positions
 from sebody.model.variants import planar
 
 
@@ -53,6 +54,24 @@ def test_what_breaks_the_symmetry_is_said():
         with pytest.raises(InputError, match="not symmetric about the plane through .* normal to "
                                              rf".*, so its motion leaves it: .*{message}"):
             planar(model)
+
+
+def test_a_joint_without_a_planar_form_is_named():
+    """The remedy is in the message, which does not speak of symmetry."""
+    model = beam()
+    tip = model.nodes["tip"]
+    screw = Element("screw", "screw", positions(tip), {}, 1)
+    model.joints.append(Joint("bolt", (screw,), tip, tip, None, "screw"))
+    with pytest.raises(InputError) as caught:
+        planar(model)
+    assert str(caught.value) == (
+        "joint 'bolt' has the kind 'screw', whose form in a plane is unknown: build the planar "
+        "model by hand, or add 'screw' to EQUATIONS in sebody/model/variants/flat_elements.py")
+    del model.joints[-1]
+    model.loads.append(Element("sail", "wind", positions(tip), {}))
+    with pytest.raises(InputError, match="'sail' has the kind 'wind', whose form in a plane is "
+                                         "unknown: build .* add 'wind' to ELEMENTS in "):
+        planar(model)
 
 
 def drag(t, x, v, force):

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.errors import InputError
+from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Axes, Element, Joint, positions, rotations
 from sebody.model.variants.flat_contacts import LAWS, flat_places
 from sebody.model.variants.flattening import Flattening
@@ -17,22 +18,43 @@ PARALLEL = 1e-9         # one less the cosine of an angle that is rounding
 TURNING_TOGETHER = ("weld", "prismatic")    # joints whose nodes keep any direction
 
 
+def check_joints(model: Mechanism) -> None:
+    """Check that the planar form of every joint is known.
+
+    Raises
+    ------
+    InputError
+        It is not; the message names the joint and the kind of its equation.
+    """
+    for joint in model.joints:
+        for one in joint.constraints:
+            if one.kind not in EQUATIONS:
+                raise InputError(f"joint {joint.name!r} {_unknown(one.kind, 'EQUATIONS')}")
+
+
+def _unknown(kind: str, table: str) -> str:
+    return (f"has the kind {kind!r}, whose form in a plane is unknown: build the planar model by "
+            f"hand, or add {kind!r} to {table} in sebody/model/variants/flat_elements.py")
+
+
 def flat_element(flat: Flattening, element: Element) -> Element:
     """A rigid body, load or spring in the plane.
 
     Raises
     ------
     InputError
-        It is not symmetric about the plane.
+        It is not symmetric about the plane, or its form in a plane is unknown.
     """
     if element.kind in LAWS:
         kind, constants = LAWS[element.kind](flat, element)
         return Element(element.name, kind, flat_places(flat, element, kind), constants,
                        tuned=element.tuned)
-    if element.kind not in _ELEMENTS:
+    if element.function is not None:
         raise InputError(f"{element.name!r} is a function of yours, whose symmetry is unknown: "
                          "build the planar model by hand")
-    kind, constants = _ELEMENTS[element.kind](flat, element)
+    if element.kind not in ELEMENTS:
+        raise InputError(f"{element.name!r} {_unknown(element.kind, 'ELEMENTS')}")
+    kind, constants = ELEMENTS[element.kind](flat, element)
     return Element(element.name, kind, tuple(flat.place(p) for p in element.attachments), constants,
                    time_function=element.time_function)
 
@@ -50,7 +72,7 @@ def flat_joint(flat: Flattening, joint: Joint) -> Joint:
     node, to = flat.node(joint.node), flat.node(joint.to)
     equations: list[Element] = []
     for one in joint.constraints:
-        found = _EQUATIONS[one.kind](flat, joint, one)
+        found = EQUATIONS[one.kind](flat, joint, one)
         if found is not None and not (found.kind == "planar_aligned" and any(
                 e.kind == found.kind for e in equations)):
             equations.append(found)
@@ -144,7 +166,7 @@ def _slide_drive(flat: Flattening, joint: Joint, one: Element) -> Element:
                      {"e": e, "start": one.constants["start"]})
 
 
-_EQUATIONS: dict[str, Callable[[Flattening, Joint, Element], Element | None]] = {
+EQUATIONS: dict[str, Callable[[Flattening, Joint, Element], Element | None]] = {
     "coincident": _coincident, "coincident_ground": _coincident_ground, "parallel": _parallel,
     "parallel_ground": _parallel, "perpendicular": _perpendicular, "on_line": _on_line,
     "on_plane": _on_plane, "distance": _distance, "turn_drive": _turn_drive,
@@ -204,7 +226,7 @@ def _bushing(flat: Flattening, one: Element) -> tuple[str, dict]:
     return "planar_bushing", kept | {"e1": turn[:2, 0], "e2": turn[:2, 1]}
 
 
-_ELEMENTS: dict[str, Callable[[Flattening, Element], tuple[str, dict]]] = {
+ELEMENTS: dict[str, Callable[[Flattening, Element], tuple[str, dict]]] = {
     "rigid_body": _rigid_body, "point_mass": _unchanged, "force": _force, "follower_force": _force,
     "torque": _torque, "follower_torque": _torque, "spring": _unchanged,
     "torsion_spring": _torsion_spring, "bushing": _bushing}

@@ -17,7 +17,7 @@ from sebody.model.parts import Connection, Element, Superelement
 from sebody.model.plane import Plane
 from sebody.model.variants.copying import Variant, checked, load_name, unknowns
 from sebody.model.variants.flat_beams import flat_beams
-from sebody.model.variants.flat_elements import flat_element, flat_joint
+from sebody.model.variants.flat_elements import check_joints, flat_element, flat_joint
 from sebody.model.variants.flattening import Flattening
 from sebody.reduction.plane import PlanarBody, planar_body
 from sebody.reduction.summary import place
@@ -51,13 +51,14 @@ def planar(model: Mechanism) -> Variant:
     Raises
     ------
     InputError
-        A planar model, what is not symmetric about the plane (the first thing that was found), or
-        no planar kernel for a body.
+        A planar model, a joint without a planar form, what is not symmetric about
+        the plane (the first thing that was found), or no planar kernel for a body.
     """
     if checked(model).planar:
         raise InputError("the model is planar already")
     if not model.nodes:
         raise InputError("the model has no nodes, so it has no plane")
+    check_joints(model)
     refused = None
     for normal in _normals(model):
         plane = Plane.through(next(iter(model.nodes.values())).point, normal)
