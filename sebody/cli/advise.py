@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     from sebody.scenes.scene import Scene
 
 KINDS = {"reference": "reference model", "alone": "one part alone", "together": "together",
-         "confirmation": "half the step", "given": "as given"}
+         "confirmation": "half the step", "given": "as given", "guard": "guard of the reference"}
 
-
+AUTO = "auto"           # of a step: chosen by the search
 NOT_CONFIRMED = 3       # exit code of advice that is as uncertain as the reference
 
 
@@ -32,8 +32,9 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
                         help="largest error, relative to a quantity's largest change (default "
                              "1e-3), or with a unit, such as 2mm")
     parser.add_argument("--t-end", type=float, metavar="T", help="end time, the scene's by default")
-    parser.add_argument("--step", type=float, metavar="H",
-                        help="usual time step, the scene's by default; the reference has a quarter")
+    parser.add_argument("--step", type=_step, metavar="H",
+                        help="usual time step, the scene's by default; the reference has a "
+                             "quarter; 'auto' begins with a 128th of the time")
     parser.add_argument("--budget", type=float, default=20.0, metavar="N",
                         help="work of the search, in runs of the reference model (default 20)")
     parser.add_argument("--start", choices=["equilibrium"],
@@ -44,6 +45,16 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
                         help="draw error against time of all runs, with the choice")
     parser.add_argument("--code", action="store_true", help="print the chosen model as Python")
     return parser
+
+
+def _step(text: str) -> float | str:
+    """A time step, or ``auto``."""
+    if text == AUTO:
+        return text
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"step is {text!r}: give a number, or {AUTO}") from None
 
 
 def run(options: argparse.Namespace) -> int:
@@ -105,7 +116,8 @@ def _advised(options: argparse.Namespace, scene: "Scene") -> "Advice":
 
     with interrupts.held():
         try:
-            return advise(scene.model, scene.h if options.step is None else options.step,
+            given = scene.h if options.step is None else options.step
+            return advise(scene.model, None if given == AUTO else given,
                           scene.t_end if options.t_end is None else options.t_end,
                           options.quantity, options.tolerance, options.budget, progress,
                           options.start)

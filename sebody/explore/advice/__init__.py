@@ -48,7 +48,7 @@ def advise(model: Model, h: float | None, t_end: float, quantities: str | Iterab
         Largest error, relative; with a unit, as ``"2mm"``, absolute. Models without units are taken
         to be in metres, newtons and seconds.
     budget : float
-        No further run is begun once the runs have taken so many times the time of the first.
+        No further run is begun once the runs have taken so many times the time of the reference.
     progress : callable or bool, optional
         As of `Simulation.run_to`; the bar begins anew with each run.
     start : str, optional

@@ -32,8 +32,10 @@ REAL = 1e-3             # of the motion, that real systems are disturbed by
 
 
 def off_the_grid(run: Result, values: Values, h: float, reference: Reference,
-                 grid: float) -> Doubt:
+                 grid: float) -> tuple[float, Doubt]:
     """How far a run with steps that share no grid with others is from the reference.
+
+    If that is more than the step explains, it is an error that the reference may have.
 
     Parameters
     ----------
@@ -55,11 +57,11 @@ def off_the_grid(run: Result, values: Values, h: float, reference: Reference,
         off = lengths(CubicSpline(run.t, own)(times[clear]) - best[clear]) / size
         if off.size and off.max() > worst:
             worst, where = float(off.max()), float(times[clear][np.argmax(off)])
-    if worst <= EXPECTED * (reference.step_error + reference.error):
-        worst = 0.0
-    return Doubt(worst, f"a run with steps of {h:.4g}, which share no grid with the others, is off "
-                 f"by {worst:.2g} at t = {where:.4g}: loads or forces act between steps",
-                 "give a smaller h")
+    explained = worst <= EXPECTED * (reference.step_error + reference.error)
+    return worst, Doubt(
+        0.0 if explained else worst,
+        f"a run with steps of {h:.4g}, which share no grid with the others, is off by {worst:.2g} "
+        f"at t = {where:.4g}: loads or forces act between steps", "give a smaller h")
 
 
 def _jumps(numbering: Numbering) -> NDArray:

@@ -1,9 +1,9 @@
 """What the reference model itself may be off by: linear theory in each body, and its last modes."""
 
+from dataclasses import replace
 from functools import lru_cache
 
 from sebody.errors import InputError, SimulationError
-from sebody.explore.advice.changes import Step
 from sebody.explore.advice.estimates import UNSURE
 from sebody.explore.advice.forms import Part
 from sebody.explore.advice.indicators.linearity import bent, local_rotations
@@ -40,13 +40,15 @@ def _divided(lab: Laboratory, parts: list[Part]) -> Doubt:
     for part in parts:
         form = part.detailed
         whole = divide(whole, part.name, 2 * form.bodies, 2 * part.elements).model
-    step = Step(max(lab.bases))
+    step = lab.trial
     sentence = f"{names} divided into twice as many bodies than the reference model has, gave it"
     try:
-        run = lab.runs.run(whole, step)
+        run = lab.beside(whole, step, f"with {names} in twice as many bodies")
     except (InputError, SimulationError) as reason:
         return Doubt(1.0, f"{names} divided further does not run: {reason}", "give a smaller h")
-    return Doubt(LEFT * lab.apart(run, step.h), sentence, "build it of several beams")
+    apart = lab.apart(run, step.h)
+    lab.table[-1] = replace(lab.table[-1], error=apart)
+    return Doubt(LEFT * apart, sentence, "build it of several beams")
 
 
 def _linear(recorded: Recorded, part: Part) -> Doubt:

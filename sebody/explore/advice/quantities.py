@@ -136,6 +136,7 @@ class Worst(NamedTuple):
     quantity: str
     row: int | None = None
     size: float = 1.0       # of the quantity, that the error is relative to
+    kind: str = ""          # of the measure: what of the history counts
 
 
 def compared(one: Values, other: Values, sizes: list[float], stride: tuple[int, int]) -> Worst:
@@ -153,7 +154,7 @@ def compared(one: Values, other: Values, sizes: list[float], stride: tuple[int, 
         if a.shape[1:] != b.shape[1:]:
             raise InputError("a quantity has other components")
         off, row = measure.difference(a[::stride[0]], b[::stride[1]])
-        found.append(Worst(off / size, measure.name, row, size))
+        found.append(Worst(off / size, measure.name, row, size, measure.words))
     return max(found, key=lambda worst: worst.error)
 
 

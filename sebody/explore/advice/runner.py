@@ -1,7 +1,8 @@
 """Runs of choices: the reference model with several steps first, then what is compared with it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
+from time import process_time
 
 import numpy as np
 
@@ -31,6 +32,10 @@ FINER = (4, 2, 1)       # parts of the given step, of the first runs of the refe
 SHORTER = (8, 16, 32, 64)     # further ones, where the tolerance needs them
 GOOD = 0.2              # of the tolerance, that the reference may be off by without them
 LARGEST = 0.9           # relative tolerance, that an absolute one is at most
+LONGER = (2, 4)         # given steps, that a step may be
+MISSED = 0.2            # of a load, that steps which are tried may not see
+COARSE = 0.02           # error by a step up to the given one, with which forms are tried alone
+LONGEST = 2.0           # of the tolerance, that a longer step is expected to be off by
 SHORTEST = 64           # parts of the given step, of the grid
 EARLY = 3               # steps of the grid, that errors are those of the start in
 MARGIN = 1.2            # of a tolerance that would pass
@@ -77,9 +82,10 @@ class Laboratory:
         self.doubts: list[Doubt] = []           # of the guards
         self.warnings: tuple[str, ...] = ()     # of the reference
         self.remarks: list[str] = []
+        self.count, self.begun = 0, process_time()      # runs, and since when [s]
         self._ports: tuple | None = None
-        self.given_step = Step(runs.h)
-        self._work = self._unit = 0.0
+        self.given_step = self.trial = Step(runs.h)     # trial: that forms are tried with alone
+        self._work = self._guards = self._unit = 0.0
 
     @property
     def detailed(self) -> Choice:
@@ -88,8 +94,13 @@ class Laboratory:
         return Choice(tuple(part.detailed for part in self.parts), step)
 
     def spent(self) -> float:
-        """Work of all runs, relative to that of the first."""
+        """Work of all runs, relative to that of the reference model with its shortest step."""
         return self._work / self._unit
+
+    @property
+    def guarded(self) -> float:
+        """The part of it that was spent on guards."""
+        return self._guards / self._unit
 
     def start(self) -> None:
         """Run the reference, and judge it.
@@ -131,19 +142,23 @@ class Laboratory:
             self._base(self.runs.h / part)
             self.reference = self._reference()
         self._judge()
+        self._unit = self.cost.work(choice, self.bases[min(self.bases)].iterations)
+        self._lengthen()
+        self.table += [Trial(in_brief(self.parts, choice), h, 0.0, run.seconds)
+                       for h, run in sorted(self.bases.items())]
         self._guard()
         errors = {h: self.error(run) for h, run in self.bases.items()}
         finest = min(errors)
         errors[finest] = max(self.reference.step_error, self.reference.error)
-        words = in_brief(self.parts, choice)
+        self.table = [replace(one, error=errors[one.step])
+                      if one.kind == "reference" and one.step != finest else one
+                      for one in self.table]
         for h in sorted(errors):
-            self.table.append(Trial(words, h, 0.0 if h == finest else errors[h],
-                                    self.bases[h].seconds))
             run = self.bases[h]
             self.tried.append(Tried(choice._replace(step=Step(h)), errors[h], errors[h],
                                     run.seconds, self.worst(run), run.h))
         recorded = Recorded(self.model, first.result, self.quantities.wholes(first.result),
-                            self.reference.sizes, first.values.frequencies)
+                            self.reference.sizes, first.values.frequencies, self.parts)
         self.estimates = Estimates(recorded, self.parts,
                                    {Step(h): error for h, error in errors.items()})
 
@@ -175,21 +190,62 @@ class Laboratory:
             self._ports = found.port_names, found.histories
         return missed(*self._ports, h, self.runs.t_end)
 
+    def _lengthen(self) -> None:
+        """Find the longest step that the motion is resolved with: forms are tried with it alone."""
+        if not self.quantities.histories:
+            self.trial = Step(max(self.bases))
+            return
+        self._try_longer()
+        # unresolved vibrations make forms differ by up to the error of the step
+        most = {h: COARSE if h <= self.runs.h else SHARE * self.tolerance for h in self.bases}
+        resolving = [h for h, run in self.bases.items() if self.worst(run).error <= most[h]]
+        self.trial = Step(max(resolving, default=min(self.bases)))
+
+    def _try_longer(self) -> None:
+        """Run the reference model with longer steps than the given one where they may do."""
+        h, count = self.runs.h, round(self.runs.t_end / self.runs.h)
+        for k in LONGER:
+            error = self.worst(self.bases[max(self.bases)]).error
+            if (count % k or ORDER_FACTOR * error > LONGEST * self.tolerance
+                    or self.missed(k * h).share > MISSED):
+                return
+            try:
+                self._base(k * h)
+            except SimulationError:
+                return
+
     def _guard(self) -> None:
         """Run the reference model off the grid, and disturbed: what that casts doubt on."""
         fine = min(self.bases)
         self.warnings = self.bases[fine].result.warnings
         if not self.quantities.histories:
             return
-        step = Step(OFF_GRID * fine)
-        run = self.runs.run(self.builder.build(self.detailed), step, every=1)
-        self.doubts.append(off_the_grid(run.result, run.values, step.h, self.reference,
-                                        self.runs.h))
-        coarse = max(self.bases)
+        step, whole = Step(OFF_GRID * fine), self.builder.build(self.detailed)
+        run = self.beside(whole, step, "off the grid of all others", every=1)
+        off, doubt = off_the_grid(run.result, run.values, step.h, self.reference, self.runs.h)
+        self.table[-1] = replace(self.table[-1], error=off)
+        coarse = min(self.trial.h, max(h for h in self.bases if h <= self.runs.h))
         still = self.bases[coarse].result
         scales = Scales.of(still)
-        other = self.runs.run(disturbed(self.builder.build(self.detailed), scales), Step(coarse))
-        self.doubts.append(amplified(other.result, still, scales))
+        other = self.beside(disturbed(whole, scales), Step(coarse), "slightly disturbed")
+        self.table[-1] = replace(self.table[-1], error=self.apart(other, coarse))
+        self.doubts += [doubt, amplified(other.result, still, scales)]
+
+    def beside(self, model: Model, step: Step, words: str, every: int = 0) -> Run:
+        """Run a model as rich as the reference model, or richer, that is no choice.
+
+        Raises
+        ------
+        InputError, SimulationError
+            It does not run, or lacks a quantity.
+        """
+        run = self.runs.run(model, step, every=every)
+        self.count += 1
+        work = self.cost.work(self.detailed, run.iterations)
+        self._work, self._guards = self._work + work, self._guards + work
+        self.table.append(Trial(f"the reference model {words}", step.h, 0.0, run.seconds,
+                                kind="guard"))
+        return run
 
     @property
     def unstable(self) -> bool:
@@ -240,9 +296,9 @@ class Laboratory:
             It cannot be made, does not run, or lacks a quantity.
         """
         found = self.runs.run(self.builder.build(choice), choice.step, watched)
-        if self._unit == 0.0:
+        self.count += 1
+        if self._work == 0.0:
             self.cost.measured(choice, found.seconds, found.iterations)
-            self._unit = self.cost.work(choice, found.iterations)
         self._work += self.cost.work(choice, found.iterations)
         self.cost.counted(choice.step, found.iterations)
         return found
