@@ -15,6 +15,10 @@ if TYPE_CHECKING:
 KINDS = {"reference": "reference model", "alone": "one part alone", "together": "together",
          "confirmation": "half the step", "given": "as given", "guard": "guard of the reference"}
 
+NOTES = ("error: largest difference from the reference model at any time, or of what is measured, "
+         "relative to the quantity's size, with the reference's own",
+         "time: of the loop, of single runs; the chosen one's is the least of several",
+         "guards: the reference model off the grid, disturbed, or with more bodies")
 AUTO = "auto"           # of a step: chosen by the search
 NOT_CONFIRMED = 3       # exit code of advice that is as uncertain as the reference
 
@@ -78,7 +82,7 @@ def run(options: argparse.Namespace) -> int:
     if options.code:
         print("\n" + advice.code(_given(options)) + "\n")
     if options.output:
-        _draw(advice, scene.name, options.output)
+        _draw(advice, scene.name, options.quantity, options.output)
         print(f"picture: {options.output}")
     print(last)
     return interrupts.exit_code() or (0 if advice.confirmed else NOT_CONFIRMED)
@@ -136,12 +140,16 @@ def _given(options: argparse.Namespace) -> list[str]:
     return [f"from {build.__module__} import build", f"model = build({arguments}).model"]
 
 
-def _draw(advice: "Advice", name: str, path: Path) -> None:
-    """The runs of the search on a chart."""
+def _draw(advice: "Advice", name: str, quantities: list[str], path: Path) -> None:
+    """The runs of the search on a chart, each once; guards are no models to choose from."""
     from sebody.verify import chart
 
-    points = [chart.Point(KINDS[one.kind], f"{one.change}; {_steps(one)}", one.error,
-                          one.seconds / advice.t_end, 0, one.step, 0.0) for one in advice.table]
-    choice = chart.Point("chosen", "chosen", advice.error, advice.seconds / advice.t_end, 0,
-                         advice.step, 0.0)
-    chart.draw(name, points, chart.front([*points, choice]), 0.0, path, choice, advice.tolerance)
+    chosen = advice.trial
+    points = {id(one): chart.Point(
+        KINDS[one.kind], f"{one.change}; {_steps(one)}", one.error,
+        (advice.seconds if one is chosen else one.seconds) / advice.t_end, 0, one.step, 0.0)
+        for one in advice.table}
+    choice = points.get(id(chosen))
+    best = [points[id(one)] for one in advice.table if one.kind != "guard"]
+    chart.draw(f"{name}, {', '.join(quantities)}", points.values(), chart.front(best), 0.0, path,
+               choice, advice.tolerance, NOTES)

@@ -275,6 +275,11 @@ def _number(value: object) -> str:
     return f"{value:.2g}" if isinstance(value, float) else str(value)
 
 
+def _plain(value: object) -> object:
+    """A number of NumPy as one of Python."""
+    return value.item()
+
+
 def main(arguments: list[str] | None = None) -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
@@ -299,9 +304,9 @@ def main(arguments: list[str] | None = None) -> None:
                              else measured(scene))
         if options.keep:
             with replacing(options.keep, "numbers") as file:
-                file.write(json.dumps({**kept, **found}).encode())
+                file.write(json.dumps({**kept, **found}, default=_plain).encode())
         print(f"{scene.name}: {time.perf_counter() - begin:.0f} s", file=sys.stderr, flush=True)
-    print(json.dumps(found) if options.json else table(found))
+    print(json.dumps(found, default=_plain) if options.json else table(found))
 
 
 if __name__ == "__main__":

@@ -196,7 +196,9 @@ def test_chart_writes_table_and_picture(tmp_path, monkeypatch, capsys):
     assert "front" in capsys.readouterr().out and picture.stat().st_size > 10_000
     with table.open() as file:
         rows = list(csv.DictReader(file))
-    assert [row["label"] for row in rows] == [v.label for v in few]
+    assert [row["label"] for row in rows[1:]] == [v.label for v in few]
+    assert rows[0]["family"] == "advised" and float(rows[0]["error"]) <= 1e-2
+    assert {row["quantity"] for row in rows} == {"tip.position"}
     errors = {row["label"]: float(row["error"]) for row in rows}
     assert errors["1 body, 2 modes, option b"] == pytest.approx(9.0e-4, rel=0.1)
     assert errors["1 body, 2 modes"] < 3e-4
@@ -215,7 +217,7 @@ def test_any_scene_has_a_chart(tmp_path, capsys):
     assert picture.stat().st_size > 10_000
     with table.open() as written:
         points = {row["label"]: row for row in csv.DictReader(written)}
-    assert {"modes", "bodies", "inertia", "rigid", "steps", "schemes"} == {
+    assert {"advised", "modes", "bodies", "inertia", "rigid", "steps", "schemes"} == {
         point["family"] for point in points.values()}
     errors = {label: float(point["error"]) for label, point in points.items()}
     limit = float(out.split("good to ")[1].split(",")[0])
@@ -228,10 +230,10 @@ def test_any_scene_has_a_chart(tmp_path, capsys):
 
 def test_a_mechanism_has_a_chart_of_steps_and_schemes():
     """Rigid bodies: errors fall with the square of the step; the reference knows its own error."""
-    study = chart.measure_any(replace(four_bar.build(1), t_end=0.4), "B1.velocity")
+    study, = chart.measure_any(replace(four_bar.build(1), t_end=0.4), ["B1.velocity"])
     errors = {point.label: point.error for point in study.points}
     assert study.quantity == "B1.velocity" and set(p.family for p in study.points) == {
-        "steps", "schemes"}
+        "advised", "steps", "schemes"}
     assert errors["step x 4"] / errors["step x 2"] == pytest.approx(4.0, rel=0.1)
     assert errors["step / 2"] / errors["step / 4"] == pytest.approx(4.0, rel=0.1)
     assert study.error < 0.01 * errors["step / 4"]
@@ -240,9 +242,9 @@ def test_a_mechanism_has_a_chart_of_steps_and_schemes():
 def test_what_has_no_chart_is_refused():
     scene = four_bar.build(1)
     with pytest.raises(InputError, match="quantity 'ground 0.position' does not change: give one"):
-        chart.measure_any(replace(scene, t_end=0.1), "ground 0.position")
+        chart.measure_any(replace(scene, t_end=0.1), ["ground 0.position"])
     with pytest.raises(InputError, match="'C.position' is unknown: did you mean"):
-        chart.measure_any(replace(scene, t_end=0.1), "C.position")
+        chart.measure_any(replace(scene, t_end=0.1), ["C.position"])
     still = Model(planar=True)
     still.point_mass("mass", still.node("a", (1.0, 2.0), "translation"), 1.0)
     with pytest.raises(InputError, match="nothing moves: give the scene a load, a drive or"):

@@ -164,6 +164,13 @@ class Advice:
     def __repr__(self) -> str:
         return self.summary()
 
+    @property
+    def trial(self) -> Trial:
+        """The run of the table that was chosen."""
+        local = None if self.local is None else self.local.relative
+        return next(one for one in reversed(self.table)
+                    if (one.error, one.step, one.local) == (self.error, self.step, local))
+
     def rows(self) -> list[dict]:
         """The table as plain dictionaries, which ``pandas.DataFrame`` takes."""
         return [asdict(one) for one in self.table]

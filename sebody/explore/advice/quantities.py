@@ -30,6 +30,13 @@ class Values(NamedTuple):
     measures: tuple[Measure, ...] = ()
 
 
+def parted(values: Values) -> list[Values]:
+    """Each quantity by itself: histories in their order, then frequencies."""
+    return [*(Values([one], [], (measure,)) for one, measure in zip(
+        values.histories, values.measures, strict=True)),
+        *(Values([], [omega], ()) for omega in values.frequencies)]
+
+
 class Quantities:
     """Names of quantities.
 

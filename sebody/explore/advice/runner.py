@@ -151,7 +151,7 @@ class Laboratory:
         finest = min(errors)
         errors[finest] = max(self.reference.step_error, self.reference.error)
         self.table = [replace(one, error=errors[one.step])
-                      if one.kind == "reference" and one.step != finest else one
+                      if one.kind == "reference" else one
                       for one in self.table]
         for h in sorted(errors):
             run = self.bases[h]
