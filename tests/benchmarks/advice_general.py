@@ -274,7 +274,7 @@ GENERAL: Sequence[AdviceScene] = (
     AdviceScene("gripper", "unequal links, rigid blocks, servo joints", gripper, 0.005, 0.6,
                 ("grip.position",), False, start="equilibrium", exact=16),
     AdviceScene("tower frame", "fifteen welded bars", tower_frame, 0.002, 0.4,
-                ("left 3.position", "right 3.velocity rms"), False, exact=16),
+                ("left 3.position", "right 3.velocity rms"), False, exact=12),
     AdviceScene("suspension", "stout arms on soft springs", suspension, 0.005, 0.5,
                 ("wheel.position", "strut.force"), False, start="equilibrium", exact=16),
     AdviceScene("scissor lift", "eight beams in closed loops", scissor_lift, 0.01, 0.8,
