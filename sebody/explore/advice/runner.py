@@ -20,6 +20,7 @@ from sebody.explore.advice.guards import (
     off_the_grid,
 )
 from sebody.explore.advice.indicators.recorded import Recorded
+from sebody.explore.advice.judgement import SHARE, SHORTER, judge
 from sebody.explore.advice.labels import in_brief
 from sebody.explore.advice.loads import SEEN, Missed, missed
 from sebody.explore.advice.outcome import Doubt, Trial
@@ -29,7 +30,6 @@ from sebody.explore.advice.runs import Run, Runs
 from sebody.model.model import Model
 
 FINER = (4, 2, 1)       # parts of the given step, of the first runs of the reference model
-SHORTER = (8, 16, 32, 64)     # further ones, where the tolerance needs them
 GOOD = 0.2              # of the tolerance, that the reference may be off by without them
 LARGEST = 0.9           # relative tolerance, that an absolute one is at most
 LONGER = (2, 4)         # given steps, that a step may be
@@ -37,9 +37,6 @@ MISSED = 0.2            # of a load, that steps which are tried may not see
 COARSE = 0.02           # error by a step up to the given one, with which forms are tried alone
 LONGEST = 2.0           # of the tolerance, that a longer step is expected to be off by
 SHORTEST = 64           # parts of the given step, of the grid
-EARLY = 3               # steps of the grid, that errors are those of the start in
-MARGIN = 1.2            # of a tolerance that would pass
-SHARE = 0.5             # of the tolerance, that the reference must be good to
 
 
 @dataclass
@@ -141,7 +138,7 @@ class Laboratory:
                 break
             self._base(self.runs.h / part)
             self.reference = self._reference()
-        self._judge()
+        judge(self.reference, self.tolerance, self.runs.h, self.bases)
         self._unit = self.cost.work(choice, self.bases[min(self.bases)].iterations)
         self._lengthen()
         self.table += [Trial(in_brief(self.parts, choice), h, 0.0, run.seconds)
@@ -229,7 +226,9 @@ class Laboratory:
         scales = Scales.of(still)
         other = self.beside(disturbed(whole, scales), Step(coarse), "slightly disturbed")
         self.table[-1] = replace(self.table[-1], error=self.apart(other, coarse))
-        self.doubts += [doubt, amplified(other.result, still, scales)]
+        growth = amplified(other.result, still, scales)
+        self.doubts += [doubt, growth.doubt]
+        self.remarks += growth.remark
 
     def beside(self, model: Model, step: Step, words: str, every: int = 0) -> Run:
         """Run a model as rich as the reference model, or richer, that is no choice.
@@ -261,31 +260,6 @@ class Laboratory:
     def _reference(self) -> Reference:
         found = [self.bases[h].values for h in sorted(self.bases, reverse=True)]
         return reference(found, self.absolute is not None)
-
-    def _judge(self) -> None:
-        """Refuse a tolerance that the reference is not good for."""
-        if self.reference.error <= SHARE * self.tolerance:
-            return
-        worst, fine = self.reference.worst, min(self.bases)
-        first = worst.row is not None and worst.row < EARLY
-        where = "" if worst.row is None else f" at t = {worst.row * self.runs.h:.4g}"
-        told = (f"{worst.quantity} is known to {self.reference.error:.2g} of its change only, worst"
-                f"{where}, even with the step {fine:.3g}")
-        enough = (f"a tolerance of {self.reference.error / SHARE * MARGIN:.1g} would pass: half of "
-                  "it is left for the reference")
-        if first:
-            raise InputError(
-                f"{told}: the model is loaded suddenly at the start, which its fastest vibrations "
-                "answer; start from the equilibrium (start='equilibrium'), let loads grow from "
-                f"zero, or measure {worst.quantity} by rms or below a frequency; {enough}")
-        if not self.reference.falls:
-            raise SimulationError(
-                f"{told}, and shorter steps do not change that: the motion depends on the step, as "
-                "chaotic motions, impacts, and vibrations do that no damping takes away; give an "
-                f"earlier end, damping, or measure {worst.quantity} by rms, peak or below a "
-                f"frequency; {enough}", self.bases[fine].result)
-        raise InputError(f"{told}: shorter steps that are tried, down to "
-                         f"{self.runs.h / SHORTER[-1]:.3g}, are not enough; {enough}")
 
     def run(self, choice: Choice, watched: bool = False) -> Run:
         """Run a choice.
