@@ -141,7 +141,7 @@ def _times(lab: Laboratory, truth: Truth, chosen: Choice, tolerance: float) -> d
             model = lab.builder.build(choice)
         except SebodyError:
             continue
-        if truth.error(model, choice.step) <= tolerance:
+        if max(truth.error(model, one) for one in (choice.step, choice.step.finer())) <= tolerance:
             with poor_variants():
                 passing.append((processor_seconds(truth.begun(model, choice.step),
                                                   truth.scene.t_end), choice))

@@ -8,6 +8,7 @@ from sebody.explore.advice.runs import Run
 
 SHORTER = (8, 16, 32, 64)     # parts of the given step, where the tolerance needs them
 EARLY = 3               # steps of the grid, that errors are those of the start in
+LARGEST = 0.95          # relative tolerance
 MARGIN = 1.2            # of a tolerance that would pass
 SHARE = 0.5             # of the tolerance, that the reference must be good to
 
@@ -38,8 +39,9 @@ def judge(reference: Reference, tolerance: float, grid: float, bases: Mapping[fl
     where = "" if worst.row is None else f" at t = {worst.row * grid:.4g}"
     told = (f"{worst.quantity} is known to {reference.error:.2g} of its change only, worst"
             f"{where}, even with the step {fine:.3g}")
-    enough = (f"a tolerance of {reference.error / SHARE * MARGIN:.1g} would pass: half of it is "
-              "left for the reference")
+    passing = reference.error / SHARE * MARGIN
+    enough = (f"a tolerance of {passing:.1g} would pass: half of it is left for the reference"
+              if passing < LARGEST else "no tolerance below 1 would pass")
     if first:
         raise InputError(
             f"{told}: the model is loaded suddenly at the start, which its fastest vibrations "

@@ -93,8 +93,14 @@ class Quantities:
             warnings.simplefilter("ignore", LimitWarning)
             self.of(Simulation(model, h).result(), h)
 
-    def of(self, result: Result, h: float, grid: float = 0.0) -> Values:
+    def of(self, result: Result, h: float, grid: float = 0.0,
+           frequencies: list[float] | None = None) -> Values:
         """The quantities of a run that was recorded with a step.
+
+        Parameters
+        ----------
+        frequencies : list of float, optional
+            Known ones, which the run shares with another.
 
         Raises
         ------
@@ -104,7 +110,7 @@ class Quantities:
         histories = [self.places.history(result, name, _history) for name in self.histories]
         return Values([measure.filtered(history, h, grid) for measure, history in zip(
             self.measures, histories, strict=True)],
-            self._frequencies(result) if self.numbers else [], self.measures)
+            frequencies if frequencies is not None else self._frequencies(result), self.measures)
 
     def wholes(self, result: Result) -> list[str]:
         """The quantities that the histories are components of, or they themselves."""
@@ -112,6 +118,8 @@ class Quantities:
                 for name in self.histories]
 
     def _frequencies(self, result: Result) -> list[float]:
+        if not self.numbers:
+            return []
         try:
             omega = steady_frequencies(result)
         except (InputError, SimulationError) as reason:

@@ -34,6 +34,7 @@ GOOD = 0.2              # of the tolerance, that the reference may be off by wit
 LARGEST = 0.9           # relative tolerance, that an absolute one is at most
 LONGER = (2, 4)         # given steps, that a step may be
 MISSED = 0.2            # of a load, that steps which are tried may not see
+REGULAR = 0.05          # error from which errors by the step fall as they will for shorter ones
 COARSE = 0.02           # error by a step up to the given one, with which forms are tried alone
 LONGEST = 2.0           # of the tolerance, that a longer step is expected to be off by
 SHORTEST = 64           # parts of the given step, of the grid
@@ -133,8 +134,9 @@ class Laboratory:
             if self.runs.h / part in self.bases:
                 continue
             most = ORDER_FACTOR**(len(SHORTER) - SHORTER.index(part))
-            if self.reference.error <= GOOD * self.tolerance or (
-                    self.reference.step_error / most > self.tolerance):
+            hopeless = (self.reference.step_error < REGULAR
+                        and self.reference.step_error / most > self.tolerance)
+            if self.reference.error <= GOOD * self.tolerance or hopeless:
                 break
             self._base(self.runs.h / part)
             self.reference = self._reference()
@@ -218,27 +220,29 @@ class Laboratory:
         if not self.quantities.histories:
             return
         step, whole = Step(OFF_GRID * fine), self.builder.build(self.detailed)
-        run = self.beside(whole, step, "off the grid of all others", every=1)
+        known = self.bases[fine].values.frequencies
+        run = self.beside(whole, step, "off the grid of all others", 1, known)
         off, doubt = off_the_grid(run.result, run.values, step.h, self.reference, self.runs.h)
         self.table[-1] = replace(self.table[-1], error=off)
         coarse = min(self.trial.h, max(h for h in self.bases if h <= self.runs.h))
         still = self.bases[coarse].result
         scales = Scales.of(still)
-        other = self.beside(disturbed(whole, scales), Step(coarse), "slightly disturbed")
+        other = self.beside(disturbed(whole, scales), Step(coarse), "slightly disturbed", 0, known)
         self.table[-1] = replace(self.table[-1], error=self.apart(other, coarse))
         growth = amplified(other.result, still, scales)
         self.doubts += [doubt, growth.doubt]
         self.remarks += growth.remark
 
-    def beside(self, model: Model, step: Step, words: str, every: int = 0) -> Run:
-        """Run a model as rich as the reference model, or richer, that is no choice.
+    def beside(self, model: Model, step: Step, words: str, every: int = 0,
+               frequencies: list[float] | None = None) -> Run:
+        """Run a model as rich as the reference model, or richer, that is no choice; see `Runs.run`.
 
         Raises
         ------
         InputError, SimulationError
             It does not run, or lacks a quantity.
         """
-        run = self.runs.run(model, step, every=every)
+        run = self.runs.run(model, step, every=every, frequencies=frequencies)
         self.count += 1
         work = self.cost.work(self.detailed, run.iterations)
         self._work, self._guards = self._work + work, self._guards + work
