@@ -230,13 +230,40 @@ def test_any_scene_has_a_chart(tmp_path, capsys):
 
 def test_a_mechanism_has_a_chart_of_steps_and_schemes():
     """Rigid bodies: errors fall with the square of the step; the reference knows its own error."""
-    study, = chart.measure_any(replace(four_bar.build(1), t_end=0.4), ["B1.velocity"])
+    studies = chart.measure_any(replace(four_bar.build(1), t_end=0.4),
+                                ["B1.velocity", "B0.position rms"])
+    study, other = studies
     errors = {point.label: point.error for point in study.points}
     assert study.quantity == "B1.velocity" and set(p.family for p in study.points) == {
         "advised", "steps", "schemes"}
     assert errors["step x 4"] / errors["step x 2"] == pytest.approx(4.0, rel=0.1)
     assert errors["step / 2"] / errors["step / 4"] == pytest.approx(4.0, rel=0.1)
     assert study.error < 0.01 * errors["step / 4"]
+    # the other quantity is of the same runs
+    assert other.quantity == "B0.position rms"
+    assert [(p.label, p.cost) for p in other.points] == [(p.label, p.cost) for p in study.points]
+    assert [p.error for p in other.points] != [p.error for p in study.points]
+    # the advised model keeps both
+    assert study.choice.family == "advised" and study.choice.cost == other.choice.cost
+    assert max(study.choice.error, other.choice.error) <= study.tolerance == 1e-2
+
+
+def test_several_quantities_are_panels_with_what_errors_and_bars_mean(tmp_path, figures):
+    ring = replace(POINT, family="advised", label="advised: rigid; step 0.1", cost=2e-4, error=5e-3)
+    studies = [chart.Study([POINT, ring, replace(POINT, label="b", cost=3e-4, slowest=9e-4,
+                                                 error=error)], name, 1e-6, ring, 1e-2,
+                           ("error: of the largest", "time: bars end at slowest", "peers: none"))
+               for name, error in (("tip.position", 1e-4), ("tip.velocity rms", 2e-4))]
+    chart.draw_panels("links", chart.panels(studies), tmp_path / "chart.png", studies[0].notes)
+    figure, = figures
+    left, right = figure.axes
+    assert [axes.get_title("left").splitlines()[0] for axes in (left, right)] == [
+        study.quantity for study in studies]
+    assert left.get_title("left").splitlines()[1:] == list(studies[0].notes)
+    for axes in (left, right):
+        rings = [line for line in axes.lines if line.get_markersize() == 13]
+        assert [(line.get_xdata()[0], line.get_ydata()[0]) for line in rings] == [(2e-4, 5e-3)]
+        assert "advised: rigid; step 0.1" in [text.get_text() for text in axes.texts]
 
 
 def test_what_has_no_chart_is_refused():
