@@ -282,7 +282,8 @@ def _plain(value: object) -> object:
     return value.item()
 
 
-def main(arguments: list[str] | None = None) -> None:
+def main(arguments: list[str] | None = None,
+         scenes: Iterable[AdviceScene] = (*SCENES, *GENERAL)) -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help="all of them by default")
@@ -295,7 +296,7 @@ def main(arguments: list[str] | None = None) -> None:
     kept = (json.loads(options.keep.read_text(encoding="utf-8"))
             if options.keep and options.keep.exists() else {})
     found = {}
-    for scene in (*SCENES, *GENERAL):
+    for scene in scenes:
         if options.scenes and scene.name not in options.scenes:
             continue
         begin = time.perf_counter()
