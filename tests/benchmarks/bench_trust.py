@@ -26,7 +26,7 @@ from sebody.errors import SebodyError
 from sebody.explore.advice.changes import Choice, Step
 from sebody.explore.advice.estimates import expected
 from sebody.explore.advice.forms import Form, alike
-from sebody.explore.advice.limits import refusal
+from sebody.explore.advice.limits import include, refusal
 from sebody.explore.advice.quantities import Quantities, Values, compared
 from sebody.explore.advice.reference import Reference, reference
 from sebody.explore.advice.report import conclusion
@@ -100,6 +100,7 @@ def laboratory(scene: AdviceScene, tolerance: float) -> Laboratory:
     lab = Laboratory(model, wanted, Runs(wanted, scene.h, scene.t_end, None,
                                          scene.start is not None), tolerance)
     lab.start()
+    include(lab)
     return lab
 
 

@@ -14,6 +14,7 @@ from sebody.explore.advice.runner import Laboratory, Tried
 from sebody.explore.advice.search import Search
 from sebody.model.variants import divide
 
+MEASURED = 0.1          # of the tolerance: larger estimates of beams are replaced by a run
 LEFT = 4.0 / 3.0        # of what a division into twice as many bodies changes: of second order
 FALL = 0.1      # of an error by omitted modes, with each doubling of their number, at least
 
@@ -25,13 +26,23 @@ def limits(lab: Laboratory) -> list[Doubt]:
     found, doubtful = [], []
     for part in lab.parts:
         own = [_linear(recorded, part), _modal(recorded, part)]
-        if part.beam and max(one.error for one in own) > TRUSTED * lab.tolerance:
+        if part.beam and max(one.error for one in own) > MEASURED * lab.tolerance:
             doubtful.append(part)
         else:
             found += own
     if doubtful:
         found.append(_divided(lab, doubtful))
     return sorted(found, key=lambda one: -one.error)
+
+
+def include(lab: Laboratory) -> None:
+    """Add to the error of the reference what its division is measured to leave, if it is small.
+
+    More than that is a doubt: no model is confirmed.
+    """
+    for one in limits(lab):
+        if one.measured and one.error <= TRUSTED * lab.tolerance:
+            lab.add_error(one.error)
 
 
 def _divided(lab: Laboratory, parts: list[Part]) -> Doubt:
@@ -48,7 +59,7 @@ def _divided(lab: Laboratory, parts: list[Part]) -> Doubt:
         return Doubt(1.0, f"{names} divided further does not run: {reason}", "give a smaller h")
     apart = lab.apart(run, step.h)
     lab.table[-1] = replace(lab.table[-1], error=apart)
-    return Doubt(LEFT * apart, sentence, "build it of several beams")
+    return Doubt(LEFT * apart, sentence, "build it of several beams", True)
 
 
 def _linear(recorded: Recorded, part: Part) -> Doubt:

@@ -79,11 +79,15 @@ class Reason(NamedTuple):
 
 
 class Doubt(NamedTuple):
-    """An error that the reference model itself may have: how large, why, and what helps."""
+    """An error that the reference model itself may have: how large, why, and what helps.
+
+    Where it was measured and is small, the errors of runs contain it.
+    """
 
     error: float
     sentence: str
     remedy: str
+    measured: bool = False
 
 
 @dataclass(frozen=True, eq=False)

@@ -233,6 +233,13 @@ class Laboratory:
         self.doubts += [doubt, growth.doubt]
         self.remarks += growth.remark
 
+    def add_error(self, error: float) -> None:
+        """Add an error to that of the reference, and so to those of all runs."""
+        self.reference = self.reference._replace(error=self.reference.error + error)
+        for one in self.tried:
+            one.error += error
+            self.estimates.learn_step(one.choice.step, one.error)
+
     def beside(self, model: Model, step: Step, words: str, every: int = 0,
                frequencies: list[float] | None = None) -> Run:
         """Run a model as rich as the reference model, or richer, that is no choice; see `Runs.run`.
