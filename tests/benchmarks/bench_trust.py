@@ -49,6 +49,7 @@ EXACT = (4, 8, 16)      # steps of the truth in one given step
 CLOSE = 1.5             # times the chosen one's time, up to which others are timed again
 TIMED = 6               # of those
 MOST = 40               # that run at all, evenly over the grid by their predicted times
+SAME = 1.01             # factor by which errors against two references may differ
 FLOOR = 0.01            # of the tolerance: smaller errors are alike
 TEN = 10.0
 GRID = ((1, 0, "b", False), (1, 1, "b", False), (1, 2, "c", True), (1, 4, "c", True),
@@ -232,8 +233,10 @@ def shares(found: dict) -> dict:
         "cases": len(rows), "answered at the first try": len(answered), "confirmed": len(sure),
         "confirmed, and true error within the tolerance": sum(
             row["true"] <= tolerance for tolerance, row in sure),
-        "confirmed, and true error at most the confirmed one": sum(
-            row["true"] <= row["error"] for _, row in sure),
+        "confirmed, and true error at most that, to 1 % and the truth's own error": sum(
+            row["true"] <= SAME * row["error"] + one["truth"] for one in found.values()
+            for row in one.get("tolerances", {}).values()
+            if not row["refused"] and row["confirmed"]),
         "true over confirmed error, most": max(
             (row["true"] / row["error"] for _, row in sure), default=np.nan),
         "not confirmed, and true error above the tolerance": sum(
