@@ -243,7 +243,8 @@ def shares(found: dict) -> dict:
             row["true"] > tolerance for tolerance, row in answered if not row["confirmed"]),
         "time within 1.5 of the least of the grid": sum(one <= 1.5 for one in ratio),
         "time over the least, median and most": _spread(ratio),
-        "work of the search beyond guards, in runs of the richest, median and most": _spread(work),
+        "work of the search beyond guards, in runs of the reference model, median and most": (
+            _spread(work)),
         "single forms": len(off),
         "predicted within ten": sum(1 / TEN <= one <= TEN for one in off) / max(len(off), 1),
         "worst predictions": [min(off, default=np.nan), max(off, default=np.nan)]}
@@ -256,7 +257,7 @@ def _spread(values: list[float]) -> list[float]:
 def table(found: dict) -> str:
     """The page's table."""
     lines = ["| scene | tolerance | chosen | confirmed | true error (of the truth itself) | time "
-             "over the least | search, guards: runs of the richest |",
+             "over the least | search, guards: runs of the reference model |",
              "|---|---|---|---|---|---|---|"]
     for name, one in found.items():
         for tolerance, row in one.get("tolerances", {}).items():
