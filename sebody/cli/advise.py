@@ -13,9 +13,13 @@ if TYPE_CHECKING:
     from sebody.scenes.scene import Scene
 
 KINDS = {"reference": "reference model", "alone": "one part alone", "together": "together",
-         "confirmation": "half the step", "given": "as given"}
+         "confirmation": "half the step", "given": "as given", "guard": "guard of the reference"}
 
-
+NOTES = ("error: largest difference from the reference model at any time, or of what is measured, "
+         "relative to the quantity's size, with the reference's own",
+         "time: of the loop, of single runs; the chosen one's is the least of several",
+         "guards: the reference model off the grid, disturbed, or with more bodies")
+AUTO = "auto"           # of a step: chosen by the search
 NOT_CONFIRMED = 3       # exit code of advice that is as uncertain as the reference
 
 
@@ -32,8 +36,9 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
                         help="largest error, relative to a quantity's largest change (default "
                              "1e-3), or with a unit, such as 2mm")
     parser.add_argument("--t-end", type=float, metavar="T", help="end time, the scene's by default")
-    parser.add_argument("--step", type=float, metavar="H",
-                        help="usual time step, the scene's by default; the reference has a quarter")
+    parser.add_argument("--step", type=_step, metavar="H",
+                        help="usual time step, the scene's by default; the reference has a "
+                             "quarter; 'auto' begins with a 128th of the time")
     parser.add_argument("--budget", type=float, default=20.0, metavar="N",
                         help="work of the search, in runs of the reference model (default 20)")
     parser.add_argument("--start", choices=["equilibrium"],
@@ -44,6 +49,16 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
                         help="draw error against time of all runs, with the choice")
     parser.add_argument("--code", action="store_true", help="print the chosen model as Python")
     return parser
+
+
+def _step(text: str) -> float | str:
+    """A time step, or ``auto``."""
+    if text == AUTO:
+        return text
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"step is {text!r}: give a number, or {AUTO}") from None
 
 
 def run(options: argparse.Namespace) -> int:
@@ -67,7 +82,7 @@ def run(options: argparse.Namespace) -> int:
     if options.code:
         print("\n" + advice.code(_given(options)) + "\n")
     if options.output:
-        _draw(advice, scene.name, options.output)
+        _draw(advice, scene.name, options.quantity, options.output)
         print(f"picture: {options.output}")
     print(last)
     return interrupts.exit_code() or (0 if advice.confirmed else NOT_CONFIRMED)
@@ -105,7 +120,8 @@ def _advised(options: argparse.Namespace, scene: "Scene") -> "Advice":
 
     with interrupts.held():
         try:
-            return advise(scene.model, scene.h if options.step is None else options.step,
+            given = scene.h if options.step is None else options.step
+            return advise(scene.model, None if given == AUTO else given,
                           scene.t_end if options.t_end is None else options.t_end,
                           options.quantity, options.tolerance, options.budget, progress,
                           options.start)
@@ -124,12 +140,16 @@ def _given(options: argparse.Namespace) -> list[str]:
     return [f"from {build.__module__} import build", f"model = build({arguments}).model"]
 
 
-def _draw(advice: "Advice", name: str, path: Path) -> None:
-    """The runs of the search on a chart."""
+def _draw(advice: "Advice", name: str, quantities: list[str], path: Path) -> None:
+    """The runs of the search on a chart, each once; guards are no models to choose from."""
     from sebody.verify import chart
 
-    points = [chart.Point(KINDS[one.kind], f"{one.change}; {_steps(one)}", one.error,
-                          one.seconds / advice.t_end, 0, one.step, 0.0) for one in advice.table]
-    choice = chart.Point("chosen", "chosen", advice.error, advice.seconds / advice.t_end, 0,
-                         advice.step, 0.0)
-    chart.draw(name, points, chart.front([*points, choice]), 0.0, path, choice, advice.tolerance)
+    chosen = advice.trial
+    points = {one: chart.Point(
+        KINDS[one.kind], f"{one.change}; {_steps(one)}", one.error,
+        (advice.seconds if one is chosen else one.seconds) / advice.t_end, 0, one.step, 0.0)
+        for one in advice.table}
+    choice = points.get(chosen)
+    best = [points[one] for one in advice.table if one.kind != "guard"]
+    chart.draw(f"{name}, {', '.join(quantities)}", points.values(), chart.front(best), 0.0, path,
+               choice, advice.tolerance, NOTES)

@@ -14,9 +14,11 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     parser.add_argument("scene", metavar="SCENE", help="name of a scene or a file, FILE.py")
     parser.add_argument("--output", type=Path, metavar="FILE.png", help="draw it")
     parser.add_argument("--csv", type=Path, metavar="FILE.csv", help="write the points")
-    parser.add_argument("--quantity", metavar="NAME",
+    parser.add_argument("--quantity", action="append", default=[], metavar="NAME",
                         help="compared quantity, such as tip.position (default: position of the "
-                             "scene's tip)")
+                             "scene's tip); may be repeated: a panel each")
+    parser.add_argument("--tolerance", type=float, metavar="E",
+                        help="of the model that is advised and marked (default 1e-2)")
     parser.add_argument("--t-end", type=float, metavar="T", help="end time, the scene's by default")
     parser.add_argument("--step", type=float, metavar="H", help="time step, the scene's by default")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE",
@@ -38,17 +40,19 @@ def run(options: argparse.Namespace) -> int:
     given = {"h": options.step, "t_end": options.t_end}
     changed = {name: inputs.number(value, name, above=0) for name, value in given.items()
                if value is not None}
+    tolerance = {} if options.tolerance is None else {
+        "tolerance": inputs.number(options.tolerance, "tolerance", above=0, below=1)}
     if options.scene in chart.SCENES and not (options.quantity or changed or options.changes):
-        study = chart.measure(options.scene)
+        studies = [chart.measure(options.scene, **tolerance)]
     else:
-        study = chart.measure_any(replace(scene, **changed), options.quantity)
-    name = f"{scene.name}, {study.quantity}"
-    print(chart.report(name, study.points, study.error))
+        studies = chart.measure_any(replace(scene, **changed), options.quantity, **tolerance)
+    for study in studies:
+        print(chart.report(f"{scene.name}, {study.quantity}", study.points, study.error))
     if options.csv:
-        chart.write_csv(study.points, options.csv)
+        chart.write_csv(studies, options.csv)
         print(f"table: {options.csv}")
     if options.output:
-        chart.draw(name, study.points, chart.front(chart.own(study.points)), study.error,
-                   options.output)
+        chart.draw_panels(f"{scene.name}: error and computing time", chart.panels(studies),
+                          options.output, studies[0].notes)
         print(f"picture: {options.output}")
     return 0

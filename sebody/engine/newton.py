@@ -35,6 +35,7 @@ MOST_MATRICES = 4       # factorizations in a step
 ACCELERATION_TOLERANCE = 100.0  # tolerance relative to accelerations, over that of the increment
 WIDEST_GAP = 1e-5       # between what joints demand, relative to the extent of the model
 ROUNDED = 100.0         # of the target: where new matrices do not help, what is left is rounding
+ASTRAY = 0.5            # sizes of a coordinate, that it may end from where its rates lead
 QUICK = 0.05            # a contraction rate below this needs no acceleration by mixing
 
 
@@ -57,10 +58,27 @@ def apply_correction(system, state, scheme, mixed):
                  ACCELERATION_TOLERANCE * scheme.tolerance * accelerations) + state.clock.floor
     state.clock.acceleration_norm, state.clock.target = accelerations, target
     verdict = _verdict(system, state, norm, left_norm, target)
+    if verdict == CONVERGED and _strayed(system, state, scheme):
+        return GIVE_UP
     ended = verdict == CONVERGED or verdict == GIVE_UP
     if ended and regularized and leaves_gap(system, state, norm, scheme.stabilized):
         return LEAVES_GAP
     return verdict
+
+
+@compiled
+def _strayed(system, state, scheme):
+    """Whether a step ends half a radian, or half the model's size, from where its rates led.
+
+    A step that is too long may have such roots: the tolerance is relative to the increment, so
+    however far the iteration goes astray, it converges there.
+    """
+    reach = ASTRAY / (scheme.beta * state.clock.current_step * state.clock.current_step)
+    for i in range(system.diagonal.size):
+        if system.magnitude[i] > 0.0 and (
+                abs(state.aux[i] - state.aux_old[i]) > reach * system.magnitude[i]):
+            return True
+    return False
 
 
 @compiled

@@ -25,7 +25,6 @@ from sebody.reduction import ReducedBody
 
 ELEMENTS = 32           # of the whole beam whose frequencies are taken: right to 1e-4 and better
 NAMED = re.compile(r"(free|clamped|hinged) ([1-9])")
-RIGID = 1e-8            # of the largest square of a frequency: below, motions are rigid
 REMEDY = ("give a ratio of critical damping >= 0, or (ratio, mode) with a mode such as 'clamped 1' "
           "or an angular frequency")
 
@@ -156,5 +155,6 @@ def _frequency(K: NDArray, M: NDArray, axes: dict[str, NDArray], held: str, numb
     mass = basis.T @ M @ basis
     if not np.any(mass):
         return 0.0
+    rigid = own if held == "free" else 0      # a shift, and of bending a turn
     squares = eigh(basis.T @ K @ basis, mass, eigvals_only=True)
-    return float(np.sqrt(squares[squares > RIGID * squares.max()][number - 1]))
+    return float(np.sqrt(squares[rigid + number - 1]))

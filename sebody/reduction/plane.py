@@ -161,6 +161,8 @@ def _split(rows: NDArray, signs: NDArray) -> _Basis:
         Of these motions: even ones couple with even directions.
     """
     values, vectors = np.linalg.eigh((rows.T * signs) @ rows)
+    if not values.size:         # of a single element, whose loads need no modes
+        return _Basis(vectors, values)
     order = np.argsort(-np.abs(vectors), axis=0)[0]     # as before where nothing is to be turned
     places = np.argsort(order, kind="stable")
     return _Basis(vectors[:, places], np.where(values[places] > _NONE, 1, -1))

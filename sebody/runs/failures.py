@@ -6,6 +6,7 @@ from sebody.engine.state import (
     GAP,
     NO_START,
     REASONS,
+    SLOW,
     State,
 )
 from sebody.engine.system import System
@@ -23,7 +24,9 @@ def explained(model: Model, system: System, state: State, numbering: Numbering) 
     if fault := user_faults.fault(model, time):
         return f"{stopped}: {fault}; {KEPT}"
     if reason == GAP:
-        return f"{stopped}: {contradiction(system, state, numbering)}; {KEPT}"
+        if told := contradiction(system, state, numbering):
+            return f"{stopped}: {told}; {KEPT}"
+        reason = SLOW
     if reason == NO_START:
         return (f"{stopped}, where loads jump: {REASONS[reason]}; {KEPT}. Check loads and joints "
                 "at this time")

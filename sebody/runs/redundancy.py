@@ -143,11 +143,17 @@ class Solver:
 
 
 def contradiction(system: System, state: State, numbering: Numbering) -> str:
-    """What a failed step cannot meet: constraints, or a force on something without mass."""
+    """What a failed step cannot meet: constraints, or a force on something without mass.
+
+    Empty if that is a force on something with mass: then the step is too long, or diverged.
+    """
     n = system.diagonal.size
     left = np.abs(state.scale[:n] * (state.residual[:n] + state.constraint_residuals[:n]))
     worst = int(np.argmax(left))
     if not multiplying(system)[worst]:
+        has_inertia = system.inertias[worst] > 0.0 and system.massless_axes[worst] == 0.0
+        if has_inertia and not system.massless[0]:
+            return ""
         return (f"a force acts on {numbering.names[worst]}, which moves no mass: add mass or "
                 "inertia there, or fix it")
     parties = (left > SHARED * left.max()) & multiplying(system)

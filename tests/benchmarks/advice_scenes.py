@@ -38,6 +38,10 @@ class AdviceScene:
         What is to be kept.
     tuning : bool
         Whether the search may be tuned on it; the others are held back.
+    start : str, optional
+        As of `advise`.
+    exact : int
+        Bodies of each beam in the model that is taken for the truth.
     """
 
     name: str
@@ -47,6 +51,8 @@ class AdviceScene:
     t_end: float
     quantities: tuple[str, ...]
     tuning: bool
+    start: str | None = None
+    exact: int = 24
 
 
 def stout_four_bar() -> Model:

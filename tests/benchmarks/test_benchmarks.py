@@ -204,18 +204,38 @@ def test_advice_is_compared_with_a_full_search(tmp_path, capsys):
     assert "* within the tolerance: 2" in lines
 
 
+def test_the_word_of_advice_is_compared_with_exact_beams(tmp_path, capsys):
+    bench = imported("bench_trust")
+    scenes = [bench.AdviceScene("rod", "", pendulum, 0.01, 0.4, ("tip.position",), True, exact=8)]
+    keep = tmp_path / "numbers.json"
+    bench.main(["--json", "--keep", str(keep)], scenes)
+    found = json.loads(capsys.readouterr().out)
+    for tolerance, row in found["rod"]["tolerances"].items():
+        assert row["confirmed"] and not row["refused"]
+        # both references are good to a fifth of the tolerance and better
+        assert row["true"] <= row["error"] + 0.2 * float(tolerance)
+        assert row["least"] <= row["seconds"] and 0.0 < row["guards"] < 3.0 < 20.0 > row["work"]
+    assert found["rod"]["singles"] and all(
+        one["predicted"] > 0.0 for one in found["rod"]["singles"])
+    bench.main(["--keep", str(keep)], scenes)           # of what was kept
+    out = capsys.readouterr().out
+    assert "| rod | 0.01 | " in out and "* confirmed: 2" in out
+
+
 def test_scenes_for_advice_are_fixed():
-    """Twelve, six of them held back; their quantities are of parts they have."""
+    """Twelve, six of them held back, and eleven more; quantities are of parts they have."""
     scenes = imported("advice_scenes").SCENES
-    assert len({scene.name for scene in scenes}) == 12
+    general = imported("advice_general").GENERAL
+    assert len({scene.name for scene in (*scenes, *general)}) == 12 + 11
     assert sum(scene.tuning for scene in scenes) == 6
-    for scene in scenes:
+    for scene in (*scenes, *general):
         model = scene.build()
         assert model.bodies
         assert round(scene.t_end / scene.h) * scene.h == pytest.approx(scene.t_end)
         parts = {*model.nodes, *(one.name for one in model.elements())}
-        assert {quantity.rpartition(".")[0] for quantity in scene.quantities
-                if quantity != "frequency 1"} <= parts
+        named = {quantity.removesuffix(" rms").removesuffix(".z").rpartition(".")[0]
+                 for quantity in scene.quantities if quantity != "frequency 1"}
+        assert named <= parts
 
 
 def test_struck_frames_beside_beams(monkeypatch, capsys):

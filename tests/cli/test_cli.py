@@ -14,7 +14,7 @@ from sebody.cli import inputs, run
 from sebody.cli.entry import main
 from sebody.runs import first_run, progress
 from sebody.scenes import hinged_beam, planar_hinged_beam
-from sebody.verify import check
+from sebody.verify import chart, check
 from sebody.verify.check.states import CheckRow
 from sebody.verify.references import reference, tip_error
 
@@ -43,14 +43,16 @@ def test_advise_prints_what_is_enough(capsys):
                  "--tolerance", "0.02"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].split() == ["predicted", "error", "step", "seconds", "change"]
-    assert lines[1].split()[1:3] == ["0", "0.0025"]
+    assert 0.0 < float(lines[1].split()[1]) < 1e-3 and lines[1].split()[2] == "0.0025"
     assert " ".join(lines[1].split()[4:8]) == "beam: 8 bodies with"     # the detailed
     error = float(lines[-1].removeprefix("confirmed error ").removesuffix(" <= 0.02"))
     assert 0 < error <= 0.02
 
 
-def test_advise_draws_the_search_and_prints_the_model(tmp_path, capsys):
-    picture = tmp_path / "search.png"
+def test_advise_draws_the_search_and_prints_the_model(tmp_path, capsys, monkeypatch):
+    picture, drawn, draw = tmp_path / "search.png", [], chart.draw
+    monkeypatch.setattr(chart, "draw", lambda name, points, *others: drawn.append(
+        (list(points), *others)) or draw(name, drawn[0][0], *others))
     assert main(["advise", "planar-hinged-beam", "--t-end", "1", "--quantity", "tip.position",
                  "--tolerance", "0.02", "--set", "modes=2", "--code", "--output",
                  str(picture)]) == 0
@@ -58,6 +60,13 @@ def test_advise_draws_the_search_and_prints_the_model(tmp_path, capsys):
     lines = capsys.readouterr().out.splitlines()
     assert lines[-1].startswith("confirmed error ")
     assert lines[-2] == f"picture: {picture}"
+    # every run once; the choice is one of them, and guards are no models to choose
+    (points, front, _, _, choice, tolerance, _), = drawn
+    rows = lines[1:next(k for k, line in enumerate(lines) if line.startswith("Keeps "))]
+    assert len(points) == len(rows) and choice in points and tolerance == 0.02
+    assert choice.label.partition("; step")[0] in "".join(rows)
+    assert any(p.family.startswith("guard") for p in points)
+    assert not any(p.family.startswith("guard") for p in front)
     begin = lines.index("from sebody.scenes.planar_hinged_beam import build")
     code = lines[begin:lines.index("", lines.index("model = build(modes=2).model"))]
     found = {}

@@ -1,87 +1,100 @@
-"""Guards of the reference model, each against runs whose difference is made on purpose."""
+"""Guards of the reference, the step of trials, what a search costs and when it has paid."""
+
+import re
 
 import numpy as np
 import pytest
-from scipy.interpolate import CubicSpline
 
-from sebody import Model, harmonic, simulate
-from sebody.explore.advice.guards import (
-    EXPECTED,
-    GROWTH,
-    SMALL,
-    Scales,
-    amplified,
-    disturbed,
-    off_the_grid,
-)
-from sebody.explore.advice.loads import missed
-from sebody.explore.advice.quantities import Values
-from sebody.explore.advice.reference import Reference
-from sebody.model.time_functions import history
+from sebody import Model
+from sebody.analysis import advise
+from sebody.cli.entry import main
+from sebody.explore.advice.guards import GROWTH, TOLD
+from sebody.fem import rectangle
 
-H, GRID, T_END = 0.00927, 0.01, 1.0
-UNREAD = None   # the worst place of a reference, which these guards do not need
+MOMENTS = np.array([1.0, 2.0, 3.0])
 
 
-def ball(load=None, velocity=(0.0, 0.0, 0.0)):
+def brick(axis: int) -> Model:
+    """A rigid brick, held at its centre, that spins about one of its axes, in general position."""
+    rotation = np.linalg.qr(np.random.default_rng(8).standard_normal((3, 3)))[0]
     model = Model()
-    model.point_mass("ball", model.node("ball", (1.0, 2.0, 3.0), keeps="translation"), 2.0)
-    model.initial_velocity("ball", velocity)
-    if load is not None:
-        model.force("ball", (0.3, 0.4, 0.0), load, name="push")
+    centre = model.node("centre", (1.0, 2.0, 3.0))
+    model.rigid_body("brick", centre, 2.0, rotation @ np.diag(MOMENTS) @ rotation.T)
+    model.fix(centre, "position")
+    model.initial_velocity(centre, angular=10.0 * rotation[:, axis])
+    model.torque(centre, rotation[:, axis], [(0, 0), (0.5, 1.0), (1.0, 0.0)])
     return model
 
 
-def guarded(load, change, step_error):
-    """What the guard says of a run whose reference differs by (t) -> change, of size 1."""
-    run = simulate(ball(load), H, T_END)
-    values = Values([run["ball.position"]], [])
-    times = GRID * np.arange(round(run.t[-1] // GRID) + 1)
-    best = CubicSpline(run.t, values.histories[0])(times)
-    best[:, 1] += change(times)
-    reference = Reference(Values([best], []), [1.0], 0.0, step_error, True, UNREAD)
-    return off_the_grid(run, values, H, reference, GRID)
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_a_spin_about_the_middle_axis_is_unstable(axis):
+    """It grows as exp(w t sqrt((J2 - J1) (J3 - J2) / (J1 J3))); nothing travels."""
+    advice = advise(brick(axis), 0.01, 1.2, "centre.angular_velocity", 1e-2)
+    assert advice.confirmed is (axis != 1)
+    assert ("the motion is unstable" in advice.summary()) is (axis == 1)
 
 
-@pytest.mark.parametrize("times, told", [(0.9, False), (1.1, True)])
-def test_another_step_may_make_a_multiple_of_the_error_by_the_step(times, told):
-    error = times * EXPECTED * 1e-3
-    doubt = guarded(harmonic(1.0, 3.0), lambda t: np.full(len(t), error), 1e-3)
-    assert doubt.error == (pytest.approx(error, rel=1e-6) if told else 0.0)
+def test_a_disturbance_that_grows_a_little_is_said():
+    """Over a second by e^5.8; of the random disturbance a few per cent have this direction."""
+    told = [advise(brick(axis), 0.01, 1.0, "centre.angular_velocity", 1e-2) for axis in (0, 1)]
+    assert all(one.confirmed for one in told)
+    grown = [re.search(r"a small disturbance grows to (\S+) times its size until the end: the "
+                       "motion may be unstable over longer times", one.summary()) for one in told]
+    assert grown[0] is None and TOLD < float(grown[1][1]) < GROWTH
 
 
-@pytest.mark.parametrize("before, told", [(0.1, True), (4.0, False)])
-def test_beside_a_jump_nothing_is_compared_beside_a_small_one_all(before, told):
-    """Of 0.1 and of 4, before another one to 10."""
-    rows = [(0.0, 0.0), (0.2, 0.0), (0.2, before), (0.5, before), (0.5, 10.0), (1.0, 10.0)]
-    doubt = guarded(rows, lambda t: 0.01 * (np.abs(t - 0.2) < 0.02), 1e-4)
-    assert bool(doubt.error) == told
+def links() -> Model:
+    """Two damped links in millimetres, which swing down."""
+    model = Model(planar=True, units="mm t N s")
+    model.gravity((900.0, -9810.0))
+    base, elbow = model.node("base", (300.0, 100.0)), model.node("elbow", (1000.0, 400.0))
+    model.node("begin", (1000.0, 400.0), at="elbow"), model.node("tip", (1500.0, 900.0))
+    aluminium = 7e4, 0.3, 2.7e-9
+    model.beam("upper", (base, elbow), rectangle(20.0, 20.0, *aluminium), 16, 1, 2, damping=0.02)
+    model.beam("lower", ("begin", "tip"), rectangle(6.0, 20.0, *aluminium), 16, 1, 2, damping=0.02)
+    model.fix(base, "position")
+    return model
 
 
-def test_positions_and_rotations_are_disturbed_by_their_own_speeds():
-    model = ball()
-    model.rigid_body("wheel", model.node("wheel", (0.0, 0.0, 0.0)), 1.0, (1.0, 2.0, 2.5))
-    found = disturbed(model, Scales(1.0, 10.0, 4e5, 0.0, 1.0))
-    for node in found.nodes.values():
-        assert 0.01 < np.abs(node.position.rate).max() / (10.0 * SMALL) < 10.0
-    assert 0.01 < np.abs(found.nodes["wheel"].rotation.rate).max() / (4e5 * SMALL) < 10.0
+@pytest.fixture(scope="module")
+def advice():
+    return advise(links(), 0.005, 0.6, "tip.position", 1e-2)
 
 
-@pytest.mark.parametrize("times, told", [(0.9, False), (1.1, True)])
-def test_what_a_drift_makes_is_no_growth(times, told):
-    """To and fro by 0.01 at a speed of 1 for 1 s: a change of speed is a hundredfold change."""
-    scales = Scales(0.01, 1.0, 0.0, 0.0, T_END)
-    factor = times * GROWTH * 101.0
-    off = factor * SMALL * scales.travel
-    still, run = (simulate(ball(velocity=(v, 0.0, 0.0)), H, T_END) for v in (0.0, 1.0))
-    run.rows[:] = still.rows + off / T_END * (run.rows - still.rows)
-    doubt = amplified(run, still, scales)
-    assert bool(doubt.error) == told
+def test_guards_are_runs_of_the_search(advice):
+    guards = [one for one in advice.table if one.kind == "guard"]
+    assert [one.change for one in guards[:2]] == [
+        "the reference model off the grid of all others", "the reference model slightly disturbed"]
+    assert all(one.seconds > 0.0 and 0.0 < one.error < 1e-2 for one in guards)
+    runs = int(re.search(r": (\d+) runs, as much as", advice.summary())[1])
+    assert runs >= len(advice.table)
 
 
-def test_a_jump_on_a_step_loses_half_a_step_of_the_load():
-    """A triangle beside an area of a half; other lines of the spectrum are hardly larger."""
-    rows = [(0.0, 1.0), (0.5, 1.0), (0.5, 0.0), (1.0, 0.0)]
-    for h in (0.1, 0.02):
-        found = missed(["push"], [history(rows)], h, 1.0)
-        assert found.name == "push" and found.share == pytest.approx(h, rel=1e-3)
+def test_trials_run_with_the_longest_step_that_resolves_the_motion(advice):
+    steps = {one.step: one.error for one in advice.table if one.kind == "reference"}
+    alone = {one.step for one in advice.table if one.kind == "alone" and not one.local}
+    assert alone == {max(h for h, error in steps.items() if h <= 0.005 or error <= 5e-3)}
+
+
+def test_the_first_line_has_units_and_the_search_says_when_it_has_paid(advice):
+    first = re.fullmatch(
+        r"Keeps tip.position within (\S+) mm \(\S+ % of (\S+) mm\), worst at t = .*",
+        advice.summary().splitlines()[0])
+    error, size = map(float, first.groups())
+    assert error / size == pytest.approx(advice.error, rel=0.1) and size > 100.0
+    told = re.search(r"it pays after (\d+) runs instead of those of the reference model",
+                     advice.summary())
+    reference = next(one for one in advice.table if one.kind == "reference")
+    spent = sum(one.seconds for one in advice.table)        # and what made the models
+    assert int(told[1]) >= spent / (reference.seconds - advice.seconds) - 1
+
+
+def test_the_step_may_be_left_to_the_search(capsys):
+    assert main(["advise", "planar-hinged-beam", "--quantity", "tip.position", "--tolerance",
+                 "0.05", "--t-end", "2", "--step", "auto"]) == 0
+    out = capsys.readouterr().out
+    assert "confirmed error" in out.splitlines()[-1]
+    assert f"{2 / 128 / 4:9.3g} " in out        # a quarter of a 128th of the time
+    with pytest.raises(SystemExit):
+        main(["advise", "planar-hinged-beam", "--quantity", "tip.position", "--step", "soon"])
+    assert "step is 'soon': give a number, or auto" in capsys.readouterr().err

@@ -44,7 +44,7 @@ def recorded_of(model: Model, h: float, t_end: float, quantities=(), frequencies
     result = simulate(model, h, t_end)
     sizes = [float(np.linalg.norm(result[name] - result[name][0], axis=1).max())
              for name in quantities]
-    return Recorded(model, result, list(quantities), sizes, list(frequencies))
+    return Recorded(model, result, list(quantities), sizes, list(frequencies), parts_of(model))
 
 
 def first_of(model: Model) -> float:

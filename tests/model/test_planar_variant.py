@@ -22,6 +22,7 @@ from in_plane import (
 
 from sebody import InputError, Model, simulate
 from sebody.fem import frame as beams
+from sebody.fem import rectangle
 from sebody.model.variants import copied, divide, keep_modes, planar
 from sebody.reduction import craig_bampton
 from sebody.results import Result
@@ -156,3 +157,23 @@ def test_frames_of_beams_with_any_boundary(keeps, frame, inertia):
     made = planar(model).model
     assert 0 < made.bodies["frame"].body.modes < 6
     assert_same(model, made, ("b.position", "d.velocity", "frame.node6.velocity", "energy.strain"))
+
+
+def test_bodies_of_a_single_element_are_planar_too():
+    """Their loads within the element need no modes."""
+    turn = np.linalg.qr(np.random.default_rng(1).standard_normal((3, 3)))[0]
+    model = Model()
+    model.gravity(-9.81 * turn[:, 1])
+    hinge = model.node("hinge", (1.0, 2.0, 3.0))
+    tip = model.node("tip", hinge.point + turn @ (0.8, 0.1, 0.0))
+    model.beam("link", (hinge, tip), rectangle(0.01, 0.02, 2e11, 0.3, 7800.0), 8, 8,
+               up=turn[:, 2], damping=0.01)
+    model.revolute(hinge, turn[:, 2])
+    flat = planar(model).model
+    runs = [simulate(one, 0.005, 0.2) for one in (model, flat)]
+    arms = [np.linalg.norm(run["tip.position"] - run["hinge.position"], axis=1) for run in runs]
+    energies = [run["energy.kinetic"][-1] for run in runs]
+    assert flat.planar and energies[0] > 0.1
+    # to the tolerance of Newton's iteration, 1e-6 of the motion
+    np.testing.assert_allclose(arms[1], arms[0], rtol=1e-5)
+    assert energies[1] == pytest.approx(energies[0], rel=1e-4)

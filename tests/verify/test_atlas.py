@@ -47,6 +47,21 @@ def check_picture(finding, path, monkeypatch):
         assert box is None or (box.x0 >= 0.0 and box.x1 <= figure.bbox.x1 and box.y0 >= 0.0
                                and box.y1 <= figure.bbox.y1), one
     assert max(len(np.unique(y)) for _, y in finding.curves.values()) > 2
+    check_styles(finding, axes)
+
+
+def check_styles(finding, axes):
+    """Theory is dashed in one colour, which nothing that is measured has."""
+    assert set(finding.predicted) < set(finding.curves)
+    lines = {line.get_label(): line for line in axes.lines}
+    theory = {lines[label].get_color() for label in finding.predicted}
+    assert len(theory) == 1
+    for label, (x, _) in finding.curves.items():
+        line = lines[label]
+        if label in finding.predicted:
+            assert line.get_linestyle() == "--" and (len(x) == 1) == (line.get_marker() == "x")
+        else:
+            assert line.get_linestyle() == "-" and line.get_color() not in theory
 
 
 def test_kernels_that_are_compiled_at_once_exist():

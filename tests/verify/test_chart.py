@@ -196,7 +196,9 @@ def test_chart_writes_table_and_picture(tmp_path, monkeypatch, capsys):
     assert "front" in capsys.readouterr().out and picture.stat().st_size > 10_000
     with table.open() as file:
         rows = list(csv.DictReader(file))
-    assert [row["label"] for row in rows] == [v.label for v in few]
+    assert [row["label"] for row in rows[1:]] == [v.label for v in few]
+    assert rows[0]["family"] == "advised" and float(rows[0]["error"]) <= 1e-2
+    assert {row["quantity"] for row in rows} == {"tip.position"}
     errors = {row["label"]: float(row["error"]) for row in rows}
     assert errors["1 body, 2 modes, option b"] == pytest.approx(9.0e-4, rel=0.1)
     assert errors["1 body, 2 modes"] < 3e-4
@@ -215,7 +217,7 @@ def test_any_scene_has_a_chart(tmp_path, capsys):
     assert picture.stat().st_size > 10_000
     with table.open() as written:
         points = {row["label"]: row for row in csv.DictReader(written)}
-    assert {"modes", "bodies", "inertia", "rigid", "steps", "schemes"} == {
+    assert {"advised", "modes", "bodies", "inertia", "rigid", "steps", "schemes"} == {
         point["family"] for point in points.values()}
     errors = {label: float(point["error"]) for label, point in points.items()}
     limit = float(out.split("good to ")[1].split(",")[0])
@@ -228,21 +230,48 @@ def test_any_scene_has_a_chart(tmp_path, capsys):
 
 def test_a_mechanism_has_a_chart_of_steps_and_schemes():
     """Rigid bodies: errors fall with the square of the step; the reference knows its own error."""
-    study = chart.measure_any(replace(four_bar.build(1), t_end=0.4), "B1.velocity")
+    studies = chart.measure_any(replace(four_bar.build(1), t_end=0.4),
+                                ["B1.velocity", "B0.position rms"])
+    study, other = studies
     errors = {point.label: point.error for point in study.points}
     assert study.quantity == "B1.velocity" and set(p.family for p in study.points) == {
-        "steps", "schemes"}
+        "advised", "steps", "schemes"}
     assert errors["step x 4"] / errors["step x 2"] == pytest.approx(4.0, rel=0.1)
     assert errors["step / 2"] / errors["step / 4"] == pytest.approx(4.0, rel=0.1)
     assert study.error < 0.01 * errors["step / 4"]
+    # the other quantity is of the same runs
+    assert other.quantity == "B0.position rms"
+    assert [(p.label, p.cost) for p in other.points] == [(p.label, p.cost) for p in study.points]
+    assert [p.error for p in other.points] != [p.error for p in study.points]
+    # the advised model keeps both
+    assert study.choice.family == "advised" and study.choice.cost == other.choice.cost
+    assert max(study.choice.error, other.choice.error) <= study.tolerance == 1e-2
+
+
+def test_several_quantities_are_panels_with_what_errors_and_bars_mean(tmp_path, figures):
+    ring = replace(POINT, family="advised", label="advised: rigid; step 0.1", cost=2e-4, error=5e-3)
+    studies = [chart.Study([POINT, ring, replace(POINT, label="b", cost=3e-4, slowest=9e-4,
+                                                 error=error)], name, 1e-6, ring, 1e-2,
+                           ("error: of the largest", "time: bars end at slowest", "peers: none"))
+               for name, error in (("tip.position", 1e-4), ("tip.velocity rms", 2e-4))]
+    chart.draw_panels("links", chart.panels(studies), tmp_path / "chart.png", studies[0].notes)
+    figure, = figures
+    left, right = figure.axes
+    assert [axes.get_title("left").splitlines()[0] for axes in (left, right)] == [
+        study.quantity for study in studies]
+    assert left.get_title("left").splitlines()[1:] == list(studies[0].notes)
+    for axes in (left, right):
+        rings = [line for line in axes.lines if line.get_markersize() == 13]
+        assert [(line.get_xdata()[0], line.get_ydata()[0]) for line in rings] == [(2e-4, 5e-3)]
+        assert "advised: rigid; step 0.1" in [text.get_text() for text in axes.texts]
 
 
 def test_what_has_no_chart_is_refused():
     scene = four_bar.build(1)
     with pytest.raises(InputError, match="quantity 'ground 0.position' does not change: give one"):
-        chart.measure_any(replace(scene, t_end=0.1), "ground 0.position")
+        chart.measure_any(replace(scene, t_end=0.1), ["ground 0.position"])
     with pytest.raises(InputError, match="'C.position' is unknown: did you mean"):
-        chart.measure_any(replace(scene, t_end=0.1), "C.position")
+        chart.measure_any(replace(scene, t_end=0.1), ["C.position"])
     still = Model(planar=True)
     still.point_mass("mass", still.node("a", (1.0, 2.0), "translation"), 1.0)
     with pytest.raises(InputError, match="nothing moves: give the scene a load, a drive or"):

@@ -6,7 +6,7 @@ import numpy as np
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.explore.advice.limits import refusal
+from sebody.explore.advice.limits import include, refusal
 from sebody.explore.advice.measures import absolute
 from sebody.explore.advice.outcome import Advice, Reason, Trial, Unreached
 from sebody.explore.advice.quantities import Quantities
@@ -48,7 +48,7 @@ def advise(model: Model, h: float | None, t_end: float, quantities: str | Iterab
         Largest error, relative; with a unit, as ``"2mm"``, absolute. Models without units are taken
         to be in metres, newtons and seconds.
     budget : float
-        No further run is begun once the runs have taken so many times the time of the first.
+        No further run is begun once the runs have taken so many times the time of the reference.
     progress : callable or bool, optional
         As of `Simulation.run_to`; the bar begins anew with each run.
     start : str, optional
@@ -89,6 +89,7 @@ def advise(model: Model, h: float | None, t_end: float, quantities: str | Iterab
         lab = Laboratory(model, wanted, Runs(wanted, h, t_end, show, start is not None),
                          limit, limit if own else None)
         lab.start()
+        include(lab)
         search = Search(lab, budget)
         try:
             found, given = search.go(), lab.given()

@@ -28,12 +28,15 @@ EXPECTED = 3.0          # times the reference's error by its step, that another 
 SMALL = 1e-6            # of velocities, by which a run is disturbed
 FORCES = 0.01           # of that, as forces: soft directions yield by far more than stiff ones
 GROWTH = 20.0           # times what a drift at the disturbed velocity makes: more is unstable
+TOLD = 5.0              # of the same: more may be, and is said
 REAL = 1e-3             # of the motion, that real systems are disturbed by
 
 
 def off_the_grid(run: Result, values: Values, h: float, reference: Reference,
-                 grid: float) -> Doubt:
+                 grid: float) -> tuple[float, Doubt]:
     """How far a run with steps that share no grid with others is from the reference.
+
+    If that is more than the step explains, it is an error that the reference may have.
 
     Parameters
     ----------
@@ -55,11 +58,11 @@ def off_the_grid(run: Result, values: Values, h: float, reference: Reference,
         off = lengths(CubicSpline(run.t, own)(times[clear]) - best[clear]) / size
         if off.size and off.max() > worst:
             worst, where = float(off.max()), float(times[clear][np.argmax(off)])
-    if worst <= EXPECTED * (reference.step_error + reference.error):
-        worst = 0.0
-    return Doubt(worst, f"a run with steps of {h:.4g}, which share no grid with the others, is off "
-                 f"by {worst:.2g} at t = {where:.4g}: loads or forces act between steps",
-                 "give a smaller h")
+    explained = worst <= EXPECTED * (reference.step_error + reference.error)
+    return worst, Doubt(
+        0.0 if explained else worst,
+        f"a run with steps of {h:.4g}, which share no grid with the others, is off by {worst:.2g} "
+        f"at t = {where:.4g}: loads or forces act between steps", "give a smaller h")
 
 
 def _jumps(numbering: Numbering) -> NDArray:
@@ -119,7 +122,7 @@ def disturbed(model: Model, scales: Scales) -> Model:
     for dof_block in found.dof_blocks():
         if dof_block.solved:
             size = scales.spin if dof_block.rotational else scales.speed
-            noise = rng.standard_normal(dof_block.rate.shape)
+            noise = rng.uniform(-1.0, 1.0, dof_block.rate.shape)
             dof_block.rate = dof_block.rate + SMALL * size * noise
     free = [node for node in found.nodes.values() if node.position and node.position.solved]
     for node in free if scales.force > 0.0 else ():
@@ -129,20 +132,54 @@ def disturbed(model: Model, scales: Scales) -> Model:
     return found
 
 
-def amplified(run: Result, still: Result, scales: Scales) -> Doubt:
-    """Effect of a disturbance of a real system on the motion, if it grows.
+class Growth(NamedTuple):
+    """How a small disturbance of a motion ends.
+
+    Parameters
+    ----------
+    factor : float
+        Its size at the end, or at its largest, over that at the start.
+    drift : float
+        The same of motion that goes on as it is disturbed: of stable systems.
+    """
+
+    factor: float
+    drift: float
+
+    @property
+    def doubt(self) -> Doubt:
+        """What a disturbance of a real system would make of the motion, if it grows."""
+        growing = self.factor > GROWTH * self.drift
+        return Doubt(min(REAL * self.factor, 1.0) if growing else 0.0,
+                     f"the motion is unstable: a small disturbance of all velocities and loads "
+                     f"grows to {self.factor:.2g} times its size",
+                     "give the model the imperfection that it has, such as a small force aside, or "
+                     "an earlier end")
+
+    @property
+    def remark(self) -> list[str]:
+        """What is said of a motion that grows a little, as over few times of an instability."""
+        if not TOLD * self.drift < self.factor <= GROWTH * self.drift:
+            return []
+        return [f"a small disturbance grows to {self.factor:.2g} times its size until the end: "
+                "the motion may be unstable over longer times"]
+
+
+def amplified(run: Result, still: Result, scales: Scales) -> Growth:
+    """How a disturbance has grown.
+
+    Of models that move by rotations alone, angular velocities are looked at.
 
     Parameters
     ----------
     run, still : Result
         With and without the disturbance, with the same steps.
     """
-    off = np.abs(run.recorded("q") - still.recorded("q"))[:, _solved(still, rotational=False)]
-    factor = float(off.max(initial=0.0)) / (SMALL * scales.travel) if scales.travel > 0.0 else 0.0
-    drift = 1.0 + scales.speed * scales.duration / max(scales.travel, 1e-300)
-    growing = factor > GROWTH * drift
-    return Doubt(min(REAL * factor, 1.0) if growing else 0.0,
-                 f"the motion is unstable: a small disturbance of all velocities and loads grows "
-                 f"to {factor:.2g} times its size",
-                 "give the model the imperfection that it has, such as a small lateral force, or "
-                 "an earlier end")
+    if scales.travel > 0.0:
+        off = np.abs(run.recorded("q") - still.recorded("q"))[:, _solved(still, rotational=False)]
+        return Growth(float(off.max(initial=0.0)) / (SMALL * scales.travel),
+                      1.0 + scales.speed * scales.duration / scales.travel)
+    if scales.spin == 0.0:
+        return Growth(0.0, 1.0)
+    off = np.abs(run.recorded("v") - still.recorded("v"))[:, _solved(still, rotational=True)]
+    return Growth(float(off.max(initial=0.0)) / (SMALL * scales.spin), 1.0)

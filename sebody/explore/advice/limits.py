@@ -1,9 +1,9 @@
 """Possible errors of the reference model itself: linear theory in each body, its last modes."""
 
+from dataclasses import replace
 from functools import lru_cache
 
 from sebody.errors import InputError, SimulationError
-from sebody.explore.advice.changes import Step
 from sebody.explore.advice.estimates import UNSURE
 from sebody.explore.advice.forms import Part
 from sebody.explore.advice.indicators.linearity import bent, local_rotations
@@ -14,6 +14,7 @@ from sebody.explore.advice.runner import Laboratory, Tried
 from sebody.explore.advice.search import Search
 from sebody.model.variants import divide
 
+MEASURED = 0.1          # of the tolerance: larger estimates of beams are replaced by a run
 LEFT = 4.0 / 3.0        # of what a division into twice as many bodies changes: of second order
 FALL = 0.1      # of an error by omitted modes, with each doubling of their number, at least
 
@@ -25,7 +26,7 @@ def limits(lab: Laboratory) -> list[Doubt]:
     found, doubtful = [], []
     for part in lab.parts:
         own = [_linear(recorded, part), _modal(recorded, part)]
-        if part.beam and max(one.error for one in own) > TRUSTED * lab.tolerance:
+        if part.beam and max(one.error for one in own) > MEASURED * lab.tolerance:
             doubtful.append(part)
         else:
             found += own
@@ -34,19 +35,31 @@ def limits(lab: Laboratory) -> list[Doubt]:
     return sorted(found, key=lambda one: -one.error)
 
 
+def include(lab: Laboratory) -> None:
+    """Add to the error of the reference what its division is measured to leave, if it is small.
+
+    More than that is a doubt: no model is confirmed.
+    """
+    for one in limits(lab):
+        if one.measured and one.error <= TRUSTED * lab.tolerance:
+            lab.add_error(one.error)
+
+
 def _divided(lab: Laboratory, parts: list[Part]) -> Doubt:
     """What twice as many bodies in some beams change, with the same step: by runs."""
     whole, names = lab.builder.build(lab.detailed), ", ".join(part.name for part in parts)
     for part in parts:
         form = part.detailed
         whole = divide(whole, part.name, 2 * form.bodies, 2 * part.elements).model
-    step = Step(max(lab.bases))
+    step = lab.trial
     sentence = f"{names} divided into twice as many bodies as in the reference model gave it"
     try:
-        run = lab.runs.run(whole, step)
+        run = lab.beside(whole, step, f"with {names} in twice as many bodies")
     except (InputError, SimulationError) as reason:
         return Doubt(1.0, f"{names} divided further does not run: {reason}", "give a smaller h")
-    return Doubt(LEFT * lab.apart(run, step.h), sentence, "build it of several beams")
+    apart = lab.apart(run, step.h)
+    lab.table[-1] = replace(lab.table[-1], error=apart)
+    return Doubt(LEFT * apart, sentence, "build it of several beams", True)
 
 
 def _linear(recorded: Recorded, part: Part) -> Doubt:

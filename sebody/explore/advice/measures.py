@@ -44,6 +44,12 @@ class Measure(NamedTuple):
             raise InputError(f"quantity {text!r} is unclear: {REMEDY}")
         return cls(found["name"], found["kind"] or "", cut or None)
 
+    @property
+    def words(self) -> str:
+        """What of the history counts, as behind its name."""
+        cut = "" if self.cut is None else f"< {self.cut:g} Hz"
+        return f"{cut} {self.kind}".strip()
+
     def filtered(self, history: NDArray, h: float, grid: float) -> NDArray:
         """A history recorded with a step, without what is faster than the limit.
 

@@ -79,11 +79,15 @@ class Reason(NamedTuple):
 
 
 class Doubt(NamedTuple):
-    """An error that the reference model itself may have: how large, why, and what helps."""
+    """An error that the reference model itself may have: how large, why, and what helps.
+
+    Where it was measured and is small, the errors of runs contain it.
+    """
 
     error: float
     sentence: str
     remedy: str
+    measured: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,6 +167,13 @@ class Advice:
 
     def __repr__(self) -> str:
         return self.summary()
+
+    @property
+    def trial(self) -> Trial:
+        """The run of the table that was chosen."""
+        local = None if self.local is None else self.local.relative
+        return next(one for one in reversed(self.table)
+                    if (one.error, one.step, one.local) == (self.error, self.step, local))
 
     def rows(self) -> list[dict]:
         """The table as plain dictionaries, which ``pandas.DataFrame`` takes."""

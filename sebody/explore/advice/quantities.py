@@ -30,6 +30,13 @@ class Values(NamedTuple):
     measures: tuple[Measure, ...] = ()
 
 
+def parted(values: Values) -> list[Values]:
+    """Each quantity by itself: histories in their order, then frequencies."""
+    return [*(Values([one], [], (measure,)) for one, measure in zip(
+        values.histories, values.measures, strict=True)),
+        *(Values([], [omega], ()) for omega in values.frequencies)]
+
+
 class Quantities:
     """Names of quantities.
 
@@ -86,8 +93,14 @@ class Quantities:
             warnings.simplefilter("ignore", LimitWarning)
             self.of(Simulation(model, h).result(), h)
 
-    def of(self, result: Result, h: float, grid: float = 0.0) -> Values:
+    def of(self, result: Result, h: float, grid: float = 0.0,
+           frequencies: list[float] | None = None) -> Values:
         """The quantities of a run that was recorded with a step.
+
+        Parameters
+        ----------
+        frequencies : list of float, optional
+            Known ones, which the run shares with another.
 
         Raises
         ------
@@ -97,7 +110,7 @@ class Quantities:
         histories = [self.places.history(result, name, _history) for name in self.histories]
         return Values([measure.filtered(history, h, grid) for measure, history in zip(
             self.measures, histories, strict=True)],
-            self._frequencies(result) if self.numbers else [], self.measures)
+            frequencies if frequencies is not None else self._frequencies(result), self.measures)
 
     def wholes(self, result: Result) -> list[str]:
         """The quantities that the histories are components of, or they themselves."""
@@ -105,6 +118,8 @@ class Quantities:
                 for name in self.histories]
 
     def _frequencies(self, result: Result) -> list[float]:
+        if not self.numbers:
+            return []
         try:
             omega = steady_frequencies(result)
         except (InputError, SimulationError) as reason:
@@ -136,6 +151,7 @@ class Worst(NamedTuple):
     quantity: str
     row: int | None = None
     size: float = 1.0       # of the quantity, that the error is relative to
+    kind: str = ""          # of the measure: what of the history counts
 
 
 def compared(one: Values, other: Values, sizes: list[float], stride: tuple[int, int]) -> Worst:
@@ -153,7 +169,7 @@ def compared(one: Values, other: Values, sizes: list[float], stride: tuple[int, 
         if a.shape[1:] != b.shape[1:]:
             raise InputError("a quantity has other components")
         off, row = measure.difference(a[::stride[0]], b[::stride[1]])
-        found.append(Worst(off / size, measure.name, row, size))
+        found.append(Worst(off / size, measure.name, row, size, measure.words))
     return max(found, key=lambda worst: worst.error)
 
 

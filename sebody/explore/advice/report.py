@@ -1,5 +1,8 @@
 """What a search has found, as advice."""
 
+from math import ceil
+from time import process_time
+
 from sebody.explore.advice.changes import Choice
 from sebody.explore.advice.labels import limiting
 from sebody.explore.advice.limits import doubts
@@ -7,9 +10,12 @@ from sebody.explore.advice.outcome import Advice
 from sebody.explore.advice.reasons import neighbours, reasons
 from sebody.explore.advice.runner import Tried
 from sebody.explore.advice.search import Search
+from sebody.results.units import unit_of_curves
 from sebody.runs.tolerance import Tolerance
+from sebody.units import parsed_units
 
 REPEATS = 2         # further runs of what is compared in time
+SAME = 0.02         # by which times of runs differ by chance
 QUICK = 0.2         # seconds of runs that are repeated: longer ones are not disturbed much
 
 
@@ -46,8 +52,12 @@ def _kept(search: Search, found: Tried) -> str:
     when = "" if worst.row is None else f", worst at t = {worst.row * found.h:.4g}"
     parts = search.lab.estimates.contributions(found.choice)
     largest = max(parts, key=lambda one: one.error).kind if parts else ""
-    return (f"Keeps {worst.quantity} within {found.error * worst.size:.2g} "
-            f"({100 * found.error:.2g} % of {worst.size:.3g}){when}; limited by "
+    units = search.lab.model.units
+    named = unit_of_curves(worst.quantity, parsed_units(units)) if units else ""
+    behind = f" {named}" * bool(named)
+    return (f"Keeps {worst.quantity} {worst.kind + ' ' if worst.kind else ''}within "
+            f"{found.error * worst.size:.2g}{behind} ({100 * found.error:.2g} % of "
+            f"{worst.size:.3g}{behind}){when}; limited by "
             f"{limiting(search.lab.parts, largest)}")
 
 
@@ -67,20 +77,30 @@ def _warnings(search: Search, found: Tried) -> tuple[str, ...]:
 
 
 def _saved(search: Search, seconds: float, given: Tried) -> list[str]:
-    """What a run saves against the reference model and the given one."""
+    """What a run saves against the reference model and the given one, and what that took."""
     lab = search.lab
     detailed: Choice = lab.detailed
     whole = next(one for one in lab.tried if one.choice == detailed).seconds
-    least = given.seconds
-    if given.error < float("inf"):
-        least = _quickest(search, given)
     told = (f"a run takes {_time(seconds)}, the reference model {_time(whole)}, "
             f"{whole / seconds:.3g} times as long")
+    others = {"the reference model": whole}
     if given.error < float("inf"):
+        others["the given model"] = least = _quickest(search, given)
         told += (f", the given one with its step {_time(least)}, {least / seconds:.3g} times, with "
                  f"an error of {given.error:.2g}")
-    return [told, f"the search took {len(lab.table)} runs, as much as {lab.spent():.2g} of the "
-                  "reference model"]
+        if given.error > lab.tolerance:
+            del others["the given model"]       # it is no alternative
+    spent = process_time() - lab.begun
+    return [told, f"the search took {_time(spent)}: {lab.count} runs, as much as "
+            f"{lab.spent():.2g} of the reference model, and making their models; "
+            + _pays(spent, seconds, others)]
+
+
+def _pays(spent: float, seconds: float, others: dict[str, float]) -> str:
+    """After how many runs a search has paid, by seconds of runs that it replaces."""
+    told = [f"{ceil(spent / (other - seconds))} runs instead of those of {name}"
+            for name, other in others.items() if other > (1.0 + SAME) * seconds]
+    return f"it pays after {', or '.join(told)}" if told else "it pays by what it confirms alone"
 
 
 def _time(seconds: float) -> str:

@@ -1,7 +1,8 @@
 """Runs of choices: the reference model with several steps first, then what is compared with it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
+from time import process_time
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from sebody.explore.advice.guards import (
     off_the_grid,
 )
 from sebody.explore.advice.indicators.recorded import Recorded
+from sebody.explore.advice.judgement import SHARE, SHORTER, judge
 from sebody.explore.advice.labels import in_brief
 from sebody.explore.advice.loads import SEEN, Missed, missed
 from sebody.explore.advice.outcome import Doubt, Trial
@@ -28,13 +30,14 @@ from sebody.explore.advice.runs import Run, Runs
 from sebody.model.model import Model
 
 FINER = (4, 2, 1)       # parts of the given step, of the first runs of the reference model
-SHORTER = (8, 16, 32, 64)     # further ones, where the tolerance needs them
 GOOD = 0.2              # of the tolerance, that the reference may be off by without them
 LARGEST = 0.9           # relative tolerance, that an absolute one is at most
+LONGER = (2, 4)         # given steps, that a step may be
+MISSED = 0.2            # of a load, that steps which are tried may not see
+REGULAR = 0.05          # error from which errors by the step fall as they will for shorter ones
+COARSE = 0.02           # error by a step up to the given one, with which forms are tried alone
+LONGEST = 2.0           # of the tolerance, that a longer step is expected to be off by
 SHORTEST = 64           # parts of the given step, of the grid
-EARLY = 3               # steps of the grid, that errors are those of the start in
-MARGIN = 1.2            # of a tolerance that would pass
-SHARE = 0.5             # of the tolerance, that the reference must be good to
 
 
 @dataclass
@@ -77,9 +80,10 @@ class Laboratory:
         self.doubts: list[Doubt] = []           # of the guards
         self.warnings: tuple[str, ...] = ()     # of the reference
         self.remarks: list[str] = []
+        self.count, self.begun = 0, process_time()      # runs, and since when [s]
         self._ports: tuple | None = None
-        self.given_step = Step(runs.h)
-        self._work = self._unit = 0.0
+        self.given_step = self.trial = Step(runs.h)     # trial: that forms are tried with alone
+        self._work = self._guards = self._unit = 0.0
 
     @property
     def detailed(self) -> Choice:
@@ -88,8 +92,13 @@ class Laboratory:
         return Choice(tuple(part.detailed for part in self.parts), step)
 
     def spent(self) -> float:
-        """Work of all runs, relative to that of the first."""
+        """Work of all runs, relative to that of the reference model with its shortest step."""
         return self._work / self._unit
+
+    @property
+    def guarded(self) -> float:
+        """The part of it that was spent on guards."""
+        return self._guards / self._unit
 
     def start(self) -> None:
         """Run the reference, and judge it.
@@ -125,25 +134,30 @@ class Laboratory:
             if self.runs.h / part in self.bases:
                 continue
             most = ORDER_FACTOR**(len(SHORTER) - SHORTER.index(part))
-            if self.reference.error <= GOOD * self.tolerance or (
-                    self.reference.step_error / most > self.tolerance):
+            hopeless = (self.reference.step_error < REGULAR
+                        and self.reference.step_error / most > self.tolerance)
+            if self.reference.error <= GOOD * self.tolerance or hopeless:
                 break
             self._base(self.runs.h / part)
             self.reference = self._reference()
-        self._judge()
+        judge(self.reference, self.tolerance, self.runs.h, self.bases)
+        self._unit = self.cost.work(choice, self.bases[min(self.bases)].iterations)
+        self._lengthen()
+        self.table += [Trial(in_brief(self.parts, choice), h, 0.0, run.seconds)
+                       for h, run in sorted(self.bases.items())]
         self._guard()
         errors = {h: self.error(run) for h, run in self.bases.items()}
         finest = min(errors)
         errors[finest] = max(self.reference.step_error, self.reference.error)
-        words = in_brief(self.parts, choice)
+        self.table = [replace(one, error=errors[one.step])
+                      if one.kind == "reference" else one
+                      for one in self.table]
         for h in sorted(errors):
-            self.table.append(Trial(words, h, 0.0 if h == finest else errors[h],
-                                    self.bases[h].seconds))
             run = self.bases[h]
             self.tried.append(Tried(choice._replace(step=Step(h)), errors[h], errors[h],
                                     run.seconds, self.worst(run), run.h))
         recorded = Recorded(self.model, first.result, self.quantities.wholes(first.result),
-                            self.reference.sizes, first.values.frequencies)
+                            self.reference.sizes, first.values.frequencies, self.parts)
         self.estimates = Estimates(recorded, self.parts,
                                    {Step(h): error for h, error in errors.items()})
 
@@ -175,21 +189,73 @@ class Laboratory:
             self._ports = found.port_names, found.histories
         return missed(*self._ports, h, self.runs.t_end)
 
+    def _lengthen(self) -> None:
+        """Find the longest step that the motion is resolved with: forms are tried with it alone."""
+        if not self.quantities.histories:
+            self.trial = Step(max(self.bases))
+            return
+        self._try_longer()
+        # unresolved vibrations make forms differ by up to the error of the step
+        most = {h: COARSE if h <= self.runs.h else SHARE * self.tolerance for h in self.bases}
+        resolving = [h for h, run in self.bases.items() if self.worst(run).error <= most[h]]
+        self.trial = Step(max(resolving, default=min(self.bases)))
+
+    def _try_longer(self) -> None:
+        """Run the reference model with longer steps than the given one where they may do."""
+        h, count = self.runs.h, round(self.runs.t_end / self.runs.h)
+        for k in LONGER:
+            error = self.worst(self.bases[max(self.bases)]).error
+            if (count % k or ORDER_FACTOR * error > LONGEST * self.tolerance
+                    or self.missed(k * h).share > MISSED):
+                return
+            try:
+                self._base(k * h)
+            except SimulationError:
+                return
+
     def _guard(self) -> None:
         """Run the reference model off the grid, and disturbed: what that casts doubt on."""
         fine = min(self.bases)
         self.warnings = self.bases[fine].result.warnings
         if not self.quantities.histories:
             return
-        step = Step(OFF_GRID * fine)
-        run = self.runs.run(self.builder.build(self.detailed), step, every=1)
-        self.doubts.append(off_the_grid(run.result, run.values, step.h, self.reference,
-                                        self.runs.h))
-        coarse = max(self.bases)
+        step, whole = Step(OFF_GRID * fine), self.builder.build(self.detailed)
+        known = self.bases[fine].values.frequencies
+        run = self.beside(whole, step, "off the grid of all others", 1, known)
+        off, doubt = off_the_grid(run.result, run.values, step.h, self.reference, self.runs.h)
+        self.table[-1] = replace(self.table[-1], error=off)
+        coarse = min(self.trial.h, max(h for h in self.bases if h <= self.runs.h))
         still = self.bases[coarse].result
         scales = Scales.of(still)
-        other = self.runs.run(disturbed(self.builder.build(self.detailed), scales), Step(coarse))
-        self.doubts.append(amplified(other.result, still, scales))
+        other = self.beside(disturbed(whole, scales), Step(coarse), "slightly disturbed", 0, known)
+        self.table[-1] = replace(self.table[-1], error=self.apart(other, coarse))
+        growth = amplified(other.result, still, scales)
+        self.doubts += [doubt, growth.doubt]
+        self.remarks += growth.remark
+
+    def add_error(self, error: float) -> None:
+        """Add an error to that of the reference, and so to those of all runs."""
+        self.reference = self.reference._replace(error=self.reference.error + error)
+        for one in self.tried:
+            one.error += error
+            self.estimates.learn_step(one.choice.step, one.error)
+
+    def beside(self, model: Model, step: Step, words: str, every: int = 0,
+               frequencies: list[float] | None = None) -> Run:
+        """Run a model as rich as the reference model, or richer, that is no choice; see `Runs.run`.
+
+        Raises
+        ------
+        InputError, SimulationError
+            It does not run, or lacks a quantity.
+        """
+        run = self.runs.run(model, step, every=every, frequencies=frequencies)
+        self.count += 1
+        work = self.cost.work(self.detailed, run.iterations)
+        self._work, self._guards = self._work + work, self._guards + work
+        self.table.append(Trial(f"the reference model {words}", step.h, 0.0, run.seconds,
+                                kind="guard"))
+        return run
 
     @property
     def unstable(self) -> bool:
@@ -206,31 +272,6 @@ class Laboratory:
         found = [self.bases[h].values for h in sorted(self.bases, reverse=True)]
         return reference(found, self.absolute is not None)
 
-    def _judge(self) -> None:
-        """Refuse a tolerance that the reference is not good for."""
-        if self.reference.error <= SHARE * self.tolerance:
-            return
-        worst, fine = self.reference.worst, min(self.bases)
-        first = worst.row is not None and worst.row < EARLY
-        where = "" if worst.row is None else f" at t = {worst.row * self.runs.h:.4g}"
-        told = (f"{worst.quantity} is known to {self.reference.error:.2g} of its change only, worst"
-                f"{where}, even with the step {fine:.3g}")
-        enough = (f"a tolerance of {self.reference.error / SHARE * MARGIN:.1g} would pass: half of "
-                  "it is left for the reference")
-        if first:
-            raise InputError(
-                f"{told}: the model is loaded suddenly at the start, which excites its fastest "
-                "vibrations; start from the equilibrium (start='equilibrium'), let loads grow from "
-                f"zero, or measure {worst.quantity} by rms or below a frequency; {enough}")
-        if not self.reference.falls:
-            raise SimulationError(
-                f"{told}, and shorter steps do not change that: the motion depends on the step, as "
-                "in chaotic motions, impacts and undamped vibrations; give an "
-                f"earlier end, damping, or measure {worst.quantity} by rms, peak or below a "
-                f"frequency; {enough}", self.bases[fine].result)
-        raise InputError(f"{told}: shorter steps that are tried, down to "
-                         f"{self.runs.h / SHORTER[-1]:.3g}, are not enough; {enough}")
-
     def run(self, choice: Choice, watched: bool = False) -> Run:
         """Run a choice.
 
@@ -240,9 +281,9 @@ class Laboratory:
             It cannot be made, does not run, or lacks a quantity.
         """
         found = self.runs.run(self.builder.build(choice), choice.step, watched)
-        if self._unit == 0.0:
+        self.count += 1
+        if self._work == 0.0:
             self.cost.measured(choice, found.seconds, found.iterations)
-            self._unit = self.cost.work(choice, found.iterations)
         self._work += self.cost.work(choice, found.iterations)
         self.cost.counted(choice.step, found.iterations)
         return found

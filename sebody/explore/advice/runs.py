@@ -66,7 +66,8 @@ class Runs:
     progress: Callable[[float], None] | None = None
     balanced: bool = False
 
-    def run(self, model: Model, step: Step, watched: bool = False, every: int = 0) -> Run:
+    def run(self, model: Model, step: Step, watched: bool = False, every: int = 0,
+            frequencies: list[float] | None = None) -> Run:
         """Run a model; recorded on the grid, or on a longer step.
 
         Parameters
@@ -75,6 +76,8 @@ class Runs:
             Whether the result has the run's warnings, which take as long as a short run.
         every : int
             Steps from one record to the next, where it is not on the grid.
+        frequencies : list of float, optional
+            Known ones, which depend neither on the step nor on a disturbance.
 
         Raises
         ------
@@ -93,5 +96,5 @@ class Runs:
                 simulation.watch = _Unwatched()
             result = simulation.run_to(end, self.progress).result()
         h = step.h * every
-        return Run(self.quantities.of(result, h, self.h), h, result.seconds,
+        return Run(self.quantities.of(result, h, self.h, frequencies), h, result.seconds,
                    result.iterations_per_step * result.steps, result)

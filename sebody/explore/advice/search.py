@@ -1,5 +1,6 @@
 """The search: one axis at a time, then all together, cheapest first."""
 
+from functools import partial
 from math import inf
 
 from sebody.contract.names import ANY
@@ -8,16 +9,14 @@ from sebody.explore.advice.changes import Choice, Step
 from sebody.explore.advice.combinations import combinations
 from sebody.explore.advice.cost import of_form
 from sebody.explore.advice.estimates import expected, least
-from sebody.explore.advice.forms import Form, alike
+from sebody.explore.advice.forms import Form, Part, alike
 from sebody.explore.advice.indicators.activity import activity
 from sebody.explore.advice.reference import ORDER_FACTOR
-from sebody.explore.advice.runner import FINER, Laboratory, Tried
+from sebody.explore.advice.runner import FINER, LONGER, MISSED, Laboratory, Tried
 
-LONGER = (4, 2)             # steps that are tried, in given ones
 MOST_ALONE = 12             # forms of a part that are tried alone
 APART = 0.5                 # of the budget, that all of them may take
 MOST_TOGETHER = 24          # choices that are tried
-MISSED = 0.2                # of a load, that steps which are tried may not see
 SHARE = 0.5                 # of the tolerance, that one part may use
 EXACT = 0.05                # of the tolerance, that a change may make that should make none
 RARE = 0.5                  # steps of variable length relative to fixed ones, that pay
@@ -51,25 +50,52 @@ class Search:
         return self._together()
 
     def _parts(self) -> None:
-        """Try forms of parts: equal parts together, costly parts first."""
-        groups = sorted(alike(self.lab.parts), key=lambda group: -sum(
-            of_form(self.lab.parts[k], self.lab.parts[k].detailed, self.planar) for k in group))
+        """Try forms of parts: of those that are alike together, first where most is to gain."""
+        groups = {tuple(group): self._gain(group) for group in alike(self.lab.parts)}
         self.groups = []
-        for place, group in enumerate(groups):
-            rest = len(groups) - place
-            if self.spent():
-                self.untried += [self.lab.parts[k].name for k in group]
-                self.groups.append(group)
-            elif self._alone(group, rest) or len(group) == 1:
-                self.groups.append(group)
-            else:
-                self.groups += [[k] for k in group]
-                for n, k in enumerate(group):
-                    if self.spent():
-                        self.untried.append(self.lab.parts[k].name)
-                    else:
-                        self._alone([k], rest + len(group) - 1 - n)
+        left = sum(groups.values())
+        for group, gain in sorted(groups.items(), key=lambda pair: -pair[1]):
+            share = gain / left if gain > 0.0 else 0.0
+            left -= gain
+            self.groups += self._group(list(group), share)
         self.untried.sort(key=[part.name for part in self.lab.parts].index)
+
+    def _group(self, group: list[int], share: float) -> list[list[int]]:
+        """Try forms of parts that are alike, one by one where together none is enough.
+
+        Returns
+        -------
+        list of list of int
+            The parts that get like forms from here on.
+        """
+        if share == 0.0:
+            return [group]
+        if self.spent():
+            self.untried += [self.lab.parts[k].name for k in group]
+            return [group]
+        if self._alone(group, share) or len(group) == 1:
+            return [group]
+        for n, k in enumerate(group):
+            if self.spent():
+                self.untried.append(self.lab.parts[k].name)
+            else:
+                self._alone([k], share / (len(group) - n))
+        return [[k] for k in group]
+
+    def _gain(self, group: list[int]) -> float:
+        """Operations that the cheapest form which may be enough saves in parts that are alike."""
+        part = self.lab.parts[group[0]]
+        least_cost = min(self._cost(part, form) for form in part.forms
+                         if form == part.detailed or self._may_do(group, form))
+        return len(group) * (self._cost(part, part.detailed) - least_cost)
+
+    def _cost(self, part: Part, form: Form) -> float:
+        return of_form(part, form, self.planar)
+
+    def _may_do(self, group: list[int], form: Form) -> bool:
+        """Whether a form of some parts may be good enough, as far as it is known."""
+        found = [one for k in group for one in self.lab.estimates.of_form(k, form)]
+        return least(found) <= SHARE * self.tolerance
 
     def spent(self) -> bool:
         """Whether the budget is used up."""
@@ -77,8 +103,8 @@ class Search:
 
     @property
     def base(self) -> Choice:
-        """The reference model, with the longest step it ran with and all exact changes."""
-        return self.lab.detailed._replace(step=Step(max(self.lab.bases)), planar=self.planar,
+        """The reference model, with the longest step that resolves it and all exact changes."""
+        return self.lab.detailed._replace(step=self.lab.trial, planar=self.planar,
                                          shared=self.shared, dropped=self.dropped)
 
     def _exact(self) -> None:
@@ -118,13 +144,13 @@ class Search:
             self.variable = True
             self.lab.estimates.learn_step(step, found.error)
 
-    def _alone(self, group: list[int], rest: int) -> bool:
-        """Try forms of a part, or of several equal parts, while the others keep theirs.
+    def _alone(self, group: list[int], share: float) -> bool:
+        """Try forms of a part, or of several alike, the others as rich as they are.
 
         Parameters
         ----------
-        rest : int
-            Groups that share what is left of the budget for this.
+        share : float
+            Of what is left of the budget for this.
 
         Returns
         -------
@@ -134,17 +160,13 @@ class Search:
         part, base = self.lab.parts[group[0]], self.base
         failed: list[Form] = []
         best = inf
-
-        def cost(form: Form) -> float:
-            return of_form(part, form, self.planar)
+        cost = partial(self._cost, part)
         forms = sorted((form for form in part.forms if form != part.detailed), key=cost)
-        left = max(APART * self.budget - self.lab.spent(), 0.0) / rest
-        most = self.lab.spent() + left
+        most = self.lab.spent() + share * max(APART * self.budget - self.lab.spent(), 0.0)
         for _ in range(MOST_ALONE):
             form = next((
                 f for f in forms if cost(f) < best and not any(f.poorer(one) for one in failed)
-                and least([one for k in group for one in self.lab.estimates.of_form(k, f)])
-                <= SHARE * self.tolerance), None)
+                and self._may_do(group, f)), None)
             if form is None or self.lab.spent() > most:
                 break
             forms.remove(form)
@@ -166,7 +188,7 @@ class Search:
         if not self.lab.quantities.histories:
             return [Step(h)]
         count = round(self.lab.runs.t_end / h)
-        found = [Step(k * h) for k in LONGER
+        found = [Step(k * h) for k in reversed(LONGER)
                  if count % k == 0 and self.lab.missed(k * h).share <= MISSED]
         found += [Step(h / k) for k in sorted(FINER)]
         while found[-1].h > shortest or expected(

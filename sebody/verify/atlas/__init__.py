@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable
 from sebody.contract.names import element_name, superelement_name
 from sebody.errors import InputError, LimitWarning
 from sebody.runs.first_run import PARTS, compile_missing
-from sebody.verify.atlas import frames, geometry, inertia, integration, spin, torsion
+from sebody.verify.atlas import frames, geometry, inertia, integration, spin, torsion, trust
 from sebody.verify.atlas.draw import draw
 from sebody.verify.atlas.finding import Finding, Row
 
@@ -31,6 +31,10 @@ CASES: dict[str, Callable[[], Finding]] = {
     "collinear": geometry.collinear,
     "massless": geometry.massless_rotations,
     "weights": geometry.negative_weights,
+    "missed-loads": trust.missed_loads,
+    "beam-damping": trust.damping_by_division,
+    "rotating-frequencies": trust.frequencies_that_rotate,
+    "instability": trust.instability,
 }
 # kernels of all cases, to compile them at once; what a case needs besides it compiles itself
 KERNELS = tuple(

@@ -1,14 +1,18 @@
 """The page of pictures of the atlas."""
 
+from itertools import cycle
 from pathlib import Path
 
 from sebody.pictures.plots import write_picture
 from sebody.verify.atlas.finding import Finding
 
-COLORS = ("#c8452d", "#3c6fb6", "#2a7f62", "#b58a1b", "#8a4fa3", "#1f2a44", "#9aa5b8")
+COLORS = ("#c8452d", "#3c6fb6", "#2a7f62", "#b58a1b", "#8a4fa3", "#1f2a44", "#d98a6a")
+THEORY = "#6b7485"      # theory is dashed in grey, what is measured in colours
+DASHES = ((0, (5, 2)), (0, (1.5, 1.5)), (0, (6, 2, 1.5, 2)))
 COLUMNS = 3
 MOST_TICKS = 7          # that are written one by one
 FEW_DECADES = 200.0     # ends of a logarithmic axis whose powers of ten alone say little
+CROSS = {"marker": "x", "markersize": 7.0, "markeredgewidth": 1.6}
 ALONE = {"markersize": 7.0, "markerfacecolor": "none"}      # a single point, over a curve
 
 
@@ -28,10 +32,14 @@ def draw(findings: list[Finding], path: str | Path) -> None:
 
 
 def _panel(axes, finding: Finding) -> None:
-    for (label, (x, y)), color in zip(finding.curves.items(), COLORS, strict=False):
-        style = "--" if label in finding.dashed else "o-" if len(x) < 12 else "-"
-        axes.plot(x, y, style, color=color, label=label, linewidth=1.0,
-                  **(ALONE if len(x) == 1 else {"markersize": 3.5}))
+    colors, dashes = cycle(COLORS), cycle(DASHES)
+    for label, (x, y) in finding.curves.items():
+        if label in finding.predicted:
+            axes.plot(x, y, linestyle=next(dashes), color=THEORY, label=label, linewidth=1.4,
+                      zorder=3, **(CROSS if len(x) == 1 else {}))
+        else:
+            axes.plot(x, y, "o-" if len(x) < 12 else "-", color=next(colors), label=label,
+                      linewidth=1.0, **(ALONE if len(x) == 1 else {"markersize": 3.5}))
     for axis in finding.logarithmic:
         getattr(axes, f"set_{axis}scale")("log")
     points = max((x for x, _ in finding.curves.values()), key=len)

@@ -41,4 +41,9 @@ class Finding:
     rows: list[Row] = field(default_factory=list)
     curves: dict[str, tuple[ArrayLike, ArrayLike]] = field(default_factory=dict)
     logarithmic: str = ""   # axes, "x", "y" or "xy"
-    dashed: tuple[str, ...] = ()    # curves of what is not computed
+    predicted: list[str] = field(default_factory=list)      # curves of theory, drawn dashed
+
+    def predict(self, label: str, x: ArrayLike, y: ArrayLike) -> None:
+        """Add a curve that theory or another program gives."""
+        self.curves[label] = x, y
+        self.predicted.append(label)

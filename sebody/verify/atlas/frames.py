@@ -45,6 +45,7 @@ def struck_frame() -> Finding:
         else:
             finding.rows.append(Row(f"change of energy, {label}", 0.0,
                                     float(np.abs(energy - 1.0).max()), 1e-3))
+    finding.predict("conserved", (OVER, T_END), (1.0, 1.0))
     return finding
 
 

@@ -56,8 +56,7 @@ def half_turn() -> Finding:
         "the ends of a body with two nodes, for every frame.",
         "The run stops with a message that names the reason; sebody warns much earlier, at 0.3 "
         "rad.",
-        "rotation of one node relative to the other [deg]", "rotation of the frame [deg]",
-        dashed=("mean beyond the limit",))
+        "rotation of one node relative to the other [deg]", "rotation of the frame [deg]")
     angles = np.arange(10.0, 180.0, 2.5)
     for frame, share in (("converged_mean", 0.5), ("mean", 0.5), ("node", 0.0)):
         turns = np.array([_turn(frame, angle) for angle in angles])
@@ -67,8 +66,8 @@ def half_turn() -> Finding:
             Row(f"{frame}: last rotation of the frame [deg]", share * angles[last], turns[last],
                 1e-9)]
         finding.curves[frame] = angles[:last + 1], turns[:last + 1]
-    finding.curves["mean beyond the limit"] = ((LIMIT, 180.0, 180.0, 270.0),
-                                                 (LIMIT / 2, 90.0, -90.0, -45.0))
+    finding.predict("half the rotation, which jumps", (0.0, 180.0, 180.0, 270.0),
+                    (0.0, 90.0, -90.0, -45.0))
     return finding
 
 
@@ -96,6 +95,7 @@ def collinear() -> Finding:
         finding.rows.append(Row(f"offset {offset:g}: turn", np.arctan(1e-6 / offset), turns[-1],
                                 1e-3))
     finding.curves["frame"] = offsets, turns
+    finding.predict("deflection / distance", offsets, 1e-6 / np.array(offsets))
     try:
         triangle(1e-8)
         refused = 0.0
@@ -150,6 +150,7 @@ def massless_rotations() -> Finding:
     order = np.polyfit(np.log(shares), np.log(changes), 1)[0]
     finding.rows.append(Row("order of the change in the share", 1.0, order, 0.1))
     finding.curves["tip"] = shares, changes
+    finding.predict("first order", shares, changes[1] * shares / shares[1])
     try:
         _struck(0.0)
         refused = 0.0
@@ -201,6 +202,7 @@ def negative_weights() -> Finding:
     steps = (0.02, 0.01, 0.005, 0.0025)
     drifts = [_tumbling(h) for h in steps]
     finding.curves["measured"] = steps, drifts
+    finding.predict("second order", steps, drifts[-1] * (np.array(steps) / steps[-1])**2)
     order = np.polyfit(np.log(steps), np.log(drifts), 1)[0]
     finding.rows.append(Row("order of the drift of energy", 2.0, order, 0.15))
     return finding

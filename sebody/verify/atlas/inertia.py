@@ -53,6 +53,8 @@ def impulses() -> Finding:
         finding.rows.append(Row(f"option {option.upper()}, force 2800: error",
                                 1 - energy / _reference(2800.0), errors[option][-1], 0.15,
                                 REFERENCE))
+        finding.predict(f"option {option.upper()}, another program", (2800.0,),
+                        (1 - energy / _reference(2800.0),))
     return finding
 
 
@@ -82,6 +84,7 @@ def small_increments() -> Finding:
     angles = np.geomspace(0.01, 0.8, 9)
     found = [_force_difference(angle) for angle in angles]
     finding.curves["measured"] = angles, found
+    finding.predict("second order", angles, found[0] * (angles / angles[0])**2)
     slope = np.polyfit(np.log(angles[:6]), np.log(found[:6]), 1)[0]
     finding.rows.append(Row("order in the elastic rotation", 2.0, slope, 0.1))
     return finding

@@ -50,10 +50,10 @@ def spurious_divergence() -> Finding:
             lambda: spinning(arm(1, own, MODES, None), eta), eta), 2.0, 20.0, 7)
         finding.rows.append(Row(f"{frame} frame, one body with stiffening, up to 20", np.inf,
                                 found, 0.0))
-        finding.curves[f"{frame} frame, exact inertia"] = COUNTS, [
-            divergence(cantilever(n, frame)) for n in COUNTS]
-    finding.curves["chord frame, exact inertia"] = COUNTS, [
-        divergence(cantilever(n, "chord")) for n in COUNTS]
+        finding.predict(f"{frame} frame, exact inertia, theory", COUNTS, [
+            divergence(cantilever(n, frame)) for n in COUNTS])
+    finding.predict("chord frame, exact inertia, theory", COUNTS, [
+        divergence(cantilever(n, "chord")) for n in COUNTS])
     return finding
 
 
@@ -70,7 +70,7 @@ def frequencies() -> Finding:
     for eta, exact in LAG.items():
         finding.rows.append(Row(f"theory, spin {eta:g}", exact, lag(eta), 1e-4, REFERENCE))
     line = np.linspace(SPINS[0], SPINS[-1], 25)
-    finding.curves["beam"] = line, [lag(eta) for eta in line]
+    finding.predict("beam, theory", line, [lag(eta) for eta in line])
     kinds = {"one body with stiffening": {"inertia": None},
              "exact inertia, no stiffening": {"inertia": None, "stiffening": False},
              "option B": {"inertia": "material"}}
@@ -128,6 +128,7 @@ def spin_up_outcomes() -> Finding:
                                 v.min(), 2e-3, REFERENCE))
         if case == "kane":
             finding.curves["one body with stiffening"] = t, v
+            finding.predict("lowest of nonlinear beams", (t[0], t[-1]), (DEEPEST[case],) * 2)
     return finding
 
 
@@ -165,7 +166,7 @@ def buckling() -> Finding:
     _by_bodies(finding, lambda n, frame: euler_load(cantilever(n, frame)),
                lambda n, frame, _: onset(lambda p: grows(
                    lambda: pressed(arm(n, frame), p, False)), 1.5, 6.0, 19), 2e-3)
-    finding.curves["beam"] = COUNTS, [np.pi**2 / 4] * len(COUNTS)
+    finding.predict("beam, theory", COUNTS, [np.pi**2 / 4] * len(COUNTS))
     _of_one_body(finding, np.pi**2 / 4, False, 1e-3)
     return finding
 
@@ -185,7 +186,7 @@ def flutter() -> Finding:
     _by_bodies(finding, lambda n, frame: beck_load(cantilever(n, frame)),
                lambda n, frame, _: onset(lambda p: grows(
                    lambda: pressed(arm(n, frame, 6 // n + 1), p, True)), 15.0, 80.0, 27), 0.01)
-    finding.curves["beam"] = COUNTS, [20.0509536] * len(COUNTS)
+    finding.predict("beam, theory", COUNTS, [20.0509536] * len(COUNTS))
     _of_one_body(finding, 20.0509536, True, 1e-3)
     return finding
 

@@ -44,6 +44,7 @@ def soft_torsion() -> Finding:
         "G J / E I", "critical spin, W sqrt(m L^4 / E I)", logarithmic="xy")
     for frame, square in SQUARES.items():
         limits = []
+        finding.predict(f"{frame} frame, theory", SOFTNESS, np.sqrt(square * np.array(SOFTNESS)))
         for torsion in SOFTNESS:
             theory = np.sqrt(square * torsion)
             model = blade(torsion, frame, {"inertia": "material"})

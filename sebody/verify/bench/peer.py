@@ -22,6 +22,7 @@ from sebody.verify.bench.own import LOOPS, MODES
 from sebody.verify.references import tip_error
 
 NAME = "Exudyn"
+BEAMS = ("hinged-beam", "planar-hinged-beam", "spherical-beam")     # scenes it has models of
 LINKS = (1, 4, 16, 64, 256)
 
 
@@ -36,6 +37,13 @@ def version() -> str | None:
         return installed_version("exudyn")
     except PackageNotFoundError:
         return None
+
+
+def told(scene: str | None = None) -> str:
+    """Whether a chart has points of Exudyn, and why not, in a sentence."""
+    if scene not in BEAMS:
+        return f"peers: {NAME} has models of {', '.join(BEAMS)} alone, none of this scene"
+    return f"peers: {NAME} {version()}" if available() else f"peers: {NAME} is not installed"
 
 
 def measure(scene: str) -> list[Measurement]:

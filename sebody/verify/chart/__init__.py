@@ -1,10 +1,12 @@
 """``sebody chart``: error against computing time of all that a scene can be built from."""
 
 import csv
+from collections.abc import Callable, Iterator
 from dataclasses import astuple, fields
 from functools import partial
 from io import StringIO
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,46 +15,82 @@ from sebody.files import check_target, replacing
 from sebody.runs.first_run import prepare
 from sebody.runs.simulation import Simulation
 from sebody.verify.bench import peer
+from sebody.verify.chart.advised import FAMILY, Advised, advised
 from sebody.verify.chart.any_scene import measure_any
-from sebody.verify.chart.cases import COARSEST, SCENES, Variant, builder, variants
-from sebody.verify.chart.draw import draw
+from sebody.verify.chart.cases import COARSEST, SCENES, TOLERANCE, Variant, builder, variants
+from sebody.verify.chart.draw import Panel, draw, draw_panels
 from sebody.verify.chart.points import Point, Study, front
 from sebody.verify.chart.references import Reference, reference
-from sebody.verify.chart.timing import poor_variants, processor_seconds, repeated
+from sebody.verify.chart.timing import BARS, poor_variants, processor_seconds, repeated
 
 T_END = 30.0                    # of the peer's runs
+ERROR = ("error: root mean square of the difference from the reference at all times, relative to "
+         "that of the quantity, never below the reference's own")
 LEVELS = (1e-2, 1e-3, 3e-4)     # of error, at which front and peer are compared
 
 
-def measure(scene: str) -> Study:
-    """Run all variants of one of `SCENES`, and the peer where it is installed."""
+def measure(scene: str, tolerance: float = TOLERANCE) -> Study:
+    """Run all variants of one of `SCENES`, the advised model, and the peer where it is installed.
+
+    Parameters
+    ----------
+    scene : str
+    tolerance : float
+        Of the advice.
+    """
     chosen = variants(scene)
     prepare(builder(scene)(**v.parameters).model for v in chosen)
-    exact = reference(scene)
+    exact, base = reference(scene), builder(scene)()
     with poor_variants():
-        points = _points(scene, chosen, exact)
+        found = advised(base.model, base.h, base.t_end, [SCENES[scene]], tolerance)
+        points = _points(scene, chosen, exact, found)
+    choice = next((one for one in points if one.family == FAMILY), None)
     if peer.available():
         points += _peer(scene, exact)
-    return Study(points, SCENES[scene], exact.error)
+    return Study(points, SCENES[scene], exact.error, choice, tolerance,
+                 (ERROR, BARS, found.told, peer.told(scene)))
 
 
-def _points(scene: str, chosen: list[Variant], exact: Reference) -> list[Point]:
-    """Measure variants; those whose runs fail are left out."""
-    found, runs = [], []
-    for variant in chosen:
-        built = builder(scene)(**variant.parameters)
-        begin = partial(Simulation, built.model, built.h / variant.finer, variant.scheme,
-                        round(COARSEST * variant.finer))
+class _Begun(NamedTuple):
+    """A run to be measured: its names, how it begins, its step and end."""
+
+    family: str
+    label: str
+    begin: Callable[[], Simulation]
+    h: float
+    t_end: float
+
+
+def _points(scene: str, chosen: list[Variant], exact: Reference, found: Advised) -> list[Point]:
+    """Measure variants and the advised model; those whose runs fail are left out."""
+    kept, runs = [], []
+    for one in _begun(scene, chosen, found):
         try:
-            result = begin().run_to(built.t_end).result()
+            result = one.begin().run_to(one.t_end).result()
         except SimulationError:
             continue
-        found.append((variant, result, built))
-        runs.append(lambda begin=begin, t_end=built.t_end: processor_seconds(begin(), t_end))
-    return [Point(variant.family, variant.label, _error(result[SCENES[scene]], exact),
-                  times.quickest / built.t_end, result.numbering.free, built.h / variant.finer,
-                  result.iterations_per_step, times.slowest / built.t_end)
-            for (variant, result, built), times in zip(found, repeated(runs), strict=True)]
+        kept.append((one, result))
+        runs.append(lambda one=one: processor_seconds(one.begin(), one.t_end))
+    return [Point(one.family, one.label, _error(result[SCENES[scene]], exact),
+                  times.quickest / one.t_end, result.numbering.free, one.h,
+                  result.iterations_per_step, times.slowest / one.t_end)
+            for (one, result), times in zip(kept, repeated(runs), strict=True)]
+
+
+def _begun(scene: str, chosen: list[Variant], found: Advised) -> Iterator[_Begun]:
+    """All that is run; the advised model first."""
+    if found.advice:
+        base, advice = builder(scene)(), found.advice
+        yield _Begun(FAMILY, found.label, partial(
+            Simulation, advice.model, advice.step,
+            output_every=max(round(COARSEST * base.h / advice.step), 1),
+            tolerance=advice.local), advice.step, base.t_end)
+    for variant in chosen:
+        built = builder(scene)(**variant.parameters)
+        h = built.h / variant.finer
+        yield _Begun(variant.family, variant.label, partial(
+            Simulation, built.model, h, variant.scheme, round(COARSEST * variant.finer)),
+            h, built.t_end)
 
 
 def _error(values, exact: Reference) -> float:
@@ -62,7 +100,7 @@ def _error(values, exact: Reference) -> float:
 
 def _peer(scene: str, exact: Reference) -> list[Point]:
     """Points of the bench, over 30 s; its own references are of higher order."""
-    if scene not in ("hinged-beam", "planar-hinged-beam", "spherical-beam"):
+    if scene not in peer.BEAMS:
         return []
     names = (scene, "planar-hinged-beam") if scene == "hinged-beam" else (scene,)
     return [Point(peer.NAME, m.variant.removeprefix(peer.NAME).strip() + f", h {m.h:g}",
@@ -92,8 +130,8 @@ def report(name: str, points: list[Point], limit: float) -> str:
     return "\n".join(lines)
 
 
-def write_csv(points: list[Point], path: Path) -> None:
-    """One line a point.
+def write_csv(studies: list[Study], path: Path) -> None:
+    """One line a point, with the quantity it is of.
 
     Raises
     ------
@@ -104,11 +142,17 @@ def write_csv(points: list[Point], path: Path) -> None:
     """
     table = StringIO(newline="")
     writer = csv.writer(table)
-    writer.writerow([f.name for f in fields(Point)])
-    writer.writerows(astuple(p) for p in points)
+    writer.writerow([*(f.name for f in fields(Point)), "quantity"])
+    writer.writerows((*astuple(p), study.quantity) for study in studies for p in study.points)
     with replacing(check_target(path, "table"), "table") as file:
         file.write(table.getvalue().encode())
 
 
-__all__ = ["SCENES", "Point", "Study", "draw", "front", "measure", "measure_any", "own", "report",
-           "write_csv"]
+def panels(studies: list[Study]) -> list[Panel]:
+    """One of each study, with the front of this package's points."""
+    return [Panel(one.quantity, one.points, front(own(one.points)), one.error, one.choice,
+                  one.tolerance) for one in studies]
+
+
+__all__ = ["SCENES", "Point", "Study", "draw", "draw_panels", "front", "measure", "measure_any",
+           "own", "panels", "report", "write_csv"]

@@ -1,12 +1,11 @@
 """Charts of any scene: variants on the axes of `advise`, compared with the reference model.
 
 The reference model runs with ever shorter steps and is extrapolated; where it divides beams, half
-as
-many bodies tell what the division leaves. Variants are uniform: all parts of the model get as many
-bodies and modes, as far as each can.
+as many bodies tell what the division leaves. Variants are uniform: all parts of the model get as
+many bodies and modes, as far as each can.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -16,7 +15,13 @@ from sebody.engine.state import Scheme
 from sebody.errors import InputError, SimulationError
 from sebody.explore.advice.changes import Builder, Choice, Step
 from sebody.explore.advice.forms import Form, Part, parts_of
-from sebody.explore.advice.quantities import Quantities, Values, difference
+from sebody.explore.advice.quantities import (
+    FREQUENCY,
+    Quantities,
+    Values,
+    difference,
+    parted,
+)
 from sebody.explore.advice.reference import Reference, reference, still
 from sebody.model.model import Model
 from sebody.results.result import Result
@@ -24,9 +29,11 @@ from sebody.runs.first_run import prepare
 from sebody.runs.schemes import generalized_alpha
 from sebody.runs.simulation import Simulation
 from sebody.runs.tolerance import Tolerance
-from sebody.verify.chart.cases import STEPS, schemes
+from sebody.verify.bench import peer
+from sebody.verify.chart.advised import FAMILY, Advised, advised
+from sebody.verify.chart.cases import STEPS, TOLERANCE, schemes
 from sebody.verify.chart.points import Point, Study
-from sebody.verify.chart.timing import poor_variants, processor_seconds, repeated
+from sebody.verify.chart.timing import BARS, Times, poor_variants, processor_seconds, repeated
 
 if TYPE_CHECKING:
     from sebody.scenes.scene import Scene
@@ -34,6 +41,8 @@ if TYPE_CHECKING:
 REFERENCE = (2, 4, 8)       # steps of the reference's runs in a given one
 GRID = 4                    # given steps on whose grid histories are compared, where they fit
 LOCAL = (1e-2, 1e-3, 1e-4)  # local tolerances of variable steps
+ERROR = ("error: largest difference from the reference model at any time, relative to the largest "
+         "change of the quantity, never below the reference's own")
 DIVISION = 3.0              # errors of second order: differences by halving over what is left
 
 
@@ -46,15 +55,18 @@ class Plan(NamedTuple):
     scheme: Scheme | None = None
 
 
-def measure_any(scene: "Scene", quantity: str | None = None) -> Study:
-    """Run variants of any scene.
+def measure_any(scene: "Scene", quantities: Sequence[str] = (),
+                tolerance: float = TOLERANCE) -> list[Study]:
+    """Run variants of any scene, and the model that is advised.
 
     Parameters
     ----------
     scene : Scene
-    quantity : str, optional
-        What is compared, see `advise`; by default the position of the scene's tip, or of the node
-        that moves the farthest.
+    quantities : sequence of str
+        What is compared, see `advise`, each in a study of its own; by default the position of the
+        scene's tip, or of the node that moves the farthest.
+    tolerance : float
+        Of the advice, which keeps all quantities.
 
     Raises
     ------
@@ -64,39 +76,56 @@ def measure_any(scene: "Scene", quantity: str | None = None) -> Study:
         The reference model does not run.
     """
     with poor_variants():
-        return _measured(_Chart(scene, quantity))
+        return _measured(_Chart(scene, quantities), tolerance)
 
 
-def _measured(chart: "_Chart") -> Study:
+def _measured(chart: "_Chart", tolerance: float) -> list[Study]:
     exact = chart.reference()
     kept, runs = [], []
-    for plan in chart.plans():
+    found = advised(chart.model, chart.h, chart.t_end, chart.names, tolerance)
+    chosen = [Plan(FAMILY, found.label, Choice((), found.step))] if found.advice else []
+    for plan in [*chosen, *chart.plans()]:
         try:
-            model = chart.builder.make(plan.choice).model
+            model = (found.advice.model if plan in chosen else
+                     chart.builder.make(plan.choice).model)
             values, result = chart.run(model, plan.choice.step, plan.scheme)
-            error = max(difference(values, exact.values, exact.sizes, (1, 1)), exact.error)
+            errors = [max(difference(one, best.values, best.sizes, (1, 1)), best.error)
+                      for one, best in zip(parted(values), exact, strict=True)]
         except (InputError, SimulationError):
             continue
-        kept.append((plan, error, result))
+        kept.append((plan, errors, result))
         runs.append(lambda model=model, plan=plan: processor_seconds(
             chart.simulation(model, plan.choice.step, plan.scheme), chart.t_end))
-    points = [Point(plan.family, plan.label, error, times.quickest / chart.t_end,
+    times = repeated(runs)
+    return [_study(chart, k, best, kept, times, found, tolerance)
+            for k, best in enumerate(exact)]
+
+
+def _study(chart: "_Chart", k: int, best: Reference, kept: list[tuple], times: list[Times],
+           found: Advised, tolerance: float) -> Study:
+    """Of one quantity."""
+    points = [Point(plan.family, plan.label, errors[k], one.quickest / chart.t_end,
                     result.numbering.free, plan.choice.step.h, result.iterations_per_step,
-                    times.slowest / chart.t_end)
-              for (plan, error, result), times in zip(kept, repeated(runs), strict=True)]
-    return Study(points, chart.quantity, exact.error)
+                    one.slowest / chart.t_end)
+              for (plan, errors, result), one in zip(kept, times, strict=True)]
+    choice = next((one for one in points if one.family == FAMILY), None)
+    return Study(points, chart.names[k], best.error, choice, tolerance,
+                 (ERROR, BARS, found.told, peer.told()))
 
 
 class _Chart:
     """A scene, its parts and the runs of its variants."""
 
-    def __init__(self, scene: "Scene", quantity: str | None):
+    def __init__(self, scene: "Scene", quantities: Sequence[str]):
         self.model, self.h = scene.model, scene.h
         count = max(round(scene.t_end / scene.h), 1)
         self.grid = GRID if count >= GRID else 1
         self.t_end = (count - count % self.grid) * scene.h
-        self.quantity = quantity or self._moving(scene.tip)
-        self.quantities = Quantities(self.quantity)
+        wanted = Quantities(list(quantities) or [self._moving(scene.tip)])
+        wanted.check(self.model, self.h)
+        # histories first, as values have them
+        self.names = sorted(wanted.names, key=lambda name: FREQUENCY.fullmatch(name) is not None)
+        self.quantities = wanted
         self.parts: list[Part] = parts_of(self.model, self.quantities.owners)
         self.builder = Builder(self.model, self.parts, self.quantities.owners)
         self.given = tuple(part.given for part in self.parts)
@@ -122,7 +151,7 @@ class _Chart:
         return moving[0]
 
     def run(self, model: Model, step: Step, scheme: Scheme | None) -> tuple[Values, Result]:
-        """The quantity on the chart's grid, and the result it is from."""
+        """The quantities on the chart's grid, and the result they are from."""
         result = self._simulated(model, step, scheme)
         return self.quantities.of(result, self.h), result
 
@@ -134,21 +163,27 @@ class _Chart:
     def _simulated(self, model: Model, step: Step, scheme: Scheme | None) -> Result:
         return self.simulation(model, step, scheme).run_to(self.t_end).result()
 
-    def reference(self) -> Reference:
-        """The reference model, extrapolated in the step, with what its division leaves."""
+    def reference(self) -> list[Reference]:
+        """The reference model, extrapolated in the step, with what its division leaves.
+
+        One of each quantity.
+        """
         models = {bodies: self.builder.make(Choice(forms, Step(self.h))).model
                   for bodies, forms in self._divisions()}
         prepare([*models.values(), self.model])
         whole = models.pop(max(models))
         runs = [self.run(whole, Step(self.h / k), None)[0] for k in REFERENCE]
-        if still(runs[-1]):
-            raise InputError(f"quantity {self.quantity!r} does not change: give one that the "
+        for k in still(runs[-1]):
+            raise InputError(f"quantity {self.names[k]!r} does not change: give one that the "
                              "motion changes")
-        found, left = reference(runs), 0.0
+        found = [reference(list(one)) for one in zip(*map(parted, runs), strict=True)]
         for half in models.values():
             other, _ = self.run(half, Step(self.h / REFERENCE[-1]), None)
-            left = difference(other, runs[-1], found.sizes, (1, 1)) / DIVISION
-        return found._replace(error=found.error + left)
+            found = [best._replace(error=best.error + difference(
+                         one, fine, best.sizes, (1, 1)) / DIVISION)
+                     for best, one, fine in zip(found, parted(other), parted(runs[-1]),
+                                                strict=True)]
+        return found
 
     def _divisions(self) -> Iterator[tuple[int, tuple[Form, ...]]]:
         """Forms of the reference model, and with half as many bodies where it divides any."""

@@ -13,6 +13,7 @@ SCENES = {"hinged-beam": "tip.position", "planar-hinged-beam": "tip.position",
           "slider-crank": "pin.rotation", "spin-up": "tip.position"}
 # finer: name, of the step of the scene
 STEPS = {0.25: "step x 4", 0.5: "step x 2", 1.0: "step x 1", 2.0: "step / 2", 4.0: "step / 4"}
+TOLERANCE = 1e-2    # of the model that is advised
 COARSEST = 4        # histories are compared on a grid of so many of the scene's own steps
 
 

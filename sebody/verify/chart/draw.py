@@ -1,9 +1,10 @@
 """The picture of a chart."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from itertools import cycle
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,17 +14,18 @@ from sebody.verify.chart.points import Point
 
 COLORS = {"frames and inertia": "#c8452d", "modes": "#2a7f62", "modes, B": "#7fc8a9",
           "bodies": "#3c6fb6", "steps": "#b58a1b", "nonlinear beams": "#1f2a44",
-          "schemes": "#8a4fa3", "Exudyn": "#9aa5b8"}
+          "schemes": "#8a4fa3", "Exudyn": "#9aa5b8", "advised": "#c8452d"}
 # families by what is varied in them
 NAMES = {"frames and inertia": "frame, inertia option", "modes": "number of modes",
          "modes, B": "number of modes, option b", "bodies": "number of bodies",
          "steps": "time step", "nonlinear beams": "nonlinear beam elements",
-         "schemes": "integration scheme", "inertia": "inertia option", "rigid": "rigid parts"}
+         "schemes": "integration scheme", "advised": "advised model",
+         "inertia": "inertia option", "rigid": "rigid parts"}
 MARKERS = "osDvPX<>"      # of families, as well as their colours
 # what of a name tells one run of a method from the others: its step or its tolerance
 STEP = re.compile(r"[;,]? ?(step|h|tolerance|variable steps, local tolerance) ?[0-9.e+-]+")
 OTHERS = ("#c8452d", "#3c6fb6", "#2a7f62", "#8a4fa3", "#b58a1b", "#d98a6a", "#7fc8a9", "#1f2a44")
-INK, PALE = "#1f2a44", "#9aa5b8"
+INK, PALE, CHOSEN = "#1f2a44", "#9aa5b8", "#c8452d"
 MOST_NAMES = 7      # of the front that are written beside their points
 APART = 0.8         # of the error of the named point before: nearer names would cover one another
 DIFFER = 1.1        # cost of the slowest run over that of the quickest from which both are shown
@@ -31,12 +33,23 @@ SLOWEST = {"linestyle": "-", "marker": "|", "linewidth": 0.8, "markersize": 4, "
            "alpha": 0.6, "zorder": 1}
 MARGIN = 0.1        # of the axes beside the points, of their extent
 COLUMNS = 5         # of the legend
-TITLE, FAMILY = 60, 30      # characters of a line of the title, of a family's name
+TITLE, FAMILY, NOTE = 60, 30, 110   # characters of a line of the title, of a family, of a note
+
+
+class Panel(NamedTuple):
+    """What one pair of axes shows, see `draw`."""
+
+    name: str
+    points: list[Point]
+    line: list[Point]
+    limit: float
+    choice: Point | None = None
+    tolerance: float | None = None
 
 
 def draw(name: str, points: Iterable[Point], line: Iterable[Point], limit: float,
          path: str | Path, choice: Point | None = None, tolerance: float | None = None,
-         cost: str = "computing time per simulated second [s]") -> None:
+         notes: Iterable[str] = ()) -> None:
     """Error against computing time, one colour a family, the front as a line with its names.
 
     Parameters
@@ -55,48 +68,70 @@ def draw(name: str, points: Iterable[Point], line: Iterable[Point], limit: float
         The point that was chosen, which gets a ring and its name.
     tolerance : float, optional
         Allowed error.
-    cost : str
-        What the cost is.
+    notes : iterable of str
+        What errors, bars and peers are, in sentences below the title.
 
     Raises
     ------
     InputError
         A picture that cannot be made, see `sebody.pictures.plots.check_picture`.
     """
+    draw_panels(f"{name}: error and computing time", [Panel(
+        "", list(points), list(line), limit, choice, tolerance)], path, notes)
+
+
+def draw_panels(name: str, panels: Sequence[Panel], path: str | Path,
+                notes: Iterable[str] = ()) -> None:
+    """Several charts beside each other, of one quantity each, with one legend; see `draw`."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    points, line = [p for p in points if _drawn(p)], [p for p in line if _drawn(p)]
-    figure = Figure(figsize=(9.6, 6.4), layout="constrained")
+    figure = Figure(figsize=(9.6 if len(panels) == 1 else 7.2 * len(panels), 6.8),
+                    layout="constrained")
     FigureCanvasAgg(figure)
-    axes = figure.add_subplot()
+    width = TITLE * len(panels)
+    figure.suptitle(labels.wrapped(name, width), x=0.01, ha="left", fontsize=10)
+    every = figure.subplots(1, len(panels), squeeze=False)[0]
+    told = "\n".join(labels.wrapped(note, NOTE) for note in notes)
+    names = [_panel(axes, panel) for axes, panel in zip(every, panels, strict=True)]
+    for k, (axes, panel) in enumerate(zip(every, panels, strict=True)):
+        text = "\n".join(filter(None, [panel.name, told if k == 0 else ""]))
+        axes.set_title(text, loc="left", fontsize=7.5, color="#6b7485")
+    _legend(figure, every)
+    for axes, panel, own in zip(every, panels, names, strict=True):
+        points = [(p.cost, p.error) for p in panel.points if _drawn(p)]
+        labels.make_room(figure, axes, own)
+        labels.place(figure, axes, own, np.array(points).reshape(-1, 2))
+    write_picture(figure, path, 130)
+
+
+def _panel(axes, panel: Panel) -> list:
+    """Draw a panel; the names of its points, which are placed later."""
+    points, line = ([p for p in one if _drawn(p)] for one in (panel.points, panel.line))
+    choice = panel.choice if panel.choice is not None and _drawn(panel.choice) else None
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlim(_around([c for p in points for c in (p.cost, max(p.cost, p.slowest))]))
-    axes.set_ylim(_around([*(p.error for p in points), *filter(None, (limit, tolerance))]))
+    axes.set_ylim(_around([*(p.error for p in points),
+                           *filter(None, (panel.limit, panel.tolerance))]))
     _families(axes, points)
     axes.step([p.cost for p in line], [p.error for p in line], where="post", color=INK,
               linewidth=0.8, zorder=1, label="lowest error for the time")
     named = _named(line)
-    if choice is not None and _drawn(choice):
+    if choice:
         axes.plot([choice.cost], [choice.error], "o", markersize=13, markerfacecolor="none",
-                  markeredgecolor="#c8452d", markeredgewidth=1.8, zorder=3)
-        named = [choice, *(p for p in named if p != choice)]
-    names = [_annotation(axes, point, "#c8452d" if point is choice else INK) for point in named]
-    if limit:
-        _level(axes, limit, "error of the reference", below=True)
-    if tolerance:
-        _level(axes, tolerance, f"tolerance {tolerance:g}")
-    axes.set_xlabel(labels.wrapped(cost, TITLE))
+                  markeredgecolor=CHOSEN, markeredgewidth=1.8, zorder=3, linestyle="none",
+                  label="advised model")
+        named = [choice, *(p for p in named if p.cost != choice.cost)]
+    if panel.limit:
+        _level(axes, panel.limit, "error of the reference", below=True)
+    if panel.tolerance:
+        _level(axes, panel.tolerance, f"tolerance {panel.tolerance:g}")
+    axes.set_xlabel("computing time per simulated second [s]")
     axes.set_ylabel("relative error")
-    axes.set_title(labels.wrapped(f"{name}: error and computing time", TITLE), loc="left",
-                   fontsize=10)
     axes.grid(color="#e6e9ef", which="both", linewidth=0.5)
     axes.set_axisbelow(True)
-    _legend(figure, axes)
-    labels.make_room(figure, axes, names)
-    labels.place(figure, axes, names, np.array([(p.cost, p.error) for p in points]).reshape(-1, 2))
-    write_picture(figure, path, 130)
+    return [_annotation(axes, point, CHOSEN if point is choice else INK) for point in named]
 
 
 def _drawn(point: Point) -> bool:
@@ -167,9 +202,13 @@ def _level(axes, level: float, what: str, below: bool = False) -> None:
                   xycoords=("axes fraction", "data"), textcoords="offset points")
 
 
-def _legend(figure, axes) -> None:
-    """Below the axes, in as many columns as fit."""
-    handles, names = axes.get_legend_handles_labels()
+def _legend(figure, every) -> None:
+    """Of all axes, below them, in as many columns as fit."""
+    found = {}
+    for axes in every:
+        for handle, name in zip(*axes.get_legend_handles_labels(), strict=True):
+            found.setdefault(name, handle)
+    handles, names = list(found.values()), list(found)
     for columns in range(min(COLUMNS, len(names)), 0, -1):
         legend = figure.legend(handles, names, loc="outside lower center", ncols=columns,
                                frameon=False, fontsize=8)

@@ -41,11 +41,29 @@ class Point:
 
 
 class Study(NamedTuple):
-    """What a chart shows: its points, the quantity that is compared, the reference's error."""
+    """What a chart shows.
+
+    Parameters
+    ----------
+    points : list of Point
+    quantity : str
+        What is compared.
+    error : float
+        Of the reference.
+    choice : Point, optional
+        The advised model; it is one of the points.
+    tolerance : float, optional
+        Of the advice.
+    notes : tuple of str
+        What errors and bars are, which peers there are, and why no model is advised.
+    """
 
     points: list[Point]
     quantity: str
     error: float
+    choice: Point | None = None
+    tolerance: float | None = None
+    notes: tuple[str, ...] = ()
 
 
 def front(points: Iterable[Point]) -> list[Point]:

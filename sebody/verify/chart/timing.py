@@ -11,6 +11,8 @@ from sebody.runs.simulation import Simulation
 
 LEAST, MOST = 3, 9      # runs of each
 AGREE = 1.05            # ratio of the two quickest runs from which the quickest is trusted
+BARS = (f"time: the processor's, of the quickest of {LEAST} to {MOST} runs that take turns; bars "
+        "end at the slowest")
 LONG = 20.0             # seconds of all runs of one, after which it does not run again
 
 

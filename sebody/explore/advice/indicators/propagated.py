@@ -26,6 +26,10 @@ class Force(NamedTuple):
         """The largest at any node of a body, of its coordinates (n, boundary)."""
         return cls(*(float(np.linalg.norm(one, axis=2).max()) for one in nodal(body, forces)))
 
+    def times(self, factor: float) -> "Force":
+        """As many times as large."""
+        return Force(factor * self.force, factor * self.moment)
+
     def with_(self, other: "Force") -> "Force":
         """The larger ones."""
         return Force(*map(max, self, other))

@@ -13,6 +13,7 @@ from sebody.model.variants import divide
 from sebody.reduction import ReducedBody
 from sebody.results.result import Result
 
+MORE = 2            # times the most modes that forms have, which are looked at
 STATES = 400        # states that are looked at
 
 
@@ -37,16 +38,19 @@ class Recorded:
         Largest changes of the quantities.
     frequencies : list of float
         That are to be kept, angular ones.
+    parts : list of Part
+        All that deform.
     """
 
     def __init__(self, given: Model, result: Result, quantities: list[str],
-                 sizes: list[float], frequencies: list[float]):
+                 sizes: list[float], frequencies: list[float], parts: list[Part]):
         self.given, self.result, self.quantities, self.sizes = given, result, quantities, sizes
-        self.frequencies = frequencies
+        self.frequencies, self.parts = frequencies, parts
         self.every = max(1, len(result.rows) // STATES)
         self.duration = float(result.t[-1])
         self.interval = self.every * float(result.t[1] - result.t[0])
         self.indicated: dict[tuple, float] = {}     # errors by indicator and what they depend on
+        self.vibration: tuple | None = None         # of all parts, once it was looked at
         self._found: dict[tuple, Deformation] = {}
         self._bodies: dict[tuple[str, int], list[tuple[list[Node], ReducedBody]]] = {}
 
@@ -65,8 +69,8 @@ class Recorded:
                 self._bodies[key] = [(nodes, part.body)]
             else:
                 places = [round(k * (len(nodes) - 1) / count) for k in range(count + 1)]
-                most = max(form.modes for form in part.forms if form.bodies == count)
-                made = divide(self.given, part.name, count, part.elements, modes=most).model
+                made = divide(self.given, part.name, count, part.elements,
+                              modes=_seen(part, count)).model
                 self._bodies[key] = [
                     ([nodes[i], nodes[j]], body.body) for i, j, body in zip(
                         places, places[1:], made.beams[-1].parts, strict=False)]
@@ -149,6 +153,16 @@ class Recorded:
         """The node that each quantity belongs to, None of others."""
         nodes = self.result.model.nodes
         return [nodes.get(name.rpartition(".")[0]) for name in self.quantities]
+
+
+def _seen(part: Part, count: int) -> int:
+    """Modes of each of so many bodies of a beam: more than any form has, where its mesh has them.
+
+    So what forms with all their modes leave out is seen, too.
+    """
+    most = max(form.modes for form in part.forms if form.bodies == count)
+    inner = (part.elements // count - 1) * (3 if part.planar else 6)
+    return max(most, min(MORE * most, inner))
 
 
 def _matrices(rotations: NDArray) -> NDArray:

@@ -2,14 +2,18 @@
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import eigh
 
 from sebody.explore.advice.forms import Form, Part
 from sebody.explore.advice.indicators.coordinates import compliance, flat, nodal
 from sebody.explore.advice.indicators.propagated import Force, propagated
 from sebody.explore.advice.indicators.recorded import Recorded
-from sebody.explore.advice.indicators.vibration import detuned, first_frequency, strain_force
+from sebody.explore.advice.indicators.vibration import detuned, strain_force
 from sebody.generated.options import INERTIA_OPTIONS
+from sebody.model.parts import Node
 from sebody.reduction import ReducedBody
+
+RIGID = 1e-9        # of squared frequencies, below which a motion of the boundary is rigid
 
 
 def stiffening(recorded: Recorded, part: Part, form: Form) -> float:
@@ -33,7 +37,7 @@ def stiffening(recorded: Recorded, part: Part, form: Form) -> float:
         n = len(body.stiffness) - body.modes
         found = recorded.deformation(nodes)
         y = flat(body, found.shifts, found.turns)
-        forces, shorter = _second_order(body, y)
+        forces, shorter = _second_order(body, y, np.nan_to_num(found.turns))
         one, other = nodal(body, forces @ compliance(body) + shorter)
         places = [whole.index(node) for node in nodes]
         shifts[:, places] += one
@@ -45,27 +49,48 @@ def stiffening(recorded: Recorded, part: Part, form: Form) -> float:
             + detuned(recorded, part, min(abs(work) / max(energy, 1e-300) / 2, 1.0)))
 
 
-def _second_order(body: ReducedBody, y: NDArray) -> tuple[NDArray, NDArray]:
-    """Forces at the boundary, and its displacements by shortening, (n, boundary)."""
+def _second_order(body: ReducedBody, y: NDArray, turns: NDArray) -> tuple[NDArray, NDArray]:
+    """Forces at the boundary, and its displacements by shortening, (n, boundary).
+
+    What bends without tension has ``E . y`` and the shortening of opposite signs; their difference
+    is known to the square of the rotations alone, by which the shortening is off.
+    """
     i, n = body.invariants, y.shape[1]
     E, G = i.E[:n], i.Ghat[:, :n, :n]
     shorter = np.einsum("ni,eij,nj->ne", y, G, y, optimize=True) / (2.0 * i.lam)
+    strains = y @ E + shorter
+    unknown = (turns**2).sum(axis=2).max(axis=1)[:, None] * np.abs(shorter)
+    known = np.sign(strains) * np.maximum(np.abs(strains) - unknown, 0.0)
     # of displacements with these strains of the resultants, the smallest
-    return (np.einsum("ne,eij,nj->ni", y @ E + shorter, G, y, optimize=True),
+    return (np.einsum("ne,eij,nj->ni", known, G, y, optimize=True),
             shorter @ np.linalg.pinv(E))
 
 
 def spin(recorded: Recorded, part: Part, form: Form) -> float:
-    """Error of options that soften with a spin: ``(spin / frequency)^2`` of the deformation.
+    """Error of options that soften with a spin, by a share of ``spin^2 / frequency^2``.
 
-    The frequency is the first one of the body with a node held.
+    The frequencies are those of the vibrations of the boundary that the recorded motion has.
     """
     share = INERTIA_OPTIONS[form.inertia].softening
     if share == 0.0:
         return 0.0
-    change = max(share * (float(np.abs(recorded.spins(nodes)).max()) / first_frequency(body))**2
-                 for nodes, body in recorded.bodies(part, form.bodies))
+    change = share * max(_softened(recorded, nodes, body)
+                         for nodes, body in recorded.bodies(part, form.bodies))
     whole = recorded.deformation(recorded.nodes(part))
     return (min(change, 1.0) * propagated(recorded, part, whole.shifts, whole.turns,
                                        strain_force(recorded, part))
             + detuned(recorded, part, min(change / 2, 1.0)))
+
+
+def _softened(recorded: Recorded, nodes: list[Node], body: ReducedBody) -> float:
+    """Mean of ``spin^2 / frequency^2`` of the vibrations of the boundary, as large as they are."""
+    found = recorded.deformation(nodes)
+    u = flat(body, np.nan_to_num(found.shifts), np.nan_to_num(found.turns))
+    n = u.shape[1]
+    squares, shapes = eigh(body.stiffness[:n, :n], body.mass[:n, :n])
+    flexible = squares > RIGID * squares[-1]
+    sizes = (u @ body.mass[:n, :n] @ shapes[:, flexible])**2
+    spins = np.linalg.norm(recorded.spins(nodes), axis=1)**2
+    if not sizes.any():
+        return 0.0
+    return float((spins @ sizes[1:] / squares[flexible]).sum() / sizes[1:].sum())

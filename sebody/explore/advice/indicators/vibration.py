@@ -1,5 +1,7 @@
 """Errors of a vibration's period, which add up over a run."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
@@ -13,18 +15,71 @@ from sebody.reduction import ReducedBody
 MOST = 2.0      # amplitudes: in antiphase
 
 
-def detuned(recorded: Recorded, part: Part, change: float, most: float = MOST) -> float:
-    """Error if the frequency of a part's vibration changes by a relative amount.
+class Vibration(NamedTuple):
+    """What vibrates in a model, as errors of the quantities that it would make.
 
-    The vibration is what is left of the recorded deformation u without its mean; its frequency is
-    ``rms(u') / rms(u)``. After the time T it is out of phase by ``change * frequency * T``, which
-    counts up to `most`.
+    Parameters
+    ----------
+    slope : float
+        By being out of phase, for a small relative change of the frequency.
+    most : float
+        In antiphase.
+    energies : dict of str to float
+        Mean strain energies of the parts, by their names.
     """
+
+    slope: float
+    most: float
+    energies: dict[str, float]
+
+
+def detuned(recorded: Recorded, part: Part, change: float) -> float:
+    """Error if a part's mass or stiffness changes its own frequency by a relative amount.
+
+    The parts vibrate together: the frequency of all changes by as much as the part has of the
+    strain energy. After the time t this vibration is out of phase by ``change * frequency * t``,
+    which counts up to antiphase.
+    """
+    whole = _vibration(recorded)
+    total = sum(whole.energies.values())
+    share = whole.energies[part.name] / total if total > 0.0 else 1.0
+    return min(abs(change) * share * whole.slope, whole.most)
+
+
+def _vibration(recorded: Recorded) -> Vibration:
+    """That of all parts of a recorded motion."""
+    if recorded.vibration is None:
+        found = [_of_part(recorded, part) for part in recorded.parts]
+        recorded.vibration = Vibration(
+            max(one.slope for one in found), max(one.most for one in found),
+            {name: energy for one in found for name, energy in one.energies.items()})
+    return recorded.vibration
+
+
+def _of_part(recorded: Recorded, part: Part) -> Vibration:
+    """What vibrates in a part: what is left of the recorded deformation without its mean."""
     found = recorded.deformation(recorded.nodes(part))
     shifts, turns = (one - one.mean(axis=0) for one in found[:2])
-    phase = abs(change) * frequency(recorded, shifts) * recorded.duration
-    return propagated(recorded, part, shifts, turns, strain_force(recorded, part)) * min(most,
-                                                                                         phase)
+    size = np.sqrt(sum((np.nan_to_num(one)**2).sum(axis=(1, 2)) for one in (shifts, turns)))
+    (nodes, body), = recorded.bodies(part, 1)
+    ends = recorded.deformation(nodes)
+    u = flat(body, ends.shifts, ends.turns)
+    u = u - u.mean(axis=0)
+    n = u.shape[1]
+    energy = {part.name: float(np.einsum("ni,ij,nj->n", u, body.stiffness[:n, :n], u).mean())}
+    if not size.any():
+        return Vibration(0.0, 0.0, energy)
+    phase = frequency(recorded, shifts) * _age(size, recorded.interval)
+    force = strain_force(recorded, part)
+    slope = propagated(recorded, part, shifts * phase[:, None, None], turns * phase[:, None, None],
+                    force.times(float((phase * size).max() / size.max())))
+    return Vibration(slope, MOST * propagated(recorded, part, shifts, turns, force), energy)
+
+
+def _age(size: NDArray, interval: float) -> NDArray:
+    """Time since a vibration was excited, by its sizes: of one that decays its own life at most."""
+    squares = size**2
+    return np.cumsum(squares) * interval / np.maximum(np.maximum.accumulate(squares), 1e-300)
 
 
 def strain_force(recorded: Recorded, part: Part) -> Force:
