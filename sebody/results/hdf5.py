@@ -54,7 +54,7 @@ def write(file: BinaryIO, members: Mapping[str, NDArray], units: Mapping[str, st
 
     memory = BytesIO()
     with h5py.File(memory, "w", userblock_size=SIZE) as made:
-        made.attrs.update(attributes | {"program": f"sebody {__version__}"})
+        made.attrs.update({**attributes, "program": f"sebody {__version__}"})
         for name, values in members.items():
             _write(made, name, np.asarray(values), units.get(name))
     file.write(guarded(bytearray(memory.getbuffer())))

@@ -96,7 +96,7 @@ def _described(model: Mechanism, name: str) -> Beam:
     used = _used(model, own)
     for node in own.nodes[1:-1]:
         if used & {node, node.position, node.rotation} or any(
-                t.fixed or t.given for t in (node.position, node.rotation)):
+                t is not None and (t.fixed or t.given) for t in (node.position, node.rotation)):
             raise InputError(f"{what}something else acts on or holds its node {node.name!r}; build "
                              "two beams that meet there")
     return own
