@@ -32,7 +32,7 @@ OF_BODY = 20_000        # bytes of a superelement and its node
 def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
          section: AnySection, elements: int, bodies: int | None = None, modes: int = 0,
          up: ArrayLike | None = None, damping: Damping = 0.0,
-         stiffening: bool | None = None, **placing) -> list[Node]:
+         stiffening: bool | None = None, **placing: Any) -> list[Node]:
     """A straight beam of equal superelements; with one element each, a nonlinear beam.
 
     A superelement of one finite element, with the mean of its two rotations as frame, has the

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,7 +16,7 @@ from sebody.model.variants.copying import Variant, checked, copied, loads_on
 
 
 def divide(model: Mechanism, name: str, bodies: int, elements: int | None = None,
-           **options) -> Variant:
+           **options: Any) -> Variant:
     """The model with a beam of another number of superelements.
 
     Parameters
