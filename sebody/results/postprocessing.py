@@ -92,8 +92,8 @@ def constraint_residuals(system: System, state: State, rows: NDArray) -> NDArray
     return found
 
 
-def _over_records(what: str, evaluate: Callable[..., int], system: System, state: State, rows: NDArray,
-                  *out: NDArray) -> None:
+def _over_records(what: str, evaluate: Callable[..., int], system: System, state: State,
+                  rows: NDArray, *out: NDArray) -> None:
     """Evaluate the recorded states, then restore the state the run has reached."""
     now, loads = state.now.copy(), state.loads.copy()
     status = evaluate(system, state, rows, *out)
