@@ -30,8 +30,8 @@ WRONG = (
 
 def example() -> str:
     """The first program of the README that builds a model."""
-    return next(text for text in re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(),
-                                            re.S) if "Model()" in text)
+    programs = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.S)
+    return next(text for text in programs if "Model()" in text)
 
 
 @pytest.fixture(scope="module")
