@@ -36,7 +36,8 @@ CONSTANTS = FRAME_CONSTANTS + (
     Part("P", ("n",), "load on the local coordinates, of amplitude one"),
 )
 MULTIPLIERS = 0
-MEMORY = 0
+READS = 0
+MEMORY = ()
 WIDTH = None            # any number
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive

@@ -17,7 +17,9 @@ ROTATIONS = 6      # first rotation among the local coordinates
 CONSTANTS = ()
 MULTIPLIERS = 3
 WIDTH = 9
-MEMORY = 0      # numbers it keeps from step to step
+READS = 0      # multipliers of other equations that it reads
+# numbers it keeps from step to step
+MEMORY = ()
 INERTIAL = False        # has kinetic energy
 POWER = False        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     )
     from sebody.model.model import Model
     from sebody.model.profiles import harmonic, piecewise, ramp, rest_to_rest, spline, trapezoidal
+    from sebody.model.surfaces import cylinder, plane, sphere
     from sebody.model.time_functions import with_corners
     from sebody.results.result import Result
     from sebody.runs.accuracy import simulate_within
@@ -24,8 +25,8 @@ if TYPE_CHECKING:
     from sebody.version import __version__ as __version__
 
 __all__ = ["InputError", "Interrupted", "LimitWarning", "Model", "Result", "SebodyError",
-           "Simulation", "SimulationError", "Tolerance", "WriteError", "generalized_alpha",
-           "harmonic", "hht", "piecewise", "ramp", "rest_to_rest", "simulate", "simulate_within",
-           "spline", "trapezoidal", "with_corners"]
+           "Simulation", "SimulationError", "Tolerance", "WriteError", "cylinder",
+           "generalized_alpha", "harmonic", "hht", "piecewise", "plane", "ramp", "rest_to_rest",
+           "simulate", "simulate_within", "sphere", "spline", "trapezoidal", "with_corners"]
 
 load_on_demand(__name__)

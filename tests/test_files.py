@@ -6,10 +6,12 @@ import signal
 import tempfile
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from sebody import InputError, WriteError
 from sebody.files import check_target, replacing
+from sebody.files.members import Header, Member, Table
 
 
 def parts(folder):
@@ -110,3 +112,27 @@ def test_folders_and_files_without_the_right_to_write(somebody):
         with pytest.raises(InputError, match=message):
             check_target(folder / "b.npz", "output file")
         folder.chmod(0o755)
+
+
+class Arrays:
+    """An open file of some arrays."""
+
+    def __init__(self, **members):
+        self._members = {name: np.asarray(values) for name, values in members.items()}
+        self.headers = {name: Header(one.shape, one.dtype)
+                        for name, one in self._members.items()}
+
+    def read(self, name):
+        return self._members[name]
+
+
+def test_an_index_is_below_the_length_it_points_into():
+    table = Table("a file", "write it again", {"places": Member(("nodes", 3)), "at": Member(
+        (None,), "i", least=0, below="nodes")})
+    places = np.zeros((4, 3))
+    assert list(table.read(Arrays(places=places, at=[0, 3, 1]))["at"]) == [0, 3, 1]
+    for wrong, said in (([0, 4], "a file holds 4 in at, where the largest is 3: write it again"),
+                        ([-1, 2], "a file holds -1 in at, where the least is 0: write it again")):
+        with pytest.raises(InputError) as caught:
+            table.read(Arrays(places=places, at=wrong))
+        assert str(caught.value) == said

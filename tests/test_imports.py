@@ -32,7 +32,8 @@ ROOMS = {
     "fem": set(),
     "reduction": {"fem"},
     "io": {"fem", "reduction"},
-    "model": {*COMPILED, "fem", "reduction", "io"},     # of generated the options alone
+    "control": set(),
+    "model": {*COMPILED, "fem", "reduction", "io", "control"},     # of generated the options alone
     "assembly": {*COMPILED, "engine", "reduction", "model"},        # the options likewise
     "results": {*COMPILED, "engine", "fem", "reduction", "model", "assembly"},
     "pictures": {"fem", "reduction", "model", "results"},
@@ -45,7 +46,7 @@ ROOMS = {
                 "pictures", "limits", "runs", "small_motion"},
     "analysis": {"limits", "runs", "small_motion", "explore"},      # a door: names of other rooms
     "sebody": {"model", "results", "runs"},         # its names: sebody/__init__.py
-    "scenes": {"sebody", "fem", "reduction", "io", "results", "pictures"},
+    "scenes": {"sebody", "fem", "reduction", "io", "results", "pictures", "control", "analysis"},
     "catalogue": {*COMPILED, "scenes"},
     "verify": {*COMPILED, "engine", "fem", "reduction", "model", "assembly", "results",
                "pictures", "limits", "runs", "small_motion", "explore", "scenes", "catalogue"},
@@ -62,8 +63,8 @@ PACKAGES = {"errors": set(), "inputs": {"numpy"}, "tabular": {"numpy"}, "memory"
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
 # modules that may import matplotlib
-PICTURES = {"plots", "frequency_pictures", "drawing", "film", "film_marks", "rendering", "draw",
-            "picture", "paper_figures", "notebook"}
+PICTURES = {"plots", "control_figures", "frequency_pictures", "drawing", "film", "film_marks",
+            "rendering", "draw", "picture", "paper_figures", "notebook"}
 FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
 # modules of extras by room, and what they may import
@@ -71,6 +72,7 @@ OTHERS = {"io/nastran": {"pyyeti"}, "io/ansys_apart": {"ansys"}, "io/ngsolve_spa
           "results/hdf5": {"h5py"}, "files/hdf5": {"h5py"}, "results/tables": {"pandas", "xarray"},
           "results/hot_spots": {"pandas"},
           "results/vtk_series": {"meshio"}, "pictures/film": {"PIL", "imageio"},
+          "small_motion/state_space": {"control"},
           "explore/executors": {"distributed"}, "explore/table": {"pandas"}}
 
 

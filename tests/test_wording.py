@@ -46,6 +46,24 @@ RETIRED = {     # a regular expression: what is written instead
     r"\bis none of a body\b": "is not a mechanical DOF",
     r"\bhangs on another node\b": "follows another node",
     r"\bnodes [^.;:]{1,40} start (apart|together)\b": "do not coincide, coincide",
+    r"\b(header|mapping|deck)[^.;:]{0,20} tells( of)?\b|\btells of (a|\.\.\.)": "says, lists",
+    r"\bstrain tell of\b|\btells? (the|a) (full|units)\b": "indicate",
+    r"\b(body|bodies|model|form|boundary) (do(es)? not |that )?knows?\b": "has, lacks",
+    r"\bcannot see rotations\b|\bsteps [^.;:]{0,20}(do not see|see (least|of))\b":
+        "cannot determine, miss",
+    r"\bmind what is said\b|\bof which nothing can be said\b": "note the cautions",
+    r"\b(answer|answers) (to|of) (a |the )?(load|harmonic|inertia|unknown)": "response",
+    r"\bis none of (a|the) (matrix|displacement|structure|mechan)": "is not",
+    r"\bfolds? .* which no symmetry\b|\bof which no symmetry\b": "whose symmetry is unknown",
+    r"\boff by a (tenth|per cent|quarter|third)\b": "errors of 10 %",
+    r"\bwhich its fastest vibrations answer\b|\bno damping takes away\b": "excites, undamped",
+    r"\bquiet but for short times\b": "smooth except for short times",
+    r"\bsmall force aside\b|\bwhere it should\b": "lateral force, at the right load",
+    r"\bthe same command goes on\b|\bwritten anew where\b": "repeat the command, rewritten if",
+    r"\bmade? poorer\b|\bpoorer in everything\b": "simplified",
+    r"\bthe peer gets there\b|\berrs more than\b": "no Exudyn model reaches it, exceeds",
+    r"\bturns? by [^.;:]{1,20} against it\b|\bturns by \.\.\. rad\b": "rotates relative to it",
+    r"\bserve on\b|\bwobble of the energy\b": "remain usable, oscillation",
 }
 
 

@@ -21,7 +21,23 @@ from sebody.derive.symbolic.rotations import cross
 from sebody.derive.symbolic.variation import Rules, along, check_same, differential, rotating
 
 AMPLITUDE = sp.symbols("amplitude amplitude_rate amplitude_acceleration")
-KEPT_ANGLE = sp.Symbol("kept_angle")    # of the last accepted step
+Stage = tuple[tuple[sp.Symbol, sp.Expr], ...]      # none reads a symbol of the same stage
+
+
+def kept(name: str) -> sp.Symbol:
+    """A number that an element keeps from step to step, as it was in the last accepted step."""
+    return sp.Symbol("kept_" + name)
+
+
+class choose(sp.Function):  # noqa: N801  (as functions of SymPy)
+    """``choose(x, yes, no)``: yes where x is positive, else no; derivatives are of these two."""
+
+    nargs = 3
+    written_out = True      # no function of a target's library
+
+    def _eval_derivative(self, by: sp.Symbol) -> sp.Expr:
+        yes, no = (one.diff(by) for one in self.args[1:])
+        return choose(self.args[0], yes, no) if (yes, no) != (0, 0) else sp.S.Zero
 
 
 class near_angle(sp.Function):  # noqa: N801  (as functions of SymPy)
@@ -51,6 +67,7 @@ class Block(NamedTuple):
     direction: Quantity     # variation of the state; of a rotation through T
     unit: Quantity          # the column itself, along which rates and accelerations vary
     angle: sp.Symbol | None # of a rotation in a plane
+    increment: Quantity | None = None   # of a rotation in space: its rotation vector of the step
 
     @property
     def rotational(self) -> bool:
@@ -85,20 +102,27 @@ class Element(NamedTuple):
     sums: dict[str, sp.Expr]            # what it adds to the energies, by name
     power: sp.Expr | None               # of loads, dampers and drives on the system
     losses: tuple[sp.Expr, ...]         # force of the dampers, where that is not the whole force
-    kept: sp.Expr | None = None         # angle that is `KEPT_ANGLE` in the next step
+    memory: tuple[tuple[str, sp.Expr], ...] = ()    # numbers kept, which the next step reads
+    reads: tuple[sp.Symbol, ...] = ()   # multipliers of other equations
+    stages: tuple[Stage, ...] = ()      # what the force and the memory are made of, in this order
+    slopes: tuple[Stage, ...] = ()      # derivatives of these, for the matrix
+    moves: tuple[Stage, ...] = ()       # of a column: what these move with its unknown
     linear: tuple[sp.Expr, ...] = ()    # a column of the matrix
     on_multipliers: sp.Matrix = sp.zeros(0, 0)  # derivative of the force by the multipliers
 
     @property
     def coordinates(self) -> int:
         """Number of unknowns that are no multipliers."""
-        return len(self.residual) - len(self.multipliers)
+        return len(self.residual) - len(self.multipliers) - len(self.reads)
 
     @property
     def printed(self) -> list[sp.Expr]:
         """Every expression the kernel evaluates, the multipliers' columns apart."""
-        return [*self.residual, *self.linear, *self.velocity, *self.second, *self.sums.values(),
-                *([] if self.power is None else [self.power]), *self.losses]
+        staged = [value for stage in (*self.stages, *self.slopes, *self.moves)
+                  for _, value in stage]
+        power = [] if self.power is None else [self.power]
+        return [*staged, *(value for _, value in self.memory), *self.residual, *self.linear,
+                *self.velocity, *self.second, *self.sums.values(), *power, *self.losses]
 
 
 def constant(space: Space, name: str, kind: str, meaning: str) -> Constant:
@@ -123,12 +147,17 @@ def rotation(space: Space, name: str) -> Block:
     state = space.quantity("R" + name, "rotation", "element")
     return Block(state, *(space.quantity(kind + name, "axial", "element")
                           for kind in ("Om", "A", "dth", "uth")),
-                 sp.Symbol("th" + name) if space.planar else None)
+                 sp.Symbol("th" + name) if space.planar else None,
+                 space.quantity("psi" + name, "axial", "element"))
 
 
 def varied(blocks: Sequence[Block]) -> Rules:
     """Rules of a variation of the configuration."""
-    return _moved(blocks, "direction")
+    rules = _moved(blocks, "direction")
+    for block in blocks:
+        if block.increment is not None:
+            rules |= along(block.increment.symbols, block.unit.symbols)
+    return rules
 
 
 def in_time(blocks: Sequence[Block]) -> Rules:
@@ -156,10 +185,11 @@ def element(name: str, summary: str, space: Space, blocks: Sequence[Block],
             constants: Sequence[Constant] = (), *, constraints: Sequence[sp.Expr] = (),
             kinetic: sp.Expr = sp.S.Zero, strain: sp.Expr = sp.S.Zero,
             potential: sp.Expr = sp.S.Zero, dissipation: sp.Expr = sp.S.Zero,
-            load: sp.Expr = sp.S.Zero, kept: sp.Expr | None = None) -> Element:
+            load: sp.Expr = sp.S.Zero,
+            memory: Sequence[tuple[str, sp.Expr]] = ()) -> Element:
     """Derive an element from its scalars; `load` is virtual work, linear in the directions.
 
-    An element may keep an angle from step to step, to count its turns: see `near_angle`.
+    An element may keep numbers from step to step, to count its turns: see `near_angle`.
     """
     lam = sp.symbols(f"lam_1:{len(constraints) + 1}")
     vary, time = varied(blocks), in_time(blocks)
@@ -176,11 +206,13 @@ def element(name: str, summary: str, space: Space, blocks: Sequence[Block],
         _sums(blocks, kinetic, strain, potential),
         _power(blocks, lam, constraints, dissipation, load),
         _losses(blocks, space, dissipation) if kinetic + strain + potential != 0 else (),
-        kept)
+        tuple(memory))
 
 
 def linearized(given: Element) -> Element:
-    """The element with the columns of its matrix."""
+    """The element with the columns of its matrix; one of laws has them, see `law_elements`."""
+    if given.linear:
+        return given
     force, constraints = given.residual[:given.coordinates], given.residual[given.coordinates:]
     lam, vary = given.multipliers, varied(given.blocks)
     gradient = sp.Matrix(force).jacobian(sp.Matrix(lam)) if lam else sp.zeros(len(force), 0)

@@ -5,12 +5,12 @@ import sympy as sp
 from sebody.derive.form.spaces import Space
 from sebody.derive.formulas.elements import (
     AMPLITUDE,
-    KEPT_ANGLE,
     Constant,
     Element,
     amplitude,
     constant,
     element,
+    kept,
     near_angle,
     position,
     rotation,
@@ -83,7 +83,7 @@ def torsion_spring(planar: bool) -> Element:
     constants = [*_stiffness(space), constant(space, "rest", "scalar", "angle at rest [rad]")]
     k, k3, c, rest = (q.symbols[0] for q in constants)
     a, b = rotation(space, "a"), rotation(space, "b")
-    kept = None
+    memory = []
     if planar:
         angle, rate = a.angle - b.angle - rest, a.rate.symbols[2] - b.rate.symbols[2]
         vectors = []
@@ -92,14 +92,15 @@ def torsion_spring(planar: bool) -> Element:
                    constant(space, "m", "vector", "direction normal to both, body b")]
         n, m = (v.symbols for v in vectors)
         seen = b.state.symbols.T * a.state.symbols * n      # n and m: rest angle off the start
-        kept = angle = near_angle(sp.atan2(m.dot(seen), n.dot(seen)), KEPT_ANGLE)
+        angle = near_angle(sp.atan2(m.dot(seen), n.dot(seen)), kept("angle"))
+        memory = [("angle", angle)]
         e = cross(n, m)
         rate = (a.state.symbols * e).dot(a.state.symbols * a.rate.symbols
                                          - b.state.symbols * b.rate.symbols)
         angle = angle - rest
     return element("planar_" * planar + "torsion_spring", "spring and damper about an axis", space,
                    (a, b), (*constants, *vectors), strain=k * angle**2 / 2 + k3 * angle**4 / 4,
-                   dissipation=c * rate**2 / 2, kept=kept)
+                   dissipation=c * rate**2 / 2, memory=memory)
 
 
 def bushing(planar: bool) -> Element:

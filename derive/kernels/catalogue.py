@@ -1,6 +1,16 @@
 """Elements by the name of their kernel."""
 
-from sebody.derive.formulas import forces, joints, rigid
+from functools import partial
+
+from sebody.derive.formulas import (
+    actuators,
+    contacts,
+    forces,
+    frictions,
+    joints,
+    rigid,
+    stops,
+)
 
 ELEMENTS = {
     "parallel_ground": lambda: joints.parallel(True),
@@ -38,4 +48,40 @@ ELEMENTS = {
     "planar_torsion_spring": lambda: forces.torsion_spring(True),
     "bushing": lambda: forces.bushing(False),
     "planar_bushing": lambda: forces.bushing(True),
+    **{"planar_" * planar + f"{way}_{part.__name__}": partial(part, way, planar)
+       for way in actuators.WAYS for part in (actuators.motor, actuators.rotor)
+       for planar in (False, True)},
+    # friction in joints: f and m count the multipliers it reads, forces and moments
+    "friction_turn": lambda: frictions.friction_turn(False, (0, 0)),
+    "friction_turn_f3m2": lambda: frictions.friction_turn(False, (3, 2)),
+    "friction_turn_f3m1": lambda: frictions.friction_turn(False, (3, 1)),
+    "friction_slide": lambda: frictions.friction_slide(False, (0, 0)),
+    "friction_slide_f2": lambda: frictions.friction_slide(False, (2, 0)),
+    "friction_slide_f2m3": lambda: frictions.friction_slide(False, (2, 3)),
+    "friction_cylindrical_f2m2": frictions.friction_cylindrical,
+    "friction_spherical": lambda: frictions.friction_spherical((0, 0)),
+    "friction_spherical_f3": lambda: frictions.friction_spherical((3, 0)),
+    "planar_friction_turn": lambda: frictions.friction_turn(True, (0, 0)),
+    "planar_friction_turn_f2": lambda: frictions.friction_turn(True, (2, 0)),
+    "planar_friction_slide": lambda: frictions.friction_slide(True, (0, 0)),
+    "planar_friction_slide_f1": lambda: frictions.friction_slide(True, (1, 0)),
+    "planar_friction_slide_f1m1": lambda: frictions.friction_slide(True, (1, 1)),
+    "turn_stop": lambda: stops.turn_stop(False),
+    "slide_stop": lambda: stops.slide_stop(False),
+    "distance_stop": lambda: stops.distance_stop(False),
+    "gear_play": lambda: stops.gear_play(False),
+    "planar_turn_stop": lambda: stops.turn_stop(True),
+    "planar_slide_stop": lambda: stops.slide_stop(True),
+    "planar_distance_stop": lambda: stops.distance_stop(True),
+    "planar_gear_play": lambda: stops.gear_play(True),
+    "sphere_on_plane": lambda: contacts.contact("plane", False, True),
+    "sphere_on_sphere": lambda: contacts.contact("sphere", False, True),
+    "sphere_on_cylinder": lambda: contacts.contact("cylinder", False, True),
+    "point_on_plane": lambda: contacts.contact("plane", False, False),
+    "point_on_sphere": lambda: contacts.contact("sphere", False, False),
+    "point_on_cylinder": lambda: contacts.contact("cylinder", False, False),
+    "planar_sphere_on_plane": lambda: contacts.contact("plane", True, True),
+    "planar_sphere_on_sphere": lambda: contacts.contact("sphere", True, True),
+    "planar_point_on_plane": lambda: contacts.contact("plane", True, False),
+    "planar_point_on_sphere": lambda: contacts.contact("sphere", True, False),
 }

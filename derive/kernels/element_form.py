@@ -24,7 +24,7 @@ from sebody.derive.form.statements import (
 )
 from sebody.derive.form.whole import Number, Quotient, Whole, whole
 from sebody.derive.formulas import arrays
-from sebody.derive.formulas.elements import AMPLITUDE, KEPT_ANGLE, Block, Element, whole_turns
+from sebody.derive.formulas.elements import AMPLITUDE, Block, Element, Stage, kept, whole_turns
 from sebody.derive.kernels.arguments import ARGUMENTS
 from sebody.derive.kernels.bodies import MATRIX, port
 
@@ -44,14 +44,15 @@ OF_TASKS, OF_MULTIPLIERS = 900, 700
 
 def element_form(element: Element) -> Kernel:
     """The kernel as statements."""
-    kept = [] if element.kept is None else [element.kept]
+    stages, count = staged(element.stages, 0)
+    memory = [value for _, value in element.memory]
     residual, count = stored(
-        [*element.residual, *kept],
+        [*element.residual, *memory],
         [*(arrays.g[k] for k in range(len(element.residual))),
-         *[ARGUMENTS["frames"][_memory()]] * len(kept)], 0)
+         *(ARGUMENTS["frames"][_memory(k)] for k in range(len(memory)))], count)
     of_element = (
         *places(element), Point(arrays.g, ARGUMENTS["forces"].at(counts.element * counts.WIDTH)),
-        *loads(element), *residual, *_tasks(element),
+        *loads(element), *stages, *residual, *_tasks(element),
         If(compared(counts.task, "==", agreed("TANGENT")), _matrix(element, count)))
     body = (For(counts.element, Number(0), counts.count, of_element), Return(agreed("OK")))
     return Kernel(element_name(element.name), body, known_counts(element), 2, 0,
@@ -87,9 +88,18 @@ def _counted(expressions: Iterable[sp.Expr]) -> Operations:
                           + list(reduced)), 0, 0, 0)
 
 
-def _memory() -> Whole:
-    """Place of the number that an element keeps from step to step."""
-    return ARGUMENTS["index"][counts.first + agreed("AT_FRAME")]
+def _memory(k: int) -> Whole:
+    """Place of a number that an element keeps from step to step."""
+    return ARGUMENTS["index"][counts.first + agreed("AT_FRAME")] + k
+
+
+def staged(stages: Iterable[Stage], start: int) -> tuple[list[Statement], int]:
+    """Stages one after the other, and the number of the next temporary."""
+    found: list[Statement] = []
+    for stage in stages:
+        lines, start = stored([value for _, value in stage], [name for name, _ in stage], start)
+        found += lines
+    return found, start
 
 
 def stored(expressions: Iterable[sp.Expr], targets: Sequence[Target], start: int,
@@ -143,14 +153,16 @@ def loads(element: Element) -> list[Statement]:
     at, matrix = 0, 0
     for block in element.blocks:
         found += _state(block, at, matrix, used)
-        for array, quantity in (("v", block.rate), ("a", block.acceleration)):
+        for array, quantity in (("v", block.rate), ("a", block.acceleration),
+                                *[("q", block.increment)] * block.rotational):
             found += [(s, ARGUMENTS[array][arrays.unknowns[at + k]])
                       for k, s in enumerate(quantity.kept) if s in used]
         at += len(block.direction.kept)
         matrix += block.rotational
     found += [(s, q[arrays.unknowns[element.coordinates + k]])
-              for k, s in enumerate(element.multipliers)]
-    found += [(KEPT_ANGLE, ARGUMENTS["references"][_memory()])] * (KEPT_ANGLE in used)
+              for k, s in enumerate((*element.reads, *element.multipliers))]
+    found += [(kept(name), ARGUMENTS["references"][_memory(k)])
+              for k, (name, _) in enumerate(element.memory) if kept(name) in used]
     amplitudes = 3 * ARGUMENTS["index"][counts.first + agreed("AT_PORT")]
     found += [(s, ARGUMENTS["loads"][amplitudes + k]) for k, s in enumerate(AMPLITUDE) if s in used]
     return [Set((s,), (value,)) for s, value in found]
@@ -170,9 +182,11 @@ def _state(block: Block, at: int, matrix: int, used: set) -> list[tuple[sp.Symbo
 def _matrix(element: Element, start: int) -> tuple[Statement, ...]:
     """Columns of the coordinates, then those of the multipliers."""
     width = len(element.residual)
-    used = used_symbols(element.linear)
+    used = used_symbols([*element.linear, *(v for stage in element.moves for _, v in stage)])
     varied = bool(used & {s for block in element.blocks for s in block.unit.kept})
     rows = (DIRECTION, UNIT) if varied else (DIRECTION,)
+    slopes, start = staged(element.slopes, start)
+    moves, start = staged(element.moves, start)
     column, _ = stored(element.linear, [MATRIX[i * width + counts.column] for i in range(width)],
                         start)
     work, i = ARGUMENTS["work"], counts.i
@@ -181,17 +195,17 @@ def _matrix(element: Element, start: int) -> tuple[Statement, ...]:
     return (
         *tangent_coefficients(element),
         Point(MATRIX, ARGUMENTS["matrices"].at(counts.element * counts.WIDTH * counts.WIDTH)),
-        *(Point(row, work.at(k * counts.WIDTH)) for k, row in enumerate(rows)),
+        *(Point(row, work.at(k * counts.WIDTH)) for k, row in enumerate(rows)), *slopes,
         For(counts.column, Number(0), whole(element.coordinates), (
             clear, *(Set((row[counts.column],), (ONE,)) for row in rows[1:]),
-            *_seeds(element), *_directions(element, used), *column)),
+            *_seeds(element), *_directions(element, used), *moves, *column)),
         *_multiplier_columns(element))
 
 
 def tangent_coefficients(element: Element) -> list[Set]:
     """Factors of the derivatives, those that a column uses."""
     used = used_symbols([*element.linear, *element.on_multipliers])
-    used |= {C_CONSTRAINT} if element.multipliers else set()
+    used |= {C_CONSTRAINT} if element.multipliers or element.reads else set()
     return [Set((c,), (ARGUMENTS["coefficients"][place],)) for c, place in COEFFICIENTS.items()
             if c in used]
 
@@ -221,9 +235,9 @@ def _directions(element: Element, used: set) -> list[Set]:
 
 
 def _multiplier_columns(element: Element) -> tuple[Statement, ...]:
-    """Columns of the multipliers: the constraint gradient, and zero below it."""
-    count, coordinates, width = (len(element.multipliers), element.coordinates,
-                                 len(element.residual))
+    """Columns of the multipliers: the constraint gradient, or slopes, and zero below."""
+    count, coordinates, width = (len(element.multipliers) + len(element.reads),
+                                 element.coordinates, len(element.residual))
     entries = [(i * width + coordinates + k, C_CONSTRAINT * element.on_multipliers[i, k])
                for k in range(count) for i in range(coordinates)]
     found, _ = stored([e for _, e in entries], [MATRIX[at] for at, _ in entries], OF_MULTIPLIERS)

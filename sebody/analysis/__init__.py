@@ -30,6 +30,7 @@ if TYPE_CHECKING:
         modes,
         vibrations,
     )
+    from sebody.small_motion.state_space import StateSpace, state_space
 
 __all__ = [
     "Advice",
@@ -40,6 +41,7 @@ __all__ = [
     "Modes",
     "Outcome",
     "Output",
+    "StateSpace",
     "Unreached",
     "Vibrations",
     "advise",
@@ -57,6 +59,7 @@ __all__ = [
     "rms",
     "save_state",
     "spin_limit",
+    "state_space",
     "vibrations",
 ]
 

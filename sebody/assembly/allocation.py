@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.build import work_size
+from sebody.assembly.control import begin
 from sebody.assembly.numbering import Numbering, record_counts, stretch
 from sebody.contract.layout import COEFFICIENTS, ENERGIES, FIELD, LANES, whole_vectors
 from sebody.engine.newton import SLOWEST
@@ -64,10 +65,13 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
         projected=zeros(total),
         pulled=zeros(total),
         column=zeros(LANES * system.slot_unknowns.size), work=zeros(work_size(model)),
-        energy=zeros(ENERGIES.size(counts)), clock=clock, control=control)
+        energy=zeros(ENERGIES.size(counts)), memory=zeros(int(system.control.memory[0])),
+        clock=clock, control=control)
     state.q[:], state.v[:], state.R[:] = q, v, R
     of_bodies = 9 * len(numbering.modes)
     state.frames[:of_bodies] = state.frames_old[:of_bodies] = _identities(of_bodies)
+    begin(model, numbering, system.control, state.memory, state.frames)
+    state.frames_old[of_bodies:] = state.frames[of_bodies:]
     return state
 
 

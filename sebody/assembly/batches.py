@@ -133,14 +133,14 @@ def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants)
 
 def _element_batches(numbering: Numbering, constants: _Constants, elements: Iterable[Element],
                      frames: Mapping[Superelement, int]) -> list[Batch]:
-    """Batches of elements; those on bodies know the frame of theirs, by id of the body."""
+    """Batches of elements; those on bodies use the frame of their body."""
     batches: dict[tuple, Batch] = {}
     for element in elements:
         kernel, unknowns = element_kernel(element.kind), element_unknowns(numbering, element)
         check_element(element, kernel, len(unknowns), numbering)
         frame = -1 if element.body is None else frames[element.body]
         row = index_row(element.name, kernel, unknowns,
-                        frame=numbering.memories.get(element, max(frame, 0)),
+                        frame=_kept_at(numbering, element, max(frame, 0)),
                         constants=constants.add(_element_constants(element, kernel)),
                         port=numbering.ports.get(element, 0), positions=positions_of(element),
                         nodes=_matrices(numbering, element))
@@ -188,7 +188,13 @@ def element_unknowns(numbering: Numbering, element: Element) -> list[int]:
     if element.multipliers:
         first = numbering.multipliers[element]
         unknowns += range(first, first + element.multipliers)
-    return unknowns
+    return unknowns + numbering.reads.get(element, [])
+
+
+def _kept_at(numbering: Numbering, element: Element, otherwise: int) -> int:
+    """Where the numbers begin that an element keeps from step to step."""
+    own = numbering.memories.get(element)
+    return otherwise if own is None else own[0]
 
 
 def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:

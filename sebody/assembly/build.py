@@ -5,11 +5,12 @@ from numpy.typing import NDArray
 
 from sebody.assembly.axes import frames
 from sebody.assembly.batches import Batches, make_batches, starts
+from sebody.assembly.control import control_arrays
 from sebody.assembly.links import Ends, link_ends
 from sebody.assembly.numbering import Numbering, number, stretch
 from sebody.assembly.ports import port_arrays
 from sebody.assembly.structure import Structure, indices
-from sebody.contract.layout import scratch_size
+from sebody.contract.layout import AT_CONSTANTS, scratch_size
 from sebody.engine.links import Links
 from sebody.engine.system import System
 from sebody.errors import InputError
@@ -38,21 +39,27 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
     batches = make_batches(model, numbering)
     ends, vectors = link_ends(model, numbering)
     own = indices(_structure(model, numbering, batches, ends))
+    ports = port_arrays(numbering.time_functions, numbering.prescribed, numbering.jumps,
+                        numbering.kept.inputs)
     system = System(
-        **own.system, links=Links(arm_vectors=vectors, **own.links),
+        **own.system, **ports, links=Links(arm_vectors=vectors, **own.links),
+        control=control_arrays(model, numbering, ports["table_at"]),
         address=np.array([batch.kernel.kernel.address for batch in batches.all]),
         index=np.array([i for batch in batches.all for row in batch.rows for i in row]),
         constants=batches.constants, rotation_at=_rotation_starts(numbering),
-        routines=np.zeros(2, dtype=np.int64),
+        routines=np.zeros(3, dtype=np.int64),
         dimension=np.array([model.dimension]), part=_parts(model, numbering),
         inertias=np.zeros(numbering.total), massless_axes=np.zeros(numbering.total),
         magnitude=_magnitude(model, numbering),
-        **port_arrays(numbering.time_functions, numbering.prescribed, numbering.jumps),
         regularized=np.zeros(1, dtype=np.int64), massless=np.zeros(1, dtype=np.int64),
-        damped=np.array([int(any(b.body.damping is not None for b in model.bodies.values()))]))
+        damped=np.array([int(any(b.body.damping is not None for b in model.bodies.values()))]),
+        guarded=_guarded(model, numbering))
     owners = [owner for batch in batches.all for owner in batch.owners]
     first_force = starts(b.width for b in batches.all for _ in b.rows).tolist()
-    return system, numbering._replace(forces_at=dict(zip(owners, first_force, strict=False)))
+    rows = [row[AT_CONSTANTS] for batch in batches.all for row in batch.rows]
+    return system, numbering._replace(
+        forces_at=dict(zip(owners, first_force, strict=False)),
+        constants_at=dict(zip(owners, rows, strict=True)), bristles={})
 
 
 def _structure(model: Mechanism, numbering: Numbering, batches: Batches, ends: Ends) -> Structure:
@@ -91,6 +98,13 @@ def _parts(model: Mechanism, numbering: Numbering) -> NDArray:
         first = numbering.multipliers[equation]
         found[first:first + equation.multipliers] = first
     return found
+
+
+def _guarded(model: Mechanism, numbering: Numbering) -> NDArray:
+    """Places of the rates that contacts keep."""
+    kept = ((element_kernel(e.kind).MEMORY, numbering.memories.get(e)) for e in model.loads)
+    return np.array([own[names.index("rate")] for names, own in kept if "rate" in names],
+                    dtype=np.int64)
 
 
 def _rotation_starts(numbering: Numbering) -> NDArray:

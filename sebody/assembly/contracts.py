@@ -42,7 +42,8 @@ def check_element(element: Element, kernel: ModuleType, unknowns: int,
     matrices = sum(t in numbering.rotations for t in element.dof_blocks)
     wrong = _different((("unknowns", unknowns, kernel.WIDTH),
                         ("multipliers", element.multipliers, kernel.MULTIPLIERS),
-                        ("numbers kept", int(element.keeps_angle), kernel.MEMORY),
+                        ("multipliers of a joint to read",
+                         len(numbering.reads.get(element, ())), kernel.READS),
                         ("positions", positions_of(element), kernel.N_POSITIONS),
                         ("rotation matrices", matrices, kernel.N_ROTATIONS)))
     if kernel.DRIVEN and element.time_function is None:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.elimination_order import elimination_order, parents
+from sebody.assembly.kept import Kept, kept
 from sebody.assembly.ports import number_ports
 from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
@@ -32,8 +33,17 @@ class Numbering(NamedTuple):
     groups: NDArray                     # where the unknowns of each body begin
     # body, constraint or load -> its first force in State.g
     forces_at: dict[Element | Superelement, int] = {}
-    memories: dict[Element, int] = {}   # element -> first number it keeps, in State.frames
+    kept: Kept | None = None            # what is kept from step to step
+    # body or element -> its row in System.constants
+    constants_at: dict[Element | Superelement, int] = {}
+    bristles: dict[Element, float] = {}     # element -> stiffness of its bristles in the run
+    reads: dict[Element, list[int]] = {}    # element -> multipliers of a joint that it reads
     jumps: list[list[float]] = []       # of every power port: when accelerations jump with it
+
+    @property
+    def memories(self) -> dict[Element, list[int]]:
+        """What elements keep: places in `State.frames`."""
+        return self.kept.memories
 
 
 def coordinates(numbering: Numbering, dof_block: DofBlock) -> list[int]:
@@ -46,11 +56,6 @@ def stretch(numbering: Numbering, dof_block: DofBlock) -> slice:
     """Coordinates of a DOF block, as a slice."""
     first = numbering.dof_blocks[dof_block]
     return slice(first, first + dof_block.start.size)
-
-
-def kept_frames(numbering: Numbering) -> int:
-    """Length of `State.frames`: frames of the superelements, and one number of each element."""
-    return 9 * len(numbering.modes) + len(numbering.memories)
 
 
 def rotational(model: Mechanism, numbering: Numbering) -> NDArray:
@@ -113,7 +118,7 @@ def number(model: Mechanism) -> Numbering:
     return Numbering(free, len(order.names), order.at, rotations, modes, order.multipliers,
                      order.names, dependent, ports.of, ports.names, ports.time_functions,
                      ports.prescribed, np.array(groups), jumps=ports.jumps,
-                     memories=_memories(model))
+                     kept=kept(model, ports.of), reads=_reads(model, order.multipliers))
 
 
 class _Order:
@@ -148,10 +153,11 @@ class _Order:
                           for j in range(constraint.multipliers))
 
 
-def _memories(model: Mechanism) -> dict[Element, int]:
-    """Places, behind the frames of all superelements, of what elements keep."""
-    return {element: 9 * len(model.bodies) + k for k, element in enumerate(
-        load for load in model.loads if load.keeps_angle)}
+def _reads(model: Mechanism, multipliers: dict[Element, int]) -> dict[Element, list[int]]:
+    """Multipliers of the joint whose reaction presses an element."""
+    return {load: [multipliers[c] + k for c in load.pressed_by.constraints
+                   for k in range(c.multipliers)]
+            for load in model.loads if load.pressed_by is not None}
 
 
 def _coupled(model: Mechanism, last: dict[DofBlock, int]) -> dict[DofBlock, int]:
@@ -213,4 +219,4 @@ def _used(model: Mechanism) -> list[DofBlock]:
 def record_counts(numbering: Numbering) -> dict[str, int]:
     """The counts of a model that sizes in `layout.RECORD` and `layout.ENERGIES` refer to."""
     return {"ports": len(numbering.time_functions), "coordinates": numbering.total,
-            "rotations": len(numbering.rotations), "kept": kept_frames(numbering)}
+            "rotations": len(numbering.rotations), "kept": numbering.kept.size}

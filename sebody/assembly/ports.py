@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.contract.layout import INPUT
 from sebody.engine.tables import AMPLITUDE, PIECE, POLYNOMIAL
 from sebody.kernels.loader import element_kernel
 from sebody.model.mechanism import Mechanism
@@ -59,8 +60,11 @@ def _jumps(element: Element) -> list[float]:
 
 
 def port_arrays(time_functions: list[TimeFunction], prescribed: list[tuple[int, int, int, float]],
-                jumps: list[list[float]]) -> dict[str, NDArray]:
-    """The members of `System` for time functions of ports and for prescribed coordinates."""
+                jumps: list[list[float]], inputs: dict[int, int]) -> dict[str, NDArray]:
+    """The members of `System` for time functions of ports and for prescribed coordinates.
+
+    `inputs` are the places in `State.frames` of ports that are inputs.
+    """
     jumping = {t for times in jumps for t in times}
     corners = sorted(jumping.union(*(h.corners for h in time_functions)))
     return {"table_at": np.array([0, *accumulate(len(h.times) for h in time_functions)],
@@ -69,8 +73,9 @@ def port_arrays(time_functions: list[TimeFunction], prescribed: list[tuple[int, 
             "table_pieces": _pieces(time_functions),
             "corners": np.array(corners, dtype=float),
             "jumps": np.array([int(t in jumping) for t in corners], dtype=np.int64),
-            "functions": np.array([h.addresses for h in time_functions],
-                                  dtype=np.int64).reshape(-1, 3),
+            "functions": np.array([
+                (INPUT, inputs[port], 0) if port in inputs else h.addresses
+                for port, h in enumerate(time_functions)], dtype=np.int64).reshape(-1, 3),
             "prescribed": np.array([row[:3] for row in prescribed], dtype=np.int64).reshape(-1, 3),
             "prescribed_factor": np.array([row[3] for row in prescribed], dtype=float)}
 

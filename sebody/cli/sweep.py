@@ -85,8 +85,8 @@ def run(options: argparse.Namespace) -> int:
                           options.workers, progress)
         except KeyboardInterrupt:
             if stem:
-                print(f"{_beside(stem, '.npz')} has the runs that are done: the same command goes "
-                      "on", file=sys.stderr)
+                print(f"{_beside(stem, '.npz')} holds the completed runs: repeat the command "
+                      "to continue", file=sys.stderr)
             raise
         finally:
             bar.close()

@@ -67,7 +67,7 @@ def kernel_hash(path: Path) -> str:
 @cache
 def _syntax_hash(name: str, *paths: Path) -> str:
     """Hash of the syntax of modules; kept in a file, because parsing takes 0.07 s."""
-    texts = {f"{path.parent.name}/{path.name}": path.read_bytes() for path in paths}
+    texts = {_place(path): path.read_bytes() for path in paths}
     parser = Path(__file__).read_bytes()
     content = sha256(repr((texts, parser)).encode()).hexdigest()
     for kept in store.read(paths[0], f"{name}.sources", content):
@@ -76,6 +76,13 @@ def _syntax_hash(name: str, *paths: Path) -> str:
     made = sha256(described.encode()).hexdigest()[:_DIGITS]
     store.write(paths[0], f"{name}.sources", content, made.encode())
     return made
+
+
+def _place(path: Path) -> str:
+    """A module by where it is in the package: compiled code of a moved one names the old module."""
+    if path.is_relative_to(PACKAGE):
+        return path.relative_to(PACKAGE).as_posix()
+    return f"{path.parent.name}/{path.name}"
 
 
 def syntax(text: str | bytes) -> str:

@@ -82,7 +82,7 @@ def writable_folder(source: Path) -> Path | None:
 
 def say_not_kept(source: Path) -> None:
     """Warn that what is compiled for a module cannot be kept."""
-    say_once("writing", "compiled code cannot be kept, every start compiles it again: "
+    say_once("writing", "compiled code cannot be stored, so every start compiles it again: "
              f"{not_writable(source)}")
 
 
@@ -101,8 +101,8 @@ def _content(path: Path, made_from: str) -> bytes | None:
     except OSError:
         return None
     if data[:_CHECKSUM] != _checksum(memoryview(data)[_CHECKSUM:]):
-        say_once(str(path), f"{path} is damaged and not used: it is written anew where that is "
-                 "allowed, otherwise delete it")
+        say_once(str(path), f"{path} is damaged and not used: it is rewritten if that is allowed, "
+                 "otherwise delete it")
         return None
     end = data.index(b"\n", _CHECKSUM)
     return data[end + 1:] if data[_CHECKSUM:end] == made_from.encode() else None

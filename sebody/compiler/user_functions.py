@@ -20,6 +20,9 @@ HISTORY = types.float64(types.float64)
 _floats, _given = types.CPointer(types.float64), types.Array(types.float64, 1, "C", readonly=True)
 FORCE = types.void(types.int64, types.float64, _floats, _floats, _floats)
 _ARRAYS = types.void(types.float64, _given, _given, types.Array(types.float64, 1, "C"))
+CONTROLLER = types.int64(types.float64, _floats, _floats, _floats, _floats)
+_written = types.Array(types.float64, 1, "C")
+_CONTROL = types.void(types.float64, _given, _written, _written, _given)
 FAULT, TIME, OTHERS = range(3)      # of a record: whether there was a fault, its arguments
 
 
@@ -147,6 +150,88 @@ def compile_force(name: str, function: Callable[..., None], coordinates: int) ->
         raise InputError(f"user force {name!r} cannot be compiled: write function(t, x, v, force) "
                          "with arithmetic, math and numpy only, which sets entries of force and "
                          f"changes nothing else ({_reason(error)})") from error
+    return made
+
+
+class ControlFunction(UserFunction):
+    """A compiled controller, and the arguments of its last fault.
+
+    Parameters
+    ----------
+    sizes : tuple of int
+        Of y, x, u and the parameters.
+    """
+
+    def __init__(self, function: Callable, sizes: tuple[int, int, int, int]):
+        super().__init__(function, 1 + sum(sizes))
+        self.sizes = sizes
+
+    def fault(self, since: float) -> str:
+        """What the controller did at its last fault, and when; empty if it was before a time."""
+        if not (self.record[FAULT] and self.record[TIME] >= since):
+            return ""
+        t = float(self.record[TIME])
+        given = np.split(self.record[OTHERS:].copy(), np.cumsum(self.sizes)[:-1])
+        for k in (0, 3):
+            given[k].flags.writeable = False
+        try:
+            with np.errstate(all="ignore"):
+                self.function(t, *given)
+            did = f"gave u = {shown(given[2])}" if not np.isfinite(given[2]).all() else (
+                f"gave states {shown(given[1])}")
+        except Exception as error:      # whatever the user's function raises
+            did = f"raised {type(error).__name__}: {error}"
+        return f"{did} at t = {t:.6g}"
+
+
+def compile_controller(name: str, function: Callable[..., None],
+                       sizes: tuple[int, int, int, int]) -> ControlFunction:
+    """A user's ``controller(t, y, x, u, parameters)`` as a C function of pointers.
+
+    It returns 1 after a fault: what raises, and outputs or states that are not finite.
+
+    Parameters
+    ----------
+    sizes : tuple of int
+        Of y, x, u and the parameters.
+
+    Raises
+    ------
+    InputError
+        Numba cannot compile it.
+    """
+    made = ControlFunction(function, sizes)
+    kept = made.record.ctypes.data
+    ny, nx, nu, count = sizes
+    total = OTHERS + sum(sizes)
+    try:
+        returned = choice.way().guarded(_inner(_CONTROL, function))
+
+        def call(t, y, x, u, parameters):
+            given, states, outputs, numbers = (carray(y, ny), carray(x, nx), carray(u, nu),
+                                               carray(parameters, count))
+            record = carray(_floats_at(kept), total)
+            for i in range(ny):         # as they are before the call, which changes x and u
+                record[OTHERS + i] = given[i]
+            for i in range(nx):
+                record[OTHERS + ny + i] = states[i]
+            for i in range(nu):
+                record[OTHERS + ny + nx + i] = outputs[i]
+            for i in range(count):
+                record[OTHERS + ny + nx + nu + i] = numbers[i]
+            raised, _ = returned((t, given, states, outputs, numbers))
+            for i in range(nx):
+                raised |= not math.isfinite(states[i])
+            for i in range(nu):
+                raised |= not math.isfinite(outputs[i])
+            if raised:
+                record[FAULT], record[TIME] = 1.0, t
+            return 1 if raised else 0
+        made.compiled = cfunc(CONTROLLER)(call)
+    except Exception as error:
+        raise InputError(f"controller {name!r} cannot be compiled: write controller(t, y, x, u, "
+                         "parameters) with arithmetic, math and numpy only, which sets entries of "
+                         f"u and x and changes nothing else ({_reason(error)})") from error
     return made
 
 

@@ -26,6 +26,9 @@ LANES = 4           # columns of a body's matrices are padded to whole vectors o
 
 # tasks of a kernel; VELOCITY and ACCELERATION are the constraints differentiated in time
 RESIDUAL, TANGENT, ENERGY, VELOCITY, ACCELERATION = range(5)
+# numbers that contacts keep beside each other, for the time loop: their rate, and the speed of the
+# impact under way
+AT_RATE, AT_IMPACT = range(2)
 # status that a kernel returns: HALF_TURN if a node is rotated by nearly half a turn against the
 # frame of its body, NO_FRAME if the search for this frame does not converge
 OK, HALF_TURN, NO_FRAME = range(3)
@@ -273,7 +276,10 @@ SUPERELEMENT_CONSTANTS = (
     Part("full", (1,), "leading rows and columns of S, M and C that are not diagonal"),
     Part("masses", (1,), "mass"),
 )
-CLOCK = 1       # in place of the address of a function of time: the time itself
+# in place of the address of a function of time: the time itself, or what was last set as an input
+CLOCK, INPUT = 1, 2
+# of an input, in State.frames: the value that was set, when, and the force or torque at that time
+INPUT_NUMBERS = 3
 MOST_SLAVED = 12        # coordinates that may follow the unknowns: load modes of three
 # translations, three rotations and six products of angular velocities
 MARGIN = MOST_SLAVED + 6    # what scratch rows of option C have beyond n: these, a force, a moment

@@ -22,6 +22,12 @@ def call_restart(typingctx, address, system, state, lead, dense):
     return types.int64(types.int64, system, state, types.float64, types.boolean), _call
 
 
+@intrinsic
+def call_sample(typingctx, address, system, state):
+    """Call `sebody.engine.control.sample` at its address."""
+    return types.int64(types.int64, system, state), _call
+
+
 def _call(context, builder, sig, args):
     kinds = [context.get_value_type(kind) for kind in sig.args[1:]]
     function = ir.FunctionType(context.get_value_type(sig.return_type), kinds)

@@ -5,7 +5,8 @@ from numba import types
 from numba.extending import intrinsic
 
 from sebody.compiler.decorators import compiled
-from sebody.contract.layout import C_DAMPING, CLOCK, OK, RESIDUAL, VELOCITY
+from sebody.contract.layout import C_DAMPING, CLOCK, INPUT, OK, RESIDUAL, VELOCITY
+from sebody.engine.inputs import input_at
 from sebody.engine.links import place_dependent, pull_back
 from sebody.engine.tables import time_function_at
 from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
@@ -46,13 +47,16 @@ def _run_part(task, b, first, count, system, state):
 
 
 @compiled(forceinline=True)
-def set_loads(system, loads, t):
-    """Amplitudes of the power ports at a time, and their first two derivatives."""
-    set_loads_beside(system, loads, t, 0.0)
+def set_loads(system, kept, loads, t):
+    """Amplitudes of the power ports at a time, and their first two derivatives.
+
+    `kept` is `State.frames`, which holds the inputs.
+    """
+    set_loads_beside(system, kept, loads, t, 0.0)
 
 
 @compiled
-def set_loads_beside(system, loads, t, beside):
+def set_loads_beside(system, kept, loads, t, beside):
     """The same before a jump at t, with a short negative time `beside`, or after it."""
     for k in range(system.functions.shape[0]):
         if system.functions[k, 0] == 0:
@@ -61,6 +65,11 @@ def set_loads_beside(system, loads, t, beside):
             continue
         if system.functions[k, 0] == CLOCK:     # what is read at this time may jump
             loads[3 * k], loads[3 * k + 1], loads[3 * k + 2] = t + beside, 1.0, 0.0
+            continue
+        if system.functions[k, 0] == INPUT:
+            loads[3 * k] = input_at(system.table_pieces, system.table_at[k], kept,
+                                    system.functions[k, 1], t)
+            loads[3 * k + 1], loads[3 * k + 2] = 0.0, 0.0
             continue
         for i in range(3):
             loads[3 * k + i] = (_call_function(system.functions[k, i], t + beside)

@@ -54,7 +54,7 @@ def take_least_norm(system, state, rows, norms, dense):
     set_tangent_operators(system, state)
     for k in range(len(rows)):
         copy(rows[k], state.now)
-        set_loads(system, state.loads, state.now[RECORD_T])
+        set_loads(system, state.frames, state.loads, state.now[RECORD_T])
         status = run_kernels(TANGENT, system.first_joint[0], system.address.size, system, state)
         if status != 0:
             return status

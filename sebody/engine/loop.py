@@ -9,7 +9,8 @@ import numpy as np
 
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import OK, RESIDUAL, TANGENT
-from sebody.engine.calls import call_refactorize, call_restart
+from sebody.engine.calls import call_refactorize, call_restart, call_sample
+from sebody.engine.control_data import NEXT
 from sebody.engine.evaluate import (
     assemble,
     assemble_moved,
@@ -17,11 +18,13 @@ from sebody.engine.evaluate import (
     take_rates,
     to_body_axes,
 )
+from sebody.engine.guard import contact_too_fast
 from sebody.engine.matrix import solve
 from sebody.engine.newton import apply_correction, begin_with_matrix, count_matrix, want_matrix
 from sebody.engine.state import (
     BEGIN,
     CHUNK,
+    CONTACT,
     CONVERGED,
     DONE,
     EVALUATED,
@@ -46,6 +49,7 @@ from sebody.engine.state import (
 )
 from sebody.engine.step import accept, back, begin_step, cut_step, write_record
 from sebody.engine.step_control import (
+    NEAR,
     SHORTEST,
     accurate,
     choose_part,
@@ -78,7 +82,12 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
         if control.phase == BEGIN and control.adaptive == 1:
             write_between(system, state, record, last_grid)
         if control.restart != 0:
-            code = call_restart(system.routines[1], system, state, lead, dense)
+            code = np.int64(DONE)
+            if control.phase == BEGIN and (
+                    state.memory[NEXT] <= state.clock.time + NEAR * state.clock.step):
+                code = call_sample(system.routines[2], system, state)
+            if code == DONE and control.restart != 0:
+                code = call_restart(system.routines[1], system, state, lead, dense)
             if code != DONE:
                 return code
             if control.due == 1:
@@ -158,6 +167,8 @@ def _conclude(system, state, record, scheme, verdict):
     control, clock = state.control, state.clock
     control.phase = ITERATE
     if verdict == CONVERGED:
+        if system.guarded.size > 0 and contact_too_fast(system, state):
+            return CONTACT
         if control.adaptive == 1 and not accurate(system, state, scheme):
             back(state)
             return INACCURATE if clock.chosen < SHORTEST * clock.step else NO_REASON

@@ -131,7 +131,7 @@ def _factorize(system, state, dense):
 def _begin(system, state):
     """Set the loads after the jump and the coefficients of masses and constraints."""
     clock, control, c = state.clock, state.control, state.coefficients
-    set_loads_beside(system, state.loads, clock.time, -clock.beside)
+    set_loads_beside(system, state.frames, state.loads, clock.time, -clock.beside)
     for k in range(system.prescribed.shape[0]):
         state.a[system.prescribed[k, 0]] = 0.0
     for k in range(system.prescribed.shape[0]):
@@ -226,7 +226,7 @@ def _look_ahead(system, state):
         state.dq[i] = dt * (state.v[i] + 0.5 * dt * state.a[i]) * (1.0 - system.is_multiplier[i])
         state.q[i] += state.dq[i]
         state.v[i] += dt * state.a[i]
-    set_loads_beside(system, state.loads, clock.time + dt, -clock.beside)
+    set_loads_beside(system, state.frames, state.loads, clock.time + dt, -clock.beside)
     move_prescribed(system, state)
     update_rotations(system, state)
     state.control.restart = AHEAD

@@ -8,22 +8,25 @@ from numba import typeof, types
 from numpy.typing import NDArray
 
 from sebody.compiler.choice import way
+from sebody.engine.control import sample
 from sebody.engine.matrix import refactorize
 from sebody.engine.restart import restart
 
-RETURNS = {refactorize: types.boolean, restart: types.int64}
+RETURNS = {refactorize: types.boolean, restart: types.int64, sample: types.int64}
 RESTARTED = types.float64, types.boolean        # what `restart` is given beside system and state
 REFACTORIZED = types.int64, types.boolean
 
 
 def addresses(system, state) -> NDArray:
-    """Addresses of `refactorize` and `restart` for a system and a state of these types, (2,).
+    """Addresses of `refactorize`, `restart` and `sample` for a system and a state, (3,).
 
-    The functions are compiled if needed.
+    The functions are compiled if needed; `sample` for models with controllers or sensors alone.
     """
     kinds = typeof(system), typeof(state)
     return np.array([_address(refactorize, *kinds, *REFACTORIZED),
-                     _address(restart, *kinds, *RESTARTED)])
+                     _address(restart, *kinds, *RESTARTED),
+                     _address(sample, *kinds) if system.control.periods.size
+                     or system.control.inputs.size else 0])
 
 
 def compile_routine(function: Callable, kinds: tuple[types.Type, ...]) -> None:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from sebody.contract.layout import COEFFICIENTS, HALF_TURN, NO_FRAME, OK, RECORD
 from sebody.engine.arrays import Arrays
 
-DONE, CHUNK, FACTOR, SOLVE, FAILED = range(5)           # what the loop returns
+DONE, CHUNK, FACTOR, SOLVE, FAILED, READ = range(6)     # what the loop returns
 # phases of the loop: where it continues when it is called again
 BEGIN, ITERATE, FACTORED, PROJECT, PROJECTED, READY, SOLVED = range(7)
 # what an iteration needs: the factors as they are; factors of a matrix in which the bodies' old
@@ -21,7 +21,7 @@ CONVERGED, GO_ON, NEW_MATRIX, GIVE_UP, LEAVES_GAP = range(5)    # verdicts after
 NO_REASON = OK
 NOT_FINITE, SLOW, INACCURATE, GAP = range(max(HALF_TURN, NO_FRAME) + 1,
                                           max(HALF_TURN, NO_FRAME) + 5)
-NO_START = GAP + 1
+NO_START, BAD_CONTROL, CONTACT = range(GAP + 1, GAP + 4)
 REASONS = {
     HALF_TURN: "a node is rotated by nearly half a revolution relative to its body frame",
     NO_FRAME: "the iteration for a body frame did not converge",
@@ -29,9 +29,12 @@ REASONS = {
     SLOW: "Newton's iteration did not converge",
     INACCURATE: "the error of a step is above the tolerance",
     GAP: "the constraints cannot be satisfied",
+    BAD_CONTROL: "a controller gave what is not finite, or raised",
+    CONTACT: "a contact or stop changes its rate by more than a tenth of the impact speed",
     NO_START: "no accelerations were found that satisfy dynamics and constraints",
 }
-NOTHING, BEND, JUMP = range(3)  # what a step ends at; at a jump of accelerations is a restart
+# what a step ends at; at a sample and at a jump of accelerations is a restart
+NOTHING, BEND, SAMPLED, JUMP = range(4)
 ASKED, AHEAD = 1, 2     # of a restart: to be done; looking ahead, see `engine.restart`
 FINEST = 4096           # largest number of equal parts that a grid step is cut into
 
@@ -116,6 +119,10 @@ class State(Arrays):
     projected, pulled     (N,) scratch memory of projections
     column                scratch memory of the elimination for a column of blocks
     --------------------  --------------------------------------------------------------------------
+    control
+    ------------------------------------------------------------------------------------------------
+    memory                samples so far, delayed values: see `engine.control`
+    --------------------  --------------------------------------------------------------------------
     counters
     ------------------------------------------------------------------------------------------------
     clock                 times, lengths of steps and norms, see the fields `CLOCK`
@@ -175,6 +182,7 @@ class State(Arrays):
     work: NDArray
     energy: NDArray
     error_weights: NDArray
+    memory: NDArray
     clock: np.record
     control: np.record
 

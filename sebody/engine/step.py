@@ -24,6 +24,7 @@ from sebody.engine.state import (
     FINEST,
     JUMP,
     KEPT,
+    SAMPLED,
 )
 from sebody.engine.step_control import LONGEST, NEAR, SHORTEST, go_on, set_end
 from sebody.engine.vectors import copy
@@ -63,7 +64,7 @@ def begin_step(system, state, scheme):
         state.a[i] = to_a * (aux + (1.0 - alpha_m) * change - scheme.alpha_f * a)
         state.aux[i] = aux + change
     copy(state.loads, state.loads_old)
-    set_loads_beside(system, state.loads, state.clock.end, state.clock.beside)
+    set_loads_beside(system, state.frames, state.loads, state.clock.end, state.clock.beside)
     set_coefficients(state, scheme, h)
     move_prescribed(system, state)
     update_rotations(system, state)
@@ -129,7 +130,7 @@ def go_on_grid(state, record):
     """
     clock, control = state.clock, state.control
     short = clock.step / (1 << control.level) > LONGEST * clock.current_step
-    if control.meets == JUMP or (control.inside == 1 and short):
+    if control.meets >= SAMPLED or (control.inside == 1 and short):
         control.restart = ASKED
     if control.split == 1:
         clock.time, control.inside = clock.end, 1

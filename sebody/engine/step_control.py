@@ -17,6 +17,7 @@ from sebody.contract.layout import (
     RECORD_WORKS,
     V_PART,
 )
+from sebody.engine.control_data import NEXT
 from sebody.engine.links import place_dependent
 from sebody.engine.state import (
     ASKED,
@@ -24,6 +25,7 @@ from sebody.engine.state import (
     FINEST,
     JUMP,
     NOTHING,
+    SAMPLED,
 )
 from sebody.engine.vectors import copy
 from sebody.engine.work import set_powers
@@ -83,9 +85,9 @@ def choose_step(system, state):
     """Set the length of a step: as the error allows, but so that it meets corners of loads."""
     clock = state.clock
     last, h = clock.current_step, clock.chosen
-    left = next_corner(system, state) - clock.time
+    left = min(next_corner(system, state), state.memory[NEXT]) - clock.time
     if left < np.inf:
-        parts = np.ceil(left / h - 1e-6)
+        parts = max(np.ceil(left / h - 1e-6), 1.0)
         if parts < FAR:         # equal steps share a matrix, so rounding must not change h
             h = last if abs(parts * last - left) < 1e-9 * left else left / parts
     clock.current_step = h
@@ -130,6 +132,10 @@ def set_end(system, state):
         clock.end = corners[k]
         control.meets = max(control.meets, JUMP if system.jumps[k] == 1 else BEND)
         k += 1
+    if state.memory[NEXT] < end + near:
+        if control.adaptive == 1:      # fixed steps end there anyway
+            clock.end = state.memory[NEXT]
+        control.meets = max(control.meets, SAMPLED)
     if control.meets == JUMP:
         clock.beside = -BEFORE * near
 
@@ -146,7 +152,7 @@ def go_on(state):
     clock.time = clock.end
     if control.meets != NOTHING:
         clock.aux_step = np.inf
-    if control.meets == JUMP:
+    if control.meets >= SAMPLED:
         control.restart = ASKED
 
 

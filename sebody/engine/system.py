@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from numpy.typing import NDArray
 
 from sebody.engine.arrays import Arrays
+from sebody.engine.control_data import Control
 from sebody.engine.links import Links
 
 
@@ -81,11 +82,15 @@ class System(Arrays):
     others
     ------------------------------------------------------------------------------------------------
     links               rigid links
+    control             sensors, controllers and inputs
     regularized         (1,) 1 where constraints are redundant or something without mass can move
     massless            (1,) 1 where a motion has stiffness and no mass: Python solves for
                         accelerations
     damped              (1,) 1 where a superelement has structural damping
-    routines            (2,) addresses of `refactorize` and `restart`, see `sebody.engine.routines`
+    routines            (3,) addresses of `refactorize`, `restart` and `sample`: see
+                        `engine.routines`
+    guarded             places in `State.frames` of the rates of contacts, followed by the speeds of
+                        their impacts, see `sebody.engine.guard`
     ==================  ============================================================================
     """
 
@@ -132,7 +137,9 @@ class System(Arrays):
     prescribed: NDArray
     prescribed_factor: NDArray
     links: Links
+    control: Control
     regularized: NDArray
     massless: NDArray
     damped: NDArray
+    guarded: NDArray
     routines: NDArray

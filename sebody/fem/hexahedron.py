@@ -93,7 +93,7 @@ class BrickPrestress:
     Parameters
     ----------
     dofs : (n, 24)
-        DOFs of the elements, all alike.
+        DOFs of the elements, the same for all.
     stresses : (g, 6, 24)
         Stress at each integration point times its volume, of unit DOFs.
     slopes : (g, 8, 3)

@@ -13,7 +13,7 @@ from sebody.errors import InputError
 class MassField:
     """Points of mass: ``T = sum_pq m_pq v_p . v_q / 2 + sum_p w_p . J_p w_p / 2``.
 
-    An FE mass matrix alone does not tell what turning the body does to its inertia: consistent
+    An FE mass matrix alone does not say how rotation of the body changes its inertia: consistent
     masses of beams, for one, couple nodal rotations to displacements between the nodes. Where the
     matrix is a sum over points with a displacement (and a rotation) each, the products with
     the vectors that a rotation of the body makes of these are exact.

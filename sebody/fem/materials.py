@@ -1,4 +1,4 @@
-"""Materials by what tells the units of a model: speed of sound and density."""
+"""Materials, by the two numbers that reveal the units of a model: speed of sound and density."""
 
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
@@ -72,8 +72,8 @@ def doubt(material: Material, units: Units | None) -> tuple[str, str] | None:
         if any(_fits(material, one) for one in common_units()):
             return None
         density = "" if material.density is None else f" and density {material.density:.6g}"
-        return (f"{named}speed of sound {material.speed:.6g}{density} are those of no solid in "
-                "any common set of units",
+        return (f"{named}speed of sound {material.speed:.6g}{density} do not belong to a solid "
+                "in any common set of units",
                 f"check E and density, {_steel(None)}, and name the units")
     speed = material.speed * units.factor("length/time")
     if not SLOWEST <= speed <= FASTEST:

@@ -63,7 +63,7 @@ class FEModel:
     followers : (n_nodes dimension, n_dofs), sparse, optional
         Displacements of nodes without DOFs that follow others; rows of all other nodes are zero.
     missing : mapping of str to str
-        Why the model has no 'stresses', 'stiffening' or 'exact inertia', where its source knows:
+        Why the model has no 'stresses', 'stiffening' or 'exact inertia', if its source says so:
         ``why; what to do``.
     materials : sequence of Material
         What it is made of, for the units.

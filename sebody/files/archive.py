@@ -67,7 +67,7 @@ class Archive:
         found = Header(shape, dtype)
         if dtype.hasobject or info.file_size != begin + found.size:
             raise ValueError(f"member {name} has {info.file_size - begin} bytes, its header "
-                             f"tells of {found.size}")
+                             f"lists {found.size}")
         return found
 
     def read(self, name: str) -> NDArray:
@@ -75,7 +75,7 @@ class Archive:
         with self._file.open(self._infos[name]) as stream:
             found = npy.read_array(stream, allow_pickle=False)
             if stream.read(1):          # the checksum is compared at the end
-                raise ValueError(f"member {name} is longer than its header tells")
+                raise ValueError(f"member {name} is longer than its header says")
         return np.asarray(found)
 
 

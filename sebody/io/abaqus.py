@@ -32,7 +32,7 @@ def read_substructure(path: Path) -> Reading:
     ------
     InputError
         A file that is cut off, has no stiffness or mass or only one node's, an unsymmetric
-        stiffness, DOFs that are none of a mechanical node, nodes without coordinates.
+        stiffness, DOFs that are not mechanical, nodes without coordinates.
     """
     labels, directions, matrices = _substructure(path)
     rows = [(label, k) for label, own in zip(labels, directions, strict=True) for k in own]
@@ -94,7 +94,7 @@ def _substructure(path: Path) -> tuple[list[int], list[list[int]], dict]:
 
 
 def _count(path: Path, number: int, line: str) -> int:
-    """Number of nodes that *USER ELEMENT tells of; each has an entry in a list."""
+    """Number of nodes that *USER ELEMENT states; each has an entry in a list."""
     found = re.search(r"NODES\s*=\s*(\d{1,9})\b", line)
     if not found:
         raise fault(path, number, "*USER ELEMENT has no number of nodes", _SUBSTRUCTURE)

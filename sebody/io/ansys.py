@@ -29,7 +29,7 @@ def read(path: Path) -> Reading:
     Raises
     ------
     InputError
-        A damaged file, DOFs that are none of a body, supports, or nodes without coordinates.
+        A damaged file, DOFs that are not mechanical, supports, or nodes without coordinates.
     """
     reference, stiffness, mass = full_matrices(path)
     held = np.flatnonzero((stiffness.diagonal() == 0) & (mass.diagonal() == 0))
@@ -58,7 +58,7 @@ def full_matrices(path: Path) -> tuple[np.ndarray, sparse.csc_array, sparse.csc_
     Raises
     ------
     InputError
-        A file of another kind or damaged, or DOFs that are none of a body.
+        A file of another kind or damaged, or DOFs that are not mechanical.
     """
     found = _read(path, "matrices")
     reference, size = found["reference"], len(found["reference"])

@@ -1,4 +1,4 @@
-"""What ansys-mapdl-reader makes of a file, as arrays: run by `ansys` in a process of its own.
+"""Arrays of a file read by ansys-mapdl-reader: run by `ansys` in a process of its own.
 
 Its compiled part believes the counts in a file: a damaged one ends the process.
 """

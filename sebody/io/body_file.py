@@ -68,13 +68,13 @@ class BodyFile:
 
     @property
     def mesh(self) -> tuple[NDArray, tuple[tuple[str, NDArray], ...]] | None:
-        """FE nodes (n, 3), planar (n, 2), and elements by kind, if the body knows its shapes."""
+        """FE nodes (n, 3), planar (n, 2), and elements by kind, if the body has its shapes."""
         recovery = self.parts.get("recovery")
         return recovery and (recovery.points, recovery.cells)
 
     @property
     def cautions(self) -> list[str]:
-        """What the body does not know, and materials of other units: ``what; what to do``."""
+        """What the body lacks, and materials of other units: ``what; what to do``."""
         parts = self.parts
         stressed = parts.get("recovery") is not None and bool(parts["recovery"].stress)
         found = lacks(stressed, parts.get("invariants") is not None, parts.get("missing", {}))

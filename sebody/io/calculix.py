@@ -108,7 +108,7 @@ def _rotation_nodes(deck: Deck, labels: list[tuple[int, int]], stiffness: sparse
     Raises
     ------
     InputError
-        Rows of nodes that the deck does not have, and that are none of these.
+        Rows of nodes that the deck does not have, and that are not of these kinds.
     """
     found = {body.rotation: body.reference for body in deck.rigid_bodies
              if body.rotation not in (None, body.reference)}

@@ -28,7 +28,7 @@ def check_elements(path: Path, groups: Iterable[Group], nodes: Collection[int],
     nodes : collection of int
         Labels of the nodes of the deck.
     solids : mapping
-        Names of meshio by type of element; others are not looked at.
+        Names of meshio by type of element; elements of other types are not checked.
 
     Raises
     ------

@@ -184,7 +184,7 @@ def _node(model: FEModel, one: Interface, rotation_nodes: Mapping[int, int]) -> 
     """A node, with what it keeps."""
     for label in one.nodes[:1]:
         if label in rotation_nodes and len(one.nodes) == 1:
-            raise InputError(f"node {label} is there for the rotations of node "
+            raise InputError(f"node {label} only holds the rotations of node "
                              f"{rotation_nodes[label]}: write {one.name}="
                              f"{rotation_nodes[label]}/{label}")
     if len(one.nodes) == 2 and rotation_nodes.get(one.nodes[1]) != one.nodes[0]:

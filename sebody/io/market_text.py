@@ -1,6 +1,6 @@
 """The text of a Matrix Market file, with every count and index compared with what is there.
 
-SciPy's reader believes a file: it asks for the memory that a damaged one tells of, and writes to
+SciPy's reader trusts a file: it allocates the memory that a damaged header asks for, and writes to
 places outside the matrix.
 """
 
@@ -78,7 +78,7 @@ def parsed(text: str) -> Market:
     Raises
     ------
     ValueError
-        It is none of a matrix of real numbers.
+        It is not that of a matrix of real numbers.
     """
     banner, _, rest = text.partition("\n")
     words = banner.lower().split()

@@ -70,7 +70,7 @@ def _matrix(path: Path, size: int, mapping: Path) -> sparse.csc_array:
         raise InputError(f"matrix file {path} is no Matrix Market file, or cut off ({error}): "
                          "export it again") from error
     if market.shape != (size, size):
-        raise InputError(f"matrix file {path} has shape {market.shape}, but {mapping} tells of "
+        raise InputError(f"matrix file {path} has shape {market.shape}, but {mapping} lists "
                          f"{size} rows: give files of one export")
     lower, upper = sparse.tril(matrix, -1), sparse.triu(matrix, 1)
     if bool(lower.count_nonzero()) != bool(upper.count_nonzero()):   # one triangle, called general

@@ -1,7 +1,7 @@
 """Nastran, read by pyyeti: superelements in OP4 files, and DMIG in punch or OP2 files.
 
 ``EXTSEOUT(STIFFNESS, MASS, ..., DMIGOP4)`` writes the matrices to OP4 and the boundary nodes to
-``.asm`` (or ``.pch``); ``EXTSEOUT(..., DMIGPCH)`` writes DMIG cards, whose rows know their nodes.
+``.asm`` (or ``.pch``); ``EXTSEOUT(..., DMIGPCH)`` writes DMIG cards, whose rows name their nodes.
 Output coordinate systems of nodes (CD) are turned to the basic system.
 """
 
@@ -44,7 +44,7 @@ def read_op4(path: Path) -> Reading:
                          "put the .asm that EXTSEOUT(ASMBULK) writes beside it, or add its SPOINT "
                          "cards")
     if told != len(stiffness):
-        raise InputError(f"{path} has {len(stiffness)} rows and {cards} tells of {told}: give "
+        raise InputError(f"{path} has {len(stiffness)} rows and {cards} lists {told}: give "
                          "files of one run")
     return _reading(stiffness, mass, list(table.index), table, path)
 
@@ -130,7 +130,7 @@ def _beside(path: Path) -> Path:
 
 
 def _pair(found: dict[str, NDArray], path: Path) -> tuple[NDArray, NDArray]:
-    """Stiffness and mass: the matrices called K... and M... that are alike otherwise."""
+    """Stiffness and mass: the matrices K... and M... with otherwise equal names."""
     for name, matrix in found.items():
         other = found.get("m" + name[1:])
         if name.startswith("k") and other is not None:
@@ -144,7 +144,7 @@ def _pair(found: dict[str, NDArray], path: Path) -> tuple[NDArray, NDArray]:
 
 
 def _called(function: Callable[[], Any], path: Path) -> Any:
-    """What pyyeti makes of a file; whatever it raises is said of the file."""
+    """A file as pyyeti reads it; its exceptions become input errors that name the file."""
     existing(path, "file", _REMEDY)
     with warnings.catch_warnings():
         warnings.simplefilter("error", RuntimeWarning)      # of files that end early

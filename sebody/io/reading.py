@@ -21,7 +21,7 @@ class Reading(NamedTuple):
     rotation_nodes : dict of label by label
         Labels of nodes that are there for the rotations of another node alone, and of this node.
     source : str
-        Where a reduced body comes from; an FE model knows it itself.
+        Where a reduced body comes from; an FE model has its own `source`.
     notes : dict of str
         For the provenance, such as why there is no geometric stiffness.
     """

@@ -96,7 +96,7 @@ def read_source(path: str | Path, kind: str | None = None) -> Reading:
 
 @contextmanager
 def naming(path: str | Path) -> Iterator[None]:
-    """Input errors that name the file, whose matrices know nothing of it."""
+    """Input errors of matrices, with the name of their file."""
     try:
         yield
     except InputError as error:
@@ -127,7 +127,7 @@ def _guessed(path: Path) -> Source:
     if fits:
         return fits[0]
     known = "; ".join(f"{source.name} ({', '.join(source.suffixes)})" for source in SOURCES)
-    raise InputError(f"{path} is of no known kind: give --format, or a file of {known}")
+    raise InputError(f"{path} is of an unknown kind: give --format, or a file of {known}")
 
 
 def _installed(package: str) -> bool:

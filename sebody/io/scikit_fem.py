@@ -93,8 +93,8 @@ def _nodes(basis: Any) -> NDArray:
     places = basis.doflocs[:, found]                    # (dimension, components, nodes)
     if several or dimension not in (2, 3) or not np.array_equal(
             places, np.broadcast_to(places[:, :1], places.shape)):
-        raise InputError(f"the basis of {_name(basis)} elements is none of displacements at "
-                         f"nodes: {_REMEDY}")
+        raise InputError(f"the basis of {_name(basis)} elements does not consist of displacements "
+                         f"at nodes: {_REMEDY}")
     return found
 
 

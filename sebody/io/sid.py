@@ -65,8 +65,8 @@ def write_sid(body: ReducedBody, path: str | Path, names: tuple[str, ...] | None
     names = (tuple(map(str, range(1, len(body.keeps) + 1))) if names is None else
              checked_names(names, len(body.keeps)))
     if body.planar or body.invariants is None:
-        raise InputError("SID is of spatial bodies with constants of exact inertia: reduce an FE "
-                         "model that knows its points of mass, such as one of solids")
+        raise InputError("SID files hold spatial bodies with the integrals of exact inertia: "
+                         "reduce an FE model with a mass field, such as one of solids")
     try:
         squares, shapes = eigh(body.stiffness, body.mass)
     except LinAlgError as error:

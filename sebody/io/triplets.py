@@ -19,7 +19,7 @@ def read_triplets(path: Path, size: int, what: str, remedy: str,
     what : str
         What the file is, for messages.
     rows_of : str
-        What tells how many rows there are, for messages.
+        What states the number of rows, for messages.
 
     Raises
     ------
@@ -31,7 +31,7 @@ def read_triplets(path: Path, size: int, what: str, remedy: str,
     beyond = found[:, :2].max(axis=1) > size
     if beyond.any():
         line = int(np.argmax(beyond))
-        raise fault(path, line + 1, f"row {found[line, :2].max():g}, but {rows_of} tells of {size}",
+        raise fault(path, line + 1, f"row {found[line, :2].max():g}, but {rows_of} lists {size}",
                     "give files of one run of the program")
     rows, columns = (whole(found[:, k], path, size, "row or column", remedy) for k in (0, 1))
     _check_entries(path, rows, columns, size, remedy)

@@ -52,7 +52,7 @@ class Load(NamedTuple):
     def consequence(self) -> str:
         """What else the body gets wrong."""
         if self.force < 0.0:
-            return ", and it does not buckle where it should"
+            return ", and the body does not buckle at the right load"
         if self.folding > 0.0:
             return (f", and under {self.force / self.folding:.3g} the body folds up in its frame "
                     "unless its ends are clamped")

@@ -46,7 +46,7 @@ def limits_of(bodies: Iterable[Superelement]) -> dict[str, Limits]:
 
 def exceeded(body: Superelement, limits: Limits, y: NDArray, spins: NDArray, local: float,
              said: Collection[str]) -> Iterator[Finding]:
-    """Limits that a body exceeds in some states, of kinds that are not `said`.
+    """Limits that a body exceeds in some states, of kinds that are not in `said`.
 
     Parameters
     ----------
@@ -111,8 +111,8 @@ def _too_fast(body: Superelement, spin: NDArray, speed: float) -> Iterator[Findi
     elif felt > FAST * min(limit, first):
         yield Finding("fast", body.name, felt / min(limit, first), f"body {body.name!r} spins at "
                       f"{speed:.3g} rad/s, more than a quarter of {_compared(limit, first)}: its "
-                      "stiffness does not grow with the spin, and frequencies are off by a per "
-                      f"cent and more; {remedy(body)}")
+                      "stiffness does not grow with the spin, and frequencies have errors of "
+                      f"1 % and more; {remedy(body)}")
 
 
 def _too_strong(body: Superelement, axial: Axial, y: NDArray) -> Iterator[Finding]:
@@ -124,7 +124,7 @@ def _too_strong(body: Superelement, axial: Axial, y: NDArray) -> Iterator[Findin
     if load.share > AXIAL:
         yield Finding("axial", body.name, load.share, f"{load.described} in body {body.name!r} "
                       f"counts {load.share:.2g} times as much as its own bending stiffness (limit "
-                      "a third), which does not depend on it: bending is off by a tenth and more"
+                      "a third), which does not depend on it: bending has errors of 10 % and more"
                       f"{load.consequence}; {remedy(body)}")
 
 

@@ -49,7 +49,7 @@ def remarks(run: Recording) -> dict[str, str]:
     if grown > GROWN and "balance" not in found:
         found["growth"] = (
             f"energy grows by {grown:.2g} of its maximum although no work is done on the model "
-            f"(limit {GROWN:g}): the steps do not resolve vibrations of a body that bends far; "
+            f"(limit {GROWN:g}): the steps do not resolve vibrations of a strongly bent body; "
             "take a smaller step, divide the body, or keep the position of a node off the line of "
             "the others")
     if kinetic.max() > NO_MOTION * (np.abs(potential).max() + strain.max()):

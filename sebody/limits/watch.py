@@ -40,7 +40,7 @@ class Watch:
         self._limits: dict[str, Limits] = {}
 
     def say(self, key: str, message: str, level: int = 4) -> None:
-        """Warn, unless the same was said before; `level` leads to the caller that is shown."""
+        """Warn, unless that was said before; `level` leads to the caller that is shown."""
         if key not in self._said:
             self._said.add(key)
             self.messages.append(message)
@@ -91,9 +91,10 @@ class Watch:
         self.say_of_bodies(found)
 
     def judge(self, run: Recording) -> tuple[str, ...]:
-        """All warnings of a run as far as it has come, with those of its energies and steps.
+        """All warnings of a run up to now, with those of its energies and steps.
 
-        These may pass while a run goes on: an energy that is small at first is kept to less well.
+        Some of these may vanish while a run goes on: an energy that is small at first has larger
+        relative errors.
         """
         now = remarks(run)
         for key, message in now.items():

@@ -74,7 +74,7 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
     -------
     list of Node
         All nodes from end to end, named ``<name> 1`` and so on between them. Superelements are
-        named alike; a single one is called `name`.
+        numbered in this way; a single body is called `name`.
 
     Raises
     ------

@@ -41,8 +41,8 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
         mean of the nodes' rotations, 'converged_mean'.
     inertia : {'frame_axes', 'material', 'floating_field', 'rigid_part'}, optional
         Or their letters 'a', 'b', 'c', 'd'; a and b are those of Cardona (2000). By default
-        'floating_field', the velocities of the whole displacement field, of bodies that know it:
-        `craig_bampton` returns such bodies where the FE model knows the points of its mass. Of
+        'floating_field', the velocities of the whole displacement field, for bodies that have it:
+        `craig_bampton` returns such bodies if the FE model has a mass field. Of
         reduced matrices alone 'rigid_part', in which the rigid part of the motion is exact. With
         the paper's frames 'mean' and 'mean_small' 'material', the paper's interpolation of
         velocities from the boundary nodes.
@@ -59,8 +59,8 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
     ------
     InputError
         A body file that cannot be used, nodes that do not fit the body, unknown options,
-        stiffening asked of a body without geometric stiffness, or no kernel for the layout (the
-        message says how to make it).
+        stiffening requested for a body without geometric stiffness, or no kernel for the layout
+        (the message says how to make it).
     """
     _check_name(model, name, "superelement")
     own_nodes = tuple(known(model, n) for n in inputs.items(

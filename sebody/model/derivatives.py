@@ -48,7 +48,7 @@ def rates_of(function: Callable[[float], float], what: str
 
 
 class _Symbols:
-    """What stands for `math` or NumPy while a function is followed."""
+    """Replaces `math` or NumPy while a function is traced."""
 
     def __getattr__(self, name: str) -> object:
         import sympy

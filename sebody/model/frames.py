@@ -95,7 +95,7 @@ def check_frame(name: str, body: ReducedBody, frame: str) -> None:
             listed = ", ".join(f"{moment:.3g}" for moment in moments)
             raise InputError(f"superelement {name!r} has hardly any inertia about an axis (moments "
                              f"{listed} about its centre of mass), so the frame {frame!r} cannot "
-                             "see rotations about it: use 'converged_mean'")
+                             "determine rotations about it: use 'converged_mean'")
         return
     if traits.needs_rotations:
         if not body.rotation_nodes:
@@ -108,7 +108,7 @@ def check_frame(name: str, body: ReducedBody, frame: str) -> None:
     if len(points) < traits.fewest_positions[body.planar] or (
             spread[body.coordinates.shape[1] - 2] < 1e-6 * max(spread[0], 1e-300)):
         raise InputError(f"superelement {name!r}: the nodes that keep their position lie on a "
-                         f"line, so the frame {frame!r} cannot see rotations about it: use "
+                         f"line, so the frame {frame!r} cannot determine rotations about it: use "
                          "'converged_mean', or keep a node off the line")
 
 

@@ -9,11 +9,18 @@ import numpy as np
 from numba import njit
 
 from sebody import inputs
-from sebody.compiler.user_functions import UserFunction, compile_force, compile_history
+from sebody.compiler.user_functions import (
+    UserFunction,
+    compile_controller,
+    compile_force,
+    compile_history,
+)
 from sebody.errors import InputError
 from sebody.model.outside import defaults, is_helper, refuse, values_read
 
-OF_TIME, FORCE = ("t",), ("t", "x", "v", "force")       # arguments
+# arguments
+OF_TIME, FORCE = ("t",), ("t", "x", "v", "force")
+CONTROL = "t", "y", "x", "u", "parameters"
 
 
 def compiled_history(function: Callable[[float], float], what: str) -> UserFunction:
@@ -41,8 +48,24 @@ def compiled_force(function: Callable[..., None], name: str, coordinates: int) -
     return _remembered(compile_force(name, compilable(own), coordinates), own)
 
 
+def compiled_controller(function: Callable[..., None], name: str, sizes: tuple[int, int, int, int]
+                        ) -> UserFunction:
+    """A controller's ``controller(t, y, x, u, parameters)``, compiled for the time loop.
+
+    `sizes` are those of y, x, u and the parameters.
+
+    Raises
+    ------
+    InputError
+        As of `compiled_history`.
+    """
+    what = f"controller {name!r}"
+    own = _python(function, what, what, CONTROL)
+    return _remembered(compile_controller(name, compilable(own), sizes), own)
+
+
 def compilable(function: Callable) -> Callable:
-    """A function whose helpers, and theirs, and values of default arguments are Numba's to see."""
+    """A function whose helpers, their helpers, and default arguments Numba can compile."""
     made: dict[int, Callable] = {}
 
     def compiled(value: object) -> object:
@@ -65,7 +88,7 @@ def rebuilt(function: Callable, replaced: Callable[[object], object]) -> Callabl
     Parameters
     ----------
     replaced : callable
-        What stands for a value of a global or enclosing variable.
+        Replaces a value of a global or enclosing variable.
     """
     inner = dict(function.__globals__)
     copy = FunctionType(function.__code__, inner, function.__name__, function.__defaults__,

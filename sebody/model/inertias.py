@@ -26,7 +26,7 @@ def known_inertia(inertia: str | None) -> str | None:
 
 def chosen_inertia(name: str, body: ReducedBody, frame: str, inertia: str | None,
                    stiffening: bool | None) -> tuple[str, bool]:
-    """The option and the stiffening of a body; what is None follows from what the body knows.
+    """The option and the stiffening of a body; what is None follows from the data of the body.
 
     Options are given by their names, see `known_inertia`.
 

@@ -85,7 +85,7 @@ def turning_axes(model: Mechanism, axis: ArrayLike, what: str, node: Node, signe
     if not model.planar:
         return axes(model, axis, what, node)
     what = f"axis of the {what} at {node.name!r}"
-    remedy = "the model is planar, in which everything turns about (0, 0, 1): leave the axis out, "
+    remedy = "the model is planar, where all rotations are about (0, 0, 1): leave the axis out, "
     other = remedy + "or take a model in space, Model()"
     normal = np.array([0.0, 0.0, 1.0])
     given = (inputs.number(axis, what, remedy=other) * normal if np.ndim(axis) == 0 else
@@ -94,7 +94,8 @@ def turning_axes(model: Mechanism, axis: ArrayLike, what: str, node: Node, signe
     if not size > 0 or np.abs(given[:2]).max() > PLANE * size:
         raise inputs.refusal(what, axis, other)
     if signed and given[2] < 0:
-        raise inputs.refusal(what, axis, remedy + "and change the sign of what is about it")
+        raise inputs.refusal(what, axis, remedy + "and change the sign of angles and torques "
+                                                 "about it")
     return None
 
 

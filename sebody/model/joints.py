@@ -87,7 +87,7 @@ def universal(model: Mechanism, node: Node | str, axis: ArrayLike, other: ArrayL
     a, b = pair(model, node, to, what)
     n, e = (axes(model, v, what, a)[0] for v in (axis, other))
     if abs(n @ e) > 1e-9:
-        raise InputError(f"universal joint at {a.name!r}: its axes enclose "
+        raise InputError(f"universal joint at {a.name!r}: its axes are at an angle of "
                          f"{np.degrees(np.arccos(np.clip(abs(n @ e), 0, 1))):.4g} degrees: "
                          "give two that are normal to each other")
     name = _named(model, name, what, a)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.model.control_parts import Controller, Sensor
 from sebody.model.parts import (
     Beam,
     Connection,
@@ -51,6 +52,8 @@ class Mechanism:
     beams: list[Beam] = field(default_factory=list, init=False)     # how they were built
     own_names: set[str] = field(default_factory=set, init=False)    # names given by the user
     default_names: Counter[str] = field(default_factory=Counter, init=False)    # how often wanted
+    sensors: dict[str, Sensor] = field(default_factory=dict, init=False)
+    controllers: dict[str, Controller] = field(default_factory=dict, init=False)
     gravity_field: NDArray = field(init=False)
     plane: Plane | None = field(default=None, init=False)   # of a planar model made from a spatial
 

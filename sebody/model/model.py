@@ -7,7 +7,19 @@ DOF block has no unknowns.
 
 from html import escape
 
-from sebody.model import beams, bodies, drives, joints, loads, nodes, springs
+from sebody.model import (
+    actuators,
+    beams,
+    bodies,
+    contacts,
+    controllers,
+    drives,
+    frictions,
+    joints,
+    loads,
+    nodes,
+    springs,
+)
 from sebody.model.atomic import atomic
 from sebody.model.mechanism import Mechanism
 from sebody.model.tables import described, model_tables, summary
@@ -76,6 +88,15 @@ class Model(Mechanism):
     user_force = atomic(loads.user_force)
     gravity = atomic(loads.gravity)
 
+    actuator = atomic(actuators.actuator)
+    sensor = atomic(controllers.sensor)
+    controller = atomic(controllers.controller)
+
     spring = atomic(springs.spring)
     torsion_spring = atomic(springs.torsion_spring)
     bushing = atomic(springs.bushing)
+
+    friction = atomic(frictions.friction)
+    stop = atomic(contacts.stop)
+    gear = atomic(contacts.gear)
+    contact = atomic(contacts.contact)

@@ -52,7 +52,7 @@ def motion(source: Source) -> TimeFunction:
         _check_rates(functions)
         return TimeFunction(functions=functions).from_zero()
     if isinstance(source, Number):
-        raise InputError(f"motion of a drive is {inputs.shown(source)}, always the same: give a "
+        raise InputError(f"motion of a drive is the constant {inputs.shown(source)}: give a "
                          "table, a function of time or a ready profile, or fix the node")
     times, values = table(source, MOTION)
     if len(times) < 2:
@@ -68,8 +68,8 @@ def _refuse_jumps(given: TimeFunction) -> None:
             if before[k] != after[k]:
                 raise InputError(
                     f"motion of a drive: its {what} jumps from {before[k]:.6g} to {after[k]:.6g} "
-                    f"at t = {t:.6g}, which no body can follow: go there by rest_to_rest, "
-                    "trapezoidal or a spline; only at t = 0 may it have a speed at once")
+                    f"at t = {t:.6g}, which no body can follow: use rest_to_rest, "
+                    "trapezoidal or a spline; only at t = 0 may a drive begin with a speed")
 
 
 def _check_rates(functions: Sequence[UserFunction]) -> None:

@@ -66,7 +66,7 @@ def values_read(function: Callable) -> dict[str, object]:
 
 
 def changed(before: Mapping[str, object], function: Callable) -> str:
-    """The first value read that is not what it was before, in words; nothing if there is none."""
+    """The first value read that has changed, in words; empty if there is none."""
     now = values_read(function)
     for name, old in before.items():
         new = now.get(name, ABSENT)
@@ -125,7 +125,7 @@ def _is_object(value: object) -> bool:
 
 def _reads(function: Callable, helper: str = "",
            known: set[CodeType] | None = None) -> Iterator[Read]:
-    """Everything a function reads, and its helpers, each of which is looked at once."""
+    """Everything that a function and its helpers read; each helper is examined once."""
     known = set() if known is None else known
     known.add(function.__code__)
     for name, value in defaults(function).items():

@@ -162,10 +162,11 @@ class Element:
     constants: Mapping[str, float | NDArray]    # by the names that the kernel has for them
     multipliers: int = 0
     time_function: TimeFunction | None = None
-    keeps_angle: bool = False               # from step to step, to count its turns
     mode: tuple[str, int] | None = None     # superelement and internal mode of a mode force
     function: UserFunction | None = None    # compiled function of a user force, kept alive
     body: Superelement | None = None        # on all whose coordinates a load on a body acts
+    pressed_by: "Joint | None" = None       # whose multipliers the friction in it reads
+    tuned: Mapping[str, float] = field(default_factory=dict)    # see `sebody.runs.tuning`
     dof_blocks: tuple[DofBlock, ...] = field(init=False)       # those of the places
 
     def __post_init__(self) -> None:

@@ -58,7 +58,7 @@ def torsion_spring(model: Mechanism, node: Node | str, stiffness: float = 0.0,
                                              "rest": rest}
     if vectors := turning_axes(model, axis, what, a, signed=True):
         constants |= zip(("n", "m"), vectors[1:], strict=True)
-    return _add(model, name, what, a, rotations(a, b), constants, keeps_angle=not model.planar)
+    return _add(model, name, what, a, rotations(a, b), constants)
 
 
 def bushing(model: Mechanism, node: Node | str, to: Node | str | None = None,
@@ -98,10 +98,10 @@ def bushing(model: Mechanism, node: Node | str, to: Node | str | None = None,
 
 def _add(model: Mechanism, name: str | None, what: str, a: Node,
          attachments: tuple[Attachment, ...],
-         constants: dict[str, float | NDArray], keeps_angle: bool = False) -> Element:
+         constants: dict[str, float | NDArray]) -> Element:
     name = chosen_name(model, name, f"{what} at {a.name}")
     kind = model.kind_of(what.replace(" ", "_"))
-    model.loads.append(Element(name, kind, attachments, constants, keeps_angle=keeps_angle))
+    model.loads.append(Element(name, kind, attachments, constants))
     return model.loads[-1]
 
 

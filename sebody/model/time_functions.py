@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
-from math import cos, sin
+from math import cos, inf, sin
 from numbers import Number
 from typing import TypeAlias, TypeGuard
 
@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
 from sebody.compiler.user_functions import UserFunction, compile_history
-from sebody.contract.layout import CLOCK
+from sebody.contract.layout import CLOCK, INPUT
 from sebody.model.functions import compilable, compiled_history
 from sebody.model.history_rows import linear, table
 
@@ -48,10 +48,17 @@ class TimeFunction:
     functions: tuple[UserFunction, ...] = ()    # in place of pieces: value and its rates
     corners: tuple[float, ...] = ()     # times at which it is not smooth: variable steps end there
     is_time: bool = False               # the value is the time itself, for functions of time
+    is_input: bool = False              # an input: its piece has start, lag and largest rate
+    limits: tuple[float, float] = (-inf, inf)       # of an input
 
     @property
     def addresses(self) -> tuple[int, int, int]:
-        """Addresses of the compiled value and its rates, 0 where there is none; CLOCK of time."""
+        """Addresses of the compiled value and its rates, 0 where there is none; CLOCK of time.
+
+        INPUT of an input, whose place is put behind it.
+        """
+        if self.is_input:
+            return INPUT, 0, 0
         if self.is_time:
             return CLOCK, 0, 0
         value, rate, second = (*[f.address for f in self.functions], 0, 0, 0)[:3]
@@ -59,6 +66,8 @@ class TimeFunction:
 
     def at(self, t: float) -> NDArray:
         """Value and two rates at a time, (3,); at the time of a piece those of this piece."""
+        if self.is_input:
+            return np.array([self.pieces[0][0], 0.0, 0.0])
         if self.functions:
             return np.array([f.ctypes(t) for f in self.functions] + [0.0] * (
                 3 - len(self.functions)))
@@ -68,6 +77,8 @@ class TimeFunction:
 
     def values(self, times: NDArray) -> NDArray:
         """Values at some times, (n,)."""
+        if self.is_input:
+            return np.full(len(times), self.pieces[0][0])
         if self.functions:
             return np.array([self.functions[0].ctypes(t) for t in times])
         starts = np.array(self.times)
@@ -98,6 +109,8 @@ class TimeFunction:
 
     def described(self) -> str:
         """What it is, in a few words."""
+        if self.is_input:
+            return f"input, {self.pieces[0][0]:.6g} at the start"
         if self.functions:
             return f"function {getattr(self.functions[0].function, '__name__', '')}".rstrip()
         if len(self.pieces) == 1 and not self.waves and not any(self.pieces[0][1:]):
@@ -202,6 +215,12 @@ def with_corners(function: Callable[[float], float] | FunctionWithRates,
     checked = [inputs.function(one, "function", "give a function of time") for one in given]
     return TimeFunction(functions=tuple(compiled_history(one, LOAD) for one in checked),
                         corners=times)
+
+
+def input_history(start: float, lag: float, rate: float,
+                  limits: tuple[float, float]) -> TimeFunction:
+    """The time function of an input: what is set during a run; `rate` 0 stands for any."""
+    return TimeFunction(pieces=((start, lag, rate),), is_input=True, limits=limits)
 
 
 def corners_of(given: Sequence[float]) -> tuple[float, ...]:

@@ -187,7 +187,7 @@ class ReducedBody:
 
     @property
     def lacks(self) -> dict[str, str]:
-        """Which of stresses, stiffening and exact inertia the body does not know, and why."""
+        """Which of stresses, stiffening and exact inertia the body lacks, and why."""
         return lacks(self._stressed, self.invariants is not None, self.missing)
 
     @property

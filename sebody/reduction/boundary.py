@@ -161,7 +161,7 @@ def _mean_motion(fe_model: FEModel, face: MeanFace, keep: str) -> MeanMotion:
     """The mean, refused where its nodes do not hold the rotation that is needed."""
     motion = MeanMotion(fe_model, face)
     if not motion.turns and (keep != "translation" or motion.off_centre):
-        raise InputError(f"the nodes of {face.called} lie on a line, so they do not hold its "
+        raise InputError(f"the nodes of {face.called} lie on a line, so they do not determine its "
                          "rotation about the line: name more nodes, or keep 'translation' at "
                          "their centre")
     return motion
@@ -273,5 +273,5 @@ def _check_rigid(fe_model: FEModel, face: RigidFace) -> None:
         raise InputError(f"point of {face.called} is {face.point}: give {dimension} finite numbers")
     turning = fe_model.rows[list(face.nodes), dimension:] >= 0
     if not turning.any() and collinear(fe_model.coordinates[list(face.nodes)]):
-        raise InputError(f"the nodes of {face.called} lie on a line, so they do not hold its "
+        raise InputError(f"the nodes of {face.called} lie on a line, so they do not determine its "
                          "rotation about the line: name more nodes")

@@ -96,7 +96,7 @@ class ClampedInterior:
             f"{_REMEDY}")
 
     def _border(self) -> None:
-        """Answers to the unknowns (f, a), and the inverse of their equations."""
+        """Displacements by the unknowns (f, a), and the inverse of their equations."""
         count, means = self._means.shape[0], self._inner_means
         self._answers = np.hstack([self._factor.solve(means.T.toarray()), self._free])
         corner = np.zeros((self._answers.shape[1],) * 2)

@@ -108,7 +108,7 @@ def _check_mass(found: NDArray, mass: NDArray) -> None:
     unit = np.sqrt(np.outer(np.diag(mass), np.diag(mass)))
     defect = np.abs(found - mass).max(initial=0.0, where=unit > 0)
     if np.any(np.abs(found - mass) > CONTRADICTION_LIMIT * unit.max()):
-        raise InputError(f"mass_field makes another mass than the FE mass matrix: off by "
+        raise InputError(f"mass_field contradicts the FE mass matrix: a difference of "
                          f"{defect:.3g} in the reduced mass; give the points, displacements and "
                          "weights that the matrix was integrated with, or no mass_field")
 

@@ -35,7 +35,7 @@ def craig_bampton(
 
     The same as `reduce` with its first method.
 
-    Where the model knows the points of its mass, the body gets the constants of its exact inertia,
+    If the model has a mass field, the body gets the constants of its exact inertia,
     and with a geometric stiffness those of its stiffening.
 
     Parameters

@@ -77,7 +77,7 @@ class MeanFace:
     Raises
     ------
     InputError
-        No nodes, or weights that are none of these.
+        No nodes, or other weights.
     """
 
     nodes: tuple[int, ...]

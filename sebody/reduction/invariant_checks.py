@@ -100,9 +100,9 @@ def _check_resultants(invariants: InertiaInvariants, stiffness: NDArray, scale: 
     values = np.linalg.eigvalsh(rest / unit)
     largest = np.abs(np.linalg.eigvalsh(stiffness / unit)).max()
     if values[0] < -NEGATIVE_STIFFNESS_LIMIT * largest:
-        raise InputError("invariants.lam and E make more stiffness than the body has (the least "
-                         f"eigenvalue of what is left is {values[0]:.2e}, the largest of the body "
-                         f"{largest:.2e}); {_REMEDY}")
+        raise InputError("invariants.lam and E give more stiffness than the body has (the "
+                         f"smallest eigenvalue of the difference is {values[0]:.2e}, the "
+                         f"largest of the body {largest:.2e}); {_REMEDY}")
 
 
 def _compare(name: str, found: NDArray, expected: NDArray, rows: NDArray, columns: NDArray,

@@ -62,7 +62,7 @@ def with_residual_modes(component: ComponentModes, interior: ClampedInterior,
     Raises
     ------
     InputError
-        An answer that carries no mass.
+        A static response without mass.
     """
     shapes, squares = component.fixed_interface, component.omega_squared
     answers = interior.displacement(forces)
@@ -78,9 +78,9 @@ def with_residual_modes(component: ComponentModes, interior: ClampedInterior,
     unit = unit @ (turn[:, kept] / np.sqrt(sizes[kept]))        # unit strain energy each
     inverse, turn = eigh(unit.T @ (mass @ unit))
     if inverse[0] <= 0:
-        raise InputError("residual modes: the answer to a load carries no mass, so it is no "
-                         "vibration; give the DOFs under the load mass, or leave residual_modes "
-                         "out")
+        raise InputError("residual modes: the static response to a load has no mass, so it "
+                         "has no frequency; give the DOFs under the load mass, or leave "
+                         "residual_modes out")
     found = (unit @ (turn / np.sqrt(inverse)))[:, ::-1]
     omega_squared = 1.0 / inverse[::-1]
     found = found @ canonical_turn(omega_squared, found)

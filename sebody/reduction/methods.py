@@ -2,7 +2,7 @@
 
 The reduced coordinates are those of the boundary, whose shapes are the constraint modes, and
 amplitudes of internal shapes that leave the boundary where it is: rigid motions of the boundary are
-rigid motions of the body. What tells the methods apart are the internal shapes and the mass.
+rigid motions of the body. The methods differ in the internal shapes and the mass.
 
 | method | internal shapes | mass |
 |---|---|---|
@@ -89,9 +89,9 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     Returns
     -------
     ReducedBody
-        With the constants of its exact inertia where the model knows the points of its mass
-        (MacNeal's mass is none of points), and with those of its stiffening where it has a
-        geometric stiffness; `ReducedBody.summary` tells.
+        With the constants of its exact inertia if the model has a mass field
+        (MacNeal's mass has no mass field), and with those of its stiffening where it has a
+        geometric stiffness; see `ReducedBody.summary`.
 
     Raises
     ------
@@ -171,8 +171,8 @@ def _check_options(method: str, modes: int | Accuracy, select: Sequence[int] | N
     if not isinstance(modes, Accuracy):
         return
     if method not in ("craig-bampton", "rubin") or select is not None:
-        raise InputError("modes=Accuracy(...) counts the modes of methods 'craig-bampton' and "
-                         "'rubin' without select; give a number")
+        raise InputError("modes=Accuracy(...) chooses the number of modes of methods "
+                         "'craig-bampton' and 'rubin' without select; give a number")
     if method == "rubin" and modes.of == "stiffness":
         raise InputError("the dynamic stiffness of method 'rubin' has no estimate: give "
                          "Accuracy(..., of='frequencies'), or take 'craig-bampton'")

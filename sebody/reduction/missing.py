@@ -1,4 +1,4 @@
-"""What a body does not know, and why: stresses, stiffening by stresses, exact inertia.
+"""What a body lacks, and why: stresses, stiffening by stresses, exact inertia.
 
 Every reason is a text ``why; what to do``.
 """
@@ -22,7 +22,7 @@ _MACNEAL = "residual modes carry no mass in MacNeal's method; use Rubin's, metho
 
 
 def missing_of(fe_model: FEModel, method: str) -> dict[str, str]:
-    """What a body that is reduced from an FE model by a method does not know, with reasons."""
+    """What a body that is reduced from an FE model by a method lacks, with reasons."""
     has = {"stresses": bool(fe_model.stress),
            "stiffening": fe_model.geometric_stiffness is not None,
            "exact inertia": fe_model.mass_field is not None}
@@ -53,12 +53,12 @@ def checked_missing(reasons: Mapping[str, str], what: str = "missing") -> dict[s
 
 
 def lacks(stressed: bool, exact: bool, missing: Mapping[str, str]) -> dict[str, str]:
-    """What a body does not know, with reasons.
+    """What a body lacks, with reasons.
 
     Parameters
     ----------
     stressed, exact : bool
-        Whether it knows stresses and the constants of its exact inertia.
+        Whether it has stresses and the constants of its exact inertia.
     missing : mapping of str to str
         The reasons that its source has given.
     """

@@ -24,7 +24,7 @@ def check_recovery(recovery: Recovery, planar: bool, n: int, held: int,
     ----------
     n, held, slaved : int
         Numbers of reduced coordinates, of those on the boundary, and of those that follow in second
-        order; None of a body that does not know which do, whose shapes may be there all the same.
+        order; None if this is unknown, although shapes may be given.
     """
     D, r = (2, 1) if planar else (3, 3)
     names = inputs.items(recovery.node_dofs, "recovery.node_dofs", "give names of DOFs")

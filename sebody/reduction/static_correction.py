@@ -1,4 +1,4 @@
-"""What the omitted modes of a body answer to the loads of its inertia, statically.
+"""Static response of the omitted modes of a body to its inertia loads.
 
 Fixed-interface modes converge slowly where stresses are largest, at the boundary: there each of
 them is held. With the residual flexibility of the clamped body,

@@ -17,7 +17,7 @@ class Watch:
         """What a user should know before it is done."""
 
     def close(self) -> None:
-        """Nothing more will be said."""
+        """There are no further messages."""
 
 
 SILENT = Watch()

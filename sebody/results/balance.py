@@ -168,7 +168,7 @@ class _Groups:
         self._above: dict[Node | None, Node | None] = {}
 
     def of(self, node: Node | None) -> Node | None:
-        """What stands for the group of a node; the ground for its own group."""
+        """Representative of the group of a node; the ground represents its own group."""
         while (above := self._above.get(node, node)) != node:
             node = above
         return node

@@ -1,4 +1,4 @@
-"""What the bodies of a model do not know, and why."""
+"""What the bodies of a model lack, and why."""
 
 from sebody.fem.materials import doubts
 from sebody.model.mechanism import Mechanism

@@ -36,7 +36,7 @@ def write(file: BinaryIO, members: Mapping[str, NDArray], units: Mapping[str, st
           attributes: Mapping[str, str]) -> None:
     """Write arrays and texts by name; of a name with a slash the part before it is a group.
 
-    The packed file is made in memory: the library tells a full disk in several pages.
+    The packed file is made in memory: on a full disk the library prints several pages.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The grammar of quantities, in one place: what ``tip.position.y`` stands for, everywhere.
+"""The grammar of quantities, in one place: the meaning of ``tip.position.y`` everywhere.
 
 =======================  =========================================================================
 ``tip.position``         a quantity, by the tables of `sebody.results.quantities`
@@ -27,7 +27,8 @@ STRESS = "xx", "yy", "zz", "yz", "zx", "xy"
 GROUPS = {"energy": ("energy.kinetic", "energy.strain", "energy.potential",
                      "energy.external_work"),
           "constraints": ("constraints.position", "constraints.velocity")}
-NUMBERED = "modes", "multipliers", "forces"     # whose columns are no directions
+# whose columns are no directions
+NUMBERED = "modes", "mode_rates", "multipliers", "forces", "states"
 SMALL_ANGLE = 1e-6      # rad: below, the axis of a rotation is that of the state before
 
 

@@ -52,7 +52,8 @@ def forces(system: System, state: State, rows: NDArray) -> Forces:
     return found
 
 
-def prescribed_powers(system: System, t: NDArray, sums: NDArray, powers: NDArray) -> NDArray:
+def prescribed_powers(system: System, t: NDArray, kept: NDArray, sums: NDArray,
+                      powers: NDArray) -> NDArray:
     """Powers of the power ports, (n, ports), with those of prescribed motions filled in.
 
     A prescribed motion gives the sum of the forces on its coordinates times its rate.
@@ -61,6 +62,7 @@ def prescribed_powers(system: System, t: NDArray, sums: NDArray, powers: NDArray
     ----------
     t : (n,)
         Times of the recorded states.
+    kept : (n, numbers of `State.frames`)
     sums : (n, coordinates)
         See `Forces`.
     powers : (n, ports)
@@ -71,7 +73,7 @@ def prescribed_powers(system: System, t: NDArray, sums: NDArray, powers: NDArray
     found[:, ports] = 0.0
     loads = np.zeros((len(t), 3 * powers.shape[1]))
     for k in range(len(t) if ports.size else 0):
-        set_loads(system, loads[k], t[k])
+        set_loads(system, kept[k], loads[k], t[k])
     for (coordinate, port, _), factor in zip(system.prescribed, system.prescribed_factor,
                                              strict=True):
         found[:, port] += sums[:, coordinate] * factor * loads[:, 3 * port + 1]
@@ -106,7 +108,7 @@ def _over_records(what: str, evaluate: Callable[..., int], system: System, state
 def _evaluate_energies(system, state, rows, out):
     for k in range(len(rows)):
         copy(rows[k], state.now)
-        set_loads(system, state.loads, state.now[RECORD_T])
+        set_loads(system, state.frames, state.loads, state.now[RECORD_T])
         for i in range(state.energy.size):
             state.energy[i] = 0.0
         status = run_kernels(ENERGY, 0, system.address.size, system, state)
@@ -120,7 +122,7 @@ def _evaluate_energies(system, state, rows, out):
 def _evaluate_forces(system, state, rows, elements, sums):
     for k in range(len(rows)):
         copy(rows[k], state.now)
-        set_loads(system, state.loads, state.now[RECORD_T])
+        set_loads(system, state.frames, state.loads, state.now[RECORD_T])
         status = assemble(RESIDUAL, RESIDUAL, system, state, state.residual)
         if status != 0:
             return status
@@ -133,7 +135,7 @@ def _evaluate_forces(system, state, rows, elements, sums):
 def _evaluate_constraints(system, state, rows, out):
     for k in range(len(rows)):
         copy(rows[k], state.now)
-        set_loads(system, state.loads, state.now[RECORD_T])
+        set_loads(system, state.frames, state.loads, state.now[RECORD_T])
         for j, task in enumerate((RESIDUAL, VELOCITY)):
             status = assemble(RESIDUAL, task, system, state, state.residual)
             if status != 0:

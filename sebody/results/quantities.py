@@ -14,8 +14,10 @@ from sebody.assembly.numbering import record_counts
 from sebody.contract.layout import ENERGIES
 from sebody.errors import InputError
 from sebody.model.parts import DofBlock
+from sebody.results import contact_quantities as contacts
 from sebody.results import field_quantities as fields
 from sebody.results import force_quantities as forces
+from sebody.results import joint_motion
 from sebody.results.envelopes import ENVELOPES
 from sebody.results.recording import Recording
 from sebody.spelling import alike
@@ -90,7 +92,7 @@ def unknown_quantity(recording: Recording, name: str) -> InputError:
 
 
 def _of_field(recording: Recording, body: str, quantity: str) -> InputError:
-    """The exception for a quantity of the FE nodes of a body that is asked of the body."""
+    """The exception for a quantity of FE nodes that is requested for a whole body."""
     recovery = recording.model.bodies[body].body.recovery
     if recovery is None:
         return InputError(f"'{body}.{quantity}' is unknown: {body!r} was reduced without the "
@@ -215,18 +217,31 @@ OF_NODE = {
 # bodies, joints, power ports
 
 
-def _modes(recording: Recording, name: str) -> NDArray:
+def _modes(part: str, recording: Recording, name: str) -> NDArray:
     if name not in recording.model.bodies:
         raise InputError(f"body {name!r} is rigid: it has forces, but no modes")
     first = recording.numbering.modes[name]
-    return recording.recorded("q")[:, first:first + recording.model.bodies[name].body.modes]
+    return recording.recorded(part)[:, first:first + recording.model.bodies[name].body.modes]
+
+
+def _kept(recording: Recording, name: str) -> NDArray:
+    """What a sensor, a controller or Python gave last, (n,)."""
+    return recording.recorded("frames")[:, recording.numbering.kept.values[name]]
+
+
+def _states(recording: Recording, name: str) -> NDArray:
+    """States of a controller, (n, states)."""
+    first = recording.numbering.kept.states[name]
+    size = recording.model.controllers[name].states.size
+    return recording.recorded("frames")[:, first:first + size]
 
 
 OWNERS = (
     Owner("node", "nodes are {names}", lambda recording: recording.model.nodes,
           {name: partial(_of_node, name) for name in OF_NODE}),
     Owner("body", "of bodies ({names}) there are {quantities}", forces.bodies,
-          {"modes": _modes, "forces": forces.of_body}),
+          {"modes": partial(_modes, "q"), "mode_rates": partial(_modes, "v"),
+           "forces": forces.of_body}),
     Owner("node of a body", "of <body>.<node> {quantities}", forces.nodes_of_bodies,
           {"force": partial(forces.at_node, "position"),
            "moment": partial(forces.at_node, "rotation")}),
@@ -235,20 +250,34 @@ OWNERS = (
            "force": partial(forces.of_joint, "position"),
            "moment": partial(forces.of_joint, "rotation"),
            "local_force": partial(forces.in_joint_axes, "position"),
-           "local_moment": partial(forces.in_joint_axes, "rotation")}),
+           "local_moment": partial(forces.in_joint_axes, "rotation"),
+           "angle": joint_motion.angle, "rate": joint_motion.rate,
+           "displacement": joint_motion.displacement, "speed": joint_motion.speed}),
     Owner("drive", "of drives {quantities}", forces.drives,
           {"torque": partial(forces.effort, "torque"),
            "thrust": partial(forces.effort, "thrust")}),
     Owner("spring or load", "of springs and loads {quantities}", forces.loads,
           {"force": partial(forces.of_load, "position"),
            "moment": partial(forces.of_load, "rotation")}),
+    Owner("contact, stop or friction", "of contacts, stops and friction {quantities}",
+          contacts.pressing,
+          {"normal_force": contacts.normal_force, "gap": contacts.gap, "sticks": contacts.sticks,
+           "dissipation": contacts.dissipation}),
     Owner("source of work", "of {names} {quantities}",
           lambda recording: recording.numbering.port_names,
           {"work": forces.work, "power": forces.power}),
+    Owner("sensor, signal or actuator", "of sensors, signals and actuators {quantities}",
+          lambda recording: recording.numbering.kept.values, {"value": _kept}),
+    Owner("controller", "of controllers {quantities}",
+          lambda recording: recording.model.controllers, {"states": _states}),
     # the last one: its names are too many to be searched for names like another
     Owner(FE_NODE, "; of FE nodes, <body>.node<k>, {quantities}", fields.FENodes,
           {name: partial(fields.of_fe_node, name) for name in fields.QUANTITIES}),
 )
+
+
+JOINT_MOTION = {"angle": joint_motion.TURNS, "rate": joint_motion.TURNS,
+                "displacement": joint_motion.SLIDES, "speed": joint_motion.SLIDES}
 
 
 def _has(recording: Recording, kind: str, owner: str, quantity: str) -> bool:
@@ -260,7 +289,11 @@ def _has(recording: Recording, kind: str, owner: str, quantity: str) -> bool:
                           "position")
         return (dof_block is not None and dof_block in recording.numbering.dof_blocks
                 and (dof_block.fixed or not quantity.startswith("reaction")))
-    if quantity == "modes":
+    if kind == "joint" and quantity in JOINT_MOTION:
+        return forces.joints(recording)[owner].kind in JOINT_MOTION[quantity]
+    if kind == "controller":
+        return recording.model.controllers[owner].states.size > 0
+    if quantity in ("modes", "mode_rates"):
         return owner in model.bodies and model.bodies[owner].body.modes > 0
     if kind == "node of a body":
         body, node = forces.nodes_of_bodies(recording)[owner]
@@ -270,6 +303,9 @@ def _has(recording: Recording, kind: str, owner: str, quantity: str) -> bool:
     if kind == "drive":
         return (quantity == "torque") == (forces.driven(forces.drives(recording)[owner])
                                           == "rotation")
+    if kind == "contact, stop or friction":
+        return quantity == "dissipation" or contacts.has(contacts.pressing(recording)[owner],
+                                                         quantity)
     if kind == "spring or load":
         return any(kept == place for _, kept in forces.loads(recording)[owner].attachments)
     return True

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
 
+import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.numbering import Numbering, record_counts
@@ -116,7 +117,8 @@ class Recording:
         rows = self.unique_rows
         evaluated = (self.energies if rows is self.rows else
                      energies(*self.arrays_of_loop, rows))
-        return prescribed_powers(self.arrays_of_loop[0], self.recorded("t")[:, 0], self.forces.sums,
+        return prescribed_powers(self.arrays_of_loop[0], self.recorded("t")[:, 0],
+                                 np.ascontiguousarray(self.recorded("frames")), self.forces.sums,
                                  evaluated[:, at])
 
     @cached_property

@@ -179,12 +179,12 @@ class Welded:
         return found.union(*(group for group in sharing.values() if len(group) > 1))
 
     def _cluster(self, node: Node) -> Hashable:
-        """What stands for all nodes that move as one with a node."""
+        """Representative of all nodes that move as one with a node."""
         return self._nodes.root(_key(node))
 
 
 class _Union:
-    """Sets that are joined, each with an element that stands for it."""
+    """Disjoint sets that can be joined, each with a representative."""
 
     def __init__(self) -> None:
         self._parent: dict[Hashable, Hashable] = {}

@@ -166,7 +166,7 @@ class Result(Recording):
 
     @property
     def cautions(self) -> list[str]:
-        """What bodies do not know and why: stresses, stiffening, exact inertia; odd materials."""
+        """What bodies lack and why: stresses, stiffening, exact inertia; implausible materials."""
         return cautions(self.model)
 
     @cached_property

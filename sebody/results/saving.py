@@ -1,7 +1,7 @@
 """Recordings in files: states, the model, and what was made from arrays that no file can hold.
 
 A file has two kinds of members: named histories, for every program that reads npz files, and those
-below `OWN`, from which a `Result` is made that knows all that the saved one knew.
+below `OWN`, from which a `Result` with all data of the saved one is made.
 """
 
 import json
@@ -55,7 +55,7 @@ def packed(recording: Recording, advice: dict[str, list[str]]) -> dict[str, NDAr
 
 
 def unpacked(make: Callable[..., Any], path: str | Path) -> Any:
-    """What `make`, of the arguments of `Recording`, makes of a file.
+    """What `make`, called with the arguments of `Recording`, returns for a file.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def unpacked(make: Callable[..., Any], path: str | Path) -> Any:
         made = _made(make, notes, arrays, model, numbering)
         noted = {"model": np.array(json.dumps(text)), **numbers, **arrays}
         if odd := changed(noted, notes.get("checksums")):
-            raise table.fault(f"does not hold what was saved in {', '.join(odd)}")
+            raise table.fault(f"differs from what was saved in {', '.join(odd)}")
         return made
 
 

@@ -1,7 +1,7 @@
 """What a first run compiles: the kernels of its models and the time loop, side by side.
 
 The parts of the loop are compiled for the types of a small model's arrays, which are those of
-every model. Kernels are known by name. Nothing is said or done where all is in the cache.
+every model. Kernels are known by name. Nothing is printed or done if everything is in the cache.
 """
 
 from collections.abc import Callable, Iterable
@@ -72,7 +72,7 @@ PARTS = {name: part for name, part in LOOP.items() if part.function} | {
                      ("forces in the loop",)),
     "reactions": Part(postprocessing._evaluate_forces, "system state table table table", 0.4,
                       ("forces in the loop",)),
-    "loads": Part(evaluate.set_loads, "system vector number", 0.3),
+    "loads": Part(evaluate.set_loads, "system vector vector number", 0.3),
     "motions": Part(evaluate.move_prescribed, "system state", 0.2),
     "links": Part(links.place_dependent, "links vector vector vector vector", 0.3),
     "axes": Part(evaluate.to_body_axes, "system vector vector flag", 0.2),

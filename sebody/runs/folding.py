@@ -45,8 +45,8 @@ class Tensions(NamedTuple):
             return ""
         load, said = worst[1], self._said(*worst)
         if load.tilt > FOLDED:
-            return (f"is none of the structure, with a frame {load.tilt:.2g} rad off the line of "
-                    f"the nodes: {said}")
+            return (f"is not that of the structure: the frame is {load.tilt:.2g} rad off the line "
+                    f"of the nodes: {said}")
         return f"is unstable: {said}" if load.folding > 1.0 and _unstable(run) else ""
 
     def reason(self, run: Simulation) -> str:

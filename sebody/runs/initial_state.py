@@ -1,5 +1,6 @@
 """A consistent start: positions and velocities that fit the joints."""
 
+from collections.abc import Callable
 from copy import copy
 
 import numpy as np
@@ -18,6 +19,7 @@ from sebody.model.mechanism import Mechanism
 from sebody.results.recording import Start
 from sebody.runs.redundancy import Solver, least, part_sizes
 from sebody.runs.rigid_start import follow_drives
+from sebody.runs.tuning import LoadedBristles, tune
 from sebody.runs.user_faults import fault
 
 WHAT = "the initial state"
@@ -36,7 +38,7 @@ def begin(model: Mechanism, system: System, numbering: Numbering, state: State) 
         Initial positions violate a joint, given velocities do not fit, constraints contradict
         each other, or an unknown has no mass.
     """
-    set_loads(system, state.loads, 0.0)
+    set_loads(system, state.frames, state.loads, 0.0)
     state.loads_old[:] = state.loads
     move_prescribed(system, state)
     place_dependent(system.links, state.q, state.v, state.a, state.R)
@@ -48,6 +50,7 @@ def begin(model: Mechanism, system: System, numbering: Numbering, state: State) 
     _check(residuals, _lengths(model, system, numbering, state)[multipliers], "position",
            multipliers, numbering, "start from a state the joints allow")
     system.inertias[:numbering.free] = part_sizes(masses, system)
+    tune(model, system, numbering, state, masses)
     solver = Solver(masses, system, numbering)
     changed = follow_drives(model, system, numbering, state, masses,
                             _rates(system, state, multipliers))
@@ -58,6 +61,23 @@ def begin(model: Mechanism, system: System, numbering: Numbering, state: State) 
     system.regularized[0], system.massless[0] = int(bool(solver.redundant)), int(solver.massless)
     state.control.restart = ASKED
     return Start(changed, solver.redundant, solver.shared)
+
+
+def hold(model: Mechanism, system: System, numbering: Numbering, state: State,
+         solve_again: Callable[[], None]) -> None:
+    """Bend the bristles of joints at rest as far as what they hold needs.
+
+    Parameters
+    ----------
+    solve_again : callable
+        Solves for accelerations and multipliers, as `begin` asks for.
+    """
+    bristles = LoadedBristles(model, system, numbering, state)
+    if bristles.held:
+        loaded, now = state.coefficients.copy(), state.now.copy()
+        masses = _masses(system, state)
+        state.coefficients[:], state.now[:] = loaded, now
+        bristles.load(masses, solve_again)
 
 
 def _check_accelerations(system: System, numbering: Numbering, state: State,

@@ -128,7 +128,7 @@ class Scaled:
 class Relaxed:
     """A singular matrix of masses and constraints, by regularized factors.
 
-    See `sebody.engine.regularization`. The system tells which unknowns are
+    See `sebody.engine.regularization`. The system says which unknowns are
     multipliers, which belong together and about which axes bodies have nearly no inertia.
 
     Parameters

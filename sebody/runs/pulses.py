@@ -65,7 +65,8 @@ def untold(numbering: Numbering, h: float, begin: float, end: float) -> Iterator
                 yield name, (f"the function of {name} jumps from {found[1]:.4g} to {found[2]:.4g} "
                              f"at t = {found[0]:.9g}, which is not declared: give it as "
                              "with_corners(function, times), so that steps end at its jumps; "
-                             "without, errors fall with the step only, not with its square")
+                             "otherwise errors fall in proportion to the step only, not to "
+                             "its square")
 
 
 def _jump(function: Callable[[float], float],

@@ -73,7 +73,7 @@ def save_state(run: Simulation, path: str | Path) -> Path:
 
 
 def resume(model: Model, path: str | Path) -> Simulation:
-    """The simulation of a file, to go on with `run_to`; `model` is built as it was.
+    """The simulation of a file, to be continued with `run_to`; `model` is built as it was.
 
     Raises
     ------
@@ -94,7 +94,7 @@ def resume(model: Model, path: str | Path) -> Simulation:
             raise
     _check_numbers(table, run, arrays)
     if odd := changed(arrays, settings.get("checksums")):
-        raise table.fault(f"does not hold what was saved in {', '.join(odd)}")
+        raise table.fault(f"differs from what was saved in {', '.join(odd)}")
     for name, array in _arrays(run.state).items():
         array[...] = arrays[name]
     for name in OF_START:

@@ -122,10 +122,22 @@ def motion(run: Simulation | Result) -> csc_matrix:
 
 def summed(run: Simulation | Result) -> csc_matrix:
     """Sum of the element matrices of all coordinates, in global axes, as they are in `State.J`."""
+    unknowns, total = run.arrays_of_loop[0].g_unknown, run.numbering.total
+    sums = csc_matrix((np.ones(unknowns.size), (unknowns, np.arange(unknowns.size))),
+                      shape=(total, unknowns.size))
+    return csc_matrix(sums @ by_element(run))
+
+
+def by_element(run: Simulation | Result) -> csc_matrix:
+    """Derivatives of the forces of all elements by all coordinates, in global axes.
+
+    Rows are in the order of `State.g`; of the matrices that are in `State.J`.
+    """
     (system, state), blocks = run.arrays_of_loop, _Blocks()
     for b, (count, width, stride) in enumerate(zip(system.count, system.width, system.stride,
                                                    strict=True)):
-        unknowns = system.g_unknown[system.at_g[b]:system.at_g[b + 1]].reshape(count, width)
+        forces = np.arange(system.at_g[b], system.at_g[b + 1]).reshape(count, width)
+        unknowns = system.g_unknown[forces]
         J = state.J[system.at_J[b]:system.at_J[b + 1]].reshape(count, width, width).copy()
         if b < system.first_joint[0]:       # superelements: in the axes of their frames
             index = system.index[system.at_index[b]:system.at_index[b + 1]].reshape(count, stride)
@@ -135,9 +147,9 @@ def summed(run: Simulation | Result) -> csc_matrix:
                 part = slice(first, first + d)
                 J[:, part] = frames @ J[:, part]
                 J[:, :, part] = J[:, :, part] @ frames.transpose(0, 2, 1)
-        rows, columns = np.broadcast_arrays(unknowns[:, :, None], unknowns[:, None, :])
+        rows, columns = np.broadcast_arrays(forces[:, :, None], unknowns[:, None, :])
         blocks.add_entries(rows.ravel(), columns.ravel(), J.ravel())
-    return blocks.matrix(run.numbering.total, run.numbering.total)
+    return blocks.matrix(int(system.at_g[-1]), run.numbering.total)
 
 
 def of_levers(run: Simulation | Result, forces: NDArray) -> csc_matrix:

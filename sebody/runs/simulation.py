@@ -13,9 +13,11 @@ from sebody import inputs, memory
 from sebody.assembly.allocation import allocate
 from sebody.assembly.build import build
 from sebody.assembly.numbering import placed, rotational
+from sebody.contract.layout import RECORD_T
 from sebody.engine.loop import advance
 from sebody.engine.routines import addresses
 from sebody.engine.state import (
+    ASKED,
     CHUNK,
     DONE,
     FAILED,
@@ -36,11 +38,12 @@ from sebody.runs import user_faults
 from sebody.runs.failures import explained
 from sebody.runs.first_run import prepare
 from sebody.runs.given_start import take
-from sebody.runs.initial_state import begin
+from sebody.runs.initial_state import begin, hold
 from sebody.runs.initial_velocities import refuse_contradicted
 from sebody.runs.progress import showing
 from sebody.runs.pulses import unseen, untold
 from sebody.runs.row_exchanges import RowExchanges
+from sebody.runs.sampling import Sampling
 from sebody.runs.schemes import checked, generalized_alpha
 from sebody.runs.start_remarks import start_remarks
 from sebody.runs.steps import MOST_STEPS, check_steps
@@ -110,6 +113,8 @@ class Simulation:
         self.seconds = 0.0
         self.failure = ""
         self.exchanges = RowExchanges(self.system, self.state)
+        self.sampling = Sampling(model, self.numbering, self.system, self.state)
+        self._jumped = False    # at the state recorded last, by an input that was set since
         user_faults.forget(model)
         self.begun = start
         if start is not None:
@@ -121,8 +126,12 @@ class Simulation:
                 self.watch.say(key, message)
         self.tolerance = tolerance
         self._accelerate()
+        hold(model, self.system, self.numbering, self.state, self._accelerate_again)
         if tolerance is not None:
             self._choose_steps(tolerance)
+        self.sampling.check(self.h, tolerance is None)
+        if self.sampling.begin():
+            self._accelerate()
         first = Record.of(self.state, 1, self.every)
         self.state.control.recorded = 0
         write_record(self.state, first)
@@ -150,7 +159,7 @@ class Simulation:
         ----------
         progress : callable or bool, optional
             Called several times a second with the part of the run that is done. What it raises
-            stops the run between two steps; a later call goes on from there. True shows a bar on
+            stops the run between two steps; a later call continues from there. True shows a bar on
             a terminal or in a notebook once the run takes longer than a second.
 
         Raises
@@ -174,8 +183,12 @@ class Simulation:
                 self.watch.say(f"peak {name}", message)
             for name, message in untold(self.numbering, self.h, self.time, t_end):
                 self.watch.say(f"jump {name}", message)
+        if self._jumped:        # the state recorded last is recorded again, after the jump
+            self.rows[-1] = self.rows[-1][:-1]
+            self.state.control.due, self._jumped = 1, False
         record = self._room(last)
         self.state.control.recorded = 0
+        self.sampling.stop_at(t_end)
         code = CHUNK
         try:
             with showing(progress, t_end) as show:
@@ -193,6 +206,35 @@ class Simulation:
             result.failure = f"interrupted at t = {self.time:.6g}: results up to this time are kept"
             raise Interrupted(result.failure, result)
         return self
+
+    def set_input(self, name: str, value: float) -> None:
+        """Set the input of an actuator; it holds from the time reached until it is set again.
+
+        As where a controller sets it, accelerations are solved for anew when the run goes on.
+
+        Raises
+        ------
+        InputError
+            No actuator of this name, or no finite number.
+        """
+        if self.sampling.set_input(name, value):
+            self.state.control.restart = ASKED
+            rows = next((rows for rows in reversed(self.rows) if len(rows)), None)
+            if rows is self.rows[-1] and rows[-1, RECORD_T] == self.time:
+                self._jumped = True
+
+    def read(self, name: str) -> float | NDArray:
+        """A quantity in the state reached, or what a sensor gave last.
+
+        Motion of nodes and modes, sensors and signals take about a microsecond, anything else
+        about a millisecond.
+
+        Raises
+        ------
+        InputError
+            A name that nothing has.
+        """
+        return self.sampling.read(name)
 
     def _last_step(self, t_end: float) -> int:
         """The grid step nearest to a time.
@@ -217,7 +259,8 @@ class Simulation:
 
     def _room(self, last: int) -> Record:
         """An empty record for the states up to a step of the grid."""
-        count = last // self.every - int(self.state.control.grid) // self.every
+        count = last // self.every - int(self.state.control.grid) // self.every + int(
+            self.state.control.due)
         memory.check(8.0 * count * self.state.now.size, f"a record of {count} states",
                      "keep fewer with output_every, or give an earlier t_end")
         return Record.of(self.state, count, self.every)
@@ -229,6 +272,7 @@ class Simulation:
         while code not in (DONE, FAILED):
             began = time.perf_counter()
             self.exchanges.serve()
+            self.sampling.serve()
             code = advance(self.system, self.state, record, self.scheme, last, chunk, self.dense)
             now = time.perf_counter()
             self.seconds += now - began
@@ -274,6 +318,11 @@ class Simulation:
         state.clock.largest_error = 0.0
         state.control.adaptive = 1
 
+    def _accelerate_again(self) -> None:
+        """Solve for them once more, after a change of what elements keep."""
+        self.state.control.restart = ASKED
+        self._accelerate()
+
     def _accelerate(self) -> None:
         """Solve for the accelerations and multipliers of the start, by the loop without a step.
 
@@ -286,7 +335,10 @@ class Simulation:
         none = Record.of(state, 0, self.every)
         while code not in (DONE, FAILED):
             self.exchanges.serve()
+            self.sampling.serve()
             code = advance(self.system, state, none, self.scheme, 0, 0, self.dense)
+        if code == FAILED and (did := user_faults.fault(self.model, 0.0)):
+            raise InputError(f"the run cannot begin: {did}")
         if code == FAILED:
             raise InputError("the initial state has no accelerations: "
                              f"{REASONS[int(state.control.reason)]}; check the loads and the "

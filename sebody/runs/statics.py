@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs, memory
-from sebody.contract.layout import FIELD, RECORD_T
+from sebody.assembly.evaluation import evaluate
+from sebody.contract.layout import FIELD, RECORD_T, RESIDUAL
 from sebody.engine.evaluate import set_loads
 from sebody.errors import SimulationError
 from sebody.model.model import Model
+from sebody.results.postprocessing import Forces
 from sebody.results.result import Result
 from sebody.runs import user_faults
 from sebody.runs.folding import Tensions
@@ -60,7 +62,7 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     steady = Spin.of(run, spin)
     state.v[:], state.a[:], state.aux[:] = 0.0, 0.0, 0.0
     state.q[run.system.is_multiplier[:state.q.size] > 0] = 0.0
-    set_loads(run.system, state.loads, t)
+    set_loads(run.system, state.frames, state.loads, t)
     loads = state.loads.copy()
     run.rows = [state.now[None].copy()]
     tensions = Tensions.of(run)
@@ -80,7 +82,7 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
             if not steady.rotates and (folded := tensions.spurious(run)):
                 state.now[:] = kept
                 raise SimulationError(f"the equilibrium at {target:.4g} of the load {folded}",
-                                      _result(run))
+                                      _result(run, loads, field))
             share = target
             state.now[RECORD_T] = share
             run.rows.append(state.now[None].copy())
@@ -92,10 +94,25 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
                 "the structure may buckle, or a mechanism may be free to move; use more steps or "
                 "supports")
             raise SimulationError(f"no equilibrium was found above {share:.4g} of the load: "
-                                  f"{reason}", _result(run))
-    return _result(run)
+                                  f"{reason}", _result(run, loads, field))
+    return _result(run, loads, field)
 
 
-def _result(run: Simulation) -> Result:
+def _result(run: Simulation, loads: NDArray, field: NDArray) -> Result:
     run.watch.look(run.model, run.numbering, np.concatenate(run.rows))
-    return run.result()
+    found = run.result()
+    found.forces = _forces(run, found.unique_rows, loads, field)
+    return found
+
+
+def _forces(run: Simulation, rows: NDArray, loads: NDArray, field: NDArray) -> Forces:
+    """Forces under the share of the load of each row; the time in a row is that share."""
+    state, found = run.state, []
+    kept = [array.copy() for array in (state.now, state.loads, state.coefficients)]
+    for row in rows:
+        state.now[:], share = row, row[RECORD_T]
+        state.loads[:], state.coefficients[FIELD:] = share * loads, share * field
+        evaluate(run.system, state, RESIDUAL, RESIDUAL, "a load step")
+        found.append((state.g.copy(), state.residual.copy()))
+    state.now[:], state.loads[:], state.coefficients[:] = kept
+    return Forces(*(np.array(values) for values in zip(*found, strict=True)))

@@ -19,6 +19,8 @@ def functions(model: Mechanism) -> Iterator[tuple[str, UserFunction]]:
         if element.time_function is not None:
             for function in element.time_function.functions:
                 yield f"the function of {element.name!r}", function
+    for name, controller in model.controllers.items():
+        yield f"controller {name!r}", controller.function
     for dof_block in model.dof_blocks():
         for motion in dof_block.motions:
             for function in motion.time_function.functions:

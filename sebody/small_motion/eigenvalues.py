@@ -70,7 +70,7 @@ def _under(shapes: NDArray, L: NDArray) -> NDArray:
 
 
 def _noise(M: NDArray, K: NDArray, L: NDArray) -> tuple[NDArray, NDArray]:
-    """What rounding of M and K makes of the unit mass and the stiffness of undamped modes, (n,)."""
+    """Errors by rounding of M and K in the unit mass and stiffness of undamped modes, (n,)."""
     own = _over(K, L)
     shapes = np.abs(_under(eigh((own + own.T) / 2)[1], L))
     return tuple(EPS * np.einsum("ij,ik,kj->j", shapes, np.abs(A), shapes) for A in (M, K))

@@ -2,8 +2,7 @@
 
 The load has the amplitude ``exp(i omega t)``; the unknowns, multipliers included, answer with
 ``(-omega^2 M + i omega C + K) X = F``, with the exact derivatives of `linearization` and F that of
-the forces by the load's amplitude. A quantity follows from its values in states moved a little
-along X, in positions, velocities, accelerations and load: whatever has a history has an answer.
+the forces by the load's amplitude. Whatever has a time function has an answer, see `moved_states`.
 """
 
 from __future__ import annotations
@@ -17,23 +16,19 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs, tabular
 from sebody.assembly.evaluation import evaluate
-from sebody.assembly.numbering import coordinates
 from sebody.contract.layout import RECORD_T, RESIDUAL
 from sebody.engine.evaluate import set_loads, to_body_axes
 from sebody.errors import InputError
 from sebody.model.parts import Element
 from sebody.pictures.frequency_pictures import save_response
-from sebody.results import rotations
 from sebody.results.naming import component_names
-from sebody.results.postprocessing import Forces
 from sebody.results.result import Result
-from sebody.runs.rotating_frame import Spin, motion
+from sebody.runs.rotating_frame import Spin
 from sebody.runs.simulation import Simulation
 from sebody.small_motion.linearization import small_motion
+from sebody.small_motion.moved_states import differences, moves, refuse_unmoved
 
 HEADS = "quantity", "largest amplitude", "phase [deg]", "at [Hz]"
-UNMOVED, ADDED_UP = ("t", "energy.external_work"), ".work"     # quantities that do not answer
-SMALL = 1e-5        # motion of the states that are compared, of the extent or in radians
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +65,7 @@ class FrequencyResponse:
                        f"{self.omega[k] / (2 * np.pi):.6g}")
 
     def __getitem__(self, name: str) -> NDArray:
-        """Answer of one of the quantities asked for."""
+        """Response of one of the requested quantities."""
         return self.answers[inputs.choice(name, "quantity of the response", self.answers)]
 
     def save_picture(self, path: str | Path) -> Path:
@@ -86,7 +81,7 @@ class FrequencyResponse:
 
 def frequency_response(run: Simulation | Result, load: str, quantities: str | Iterable[str],
                        omega: ArrayLike, spin: ArrayLike | None = None) -> FrequencyResponse:
-    """Answers of quantities to a harmonic amplitude of a load, about the state of a run.
+    """Response of quantities to a load of harmonic amplitude, about the state of a run.
 
     Parameters
     ----------
@@ -112,7 +107,7 @@ def frequency_response(run: Simulation | Result, load: str, quantities: str | It
     ------
     InputError
         No such load or quantity, a state that cannot be evaluated, or a frequency at which the
-        answer is infinite.
+        response is infinite.
     """
     inputs.instance(run, "run", Simulation | Result, "give a Simulation, or the Result of a run or "
                     "of an equilibrium")
@@ -124,24 +119,19 @@ def frequency_response(run: Simulation | Result, load: str, quantities: str | It
     if not names:
         raise inputs.refusal("quantities", quantities, "name at least one")
     for name in names:
-        if inputs.name(name, "name of a quantity") in UNMOVED or name.endswith(ADDED_UP):
-            raise InputError(f"quantity {name!r} has no harmonic response: time and work are not "
-                             "periodic; name a position, a force or a power")
+        inputs.name(name, "name of a quantity")
+    refuse_unmoved(names, "harmonic response")
     steady = Spin.of(run, spin)
     matrices = small_motion(run, steady)
-    element = _load(run, load)
-    forces = _by_amplitude(run, element)
-    push = -forces.sums.copy()
-    to_body_axes(run.system, run.state.frames, push, False)
-    X = _answers(matrices, push[:run.numbering.free], omega)
-    recording, scale = _moved_states(run, steady, X, omega)
-    share = np.zeros(len(recording.rows))
-    share[0::4], share[1::4] = scale, -scale        # the load is real
-    base = recording.forces
-    recording.forces = Forces(base.elements + share[:, None] * forces.elements,
-                              base.sums + share[:, None] * forces.sums)
+    forces, push = by_amplitude(run, _load(run, load))
+    X = _answers(matrices, push, omega)
+    w = 1j * omega[:, None]
+    along = moves(run, steady, *(np.concatenate([z.real, z.imag]) for z in (X, w * X, w**2 * X)))
+    pushed = np.zeros((2 * len(omega), forces.size))
+    pushed[:len(omega)] = forces            # the load is real
     return FrequencyResponse(load, omega, {
-        name: _difference(np.asarray(recording[name]), scale) for name in names})
+        name: values[:len(omega)] + 1j * values[len(omega):]
+        for name, values in differences(run, names, along, pushed).items()})
 
 
 def _load(run: Simulation | Result, name: str) -> Element:
@@ -152,24 +142,27 @@ def _load(run: Simulation | Result, name: str) -> Element:
     return loads[inputs.choice(name, "load", loads)]
 
 
-def _by_amplitude(run: Simulation | Result, load: Element) -> Forces:
-    """Derivatives of the forces of all elements, and of their sums, by the load's amplitude.
+def by_amplitude(run: Simulation | Result, load: Element) -> tuple[NDArray, NDArray]:
+    """Derivatives by the amplitude of a load: forces of all elements, and minus the residual.
 
-    Loads are linear in their amplitude, so the difference is exact.
+    The latter is that of the unknowns, in their own axes. Loads are linear in their amplitude, so
+    the difference is exact.
     """
     state, at = run.state, 3 * run.numbering.ports[load]
     kept, found = state.loads.copy(), []
-    set_loads(run.system, state.loads, state.now[RECORD_T])
+    set_loads(run.system, state.frames, state.loads, state.now[RECORD_T])
     for step in (0.5, -1.0):
         state.loads[at] += step
         evaluate(run.system, state, RESIDUAL, RESIDUAL, "the state")
         found.append((state.g.copy(), state.residual.copy()))
     state.loads[:] = kept
-    return Forces(*(high - low for high, low in zip(*found, strict=True)))
+    forces, residual = (high - low for high, low in zip(*found, strict=True))
+    to_body_axes(run.system, state.frames, residual, False)
+    return forces, -residual[:run.numbering.free]
 
 
 def _answers(matrices: tuple[NDArray, ...], push: NDArray, omega: NDArray) -> NDArray:
-    """Answers of the unknowns, (m, unknowns)."""
+    """Responses of the unknowns, (m, unknowns)."""
     mass, damping, stiffness = matrices
     # unknowns of different units: rows and columns of one size, for the judgment of solvability
     size = np.sqrt(np.abs(stiffness).max(axis=1) + np.abs(mass).max(axis=1))
@@ -189,49 +182,3 @@ def _answers(matrices: tuple[NDArray, ...], push: NDArray, omega: NDArray) -> ND
                              "damping, or leave out this frequency")
         found.append(answer / size)
     return np.array(found).reshape(len(omega), -1)
-
-
-def _moved_states(run: Simulation | Result, spin: Spin, X: NDArray, omega: NDArray
-                  ) -> tuple[Result, NDArray]:
-    """States moved forth and back along the real and the imaginary part of every answer.
-
-    Returns their recording and by how much of the answer they are moved, (m,).
-    """
-    numbering, state = run.numbering, run.state
-    moved = X @ motion(run).toarray().T         # (m, coordinates), in global axes
-    w = 1j * omega[:, None]
-    rate, second = w * moved, w**2 * moved
-    if spin.rotates:
-        velocity, place, turning = spin.operators(run)
-        second = second + rate @ turning.T + moved @ place.T
-        rate = rate + moved @ velocity.T
-    extent = np.full(numbering.total, np.inf)   # of what has no size of its own: any
-    rotated = {}
-    for node in (*run.model.nodes.values(), *run.model.grounds):
-        for dof_block in (node.position, node.rotation):
-            if dof_block is not None and dof_block in numbering.dof_blocks:
-                own = coordinates(numbering, dof_block)
-                extent[own] = 1.0 if dof_block.rotational else run.model.size()
-                if dof_block.rotational and not run.model.planar:
-                    rotated[numbering.rotations[dof_block]] = own
-    largest = (np.abs(moved) / extent).max(axis=1)
-    scale = SMALL / np.where(largest > 0, largest, 1.0)
-    parts, rows = state.recorded_parts, []
-    for k, factor in enumerate(scale):
-        for change in (1.0, -1.0, -1j, 1j):     # real parts of these times the answer
-            row = state.now.copy()
-            step = (factor * change * np.array([moved[k], rate[k], second[k]])).real
-            for name, values in zip("qva", step, strict=True):
-                row[parts[name]] += values
-            for number, own in rotated.items():
-                first = parts["R"].start + 9 * number
-                R = row[first:first + 9].reshape(3, 3)
-                row[first:first + 9] = (R @ rotations.matrices(step[0][own])).ravel()
-            rows.append(row)
-    return Result(run.model, numbering, run.system, state, np.array(rows), 0.0), scale
-
-
-def _difference(values: NDArray, scale: NDArray) -> NDArray:
-    """Complex change from the values in states that are moved, four for each frequency."""
-    half = 2 * scale.reshape(-1, *[1] * (values.ndim - 1))
-    return (values[0::4] - values[1::4]) / half + 1j * (values[2::4] - values[3::4]) / half

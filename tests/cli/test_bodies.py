@@ -95,7 +95,7 @@ def test_what_is_missing_is_said_by_every_command(tmp_path, capsys):
     assert main(["inspect", str(body)]) == 0
     said = capsys.readouterr().out
     assert why in said and "remedy: correct the deck and import again" in said
-    assert said.endswith("verdict: the body can be used; mind what is said above\n")
+    assert said.endswith("verdict: the body can be used; note the cautions above\n")
     assert main(["run", "imported-link", "--set", f"body={body}", "--t-end", "0.05", "--output",
                  str(result)]) == 0
     assert re.search(r"caution +body '\w+' has no .*: 3 of 3 " + re.escape(why),

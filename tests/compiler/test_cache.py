@@ -121,7 +121,7 @@ def test_a_named_folder_that_cannot_be_written_is_said(program, tmp_path):
     named = not_writable(tmp_path / "file") / "cache"
     out, errors = run(program, cache=str(named))
     assert out == "7 0"
-    assert errors.count("compiled code cannot be kept, every start compiles it again") == 1
+    assert errors.count("compiled code cannot be stored, so every start compiles it again") == 1
     assert f"cannot be written; set NUMBA_CACHE_DIR, now {named}, to a folder that can" in errors
 
 

@@ -4,7 +4,7 @@ import pytest
 from numba import config
 
 from sebody.compiler import sources
-from sebody.compiler.sources import room_hash, syntax
+from sebody.compiler.sources import function_hash, room_hash, syntax
 
 MODULE = '''"""A title."""
 LIMIT = 0.5
@@ -71,6 +71,29 @@ def test_a_module_that_moves_counts(package):
     (package / "kernels/a.py").rename(package / "kernels/d.py")
     _forget()
     assert room_hash("kernels") != before
+
+
+def test_a_folder_that_moves_with_its_cache_counts(package):
+    """Compiled code names the module it was made of, and a folder may keep its name."""
+    for name in ("contract", "compiler"):
+        (package / name).mkdir()
+        (package / name / "a.py").write_text(MODULE)
+
+    def found(path):
+        names = {}
+        exec(compile(path.read_text(), path, "exec"), names)
+        return function_hash(names["inside"])
+
+    for old, new in (("results", "runs"), ("runs/deep", "limits")):
+        folder = package / old / "inner"
+        folder.mkdir(parents=True)
+        (folder / "b.py").write_text(MODULE)
+        before = found(folder / "b.py")
+        assert (folder / "__pycache__").is_dir() and found(folder / "b.py") == before
+        (package / new).mkdir(exist_ok=True)
+        folder.rename(package / new / "inner")
+        _forget()
+        assert found(package / new / "inner/b.py") != before
 
 
 def test_a_room_that_is_moved_or_empty_is_an_error(package):

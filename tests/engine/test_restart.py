@@ -370,7 +370,8 @@ from sebody.compiler.decorators import kernel_function
 PLANAR, N_POSITIONS, N_ROTATIONS, MULTIPLIERS, WIDTH = False, 1, 0, 0, 4
 CONSTANTS = (Part("mu", (), ""), Part("N0", (), ""), Part("e", (3,), ""))
 INERTIAL = POWER = DRIVEN = False
-MEMORY = 0
+READS = 0
+MEMORY = ()
 WORK_ROWS, OPERATIONS = 0, {"residual": (0, 0, 0, 0), "column": (0, 0, 0, 0)}
 ROOM = "HASH"
 

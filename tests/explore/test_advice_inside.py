@@ -41,6 +41,29 @@ def test_section_forces_at_a_place_of_the_beam_are_found_in_any_division(place):
         assert np.abs(other - found[0]).max() <= 5e-3 * np.abs(found[0]).max()
 
 
+def test_between_two_bodies_the_side_that_is_stressed_more_counts():
+    """At every time its own: von Mises's stress, and the tensor of the same side."""
+    sides = {"arm 1.node8.von_mises": [1.0, 5.0, 2.0], "arm 2.node0.von_mises": [3.0, 4.0, 2.5]}
+    sides |= {"arm 1.node8.stress": 10 * np.outer(sides["arm 1.node8.von_mises"], np.ones(6)),
+              "arm 2.node0.stress": 10 * np.outer(sides["arm 2.node0.von_mises"], np.ones(6))}
+    places = Places(strip(), ["arm.node8.von_mises", "arm.node8.stress"])
+    divided = divide(strip(), "arm", 2, 16).model
+    names = places.names(divided, "arm.node8.von_mises")
+    assert [name.partition(".")[2] for name in names] == ["node8.von_mises", "node0.von_mises"]
+    known = dict(zip(names, ("arm 1.node8.von_mises", "arm 2.node0.von_mises"), strict=True))
+    known |= dict(zip(places.names(divided, "arm.node8.stress"),
+                      ("arm 1.node8.stress", "arm 2.node0.stress"), strict=True))
+
+    class Run:
+        model = divided
+
+    found = {name: places.history(Run, name, lambda run, one: np.array(sides[known[one]]))
+             for name in ("arm.node8.von_mises", "arm.node8.stress")}
+    larger = np.array([3.0, 5.0, 2.5])
+    assert np.array_equal(found["arm.node8.von_mises"], larger)
+    assert np.array_equal(found["arm.node8.stress"], 10 * np.outer(larger, np.ones(6)))
+
+
 def test_a_beam_is_divided_though_its_stress_is_asked_for():
     advice = advise(strip(), H, T_END, FORCES, 2e-2)
     assert advice.table[0].change.startswith("arm: 8 bodies with ")

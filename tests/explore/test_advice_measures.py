@@ -45,7 +45,7 @@ def test_tolerances_with_units(text, units, expected):
 @pytest.mark.parametrize(("given", "message"), [
     ({"tolerance": "2 furlong"}, "the unit 'furlong' is unknown: give one of m, dm"),
     ({"tolerance": "much"}, "tolerance is 'much': give a number, such as 1e-3, or one with a unit"),
-    ({"tolerance": "2mm", "quantities": "frequency 1"}, "frequencies are kept relatively"),
+    ({"tolerance": "2mm", "quantities": "frequency 1"}, "tolerances of frequencies are relative"),
     ({"quantities": "tip.position mean"}, "'position mean' is unknown: did you mean"),
     ({"quantities": "tip.position < fast Hz"}, "frequency is 'fast': give a number above 0"),
     ({"quantities": "tip.position < 0 Hz"}, "frequency is '0': give a number above 0"),

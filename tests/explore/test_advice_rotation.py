@@ -69,8 +69,9 @@ def test_frequencies_of_a_rotating_blade_are_those_of_its_steady_rotation(flat):
 
 
 def test_frequencies_of_a_blade_that_turns_about_another_point_are_refused():
-    with pytest.raises(InputError, match="'frequency 1': the velocities at the start are no steady "
-                       "rotation about the origin .* shift the model so that the axis passes"):
+    with pytest.raises(InputError, match="'frequency 1': the velocities at the start are not a "
+                       "steady rotation about the origin .* shift the model so that the axis "
+                       "passes"):
         advise(blade(shift=0.3), 1e-3, 5e-3, "frequency 1", 1e-2)
 
 

@@ -119,7 +119,7 @@ def test_lost_digits_are_repaired_and_what_is_lost_is_said(path, body):
 def test_constants_of_another_body_are_a_defect(path, body):
     softer = inspect(read_body_file(spoilt(path, stiffness=0.9 * body.stiffness)))
     text, = [one.text for one in softer.findings if one.severity == "defect"]
-    assert text.startswith("invariants.lam and E make more stiffness than the body has")
+    assert text.startswith("invariants.lam and E give more stiffness than the body has")
 
 
 def test_a_support_is_not_repaired(path, body):

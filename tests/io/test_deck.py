@@ -10,12 +10,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy import sparse
 
 from sebody import InputError
 from sebody.io import import_body, read_fe_model
 from sebody.io.deck.materials import DeckMaterial, read_elastic, turned_law
 from sebody.io.deck.reading import read_deck
 from sebody.io.registry import read_source
+from sebody.io.tied import tied_mass_field
 
 DECKS = {"tied": [("hexahedron20", 6), ("wedge", 24)], "laminate": [("tetra10", 18)] * 2,
          "loose": [("hexahedron", 4)], "hole": [("tetra10", 108)]}
@@ -175,7 +177,7 @@ def test_stresses_of_masses_and_springs_are_not_missed(decks):
      "element 9 of the surface is not a solid of the deck"),
     ("2.1E5, 0.3\n", "2.1E5, 0.5\n", r"has the numbers 210000, 0\.5, by which some strain has no"),
     ("*ELASTIC\n", "*ELASTIC, TYPE=ORTHO\n", r"\*ELASTIC, TYPE=ORTHO has 2 numbers: give 9"),
-    (SECTION, "*ORIENTATION, NAME=O\n1,0,0,2,0,0\n" + SECTION, "which make no axes: give two"),
+    (SECTION, "*ORIENTATION, NAME=O\n1,0,0,2,0,0\n" + SECTION, "which define no axes: give two"),
     (SECTION, "*ELSET, ELSET=A, GENERATE\n1, 4, 0\n" + SECTION, "the step of GENERATE is 0"),
     ("3, 9, 13, 15, 11, 10, 14, 16, 12", "3, 9, 11, 15, 13, 10, 12, 16, 14",
      "element 3 of the deck is inverted or has no volume: correct the order"),
@@ -263,3 +265,26 @@ def stress_of(law, strain):
     for value, (i, j) in zip(values, pairs, strict=True):
         result[i, j] = result[j, i] = value
     return result
+
+
+def test_masses_of_two_rigid_parts_that_share_an_element():
+    """Moments of order zero to two of all nodes, from the matrix of free and reference nodes."""
+    rng = np.random.default_rng(3)
+    places, references = rng.normal(size=(6, 3)), rng.normal(size=(2, 3))
+    factor = rng.normal(size=(6, 6))
+    masses = factor @ factor.T                  # of two free nodes, then of two parts of two nodes
+    T = np.zeros((6, 3, 18))
+    T[0, :, :3] = T[1, :, 3:6] = np.eye(3)
+    for node in range(2, 6):
+        own, arm = 6 * (node // 2), places[node] - references[node // 2 - 1]
+        T[node, :, own:own + 3] = np.eye(3)
+        T[node, :, own + 3:own + 6] = np.cross(np.eye(3), arm).T
+    whole = np.einsum("pin,pq,qim->nm", T, masses, T)
+    rows = np.full((4, 6), -1)
+    rows[:2, :3], rows[2:] = np.arange(6).reshape(2, 3), np.arange(6, 18).reshape(2, 6)
+    field = tied_mass_field(sparse.csc_array(whole), np.vstack([places[:2], references]), rows)
+    np.testing.assert_allclose(field.matrix().toarray(), whole, atol=1e-12 * np.abs(whole).max())
+    shapes = field.translation.toarray().reshape(-1, 3, 18)
+    found = np.einsum("pi,pq,qjn->ijn", field.points, field.mass.toarray(), shapes)
+    wanted = np.einsum("pi,pq,qjn->ijn", places, masses, T)
+    np.testing.assert_allclose(found, wanted, atol=1e-12 * np.abs(wanted).max())

@@ -126,7 +126,7 @@ def test_rods_that_fold_up_are_refused(inertia, units):
         model.torque("node 0", 0.17 * units[1] / units[0] * TURN[:, 1])
         found[option] = said(lambda model=model: equilibrium(model, 10))
     refused, _ = found[inertia]
-    assert "of the load is none of the structure, with a frame" in refused
+    assert "of the load is not that of the structure: the frame is" in refused
     assert "rad off the line of the nodes: body 'rod' folds up" in refused
     result, messages = found["c"]
     stretch = (result[f"{end}.position"][-1] - PLACE * units[0]) @ E / units[0] - 1.0
@@ -147,7 +147,7 @@ def test_clamped_rods_stretch_rightly_and_warn(backwards):
     assert (result[f"{end}.position"][-1] - PLACE) @ E == pytest.approx(1.0 + 5e-6, abs=1e-9)
     assert message.startswith(
         "tension 5 in body 'rod' counts 1.7 times as much as its own bending stiffness (limit a "
-        "third), which does not depend on it: bending is off by a tenth and more, and under 3 the "
+        "third), which does not depend on it: bending has errors of 10 % and more, and under 3 the "
         "body folds up in its frame unless its ends are clamped; divide the body in two, or take "
         "inertia='floating_field'")
 
@@ -162,7 +162,7 @@ def test_compression_is_warned_of(inertia):
     result, (message,) = said(lambda: equilibrium(model))
     assert message.startswith("compression 2.47 in body 'rod' counts 0.82 times as much as its own "
                               "bending stiffness (limit a third)")
-    assert "and it does not buckle where it should; divide the body in two" in message
+    assert "and the body does not buckle at the right load; divide the body in two" in message
     angle = Rotation.from_matrix(result["node 0.rotation"][-1]).magnitude()
     k = np.sqrt(EULER / 4.0)
     beam = moment * np.tan(k / 2.0) / k       # M tan(k L / 2) / k E I of a beam

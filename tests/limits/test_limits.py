@@ -10,12 +10,13 @@ from scipy.spatial.transform import Rotation
 from stiffened_models import TURN as TURNED
 from stiffened_models import block
 
-from sebody import Model, Simulation
+from sebody import LimitWarning, Model, Simulation
 from sebody.analysis import equilibrium, modes
 from sebody.fem import Section, StiffnessSection, planar_beam, straight_beam
+from sebody.limits.body_limits import Finding
 from sebody.limits.spin_stability import cautious_limit, first_frequency, reach
 from sebody.limits.thresholds import FAST
-from sebody.limits.watch import spin_limit
+from sebody.limits.watch import Watch, spin_limit
 from sebody.reduction import ReducedBody, craig_bampton
 
 LENGTH = 2.0
@@ -197,7 +198,7 @@ def test_fast_spins_without_stiffening_are_warned_of(option):
         assert len(messages) == 1
         assert "'blade' spins at 0.914 rad/s, more than a quarter of 3.52, the body's first f" in (
             messages[0])
-        assert "frequencies are off by a per cent and more; divide the body in two" in messages[0]
+        assert "frequencies have errors of 1 % and more; divide the body in two" in messages[0]
 
 
 def test_a_blade_with_soft_torsion_is_warned_of_before_it_diverges():
@@ -245,3 +246,15 @@ def test_a_planar_beam_known_by_its_ends_is_warned_of():
 def test_a_stiffened_body_without_a_kept_rotation_has_no_limit_to_be_warned_of():
     model = block({}, spin=1e3 * TURNED[:, 2])
     assert said(lambda: Simulation(model, 1e-6).run_to(1e-5)) == []
+
+
+def test_a_warning_is_of_the_body_that_exceeds_its_limit_most():
+    """And names the others, whatever their order; once for each kind."""
+    watch = Watch()
+    found = [Finding("spin", name, excess, f"{name} spins") for name, excess in (
+        ("slow", 1.1), ("fast", 3.0), ("middle", 2.0))]
+    with pytest.warns(LimitWarning) as caught:
+        watch.say_of_bodies([*found, Finding("bent", "slow", 1.5, "slow bends")])
+        watch.say_of_bodies(found)
+    assert [str(one.message) for one in caught] == watch.messages == [
+        "fast spins (also 2 other bodies: 'slow', 'middle')", "slow bends"]

@@ -122,6 +122,10 @@ def test_the_balance_is_relative_to_what_is_exchanged():
     # the strain that is always there is not exchanged
     assert energy_balance(none, 7.0 + t, none, 0.9 * t) == pytest.approx(0.1, rel=1e-9)
     assert energy_balance(t, none, 5.0 - 10.0 * t, -9.5 * t) == pytest.approx(0.05, rel=1e-9)
+    # of work that is done and taken back the range counts, also where it is shared by two
+    work = np.array([0.0, 4.0, -4.0, 2.0, 0.0])
+    assert energy_balance(work / 2 + 2.0 + 0.1 * t, none, work / 2, work) == pytest.approx(
+        0.1 / 8.0, rel=1e-9)
 
 
 def stopped(h, t_end, **options):

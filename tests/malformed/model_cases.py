@@ -168,7 +168,7 @@ JOINTS = {
     "revolute": Right(Model.revolute, {"node": "a", "axis": Z, "to": "c"}, REVOLUTE),
     "universal": Right(Model.universal, {"node": "a", "axis": X, "other": Z, "to": "c"}, {
         "axis": axis("universal joint"),
-        "other": [*axis("universal joint"), (X, "its axes enclose 0 degrees")],
+        "other": [*axis("universal joint"), (X, "its axes are at an angle of 0 degrees")],
         "to": [itself, apart], "explicit": are("explicit of the universal joint", "yes")}),
     "cylindrical": Right(Model.cylindrical, {"node": "a", "axis": Z, "to": "c"}, {
         "node": nodes(lacks_turn), "axis": axis("cylindrical joint"),

@@ -107,6 +107,9 @@ OTHERS = {
         "an element with seven nodes": Case("of type C3D8 has 7 nodes, in place of 8", lines_of(
             "se.inp", lambda ls: [line.rpartition(",")[0] if line.startswith("1, ") else line
                                   for line in ls])),
+        "an element with nine nodes": Case("of type C3D8 has 9 nodes, in place of 8", lines_of(
+            "se.inp", lambda ls: [line + ", 1" if line.startswith("1, ") else line
+                                  for line in ls])),
         "an element of a node there is not": Case(
             "element 1 of type C3D8 has node 777, which is not in the deck", lines_of(
                 "se.inp", lambda ls: [line.rpartition(",")[0] + ", 777" if line.startswith("1, ")

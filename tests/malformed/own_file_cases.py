@@ -196,9 +196,9 @@ RESULT = {
         "sebody/rows", lambda old: old.astype(str))),
     "states of complex numbers": Packed("holds complex128 in rows", member(
         "sebody/rows", lambda old: old + 0j)),
-    "a changed place": Packed("does not hold what was saved in rows", entry(
+    "a changed place": Packed("differs from what was saved in rows", entry(
         "sebody/rows", (3, 6), 7.0)),
-    "a changed number of the model": Packed("does not hold what was saved in numbers", entry(
+    "a changed number of the model": Packed("differs from what was saved in numbers", entry(
         "sebody/numbers", 0, 123.0)),
     "numbers cut": Packed("is damaged or no results file", member(
         "sebody/numbers", lambda old: old[:-3])),

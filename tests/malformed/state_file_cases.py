@@ -25,6 +25,8 @@ RESTART = {
         "rows", (1, 0), 0.15)),
     "times after the end": Packed("holds states that are not in the order of their times", entry(
         "rows", (-1, 0), 9.0)),
+    "a time soon after the end": Packed("not in the order of their times up to 0.2", entry(
+        "rows", (-1, 0), 0.21)),
     "no states": Packed("holds states that are not in the order", member(
         "rows", lambda old: old[:0])),
     "wide states": Packed("is of another model", member(
@@ -36,7 +38,7 @@ RESTART = {
     "a velocity too few": Packed("is of another model", member("v_old", lambda old: old[:-1])),
     "texts for velocities": Packed("in v_old, in place of real numbers", member(
         "v_old", lambda old: old.astype(str))),
-    "another velocity": Packed("does not hold what was saved in v_old", entry("v_old", 1, 5.0)),
+    "another velocity": Packed("differs from what was saved in v_old", entry("v_old", 1, 5.0)),
     "regularized in words": Packed("in regularized, in place of whole numbers", member(
         "regularized", np.array(["no"]))),
     "negative regularized": Packed("holds -1 in regularized", member(
@@ -90,9 +92,9 @@ TABLE = {
                                            member("parameter/push", np.ones(4))),
     "NaN for a parameter": Packed("in parameter/push that are not finite", entry(
         "parameter/push", 1, np.nan)),
-    "another output": Packed("does not hold what was saved in output/end", entry(
+    "another output": Packed("differs from what was saved in output/end", entry(
         "output/end", (1, 0), 77.0)),
-    "another parameter": Packed("does not hold what was saved in parameter/push", entry(
+    "another parameter": Packed("differs from what was saved in parameter/push", entry(
         "parameter/push", 0, 77.0)),
     "no design": Packed("has no member design", without("design")),
     "no version": Packed("is damaged or no table of a sweep", without("version")),

@@ -44,7 +44,7 @@ def test_there_are_enough():
 
 
 def test_other_files(tmp_path):
-    for name, text, said in (("a.step", "ISO-10303", "is of no known kind: give --format"),
+    for name, text, said in (("a.step", "ISO-10303", "is of an unknown kind: give --format"),
                              ("none.inp", None, "none.inp does not exist"),
                              ("x.mtx", "1 2 3", "is not named as Abaqus does, JOB_STIF1.mtx")):
         path = tmp_path / name

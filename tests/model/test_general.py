@@ -163,7 +163,7 @@ def test_a_specialised_kernel_of_the_user_comes_first(monkeypatch, tmp_path):
 
 def test_a_frame_the_nodes_cannot_define_is_refused():
     for option, message in (
-            ({"frame": "positions"}, "lie on a line, so the frame 'positions' cannot see"),
+            ({"frame": "positions"}, "lie on a line, so the frame 'positions' cannot determine"),
             ({"inertia": "frame_axes"},
              "there is no kernel for layout 'f5', frame 'converged_mean', "
                                "inertia 'frame_axes': make it with")):

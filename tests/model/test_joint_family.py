@@ -214,7 +214,8 @@ def test_driven_slide():
 
 
 @pytest.mark.parametrize("action, message", [
-    (lambda m: m.universal("a", AXIS, AXIS, to="b"), "its axes enclose 0 degrees: give two that"),
+    (lambda m: m.universal("a", AXIS, AXIS, to="b"), "its axes are at an angle of 0 "
+     "degrees: give two that"),
     (lambda m: m.cylindrical("a", (0, 0, 0), to="b"), "axis of the cylindrical joint at 'a' is"),
     (lambda m: m.prismatic("a", AXIS, to="second"), "prismatic: node 'second' is off the axis"),
     (lambda m: m.distance("a", "b"), "distance between 'a' and 'b' is zero: use a spheric"),

@@ -155,7 +155,7 @@ def test_a_constant_load_is_a_number():
 def test_a_drive_that_does_not_move_is_refused():
     model = Model(planar=True)
     model.rigid_body("arm", model.node("end", (1.0, 0.0)), 2.0, 0.1)
-    with pytest.raises(InputError, match="motion of a drive is 0.5, always the same: give a table, "
+    with pytest.raises(InputError, match="motion of a drive is the constant 0.5: give a table, "
                                          "a function of time or a ready profile, or fix the node"):
         model.move("end", 1.0, 0.5, what="rotation")
 

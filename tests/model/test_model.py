@@ -66,8 +66,8 @@ def place(nodes=("base", "tip"), body=None, **options):
     (place(["base", "base"]), "the nodes do not lie where the body's boundary nodes are"),
     (place(frame="mine"), "frame 'mine' is unknown: use one of converged_mean, mean, mean_axes"),
     (place(inertia="z"), "inertia 'z' is unknown: use one of a, b"),
-    (place(frame="positions"), "lie on a line, so the frame 'positions' cannot see rotations "
-                               "about it: use 'converged_mean'"),
+    (place(frame="positions"), "lie on a line, so the frame 'positions' cannot determine "
+                               "rotations about it: use 'converged_mean'"),
     (place(frame="node", frame_node=2), "'b': boundary node 2 cannot carry the frame.*: choose a "
                                         "full node"),
     (place(frame="node", frame_node=-1), "boundary node -1 cannot carry the frame"),
@@ -109,7 +109,7 @@ def test_frames_are_judged_by_what_they_need(monkeypatch):
              "turns": frames.Frame("converged_mean", FrameTraits(""), on_one_node=True)}
     for name, kind in kinds.items():
         monkeypatch.setitem(frames.FRAMES, name, kind)
-    with pytest.raises(InputError, match="lie on a line, so the frame 'fits' cannot see rotations"):
+    with pytest.raises(InputError, match="lie on a line, so the frame 'fits' cannot determine "):
         place(frame="fits")(model_with_nodes())
     placed_body = place(frame="turns", frame_node=1)(model_with_nodes())
     assert placed_body.kernel == "superelement_f2_converged_mean_floating_field"

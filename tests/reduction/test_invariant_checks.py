@@ -32,7 +32,7 @@ def changed(body, **arrays):
         (lambda i: {"J2": "much"}, "invariants.J2 .*: give an array of real numbers"),
         (lambda i: {"Q": np.triu(i.Q)}, "invariants.Q is not symmetric; use a geometric"),
         (lambda i: {"Ghat": np.triu(i.Ghat)}, "invariants.Ghat is not symmetric"),
-        (lambda i: {"lam": 2 * i.lam}, "lam and E make more stiffness than the body has"),
+        (lambda i: {"lam": 2 * i.lam}, "lam and E give more stiffness than the body has"),
         (lambda i: {"lam": -i.lam}, "lam has -.*; give positive stiffnesses"),
         (lambda i: {"origin": i.origin + 1}, "contradicts"),
     ],

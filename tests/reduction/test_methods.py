@@ -248,7 +248,7 @@ def test_summaries_say_what_was_done():
     ({"method": "rubin", "modes": -1}, "modes is -1"),
     ({"method": "rubin", "modes": 2, "select": [0]}, "select is for method 'craig-bampton'"),
     ({"method": "macneal", "modes": Accuracy(0.1, 1)},
-     "counts the modes of methods 'craig-bampton' and 'rubin'"),
+     "chooses the number of modes of methods 'craig-bampton' and 'rubin'"),
     ({"method": "rubin", "modes": Accuracy(0.1, 1, "stiffness")}, "method 'rubin' has no estimate"),
     ({"modes": Accuracy(0.1, 1), "select": [0]}, "without select; give a number"),
     ({"modes": "all"}, "modes is 'all'"),

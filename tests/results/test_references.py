@@ -177,3 +177,16 @@ def test_planar_beams_are_measured_likewise():
     field = result.field("beam")
     start = np.linspace(0, 1, 7)[:, None] * (1, 2)
     assert_allclose(field.displacement(), field.position() - start, atol=1e-14)
+
+
+def test_a_weld_between_bodies_is_no_support():
+    """Bodies that fly freely, welded at the second node of the first: measured from the first."""
+    model = Model()
+    section = circle(0.02, *STEEL)
+    for k in range(2):
+        ends = [START + k * TURN[:, 0], START + (k + 1) * TURN[:, 0]]
+        body = craig_bampton(straight_beam(*ends, section, 4), [(0, "full"), (4, "full")], 2)
+        nodes = [model.node(f"{name} {k}", end) for name, end in zip("ab", ends, strict=True)]
+        model.superelement(f"half {k}", body, nodes)
+    model.weld("b 0", "a 1")
+    assert names(model) == {"half 0": "a 0", "half 1": "a 0"}

@@ -89,6 +89,25 @@ def test_velocities_that_the_model_gives_stay():
     assert np.abs(result["middle.velocity"][0]).max() == 0.0
 
 
+def test_a_rigid_motion_and_rates_of_modes_stay():
+    """Velocities of `rigid_velocity` for the whole model, and of one mode of several."""
+    def build():
+        model = bar((0.0, 0.0, 0.0))
+        model.nodes["foot"].position.fixed = model.nodes["foot"].rotation.fixed = False
+        model.gravity((0.0, 0.0, 0.0))
+        return model
+
+    rest, model, spin = simulate(build(), 1e-3, 2e-3), build(), np.array([1.0, 2.0, 3.0])
+    model.rigid_velocity((0.1, 0.2, 0.3), spin)
+    model.bodies["half 1"].mode_rates[1] = 0.04
+    run = Simulation(model, 1e-3, start=rest)
+    for node in ("foot", "middle", "tip"):
+        expected = [0.1, 0.2, 0.3] + np.cross(spin, model.nodes[node].point)
+        assert run.result()[f"{node}.velocity"][0] == pytest.approx(expected, rel=1e-12)
+    first = run.numbering.modes["half 1"]
+    assert run.state.v[first:first + 4] == pytest.approx([0.0, 0.04, 0.0, 0.0])
+
+
 def test_steady_rotation_goes_on():
     """Drives that start with speed, from an equilibrium that rotates with them."""
     speed = 5.0

@@ -307,7 +307,7 @@ def test_axes_out_of_the_plane_are_refused(build):
     build(hung(), axis=(0, 0, 2.0))
     signed = "revolute" not in build.__code__.co_names
     if signed:
-        with pytest.raises(InputError, match=r"is \(0, 0, -1\): .* change the sign of what is "):
+        with pytest.raises(InputError, match=r"is \(0, 0, -1\): .* change the sign of angles "):
             build(hung(), axis=(0, 0, -1))
     else:
         build(hung(), axis=(0, 0, -1))

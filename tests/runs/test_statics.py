@@ -183,3 +183,22 @@ def test_a_share_of_the_load_is_a_share_of_the_centrifugal_force():
     assert result["ball.position"] == pytest.approx(np.array([radius, across]).T, abs=1e-9)
     speed = np.sqrt(share) * spin * radius
     assert result["ball.velocity"] == pytest.approx(np.array([across, speed]).T, abs=1e-9)
+
+
+def test_loads_and_weight_grow_together_to_those_of_the_time():
+    """The balance of forces in every step; deflections, small ones, grow with the share."""
+    model = cantilever(4, planar=False)
+    force, g = np.array([3.0, -1.0, 2.0]), np.array([0.5, -2.0, 0.25])
+    model.force("tip", force, [(0.0, 0.0), (2.0, 1.0)], name="push")
+    model.force("base", -2.0 * force, [(0.0, 0.0), (2.0, 1.0)], name="on the support")
+    model.gravity(g)
+    mass = LENGTH * SLENDER.density * SLENDER.area
+    for t, part in ((0.0, 0.0), (0.5, 0.25), (2.0, 1.0)):
+        result = equilibrium(model, 3, t)
+        share = result.t[:, None]
+        carried = -share * (-part * force + mass * g)
+        # residuals are small beside forces of the axial stiffness, EA = 4e9, times the tolerance
+        assert result["base.reaction"] == pytest.approx(carried, abs=1e-5 * np.abs(carried).max())
+        assert result["push.force"] == pytest.approx(share * part * force, abs=1e-12)
+        deflection = result["tip.position"][:, 1]
+        assert deflection == pytest.approx(result.t * deflection[-1], rel=1e-3)

@@ -83,6 +83,16 @@ def test_a_cantilever_beam():
     assert_allclose(found["beam.node0.section_forces"][:, 0, 5], moment, rtol=5e-3)
 
 
+def test_a_load_on_a_support_is_carried_at_once():
+    """Nothing moves, and the reaction is the load's own amplitude in phase with it."""
+    (model, *_), across = cantilever(), TURN @ (0.6, 0.0, 0.8)
+    model.force("root", across, NONE, name="on the support")
+    found = frequency_response(equilibrium(model, 2), "on the support",
+                               ["root.reaction", "tip.position"], [0.0, 3.0, 40.0])
+    assert_allclose(found["root.reaction"], np.tile(-across, (3, 1)), atol=1e-9)
+    assert_allclose(found["tip.position"], 0.0, atol=1e-12)
+
+
 def test_responses_that_are_refused(tmp_path):
     rest = equilibrium(cantilever()[0], 1)
     omega = np.array([100.0])

@@ -70,7 +70,7 @@ def test_report_names_ratios_and_fractions():
     assert "to a tip error of 1e-3: 6.00 ms, Exudyn beams (h 0.01) 240.0 ms: 40.0 times" in text
     assert "35%" in text and "10.00 Gflop/s" in text
     poor = replace(THEIRS, tip_error=2e-3)
-    assert "no model of the peer gets there" in bench.report([MINE, poor], 1e10)
+    assert "no Exudyn model reaches it" in bench.report([MINE, poor], 1e10)
 
 
 def test_a_run_without_the_peer_compares_nothing():

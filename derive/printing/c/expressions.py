@@ -16,6 +16,10 @@ class _CodePrinter(Powers, C99CodePrinter):
     def _print_Entry(self, expr):
         return f"{expr.array.name}[{whole_code(expr.place)}]"
 
+    def _print_choose(self, expr):
+        x, yes, no = map(self._print, expr.args)
+        return f"({x} > 0.0 ? {yes} : {no})"
+
 
 _PRINTER = _CodePrinter()
 

@@ -6,6 +6,7 @@ from sympy.printing.pycode import PythonCodePrinter
 from sebody.derive.form.arrays import Array, View
 from sebody.derive.form.statements import Operand
 from sebody.derive.form.whole import Whole
+from sebody.derive.formulas.elements import choose
 from sebody.derive.printing.places import Words, whole_text
 from sebody.derive.printing.powers import Powers
 
@@ -16,13 +17,20 @@ class _CodePrinter(Powers, PythonCodePrinter):
     def _print_Entry(self, expr):
         return f"{expr.array.name}[{whole_code(expr.place)}]"
 
+    def _print_choose(self, expr):
+        x, yes, no = map(self._print, expr.args)
+        return f"({yes} if {x} > 0.0 else {no})"
+
 
 _PRINTER = _CodePrinter({"fully_qualified_modules": False})
 
 
 def code(expression: sp.Expr) -> str:
-    """A real number as Python."""
-    return _PRINTER.doprint(expression) if expression != 0 else "0.0"
+    """A real number as Python; a choice without the parentheses it has in others."""
+    if expression == 0:
+        return "0.0"
+    text = _PRINTER.doprint(expression)
+    return text[1:-1] if isinstance(expression, choose) else text
 
 
 WORDS = Words("{}//{}", "max({}, {})", "int({})", code)

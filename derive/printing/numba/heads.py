@@ -1,5 +1,7 @@
 """What files of kernels say of themselves, by what the kernels are of."""
 
+from collections.abc import Iterable
+
 from sebody.contract.layout import Part
 from sebody.derive.form.counts import FIRST_ROTATION, POSITIONS, ROTATIONS, WIDTH
 from sebody.derive.form.kernel import Kernel
@@ -8,6 +10,7 @@ from sebody.derive.kernels.body_load import BodyLoad
 from sebody.derive.kernels.layouts import Layout
 from sebody.derive.kernels.motion import FrameMotion
 from sebody.derive.kernels.superelement import Superelement
+from sebody.derive.printing.lines import INDENT, filled, words
 from sebody.derive.printing.numba.files import Head, counts, operations
 from sebody.derive.printing.numba.parts import table
 
@@ -49,7 +52,8 @@ def body_load_head(given: BodyLoad, kernel: Kernel) -> Head:
         (f"Any number of positions and rotations of {SPACES[planar]}; any number of internal "
          "modes.", f"Frame: {given.option.traits.summary}."),
         (f'FRAME = "{given.frame}"', *counts(planar, (None, None)),
-         f"CONSTANTS = FRAME_CONSTANTS + {table(given.declared)}", "MULTIPLIERS = 0", "MEMORY = 0",
+         f"CONSTANTS = FRAME_CONSTANTS + {table(given.declared)}", "MULTIPLIERS = 0", "READS = 0",
+         "MEMORY = ()",
          "WIDTH = None            # any number",
          "INERTIAL = False        # has kinetic energy",
          "POWER = True        # does work on the system: a load, damper or drive",
@@ -91,12 +95,20 @@ def element_head(given: Element, kernel: Kernel) -> Head:
          f"ROTATIONS = {known[FIRST_ROTATION]}      # first rotation among the local coordinates",
          f"CONSTANTS = {table(constants)}", f"MULTIPLIERS = {multipliers}",
          f"WIDTH = {known[WIDTH]}",
-         f"MEMORY = {int(given.kept is not None)}      # numbers it keeps from step to step",
+         f"READS = {len(given.reads)}      # multipliers of other equations that it reads",
+         *memory(name for name, _ in given.memory),
          f"INERTIAL = {bool(given.sums.get('kinetic'))}        # has kinetic energy",
          f"POWER = {power}        # does work on the system: a load, damper or drive",
          f"DRIVEN = {multipliers > 0 and power}        # a constraint that depends on time",
          f"WORK_ROWS = {kernel.rows}", *operations(kernel)),
         (), (PART,) if constants else ())
+
+
+def memory(names: Iterable[str]) -> list[str]:
+    """The line that names the numbers which a kernel keeps from step to step."""
+    listed = "".join(f'"{name}", ' for name in names).rstrip(" ")
+    return ["# numbers it keeps from step to step",
+            *filled("MEMORY = (", words(listed), ")", INDENT * 2)]
 
 
 def _part(constant: Constant) -> Part:

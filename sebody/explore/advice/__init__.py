@@ -40,7 +40,7 @@ def advise(model: Model, h: float | None, t_end: float, quantities: str | Iterab
         End of the runs, a whole number of steps [time].
     quantities : str or iterable of str
         Names as results have them, with ``peak``, ``rms``, ``final`` or ``< 50 Hz`` behind them
-        where the whole history is not meant, or ``frequency 1`` and so on, about the equilibrium at
+        unless the whole history is compared, or ``frequency 1`` and so on, about the equilibrium at
         the start or the steady rotation. The error of a quantity is its largest difference,
         relative to its largest change
         from the start; that of a frequency is relative to it.
@@ -79,8 +79,8 @@ def advise(model: Model, h: float | None, t_end: float, quantities: str | Iterab
         tolerance, False)
     limit = inputs.number(limit, "tolerance", above=0, **({} if own else {"below": 1}))
     if own and wanted.numbers:
-        raise InputError(f"tolerance is {tolerance!r}: frequencies are kept relatively; give a "
-                         "number without a unit")
+        raise InputError(f"tolerance is {tolerance!r}: tolerances of frequencies are relative; "
+                         "give a number without a unit")
     if start not in (None, "equilibrium"):
         raise inputs.refusal("start", start, "give 'equilibrium' or nothing")
     budget = inputs.number(budget, "budget", above=0)

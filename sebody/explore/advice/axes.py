@@ -1,4 +1,4 @@
-"""The table of axes along which a model may be poorer, and what predicts the error of each."""
+"""The table of axes along which a model may be simplified, and what predicts each error."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -66,7 +66,7 @@ def contributions(recorded: Recorded, part: Part, form: Form) -> dict[str, float
 
 
 def _indicated(axis: Axis, recorded: Recorded, part: Part, form: Form) -> float:
-    """The error of an indicator, which is the same for all forms alike in what it looks at."""
+    """The error of an indicator, the same for all forms that agree in what it depends on."""
     key = (axis.name, part.name, *(getattr(form, name) for name in axis.depends))
     if key not in recorded.indicated:
         recorded.indicated[key] = axis.indicator(recorded, part, form)

@@ -11,7 +11,7 @@ MOST = 200      # combinations that are carried from part to part
 
 def combinations(parts: Sequence[Part], forms: Sequence[Sequence[Form]], estimates: Estimates,
                  flat: bool, groups: Sequence[Sequence[int]]) -> list[tuple[Form, ...]]:
-    """Forms of all parts, cheapest first; those of a group are alike."""
+    """Forms of all parts, cheapest first; parts of a group have the same form."""
     found: list[tuple[float, float, tuple[Form, ...]]] = [(0.0, 0.0, ())]
     for group in groups:
         own = forms[group[0]]

@@ -36,7 +36,7 @@ class Form(NamedTuple):
         return part.detailed._replace(bodies=1, modes=0)
 
     def poorer(self, other: "Form") -> bool:
-        """Whether it has no more of anything than another, other things being alike."""
+        """Whether no option of this form is more detailed than that of another."""
         return self.rigid or (
             not other.rigid and self.bodies <= other.bodies and self.modes <= other.modes
             and _rank(self) <= _rank(other)

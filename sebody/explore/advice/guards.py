@@ -65,7 +65,7 @@ def off_the_grid(run: Result, values: Values, h: float, reference: Reference,
 def _jumps(numbering: Numbering) -> NDArray:
     """Times at which loads and drives jump, or may."""
     found: list[float] = []
-    for history in numbering.histories:
+    for history in numbering.time_functions:
         if history.functions:
             found += history.corners
             continue
@@ -130,7 +130,7 @@ def disturbed(model: Model, scales: Scales) -> Model:
 
 
 def amplified(run: Result, still: Result, scales: Scales) -> Doubt:
-    """What a disturbance of a real system would make of the motion, if it grows.
+    """Effect of a disturbance of a real system on the motion, if it grows.
 
     Parameters
     ----------
@@ -144,5 +144,5 @@ def amplified(run: Result, still: Result, scales: Scales) -> Doubt:
     return Doubt(min(REAL * factor, 1.0) if growing else 0.0,
                  f"the motion is unstable: a small disturbance of all velocities and loads grows "
                  f"to {factor:.2g} times its size",
-                 "give the model the imperfection that it has, such as a small force aside, or "
+                 "give the model the imperfection that it has, such as a small lateral force, or "
                  "an earlier end")

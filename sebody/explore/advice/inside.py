@@ -48,7 +48,7 @@ class Places:
     def names(self, model: Mechanism, name: str) -> list[str]:
         """A quantity's name in a model with other divisions of beams.
 
-        Two where it is between two bodies, each of which knows the stresses of its own side.
+        Two names at a node between two bodies, each of which has the stresses of its own side.
         """
         if name not in self._found:
             return [name]

@@ -1,4 +1,4 @@
-"""What the reference model itself may be off by: linear theory in each body, and its last modes."""
+"""Possible errors of the reference model itself: linear theory in each body, its last modes."""
 
 from functools import lru_cache
 
@@ -41,7 +41,7 @@ def _divided(lab: Laboratory, parts: list[Part]) -> Doubt:
         form = part.detailed
         whole = divide(whole, part.name, 2 * form.bodies, 2 * part.elements).model
     step = Step(max(lab.bases))
-    sentence = f"{names} divided into twice as many bodies than the reference model has, gave it"
+    sentence = f"{names} divided into twice as many bodies as in the reference model gave it"
     try:
         run = lab.runs.run(whole, step)
     except (InputError, SimulationError) as reason:
@@ -52,7 +52,7 @@ def _divided(lab: Laboratory, parts: list[Part]) -> Doubt:
 def _linear(recorded: Recorded, part: Part) -> Doubt:
     turn = max(local_rotations(recorded, part, part.detailed.bodies))
     return Doubt(bent(recorded, part, part.detailed.bodies),
-                 f"linear theory: {part.name} turns by {turn:.2g} rad within a body",
+                 f"linear theory: {part.name} rotates by {turn:.2g} rad within a body",
                  "divide it")
 
 
@@ -66,7 +66,7 @@ def _modal(recorded: Recorded, part: Part) -> Doubt:
 
 
 def doubts(lab: Laboratory) -> list[Doubt]:
-    """What the reference model may be off by, by theory and by its guards, the largest first."""
+    """Possible errors of the reference model, by theory and by its guards, the largest first."""
     found = [*limits(lab), *lab.doubts]
     return sorted((one for one in found if one.error > 0.0), key=lambda one: -one.error)
 

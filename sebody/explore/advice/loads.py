@@ -1,6 +1,6 @@
-"""Loads and drives against the step: what of them steps of a length do not see.
+"""Loads and drives compared with the step: what steps of a length miss.
 
-Between its steps a run knows nothing of a load. What it integrates is at best the load's linear
+Between its steps a run does not evaluate a load. It integrates at best the load's linear
 interpolation, so the spectrum of the difference of the two, relative to the strongest line of the
 load itself, says what share of the load steps of a length miss: all of a pulse that is shorter
 than they are, or of a ripple with a whole number of periods in each.
@@ -23,7 +23,7 @@ SIDE = 1e-9             # of a sample: a value just before a corner
 
 
 class Missed(NamedTuple):
-    """What steps do not see of a load or drive: its name, the share, and where most is missed."""
+    """What steps miss of a load or drive: its name, the share, and where most is missed."""
 
     name: str
     share: float
@@ -32,7 +32,7 @@ class Missed(NamedTuple):
 
 def missed(names: Iterable[str], time_functions: Iterable[TimeFunction], h: float,
            t_end: float) -> Missed:
-    """The load or drive of which steps of a length see least.
+    """The load or drive of which steps of a length miss most.
 
     Parameters
     ----------

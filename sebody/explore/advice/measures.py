@@ -19,7 +19,7 @@ TOLERANCE = re.compile(r"([0-9.]+(?:[eE][+-]?[0-9]+)?) *([A-Za-z]*)")
 ANGLES = {"rad": 1.0, "mrad": 1e-3, "deg": np.pi / 180}
 SI = "m kg N s"
 REMEDY = ("give a name of results, such as tip.position, and behind it '< 50 Hz' or peak, rms or "
-          "final where the whole history is not meant")
+          "final unless the whole history is compared")
 
 
 class Measure(NamedTuple):

@@ -121,7 +121,7 @@ class Advice:
     interrupted : bool
         Whether Ctrl-C ended the search: this is the best until then.
     doubts : tuple of Doubt
-        What the reference itself may be off by, the largest first: by theory in its bodies, by
+        Possible errors of the reference itself, the largest first: by theory in its bodies, by
         loads between its steps, by instability.
     warnings : tuple of str
         Of the runs of the reference and of the chosen model.
@@ -153,7 +153,7 @@ class Advice:
 
     @property
     def doubt(self) -> float:
-        """What the reference may be off by."""
+        """Possible errors of the reference."""
         return max((one.error for one in self.doubts), default=0.0)
 
     @property

@@ -30,7 +30,7 @@ def reasons(search: Search, choice: Choice) -> list[Reason]:
 
 
 def _of_part(lab: Laboratory, k: int, part: Part, form: Form, untried: list[str]) -> list[Reason]:
-    """A line of the form, and one of each of its axes that were made poorer."""
+    """A line for the form, and one for each of its axes that were simplified."""
     if form == part.detailed:
         why = ("nothing less was enough" if lab.estimates.measured(k) else
                "nothing less was tried" if part.name in untried else
@@ -53,7 +53,7 @@ def _why(lab: Laboratory, part: Part, form: Form, axis: str) -> tuple[str, str]:
         return f"{form.modes}", _slowness(lab, part, form)
     if axis == "division":
         local = max(local_rotations(recorded, part, form.bodies))
-        return f"{form.bodies}", f"its nodes turn by {local:.2g} rad against it"
+        return f"{form.bodies}", f"its nodes rotate by {local:.2g} rad relative to it"
     (nodes, body), *_ = recorded.bodies(part, form.bodies)
     if axis == "inertia":
         spin = float(np.linalg.norm(recorded.spins(nodes), axis=1).max())
@@ -84,7 +84,7 @@ def _of_step(search: Search, choice: Choice) -> Reason:
     recorded = lab.estimates.recorded
     halved = search.halved(choice)
     if step.local is not None:
-        return Reason("step", str(step), "the motion is quiet but for short times",
+        return Reason("step", str(step), "the motion is smooth except for short times",
                       confirmed=halved)
     vibrations = [frequency(recorded, recorded.deformation(recorded.nodes(part)).shifts)
                   for part, form in zip(lab.parts, choice.forms, strict=True) if not form.rigid]

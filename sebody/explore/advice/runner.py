@@ -169,7 +169,7 @@ class Laboratory:
                             f"is {self.runs.h:g}"]
 
     def missed(self, h: float) -> Missed:
-        """The load or drive of which steps see least."""
+        """The load or drive of which steps miss most."""
         if self._ports is None:
             found = build(self.model)[1]
             self._ports = found.port_names, found.histories
@@ -219,13 +219,13 @@ class Laboratory:
                   "it is left for the reference")
         if first:
             raise InputError(
-                f"{told}: the model is loaded suddenly at the start, which its fastest vibrations "
-                "answer; start from the equilibrium (start='equilibrium'), let loads grow from "
+                f"{told}: the model is loaded suddenly at the start, which excites its fastest "
+                "vibrations; start from the equilibrium (start='equilibrium'), let loads grow from "
                 f"zero, or measure {worst.quantity} by rms or below a frequency; {enough}")
         if not self.reference.falls:
             raise SimulationError(
                 f"{told}, and shorter steps do not change that: the motion depends on the step, as "
-                "chaotic motions, impacts, and vibrations do that no damping takes away; give an "
+                "in chaotic motions, impacts and undamped vibrations; give an "
                 f"earlier end, damping, or measure {worst.quantity} by rms, peak or below a "
                 f"frequency; {enough}", self.bases[fine].result)
         raise InputError(f"{told}: shorter steps that are tried, down to "

@@ -51,7 +51,7 @@ class Search:
         return self._together()
 
     def _parts(self) -> None:
-        """Try forms of parts: of those that are alike together, of costly ones first."""
+        """Try forms of parts: equal parts together, costly parts first."""
         groups = sorted(alike(self.lab.parts), key=lambda group: -sum(
             of_form(self.lab.parts[k], self.lab.parts[k].detailed, self.planar) for k in group))
         self.groups = []
@@ -107,7 +107,7 @@ class Search:
         return after.changes != before.changes and general[1] <= general[0]
 
     def _variable(self) -> None:
-        """Try variable steps where the motion is quiet but for short times."""
+        """Try variable steps where the motion is smooth except for short times."""
         finest = self.lab.bases[min(self.lab.bases)]
         if self.spent() or not self.lab.quantities.histories or (
                 activity(finest.result) > RARE):
@@ -119,7 +119,7 @@ class Search:
             self.lab.estimates.learn_step(step, found.error)
 
     def _alone(self, group: list[int], rest: int) -> bool:
-        """Try forms of a part, or of several alike, the others as rich as they are.
+        """Try forms of a part, or of several equal parts, while the others keep theirs.
 
         Parameters
         ----------
@@ -224,7 +224,7 @@ class Search:
     def _excludes(self, failed: Choice, one: Choice) -> bool:
         """Whether a choice that was not enough says that another one is not, either.
 
-        The vibrations of the reference model ask for shorter steps than poorer ones may need.
+        Vibrations of the reference model need shorter steps than simplified models may need.
         """
         whole = failed.forms == self.lab.detailed.forms
         return one == failed if whole else one.poorer(failed)

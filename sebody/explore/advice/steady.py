@@ -61,7 +61,7 @@ def _spin(places: NDArray, velocities: NDArray) -> NDArray | float:
     off = np.abs(columns @ spin - velocities).max()
     if off > RIGID * np.abs(velocities).max():
         raise InputError(
-            "the velocities at the start are no steady rotation about the origin (the nearest, "
+            "the velocities at the start are not a steady rotation about the origin (the nearest, "
             f"{np.array2string(spin, precision=4)}, leaves {off:.3g} of "
             f"{np.abs(velocities).max():.3g}): shift the model so that the axis passes through the "
             "origin and give all nodes the velocities of the rotation, with rigid_velocity, or "

@@ -83,7 +83,7 @@ class Handle:
 
 def _attribute(owner: object, attribute: str, touches: str, base: NDArray | None = None,
                made: Callable[[NDArray], Any] = np.array, **bounds: float) -> Handle:
-    """Handle of an attribute that is replaced by what `made` makes of a value."""
+    """Handle of an attribute that is replaced by ``made(value)``."""
     before = getattr(owner, attribute)
     return Handle(np.array(before, dtype=float) if base is None else base,
                   lambda value: setattr(owner, attribute, made(value)),
@@ -122,8 +122,9 @@ def joint_position(model: Model, joint: Joint, name: str) -> Handle:
     """Where a joint with the ground holds its node."""
     fixed = joint.to.position
     if joint.to not in model.grounds or fixed is None:
-        raise InputError(f"{name}: joint {joint.name!r} is not to the ground, so its place belongs "
-                         "to its bodies: vary positions of nodes, or build the model anew")
+        raise InputError(f"{name}: joint {joint.name!r} is not to the ground, so its position "
+                         "follows from its bodies: vary positions of nodes, or build the model "
+                         "anew")
     return _attribute(fixed, "start", MOTION)
 
 

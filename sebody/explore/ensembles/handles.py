@@ -41,7 +41,7 @@ class Kind(NamedTuple):
 
 
 def handle(model: Model, name: str) -> Handle:
-    """What a name stands for.
+    """What a name refers to.
 
     Raises
     ------

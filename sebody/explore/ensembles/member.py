@@ -15,6 +15,7 @@ from sebody.engine.state import (
     ASKED,
     DONE,
     FAILED,
+    READ,
     REASONS,
     Record,
     State,
@@ -27,6 +28,7 @@ from sebody.explore.ensembles.start_values import Image
 from sebody.results.naming import look_up
 from sebody.results.recording import Recording
 from sebody.runs.row_exchanges import RowExchanges
+from sebody.runs.sampling import Sampling
 from sebody.runs.simulation import Simulation
 
 MOST_NUMBERS = 2_000_000    # of recorded states at a time in a thread: 16 MB
@@ -46,6 +48,7 @@ class Copies:
         self.state: State = _with_own_integers(state)
         self.unstarted = [x.copy() for x in self._not_in_floats()]
         self.exchanges = RowExchanges(self.system, self.state)
+        self.sampling = Sampling(one.model, one.numbering, self.system, self.state)
         self.model, self.numbering, self.scheme = one.model, one.numbering, one.scheme
         self._record: Record | None = None
         self.none = Record.of(self.state, 0)
@@ -75,12 +78,19 @@ class Copies:
         for own, begun in zip(self._not_in_floats(), self.unstarted, strict=True):
             own[:] = begun
         self.floats[lines.slots] += lines.slopes @ change
-        set_loads(system, state.loads, 0.0)
+        set_loads(system, state.frames, state.loads, 0.0)
         state.loads_old[:] = state.loads
         move_prescribed(system, state)
         place_dependent(system.links, state.q, state.v, state.a, state.R)
-        state.control.restart = ASKED
+        state.control.restart, sampled = ASKED, False
         code = advance(system, state, self.none, self.scheme, 0, 0, self.dense)
+        while code in (DONE, READ) and self.sampling.samples:
+            if code == DONE and not sampled:
+                sampled = self.sampling.begin()
+            elif code == DONE:
+                break
+            self.sampling.serve()
+            code = advance(system, state, self.none, self.scheme, 0, 0, self.dense)
         if code == FAILED:
             raise InputError("the initial state has no accelerations: "
                              f"{REASONS[int(state.control.reason)]}")
@@ -151,6 +161,7 @@ class Course:
         run, state, chunk = self.run, self.run.state, 1000
         while True:
             run.exchanges.serve()
+            run.sampling.serve()
             began = time.perf_counter()
             code = advance(run.system, state, record, run.scheme, last, chunk, run.dense)
             if code in (DONE, FAILED) or stop():

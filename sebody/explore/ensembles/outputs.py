@@ -21,7 +21,7 @@ class Output:
     Parameters
     ----------
     quantity : str
-        As ``result[quantity]`` knows it.
+        As in ``result[quantity]``.
     kind : {'maximum', 'minimum', 'rms', 'integral', 'final', 'at', 'history'}
     time : float, optional
         Of 'at' [time].

@@ -39,7 +39,7 @@ def inspect(file: BodyFile) -> Inspection:
     Raises
     ------
     InputError
-        Parts that do not fit together, of which nothing can be said.
+        Parts of different sizes, for which no report is possible.
     """
     body = measures.matrices_of(file)
     numbers = measures.mass_properties(body)
@@ -132,7 +132,7 @@ def _row(values) -> str:
 
 
 def _plain(value):
-    """Arrays as lists; numbers that JSON does not know as null."""
+    """Arrays as lists; numbers that JSON does not have as null."""
     if isinstance(value, dict):
         return {name: _plain(one) for name, one in value.items()}
     if isinstance(value, list | tuple | np.ndarray):

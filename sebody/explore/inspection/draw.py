@@ -50,7 +50,7 @@ class _Shape(NamedTuple):
 
 
 class _View(NamedTuple):
-    """Where the eye is, and what it sees of the undeformed body."""
+    """The viewpoint, and what is visible of the undeformed body from there."""
 
     eye: Eye
     low: NDArray            # (2,) corners of what is seen

@@ -53,7 +53,7 @@ def verdict(findings: list[Finding]) -> str:
     if defects:
         return f"the body cannot be used: {defects} defect{'s' * (defects > 1)}, see above"
     if findings:
-        return "the body can be used; mind what is said above"
+        return "the body can be used; note the cautions above"
     return "the body can be used"
 
 
@@ -89,7 +89,7 @@ def _mass(numbers: dict) -> list[Finding]:
                              "inertia of every coordinate"))
     if numbers["mass_geometry_defect"] > _GEOMETRY:
         found.append(Finding(
-            "defect", "rigid motion has no inertia that a body can have: R^T M R is off by "
+            "defect", "the inertia of rigid motion is not that of a body: R^T M R is off by "
             f"{numbers['mass_geometry_defect']:.3e} of the mass",
             "check coordinates, axes and the order of rows; lumped masses of one direction alone "
             "have this defect, too"))
@@ -112,7 +112,7 @@ def _rigid(numbers: dict) -> list[Finding]:
                         "the FE model; check coordinates, axes and order; for a small residual "
                         "--repair rigid-modes")]
     if residual["largest"] > _DIGITS:
-        return [Finding("caution", f"rigid motion costs some force: {size}",
+        return [Finding("caution", f"rigid motion causes small forces: {size}",
                         "export with 14 digits, or --repair rigid-modes")]
     return []
 
@@ -128,8 +128,8 @@ def _stiffness(body: Matrices, numbers: dict) -> list[Finding]:
     if len(flexible) and flexible[0] < 10 * rigid.max(initial=0.0):
         return [Finding("caution", f"the first flexible frequency, {flexible[0]:.6g} Hz, is hardly "
                         f"above those of rigid motion, up to {rigid.max():.3g} Hz",
-                        f"more than {body.rigid.shape[1]} motions without strain tell of a "
-                        "mechanism inside or of stiffness lost in printed digits")]
+                        f"more than {body.rigid.shape[1]} motions without strain indicate a "
+                        "mechanism inside, or stiffness lost in printed digits")]
     return []
 
 
@@ -140,7 +140,7 @@ def _frame(body: Matrices, numbers: dict) -> list[Finding]:
         spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
         if len(points) < 3 or spread[1] < FLAT * spread[0]:
             found.append(Finding("defect", "boundary nodes without rotations lie on a line, so "
-                                 "they do not hold the frame of the body",
+                                 "they do not determine the frame of the body",
                                  "add an interface beside the line, or one with rotations"))
     if frame["off_centre"] > _LUMPED * max(frame["size"], 1e-300) and len(points) > 1:
         found.append(Finding("caution", "the origin of the mean frame is "
@@ -162,5 +162,5 @@ def _steps(numbers: dict) -> list[Finding]:
 
 
 def _cautions(file: BodyFile) -> list[Finding]:
-    """Stresses, stiffening and inertia that the body does not know, and odd materials."""
+    """Stresses, stiffening and exact inertia that the body lacks, and implausible materials."""
     return [Finding("caution", *text.split("; ", 1)) for text in file.cautions]

@@ -72,7 +72,7 @@ def matrices_of(file: BodyFile) -> Matrices:
     Raises
     ------
     InputError
-        Shapes that do not fit together, or numbers that are not finite: nothing can be said.
+        Shapes that do not fit together, or numbers that are not finite.
     """
     parts = file.parts
     coordinates, keeps = np.asarray(parts["coordinates"], dtype=float), tuple(parts["keeps"])

@@ -59,7 +59,7 @@ def sweep(build: Callable[..., Any], outputs: Mapping[str, Output],
     fixed : mapping
         What does not vary: ``step``, ``t_end``, ``rho`` and further arguments of `build`.
     output : path, optional
-        File of the table, which a sweep that was interrupted goes on from.
+        File of the table, from which an interrupted sweep continues.
     threads : int
         By default one for each processor.
     cluster : str

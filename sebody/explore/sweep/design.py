@@ -94,7 +94,7 @@ def check_runs(runs: float) -> None:
         There are.
     """
     if runs > MOST_RUNS:
-        raise InputError(f"that are {runs:.3g} runs: a sweep has at most {MOST_RUNS}; give fewer "
+        raise InputError(f"these are {runs:.3g} runs: a sweep has at most {MOST_RUNS}; give fewer "
                          "values or a smaller --runs")
 
 

@@ -30,7 +30,7 @@ class Table:
     Attributes
     ----------
     design : str
-        What was asked for: a sweep goes on from a file with the same text only.
+        The request as text: a sweep continues only from a file with the same text.
     parameters : dict
         Values by name, (runs,).
     outputs : dict
@@ -152,7 +152,7 @@ class Table:
                                  for name, values in self.columns().items()})
 
     def save(self, path: Path) -> None:
-        """Write an npz file, in the place of an older one at once."""
+        """Write an npz file; an older one is replaced atomically."""
         arrays = {f"parameter/{n}": _storable(v) for n, v in self.parameters.items()}
         arrays |= {f"output/{n}": v for n, v in self.outputs.items()}
         arrays |= {"design": np.array(self.design), "version": np.array(VERSION),
@@ -180,7 +180,7 @@ class Table:
             table = members.Table(f"{what} {path}", remedy, _members(reader.headers))
             found = table.read(reader, others=["checksums"])
             if odd := changed(found, noted):
-                raise table.fault(f"does not hold what was saved in {', '.join(odd)}")
+                raise table.fault(f"differs from what was saved in {', '.join(odd)}")
             parts = {kind: {name.partition("/")[2]: values for name, values in found.items()
                             if name.startswith(kind + "/")} for kind in ("parameter", "output")}
             return cls(str(found["design"]), parts["parameter"], parts["output"], found["done"],

@@ -101,7 +101,7 @@ def read_cards(path: Path) -> Iterator[Card]:
 
 
 def _statements(path: Path) -> Iterator[tuple[Row, str]]:
-    """Data lines and whole keyword lines, which go on behind a comma at their end."""
+    """Data lines and whole keyword lines, which continue after a comma at their end."""
     begun: tuple[Row, str] | None = None
     for row, text in _lines(path, path.parent, 0):
         if begun:
@@ -118,7 +118,7 @@ def _statements(path: Path) -> Iterator[tuple[Row, str]]:
 def _lines(path: Path, home: Path, depth: int) -> Iterator[tuple[Row, str]]:
     """Lines that are no comments, those of included files in the place of their *INCLUDE."""
     if depth > _DEPTH:
-        raise InputError(f"deck {path} is included by itself: take the circle of *INCLUDE out")
+        raise InputError(f"deck {path} is included by itself: remove the circular *INCLUDE")
     for number, line in enumerate(read_text(path, "deck", _REMEDY).splitlines(), 1):
         if line.startswith("**") or not line.strip():
             continue

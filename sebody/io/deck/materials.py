@@ -20,7 +20,7 @@ _OURS = np.array([0, 1, 2, 5, 4, 3])
 
 @dataclass(eq=False)
 class DeckMaterial:
-    """A material as far as the deck gives it.
+    """A material, with the properties that the deck gives.
 
     Parameters
     ----------
@@ -36,8 +36,7 @@ class DeckMaterial:
     lack: str = "has no *ELASTIC"
 
     def substance(self, name: str) -> Material | None:
-        """What tells the units, by Young's modulus of the stiffest axis; None if it is not given.
-        """
+        """Modulus of the stiffest axis and density, which reveal the units; None if not given."""
         if self.law is None or not self.density:
             return None
         modulus = 1 / np.diag(np.linalg.inv(self.law))[:3].min()
@@ -92,7 +91,7 @@ def read_orientation(card: Card) -> Orientation:
     a, b = np.array(first[:3]), np.array(first[3:6])
     if len(b) < 3 or not (np.linalg.norm(b - a) > 0 if system == "CYLINDRICAL" else
                           np.linalg.norm(np.cross(a, b)) > 0):
-        raise card.row.fault(f"*ORIENTATION has the numbers {first}, which make no axes",
+        raise card.row.fault(f"*ORIENTATION has the numbers {first}, which define no axes",
                              "give two points, x, y, z each, that are not in line with the origin "
                              "(cylindrical: that differ)")
     turn = rest[0] if rest and len(rest[0]) > 1 else [1, 0.0]
@@ -129,8 +128,8 @@ def read_elastic(material: DeckMaterial, card: Card) -> None:
     law = law_of(numbers[:count])
     if law is None or not (np.isfinite(law).all() and np.linalg.eigvalsh(law)[0] > 0):
         raise card.row.fault(f"*ELASTIC, TYPE={kind} has the numbers "
-                             f"{', '.join(f'{x:g}' for x in numbers[:count])}, by which some "
-                             "strain has no energy or less", "correct them")
+                             f"{', '.join(f'{x:g}' for x in numbers[:count])}, which give some "
+                             "strain zero or negative energy", "correct them")
     material.law = law
 
 

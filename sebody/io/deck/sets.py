@@ -53,7 +53,7 @@ class Sets:
         return self._found[name]
 
     def member(self, row: Row, word: str) -> tuple[int, ...]:
-        """Labels that a word of a data line stands for: its own, or those of a set."""
+        """Labels that a word of a data line means: its own, or those of a set."""
         if word.isdecimal():
             return (int(word),)
         if plain_name(word) not in self._members:

@@ -157,8 +157,8 @@ def deck_prestress(deck: Deck, solids: Solids, motion: Motion, stiffness: sparse
     if off < _ALIKE:
         return Prestress(found, f"of the mesh; energy of its stresses off by {off:.1e}")
     own = sorted({group.kind for group in deck.elements} & {*own_ways, *_SPRINGS})
-    note = ("the mesh and the materials of the deck have another strain energy than the "
-            f"stiffness, by {off:.1%}")
+    note = ("the strain energy of the deck's mesh and materials differs from that of the "
+            f"stiffness by {off:.1%}")
     if own and off < _RELATED:
         return Prestress(None, f"{note}, as {', '.join(own)} have a stiffness of their own")
     return Prestress(None, f"{note}: the deck is not that of the matrices", False)

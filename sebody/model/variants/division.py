@@ -82,7 +82,7 @@ def _described(model: Mechanism, name: str) -> Beam:
     found = [one for one in checked(model).beams if one.name == name]
     if len(found) != 1:
         names = ", ".join(dict.fromkeys(one.name for one in model.beams)) or "no beam"
-        raise InputError(f"model.beam has built {len(found)} beams {name!r}, where one is wanted "
+        raise InputError(f"model.beam has built {len(found)} beams {name!r}, where one is expected "
                          f"(it has built {names}): divide other bodies by building the model anew, "
                          "with a body for each part")
     own = found[0]

@@ -73,7 +73,7 @@ def drop_triplet(model: Mechanism, name: str, node: Node | str,
     if all(getattr(made.nodes[node.name], kind) is None for kind in _KINDS):
         del made.nodes[node.name]
     before, after = (_first_frequency(one) for one in (old.body, found.body))
-    ending = ("; stresses that it carried stiffen the body no longer"
+    ending = ("; stresses that it carried no longer stiffen the body"
               if what == "position" and _stiffens(body, node.name) else "")
     return Variant(made, f"{name} keeps no {what} at {node.name}: {fewer(model, made)}; its "
                          f"first frequency while free is {after:.6g} instead of {before:.6g}"

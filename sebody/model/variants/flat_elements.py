@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from sebody.errors import InputError
 from sebody.model.parts import Axes, Element, Joint, positions, rotations
+from sebody.model.variants.flat_contacts import LAWS, flat_places
 from sebody.model.variants.flattening import Flattening
 
 PARALLEL = 1e-9         # one less the cosine of an angle that is rounding
@@ -24,8 +25,12 @@ def flat_element(flat: Flattening, element: Element) -> Element:
     InputError
         It is not symmetric about the plane.
     """
+    if element.kind in LAWS:
+        kind, constants = LAWS[element.kind](flat, element)
+        return Element(element.name, kind, flat_places(flat, element, kind), constants,
+                       tuned=element.tuned)
     if element.kind not in _ELEMENTS:
-        raise InputError(f"{element.name!r} is a function of yours, of which no symmetry is known: "
+        raise InputError(f"{element.name!r} is a function of yours, whose symmetry is unknown: "
                          "build the planar model by hand")
     kind, constants = _ELEMENTS[element.kind](flat, element)
     return Element(element.name, kind, tuple(flat.place(p) for p in element.attachments), constants,

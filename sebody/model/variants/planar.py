@@ -57,7 +57,7 @@ def planar(model: Mechanism) -> Variant:
     if checked(model).planar:
         raise InputError("the model is planar already")
     if not model.nodes:
-        raise InputError("the model has no nodes, so it is in no plane")
+        raise InputError("the model has no nodes, so it has no plane")
     refused: InputError | None = None
     for normal in _normals(model):
         plane = Plane.through(next(iter(model.nodes.values())).point, normal)
@@ -150,6 +150,9 @@ class _Flat(NamedTuple):
             for one in model.connections]
         on_nodes = {load: [flat_element(flat, load)] for load in model.loads
                     if load.mode is None and load.body is None}
+        for load in model.loads:
+            if load.pressed_by is not None:
+                on_nodes[load][0].pressed_by = joints[load.pressed_by]
         bodies = {name: planar_body(body.body, flat.plane.axes, f"superelement {name!r}")
                   for name, body in model.bodies.items()}
         rates = {name: _rates(body, bodies[name]) for name, body in model.bodies.items()}

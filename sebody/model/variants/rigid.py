@@ -77,7 +77,7 @@ def rigid_constants(body: ReducedBody) -> tuple[float, NDArray | float, NDArray]
 
 
 def _carrier(body: Superelement) -> Node:
-    """The node that the others are to hang on."""
+    """The node that the others follow by rigid links."""
     what = f"superelement {body.name!r} cannot be made rigid"
     own = list(zip(body.nodes, body.body.keeps, strict=True))
     held = {node.position: node for node, keep in own

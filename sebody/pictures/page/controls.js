@@ -33,7 +33,7 @@ class Controls {
     act();
   }
 
-  // What bodies do not know, such as why there are no stresses.
+  // What bodies lack, such as why there are no stresses.
   cautions() {
     const { cautions } = this.header;
     element("cautions").hidden = !cautions.length;

@@ -47,7 +47,8 @@ def impulses() -> Finding:
         finding.rows.append(Row(f"{name}, force 2800: energy", exact[2800.0],
                                 exact[2800.0] * (1 + found[-1]), 5e-3))
     for F, a, b in zip(IMPULSES, errors["a"], errors["b"], strict=True):
-        finding.rows.append(Row(f"force {F:g}: A errs more than B", 1.0, float(a > b), 0.0))
+        finding.rows.append(Row(f"force {F:g}: the error of A exceeds that of B", 1.0,
+                                float(a > b), 0.0))
     for option, energy in BY_OPTION.items():
         finding.rows.append(Row(f"option {option.upper()}, force 2800: error",
                                 1 - energy / _reference(2800.0), errors[option][-1], 0.15,

@@ -78,8 +78,8 @@ def ratios(measurements: list[Measurement]) -> list[str]:
                          f"{best.variant} (h {best.h:g}) {1e3 * best.wall_seconds:.1f} ms: "
                          f"{best.wall_seconds / min(mine):.1f} times as long (aim {share})")
         elif mine and any(_is_peer(m) for m in measurements if m.scene == scene):
-            lines.append(f"{scene} to a tip error of 1e-3: {1e3 * min(mine):.2f} ms; no model of "
-                         "the peer gets there")
+            lines.append(f"{scene} to a tip error of 1e-3: {1e3 * min(mine):.2f} ms; no Exudyn "
+                         "model reaches it")
     return lines
 
 

@@ -26,7 +26,7 @@ def measure(runs: int = RUNS) -> list[Measurement]:
 
     `wall_seconds` is that of all runs, set-up apart; `us_per_step` of it a step of a run on all
     processors together. `thread_efficiency` is the time of one thread over that of all threads
-    times their number; of single runs and of the peer there is none.
+    times their number; none for single runs and for Exudyn.
     """
     found = [_together(inertia, runs) for inertia in (None, "b")] + [_one_by_one(runs)]
     return found + ([_peer(runs)] if peer.available() else [])

@@ -14,7 +14,7 @@ class Point:
     Parameters
     ----------
     family : str
-        Points of a family are drawn alike.
+        Points of a family have the same colour and marker.
     label : str
         Its name within the chart.
     error : float

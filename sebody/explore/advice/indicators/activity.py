@@ -1,4 +1,4 @@
-"""Whether a motion is quiet but for short times, where variable steps pay."""
+"""Whether a motion is smooth except for short times, where variable steps pay."""
 
 import numpy as np
 

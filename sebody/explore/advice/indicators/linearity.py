@@ -19,7 +19,7 @@ def local_rotations(recorded: Recorded, part: Part, bodies: int) -> list[float]:
 def linearity(recorded: Recorded, part: Part, form: Form) -> float:
     """Error from the local rotations theta in a form: ``theta^2 / 2`` of the deformation.
 
-    Of the bodies of a beam each is off by its own square, weighted by its part of the rotation.
+    The error of each body of a beam is its own square, weighted by its part of the rotation.
     """
     if form.bodies == part.detailed.bodies:
         return 0.0

@@ -23,8 +23,8 @@ def omission(recorded: Recorded, part: Part, form: Form) -> float:
     Each mode left out is an oscillator, ``m y'' + k y = -M_yB a_B - p``, driven by the recorded
     accelerations of the boundary. Its inertia force ``M_By y''`` is missing there. The inertia that
     it would add, by its strain energy relative to that of the boundary's deformation, changes the
-    period of the vibration. A frequency is off by a fifth of its square over that of the first mode
-    left out, which is what a cantilever of one body without modes has.
+    period of the vibration. The relative error of a frequency is a fifth of its square over that
+    of the first omitted mode, as for a cantilever of one body without modes.
     """
     whole = recorded.nodes(part)
     shifts, turns = (0.0 * one for one in recorded.deformation(whole)[:2])

@@ -88,7 +88,7 @@ class Recorded:
         return _angles(np.swapaxes(axes[:-1], 1, 2) @ axes[1:]) / self.interval
 
     def rate(self, history: NDArray) -> NDArray:
-        """Rate of a history at the states that are looked at."""
+        """Rate of a history at the examined states."""
         return np.gradient(history, self.interval, axis=0)
 
     def deformation(self, nodes: list[Node]) -> Deformation:
@@ -118,7 +118,7 @@ class Recorded:
         return Deformation(shifts, np.stack(found, axis=1), axes)
 
     def read(self, node: Node, quantity: str) -> NDArray | None:
-        """A history of a node at the states that are looked at; None without this DOF block."""
+        """A history of a node at the examined states; None without this DOF block."""
         dof_block = getattr(node, "rotation" if "rotation" in quantity or "angular" in quantity
                           else "position")
         if dof_block is None or dof_block not in self.result.numbering.dof_blocks:

@@ -1,4 +1,4 @@
-"""What stresses and a spin do to the stiffness of bodies that do not know of it."""
+"""Change of stiffness by stresses and spin that a form of a body neglects."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from sebody.reduction import ReducedBody
 
 
 def stiffening(recorded: Recorded, part: Part, form: Form) -> float:
-    """Error from forces of second order that a form does not know of.
+    """Error from forces of second order that a form neglects.
 
     With the recorded boundary deformation y of a body the strains of its resultants are
     ``e = E . y + y . Ghat y / (2 lam)``. Their forces ``sum e Ghat y`` stiffen: the body gives way

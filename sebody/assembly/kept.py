@@ -1,0 +1,72 @@
+"""What is kept from step to step beside unknowns, and its places in `State.frames`.
+
+Behind the frames of the superelements there is what elements keep; then, of every input, what was
+set and when; what sensors measured last; signals of controllers; their states.
+"""
+
+from collections.abc import Mapping
+from itertools import accumulate
+from typing import NamedTuple
+
+from sebody.contract.layout import INPUT_NUMBERS
+from sebody.errors import InputError
+from sebody.kernels.loader import element_kernel
+from sebody.model.control_parts import Controller, Sensor
+from sebody.model.controllers import actuators, signals
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Element, Superelement
+
+
+class Kept(NamedTuple):
+    """Places in `State.frames`."""
+
+    memories: dict[Element, list[int]]  # element -> the numbers that it keeps
+    inputs: dict[int, int]      # port of an input -> its first number
+    ports: dict[str, int]       # name of an input -> port
+    sensors: list[Sensor]       # those of the model, then of quantities that controllers name
+    values: dict[str, int]      # name of a sensor, signal or input -> its value
+    states: dict[str, int]      # controller -> its first state
+    size: int                   # of `State.frames`
+
+
+def kept(model: Mechanism, ports: Mapping[Element | Superelement, int]) -> Kept:
+    """Number what is kept; `ports` are those of loads."""
+    memories, first = {}, 9 * len(model.bodies)
+    for one in model.loads:
+        if count := len(element_kernel(one.kind).MEMORY):
+            memories[one] = list(range(first, first + count))
+            first += count
+    inputs = {ports[one]: first + INPUT_NUMBERS * k
+              for k, one in enumerate(actuators(model).values())}
+    own = {name: ports[one] for name, one in actuators(model).items()}
+    first += INPUT_NUMBERS * len(inputs)
+    sensors, set_by_controllers = _sensors(model), signals(model)
+    names = [*(one.name for one in sensors), *set_by_controllers]
+    values = {name: first + k for k, name in enumerate(names)}
+    values |= {name: inputs[port] for name, port in own.items()}
+    first += len(names)
+    controllers = list(model.controllers.values())
+    places = list(accumulate((len(one.states) for one in controllers), initial=first))
+    states = {one.name: place for one, place in zip(controllers, places, strict=False)}
+    return Kept(memories, inputs, own, sensors, values, states, places[-1])
+
+
+def _sensors(model: Mechanism) -> list[Sensor]:
+    """Sensors, and quantities that controllers name without one."""
+    found = dict(model.sensors)
+    known = {*found, *signals(model), *actuators(model)}
+    for controller in model.controllers.values():
+        for name in controller.inputs:
+            if name not in known and name not in found:
+                _check_quantity(model, controller, name, known)
+                found[name] = Sensor(name, name, 0.0, 0, 0.0, 0.0, 0)
+    return list(found.values())
+
+
+def _check_quantity(model: Mechanism, controller: Controller, name: str, known: set[str]) -> None:
+    """Refuse an input that is neither a sensor nor looks like a quantity."""
+    if "." not in name:
+        there = ", ".join(sorted(known)) or "none"
+        raise InputError(f"controller {controller.name!r}: input {name!r} is unknown: give a "
+                         f"sensor, signal or actuator ({there}), or a quantity such as "
+                         "'tip.position.y'")

@@ -1,0 +1,224 @@
+"""Ready control laws for `Model.controller`, all of them sampled.
+
+A law is a compiled function with numbers: parameters that depend on the period are made when the
+controller is, with its period.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sebody import inputs
+from sebody.control.law import Law, constant
+from sebody.errors import InputError
+
+NONE = np.zeros(0)
+
+
+def pid(kp: float, ki: float = 0.0, kd: float = 0.0, filter: float = 100.0,
+        reference: float = 0.0, limit: float | tuple[float, float] | None = None) -> Law:
+    """``u = kp e + ki I + kd D`` with ``e = r - y``, the integral I of e, the rate D of -y.
+
+    With the period T they are ``I += T e`` and ``D = (D + N (y_last - y)) / (1 + N T)``. The
+    integral rests while the output is cut off and the error would drive it further (anti-windup).
+
+    Parameters
+    ----------
+    kp, ki, kd : float
+        Gains.
+    filter : float
+        N, the cut-off frequency of the rate [1/time].
+    reference : float
+        r; a second input of the controller takes its place.
+    limit : float or two floats, optional
+        Largest size of u, or its least and largest value.
+
+    Returns
+    -------
+    Law
+        Of one or two inputs, y and r.
+    """
+    gains = [inputs.number(value, f"pid: {name}") for name, value in (
+        ("kp", kp), ("ki", ki), ("kd", kd))]
+    numbers = [*gains, inputs.number(filter, "pid: filter", above=0.0),
+               inputs.number(reference, "pid: reference"), *_limits(limit, "pid: limit")]
+    return Law("pid", _pid, (1, 2), 1, np.zeros(4),
+               lambda period: np.array([period, *numbers]))
+
+
+def _pid(t, y, x, u, parameters):
+    T, kp, ki, kd, N, r, least, most = parameters
+    if y.size == 2:
+        r = y[1]
+    e = r - y[0]
+    if x[3] == 0.0:         # before the first sample it was where it is
+        x[2], x[3] = -y[0], 1.0
+    integral = x[0] + T * e
+    x[1] = (x[1] + N * (-y[0] - x[2])) / (1.0 + N * T)
+    x[2] = -y[0]
+    raw = kp * e + ki * integral + kd * x[1]
+    u[0] = min(max(raw, least), most)
+    if raw == u[0] or (raw - u[0]) * ki * e <= 0.0:
+        x[0] = integral
+
+
+def state_feedback(gain: ArrayLike, reference: ArrayLike | None = None,
+                   offset: ArrayLike | None = None) -> Law:
+    """``u = offset - K (y - r)``.
+
+    Parameters
+    ----------
+    gain : (m, n)
+        K, such as that of ``control.lqr`` times what makes states of measurements.
+    reference : (n,), optional
+        r, zeros by default: the values of the measurements in the state it was designed for.
+    offset : (m,), optional
+        Outputs there, zeros by default.
+    """
+    K = inputs.array(np.atleast_2d(gain), "state_feedback: gain", (None, None))
+    m, n = K.shape
+    r = np.zeros(n) if reference is None else inputs.vector(reference, "state_feedback: reference",
+                                                            n)
+    u0 = np.zeros(m) if offset is None else inputs.vector(offset, "state_feedback: offset", m)
+    return Law("state feedback", _feedback, (n,), m, NONE, constant(K, r, u0))
+
+
+def _feedback(t, y, x, u, parameters):
+    n, m = y.size, u.size
+    for i in range(m):
+        u[i] = parameters[m * n + n + i]
+        for j in range(n):
+            u[i] -= parameters[i * n + j] * (y[j] - parameters[m * n + j])
+
+
+def discrete(A: ArrayLike, B: ArrayLike, C: ArrayLike, D: ArrayLike) -> Law:
+    """``u = C x + D y``, then ``x = A x + B y``: a linear system in discrete time, as it is.
+
+    Parameters
+    ----------
+    A, B, C, D : (k, k), (k, n), (m, k), (m, n)
+        Such as a compensator by python-control with the controller's period.
+    """
+    A, D = (np.atleast_2d(inputs.array(np.atleast_2d(X), f"discrete: {name}", (None, None)))
+            for name, X in (("A", A), ("D", D)))
+    k, (m, n) = len(A), D.shape
+    matrices = [inputs.array(np.reshape(X, shape) if np.size(X) == shape[0] * shape[1] else X,
+                             f"discrete: {name}", shape)
+                for name, X, shape in (("A", A, (k, k)), ("B", B, (k, n)), ("C", C, (m, k)),
+                                       ("D", D, (m, n)))]
+    return Law("a discrete system", _discrete, (n,), m, np.zeros(k), constant(*matrices))
+
+
+def _discrete(t, y, x, u, parameters):
+    k, n, m = x.size, y.size, u.size
+    A, B = parameters[:k * k], parameters[k * k:k * k + k * n]
+    C, D = parameters[k * (k + n):k * (k + n + m)], parameters[k * (k + n + m):]
+    for i in range(m):
+        u[i] = 0.0
+        for j in range(k):
+            u[i] += C[i * k + j] * x[j]
+        for j in range(n):
+            u[i] += D[i * n + j] * y[j]
+    after = np.zeros(k)
+    for i in range(k):
+        for j in range(k):
+            after[i] += A[i * k + j] * x[j]
+        for j in range(n):
+            after[i] += B[i * n + j] * y[j]
+    for i in range(k):
+        x[i] = after[i]
+
+
+def low_pass(frequency: float, order: int = 2) -> Law:
+    """Butterworth's low-pass filter of one signal, in discrete time by Tustin's rule.
+
+    Parameters
+    ----------
+    frequency : float
+        Cut-off frequency in cycles per unit of time, below half of the sampling frequency.
+    order : int
+    """
+    frequency = inputs.number(frequency, "low_pass: frequency", above=0.0)
+    order = inputs.integer(order, "low_pass: order", least=1, most=10)
+
+    def packed(period: float) -> NDArray:
+        from scipy.signal import butter, tf2ss  # takes 0.2 s to import
+
+        if not 2.0 * frequency * period < 1.0:
+            raise InputError(f"low_pass: frequency is {frequency:g}, and the period {period:g} "
+                             f"samples it with {1 / period:g}: give less than half of this")
+        return constant(*tf2ss(*butter(order, 2.0 * frequency * period)))(period)
+    return Law("a low-pass filter", _discrete, (1,), 1, np.zeros(order), packed)
+
+
+def lookup(points: ArrayLike, values: ArrayLike) -> Law:
+    """``u = f(y)`` by linear interpolation in a table, with its end values outside.
+
+    Parameters
+    ----------
+    points : (n,)
+        Ascending values of y.
+    values : (n,)
+        u there.
+    """
+    points = inputs.vector(points, "lookup: points")
+    values = inputs.vector(values, "lookup: values", len(points))
+    if len(points) < 2 or not (np.diff(points) > 0).all():
+        raise inputs.refusal("lookup: points", points, "give at least two that ascend")
+    return Law("a lookup", _lookup, (1,), 1, NONE, constant(points, values))
+
+
+def _lookup(t, y, x, u, parameters):
+    n = parameters.size // 2
+    u[0] = np.interp(y[0], parameters[:n], parameters[n:])
+
+
+def computed_torque(dynamics: Callable[..., None], reference: Callable[..., None], joints: int,
+                    kp: ArrayLike, kd: ArrayLike) -> Law:
+    """``u = M(q) (a_r + kd (v_r - v) + kp (q_r - q)) + h(q, v)``: exact linearisation.
+
+    Parameters
+    ----------
+    dynamics : callable
+        ``dynamics(q, v, mass, bias)`` sets M (n, n) and the forces h (n,) of the arm as it is
+        modelled, which holds ``M a + h = u``.
+    reference : callable
+        ``reference(t, q, v, a)`` sets the motion that is wanted.
+    joints : int
+        n: the inputs are n angles, then their n rates.
+    kp, kd : float or (n,)
+        Gains [1/time^2], [1/time].
+    """
+    n = inputs.integer(joints, "computed_torque: joints", least=1)
+    gains = [np.broadcast_to(inputs.reals(value, f"computed_torque: {name}",
+                                          f"give a number or {n}"), n)
+             for name, value in (("kp", kp), ("kd", kd))]
+    for what, one in (("dynamics", dynamics), ("reference", reference)):
+        inputs.function(one, f"computed_torque: {what}", "give a function")
+
+    def law(t, y, x, u, parameters):
+        n = u.size
+        q, v, wanted = np.zeros(n), np.zeros(n), np.zeros(n)
+        mass, bias = np.zeros((n, n)), np.zeros(n)
+        reference(t, q, v, wanted)
+        for i in range(n):
+            wanted[i] += parameters[n + i] * (v[i] - y[n + i]) + parameters[i] * (q[i] - y[i])
+        dynamics(y[:n], y[n:], mass, bias)
+        for i in range(n):
+            u[i] = bias[i]
+            for j in range(n):
+                u[i] += mass[i, j] * wanted[j]
+    return Law("computed torque", law, (2 * n,), n, NONE, constant(*gains))
+
+
+def _limits(limit: float | tuple[float, float] | None, what: str) -> tuple[float, float]:
+    if limit is None:
+        return -np.inf, np.inf
+    if np.ndim(limit) == 0:
+        most = inputs.number(limit, what, above=0.0)
+        return -most, most
+    least, most = inputs.vector(limit, what, 2)
+    if not least < most:
+        raise inputs.refusal(what, limit, "give the smaller number first")
+    return float(least), float(most)

@@ -1,0 +1,258 @@
+"""Sensors and controllers in compiled code: what happens at the samples of a run.
+
+A step ends at every sample. There sensors are read and controllers are called, in the order of
+`Control.tasks`; what they set holds until the next sample. Accelerations are solved anew where an
+input changed, see `engine.restart`. No step is repeated across a sample.
+"""
+
+import numpy as np
+from llvmlite import ir
+from numba import types
+from numba.extending import intrinsic
+
+from sebody.compiler.decorators import compiled
+from sebody.engine.control_data import (
+    ANGLE,
+    BIAS,
+    CHANNEL,
+    COUNTS,
+    DELAY,
+    DOT,
+    ENDS,
+    FAULTY,
+    FIRST_END,
+    FIRST_WIRE,
+    FUNCTION,
+    HAS,
+    ITS_DELAY,
+    ITS_QUEUE,
+    NEXT,
+    NOISE,
+    PARAMETERS,
+    QUEUE,
+    SCRATCH,
+    SENSOR,
+    SLOT,
+    STATES,
+    STOP,
+    TURNED,
+    WAITS,
+    WIRES,
+)
+from sebody.engine.inputs import FROM, SINCE, VALUE, input_at
+from sebody.engine.state import (
+    BAD_CONTROL,
+    DONE,
+    FAILED,
+    READ,
+    SAMPLED,
+)
+from sebody.engine.step_control import NEAR
+from sebody.kernels.abi import at, pointer_to
+
+
+@compiled
+def sample(system, state):
+    """Sample what is due at the time reached; DONE, FAILED, or READ for Python to read sensors."""
+    own, memory, t = system.control, state.memory, state.clock.time
+    near = NEAR * state.clock.step
+    if own.outside[0] == 1 and memory[HAS] == 0.0:
+        memory[WAITS] = 1.0
+        return READ
+    memory[WAITS] = memory[HAS] = 0.0
+    changed = False
+    for k in range(own.periods.size):
+        if memory[COUNTS + k] * own.periods[k] > t + near:
+            continue
+        number = own.tasks[k, 1]
+        if own.tasks[k, 0] == SENSOR:
+            _hold(system, state, number)
+        else:
+            status = _control(system, state, number)
+            if status < 0:
+                memory[FAULTY] = number
+                state.control.reason = BAD_CONTROL
+                return FAILED
+            changed |= status > 0
+        memory[COUNTS + k] += 1.0
+    if memory[STOP] <= t + near:
+        memory[STOP] = np.inf
+    set_next(own, memory)
+    if not changed and state.control.meets == SAMPLED and state.control.inside == 0:
+        state.control.restart = 0      # nothing jumps
+    return DONE
+
+
+@compiled
+def set_next(own, memory):
+    """Find the time at which the next step has to end."""
+    memory[NEXT] = memory[STOP]
+    for k in range(own.periods.size):
+        memory[NEXT] = min(memory[NEXT], memory[COUNTS + k] * own.periods[k])
+
+
+@compiled
+def _hold(system, state, k):
+    """Read a sensor with a rate of its own, and hold what it reads, or read some samples ago."""
+    own, row = system.control, system.control.sensors[k]
+    value = _reading(system, state, k)
+    if row[DELAY] > 0:
+        queue = state.memory[row[QUEUE]:row[QUEUE] + 1 + row[DELAY]]
+        if state.memory[COUNTS + own.periods.size + own.sensors.shape[0] + k] == 1.0:
+            for i in range(row[DELAY]):
+                queue[1 + i] = value        # before the first reading there is none
+        place = 1 + np.int64(queue[0])
+        value, queue[place] = queue[place], value
+        queue[0] = place % row[DELAY]
+    state.frames[row[SLOT]] = value
+
+
+@compiled
+def _reading(system, state, k):
+    """What a sensor reads now, with bias and noise."""
+    own, first = system.control, COUNTS + system.control.periods.size
+    value, counts = channel_value(system, state, k), first + own.sensors.shape[0] + k
+    count = state.memory[counts]
+    state.memory[counts] = count + 1.0
+    value += own.errors[k, BIAS]
+    if own.errors[k, NOISE] > 0.0:
+        value += own.errors[k, NOISE] * normal(own.seeds[k], np.int64(count))
+    return value
+
+
+@compiled
+def channel_value(system, state, k):
+    """The quantity that a sensor reads, as it is."""
+    own, now = system.control, state.now
+    row, c = own.channels[own.sensors[k, CHANNEL]], own.coefficients[own.sensors[k, CHANNEL]]
+    if row[0] == DOT:           # c0 + e . x + f . y
+        return c[0] + _dot(now, row[1], c, 1) + _dot(now, row[2], c, 4)
+    if row[0] == TURNED:        # e . (R v)
+        found = 0.0
+        for i in range(3):
+            if c[1 + i] != 0.0:
+                for j in range(3):
+                    found += c[1 + i] * now[row[1] + 3 * i + j] * now[row[2] + j]
+        return found
+    place = COUNTS + own.periods.size + k
+    if row[0] == ANGLE:
+        state.memory[place] = _angle(now, row[1], row[2], c, state.memory[place])
+    return state.memory[place]
+
+
+@compiled
+def _dot(now, place, c, first):
+    found = 0.0
+    for i in range(3):
+        if c[first + i] != 0.0:
+            found += c[first + i] * now[place + i]
+    return found
+
+
+@compiled
+def _angle(now, a, b, c, last):
+    """Angle of body a against b: of n in axes of a against n and m in those of b; turns count."""
+    x = y = 0.0
+    for i in range(3):
+        global_n = c[1] * now[a + 3 * i] + c[2] * now[a + 3 * i + 1] + c[3] * now[a + 3 * i + 2]
+        x += global_n * (c[4] * now[b + 3 * i] + c[5] * now[b + 3 * i + 1]
+                         + c[6] * now[b + 3 * i + 2])
+        y += global_n * (c[7] * now[b + 3 * i] + c[8] * now[b + 3 * i + 1]
+                         + c[9] * now[b + 3 * i + 2])
+    angle = np.arctan2(y, x)
+    return angle + 2.0 * np.pi * np.floor((last - angle) / (2.0 * np.pi) + 0.5)
+
+
+@compiled
+def _control(system, state, k):
+    """Call a controller; 1 where an input changed, 0 where none did, -1 after a fault."""
+    own, row, memory = system.control, system.control.controllers[k], state.memory
+    y, u = row[SCRATCH], row[SCRATCH] + row[WIRES]
+    for i in range(row[WIRES]):
+        place, sensor = own.wires[row[FIRST_WIRE] + i, 0], own.wires[row[FIRST_WIRE] + i, 1]
+        if sensor >= 0:
+            state.frames[place] = _reading(system, state, sensor)
+        memory[y + i] = state.frames[place]
+    for i in range(row[ENDS]):
+        memory[u + i] = _held(system, state, row[FIRST_END] + i)
+    status = _call(row[FUNCTION], state.clock.time, at(pointer_to(memory), y),
+                   at(pointer_to(state.frames), row[STATES]), at(pointer_to(memory), u),
+                   at(pointer_to(own.parameters), row[PARAMETERS]))
+    if status != 0:
+        return -1
+    if row[ITS_DELAY] > 0:
+        _delay(memory, row[ITS_QUEUE], row[ITS_DELAY], u, row[ENDS])
+    changed = 0
+    for i in range(row[ENDS]):
+        number, signal = own.ends[row[FIRST_END] + i, 0], own.ends[row[FIRST_END] + i, 1]
+        if number >= 0:
+            changed |= set_input(system, state, number, memory[u + i])
+        else:
+            state.frames[signal] = memory[u + i]
+    return changed
+
+
+@compiled
+def _held(system, state, end):
+    """What an output of a controller is now."""
+    own = system.control
+    number = own.ends[end, 0]
+    return state.frames[own.inputs[number, 1] + VALUE if number >= 0 else own.ends[end, 1]]
+
+
+@compiled
+def _delay(memory, queue, delay, u, size):
+    """Put outputs in a queue, take those of some samples ago from it."""
+    place = np.int64(memory[queue])
+    for i in range(size):
+        slot = queue + 1 + place * size + i
+        memory[slot], memory[u + i] = memory[u + i], memory[slot]
+    memory[queue] = (place + 1) % delay
+
+
+@compiled
+def set_input(system, state, k, value):
+    """Set an input, within its limits; 1 where it changed."""
+    own = system.control
+    place, piece = own.inputs[k, 1], own.inputs[k, 2]
+    value = min(max(value, own.limits[k, 0]), own.limits[k, 1])
+    if value == state.frames[place + VALUE]:
+        return 0
+    t = state.clock.time
+    begun = input_at(system.table_pieces, piece, state.frames, place, t)
+    state.frames[place + VALUE], state.frames[place + SINCE] = value, t
+    state.frames[place + FROM] = begun
+    return 1
+
+
+@compiled
+def normal(seed, count):
+    """A number of the standard normal distribution, by Box and Muller, of a seed and a count."""
+    one = _uniform(np.uint64(seed), np.uint64(2 * count))
+    other = _uniform(np.uint64(seed), np.uint64(2 * count + 1))
+    return np.sqrt(-2.0 * np.log(one)) * np.cos(2.0 * np.pi * other)
+
+
+@compiled
+def _uniform(seed, count):
+    """A number in (0, 1] by SplitMix64, G. L. Steele et al., OOPSLA 2014, of its count-th state."""
+    z = _mixed(seed * np.uint64(0xD1342543DE82EF95) + np.uint64(0x9E3779B97F4A7C15))
+    z = _mixed(z + (count + np.uint64(1)) * np.uint64(0x9E3779B97F4A7C15))
+    return (np.float64(z >> np.uint64(11)) + 1.0) / 9007199254740992.0
+
+
+@compiled
+def _mixed(z):
+    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    return z ^ (z >> np.uint64(31))
+
+
+@intrinsic
+def _call(typingctx, address, t, y, x, u, parameters):
+    """Call a controller at its address."""
+    def codegen(context, builder, sig, args):
+        kinds = [context.get_value_type(kind) for kind in sig.args[1:]]
+        function = ir.FunctionType(ir.IntType(64), kinds)
+        return builder.call(builder.inttoptr(args[0], function.as_pointer()), args[1:])
+    return types.int64(types.int64, types.float64, y, x, u, parameters), codegen

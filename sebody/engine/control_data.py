@@ -1,0 +1,65 @@
+"""Sensors, controllers and inputs of a model as arrays, and the places of their numbers."""
+
+from dataclasses import dataclass
+
+from numpy.typing import NDArray
+
+from sebody.engine.arrays import Arrays
+
+# kinds of channels, and numbers of a row of `Control.channels` and `Control.coefficients`
+OUTSIDE, DOT, TURNED, ANGLE = range(4)
+CHANNEL_PLACES, CHANNEL_NUMBERS = 2, 10
+# numbers of a row of `Control.sensors`: where its value is in State.frames, its channel, its delay
+# in samples, its queue in State.memory
+SLOT, CHANNEL, DELAY, QUEUE = range(4)
+BIAS, NOISE = range(2)                  # of a row of `Control.errors`
+SENSOR, CONTROLLER = range(2)           # kinds of tasks
+# numbers of a row of `Control.controllers`
+(FUNCTION, FIRST_WIRE, WIRES, FIRST_END, ENDS, STATES, PARAMETERS, ITS_DELAY, ITS_QUEUE,
+ SCRATCH) = range(10)
+# State.memory: the next sample; the next stop that Python asked for; whether it waits for readings
+# of Python and whether it has them; the controller with a fault; then of every task its samples so
+# far, of every sensor its reading by Python and its readings so far, then queues and scratch memory
+NEXT, STOP, WAITS, HAS, FAULTY = range(5)
+COUNTS = FAULTY + 1
+
+
+@dataclass(frozen=True, eq=False)
+class Control(Arrays):
+    """Sensors, controllers and inputs of a model: constant during a run.
+
+    ==============  ================================================================================
+    tasks           (n, 2) what is sampled in its order: kind, number
+    periods         (n,) of these
+    channels        (s, 1 + CHANNEL_PLACES) kind, and places in `State.now` that it reads
+    coefficients    (s, CHANNEL_NUMBERS) what they are multiplied with
+    sensors         (s, 4) see SLOT
+    errors          (s, 2) bias, and standard deviation of the noise
+    seeds           (s,) of the noise
+    controllers     (c, 10) see FUNCTION
+    wires           (w, 2) what controllers are given: place in `State.frames`, and the sensor that
+                    is read for it, or -1
+    ends            (e, 2) what they set: number of the input or -1, else place of the signal
+    inputs          (i, 3) port, place in `State.frames`, row of `System.table_pieces`
+    limits          (i, 2) least and largest value
+    parameters      of all controllers
+    outside         (1,) 1 where Python has to read a sensor
+    memory          (1,) length of `State.memory`
+    ==============  ================================================================================
+    """
+
+    tasks: NDArray
+    periods: NDArray
+    channels: NDArray
+    coefficients: NDArray
+    sensors: NDArray
+    errors: NDArray
+    seeds: NDArray
+    controllers: NDArray
+    wires: NDArray
+    ends: NDArray
+    inputs: NDArray
+    limits: NDArray
+    parameters: NDArray
+    outside: NDArray
+    memory: NDArray

@@ -1,0 +1,172 @@
+"""Actuators of a model: forces and torques whose amplitude is an input of a run."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sebody import inputs
+from sebody.errors import InputError
+from sebody.model.inputs import chosen_name, dof_block, known, rotation_vector, vector
+from sebody.model.mechanism import Mechanism
+from sebody.model.pairs import pair
+from sebody.model.parts import Attachment, Element, Joint, Node, positions, rotations
+from sebody.model.time_functions import TimeFunction, input_history
+from sebody.spelling import unknown
+
+TURNS, SLIDES = ("revolute", "cylindrical"), ("prismatic", "slider", "cylindrical")
+WAYS = "give joint= the name of one, between= two nodes, or node= and direction="
+
+
+def actuator(model: Mechanism, name: str, joint: str | Joint | None = None,
+             between: tuple[Node | str, Node | str] | None = None, node: Node | str | None = None,
+             direction: ArrayLike | None = None, what: str | None = None,
+             limit: float | tuple[float, float] | None = None, rate: float | None = None,
+             lag: float = 0.0, inertia: float = 0.0, ratio: float = 1.0,
+             start: float = 0.0) -> Element:
+    """Force or torque that a controller sets, or `Simulation.set_input`.
+
+    It acts along the motion of a joint, on `node` of the joint and opposite on the other one; along
+    the line between two nodes, which it pushes apart; or on a node, along a direction of space.
+
+    Parameters
+    ----------
+    name : str
+        Name of the actuator and of the input.
+    joint : str or Joint, optional
+        A revolute, prismatic or cylindrical joint, or a slider.
+    between : two nodes, optional
+    node : Node or str, optional
+    direction : (3,), planar (2,), optional
+        With `node`: that of the force. For a torque its axis, in a plane a number.
+    what : {'force', 'torque'}, optional
+        Which of the two acts on a node, by default a force, or in a cylindrical joint.
+    limit : float or two floats, optional
+        Largest size of the input, or its least and largest value: what is set beyond is cut off.
+    rate : float, optional
+        Largest rate of the input [input/time].
+    lag : float
+        Time constant with which the force follows what is set.
+    inertia : float
+        Moment of inertia of the motor's rotor, which turns with the ratio. At rest in its body it
+        is part of this body's inertia.
+    ratio : float
+        Of a gear, or angle of the motor by displacement: the input is the motor's torque, and
+        `ratio` times as much acts.
+    start : float
+        Value until something is set.
+
+    Raises
+    ------
+    InputError
+        A joint that does not move along or about one axis, or numbers that make no sense.
+    """
+    where = f"actuator {inputs.name(name, 'name of an actuator')!r}"
+    if sum(one is not None for one in (joint, between, node)) != 1:
+        raise InputError(f"{where} acts on nothing, or on several things: {WAYS}")
+    ratio = inputs.number(ratio, f"{where}: ratio")
+    if ratio == 0.0:
+        raise inputs.refusal(f"{where}: ratio", ratio, "give one that is not zero")
+    inertia = inputs.number(inertia, f"{where}: inertia", least=0.0)
+    time_function = _history(where, limit, rate, lag, start)
+    if node is not None:
+        if inertia:
+            raise InputError(f"{where} acts on a node from outside, which no rotor turns with: "
+                             "add a rigid body, or give a joint")
+        return _added(model, _on_node(model, name, where, node, direction, what, ratio,
+                                      time_function))
+    if direction is not None:
+        raise InputError(f"{where}: a direction goes with node= alone; a joint has an axis")
+    way, sign, attachments, constants = (
+        _of_joint(model, where, joint, what) if joint is not None else
+        _between(model, where, between, what))
+    made = _added(model, Element(chosen_name(model, name, "actuator"),
+                                 model.kind_of(f"{way}_motor"), attachments,
+                                 {"gain": sign * ratio, **constants}, time_function=time_function))
+    if inertia:
+        model.loads.append(Element(
+            chosen_name(model, None,
+                        f"rotor of {name}"), model.kind_of(f"{way}_rotor"), attachments,
+            {"inertia": inertia, "ratio": ratio, **constants}))
+    return made
+
+
+def _history(where: str, limit: float | tuple[float, float] | None, rate: float | None,
+             lag: float, start: float) -> TimeFunction:
+    least, most = -np.inf, np.inf
+    if limit is not None and np.ndim(limit) == 0:
+        most = inputs.number(limit, f"{where}: limit", above=0.0)
+        least = -most
+    elif limit is not None:
+        least, most = inputs.vector(limit, f"{where}: limit", 2,
+                                    remedy="give one number above zero, or the least and the "
+                                    "largest value").tolist()
+        if not least < most:
+            raise inputs.refusal(f"{where}: limit", limit, "give the smaller number first")
+    start = inputs.number(start, f"{where}: start")
+    if not least <= start <= most:
+        raise inputs.refusal(f"{where}: start", start, f"give one from {least:g} to {most:g}")
+    fastest = 0.0 if rate is None else inputs.number(rate, f"{where}: rate", above=0.0)
+    return input_history(start, inputs.number(lag, f"{where}: lag", least=0.0), fastest,
+                         (least, most))
+
+
+def _of_joint(model: Mechanism, where: str, joint: str | Joint, what: str | None
+              ) -> tuple[str, float, tuple[Attachment, ...], dict[str, ArrayLike]]:
+    """Way, sign, places and constants of an actuator in a joint."""
+    names = {one.name: one for one in model.joints}
+    if isinstance(joint, str) and joint not in names:
+        raise unknown("joint", joint, names, "the model has", "the model has none")
+    own = names[joint] if isinstance(joint, str) else inputs.instance(
+        joint, f"{where}: joint", Joint, "give a joint or its name")
+    kinds = ["torque"] * (own.kind in TURNS) + ["force"] * (own.kind in SLIDES)
+    if not kinds:
+        raise InputError(f"{where}: {own.name!r} is a {own.kind}, in which nothing moves along or "
+                         f"about one axis: {WAYS}")
+    if what is None and len(kinds) > 1:
+        raise InputError(f"{where}: {own.name!r} slides and turns: give what='force' or 'torque'")
+    chosen = inputs.choice(what or kinds[0], f"{where}: what", kinds)
+    axis = {} if model.planar and chosen == "torque" else {"e": own.axes.columns[:, 0]}
+    if chosen == "torque":
+        return "turn", 1.0, rotations(own.node, own.to), axis
+    # the way is that of the other node in the axes of the carrier
+    carrier = own.axes.carrier
+    other, sign = (own.to, -1.0) if carrier is own.node else (own.node, 1.0)
+    return "slide", sign, positions(carrier, other) + rotations(carrier), axis
+
+
+def _between(model: Mechanism, where: str, between: tuple[Node | str, Node | str],
+             what: str | None) -> tuple[str, float, tuple[Attachment, ...], dict[str, ArrayLike]]:
+    if isinstance(between, str) or len(ends := inputs.items(
+            between, f"{where}: between", "give two nodes")) != 2 or what == "torque":
+        raise InputError(f"{where}: between is {inputs.shown(between)}: give two nodes, which a "
+                         "force pushes apart")
+    a, b = pair(model, known(model, ends[0]), known(model, ends[1]), where, ("position",))
+    if not np.linalg.norm(b.point - a.point) > 0:
+        raise InputError(f"{where}: nodes {a.name!r} and {b.name!r} coincide, so it has no "
+                         "direction")
+    return "line", 1.0, positions(a, b), {}
+
+
+def _on_node(model: Mechanism, name: str, where: str, node: Node | str,
+             direction: ArrayLike | None, what: str | None, ratio: float,
+             time_function: TimeFunction) -> Element:
+    node = known(model, node)
+    chosen = inputs.choice(what or "force", f"{where}: what", ("force", "torque"))
+    if direction is None:
+        raise InputError(f"{where} has no direction: give direction=")
+    if chosen == "force":
+        dof_block(node, "position")
+        constants, attachments = {"d": vector(model, direction, where)}, positions(node)
+    else:
+        dof_block(node, "rotation")
+        constants, attachments = {"d": rotation_vector(model, direction, where)}, rotations(node)
+    constants["d"] = ratio * np.asarray(constants["d"])
+    return Element(chosen_name(model, name, "actuator"), model.kind_of(chosen), attachments,
+                   constants,
+                   time_function=time_function)
+
+
+def _added(model: Mechanism, element: Element) -> Element:
+    model.loads.append(element)
+    return element

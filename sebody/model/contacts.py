@@ -1,0 +1,262 @@
+"""Contacts, stops and gears of a model."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sebody import inputs
+from sebody.errors import InputError
+from sebody.model.frictions import checked_friction, turning
+from sebody.model.impacts import damping_of
+from sebody.model.inputs import chosen_name, direction, dof_block, known, vector
+from sebody.model.mechanism import Mechanism
+from sebody.model.nodes import ground
+from sebody.model.parts import Element, Joint, Node, positions, rotations
+from sebody.model.surfaces import Surface
+
+DEEP = 0.1          # of its radius, or of the model: a start in deeper contact is refused
+SLOW = 1e-3         # of the given speed: the steps of slower impacts are not looked at
+TURNS = ("revolute",)
+SLIDES = ("prismatic", "slider", "cylindrical")
+
+
+def stop(model: Mechanism, of: Joint | str | tuple[Node | str, Node | str],
+         lower: float | None = None, upper: float | None = None, restitution: float = 0.5,
+         at_speed: float = 1.0, stiffness: float | None = None, exponent: float = 1.5,
+         name: str | None = None) -> Element:
+    """Limits of the angle or way of a joint or drive, or of the distance of two nodes.
+
+    Beyond a limit by d the stop pushes back with ``k d^n (1 + c d')`` (Hunt and Crossley), and
+    never pulls. Steps in which the rate changes by more than a tenth of the speed of the impact are
+    repeated with shorter ones.
+
+    Parameters
+    ----------
+    of : Joint or str, or two nodes
+        A revolute joint or drive of an angle, [rad]; a prismatic or cylindrical joint, slider, or
+        drive of a way: of the second node along the axis, from the start; or the distance itself of
+        two nodes.
+    lower, upper : float, optional
+        Limits; at least one.
+    restitution : float
+        Rate after an impact of the speed `at_speed` relative to that before; from 0.01 to 1. Slower
+        impacts lose less.
+    at_speed : float
+        This speed, of the angle, way or distance.
+    stiffness : float
+        k: force / length^n, or moment / angle^n.
+    exponent : float
+        n, at least 1.
+
+    Raises
+    ------
+    InputError
+        No limit, a lower one above the upper, a start beyond them, a joint that neither turns nor
+        slides, or numbers that make no sense.
+    """
+    what, kind, attachments, own, start = _measured(model, of)
+    if lower is None and upper is None:
+        raise InputError(f"{what}: it has no limit: give lower=, upper= or both")
+    low = -np.inf if lower is None else inputs.number(lower, f"{what}: lower")
+    high = np.inf if upper is None else inputs.number(upper, f"{what}: upper")
+    if low >= high:
+        raise InputError(f"{what}: lower is {low:g} and upper {high:g}, which leaves no room: "
+                         "give a lower limit below the upper one")
+    if not low <= start <= high:
+        raise InputError(f"{what}: it starts at {start:g}, beyond the limits {low:g} and "
+                         f"{high:g}: a start inside the stop would be an impact of unknown speed")
+    constants = _impact(what, restitution, at_speed, stiffness, exponent)
+    name = chosen_name(model, name, what.replace("'", ""))
+    made = Element(name, model.kind_of(kind), attachments,
+                   constants | own | {"lower": low, "upper": high})
+    model.loads.append(made)
+    return made
+
+
+def gear(model: Mechanism, first: Joint | str, second: Joint | str, ratio: float,
+         backlash: float = 0.0, stiffness: float | None = None, restitution: float = 0.5,
+         at_speed: float = 1.0, exponent: float = 1.0, name: str | None = None) -> Element:
+    """A pair of gears on two revolute joints: ``angle of first = ratio x angle of second``.
+
+    The teeth are elastic: beyond half the backlash on either side the angle
+    ``first - ratio second`` is pushed back by ``k d^n (1 + c d')``. Both angles are zero at the
+    start.
+
+    Parameters
+    ----------
+    first, second : Joint or str
+        Revolute joints.
+    ratio : float
+        Turns of the first for one turn of the second; negative where they turn against each other.
+    backlash : float
+        Whole play, as an angle of the first [rad].
+    stiffness : float, optional
+        k of the teeth, moment on the first per angle^n of it. By default the stiffest that steps of
+        the run's length follow.
+
+    Raises
+    ------
+    InputError
+        Joints that are not revolute, a ratio of zero, or negative play.
+    """
+    joints = [_joint(model, one, "gear") for one in (first, second)]
+    what = f"gear of {joints[0].name!r} and {joints[1].name!r}"
+    for one in joints:
+        if one.kind not in TURNS:
+            raise InputError(f"{what}: {one.name!r} is a {one.kind}: give revolute joints")
+    if joints[0] is joints[1]:
+        raise InputError(f"{what}: give two joints")
+    ratio = inputs.number(ratio, f"{what}: ratio")
+    if ratio == 0:
+        raise InputError(f"{what}: ratio is 0: give the turns of the first for one of the second")
+    play = inputs.number(backlash, f"{what}: backlash", least=0)
+    tuned = {} if stiffness is not None else {"teeth": 1.0}
+    constants = _impact(what, restitution, at_speed, 1.0 if tuned else stiffness, exponent)
+    own: dict[str, ArrayLike] = {"ratio": ratio, "lower": -play / 2, "upper": play / 2}
+    for k, one in enumerate(joints, 1):
+        if not model.planar:
+            own |= {f"{key}{k}": value for key, value in turning(one.axes).items()}
+    attachments = tuple(p for one in joints for p in rotations(one.node, one.to))
+    name = chosen_name(model, name, what.replace("'", ""))
+    made = Element(name, model.kind_of("gear_play"), attachments, constants | own, tuned=tuned)
+    model.loads.append(made)
+    return made
+
+
+def contact(model: Mechanism, node: Node | str, on: Surface, radius: float = 0.0,
+            stiffness: float | None = None, restitution: float = 0.5, at_speed: float = 1.0,
+            exponent: float = 1.5, friction: float = 0.0, static: float | None = None,
+            bristle: float | None = None, damping: float = 0.7, speed: float = 0.0,
+            name: str | None = None) -> Element:
+    """Contact of a sphere about a node, or of the node itself, with a surface.
+
+    Where it presses by d the force is ``k d^n (1 + c d')`` along the normal (see `stop`), and
+    friction acts in both directions of the surface (see `friction`): a sphere rolls.
+
+    Parameters
+    ----------
+    node : Node or str
+        Centre of the sphere. For points of a body away from its nodes, `attach` one.
+    on : Surface
+        `sebody.plane`, `sebody.sphere` or `sebody.cylinder`, of the ground or of a node.
+    radius : float
+        Of the sphere (in a plane of the disc); 0 for a point.
+    stiffness : float
+        k: force / length^n; Hertz's is ``4/3 E* sqrt(R)`` with n = 1.5.
+    friction, static : float
+        Coefficients of sliding and of break-away.
+    bristle, damping, speed : float
+        See `friction`.
+
+    Raises
+    ------
+    InputError
+        No surface, a node of another model, a sphere without rotation, a surface of the node
+        itself, a start in deep penetration, or numbers that make no sense.
+    """
+    a = known(model, node)
+    what = f"contact of {a.name!r}"
+    on = inputs.instance(on, f"{what}: on", Surface, "give a sebody.plane, sphere or cylinder")
+    r = inputs.number(radius, f"{what}: radius", least=0)
+    b = _carrier(model, on, a, what)
+    shape, gap = _shape(model, on, a, b, what)
+    depth = r - gap
+    if depth > DEEP * (r if r > 0 else model.size()):
+        raise InputError(f"{what}: it starts {depth:g} deep in the {on.kind}: start it outside, or "
+                         "turn the normal (inside=True for a bore)")
+    dof_block(a, "position")
+    attachments = positions(a, b) + (rotations(a, b) if r > 0 else rotations(b))
+    if r > 0 and a.rotation is None:
+        raise InputError(f"{what}: node {a.name!r} has no rotation, so a sphere about it cannot "
+                         "roll: make it with keeps='full', or give a point, radius=0")
+    dof_block(b, "rotation")
+    constants = _impact(what, restitution, at_speed, stiffness, exponent)
+    dry = checked_friction(what, friction, static, bristle, damping, speed)
+    name = chosen_name(model, name, what.replace("'", ""))
+    kind = f"{'sphere' if r > 0 else 'point'}_on_{on.kind}"
+    made = Element(name, model.kind_of(kind), attachments,
+                   constants | dict(dry.constants) | {"radius": r} | shape, tuned=dry.tuned)
+    model.loads.append(made)
+    return made
+
+
+def _impact(what: str, restitution: float, at_speed: float, stiffness: float | None,
+            exponent: float) -> dict[str, ArrayLike]:
+    """Constants of the contact law."""
+    if stiffness is None:
+        raise InputError(f"{what}: give stiffness=, the force at a depth of one")
+    return {"stiffness": inputs.number(stiffness, f"{what}: stiffness", above=0),
+            "exponent": inputs.number(exponent, f"{what}: exponent", least=1),
+            "damping": damping_of(restitution, at_speed, what), "slow": SLOW * at_speed}
+
+
+def _joint(model: Mechanism, joint: Joint | str, what: str) -> Joint:
+    found = model.element(joint) if isinstance(joint, str) else joint
+    if not isinstance(found, Joint) or found not in model.joints:
+        raise inputs.refusal(what, joint, "give a joint of the model or its name")
+    return found
+
+
+def _measured(model: Mechanism, of: object) -> tuple[str, str, tuple, dict, float]:
+    """What a stop measures: in words, its kernel, places and constants, and its value now."""
+    if isinstance(of, tuple | list):
+        if len(of) != 2:
+            raise inputs.refusal("stop", of, "give a joint or two nodes")
+        a, b = (known(model, one) for one in of)
+        if a is b:
+            raise InputError(f"stop: node {a.name!r} is given twice: give two nodes")
+        return (f"stop of {a.name!r} and {b.name!r}", "distance_stop", positions(a, b), {},
+                float(np.linalg.norm(b.point - a.point)))
+    joint = _joint(model, of, "stop")
+    what = f"stop of {joint.name!r}"
+    kind = joint.constraints[0].kind.removeprefix("planar_") if joint.kind == "drive" else ""
+    if joint.kind in TURNS or kind == "turn_drive":
+        own = {} if model.planar else turning(joint.axes)
+        return what, "turn_stop", rotations(joint.node, joint.to), own, 0.0
+    if joint.kind in SLIDES or kind == "slide_drive":
+        carrier = joint.axes.carrier
+        other = joint.to if carrier is joint.node else joint.node
+        e = joint.axes.columns[:, 0]
+        return (what, "slide_stop", positions(carrier, other) + rotations(carrier),
+                {"e": e, "start": e @ (other.point - carrier.point)}, 0.0)
+    raise InputError(f"{what}: a {joint.kind} has neither an angle nor a way: give a revolute, "
+                     "prismatic or cylindrical joint, a slider or a drive, or two nodes")
+
+
+def _carrier(model: Mechanism, on: Surface, a: Node, what: str) -> Node:
+    """The node that carries a surface: on the ground a fixed one at its point."""
+    if on.node is None:
+        point = np.zeros(model.dimension) if on.point is None else vector(
+            model, on.point, f"{what}: point of the {on.kind}")
+        if on.kind != "sphere":     # nearest to the node: in its plane of symmetry, if it has one
+            axis = direction(model, on.direction, what, a)
+            along = axis * (axis @ (a.point - point))
+            point = a.point - along if on.kind == "plane" else point + along
+        return ground(model, Node(on.kind, point, None, None))
+    b = known(model, on.node)
+    if b is a:
+        raise InputError(f"{what}: the {on.kind} is on the node itself: give another one")
+    if on.point is not None and on.kind != "plane":
+        raise InputError(f"{what}: the {on.kind} is about node {b.name!r}: leave its point out, or "
+                         "attach a node there")
+    return b
+
+
+def _shape(model: Mechanism, on: Surface, a: Node, b: Node, what: str
+           ) -> tuple[dict[str, ArrayLike], float]:
+    """Constants of a surface, and the distance of the node from it."""
+    s = a.point - b.point
+    if on.kind == "plane":
+        n = direction(model, on.direction, what, a)
+        level = 0.0 if on.point is None or on.node is None else float(n @ (vector(
+            model, on.point, f"{what}: point of the plane") - b.point))
+        return {"n": n, "level": level}, float(n @ s) - level
+    side = -1.0 if on.inside else 1.0
+    own: dict[str, ArrayLike] = {"size": on.radius, "side": side}
+    if on.kind == "cylinder":
+        if model.planar:
+            raise InputError(f"{what}: the model is planar: give a sphere, which is a circle in it")
+        e: NDArray = direction(model, on.direction, what, a)
+        own["e"], s = e, s - e * (e @ s)
+    return own, side * (float(np.linalg.norm(s)) - on.radius)

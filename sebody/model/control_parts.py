@@ -1,0 +1,44 @@
+"""What closes a loop: sensors, and controllers with what they are given and what they set."""
+
+from dataclasses import dataclass
+
+from numpy.typing import NDArray
+
+from sebody.compiler.user_functions import UserFunction
+from sebody.tabular import counted
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Sensor:
+    """A quantity of the model that is measured: one number."""
+
+    name: str
+    quantity: str
+    period: float       # between its samples; 0 where it is read whenever a controller asks
+    delay: int          # of its samples
+    bias: float
+    noise: float        # standard deviation
+    seed: int
+
+    def __repr__(self) -> str:
+        rate = f", {1 / self.period:.6g} samples a unit of time" if self.period else ""
+        return f"<Sensor {self.name!r} of {self.quantity}{rate}>"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Controller:
+    """A compiled function that is called at every sample."""
+
+    name: str
+    function: UserFunction
+    inputs: tuple[str, ...]         # names of sensors, of signals and of actuators
+    outputs: tuple[str, ...]        # names of actuators, else of signals
+    period: float
+    delay: int                      # of its outputs, in samples
+    states: NDArray                 # at the start
+    parameters: NDArray
+
+    def __repr__(self) -> str:
+        return (f"<Controller {self.name!r} from {', '.join(self.inputs) or 'nothing'} to "
+                f"{', '.join(self.outputs)}: period {self.period:.6g}, "
+                f"{counted(len(self.states), 'state')}>")

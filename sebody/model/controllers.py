@@ -1,0 +1,207 @@
+"""Sensors and controllers of a model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from numpy.typing import ArrayLike
+
+from sebody import inputs as given
+from sebody.control.law import Law
+from sebody.errors import InputError
+from sebody.model.control_parts import Controller, Sensor
+from sebody.model.functions import compiled_controller
+from sebody.model.mechanism import Mechanism
+from sebody.spelling import offered
+
+MOST_DELAY = 10_000_000
+
+
+def sensor(model: Mechanism, name: str, quantity: str, rate: float | None = None, delay: int = 0,
+           bias: float = 0.0, noise: float = 0.0, seed: int = 0) -> Sensor:
+    """Measure a quantity, one number, for controllers.
+
+    Parameters
+    ----------
+    name : str
+        Its name among controllers' inputs; results have what it gave as ``<name>.value``.
+    quantity : str
+        A quantity of a result, or a component: ``"tip.position.y"``, ``"hinge.angle"``,
+        ``"beam.modes.0"``, ``"hinge.local_force.x"``. Motion of nodes, modes and angles of joints
+        is read in compiled code; for anything else the run returns to Python at every sample,
+        which takes about a millisecond.
+    rate : float, optional
+        Samples for each unit of time, between which the value holds; by default it is read
+        whenever a controller that has it among its inputs is called.
+    delay : int
+        Samples by which the value is late; needs a rate.
+    bias : float
+        Added to the quantity.
+    noise : float
+        Standard deviation of normal noise, independent from sample to sample.
+    seed : int
+        Of the noise: the same seed gives the same numbers.
+
+    Raises
+    ------
+    InputError
+        A name that is taken, or numbers that make no sense. Whether there is such a quantity is
+        found when a run begins.
+    """
+    where = f"sensor {given.name(name, 'name of a sensor')!r}"
+    _check_new(model, name, where)
+    given.name(quantity, f"{where}: quantity")
+    period = 0.0 if rate is None else 1.0 / given.number(rate, f"{where}: rate", above=0.0)
+    delay = given.integer(delay, f"{where}: delay", least=0, most=MOST_DELAY)
+    if delay and not period:
+        raise InputError(f"{where} has a delay of {delay} samples and no rate: give rate=, or the "
+                         "delay to the controller")
+    made = Sensor(name, quantity, period, delay, given.number(bias, f"{where}: bias"),
+                  given.number(noise, f"{where}: noise", least=0.0),
+                  given.integer(seed, f"{where}: seed", least=0, most=2**62))
+    model.sensors[name] = made
+    return made
+
+
+def controller(model: Mechanism, name: str, law: Law | Callable[..., None],
+               inputs: Iterable[str], outputs: Iterable[str], period: float, delay: int = 0,
+               states: ArrayLike = (), parameters: ArrayLike = ()) -> Controller:
+    """Call a function at every sample, with what sensors measure; it sets actuators.
+
+    Parameters
+    ----------
+    name : str
+    law : Law or callable
+        A ready law of `sebody.control`, or ``controller(t, y, x, u, parameters)``, which Numba
+        compiles: y are the inputs, x its states, which it changes, u the outputs, which it sets;
+        those it does not set stay as they are.
+    inputs : iterable of str
+        Names of sensors, of quantities, of other controllers' signals, and of actuators, whose
+        last value is meant. A quantity of one number need not have a sensor.
+    outputs : iterable of str
+        Names of actuators. A name that no actuator has is a signal, for other controllers.
+    period : float
+        Time between two samples; the first is at the start. Fixed steps divide it.
+    delay : int
+        Samples after which outputs act; until then the actuators' start values do.
+    states : (n,) array_like
+        States at the start; of a ready law its own by default.
+    parameters : (m,) array_like
+        Numbers the function is given.
+
+    Raises
+    ------
+    InputError
+        A function that Numba cannot compile, an actuator that another controller sets, or signals
+        that depend on each other within a sample.
+    """
+    where = f"controller {given.name(name, 'name of a controller')!r}"
+    _check_new(model, name, where)
+    ins = _names(inputs, f"inputs of {where}", least=0)
+    outs = _names(outputs, f"outputs of {where}", least=1)
+    period = given.number(period, f"{where}: period", above=0.0)
+    delay = given.integer(delay, f"{where}: delay", least=0, most=MOST_DELAY)
+    states = given.vector(states, f"{where}: states")
+    parameters = given.vector(parameters, f"{where}: parameters")
+    if isinstance(law, Law):
+        if parameters.size:
+            raise InputError(f"{where} has parameters beside those of its law: leave them out")
+        law.check(where, len(ins), len(outs))
+        function, parameters = law.function, law.packed(period)
+        states = states if states.size else law.states
+        if states.size != law.states.size:
+            raise InputError(f"{where} is given {states.size} states, and its law has "
+                             f"{law.states.size}")
+    else:
+        function = law
+    _check_written(model, name, where, outs)
+    compiled = compiled_controller(function, name, (len(ins), len(states), len(outs),
+                                                    len(parameters)))
+    made = Controller(name, compiled, ins, outs, period, delay, states, parameters)
+    model.controllers[name] = made
+    try:
+        order(model)
+    except InputError:
+        del model.controllers[name]
+        raise
+    return made
+
+
+def order(model: Mechanism) -> list[Controller]:
+    """Controllers in the order in which they are called in a sample.
+
+    One that gives another a signal comes first, unless the signal is delayed.
+
+    Raises
+    ------
+    InputError
+        Some wait for each other: an algebraic loop.
+    """
+    of = {signal: one for one in model.controllers.values() if not one.delay
+          for signal in one.outputs}
+    found: list[Controller] = []
+    path: list[Controller] = []
+
+    def visit(one: Controller) -> None:
+        if one in found:
+            return
+        if one in path:
+            names = [p.name for p in path[path.index(one):]] + [one.name]
+            raise InputError(f"algebraic loop: controllers {' -> '.join(names)} wait for each "
+                             "other's signals in the same sample; give one of them delay=1")
+        path.append(one)
+        for signal in one.inputs:
+            if signal in of and not _is_actuator(model, signal):
+                visit(of[signal])
+        path.pop()
+        found.append(one)
+    for one in model.controllers.values():
+        visit(one)
+    return found
+
+
+def signals(model: Mechanism) -> list[str]:
+    """Outputs of controllers that are no actuators."""
+    return list(dict.fromkeys(name for one in model.controllers.values() for name in one.outputs
+                              if not _is_actuator(model, name)))
+
+
+def actuators(model: Mechanism) -> dict[str, object]:
+    """Loads that are inputs, by name."""
+    return {load.name: load for load in model.loads
+            if load.time_function is not None and load.time_function.is_input}
+
+
+def _is_actuator(model: Mechanism, name: str) -> bool:
+    return name in actuators(model)
+
+
+def _check_written(model: Mechanism, name: str, where: str, outs: tuple[str, ...]) -> None:
+    """Refuse outputs that something else sets, or that are no inputs."""
+    for one in model.controllers.values():
+        if both := [out for out in outs if out in one.outputs]:
+            raise InputError(f"{where} sets {both[0]!r}, which controller {one.name!r} sets: let "
+                             "one controller set it, or add up signals in another one")
+    known = actuators(model)
+    loads = {load.name for load in model.loads} - known.keys()
+    for out in outs:
+        if out in loads:
+            raise InputError(f"{where}: {out!r} is a load with an amplitude of its own; make it "
+                             "an actuator, " + offered(out, known, "there are", "there are none"))
+        if out in model.sensors:
+            raise InputError(f"{where}: output {out!r} is a sensor: name an actuator, or a signal")
+
+
+def _check_new(model: Mechanism, name: str, where: str) -> None:
+    if name in model.sensors or name in model.controllers:
+        raise InputError(f"{where}: the name is taken by a sensor or controller; give another one")
+
+
+def _names(wanted: Iterable[str], what: str, least: int) -> tuple[str, ...]:
+    found = [wanted] if isinstance(wanted, str) else given.items(wanted, what,
+                                                                "give a list of names")
+    for one in found:
+        given.name(one, what)
+    if len(found) < least or len(set(found)) < len(found):
+        raise given.refusal(what, wanted, "name each once" if found else "name at least one")
+    return tuple(found)

@@ -1,0 +1,183 @@
+"""Dry friction in the joints of a model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sebody import inputs
+from sebody.errors import InputError
+from sebody.model.apart import has_forces, take_apart
+from sebody.model.inputs import chosen_name
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Attachment, Axes, Element, Joint, positions, rotations
+
+# kernels by the kind of joint, and whether it is in a plane
+KERNELS = {("revolute", False): "friction_turn_f3m2", ("universal", False): "friction_turn_f3m1",
+           ("prismatic", False): "friction_slide_f2m3", ("slider", False): "friction_slide_f2",
+           ("cylindrical", False): "friction_cylindrical_f2m2",
+           ("spherical", False): "friction_spherical_f3",
+           ("revolute", True): "friction_turn_f2", ("spherical", True): "friction_turn_f2",
+           ("prismatic", True): "friction_slide_f1m1", ("slider", True): "friction_slide_f1"}
+SLIDING = ("prismatic", "slider")
+
+
+class Dry(NamedTuple):
+    """Checked coefficients of dry friction."""
+
+    constants: Mapping[str, float]
+    tuned: Mapping[str, float]
+
+
+def friction(model: Mechanism, joint: Joint | str, coefficient: float, static: float | None = None,
+             radius: float | None = None, preload: float = 0.0, arm: float | None = None,
+             reaction: bool = True, bristle: float | None = None, damping: float = 0.7,
+             speed: float = 0.0, name: str | None = None) -> Element | tuple[Element, Element]:
+    """Dry friction in a joint or drive: it sticks up to a limit, and slides against the motion.
+
+    The limit is the coefficient times the normal force, times the radius where the joint turns. The
+    normal force is `preload` plus the force in the joint across its axis, plus its moment across
+    the axis over `arm`. Joints of shared positions get equations, whose multipliers are this force.
+
+    Sticking is elastic: bristles with a stiffness, which bend up to the limit and do not creep.
+
+    Parameters
+    ----------
+    joint : Joint or str
+        A revolute, universal (friction about both axes), prismatic, cylindrical or spherical joint,
+        a slider, or a drive, which knows no normal force but the preload.
+    coefficient : float
+        Of sliding.
+    static : float, optional
+        Of break-away, at least `coefficient`, by default the same. It acts until the joint slides.
+    radius : float, optional
+        Where the friction acts; needed where the joint turns [length].
+    preload : float
+        Normal force that is always there.
+    arm : float, optional
+        Arm on which the joint takes moments across its axis; without it they press nothing.
+    reaction : bool
+        Whether the force in the joint presses; else the preload alone does.
+    bristle : float, optional
+        Stiffness of sticking, force/length or moment/angle. By default that with which the mass
+        that the joint sees vibrates with the period 2 pi h of a step h.
+    damping : float
+        Of this vibration, relative to the critical one.
+    speed : float
+        Reference speed of a smooth law without sticking (Brown and McPhee), for gradients;
+        0 for bristles.
+
+    Returns
+    -------
+    Element, or two of a universal joint, ``name 1`` about the axis of `node`, ``name 2``
+
+    Raises
+    ------
+    InputError
+        A negative coefficient, a static one below that of sliding, no radius, or a joint without
+        friction, such as a weld.
+    """
+    joint = _joint(model, joint)
+    what = f"friction in {joint.name!r}"
+    sliding = _sliding(joint)
+    dry = checked_friction(what, coefficient, static, bristle, damping, speed)
+    if radius is None and not sliding:
+        raise InputError(f"{what}: the joint turns, so its friction acts on a radius: give radius=")
+    constants = dict(dry.constants) | {
+        "radius": 1.0 if radius is None else inputs.number(radius, f"{what}: radius", above=0),
+        "preload": inputs.number(preload, f"{what}: preload", least=0),
+        "per_moment": 0.0 if arm is None else 1.0 / inputs.number(arm, f"{what}: arm", above=0)}
+    reads = inputs.flag(reaction, f"{what}: reaction") and joint.kind != "drive"
+    if not reads and not preload > 0:
+        raise InputError(f"{what}: nothing presses, since the force in it is not read: give "
+                         "preload=" + " or reaction=True" * (joint.kind != "drive"))
+    parts = _parts(model, joint, sliding, what)
+    name = chosen_name(model, name, what.replace("'", ""))
+    kind = KERNELS[joint.kind, model.planar] if reads else _plain(joint, sliding, what)
+    if reads and not has_forces(joint):
+        take_apart(model, joint)
+    made = []
+    for k, (attachments, own) in enumerate(parts, 1):
+        label = f"{name} {k}" if len(parts) > 1 else name
+        made.append(Element(label, model.kind_of(kind), attachments, constants | own,
+                            pressed_by=joint if reads else None, tuned=dry.tuned))
+    model.loads.extend(made)
+    return made[0] if len(made) == 1 else tuple(made)
+
+
+def checked_friction(what: str, coefficient: float, static: float | None, bristle: float | None,
+                     damping: float, speed: float) -> Dry:
+    """Check what all dry friction has."""
+    mu = inputs.number(coefficient, f"{what}: coefficient", least=0)
+    break_away = mu if static is None else inputs.number(static, f"{what}: static", least=0)
+    if break_away < mu:
+        raise InputError(f"{what}: static is {break_away:g}, below the coefficient of sliding "
+                         f"{mu:g}: a body that slides would stick at a larger force; give at "
+                         "least that")
+    stiffness = 0.0 if bristle is None else inputs.number(bristle, f"{what}: bristle", above=0)
+    return Dry({"bristle": stiffness, "bristle_damping": 0.0, "coefficient": mu,
+                "static": break_away,
+                "speed": inputs.number(speed, f"{what}: speed", least=0)},
+               {"damping": inputs.number(damping, f"{what}: damping", least=0)})
+
+
+def _joint(model: Mechanism, joint: Joint | str) -> Joint:
+    found = model.element(joint) if isinstance(joint, str) else joint
+    if not isinstance(found, Joint) or found not in model.joints:
+        raise inputs.refusal("joint", joint, "give a joint of the model or its name")
+    return found
+
+
+def _sliding(joint: Joint) -> bool:
+    """Whether measures are lengths alone."""
+    if joint.kind == "drive":
+        return "slide" in joint.constraints[0].kind
+    return joint.kind in SLIDING
+
+
+def _plain(joint: Joint, sliding: bool, what: str) -> str:
+    """The kernel that reads no multipliers."""
+    if joint.kind == "cylindrical":
+        raise InputError(f"{what}: leave reaction=False out, a cylindrical joint knows its force")
+    if joint.kind == "spherical" and len(joint.node.point) == 3:
+        return "friction_spherical"
+    return "friction_slide" if sliding else "friction_turn"
+
+
+def _parts(model: Mechanism, joint: Joint, sliding: bool, what: str
+           ) -> list[tuple[tuple[Attachment, ...], dict[str, ArrayLike]]]:
+    """Places and constants of the geometry: two of a universal joint."""
+    if joint.kind != "drive" and (joint.kind, model.planar) not in KERNELS:
+        kinds = sorted({kind for kind, planar in KERNELS if planar == model.planar})
+        raise InputError(f"{what}: a {joint.kind} has no friction: use it in {', '.join(kinds)} "
+                         "joints or in drives")
+    a, b = joint.node, joint.to
+    if sliding or joint.kind == "cylindrical":
+        carrier = joint.axes.carrier
+        other = b if carrier is a else a
+        own: dict[str, ArrayLike] = {"e": joint.axes.columns[:, 0]}
+        if joint.kind == "cylindrical":
+            return [(positions(carrier, other) + rotations(carrier, other),
+                     own | turning(joint.axes))]
+        return [(positions(carrier, other) + rotations(carrier), own)]
+    if joint.kind == "spherical" and not model.planar:
+        return [(rotations(a, b), {})]
+    if joint.kind == "universal":
+        n, e, _ = joint.axes.columns.T
+        return [(rotations(b, a), _seen(n, e)), (rotations(a, b), _seen(e, n))]
+    return [(rotations(a, b), {} if model.planar else turning(joint.axes))]
+
+
+def turning(axes: Axes) -> dict[str, NDArray]:
+    """What the angle about the first of some axes is read from."""
+    return _seen(axes.columns[:, 0], axes.columns[:, 1])
+
+
+def _seen(axis: NDArray, across: NDArray) -> dict[str, NDArray]:
+    """A direction across the axis, and the same and one at a right angle in the other body."""
+    across = across - axis * (axis @ across)
+    across = across / np.linalg.norm(across)
+    return {"d": across, "n": across, "m": np.cross(axis, across)}

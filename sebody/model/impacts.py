@@ -1,0 +1,35 @@
+"""Constants of Hunt and Crossley's contact law: damping from the restitution at a speed."""
+
+import numpy as np
+from scipy.optimize import brentq
+
+from sebody import inputs
+from sebody.errors import InputError
+
+LEAST = 1e-2        # smallest restitution: with less the damping grows without bounds
+
+
+def damping_of(restitution: float, at_speed: float, what: str) -> float:
+    """The damping c of ``F = k d^n (1 + c d')`` for a restitution e at a speed v.
+
+    It is the root of ``c v (1 + e) = ln((1 + c v)/(1 - c v e))``, for any k, n and mass.
+
+    Raises
+    ------
+    InputError
+        A restitution that is not between 0.01 and 1, or a speed that is not positive.
+    """
+    e = inputs.number(restitution, f"{what}: restitution", least=0)
+    v = inputs.number(at_speed, f"{what}: at_speed", above=0)
+    if e > 1:
+        raise InputError(f"{what}: restitution is {e:g}, and more than 1 would make energy: give a "
+                         "number from 0.01 to 1")
+    if e < LEAST:
+        raise InputError(f"{what}: restitution is {e:g}: give a number from 0.01 to 1, since the "
+                         "damping of the contact would be without bounds")
+    if e > 1 - 1e-9:
+        return 0.0
+
+    def left(x: float) -> float:        # x = c v e, from 0 to 1
+        return x / e * (1.0 + e) - np.log1p(x / e) + np.log1p(-x)
+    return brentq(left, 1e-12 + 0.1 * (1 - e), 1.0 - 1e-15, xtol=1e-15, rtol=1e-14) / (e * v)

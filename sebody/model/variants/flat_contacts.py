@@ -1,0 +1,110 @@
+"""Friction, stops, gears and contacts of a spatial model in a plane of symmetry."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sebody.errors import InputError
+from sebody.model.parts import Attachment, Element
+from sebody.model.variants.flattening import Flattening
+
+Made = tuple[str, dict[str, ArrayLike]]
+
+
+def flat_places(flat: Flattening, one: Element, kind: str) -> tuple[Attachment, ...]:
+    """Its places; of a cylindrical joint that only turns in the plane the rotations."""
+    kept = [p for p in one.attachments if "turn" not in kind or p.kind == "rotation"]
+    if "friction_slide" in kind:
+        kept = kept[:3]
+    return tuple(flat.place(p) for p in kept)
+
+
+def _scalars(one: Element) -> dict[str, ArrayLike]:
+    """Constants that are no directions."""
+    return {name: value for name, value in one.constants.items() if np.ndim(value) == 0}
+
+
+def _axis(one: Element, number: str = "") -> np.ndarray:
+    """The axis about which an angle is read."""
+    return np.cross(one.constants["n" + number], one.constants["m" + number])
+
+
+def _sign(flat: Flattening, one: Element, number: str = "") -> float:
+    """Whether the angle counts as in the plane: 1, or -1 where it counts against it."""
+    return float(np.sign(flat.axial(_axis(one, number), f"the axis of {one.name!r}")))
+
+
+def _turn(kind: str) -> Callable[[Flattening, Element], Made]:
+    def made(flat: Flattening, one: Element) -> Made:
+        _sign(flat, one)
+        return kind, _scalars(one)
+    return made
+
+
+def _universal(flat: Flattening, one: Element) -> Made:
+    raise InputError(f"{one.name!r} is friction in a universal joint, which leaves the plane")
+
+
+def _ball(kind: str) -> Callable[[Flattening, Element], Made]:
+    return lambda flat, one: (kind, _scalars(one))
+
+
+def _slide(kind: str) -> Callable[[Flattening, Element], Made]:
+    def made(flat: Flattening, one: Element) -> Made:
+        e = flat.vector(one.constants["e"], f"the axis of {one.name!r}")
+        return kind, _scalars(one) | {"e": e}
+    return made
+
+
+def _cylindrical(flat: Flattening, one: Element) -> Made:
+    """In the plane it slides, or turns about the normal."""
+    if not flat.is_normal(one.constants["e"]):
+        found = _slide("planar_friction_slide_f1m1")(flat, one)
+        return found[0], found[1] | {"radius": 1.0}
+    c = _scalars(one)
+    return "planar_friction_turn_f2", c | {"bristle": c["bristle"] * c["radius"]**2}
+
+
+def _turn_stop(flat: Flattening, one: Element) -> Made:
+    return "planar_turn_stop", _limits(_scalars(one), _sign(flat, one))
+
+
+def _limits(c: dict[str, ArrayLike], sign: float) -> dict[str, ArrayLike]:
+    """The limits of a measure that may count the other way."""
+    if sign > 0:
+        return c
+    return c | {"lower": -np.asarray(c["upper"]), "upper": -np.asarray(c["lower"])}
+
+
+def _gear(flat: Flattening, one: Element) -> Made:
+    first, second = (_sign(flat, one, k) for k in "12")
+    c = _limits(_scalars(one), first)
+    return "planar_gear_play", c | {"ratio": c["ratio"] * first * second}
+
+
+def _on_plane(flat: Flattening, one: Element) -> Made:
+    n = flat.vector(one.constants["n"], f"the normal of {one.name!r}")
+    return "planar_" + one.kind, _scalars(one) | {"n": n}
+
+
+def _on_cylinder(flat: Flattening, one: Element) -> Made:
+    if not flat.is_normal(one.constants["e"]):
+        raise InputError(f"the axis of {one.name!r} is not normal to the plane")
+    return "planar_" + one.kind.replace("cylinder", "sphere"), _scalars(one)
+
+
+LAWS: dict[str, Callable[[Flattening, Element], Made]] = {
+    "friction_turn": _turn("planar_friction_turn"),
+    "friction_turn_f3m2": _turn("planar_friction_turn_f2"), "friction_turn_f3m1": _universal,
+    "friction_slide": _slide("planar_friction_slide"),
+    "friction_slide_f2": _slide("planar_friction_slide_f1"),
+    "friction_slide_f2m3": _slide("planar_friction_slide_f1m1"),
+    "friction_cylindrical_f2m2": _cylindrical, "friction_spherical": _ball("planar_friction_turn"),
+    "friction_spherical_f3": _ball("planar_friction_turn_f2"),
+    "turn_stop": _turn_stop, "slide_stop": _slide("planar_slide_stop"),
+    "distance_stop": _ball("planar_distance_stop"), "gear_play": _gear,
+    "sphere_on_plane": _on_plane, "point_on_plane": _on_plane,
+    "sphere_on_sphere": _ball("planar_sphere_on_sphere"),
+    "point_on_sphere": _ball("planar_point_on_sphere"),
+    "sphere_on_cylinder": _on_cylinder, "point_on_cylinder": _on_cylinder}

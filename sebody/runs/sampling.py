@@ -1,0 +1,162 @@
+"""Sensors and controllers of a run, as far as Python has to do with them."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody import inputs
+from sebody.assembly.channels import channel
+from sebody.assembly.numbering import Numbering
+from sebody.engine.control import set_input, set_next
+from sebody.engine.control_data import (
+    COUNTS,
+    DOT,
+    HAS,
+    OUTSIDE,
+    STOP,
+    WAITS,
+)
+from sebody.engine.state import ASKED, SAMPLED, State
+from sebody.engine.system import System
+from sebody.errors import InputError
+from sebody.model.mechanism import Mechanism
+from sebody.results.naming import look_up
+from sebody.results.recording import Recording
+
+MULTIPLE = 1e-6     # of a step: by which a period may miss a multiple of it
+AXES = {"position": "q", "velocity": "v", "acceleration": "a"}
+
+
+class Sampling:
+    """What a run needs of Python at samples: readings of sensors that the loop cannot read."""
+
+    def __init__(self, model: Mechanism, numbering: Numbering, system: System, state: State):
+        self.model, self.numbering, self.system, self.state = model, numbering, system, state
+        kinds = system.control.channels[:, 0]
+        self._outside = [(COUNTS + system.control.periods.size + k, sensor.quantity)
+                         for k, sensor in enumerate(numbering.kept.sensors)
+                         if kinds[k] == OUTSIDE]
+        self._readers: dict[str, Callable[[], float | NDArray]] = {}
+        self._numbers = {name: k for k, name in enumerate(numbering.kept.ports)}
+
+    @property
+    def samples(self) -> bool:
+        """Whether there is anything to sample."""
+        return self.system.control.periods.size > 0
+
+    def serve(self) -> None:
+        """Read what the loop waits for."""
+        memory = self.state.memory
+        if memory[WAITS] == 1.0 and memory[HAS] == 0.0:
+            row = self._row()
+            for place, quantity in self._outside:
+                memory[place] = look_up(row, quantity)[0]
+            memory[HAS] = 1.0
+
+    def check(self, h: float, fixed: bool) -> None:
+        """Refuse quantities that are no numbers, and periods that fixed steps do not meet.
+
+        Raises
+        ------
+        InputError
+            The message names the sensor or controller.
+        """
+        for sensor in self.numbering.kept.sensors:
+            if any(sensor.quantity == quantity for _, quantity in self._outside):
+                self._check_number(sensor.name, sensor.quantity)
+        tasks = [(f"sensor {one.name!r}", one.period) for one in self.model.sensors.values()
+                 if one.period]
+        tasks += [(f"controller {one.name!r}", one.period)
+                  for one in self.model.controllers.values()]
+        for what, period in tasks if fixed else ():
+            steps = period / h
+            if round(steps) < 1 or abs(steps - round(steps)) > MULTIPLE * max(steps, 1.0):
+                near = period / max(1, int(np.ceil(steps - MULTIPLE)))
+                raise InputError(f"{what} has the period {period:.9g}, which the step {h:.9g} does "
+                                 f"not divide: give a step that does, such as {near:.6g}, or "
+                                 "variable steps, tolerance=Tolerance(...)")
+
+    def _check_number(self, name: str, quantity: str) -> None:
+        try:
+            found = look_up(self._row(), quantity)
+        except InputError as error:
+            raise InputError(f"sensor {name!r}: {error}") from error
+        if found.ndim > 1:
+            parts = "xyz"[:found.shape[1]] if found.ndim == 2 and found.shape[1] < 4 else "012"
+            given = ", ".join(f"{quantity}.{part}" for part in parts[:3])
+            raise InputError(f"sensor {name!r} measures {quantity!r}, which is several numbers: "
+                             f"give one of them, such as {given}")
+
+    def begin(self) -> bool:
+        """Ask for the first samples, once accelerations are known; whether there are any."""
+        if not self.samples:
+            return False
+        set_next(self.system.control, self.state.memory)
+        self.state.control.restart, self.state.control.meets = ASKED, SAMPLED
+        return True
+
+    def stop_at(self, t: float) -> None:
+        """Let a variable step end at a time at which inputs may be set."""
+        if self._numbers and self.state.control.adaptive:
+            self.state.memory[STOP] = t
+            set_next(self.system.control, self.state.memory)
+
+    def set_input(self, name: str, value: float) -> bool:
+        """Set an input; whether it changed.
+
+        Raises
+        ------
+        InputError
+            No such input, or no number.
+        """
+        if name not in self._numbers:
+            inputs.choice(name, "input", self._numbers or ["none: add model.actuator(...)"])
+        if type(value) is not float or value - value != 0.0:
+            value = inputs.number(value, f"input {name!r}")
+        return bool(set_input(self.system, self.state, self._numbers[name], value))
+
+    def read(self, name: str) -> float | NDArray:
+        """A quantity in the state reached.
+
+        Raises
+        ------
+        InputError
+            A name that nothing has.
+        """
+        reader = self._readers.get(name)
+        if reader is None:
+            reader = self._readers.setdefault(inputs.name(name, "name of a quantity"),
+                                              self._reader(name))
+        return reader()
+
+    def _reader(self, name: str) -> Callable[[], float | NDArray]:
+        now, frames, values = self.state.now, self.state.frames, self.numbering.kept.values
+        if name in values:
+            place = values[name]
+            return lambda: float(frames[place])
+        owner, _, quantity = name.rpartition(".")
+        node = self.model.nodes.get(owner)
+        if quantity in AXES and node is not None and node.position is not None:
+            part = self.state.recorded_parts[AXES[quantity]]
+            first = part.start + self.numbering.dof_blocks[node.position]
+            last = first + self.model.dimension
+            return lambda: now[first:last].copy()
+        made = channel(self.model, self.numbering, name)
+        kind, one, other = made.places
+        numbers = made.numbers
+        if kind == DOT and np.count_nonzero(numbers) == np.count_nonzero(numbers[1:4]) == 1:
+            k = int(np.flatnonzero(numbers)[0])
+            factor, place = float(numbers[k]), int(one + k - 1)
+            return lambda: factor * float(now[place])
+        self._check_known(name)
+        return lambda: look_up(self._row(), name)[0]
+
+    def _check_known(self, name: str) -> None:
+        look_up(self._row(), name)
+
+    def _row(self) -> Recording:
+        """The state reached, as a result reads it."""
+        return Recording(self.model, self.numbering, self.system, self.state,
+                         self.state.now[None].copy(), 0.0)
+

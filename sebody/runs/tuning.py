@@ -1,0 +1,227 @@
+"""Bristles of friction: stiffness from the mass they hold, and the force they carry at the start.
+
+A bristle that is much stiffer than ``m/h^2`` makes steps of the length h fail, one that is much
+softer gives way. Its stiffness is ``m/h^2`` unless it is given, where m is the mass that resists a
+force along it, ``1/(B M^-1 B^T)`` with the joints as they are.
+
+At the start bristles of joints at rest must carry what holds them: unloaded ones would give way.
+Their forces are those at which nothing that they hold is accelerated, found by Newton's iteration,
+since normal forces depend on them; what needs more than the static limit slides from the start.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_matrix
+
+from sebody.assembly.numbering import Numbering, stretch
+from sebody.contract.layout import Row
+from sebody.engine.evaluate import to_body_axes
+from sebody.engine.state import State
+from sebody.engine.system import System
+from sebody.kernels.loader import element_kernel
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import DofBlock, Element
+from sebody.runs.redundancy import least
+
+STILL = 1e-9            # of the mobility of the parts alone: that of what a drive moves
+AT_REST = 1e-9          # rate of a joint at rest, relative to that of the model
+HELD = 1e-12            # acceleration of what is held, relative to that without friction
+MOST = 30               # iterations for the forces at the start
+RESOLVED = 0.1          # angular frequency of teeth in contact, times the step, for the guard
+BEYOND = 2.0            # of the static limit: force of a bristle that is to slide
+
+
+def tune(model: Mechanism, system: System, numbering: Numbering, state: State,
+         masses: csc_matrix) -> None:
+    """Set stiffness and damping of bristles, and the stiffness of gear teeth, that are not given.
+
+    Parameters
+    ----------
+    masses : (n, n)
+        Masses and constraints at the start.
+    """
+    tuned = [load for load in model.loads if load.tuned]
+    if not tuned:
+        return
+    solve = least(masses, system)
+    for load in tuned:
+        constants = _Constants(load, system, numbering)
+        rows = directions(load, numbering, state)
+        mass = 1.0 / max(_mobility(row, solve, system, state, numbering.free) for row in rows)
+        natural = mass / state.clock.step**2
+        if "teeth" in load.tuned:
+            constants["stiffness"] = RESOLVED**2 * natural
+            continue
+        stiffness = constants["bristle"] = load.constants["bristle"] or natural
+        numbering.bristles[load] = stiffness
+        constants["bristle_damping"] = 2.0 * load.tuned["damping"] * np.sqrt(stiffness * mass)
+
+
+def _mobility(row: NDArray, solve, system: System, state: State, free: int) -> float:
+    """Acceleration along a direction by a unit force along it.
+
+    What a drive moves does not give way: it gets the mobility of its parts alone.
+    """
+    own = row[:free] != 0.0
+    alone = float((row[:free][own]**2 / np.maximum(system.inertias[:free][own], 1e-300)).sum())
+    found = float(response(row, solve, system, state, free) @ row)
+    return found if found > STILL * alone else max(alone, 1e-300)
+
+
+def response(row: NDArray, solve, system: System, state: State, free: int) -> NDArray:
+    """Accelerations by a unit force along a direction, (coordinates,)."""
+    force = row.copy()
+    to_body_axes(system, state.frames, force, False)
+    found = np.zeros(len(row))
+    found[:free] = solve(force[:free])
+    found *= system.is_multiplier[:len(row)] == 0.0
+    to_body_axes(system, state.frames, found, True)
+    return found
+
+
+class _Constants:
+    """The constants of an element in a system, by name."""
+
+    def __init__(self, element: Element, system: System, numbering: Numbering) -> None:
+        kernel = element_kernel(element.kind)
+        self.places = Row(element.name, kernel.CONSTANTS).slices({})
+        self.all, self.first = system.constants, numbering.constants_at[element]
+
+    def __setitem__(self, name: str, value: float) -> None:
+        self.all[self.first + self.places[name].start] = value
+
+    def __getitem__(self, name: str) -> float:
+        return float(self.all[self.first + self.places[name].start])
+
+
+def directions(element: Element, numbering: Numbering, state: State) -> list[NDArray]:
+    """Directions of an element's measures among all coordinates: rates are ``row . v``.
+
+    Of contacts the axes of space at its nodes: of the centre against the surface.
+    """
+    c, size = element.constants, len(element.dof_blocks[0].start)
+    kind = element.kind.removeprefix("planar_")
+    places = [t for t in element.dof_blocks if not t.rotational]
+    turns = [t for t in element.dof_blocks if t.rotational]
+    if kind.startswith(("sphere_on", "point_on")):
+        return [_pair(numbering, places, axis, [axis, axis]) for axis in np.eye(size)]
+    if kind.startswith("friction_slide"):
+        return [_slide(numbering, state, places, turns[0], c["e"])]
+    if kind.startswith("friction_cylindrical"):
+        return [_slide(numbering, state, places, turns[0], c["e"]),
+                c["radius"] * _turn(numbering, turns, np.cross(c["n"], c["m"]))]
+    if kind.startswith("friction_spherical"):
+        Ra, Rb = (_rotation(numbering, state, t) for t in turns)
+        return [_pair(numbering, turns, axis, [Ra.T @ Rb @ axis, axis]) for axis in np.eye(3)]
+    if kind == "gear_play":
+        return [_turn(numbering, turns[:2], np.cross(c["n1"], c["m1"]) if "n1" in c else None)]
+    return [_turn(numbering, turns, np.cross(c["n"], c["m"]) if "n" in c else None)]
+
+
+def _turn(numbering: Numbering, turns: list[DofBlock], axis: NDArray | None) -> NDArray:
+    axis = np.ones(1) if axis is None else axis
+    return _pair(numbering, turns, axis, [axis, axis])
+
+
+def _slide(numbering: Numbering, state: State, places: list[DofBlock], carrier: DofBlock,
+           e: NDArray) -> NDArray:
+    along = _rotation(numbering, state, carrier) @ e
+    return _pair(numbering, places[::-1], along, [along, along])
+
+
+def _pair(numbering: Numbering, dof_blocks: list[DofBlock], axis: NDArray,
+          vectors: list[NDArray]) -> NDArray:
+    """A row that takes the rate of the second DOF block from that of the first."""
+    row = np.zeros(numbering.total)
+    for dof_block, sign, vector in zip(dof_blocks, (1.0, -1.0), vectors, strict=True):
+        own = dof_block.root if dof_block.root is not None else dof_block
+        row[stretch(numbering, own)] += sign * vector
+    return row
+
+
+def _rotation(numbering: Numbering, state: State, dof_block: DofBlock) -> NDArray:
+    """Rotation matrix of a DOF block in space; in a plane (2, 2)."""
+    if dof_block in numbering.rotations:
+        k = numbering.rotations[dof_block]
+        return state.R[9 * k:9 * k + 9].reshape(3, 3)
+    angle = state.q[numbering.dof_blocks[dof_block]]
+    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+
+class _Held(NamedTuple):
+    """Friction of a joint at rest."""
+
+    constants: _Constants
+    rows: list[NDArray]
+    bent: list[int]         # places of the bristles in `State.frames`
+    normal: int             # place of the normal force
+
+
+class LoadedBristles:
+    """Forces of bristles of joints at rest; `solve_again` solves for accelerations.
+
+    Parameters
+    ----------
+    model : Mechanism
+    system, numbering, state
+        Of a run, its accelerations solved for.
+    """
+
+    def __init__(self, model: Mechanism, system: System, numbering: Numbering, state: State):
+        self.system, self.numbering, self.state = system, numbering, state
+        self.held = [one for load in model.loads if load.tuned and load.kind.removeprefix(
+            "planar_").startswith("friction") for one in self._held(load)]
+
+    def _held(self, load: Element) -> list[_Held]:
+        """The friction, if its joint is at rest and its bristles are not bent yet."""
+        constants = _Constants(load, self.system, self.numbering)
+        rows = directions(load, self.numbering, self.state)
+        memory, names = self.numbering.memories[load], element_kernel(load.kind).MEMORY
+        bent = [place for place, name in zip(memory, names, strict=True) if name.startswith("bent")]
+        fastest = np.abs(self.state.v).max()
+        moves = any(abs(row @ self.state.v) > AT_REST * fastest for row in rows)
+        if moves or constants["speed"] > 0 or self.state.frames[bent].any():
+            return []
+        return [_Held(constants, rows, bent, memory[names.index("normal")])]
+
+    def load(self, masses: csc_matrix, solve_again) -> None:
+        """Bend the bristles so that what they hold stays at rest."""
+        rows = [row for one in self.held for row in one.rows]
+        if not rows:
+            return
+        B, state = np.array(rows), self.state
+        solve = least(masses, self.system)
+        W = B @ np.array([response(row, solve, self.system, state, self.numbering.free)
+                          for row in rows]).T
+        forces, slides = np.zeros(len(rows)), np.zeros(len(rows), dtype=bool)
+        # weightless frictionless joints have nothing to hold
+        first = np.abs(B @ state.a).max()
+        for _ in range(MOST):
+            acceleration = B @ state.a
+            sticks = ~slides
+            if np.abs(acceleration[sticks]).max(initial=0.0) <= HELD * first:
+                return
+            change = np.linalg.lstsq(W[np.ix_(sticks, sticks)], acceleration[sticks],
+                                     rcond=1e-12)[0]
+            forces[sticks] += change
+            self._bend(forces, slides)
+            solve_again()
+
+    def _bend(self, forces: NDArray, slides: NDArray) -> None:
+        """Set the bristles; those that would be bent beyond their limit slide."""
+        at = 0
+        for one in self.held:
+            own = slice(at, at + len(one.rows))
+            at = own.stop
+            lever = 1.0 if "e" in one.constants.places and len(one.rows) == 2 else (
+                one.constants["radius"])
+            limit = one.constants["static"] * lever * self.state.frames[one.normal]
+            size = np.linalg.norm(forces[own])
+            if size > limit * (1.0 + 1e-12):
+                slides[own] = True
+                forces[own] *= BEYOND * max(limit, 1e-300) / size
+            else:
+                slides[own] = False
+            self.state.frames_old[one.bent] = forces[own] / one.constants["bristle"]

@@ -1,0 +1,150 @@
+"""Quantities in states moved a little: their derivatives along small motions.
+
+A quantity follows from its values in states moved forth and back along a motion, in positions,
+velocities and accelerations: whatever has a history has a derivative. Forces of the elements are
+not evaluated in the moved states, where differences of large ones would cancel: they change by the
+exact element matrices. So do forces of joints without equations, which follow from them.
+"""
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.assembly.numbering import coordinates
+from sebody.engine.links import pull_back
+from sebody.errors import InputError
+from sebody.results import rotations
+from sebody.results.postprocessing import Forces
+from sebody.results.result import Result
+from sebody.runs.rotating_frame import Spin, by_element, motion
+from sebody.runs.simulation import Simulation
+from sebody.runs.state_derivatives import derivative
+
+UNMOVED, ADDED_UP = ("t", "energy.external_work"), ".work"     # quantities that do not answer
+# motion of the states that are compared, of the extent or in radians: of its fourth power is the
+# error of differences over steps of one and two, and rounding is divided by it
+SMALL = 1e-3
+STEPS, WEIGHTS = (1.0, -1.0, 2.0, -2.0), np.array([8.0, -8.0, -1.0, 1.0]) / 12.0
+
+
+class Moves(NamedTuple):
+    """Small motions of all coordinates, (k, coordinates) each, in global axes."""
+
+    positions: NDArray
+    velocities: NDArray
+    accelerations: NDArray
+
+    def plus(self, *others: NDArray) -> "Moves":
+        """The sum of these motions and others, of positions, velocities and accelerations."""
+        return Moves(*(own + other for own, other in zip(self, others, strict=True)))
+
+
+def refuse_unmoved(names: Iterable[str], what: str) -> None:
+    """Refuse quantities that add up over time.
+
+    Raises
+    ------
+    InputError
+        The message ends with `what` they do not have, and why.
+    """
+    for name in names:
+        if name in UNMOVED or name.endswith(ADDED_UP):
+            raise InputError(f"quantity {name!r} has no {what}: time and work are not "
+                             "periodic; name a position, a force or a power")
+
+
+def moves(run: Simulation | Result, spin: Spin, unknowns: NDArray, rates: NDArray,
+          seconds: NDArray) -> Moves:
+    """Motion of all coordinates by that of the unknowns (k, n) and its rates, in their own axes."""
+    G = motion(run).toarray().T
+    q, v, a = unknowns @ G, rates @ G, seconds @ G
+    if spin.rotates:
+        velocity, place, turning = spin.operators(run)
+        a = a + v @ turning.T + q @ place.T
+        v = v + q @ velocity.T
+    return Moves(q, v, a)
+
+
+def differences(run: Simulation | Result, names: Sequence[str], along: Moves, pushed: NDArray
+                ) -> dict[str, NDArray]:
+    """Derivatives of quantities along some motions, (k, ...) of each.
+
+    Parameters
+    ----------
+    along : Moves
+    pushed : (k, forces of all elements)
+        Change of the forces of elements beside what the motions make.
+    """
+    rows, scale = _moved_rows(run, along)
+    recording = Result(run.model, run.numbering, run.system, run.state, rows, 0.0)
+    base = Result(run.model, run.numbering, run.system, run.state, run.state.now[None].copy(), 0.0)
+    unique = along
+    if run.system.relaxed[0]:       # multipliers of least norm
+        q = recording.unique_rows[:, run.state.recorded_parts["q"]]
+        unique = along._replace(positions=np.where(
+            run.system.is_multiplier[:q.shape[1]] > 0, _derivative(q, scale), along.positions))
+    change = pushed + _forces(run, unique)
+    elements = base.forces.elements + _steps(scale[:, None] * change)
+    recording.forces = Forces(elements, _sums(run, elements, rows))
+    return {name: _derivative(np.asarray(recording[name]), scale) for name in names}
+
+
+def _moved_rows(run: Simulation | Result, along: Moves) -> tuple[NDArray, NDArray]:
+    """States moved forth and back along every motion, and by how much of it, (k,)."""
+    numbering, state = run.numbering, run.state
+    extent = np.full(numbering.total, np.inf)   # of what has no size of its own: any
+    rotated = {}
+    for node in (*run.model.nodes.values(), *run.model.grounds):
+        for dof_block in (node.position, node.rotation):
+            if dof_block is not None and dof_block in numbering.dof_blocks:
+                own = coordinates(numbering, dof_block)
+                extent[own] = 1.0 if dof_block.rotational else run.model.size()
+                if dof_block.rotational and not run.model.planar:
+                    rotated[numbering.rotations[dof_block]] = own
+    largest = (np.abs(along.positions) / extent).max(axis=1)
+    scale = SMALL / np.where(largest > 0, largest, 1.0)
+    parts = state.recorded_parts
+    rows = np.tile(state.now, (len(STEPS) * len(scale), 1))
+    for name, values in zip("qva", along, strict=True):
+        rows[:, parts[name]] += _steps(scale[:, None] * values)
+    turns = _steps(scale[:, None] * along.positions)
+    for number, own in rotated.items():
+        first = parts["R"].start + 9 * number
+        R = rows[:, first:first + 9].reshape(-1, 3, 3)
+        rows[:, first:first + 9] = (R @ rotations.matrices(turns[:, own])).reshape(-1, 9)
+    return rows, scale
+
+
+def _forces(run: Simulation | Result, along: Moves) -> NDArray:
+    """Change of the forces of all elements along some motions, by the exact matrices."""
+    found = np.zeros((len(along.positions), run.state.g.size))
+    for values, weights in zip(along, ((0, 0, 1), (0, 1, 0), (1, 0, 0)), strict=True):
+        derivative(run, *map(float, weights))
+        found += (by_element(run) @ values.T).T
+    return found
+
+
+def _sums(run: Simulation | Result, elements: NDArray, rows: NDArray) -> NDArray:
+    """Sums of the forces of elements; those on ends of rigid links act on roots and rotations."""
+    system, parts = run.system, run.state.recorded_parts
+    found = np.zeros((len(rows), run.numbering.total))
+    for row, forces, sums in zip(rows, elements, found, strict=True):
+        np.add.at(sums, system.g_unknown, forces)
+        if system.links.dependent.shape[0]:
+            pull_back(system.links, row[parts["q"]], row[parts["R"]], sums)
+    return found
+
+
+def _steps(values: NDArray) -> NDArray:
+    """Rows times the steps, those of one row one behind the other."""
+    found = np.multiply.outer(STEPS, values)
+    return np.swapaxes(found, 0, 1).reshape(-1, *values.shape[1:])
+
+
+def _derivative(values: NDArray, scale: NDArray) -> NDArray:
+    """Derivatives from values in states moved by steps of these scales."""
+    found = values.reshape(len(scale), len(STEPS), *values.shape[1:])
+    return np.einsum("j,kj...->k...", WEIGHTS, found) / scale.reshape(
+        -1, *[1] * (values.ndim - 1))
