@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
@@ -112,7 +112,7 @@ def _history(where: str, limit: float | tuple[float, float] | None, rate: float 
 
 
 def _of_joint(model: Mechanism, where: str, joint: str | Joint, what: str | None
-              ) -> tuple[str, float, tuple[Attachment, ...], dict[str, ArrayLike]]:
+              ) -> tuple[str, float, tuple[Attachment, ...], dict[str, float | NDArray]]:
     """Way, sign, places and constants of an actuator in a joint."""
     names = {one.name: one for one in model.joints}
     if isinstance(joint, str) and joint not in names:
@@ -136,7 +136,7 @@ def _of_joint(model: Mechanism, where: str, joint: str | Joint, what: str | None
 
 
 def _between(model: Mechanism, where: str, between: tuple[Node | str, Node | str],
-             what: str | None) -> tuple[str, float, tuple[Attachment, ...], dict[str, ArrayLike]]:
+             what: str | None) -> tuple[str, float, tuple[Attachment, ...], dict[str, float | NDArray]]:
     if isinstance(between, str) or len(ends := inputs.items(
             between, f"{where}: between", "give two nodes")) != 2 or what == "torque":
         raise InputError(f"{where}: between is {inputs.shown(between)}: give two nodes, which a "

@@ -244,10 +244,15 @@ class Joint:
                 f"{counted(self.multipliers, 'equation')}{course}>")
 
     @property
+    def own_axes(self) -> Axes:
+        """Its axes, where it is known to have some: it is no distance."""
+        assert self.axes is not None
+        return self.axes
+
+    @property
     def axis(self) -> NDArray:
         """The first of its axes, at the start."""
-        assert self.axes is not None        # of a distance, which has none, nothing is asked
-        return self.axes.columns[:, 0]
+        return self.own_axes.columns[:, 0]
 
     @property
     def multipliers(self) -> int:
