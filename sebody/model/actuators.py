@@ -126,17 +126,19 @@ def _of_joint(model: Mechanism, where: str, joint: str | Joint, what: str | None
     if what is None and len(kinds) > 1:
         raise InputError(f"{where}: {own.name!r} slides and turns: give what='force' or 'torque'")
     chosen = inputs.choice(what or kinds[0], f"{where}: what", kinds)
-    axis = {} if model.planar and chosen == "torque" else {"e": own.axes.columns[:, 0]}
+    axis: dict[str, float | NDArray] = (
+        {} if model.planar and chosen == "torque" else {"e": own.axis})
     if chosen == "torque":
         return "turn", 1.0, rotations(own.node, own.to), axis
     # the way is that of the other node in the axes of the carrier
-    carrier = own.axes.carrier
+    carrier = own.own_axes.carrier
     other, sign = (own.to, -1.0) if carrier is own.node else (own.node, 1.0)
     return "slide", sign, positions(carrier, other) + rotations(carrier), axis
 
 
-def _between(model: Mechanism, where: str, between: tuple[Node | str, Node | str],
-             what: str | None) -> tuple[str, float, tuple[Attachment, ...], dict[str, float | NDArray]]:
+def _between(model: Mechanism, where: str, between: object,
+             what: str | None
+             ) -> tuple[str, float, tuple[Attachment, ...], dict[str, float | NDArray]]:
     if isinstance(between, str) or len(ends := inputs.items(
             between, f"{where}: between", "give two nodes")) != 2 or what == "torque":
         raise InputError(f"{where}: between is {inputs.shown(between)}: give two nodes, which a "

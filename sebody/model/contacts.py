@@ -191,7 +191,7 @@ def _impact(what: str, restitution: float, at_speed: float, stiffness: float | N
             "damping": damping_of(restitution, at_speed, what), "slow": SLOW * at_speed}
 
 
-def _joint(model: Mechanism, joint: Joint | str, what: str) -> Joint:
+def _joint(model: Mechanism, joint: object, what: str) -> Joint:
     found = model.element(joint) if isinstance(joint, str) else joint
     if not isinstance(found, Joint) or found not in model.joints:
         raise inputs.refusal(what, joint, "give a joint of the model or its name")
@@ -230,6 +230,7 @@ def _carrier(model: Mechanism, on: Surface, a: Node, what: str) -> Node:
         point = np.zeros(model.dimension) if on.point is None else vector(
             model, on.point, f"{what}: point of the {on.kind}")
         if on.kind != "sphere":     # nearest to the node: in its plane of symmetry, if it has one
+            assert on.direction is not None
             axis = direction(model, on.direction, what, a)
             along = axis * (axis @ (a.point - point))
             point = a.point - along if on.kind == "plane" else point + along
@@ -248,15 +249,18 @@ def _shape(model: Mechanism, on: Surface, a: Node, b: Node, what: str
     """Constants of a surface, and the distance of the node from it."""
     s = a.point - b.point
     if on.kind == "plane":
+        assert on.direction is not None
         n = direction(model, on.direction, what, a)
         level = 0.0 if on.point is None or on.node is None else float(n @ (vector(
             model, on.point, f"{what}: point of the plane") - b.point))
         return {"n": n, "level": level}, float(n @ s) - level
     side = -1.0 if on.inside else 1.0
+    assert on.radius is not None
     own: dict[str, float | NDArray] = {"size": on.radius, "side": side}
     if on.kind == "cylinder":
         if model.planar:
             raise InputError(f"{what}: the model is planar: give a sphere, which is a circle in it")
+        assert on.direction is not None
         e: NDArray = direction(model, on.direction, what, a)
         own["e"], s = e, s - e * (e @ s)
     return own, side * (float(np.linalg.norm(s)) - on.radius)

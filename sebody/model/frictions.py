@@ -35,7 +35,7 @@ class Dry(NamedTuple):
 def friction(model: Mechanism, joint: Joint | str, coefficient: float, static: float | None = None,
              radius: float | None = None, preload: float = 0.0, arm: float | None = None,
              reaction: bool = True, bristle: float | None = None, damping: float = 0.7,
-             speed: float = 0.0, name: str | None = None) -> Element | tuple[Element, Element]:
+             speed: float = 0.0, name: str | None = None) -> Element | tuple[Element, ...]:
     """Dry friction in a joint or drive: it sticks up to a limit, and slides against the motion.
 
     The limit is the coefficient times the normal force, times the radius where the joint turns. The
@@ -171,12 +171,12 @@ def _parts(model: Mechanism, joint: Joint, sliding: bool, what: str
     return [(rotations(a, b), {} if model.planar else turning(joint.own_axes))]
 
 
-def turning(axes: Axes) -> dict[str, NDArray]:
+def turning(axes: Axes) -> dict[str, float | NDArray]:
     """What the angle about the first of some axes is read from."""
     return _seen(axes.columns[:, 0], axes.columns[:, 1])
 
 
-def _seen(axis: NDArray, across: NDArray) -> dict[str, NDArray]:
+def _seen(axis: NDArray, across: NDArray) -> dict[str, float | NDArray]:
     """A direction across the axis, and the same and one at a right angle in the other body."""
     across = across - axis * (axis @ across)
     across = across / np.linalg.norm(across)

@@ -28,7 +28,8 @@ def rate(recording: Recording, name: str) -> NDArray:
     """Rate of this angle, (n,)."""
     joint = _of_kind(recording, name, TURNS, "rate", "turn")
     v = recording.recorded("v")
-    a, b = (v[:, stretch(recording.numbering, dof_block(node, "rotation"))] for node in (joint.node, joint.to))
+    a, b = (v[:, stretch(recording.numbering, dof_block(node, "rotation"))]
+            for node in (joint.node, joint.to))
     if recording.model.planar:
         return a[:, 0] - b[:, 0]
     axis = joint.axis
@@ -79,7 +80,8 @@ def _way(recording: Recording, joint: Joint) -> tuple[NDArray, NDArray, NDArray,
 def _rotation(recording: Recording, node: Node) -> NDArray:
     """Rotation matrices of a node, (n, 3, 3); in a plane angles."""
     if recording.model.planar:
-        return recording.recorded("q")[:, stretch(recording.numbering, dof_block(node, "rotation")).start]
+        at = stretch(recording.numbering, dof_block(node, "rotation"))
+        return recording.recorded("q")[:, at.start]
     k = recording.numbering.rotations[dof_block(node, "rotation")]
     return recording.recorded("R")[:, 9 * k:9 * k + 9].reshape(-1, 3, 3)
 
