@@ -79,7 +79,7 @@ def test_every_package_is_installed():
 
 
 def test_the_wheel_holds_files_that_are_no_modules(tmp_path):
-    """Templates, styles and scripts of pages."""
+    """Templates, styles and scripts of pages; the file that tells type checkers to look."""
     clone = tmp_path / "clone"
     clone.mkdir()
     for name in (*FOLDERS, *FILES):
@@ -92,6 +92,7 @@ def test_the_wheel_holds_files_that_are_no_modules(tmp_path):
         held = set(wheel.namelist())
     files = {str(path.relative_to(ROOT)) for path in (ROOT / "sebody/pictures/page").iterdir()}
     assert len(files) >= 13 and files <= held
+    assert "sebody/py.typed" in held
 
 
 def test_messages_and_pages_name_extras_that_exist():

@@ -70,7 +70,7 @@ def control_arrays(model: Mechanism, numbering: Numbering, table_at: NDArray) ->
             for k, c in enumerate(controllers)], 10),
         wires=wires, ends=ends,
         inputs=_table([(port, place, table_at[port]) for port, place in kept.inputs.items()], 3),
-        limits=np.array([numbering.histories[port].limits for port in kept.inputs],
+        limits=np.array([numbering.time_functions[port].limits for port in kept.inputs],
                         dtype=float).reshape(-1, 2),
         parameters=np.concatenate([np.zeros(0), *(c.parameters for c in controllers)]),
         outside=np.array([int(any(one.attachments[0] == OUTSIDE for one in channels))]),
@@ -84,13 +84,13 @@ def begin(model: Mechanism, numbering: Numbering, control: Control, memory: NDAr
     memory[:] = 0.0
     memory[NEXT] = memory[STOP] = np.inf
     for port, place in kept.inputs.items():
-        start = numbering.histories[port].at(0.0)[0]
+        start = numbering.time_functions[port].at(0.0)[0]
         frames[place:place + INPUT_NUMBERS] = start, 0.0, start
     for k, one in enumerate(model.controllers.values()):
         first = kept.states[one.name]
         frames[first:first + len(one.states)] = one.states
         if one.delay:
-            starts = [numbering.histories[kept.ports[name]].at(0.0)[0] if name in kept.ports
+            starts = [numbering.time_functions[kept.ports[name]].at(0.0)[0] if name in kept.ports
                       else 0.0 for name in one.outputs]
             first = 1 + int(control.controllers[k, ITS_QUEUE])
             memory[first:first + one.delay * len(starts)] = np.tile(starts, one.delay)

@@ -45,6 +45,12 @@ class Numbering(NamedTuple):
         """What elements keep: places in `State.frames`."""
         return self.kept.memories
 
+    @property
+    def all_kept(self) -> Kept:
+        """What is kept, of a numbering that is complete."""
+        assert self.kept is not None
+        return self.kept
+
 
 def coordinates(numbering: Numbering, dof_block: DofBlock) -> list[int]:
     """Coordinates of a DOF block."""

@@ -110,10 +110,10 @@ class Row(NamedTuple):
         row: list[int] = []
         for part in self.parts:
             value = values[part.name]
-            listed = isinstance(value, list)
-            if listed or part.shape:        # most are single numbers, of thousands of elements
-                self._check_shape(part, (len(value),) if listed else (), counts)
-            row += value if listed else (value,)
+            entries = value if isinstance(value, list) else (value,)
+            if entries is value or part.shape:      # most are single numbers, of many elements
+                self._check_shape(part, (len(entries),) if entries is value else (), counts)
+            row += entries
         return row
 
     def unpack(self, counts: Counts, row: NDArray) -> dict[str, NDArray]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
@@ -112,7 +112,7 @@ def _history(where: str, limit: float | tuple[float, float] | None, rate: float 
 
 
 def _of_joint(model: Mechanism, where: str, joint: str | Joint, what: str | None
-              ) -> tuple[str, float, tuple[Attachment, ...], dict[str, ArrayLike]]:
+              ) -> tuple[str, float, tuple[Attachment, ...], dict[str, float | NDArray]]:
     """Way, sign, places and constants of an actuator in a joint."""
     names = {one.name: one for one in model.joints}
     if isinstance(joint, str) and joint not in names:
@@ -126,17 +126,19 @@ def _of_joint(model: Mechanism, where: str, joint: str | Joint, what: str | None
     if what is None and len(kinds) > 1:
         raise InputError(f"{where}: {own.name!r} slides and turns: give what='force' or 'torque'")
     chosen = inputs.choice(what or kinds[0], f"{where}: what", kinds)
-    axis = {} if model.planar and chosen == "torque" else {"e": own.axes.columns[:, 0]}
+    axis: dict[str, float | NDArray] = (
+        {} if model.planar and chosen == "torque" else {"e": own.axis})
     if chosen == "torque":
         return "turn", 1.0, rotations(own.node, own.to), axis
     # the way is that of the other node in the axes of the carrier
-    carrier = own.axes.carrier
+    carrier = own.own_axes.carrier
     other, sign = (own.to, -1.0) if carrier is own.node else (own.node, 1.0)
     return "slide", sign, positions(carrier, other) + rotations(carrier), axis
 
 
-def _between(model: Mechanism, where: str, between: tuple[Node | str, Node | str],
-             what: str | None) -> tuple[str, float, tuple[Attachment, ...], dict[str, ArrayLike]]:
+def _between(model: Mechanism, where: str, between: object,
+             what: str | None
+             ) -> tuple[str, float, tuple[Attachment, ...], dict[str, float | NDArray]]:
     if isinstance(between, str) or len(ends := inputs.items(
             between, f"{where}: between", "give two nodes")) != 2 or what == "torque":
         raise InputError(f"{where}: between is {inputs.shown(between)}: give two nodes, which a "

@@ -4,6 +4,7 @@ Friction reads the force in a joint as multipliers. A joint of a shared position
 """
 
 from sebody.errors import InputError
+from sebody.model.inputs import dof_block
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, DofBlock, Element, Joint, Node, positions
 
@@ -35,11 +36,11 @@ def take_apart(model: Mechanism, joint: Joint) -> None:
             raise InputError(f"friction in {joint.name!r}: something else holds the position of "
                              f"node {node.name!r}, too: leave that out, or give friction a preload "
                              "and reaction=False")
-        node.position.fixed = False
+        dof_block(node, "position").fixed = False
         equation = Element(joint.name, model.kind_of("coincident_ground"), positions(node),
                            {"c": node.point}, model.dimension)
     else:
-        side, shared = _side(model, to, node, others), to.position
+        side, shared = _side(model, to, node, others), dof_block(to, "position")
         if side is not None and _linked(side, others):      # it keeps the position of its link
             side = _side(model, node, to, others)
             side = None if side is None or _linked(side, others) else side

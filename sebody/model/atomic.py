@@ -16,11 +16,12 @@ def atomic(build: Callable[Arguments, Built]) -> Callable[Arguments, Built]:
     checked.
     """
     @wraps(build)
-    def built(model, *args, **named):
+    def built(*args: Arguments.args, **named: Arguments.kwargs) -> Built:
+        model, *_ = args
         kept = {name: copy(value) for name, value in vars(model).items()
                 if isinstance(value, dict | list | set)}
         try:
-            return build(model, *args, **named)
+            return build(*args, **named)
         except BaseException:
             vars(model).update(kept)
             raise

@@ -12,6 +12,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from functools import lru_cache
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +30,7 @@ REMEDY = ("give a ratio of critical damping >= 0, or (ratio, mode) with a mode s
           "or an angular frequency")
 
 Times = tuple[float, ...]       # of tension, bending in the planes of y and z, torsion
-Damping = "float | tuple[float, str | float]"
+Damping: TypeAlias = float | tuple[float, str | float]
 
 
 def retardation_times(damping: Damping, name: str, planar: bool, length: float,
@@ -131,10 +132,10 @@ def _kinds(planar: bool) -> list[dict[str, NDArray]]:
 def _frequencies(planar: bool, length: float, section: AnySection, held: str,
                  number: int) -> Times:
     """Angular frequency of the mode of a number of each kind; 0 where nothing has mass."""
-    ends = np.zeros((2, 2 if planar else 3))
-    ends[1, 0] = length
-    fe_model = (planar_beam(*ends, section, ELEMENTS) if planar else
-                straight_beam(*ends, section, ELEMENTS, (0.0, 1.0, 0.0)))
+    first, last = np.zeros((2, 2 if planar else 3))
+    last[0] = length
+    fe_model = (planar_beam(first, last, section, ELEMENTS) if planar else
+                straight_beam(first, last, section, ELEMENTS, (0.0, 1.0, 0.0)))
     K, M = fe_model.stiffness.toarray(), fe_model.mass.toarray()
     return tuple(_frequency(K, M, axes, held, number) for axes in _kinds(planar))
 

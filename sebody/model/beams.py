@@ -32,7 +32,7 @@ OF_BODY = 20_000        # bytes of a superelement and its node
 def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
          section: AnySection, elements: int, bodies: int | None = None, modes: int = 0,
          up: ArrayLike | None = None, damping: Damping = 0.0,
-         stiffening: bool | None = None, **placing) -> list[Node]:
+         stiffening: bool | None = None, **placing: Any) -> list[Node]:
     """A straight beam of equal superelements; with one element each, a nonlinear beam.
 
     A superelement of one finite element, with the mean of its two rotations as frame, has the
@@ -106,11 +106,11 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
     nodes = [first, *(node(model, f"{name} {k}", first.point + k * step)
                       for k in range(1, bodies)), last]
     body, parts = None, []
-    for k, pair in enumerate(pairwise(nodes)):
+    for k, span in enumerate(pairwise(nodes)):
         if body is None or callable(section):
             part = part_of(section, k / bodies, (k + 1) / bodies)
-            body = _part(model, pair, part, each, modes, up, times)
-        parts.append(superelement(model, name if bodies == 1 else f"{name} {k + 1}", body, pair,
+            body = _part(model, span, part, each, modes, up, times)
+        parts.append(superelement(model, name if bodies == 1 else f"{name} {k + 1}", body, span,
                                   stiffening=stiffening, **placing))
     model.beams.append(Beam(name, tuple(nodes), section, elements, deepcopy(options), tuple(parts),
                             tuple(part.body for part in parts)))
@@ -151,10 +151,9 @@ def _turned(body: ReducedBody, turn: tuple) -> ReducedBody:
 def _straight(planar: bool, length: float, section: AnySection, elements: int, modes: int,
               times: Times) -> ReducedBody:
     """A beam along x, its section's y axis along y."""
-    dimension = 2 if planar else 3
-    ends = np.zeros((2, dimension))
-    ends[1, 0] = length
-    fe_model = (planar_beam(*ends, section, elements) if planar else
-                straight_beam(*ends, section, elements, (0.0, 1.0, 0.0)))
+    first, last = np.zeros((2, 2 if planar else 3))
+    last[0] = length
+    fe_model = (planar_beam(first, last, section, elements) if planar else
+                straight_beam(first, last, section, elements, (0.0, 1.0, 0.0)))
     body = craig_bampton(fe_model, [(0, "full"), (elements, "full")], modes)
     return damped(body, times) if times else body

@@ -63,13 +63,13 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
         (the message says how to make it).
     """
     _check_name(model, name, "superelement")
-    nodes = tuple(known(model, n) for n in inputs.items(
+    own_nodes = tuple(known(model, n) for n in inputs.items(
         nodes, f"nodes of superelement {name!r}", "give a list of nodes"))
     if isinstance(body, str | PathLike) and Path(body).suffix == ".npz":
         body = load_body(body)
-    inputs.instance(body, f"body of superelement {name!r}", ReducedBody,
-                    "give a ReducedBody, such as craig_bampton returns, or a body file, "
-                    "BODY.npz")
+    body = inputs.instance(body, f"body of superelement {name!r}", ReducedBody,
+                           "give a ReducedBody, such as craig_bampton returns, or a body file, "
+                           "BODY.npz")
     if body.planar != model.planar:
         raise InputError(f"superelement {name!r} is {'planar' if body.planar else 'spatial'} "
                          f"and the model is {'planar' if model.planar else 'spatial'}: use one "
@@ -80,7 +80,7 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
     if frame is None:
         frame = default_frame(placed, inertia)
     own = known_frame(frame)
-    _check_place(name, placed, nodes)
+    _check_place(name, placed, own_nodes)
     check_frame(name, placed, frame)
     inertia, stiffening = chosen_inertia(name, placed, frame, inertia, stiffening)
     alpha, alpha_r = frame_weights(name, placed, frame, frame_node)
@@ -88,7 +88,7 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
     kernel = superelement_kernel_name(layout, own.kernel, inertia, placed.modes,
                                       needs_damped_kernel(placed, inertia))
     model.units = model.units or body.units
-    model.bodies[name] = Superelement(name, placed, nodes, frame, inertia, stiffening, layout,
+    model.bodies[name] = Superelement(name, placed, own_nodes, frame, inertia, stiffening, layout,
                                       alpha, alpha_r, kernel, np.zeros(placed.modes))
     model.own_names.add(name)
     return model.bodies[name]

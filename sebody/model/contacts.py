@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
@@ -113,10 +113,10 @@ def gear(model: Mechanism, first: Joint | str, second: Joint | str, ratio: float
     play = inputs.number(backlash, f"{what}: backlash", least=0)
     tuned = {} if stiffness is not None else {"teeth": 1.0}
     constants = _impact(what, restitution, at_speed, 1.0 if tuned else stiffness, exponent)
-    own: dict[str, ArrayLike] = {"ratio": ratio, "lower": -play / 2, "upper": play / 2}
+    own: dict[str, float | NDArray] = {"ratio": ratio, "lower": -play / 2, "upper": play / 2}
     for k, one in enumerate(joints, 1):
         if not model.planar:
-            own |= {f"{key}{k}": value for key, value in turning(one.axes).items()}
+            own |= {f"{key}{k}": value for key, value in turning(one.own_axes).items()}
     attachments = tuple(p for one in joints for p in rotations(one.node, one.to))
     name = chosen_name(model, name, what.replace("'", ""))
     made = Element(name, model.kind_of("gear_play"), attachments, constants | own, tuned=tuned)
@@ -182,7 +182,7 @@ def contact(model: Mechanism, node: Node | str, on: Surface, radius: float = 0.0
 
 
 def _impact(what: str, restitution: float, at_speed: float, stiffness: float | None,
-            exponent: float) -> dict[str, ArrayLike]:
+            exponent: float) -> dict[str, float | NDArray]:
     """Constants of the contact law."""
     if stiffness is None:
         raise InputError(f"{what}: give stiffness=, the force at a depth of one")
@@ -191,7 +191,7 @@ def _impact(what: str, restitution: float, at_speed: float, stiffness: float | N
             "damping": damping_of(restitution, at_speed, what), "slow": SLOW * at_speed}
 
 
-def _joint(model: Mechanism, joint: Joint | str, what: str) -> Joint:
+def _joint(model: Mechanism, joint: object, what: str) -> Joint:
     found = model.element(joint) if isinstance(joint, str) else joint
     if not isinstance(found, Joint) or found not in model.joints:
         raise inputs.refusal(what, joint, "give a joint of the model or its name")
@@ -212,12 +212,12 @@ def _measured(model: Mechanism, of: object) -> tuple[str, str, tuple, dict, floa
     what = f"stop of {joint.name!r}"
     kind = joint.constraints[0].kind.removeprefix("planar_") if joint.kind == "drive" else ""
     if joint.kind in TURNS or kind == "turn_drive":
-        own = {} if model.planar else turning(joint.axes)
+        own = {} if model.planar else turning(joint.own_axes)
         return what, "turn_stop", rotations(joint.node, joint.to), own, 0.0
     if joint.kind in SLIDES or kind == "slide_drive":
-        carrier = joint.axes.carrier
+        carrier = joint.own_axes.carrier
         other = joint.to if carrier is joint.node else joint.node
-        e = joint.axes.columns[:, 0]
+        e = joint.axis
         return (what, "slide_stop", positions(carrier, other) + rotations(carrier),
                 {"e": e, "start": e @ (other.point - carrier.point)}, 0.0)
     raise InputError(f"{what}: a {joint.kind} has neither an angle nor a way: give a revolute, "
@@ -230,6 +230,7 @@ def _carrier(model: Mechanism, on: Surface, a: Node, what: str) -> Node:
         point = np.zeros(model.dimension) if on.point is None else vector(
             model, on.point, f"{what}: point of the {on.kind}")
         if on.kind != "sphere":     # nearest to the node: in its plane of symmetry, if it has one
+            assert on.direction is not None
             axis = direction(model, on.direction, what, a)
             along = axis * (axis @ (a.point - point))
             point = a.point - along if on.kind == "plane" else point + along
@@ -244,19 +245,22 @@ def _carrier(model: Mechanism, on: Surface, a: Node, what: str) -> Node:
 
 
 def _shape(model: Mechanism, on: Surface, a: Node, b: Node, what: str
-           ) -> tuple[dict[str, ArrayLike], float]:
+           ) -> tuple[dict[str, float | NDArray], float]:
     """Constants of a surface, and the distance of the node from it."""
     s = a.point - b.point
     if on.kind == "plane":
+        assert on.direction is not None
         n = direction(model, on.direction, what, a)
         level = 0.0 if on.point is None or on.node is None else float(n @ (vector(
             model, on.point, f"{what}: point of the plane") - b.point))
         return {"n": n, "level": level}, float(n @ s) - level
     side = -1.0 if on.inside else 1.0
-    own: dict[str, ArrayLike] = {"size": on.radius, "side": side}
+    assert on.radius is not None
+    own: dict[str, float | NDArray] = {"size": on.radius, "side": side}
     if on.kind == "cylinder":
         if model.planar:
             raise InputError(f"{what}: the model is planar: give a sphere, which is a circle in it")
+        assert on.direction is not None
         e: NDArray = direction(model, on.direction, what, a)
         own["e"], s = e, s - e * (e @ s)
     return own, side * (float(np.linalg.norm(s)) - on.radius)

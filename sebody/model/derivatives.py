@@ -56,7 +56,7 @@ class _Symbols:
         return getattr(sympy, NAMES.get(name, name))
 
 
-def _symbolic(function: FunctionType) -> FunctionType:
+def _symbolic(function: Callable) -> Callable:
     """A copy of a function whose mathematics is SymPy's, of the functions it calls, too."""
     return rebuilt(function, _replaced)
 

@@ -29,9 +29,10 @@ from sebody.model.parts import (
     rotations,
 )
 from sebody.model.sharing import hold
+from sebody.model.time_functions import Source
 
 
-def drive_angle(model: Mechanism, node: Node | str, motion: object,
+def drive_angle(model: Mechanism, node: Node | str, motion: Source,
                 axis: ArrayLike = (0.0, 0.0, 1.0), to: Node | str | None = None,
                 name: str | None = None) -> Joint:
     """Prescribe the angle of `node` against `to` (the ground) about the axis they share.
@@ -55,7 +56,7 @@ def drive_angle(model: Mechanism, node: Node | str, motion: object,
     return _drive(model, Joint(name, (equation,), a, b, Axes.of(a, vectors), "drive"))
 
 
-def drive_slide(model: Mechanism, node: Node | str, motion: object, axis: ArrayLike,
+def drive_slide(model: Mechanism, node: Node | str, motion: Source, axis: ArrayLike,
                 to: Node | str | None = None, name: str | None = None) -> Joint:
     """Prescribe the displacement of `to` (a point of the ground) along an axis fixed in `node`.
 
@@ -74,7 +75,7 @@ def drive_slide(model: Mechanism, node: Node | str, motion: object, axis: ArrayL
     return _drive(model, Joint(name, (equation,), a, b, Axes.of(a, vectors), "drive"))
 
 
-def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: object,
+def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: Source,
          what: str = "position", name: str | None = None) -> Motion:
     """Prescribe the motion of a node: no unknown, no equation.
 
@@ -104,7 +105,7 @@ def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: objec
             raise InputError(f"{moved.name} is moved about an axis already: rotations about "
                              "two axes do not add up, put a joint between them")
     if not np.linalg.norm(way) > 0:
-        raise InputError(f"motion of {moved.name} has the direction {direction}: give one "
+        raise InputError(f"motion of {moved.name} has the direction {way}: give one "
                          "that is not zero")
     time_function = motions.motion(motion)
     count = len(moved.motions) + 1

@@ -22,9 +22,9 @@ def extent(model: Mechanism) -> float:
     found += [_size(reduced) for reduced in
               {body.body: body.body for body in model.bodies.values()}.values()]
     for body in model.rigid_bodies.values():
-        moments = [body.constants[name] for name in MOMENTS if name in body.constants]
-        found.append(float(np.sqrt(max(moments, default=0.0) / body.constants["mass"])))
-    found += [float(element.constants[name]) for element in (*model.loads, *model.constraints)
+        moments = [body.number(name) for name in MOMENTS if name in body.constants]
+        found.append(float(np.sqrt(max(moments, default=0.0) / body.number("mass"))))
+    found += [element.number(name) for element in (*model.loads, *model.constraints)
               for name in LENGTHS if name in element.constants]
     return max(found)
 

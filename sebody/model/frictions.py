@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
@@ -35,7 +35,7 @@ class Dry(NamedTuple):
 def friction(model: Mechanism, joint: Joint | str, coefficient: float, static: float | None = None,
              radius: float | None = None, preload: float = 0.0, arm: float | None = None,
              reaction: bool = True, bristle: float | None = None, damping: float = 0.7,
-             speed: float = 0.0, name: str | None = None) -> Element | tuple[Element, Element]:
+             speed: float = 0.0, name: str | None = None) -> Element | tuple[Element, ...]:
     """Dry friction in a joint or drive: it sticks up to a limit, and slides against the motion.
 
     The limit is the coefficient times the normal force, times the radius where the joint turns. The
@@ -148,7 +148,7 @@ def _plain(joint: Joint, sliding: bool, what: str) -> str:
 
 
 def _parts(model: Mechanism, joint: Joint, sliding: bool, what: str
-           ) -> list[tuple[tuple[Attachment, ...], dict[str, ArrayLike]]]:
+           ) -> list[tuple[tuple[Attachment, ...], dict[str, float | NDArray]]]:
     """Places and constants of the geometry: two of a universal joint."""
     if joint.kind != "drive" and (joint.kind, model.planar) not in KERNELS:
         kinds = sorted({kind for kind, planar in KERNELS if planar == model.planar})
@@ -156,27 +156,27 @@ def _parts(model: Mechanism, joint: Joint, sliding: bool, what: str
                          "joints or in drives")
     a, b = joint.node, joint.to
     if sliding or joint.kind == "cylindrical":
-        carrier = joint.axes.carrier
+        carrier = joint.own_axes.carrier
         other = b if carrier is a else a
-        own: dict[str, ArrayLike] = {"e": joint.axes.columns[:, 0]}
+        own: dict[str, float | NDArray] = {"e": joint.axis}
         if joint.kind == "cylindrical":
             return [(positions(carrier, other) + rotations(carrier, other),
-                     own | turning(joint.axes))]
+                     own | turning(joint.own_axes))]
         return [(positions(carrier, other) + rotations(carrier), own)]
     if joint.kind == "spherical" and not model.planar:
         return [(rotations(a, b), {})]
     if joint.kind == "universal":
-        n, e, _ = joint.axes.columns.T
+        n, e, _ = joint.own_axes.columns.T
         return [(rotations(b, a), _seen(n, e)), (rotations(a, b), _seen(e, n))]
-    return [(rotations(a, b), {} if model.planar else turning(joint.axes))]
+    return [(rotations(a, b), {} if model.planar else turning(joint.own_axes))]
 
 
-def turning(axes: Axes) -> dict[str, NDArray]:
+def turning(axes: Axes) -> dict[str, float | NDArray]:
     """What the angle about the first of some axes is read from."""
     return _seen(axes.columns[:, 0], axes.columns[:, 1])
 
 
-def _seen(axis: NDArray, across: NDArray) -> dict[str, NDArray]:
+def _seen(axis: NDArray, across: NDArray) -> dict[str, float | NDArray]:
     """A direction across the axis, and the same and one at a right angle in the other body."""
     across = across - axis * (axis @ across)
     across = across / np.linalg.norm(across)

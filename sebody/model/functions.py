@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from types import CellType, CodeType, FunctionType
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -63,12 +64,13 @@ def compiled_controller(function: Callable[..., None], name: str, sizes: tuple[i
     return _remembered(compile_controller(name, compilable(own), sizes), own)
 
 
-def compilable(function: FunctionType) -> FunctionType:
+def compilable(function: Callable) -> Callable:
     """A function whose helpers, their helpers, and default arguments Numba can compile."""
     made: dict[int, Callable] = {}
 
     def compiled(value: object) -> object:
-        options = getattr(value, "targetoptions", {})       # of what the user compiles by Numba
+        # of what the user compiles by Numba
+        options: dict[str, Any] = getattr(value, "targetoptions", {})
         helper = getattr(value, "py_func", value)
         if not is_helper(helper):
             return value
@@ -80,7 +82,7 @@ def compilable(function: FunctionType) -> FunctionType:
     return _bound(copy, [compiled(value) for value in values]) if values else copy
 
 
-def rebuilt(function: FunctionType, replaced: Callable[[object], object]) -> FunctionType:
+def rebuilt(function: Callable, replaced: Callable[[object], object]) -> Callable:
     """A copy of a function in which all that it refers to by name is replaced.
 
     Parameters
@@ -100,7 +102,7 @@ def rebuilt(function: FunctionType, replaced: Callable[[object], object]) -> Fun
 
 
 def _python(function: Callable, what: str, named: str, arguments: tuple[str, ...]
-            ) -> FunctionType:
+            ) -> Callable:
     """What a user gave as a function that is written in Python and has these arguments.
 
     Messages begin with `what` it is or, of a function, with how it is `named`.
@@ -122,13 +124,13 @@ def _python(function: Callable, what: str, named: str, arguments: tuple[str, ...
     return function
 
 
-def _remembered(made: UserFunction, function: FunctionType) -> UserFunction:
+def _remembered(made: UserFunction, function: Callable) -> UserFunction:
     """What was compiled, with the function as its user wrote it and what it was compiled with."""
     made.function, made.read = function, values_read(function)
     return made
 
 
-def _bound(function: FunctionType, values: Sequence[object]) -> FunctionType:
+def _bound(function: Callable, values: Sequence[object]) -> Callable:
     """A function whose default arguments have these values, as one that reads the values."""
     code = function.__code__
     # arguments that are given by keyword alone become the last ones
@@ -137,14 +139,14 @@ def _bound(function: FunctionType, values: Sequence[object]) -> FunctionType:
     inner = FunctionType(code, function.__globals__, function.__name__, None, function.__closure__)
     names = [f"default_{k}" for k in range(len(values))]
     arguments = list(code.co_varnames[:code.co_argcount - len(values)])
-    made = dict(zip(names, values, strict=True)) | {"inner": njit(inner)}
+    made: dict[str, Any] = dict(zip(names, values, strict=True)) | {"inner": njit(inner)}
     exec(f"def bound({', '.join(arguments)}):\n    return inner({', '.join(arguments + names)})",
          made)
     made["bound"].__name__ = function.__name__
     return made["bound"]
 
 
-def _without(options: dict[str, object], name: str) -> dict[str, object]:
+def _without(options: dict[str, Any], name: str) -> dict[str, Any]:
     return {key: value for key, value in options.items() if key != name}
 
 

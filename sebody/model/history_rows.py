@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
@@ -11,7 +11,7 @@ from sebody.errors import InputError
 BEFORE = 1.0        # time before a jump in the first row, where the value is constant
 
 
-def table(source: ArrayLike, what: str, jumping: bool = False) -> tuple[NDArray, NDArray]:
+def table(source: object, what: str, jumping: bool = False) -> tuple[NDArray, NDArray]:
     """Times and values of a table.
 
     Parameters

@@ -54,8 +54,8 @@ def direction(model: Mechanism, axis: ArrayLike, what: str, node: Node) -> NDArr
     largest = np.abs(axis).max()
     if not largest > 0:
         raise InputError(f"axis of the {what} at {node.name!r} is zero: give its direction")
-    axis = axis / largest           # squares of very large or small numbers leave the range
-    return axis / np.linalg.norm(axis)
+    along: NDArray = axis / largest     # squares of very large or small numbers leave the range
+    return along / np.linalg.norm(along)
 
 
 def axes(model: Mechanism, axis: ArrayLike, what: str,

@@ -37,7 +37,7 @@ class Equations(NamedTuple):
 
     kind: str
     attachments: tuple[Attachment, ...]
-    constants: Mapping[str, ArrayLike]
+    constants: Mapping[str, float | NDArray]
     multipliers: int
 
 
@@ -166,15 +166,16 @@ def weld(model: Mechanism, node: Node | str, to: Node | str | None = None,
     a, b = pair(model, node, to, "weld")
     name = _named(model, name, "weld", a)
     equations = _together(model, a, b, to, "weld", explicit)
-    shared = () if equations else ("position",)
-    if explicit or not (to is None or can_share(a.rotation, b.rotation)):
+    shared: tuple[str, ...] = () if equations else ("position",)
+    one, other = dof_block(a, "rotation"), dof_block(b, "rotation")
+    if explicit or not (to is None or can_share(one, other)):
         equations += _turn_together(model, a, b)
     else:
         shared += ("rotation",)
         if to is None:
-            a.rotation.fixed = True
+            one.fixed = True
         else:
-            share(model, b.rotation, a.rotation, "rotation")
+            share(model, other, one, "rotation")
     return _joint(model, "weld", name, a, b, equations, Axes.of(a), shared)
 
 
@@ -182,7 +183,7 @@ def distance(model: Mechanism, node: Node | str, to: Node | str,
              name: str | None = None) -> Joint:
     """Two points keep the distance they start at: a massless rod with ball joints."""
     a, b = pair(model, node, known(model, to), "distance", ("position",))
-    length = np.linalg.norm(b.point - a.point)
+    length = float(np.linalg.norm(b.point - a.point))
     if not length > NEAR * model.size():
         raise InputError(f"distance between {a.name!r} and {b.name!r} is zero: use a spherical "
                          "joint for nodes that coincide")
@@ -210,18 +211,19 @@ def _together(model: Mechanism, a: Node, b: Node, to: Node | str | None, what: s
     """Make two positions one: shared or fixed, else by the equations that are returned."""
     inputs.flag(explicit, f"explicit of the {what}")
     check_together(model, a, b, what)
-    if explicit and a.position is b.position:
+    one, other = dof_block(a, "position"), dof_block(b, "position")
+    if explicit and one is other:
         raise InputError(f"{what}: nodes {a.name!r} and {b.name!r} share their position "
                          "already: leave the joint out")
     if to is None:
-        if explicit or a.position.root is not None:
+        if explicit or one.root is not None:
             return [Equations(model.kind_of("coincident_ground"), positions(a), {"c": a.point},
                               model.dimension)]
-        a.position.fixed = True
-    elif explicit or not can_share(a.position, b.position):
+        one.fixed = True
+    elif explicit or not can_share(one, other):
         return [Equations(model.kind_of("coincident"), positions(a, b), {}, model.dimension)]
     else:
-        share(model, b.position, a.position, "position")
+        share(model, other, one, "position")
     return []
 
 

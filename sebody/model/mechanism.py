@@ -92,7 +92,9 @@ class Mechanism:
 
     def elements(self) -> Iterator[Superelement | Element | Joint | Motion]:
         """Everything with a name but the nodes: bodies, joints, loads, springs and drives."""
-        yield from (*self.bodies.values(), *self.rigid_bodies.values(), *self.joints, *self.loads)
+        own: list[Superelement | Element | Joint | Motion] = [
+            *self.bodies.values(), *self.rigid_bodies.values(), *self.joints, *self.loads]
+        yield from own
         for dof_block in self.dof_blocks():
             yield from dof_block.motions
 

@@ -154,7 +154,7 @@ def _moved(model: Mechanism, body: str | None,
         return [known(model, node) for node in inputs.items(nodes, "nodes", "give a list of nodes")]
     if nodes is not None:
         raise InputError("rigid_velocity takes body= or nodes=: leave one of them out")
-    named = {beam.name: beam.nodes for beam in model.beams}
+    named: dict[str, Iterable[Node]] = {beam.name: beam.nodes for beam in model.beams}
     named |= {one.name: one.nodes for one in model.bodies.values()}
     named |= {one.name: [place.node for place in one.attachments]
               for one in model.rigid_bodies.values()}

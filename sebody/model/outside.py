@@ -9,12 +9,12 @@ a loop that took up the last value of the loop's variable.
 import builtins
 import dis
 from collections import ChainMap
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from enum import Enum
 from functools import cache
 from itertools import takewhile
 from types import CellType, CodeType, FunctionType, ModuleType
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeGuard
 
 import numpy as np
 
@@ -56,7 +56,7 @@ class Code(NamedTuple):
             [cls.of(one) if isinstance(one, CodeType) else repr(one) for one in code.co_consts]))
 
 
-def values_read(function: FunctionType) -> dict[str, object]:
+def values_read(function: Callable) -> dict[str, object]:
     """What a function computes with: its code, and copies of what it and its helpers read."""
     found: dict[str, object] = {"its code": Code.of(function.__code__)}
     for one in _reads(function):
@@ -65,7 +65,7 @@ def values_read(function: FunctionType) -> dict[str, object]:
     return found
 
 
-def changed(before: Mapping[str, object], function: FunctionType) -> str:
+def changed(before: Mapping[str, object], function: Callable) -> str:
     """The first value read that has changed, in words; empty if there is none."""
     now = values_read(function)
     for name, old in before.items():
@@ -82,7 +82,7 @@ def changed(before: Mapping[str, object], function: FunctionType) -> str:
     return ""
 
 
-def refuse(function: FunctionType, what: str) -> None:
+def refuse(function: Callable, what: str) -> None:
     """Refuse a function that reads what cannot be compiled in.
 
     Raises
@@ -111,7 +111,7 @@ def refuse(function: FunctionType, what: str) -> None:
                              f"{module} import {own}")
 
 
-def is_helper(value: object) -> bool:
+def is_helper(value: object) -> TypeGuard[FunctionType]:
     """Whether a value is a function written in Python that is no library's."""
     return isinstance(value, FunctionType) and (
         (value.__module__ or "").partition(".")[0] not in LIBRARIES)
@@ -123,7 +123,7 @@ def _is_object(value: object) -> bool:
     return not issubclass(kind, Enum) and kind.__module__.partition(".")[0] not in LIBRARIES
 
 
-def _reads(function: FunctionType, helper: str = "",
+def _reads(function: Callable, helper: str = "",
            known: set[CodeType] | None = None) -> Iterator[Read]:
     """Everything that a function and its helpers read; each helper is examined once."""
     known = set() if known is None else known
@@ -151,7 +151,7 @@ def _content(cell: CellType) -> object:
         return ABSENT
 
 
-def defaults(function: FunctionType) -> dict[str, object]:
+def defaults(function: Callable) -> dict[str, object]:
     """Values of the arguments that a function has defaults for, by name."""
     code = function.__code__
     given = function.__defaults__ or ()
@@ -194,7 +194,7 @@ def _copy(value: object) -> object:
     return value
 
 
-def _same(one: object, other: object) -> bool:
+def _same(one: Any, other: Any) -> bool:
     if one is other:
         return True
     if type(one) is not type(other):

@@ -2,11 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
+from sebody.compiler.user_functions import UserFunction
 from sebody.fem.section import AnySection
 from sebody.model.time_functions import TimeFunction
 from sebody.reduction import ReducedBody
@@ -88,6 +89,11 @@ class Attachment(NamedTuple):
     node: Node
     kind: str       # position or rotation
 
+    @property
+    def dof_block(self) -> DofBlock:
+        """The block, which the node has."""
+        return getattr(self.node, self.kind)
+
 
 def positions(*nodes: Node) -> tuple[Attachment, ...]:
     """The positions of some nodes, as an element takes them."""
@@ -130,12 +136,14 @@ class Superelement:
     @property
     def positions(self) -> list[DofBlock]:
         """Position DOF blocks in the order of the reduced coordinates."""
-        return [self.nodes[i].position for i in self.body.position_nodes]
+        return [Attachment(self.nodes[i], "position").dof_block
+                for i in self.body.position_nodes]
 
     @property
     def rotations(self) -> list[DofBlock]:
         """Rotation DOF blocks in the order of the reduced coordinates."""
-        return [self.nodes[i].rotation for i in self.body.rotation_nodes]
+        return [Attachment(self.nodes[i], "rotation").dof_block
+                for i in self.body.rotation_nodes]
 
     @property
     def attachments(self) -> tuple[Attachment, ...]:
@@ -151,23 +159,31 @@ class Element:
     name: str
     kind: str                       # name of its kernel without the prefix
     attachments: tuple[Attachment, ...]       # positions first, then rotations
-    constants: Mapping[str, ArrayLike]      # by the names that the kernel has for them
+    constants: Mapping[str, float | NDArray]    # by the names that the kernel has for them
     multipliers: int = 0
     time_function: TimeFunction | None = None
     mode: tuple[str, int] | None = None     # superelement and internal mode of a mode force
-    function: object = None                 # compiled function of a user force, kept alive
+    function: UserFunction | None = None    # compiled function of a user force, kept alive
     body: Superelement | None = None        # on all whose coordinates a load on a body acts
     pressed_by: "Joint | None" = None       # whose multipliers the friction in it reads
     tuned: Mapping[str, float] = field(default_factory=dict)    # see `sebody.runs.tuning`
     dof_blocks: tuple[DofBlock, ...] = field(init=False)       # those of the places
 
     def __post_init__(self) -> None:
-        self.dof_blocks = tuple(getattr(node, kind) for node, kind in self.attachments)
+        self.dof_blocks = tuple(one.dof_block for one in self.attachments)
 
     @property
     def direction(self) -> NDArray:
         """Direction of a force or torque."""
-        return self.constants["d"]
+        return self.vector("d")
+
+    def number(self, name: str) -> float:
+        """A constant that is a number."""
+        return float(self.constants[name])
+
+    def vector(self, name: str) -> NDArray:
+        """A constant that is a vector."""
+        return np.asarray(self.constants[name])
 
     def __repr__(self) -> str:
         nodes = dict.fromkeys(place.node.name for place in self.attachments)
@@ -188,7 +204,7 @@ class Beam(NamedTuple):
     nodes: tuple[Node, ...]             # from end to end
     section: AnySection
     elements: int
-    options: Mapping[str, object]       # the further arguments of `Model.beam`
+    options: Mapping[str, Any]          # the further arguments of `Model.beam`
     parts: tuple[Superelement, ...]
     bodies: tuple[ReducedBody, ...]     # of these parts, as built
 
@@ -226,6 +242,17 @@ class Joint:
         course = f"; {self.time_function.described()}" if self.time_function else ""
         return (f"<{self.kind} {self.name!r} of {self.node.name} to {self.to.name}: "
                 f"{counted(self.multipliers, 'equation')}{course}>")
+
+    @property
+    def own_axes(self) -> Axes:
+        """Its axes, where it is known to have some: it is no distance."""
+        assert self.axes is not None
+        return self.axes
+
+    @property
+    def axis(self) -> NDArray:
+        """The first of its axes, at the start."""
+        return self.own_axes.columns[:, 0]
 
     @property
     def multipliers(self) -> int:

@@ -131,7 +131,8 @@ def spline(rows: ArrayLike, rates: tuple[float, float] = (0.0, 0.0)) -> TimeFunc
         raise InputError("times of a table must increase: sort the rows and merge equal times")
     if width == 2:
         ends = array(rates, "rates", (2,))
-        return spline_of(*table.T, tuple(ends)).with_corners()
+        times, values = table.T
+        return spline_of(times, values, (ends[0], ends[1])).with_corners()
     from scipy.interpolate import CubicHermiteSpline  # takes 0.2 s to import
 
     return of_cubics(table[:, 0], CubicHermiteSpline(*table.T).c, table[-1, 1]).with_corners()
@@ -193,7 +194,7 @@ def _between(profile: TimeFunction, first: float, last: float) -> TimeFunction:
     moved = tuple(sum(comb(j, i) * c[j] * x**(j - i) for j in range(i, COEFFICIENTS))
                   for i in range(COEFFICIENTS))
     end = int(np.searchsorted(profile.times, last, side="left"))
-    waves = ()
+    waves: tuple[tuple[float, float, float], ...] = ()
     if profile.waves:
         A, w, p = profile.waves[k]
         waves = ((A, w, p + w * x), *profile.waves[k + 1:end])

@@ -31,7 +31,7 @@ def spring(model: Mechanism, node: Node | str, to: Node | str, stiffness: float 
         Numbers that are negative, or nodes that coincide.
     """
     a, b = pair(model, node, known(model, to), "spring", ("position",))
-    start = np.linalg.norm(b.point - a.point)
+    start = float(np.linalg.norm(b.point - a.point))
     if not start > 0:
         raise InputError(f"spring: nodes {a.name!r} and {b.name!r} coincide, so it has "
                          "no direction: use a bushing")
@@ -54,7 +54,8 @@ def torsion_spring(model: Mechanism, node: Node | str, stiffness: float = 0.0,
     a, b = pair(model, node, to, what, ("rotation",))
     rest = inputs.number(rest, f"torsion spring at {a.name!r}: rest", remedy="give a number")
     _check(what, stiffness=stiffness, cubic=cubic, damping=damping)
-    constants = {"k": stiffness, "k3": cubic, "c": damping, "rest": rest}
+    constants: dict[str, float | NDArray] = {"k": stiffness, "k3": cubic, "c": damping,
+                                             "rest": rest}
     if vectors := turning_axes(model, axis, what, a, signed=True):
         constants |= zip(("n", "m"), vectors[1:], strict=True)
     return _add(model, name, what, a, rotations(a, b), constants)
@@ -84,7 +85,8 @@ def bushing(model: Mechanism, node: Node | str, to: Node | str | None = None,
     check_together(model, a, b, "bushing")
     where = f"bushing at {a.name!r} has a coefficient that is negative or no number"
     lengths = (model.dimension, model.rotation_size)
-    constants = {"k": _spread(stiffness, f"{where}: stiffness", lengths[0]),
+    constants: dict[str, float | NDArray] = {
+                 "k": _spread(stiffness, f"{where}: stiffness", lengths[0]),
                  "c": _spread(damping, f"{where}: damping", lengths[0]),
                  "kt": _spread(turning_stiffness, f"{where}: turning_stiffness", lengths[1]),
                  "ct": _spread(turning_damping, f"{where}: turning_damping", lengths[1])}
@@ -96,7 +98,7 @@ def bushing(model: Mechanism, node: Node | str, to: Node | str | None = None,
 
 def _add(model: Mechanism, name: str | None, what: str, a: Node,
          attachments: tuple[Attachment, ...],
-         constants: dict[str, ArrayLike]) -> Element:
+         constants: dict[str, float | NDArray]) -> Element:
     name = chosen_name(model, name, f"{what} at {a.name}")
     kind = model.kind_of(what.replace(" ", "_"))
     model.loads.append(Element(name, kind, attachments, constants))

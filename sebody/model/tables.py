@@ -43,7 +43,7 @@ def described(model: Mechanism) -> str:
     """A model in words and tables: what there is to check before a run."""
     nodes, modes, equations = unknowns(model)
     masses = [body.body.total_mass for body in model.bodies.values()]
-    masses += [float(body.constants["mass"]) for body in model.rigid_bodies.values()]
+    masses += [body.number("mass") for body in model.rigid_bodies.values()]
     lines = [summary(model),
              f"unknowns  {nodes + modes + equations}: {nodes} of nodes, {modes} of modes, "
              f"{equations} of joint equations",
@@ -69,7 +69,7 @@ def _bodies(model: Mechanism) -> list[tuple]:
               f"frame {body.frame}, inertia {body.inertia}"
               + ("; damped" if body.body.damping is not None else ""))
              for body in model.bodies.values()]
-    return found + [(body.name, _plain(body), f"{body.constants['mass']:.6g}",
+    return found + [(body.name, _plain(body), f"{body.number('mass'):.6g}",
                      _named({place.node.name: place.node for place in body.attachments}.values()),
                      "")
                     for body in model.rigid_bodies.values()]

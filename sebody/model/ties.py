@@ -14,10 +14,11 @@ def untied(model: Mechanism) -> list[list[str]]:
     Ties are fixed and prescribed positions, joints, springs and forces of users on positions, and
     nodes that bodies share.
     """
-    bodies = {**model.bodies, **model.rigid_bodies}
+    bodies: dict[str, Superelement | Element] = {**model.bodies, **model.rigid_bodies}
     places: dict[DofBlock, int] = {}     # number of each DOF block
     pairs = []
-    for element in (*bodies.values(), *model.constraints, *model.loads):
+    elements: list[Superelement | Element] = [*bodies.values(), *model.constraints, *model.loads]
+    for element in elements:
         numbers = [places.setdefault(one, len(places)) for one in _tied(element)]
         pairs += [(numbers[0], number) for number in numbers]
     held = {t for t in model.dof_blocks() if t.fixed and not t.rotational}

@@ -11,10 +11,11 @@ from dataclasses import dataclass, replace
 from itertools import zip_longest
 from math import cos, inf, sin
 from numbers import Number
+from typing import TypeAlias, TypeGuard
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
 from sebody.compiler.user_functions import UserFunction, compile_history
@@ -28,7 +29,9 @@ SMALL = 1e-9            # jump of a value or rate, relative to its size, that is
 NEAR = 1e-8             # distance at which a function is looked at beside a corner, relative to it
 STEEP = 10.0            # a jump exceeds the changes beside it by this factor
 
-Source = "ArrayLike | Callable | tuple[Callable, Callable, Callable] | History | None"
+FunctionWithRates: TypeAlias = tuple[
+    Callable[[float], float], Callable[[float], float], Callable[[float], float]]
+Source: TypeAlias = "ArrayLike | Callable[[float], float] | FunctionWithRates | TimeFunction | None"
 
 
 @dataclass(frozen=True)
@@ -58,8 +61,8 @@ class TimeFunction:
             return INPUT, 0, 0
         if self.is_time:
             return CLOCK, 0, 0
-        given = [f.address for f in self.functions]
-        return (*given, *[0] * (3 - len(given)))
+        value, rate, second = (*[f.address for f in self.functions], 0, 0, 0)[:3]
+        return value, rate, second
 
     def at(self, t: float) -> NDArray:
         """Value and two rates at a time, (3,); at the time of a piece those of this piece."""
@@ -190,7 +193,7 @@ def time_function(source: Source) -> TimeFunction:
     return TimeFunction(times, pieces, corners=corners)
 
 
-def with_corners(function: Callable[[float], float] | tuple[Callable, Callable, Callable],
+def with_corners(function: Callable[[float], float] | FunctionWithRates,
                  corners: Sequence[float]) -> TimeFunction:
     """A function of time and the times at which it is not smooth: steps meet them.
 
@@ -209,9 +212,8 @@ def with_corners(function: Callable[[float], float] | tuple[Callable, Callable, 
     """
     times = corners_of(corners)
     given = function if is_function_with_rates(function) else (function,)
-    for one in given:
-        inputs.function(one, "function", "give a function of time")
-    return TimeFunction(functions=tuple(compiled_history(one, LOAD) for one in given),
+    checked = [inputs.function(one, "function", "give a function of time") for one in given]
+    return TimeFunction(functions=tuple(compiled_history(one, LOAD) for one in checked),
                         corners=times)
 
 
@@ -261,7 +263,7 @@ def same_waves(parts: Sequence[TimeFunction]) -> tuple[tuple[float, float, float
                  for wave, _ in zip_longest(part.waves, part.pieces, fillvalue=none))
 
 
-def is_function_with_rates(source: object) -> bool:
+def is_function_with_rates(source: object) -> TypeGuard[FunctionWithRates]:
     return isinstance(source, tuple) and len(source) == 3 and all(map(callable, source))
 
 

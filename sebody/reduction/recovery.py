@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import block_diag
 
 from sebody.fem.beam_stress import BeamStress
@@ -83,7 +83,7 @@ class Recovery:
         """The label of a node that is kept, or its number in the FE model if it has none."""
         return self.number(place) if self.labels is None else int(self.labels[place])
 
-    def displacement(self, z: NDArray, nodes: NDArray | None = None) -> NDArray:
+    def displacement(self, z: NDArray, nodes: ArrayLike | None = None) -> NDArray:
         """Displacements of nodes, all by default, in the axes of the body.
 
         Parameters
@@ -98,7 +98,7 @@ class Recovery:
         """
         return self._vectors(z, nodes, "translation")
 
-    def rotation(self, z: NDArray, nodes: NDArray | None = None) -> NDArray:
+    def rotation(self, z: NDArray, nodes: ArrayLike | None = None) -> NDArray:
         """Rotation vectors of nodes likewise, (n, k, 3), in a plane (n, k, 1).
 
         FE nodes without rotations have none: (n, k, 0).
@@ -137,16 +137,16 @@ class Recovery:
             rotation, by = rotation @ self.axes, by @ self.by
         return replace(self, axes=rotation, by=by)
 
-    def _vectors(self, z: NDArray, nodes: NDArray | None, kind: str) -> NDArray:
+    def _vectors(self, z: NDArray, nodes: ArrayLike | None, kind: str) -> NDArray:
         turning = [name.startswith("r") for name in self.node_dofs]
         own = np.flatnonzero(np.array(turning) == (kind == "rotation"))
         count, width = len(self.coordinates), len(self.node_dofs)
         if nodes is None and len(own) == width:
-            shapes, nodes = self.shapes[:, :z.shape[1]], np.arange(count)
+            shapes, at = self.shapes[:, :z.shape[1]], np.arange(count)
         else:
-            nodes = np.arange(count) if nodes is None else np.asarray(nodes)
-            shapes = self.shapes[(width * nodes[:, None] + own).ravel(), :z.shape[1]]
-        found = (self.in_fe_axes(z) @ shapes.T).reshape(len(z), len(nodes), len(own))
+            at = np.arange(count) if nodes is None else np.asarray(nodes)
+            shapes = self.shapes[(width * at[:, None] + own).ravel(), :z.shape[1]]
+        found = (self.in_fe_axes(z) @ shapes.T).reshape(len(z), len(at), len(own))
         return found if self.axes is None or len(own) < 2 else found @ self.axes.T
 
     def all_dofs(self, z: NDArray) -> NDArray:

@@ -158,7 +158,7 @@ def _mass(body: Superelement | Element) -> tuple[float, NDArray]:
         shift = np.mean([node.point for node in held], axis=0) - body.body.coordinates[
             list(body.body.position_nodes)].mean(axis=0)
         return body.body.total_mass, body.body.total_mass * (body.body.centre_of_mass + shift)
-    mass, node = body.constants["mass"], body.attachments[0].node
+    mass, node = body.number("mass"), body.attachments[0].node
     return mass, mass * node.point + np.asarray(body.constants.get("mc", 0.0))
 
 

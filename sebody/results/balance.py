@@ -15,6 +15,7 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 from sebody.assembly.numbering import Numbering, stretch
+from sebody.model.inputs import dof_block
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, DofBlock, Element, Joint, Node, Superelement
 
@@ -60,7 +61,7 @@ class Balance:
 
     def position(self, node: Node) -> NDArray:
         """Positions of a node, (n, d)."""
-        return self._q[:, stretch(self._numbering, node.position)]
+        return self._q[:, stretch(self._numbering, dof_block(node, "position"))]
 
     def on(self, part: Part, node: Node, kind: str) -> NDArray:
         """Force or moment of an element on a node, (n, size); zero where it does not act.
@@ -113,8 +114,9 @@ class Balance:
         model = self._model
         wanted = {(node, c.kind): (node, c.kind, np.zeros((len(self._q), self._size(c.kind))))
                   for c in connections for node in (c.node, c.to) if node is not None}
-        for part in (*model.bodies.values(), *model.rigid_bodies.values(), *model.constraints,
-                     *model.loads):
+        parts: list[Part] = [*model.bodies.values(), *model.rigid_bodies.values(),
+                             *model.constraints, *model.loads]
+        for part in parts:
             for node, kind in dict.fromkeys((p.node, p.kind) for p in part.attachments):
                 if (node, kind) in wanted:
                     wanted[node, kind][2][:] += self.on(part, node, kind)
@@ -160,17 +162,16 @@ def moment_of(r: NDArray, force: NDArray) -> NDArray:
 
 
 class _Groups:
-    """Nodes that are joined, by a forest of their ids; None is the ground."""
+    """Nodes that are joined, by a forest; None is the ground."""
 
     def __init__(self) -> None:
-        self._above: dict[int | None, int | None] = {}
+        self._above: dict[Node | None, Node | None] = {}
 
-    def of(self, node: Node | None) -> int | None:
+    def of(self, node: Node | None) -> Node | None:
         """Representative of the group of a node; the ground represents its own group."""
-        key = None if node is None else node
-        while (above := self._above.get(key, key)) != key:
-            key = above
-        return key
+        while (above := self._above.get(node, node)) != node:
+            node = above
+        return node
 
     def join(self, one: Node | None, other: Node | None) -> bool:
         """Make two groups one; whether they were two."""

@@ -53,7 +53,7 @@ def dissipation(recording: Recording, name: str) -> NDArray:
     bent = [k for k in element_kernel(element.kind).MEMORY if k.startswith("bent")]
     if not bent or not recording.numbering.bristles:
         return lost
-    size = sum(_kept(recording, name, k)**2 for k in bent)
+    size = sum((_kept(recording, name, k)**2 for k in bent), np.zeros(len(lost)))
     return lost - 0.5 * recording.numbering.bristles[element] * (size - size[0])
 
 

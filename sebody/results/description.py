@@ -108,7 +108,7 @@ class _Reader:
     def __init__(self, text: dict, numbers: NDArray) -> None:
         self._numbers = numbers
         self._arrays: dict[tuple, NDArray] = {}
-        self._parts = [object.__new__(KINDS[kind]) for kind, _ in text["parts"]]
+        self._parts: list[Any] = [object.__new__(KINDS[kind]) for kind, _ in text["parts"]]
         for part, (_, values) in zip(self._parts, text["parts"], strict=True):
             for name, value in values.items():
                 object.__setattr__(part, name, self.made(value))
@@ -133,9 +133,9 @@ class _Reader:
                 self._arrays[key] = values.reshape(shape).astype(dtype)
             return self._arrays[key]
         if kind == "tuple of names":
-            values = list(map(self.made, rest[1]))
-            check_tuple(KINDS[rest[0]], values)
-            return KINDS[rest[0]](*values)
+            entries = list(map(self.made, rest[1]))
+            check_tuple(KINDS[rest[0]], entries)
+            return KINDS[rest[0]](*entries)
         if kind == "by part":
             return {self._parts[place]: self.made(v) for place, v in rest[0]}
         if kind == "dict":

@@ -24,7 +24,8 @@ class Envelope(NamedTuple):
     node: int           # where, its number in the FE model
     time: float         # and when
 
-    __repr__ = brief
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 def envelope(field: FieldStates, quantity: str, static: bool,

@@ -51,8 +51,12 @@ def field_of(recording: Recording, name: str) -> Field:
 def of_fe_node(quantity: str, recording: Recording, name: str) -> NDArray:
     """History of a quantity of one FE node."""
     body, _, node = name.rpartition(".node")
-    number = number_of(recording.model.bodies[body].body.recovery, int(node))
-    return getattr(field_of(recording, body).at(number), quantity)
+    field = field_of(recording, body)
+    recovery = recording.model.bodies[body].body.recovery
+    assert recovery is not None     # see `Field`
+    number = number_of(recovery, int(node))
+    assert number is not None       # names of nodes there are not were refused
+    return getattr(field.at(number), quantity)
 
 
 def number_of(recovery: Recovery, node: int) -> int | None:

@@ -27,7 +27,8 @@ class FieldStates:
     def __init__(self, recording: Recording, name: str):
         bodies = recording.model.bodies
         name = inputs.choice(name, "superelement", bodies) if bodies else _no_bodies(name)
-        if bodies[name].body.recovery is None:
+        recovery = bodies[name].body.recovery
+        if recovery is None:
             raise InputError(f"body {name!r} has reduced matrices only, so fields inside it are "
                              "unknown: reduce its FE model, by craig_bampton or "
                              "import_body, or give its ReducedBody recovery=, the shapes of the "
@@ -37,7 +38,7 @@ class FieldStates:
         self.name = name
         self._recording = recording
         self._body = bodies[name]
-        self._recovery = self._body.body.recovery
+        self._recovery = recovery
         self._stresses: dict[bool, Stresses] = {}
 
     @property

@@ -6,7 +6,7 @@ Arrays are written by blocks of rows, packed. The group ``sebody`` holds what a 
 from collections.abc import Mapping
 from importlib.util import find_spec
 from io import BytesIO
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,13 +54,13 @@ def write(file: BinaryIO, members: Mapping[str, NDArray], units: Mapping[str, st
 
     memory = BytesIO()
     with h5py.File(memory, "w", userblock_size=SIZE) as made:
-        made.attrs.update(attributes | {"program": f"sebody {__version__}"})
+        made.attrs.update({**attributes, "program": f"sebody {__version__}"})
         for name, values in members.items():
             _write(made, name, np.asarray(values), units.get(name))
     file.write(guarded(bytearray(memory.getbuffer())))
 
 
-def _write(file, name: str, values: NDArray, unit: str | None) -> None:
+def _write(file: Any, name: str, values: NDArray, unit: str | None) -> None:
     """One dataset."""
     if values.dtype.kind == "U":
         file[name] = str(values)

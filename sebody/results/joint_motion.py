@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.numbering import stretch
 from sebody.errors import InputError
+from sebody.model.inputs import dof_block
 from sebody.model.parts import Joint, Node
 from sebody.results.force_quantities import joints
 from sebody.results.recording import Recording
@@ -18,7 +19,7 @@ def angle(recording: Recording, name: str) -> NDArray:
     a, b = (_rotation(recording, node) for node in (joint.node, joint.to))
     if recording.model.planar:
         return a - b
-    _, n, m = joint.axes.columns.T
+    _, n, m = joint.own_axes.columns.T
     seen = np.einsum("nji,nj->ni", b, a @ n)
     return np.unwrap(np.arctan2(seen @ m, seen @ n))
 
@@ -27,10 +28,11 @@ def rate(recording: Recording, name: str) -> NDArray:
     """Rate of this angle, (n,)."""
     joint = _of_kind(recording, name, TURNS, "rate", "turn")
     v = recording.recorded("v")
-    a, b = (v[:, stretch(recording.numbering, node.rotation)] for node in (joint.node, joint.to))
+    a, b = (v[:, stretch(recording.numbering, dof_block(node, "rotation"))]
+            for node in (joint.node, joint.to))
     if recording.model.planar:
         return a[:, 0] - b[:, 0]
-    axis = joint.axes.columns[:, 0]
+    axis = joint.axis
     turned = _rotation(recording, joint.node) @ axis
     return a @ axis - np.einsum("ni,nij,nj->n", turned, _rotation(recording, joint.to), b)
 
@@ -40,7 +42,7 @@ def displacement(recording: Recording, name: str) -> NDArray:
     joint = _of_kind(recording, name, SLIDES, "displacement", "slide")
     axis, gap, _, _ = _way(recording, joint)
     other, carrier, sign = _ends(joint)
-    start = sign * joint.axes.columns[:, 0] @ (other.point - carrier.point)
+    start = sign * joint.axis @ (other.point - carrier.point)
     return sign * np.einsum("ni,ni->n", axis, gap) - start
 
 
@@ -54,7 +56,7 @@ def speed(recording: Recording, name: str) -> NDArray:
 
 def _ends(joint: Joint) -> tuple[Node, Node, float]:
     """The node that slides, the one with the axis, and the sign of the joint's node's motion."""
-    carrier = joint.axes.carrier
+    carrier = joint.own_axes.carrier
     return (joint.to, carrier, -1.0) if carrier is joint.node else (joint.node, carrier, 1.0)
 
 
@@ -62,8 +64,8 @@ def _way(recording: Recording, joint: Joint) -> tuple[NDArray, NDArray, NDArray,
     """Axis, vector between the nodes, and the rates of both."""
     other, carrier, _ = _ends(joint)
     q, v, numbering = recording.recorded("q"), recording.recorded("v"), recording.numbering
-    there, here = (stretch(numbering, node.position) for node in (other, carrier))
-    own, spin = joint.axes.columns[:, 0], v[:, stretch(numbering, carrier.rotation)]
+    there, here = (stretch(numbering, dof_block(node, "position")) for node in (other, carrier))
+    own, spin = joint.axis, v[:, stretch(numbering, dof_block(carrier, "rotation"))]
     R = _rotation(recording, carrier)
     if recording.model.planar:
         c, s = np.cos(R), np.sin(R)
@@ -78,8 +80,9 @@ def _way(recording: Recording, joint: Joint) -> tuple[NDArray, NDArray, NDArray,
 def _rotation(recording: Recording, node: Node) -> NDArray:
     """Rotation matrices of a node, (n, 3, 3); in a plane angles."""
     if recording.model.planar:
-        return recording.recorded("q")[:, stretch(recording.numbering, node.rotation).start]
-    k = recording.numbering.rotations[node.rotation]
+        at = stretch(recording.numbering, dof_block(node, "rotation"))
+        return recording.recorded("q")[:, at.start]
+    k = recording.numbering.rotations[dof_block(node, "rotation")]
     return recording.recorded("R")[:, 9 * k:9 * k + 9].reshape(-1, 3, 3)
 
 

@@ -75,7 +75,7 @@ def values(recording: Recording, name: str) -> Values:
 def is_known(recording: Recording, name: object) -> bool:
     """Whether a name is that of a quantity, a component or a group."""
     try:
-        look_up(recording, name)
+        look_up(recording, inputs.name(name, "name of a quantity"))
     except InputError:
         return False
     return True
@@ -90,7 +90,8 @@ def split(recording: Recording, name: str) -> tuple[str, list[str]]:
         A name that nothing has; the message has names that are like it.
     """
     inputs.name(name, "name of a quantity")
-    whole, components = name, []
+    whole = name
+    components: list[str] = []
     while whole not in GROUPS and quantities.find(recording, whole) is None:
         before, _, last = whole.rpartition(".")
         if not before or not (_may_be_component(last) or quantities.find(recording, before)):

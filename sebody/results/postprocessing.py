@@ -3,6 +3,7 @@
 They are evaluated for the recorded states after the loop; `rows` are rows of `layout.RECORD`.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -93,8 +94,8 @@ def constraint_residuals(system: System, state: State, rows: NDArray) -> NDArray
     return found
 
 
-def _over_records(what: str, evaluate, system: System, state: State, rows: NDArray,
-                  *out: NDArray) -> None:
+def _over_records(what: str, evaluate: Callable[..., int], system: System, state: State,
+                  rows: NDArray, *out: NDArray) -> None:
     """Evaluate the recorded states, then restore the state the run has reached."""
     now, loads = state.now.copy(), state.loads.copy()
     status = evaluate(system, state, rows, *out)

@@ -226,12 +226,12 @@ def _modes(part: str, recording: Recording, name: str) -> NDArray:
 
 def _kept(recording: Recording, name: str) -> NDArray:
     """What a sensor, a controller or Python gave last, (n,)."""
-    return recording.recorded("frames")[:, recording.numbering.kept.values[name]]
+    return recording.recorded("frames")[:, recording.numbering.all_kept.values[name]]
 
 
 def _states(recording: Recording, name: str) -> NDArray:
     """States of a controller, (n, states)."""
-    first = recording.numbering.kept.states[name]
+    first = recording.numbering.all_kept.states[name]
     size = recording.model.controllers[name].states.size
     return recording.recorded("frames")[:, first:first + size]
 
@@ -267,7 +267,7 @@ OWNERS = (
           lambda recording: recording.numbering.port_names,
           {"work": forces.work, "power": forces.power}),
     Owner("sensor, signal or actuator", "of sensors, signals and actuators {quantities}",
-          lambda recording: recording.numbering.kept.values, {"value": _kept}),
+          lambda recording: recording.numbering.all_kept.values, {"value": _kept}),
     Owner("controller", "of controllers {quantities}",
           lambda recording: recording.model.controllers, {"states": _states}),
     # the last one: its names are too many to be searched for names like another

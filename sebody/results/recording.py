@@ -63,6 +63,12 @@ class Recording:
         """History of one of the parts of `layout.RECORD`, (n, size)."""
         return self.rows[:, RECORD.slices(record_counts(self.numbering))[name]]
 
+    @property
+    def arrays_of_loop(self) -> tuple[System, State]:
+        """System and last state of a run in this process; read from a file, there are none."""
+        assert self.system is not None and self.state is not None
+        return self.system, self.state
+
     @cached_property
     def unique_rows(self) -> NDArray:
         """The recorded states with multipliers of least norm, also those of redundant constraints.
@@ -71,17 +77,17 @@ class Recording:
         """
         if self.system is None or not self.system.regularized[0]:
             return self.rows
-        return least_norm(self.model, self.numbering, self.system, self.state, self.rows)
+        return least_norm(self.model, self.numbering, *self.arrays_of_loop, self.rows)
 
     @cached_property
     def counters(self) -> NDArray:
         """Steps, iterations and others, in the order of `engine.state.CONTROL`."""
-        return numbers_of(self.state.control).copy()
+        return numbers_of(self.arrays_of_loop[1].control).copy()
 
     @cached_property
     def energies(self) -> NDArray:
         """Energies and momenta of every recorded state, rows of `layout.ENERGIES`."""
-        return energies(self.system, self.state, self.rows)
+        return energies(*self.arrays_of_loop, self.rows)
 
     def energy_balance(self) -> float:
         """Largest drift of kinetic + strain + potential - work, relative to the energy exchanged.
@@ -96,7 +102,7 @@ class Recording:
     @cached_property
     def forces(self) -> Forces:
         """Forces in every recorded state."""
-        return forces(self.system, self.state, self.unique_rows)
+        return forces(*self.arrays_of_loop, self.unique_rows)
 
     @cached_property
     def balance(self) -> Balance:
@@ -110,15 +116,15 @@ class Recording:
         at = ENERGIES.slices(record_counts(self.numbering))["powers"]
         rows = self.unique_rows
         evaluated = (self.energies if rows is self.rows else
-                     energies(self.system, self.state, rows))
-        return prescribed_powers(self.system, self.recorded("t")[:, 0],
+                     energies(*self.arrays_of_loop, rows))
+        return prescribed_powers(self.arrays_of_loop[0], self.recorded("t")[:, 0],
                                  np.ascontiguousarray(self.recorded("frames")), self.forces.sums,
                                  evaluated[:, at])
 
     @cached_property
     def constraint_residuals(self) -> NDArray:
         """Largest residuals of the constraints and of their rates, (n, 2)."""
-        return constraint_residuals(self.system, self.state, self.rows)
+        return constraint_residuals(*self.arrays_of_loop, self.rows)
 
 
 # what is made from arrays and last state, and kept in their place in a file; forces likewise

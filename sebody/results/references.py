@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.model.inputs import dof_block
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Node, Superelement
+from sebody.model.parts import DofBlock, Node, Superelement
 from sebody.results.recording import Recording
 
 FRAME = "frame"         # in place of the name of a node: the floating frame of the body
@@ -51,8 +52,9 @@ def undeformed(recording: Recording, body: Superelement, rotation: NDArray, orig
     known = recording.numbering.dof_blocks
     held = np.array([body.nodes[i].point for i in body.body.position_nodes])
     arm = body.alpha @ held - node.point        # from the node to the frame, both undeformed
-    first = known[node.position]
-    place = recording.recorded("q")[states, first:first + node.position.start.size]
+    position = dof_block(node, "position")
+    first = known[position]
+    place = recording.recorded("q")[states, first:first + position.start.size]
     turned = (_rotations(recording, node, states)
               if node not in body.nodes or node in _full(body) else rotation)
     back = rotation.transpose(0, 2, 1)
@@ -145,7 +147,8 @@ class Welded:
 
     def candidates(self, body: Superelement) -> Iterator[Node]:
         """Nodes that displacements of a body can be measured from, each once."""
-        group, found = self.bodies(body), {}
+        group = self.bodies(body)
+        found: dict[str, Node] = {}
         for one in group:
             nodes = _full(one) if len(group) > 1 else [one.nodes[i]
                                                        for i in one.body.position_nodes]
@@ -169,7 +172,7 @@ class Welded:
         """Clusters with a joint; nodes that share a position alone have one, too."""
         found = {self._cluster(node) for joint in self._model.joints if joint.kind != "weld"
                  for node in (joint.node, joint.to)}
-        sharing: dict[int, set[Hashable]] = {}
+        sharing: dict[DofBlock, set[Hashable]] = {}
         for node in self._model.nodes.values():
             if node.position is not None:
                 sharing.setdefault(node.position, set()).add(self._cluster(node))
@@ -197,7 +200,7 @@ class _Union:
             self._parent[other] = one
 
 
-def _key(node: Node) -> tuple[int, int]:
+def _key(node: Node) -> tuple[Hashable, Hashable]:
     """Equal for nodes that share a rotation, and a position or rigid links from one."""
     position = node.position
     if position is not None and position.root is not None and all(
@@ -214,9 +217,9 @@ def _full(body: Superelement) -> list[Node]:
 def _rotations(recording: Recording, node: Node, states: slice | NDArray) -> NDArray:
     """Rotation matrices (n, D, D) of a node."""
     if recording.model.planar:
-        first = recording.numbering.dof_blocks[node.rotation]
+        first = recording.numbering.dof_blocks[dof_block(node, "rotation")]
         angle = recording.recorded("q")[states, first]
         c, s = np.cos(angle), np.sin(angle)
         return np.stack([c, -s, s, c], axis=1).reshape(-1, 2, 2)
-    k = recording.numbering.rotations[node.rotation]
+    k = recording.numbering.rotations[dof_block(node, "rotation")]
     return recording.recorded("R")[states, 9 * k:9 * k + 9].reshape(-1, 3, 3)

@@ -194,14 +194,15 @@ class Result(Recording):
             Writing fails; an older file is unchanged.
         """
         path = check_output(path)
-        members = self.arrays() | packed(self)
+        members = self.arrays() | packed(self, self.advice)
         with replacing(path, OUTPUT[0]) as file:
             if path.suffix == hdf5.SUFFIX:
                 hdf5.write(file, members, {name: unit(name, self.units) for name in self.arrays()},
                            {"title": "results of a run", "superelements": ", ".join(
                                self.model.bodies), "nodes": ", ".join(self.model.nodes)})
             else:
-                np.savez_compressed(file, **members)
+                # stubs of NumPy take the members for its argument allow_pickle, too
+                np.savez_compressed(file, **members)     # type: ignore[arg-type]
         return path
 
     def save_vtk(self, path: str | Path, every: int = 1) -> Path:

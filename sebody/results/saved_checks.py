@@ -8,7 +8,7 @@ from dataclasses import fields
 from functools import cache
 from inspect import isclass
 from types import NoneType, UnionType
-from typing import Any, Union, get_args, get_origin, get_type_hints
+from typing import Any, NamedTuple, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from sebody.compiler.user_functions import UserFunction
 from sebody.contract.layout import ENERGIES, RECORD
 from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Superelement
+from sebody.model.parts import Element, Superelement
 from sebody.reduction import ReducedBody
 from sebody.reduction.checks import check_layout, coordinate_names
 from sebody.reduction.invariant_checks import check_shapes
@@ -45,7 +45,7 @@ def check_part(part: Any, values: Mapping[str, Any]) -> None:
     ValueError
         They are.
     """
-    kind = type(part)
+    kind: type = type(part)
     wanted = {one.name for one in fields(kind)}
     if set(values) != wanted:
         odd = sorted(set(values) ^ wanted)[0]
@@ -74,7 +74,7 @@ def check_notes(notes: Mapping[str, Any]) -> None:
         raise ValueError(f"it has {inputs.shown(start)} for its start")
 
 
-def check_tuple(kind: type, values: list) -> None:
+def check_tuple(kind: type[NamedTuple], values: list) -> None:
     """The same of a named tuple.
 
     Raises
@@ -142,7 +142,7 @@ def _check_body(body: ReducedBody) -> None:
         check_shapes(body.invariants, n)
     if body.recovery is not None:
         check_recovery(body.recovery, D == 2, n, n - body.modes,
-                       body.invariants and body.invariants.slaved)
+                       None if body.invariants is None else body.invariants.slaved)
 
 
 def check_numbering(model: Any, numbering: Any) -> None:
@@ -167,7 +167,7 @@ def check_numbering(model: Any, numbering: Any) -> None:
              for c in model.constraints]
     if max(ends, default=0) > total or min(numbering.dof_blocks.values(), default=0) < 0:
         raise ValueError("a coordinate does not belong to the model")
-    if len(numbering.histories) != len(numbering.port_names):
+    if len(numbering.time_functions) != len(numbering.port_names):
         raise ValueError("a power port has no name")
     if sorted(numbering.rotations.values()) != list(range(len(numbering.rotations))):
         raise ValueError("rotations are not numbered one after the other")
@@ -182,8 +182,8 @@ def member_lengths(model: Mechanism, numbering: Numbering) -> dict[str, int]:
         A body that places no force.
     """
     counts = record_counts(numbering)
-    owners = (*model.bodies.values(), *model.rigid_bodies.values(), *model.constraints,
-              *model.loads)
+    owners: list[Element | Superelement] = [
+        *model.bodies.values(), *model.rigid_bodies.values(), *model.constraints, *model.loads]
     ends = [0]
     for one in owners:
         if one not in numbering.forces_at:

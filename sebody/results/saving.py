@@ -35,16 +35,16 @@ NUMBERS = Member((None,), finite=False)     # of the model's arrays
 # lengths by the names of `member_lengths`
 MEMBERS = {"rows": Member(("states", "width")), "elements": Member(("states", "forces")),
            "supports": Member(("states", "supports")),
-           "counters": Member((len(CONTROL.names),), "i", least=0),
+           "counters": Member((len(CONTROL.names or ()),), "i", least=0),
            "energies": Member(("states", "energies")), "powers": Member(("states", "ports")),
            "constraint_residuals": Member(("states", 2))}
 
 
-def packed(recording: Recording) -> dict[str, NDArray]:
+def packed(recording: Recording, advice: dict[str, list[str]]) -> dict[str, NDArray]:
     """A recording as arrays and texts by name."""
     text, numbers = described(recording.model, recording.numbering)
     notes = {name: getattr(recording, name) for name in NOTES}
-    notes |= {"version": VERSION, "start": recording.start, "advice": recording.advice}
+    notes |= {"version": VERSION, "start": recording.start, "advice": advice}
     forces = recording.forces
     arrays = {"rows": recording.unique_rows, "numbers": numbers, "model": np.array(text),
               "elements": forces.elements, "supports": forces.sums[:, recording.numbering.free:]}

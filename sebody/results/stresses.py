@@ -20,7 +20,6 @@ from sebody.fem.beam_stress import BeamStress
 from sebody.fem.stress import SolidStress, StressModes, von_mises
 from sebody.generated.options import INERTIA_OPTIONS
 from sebody.model.parts import Superelement
-from sebody.reduction.recovery import Recovery
 from sebody.results.motion import BodyMotion
 
 BLOCK = 2**23       # numbers that the stresses of some states may take at once
@@ -49,7 +48,9 @@ class Stresses:
     def __init__(self, body: Superelement, motion: BodyMotion, gravity: NDArray,
                  loads: NDArray | None):
         self._body, self._motion, self._gravity = body, motion, gravity
-        self._recovery: Recovery = body.body.recovery
+        recovery = body.body.recovery
+        assert recovery is not None     # see FieldStates
+        self._recovery = recovery
         if not self._recovery.stress:
             raise InputError(f"body {body.name!r} has no known stresses: "
                              f"{body.body.lacks['stresses']}")
@@ -68,7 +69,8 @@ class Stresses:
     @property
     def states_at_once(self) -> int:
         """States whose stresses are computed together."""
-        numbers = sum(one.nodes.size * 6 * 4 for one in (*self._solids, *self._beams))
+        numbers = 6 * 4 * (sum(one.nodes.size for one in self._solids)
+                           + sum(one.nodes.size for one in self._beams))
         return int(max(1, BLOCK // max(numbers, 1)))
 
     def at_nodes(self, states: NDArray, what: str = "stress") -> NDArray:
@@ -91,8 +93,8 @@ class Stresses:
             known = np.flatnonzero(one.nodes >= 0)
             values = np.einsum("pca,sa->spc", one.modes[known], self._amplitudes[0][states])
             found[:, one.nodes[known]] = values
-        for one in self._beams:
-            self._most_stressed(one, one.stress(moved), found)
+        for beam in self._beams:
+            self._most_stressed(beam, beam.stress(moved), found)
         return found
 
     def at_points(self, states: NDArray, what: str = "stress") -> NDArray:
@@ -116,7 +118,8 @@ class Stresses:
     def of_node(self, node: int, what: str = "stress") -> NDArray:
         """History at one node, (n, 6): the elements around it alone, each shape once."""
         self._refuse_strain(what)
-        rows = []       # of the shapes, then of the static ones: (6, s) of each element around
+        # of the shapes, then of the static ones: (6, s) of each element around
+        rows: list[NDArray] = []
         for one in self._solids:
             elements, local = np.nonzero(one.nodes == node)
             if len(elements):
@@ -125,10 +128,10 @@ class Stresses:
                 rows.extend(values)
         if rows:
             return self._history(np.mean(rows, axis=0))
-        for one in self._modes:
-            own = np.flatnonzero(one.nodes == node)
+        for modes in self._modes:
+            own = np.flatnonzero(modes.nodes == node)
             if len(own):
-                return self._amplitudes[0] @ one.modes[own[-1]].T
+                return self._amplitudes[0] @ modes.modes[own[-1]].T
         fibres = self.fibres_of_node(node)
         if not fibres.shape[1]:
             raise InputError(f"the stress of body {self._body.name!r} is unknown at node "
@@ -194,9 +197,9 @@ class Stresses:
     def _strained(self) -> NDArray:
         """Reduced coordinates (n, N) whose linear stresses are those of the body."""
         y, reduced = self._motion.y, self._body.body
-        if not INERTIA_OPTIONS[self._body.inertia].field or not reduced.invariants.resultants:
-            return y
         i = reduced.invariants
+        if not INERTIA_OPTIONS[self._body.inertia].field or i is None or not i.resultants:
+            return y
         second = np.einsum("si,eij,sj->se", y, i.Ghat, y, optimize=True) / 2
         return y + second @ (np.linalg.pinv(reduced.stiffness, rcond=1e-12, hermitian=True) @ i.E).T
 

@@ -51,7 +51,8 @@ def to_xarray(recording: Recording, names: Iterable[str] | None) -> "Dataset":
     from xarray import Dataset
 
     units = parsed_units(recording.model.units)
-    variables, coordinates = {}, {"t": recording.recorded("t")[:, 0]}
+    variables = {}
+    coordinates: dict[str, NDArray | list[str]] = {"t": recording.recorded("t")[:, 0]}
     for name, values in _histories(recording, names):
         sizes = values.shape[1:]
         dimensions = _dimensions(values, name, recording.model.dimension)

@@ -85,6 +85,7 @@ def check_series(path: str | Path) -> Path:
 def _part(recording: Recording, name: str) -> _Part:
     field = field_of(recording, name)
     recovery = recording.model.bodies[name].body.recovery
+    assert recovery is not None     # see `Field`
     return _Part(field, recovery.cells, bool(recovery.stress))
 
 
@@ -92,7 +93,8 @@ def _write_state(recording: Recording, parts: list[_Part], state: int, path: Pat
     from meshio import Mesh
     from meshio.vtu import write
 
-    points, cells, data = [], [], {name: [] for name in (
+    points, cells = [], []
+    data: dict[str, list[NDArray]] = {name: [] for name in (
         "displacement", "velocity", "von_mises", "body")}
     first = 0
     for number, part in enumerate(parts):
@@ -126,7 +128,8 @@ def _nodes(recording: Recording, state: int) -> tuple[NDArray, NDArray]:
             first = numbering.dof_blocks[node.position]
             found.append(np.arange(first, first + node.position.start.size))
     at = np.array(found, dtype=int).reshape(-1, recording.model.dimension)
-    return tuple(_spatial(recording.recorded(name)[state][at]) for name in "qv")
+    q, v = (_spatial(recording.recorded(name)[state][at]) for name in "qv")
+    return q, v
 
 
 def _spatial(vectors: NDArray) -> NDArray:

@@ -110,7 +110,7 @@ def difference(one: Result, other: Result, allowed: Tolerance) -> float:
     if not one.model.planar:
         own &= ~rotations       # these are compared by their matrices
     q = (one.recorded("q") - other.recorded("q"))[:, own]
-    found = np.sqrt((q**2).mean(axis=0)) / allowed.allowed(one.system.magnitude[own],
+    found = np.sqrt((q**2).mean(axis=0)) / allowed.allowed(one.arrays_of_loop[0].magnitude[own],
                                                            rotations[own])
     R = one.recorded("R") - other.recorded("R")
     angles = np.sqrt((R**2).reshape(len(R), -1, 9).sum(axis=2).mean(axis=0) / 2.0)

@@ -34,7 +34,7 @@ from sebody.runs.schemes import generalized_alpha
 SECONDS_A_LETTER = 7e-5         # of a kernel's file, of one processor
 
 _lock = Lock()
-_ready = set()          # kernels and parts of the loop this process need not ask for again
+_ready: set[str] = set()        # kernels and parts of the loop this process need not ask for again
 
 
 class Part(NamedTuple):

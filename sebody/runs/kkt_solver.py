@@ -86,7 +86,7 @@ class Scaled:
             if across <= SMALL:
                 dense = np.zeros((across, across), order="F")
                 dense[row, column] = self._entries
-                self.factors = _Dense(dense)
+                self.factors: _Dense | _Sparse | None = _Dense(dense)
             else:
                 self.factors = _Sparse(self.matrix)
         except RuntimeError:        # a pivot is exactly zero
@@ -116,6 +116,7 @@ class Scaled:
 
     def solve(self, right: NDArray) -> NDArray:
         """Solution by the factors."""
+        assert self.factors is not None     # of a regular matrix
         return self.scale * self.factors.solve(self.scale * right)
 
     def least(self, right: NDArray) -> tuple[NDArray, NDArray]:

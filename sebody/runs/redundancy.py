@@ -82,7 +82,7 @@ class Solver:
         self.system, self.names = Scaled(matrix), numbering.names
         self.redundant: tuple[str, ...] = ()
         self.shared: tuple[str, ...] = ()
-        self.regularized: Relaxed | None = None
+        self.regularized: Relaxed       # where a pivot is suspicious, and nothing else asks
         if self.system.suspicious:
             system.massless_axes[:matrix.shape[0]] = massless_axes(matrix, system)
             self.regularized = Relaxed(matrix, part_sizes(matrix, system), system)

@@ -67,7 +67,8 @@ def save_state(run: Simulation, path: str | Path) -> Path:
                 "scheme": list(run.scheme), "tolerance": run.tolerance and list(run.tolerance),
                 "model": fingerprint(run), "checksums": checksums(arrays)}
     with replacing(path, TARGET[0]) as file:
-        np.savez(file, settings=json.dumps(settings), **arrays)
+        # stubs of NumPy take the arrays for its argument allow_pickle, too
+        np.savez(file, settings=json.dumps(settings), **arrays)      # type: ignore[arg-type]
     return path
 
 
@@ -164,7 +165,7 @@ def _check_numbers(table: Table, run: Simulation, arrays: Mapping[str, NDArray])
     """Refuse counters and times that no run can have reached."""
     control, clock = record(CONTROL, arrays["control"]), record(CLOCK, arrays["clock"])
     rows = arrays["rows"]
-    for name in CONTROL.names:
+    for name in CONTROL.names or ():
         most = MOST.get(name, MOST_STEPS if name != "corner" else run.system.corners.size)
         if not 0 <= control[name] <= most:
             raise table.fault(f"holds {control[name]} in control for {name}, outside 0 to {most:g}")

@@ -160,8 +160,8 @@ class _Deformation(NamedTuple):
         """That of a superelement where it is."""
         reduced, first = body.body, numbering.modes[body.name]
         dof_blocks = (*body.positions, *body.rotations)
-        own = [c for t in dof_blocks for c in coordinates(numbering, t)]
-        own = np.array([*own, *range(first, first + reduced.modes)])
+        boundary = [c for t in dof_blocks for c in coordinates(numbering, t)]
+        own = np.array([*boundary, *range(first, first + reduced.modes)])
         weights = np.sqrt(_weights(reduced.mass.diagonal(), dof_blocks))
         rows = null_space((weights[:, None] * _rigid(model, dof_blocks, numbering, state,
                                                      len(own))).T).T * weights

@@ -110,8 +110,9 @@ def motion(run: Simulation | Result) -> csc_matrix:
     ones = np.flatnonzero(ordinary)
     blocks.add_entries(ones, ones, np.ones(len(ones)))
     for dof_block in numbering.dependent:
-        at, root = (coordinates(numbering, t) for t in (dof_block, dof_block.root))
-        if dof_block.root.solved:
+        begin = dof_block.parents()[0]
+        at, root = (coordinates(numbering, t) for t in (dof_block, begin))
+        if begin.solved:
             blocks.add(at, root, axes.get(root[0], np.eye(len(at))))
         for rotation, arm in dof_block.arms:
             if rotation.solved:
@@ -121,7 +122,7 @@ def motion(run: Simulation | Result) -> csc_matrix:
 
 def summed(run: Simulation | Result) -> csc_matrix:
     """Sum of the element matrices of all coordinates, in global axes, as they are in `State.J`."""
-    unknowns, total = run.system.g_unknown, run.numbering.total
+    unknowns, total = run.arrays_of_loop[0].g_unknown, run.numbering.total
     sums = csc_matrix((np.ones(unknowns.size), (unknowns, np.arange(unknowns.size))),
                       shape=(total, unknowns.size))
     return csc_matrix(sums @ by_element(run))
@@ -132,7 +133,7 @@ def by_element(run: Simulation | Result) -> csc_matrix:
 
     Rows are in the order of `State.g`; of the matrices that are in `State.J`.
     """
-    system, state, blocks = run.system, run.state, _Blocks()
+    (system, state), blocks = run.arrays_of_loop, _Blocks()
     for b, (count, width, stride) in enumerate(zip(system.count, system.width, system.stride,
                                                    strict=True)):
         forces = np.arange(system.at_g[b], system.at_g[b + 1]).reshape(count, width)
@@ -213,10 +214,10 @@ def _dof_blocks(run: Simulation | Result) -> list[tuple[DofBlock, list[int]]]:
 
 def _rotation(run: Simulation | Result, dof_block: DofBlock) -> NDArray:
     if run.model.planar:
-        angle = run.state.q[run.numbering.dof_blocks[dof_block]]
+        angle = run.arrays_of_loop[1].q[run.numbering.dof_blocks[dof_block]]
         return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     k = run.numbering.rotations[dof_block]
-    return run.state.R[9 * k:9 * k + 9].reshape(3, 3)
+    return run.arrays_of_loop[1].R[9 * k:9 * k + 9].reshape(3, 3)
 
 
 def _material(run: Simulation | Result, dof_block: DofBlock, spin: Spin) -> NDArray:
@@ -234,7 +235,7 @@ def _lever(run: Simulation | Result, rotation: DofBlock, arm: NDArray) -> NDArra
 
 def _frame(run: Simulation | Result, k: int) -> NDArray:
     """The frame of a superelement, (d, d)."""
-    frame = run.state.frames[9 * k:9 * k + 9].reshape(3, 3)
+    frame = run.arrays_of_loop[1].frames[9 * k:9 * k + 9].reshape(3, 3)
     if run.model.planar:
         c, s = frame[0, 0], frame[1, 0]
         return np.array([[c, -s], [s, c]])
@@ -243,4 +244,4 @@ def _frame(run: Simulation | Result, k: int) -> NDArray:
 
 def _axes_of_positions(run: Simulation | Result) -> dict[int, NDArray]:
     """First unknown of every position that is not solved for in global axes -> its axes."""
-    return {int(first): _frame(run, k) for first, k in run.system.rotated}
+    return {int(first): _frame(run, k) for first, k in run.arrays_of_loop[0].rotated}

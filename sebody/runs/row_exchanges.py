@@ -74,11 +74,12 @@ class RowExchanges:
         scale = diags(self.state.scale[:self.system.diagonal.size])
         matrix = csc_matrix(scale @ assembled(self.system, self.state) @ scale)
         try:
-            self._factors = factors(matrix, permc_spec="NATURAL", diag_pivot_thresh=THRESHOLD)
+            found = factors(matrix, permc_spec="NATURAL", diag_pivot_thresh=THRESHOLD)
         except RuntimeError:
             self._factors = None
             return False
-        pivots = np.abs(self._factors.U.diagonal())
+        self._factors = found
+        pivots = np.abs(found.U.diagonal())
         return bool(pivots.min() >= SINGULAR * pivots.max())
 
     def _solved(self, right: NDArray) -> NDArray:

@@ -35,10 +35,10 @@ class Sampling:
         self.model, self.numbering, self.system, self.state = model, numbering, system, state
         kinds = system.control.channels[:, 0]
         self._outside = [(COUNTS + system.control.periods.size + k, sensor.quantity)
-                         for k, sensor in enumerate(numbering.kept.sensors)
+                         for k, sensor in enumerate(numbering.all_kept.sensors)
                          if kinds[k] == OUTSIDE]
         self._readers: dict[str, Callable[[], float | NDArray]] = {}
-        self._numbers = {name: k for k, name in enumerate(numbering.kept.ports)}
+        self._numbers = {name: k for k, name in enumerate(numbering.all_kept.ports)}
 
     @property
     def samples(self) -> bool:
@@ -62,7 +62,7 @@ class Sampling:
         InputError
             The message names the sensor or controller.
         """
-        for sensor in self.numbering.kept.sensors:
+        for sensor in self.numbering.all_kept.sensors:
             if any(sensor.quantity == quantity for _, quantity in self._outside):
                 self._check_number(sensor.name, sensor.quantity)
         tasks = [(f"sensor {one.name!r}", one.period) for one in self.model.sensors.values()
@@ -131,7 +131,7 @@ class Sampling:
         return reader()
 
     def _reader(self, name: str) -> Callable[[], float | NDArray]:
-        now, frames, values = self.state.now, self.state.frames, self.numbering.kept.values
+        now, frames, values = self.state.now, self.state.frames, self.numbering.all_kept.values
         if name in values:
             place = values[name]
             return lambda: float(frames[place])

@@ -63,7 +63,8 @@ _BOUNDS = {"alpha_m": {"least": -1, "below": 1}, "alpha_f": {"least": 0, "below"
            "tolerance": {"above": 0, "below": 1}, "geometric": {"least": 0, "most": 1}}
 
 
-def _scheme(alpha_m, alpha_f, beta, gamma, tolerance, tangent, index) -> Scheme:
+def _scheme(alpha_m: float, alpha_f: float, beta: float, gamma: float, tolerance: float,
+            tangent: str, index: int) -> Scheme:
     tolerance = inputs.number(tolerance, "tolerance", above=0, below=1,
                               remedy="use a number between 0 and 1, such as 1e-8")
     tangent = inputs.choice(tangent, "tangent", ("consistent", "paper"))

@@ -24,8 +24,10 @@ from sebody.engine.state import (
     REASONS,
     Record,
     Scheme,
+    State,
 )
 from sebody.engine.step import write_record
+from sebody.engine.system import System
 from sebody.errors import InputError, Interrupted, SimulationError
 from sebody.limits.watch import Watch
 from sebody.model.model import Model
@@ -138,6 +140,11 @@ class Simulation:
     def __repr__(self) -> str:
         return (f"<Simulation of a {summary(self.model)}: {self.numbering.free} unknowns, step "
                 f"{self.h:.6g}, t = {self.time:.6g}>")
+
+    @property
+    def arrays_of_loop(self) -> tuple[System, State]:
+        """System and state, as `Result` has them."""
+        return self.system, self.state
 
     @property
     def time(self) -> float:

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 from sebody.assembly.numbering import Numbering
 from sebody.engine.state import State
 from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Element, Superelement
 from sebody.model.ties import untied
 from sebody.runs.initial_velocities import changed, strained
 
@@ -37,6 +38,6 @@ def _falling(model: Mechanism) -> str:
 
 def _rates(model: Mechanism, names: list[str]) -> list[NDArray]:
     """Initial velocities that bodies were given."""
-    bodies = {**model.bodies, **model.rigid_bodies}
+    bodies: dict[str, Superelement | Element] = {**model.bodies, **model.rigid_bodies}
     return [getattr(place.node, place.kind).rate for name in names
             for place in bodies[name].attachments]

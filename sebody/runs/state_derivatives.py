@@ -19,18 +19,19 @@ def derivative(run: Simulation | Result, mass: float, damping: float,
     Weights are those of the derivatives with respect to accelerations, velocities, and positions
     and rotations. Constraints go with the last.
     """
-    state = run.state
+    system, state = run.arrays_of_loop
     state.control.wanted = EVALUATED     # a run that goes on needs its own matrix again
     state.T[:] = np.tile(np.eye(3).ravel(), len(state.T) // 9)
-    return matrix(run.system, state, "the state", mass=mass, damping=damping,
+    return matrix(system, state, "the state", mass=mass, damping=damping,
                   stiffness=stiffness, constraint=stiffness)
 
 
 def rotating(run: Simulation | Result, spin: Spin) -> tuple[csc_matrix, NDArray]:
     """Tangent stiffness in axes that rotate with the spin, and the residual."""
     stiffness = turning(run, spin)[2] if spin.rotates else derivative(run, 0.0, 0.0, 1.0)
-    residual = run.state.residual.copy()
-    to_body_axes(run.system, run.state.frames, residual, False)
+    system, state = run.arrays_of_loop
+    residual = state.residual.copy()
+    to_body_axes(system, state.frames, residual, False)
     return csc_matrix(stiffness), residual[:run.numbering.free]
 
 
@@ -41,7 +42,7 @@ def turning(run: Simulation | Result, spin: Spin) -> tuple[csc_matrix, csc_matri
     G = motion(run)
     return (G.T @ mass @ G, G.T @ (damping + mass @ rate) @ G,
             G.T @ (stiffness + damping @ velocity + mass @ place) @ G
-            + of_levers(run, run.state.residual))
+            + of_levers(run, run.arrays_of_loop[1].residual))
 
 
 def weighted(run: Simulation | Result, *weights: float) -> csc_matrix:

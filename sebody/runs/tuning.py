@@ -9,7 +9,8 @@ Their forces are those at which nothing that they hold is accelerated, found by 
 since normal forces depend on them; what needs more than the static limit slides from the start.
 """
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,12 +55,14 @@ def tune(model: Mechanism, system: System, numbering: Numbering, state: State,
         if "teeth" in load.tuned:
             constants["stiffness"] = RESOLVED**2 * natural
             continue
-        stiffness = constants["bristle"] = load.constants["bristle"] or natural
+        stiffness = constants["bristle"] = load.number("bristle") or natural
         numbering.bristles[load] = stiffness
-        constants["bristle_damping"] = 2.0 * load.tuned["damping"] * np.sqrt(stiffness * mass)
+        constants["bristle_damping"] = float(
+            2.0 * load.tuned["damping"] * np.sqrt(stiffness * mass))
 
 
-def _mobility(row: NDArray, solve, system: System, state: State, free: int) -> float:
+def _mobility(row: NDArray, solve: Callable[[NDArray], NDArray], system: System, state: State,
+              free: int) -> float:
     """Acceleration along a direction by a unit force along it.
 
     What a drive moves does not give way: it gets the mobility of its parts alone.
@@ -70,7 +73,8 @@ def _mobility(row: NDArray, solve, system: System, state: State, free: int) -> f
     return found if found > STILL * alone else max(alone, 1e-300)
 
 
-def response(row: NDArray, solve, system: System, state: State, free: int) -> NDArray:
+def response(row: NDArray, solve: Callable[[NDArray], NDArray], system: System, state: State,
+             free: int) -> NDArray:
     """Accelerations by a unit force along a direction, (coordinates,)."""
     force = row.copy()
     to_body_axes(system, state.frames, force, False)
@@ -108,9 +112,9 @@ def directions(element: Element, numbering: Numbering, state: State) -> list[NDA
     if kind.startswith(("sphere_on", "point_on")):
         return [_pair(numbering, places, axis, [axis, axis]) for axis in np.eye(size)]
     if kind.startswith("friction_slide"):
-        return [_slide(numbering, state, places, turns[0], c["e"])]
+        return [_slide(numbering, state, places, turns[0], element.vector("e"))]
     if kind.startswith("friction_cylindrical"):
-        return [_slide(numbering, state, places, turns[0], c["e"]),
+        return [_slide(numbering, state, places, turns[0], element.vector("e")),
                 c["radius"] * _turn(numbering, turns, np.cross(c["n"], c["m"]))]
     if kind.startswith("friction_spherical"):
         Ra, Rb = (_rotation(numbering, state, t) for t in turns)
@@ -186,7 +190,7 @@ class LoadedBristles:
             return []
         return [_Held(constants, rows, bent, memory[names.index("normal")])]
 
-    def load(self, masses: csc_matrix, solve_again) -> None:
+    def load(self, masses: csc_matrix, solve_again: Callable[..., Any]) -> None:
         """Bend the bristles so that what they hold stays at rest."""
         rows = [row for one in self.held for row in one.rows]
         if not rows:

@@ -68,7 +68,7 @@ def off_the_grid(run: Result, values: Values, h: float, reference: Reference,
 def _jumps(numbering: Numbering) -> NDArray:
     """Times at which loads and drives jump, or may."""
     found: list[float] = []
-    for history in numbering.histories:
+    for history in numbering.time_functions:
         if history.functions:
             found += history.corners
             continue

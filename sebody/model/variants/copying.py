@@ -37,7 +37,7 @@ def copied(model: Mechanism) -> Mechanism:
     """
     checked(model)
     elements = (*model.constraints, *model.loads)
-    constant = [body.body for body in model.bodies.values()]
+    constant: list[object] = [body.body for body in model.bodies.values()]
     constant += [one for beam in model.beams for one in (beam.section, *beam.bodies)]
     constant += [one for element in elements for one in (element.time_function, element.function)
                  if one is not None]
@@ -85,6 +85,7 @@ def loads_on(model: Mechanism, body: Superelement) -> list[Element]:
 
 def load_name(load: Element) -> str:
     """Name that the load of a body has there."""
+    assert load.body is not None
     return next(name for name, vector in load.body.body.loads.items()
                 if np.array_equal(vector, load.constants["P"]))
 

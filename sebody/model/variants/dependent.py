@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.errors import InputError
+from sebody.model.inputs import dof_block
 from sebody.model.joints import spherical
 from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import attach
@@ -57,18 +58,19 @@ def make_dependent(model: Mechanism, node: Node, carrier: Node, keep: str, body:
     elif keep != "rotation" and node.position is not carrier.position:
         _link(model, node, carrier)
     if keep != "translation" and node.rotation is not carrier.rotation:
-        if not can_share(node.rotation, carrier.rotation):
+        own, kept = dof_block(node, "rotation"), dof_block(carrier, "rotation")
+        if not can_share(own, kept):
             raise InputError(f"the rotations of {node.name} and {carrier.name} are both fixed or "
                              "prescribed: they cannot be those of one rigid body; hold one of them "
                              "by a joint with explicit=True")
-        share(model, node.rotation, carrier.rotation, "rotation")
+        share(model, own, kept, "rotation")
         model.connections.append(Connection("rotation", node, carrier))
     return closed
 
 
 def _is_closed(node: Node, carrier: Node) -> bool:
     """Whether a further link between two nodes closes a loop of links, the ground included."""
-    one, other = (t if t.root is None else t.root for t in (node.position, carrier.position))
+    one, other = (dof_block(n, "position").parents()[0] for n in (node, carrier))
     if one is other and node.rotation is carrier.rotation:
         raise InputError(f"{node.name} and {carrier.name} are joined by rigid links already: they "
                          "cannot be nodes of a further rigid body; open the loop by a joint with "
@@ -85,11 +87,12 @@ def _close(model: Mechanism, node: Node, carrier: Node, body: str) -> None:
 
 
 def _link(model: Mechanism, node: Node, carrier: Node) -> None:
-    if node.position.root is not None:
-        _begin_at(model, node.position)
-    position, base = node.position, carrier.position
+    position = dof_block(node, "position")
+    if position.root is not None:
+        _begin_at(model, position)
+    base = dof_block(carrier, "position")
     root = base if base.root is None else base.root
-    arms = (*base.arms, (carrier.rotation, node.point - carrier.point))
+    arms = (*base.arms, (dof_block(carrier, "rotation"), node.point - carrier.point))
     _move_root(model, position, root, arms)
     position.rate, position.given = np.zeros_like(position.rate), False
     model.connections.append(Connection("position", node, carrier))
@@ -98,6 +101,7 @@ def _link(model: Mechanism, node: Node, carrier: Node) -> None:
 def _begin_at(model: Mechanism, position: DofBlock) -> None:
     """Let links begin at a position that was at the end of some: these are passed backwards."""
     root, arms = position.root, position.arms
+    assert root is not None
     if root.given and not all(rotation.given or rotation.fixed for rotation, _ in arms):
         raise InputError(f"{root.name} has an initial velocity and is on rigid links to a body "
                          "that is made rigid: give the angular velocities there, too, or none")
@@ -122,7 +126,7 @@ def _move_root(model: Mechanism, old: DofBlock, new: DofBlock, arms: tuple) -> N
 
 def _shortened(arms: tuple) -> tuple:
     """Arms without neighbours that go there and back."""
-    found = []
+    found: list[tuple[DofBlock, NDArray]] = []
     for rotation, arm in arms:
         if found and found[-1][0] is rotation:
             arm = found.pop()[1] + arm

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,7 +16,7 @@ from sebody.model.variants.copying import Variant, checked, copied, loads_on
 
 
 def divide(model: Mechanism, name: str, bodies: int, elements: int | None = None,
-           **options) -> Variant:
+           **options: Any) -> Variant:
     """The model with a beam of another number of superelements.
 
     Parameters
@@ -96,7 +98,7 @@ def _described(model: Mechanism, name: str) -> Beam:
     used = _used(model, own)
     for node in own.nodes[1:-1]:
         if used & {node, node.position, node.rotation} or any(
-                t.fixed or t.given for t in (node.position, node.rotation)):
+                t is not None and (t.fixed or t.given) for t in (node.position, node.rotation)):
             raise InputError(f"{what}something else acts on or holds its node {node.name!r}; build "
                              "two beams that meet there")
     return own

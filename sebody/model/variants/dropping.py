@@ -118,12 +118,12 @@ def _check_unused(model: Mechanism, body: Superelement, node: Node, what: str,
     for element in (*model.rigid_bodies.values(), *model.constraints, *model.loads):
         if element not in acting and any(t is own for t in element.dof_blocks):
             raise InputError(f"{needed} {element.name!r}")
-    for other in model.nodes.values():
-        if other is not node and getattr(other, what) is own:
-            raise InputError(f"{needed} node {other.name!r}, which shares it")
-    for other in model.dof_blocks():
-        if other.root is not None and any(t is own for t in other.parents()):
-            raise InputError(f"{needed} {other.name}, which follows it by a rigid link")
+    for one in model.nodes.values():
+        if one is not node and getattr(one, what) is own:
+            raise InputError(f"{needed} node {one.name!r}, which shares it")
+    for block in model.dof_blocks():
+        if block.root is not None and any(t is own for t in block.parents()):
+            raise InputError(f"{needed} {block.name}, which follows it by a rigid link")
     for load in acting:
         if load.mode is not None:
             raise InputError(f"{load.name!r} acts on a mode of superelement {body.name!r}, whose "
@@ -143,8 +143,9 @@ def _rates(old: Superelement, found: Released) -> NDArray:
 def _stiffens(body: Superelement, node: str) -> bool:
     """Whether motions of a position make resultants, stresses that stiffen the body."""
     place = [one.name for one in body.nodes].index(node)
-    return body.stiffening and bool(
-        body.invariants.E[coordinates_of(body.body, place, "position")].any())
+    invariants = body.invariants
+    return body.stiffening and invariants is not None and bool(
+        invariants.E[coordinates_of(body.body, place, "position")].any())
 
 
 def _first_frequency(body: ReducedBody) -> float:

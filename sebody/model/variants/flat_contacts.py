@@ -1,15 +1,15 @@
 """Friction, stops, gears and contacts of a spatial model in a plane of symmetry."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from sebody.errors import InputError
 from sebody.model.parts import Attachment, Element
 from sebody.model.variants.flattening import Flattening
 
-Made = tuple[str, dict[str, ArrayLike]]
+Made = tuple[str, dict[str, Any]]
 
 
 def flat_places(flat: Flattening, one: Element, kind: str) -> tuple[Attachment, ...]:
@@ -20,7 +20,7 @@ def flat_places(flat: Flattening, one: Element, kind: str) -> tuple[Attachment, 
     return tuple(flat.place(p) for p in kept)
 
 
-def _scalars(one: Element) -> dict[str, ArrayLike]:
+def _scalars(one: Element) -> dict[str, Any]:
     """Constants that are no directions."""
     return {name: value for name, value in one.constants.items() if np.ndim(value) == 0}
 
@@ -52,14 +52,14 @@ def _ball(kind: str) -> Callable[[Flattening, Element], Made]:
 
 def _slide(kind: str) -> Callable[[Flattening, Element], Made]:
     def made(flat: Flattening, one: Element) -> Made:
-        e = flat.vector(one.constants["e"], f"the axis of {one.name!r}")
+        e = flat.vector(one.vector("e"), f"the axis of {one.name!r}")
         return kind, _scalars(one) | {"e": e}
     return made
 
 
 def _cylindrical(flat: Flattening, one: Element) -> Made:
     """In the plane it slides, or turns about the normal."""
-    if not flat.is_normal(one.constants["e"]):
+    if not flat.is_normal(one.vector("e")):
         found = _slide("planar_friction_slide_f1m1")(flat, one)
         return found[0], found[1] | {"radius": 1.0}
     c = _scalars(one)
@@ -70,7 +70,7 @@ def _turn_stop(flat: Flattening, one: Element) -> Made:
     return "planar_turn_stop", _limits(_scalars(one), _sign(flat, one))
 
 
-def _limits(c: dict[str, ArrayLike], sign: float) -> dict[str, ArrayLike]:
+def _limits(c: dict[str, Any], sign: float) -> dict[str, Any]:
     """The limits of a measure that may count the other way."""
     if sign > 0:
         return c
@@ -84,12 +84,12 @@ def _gear(flat: Flattening, one: Element) -> Made:
 
 
 def _on_plane(flat: Flattening, one: Element) -> Made:
-    n = flat.vector(one.constants["n"], f"the normal of {one.name!r}")
+    n = flat.vector(one.vector("n"), f"the normal of {one.name!r}")
     return "planar_" + one.kind, _scalars(one) | {"n": n}
 
 
 def _on_cylinder(flat: Flattening, one: Element) -> Made:
-    if not flat.is_normal(one.constants["e"]):
+    if not flat.is_normal(one.vector("e")):
         raise InputError(f"the axis of {one.name!r} is not normal to the plane")
     return "planar_" + one.kind.replace("cylinder", "sphere"), _scalars(one)
 

@@ -67,7 +67,7 @@ def flat_joint(flat: Flattening, joint: Joint) -> Joint:
     InputError
         It is not symmetric about the plane.
     """
-    if joint.kind == "revolute" and not flat.is_normal(joint.axes.columns[:, 0]):
+    if joint.kind == "revolute" and not flat.is_normal(joint.axis):
         raise InputError(f"the axis of {joint.name!r} is not normal to the plane")
     node, to = flat.node(joint.node), flat.node(joint.to)
     equations: list[Element] = []
@@ -77,7 +77,7 @@ def flat_joint(flat: Flattening, joint: Joint) -> Joint:
                 e.kind == found.kind for e in equations)):
             equations.append(found)
     if any(e.kind == "planar_turn_drive" for e in equations) and (
-            flat.plane.normal @ joint.axes.columns[:, 0] < 0):
+            flat.plane.normal @ joint.axis < 0):
         node, to = to, node     # it turns `to` about the normal as `node` about its axis
         equations = [Element(e.name, e.kind, e.attachments[::-1], e.constants, e.multipliers,
                              e.time_function)
@@ -88,7 +88,7 @@ def flat_joint(flat: Flattening, joint: Joint) -> Joint:
 def _axes(flat: Flattening, joint: Joint) -> Axes | None:
     if joint.axes is None:
         return None
-    first = joint.axes.columns[:, 0]
+    first = joint.axis
     if joint.kind in ("spherical", "weld") or not flat.is_inside(first):
         return Axes.of(flat.node(joint.axes.carrier))
     e = flat.vector(first, joint.name)
@@ -111,17 +111,17 @@ def _coincident(flat: Flattening, joint: Joint, one: Element) -> Element:
 
 def _coincident_ground(flat: Flattening, joint: Joint, one: Element) -> Element:
     return _equation(flat, one, "planar_coincident_ground", 2,
-                     {"c": flat.point(one.constants["c"], f"{joint.name!r}")})
+                     {"c": flat.point(one.vector("c"), f"{joint.name!r}")})
 
 
 def _parallel(flat: Flattening, joint: Joint, one: Element) -> Element | None:
-    if flat.is_normal(one.constants["e"]):
+    if flat.is_normal(one.vector("e")):
         return None
-    return _aligned(flat, joint, one, flat.is_inside(one.constants["e"]))
+    return _aligned(flat, joint, one, flat.is_inside(one.vector("e")))
 
 
 def _perpendicular(flat: Flattening, joint: Joint, one: Element) -> Element | None:
-    e, n = (one.constants[name] for name in ("e", "n"))
+    e, n = (one.vector(name) for name in ("e", "n"))
     if any(flat.is_normal(a) and flat.is_inside(b) for a, b in ((e, n), (n, e))):
         return None
     return _aligned(flat, joint, one, flat.is_inside(e) and flat.is_inside(n))
@@ -135,7 +135,7 @@ def _aligned(flat: Flattening, joint: Joint, one: Element, symmetric: bool) -> E
 
 
 def _on_line(flat: Flattening, joint: Joint, one: Element) -> Element:
-    axis = np.cross(one.constants["n1"], one.constants["n2"])
+    axis = np.cross(one.vector("n1"), one.vector("n2"))
     if flat.is_normal(axis):
         return _equation(flat, one, "planar_coincident", 2,
                          attachments=positions(*(flat.node(p.node) for p in one.attachments[:2])))
@@ -144,7 +144,7 @@ def _on_line(flat: Flattening, joint: Joint, one: Element) -> Element:
 
 
 def _on_plane(flat: Flattening, joint: Joint, one: Element) -> Element | None:
-    normal = one.constants["n1"]
+    normal = one.vector("n1")
     if flat.is_normal(normal):
         return None
     return _equation(flat, one, "planar_on_line", 1,
@@ -156,12 +156,12 @@ def _distance(flat: Flattening, joint: Joint, one: Element) -> Element:
 
 
 def _turn_drive(flat: Flattening, joint: Joint, one: Element) -> Element:
-    flat.axial(joint.axes.columns[:, 0], f"the axis of {joint.name!r}")
+    flat.axial(joint.axis, f"the axis of {joint.name!r}")
     return _equation(flat, one, "planar_turn_drive", 1)
 
 
 def _slide_drive(flat: Flattening, joint: Joint, one: Element) -> Element:
-    e = flat.vector(one.constants["e"], f"the axis of {joint.name!r}")
+    e = flat.vector(one.vector("e"), f"the axis of {joint.name!r}")
     return _equation(flat, one, "planar_slide_drive", 1,
                      {"e": e, "start": one.constants["start"]})
 
@@ -178,7 +178,7 @@ EQUATIONS: dict[str, Callable[[Flattening, Joint, Element], Element | None]] = {
 
 def _rigid_body(flat: Flattening, one: Element) -> tuple[str, dict]:
     c = one.constants
-    first = flat.vector(c["mc"], f"the centre of mass of {one.name!r}")
+    first = flat.vector(one.vector("mc"), f"the centre of mass of {one.name!r}")
     J = np.array([[c[f"J_{''.join(sorted(a + b))}"] for b in "xyz"] for a in "xyz"])
     own = flat.plane.axes.T @ J @ flat.plane.axes
     if np.abs(own[:2, 2]).max() > 1e-9 * np.trace(J):
@@ -200,7 +200,8 @@ def _torque(flat: Flattening, one: Element) -> tuple[str, dict]:
 
 def _torsion_spring(flat: Flattening, one: Element) -> tuple[str, dict]:
     c = one.constants
-    side = np.sign(flat.axial(np.cross(c["n"], c["m"]), f"the axis of {one.name!r}"))
+    axis = np.cross(one.vector("n"), one.vector("m"))
+    side = np.sign(flat.axial(axis, f"the axis of {one.name!r}"))
     return "planar_torsion_spring", {"k": c["k"], "k3": c["k3"], "c": c["c"],
                                      "rest": side * c["rest"]}
 

@@ -59,7 +59,7 @@ def planar(model: Mechanism) -> Variant:
     if not model.nodes:
         raise InputError("the model has no nodes, so it has no plane")
     check_joints(model)
-    refused = None
+    refused: InputError | None = None
     for normal in _normals(model):
         plane = Plane.through(next(iter(model.nodes.values())).point, normal)
         try:
@@ -73,6 +73,7 @@ def planar(model: Mechanism) -> Variant:
             before, after = sum(unknowns(model)), sum(unknowns(made))
             return Variant(made, f"the model is planar, normal to {place(plane.normal)}: {after} "
                                  f"instead of {before} unknowns{_of_bushings(model)}")
+    assert refused is not None      # there is at least one normal
     raise refused
 
 
@@ -88,9 +89,9 @@ def _normals(model: Mechanism) -> Iterator[NDArray]:
 
     Axes of drives come first and as they are: so angles count as their motions do.
     """
-    driven = [joint.axes.columns[:, 0] for joint in model.joints if any(
+    driven = [joint.axis for joint in model.joints if any(
         c.kind == "turn_drive" for c in joint.constraints)]
-    axial = [joint.axes.columns[:, 0] for joint in model.joints if joint.kind in _NORMAL]
+    axial = [joint.axis for joint in model.joints if joint.kind in _NORMAL]
     axial += [one.direction for one in model.loads if "torque" in one.kind]
     inside = [node.point - next(iter(model.nodes.values())).point for node in model.nodes.values()]
     inside += [model.gravity_field]
@@ -178,6 +179,7 @@ def _rates(old: Superelement, found: PlanarBody) -> NDArray:
 
 def _mode_forces(load: Element, found: PlanarBody) -> list[Element]:
     """Forces on the planar modes that a spatial one is made of."""
+    assert load.mode is not None
     name, mode = load.mode
     parts = found.modes[mode]
     if not np.isclose(parts @ parts, 1.0, atol=_ODD):

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from sebody.errors import InputError
 from sebody.model import bodies, loads
+from sebody.model.inputs import dof_block
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement
 from sebody.model.variants.copying import Variant, copied, load_name, loads_on, placed
@@ -80,8 +81,8 @@ def _carrier(body: Superelement) -> Node:
     what = f"superelement {body.name!r} cannot be made rigid"
     own = list(zip(body.nodes, body.body.keeps, strict=True))
     held = {node.position: node for node, keep in own
-            if keep != "rotation" and is_held(node.position)}.values()
-    still = [node for node in held if node.position.fixed]
+            if keep != "rotation" and is_held(dof_block(node, "position"))}.values()
+    still = [node for node in held if dof_block(node, "position").fixed]
     if len(still) > 1:
         raise InputError(f"{what}: the positions of {still[0].name} and {still[1].name} are both "
                          "fixed or prescribed; hold one of them by a joint with explicit=True")
@@ -97,7 +98,7 @@ def _carrier(body: Superelement) -> Node:
 
 def _check_rates(body: Superelement, carrier: Node) -> None:
     """Refuse initial velocities that the carrier and a rigid motion do not give."""
-    linear, angular = start_rate(carrier.position), start_rate(carrier.rotation)
+    linear, angular = (start_rate(dof_block(carrier, kind)) for kind in ("position", "rotation"))
     for node, keep in zip(body.nodes, body.body.keeps, strict=True):
         arm = node.point - carrier.point
         spin = (angular[0] * np.array([-arm[1], arm[0]]) if body.body.planar else
@@ -127,6 +128,7 @@ def _replace_loads(model: Mechanism, body: Superelement, carrier: Node) -> list[
 
 def _add_resultant(model: Mechanism, load: Element, carrier: Node) -> None:
     """Force and moment of a load on its body, which turn with the carrying node."""
+    assert load.body is not None
     body, size = load.body.body, model.dimension
     at = body.coordinates[load.body.nodes.index(carrier)]
     total = body.rigid_modes_about(at).T @ body.loads[load_name(load)]
