@@ -30,7 +30,9 @@ CONSTANTS = (
 )
 MULTIPLIERS = 0
 WIDTH = 2
-MEMORY = 0      # numbers it keeps from step to step
+READS = 0      # multipliers of other equations that it reads
+# numbers it keeps from step to step
+MEMORY = ()
 INERTIAL = True        # has kinetic energy
 POWER = False        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time

@@ -51,7 +51,8 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
     frame_node : int
         For ``frame='node'``: which boundary node carries the frame.
     stiffening : bool, optional
-        Whether the body stiffens or softens with the stresses in it, with inertia c; by default
+        Whether the body stiffens or softens with the stresses in it, with inertia
+        'floating_field'; by default
         where the FE model has a geometric stiffness. Without it bodies that spin fast or carry
         high loads must be divided.
 

@@ -118,7 +118,7 @@ class TimeFunction:
         return f"{len(self.pieces)} pieces, t = {self.times[0]:.6g} to {self.times[-1]:.6g}"
 
     def __repr__(self) -> str:
-        return f"<History: {self.described()}>"
+        return f"<TimeFunction: {self.described()}>"
 
     def _summands(self, k: int, t: float) -> NDArray:
         """Sums of the sizes of what is added up in `of_piece`: they may cancel but for rounding."""
