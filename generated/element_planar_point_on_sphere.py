@@ -107,7 +107,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         place_2 = t3
         rate_1 = Omb_z*t3 + Rb_cos*t4 + Rb_sin*t5
         rate_2 = -Omb_z*t2 + Rb_cos*t5 - Rb_sin*t4
-        t6 = sqrt(place_1*place_1 + place_2*place_2 + 1e-300)
+        t6 = sqrt(place_1*place_1 + place_2*place_2 + 1.0000000000000001e-20*size*size)
         t7 = side/t6
         normal_1 = place_1*t7
         normal_2 = place_2*t7
@@ -217,7 +217,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             du = at(work, WIDTH)
             t33 = place_1*place_1
             t34 = place_2*place_2
-            t35 = t33 + t34 + 1e-300
+            t35 = 1.0000000000000001e-20*size*size + t33 + t34
             t36 = 1/sqrt(t35)
             t37 = -side*t36
             t38 = side/t35**(1.5)

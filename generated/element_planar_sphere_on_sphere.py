@@ -113,7 +113,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         rate_1 = Omb_z*t3 + Rb_cos*t4 + Rb_sin*t5
         rate_2 = -Omb_z*t2 + Rb_cos*t5 - Rb_sin*t4
         spin_3 = Oma_z - Omb_z
-        t6 = sqrt(place_1*place_1 + place_2*place_2 + 1e-300)
+        t6 = sqrt(place_1*place_1 + place_2*place_2 + 1.0000000000000001e-20*size*size)
         t7 = side/t6
         normal_1 = place_1*t7
         normal_2 = place_2*t7
@@ -231,7 +231,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             du = at(work, WIDTH)
             t35 = place_1*place_1
             t36 = place_2*place_2
-            t37 = t35 + t36 + 1e-300
+            t37 = 1.0000000000000001e-20*size*size + t35 + t36
             t38 = 1/sqrt(t37)
             t39 = -side*t38
             t40 = side/t37**(1.5)

@@ -135,7 +135,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t10 = -e_x*t9 + place_1
         t11 = -e_y*t9 + place_2
         t12 = -e_z*t9 + place_3
-        t13 = sqrt(t10*t10 + t11*t11 + t12*t12 + 1e-300)
+        t13 = sqrt(1.0000000000000001e-20*size*size + t10*t10 + t11*t11 + t12*t12)
         t14 = side/t13
         normal_1 = t10*t14
         normal_2 = t11*t14
@@ -297,7 +297,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t55 = -e_x*t54 + place_1
             t56 = -e_y*t54 + place_2
             t57 = -e_z*t54 + place_3
-            t58 = t55*t55 + t56*t56 + t57*t57 + 1e-300
+            t58 = 1.0000000000000001e-20*size*size + t55*t55 + t56*t56 + t57*t57
             t59 = side/sqrt(t58)
             t60 = e_x*e_y
             t61 = e_z*t57

@@ -127,7 +127,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         rate_1 = -Omb_y*t5 + Omb_z*t4 + Rb_xx*t6 + Rb_yx*t7 + Rb_zx*t8
         rate_2 = Omb_x*t5 - Omb_z*t3 + Rb_xy*t6 + Rb_yy*t7 + Rb_zy*t8
         rate_3 = -Omb_x*t4 + Omb_y*t3 + Rb_xz*t6 + Rb_yz*t7 + Rb_zz*t8
-        t9 = sqrt(place_1*place_1 + place_2*place_2 + place_3*place_3 + 1e-300)
+        t9 = (sqrt(place_1*place_1 + place_2*place_2 + place_3*place_3 +
+            1.0000000000000001e-20*size*size))
         t10 = side/t9
         normal_1 = place_1*t10
         normal_2 = place_2*t10
@@ -287,7 +288,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t49 = place_1*place_1
             t50 = place_2*place_2
             t51 = place_3*place_3
-            t52 = t49 + t50 + t51 + 1e-300
+            t52 = 1.0000000000000001e-20*size*size + t49 + t50 + t51
             t53 = 1/sqrt(t52)
             t54 = -side*t53
             t55 = side/t52**(1.5)

@@ -168,7 +168,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t19 = -e_x*t18 + place_1
         t20 = -e_y*t18 + place_2
         t21 = -e_z*t18 + place_3
-        t22 = sqrt(t19*t19 + t20*t20 + t21*t21 + 1e-300)
+        t22 = sqrt(1.0000000000000001e-20*size*size + t19*t19 + t20*t20 + t21*t21)
         t23 = side/t22
         normal_1 = t19*t23
         normal_2 = t20*t23
@@ -379,7 +379,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t78 = -e_x*t77 + place_1
             t79 = -e_y*t77 + place_2
             t80 = -e_z*t77 + place_3
-            t81 = t78*t78 + t79*t79 + t80*t80 + 1e-300
+            t81 = 1.0000000000000001e-20*size*size + t78*t78 + t79*t79 + t80*t80
             t82 = side/sqrt(t81)
             t83 = e_x*e_y
             t84 = e_z*t80

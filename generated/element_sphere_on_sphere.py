@@ -160,7 +160,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         spin_1 = Oma_x*t6 + Oma_y*t7 + Oma_z*t8 - Omb_x
         spin_2 = Oma_x*t9 + Oma_y*t10 + Oma_z*t11 - Omb_y
         spin_3 = Oma_x*t12 + Oma_y*t13 + Oma_z*t14 - Omb_z
-        t18 = sqrt(place_1*place_1 + place_2*place_2 + place_3*place_3 + 1e-300)
+        t18 = (sqrt(place_1*place_1 + place_2*place_2 + place_3*place_3 +
+            1.0000000000000001e-20*size*size))
         t19 = side/t18
         normal_1 = place_1*t19
         normal_2 = place_2*t19
@@ -369,7 +370,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t72 = place_1*place_1
             t73 = place_2*place_2
             t74 = place_3*place_3
-            t75 = t72 + t73 + t74 + 1e-300
+            t75 = 1.0000000000000001e-20*size*size + t72 + t73 + t74
             t76 = 1/sqrt(t75)
             t77 = -side*t76
             t78 = side/t75**(1.5)

@@ -11,9 +11,11 @@ from sebody.derive.form.spaces import Space
 from sebody.derive.formulas.elements import Element, constant, kept, position, rotation
 from sebody.derive.formulas.frictions import bristle_constants
 from sebody.derive.formulas.law_elements import Forces, Measures, law_element
-from sebody.derive.formulas.laws import friction, impact, length
+from sebody.derive.formulas.laws import friction, impact
 from sebody.derive.formulas.stops import impact_constants
 from sebody.derive.symbolic.rotations import cross
+
+CENTRE = sp.Float(1e-10)    # of the radius of what is round: its centre has a normal, too
 
 
 def _plane(space: Space, s: sp.Matrix) -> tuple[list, sp.Expr, sp.Matrix]:
@@ -26,7 +28,8 @@ def _round(space: Space, across: sp.Matrix) -> tuple[list, sp.Expr, sp.Matrix]:
     """Distance and normal of what is round: outside, or inside of a bore."""
     size = constant(space, "size", "scalar", "its radius [length]")
     side = constant(space, "side", "scalar", "1 outside, -1 inside")
-    far, sign = length(across), side.symbols[0]
+    far = sp.sqrt(across.dot(across) + (CENTRE * size.symbols[0])**2)
+    sign = side.symbols[0]
     return [size, side], sign * (far - size.symbols[0]), sign * across / far
 
 

@@ -10,7 +10,7 @@ from sebody.compiler.decorators import compiled
 from sebody.contract.layout import AT_IMPACT, AT_RATE
 
 LARGEST = 0.1           # change of the rate in a step, relative to the speed of the impact
-AT_ENDS = 0.03          # the same in steps in which it begins or opens: forces have a corner
+AT_ENDS = 0.015          # the same in steps in which it begins or opens: forces have a corner
 
 
 @compiled

@@ -7,8 +7,10 @@ time; forces, works and motions are of the time itself.
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.assembly.numbering import Numbering
 from sebody.errors import InputError
 from sebody.kernels.loader import element_kernel
+from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element
 from sebody.results.recording import Recording
 
@@ -55,6 +57,23 @@ def dissipation(recording: Recording, name: str) -> NDArray:
         return lost
     size = sum((_kept(recording, name, k)**2 for k in bent), np.zeros(len(lost)))
     return lost - 0.5 * recording.numbering.bristles[element] * (size - size[0])
+
+
+def states(model: Mechanism, numbering: Numbering, frames: NDArray) -> dict[str, str]:
+    """What every contact, stop and friction is in: sticks, slides, presses or open."""
+    found = {}
+    for load in model.loads:
+        memory = element_kernel(load.kind).MEMORY
+        if "normal" not in memory:
+            continue
+        own = dict(zip(memory, frames[numbering.memories[load]], strict=True))
+        if not own["normal"] > 0:
+            found[load.name] = "open"
+        elif load.constants.get("static", 0.0) == 0.0:
+            found[load.name] = "presses"
+        else:
+            found[load.name] = "slides" if own["slid"] > 0.5 else "sticks"
+    return found
 
 
 def _kept(recording: Recording, name: str, number: str, quantity: str = "") -> NDArray:

@@ -200,5 +200,6 @@ def _width(one: Any) -> int:
         return len(one.body.stiffness)
     if one.body is not None:
         return len(one.body.body.stiffness)
-    return sum(dof_block.start.size for dof_block in one.dof_blocks) + one.multipliers + (
+    read = 0 if one.pressed_by is None else one.pressed_by.multipliers
+    return sum(dof_block.start.size for dof_block in one.dof_blocks) + one.multipliers + read + (
         one.mode is not None)

@@ -11,9 +11,11 @@ from sebody.engine.state import (
 )
 from sebody.engine.system import System
 from sebody.model.model import Model
+from sebody.results.contact_quantities import states
 from sebody.runs import user_faults
 from sebody.runs.redundancy import contradiction
 
+MUCH = 1.0          # coefficient of friction above which a rod may jam before it slides
 KEPT = "results up to this time are kept"
 
 
@@ -34,4 +36,16 @@ def explained(model: Model, system: System, state: State, numbering: Numbering) 
     shortest = state.clock.chosen if variable else state.clock.step / FINEST
     remedy = "a larger tolerance" if variable else "a smaller step"
     return (f"{stopped}: {REASONS[reason]}, even with the step reduced to {shortest:.3g}; {KEPT}. "
-            f"Use {remedy}, check the loads, or split the body into more superelements")
+            f"Use {remedy}, check the loads, or split the body into more superelements"
+            + _jammed(model, numbering, state))
+
+
+def _jammed(model: Model, numbering: Numbering, state: State) -> str:
+    """A remark on what slides, or will: with much friction bodies may have no motion (Painleve)."""
+    found = states(model, numbering, state.frames)
+    jams = [load.name for load in model.loads if found.get(load.name) == "slides"
+            or load.constants.get("coefficient", 0.0) > MUCH]
+    if not jams:
+        return ""
+    return (f". With the friction of {', '.join(jams)} sliding may jam, with no motion that "
+            "continues it (Painleve's paradox): lower the coefficient, or soften the contact")

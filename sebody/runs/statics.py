@@ -18,7 +18,9 @@ from sebody.runs.folding import Tensions
 from sebody.runs.rotating_frame import Spin
 from sebody.runs.settling import balance, settle
 from sebody.runs.simulation import Simulation
+from sebody.runs.tuning import unbend
 
+STICKING = 1e-4             # step that bristles of friction are made for: what sticks hardly moves
 SMALLEST = 1.0 / 1024       # smallest load step, as a share of the load
 
 
@@ -55,13 +57,16 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     steps = inputs.integer(steps, "steps", least=1)
     t = inputs.number(t, "t")
     tolerance = inputs.number(tolerance, "tolerance", above=0, below=1)
-    run = Simulation(model, 1.0)
+    sticking = any(load.tuned for load in model.loads)
+    run = Simulation(model, STICKING if sticking else 1.0)
+    unbend(model, run.numbering, run.state)
     memory.check(8.0 * steps * run.state.now.size, f"steps is {steps}: the record of all",
                  "give fewer")
     state, field = run.state, run.state.coefficients[FIELD:].copy()
     steady = Spin.of(run, spin)
     state.v[:], state.a[:], state.aux[:] = 0.0, 0.0, 0.0
-    state.q[run.system.is_multiplier[:state.q.size] > 0] = 0.0
+    if not sticking:        # what nothing presses does not stick
+        state.q[run.system.is_multiplier[:state.q.size] > 0] = 0.0
     set_loads(run.system, state.frames, state.loads, t)
     loads = state.loads.copy()
     run.rows = [state.now[None].copy()]

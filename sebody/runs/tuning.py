@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 
+from sebody.assembly.evaluation import evaluate
 from sebody.assembly.numbering import Numbering, stretch
-from sebody.contract.layout import Row
+from sebody.contract.layout import RESIDUAL, Row
 from sebody.engine.evaluate import to_body_axes
 from sebody.engine.state import State
 from sebody.engine.system import System
@@ -154,11 +155,23 @@ def _rotation(numbering: Numbering, state: State, dof_block: DofBlock) -> NDArra
     return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
+def unbend(model: Mechanism, numbering: Numbering, state: State) -> None:
+    """Straighten all bristles: an equilibrium is sought from there."""
+    for load in model.loads:
+        if load.tuned:
+            names = element_kernel(load.kind).MEMORY
+            for place, name in zip(numbering.memories[load], names, strict=True):
+                if name.startswith(("bent", "slid")):
+                    state.frames[place] = state.frames_old[place] = 0.0
+
+
 class _Held(NamedTuple):
-    """Friction of a joint at rest."""
+    """Friction at rest."""
 
     constants: _Constants
     rows: list[NDArray]
+    axes: NDArray           # columns: what each row is among the bristles
+    lever: float            # of the normal force
     bent: list[int]         # places of the bristles in `State.frames`
     normal: int             # place of the normal force
 
@@ -175,20 +188,55 @@ class LoadedBristles:
 
     def __init__(self, model: Mechanism, system: System, numbering: Numbering, state: State):
         self.system, self.numbering, self.state = system, numbering, state
-        self.held = [one for load in model.loads if load.tuned and load.kind.removeprefix(
-            "planar_").startswith("friction") for one in self._held(load)]
+        tuned = [load for load in model.loads if load.tuned]
+        if tuned:       # normals of contacts are those of their forces
+            evaluate(system, state, RESIDUAL, RESIDUAL, "the initial state")
+        self.held = [one for load in tuned for one in self._held(load)]
 
     def _held(self, load: Element) -> list[_Held]:
-        """The friction, if its joint is at rest and its bristles are not bent yet."""
+        """The friction, if nothing slides in it: its bristles are straight then."""
         constants = _Constants(load, self.system, self.numbering)
-        rows = directions(load, self.numbering, self.state)
         memory, names = self.numbering.memories[load], element_kernel(load.kind).MEMORY
         bent = [place for place, name in zip(memory, names, strict=True) if name.startswith("bent")]
-        fastest = np.abs(self.state.v).max()
-        moves = any(abs(row @ self.state.v) > AT_REST * fastest for row in rows)
-        if moves or constants["speed"] > 0 or self.state.frames[bent].any():
+        if not bent or constants["speed"] > 0:
             return []
-        return [_Held(constants, rows, bent, memory[names.index("normal")])]
+        if "friction" in load.kind:
+            rows = directions(load, self.numbering, self.state)
+            axes = np.eye(len(rows))
+            lever = 1.0 if "cylindrical" in load.kind else constants["radius"]
+        else:
+            rows, axes = self._touching(load, constants)
+            lever = 1.0
+        fastest = np.abs(self.state.v).max()
+        if not rows or any(abs(row @ self.state.v) > AT_REST * fastest for row in rows):
+            return []
+        self.state.frames_old[bent] = self.state.frames_old[memory[names.index("slid")]] = 0.0
+        return [_Held(constants, rows, axes, lever, bent, memory[names.index("normal")])]
+
+    def _touching(self, load: Element, constants: _Constants) -> tuple[list[NDArray], NDArray]:
+        """Directions of the slip of a contact that is closed, and these in the surface's axes."""
+        size = len(load.dof_blocks[0].start)
+        first = self.numbering.forces_at[load]
+        push = -self.state.g[first:first + size]
+        places = [t for t in load.dof_blocks if not t.rotational]
+        if not np.any(push) or any(t.root is not None for t in places):
+            return [], np.zeros((size, 0))
+        n = push / np.linalg.norm(push)
+        across = np.linalg.svd(n[None])[2][1:]
+        turns = [t for t in load.dof_blocks if t.rotational]
+        q = [self.state.q[stretch(self.numbering, t)] for t in places]
+        point = q[0] - constants["radius"] * n
+        rows = []
+        for t in across:
+            row = _pair(self.numbering, places, t, [t, t])
+            for turn, centre, sign in zip(turns, q[-len(turns):], (1.0, -1.0)[-len(turns):],
+                                          strict=True):
+                arm = point - centre
+                moment = (np.atleast_1d(arm[0] * t[1] - arm[1] * t[0]) if size == 2 else
+                          _rotation(self.numbering, self.state, turn).T @ np.cross(arm, t))
+                row[stretch(self.numbering, turn)] += sign * moment
+            rows.append(row)
+        return rows, _rotation(self.numbering, self.state, turns[-1]).T @ across.T
 
     def load(self, masses: csc_matrix, solve_again: Callable[..., Any]) -> None:
         """Bend the bristles so that what they hold stays at rest."""
@@ -219,13 +267,11 @@ class LoadedBristles:
         for one in self.held:
             own = slice(at, at + len(one.rows))
             at = own.stop
-            lever = 1.0 if "e" in one.constants.places and len(one.rows) == 2 else (
-                one.constants["radius"])
-            limit = one.constants["static"] * lever * self.state.frames[one.normal]
+            limit = one.constants["static"] * one.lever * self.state.frames[one.normal]
             size = np.linalg.norm(forces[own])
             if size > limit * (1.0 + 1e-12):
                 slides[own] = True
                 forces[own] *= BEYOND * max(limit, 1e-300) / size
             else:
                 slides[own] = False
-            self.state.frames_old[one.bent] = forces[own] / one.constants["bristle"]
+            self.state.frames_old[one.bent] = one.axes @ forces[own] / one.constants["bristle"]

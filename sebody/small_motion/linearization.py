@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +13,7 @@ from scipy.linalg import LinAlgError, eigh, null_space
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.limits.watch import Watch
+from sebody.results.contact_quantities import states
 from sebody.results.result import Result
 from sebody.runs import user_faults
 from sebody.runs.rotating_frame import Spin
@@ -48,13 +51,16 @@ def small_motion(run: Simulation | Result, spin: Spin) -> tuple[NDArray, NDArray
 class Linearization(NamedTuple):
     """``mass xi'' + damping xi' + stiffness xi = 0`` for motion ``free @ xi`` of the unknowns.
 
-    The columns of `free` are an orthonormal basis of what the constraints allow.
+    The columns of `free` are an orthonormal basis of what the constraints allow. `contacts` says of
+    every contact, stop and friction of the model what the matrices took it for: ``sticks``,
+    ``slides``, ``presses`` or ``open``.
     """
 
     mass: NDArray
     damping: NDArray
     stiffness: NDArray
     free: NDArray
+    contacts: Mapping[str, str] = MappingProxyType({})
 
     __repr__ = brief
 
@@ -82,7 +88,8 @@ def linearize(run: Simulation | Result, spin: ArrayLike | None = None) -> Linear
     basis = null_space(K[np.ix_(multipliers, moving)]) if multipliers.size else np.eye(len(moving))
     free = np.zeros((n, basis.shape[1]))
     free[moving] = basis
-    return Linearization(*(free.T @ A @ free for A in (M, C, K)), free)
+    contacts = states(run.model, run.numbering, run.state.frames)
+    return Linearization(*(free.T @ A @ free for A in (M, C, K)), free, contacts)
 
 
 class Vibrations(NamedTuple):
@@ -132,7 +139,7 @@ def vibrations(run: Simulation | Result, count: int | None = None) -> Vibrations
     if np.abs(run.state.v).max() > 0:
         raise InputError("the state is not at rest: vibrations() needs a state at rest, use modes()"
                          " for moving states")
-    M, _, K, free = linearize(run)
+    M, _, K, free = linearize(run)[:4]
     try:
         squares, shapes = eigh((K + K.T) / 2, (M + M.T) / 2)
     except LinAlgError as error:
@@ -191,7 +198,7 @@ def modes(run: Simulation | Result, spin: ArrayLike | None = None) -> Modes:
     Where nothing takes or gives energy, as in undamped gyroscopic motion, and the stiffness is
     positive, growth is zero by construction. Otherwise a growth below `Modes.rounding` is none.
     """
-    M, C, K, free = linearize(run, spin)
+    M, C, K, free = linearize(run, spin)[:4]
     found = eigenvalues(M, C, K)
     shapes = free @ found.shapes
     return Modes(found.values, shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300),

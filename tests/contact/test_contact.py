@@ -221,7 +221,7 @@ def test_point_sticks_and_slides_in_any_direction():
         down = np.array([0.0, 0.0, -1.0]) + n[2] * n
         slope = np.linalg.norm(down)
         way = 0.5 * G * max(slope - mu * n[2], 0.0)
-        assert end @ down / slope == pytest.approx(way, abs=2e-3)
+        assert end @ down / slope == pytest.approx(way, abs=1e-9)
         assert (way > 0) == moves
 
 

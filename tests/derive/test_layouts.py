@@ -93,7 +93,8 @@ def test_variant_of_the_command_line(text, variant):
     ("f2:mine", "frame 'mine' is unknown: use one of converged_mean, mean, mean_small, positions"),
     ("f2:mean:z", "inertia option 'z' is unknown: use one of a, b"),
     ("r2:mean", "keeps no position"),
-    ("distanse", "there is no kernel 'distanse' in the catalogue: is it distance or planar_dist"),
+    ("distanse", "there is no kernel 'distanse' in the catalogue: is it distance or distance_stop "
+                 "or planar_dist"),
     ("sail", "layout 'sail' is unknown: .* or the name of a joint, rigid body or load, such as")])
 def test_variant_that_cannot_be_read(text, message):
     with pytest.raises(LayoutError, match=message):

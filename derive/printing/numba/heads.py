@@ -10,7 +10,7 @@ from sebody.derive.kernels.body_load import BodyLoad
 from sebody.derive.kernels.layouts import Layout
 from sebody.derive.kernels.motion import FrameMotion
 from sebody.derive.kernels.superelement import Superelement
-from sebody.derive.printing.lines import INDENT, filled, words
+from sebody.derive.printing.lines import INDENT, filled
 from sebody.derive.printing.numba.files import Head, counts, operations
 from sebody.derive.printing.numba.parts import table
 
@@ -106,9 +106,8 @@ def element_head(given: Element, kernel: Kernel) -> Head:
 
 def memory(names: Iterable[str]) -> list[str]:
     """The line that names the numbers which a kernel keeps from step to step."""
-    listed = "".join(f'"{name}", ' for name in names).rstrip(" ")
     return ["# numbers it keeps from step to step",
-            *filled("MEMORY = (", words(listed), ")", INDENT * 2)]
+            *filled("MEMORY = (", [f'"{name}", ' for name in names], ")", INDENT * 2)]
 
 
 def _part(constant: Constant) -> Part:

@@ -21,6 +21,11 @@ from sebody.reduction.scaling import scaled
 OF_SPRINGS = {"stiffness": "k", "damping": "c", "cubic": "k3", "length": "length", "rest": "rest",
               "turning_stiffness": "kt", "turning_damping": "ct"}
 SIGNED = {"rest"}       # of these, what may be negative
+# what can be varied of contacts, stops, gears and friction: constants of their kernels, and those
+# of them that may be negative
+OF_CONTACTS = ("coefficient", "static", "radius", "preload", "bristle", "stiffness", "exponent",
+               "lower", "upper", "ratio", "level", "size")
+SIGNED_LIMITS = {"lower", "upper", "ratio", "level"}
 MOTION, BODIES, LOADS = "motion", "bodies", "loads"     # what a change has an effect on
 
 
@@ -239,6 +244,29 @@ def spring_constant(quantity: str) -> Callable[[Model, Element, str], Handle]:
         return _constants(spring, lambda value: {constant: value}, LOADS,
                           np.array(spring.constants[constant], dtype=float), **bound)
     return make
+
+
+def contact_constant(constant: str) -> Callable[[Model, Element, str], Handle]:
+    """Handle of a constant of contacts and friction; break-away stays in proportion to sliding."""
+    def make(model: Model, contact: Element, name: str) -> Handle:
+        if constant not in contact.constants or not np.isfinite(contact.constants[constant]):
+            raise InputError(f"{name}: {contact.name!r} has no {constant}")
+        base = np.array(contact.constants[constant], dtype=float)
+        bound = {} if constant in SIGNED_LIMITS else {"least": 0.0}
+        if constant != "coefficient":
+            return _constants(contact, lambda value: {constant: value}, LOADS, base, **bound)
+        more = float(contact.constants["static"]) / float(base) if base > 0 else 1.0
+        return _constants(contact, lambda value: {"coefficient": value, "static": more * value},
+                          LOADS, base, **bound)
+    return make
+
+
+def backlash(model: Model, gear: Element, name: str) -> Handle:
+    """Handle of the play of a pair of gears."""
+    if "ratio" not in gear.constants:
+        raise InputError(f"{name}: {gear.name!r} is no gear")
+    return _constants(gear, lambda play: {"lower": -play / 2, "upper": play / 2}, LOADS,
+                      np.array(2.0 * float(gear.constants["upper"])), least=0.0)
 
 
 def load_table(model: Model, load: Element, name: str) -> Handle:

@@ -76,6 +76,10 @@ def _springs(model: Model) -> dict[str, Any]:
     return {e.name: e for e in model.loads if e.constants.keys() & set(changes.OF_SPRINGS.values())}
 
 
+def _contacts(model: Model) -> dict[str, Any]:
+    return {e.name: e for e in model.loads if e.constants.keys() & {"bristle", "exponent"}}
+
+
 def _drives(model: Model) -> dict[str, Any]:
     moved = {m.name: (t, m) for t in model.dof_blocks() for m in t.motions}
     return moved | {j.name: j for j in model.joints if j.time_function is not None}
@@ -94,6 +98,9 @@ KINDS = (
         "position": changes.joint_position}),
     Kind("spring", _springs, {quantity: changes.spring_constant(quantity)
                               for quantity in changes.OF_SPRINGS}),
+    Kind("contact, stop or friction", _contacts, {
+        **{constant: changes.contact_constant(constant) for constant in changes.OF_CONTACTS},
+        "backlash": changes.backlash}),
     Kind("load", lambda model: {e.name: e for e in model.loads}, {
         "amplitude": changes.load_amplitude, "table": changes.load_table}),
 )

@@ -70,6 +70,7 @@ class Image:
         constrained = bool(one.numbering.multipliers) or bool(one.system.prescribed.size)
         touched = {handle.touches for handle in handles.values()}
         return not (any(handle.whole for handle in handles.values())
+                    or any(load.tuned for load in one.model.loads)      # bristles are loaded
                     or one.scheme.stabilized or one.system.regularized[0]
                     or ((constrained or one.begun) and MOTION in touched)
                     or (one.start.changed and touched & {BODIES, MOTION}))
