@@ -63,7 +63,7 @@ def test_every_reason_has_its_own_number_and_text():
     """Answers of kernels are reasons: the numbers that follow must not be theirs."""
     named = {name: getattr(codes, name) for name in (
         "NO_REASON", "HALF_TURN", "NO_FRAME", "NOT_FINITE", "SLOW", "INACCURATE", "GAP",
-        "NO_START")}
+        "NO_START", "BAD_CONTROL")}
     assert len(set(named.values())) == len(named)
     assert (named["NO_REASON"], named["HALF_TURN"], named["NO_FRAME"]) == (
         layout.OK, layout.HALF_TURN, layout.NO_FRAME)
