@@ -12,7 +12,8 @@ LIBRARIES = {"numpy", "scipy", "numba", "sympy", "matplotlib", "pandas", "h5py"}
 COMMAND_LINE = {"sebody", "sebody.lazy", "sebody.errors", "sebody.cli"}
 MODEL_AND_RUN = {"sebody.files", "sebody.inputs", "sebody.contract", "sebody.compiler",
                  "sebody.kernels", "sebody.generated",
-                 "sebody.engine", "sebody.fem", "sebody.reduction", "sebody.io", "sebody.model",
+                 "sebody.engine", "sebody.fem", "sebody.reduction", "sebody.io", "sebody.control",
+                 "sebody.model",
                  "sebody.assembly", "sebody.results", "sebody.limits", "sebody.runs",
                  "sebody.spelling",
                  "sebody.tabular", "sebody.memory", "sebody.units"}

@@ -16,6 +16,8 @@ from sebody.engine.control_data import (
     CHANNEL_NUMBERS,
     CHANNEL_PLACES,
     DOT,
+    IN_PLANE,
+    INTO,
     OUTSIDE,
     TURNED,
 )
@@ -36,9 +38,10 @@ class Channel(NamedTuple):
     numbers: NDArray
 
 
-def channel(model: Mechanism, numbering: Numbering, quantity: str) -> Channel:
-    """How the loop reads a quantity; OUTSIDE where it cannot."""
-    return _Channels(model, numbering).of(quantity)
+def channel(model: Mechanism, numbering: Numbering, quantity: str, axes: str = "") -> Channel:
+    """How the loop reads a quantity, perhaps in axes of a node; OUTSIDE where it cannot."""
+    made = _Channels(model, numbering)
+    return made.in_axes(quantity, model.nodes[axes]) if axes else made.of(quantity)
 
 
 class _Channels:
@@ -54,6 +57,20 @@ class _Channels:
             before, _, name = owner.rpartition(".")
             found = self._component(before, name, last)
         return _made(OUTSIDE) if found is None else found
+
+    def in_axes(self, quantity: str, axes: Node) -> Channel:
+        """The channel of a component of the motion of a node in the axes of one."""
+        owner, _, label = quantity.rpartition(".")
+        owner, _, name = owner.rpartition(".")
+        node, known = self.model.nodes.get(owner), self._known(axes.rotation)
+        if node is None or name not in OF_POSITION or not (known and self._known(node.position)):
+            return _made(OUTSIDE)
+        x = self._place(OF_POSITION[name], node.position)
+        way = np.eye(self.model.dimension)[AXES.index(label)]
+        if self.model.planar:
+            return _made(IN_PLANE, (self._place("q", axes.rotation), x), (0.0, *way))
+        R = self.at["R"].start + 9 * self.numbering.rotations[axes.rotation]
+        return _made(INTO, (R, x), (0.0, *way))
 
     def _whole(self, owner: str, name: str) -> Channel | None:
         """A quantity of one number."""
@@ -92,7 +109,7 @@ class _Channels:
 
     def _turn(self, joint: Joint, name: str) -> Channel | None:
         a, b = joint.node.rotation, joint.to.rotation
-        if not (self._known(a) and self._known(b)):
+        if not self._known(a):
             return None
         part = "q" if name == "angle" else "v"
         if self.model.planar:
@@ -101,18 +118,20 @@ class _Channels:
         if name == "rate":
             return self._sum(part, a, e, b, -e)
         R = self.at["R"].start
-        return _made(ANGLE, tuple(R + 9 * self.numbering.rotations[one] for one in (a, b)),
-                     (0.0, *n, *n, *m))
+        of_b = R + 9 * self.numbering.rotations[b] if self._known(b) else -1
+        return _made(ANGLE, (R + 9 * self.numbering.rotations[a], of_b), (0.0, *n, *n, *m))
 
     def _slide(self, joint: Joint, name: str) -> Channel | None:
         """Of a joint whose axis rests; else it turns with a node, for Python to read."""
         carrier: Node = joint.axes.carrier
         other, sign = (joint.to, -1.0) if carrier is joint.node else (joint.node, 1.0)
-        if not (carrier.rotation.fixed and not carrier.rotation.motions
-                and self._known(carrier.position) and self._known(other.position)):
+        rests = carrier.rotation.fixed and not carrier.rotation.motions
+        if not (rests and self._known(other.position)):
             return None
         way = sign * joint.axes.columns[:, 0]
-        start = 0.0 if name == "speed" else float(-way @ (other.point - carrier.point))
+        start = 0.0
+        if name == "displacement":
+            start = -float(way @ (other.point - carrier.point * self._known(carrier.position)))
         return self._sum("q" if name == "displacement" else "v", other.position, way,
                          carrier.position, -way, start)
 
@@ -124,10 +143,11 @@ class _Channels:
             return None
         numbers = np.zeros(CHANNEL_NUMBERS)
         numbers[0], numbers[1:1 + len(factors)] = start, factors
-        if others is not None:
+        if others is not None and self._known(other):
             numbers[4:4 + len(others)] = others
         first = self._place(part, one)
-        return _made(DOT, (first, first if other is None else self._place(part, other)), numbers)
+        return _made(DOT, (first, self._place(part, other) if self._known(other) else first),
+                     numbers)
 
     def _place(self, part: str, dof_block: DofBlock) -> int:
         return self.at[part].start + self.numbering.dof_blocks[dof_block]

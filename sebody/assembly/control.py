@@ -20,6 +20,7 @@ from sebody.engine.control_data import (
     CONTROLLER,
     COUNTS,
     ITS_QUEUE,
+    NEVER,
     NEXT,
     OUTSIDE,
     SENSOR,
@@ -45,7 +46,7 @@ def control_arrays(model: Mechanism, numbering: Numbering, table_at: NDArray) ->
     sensors, controllers = list(kept.sensors), list(model.controllers.values())
     tasks = _tasks(sensors, controllers, order(model))
     numbers = {sensor.name: k for k, sensor in enumerate(sensors)}
-    channels = [channel(model, numbering, one.quantity) for one in sensors]
+    channels = [channel(model, numbering, one.quantity, one.axes) for one in sensors]
     first = COUNTS + len(tasks) + 2 * len(sensors)
     queues, first = _queues([(s.delay, 1) for s in sensors], first)
     delayed, first = _queues([(c.delay, len(c.outputs)) for c in controllers], first)
@@ -70,7 +71,7 @@ def control_arrays(model: Mechanism, numbering: Numbering, table_at: NDArray) ->
             for k, c in enumerate(controllers)], 10),
         wires=wires, ends=ends,
         inputs=_table([(port, place, table_at[port]) for port, place in kept.inputs.items()], 3),
-        limits=np.array([numbering.time_functions[port].limits for port in kept.inputs],
+        limits=np.array([numbering.time_functions[port].limits or (1.0, -1.0) for port in kept.inputs],
                         dtype=float).reshape(-1, 2),
         parameters=np.concatenate([np.zeros(0), *(c.parameters for c in controllers)]),
         outside=np.array([int(any(one.attachments[0] == OUTSIDE for one in channels))]),
@@ -82,7 +83,7 @@ def begin(model: Mechanism, numbering: Numbering, control: Control, memory: NDAr
     """Set what inputs, signals, delayed outputs and states are before the first sample."""
     kept = numbering.kept
     memory[:] = 0.0
-    memory[NEXT] = memory[STOP] = np.inf
+    memory[NEXT] = memory[STOP] = NEVER
     for port, place in kept.inputs.items():
         start = numbering.time_functions[port].at(0.0)[0]
         frames[place:place + INPUT_NUMBERS] = start, 0.0, start

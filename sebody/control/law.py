@@ -1,5 +1,7 @@
 """A control law: a function for a controller, with the numbers it is given."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -4,6 +4,8 @@ A law is a compiled function with numbers: parameters that depend on the period 
 controller is, with its period.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 
 import numpy as np

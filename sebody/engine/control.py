@@ -24,8 +24,11 @@ from sebody.engine.control_data import (
     FIRST_WIRE,
     FUNCTION,
     HAS,
+    IN_PLANE,
+    INTO,
     ITS_DELAY,
     ITS_QUEUE,
+    NEVER,
     NEXT,
     NOISE,
     PARAMETERS,
@@ -75,8 +78,8 @@ def sample(system, state):
                 return FAILED
             changed |= status > 0
         memory[COUNTS + k] += 1.0
-    if memory[STOP] <= t + near:
-        memory[STOP] = np.inf
+    if 0.0 <= memory[STOP] <= t + near:
+        memory[STOP] = NEVER
     set_next(own, memory)
     if not changed and state.control.meets == SAMPLED and state.control.inside == 0:
         state.control.restart = 0      # nothing jumps
@@ -88,7 +91,9 @@ def set_next(own, memory):
     """Find the time at which the next step has to end."""
     memory[NEXT] = memory[STOP]
     for k in range(own.periods.size):
-        memory[NEXT] = min(memory[NEXT], memory[COUNTS + k] * own.periods[k])
+        t = memory[COUNTS + k] * own.periods[k]
+        if memory[NEXT] < 0.0 or t < memory[NEXT]:
+            memory[NEXT] = t
 
 
 @compiled
@@ -134,6 +139,16 @@ def channel_value(system, state, k):
                 for j in range(3):
                     found += c[1 + i] * now[row[1] + 3 * i + j] * now[row[2] + j]
         return found
+    if row[0] == INTO:          # e . (R' v)
+        found = 0.0
+        for i in range(3):
+            for j in range(3):
+                found += c[1 + j] * now[row[1] + 3 * i + j] * now[row[2] + i]
+        return found
+    if row[0] == IN_PLANE:      # the same with an angle
+        cosine, sine, x, y = (np.cos(now[row[1]]), np.sin(now[row[1]]), now[row[2]],
+                              now[row[2] + 1])
+        return c[1] * (cosine * x + sine * y) + c[2] * (cosine * y - sine * x)
     place = COUNTS + own.periods.size + k
     if row[0] == ANGLE:
         state.memory[place] = _angle(now, row[1], row[2], c, state.memory[place])
@@ -151,16 +166,21 @@ def _dot(now, place, c, first):
 
 @compiled
 def _angle(now, a, b, c, last):
-    """Angle of body a against b: of n in axes of a against n and m in those of b; turns count."""
+    """Angle of body a against b, or the ground: of n of a against n and m of b; turns count."""
     x = y = 0.0
     for i in range(3):
-        global_n = c[1] * now[a + 3 * i] + c[2] * now[a + 3 * i + 1] + c[3] * now[a + 3 * i + 2]
-        x += global_n * (c[4] * now[b + 3 * i] + c[5] * now[b + 3 * i + 1]
-                         + c[6] * now[b + 3 * i + 2])
-        y += global_n * (c[7] * now[b + 3 * i] + c[8] * now[b + 3 * i + 1]
-                         + c[9] * now[b + 3 * i + 2])
+        along = c[1] * now[a + 3 * i] + c[2] * now[a + 3 * i + 1] + c[3] * now[a + 3 * i + 2]
+        x += along * (_of_row(now, b, i, c, 4) if b >= 0 else c[4 + i])
+        y += along * (_of_row(now, b, i, c, 7) if b >= 0 else c[7 + i])
     angle = np.arctan2(y, x)
     return angle + 2.0 * np.pi * np.floor((last - angle) / (2.0 * np.pi) + 0.5)
+
+
+@compiled
+def _of_row(now, R, i, c, first):
+    """A row of a rotation matrix times a vector."""
+    return (c[first] * now[R + 3 * i] + c[first + 1] * now[R + 3 * i + 1]
+            + c[first + 2] * now[R + 3 * i + 2])
 
 
 @compiled
@@ -215,7 +235,8 @@ def set_input(system, state, k, value):
     """Set an input, within its limits; 1 where it changed."""
     own = system.control
     place, piece = own.inputs[k, 1], own.inputs[k, 2]
-    value = min(max(value, own.limits[k, 0]), own.limits[k, 1])
+    if own.limits[k, 0] <= own.limits[k, 1]:
+        value = min(max(value, own.limits[k, 0]), own.limits[k, 1])
     if value == state.frames[place + VALUE]:
         return 0
     t = state.clock.time

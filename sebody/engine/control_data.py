@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from sebody.engine.arrays import Arrays
 
 # kinds of channels, and numbers of a row of `Control.channels` and `Control.coefficients`
-OUTSIDE, DOT, TURNED, ANGLE = range(4)
+OUTSIDE, DOT, TURNED, ANGLE, INTO, IN_PLANE = range(6)
 CHANNEL_PLACES, CHANNEL_NUMBERS = 2, 10
 # numbers of a row of `Control.sensors`: where its value is in State.frames, its channel, its delay
 # in samples, its queue in State.memory
@@ -22,6 +22,7 @@ SENSOR, CONTROLLER = range(2)           # kinds of tasks
 # far, of every sensor its reading by Python and its readings so far, then queues and scratch memory
 NEXT, STOP, WAITS, HAS, FAULTY = range(5)
 COUNTS = FAULTY + 1
+NEVER = -1.0            # time of a stop that there is none: of ordinary size, for ensembles
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +42,7 @@ class Control(Arrays):
                     is read for it, or -1
     ends            (e, 2) what they set: number of the input or -1, else place of the signal
     inputs          (i, 3) port, place in `State.frames`, row of `System.table_pieces`
-    limits          (i, 2) least and largest value
+    limits          (i, 2) least and largest value; none where the largest is below the least
     parameters      of all controllers
     outside         (1,) 1 where Python has to read a sensor
     memory          (1,) length of `State.memory`

@@ -87,7 +87,7 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
         if control.restart != 0:
             code = np.int64(DONE)
             if control.phase == BEGIN and (
-                    state.memory[NEXT] <= state.clock.time + NEAR * state.clock.step):
+                    0.0 <= state.memory[NEXT] <= state.clock.time + NEAR * state.clock.step):
                 code = call_sample(system.routines[2], system, state)
             if code == DONE and control.restart != 0:
                 code = call_restart(system.routines[1], system, state, lead, dense)

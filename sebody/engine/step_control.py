@@ -85,7 +85,9 @@ def choose_step(system, state):
     """Set the length of a step: as the error allows, but so that it meets corners of loads."""
     clock = state.clock
     last, h = clock.current_step, clock.chosen
-    left = min(next_corner(system, state), state.memory[NEXT]) - clock.time
+    left = next_corner(system, state) - clock.time
+    if state.memory[NEXT] >= 0.0:
+        left = min(left, state.memory[NEXT] - clock.time)
     if left < np.inf:
         parts = max(np.ceil(left / h - 1e-6), 1.0)
         if parts < FAR:         # equal steps share a matrix, so rounding must not change h
@@ -132,7 +134,7 @@ def set_end(system, state):
         clock.end = corners[k]
         control.meets = max(control.meets, JUMP if system.jumps[k] == 1 else BEND)
         k += 1
-    if state.memory[NEXT] < end + near:
+    if 0.0 <= state.memory[NEXT] < end + near:
         if control.adaptive == 1:      # fixed steps end there anyway
             clock.end = state.memory[NEXT]
         control.meets = max(control.meets, SAMPLED)

@@ -108,7 +108,7 @@ def _history(where: str, limit: float | tuple[float, float] | None, rate: float 
         raise inputs.refusal(f"{where}: start", start, f"give one from {least:g} to {most:g}")
     fastest = 0.0 if rate is None else inputs.number(rate, f"{where}: rate", above=0.0)
     return input_history(start, inputs.number(lag, f"{where}: lag", least=0.0), fastest,
-                         (least, most))
+                         () if limit is None else (least, most))
 
 
 def _of_joint(model: Mechanism, where: str, joint: str | Joint, what: str | None

@@ -19,6 +19,7 @@ class Sensor:
     bias: float
     noise: float        # standard deviation
     seed: int
+    axes: str = ""      # node in whose axes the quantity is; none: global ones
 
     def __repr__(self) -> str:
         rate = f", {1 / self.period:.6g} samples a unit of time" if self.period else ""

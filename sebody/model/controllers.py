@@ -11,14 +11,17 @@ from sebody.control.law import Law
 from sebody.errors import InputError
 from sebody.model.control_parts import Controller, Sensor
 from sebody.model.functions import compiled_controller
+from sebody.model.inputs import dof_block, known
 from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Node
 from sebody.spelling import offered
 
 MOST_DELAY = 10_000_000
 
 
 def sensor(model: Mechanism, name: str, quantity: str, rate: float | None = None, delay: int = 0,
-           bias: float = 0.0, noise: float = 0.0, seed: int = 0) -> Sensor:
+           bias: float = 0.0, noise: float = 0.0, seed: int = 0, axes: Node | str | None = None
+           ) -> Sensor:
     """Measure a quantity, one number, for controllers.
 
     Parameters
@@ -41,6 +44,9 @@ def sensor(model: Mechanism, name: str, quantity: str, rate: float | None = None
         Standard deviation of normal noise, independent from sample to sample.
     seed : int
         Of the noise: the same seed gives the same numbers.
+    axes : Node or str, optional
+        A node with whose axes a vector turns, of which the quantity is a component: those of space
+        at the start. By default vectors are in global axes.
 
     Raises
     ------
@@ -58,7 +64,8 @@ def sensor(model: Mechanism, name: str, quantity: str, rate: float | None = None
                          "delay to the controller")
     made = Sensor(name, quantity, period, delay, given.number(bias, f"{where}: bias"),
                   given.number(noise, f"{where}: noise", least=0.0),
-                  given.integer(seed, f"{where}: seed", least=0, most=2**62))
+                  given.integer(seed, f"{where}: seed", least=0, most=2**62),
+                  _axes(model, where, quantity, axes))
     model.sensors[name] = made
     return made
 
@@ -170,6 +177,18 @@ def actuators(model: Mechanism) -> dict[str, object]:
     """Loads that are inputs, by name."""
     return {load.name: load for load in model.loads
             if load.time_function is not None and load.time_function.is_input}
+
+
+def _axes(model: Mechanism, where: str, quantity: str, axes: Node | str | None) -> str:
+    """Name of the node in whose axes a component is measured."""
+    if axes is None:
+        return ""
+    node = known(model, axes)
+    dof_block(node, "rotation")
+    if quantity.rpartition(".")[2] not in "xyz"[:model.dimension] or "." not in quantity:
+        raise InputError(f"{where} has axes and measures {quantity!r}: name a component of a "
+                         "vector, such as 'tip.acceleration.x'")
+    return node.name
 
 
 def _is_actuator(model: Mechanism, name: str) -> bool:

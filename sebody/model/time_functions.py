@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
-from math import cos, inf, sin
+from math import cos, sin
 from numbers import Number
 from typing import TypeAlias, TypeGuard
 
@@ -49,7 +49,7 @@ class TimeFunction:
     corners: tuple[float, ...] = ()     # times at which it is not smooth: variable steps end there
     is_time: bool = False               # the value is the time itself, for functions of time
     is_input: bool = False              # an input: its piece has start, lag and largest rate
-    limits: tuple[float, float] = (-inf, inf)       # of an input
+    limits: tuple[float, float] | tuple[()] = ()    # least and largest value of an input, if any
 
     @property
     def addresses(self) -> tuple[int, int, int]:
@@ -217,8 +217,8 @@ def with_corners(function: Callable[[float], float] | FunctionWithRates,
                         corners=times)
 
 
-def input_history(start: float, lag: float, rate: float,
-                  limits: tuple[float, float]) -> TimeFunction:
+def input_history(start: float, lag: float, rate: float, limits: tuple[float, float] | tuple[()]
+                  ) -> TimeFunction:
     """The time function of an input: what is set during a run; `rate` 0 stands for any."""
     return TimeFunction(pieces=((start, lag, rate),), is_input=True, limits=limits)
 

@@ -5,8 +5,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.numbering import stretch
 from sebody.errors import InputError
-from sebody.model.inputs import dof_block
-from sebody.model.parts import Joint, Node
+from sebody.model.parts import DofBlock, Joint, Node
 from sebody.results.force_quantities import joints
 from sebody.results.recording import Recording
 
@@ -27,9 +26,7 @@ def angle(recording: Recording, name: str) -> NDArray:
 def rate(recording: Recording, name: str) -> NDArray:
     """Rate of this angle, (n,)."""
     joint = _of_kind(recording, name, TURNS, "rate", "turn")
-    v = recording.recorded("v")
-    a, b = (v[:, stretch(recording.numbering, dof_block(node, "rotation"))]
-            for node in (joint.node, joint.to))
+    a, b = (_part(recording, "v", node.rotation) for node in (joint.node, joint.to))
     if recording.model.planar:
         return a[:, 0] - b[:, 0]
     axis = joint.axis
@@ -63,9 +60,10 @@ def _ends(joint: Joint) -> tuple[Node, Node, float]:
 def _way(recording: Recording, joint: Joint) -> tuple[NDArray, NDArray, NDArray, NDArray]:
     """Axis, vector between the nodes, and the rates of both."""
     other, carrier, _ = _ends(joint)
-    q, v, numbering = recording.recorded("q"), recording.recorded("v"), recording.numbering
-    there, here = (stretch(numbering, dof_block(node, "position")) for node in (other, carrier))
-    own, spin = joint.axis, v[:, stretch(numbering, dof_block(carrier, "rotation"))]
+    gap, gap_rate = (_part(recording, part, other.position) - _part(recording, part,
+                                                                    carrier.position)
+                     for part in "qv")
+    own, spin = joint.axis, _part(recording, "v", carrier.rotation)
     R = _rotation(recording, carrier)
     if recording.model.planar:
         c, s = np.cos(R), np.sin(R)
@@ -74,11 +72,22 @@ def _way(recording: Recording, joint: Joint) -> tuple[NDArray, NDArray, NDArray,
     else:
         axis = R @ own
         turned = np.einsum("nij,nj->ni", R, np.cross(spin, own))
-    return axis, q[:, there] - q[:, here], v[:, there] - v[:, here], turned
+    return axis, gap, gap_rate, turned
+
+
+def _part(recording: Recording, part: str, dof_block: DofBlock) -> NDArray:
+    """Coordinates of a DOF block or their rates, (n, size); of the ground as they stay."""
+    if dof_block not in recording.numbering.dof_blocks:
+        return np.tile(dof_block.start if part == "q" else 0.0 * dof_block.start,
+                       (len(recording.rows), 1))
+    return recording.recorded(part)[:, stretch(recording.numbering, dof_block)]
 
 
 def _rotation(recording: Recording, node: Node) -> NDArray:
     """Rotation matrices of a node, (n, 3, 3); in a plane angles."""
+    if node.rotation not in recording.numbering.dof_blocks:       # of the ground
+        n = len(recording.rows)
+        return np.zeros(n) if recording.model.planar else np.tile(np.eye(3), (n, 1, 1))
     if recording.model.planar:
         at = stretch(recording.numbering, dof_block(node, "rotation"))
         return recording.recorded("q")[:, at.start]

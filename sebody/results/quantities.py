@@ -23,6 +23,7 @@ from sebody.results.recording import Recording
 from sebody.spelling import alike
 
 FE_NODE = "node inside a body"
+OF_CONTROL = SIGNAL, CONTROLLER = "sensor, signal or actuator", "controller"
 ALIKE = 0.75            # ratio of `difflib` from which a name is near another
 OF_FIELD = (*fields.QUANTITIES, "strain", "principal")
 
@@ -86,7 +87,8 @@ def unknown_quantity(recording: Recording, name: str) -> InputError:
             f"a {one.kind} has {', '.join(one.quantities)}" for one in found))
     *offers, of_fe_nodes = [one.offer.format(names=_listed(one, recording),
                                              quantities=_enumerated(one.quantities))
-                            for one in OWNERS]
+                            for one in OWNERS
+                            if one.kind not in OF_CONTROL or list(one.names(recording))]
     return InputError(f"{name!r} is unknown: {meant}{'; '.join(offers)}; of the model "
                       f"{', '.join(OF_MODEL)}{of_fe_nodes}")
 
@@ -266,9 +268,9 @@ OWNERS = (
     Owner("source of work", "of {names} {quantities}",
           lambda recording: recording.numbering.port_names,
           {"work": forces.work, "power": forces.power}),
-    Owner("sensor, signal or actuator", "of sensors, signals and actuators {quantities}",
+    Owner(SIGNAL, "of sensors, signals and actuators {quantities}",
           lambda recording: recording.numbering.all_kept.values, {"value": _kept}),
-    Owner("controller", "of controllers {quantities}",
+    Owner(CONTROLLER, "of controllers {quantities}",
           lambda recording: recording.model.controllers, {"states": _states}),
     # the last one: its names are too many to be searched for names like another
     Owner(FE_NODE, "; of FE nodes, <body>.node<k>, {quantities}", fields.FENodes,
@@ -291,7 +293,7 @@ def _has(recording: Recording, kind: str, owner: str, quantity: str) -> bool:
                 and (dof_block.fixed or not quantity.startswith("reaction")))
     if kind == "joint" and quantity in JOINT_MOTION:
         return forces.joints(recording)[owner].kind in JOINT_MOTION[quantity]
-    if kind == "controller":
+    if kind == CONTROLLER:
         return recording.model.controllers[owner].states.size > 0
     if quantity in ("modes", "mode_rates"):
         return owner in model.bodies and model.bodies[owner].body.modes > 0

@@ -60,6 +60,7 @@ def save_state(run: Simulation, path: str | Path) -> Path:
     """
     path = check_target(path, *TARGET)
     inputs.instance(run, "run", Simulation, "give a Simulation")
+    run.flush()
     arrays = _arrays(run.state)
     arrays |= {name: getattr(run.system, name) for name in OF_START}
     arrays["rows"] = np.concatenate(run.rows)

@@ -20,9 +20,11 @@ from sebody.engine.control_data import (
 from sebody.engine.state import ASKED, SAMPLED, State
 from sebody.engine.system import System
 from sebody.errors import InputError
+from sebody.model.control_parts import Sensor
 from sebody.model.mechanism import Mechanism
 from sebody.results.naming import look_up
 from sebody.results.recording import Recording
+from sebody.runs.user_faults import functions
 
 MULTIPLE = 1e-6     # of a step: by which a period may miss a multiple of it
 AXES = {"position": "q", "velocity": "v", "acceleration": "a"}
@@ -34,11 +36,19 @@ class Sampling:
     def __init__(self, model: Mechanism, numbering: Numbering, system: System, state: State):
         self.model, self.numbering, self.system, self.state = model, numbering, system, state
         kinds = system.control.channels[:, 0]
-        self._outside = [(COUNTS + system.control.periods.size + k, sensor.quantity)
+        self._outside = [(COUNTS + system.control.periods.size + k, sensor)
                          for k, sensor in enumerate(numbering.all_kept.sensors)
                          if kinds[k] == OUTSIDE]
         self._readers: dict[str, Callable[[], float | NDArray]] = {}
+        # users' functions may change or jump, and short pulses be missed: for each piece to see
+        self.needs_looks = any(True for _ in functions(model)) or any(
+            len(one.times) > 1 or one.waves for one in numbering.time_functions)
         self._numbers = {name: k for k, name in enumerate(numbering.all_kept.ports)}
+
+    @property
+    def has_inputs(self) -> bool:
+        """Whether there is anything to set."""
+        return bool(self._numbers)
 
     @property
     def samples(self) -> bool:
@@ -50,8 +60,8 @@ class Sampling:
         memory = self.state.memory
         if memory[WAITS] == 1.0 and memory[HAS] == 0.0:
             row = self._row()
-            for place, quantity in self._outside:
-                memory[place] = look_up(row, quantity)[0]
+            for place, sensor in self._outside:
+                memory[place] = _measured(row, sensor)[0]
             memory[HAS] = 1.0
 
     def check(self, h: float, fixed: bool) -> None:
@@ -62,9 +72,8 @@ class Sampling:
         InputError
             The message names the sensor or controller.
         """
-        for sensor in self.numbering.all_kept.sensors:
-            if any(sensor.quantity == quantity for _, quantity in self._outside):
-                self._check_number(sensor.name, sensor.quantity)
+        for _, sensor in self._outside:
+            self._check_number(sensor)
         tasks = [(f"sensor {one.name!r}", one.period) for one in self.model.sensors.values()
                  if one.period]
         tasks += [(f"controller {one.name!r}", one.period)
@@ -77,9 +86,10 @@ class Sampling:
                                  f"not divide: give a step that does, such as {near:.6g}, or "
                                  "variable steps, tolerance=Tolerance(...)")
 
-    def _check_number(self, name: str, quantity: str) -> None:
+    def _check_number(self, sensor: Sensor) -> None:
+        name, quantity = sensor.name, sensor.quantity
         try:
-            found = look_up(self._row(), quantity)
+            found = _measured(self._row(), sensor)
         except InputError as error:
             raise InputError(f"sensor {name!r}: {error}") from error
         if found.ndim > 1:
@@ -160,3 +170,16 @@ class Sampling:
         return Recording(self.model, self.numbering, self.system, self.state,
                          self.state.now[None].copy(), 0.0)
 
+
+def _measured(row: Recording, sensor: Sensor) -> NDArray:
+    """What a sensor measures in the states of a recording, perhaps in axes of a node, (n, ...)."""
+    if not sensor.axes:
+        return look_up(row, sensor.quantity)
+    vector, _, label = sensor.quantity.rpartition(".")
+    values, R = look_up(row, vector), look_up(row, f"{sensor.axes}.rotation")
+    if row.model.planar:
+        c, s = np.cos(R), np.sin(R)
+        R = np.stack([c, -s, s, c], axis=1).reshape(-1, 2, 2)
+    if values.shape[1:] != R.shape[2:]:
+        raise InputError(f"{vector!r} is no vector, which axes turn: leave out axes=")
+    return np.einsum("nji,nj->ni", R, values)[:, "xyz".index(label)]

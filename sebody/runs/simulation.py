@@ -54,6 +54,7 @@ LOOK = 0.2              # seconds in the loop until it returns to Python, which 
 FIRST_CHUNK = 1         # steps before the first return
 GROWTH = 8.0            # largest factor from one chunk of steps to the next
 OFF_GRID = 1e-6         # of a step: further away, a time is none of the grid's
+FEW, BUFFERED = 64, 1024        # steps of a short piece of a run, rows of a buffer for many
 
 
 class Simulation:
@@ -114,6 +115,7 @@ class Simulation:
         self.failure = ""
         self.exchanges = RowExchanges(self.system, self.state)
         self.sampling = Sampling(model, self.numbering, self.system, self.state)
+        self._buffer: Record | None = None      # of short pieces
         self._jumped = False    # at the state recorded last, by an input that was set since
         user_faults.forget(model)
         self.begun = start
@@ -173,6 +175,9 @@ class Simulation:
         Interrupted
             Ctrl-C, or a `KeyboardInterrupt` of `progress`; what was computed is kept likewise.
         """
+        if progress is None and self._piece(t_end):
+            return self
+        self.flush()
         user_faults.refuse_changed(self.model)
         last = self._last_step(t_end)
         if abs(t_end / self.h - last) > OFF_GRID:
@@ -183,9 +188,7 @@ class Simulation:
                 self.watch.say(f"peak {name}", message)
             for name, message in untold(self.numbering, self.h, self.time, t_end):
                 self.watch.say(f"jump {name}", message)
-        if self._jumped:        # the state recorded last is recorded again, after the jump
-            self.rows[-1] = self.rows[-1][:-1]
-            self.state.control.due, self._jumped = 1, False
+        self._forget_jumped()
         record = self._room(last)
         self.state.control.recorded = 0
         self.sampling.stop_at(t_end)
@@ -218,10 +221,11 @@ class Simulation:
             No actuator of this name, or no finite number.
         """
         if self.sampling.set_input(name, value):
-            self.state.control.restart = ASKED
-            rows = next((rows for rows in reversed(self.rows) if len(rows)), None)
-            if rows is self.rows[-1] and rows[-1, RECORD_T] == self.time:
-                self._jumped = True
+            state = self.state
+            state.control.restart = ASKED
+            rows = self.rows[-1] if self._buffer is None else self._buffer.rows[
+                :state.control.recorded]
+            self._jumped = len(rows) > 0 and rows[-1, RECORD_T] == state.clock.time
 
     def read(self, name: str) -> float | NDArray:
         """A quantity in the state reached, or what a sensor gave last.
@@ -235,6 +239,46 @@ class Simulation:
             A name that nothing has.
         """
         return self.sampling.read(name)
+
+    def _piece(self, t_end: float) -> bool:
+        """Run a few steps, as a loop in Python does between samples; False if that is not enough.
+
+        Rows go to one buffer for many pieces. What users are told of is looked at when it is full,
+        or when anything else is asked for.
+        """
+        state, steps = self.state, t_end / self.h if type(t_end) is float else np.nan
+        if not (self.sampling.has_inputs and steps < MOST_STEPS):
+            return False
+        control, last = state.control, round(steps)
+        count = last - control.grid
+        if not 0 < count <= FEW or abs(steps - last) > OFF_GRID:
+            return False
+        if self.sampling.needs_looks or (self._buffer is not None
+                                         and control.recorded + count + 1 > BUFFERED):
+            return False
+        if self._buffer is None:
+            self._forget_jumped()
+            self._buffer = Record.of(state, BUFFERED, self.every)
+            control.recorded = 0
+        elif self._jumped:
+            control.recorded -= 1
+            control.due, self._jumped = 1, False
+        self.sampling.stop_at(t_end)
+        return advance(self.system, state, self._buffer, self.scheme, last, FEW + 1,
+                       self.dense) == DONE
+
+    def _forget_jumped(self) -> None:
+        """Record the state recorded last again where an input jumped since."""
+        if self._jumped:
+            self.rows[-1] = self.rows[-1][:-1]
+            self.state.control.due, self._jumped = 1, False
+
+    def flush(self) -> None:
+        """Put what short pieces recorded into `rows`, and look whether limits are exceeded."""
+        if self._buffer is not None:
+            self.rows.append(self._buffer.rows[:self.state.control.recorded])
+            self._buffer = None
+            self.watch.look(self.model, self.numbering, self.rows[-1])
 
     def _last_step(self, t_end: float) -> int:
         """The grid step nearest to a time.
@@ -288,6 +332,7 @@ class Simulation:
 
     def result(self) -> Result:
         """The results computed so far."""
+        self.flush()
         found = Result(self.model, self.numbering, self.system, self.state,
                        np.concatenate(self.rows), self.seconds, self.failure, self.start)
         found.warnings = (self.watch.judge(found) if found.steps else

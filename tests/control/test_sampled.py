@@ -265,6 +265,39 @@ def test_sensors_of_any_quantity():
     assert_array_equal(run.read("tip.position"), result["tip.position"][-1])
 
 
+@pytest.mark.parametrize("planar", [False, True])
+def test_sensors_in_axes_of_a_node(planar):
+    """Accelerometer and force sensor that turn with a body, compiled and by Python."""
+    model = Model(planar=planar)
+    size = 2 if planar else 3
+    body = model.node("body", np.array([0.3, 0.1, -0.2])[:size])
+    model.rigid_body("mass", body, 2.0, 0.3 if planar else np.diag([0.3, 0.4, 0.2]))
+    model.attach("tip", np.array([0.8, 0.4, 0.1])[:size], body)
+    model.rigid_velocity(np.array([0.4, -1.0, 0.3])[:size], 3.0 if planar else (2.0, 1.0, -3.0))
+    model.gravity(np.array([0.0, -9.81, 0.0])[:size])
+    model.actuator("push", node=body, direction=np.eye(size)[0])
+    names = []
+    for k, label in enumerate("xyz"[:size]):
+        model.sensor(f"a{k}", f"tip.acceleration.{label}", axes="body")
+        model.sensor(f"f{k}", f"body.position.{label}", axes="tip", rate=50.0)
+        model.sensor(f"p{k}", f"push.force.{label}", axes=body)
+        names += [f"a{k}", f"f{k}", f"p{k}"]
+    model.controller("none", state_feedback(np.zeros((1, len(names))), offset=[1.7]), names,
+                     ["push"], 0.02)
+    result = Simulation(model, 0.01).run_to(0.3).result()
+    R = result["body.rotation"]
+    if planar:
+        R = np.array([[[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]] for a in R])
+    for k in range(size):
+        for sensor, name in (("a", "tip.acceleration"), ("f", "body.position"),
+                             ("p", "push.force")):
+            expected = np.einsum("nji,nj->ni", R, result[name])[1:, k]
+            assert_allclose(result[f"{sensor}{k}.value"][2::2], expected[1::2], rtol=1e-6,
+                            atol=1e-6)
+    with pytest.raises(InputError, match="has axes and measures 'energy.kinetic': name a compon"):
+        model.sensor("e", "energy.kinetic", axes="body")
+
+
 def arm_dynamics(q, v, mass, bias):
     """Two rods of one metre and one kilogram, absolute angles apart by relative ones."""
     c, s = np.cos(q[1]), np.sin(q[1])

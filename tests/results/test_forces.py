@@ -249,9 +249,10 @@ def test_torque_of_a_drive(planar):
         assert result["motor.local_moment"][:, 0] == pytest.approx(result["motor.torque"])
     with pytest.raises(InputError, match="drive 'motor' moves a rotation: ask for motor.torque"):
         result["motor.thrust"]
-    with pytest.raises(InputError, match="'speed' is unknown: a joint has multipliers, force, "
-                                         "moment, local_force, local_moment; a drive has torque"):
-        result["motor.speed"]
+    with pytest.raises(InputError, match="'velocity' is unknown: a joint has multipliers, force, "
+                                         "moment, local_force, local_moment, angle, rate, "
+                                         "displacement, speed; a drive has torque"):
+        result["motor.velocity"]
 
 
 def test_thrust_of_drives():

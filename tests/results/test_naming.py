@@ -122,7 +122,7 @@ def test_every_name_is_in_and_can_be_asked_for(result, tmp_path):
                       r"the largest over the run result.field\('rod'\)."
                       r"envelope\('von_mises'\)"),
     ("rod.strain", r"as in 'rod.node0.stress'|result.field\('rod'\).strain"),
-    ("weight.von_mises", "a body has modes, forces")])
+    ("weight.von_mises", "a body has modes, mode_rates, forces")])
 def test_unknown_names_say_what_was_meant(result, name, said):
     with pytest.raises(InputError, match=said):
         result[name]

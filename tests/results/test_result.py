@@ -90,9 +90,10 @@ def test_energy_is_the_work_done(run):
 
 @pytest.mark.parametrize("name, message", [
     ("top.position", "'top.position' is unknown: did you mean 'tip.position'. nodes are base, "
-                     "tip; of bodies .beam. there are modes and forces; of <body>.<node> force "
-                     "and moment; of joints multipliers, force, moment, local_force and "
-                     "local_moment; of drives torque and thrust; of springs and loads force and "
+                     "tip; of bodies .beam. there are modes, mode_rates and forces; of "
+                     "<body>.<node> force and moment; of joints multipliers, force, moment, "
+                     "local_force, local_moment, angle, rate, displacement and speed; of drives "
+                     "torque and thrust; of springs and loads force and "
                      "moment; of torque on base.rotation work and power; of the model t, "),
     ("position", "'position' is unknown: did you mean 'tip.position' or 'base.position'. nodes"),
     ("energy.total", "energy.kinetic, energy.strain, momentum, angular_momentum"),
