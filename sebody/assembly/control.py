@@ -71,8 +71,8 @@ def control_arrays(model: Mechanism, numbering: Numbering, table_at: NDArray) ->
             for k, c in enumerate(controllers)], 10),
         wires=wires, ends=ends,
         inputs=_table([(port, place, table_at[port]) for port, place in kept.inputs.items()], 3),
-        limits=np.array([numbering.time_functions[port].limits or (1.0, -1.0) for port in kept.inputs],
-                        dtype=float).reshape(-1, 2),
+        limits=np.array([numbering.time_functions[port].limits or (1.0, -1.0)
+                         for port in kept.inputs], dtype=float).reshape(-1, 2),
         parameters=np.concatenate([np.zeros(0), *(c.parameters for c in controllers)]),
         outside=np.array([int(any(one.attachments[0] == OUTSIDE for one in channels))]),
         memory=np.array([scratch[-1]]))
