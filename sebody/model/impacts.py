@@ -1,7 +1,6 @@
 """Constants of Hunt and Crossley's contact law: damping from the restitution at a speed."""
 
 import numpy as np
-from scipy.optimize import brentq
 
 from sebody import inputs
 from sebody.errors import InputError
@@ -29,6 +28,7 @@ def damping_of(restitution: float, at_speed: float, what: str) -> float:
                          "damping of the contact would be without bounds")
     if e > 1 - 1e-9:
         return 0.0
+    from scipy.optimize import brentq  # here: models without contact start faster
 
     def left(x: float) -> float:        # x = c v e, from 0 to 1
         return x / e * (1.0 + e) - np.log1p(x / e) + np.log1p(-x)

@@ -23,7 +23,8 @@ from sebody.results.recording import Recording
 from sebody.spelling import alike
 
 FE_NODE = "node inside a body"
-OF_CONTROL = SIGNAL, CONTROLLER = "sensor, signal or actuator", "controller"
+OPTIONAL = PRESSING, SIGNAL, CONTROLLER = (     # told of models that have some
+    "contact, stop or friction", "sensor, signal or actuator", "controller")
 ALIKE = 0.75            # ratio of `difflib` from which a name is near another
 OF_FIELD = (*fields.QUANTITIES, "strain", "principal")
 
@@ -88,7 +89,7 @@ def unknown_quantity(recording: Recording, name: str) -> InputError:
     *offers, of_fe_nodes = [one.offer.format(names=_listed(one, recording),
                                              quantities=_enumerated(one.quantities))
                             for one in OWNERS
-                            if one.kind not in OF_CONTROL or list(one.names(recording))]
+                            if one.kind not in OPTIONAL or list(one.names(recording))]
     return InputError(f"{name!r} is unknown: {meant}{'; '.join(offers)}; of the model "
                       f"{', '.join(OF_MODEL)}{of_fe_nodes}")
 
@@ -261,7 +262,7 @@ OWNERS = (
     Owner("spring or load", "of springs and loads {quantities}", forces.loads,
           {"force": partial(forces.of_load, "position"),
            "moment": partial(forces.of_load, "rotation")}),
-    Owner("contact, stop or friction", "of contacts, stops and friction {quantities}",
+    Owner(PRESSING, "of contacts, stops and friction {quantities}",
           contacts.pressing,
           {"normal_force": contacts.normal_force, "gap": contacts.gap, "sticks": contacts.sticks,
            "dissipation": contacts.dissipation}),
@@ -305,7 +306,7 @@ def _has(recording: Recording, kind: str, owner: str, quantity: str) -> bool:
     if kind == "drive":
         return (quantity == "torque") == (forces.driven(forces.drives(recording)[owner])
                                           == "rotation")
-    if kind == "contact, stop or friction":
+    if kind == PRESSING:
         return quantity == "dissipation" or contacts.has(contacts.pressing(recording)[owner],
                                                          quantity)
     if kind == "spring or load":

@@ -57,6 +57,7 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     steps = inputs.integer(steps, "steps", least=1)
     t = inputs.number(t, "t")
     tolerance = inputs.number(tolerance, "tolerance", above=0, below=1)
+    model = inputs.instance(model, "model", Model, "give a sebody.Model")
     sticking = any(load.tuned for load in model.loads)
     run = Simulation(model, STICKING if sticking else 1.0)
     unbend(model, run.numbering, run.state)
