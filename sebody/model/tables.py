@@ -59,8 +59,23 @@ def _tables(model: Mechanism) -> list[tuple[str, Sequence[str], list[tuple]]]:
              ("Nodes", ("node", "point", "position", "rotation", "initial velocity"),
               _nodes(model)),
              ("Joints and drives", ("name", "kind", "of", "to", "equations"), _joints(model)),
-             ("Loads, springs and dampers", ("name", "kind", "on", "course"), _loads(model))]
+             ("Loads, springs and dampers", ("name", "kind", "on", "course"), _loads(model)),
+             ("Sensors", ("name", "quantity", "between samples", "delay", "noise"),
+              _sensors(model)),
+             ("Controllers", ("name", "from", "to", "period", "delay", "states"),
+              _controllers(model))]
     return [one for one in found if one[2]]
+
+
+def _sensors(model: Mechanism) -> list[tuple]:
+    return [(one.name, one.quantity + f" in axes of {one.axes}" * bool(one.axes),
+             f"{one.period:.6g}" if one.period else "", one.delay, f"{one.noise:.6g}")
+            for one in model.sensors.values()]
+
+
+def _controllers(model: Mechanism) -> list[tuple]:
+    return [(one.name, ", ".join(one.inputs), ", ".join(one.outputs), f"{one.period:.6g}",
+             one.delay, len(one.states)) for one in model.controllers.values()]
 
 
 def _bodies(model: Mechanism) -> list[tuple]:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import block_diag, schur, solve_sylvester
+from scipy.linalg import block_diag, matrix_balance, schur, solve_sylvester
 
 from sebody.errors import InputError
 
@@ -70,7 +70,9 @@ def joined(parts: list[Block], B: NDArray, C: NDArray, D: NDArray) -> dict:
 
 def blocks(A: NDArray, B: NDArray, C: NDArray) -> list[Block]:
     """Blocks that do not act on each other: of one pole, of a pair, or of poles that are near."""
-    found, rest, poles = [], (A, B, C), np.linalg.eigvals(A)
+    # states of one size: rounding is relative to the largest entry
+    A, (size, _) = matrix_balance(A, permute=False, separate=True)
+    found, rest, poles = [], (A, B / size[:, None], C * size), np.linalg.eigvals(A)
     typical = float(np.median(np.abs(poles))) if len(poles) else 0.0
     for group in _near_groups(poles, typical):
         one, rest = _parted(*rest, group)

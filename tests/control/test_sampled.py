@@ -298,6 +298,16 @@ def test_sensors_in_axes_of_a_node(planar):
         model.sensor("e", "energy.kinetic", axes="body")
 
 
+def test_a_model_shows_its_loop():
+    model = controlled(2)
+    model.sensor("angle", "hinge.angle", rate=50.0, noise=1e-3)
+    shown = model.summary().splitlines()
+    assert "pid   hub.rotation  motor    0.02      2       4" in shown
+    assert "angle  hinge.angle             0.02      0  0.001" in shown
+    assert repr(model.controllers["pid"]) == (
+        "<Controller 'pid' from hub.rotation to motor: period 0.02, 4 states>")
+
+
 def arm_dynamics(q, v, mass, bias):
     """Two rods of one metre and one kilogram, absolute angles apart by relative ones."""
     c, s = np.cos(q[1]), np.sin(q[1])

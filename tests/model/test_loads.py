@@ -112,7 +112,7 @@ def test_histories():
 def amplitudes(run, t):
     """Amplitude and rates of every item at a time."""
     loads = np.zeros_like(run.state.loads)
-    evaluate.set_loads(run.system, loads, t)
+    evaluate.set_loads(run.system, run.state.frames, loads, t)
     return loads.reshape(-1, 3)
 
 

@@ -60,7 +60,7 @@ def amplitudes(source, times):
     run = Simulation(model, 0.01)
     found = np.zeros((len(times), run.state.loads.size))
     for row, time in zip(found, times, strict=True):
-        set_loads(run.system, row, time)
+        set_loads(run.system, run.state.frames, row, time)
     return found[:, 3:]
 
 

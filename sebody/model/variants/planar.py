@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from sebody.contract.names import body_load_kind
 from sebody.errors import InputError
 from sebody.model.bodies import superelement
+from sebody.model.controllers import actuators
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, Element, Superelement
@@ -58,6 +59,10 @@ def planar(model: Mechanism) -> Variant:
         raise InputError("the model is planar already")
     if not model.nodes:
         raise InputError("the model has no nodes, so it has no plane")
+    inputs = [*model.sensors, *model.controllers, *actuators(model)]
+    if inputs:
+        raise InputError(f"the model has actuators, sensors or controllers ({', '.join(inputs)}), "
+                         "which are not taken to the plane: build the planar model by hand")
     check_joints(model)
     refused: InputError | None = None
     for normal in _normals(model):
