@@ -58,7 +58,7 @@ def control_arrays(model: Mechanism, numbering: Numbering, table_at: NDArray) ->
     return Control(
         tasks=_table([(one.kind, one.number) for one in tasks], 2),
         periods=np.array([one.period for one in tasks], dtype=float),
-        channels=_table([one.attachments for one in channels], 1 + CHANNEL_PLACES),
+        channels=_table([one.places for one in channels], 1 + CHANNEL_PLACES),
         coefficients=np.array([one.numbers for one in channels],
                               dtype=float).reshape(-1, CHANNEL_NUMBERS),
         sensors=_table([(kept.values[s.name], k, s.delay, queues[k])
@@ -74,7 +74,7 @@ def control_arrays(model: Mechanism, numbering: Numbering, table_at: NDArray) ->
         limits=np.array([numbering.time_functions[port].limits or (1.0, -1.0)
                          for port in kept.inputs], dtype=float).reshape(-1, 2),
         parameters=np.concatenate([np.zeros(0), *(c.parameters for c in controllers)]),
-        outside=np.array([int(any(one.attachments[0] == OUTSIDE for one in channels))]),
+        outside=np.array([int(any(one.places[0] == OUTSIDE for one in channels))]),
         memory=np.array([scratch[-1]]))
 
 

@@ -50,7 +50,7 @@ def found(run: Simulation | Result, spin: Spin, name: str) -> Input:
         raise InputError("the model has no load, actuator or drive, so no input: add one, a load "
                          "of amplitude 0 if it shall not act at rest")
     own = known[inputs.choice(name, "input", known)]
-    if own.history.is_time:
+    if own.time_function.is_time:
         raise InputError(f"{name!r} is a user force, which has no amplitude: name a load, an "
                          "actuator or a drive")
     none = np.zeros(run.numbering.total)

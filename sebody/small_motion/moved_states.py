@@ -81,7 +81,7 @@ def differences(run: Simulation | Result, names: Sequence[str], along: Moves, pu
     recording = Result(run.model, run.numbering, run.system, run.state, rows, 0.0)
     base = Result(run.model, run.numbering, run.system, run.state, run.state.now[None].copy(), 0.0)
     unique = along
-    if run.system.relaxed[0]:       # multipliers of least norm
+    if run.system.regularized[0]:       # multipliers of least norm
         q = recording.unique_rows[:, run.state.recorded_parts["q"]]
         unique = along._replace(positions=np.where(
             run.system.is_multiplier[:q.shape[1]] > 0, _derivative(q, scale), along.positions))

@@ -32,7 +32,7 @@ def tangent(psi):
 class PaperMatrices:
     """The matrices of (47)-(51) and (59)-(63) for two full nodes, from the state alone."""
 
-    def __init__(self, case, option="b"):
+    def __init__(self, case, option="material"):
         n = case.n
         constants = states.constants_of(case)
         alpha, self.M = constants["alpha_rs"], constants["M"]
@@ -50,11 +50,11 @@ class PaperMatrices:
         self.option = option
         for i in (0, 3):
             self.P[i:i + 3, i:i + 3] = R0.T
-        for j, R in zip((6, 9), nodes.as_matrix() if option == "a" else (), strict=False):
+        for j, R in zip((6, 9), nodes.as_matrix() if option == "frame_axes" else (), strict=False):
             self.P[j:j + 3, j:j + 3] = R0.T @ R
         self.ydot = self.P @ case.v
         self.p = p = self.M @ self.ydot
-        for i in (0, 3, 6, 9) if option == "a" else (0, 3):
+        for i in (0, 3, 6, 9) if option == "frame_axes" else (0, 3):
             self.V[i:i + 3] = skew(self.ydot[i:i + 3])
             self.V1[i:i + 3] = -skew(p[i:i + 3])
             self.O0[i:i + 3, i:i + 3] = skew(self.Om0)
@@ -69,13 +69,13 @@ class PaperMatrices:
         C1 = P.T @ (self.O0 @ M + M @ self.O0.T) @ P
         C2 = (P.T @ (M @ V + V1) @ U
               - U.T @ (V1.T + V.T @ M) @ (P.T if misprint == "C2" else P))
-        if self.option == "b":
+        if self.option == "material":
             return C1 + C2 + self.OB @ M @ P - self.last
         last = P @ self.last if misprint == "C3" else P.T @ self.last @ P
         return C1 + C2 - P.T @ self.OB @ M @ P + last
 
 
-@pytest.fixture(scope="module", params=["a", "b"])
+@pytest.fixture(scope="module", params=["frame_axes", "material"])
 def state(request):
     """A generic state, its matrices, and differences of the force by the velocities.
 
@@ -98,8 +98,8 @@ def test_erratum_4_derived_velocity_tangent(state):
 
 
 @pytest.mark.parametrize("misprint, sizes", [
-    ("C2", {"a": 1.192, "b": 0.702}), ("V1", {"a": 4.358, "b": 1.308}),
-    ("C3", {"a": 0.452, "b": 0.0})])        # C3 of (62) is right as printed
+    ("C2", {"frame_axes": 1.192, "material": 0.702}), ("V1", {"frame_axes": 4.358, "material": 1.308}),
+    ("C3", {"frame_axes": 0.452, "material": 0.0})])        # C3 of (62) is right as printed
 def test_erratum_4_printed_velocity_tangent(state, misprint, sizes):
     """Printed: P^T ending C2, V1 = +skew, and in (50) a last term P diag(skew(p_psi)) of C3."""
     _, paper, exact = state

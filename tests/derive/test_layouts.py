@@ -70,7 +70,7 @@ def test_no_position(name):
     ("planar-any", "mean", "in a plane the frame 'mean' coincides with 'converged_mean'")])
 def test_layouts_a_frame_cannot_carry(name, frame, message):
     with pytest.raises(LayoutError, match=message):
-        superelement(Layout.parse(name), frame, "b")
+        superelement(Layout.parse(name), frame, "material")
 
 
 @pytest.mark.parametrize("text, variant", [

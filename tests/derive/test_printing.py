@@ -132,7 +132,7 @@ def test_constants_are_printed_as_they_are_declared():
 
 def test_traits_are_printed_as_they_are_declared():
     frames = {"f": FrameTraits("a frame", planar=False, constants=(Part("w", ("N_POSITIONS",)),))}
-    inertia = {"i": InertiaTraits("an option", material=True)}
+    inertia = {"i": InertiaTraits("an option", "i", rank=0, cost=1.0, softening=0.5, material=True)}
     scope = {}
     exec(options.options_text(frames, inertia, {}), scope)
     assert scope["FRAMES"] == frames and scope["INERTIA_OPTIONS"] == inertia

@@ -111,10 +111,10 @@ def test_a_frame_declares_its_constants_and_scratch_rows(monkeypatch):
     toy = converged_mean.FRAME._replace(
         traits=converged_mean.FRAME.traits._replace(constants=(EXTRAS,)), derive=derive)
     monkeypatch.setitem(options.FRAMES, "toy", toy)
-    made, usual = (statements_of(Variant("planar-f2", frame, "b"))
+    made, usual = (statements_of(Variant("planar-f2", frame, "material"))
                    for frame in ("toy", "converged_mean"))
     assert made.rows == usual.rows + 1
-    text = compile_kernel(Variant("planar-f2", "toy", "b"))
+    text = compile_kernel(Variant("planar-f2", "toy", "material"))
     assert "        extras = at(masses, 1)\n" in text
     assert re.search(r"^        traces = at\(work, \d+\*row\)$", text, re.M)
     assert f"WORK_ROWS = {made.rows}\n" in text
@@ -131,7 +131,7 @@ def test_file_names(variant, name):
 def test_no_scratch_row_is_idle(layout):
     """Every row is read or written by the steps, and every array of the steps is somewhere."""
     frame = "positions" if layout == "f2t1" else "converged_mean"
-    path = ROOT / "generated" / f"superelement_{layout.replace('-', '_')}_{frame}_b.py"
+    path = ROOT / "generated" / f"superelement_{layout.replace('-', '_')}_{frame}_material.py"
     tree = ast.parse(path.read_text())
     used = [node.id for node in ast.walk(tree) if isinstance(node, ast.Name)]
     rows = re.findall(r"^ +(\w+) = (?:at\(work|work$)", path.read_text(), re.M)

@@ -278,7 +278,7 @@ def test_a_layout_is_added_to_the_directory_of_the_user(original, tmp_path):
     before = python(original, DRIVER, "3", **mine)
     assert before.returncode == 1
     assert "there is no kernel for layout 'planar-f3'" in before.stderr
-    command = "python -m sebody.derive planar-f3:positions:b"
+    command = "python -m sebody.derive planar-f3:positions:material"
     assert command in before.stderr
     done = derive(original, command.split()[-1], **mine)
     assert done.returncode == 0, done.stderr

@@ -10,7 +10,7 @@ from sebody.cli.entry import main
 from sebody.explore.advice import Advice
 from sebody.explore.advice.loads import missed
 from sebody.fem import Section
-from sebody.model.time_functions import history
+from sebody.model.time_functions import time_function
 
 ROOT, TIP = np.array([12.0, 9.0]), np.array([50.0, 2.0])
 
@@ -87,7 +87,7 @@ def test_a_force_of_a_user_between_all_steps_is_seen_by_a_run_off_their_grid():
     (harmonic(1.0, 2 * np.pi * 100.0 / 16), (2 * np.pi / 16)**2 / 12),   # mean of the interpolation
     (lambda t: np.sin(2 * np.pi * 200.0 * t), 1.0)])
 def test_the_share_of_a_load_between_steps(shape, share):
-    found = missed(["load"], [history(shape)], H, T_END)
+    found = missed(["load"], [time_function(shape)], H, T_END)
     assert found.share == pytest.approx(share, rel=0.25, abs=1e-9)
 
 

@@ -17,7 +17,7 @@ from sebody.explore.advice.guards import (
 from sebody.explore.advice.loads import missed
 from sebody.explore.advice.quantities import Values
 from sebody.explore.advice.reference import Reference
-from sebody.model.time_functions import history
+from sebody.model.time_functions import time_function
 
 H, GRID, T_END = 0.00927, 0.01, 1.0
 UNREAD = None   # the worst place of a reference, which these guards do not need
@@ -83,5 +83,5 @@ def test_a_jump_on_a_step_loses_half_a_step_of_the_load():
     """A triangle beside an area of a half; other lines of the spectrum are hardly larger."""
     rows = [(0.0, 1.0), (0.5, 1.0), (0.5, 0.0), (1.0, 0.0)]
     for h in (0.1, 0.02):
-        found = missed(["push"], [history(rows)], h, 1.0)
+        found = missed(["push"], [time_function(rows)], h, 1.0)
         assert found.name == "push" and found.share == pytest.approx(h, rel=1e-3)

@@ -109,7 +109,7 @@ def planar():
     (spatial, ["any_converged_mean", "any_converged_mean", "any_positions"]),
     (planar, ["planar_any_converged_mean"] * 2)])
 def test_any_layout_runs_and_keeps_its_energy(model, kernels):
-    assert [b.kernel for b in model().bodies.values()] == [f"superelement_{k}_c" for k in kernels]
+    assert [b.kernel for b in model().bodies.values()] == [f"superelement_{k}_floating_field" for k in kernels]
     coarse, fine = balance(model)
     assert fine < 1e-4 and fine < coarse / 3.5      # of second order in the step
 
@@ -123,7 +123,7 @@ def test_a_summary_says_once_where_a_kernel_of_its_own_would_pay():
     lines = simulate(model, 0.01, 0.02).summary().splitlines()
     assert [line for line in lines if line.startswith("general kernel")] == [
         f"general kernel       used for {bodies}: for a faster, specific kernel run "
-        f"python -m sebody.derive {variant}:converged_mean:c" for bodies, variant in (
+        f"python -m sebody.derive {variant}:converged_mean:floating_field" for bodies, variant in (
             ("long, more0 ", "planar-f4m2"), ("mixed", "planar-t2r1m0"))]
 
 

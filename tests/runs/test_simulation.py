@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sebody import InputError, Model, Simulation, SimulationError, generalized_alpha
-from sebody.model.time_functions import history
+from sebody.model.time_functions import time_function
 from sebody.scenes.hinged_beam import build
 
 
@@ -104,7 +104,7 @@ def stronger(model):
 
 
 def sooner(model):
-    model.loads[0].time_function = history([(0.0, 0.0), (1.0, 1.2e4)])
+    model.loads[0].time_function = time_function([(0.0, 0.0), (1.0, 1.2e4)])
 
 
 def stiffer(model):

@@ -34,7 +34,7 @@ def test_small_increments_differ_to_second_order():
 
 def test_spin_of_small_increments_differs_to_second_order():
     """U of (44) against U of (19) at beta_0 = 0, through the inertia that W carries."""
-    small, exact = (load(f"superelement_f2_{frame}_b") for frame in ("mean_small", "mean"))
+    small, exact = (load(f"superelement_f2_{frame}_material") for frame in ("mean_small", "mean"))
     errors, sizes = [], (0.2, 0.1, 0.05)
     for psi in sizes:
         case = superelements.without(superelements.superelement_case(exact, 3, psi), "stiffness")

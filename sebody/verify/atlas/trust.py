@@ -9,7 +9,7 @@ from sebody.explore.advice.loads import SEEN, missed
 from sebody.explore.advice.steady import steady_frequencies
 from sebody.fem import Section
 from sebody.model.model import Model
-from sebody.model.time_functions import history
+from sebody.model.time_functions import time_function
 from sebody.runs.simulation import Simulation, simulate
 from sebody.runs.statics import equilibrium
 from sebody.small_motion.linearization import modes, vibrations
@@ -43,7 +43,7 @@ def missed_loads() -> Finding:
         "refused.", "step / duration of the pulse", "impulse that the mass gets / true one",
         logarithmic="x")
     pulse = [(0.0, 0.0), (PULSE - WIDTH, 0.0), (PULSE, 1.0), (PULSE + WIDTH, 0.0)]
-    loads, expected, found = history(pulse), [], []
+    loads, expected, found = time_function(pulse), [], []
     parts = (1, 2, 4, 8, 16, 32, 64, 128)
     steps = 0.02 / np.array(parts)
     for h in steps:
