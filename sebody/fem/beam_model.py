@@ -14,6 +14,7 @@ from sebody.fem.mass_field import MassField
 from sebody.fem.materials import Material
 from sebody.fem.model import FEModel, assemble
 from sebody.fem.section import StiffnessSection
+from sebody.vectors import skew
 
 _IN_PLANE = np.array([0, 1, 5, 6, 7, 11])  # DOFs of an element in the xy plane
 
@@ -207,12 +208,7 @@ def _second_derivative(force: NDArray, moment: NDArray) -> NDArray:
     mixed = force[..., :, None] * first
     result[..., psi, psi] = ((mixed + np.swapaxes(mixed, -1, -2)) / 2
                              - force[..., :1, None] * np.eye(3))
-    for columns, cross in ((stretch, _skew(force)), (bend, _skew(moment) / 2)):
+    for columns, cross in ((stretch, skew(force)), (bend, skew(moment) / 2)):
         result[..., psi, columns] = cross
         result[..., columns, psi] = np.swapaxes(cross, -1, -2)
     return result
-
-
-def _skew(vectors: NDArray) -> NDArray:
-    """Matrices (..., 3, 3) of the cross products with vectors (..., 3)."""
-    return np.swapaxes(np.cross(vectors[..., None, :], np.eye(3)), -1, -2)

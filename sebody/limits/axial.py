@@ -26,9 +26,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import null_space
 
-from sebody.limits.spin_stability import fit, rows_of, skew
+from sebody.limits.spin_stability import fit, rows_of
 from sebody.model.parts import Superelement
 from sebody.results import rotations
+from sebody.vectors import skew
 
 PASSES = 30         # of the rotation of best fit
 LEAST = 1e-9        # share of a largest eigenvalue of geometry below which others are none

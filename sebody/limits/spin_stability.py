@@ -34,6 +34,7 @@ from sebody.generated.options import INERTIA_OPTIONS
 from sebody.model.frames import FRAMES
 from sebody.model.parts import Superelement
 from sebody.reduction import ReducedBody
+from sebody.vectors import skew
 
 ALIGNED = 1e-2      # rad: how far a principal axis may be off
 
@@ -304,7 +305,3 @@ def fit(body: ReducedBody, moved: NDArray) -> NDArray:
 def _in_space(points: NDArray) -> NDArray:
     """Points (k, 2) or (k, 3) as (k, 3)."""
     return np.hstack([points, np.zeros((len(points), 3 - points.shape[1]))])
-
-
-def skew(a: NDArray) -> NDArray:
-    return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.fem.mass_field import MassField
+from sebody.vectors import skew
 
 
 class MassIntegrals:
@@ -119,7 +120,7 @@ class MassIntegrals:
         skew(J e_k)^T skew(e_l) + skew(J e_l)^T skew(e_k)``.
         """
         axes = np.eye(3)
-        moment = [_skew(self._field.inertia[:, :, k]) for k in range(3)]
+        moment = [skew(self._field.inertia[:, :, k]) for k in range(3)]
         flat = psi.reshape(-1, psi.shape[2])
 
         def project(matrices: NDArray) -> NDArray:
@@ -127,8 +128,8 @@ class MassIntegrals:
         K = np.array([project(moment[k]) / 2 for k in range(3)])
         J2 = np.zeros((3, 3, *K.shape[1:]))
         for k, m in product(range(3), repeat=2):
-            X = (moment[k].transpose(0, 2, 1) @ _skew(axes[m])
-                 + moment[m].transpose(0, 2, 1) @ _skew(axes[k]))
+            X = (moment[k].transpose(0, 2, 1) @ skew(axes[m])
+                 + moment[m].transpose(0, 2, 1) @ skew(axes[k]))
             J2[k, m] = -project(X + X.transpose(0, 2, 1)) / 4
         return K, J2
 
@@ -165,8 +166,3 @@ def _cross(vectors: NDArray) -> NDArray:
     zero = np.zeros_like(x)
     return np.array([np.stack(turned, axis=1) for turned in (
         (zero, -z, y), (z, zero, -x), (-y, x, zero))])
-
-
-def _skew(vectors: NDArray) -> NDArray:
-    """Matrices (..., 3, 3) of the cross products with vectors (..., 3)."""
-    return np.swapaxes(np.cross(vectors[..., None, :], np.eye(3)), -1, -2)

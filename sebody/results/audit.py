@@ -12,6 +12,7 @@ from sebody.model.parts import Element, Node, Superelement
 from sebody.results import energy_balance
 from sebody.results import force_quantities as forces
 from sebody.results.recording import Recording
+from sebody.vectors import moment_of
 
 DRIFT = 1e-5        # constraints, of the model's size or rad: a thousand times a step's tolerance
 GOOD = 0.2          # of a limit, up to which a number is good
@@ -138,12 +139,12 @@ def _acting(result: Recording) -> tuple[NDArray, NDArray]:
                 moment += values
             else:
                 total += values
-                moment += _cross(result.balance.position(place.node), values)
+                moment += moment_of(result.balance.position(place.node), values)
     weight = mass * model.gravity_field
     # the first moment of mass moves on with the momentum
     moved = first + _integral(result.recorded("t")[:, 0],
                               _sums(result, "momentum")[:, :model.dimension])
-    moment += _cross(moved, np.broadcast_to(model.gravity_field, moved.shape))
+    moment += moment_of(moved, np.broadcast_to(model.gravity_field, moved.shape))
     if model.planar:
         total = np.column_stack([total + weight, np.zeros(n)])
         moment = np.column_stack([np.zeros((n, 2)), moment])
@@ -174,7 +175,7 @@ def _integral(t: NDArray, rates: NDArray) -> NDArray:
     return found
 
 
-def _cross(r: NDArray, force: NDArray) -> NDArray:
+def moment_of(r: NDArray, force: NDArray) -> NDArray:
     """``r x f``, (n, 3), in a plane (n, 1)."""
     if r.shape[-1] == 3:
         return np.cross(r, force)

@@ -18,6 +18,7 @@ from sebody.assembly.numbering import Numbering, stretch
 from sebody.model.inputs import dof_block
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, DofBlock, Element, Joint, Node, Superelement
+from sebody.vectors import moment_of
 
 Part = Element | Superelement
 
@@ -152,13 +153,6 @@ class Balance:
             if c.to is not None and c.to in moments and c.node in moments:
                 r = self.position(c.node) - self.position(c.to)
                 moments[c.to] -= moment_of(r, forces[:, k])
-
-
-def moment_of(r: NDArray, force: NDArray) -> NDArray:
-    """``r x f``, (n, 3); in a plane (n, 1)."""
-    if r.shape[1] == 3:
-        return np.cross(r, force)
-    return (r[:, 0] * force[:, 1] - r[:, 1] * force[:, 0])[:, None]
 
 
 class _Groups:

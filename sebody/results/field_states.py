@@ -14,6 +14,7 @@ from sebody.results.motion import BodyMotion, body_motion
 from sebody.results.recording import Recording
 from sebody.results.references import Welded, undeformed
 from sebody.results.stresses import Stresses
+from sebody.vectors import cross
 
 AXES = "global", "body"
 
@@ -109,9 +110,9 @@ class FieldStates:
                    axes: str = "global") -> NDArray:
         """``v_0 + Omega_0 x r + r'`` in axes of the frame, r from its origin."""
         states = np.asarray(states)
-        spin = self.motion.spin[states]
+        spin = self.motion.spin[states][:, None]
         local = (self.motion.velocity[states][:, None]
-                 + _cross(spin, self._from_origin(states, nodes))
+                 + cross(spin, self._from_origin(states, nodes))
                  + self._recovery.displacement(self._rates[states], nodes))
         return self._in(axes, states, local)
 
@@ -119,10 +120,10 @@ class FieldStates:
                       axes: str = "global") -> NDArray:
         """``a_0 + Omega_0' x r + Omega_0 x (Omega_0 x r) + 2 Omega_0 x r' + r''`` likewise."""
         states, motion = np.asarray(states), self.motion
-        spin, r = motion.spin[states], self._from_origin(states, nodes)
+        spin, r = motion.spin[states][:, None], self._from_origin(states, nodes)
         rate = self._recovery.displacement(self._rates[states], nodes)
-        local = (motion.acceleration[states][:, None] + _cross(motion.spin_rate[states], r)
-                 + _cross(spin, _cross(spin, r) + 2 * rate)
+        local = (motion.acceleration[states][:, None] + cross(motion.spin_rate[states][:, None], r)
+                 + cross(spin, cross(spin, r) + 2 * rate)
                  + self._recovery.displacement(self._seconds[states], nodes))
         return self._in(axes, states, local)
 
@@ -177,13 +178,6 @@ class FieldStates:
 
     def _global(self, states: NDArray, local: NDArray) -> NDArray:
         return local @ self.motion.rotation[states].transpose(0, 2, 1)
-
-
-def _cross(spin: NDArray, vectors: NDArray) -> NDArray:
-    """``spin x r`` of spins (n, 3), in a plane (n, 1), and vectors (n, k, D)."""
-    if vectors.shape[2] == 2:
-        return spin[:, None] * np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)
-    return np.cross(spin[:, None], vectors)
 
 
 def _no_bodies(name: str) -> str:

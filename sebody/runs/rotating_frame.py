@@ -17,6 +17,7 @@ from sebody.contract.layout import AT_FRAME, AT_POSITIONS
 from sebody.model.parts import DofBlock
 from sebody.results.result import Result
 from sebody.runs.simulation import Simulation
+from sebody.vectors import skew
 
 
 class Spin:
@@ -172,11 +173,6 @@ def of_levers(run: Simulation | Result, forces: NDArray) -> csc_matrix:
             else:
                 blocks.add(at, at, skew(arm) @ skew(_rotation(run, rotation).T @ force))
     return blocks.matrix(numbering.free, numbering.free)
-
-
-def skew(a: NDArray) -> NDArray:
-    """The operator ``a x``."""
-    return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
 
 
 class _Blocks:

@@ -50,7 +50,8 @@ def mechanism(body, linked=False):
 def test_entries_left_out_are_zero(linked, monkeypatch):
     """The matrix in a general state with the zeros left out, and with all entries."""
     run = mechanism(normal_modes(), linked)
-    monkeypatch.setitem(INERTIA_OPTIONS, "material", INERTIA_OPTIONS["material"]._replace(modes_apart=False))
+    monkeypatch.setitem(INERTIA_OPTIONS, "material",
+                        INERTIA_OPTIONS["material"]._replace(modes_apart=False))
     whole = mechanism(normal_modes(), linked)
     assert len(run.system.J_entry) < 0.7 * len(whole.system.J_entry)
     assert len(run.system.rows) < 0.7 * len(whole.system.rows)

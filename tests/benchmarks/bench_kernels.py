@@ -51,8 +51,8 @@ def compare(layout, frame, times=5000):
     ValueError
         They compute different things.
     """
-    special = load(superelement_name(layout, frame, "b"))
-    general = load(superelement_name(general_layout(layout), frame, "b"))
+    special = load(superelement_name(layout, frame, "material"))
+    general = load(superelement_name(general_layout(layout), frame, "material"))
     case = superelement_case(special, 0)
     cases = case, case._replace(module=general)
     for one, same in zip(*(evaluate(c, TANGENT) for c in cases), strict=True):

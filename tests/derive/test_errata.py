@@ -98,7 +98,8 @@ def test_erratum_4_derived_velocity_tangent(state):
 
 
 @pytest.mark.parametrize("misprint, sizes", [
-    ("C2", {"frame_axes": 1.192, "material": 0.702}), ("V1", {"frame_axes": 4.358, "material": 1.308}),
+    ("C2", {"frame_axes": 1.192, "material": 0.702}), ("V1",
+                                                       {"frame_axes": 4.358, "material": 1.308}),
     ("C3", {"frame_axes": 0.452, "material": 0.0})])        # C3 of (62) is right as printed
 def test_erratum_4_printed_velocity_tangent(state, misprint, sizes):
     """Printed: P^T ending C2, V1 = +skew, and in (50) a last term P diag(skew(p_psi)) of C3."""

@@ -186,7 +186,8 @@ def test_wrong_acceleration_of_the_nodes(monkeypatch, fresh):
 
 
 @pytest.mark.parametrize("module, option, name", [
-    (option_b, "material", r"moment of option B \(57\)"), (option_a, "frame_axes", r"variation of Omega\* \(42\)")])
+    (option_b, "material", r"moment of option B \(57\)"), (option_a, "frame_axes",
+                                                           r"variation of Omega\* \(42\)")])
 def test_wrong_variation_of_angular_velocities(monkeypatch, fresh, module, option, name):
     """The sign of Omega x dTheta in (56) decides that of the moment."""
     right = kinematics.angular_velocity_variation

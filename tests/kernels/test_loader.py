@@ -68,6 +68,7 @@ def test_kernel_of_another_version_is_refused(mine, text):
     (mine / f"{NAME}.py").write_text(text)
     for act in (loader.find, loader.load):
         with pytest.raises(InputError, match=f"{NAME}.py was made by another version of sebody: "
-                           "make it again with\n    python -m sebody.derive planar-f9:mean:frame_axes"):
+                           "make it again with\n    python -m sebody.derive "
+                           "planar-f9:mean:frame_axes"):
             act(NAME)
     assert f"sebody_user_kernels.{NAME}" not in sys.modules

@@ -29,7 +29,7 @@ TABLE = [(0.0, 0.0), (1.0, 2.0)]
 
 
 def spatial() -> Model:
-    """Four full nodes, one without and one with nothing but a rotation; two bodies."""
+    """Four full nodes, one without and one with nothing but a rotation; bodies and two hinges."""
     model = Model()
     for name, point in POINTS.items():
         model.node(name, point)
@@ -37,6 +37,10 @@ def spatial() -> Model:
     model.node("turn", (4.0, 0.0, 0.0), "rotation")
     model.superelement("beam", BODY, ["a", "b"])
     model.rigid_body("ball", "d", 1.0, (1.0, 1.0, 1.0))
+    for name, joint, x in (("p", "pin", 5.0), ("q", "axle", 6.0)):
+        model.node(name, (x, 0.0, 0.0))
+        model.rigid_body(f"disc on {name}", name, 1.0, (1.0, 1.0, 1.0))
+        model.revolute(name, Z, name=joint)
     return model
 
 

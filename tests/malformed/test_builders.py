@@ -1,13 +1,13 @@
 """Builders of a model refuse wrong arguments in words, and change nothing then."""
 
 import pytest
-from malformed import model_cases
+from malformed import contact_cases, model_cases
 from malformed.cases import alike, listed
 
 from sebody import InputError, Model
 
 SPATIAL = (model_cases.BODIES | model_cases.JOINTS | model_cases.LOADS
-           | model_cases.CONTROL)
+           | model_cases.CONTROL | contact_cases.CASES)
 
 
 def described(model: Model) -> list:

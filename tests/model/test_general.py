@@ -109,7 +109,8 @@ def planar():
     (spatial, ["any_converged_mean", "any_converged_mean", "any_positions"]),
     (planar, ["planar_any_converged_mean"] * 2)])
 def test_any_layout_runs_and_keeps_its_energy(model, kernels):
-    assert [b.kernel for b in model().bodies.values()] == [f"superelement_{k}_floating_field" for k in kernels]
+    assert [b.kernel for b in model().bodies.values()] == [f"superelement_{k}_floating_field"
+                                                           for k in kernels]
     coarse, fine = balance(model)
     assert fine < 1e-4 and fine < coarse / 3.5      # of second order in the step
 

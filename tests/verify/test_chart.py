@@ -70,7 +70,7 @@ def test_reference_is_kept_and_knows_its_error(tmp_path, monkeypatch):
     first = reference("planar-hinged-beam", tmp_path)
     file, = tmp_path.iterdir()
     calls = []
-    monkeypatch.setattr(reference_module, "time_function", lambda *a: calls.append(a))
+    monkeypatch.setattr(reference_module, "history", lambda *a: calls.append(a))
     again = reference("planar-hinged-beam", tmp_path)
     assert not calls and np.array_equal(first.values, again.values)
     monkeypatch.undo()
@@ -83,7 +83,7 @@ def test_reference_is_kept_and_knows_its_error(tmp_path, monkeypatch):
 
 def test_a_reference_is_computed_where_none_can_be_kept(tmp_path, monkeypatch):
     """A damaged file counts as absent; without a folder that can be written a run goes on."""
-    monkeypatch.setattr(reference_module, "time_function", lambda *a: np.ones((4, 2)))
+    monkeypatch.setattr(reference_module, "history", lambda *a: np.ones((4, 2)))
     reference("planar-hinged-beam", tmp_path)
     file, = tmp_path.iterdir()
     for content in (b"", b"garbage", file.read_bytes()[:100]):

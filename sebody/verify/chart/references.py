@@ -41,9 +41,9 @@ def reference(scene: str, folder: Path | None = None) -> Reference:
         return kept(path)
     except InputError:      # none, or a damaged one
         pass
-    coarse = time_function(scene, ELEMENTS, FINER)
-    finer_beams = time_function(scene, 2 * ELEMENTS, FINER)
-    finer_steps = time_function(scene, ELEMENTS, 2 * FINER)
+    coarse = history(scene, ELEMENTS, FINER)
+    finer_beams = history(scene, 2 * ELEMENTS, FINER)
+    finer_steps = history(scene, ELEMENTS, 2 * FINER)
     correction = (finer_beams - coarse) / 3 + (finer_steps - coarse) * 4 / 3
     values = finer_beams + correction
     found = Reference(values, float(np.linalg.norm(correction) / np.linalg.norm(values)))
@@ -70,7 +70,7 @@ def kept(path: Path) -> Reference:
     return Reference(found["values"], float(found["error"]))
 
 
-def time_function(scene: str, elements: int, finer: int) -> NDArray:
+def history(scene: str, elements: int, finer: int) -> NDArray:
     """The compared quantity of nonlinear beams, on the grid of the chart.
 
     Their limit does not depend on the inertia option; B is the fastest.

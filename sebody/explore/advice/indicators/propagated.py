@@ -10,6 +10,7 @@ from sebody.explore.advice.indicators.coordinates import nodal
 from sebody.explore.advice.indicators.recorded import Recorded
 from sebody.model.parts import Node
 from sebody.reduction import ReducedBody
+from sebody.vectors import cross
 
 FORCES = ("force", "moment", "reaction", "torque", "thrust", "multipliers", "forces")
 TURNING = ("moment", "torque")
@@ -56,7 +57,7 @@ def propagated(recorded: Recorded, part: Part, shifts: NDArray, turns: NDArray,
     found = 0.0
     for k in {0, len(nodes) - 1}:
         arms = points - points[k]
-        moved = shifts - shifts[:, k, None] - _cross(turns[:, k, None], arms[None])
+        moved = shifts - shifts[:, k, None] - cross(turns[:, k, None], arms[None])
         turned = turns - turns[:, k, None]
         for one in zip(recorded.quantities, recorded.owners, recorded.sizes, strict=True):
             found = max(found, _error(recorded, part, moved, turned, force, *one))
@@ -83,13 +84,6 @@ def _error(recorded: Recorded, part: Part, shifts: NDArray, turns: NDArray, forc
             force = Force(inertia, inertia * (extent + lever))
         return (force.moment if kind.endswith(TURNING) else force.force) / size
     return _largest(moved) / (size if kind in ("position", "rotation") else recorded.travel)
-
-
-def _cross(turns: NDArray, arms: NDArray) -> NDArray:
-    """Displacements of the ends of arms, (..., d), that turn by (..., 3 or 1)."""
-    if turns.shape[-1] == 1:
-        return turns * np.stack([-arms[..., 1], arms[..., 0]], axis=-1)
-    return np.cross(turns, arms)
 
 
 def _largest(moved: NDArray) -> float:
