@@ -12,7 +12,8 @@ ROOT = Path(__file__).parents[1]
 FOLDERS = {"sebody": "sebody", "derive": "sebody.derive", "generated": "sebody.generated",
            "examples": "sebody.scenes"}
 # every room, lowest first, and which others its files may import; those in OPEN are open to all
-OPEN = {"errors", "inputs", "memory", "files", "units", "lazy", "spelling", "tabular", "version"}
+OPEN = {"errors", "inputs", "memory", "files", "units", "lazy", "spelling", "tabular", "version",
+        "vectors"}
 COMPILED = {"contract", "compiler", "kernels", "generated"}
 ROOMS = {
     "errors": set(),
@@ -24,6 +25,7 @@ ROOMS = {
     "spelling": set(),
     "tabular": set(),
     "version": set(),
+    "vectors": set(),
     "contract": set(),
     "compiler": {"contract"},
     "kernels": {"contract", "compiler"},
@@ -58,6 +60,7 @@ ROOMS = {
 DOORS = {"sebody.results": "door of results"}
 RUNTIME = {"numpy", "scipy", "numba"}
 PACKAGES = {"errors": set(), "inputs": {"numpy"}, "tabular": {"numpy"}, "memory": set(),
+            "vectors": {"numpy"},
             "units": set(), "files": {"numpy"}, "lazy": set(), "spelling": set(), "version": set(),
             "contract": {"numpy"}, "compiler": RUNTIME | {"llvmlite"},
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},

@@ -172,7 +172,7 @@ def contact(model: Mechanism, node: Node | str, on: Surface, radius: float = 0.0
                          "roll: make it with keeps='full', or give a point, radius=0")
     dof_block(b, "rotation")
     constants = _impact(what, restitution, at_speed, stiffness, exponent)
-    dry = checked_friction(what, friction, static, bristle, damping, speed)
+    dry = checked_friction(what, friction, static, bristle, damping, speed, "friction")
     name = chosen_name(model, name, what.replace("'", ""))
     kind = f"{'sphere' if r > 0 else 'point'}_on_{on.kind}"
     made = Element(name, model.kind_of(kind), attachments,

@@ -109,9 +109,9 @@ def friction(model: Mechanism, joint: Joint | str, coefficient: float, static: f
 
 
 def checked_friction(what: str, coefficient: float, static: float | None, bristle: float | None,
-                     damping: float, speed: float) -> Dry:
-    """Check what all dry friction has."""
-    mu = inputs.number(coefficient, f"{what}: coefficient", least=0)
+                     damping: float, speed: float, called: str = "coefficient") -> Dry:
+    """Check what all dry friction has; `called` is the argument with the coefficient."""
+    mu = inputs.number(coefficient, f"{what}: {called}", least=0)
     break_away = mu if static is None else inputs.number(static, f"{what}: static", least=0)
     if break_away < mu:
         raise InputError(f"{what}: static is {break_away:g}, below the coefficient of sliding "

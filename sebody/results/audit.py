@@ -173,10 +173,3 @@ def _integral(t: NDArray, rates: NDArray) -> NDArray:
     found = np.zeros_like(rates)
     np.cumsum(np.diff(t)[:, None] * (rates[1:] + rates[:-1]) / 2, axis=0, out=found[1:])
     return found
-
-
-def moment_of(r: NDArray, force: NDArray) -> NDArray:
-    """``r x f``, (n, 3), in a plane (n, 1)."""
-    if r.shape[-1] == 3:
-        return np.cross(r, force)
-    return (r[:, 0] * force[:, 1] - r[:, 1] * force[:, 0])[:, None]

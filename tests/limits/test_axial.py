@@ -128,7 +128,7 @@ def test_rods_that_fold_up_are_refused(inertia, units):
     refused, _ = found[inertia]
     assert "of the load is not that of the structure: the frame is" in refused
     assert "rad off the line of the nodes: body 'rod' folds up" in refused
-    result, messages = found["c"]
+    result, messages = found["floating_field"]
     stretch = (result[f"{end}.position"][-1] - PLACE * units[0]) @ E / units[0] - 1.0
     assert not messages
     # the moment tilts the ends by some 0.17 / sqrt(20), which takes half its square of the length
@@ -174,7 +174,8 @@ def test_compression_is_warned_of(inertia):
 def test_the_threshold(sign):
     """Nothing is said below a third of 3 E I / L^2, nor of bodies that stiffen."""
     counts = [len(said(lambda f=f, o=o: equilibrium(pulled(3.0 * sign * f, inertia=o)[0], 2))[1])
-              for f, o in ((0.98 * AXIAL, "b"), (1.02 * AXIAL, "b"), (5.0 * AXIAL, "c"))]
+              for f, o in ((0.98 * AXIAL, "material"), (1.02 * AXIAL, "material"),
+                           (5.0 * AXIAL, "floating_field"))]
     assert counts == [0, 1, 0]
 
 

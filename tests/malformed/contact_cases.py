@@ -21,7 +21,8 @@ def impact(what):
                             *have("give a number from 0.01 to 1", 0.0, 1.5)],
             "at_speed": positive(f"{what}: at_speed"),
             "stiffness": unless_none(positive(f"{what}: stiffness")),
-            "exponent": are(f"{what}: exponent", *NO_NUMBER, 0.5, also=": give a finite number >= 1")}
+            "exponent": are(f"{what}: exponent", *NO_NUMBER, 0.5,
+                            also=": give a finite number >= 1")}
 
 
 CASES = {
@@ -52,7 +53,8 @@ CASES = {
             "backlash": not_negative(f"{GEAR}: backlash"),
             **impact(GEAR)}),
     "contact": Right(Model.contact, {
-        "node": "d", "on": plane((0.0, 1.0, 0.0), (0.0, -9.0, 0.0)), "radius": 0.1, "stiffness": 1e4}, {
+        "node": "d", "on": plane((0.0, 1.0, 0.0), (0.0, -9.0, 0.0)), "radius": 0.1,
+        "stiffness": 1e4}, {
             "node": have("node", "far", None, 3),
             "on": are(f"{CONTACT}: on", None, "plane", 3.0, also=": give a sebody.plane"),
             "radius": not_negative(f"{CONTACT}: radius"),
