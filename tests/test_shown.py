@@ -219,5 +219,5 @@ def test_help_is_readable(room):
 def test_help_of_a_model_shows_arguments_by_name():
     shown = pydoc.plain(pydoc.render_doc(Model))
     assert "force(model: 'Mechanism', node: 'Node | str', direction: 'ArrayLike', amp" in shown
-    assert len(shown) < 32_000
+    assert len(shown) < 40_000      # annotations written out would take twice as much
     assert inspect.signature(Model.force).parameters["direction"].annotation == "ArrayLike"

@@ -81,7 +81,8 @@ def state(request):
 
     The force is quadratic in the velocities, so that central differences are exact.
     """
-    case = superelements.superelement_case(load(KERNEL.removesuffix("material") + request.param), 11)
+    kernel = load(KERNEL.removesuffix("material") + request.param)
+    case = superelements.superelement_case(kernel, 11)
     differences = [(states.evaluate(case._replace(v=case.v + d), 0)[0]
                     - states.evaluate(case._replace(v=case.v - d), 0)[0]) / 2
                    for d in np.eye(case.n)]

@@ -153,8 +153,8 @@ class Growth(NamedTuple):
         return Doubt(min(REAL * self.factor, 1.0) if growing else 0.0,
                      f"the motion is unstable: a small disturbance of all velocities and loads "
                      f"grows to {self.factor:.2g} times its size",
-                     "give the model the imperfection that it has, such as a small lateral force, or "
-                     "an earlier end")
+                     "give the model the imperfection that it has, such as a small lateral "
+                      "force, or an earlier end")
 
     @property
     def remark(self) -> list[str]:

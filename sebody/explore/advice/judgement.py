@@ -44,13 +44,13 @@ def judge(reference: Reference, tolerance: float, grid: float, bases: Mapping[fl
               if passing < LARGEST else "no tolerance below 1 would pass")
     if first:
         raise InputError(
-            f"{told}: the model is loaded suddenly at the start, which its fastest vibrations "
-            "answer; start from the equilibrium (start='equilibrium'), let loads grow from zero, "
+            f"{told}: the model is loaded suddenly at the start, which excites its "
+            "fastest vibrations; start from the equilibrium (start='equilibrium'), let loads grow from zero, "
             f"or measure {worst.quantity} by rms or below a frequency; {enough}")
     if not reference.falls:
         raise SimulationError(
             f"{told}, and shorter steps do not change that: the motion depends on the step, as "
-            "chaotic motions, impacts, and vibrations do that no damping takes away; give an "
+            "chaotic motions, impacts, and undamped vibrations do; give an "
             f"earlier end, damping, or measure {worst.quantity} by rms, peak or below a "
             f"frequency; {enough}", bases[fine].result)
     raise InputError(f"{told}: shorter steps that are tried, down to {grid / SHORTER[-1]:.3g}, are "
