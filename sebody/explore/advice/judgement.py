@@ -45,8 +45,8 @@ def judge(reference: Reference, tolerance: float, grid: float, bases: Mapping[fl
     if first:
         raise InputError(
             f"{told}: the model is loaded suddenly at the start, which excites its "
-            "fastest vibrations; start from the equilibrium (start='equilibrium'), let loads grow from zero, "
-            f"or measure {worst.quantity} by rms or below a frequency; {enough}")
+            "fastest vibrations; start from the equilibrium (start='equilibrium'), let loads grow "
+            f"from zero, or measure {worst.quantity} by rms or below a frequency; {enough}")
     if not reference.falls:
         raise SimulationError(
             f"{told}, and shorter steps do not change that: the motion depends on the step, as "
