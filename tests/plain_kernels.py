@@ -219,7 +219,7 @@ def at(array, first):
     return array[first:]
 
 
-def hidden(number):
+def opaque(number):
     return number
 
 

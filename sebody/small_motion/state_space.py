@@ -146,7 +146,7 @@ class StateSpace(NamedTuple):
         try:
             import control
         except ImportError as error:
-            raise InputError("python-control is not installed: pip install 'sebody[control]'"
+            raise InputError('python-control is not installed: pip install "sebody[control]"'
                              ) from error
         names = {kind: [name.replace(".", "_") for name in getattr(self, kind)]
                  for kind in ("states", "inputs", "outputs")}

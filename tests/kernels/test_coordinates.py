@@ -5,7 +5,7 @@ import pytest
 
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import padded_columns, whole_vectors
-from sebody.kernels.abi import hidden, pointer_to
+from sebody.kernels.abi import opaque, pointer_to
 from sebody.kernels.coordinates import all_to_free, follow, follow_changes
 
 
@@ -70,7 +70,7 @@ def test_slaved_coordinates_follow(free, slaved):
 
 @compiled
 def unchanged(number):
-    return hidden(number)
+    return opaque(number)
 
 
 def test_a_hidden_number_is_the_same():
