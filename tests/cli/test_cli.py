@@ -161,8 +161,8 @@ def test_list_shows_every_scene_and_kernel(capsys):
     out = capsys.readouterr().out
     assert re.search(r"^  hinged-beam +The paper's hinged beam", out, re.M)
     assert not re.search(r"^  scene ", out, re.M)
-    assert re.search(r"^  f2 +converged_mean +b$", out, re.M)
-    assert re.search(r"^  planar-f2 +converged_mean +b$", out, re.M)
+    assert re.search(r"^  f2 +converged_mean +material$", out, re.M)
+    assert re.search(r"^  planar-f2 +converged_mean +material$", out, re.M)
     assert "rigid_body" in out.partition("joints and loads")[2]
 
 

@@ -156,7 +156,7 @@ def test_without_any_folder_it_runs_and_says_so_once(program, tmp_path):
     beside = not_writable(program.parent / "__pycache__")
     out, errors = run(program, home=not_writable(tmp_path / "home"))
     assert out == "7 0"
-    assert errors.count("compiled code cannot be kept") == 1
+    assert errors.count("compiled code cannot be stored") == 1
     assert f"again: {beside} and {tmp_path / 'home'}" in errors
     assert "cannot be written; set NUMBA_CACHE_DIR to a folder that can be written" in errors
 
@@ -192,7 +192,7 @@ def test_damage_is_said_once_with_the_name_of_the_file(tmp_path, monkeypatch, da
     assert store.write(source, "name", "hash", b"content of a file")
     path, = tmp_path.rglob("name")
     path.write_bytes(damage(path.read_bytes()))
-    with pytest.warns(RuntimeWarning, match=f"{path} is damaged and not used: it is written anew"):
+    with pytest.warns(RuntimeWarning, match=f"{path} is damaged and not used: it is rewritten"):
         assert not list(store.read(source, "name", "hash"))
     with warnings.catch_warnings(action="error"):
         assert not list(store.read(source, "name", "hash"))

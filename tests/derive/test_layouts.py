@@ -91,7 +91,7 @@ def test_variant_of_the_command_line(text, variant):
 
 @pytest.mark.parametrize("text, message", [
     ("f2:mine", "frame 'mine' is unknown: use one of converged_mean, mean, mean_small, positions"),
-    ("f2:mean:z", "inertia option 'z' is unknown: use one of a, b"),
+    ("f2:mean:z", "inertia option 'z' is unknown: use one of frame_axes"),
     ("r2:mean", "keeps no position"),
     ("distanse", "there is no kernel 'distanse' in the catalogue: is it distance or distance_stop "
                  "or planar_dist"),

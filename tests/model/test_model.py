@@ -65,7 +65,7 @@ def place(nodes=("base", "tip"), body=None, **options):
                              "nodes are .off by .*: pass rotation=, the matrix that turns FE"),
     (place(["base", "base"]), "the nodes do not lie where the body's boundary nodes are"),
     (place(frame="mine"), "frame 'mine' is unknown: use one of converged_mean, mean, mean_axes"),
-    (place(inertia="z"), "inertia 'z' is unknown: use one of a, b"),
+    (place(inertia="z"), "inertia 'z' is unknown: use one of 'frame_axes'"),
     (place(frame="positions"), "lie on a line, so the frame 'positions' cannot determine "
                                "rotations about it: use 'converged_mean'"),
     (place(frame="node", frame_node=2), "'b': boundary node 2 cannot carry the frame.*: choose a "
@@ -122,7 +122,7 @@ def test_missing_kernel_says_the_command_that_makes_it(monkeypatch, tmp_path):
     model.node("middle", (30.0, 0, 0), "rotation")
     with pytest.raises(InputError, match=r"there is no kernel for layout 'f2r1', frame 'mean', "
                                          r"inertia 'frame_axes': make it with\s+"
-                                         r"python -m sebody.derive f2r1:mean:a$"):
+                                         r"python -m sebody.derive f2r1:mean:frame_axes$"):
         model.superelement("b", beam(middle="rotation"), ["base", "tip", "middle"], frame="mean",
                            inertia="frame_axes")
 

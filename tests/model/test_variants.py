@@ -138,7 +138,7 @@ def test_a_copy_runs_like_its_model_and_shares_nothing_that_changes(original, be
 
 @pytest.mark.parametrize(("name", "change", "sentence", "by_hand"), [
     ("options", {"inertia": "material"},
-     "first has inertia 'material' instead of 'c' and does not stiffen with "
+     "first has inertia 'material' instead of 'floating_field' and does not stiffen with "
      "its stresses", lambda: linkage(options={"inertia": "material"})),
     ("options", {"stiffening": False}, "first does not stiffen with its stresses",
      lambda: linkage(options={"stiffening": False})),

@@ -65,7 +65,7 @@ def test_what_an_fe_model_gives_is_checked():
     ends = {0: "full", 4: "full"}
     other = straight_beam(START, END, replace(THICK, density=1.0), 4, up=UP)
     for fault, text in (
-            ({"mass_field": other.mass_field}, "mass_field makes another mass than the FE mass"),
+            ({"mass_field": other.mass_field}, "mass_field contradicts the FE mass"),
             ({"geometric_stiffness": lambda u: model.stiffness[:6, :6]}, "has shape .6, 6.; the m"),
             ({"geometric_stiffness": lambda u: model.stiffness * u[:, None]}, "not symmetric; gi"),
             ({"geometric_stiffness": 5}, "geometric_stiffness is 5: give a function of a displace"),

@@ -302,7 +302,7 @@ def test_axes_out_of_the_plane_are_refused(build):
     """In a planar model; what points to -z only where the sign of a motion would change."""
     for axis in ((1, 0, 0), (0.0, 0.1, 1.0), (0, 0, 0), (1, 0), "x", None, (0, 0, np.nan)):
         with pytest.raises(InputError, match="axis of the .* at 'arm end' is .*: the model is "
-                                             "planar, in which everything turns about "):
+                                             "planar, where all rotations are about "):
             build(hung(), axis=axis)
     build(hung(), axis=(0, 0, 2.0))
     signed = "revolute" not in build.__code__.co_names

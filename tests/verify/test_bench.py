@@ -26,7 +26,7 @@ def test_json_has_cost_and_error_of_the_same_run(alone, capsys):
     assert main(["bench", "planar-hinged-beam", "--json"]) == 0
     answer = json.loads(capsys.readouterr().out)
     row, of_b = answer["measurements"]
-    assert (row["variant"], of_b["variant"]) == ("superelement", "superelement, inertia b")
+    assert (row["variant"], of_b["variant"]) == ("superelement", "superelement, inertia material")
     assert row["scene"] == "planar-hinged-beam" and row["unknowns"] == 6 and row["h"] == 0.01
     assert {"variant", "us_per_step", "iterations_per_step", "tip_error"} <= row.keys()
     assert row["tip_error"] < 3e-4 and 8e-4 < of_b["tip_error"] < 9.5e-4
@@ -47,7 +47,7 @@ def test_modes_are_the_hinged_beam_by_their_number(monkeypatch, alone, capsys):
     monkeypatch.setattr(own, "MODES", (4, 16))
     assert main(["bench", "modes", "--json"]) == 0
     few, of_b, many, _ = json.loads(capsys.readouterr().out)["measurements"]
-    assert of_b["variant"] == "12 + 4 coordinates, inertia b" and of_b["tip_error"] > 8e-4
+    assert of_b["variant"] == "12 + 4 coordinates, inertia material" and of_b["tip_error"] > 8e-4
     assert (few["variant"], many["variant"]) == ("12 + 4 coordinates", "12 + 16 coordinates")
     assert many["unknowns"] - few["unknowns"] == 12
     assert max(few["tip_error"], many["tip_error"]) < 4e-4
@@ -117,7 +117,7 @@ def test_many_short_runs_are_measured_by_all_threads_and_alone(monkeypatch):
     monkeypatch.setattr(ensemble, "ALONE", 2)
     together, paper, alone = ensemble.measure(10)
     assert {m.scene for m in (together, paper, alone)} == {"ensemble"}
-    assert paper.variant == f"{together.variant}, inertia b"
+    assert paper.variant == f"{together.variant}, inertia material"
     assert together.thread_efficiency > 0 and alone.thread_efficiency is None
     assert "thread_efficiency" in together.as_dict()
     # runs of 300 steps: the time a step belongs to the time of all runs

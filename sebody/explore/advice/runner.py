@@ -186,7 +186,7 @@ class Laboratory:
         """The load or drive of which steps miss most."""
         if self._ports is None:
             found = build(self.model)[1]
-            self._ports = found.port_names, found.histories
+            self._ports = found.port_names, found.time_functions
         return missed(*self._ports, h, self.runs.t_end)
 
     def _lengthen(self) -> None:
