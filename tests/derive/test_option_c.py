@@ -48,6 +48,7 @@ def test_a_wrong_formula_is_refused(name, wrong, message, monkeypatch):
 
 @pytest.mark.parametrize("frame", ["mean", "mean_small"])
 def test_frames_without_exact_rates_are_refused(frame):
-    with pytest.raises(LayoutError, match=f"option 'floating_field' needs the exact rates .* '{frame}' does "
+    with pytest.raises(LayoutError, match="option 'floating_field' needs the exact rates .* "
+                                          f"'{frame}' does "
                                           "not: use 'converged_mean' or 'positions'"):
         compile_kernel(Variant("f2", frame, "floating_field"))

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 CHAINS = (1, 4, 16, 64, 256, 1024)
 LOOPS = (2, 20)
 MODES = (4, 16, 32, 64)
-OPTION_B = ", inertia material"    # of a variant with the paper's option, beside one with the default
+OPTION_B = ", inertia material"    # with the paper's option, beside the default
 
 
 class Case(NamedTuple):
