@@ -5,8 +5,16 @@ import subprocess
 import sys
 
 import numpy as np
+import pytest
+from numba.core import config
 
 from sebody.compiler.decorators import compiled
+
+
+@pytest.fixture(autouse=True)
+def nothing_compiled(tmp_path, monkeypatch):
+    """Callers that were compiled in an earlier run of the tests would be read, not compiled."""
+    monkeypatch.setattr(config, "CACHE_DIR", str(tmp_path))
 
 
 @compiled
