@@ -16,7 +16,7 @@ MODEL_AND_RUN = {"sebody.files", "sebody.inputs", "sebody.contract", "sebody.com
                  "sebody.model",
                  "sebody.assembly", "sebody.results", "sebody.limits", "sebody.runs",
                  "sebody.spelling",
-                 "sebody.tabular", "sebody.memory", "sebody.units"}
+                 "sebody.tabular", "sebody.memory", "sebody.units", "sebody.vectors"}
 # parts of rooms that neither a model nor a run needs
 UNUSED = {"sebody.explore.advice", "sebody.explore.ensembles", "sebody.small_motion.frequency",
           "sebody.small_motion.campbell", "sebody.runs.statics", "sebody.pictures.animation",

@@ -172,7 +172,7 @@ def test_linear_theory_that_limits_is_said_with_the_best_so_far():
     model.superelement("arm", body.damped(0.2), ["root", "tip"])
     model.fix("root")
     model.force("tip", (0.0, -60.0), [(0, 0), (0.4, 1.0)])
-    with pytest.raises(Unreached, match="limited by linear theory: arm turns by 0.* divide"
+    with pytest.raises(Unreached, match="limited by linear theory: arm rotates by 0.* divide"
                        ) as caught:
         advise(model, H, T_END, "tip.position", 1e-3)
     assert caught.value.advice.error <= 1e-3       # against the reference model, which is not good

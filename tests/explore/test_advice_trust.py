@@ -141,7 +141,7 @@ def test_a_reference_that_may_be_off_by_more_than_half_the_tolerance_confirms_no
     assert not advice.confirmed
     assert advice.doubt >= true_error(advice, exact(24), H / 8) - advice.error
     assert advice.summary().splitlines()[-1].startswith("not confirmed: within ")
-    assert "linear theory: soft turns by 0.2" in advice.summary()
+    assert "linear theory: soft rotates by 0.2" in advice.summary()
 
 
 def test_a_damped_beam_is_damped_alike_in_the_reference():

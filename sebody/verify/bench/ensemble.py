@@ -28,7 +28,7 @@ def measure(runs: int = RUNS) -> list[Measurement]:
     processors together. `thread_efficiency` is the time of one thread over that of all threads
     times their number; none for single runs and for Exudyn.
     """
-    found = [_together(inertia, runs) for inertia in (None, "b")] + [_one_by_one(runs)]
+    found = [_together(inertia, runs) for inertia in (None, "material")] + [_one_by_one(runs)]
     return found + ([_peer(runs)] if peer.available() else [])
 
 
