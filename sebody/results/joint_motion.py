@@ -27,7 +27,7 @@ def angle(recording: Recording, name: str) -> NDArray:
 def rate(recording: Recording, name: str) -> NDArray:
     """Rate of this angle, (n,)."""
     joint = _of_kind(recording, name, TURNS, "rate", "turn")
-    a, b = (_part(recording, "v", node.rotation) for node in (joint.node, joint.to))
+    a, b = (_part(recording, "v", dof_block(node, "rotation")) for node in (joint.node, joint.to))
     if recording.model.planar:
         return a[:, 0] - b[:, 0]
     axis = joint.axis
@@ -61,10 +61,9 @@ def _ends(joint: Joint) -> tuple[Node, Node, float]:
 def _way(recording: Recording, joint: Joint) -> tuple[NDArray, NDArray, NDArray, NDArray]:
     """Axis, vector between the nodes, and the rates of both."""
     other, carrier, _ = _ends(joint)
-    gap, gap_rate = (_part(recording, part, other.position) - _part(recording, part,
-                                                                    carrier.position)
-                     for part in "qv")
-    own, spin = joint.axis, _part(recording, "v", carrier.rotation)
+    there, here = dof_block(other, "position"), dof_block(carrier, "position")
+    gap, gap_rate = (_part(recording, part, there) - _part(recording, part, here) for part in "qv")
+    own, spin = joint.axis, _part(recording, "v", dof_block(carrier, "rotation"))
     R = _rotation(recording, carrier)
     if recording.model.planar:
         c, s = np.cos(R), np.sin(R)
@@ -76,12 +75,12 @@ def _way(recording: Recording, joint: Joint) -> tuple[NDArray, NDArray, NDArray,
     return axis, gap, gap_rate, turned
 
 
-def _part(recording: Recording, part: str, dof_block: DofBlock) -> NDArray:
+def _part(recording: Recording, part: str, block: DofBlock) -> NDArray:
     """Coordinates of a DOF block or their rates, (n, size); of the ground as they stay."""
-    if dof_block not in recording.numbering.dof_blocks:
-        return np.tile(dof_block.start if part == "q" else 0.0 * dof_block.start,
+    if block not in recording.numbering.dof_blocks:
+        return np.tile(block.start if part == "q" else 0.0 * block.start,
                        (len(recording.rows), 1))
-    return recording.recorded(part)[:, stretch(recording.numbering, dof_block)]
+    return recording.recorded(part)[:, stretch(recording.numbering, block)]
 
 
 def _rotation(recording: Recording, node: Node) -> NDArray:
