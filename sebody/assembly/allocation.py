@@ -80,13 +80,11 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
 def _start(model: Mechanism, numbering: Numbering) -> tuple[NDArray, NDArray]:
     """Initial values and velocities of all coordinates."""
     q, v = np.zeros((2, numbering.total))
-    for node in (*model.nodes.values(), *model.grounds):
-        for dof_block in (node.position, node.rotation):
-            if dof_block is not None and dof_block in numbering.dof_blocks:
-                at = stretch(numbering, dof_block)
-                # of a rotation in space R has it, and q the increment in a step
-                q[at] = 0.0 if dof_block in numbering.rotations else dof_block.start
-                v[at] = dof_block.rate if dof_block.solved else 0.0
+    for dof_block in numbering.dof_blocks:
+        at = stretch(numbering, dof_block)
+        # of a rotation in space R has it, and q the increment in a step
+        q[at] = 0.0 if dof_block in numbering.rotations else dof_block.start
+        v[at] = dof_block.rate if dof_block.solved else 0.0
     for body in model.bodies.values():
         first = numbering.modes[body.name]
         v[first:first + body.body.modes] = body.mode_rates

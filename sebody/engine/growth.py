@@ -21,6 +21,7 @@ import numpy as np
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import ENERGY, KINETIC, POTENTIAL, STRAIN
 from sebody.engine.evaluate import run_kernels
+from sebody.engine.scalars import record
 from sebody.engine.step_control import AIM
 from sebody.kernels.abi import pointer_to
 
@@ -38,64 +39,64 @@ PATIENCE = 64.0         # steps before longer ones are tried; doubled by every r
 LONGEST_PATIENCE = 4096.0
 ENOUGH = 64.0           # shortest steps with a rise, after which the run goes on without a guard
 
-# State.guard: indices
-(OFF,                   # 1 without bodies that deform, and where shorter steps are of no use
- WAIT,                  # steps to the next look
- STRIDE,                # steps between looks
- BALANCE,               # at the last look
- LOWEST,                # lowest so far, plus what works allow
- MOST_STRAIN,           # largest strain energy so far
- MOST_KINETIC,          # largest kinetic energy so far
- HALVED,                # how often steps are halved at present
- CALM,                  # steps since then without a rise
- PATIENT,               # steps before longer ones are tried
- REJECTIONS,            # steps that were rejected
- FIRST,                 # time of the first of them
- LAST,                  # and of the last
- MOST_HALVED,           # largest number of halvings so far
- SUPPLIED,              # work of all ports since the last look, each counted as positive
- IN_VAIN,               # shortest steps in which it rose all the same
- ) = range(16)
-GUARDS = IN_VAIN + 1
+# fields of State.guard
+GUARD = np.dtype([(name, np.float64) for name in (
+    "off",                   # 1 without bodies that deform, and where shorter steps are of no use
+    "wait",                  # steps to the next look
+    "stride",                # steps between looks
+    "balance",               # at the last look
+    "lowest",                # lowest so far, plus what works allow
+    "most_strain",           # largest strain energy so far
+    "most_kinetic",          # largest kinetic energy so far
+    "halved",                # how often steps are halved at present
+    "calm",                  # steps since then without a rise
+    "patient",               # steps before longer ones are tried
+    "rejections",            # steps that were rejected
+    "first",                 # time of the first of them
+    "last",                  # and of the last
+    "most_halved",           # largest number of halvings so far
+    "supplied",              # work of all ports since the last look, each counted as positive
+    "in_vain",               # shortest steps in which it rose all the same
+)])
 
 
 @compiled
 def grows(system, state):
     """Whether a converged step is to be rejected, because energy grows in it."""
     guard = state.guard
-    if guard[OFF] == 1.0:
+    if guard.off == 1.0:
         return False
     for k in range(state.works.size):
-        guard[SUPPLIED] += abs(state.works[k] - state.works_old[k])
-    guard[WAIT] -= 1.0
-    cut = state.control.level > guard[HALVED]      # Newton's iteration has not converged
-    return (cut or guard[WAIT] <= 0.0) and _judge(system, state)
+        guard.supplied += abs(state.works[k] - state.works_old[k])
+    guard.wait -= 1.0
+    cut = state.control.level > guard.halved      # Newton's iteration has not converged
+    return (cut or guard.wait <= 0.0) and _judge(system, state)
 
 
 @compiled
 def _judge(system, state):
     """Look at the energies; whether the step is to be rejected."""
     guard = state.guard
-    before = guard[MOST_STRAIN] + guard[MOST_KINETIC]
+    before = guard.most_strain + guard.most_kinetic
     balance = _take_balance(system, state)
-    more = guard[MOST_STRAIN] + guard[MOST_KINETIC] - before
-    driven = more > DRIVEN * before and guard[SUPPLIED] > DRIVEN * more
-    guard[LOWEST] = balance if driven or before == 0.0 else guard[LOWEST] + WORKED * guard[SUPPLIED]
-    guard[SUPPLIED] = 0.0
-    rise = balance - guard[LOWEST]
+    more = guard.most_strain + guard.most_kinetic - before
+    driven = more > DRIVEN * before and guard.supplied > DRIVEN * more
+    guard.lowest = balance if driven or before == 0.0 else guard.lowest + WORKED * guard.supplied
+    guard.supplied = 0.0
+    rise = balance - guard.lowest
     turned = _turned(system, state)
-    allowed = SHARE * guard[MOST_STRAIN] + (KEPT + TURNED * turned) * guard[MOST_KINETIC]
+    allowed = SHARE * guard.most_strain + (KEPT + TURNED * turned) * guard.most_kinetic
     allowed += ROUNDED * state.clock.floor * state.clock.floor
     if rise > allowed:
         return _reject(state, balance)
-    guard[CALM] += guard[STRIDE]
-    if guard[HALVED] > 0.0 and guard[CALM] > guard[PATIENT]:
-        guard[HALVED] -= 1.0
-        guard[CALM] = 0.0
-    guard[BALANCE], guard[LOWEST] = balance, min(guard[LOWEST], balance)
-    near = rise > ATTENTIVE * allowed or guard[HALVED] > 0.0
-    guard[STRIDE] = 1.0 if near else min(2.0 * max(guard[STRIDE], 1.0), RAREST)
-    guard[WAIT] = guard[STRIDE]
+    guard.calm += guard.stride
+    if guard.halved > 0.0 and guard.calm > guard.patient:
+        guard.halved -= 1.0
+        guard.calm = 0.0
+    guard.balance, guard.lowest = balance, min(guard.lowest, balance)
+    near = rise > ATTENTIVE * allowed or guard.halved > 0.0
+    guard.stride = 1.0 if near else min(2.0 * max(guard.stride, 1.0), RAREST)
+    guard.wait = guard.stride
     return False
 
 
@@ -105,8 +106,8 @@ def _take_balance(system, state):
     guard, energy = state.guard, state.energy
     energy[KINETIC] = energy[STRAIN] = energy[POTENTIAL] = 0.0
     run_kernels(ENERGY, 0, system.address.size, system, state)
-    guard[MOST_STRAIN] = max(guard[MOST_STRAIN], energy[STRAIN])
-    guard[MOST_KINETIC] = max(guard[MOST_KINETIC], energy[KINETIC])
+    guard.most_strain = max(guard.most_strain, energy[STRAIN])
+    guard.most_kinetic = max(guard.most_kinetic, energy[KINETIC])
     balance = energy[KINETIC] + energy[STRAIN] + energy[POTENTIAL]
     for k in range(state.works.size):
         balance -= state.works[k]
@@ -132,31 +133,31 @@ def _turned(system, state):
 def _reject(state, balance):
     """Ask for a shorter step; give up where the shortest ones do not help either."""
     guard, control = state.guard, state.control
-    halved = max(guard[HALVED], float(control.level)) + 1.0
+    halved = max(guard.halved, float(control.level)) + 1.0
     # what has risen in steps that nobody looked at, or in spite of the shortest ones, stays
-    last = guard[BALANCE]
-    guard[LOWEST] = guard[BALANCE] = last if guard[STRIDE] == 1.0 else balance
-    guard[STRIDE] = guard[WAIT] = 1.0
+    last = guard.balance
+    guard.lowest = guard.balance = last if guard.stride == 1.0 else balance
+    guard.stride = guard.wait = 1.0
     if halved > DEEPEST:
-        guard[LOWEST] = guard[BALANCE] = balance
-        guard[IN_VAIN] += 1.0
-        if guard[IN_VAIN] > ENOUGH:
-            guard[OFF], guard[HALVED] = 1.0, 0.0
+        guard.lowest = guard.balance = balance
+        guard.in_vain += 1.0
+        if guard.in_vain > ENOUGH:
+            guard.off, guard.halved = 1.0, 0.0
         return False
-    if guard[REJECTIONS] == 0.0:
-        guard[FIRST] = state.clock.end
-    guard[LAST] = state.clock.end
-    guard[REJECTIONS] += 1.0
-    guard[PATIENT] = min(2.0 * guard[PATIENT], LONGEST_PATIENCE)
-    guard[HALVED], guard[CALM] = halved, 0.0
-    guard[MOST_HALVED] = max(guard[MOST_HALVED], halved)
+    if guard.rejections == 0.0:
+        guard.first = state.clock.end
+    guard.last = state.clock.end
+    guard.rejections += 1.0
+    guard.patient = min(2.0 * guard.patient, LONGEST_PATIENCE)
+    guard.halved, guard.calm = halved, 0.0
+    guard.most_halved = max(guard.most_halved, halved)
     if control.adaptive == 1:
         state.clock.largest_error = AIM        # as after an error: longer ones not soon
     return True
 
 
-def new_guard(bodies: int) -> np.ndarray:
+def new_guard(bodies: int) -> np.record:
     """The guard of a run that has not begun."""
-    guard = np.zeros(GUARDS)
-    guard[OFF], guard[PATIENT] = float(bodies == 0), 0.5 * PATIENCE
+    guard = record(GUARD)
+    guard.off, guard.patient = float(bodies == 0), 0.5 * PATIENCE
     return guard

@@ -68,20 +68,20 @@ class Offsets:
         return None
 
 
-def _floats(group: Arrays) -> Iterator[NDArray]:
+def arrays_of(group: Arrays) -> Iterator[NDArray]:
+    """The arrays of a group and of the groups in it, in order; records of scalars left out."""
     for one in fields(group):
         value = getattr(group, one.name)
         if isinstance(value, Arrays):
-            yield from _floats(value)
-        elif value.dtype == np.float64:
+            yield from arrays_of(value)
+        elif isinstance(value, np.ndarray):
             yield value
+
+
+def _floats(group: Arrays) -> Iterator[NDArray]:
+    return (array for array in arrays_of(group) if array.dtype == np.float64)
 
 
 def patterns(group: Arrays) -> Iterator[NDArray]:
     """The arrays of a group that are not of floats, in order: what two models share."""
-    for one in fields(group):
-        value = getattr(group, one.name)
-        if isinstance(value, Arrays):
-            yield from patterns(value)
-        elif value.dtype != np.float64 and value.dtype.names is None:
-            yield value
+    return (array for array in arrays_of(group) if array.dtype != np.float64)

@@ -126,7 +126,7 @@ class State(Arrays):
     --------------------  --------------------------------------------------------------------------
     counters
     ------------------------------------------------------------------------------------------------
-    guard                 energies and counters of `sebody.engine.growth`
+    guard                 energies and counters, see the fields `growth.GUARD`
     clock                 times, lengths of steps and norms, see the fields `CLOCK`
     control               phases, counters and flags, see the fields `CONTROL`
     ====================  ==========================================================================
@@ -185,7 +185,7 @@ class State(Arrays):
     energy: NDArray
     error_weights: NDArray
     memory: NDArray
-    guard: NDArray
+    guard: np.record
     clock: np.record
     control: np.record
 

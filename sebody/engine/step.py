@@ -16,7 +16,6 @@ from sebody.contract.layout import (
     RECORD_T,
 )
 from sebody.engine.evaluate import move_prescribed, set_loads_beside, update_rotations
-from sebody.engine.growth import HALVED
 from sebody.engine.newton import SLOWEST, watch_age
 from sebody.engine.state import (
     ASKED,
@@ -145,7 +144,7 @@ def go_on_grid(state, record):
         clock.time = clock.end
     if control.due == 1 and control.restart == 0:
         write_record(state, record)
-    least = int(state.guard[HALVED])
+    least = int(state.guard.halved)
     while control.level > least and control.unit % (FINEST >> (control.level - 1)) == 0:
         control.level -= 1                 # try the longer step again
     clock.current_step = clock.step / (1 << control.level)

@@ -82,17 +82,17 @@ def increase(energy: NDArray, work: NDArray) -> float:
 def _guarded(run: Recording) -> dict[str, str]:
     """What the guard against energy that grows has done."""
     guard, control = run.state.guard, run.state.control
-    count = int(guard[growth.REJECTIONS])
+    count = int(guard.rejections)
     if not count:
         return {}
-    parts = 2 ** int(guard[growth.MOST_HALVED])
+    parts = 2 ** int(guard.most_halved)
     share = f"{100.0 * growth.SHARE:g} %"
     done = (f"energy grew by {share} of the strain energy although nothing supplied it: "
-            f"{count} steps from t = {guard[growth.FIRST]:.6g} to {guard[growth.LAST]:.6g} were "
+            f"{count} steps from t = {guard.first:.6g} to {guard.last:.6g} were "
             f"repeated with shorter ones, down to 1/{parts}")
-    if guard[growth.IN_VAIN]:
-        done += f"; it grew in {int(guard[growth.IN_VAIN])} of the shortest steps, too"
-    if guard[growth.OFF]:
+    if guard.in_vain:
+        done += f"; it grew in {int(guard.in_vain)} of the shortest steps, too"
+    if guard.off:
         done += ", and then the run went on without this check"
     remedy = ("a smaller tolerance" if control.adaptive else
               f"a step of {float(run.state.clock.step) / parts:.2g}")
@@ -103,7 +103,7 @@ def _guarded(run: Recording) -> dict[str, str]:
 def _steps(run: Recording) -> dict[str, str]:
     """Whether many steps were rejected, for other reasons than energy that grows."""
     steps = int(run.state.control.steps)
-    cuts = int(run.state.control.cuts - run.state.guard[growth.REJECTIONS])
+    cuts = int(run.state.control.cuts - run.state.guard.rejections)
     if cuts <= CUT * steps:
         return {}
     return {"cuts": f"{cuts} rejected steps, {steps} accepted (limit of the ratio {CUT:g}): "

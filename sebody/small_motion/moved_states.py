@@ -96,13 +96,11 @@ def _moved_rows(run: Simulation | Result, along: Moves) -> tuple[NDArray, NDArra
     numbering, state = run.numbering, run.state
     extent = np.full(numbering.total, np.inf)   # of what has no size of its own: any
     rotated = {}
-    for node in (*run.model.nodes.values(), *run.model.grounds):
-        for dof_block in (node.position, node.rotation):
-            if dof_block is not None and dof_block in numbering.dof_blocks:
-                own = coordinates(numbering, dof_block)
-                extent[own] = 1.0 if dof_block.rotational else run.model.size()
-                if dof_block.rotational and not run.model.planar:
-                    rotated[numbering.rotations[dof_block]] = own
+    for dof_block in numbering.dof_blocks:
+        own = coordinates(numbering, dof_block)
+        extent[own] = 1.0 if dof_block.rotational else run.model.size()
+        if dof_block.rotational and not run.model.planar:
+            rotated[numbering.rotations[dof_block]] = own
     largest = (np.abs(along.positions) / extent).max(axis=1)
     scale = SMALL / np.where(largest > 0, largest, 1.0)
     parts = state.recorded_parts

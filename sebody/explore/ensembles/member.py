@@ -101,7 +101,8 @@ class Copies:
 
     def _not_in_floats(self) -> tuple[NDArray, ...]:
         """What a run writes to and `floats` does not hold."""
-        return numbers_of(self.state.control), numbers_of(self.state.clock), self.state.moved
+        state = self.state
+        return (*map(numbers_of, (state.control, state.clock, state.guard)), state.moved)
 
 
 def _with_own_integers(state: State) -> State:

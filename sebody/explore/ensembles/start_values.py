@@ -7,7 +7,7 @@ and additions to a few. Parameters of another kind have the model built anew for
 """
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from scipy.sparse import csr_array
 
 from sebody.assembly.allocation import allocate
 from sebody.assembly.build import build
-from sebody.engine.offsets import Offsets, patterns
+from sebody.engine.offsets import Offsets, arrays_of, patterns
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.errors import InputError
@@ -145,19 +145,7 @@ def _equal(one: NDArray, other: NDArray, *numbers: NDArray) -> bool:
 def _alike(group: System | State, other: System | State, sizes_only: bool = False) -> bool:
     """Whether two groups have the same integers, and floats of the same sizes."""
     if group._facts != other._facts or any(
-            a.shape != b.shape for a, b in zip(_arrays(group), _arrays(other), strict=True)):
+            a.shape != b.shape for a, b in zip(arrays_of(group), arrays_of(other), strict=True)):
         return False
     return sizes_only or all(np.array_equal(a, b) for a, b in
                              zip(patterns(group), patterns(other), strict=True))
-
-
-def _arrays(group: Any) -> list[NDArray]:
-    found = []
-    for value in vars(group).values():
-        if isinstance(value, np.ndarray):
-            found.append(value)
-        elif hasattr(value, "_facts"):
-            found += _arrays(value)
-    return found
-
-
