@@ -80,8 +80,8 @@ def _controllers(model: Mechanism) -> list[tuple]:
 
 def _bodies(model: Mechanism) -> list[tuple]:
     found = [(body.name, "superelement", f"{body.reduced.total_mass:.6g}", _named(body.nodes),
-              f"{len(body.reduced.stiffness)} coordinates ({body.layout}), {body.reduced.modes} modes; "
-              f"frame {body.frame}, inertia {body.inertia}"
+              f"{len(body.reduced.stiffness)} coordinates ({body.layout}), "
+              f"{body.reduced.modes} modes; frame {body.frame}, inertia {body.inertia}"
               + ("; damped" if body.reduced.damping is not None else ""))
              for body in model.bodies.values()]
     return found + [(body.name, _plain(body), f"{body.number('mass'):.6g}",

@@ -156,9 +156,10 @@ def _mass(body: Superelement | Element) -> tuple[float, NDArray]:
     """Mass of a body and its first moment about the origin at the start."""
     if isinstance(body, Superelement):
         held: list[Node] = [body.nodes[i] for i in body.reduced.position_nodes]
-        shift = np.mean([node.point for node in held], axis=0) - body.reduced.coordinates[
-            list(body.reduced.position_nodes)].mean(axis=0)
-        return body.reduced.total_mass, body.reduced.total_mass * (body.reduced.centre_of_mass + shift)
+        reduced = body.reduced
+        shift = np.mean([node.point for node in held], axis=0) - reduced.coordinates[
+            list(reduced.position_nodes)].mean(axis=0)
+        return reduced.total_mass, reduced.total_mass * (reduced.centre_of_mass + shift)
     mass, node = body.number("mass"), body.attachments[0].node
     return mass, mass * node.point + np.asarray(body.constants.get("mc", 0.0))
 

@@ -130,7 +130,8 @@ def test_a_frequency_in_place_of_a_mode_is_a_time_of_all():
     slow = found.damping < 0.9
     assert found.damping[slow] == pytest.approx(RATIO * np.abs(found.values[slow]) / 50.0, rel=1e-6)
     for part in model.bodies.values():
-        assert part.reduced.damping == pytest.approx(2 * RATIO / 50.0 * part.reduced.stiffness, rel=1e-9)
+        assert part.reduced.damping == pytest.approx(
+            2 * RATIO / 50.0 * part.reduced.stiffness, rel=1e-9)
 
 
 def test_no_rigid_motion_is_damped():

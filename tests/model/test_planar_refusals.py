@@ -96,7 +96,8 @@ def test_a_load_on_a_body_must_be_in_the_plane():
     placed = model.bodies["beam"]
     skew = placed.reduced.loads["wind"].copy()
     skew[:3] += 5.0 * Z
-    placed.reduced = replace(placed.reduced, loads={"skew": skew, **placed.reduced.loads}, recovery=None)
+    placed.reduced = replace(placed.reduced, recovery=None,
+                             loads={"skew": skew, **placed.reduced.loads})
     assert planar(model).model.bodies["beam"].reduced.loads.keys() == {"wind"}
     model.body_load("beam", "skew", name="gust")
     with pytest.raises(InputError, match="'gust' has a part out of the plane"):

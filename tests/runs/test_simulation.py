@@ -122,7 +122,8 @@ def heavier(model):
     own = body.reduced.invariants
     doubled = {name: 2.0 * getattr(own, name) for name in (
         "mass", "c0", "S1", "J0", "g", "h", "K", "J2", "Mbar")}
-    body.reduced = replace(body.reduced, mass=2.0 * body.reduced.mass, invariants=replace(own, **doubled))
+    body.reduced = replace(body.reduced, mass=2.0 * body.reduced.mass,
+                           invariants=replace(own, **doubled))
 
 
 def another_frame(model):
