@@ -67,11 +67,11 @@ class RecordedRows:
             self._forget_jumped()
             self._buffer = self.none(BUFFERED)
             control.recorded = 0
-        elif control.recorded + count > BUFFERED:
+        elif control["recorded"] + count > BUFFERED:
             return None
         elif self._jumped:
-            control.recorded -= 1
-            control.due, self._jumped = 1, False
+            control["recorded"] -= 1
+            control["due"], self._jumped = 1, False
         return self._buffer
 
     def flush(self) -> bool:
@@ -85,8 +85,8 @@ class RecordedRows:
     def jump(self) -> None:
         """An input jumps in the state reached: if that is recorded, it will be recorded anew."""
         rows = self.stretches[-1] if self._buffer is None else self._buffer.rows[
-            :self._state.control.recorded]
-        self._jumped = len(rows) > 0 and rows[-1, RECORD_T] == self._state.clock.time
+            :self._state.control["recorded"]]
+        self._jumped = len(rows) > 0 and rows[-1, RECORD_T] == self._state.clock["time"]
 
     def all(self) -> NDArray:
         """All rows that are not in the buffer."""

@@ -135,7 +135,7 @@ class Simulation:
     @property
     def time(self) -> float:
         """Time reached."""
-        return float(self.state.clock.time)
+        return float(self.state.clock["time"])
 
     def run_to(self, t_end: float,
                progress: Callable[[float], None] | bool | None = None) -> Simulation:
@@ -203,7 +203,7 @@ class Simulation:
             No actuator of this name, or no finite number.
         """
         if self.sampling.set_input(name, value):
-            self.state.control.restart = ASKED
+            self.state.control["restart"] = ASKED
             self.rows.jump()
 
     def read(self, name: str) -> float | NDArray:
@@ -229,7 +229,7 @@ class Simulation:
         if not (self.sampling.has_inputs and steps < MOST_STEPS):
             return False
         control, last = state.control, round(steps)
-        count = last - control.grid
+        count = last - control["grid"]
         if not 0 < count <= FEW or abs(steps - last) > OFF_GRID:
             return False
         if self.sampling.needs_looks or (buffer := self.rows.buffer(count + 1)) is None:
