@@ -29,17 +29,19 @@ def main() -> int:
     from sphinx.cmd.build import main as sphinx
 
     began = time.perf_counter()
-    site, pages = options.folder, options.folder.with_name(options.folder.name + "-pages")
-    for folder in (site, pages):
+    site = options.folder
+    pages, extra = (site.with_name(site.name + end) for end in ("-pages", "-extra"))
+    for folder in (site, pages, extra):
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
     made = [reference.write(pages)]
     if not options.without_gallery:
-        made.insert(0, gallery.write(pages))
+        made.insert(0, gallery.write(pages, extra))
         print(f"gallery: {time.perf_counter() - began:.0f} s", flush=True)
     collect.write(ROOT, pages, made)
-    code = sphinx(["-q", "-W", "--keep-going", "-j", "2", "-c", str(HERE), "-d",
-                   str(pages / ".doctrees"), str(pages), str(site)])
+    code = sphinx(["-q", "-W", "--keep-going", "-j", "2", "-c", str(HERE),
+                   "-d", str(pages / ".doctrees"), "-D", f"html_extra_path={extra.resolve()}",
+                   str(pages), str(site)])
     if code == 0:
         print(f"{site / 'index.html'} in {time.perf_counter() - began:.0f} s")
     return code

@@ -2,6 +2,9 @@
 
 The first two interfaces of the body are its pins; the linkage takes its size from their distance.
 A crank turns it from rest. Without a file the coupler is a block of steel made here.
+
+Look at ``crank pin hinge.force.norm``: the crank turns once from rest to rest, and the force rises
+where it is fastest. Bodies of solid elements have stresses: colour the page by von Mises stress.
 """
 
 import numpy as np
