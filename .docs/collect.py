@@ -1,8 +1,8 @@
 """The pages of the tree, copied with what they link to; the README is the front page.
 
-Every page has the place that it has in the tree, so that links between pages hold. Three things move:
-the README becomes ``index.md``, ``.docs`` becomes ``guide`` and ``.github`` becomes ``project``, as
-servers of pages leave out dot folders.
+Every page has the place that it has in the tree, so that links between pages hold. Three things
+move: the README becomes ``index.md``, ``.docs`` becomes ``guide`` and ``.github`` becomes
+``project``, as servers of pages leave out dot folders.
 """
 
 import os

@@ -1,7 +1,7 @@
 """The gallery: a page for every shipped scene, made from its file and from a run.
 
-A scene's docstring says what the scene is and, in a last paragraph that begins with ``Look at``, what is
-worth seeing; quantities between double backticks in this paragraph are plotted.
+A scene's docstring says what the scene is and, in a last paragraph that begins with ``Look at``,
+what is worth seeing; quantities between double backticks in this paragraph are plotted.
 """
 
 import ast
@@ -61,8 +61,8 @@ def tests_of(scene: Entry) -> list[str]:
     """Tests that build the scene."""
     word = re.compile(rf"\b{scene.file.stem}\b.*\b(build|scenes)\b|"
                       rf"\b(scenes|import)\b.*\b{scene.file.stem}\b|\"{scene.name}\"")
-    return [path.relative_to(ROOT).as_posix() for path in sorted((ROOT / "tests").rglob("test_*.py"))
-            if word.search(path.read_text())]
+    found = sorted((ROOT / "tests").rglob("test_*.py"))
+    return [path.relative_to(ROOT).as_posix() for path in found if word.search(path.read_text())]
 
 
 def write(pages: Path, extra: Path) -> str:

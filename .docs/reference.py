@@ -25,8 +25,8 @@ def write(pages: Path) -> str:
     listed = "\n".join(room.__name__ for room in rooms())
     (folder / "index.md").write_text(
         "# API reference\n\nEvery public name, by the package that it is imported from: the "
-        f"[table of names](../guide/names.md), or the {{ref}}`index <genindex>`.\n\n```{{toctree}}\n"
-        f":maxdepth: 1\n\n{listed}\n```\n")
+        "[table of names](../guide/names.md), or the {ref}`index <genindex>`.\n\n"
+        f"```{{toctree}}\n:maxdepth: 1\n\n{listed}\n```\n")
     return "reference/index"
 
 

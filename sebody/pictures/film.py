@@ -77,9 +77,9 @@ def write_film(drawn: Scenery, title: str, path: Path, count: int, file: BinaryI
     times = np.linspace(drawn.t[0], drawn.t[-1], count)
     frames = np.abs(drawn.t[:, None] - times).argmin(axis=0)
     rate = RATES[path.suffix]
-    pictures = pictures(drawn, title, frames, colour)
+    drawings = pictures(drawn, title, frames, colour)
     if path.suffix == ".gif":
-        made = _indexed(pictures, colour is not None)
+        made = _indexed(drawings, colour is not None)
         next(made).save(file, format="GIF", save_all=True, append_images=made, loop=0,
                         duration=round(1000 / rate))
         return
@@ -87,7 +87,7 @@ def write_film(drawn: Scenery, title: str, path: Path, count: int, file: BinaryI
 
     with imageio.get_writer("<bytes>", format=".mp4", mode="I", fps=rate,
                             macro_block_size=4) as writer:
-        for picture in pictures:
+        for picture in drawings:
             writer.append_data(picture)
     file.write(writer.request.get_result())
 
