@@ -14,16 +14,14 @@ from pathlib import Path
 from types import ModuleType
 from typing import NamedTuple
 
-from sebody import Result, simulate
+from still import write_still
+
+from sebody import simulate
 from sebody.catalogue import builder, scenes
-from sebody.pictures import film
-from sebody.pictures.colouring import colourings
-from sebody.pictures.scene import scenery
 from sebody.results import animate, plot
 
 ROOT = Path(__file__).parents[1]
 LONGEST = 40        # lines of code; of longer files only `build` is shown
-STATES = 301        # of those among which the still is chosen
 
 
 class Entry(NamedTuple):
@@ -98,19 +96,7 @@ def _draw(scene: Entry, folder: Path, extra: Path) -> None:
     result = simulate(made.model, made.h, made.t_end)
     plot(result, *scene.quantities, output=folder / f"{scene.name}-plot.png")
     animate(result, extra / f"{scene.name}.html", *scene.quantities, title=scene.title)
-    _still(result, extra / f"{scene.name}.png")
-
-
-def _still(result: Result, path: Path) -> None:
-    """The moving model when its stresses, or else its displacements, are largest."""
-    from matplotlib.image import imsave
-
-    drawn = scenery(result, STATES, stressed=True)
-    fields = {one.name: one for one in colourings(drawn.bodies, drawn.units)}
-    field = fields.get("von_mises") or fields.get("displacement")
-    frame = field.frame if field else len(drawn.t) // 3
-    picture, = film.pictures(drawn, "", [frame], field and field.name)
-    imsave(path, picture)
+    write_still(result, extra / f"{scene.name}.png")
 
 
 def _page(scene: Entry) -> str:

@@ -6,7 +6,7 @@ from pages import all_pages, blocks, run
 
 # pages whose blocks other tests run, which need a copy of the tree or the README's numbers
 ELSEWHERE = {
-    "README.md": "tests/cli/test_cli.py, tests/pictures/test_report.py, .ci/run",
+    "README.md": "tests/cli/test_cli.py, .ci/run",
     ".github/CONTRIBUTING.md": "tests/derive/test_recipes.py",
     ".docs/tutorials/3_formula.md": "tests/derive/test_recipes.py",
 }
