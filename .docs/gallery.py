@@ -132,15 +132,23 @@ Confirmed by {confirmed}.
 
 
 def _code(module: ModuleType) -> str:
-    """The file without docstrings and what makes it a script, or its `build` if that is long."""
+    """The file without docstrings and what makes it a script, if that is not long.
+
+    Otherwise its `build`, and functions that `build` calls as long as they fit.
+    """
     source = Path(module.__file__).read_text()
     tree = ast.parse(source)
     parts = [node for node in tree.body if not isinstance(node, ast.If | ast.Expr)]
     whole = "\n".join(_without_docstring(source, part) for part in parts)
     if whole.count("\n") < LONGEST:
         return whole
-    build, = (part for part in parts if getattr(part, "name", "") == "build")
-    return _without_docstring(source, build)
+    functions = {part.name: _without_docstring(source, part) for part in parts
+                 if isinstance(part, ast.FunctionDef)}
+    shown = {"build": functions.pop("build")}
+    for name, code in functions.items():
+        if f"{name}(" in shown["build"] and "\n".join([code, *shown.values()]).count("\n") < LONGEST:
+            shown = {name: code} | shown
+    return "\n".join(shown.values())
 
 
 def _without_docstring(source: str, part: ast.stmt) -> str:
