@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 FOLDERS = (".docs", "sebody", "derive", "examples", "tests", ".github")
-MOVED = {".docs/": "guide/", ".github/": "project/"}
+MOVED = {".docs/README.md": "project/pages.md", ".docs/": "guide/", ".github/": "project/"}
 SECTIONS = (        # captions of the navigation: a page is in the first whose folder contains it
     ("Tutorials", "guide/tutorials/"), ("Guide", "guide/"), ("By subject", "sebody/"),
     ("Derivation", "derive/"), ("Measurements", "tests/"), ("Project", "project/"))

@@ -146,8 +146,9 @@ def _code(module: ModuleType) -> str:
                  if isinstance(part, ast.FunctionDef)}
     shown = {"build": functions.pop("build")}
     for name, code in functions.items():
-        if f"{name}(" in shown["build"] and "\n".join([code, *shown.values()]).count("\n") < LONGEST:
-            shown = {name: code} | shown
+        longer = {name: code} | shown
+        if f"{name}(" in shown["build"] and "\n".join(longer.values()).count("\n") < LONGEST:
+            shown = longer
     return "\n".join(shown.values())
 
 

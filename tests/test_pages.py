@@ -1,5 +1,7 @@
 """Every block of code and every command of the pages runs, page by page and in its order."""
 
+import re
+
 import pytest
 from copies import ROOT
 from pages import all_pages, blocks, run
@@ -22,6 +24,21 @@ def test_page(name, tmp_path, monkeypatch):
         assert program in MAY_BE_MISSING, program
         if program == "ccx":
             pytest.skip("needs CalculiX: the commands after ccx read what it writes")
+
+
+def test_every_page_is_collected(tmp_path, monkeypatch):
+    """By rule, with the files that it links to; the front page lists them all."""
+    monkeypatch.syspath_prepend(str(ROOT / ".docs"))
+    import collect
+
+    collect.write(ROOT, tmp_path, ["gallery/index"])
+    front = (tmp_path / "index.md").read_text()
+    listed = [line[1:] for line in front.splitlines() if line.startswith("/")]
+    assert len(listed) == len(set(listed)) == len(all_pages())      # the README is the front page
+    for name in set(listed) - {"gallery/index"}:
+        page = tmp_path / f"{name}.md"
+        for link in re.findall(r"\]\(([^)#:\s]+)", page.read_text()):
+            assert (page.parent / link).exists(), (name, link)
 
 
 def test_other_tests_run_the_rest():
