@@ -16,7 +16,7 @@ MOVED = {".docs/README.md": "project/pages.md", ".docs/": "guide/", ".github/": 
 SECTIONS = (        # captions of the navigation: a page is in the first whose folder contains it
     ("Tutorials", "guide/tutorials/"), ("Guide", "guide/"), ("By subject", "sebody/"),
     ("Derivation", "derive/"), ("Measurements", "tests/"), ("Project", "project/"))
-LINK = re.compile(r"(?<=\]\()([^)#:\s]+)")
+LINK = re.compile(r"(?<=\]\()([^)#:\s]+)(?=[)#])")
 
 
 def write(root: Path, pages: Path, made: Sequence[str]) -> None:

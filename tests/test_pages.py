@@ -37,7 +37,7 @@ def test_every_page_is_collected(tmp_path, monkeypatch):
     assert len(listed) == len(set(listed)) == len(all_pages())      # the README is the front page
     for name in set(listed) - {"gallery/index"}:
         page = tmp_path / f"{name}.md"
-        for link in re.findall(r"\]\(([^)#:\s]+)", page.read_text()):
+        for link in re.findall(r"\]\(([^)#:\s]+)(?=[)#])", page.read_text()):
             assert (page.parent / link).exists(), (name, link)
 
 
