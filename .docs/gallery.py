@@ -104,7 +104,9 @@ def _page(scene: Entry) -> str:
     confirmed = ", ".join(f"`{path}`" for path in tests_of(scene))
     return f"""# {scene.title}
 
-{scene.summary} {scene.more}
+{scene.summary}
+
+{scene.more}
 
 ```{{raw}} html
 <iframe class="scene" loading="lazy" title="{scene.title}" src="../scenes/{scene.name}.html">

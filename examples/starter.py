@@ -5,8 +5,8 @@
     sebody sweep FILE.py --vary thickness=0.004:0.008:0.001 --keep "maximum(norm tip.velocity)"
     sebody advise FILE.py --quantity tip.position --tolerance 1e-2
 
-Look at ``hinge.angle``, which goes from rest to rest in one second, and at ``tip.position.y``,
-which vibrates at the end and after the push at 1.2 s; ``motor.torque`` is what the drive needs.
+Look at ``hinge.angle``, which goes from rest to rest in one second, and at ``tip.position.x``,
+which goes on vibrating; the push at 1.25 s adds to it. ``motor.torque`` is what the drive needs.
 """
 
 import math
@@ -54,7 +54,7 @@ def build(length: float = 0.8, thickness: float = 0.006, load: float = 0.2, angl
     model.drive_angle("base", rest_to_rest(math.radians(angle), 1.0), name="motor")
 
     # Loads vary with time: numbers, tables of (time, value), functions.
-    model.force("tip", (0.0, 1.0, 0.0), [(0.0, 0.0), (1.2, 0.0), (1.25, 2.0), (1.3, 0.0)],
+    model.force("tip", (1.0, 0.0, 0.0), [(0.0, 0.0), (1.2, 0.0), (1.25, 5.0), (1.3, 0.0)],
                 name="push")
 
     # The step should resolve the fastest vibration that matters, with 20 steps a period or more.
