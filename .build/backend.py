@@ -1,7 +1,9 @@
-"""setuptools' build backend, whose editable wheels are found from anywhere.
+"""setuptools' build backend: editable wheels are found from anywhere, sdists hold all they need.
 
 setuptools puts the finder of an editable install behind Python's own, which takes any folder named
 ``sebody`` in the folder of a script, such as a clone, for a namespace package. Here it comes first.
+
+What an sdist holds besides packages, such as this folder, is in the ``MANIFEST.in`` beside it.
 """
 
 import base64
@@ -11,6 +13,9 @@ from pathlib import Path, PurePosixPath
 
 from setuptools import build_meta
 from setuptools.build_meta import *  # noqa: F403  # all hooks but the one below
+from setuptools.command.egg_info import manifest_maker
+
+manifest_maker.template = ".build/MANIFEST.in"
 
 IN_FRONT = ("import sys; sys.meta_path.sort("
             "key=lambda finder: getattr(finder, '__module__', '') != {module!r})\n")

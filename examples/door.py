@@ -1,4 +1,9 @@
-"""A door with friction in its hinge falls shut against a stop, and bounces."""
+"""A door with friction in its hinge falls shut against a stop, and bounces.
+
+Look at ``pins.angle`` and ``pins.rate``: the stop at 1.4 rad takes in the door, by 0.05 rad, and
+sends it back at 0.44 rad/s, which dry friction then lowers evenly, to 0.3 rad/s at the end. Where
+the rate passes zero the friction of the hinge, ``dry.moment``, changes its sign.
+"""
 
 from sebody import Model
 from sebody.scenes.scene import Scene

@@ -2,6 +2,10 @@
 
 The controller of the hub sees angle and rate of the hinge alone and leaves the tip vibrating. The
 regulator is made from the state space about the place where the arm shall come to rest.
+
+Look at ``tip.rotation`` and ``hinge.angle``: the regulator brings the tip to 0.3 rad in 0.6 s and
+leaves no vibration. With ``controller=pd`` the hub is as fast and the tip goes on vibrating.
+``motor.moment`` stays within 5 Nm.
 """
 
 import numpy as np

@@ -2,6 +2,9 @@
 
 One degree of freedom. Each rocker and coupler is one angle; a coupler hangs on the tip of its
 rocker by a rigid link, and two multipliers close each loop.
+
+Look at ``B0.position.x:y``: the rockers go round, and twice in each turn all bars are in one line,
+where the linkage has no unique motion; ``energy`` passes these places unchanged.
 """
 
 from sebody import Model, inputs

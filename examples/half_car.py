@@ -2,6 +2,10 @@
 
 Each axle has an actuator between body and wheel, which works against the velocity of the body at
 its place (skyhook), at 200 Hz with a lag of its valve.
+
+Look at ``base.position.y`` and ``front wheel.position.y``: on a bump of 6 cm the body rises by 1.1
+cm. Compare ``base.acceleration.y`` with ``suspension=passive``; ``front valve.force`` is what the
+actuator adds.
 """
 
 from math import cos, pi, sin

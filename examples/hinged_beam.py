@@ -1,4 +1,9 @@
-"""The paper's hinged beam (section 8.1): one superelement spun up by a torque at its hinge."""
+"""The paper's hinged beam (section 8.1): one superelement spun up by a torque at its hinge.
+
+Look at ``base.angular_velocity.z``: from 7.5 s on, when the torque has ended, the beam rotates at
+0.906 rad/s in the mean, and the vibration on top goes on undamped. The deflection of the tip shows
+in ``beam.modes``.
+"""
 
 from sebody import Model
 from sebody.fem import Section

@@ -1,6 +1,10 @@
 """Slider-crank whose rod turns on the crank pin with a clearance of 0.5 mm, and dry friction.
 
 The journal is a disc in a bore: it flies, hits and slides along the bearing.
+
+Look at ``clearance.normal_force``: the journal flies through the clearance at the start, hits the
+bearing, bounces, slides along it and lifts off again twice in each turn. ``clearance.gap`` is zero
+or a little less in contact, and ``slider.position.x`` shows next to nothing of all this.
 """
 
 from sebody import Model, sphere

@@ -1,4 +1,8 @@
-"""The paper's hinged beam in its plane: two coordinates and an angle a node, no constraint."""
+"""The paper's hinged beam in its plane: two coordinates and an angle a node, no constraint.
+
+Look at ``base.angular_velocity``: the same curve as of the hinged beam in space, with 6 unknowns
+in place of 15. ``tip.position.x:y`` is the path of the tip.
+"""
 
 from sebody import Model
 from sebody.scenes.hinged_beam import SECTION, TORQUE

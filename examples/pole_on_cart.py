@@ -2,6 +2,9 @@
 
 A regulator at 100 Hz feeds all coordinates and their rates back; it is made from the state space
 about the upright position, which is unstable.
+
+Look at ``cart.position.x`` and ``foot.rotation``: the cart first runs after the falling pole by
+0.42 m, then takes it back upright. ``motor.force`` is constant between samples, 0.01 s apart.
 """
 
 import numpy as np

@@ -2,6 +2,9 @@
 
 The gear seat in the middle moves nothing but its angle: three unknowns less (`layout="full"`
 compares).
+
+Look at ``gear.angular_velocity.x`` and ``tip.position.y``: the gear seat has a rotation but no
+position, and turns the whole shaft, whose end is bent by the push and comes back when it ends.
 """
 
 import numpy as np

@@ -1,6 +1,9 @@
 """The paper's beam on a spherical joint (section 8.2) under its own slow loads.
 
 The joint is a fixed position DOF block: the system has no constraint and no multiplier.
+
+Look at ``base.angular_velocity``: a torque about z turns the beam by itself until 10 s; the push
+along z at 15 s then tilts the axis, and all three components vibrate.
 """
 
 from sebody import Model

@@ -1,4 +1,8 @@
-"""A beam on a spherical joint, spun fast and struck at its tip: where formulations differ."""
+"""A beam on a spherical joint, spun fast and struck at its tip: where formulations differ.
+
+Look at ``tip.position.z`` and ``energy.strain``: the blow at 15 s leaves fifty times the strain
+energy that spinning up caused. This run tells inertia options apart; with option B it is chaotic.
+"""
 
 import math
 

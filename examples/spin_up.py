@@ -1,6 +1,10 @@
 """Spin-up of a flexible arm (Kane, Ryan and Banerjee 1987; Simo and Vu-Quoc).
 
 The root turns as prescribed from rest to a final speed in fifteen seconds.
+
+Look at ``tip.position.x:y`` and ``root.reaction_moment``: the tip lags behind by 0.53 m while the
+arm speeds up and is straight again at constant speed, since spin stiffens it. Models without
+stiffening bend without end.
 """
 
 import math

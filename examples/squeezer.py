@@ -2,6 +2,10 @@
 
 Every body is one angle; chains hang on the ground by rigid links and meet in one point, held
 together by six multipliers.
+
+Look at ``crank.rotation``, 15.87 rad in 0.03 s as in the test set's solution, and at
+``point.position.x:y``, where three chains meet. ``energy`` shows how work goes into the spring and
+back.
 """
 
 import numpy as np

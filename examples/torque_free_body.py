@@ -1,4 +1,8 @@
-"""A rigid body turning freely, started close to its unstable axis: it tumbles (Dzhanibekov)."""
+"""A rigid body turning freely, started close to its unstable axis: it tumbles (Dzhanibekov).
+
+Look at ``centre.angular_velocity``: the rotation about the middle axis is unstable, so the body
+turns over again and again, though no torque acts; ``angular_momentum`` stays the same.
+"""
 
 from sebody import Model
 from sebody.scenes.scene import Scene

@@ -2,6 +2,10 @@
 
 Its motors know the dynamics of the rigid arm. A load at the hand that they do not know is a
 disturbance.
+
+Look at ``shoulder.angle`` and ``elbow.angle``, which follow their trajectory within 4 and 23
+milliradians although the controller does not know of the load at the hand; ``first.moment`` and
+``second.moment`` are constant between samples.
 """
 
 import numpy as np

@@ -1,7 +1,7 @@
 """The recipes of CONTRIBUTING.md, read and followed in a copy of the tree.
 
 The line before a block of code says where it goes: ``At the end of `FILE`:``, ``New file `FILE`:``,
-``In `FILE`, below `TEXT`:`` (or above), where TEXT is on one line of the file.
+``In `FILE`, below `TEXT`:`` (or above, or in place of), where TEXT is on one line of the file.
 """
 
 import re
@@ -12,14 +12,14 @@ from typing import NamedTuple
 from copies import ROOT, python
 
 PLACE = re.compile(r"(?:At the end of|New file|In) `(?P<file>[^`]+)`"
-                   r"(?:, (?P<side>below|above) `(?P<anchor>[^`]+)`)?:\n\n"
+                   r"(?:, (?P<side>below|above|in place of) `(?P<anchor>[^`]+)`)?:\n\n"
                    r" *```python\n(?P<code>.*?)^ *```$", re.DOTALL | re.MULTILINE)
 INSTALLED = {"derive/": "sebody/derive/", "generated/": "sebody/generated/",
              "examples/": "sebody/scenes/"}
 
 
 class Block(NamedTuple):
-    """Code of a recipe and the place it goes to; below or above a line, or the end of the file."""
+    """Code of a recipe and the place it goes to; at a line, or the end of the file."""
 
     file: str
     side: str | None
@@ -31,7 +31,11 @@ def recipe(title: str) -> list[Block]:
     """Blocks of the recipe with a heading."""
     text = (ROOT / ".github" / "CONTRIBUTING.md").read_text()
     section = re.split(rf"^## {title}$", text, flags=re.MULTILINE)[1]
-    section = re.split(r"^## ", section, flags=re.MULTILINE)[0]
+    return blocks(re.split(r"^## ", section, flags=re.MULTILINE)[0])
+
+
+def blocks(section: str) -> list[Block]:
+    """Blocks of a text, each of which needs a place."""
     found = [Block(m["file"], m["side"], m["anchor"], _code(m)) for m in PLACE.finditer(section)]
     assert len(found) == section.count("```python"), "a block has no place that can be read"
     return found
@@ -58,7 +62,8 @@ def apply(tree: Path, blocks: list[Block]) -> None:
         at = next((k for k, line in enumerate(lines) if block.anchor in line), None)
         assert at is not None, f"{block.file} has no line with {block.anchor!r}: adapt the recipe"
         code = block.code + "\n\n" * block.code.startswith("def ")
-        lines.insert(at + (block.side == "below"), code)
+        at += block.side == "below"
+        lines[at:at + (block.side == "in place of")] = [code]
         path.write_text("".join(lines))
 
 

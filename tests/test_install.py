@@ -3,6 +3,7 @@
 import re
 import subprocess
 import sys
+import tarfile
 import tomllib
 import zipfile
 from pathlib import Path
@@ -92,7 +93,31 @@ def test_the_wheel_holds_files_that_are_no_modules(tmp_path):
         held = set(wheel.namelist())
     files = {str(path.relative_to(ROOT)) for path in (ROOT / "sebody/pictures/page").iterdir()}
     assert len(files) >= 13 and files <= held
+    assert not [name for name in held if name.endswith((".md", ".png"))]
+    assert any(name.endswith("-py3-none-any.whl") for name in done.stdout.split())
     assert "sebody/py.typed" in held
+
+
+def test_the_sdist_holds_what_makes_the_wheel(tmp_path):
+    """Without the build backend no index could serve it; pages and tests are for packagers."""
+    clone = tmp_path / "clone"
+    clone.mkdir()
+    for name in (*FOLDERS, *FILES, ".docs", ".ci", ".github", "tests"):
+        (clone / name).symlink_to(ROOT / name)
+    build = ("import sys; sys.path.insert(0, '.build'); import backend; "
+             "print(backend.build_sdist(sys.argv[1]))")
+    done = subprocess.run([sys.executable, "-c", build, str(tmp_path)], cwd=clone, text=True,
+                          capture_output=True, check=True)
+    with tarfile.open(tmp_path / done.stdout.split()[-1]) as archive:
+        held = {name.partition("/")[2] for name in archive.getnames()}
+        about = archive.extractfile(next(name for name in archive.getnames() if name.count(
+            "/") == 1 and name.endswith("PKG-INFO"))).read().decode()
+    assert {".build/backend.py", ".build/MANIFEST.in", "sebody/py.typed", "tests/pages.py",
+            "sebody/io/README.md", ".docs/conf.py", "examples/flexible_link.png"} <= held
+    assert not [name for name in held if name.endswith((".pyc", ".nbi", ".nbc"))]
+    for head in ("License-Expression: MIT", "Requires-Python: >=3.11", "Keywords: ", "Summary: ",
+                 "Description-Content-Type: text/markdown", "Classifier: Typing :: Typed"):
+        assert head in about
 
 
 def test_messages_and_pages_name_extras_that_exist():

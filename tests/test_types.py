@@ -20,8 +20,7 @@ DOORS = ("sebody", "sebody.analysis", "sebody.fem", "sebody.io", "sebody.reducti
 # a line of README's example, what a user may get wrong in it, and words of the remark on it
 WRONG = (
     ('model = Model()', 'model = Model(planar="yes")', '"planar"'),
-    ('model.superelement("beam", body, [base, tip])', 'model.superelement("beam", 3, [base, tip])',
-     '"ReducedBody'),
+    ('model.beam("beam", (base, tip), section,', 'model.beam("beam", (base, tip), 3,', '"Section'),
     ('axis=(0, 0, 1), name="hinge")', 'axes=(0, 0, 1), name="hinge")', '"axes"'),
     ('simulate(model, h=0.01, t_end=30.0)', 'simulate(model, h="0.01", t_end=30.0)', '"h"'),
     ('result.summary()', 'result.summery()', '"summery"'),

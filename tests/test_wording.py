@@ -85,7 +85,7 @@ def _texts(path: Path) -> Iterator[tuple[int, str]]:
 
 
 def _files() -> list[Path]:
-    pages = [ROOT / "README.md", *(page for folder in (*SOURCES, "tests", ".github")
+    pages = [ROOT / "README.md", *(page for folder in (*SOURCES, "tests", ".docs", ".github")
                                    for page in (ROOT / folder).rglob("*.md"))]
     parts = [path for folder in SOURCES for kind in ("py", "html", "js")
              for path in (ROOT / folder).rglob(f"*.{kind}")]

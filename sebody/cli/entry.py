@@ -19,6 +19,7 @@ from sebody.cli import (
     inspect,
     interrupts,
     listing,
+    new,
     plot,
     report,
     run,
@@ -28,8 +29,8 @@ from sebody.cli import (
 from sebody.errors import InputError, SebodyError
 
 # in the order of the help
-COMMANDS = (run, sweep, advise, listing, plot, animate, report, importing, inspect, check, bench,
-            chart, atlas, warm)
+COMMANDS = (run, sweep, advise, listing, new, plot, animate, report, importing, inspect, check,
+            bench, chart, atlas, warm)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

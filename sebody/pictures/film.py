@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from sebody.errors import InputError
 from sebody.pictures.colouring import colourings, values_of
@@ -77,9 +77,9 @@ def write_film(drawn: Scenery, title: str, path: Path, count: int, file: BinaryI
     times = np.linspace(drawn.t[0], drawn.t[-1], count)
     frames = np.abs(drawn.t[:, None] - times).argmin(axis=0)
     rate = RATES[path.suffix]
-    pictures = _pictures(drawn, title, frames, colour)
+    drawings = pictures(drawn, title, frames, colour)
     if path.suffix == ".gif":
-        made = _indexed(pictures, colour is not None)
+        made = _indexed(drawings, colour is not None)
         next(made).save(file, format="GIF", save_all=True, append_images=made, loop=0,
                         duration=round(1000 / rate))
         return
@@ -87,7 +87,7 @@ def write_film(drawn: Scenery, title: str, path: Path, count: int, file: BinaryI
 
     with imageio.get_writer("<bytes>", format=".mp4", mode="I", fps=rate,
                             macro_block_size=4) as writer:
-        for picture in pictures:
+        for picture in drawings:
             writer.append_data(picture)
     file.write(writer.request.get_result())
 
@@ -104,8 +104,8 @@ def _indexed(pictures: Iterator[NDArray], valued: bool) -> "Iterator[Image.Image
         yield whole.quantize(COLOURS[valued], dither=Image.Dither.NONE).crop((0, 0, width, height))
 
 
-def _pictures(drawn: Scenery, title: str, frames: NDArray, colour: str | None
-              ) -> Iterator[NDArray]:
+def pictures(drawn: Scenery, title: str, frames: ArrayLike, colour: str | None
+             ) -> Iterator[NDArray]:
     """Pictures (height, width, 3) of some frames."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure

@@ -1,6 +1,7 @@
 """Scenes in files of a user: run like shipped ones, and their errors named by file and line."""
 
 import inspect
+import shlex
 
 import numpy as np
 import pytest
@@ -132,3 +133,34 @@ def test_nodes_of_the_picture_are_looked_for_before_the_run(folder, capsys):
     assert capsys.readouterr().err.startswith(
         "error: the picture shows node 'top', which scene 'mine' does not have: give its Scene "
         "base= and tip=, of base, tip")
+
+
+def test_a_new_scene_runs_sweeps_and_is_advised_on(tmp_path, monkeypatch, capsys):
+    """By the commands that its first lines say, on the shortest of runs."""
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "my arm.py"]) == 0
+    said = capsys.readouterr().out
+    assert said.startswith("scene: my arm.py\nrun it: sebody run 'my arm.py' --output run.npz")
+    text = (tmp_path / "my arm.py").read_text()
+    assert "FILE.py" not in text
+    lines = [line for line in text.splitlines() if line.startswith("    sebody ")]
+    shown = [shlex.split(line.replace("my arm.py", "'my arm.py'"))[1:] for line in lines]
+    assert [words[0] for words in shown] == ["run", "animate", "sweep", "advise"]
+    for words in shown:
+        thin = {"sweep": ["--t-end", "0.1"], "advise": ["--t-end", "0.3"]}.get(words[0], [])
+        assert main([*words, *thin]) == 0, words
+    said = capsys.readouterr()
+    assert not said.err, said.err
+    assert "5 of 5 runs done, 0 failed" in said.out and "confirmed error" in said.out
+
+
+def test_a_new_scene_replaces_nothing(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.py").write_text("mine")
+    for path, message in (("mine.py", "scene mine.py exists: give another name, or remove the"),
+                          ("none/mine.py", "folder none of the scene does not exist: make it"),
+                          ("mine.txt", "scene mine.txt must end in .py")):
+        assert main(["new", path]) == 2
+        assert message in capsys.readouterr().err
+    assert (tmp_path / "mine.py").read_text() == "mine"
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.py"]

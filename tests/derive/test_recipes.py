@@ -1,12 +1,15 @@
-"""Recipes of CONTRIBUTING.md followed in copies of the tree, and what was added is used."""
+"""Recipes and the tutorial on formulas followed in copies of the tree; what was added is used."""
 
 from pathlib import Path
 
+import numpy as np
 import pytest
-from copies import DERIVE, ROOT, copy_sources, duplicate
-from recipes import apply, copy_tests, recipe, run, run_tests, sebody
+from copies import DERIVE, ROOT, copy_sources, derive, duplicate
+from pages import commands
+from recipes import apply, blocks, copy_tests, recipe, run, run_tests, sebody
+from scipy.integrate import quad
 
-from sebody import Model, simulate
+from sebody import Model, Result, simulate
 
 
 @pytest.fixture(scope="module")
@@ -65,6 +68,26 @@ def test_command(original, tmp_path):
     *bodies, total = [line.split() for line in said.splitlines()]
     assert total[0] == "total" and len(bodies) > 2
     assert float(total[1]) == pytest.approx(sum(float(row[-1]) for row in bodies), rel=1e-5)
+
+
+def test_tutorial(original, tmp_path):
+    """Its commands in their order; the period is that of the energy, by quadrature."""
+    text = (ROOT / ".docs" / "tutorials" / "3_formula.md").read_text()
+    tree = duplicate(original, tmp_path)
+    apply(tree, blocks(text))
+    check, derived, *ours, undo = commands(text)
+    assert check[:4] == ["python", "-m", "sebody.derive", "--check"] and undo[0] == "git"
+    stale = derive(tree, *check[3:])
+    assert stale.returncode == 1 and "stale: element_planar_spring.py" in stale.stdout
+    run(tree, DERIVE, *derived[3:])
+    said = [sebody(tree, *command[1:]) for command in ours]
+    assert "of 2 kernels hold" in said[0] and "picture: chart.png" in said[2]
+    result = Result.load(tree / "spring.npz")
+    u = result["mass.position.x"] - 2.0
+    quarter = np.interp(0.0, -u[:len(u) // 2], result.t[:len(u) // 2])
+    exact = 4 * np.sqrt(3) * quad(lambda z: 1 / np.sqrt(1 - z**6), 0, 1)[0]
+    assert 4 * quarter == pytest.approx(exact, rel=2e-3)       # of the step, 420 in a period
+    assert f"{exact:.2f}" in text
 
 
 def test_every_recipe_is_followed_here():

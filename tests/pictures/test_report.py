@@ -1,7 +1,6 @@
 """The report of a run, and what notebooks show."""
 
 import re
-from pathlib import Path
 
 import browser
 import numpy as np
@@ -86,14 +85,6 @@ def test_the_command(saved, tmp_path, capsys):
     assert main(["report", str(saved), "--output", "report.pdf"]) == 2
     assert "report report.pdf must end in .html" in capsys.readouterr().err
     assert path.read_text() == before
-
-
-def test_the_example_of_the_readme(tmp_path, monkeypatch):
-    text = (Path(__file__).parents[2] / "README.md").read_text()
-    code, = re.findall(r"```python\n(from sebody.results import.*?)```", text, re.S)
-    monkeypatch.chdir(tmp_path)
-    exec(code, {"result": simulate(hinged_beam.build(modes=2, elements=4).model, 0.01, 0.2)})
-    assert {path.name for path in tmp_path.iterdir()} == {"tip.png", "beam.html", "report.html"}
 
 
 def test_results_of_one_state(tmp_path):

@@ -1,0 +1,109 @@
+"""The gallery: every scene says what to look at and has a test; physics of those with no other."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sebody import Result, simulate
+from sebody.catalogue import scenes
+from sebody.scenes import (
+    ball_on_beam,
+    gripper,
+    imported_link,
+    journal_clearance,
+    starter,
+    stick_slip,
+)
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def gallery():
+    """The module that makes the pages."""
+    sys.path.insert(0, str(ROOT / ".docs"))
+    try:
+        import gallery
+        return gallery
+    finally:
+        sys.path.pop(0)
+
+
+def run(scene, t_end=None) -> Result:
+    return simulate(scene.model, scene.h, t_end or scene.t_end)
+
+
+@pytest.mark.parametrize("name", scenes())
+def test_a_scene_has_what_its_page_shows(gallery, name):
+    scene = gallery.entry(name)
+    assert scene.look and 1 <= len(scene.quantities) <= 4
+    assert 10 <= len(scene.code.splitlines()) <= gallery.LONGEST
+    assert gallery.tests_of(scene)
+
+
+def test_a_ball_falls_and_a_plate_takes_it():
+    """The time of free fall in closed form; contact and damping take energy, nothing gives any."""
+    result = run(ball_on_beam.build())
+    first = result.t[np.argmax(result["landing.normal_force"] > 0)]
+    assert first == pytest.approx(np.sqrt(2 * 0.1 / 9.81), abs=1e-3)      # two steps
+    energy = sum(result[f"energy.{kind}"] for kind in ("kinetic", "strain", "potential"))
+    assert energy.max() - energy[0] < 1e-4 * np.ptp(result["energy.kinetic"])
+    assert energy[-1] < energy[0] - 0.2 * np.ptp(result["energy.kinetic"])
+
+
+def test_stick_slip_has_the_period_of_its_closed_form():
+    """Sticking until k v t = mu_s m g, sliding about mu_d m g / k until the speeds are equal."""
+    speed, static, dynamic, omega, weight = 0.1, 0.4, 0.3, 10.0, 10.0
+    result = run(stick_slip.build(speed, static, dynamic))
+    sticks = result["dry.sticks"] > 0.5
+    ends = result.t[1:][sticks[:-1] & ~sticks[1:]]
+    low, high = dynamic * weight / omega**2, static * weight / omega**2
+    slides = (2 * np.pi - 2 * np.arctan2(omega * (high - low), speed)) / omega
+    rides = 2 * (high - low) / speed
+    assert ends[0] == pytest.approx(high / speed, abs=2e-3)
+    assert np.diff(ends) == pytest.approx(slides + rides, abs=2e-3)         # two steps
+
+
+def test_friction_holds_what_it_can():
+    """Four contacts, of which each carries half of a jaw's force."""
+    held, lost = run(gripper.build(0.5)), run(gripper.build(0.05))
+    assert held["left low grip.normal_force"][-1] == pytest.approx(10.0, rel=1e-6)
+    assert held["block.position.y"][-1] == pytest.approx(0.03 + 0.15, abs=2e-3)
+    assert lost["block.position.y"][-1] < 0.031     # 4 x 0.05 x 10 N are less than its weight
+
+
+def test_a_clearance_moves_the_slider_by_no_more_than_itself():
+    """Beside the slider-crank without clearance, whose motion is known."""
+    clearance, r, rod = 0.5e-3, journal_clearance.CRANK, journal_clearance.ROD
+    result = run(journal_clearance.build(clearance))
+    angle = journal_clearance.SPEED * result.t
+    ideal = r * np.cos(angle) + np.sqrt(rod**2 - (r * np.sin(angle))**2)
+    lean = np.sqrt(1 + (r / rod)**2 / (1 - (r / rod)**2))       # of the rod, at most
+    away = np.abs(result["slider.position.x"] - ideal).max()
+    assert 0.5 * clearance < away < 1.2 * lean * clearance      # and the bearing gives way
+    assert -0.2 * clearance < result["clearance.gap"].min()
+
+
+def test_an_imported_coupler_moves_as_the_linkage_of_rigid_bars():
+    """Loop closure of the four-bar, but for what the coupler deforms."""
+    result = run(imported_link.build())
+    first, second = (result[f"interface {k}.position"] for k in (0, 1))
+    crank, rocker = (result.model.nodes[name].point for name in ("crank", "rocker"))
+    assert np.linalg.norm(first - second, axis=1) == pytest.approx(1.0, rel=1e-4)
+    for pin, centre, length in ((first, crank, 0.3), (second, rocker, 0.6)):
+        assert np.linalg.norm(pin - centre, axis=1) == pytest.approx(length, rel=1e-9)
+    assert first[-1] == pytest.approx(first[0], abs=1e-6)       # one whole turn
+    assert second[-1] == pytest.approx(second[0], abs=1e-3)
+
+
+def test_the_starter_lifts_its_load():
+    """Work of the motor, the push and the damping against the weight that was lifted."""
+    result = run(starter.build())
+    assert result["hinge.angle"][-1] == pytest.approx(np.pi / 2, abs=1e-6)
+    beam = 0.8 * 0.006 * 0.03 * 2700.0
+    lifted = 9.81 * (0.2 * 0.8 + beam * 0.4)
+    assert result["energy.potential"][-1] - result["energy.potential"][0] == pytest.approx(
+        lifted, rel=2e-3)
+    assert result["motor.work"][-1] == pytest.approx(lifted, rel=0.03)      # it still vibrates
