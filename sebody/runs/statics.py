@@ -58,6 +58,11 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     t = inputs.number(t, "t")
     tolerance = inputs.number(tolerance, "tolerance", above=0, below=1)
     model = inputs.instance(model, "model", Model, "give a sebody.Model")
+    if laws := [load.law.controller for load in model.loads
+                if load.law is not None and load.law.states.position in load.dof_blocks]:
+        raise InputError(f"an equilibrium holds the states of controllers, and controller "
+                         f"{laws[0]!r} is continuous with states: run the model until it rests, or "
+                         "give the controller a period or a law without states")
     sticking = any(load.tuned for load in model.loads)
     run = Simulation(model, STICKING if sticking else 1.0)
     unbend(model, run.numbering, run.state)
