@@ -1,4 +1,4 @@
-"""Continuous controllers: laws in the equations of motion, as elements on what they read and set."""
+"""Continuous controllers: laws in the equations of motion, as elements."""
 
 from __future__ import annotations
 
