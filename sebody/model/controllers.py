@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from types import FunctionType
 
+import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs as given
@@ -11,7 +13,13 @@ from sebody.control.law import Law
 from sebody.errors import InputError
 from sebody.model.continuous import law_element
 from sebody.model.control_parts import Controller, Sensor
-from sebody.model.functions import compiled_controller, compiled_derivatives, compiled_law
+from sebody.model.functions import (
+    CONTROL,
+    LAW,
+    compiled_controller,
+    compiled_derivatives,
+    compiled_law,
+)
 from sebody.model.inputs import dof_block, known
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Node
@@ -130,10 +138,10 @@ def controller(model: Mechanism, name: str, law: Law | Callable[..., None],
         return _continuous(model, name, law, ins, outs, delay, states, parameters, derivatives,
                            corners)
     period = given.number(period, f"{where}: period", above=0.0)
-    if derivatives is not None or len(corners):
-        raise InputError(f"{where} has a period, and {'corners' if derivatives is None else ''}"
-                         f"{'derivatives' if derivatives is not None else ''}, which continuous "
-                         "controllers have: leave out one of the two")
+    if derivatives is not None or np.size(corners):
+        what = "corners" if derivatives is None else "derivatives"
+        raise InputError(f"{where} has a period and {what}, which are of continuous controllers: "
+                         "leave out one of the two")
     if isinstance(law, Law):
         _check_law(where, law, ins, outs, parameters)
         function, parameters = law.function, law.packed(period)
@@ -167,6 +175,10 @@ def _continuous(model: Mechanism, name: str, law: Law | Callable[..., None], ins
             raise InputError(f"{where}: {law.title} is a law in discrete time: give period=")
         function, start, parameters, own = law.flow
         states, derivatives = _own_states(where, states, start), derivatives or own
+    elif isinstance(law, FunctionType) and law.__code__.co_argcount == len(CONTROL):
+        raise InputError(f"{where} has no period, and its function is that of a sampled one, "
+                         f"({', '.join(CONTROL)}): give period=, or for a continuous controller a "
+                         f"function of ({', '.join(LAW)})")
     _check_written(model, name, where, outs)
     sizes = len(ins), len(states), len(outs), len(parameters)
     compiled = compiled_law(function, name, sizes)
