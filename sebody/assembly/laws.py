@@ -66,7 +66,7 @@ def law_row(model: Mechanism, numbering: Numbering, element: Element, unknowns: 
     law = law_parts(element)
     controller = model.controllers[law.controller]
     kept = numbering.all_kept
-    state = law.states.position
+    state = law.states
     first = unknowns.index(numbering.dof_blocks[state]) if controller.states.size else 0
     derivatives = 0 if law.derivatives is None else law.derivatives.address
     found = [controller.function.address, derivatives, len(controller.inputs),

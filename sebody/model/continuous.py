@@ -51,9 +51,10 @@ def law_element(model: Mechanism, controller: Controller, derivatives: UserFunct
     places = [place for one in touched for place in one.places]
     places += [place for one in driven for place in one.attachments]
     own = {place.dof_block: place for place in places}
-    states = hidden_states(controller)
+    states = _hidden_states(controller)
+    hidden = Node(states.name, np.zeros(0), states, None)       # in no table of the model
     attachments = [place for place in own.values() if not place.dof_block.rotational]
-    attachments += [Attachment(states, "position")] * bool(controller.states.size)
+    attachments += [Attachment(hidden, "position")] * bool(controller.states.size)
     attachments += [place for place in own.values() if place.dof_block.rotational]
     modes = tuple(dict.fromkeys(mode for one in touched for mode in one.modes))
     return Element(chosen_name(model, None, f"law of {controller.name}"), KIND,
@@ -62,11 +63,10 @@ def law_element(model: Mechanism, controller: Controller, derivatives: UserFunct
                    law=LawParts(controller.name, states, modes, derivatives))
 
 
-def hidden_states(controller: Controller) -> Node:
-    """A node of the model's equations alone, whose velocities are the states."""
-    name = f"{controller.name}.states"
-    block = DofBlock(name, np.zeros(controller.states.size), controller.states.copy(), given=True)
-    return Node(name, np.zeros(0), block, None)
+def _hidden_states(controller: Controller) -> DofBlock:
+    """A block of coordinates whose velocities are the states."""
+    return DofBlock(f"{controller.name}.states", np.zeros(controller.states.size),
+                    controller.states.copy(), given=True)
 
 
 def _read(model: Mechanism, where: str, name: str) -> Touched:
@@ -112,6 +112,7 @@ def _touched(model: Mechanism, where: str, quantity: str, axes: str) -> Touched:
 
 def _check_prompt(where: str, actuator: Element) -> None:
     """Refuse an actuator that follows what is set with a lag or limited rate."""
+    assert actuator.time_function is not None
     _, lag, rate = (*actuator.time_function.pieces[0], 0.0, 0.0, 0.0)[:3]
     if lag or rate:
         raise InputError(f"{where} is continuous and sets actuator {actuator.name!r}, which has a "

@@ -165,7 +165,7 @@ def _continuous(model: Mechanism, name: str, law: Law | Callable[..., None], ins
                 outs: tuple[str, ...], delay: int, states: NDArray, parameters: NDArray,
                 derivatives: Callable[..., None] | None, corners: Sequence[float]) -> Controller:
     """A controller without a period."""
-    where, function = f"controller {name!r}", law
+    where = f"controller {name!r}"
     if delay:
         raise InputError(f"{where} has a delay of {delay} samples and no period: give period=, or "
                          "write the delay as states of the law")
@@ -175,7 +175,9 @@ def _continuous(model: Mechanism, name: str, law: Law | Callable[..., None], ins
             raise InputError(f"{where}: {law.title} is a law in discrete time: give period=")
         function, start, parameters, own = law.flow
         states, derivatives = _own_states(where, states, start), derivatives or own
-    elif isinstance(law, FunctionType) and law.__code__.co_argcount == len(CONTROL):
+    else:
+        function = law
+    if isinstance(law, FunctionType) and law.__code__.co_argcount == len(CONTROL):
         raise InputError(f"{where} has no period, and its function is that of a sampled one, "
                          f"({', '.join(CONTROL)}): give period=, or for a continuous controller a "
                          f"function of ({', '.join(LAW)})")

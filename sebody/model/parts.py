@@ -156,7 +156,7 @@ class LawParts(NamedTuple):
     """What makes an element of a continuous controller."""
 
     controller: str
-    states: Node                            # hidden: velocities of its position are the states
+    states: DofBlock                        # hidden: its velocities are the states
     modes: tuple[tuple[str, int], ...]      # superelements and internal modes that it reads
     derivatives: UserFunction | None
 

@@ -236,7 +236,7 @@ def _states(recording: Recording, name: str) -> NDArray:
     """States of a controller, (n, states)."""
     for load in recording.model.loads:
         if load.law is not None and load.law.controller == name:
-            own = stretch(recording.numbering, load.law.states.position)
+            own = stretch(recording.numbering, load.law.states)
             return recording.recorded("v")[:, own]
     first = recording.numbering.all_kept.states[name]
     size = recording.model.controllers[name].states.size

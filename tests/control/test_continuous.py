@@ -394,7 +394,7 @@ def test_what_is_refused():
     refused("has a largest rate", law, ["hub.rotation"], ["motor"], build=lambda: rotor(rate=2.0))
     refused(r"cannot be compiled: write a function \(t, y, x, rates, u, parameters\)",
             lambda t, y, x, rates, u, parameters: "a" + 1, ["hub.rotation"], ["motor"])
-    refused(r"give a function of \(t, y, x, rates, u, parameters\)",
+    refused(r"is that of a sampled one, .*: give period=.*function of \(t, y, x, rates",
             lambda t, y, x, u, parameters: None, ["hub.rotation"], ["motor"])
     model = rotor()
     model.sensor("noisy", "hub.rotation", noise=0.1)

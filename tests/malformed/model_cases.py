@@ -264,8 +264,8 @@ CONTROL = {
         "node": [(None, f"{MOTOR} acts on nothing, or on several things"),
                  *[pair for pair in nodes(foreign, lacks_place) if pair[0] is not None]],
         "direction": [*have("give", None, (1.0, 2.0), "123"),
-                      ((0.0, 0.0, 0.0), f"{MOTOR} has the direction (0.0, 0.0, 0.0), along which it "
-                       "pushes nothing")],
+                      ((0.0, 0.0, 0.0), f"{MOTOR} has the direction (0.0, 0.0, 0.0), along which "
+                       "it pushes nothing")],
         "ratio": are(f"{MOTOR}: ratio", *NO_NUMBER, 0.0),
         "inertia": [*are(f"{MOTOR}: inertia", *NO_NUMBER, -1.0), (1.0, "no rotor turns with")],
         "lag": are(f"{MOTOR}: lag", *NO_NUMBER, -1.0), "start": are(f"{MOTOR}: start", *NO_NUMBER),
