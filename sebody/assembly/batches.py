@@ -19,6 +19,7 @@ from sebody.assembly.contracts import (
     positions_of,
 )
 from sebody.assembly.floating import floating_constants, frame_conditions
+from sebody.assembly.laws import ActuatorRow, law_constants, law_counts, law_row
 from sebody.assembly.numbering import Numbering, coordinates
 from sebody.assembly.rigid_part import rigid_part_constants
 from sebody.contract.layout import AT_POSITIONS, AT_ROTATIONS, whole_vectors
@@ -100,8 +101,11 @@ def make_batches(model: Mechanism, numbering: Numbering) -> Batches:
     working = [e for e in elements if element_kernel(e.kind).POWER]
     frames = {body: k for k, body in enumerate(model.bodies.values())}
     joints = _element_batches(numbering, constants, idle, frames)
-    loads = _element_batches(numbering, constants, working, frames)
-    return Batches(bodies + joints + loads, len(bodies), len(bodies) + len(joints),
+    loads = _element_batches(numbering, constants, [e for e in working if e.law is None], frames)
+    # these set amplitudes of the loads behind them
+    laws = _law_batches(model, numbering, constants, [e for e in working if e.law is not None],
+                        loads)
+    return Batches(bodies + joints + laws + loads, len(bodies), len(bodies) + len(joints),
                    np.concatenate(constants.rows))
 
 
@@ -151,6 +155,26 @@ def _element_batches(numbering: Numbering, constants: _Constants, elements: Iter
     return list(batches.values())
 
 
+def _law_batches(model: Mechanism, numbering: Numbering, constants: _Constants,
+                 laws: Iterable[Element], loads: Iterable[Batch]) -> list[Batch]:
+    """Batches of continuous controllers, which call the kernels of their actuators."""
+    batches: dict[tuple, Batch] = {}
+    rows = {owner: ActuatorRow(batch.kernel.kernel.address, unknowns, row)
+            for batch in loads for owner, unknowns, row in zip(
+                batch.owners, batch.unknowns, batch.rows, strict=True)}
+    for element in laws:
+        kernel, unknowns = element_kernel(element.kind), element_unknowns(numbering, element)
+        check_element(element, kernel, len(unknowns), numbering)
+        own = constants_row(element.name, kernel, law_counts(model, element),
+                            law_constants(model, numbering, element))
+        row = index_row(element.name, kernel, unknowns, constants=constants.add(own),
+                        frame=_kept_at(numbering, element, 0), port=numbering.ports[element],
+                        positions=positions_of(element), nodes=_matrices(numbering, element))
+        row = row + law_row(model, numbering, element, unknowns, rows)
+        _append(batches, kernel, -1, row, unknowns, element, len(unknowns))
+    return list(batches.values())
+
+
 def _element_constants(element: Element, kernel: ModuleType) -> NDArray:
     """The row of constants; a load on a body has what places the frame, too."""
     if element.body is None:
@@ -168,7 +192,7 @@ def _matrices(numbering: Numbering, element: Element) -> list[int]:
 
 def _append(batches: dict[tuple, Batch], kernel: ModuleType, frame: int, row: list[int],
             unknowns: list[int], owner: int, full: int) -> None:
-    key = kernel.__name__, row[AT_POSITIONS], row[AT_ROTATIONS], len(unknowns)
+    key = kernel.__name__, row[AT_POSITIONS], row[AT_ROTATIONS], len(unknowns), len(row)
     batch = batches.setdefault(key, Batch(kernel, len(unknowns), [], [], [], [], []))
     batch.frames.append(frame)
     batch.rows.append(row)
@@ -183,6 +207,8 @@ def element_unknowns(numbering: Numbering, element: Element) -> list[int]:
     if element.body is not None:
         first = numbering.modes[element.body.name]
         unknowns += range(first, first + element.body.reduced.modes)
+    if element.law is not None:
+        unknowns += [numbering.modes[body] + mode for body, mode in element.law.modes]
     if element.mode is not None:
         unknowns.append(numbering.modes[element.mode[0]] + element.mode[1])
     if element.multipliers:

@@ -11,6 +11,7 @@ from sebody.assembly.links import Ends, link_ends
 from sebody.assembly.numbering import Numbering, number, stretch
 from sebody.assembly.ports import port_arrays
 from sebody.assembly.structure import Structure, indices
+from sebody.contract.law_row import scratch
 from sebody.contract.layout import AT_CONSTANTS, scratch_size
 from sebody.engine.links import Links
 from sebody.engine.system import System
@@ -18,6 +19,7 @@ from sebody.errors import InputError
 from sebody.kernels.loader import element_kernel, load
 from sebody.model.extent import extent
 from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Element
 
 DENSE_LIMIT = 24        # unknowns above which elimination by blocks is faster than an inverse
 
@@ -85,7 +87,16 @@ def work_size(model: Mechanism) -> int:
     rows += [scratch_size(element_kernel(one.kind).WORK_ROWS, 0, len(one.body.reduced.stiffness),
                           len(one.body.rotations)) for one in model.loads if one.body is not None]
     elements = max((sum(t.start.size for t in one.dof_blocks) for one in model.loads), default=0)
+    rows += [_law_scratch(model, one) for one in model.loads if one.law is not None]
     return max([*rows, 64, 4 * elements])
+
+
+def _law_scratch(model: Mechanism, element: Element) -> int:
+    """Scratch memory of a continuous controller and its actuators."""
+    controller = model.controllers[element.law.controller]
+    width = sum(t.start.size for t in element.dof_blocks) + len(element.law.modes)
+    return scratch(len(controller.inputs), controller.states.size, len(controller.outputs), width,
+                   width)
 
 
 def _parts(model: Mechanism, numbering: Numbering) -> NDArray:

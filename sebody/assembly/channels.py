@@ -10,17 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.numbering import Numbering, record_counts
+from sebody.contract.law_row import ANGLE, DOT, IN_PLANE, INTO, OUTSIDE, TURNED
 from sebody.contract.layout import RECORD
-from sebody.engine.control_data import (
-    ANGLE,
-    CHANNEL_NUMBERS,
-    CHANNEL_PLACES,
-    DOT,
-    IN_PLANE,
-    INTO,
-    OUTSIDE,
-    TURNED,
-)
+from sebody.engine.control_data import CHANNEL_NUMBERS, CHANNEL_PLACES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Joint, Node
 

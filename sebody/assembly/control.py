@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from sebody.assembly.channels import channel
 from sebody.assembly.kept import Kept
 from sebody.assembly.numbering import Numbering
+from sebody.contract.law_row import OUTSIDE
 from sebody.contract.layout import INPUT_NUMBERS
 from sebody.engine.control_data import (
     CHANNEL_NUMBERS,
@@ -22,13 +23,12 @@ from sebody.engine.control_data import (
     ITS_QUEUE,
     NEVER,
     NEXT,
-    OUTSIDE,
     SENSOR,
     STOP,
     Control,
 )
 from sebody.model.control_parts import Controller, Sensor
-from sebody.model.controllers import order
+from sebody.model.controllers import continuous, order, sampled, signals
 from sebody.model.mechanism import Mechanism
 
 
@@ -43,7 +43,7 @@ class Task(NamedTuple):
 def control_arrays(model: Mechanism, numbering: Numbering, table_at: NDArray) -> Control:
     """The arrays of a model."""
     kept = numbering.kept
-    sensors, controllers = list(kept.sensors), list(model.controllers.values())
+    sensors, controllers = list(kept.sensors), sampled(model)
     tasks = _tasks(sensors, controllers, order(model))
     numbers = {sensor.name: k for k, sensor in enumerate(sensors)}
     channels = [channel(model, numbering, one.quantity, one.axes) for one in sensors]
@@ -54,6 +54,7 @@ def control_arrays(model: Mechanism, numbering: Numbering, table_at: NDArray) ->
                               initial=first))
     wires, at_wires = _wires(kept, controllers, numbers)
     ends, at_ends = _ends(kept, controllers)
+    held = {*signals(model), *(one.name for one in sensors if one.period)}
     at_parameters = list(accumulate((len(c.parameters) for c in controllers), initial=0))
     return Control(
         tasks=_table([(one.kind, one.number) for one in tasks], 2),
@@ -75,6 +76,10 @@ def control_arrays(model: Mechanism, numbering: Numbering, table_at: NDArray) ->
                          for port in kept.inputs], dtype=float).reshape(-1, 2),
         parameters=np.concatenate([np.zeros(0), *(c.parameters for c in controllers)]),
         outside=np.array([int(any(one.places[0] == OUTSIDE for one in channels))]),
+        flowing=np.array([kept.values[name] for one in continuous(model) for name in one.outputs],
+                         dtype=np.int64),
+        read=np.array([int(any(name in held for one in continuous(model)
+                               for name in one.inputs))]),
         memory=np.array([scratch[-1]]))
 
 
@@ -87,7 +92,7 @@ def begin(model: Mechanism, numbering: Numbering, control: Control, memory: NDAr
     for port, place in kept.inputs.items():
         start = numbering.time_functions[port].at(0.0)[0]
         frames[place:place + INPUT_NUMBERS] = start, 0.0, start
-    for k, one in enumerate(model.controllers.values()):
+    for k, one in enumerate(sampled(model)):
         first = kept.states[one.name]
         frames[first:first + len(one.states)] = one.states
         if one.delay:

@@ -44,6 +44,8 @@ def elimination_order(model: Mechanism) -> tuple[list[Part], dict[Element, set[D
     parts = [_part(b.name, [*b.rotations, *b.positions], b.reduced.modes)
              for b in model.bodies.values()]
     parts += [_part(e.name, e.dof_blocks[::-1], 0) for e in model.rigid_bodies.values()]
+    parts += [_part(e.name, [e.law.states], 0) for e in model.loads
+              if e.law is not None and e.law.states in e.dof_blocks]
     owners: dict[DofBlock, list[int]] = {}
     for k, part in enumerate(parts):
         for dof_block in part.parents:

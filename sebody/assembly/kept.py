@@ -12,7 +12,7 @@ from sebody.contract.layout import INPUT_NUMBERS
 from sebody.errors import InputError
 from sebody.kernels.loader import element_kernel
 from sebody.model.control_parts import Controller, Sensor
-from sebody.model.controllers import actuators, signals
+from sebody.model.controllers import actuators, sampled, signals
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Superelement
 
@@ -33,7 +33,7 @@ def kept(model: Mechanism, ports: Mapping[Element | Superelement, int]) -> Kept:
     """Number what is kept; `ports` are those of loads."""
     memories, first = {}, 9 * len(model.bodies)
     for one in model.loads:
-        if count := len(element_kernel(one.kind).MEMORY):
+        if count := _count(model, one):
             memories[one] = list(range(first, first + count))
             first += count
     inputs = {ports[one]: first + INPUT_NUMBERS * k
@@ -45,17 +45,24 @@ def kept(model: Mechanism, ports: Mapping[Element | Superelement, int]) -> Kept:
     values = {name: first + k for k, name in enumerate(names)}
     values |= {name: inputs[port] for name, port in own.items()}
     first += len(names)
-    controllers = list(model.controllers.values())
+    controllers = sampled(model)
     places = list(accumulate((len(one.states) for one in controllers), initial=first))
     states = {one.name: place for one, place in zip(controllers, places, strict=False)}
     return Kept(memories, inputs, own, sensors, values, states, places[-1])
+
+
+def _count(model: Mechanism, one: Element) -> int:
+    """How many numbers an element keeps; a continuous controller what it reads."""
+    if one.law is not None:
+        return len(model.controllers[one.law.controller].inputs)
+    return len(element_kernel(one.kind).MEMORY)
 
 
 def _sensors(model: Mechanism) -> list[Sensor]:
     """Sensors, and quantities that controllers name without one."""
     found = dict(model.sensors)
     known = {*found, *signals(model), *actuators(model)}
-    for controller in model.controllers.values():
+    for controller in sampled(model):
         for name in controller.inputs:
             if name not in known and name not in found:
                 _check_quantity(model, controller, name, known)

@@ -64,6 +64,14 @@ def stretch(numbering: Numbering, dof_block: DofBlock) -> slice:
     return slice(first, first + dof_block.start.size)
 
 
+def hidden_states(model: Mechanism, numbering: Numbering) -> dict[int, str]:
+    """Coordinates whose velocities are states of continuous controllers, and names of these."""
+    return {coordinate: f"{load.law.controller}.states.{k}"
+            for load in model.loads
+            if load.law is not None and load.law.states in numbering.dof_blocks
+            for k, coordinate in enumerate(coordinates(numbering, load.law.states))}
+
+
 def rotational(model: Mechanism, numbering: Numbering) -> NDArray:
     """Which coordinates belong to rotations, (total,) of bool."""
     found = np.zeros(numbering.total, dtype=bool)

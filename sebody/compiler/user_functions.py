@@ -185,7 +185,9 @@ class ControlFunction(UserFunction):
 
 
 def compile_controller(name: str, function: Callable[..., None],
-                       sizes: tuple[int, int, int, int]) -> ControlFunction:
+                       sizes: tuple[int, int, int, int],
+                       shape: str = "t, y, x, u, parameters", written: str = "u and x"
+                       ) -> ControlFunction:
     """A user's ``controller(t, y, x, u, parameters)`` as a C function of pointers.
 
     It returns 1 after a fault: what raises, and outputs or states that are not finite.
@@ -194,6 +196,8 @@ def compile_controller(name: str, function: Callable[..., None],
     ----------
     sizes : tuple of int
         Of y, x, u and the parameters.
+    shape, written : str
+        Arguments of the function as its user wrote it, and those it sets, for messages.
 
     Raises
     ------
@@ -229,9 +233,9 @@ def compile_controller(name: str, function: Callable[..., None],
             return 1 if raised else 0
         made.compiled = cfunc(CONTROLLER)(call)
     except Exception as error:
-        raise InputError(f"controller {name!r} cannot be compiled: write controller(t, y, x, u, "
-                         "parameters) with arithmetic, math and numpy only, which sets entries of "
-                         f"u and x and changes nothing else ({_reason(error)})") from error
+        raise InputError(f"controller {name!r} cannot be compiled: write a function "
+                         f"({shape}) with arithmetic, math and numpy only, which sets entries of "
+                         f"{written} and changes nothing else ({_reason(error)})") from error
     return made
 
 

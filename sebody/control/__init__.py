@@ -4,10 +4,12 @@ from sebody.control.law import Law
 from sebody.control.laws import (
     computed_torque,
     discrete,
+    linear,
     lookup,
     low_pass,
     pid,
     state_feedback,
 )
 
-__all__ = ["Law", "computed_torque", "discrete", "lookup", "low_pass", "pid", "state_feedback"]
+__all__ = ["Law", "computed_torque", "discrete", "linear", "lookup", "low_pass", "pid",
+           "state_feedback"]

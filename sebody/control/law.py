@@ -4,11 +4,32 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody.errors import InputError
+
+
+class Flow(NamedTuple):
+    """The continuous form of a law.
+
+    Attributes
+    ----------
+    function : callable
+        ``law(t, y, x, rates, u, parameters)``.
+    states : (n,)
+        Its states at the start.
+    parameters : (m,)
+    derivatives : callable, optional
+        ``derivatives(t, y, x, derivatives, parameters)``.
+    """
+
+    function: Callable[..., None]
+    states: NDArray
+    parameters: NDArray
+    derivatives: Callable[..., None] | None = None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -26,6 +47,8 @@ class Law:
         Its states at the start.
     packed : callable
         Its parameters (m,) for a period.
+    flow : Flow, optional
+        Its continuous form; without one it is sampled.
     """
 
     title: str
@@ -34,6 +57,7 @@ class Law:
     outputs: int
     states: NDArray
     packed: Callable[[float], NDArray]
+    flow: Flow | None = None
 
     def __repr__(self) -> str:
         return f"<Law: {self.title}>"

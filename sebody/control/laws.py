@@ -1,4 +1,4 @@
-"""Ready control laws for `Model.controller`, all of them sampled.
+"""Ready control laws for `Model.controller`, sampled and most of them continuous, too.
 
 A law is a compiled function with numbers: parameters that depend on the period are made when the
 controller is, with its period.
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
-from sebody.control.law import Law, constant
+from sebody.control.law import Flow, Law, constant
 from sebody.errors import InputError
 
 NONE = np.zeros(0)
@@ -22,8 +22,10 @@ def pid(kp: float, ki: float = 0.0, kd: float = 0.0, filter: float = 100.0,
         reference: float = 0.0, limit: float | tuple[float, float] | None = None) -> Law:
     """``u = kp e + ki I + kd D`` with ``e = r - y``, the integral I of e, the rate D of -y.
 
-    With the period T they are ``I += T e`` and ``D = (D + N (y_last - y)) / (1 + N T)``. The
-    integral rests while the output is cut off and the error would drive it further (anti-windup).
+    With the period T they are ``I += T e`` and ``D = (D + N (y_last - y)) / (1 + N T)``;
+    continuous ones ``I' = e`` and ``D = z' = N (-y - z)`` with states I, z, where z is -y at the
+    start if the rate is none (``states=(0, -y)``). The integral rests while the output is cut off
+    and the error would drive it further (anti-windup).
 
     Parameters
     ----------
@@ -46,7 +48,8 @@ def pid(kp: float, ki: float = 0.0, kd: float = 0.0, filter: float = 100.0,
     numbers = [*gains, inputs.number(filter, "pid: filter", above=0.0),
                inputs.number(reference, "pid: reference"), *_limits(limit, "pid: limit")]
     return Law("pid", _pid, (1, 2), 1, np.zeros(4),
-               lambda period: np.array([period, *numbers]))
+               lambda period: np.array([period, *numbers]),
+               Flow(_pid_flow, np.zeros(2), np.array(numbers)))
 
 
 def _pid(t, y, x, u, parameters):
@@ -63,6 +66,17 @@ def _pid(t, y, x, u, parameters):
     u[0] = min(max(raw, least), most)
     if raw == u[0] or (raw - u[0]) * ki * e <= 0.0:
         x[0] = integral
+
+
+def _pid_flow(t, y, x, rates, u, parameters):
+    kp, ki, kd, N, r, least, most = parameters
+    if y.size == 2:
+        r = y[1]
+    e = r - y[0]
+    rates[1] = N * (-y[0] - x[1])
+    raw = kp * e + ki * x[0] + kd * rates[1]
+    u[0] = min(max(raw, least), most)
+    rates[0] = e if raw == u[0] or (raw - u[0]) * ki * e <= 0.0 else 0.0
 
 
 def state_feedback(gain: ArrayLike, reference: ArrayLike | None = None,
@@ -83,7 +97,9 @@ def state_feedback(gain: ArrayLike, reference: ArrayLike | None = None,
     r = np.zeros(n) if reference is None else inputs.vector(reference, "state_feedback: reference",
                                                             n)
     u0 = np.zeros(m) if offset is None else inputs.vector(offset, "state_feedback: offset", m)
-    return Law("state feedback", _feedback, (n,), m, NONE, constant(K, r, u0))
+    packed = constant(K, r, u0)
+    return Law("state feedback", _feedback, (n,), m, NONE, packed,
+               _without_states(_feedback, packed(0.0)))
 
 
 def _feedback(t, y, x, u, parameters):
@@ -102,14 +118,71 @@ def discrete(A: ArrayLike, B: ArrayLike, C: ArrayLike, D: ArrayLike) -> Law:
     A, B, C, D : (k, k), (k, n), (m, k), (m, n)
         Such as a compensator by python-control with the controller's period.
     """
-    A, D = (np.atleast_2d(inputs.array(np.atleast_2d(X), f"discrete: {name}", (None, None)))
+    matrices = _matrices("discrete", A, B, C, D)
+    k, (m, n) = len(matrices[0]), matrices[3].shape
+    return Law("a discrete system", _discrete, (n,), m, np.zeros(k), constant(*matrices))
+
+
+def linear(A: ArrayLike, B: ArrayLike, C: ArrayLike, D: ArrayLike) -> Law:
+    """``x' = A x + B y``, ``u = C x + D y``: a linear system in continuous time.
+
+    Parameters
+    ----------
+    A, B, C, D : (k, k), (k, n), (m, k), (m, n)
+        Such as a compensator or an observer by python-control.
+    """
+    matrices = _matrices("linear", A, B, C, D)
+    k, (m, n) = len(matrices[0]), matrices[3].shape
+    return Law("a linear system", _only_continuous, (n,), m, np.zeros(k), _needs_no_period(
+        "linear"), _linear_flow(matrices))
+
+
+def _linear_flow(matrices: list[NDArray]) -> Flow:
+    A, B, C, D = matrices
+    return Flow(_linear, np.zeros(len(A)), constant(np.block([[B, A], [D, C]]))(0.0),
+                _linear_derivatives)
+
+
+def _linear(t, y, x, rates, u, parameters):
+    n, k, m = y.size, x.size, u.size
+    for i in range(k + m):
+        row, found = i * (n + k), 0.0
+        for j in range(n):
+            found += parameters[row + j] * y[j]
+        for j in range(k):
+            found += parameters[row + n + j] * x[j]
+        if i < k:
+            rates[i] = found
+        else:
+            u[i - k] = found
+
+
+def _linear_derivatives(t, y, x, derivatives, parameters):
+    rows, columns = derivatives.shape
+    for i in range(rows):
+        for j in range(columns):
+            derivatives[i, j] = parameters[i * columns + j]
+
+
+def _only_continuous(t, y, x, u, parameters):
+    u[0] = np.nan
+
+
+def _needs_no_period(name: str) -> Callable[[float], NDArray]:
+    def refuse(period: float) -> NDArray:
+        raise InputError(f"{name} is a law in continuous time and was given the period {period:g}: "
+                         "leave out period=, or give discrete(A, B, C, D) for it")
+    return refuse
+
+
+def _matrices(law: str, A: ArrayLike, B: ArrayLike, C: ArrayLike, D: ArrayLike) -> list[NDArray]:
+    A, D = (np.atleast_2d(inputs.array(np.atleast_2d(X), f"{law}: {name}", (None, None)))
             for name, X in (("A", A), ("D", D)))
     k, (m, n) = len(A), D.shape
-    matrices = [inputs.array(np.reshape(X, shape) if np.size(X) == shape[0] * shape[1] else X,
-                             f"discrete: {name}", shape)
-                for name, X, shape in (("A", A, (k, k)), ("B", B, (k, n)), ("C", C, (m, k)),
-                                       ("D", D, (m, n)))]
-    return Law("a discrete system", _discrete, (n,), m, np.zeros(k), constant(*matrices))
+    return [inputs.array(np.reshape(X, shape) if np.size(X) == shape[0] * shape[1] else X,
+                         f"{law}: {name}", shape)
+            for name, X, shape in (("A", A, (k, k)), ("B", B, (k, n)), ("C", C, (m, k)),
+                                   ("D", D, (m, n)))]
 
 
 def _discrete(t, y, x, u, parameters):
@@ -133,7 +206,7 @@ def _discrete(t, y, x, u, parameters):
 
 
 def low_pass(frequency: float, order: int = 2) -> Law:
-    """Butterworth's low-pass filter of one signal, in discrete time by Tustin's rule.
+    """Butterworth's low-pass filter of one signal; sampled by Tustin's rule.
 
     Parameters
     ----------
@@ -151,7 +224,28 @@ def low_pass(frequency: float, order: int = 2) -> Law:
             raise InputError(f"low_pass: frequency is {frequency:g}, and the period {period:g} "
                              f"samples it with {1 / period:g}: give less than half of this")
         return constant(*tf2ss(*butter(order, 2.0 * frequency * period)))(period)
-    return Law("a low-pass filter", _discrete, (1,), 1, np.zeros(order), packed)
+
+    return Law("a low-pass filter", _discrete, (1,), 1, np.zeros(order), packed,
+               _linear_flow(_butterworth(frequency, order)))
+
+
+def _butterworth(frequency: float, order: int) -> list[NDArray]:
+    """Butterworth's filter in continuous time, as sections in series.
+
+    Of a pair of poles ``w^2 / (s^2 + 2 c w s + w^2)``, of a real one ``w / (s + w)``.
+    """
+    w = 2.0 * np.pi * frequency
+    A, B = np.zeros((order, order)), np.zeros((order, 1))
+    before, k = -1, 0       # the state that a section gets; the input for the first
+    for pair in range(order // 2):
+        c = np.sin(np.pi * (2 * pair + 1) / (2 * order))
+        A[k, k], A[k, k + 1], A[k + 1, k] = -2.0 * c * w, -w, w
+        (B if before < 0 else A)[k, max(before, 0)] = w
+        before, k = k + 1, k + 2
+    if order % 2:
+        A[k, k] = -w
+        (B if before < 0 else A)[k, max(before, 0)] = w
+    return [A, B, np.eye(order)[-1:], np.zeros((1, 1))]
 
 
 def lookup(points: ArrayLike, values: ArrayLike) -> Law:
@@ -168,7 +262,8 @@ def lookup(points: ArrayLike, values: ArrayLike) -> Law:
     values = inputs.vector(values, "lookup: values", len(points))
     if len(points) < 2 or not (np.diff(points) > 0).all():
         raise inputs.refusal("lookup: points", points, "give at least two that ascend")
-    return Law("a lookup", _lookup, (1,), 1, NONE, constant(points, values))
+    packed = constant(points, values)
+    return Law("a lookup", _lookup, (1,), 1, NONE, packed, _without_states(_lookup, packed(0.0)))
 
 
 def _lookup(t, y, x, u, parameters):
@@ -211,7 +306,16 @@ def computed_torque(dynamics: Callable[..., None], reference: Callable[..., None
             u[i] = bias[i]
             for j in range(n):
                 u[i] += mass[i, j] * wanted[j]
-    return Law("computed torque", law, (2 * n,), n, NONE, constant(*gains))
+    packed = constant(*gains)
+    return Law("computed torque", law, (2 * n,), n, NONE, packed,
+               _without_states(law, packed(0.0)))
+
+
+def _without_states(function: Callable[..., None], parameters: NDArray) -> Flow:
+    """The continuous form of a law without states: the same."""
+    def law(t, y, x, rates, u, parameters):
+        function(t, y, x, u, parameters)
+    return Flow(law, NONE, parameters)
 
 
 def _limits(limit: float | tuple[float, float] | None, what: str) -> tuple[float, float]:

@@ -11,21 +11,18 @@ from numba import types
 from numba.extending import intrinsic
 
 from sebody.compiler.decorators import compiled
+from sebody.contract.law_row import ANGLE, DOT, IN_PLANE, INTO, TURNED
 from sebody.engine.control_data import (
-    ANGLE,
     BIAS,
     CHANNEL,
     COUNTS,
     DELAY,
-    DOT,
     ENDS,
     FAULTY,
     FIRST_END,
     FIRST_WIRE,
     FUNCTION,
     HAS,
-    IN_PLANE,
-    INTO,
     ITS_DELAY,
     ITS_QUEUE,
     NEVER,
@@ -38,7 +35,6 @@ from sebody.engine.control_data import (
     SLOT,
     STATES,
     STOP,
-    TURNED,
     WAITS,
     WIRES,
 )
@@ -69,7 +65,7 @@ def sample(system, state):
             continue
         number = own.tasks[k, 1]
         if own.tasks[k, 0] == SENSOR:
-            _hold(system, state, number)
+            changed |= _hold(system, state, number)
         else:
             status = _control(system, state, number)
             if status < 0:
@@ -98,7 +94,10 @@ def set_next(own, memory):
 
 @compiled
 def _hold(system, state, k):
-    """Read a sensor with a rate of its own, and hold what it reads, or read some samples ago."""
+    """Read a sensor with a rate of its own, and hold what it reads, or read some samples ago.
+
+    Returns whether something jumps with it.
+    """
     own, row = system.control, system.control.sensors[k]
     value = _reading(system, state, k)
     if row[DELAY] > 0:
@@ -109,7 +108,9 @@ def _hold(system, state, k):
         place = 1 + np.int64(queue[0])
         value, queue[place] = queue[place], value
         queue[0] = place % row[DELAY]
+    jumps = own.read[0] == 1 and state.frames[row[SLOT]] != value
     state.frames[row[SLOT]] = value
+    return jumps
 
 
 @compiled
@@ -208,6 +209,7 @@ def _control(system, state, k):
         if number >= 0:
             changed |= set_input(system, state, number, memory[u + i])
         else:
+            changed |= np.int64(own.read[0] == 1 and state.frames[signal] != memory[u + i])
             state.frames[signal] = memory[u + i]
     return changed
 

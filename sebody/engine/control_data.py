@@ -6,8 +6,7 @@ from numpy.typing import NDArray
 
 from sebody.engine.arrays import Arrays
 
-# kinds of channels, and numbers of a row of `Control.channels` and `Control.coefficients`
-OUTSIDE, DOT, TURNED, ANGLE, INTO, IN_PLANE = range(6)
+# numbers of a row of `Control.channels` and `Control.coefficients`
 CHANNEL_PLACES, CHANNEL_NUMBERS = 2, 10
 # numbers of a row of `Control.sensors`: where its value is in State.frames, its channel, its delay
 # in samples, its queue in State.memory
@@ -45,6 +44,8 @@ class Control(Arrays):
     limits          (i, 2) least and largest value; none where the largest is below the least
     parameters      of all controllers
     outside         (1,) 1 where Python has to read a sensor
+    flowing         (f,) places in `State.frames` that continuous controllers set
+    read            (1,) 1 where continuous controllers read what is sampled
     memory          (1,) length of `State.memory`
     ==============  ================================================================================
     """
@@ -63,4 +64,6 @@ class Control(Arrays):
     limits: NDArray
     parameters: NDArray
     outside: NDArray
+    flowing: NDArray
+    read: NDArray
     memory: NDArray

@@ -146,7 +146,8 @@ def _evaluate(system, state, scheme, wanted, mixed):
     if wanted == EVALUATED:
         set_tangent_operators(system, state)
     if (wanted == KEPT and state.control.iteration > 1 and mixed
-            and system.links.dependent.shape[0] == 0):
+            and system.links.dependent.shape[0] == 0
+            and system.control.flowing.size == 0):      # which push what has not moved
         status = assemble_moved(system, state, UNMOVED * state.clock.target)
     else:
         status = assemble(TANGENT if wanted == EVALUATED else RESIDUAL,

@@ -185,7 +185,9 @@ def _write_row(system, state, row, at, t, s, h):
     for k in range(state.works.size):
         row[RECORD_WORKS + k] = _cubic(s, state.works_old[k], h * state.powers_old[k],
                                        state.works[k], h * state.powers[k])
-    total = state.q.size
+    total, frames = state.q.size, row.size - 2 * state.frames.size
+    for k in system.control.flowing:
+        row[frames + k] = state.frames_old[k] + s * (state.frames[k] - state.frames_old[k])
     q, v, a = (row[at[Q_PART]:at[Q_PART] + total], row[at[V_PART]:at[V_PART] + total],
                row[at[A_PART]:at[A_PART] + total])
     R = row[at[R_PART]:at[R_PART] + state.R.size]

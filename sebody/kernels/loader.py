@@ -23,7 +23,9 @@ from sebody.contract.names import (
 from sebody.errors import InputError
 
 DERIVE = "python -m sebody.derive"
-USER_FORCE = element_name("user_force")      # written by hand, in this room
+# written by hand, in this room
+BY_HAND = {element_name("user_force"): "sebody.kernels.user_force",
+           element_name("continuous"): "sebody.kernels.continuous"}
 
 
 def user_directory() -> Path:
@@ -68,8 +70,8 @@ def load(name: str) -> ModuleType | None:
     InputError
         A kernel of another version of sebody: see `find`.
     """
-    if name == USER_FORCE:
-        return import_module("sebody.kernels.user_force")   # the one kernel that is not generated
+    if name in BY_HAND:
+        return import_module(BY_HAND[name])
     path = find(name)
     if path is None:
         return None
@@ -123,7 +125,7 @@ def element_kernel_name(kind: str) -> str:
     """
     name, planar = element_name(kind), kind.startswith(IN_PLANE)
     other = kind.removeprefix(IN_PLANE) if planar else IN_PLANE + kind
-    if name != USER_FORCE and not find(name):
+    if name not in BY_HAND and not find(name):
         if find(element_name(other)):
             spaces = ("a plane", "space") if planar else ("space", "a plane")
             raise InputError(f"element {kind!r} does not exist for motion in {spaces[0]}, only "

@@ -164,6 +164,9 @@ def _on_node(model: Mechanism, name: str, where: str, node: Node | str,
         dof_block(node, "rotation")
         constants, attachments = {"d": rotation_vector(model, direction, where)}, rotations(node)
     constants["d"] = ratio * np.asarray(constants["d"])
+    if not constants["d"].any():
+        raise InputError(f"{where} has the direction {inputs.shown(direction)}, along which it "
+                         "pushes nothing: give one that is not zero")
     return Element(chosen_name(model, name, "actuator"), model.kind_of(chosen), attachments,
                    constants,
                    time_function=time_function)

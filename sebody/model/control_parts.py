@@ -28,18 +28,19 @@ class Sensor:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Controller:
-    """A compiled function that is called at every sample."""
+    """A compiled function that is called at every sample, or in the equations of motion."""
 
     name: str
     function: UserFunction
     inputs: tuple[str, ...]         # names of sensors, of signals and of actuators
     outputs: tuple[str, ...]        # names of actuators, else of signals
-    period: float
+    period: float                   # 0 of a continuous one
     delay: int                      # of its outputs, in samples
     states: NDArray                 # at the start
     parameters: NDArray
 
     def __repr__(self) -> str:
+        course = f"period {self.period:.6g}" if self.period else "continuous"
         return (f"<Controller {self.name!r} from {', '.join(self.inputs) or 'nothing'} to "
-                f"{', '.join(self.outputs)}: period {self.period:.6g}, "
+                f"{', '.join(self.outputs)}: {course}, "
                 f"{counted(len(self.states), 'state')}>")

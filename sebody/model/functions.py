@@ -21,6 +21,8 @@ from sebody.model.outside import defaults, is_helper, refuse, values_read
 # arguments
 OF_TIME, FORCE = ("t",), ("t", "x", "v", "force")
 CONTROL = "t", "y", "x", "u", "parameters"
+LAW = "t", "y", "x", "rates", "u", "parameters"
+DERIVATIVES = "t", "y", "x", "derivatives", "parameters"
 
 
 def compiled_history(function: Callable[[float], float], what: str) -> UserFunction:
@@ -62,6 +64,49 @@ def compiled_controller(function: Callable[..., None], name: str, sizes: tuple[i
     what = f"controller {name!r}"
     own = _python(function, what, what, CONTROL)
     return _remembered(compile_controller(name, compilable(own), sizes), own)
+
+
+def compiled_law(function: Callable[..., None], name: str, sizes: tuple[int, int, int, int]
+                 ) -> UserFunction:
+    """A continuous ``law(t, y, x, rates, u, parameters)``, compiled for its kernel.
+
+    `sizes` are those of y, x, u and the parameters. The results are rates of x, then u.
+
+    Raises
+    ------
+    InputError
+        As of `compiled_history`.
+    """
+    what = f"controller {name!r}"
+    own, (inputs, states, outputs, count) = _python(function, what, what, LAW), sizes
+
+    def law(t, y, x, u, parameters):
+        own(t, y, x, u[:states], u[states:], parameters)
+    return _remembered(compile_controller(name, compilable(law),
+                                          (inputs, states, states + outputs, count),
+                                          ", ".join(LAW), "rates and u"), law)
+
+
+def compiled_derivatives(function: Callable[..., None], name: str,
+                         sizes: tuple[int, int, int, int]) -> UserFunction:
+    """Derivatives of a law, ``function(t, y, x, derivatives, parameters)``.
+
+    They are of rates of x, then u, by y, then x: (states + outputs, inputs + states).
+
+    Raises
+    ------
+    InputError
+        As of `compiled_history`.
+    """
+    what = f"derivatives of controller {name!r}"
+    own, (inputs, states, outputs, count) = _python(function, what, what, DERIVATIVES), sizes
+    rows, columns = states + outputs, inputs + states
+
+    def derivatives(t, y, x, u, parameters):
+        own(t, y, x, u.reshape(rows, columns), parameters)
+    return _remembered(compile_controller(name, compilable(derivatives),
+                                          (inputs, states, rows * columns, count),
+                                          ", ".join(DERIVATIVES), "derivatives"), derivatives)
 
 
 def compilable(function: Callable) -> Callable:

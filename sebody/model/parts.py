@@ -152,6 +152,15 @@ class Superelement:
                 + rotations(*(self.nodes[i] for i in self.reduced.rotation_nodes)))
 
 
+class LawParts(NamedTuple):
+    """What makes an element of a continuous controller."""
+
+    controller: str
+    states: DofBlock                        # hidden: its velocities are the states
+    modes: tuple[tuple[str, int], ...]      # superelements and internal modes that it reads
+    derivatives: UserFunction | None
+
+
 @dataclass(eq=False, repr=False)
 class Element:
     """A rigid body, load, spring, or constraint of a joint: a generated kernel on DOF blocks."""
@@ -166,6 +175,7 @@ class Element:
     function: UserFunction | None = None    # compiled function of a user force, kept alive
     body: Superelement | None = None        # on all whose coordinates a load on a body acts
     pressed_by: "Joint | None" = None       # whose multipliers the friction in it reads
+    law: LawParts | None = None             # of a continuous controller
     tuned: Mapping[str, float] = field(default_factory=dict)    # see `sebody.runs.tuning`
     dof_blocks: tuple[DofBlock, ...] = field(init=False)       # those of the places
 

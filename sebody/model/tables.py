@@ -32,7 +32,8 @@ def model_tables(model: Mechanism) -> list[tuple[str, str]]:
 def summary(model: Mechanism) -> str:
     """A line on a model."""
     parts = ((len(model.bodies), "superelement"), (len(model.rigid_bodies), "rigid body"),
-             (len(model.nodes), "node"), (len(model.joints), "joint"), (len(model.loads), "load"))
+             (len(model.nodes), "node"), (len(model.joints), "joint"),
+             (sum(load.law is None for load in model.loads), "load"))
     found = [counted(count, what) for count, what in parts if count]
     gravity = ", ".join(f"{value:g}" for value in model.gravity_field)
     return (f"{'planar' if model.planar else 'spatial'} model: {', '.join(found) or 'empty'}"
@@ -74,7 +75,8 @@ def _sensors(model: Mechanism) -> list[tuple]:
 
 
 def _controllers(model: Mechanism) -> list[tuple]:
-    return [(one.name, ", ".join(one.inputs), ", ".join(one.outputs), f"{one.period:.6g}",
+    return [(one.name, ", ".join(one.inputs), ", ".join(one.outputs),
+             f"{one.period:.6g}" if one.period else "continuous",
              one.delay, len(one.states)) for one in model.controllers.values()]
 
 
@@ -128,7 +130,7 @@ def _loads(model: Mechanism) -> list[tuple]:
              _named({place.node.name: place.node for place in load.attachments}.values())
              or (load.mode[0] if load.mode else ""),
              load.time_function.described() if load.time_function and load.function is None else "")
-            for load in model.loads]
+            for load in model.loads if load.law is None]
 
 
 def _plain(element: Element) -> str:

@@ -36,7 +36,8 @@ def drives(recording: Recording) -> dict[str, Joint | Motion]:
 
 def loads(recording: Recording) -> dict[str, Element]:
     """Loads, springs and dampers on nodes."""
-    return {load.name: load for load in recording.model.loads if load.attachments}
+    return {load.name: load for load in recording.model.loads
+            if load.attachments and load.law is None}
 
 
 def of_body(recording: Recording, name: str) -> NDArray:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.numbering import record_counts
+from sebody.assembly.numbering import record_counts, stretch
 from sebody.contract.layout import ENERGIES
 from sebody.errors import InputError
 from sebody.model.parts import DofBlock
@@ -234,6 +234,10 @@ def _kept(recording: Recording, name: str) -> NDArray:
 
 def _states(recording: Recording, name: str) -> NDArray:
     """States of a controller, (n, states)."""
+    for load in recording.model.loads:
+        if load.law is not None and load.law.controller == name:
+            own = stretch(recording.numbering, load.law.states)
+            return recording.recorded("v")[:, own]
     first = recording.numbering.all_kept.states[name]
     size = recording.model.controllers[name].states.size
     return recording.recorded("frames")[:, first:first + size]

@@ -25,7 +25,7 @@ from sebody.engine import evaluate, links, loop, matrix, newton, restart, step, 
 from sebody.engine.routines import compile_routine
 from sebody.engine.state import Record
 from sebody.kernels import loader
-from sebody.kernels.loader import USER_FORCE, element_kernel_name, find
+from sebody.kernels.loader import BY_HAND, element_kernel_name, find
 from sebody.model.mechanism import Mechanism
 from sebody.model.model import Model
 from sebody.results import motion, postprocessing
@@ -145,8 +145,8 @@ def _examples() -> dict:
 
 
 def _file(name: str) -> Path | None:
-    if name == USER_FORCE:
-        return Path(loader.__file__).with_name("user_force.py")
+    if name in BY_HAND:
+        return Path(loader.__file__).with_name(BY_HAND[name].rpartition(".")[2] + ".py")
     return find(name)
 
 

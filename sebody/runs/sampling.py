@@ -8,12 +8,11 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.assembly.channels import channel
 from sebody.assembly.numbering import Numbering
+from sebody.contract.law_row import DOT, OUTSIDE
 from sebody.engine.control import set_input, set_next
 from sebody.engine.control_data import (
     COUNTS,
-    DOT,
     HAS,
-    OUTSIDE,
     STOP,
     WAITS,
 )
@@ -21,6 +20,7 @@ from sebody.engine.state import ASKED, SAMPLED, State
 from sebody.engine.system import System
 from sebody.errors import InputError
 from sebody.model.control_parts import Sensor
+from sebody.model.controllers import sampled
 from sebody.model.mechanism import Mechanism
 from sebody.results.naming import look_up
 from sebody.results.recording import Recording
@@ -77,7 +77,7 @@ class Sampling:
         tasks = [(f"sensor {one.name!r}", one.period) for one in self.model.sensors.values()
                  if one.period]
         tasks += [(f"controller {one.name!r}", one.period)
-                  for one in self.model.controllers.values()]
+                  for one in sampled(self.model)]
         for what, period in tasks if fixed else ():
             steps = period / h
             if round(steps) < 1 or abs(steps - round(steps)) > MULTIPLE * max(steps, 1.0):

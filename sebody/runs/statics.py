@@ -9,7 +9,7 @@ from sebody import inputs, memory
 from sebody.assembly.evaluation import evaluate
 from sebody.contract.layout import FIELD, RECORD_T, RESIDUAL
 from sebody.engine.evaluate import set_loads
-from sebody.errors import SimulationError
+from sebody.errors import InputError, SimulationError
 from sebody.model.model import Model
 from sebody.results.postprocessing import Forces
 from sebody.results.result import Result
@@ -58,6 +58,7 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     t = inputs.number(t, "t")
     tolerance = inputs.number(tolerance, "tolerance", above=0, below=1)
     model = inputs.instance(model, "model", Model, "give a sebody.Model")
+    _refuse_states(model)
     sticking = any(load.tuned for load in model.loads)
     run = Simulation(model, STICKING if sticking else 1.0)
     unbend(model, run.numbering, run.state)
@@ -102,6 +103,15 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
             raise SimulationError(f"no equilibrium was found above {share:.4g} of the load: "
                                   f"{reason}", _result(run, loads, field))
     return _result(run, loads, field)
+
+
+def _refuse_states(model: Model) -> None:
+    """Refuse continuous controllers with states, which have no value at rest before they rest."""
+    for one in model.controllers.values():
+        if not one.period and one.states.size:
+            raise InputError(f"controller {one.name!r} is continuous and has states, which an "
+                             "equilibrium does not solve for: run the model until it rests, or "
+                             "give the controller a law without states")
 
 
 def _result(run: Simulation, loads: NDArray, field: NDArray) -> Result:

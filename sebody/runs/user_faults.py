@@ -14,13 +14,16 @@ from sebody.model.outside import changed
 def functions(model: Mechanism) -> Iterator[tuple[str, UserFunction]]:
     """The compiled functions of a model, and what each of them is."""
     for element in (*model.constraints, *model.loads):
-        if element.function is not None:
+        if element.function is not None and element.law is None:
             yield f"user force {element.name!r}", element.function
         if element.time_function is not None:
             for function in element.time_function.functions:
                 yield f"the function of {element.name!r}", function
     for name, controller in model.controllers.items():
         yield f"controller {name!r}", controller.function
+    for element in model.loads:
+        if element.law is not None and element.law.derivatives is not None:
+            yield f"derivatives of controller {element.law.controller!r}", element.law.derivatives
     for dof_block in model.dof_blocks():
         for motion in dof_block.motions:
             for function in motion.time_function.functions:

@@ -1,5 +1,6 @@
 """Names of the unknowns as users have them: ``tip.position.y``, ``beam.modes.2``."""
 
+from sebody.assembly.numbering import hidden_states
 from sebody.results.naming import AXES
 from sebody.results.result import Result
 from sebody.runs.simulation import Simulation
@@ -22,4 +23,6 @@ def coordinate_names(run: Simulation | Result) -> list[str]:
         first = numbering.modes[name]
         for k in range(body.reduced.modes):
             found[first + k] = f"{name}.modes.{k}"
+    for coordinate, name in hidden_states(model, numbering).items():
+        found[coordinate] = f"integral of {name}"
     return found

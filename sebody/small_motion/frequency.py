@@ -135,7 +135,8 @@ def frequency_response(run: Simulation | Result, load: str, quantities: str | It
 
 
 def _load(run: Simulation | Result, name: str) -> Element:
-    loads = {load.name: load for load in run.model.loads if load.time_function is not None}
+    loads = {load.name: load for load in run.model.loads
+             if load.time_function is not None and load.law is None}
     if not loads:
         raise InputError("the model has no force or torque whose amplitude could vary: add one, "
                          "of amplitude 0 if it shall not act at rest")

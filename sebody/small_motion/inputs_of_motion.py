@@ -66,7 +66,8 @@ def found(run: Simulation | Result, spin: Spin, name: str) -> Input:
 def _known(run: Simulation | Result) -> dict[str, Element | Motion]:
     """What may be an input, by name."""
     model = run.model
-    elements = [one for one in (*model.loads, *model.constraints) if one.time_function is not None]
+    elements = [one for one in (*model.loads, *model.constraints)
+                if one.time_function is not None and one.law is None]
     motions = [one for dof_block in model.dof_blocks() for one in dof_block.motions]
     return {one.name: one for one in (*elements, *motions)}
 

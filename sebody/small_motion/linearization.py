@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import LinAlgError, eigh, null_space
 
 from sebody import inputs
+from sebody.assembly.numbering import hidden_states
 from sebody.errors import InputError
 from sebody.limits.watch import Watch
 from sebody.results.contact_quantities import states
@@ -139,6 +140,9 @@ def vibrations(run: Simulation | Result, count: int | None = None) -> Vibrations
     if np.abs(run.state.v).max() > 0:
         raise InputError("the state is not at rest: vibrations() needs a state at rest, use modes()"
                          " for moving states")
+    if laws := [one.name for one in run.model.controllers.values() if not one.period]:
+        raise InputError(f"controllers {', '.join(laws)} are continuous, and a closed loop has no "
+                         "undamped vibrations: use modes()")
     M, _, K, free = linearize(run)[:4]
     try:
         squares, shapes = eigh((K + K.T) / 2, (M + M.T) / 2)
@@ -200,6 +204,9 @@ def modes(run: Simulation | Result, spin: ArrayLike | None = None) -> Modes:
     """
     M, C, K, free = linearize(run, spin)[:4]
     found = eigenvalues(M, C, K)
-    shapes = free @ found.shapes
-    return Modes(found.values, shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300),
-                 Shapes(run), found.rounding)
+    # on integrals of controllers' states nothing depends: each has the value 0, which is no mode
+    own = np.sort(np.argsort(np.abs(found.values), kind="stable")[
+        len(hidden_states(run.model, run.numbering)):])
+    shapes = free @ found.shapes[:, own]
+    return Modes(found.values[own], shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300),
+                 Shapes(run), found.rounding[own])

@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import lstsq, lu_factor, lu_solve, qr, solve_triangular
 
 from sebody import inputs as given
+from sebody.assembly.numbering import hidden_states
 from sebody.errors import InputError
 from sebody.results.naming import component_names
 from sebody.results.result import Result
@@ -75,6 +76,9 @@ class StateSpace(NamedTuple):
         for name in self.states:
             whole, rate = name.removesuffix(".rate"), name.endswith(".rate")
             owner, kind, component = [*whole.split("."), "", ""][:3]
+            if kind == "states":        # of a continuous controller
+                found.append(name)
+                continue
             if kind not in RATES or (kind == "rotation" and component):
                 raise InputError(f"no quantity is the state {name!r}: use outputs, of which "
                                  "measurements determine the states")
@@ -205,8 +209,8 @@ def state_space(run: Simulation | Result, inputs: str | Iterable[str],
     values = np.concatenate([np.asarray(base[name]).ravel() for name in wanted])
     labels = [f"{name}.{label}".rstrip(".") for name in wanted
               for label in component_names(answers[name], name)]
-    size = len(A)
-    return StateSpace(A, B, Y[:size].T, Y[size:].T, system.names(),
+    size, kept = len(A), system.own_states
+    return StateSpace(A[np.ix_(kept, kept)], B[kept], Y[kept].T, Y[size:].T, system.names(),
                       tuple(ACCELERATED.format(one.name) if one.moves else one.name
                             for one in own), tuple(labels), values)
 
@@ -244,6 +248,7 @@ class _Constrained:
         driven = [bool(one.moves) for one in own]
         self._driven = np.flatnonzero(driven)
         self._free_names = [coordinate_names(run)[moving[k]] for k in self._independent]
+        self._hidden = hidden_states(run.model, run.numbering)
 
     def _eliminate(self, G: NDArray) -> None:
         """Choose coordinates that follow from the others: those that the constraints hold best."""
@@ -338,5 +343,16 @@ class _Constrained:
     def names(self) -> tuple[str, ...]:
         """Names of the states."""
         driven = [self._own[j].name for j in self._driven]
-        return (*self._free_names, *map(RATE.format, self._free_names), *driven,
-                *map(RATE.format, driven))
+        free = self._moving[self._independent]
+        rates = [self._hidden.get(at, RATE.format(name))
+                 for at, name in zip(free, self._free_names, strict=True)]
+        found = [*self._free_names, *rates, *driven, *map(RATE.format, driven)]
+        return tuple(found[k] for k in self.own_states)
+
+    @property
+    def own_states(self) -> NDArray:
+        """Numbers of the states without integrals of controllers' states: nothing depends on them.
+        """
+        hidden = np.isin(self._moving[self._independent], list(self._hidden))
+        total = 2 * len(self._independent) + 2 * len(self._driven)
+        return np.setdiff1d(np.arange(total), np.flatnonzero(hidden))

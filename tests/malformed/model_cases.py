@@ -253,18 +253,30 @@ def _push(t, y, x, u, parameters):
     u[0] = -y[0]
 
 
+def _flow(t, y, x, rates, u, parameters):
+    u[0] = -y[0]
+
+
 MOTOR, GAUGE, PUSH = "actuator 'motor'", "sensor 'gauge'", "controller 'push'"
 CONTROL = {
     "actuator": Right(Model.actuator, {"name": "motor", "node": "a", "direction": X}, {
         "name": are("name of an actuator", *NO_NAME),
         "node": [(None, f"{MOTOR} acts on nothing, or on several things"),
                  *[pair for pair in nodes(foreign, lacks_place) if pair[0] is not None]],
-        "direction": have("give", None, (1.0, 2.0), "123"),
+        "direction": [*have("give", None, (1.0, 2.0), "123"),
+                      ((0.0, 0.0, 0.0), f"{MOTOR} has the direction (0.0, 0.0, 0.0), along which "
+                       "it pushes nothing")],
         "ratio": are(f"{MOTOR}: ratio", *NO_NUMBER, 0.0),
         "inertia": [*are(f"{MOTOR}: inertia", *NO_NUMBER, -1.0), (1.0, "no rotor turns with")],
         "lag": are(f"{MOTOR}: lag", *NO_NUMBER, -1.0), "start": are(f"{MOTOR}: start", *NO_NUMBER),
         "rate": [pair for pair in positive(f"{MOTOR}: rate") if pair[0] is not None],
         "limit": [*are(f"{MOTOR}: limit", 0.0, -1.0, NAN, (2.0, 1.0), (1.0, 2.0, 3.0))]}),
+    "continuous controller": Right(Model.controller, {"name": "push", "law": _flow, "inputs": [
+            "a.position.x"], "outputs": ["signal"]}, {
+        "inputs": have(PUSH, ["a.acceleration.x"], ["a.position"], ["nothing.position.x"]),
+        "delay": have("write the delay as states", 2),
+        "derivatives": have(f"derivatives of {PUSH}", 3, _flow),
+        "corners": have("", [NAN], "ab"), "law": have(PUSH, None, 3, "sin")}),
     "sensor": Right(Model.sensor, {"name": "gauge", "quantity": "a.position.x", "rate": 10.0}, {
         "name": are("name of a sensor", *NO_NAME),
         "quantity": are(f"{GAUGE}: quantity", *NO_NAME),
@@ -277,7 +289,11 @@ CONTROL = {
         "name": are("name of a controller", *NO_NAME), "law": have(PUSH, None, 3, "sin"),
         "inputs": have(f"inputs of {PUSH}", None, 3),
         "outputs": have(f"outputs of {PUSH}", None, []),
-        "period": positive(f"{PUSH}: period"), "delay": are(f"{PUSH}: delay", *NO_COUNT, -1),
+        "period": [(None, f"{PUSH} has no period, and its function is that of a sampled one"),
+                   *[pair for pair in positive(f"{PUSH}: period") if pair[0] is not None]],
+        "derivatives": have("leave out one of the two", _push),
+        "corners": have("leave out one of the two", [0.5]),
+        "delay": are(f"{PUSH}: delay", *NO_COUNT, -1),
         "states": have(f"{PUSH}: states", "ab", [NAN], [[1.0]]),
         "parameters": have(f"{PUSH}: parameters", "ab", [INF], [[1.0]])}),
 }

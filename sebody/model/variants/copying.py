@@ -41,6 +41,8 @@ def copied(model: Mechanism) -> Mechanism:
     constant += [one for beam in model.beams for one in (beam.section, *beam.bodies)]
     constant += [one for element in elements for one in (element.time_function, element.function)
                  if one is not None]
+    constant += [one.law.derivatives for one in model.loads
+                 if one.law is not None and one.law.derivatives is not None]
     constant += [*model.controllers.values(), *model.sensors.values()]
     constant += [motion.time_function for dof_block in model.dof_blocks()
                  for motion in dof_block.motions]
