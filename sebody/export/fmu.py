@@ -1,0 +1,2 @@
+VERSIONS = ("3.0", "2.0")
+def write_fmu(*a): raise NotImplementedError

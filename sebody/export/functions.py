@@ -1,0 +1,91 @@
+"""LLVM code of the functions that libraries consist of: compiled once for every processor."""
+
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+from typing import NamedTuple
+
+from numba import typeof
+
+from sebody.compiler import code, store, workers
+from sebody.compiler.code import Code
+from sebody.compiler.decorators import function_code, kernel_code
+from sebody.compiler.sources import function_hash, kernel_hash
+from sebody.compiler.workers import Task
+from sebody.engine import control, loop, matrix, restart
+from sebody.errors import InputError, SebodyError
+from sebody.export import quantities
+from sebody.export.platforms import environment
+from sebody.export.terms import no_outputs
+from sebody.kernels.loader import load
+from sebody.runs.first_run import examples
+
+# functions of the engine, and the types of their arguments by the names of `first_run.examples`
+FUNCTIONS = {
+    "advance": (loop.advance, "system state record scheme whole whole flag"),
+    "refactorize": (matrix.refactorize, "system state whole flag"),
+    "restart": (restart.restart, "system state number flag"),
+    "sample": (control.sample, "system state"),
+    "set_input": (control.set_input, "system state whole number"),
+    "evaluate": (quantities.evaluate, "system state outputs"),
+}
+
+
+class _Kept(NamedTuple):
+    """Where code of something is kept."""
+
+    source: Path
+    name: str
+    made_from: str
+
+
+def codes(kernels: Iterable[str], processor: str) -> dict[str, Code]:
+    """Code of the functions of the engine and of some kernels, by name.
+
+    What is not kept is compiled by processes of their own, in which Numba compiles for the
+    processor; a line on standard error says so.
+
+    Raises
+    ------
+    InputError
+        No folder for compiled code can be written.
+    SebodyError
+        Something could not be compiled.
+    """
+    kept = {name: _of_function(name) for name in FUNCTIONS}
+    kept |= {name: _of_kernel(name) for name in kernels}
+    found = {name: code.kept(*place, processor) for name, place in kept.items()}
+    missing = [name for name, one in found.items() if one is None]
+    if missing:
+        if not store.writable_folder(Path(loop.__file__)):
+            raise InputError("code for the library cannot be kept: "
+                             f"{store.not_writable(Path(loop.__file__))}")
+        print(f"first export for {processor}: compiling {len(missing)} functions", file=sys.stderr,
+              flush=True)
+        tasks = [Task(name, f"{__name__}:compile_one", (name, processor)) for name in missing]
+        workers.call_all(tasks, variables=environment(processor))
+        found |= {name: code.kept(*kept[name], processor) for name in missing}
+    if lacking := [name for name, one in found.items() if one is None]:
+        raise SebodyError(f"{', '.join(lacking)} could not be compiled for {processor}")
+    return {name: one for name, one in found.items() if one is not None}
+
+
+def compile_one(name: str, processor: str) -> None:
+    """Compile a function of the engine or a kernel for the processor that Numba compiles for."""
+    if name in FUNCTIONS:
+        function, arguments = FUNCTIONS[name]
+        kinds = examples() | {"outputs": typeof(no_outputs())}
+        made = function_code(function, tuple(kinds[one] for one in arguments.split()))
+        code.keep(*_of_function(name), processor, made)
+    else:
+        code.keep(*_of_kernel(name), processor, kernel_code(load(name).kernel))
+
+
+def _of_function(name: str) -> _Kept:
+    function = FUNCTIONS[name][0].py_func
+    return _Kept(Path(function.__code__.co_filename), name, function_hash(function))
+
+
+def _of_kernel(name: str) -> _Kept:
+    source = Path(load(name).__file__)
+    return _Kept(source, name, kernel_hash(source))

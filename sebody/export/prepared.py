@@ -1,0 +1,155 @@
+"""A model ready to be exported: its state at the start, its memory, inputs, outputs and functions."""
+
+import re
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody import inputs
+from sebody.compiler.choice import way
+from sebody.compiler.code import Code
+from sebody.engine.control_data import FUNCTION, OUTSIDE
+from sebody.engine.state import Scheme
+from sebody.engine.system import System
+from sebody.errors import InputError
+from sebody.export.functions import codes
+from sebody.export.image import Image, members
+from sebody.export.interface import Input, placed, with_inputs
+from sebody.export.linking import Part
+from sebody.export.quantities import Outputs
+from sebody.export.terms import Quantities
+from sebody.kernels.loader import element_kernel_name, load
+from sebody.model.model import Model
+from sebody.results.result import Result
+from sebody.results.units import unit
+from sebody.runs.simulation import Simulation
+from sebody.runs.tolerance import Tolerance
+from sebody.runs.user_faults import functions
+from sebody.units import parsed_units
+
+ROUTINES = "refactorize", "restart", "sample"       # in the order of System.routines
+
+
+class Run(NamedTuple):
+    """How a model is run: the arguments of `Simulation`."""
+
+    h: float
+    tolerance: Tolerance | None = None
+    scheme: Scheme | None = None
+    start: Result | None = None
+
+
+class Prepared:
+    """A model ready to be exported.
+
+    Attributes
+    ----------
+    name : str
+    identifier : str
+        The name as C can have it.
+    run : Simulation
+        At the start.
+    system : System
+        Of the run, with a corner to spare for a time that is no output step.
+    inputs : list of Input
+    names, units : list of str
+        Of outputs, which are numbers.
+    outputs : Outputs
+        These, then what sensors measure that the loop cannot read.
+    sensors : list of (int, Sensor)
+        These sensors and their numbers.
+    image : Image
+    called : list of str
+        Parts that are called by address.
+    calls : list of (int, str)
+        Offsets of addresses in the image, and the part that each is of.
+    """
+
+    def __init__(self, model: Model, name: str, run: Run, inputs_of: Iterable[str],
+                 outputs_of: Iterable[str]):
+        self.name = inputs.name(name, "name of the export")
+        self.identifier = re.sub(r"\W", "_", name, flags=re.ASCII)
+        if not self.identifier[0].isalpha():
+            self.identifier = f"model_{self.identifier}"
+        made, asked = with_inputs(model, inputs_of)
+        self.run = Simulation(made, run.h, run.scheme, 1, run.tolerance, run.start)
+        self.model, self._numbering = made, self.run.numbering
+        if self.run.state.control.pivoted:
+            raise InputError("the matrix of the model needs row exchanges at the start, which "
+                             "libraries do not have: leave out what makes a motion without mass")
+        self.system = _with_spare_corner(self.run.system)
+        quantities = Quantities(made, self._numbering, self.run.system, self.run.state)
+        self.names = quantities.names(outputs_of)
+        if len(set(self.names)) < len(self.names):
+            twice = next(one for one in self.names if self.names.count(one) > 1)
+            raise InputError(f"output {twice!r} is given twice: leave one out")
+        kinds = self.system.control.channels[:, 0]
+        self.sensors = [(k, sensor) for k, sensor in enumerate(self._numbering.all_kept.sensors)
+                        if kinds[k] == OUTSIDE]
+        self.outputs: Outputs = quantities.made(self.names, [s for _, s in self.sensors])
+        found = parsed_units(made.units)
+        self.units = [unit(one, found) for one in self.names]
+        self.image = self._image([one.kind for one in asked])
+        self.inputs: list[Input] = [
+            one._replace(unit=found.of(one.unit) if found else one.unit)
+            for one in placed(asked, made, self._numbering, self.system, self.run.state,
+                              self.image)]
+        self._find_calls()
+
+    def parts(self, processor: str) -> list[Part]:
+        """The functions of the library, compiled for a processor."""
+        kernels = sorted(set(self._kernels.values()))
+        found = codes(kernels, processor)
+        parts = [Part("advance", "advance", found["advance"])]
+        parts += [Part(name, name, found[name]) for name in (*ROUTINES, "set_input", "evaluate")]
+        parts += [Part(name, "kernel", found[name]) for name in kernels]
+        return parts + [Part(name, kind, code) for name, kind, code in self._functions()]
+
+    def _image(self, kinds: list[int]) -> Image:
+        system, state = self.system, self.run.state
+        changing = [*members(state), self.outputs.values, self.outputs.row, self.outputs.loads,
+                    self.outputs.sums, system.corners, system.jumps, system.table_times,
+                    system.table_pieces, system.control.parameters]
+        changing += [system.constants] * (2 in kinds)
+        return Image([system, state, self.outputs], changing)
+
+    def _find_calls(self) -> None:
+        """Find addresses in the arrays, and forget them: they are of this process."""
+        model, system = self.model, self.system
+        bodies = {body.kernel for body in model.bodies.values()}
+        elements = {element_kernel_name(one.kind) for one in (
+            *model.rigid_bodies.values(), *model.constraints, *model.loads)}
+        self._kernels = {load(name).kernel.address: name for name in bodies | elements}
+        self._users = {function.address: (f"user_{k}", function)
+                       for k, (_, function) in enumerate(functions(model))}
+        users = {address: name for address, (name, _) in self._users.items()}
+        self.calls = [
+            *self._in(system.address, self._kernels), *self._in(system.index, users),
+            *self._in(system.functions, users),
+            *self._in(system.control.controllers, users),
+            *((self.image.at(system.routines, k), name) for k, name in enumerate(ROUTINES))]
+        self.called = list(dict.fromkeys(name for _, name in self.calls))
+        self.image.clear([at for at, _ in self.calls])
+
+    def _in(self, array: NDArray, known: dict[int, str]) -> list[tuple[int, str]]:
+        flat = array.ravel()
+        return [(self.image.at(array, int(k)), known[int(flat[k])])
+                for k in np.flatnonzero(np.isin(flat, list(known)))]
+
+    def _functions(self) -> list[tuple[str, str, Code]]:
+        """Users' functions without the records of faults."""
+        histories = set(self.system.functions.ravel().tolist())
+        controllers = set(self.system.control.controllers[:, FUNCTION].tolist())
+        return [(name, "history" if address in histories else
+                 "controller" if address in controllers else "force",
+                 way().code_of(function.alone()))
+                for address, (name, function) in self._users.items()]
+
+
+def _with_spare_corner(system: System) -> System:
+    return replace(system, corners=np.append(system.corners, np.inf),
+                   jumps=np.append(system.jumps, 1))
+
