@@ -24,13 +24,15 @@ class Image:
     """The arrays of some groups, one after the other.
 
     First what never changes, then what does; of this last what is zero at the start, which
-    libraries need not contain.
+    libraries need not contain, and scratch memory, which states of instances do not.
 
     Parameters
     ----------
     groups : list of Arrays
     changing : iterable of ndarray
         Arrays of them that change in a run.
+    scratch : ndarray
+        Written before it is read in every step.
 
     Attributes
     ----------
@@ -38,30 +40,37 @@ class Image:
         The image without the zeros at its end.
     mutable : int
         Where what changes begins.
+    saved : int
+        Where scratch memory begins.
     size : int
         Of the whole, with a line to spare that empty arrays begin at.
     """
 
-    def __init__(self, groups: list[Arrays], changing: Iterable[NDArray | np.record]):
+    def __init__(self, groups: list[Arrays], changing: Iterable[NDArray | np.record],
+                 scratch: NDArray):
         mutable = {_address(array) for array in changing if array.nbytes}
         found: dict[int, NDArray | np.record] = {}
         for array in sorted((one for group in groups for one in _members(group)),
                             key=lambda one: -one.nbytes):
             if array.nbytes and not _holding(found.values(), array):
                 found[_address(array)] = array
-        order = sorted(found, key=lambda at: (at in mutable, at in mutable and not any(
-            bytes_of(found[at]))))
+        zero = {at: not any(bytes_of(array)) for at, array in found.items()}
+        last = _address(scratch)
+        order = sorted(found, key=lambda at: (at in mutable, at in mutable and zero[at],
+                                              at == last))
         self._spans: list[_Span] = []
         self.size = 0
-        self.mutable = -1
+        self.mutable = self.saved = -1
         content = bytearray()
         for at in order:
             array = found[at]
             if at in mutable and self.mutable < 0:
                 self.mutable = self.size
+            if at == last:
+                self.saved = self.size
             self._spans.append(_Span(at, array.nbytes, self.size))
             self.size += -(-array.nbytes // ALIGNED) * ALIGNED
-            if at not in mutable or any(bytes_of(array)):
+            if at not in mutable or not zero[at]:
                 content += bytes_of(array).ljust(-(-array.nbytes // ALIGNED) * ALIGNED, b"\0")
         self.stored = bytes(content)
         self.size += ALIGNED

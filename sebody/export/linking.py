@@ -74,6 +74,7 @@ def object_file(parts: Sequence[Part], called: Sequence[str], image: bytes, plat
     builder = binding.create_pass_builder(
         machine, binding.create_pipeline_tuning_options(speed_level=2))
     passes = binding.create_new_module_pass_manager()
+    passes.add_merge_functions_pass()       # parts bring their own copies of what they call
     passes.add_global_dead_code_eliminate_pass()
     passes.run(main, builder)
     return machine.emit_object(main)
@@ -115,7 +116,7 @@ def _wrappers(parts: Sequence[Part], called: Sequence[str]) -> str:
     made = [_advance() if part.convention == "advance" else
             _wrapper(part.name, CONVENTIONS.get(part.convention, _KERNEL)) for part in parts]
     table = ", ".join(f"ptr @sb_{name}" for name in called) or "ptr null"
-    return "\n".join([*made, f"@sb_functions = constant [{max(1, len(called))} x ptr] [{table}]\n"])
+    return "\n".join([*made, f"@sb_functions = hidden constant [{max(1, len(called))} x ptr] [{table}]\n"])
 
 
 def _native(kind: str) -> str:
@@ -129,7 +130,7 @@ def _wrapper(name: str, own: Convention) -> str:
     place = "ptr" if own.returns == "void" else _native(own.returns)
     zero = {"ptr": "null", "double": "0.0"}.get(place, "0")
     lines = [f"declare i32 @nb_{name}({', '.join(['ptr', 'ptr', *natives])})",
-             f"define {own.returns} @sb_{name}("
+             f"define hidden {own.returns} @sb_{name}("
              + ", ".join(f"{kind} %a{k}" for k, kind in enumerate(own.arguments)) + ") {",
              f" %result = alloca {place}", " %exception = alloca ptr",
              f" store {place} {zero}, ptr %result"]
@@ -158,7 +159,7 @@ def _advance() -> str:
                f" %s{k} = load double, ptr %p{k}\n" for k in range(7)]
     scheme = "".join(f"double %s{k}, " for k in range(6))
     return f"""declare i32 @nb_advance(ptr, ptr, ptr, ptr, ptr, {"double, " * 6}i8, i64, i64, i8)
-define i64 @sb_advance(ptr %system, ptr %state, ptr %record, ptr %scheme, i64 %last, i64 %chunk,
+define hidden i64 @sb_advance(ptr %system, ptr %state, ptr %record, ptr %scheme, i64 %last, i64 %chunk,
                        i64 %dense) {{
  %result = alloca i64
  %exception = alloca ptr
@@ -179,4 +180,4 @@ def _bytes(name: str, content: bytes) -> str:
     """A constant of bytes, aligned as the arrays in it are."""
     text = "".join(chr(b) if 32 <= b < 127 and b not in (34, 92) else f"\\{b:02X}"
                    for b in content)
-    return f'@{name} = constant [{len(content)} x i8] c"{text}", align 64\n'
+    return f'@{name} = hidden constant [{len(content)} x i8] c"{text}", align 64\n'

@@ -114,7 +114,8 @@ class Prepared:
                     self.outputs.sums, system.corners, system.jumps, system.table_times,
                     system.table_pieces, system.control.parameters]
         changing += [system.constants] * (2 in kinds)
-        return Image([system, state, self.outputs], changing)
+        state.work[:] = 0.0
+        return Image([system, state, self.outputs], changing, state.work)
 
     def _find_calls(self) -> None:
         """Find addresses in the arrays, and forget them: they are of this process."""

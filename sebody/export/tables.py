@@ -17,6 +17,7 @@ def model_h(model: Prepared) -> str:
     hash_of_all = sha256(image.stored + repr((model.inputs, image.size)).encode()).hexdigest()[:16]
     numbers = {
         "IMAGE_SIZE": image.size, "IMAGE_STORED": len(image.stored), "IMAGE_MUTABLE": image.mutable,
+        "IMAGE_SAVED": image.saved,
         "AT_CONTROL": image.at(state.control), "AT_CLOCK": image.at(state.clock),
         "AT_MEMORY": image.at(state.memory), "AT_NOW": image.at(state.now),
         "AT_VALUES": image.at(outputs.values), "AT_CORNERS": image.at(system.corners),

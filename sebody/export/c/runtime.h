@@ -200,12 +200,12 @@ static double instance_output(Instance *m, int k) {
 
 /* A state as bytes, the same in every instance and process. */
 typedef struct { uint64_t model; int64_t failed; } Header;
-#define STATE_BYTES (sizeof(Header) + IMAGE_SIZE - IMAGE_MUTABLE)
+#define STATE_BYTES (sizeof(Header) + IMAGE_SAVED - IMAGE_MUTABLE)
 
 static void instance_save(const Instance *m, char *to) {
   Header head = {MODEL_HASH, m->failed};
   memcpy(to, &head, sizeof head);
-  memcpy(to + sizeof head, m->base + IMAGE_MUTABLE, IMAGE_SIZE - IMAGE_MUTABLE);
+  memcpy(to + sizeof head, m->base + IMAGE_MUTABLE, IMAGE_SAVED - IMAGE_MUTABLE);
 }
 
 static int instance_restore(Instance *m, const char *from) {
@@ -215,7 +215,7 @@ static int instance_restore(Instance *m, const char *from) {
     snprintf(m->message, sizeof m->message, "%s: this is not a state of this model", MODEL_NAME);
     return 1;
   }
-  memcpy(m->base + IMAGE_MUTABLE, from + sizeof head, IMAGE_SIZE - IMAGE_MUTABLE);
+  memcpy(m->base + IMAGE_MUTABLE, from + sizeof head, IMAGE_SAVED - IMAGE_MUTABLE);
   m->failed = (int)head.failed;
   m->stale = 1;
   return 0;
