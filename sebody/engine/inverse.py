@@ -1,4 +1,4 @@
-"""Inverse of a small matrix in compiled code, without LAPACK: exported libraries need libm alone."""
+"""Inverse of a small matrix in compiled code; not LAPACK's, which exports would have to bring."""
 
 import numpy as np
 

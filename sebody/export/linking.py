@@ -116,7 +116,8 @@ def _wrappers(parts: Sequence[Part], called: Sequence[str]) -> str:
     made = [_advance() if part.convention == "advance" else
             _wrapper(part.name, CONVENTIONS.get(part.convention, _KERNEL)) for part in parts]
     table = ", ".join(f"ptr @sb_{name}" for name in called) or "ptr null"
-    return "\n".join([*made, f"@sb_functions = hidden constant [{max(1, len(called))} x ptr] [{table}]\n"])
+    kind = f"[{max(1, len(called))} x ptr]"
+    return "\n".join([*made, f"@sb_functions = hidden constant {kind} [{table}]\n"])
 
 
 def _native(kind: str) -> str:
@@ -159,8 +160,8 @@ def _advance() -> str:
                f" %s{k} = load double, ptr %p{k}\n" for k in range(7)]
     scheme = "".join(f"double %s{k}, " for k in range(6))
     return f"""declare i32 @nb_advance(ptr, ptr, ptr, ptr, ptr, {"double, " * 6}i8, i64, i64, i8)
-define hidden i64 @sb_advance(ptr %system, ptr %state, ptr %record, ptr %scheme, i64 %last, i64 %chunk,
-                       i64 %dense) {{
+define hidden i64 @sb_advance(ptr %system, ptr %state, ptr %record, ptr %scheme, i64 %last,
+                              i64 %chunk, i64 %dense) {{
  %result = alloca i64
  %exception = alloca ptr
  store i64 0, ptr %result

@@ -1,4 +1,4 @@
-"""A model ready to be exported: its state at the start, its memory, inputs, outputs and functions."""
+"""A model ready to be exported: its state at the start, memory, inputs, outputs and functions."""
 
 import re
 from collections.abc import Iterable

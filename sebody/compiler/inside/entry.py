@@ -18,7 +18,8 @@ from sebody.compiler.inside.names import (
 from sebody.compiler.inside.pipeline import KernelPasses
 
 __all__ = ["SLOWER", "address", "code_of", "compile_for", "function", "function_code",
-           "guarded", "is_compiled", "is_kept", "kernel", "kernel_code", "part_of_callers", "show_members"]
+           "guarded", "is_compiled", "is_kept", "kernel", "kernel_code", "part_of_callers",
+           "show_members"]
 
 SLOWER = 1.0        # compilation, compared with this way
 _shown = set()      # types whose members are shown
