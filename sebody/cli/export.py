@@ -27,7 +27,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
                              "linux-aarch64; this machine's by default")
     parser.add_argument("--processor", default="x86-64-v3", metavar="NAME",
                         help="oldest x86 processor it runs on: x86-64, x86-64-v2, x86-64-v3 "
-                             "(default)")
+                             "(default), native")
     parser.add_argument("--fmi", default="3.0", metavar="VERSION", help="3.0 (default) or 2.0")
     parser.add_argument("--step", type=float, metavar="H", help="time step, the scene's by default")
     parser.add_argument("--tolerance", type=float, metavar="E",

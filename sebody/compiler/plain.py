@@ -111,6 +111,12 @@ def code_of(made: Callable) -> Code:
     return Code(made.native_name.removeprefix("cfunc."), _bitcode(made.inspect_llvm()))
 
 
+def processor() -> tuple[str, str]:
+    """Name and features of the processor that is compiled for, as LLVM knows them."""
+    return (config.CPU_NAME or binding.get_host_cpu_name(),
+            config.CPU_FEATURES or binding.get_host_cpu_features().flatten())
+
+
 def _bitcode(text: str) -> bytes:
     return binding.parse_assembly(text).as_bitcode()
 

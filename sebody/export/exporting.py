@@ -11,7 +11,7 @@ from sebody.errors import InputError, WriteError
 from sebody.export import fmu as fmus
 from sebody.export import toolchain
 from sebody.export.library import write_library
-from sebody.export.platforms import DEFAULT, PLATFORMS, PROCESSORS, host
+from sebody.export.platforms import DEFAULT, NATIVE, PLATFORMS, PROCESSORS, host
 from sebody.export.prepared import Prepared, Run
 from sebody.files import check_target, replacing
 from sebody.model.model import Model
@@ -52,7 +52,8 @@ def export(model: Model, h: float, *, library: str | Path | None = None,
         ``linux-x86_64``, ``windows-x86_64``, ``macos-x86_64``, ``macos-arm64``, ``linux-aarch64``;
         that of this machine by default.
     processor : str
-        Of x86 platforms: ``x86-64``, ``x86-64-v2`` or ``x86-64-v3``.
+        Oldest of x86 platforms: ``x86-64``, ``x86-64-v2`` or ``x86-64-v3``. ``native`` is that of
+        this machine, with the bits of runs in this process.
     fmi : {'3.0', '2.0'}
         Version of the standard.
 
@@ -72,7 +73,7 @@ def export(model: Model, h: float, *, library: str | Path | None = None,
     if (library is None) == (fmu is None):
         raise InputError("give library=, a folder, or fmu=, a file: one of the two")
     chosen = _platforms(platforms, fmi if fmu is not None else "")
-    _check_processor(processor)
+    _check_processor(processor, chosen)
     target = (_check_folder(library) if library is not None else
               check_target(fmu, "FMU", (".fmu",)))
     toolchain.check_installed()
@@ -124,8 +125,18 @@ def _platforms(given: Sequence[str], fmi: str) -> list[str]:
     return list(dict.fromkeys(names))
 
 
-def _check_processor(processor: str) -> None:
-    inputs.choice(processor, "processor", PROCESSORS)
+def _check_processor(processor: str, platforms: list[str]) -> None:
+    """Refuse an unknown processor, and this machine's for other platforms.
+
+    Raises
+    ------
+    InputError
+        It is.
+    """
+    inputs.choice(processor, "processor", [*PROCESSORS, NATIVE])
+    if processor == NATIVE and platforms != [host()]:
+        raise InputError(f"processor {NATIVE!r} is that of this machine, {host()}: leave platforms "
+                         f"out, or give one of {', '.join(PROCESSORS)}")
 
 
 def _check_folder(folder: str | Path) -> Path:

@@ -15,7 +15,7 @@ from sebody.compiler.workers import Task
 from sebody.engine import control, loop, matrix, restart
 from sebody.errors import InputError, SebodyError
 from sebody.export import quantities
-from sebody.export.platforms import environment
+from sebody.export.platforms import environment, tag
 from sebody.export.terms import no_outputs
 from sebody.kernels.loader import load
 from sebody.runs.first_run import examples
@@ -54,7 +54,7 @@ def codes(kernels: Iterable[str], processor: str) -> dict[str, Code]:
     """
     kept = {name: _of_function(name) for name in FUNCTIONS}
     kept |= {name: _of_kernel(name) for name in kernels}
-    found = {name: code.kept(*place, processor) for name, place in kept.items()}
+    found = {name: code.kept(*place, tag(processor)) for name, place in kept.items()}
     missing = [name for name, one in found.items() if one is None]
     if missing:
         if not store.writable_folder(Path(loop.__file__)):
@@ -64,7 +64,7 @@ def codes(kernels: Iterable[str], processor: str) -> dict[str, Code]:
               flush=True)
         tasks = [Task(name, f"{__name__}:compile_one", (name, processor)) for name in missing]
         workers.call_all(tasks, variables=environment(processor))
-        found |= {name: code.kept(*kept[name], processor) for name in missing}
+        found |= {name: code.kept(*kept[name], tag(processor)) for name in missing}
     if lacking := [name for name, one in found.items() if one is None]:
         raise SebodyError(f"{', '.join(lacking)} could not be compiled for {processor}")
     return {name: one for name, one in found.items() if one is not None}
@@ -76,9 +76,9 @@ def compile_one(name: str, processor: str) -> None:
         function, arguments = FUNCTIONS[name]
         kinds = examples() | {"outputs": typeof(no_outputs())}
         made = function_code(function, tuple(kinds[one] for one in arguments.split()))
-        code.keep(*_of_function(name), processor, made)
+        code.keep(*_of_function(name), tag(processor), made)
     else:
-        code.keep(*_of_kernel(name), processor, kernel_code(load(name).kernel))
+        code.keep(*_of_kernel(name), tag(processor), kernel_code(load(name).kernel))
 
 
 def _of_function(name: str) -> _Kept:

@@ -1,8 +1,12 @@
-"""Platforms and processors that libraries are made for."""
+"""Platforms and processors that libraries are made for.
+
+Numba reads its settings when it is imported: here it is only where the processor is asked for.
+"""
 
 import platform
 import sys
 from typing import NamedTuple
+from zlib import crc32
 
 from sebody.errors import InputError
 
@@ -43,6 +47,7 @@ PROCESSORS = {
                  "+lzcnt,+movbe",
 }
 DEFAULT = "x86-64-v3"
+NATIVE = "native"       # that of this machine, or whatever Numba compiles for
 _ARM_PROCESSORS = {"macos-arm64": "apple-m1", "linux-aarch64": "generic"}
 _HOSTS = {"linux": "linux", "win32": "windows", "darwin": "macos"}
 _MACHINES = {"amd64": "x86_64", "x86_64": "x86_64", "arm64": "arm64", "aarch64": "aarch64"}
@@ -66,11 +71,27 @@ def host() -> str:
 
 def target_processor(name: str, processor: str) -> tuple[str, str]:
     """Processor and features for LLVM on a platform; `processor` is meant for x86."""
+    if processor == NATIVE:
+        from sebody.compiler.choice import way
+
+        return way().processor()
     if name in _ARM_PROCESSORS:
         return _ARM_PROCESSORS[name], ""
     return processor, PROCESSORS[processor]
 
 
+def tag(processor: str) -> str:
+    """Name of a processor in the names of files; that of this machine depends on the machine."""
+    from sebody.compiler.choice import way
+
+    if processor != NATIVE:
+        return processor
+    name, features = way().processor()
+    return f"{name}-{crc32(features.encode()):08x}"
+
+
 def environment(processor: str) -> dict[str, str]:
     """Environment variables with which Numba compiles for a processor."""
+    if processor == NATIVE:
+        return {}
     return {"NUMBA_CPU_NAME": processor, "NUMBA_CPU_FEATURES": PROCESSORS[processor]}

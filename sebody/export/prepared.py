@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody import inputs
+from sebody.assembly.control import begin
 from sebody.compiler.choice import way
 from sebody.compiler.code import Code
 from sebody.engine.control_data import FUNCTION, OUTSIDE
@@ -80,6 +81,8 @@ class Prepared:
         if self.run.state.control.pivoted:
             raise InputError("the matrix of the model needs row exchanges at the start, which "
                              "libraries do not have: leave out what makes a motion without mass")
+        if any(one.name.rpartition(".parameters.")[0] in made.controllers for one in asked):
+            self._ask_for_first_samples()
         self.system = _with_spare_corner(self.run.system)
         quantities = Quantities(made, self._numbering, self.run.system, self.run.state)
         self.names = quantities.names(outputs_of)
@@ -107,6 +110,13 @@ class Prepared:
         parts += [Part(name, name, found[name]) for name in (*ROUTINES, "set_input", "evaluate")]
         parts += [Part(name, "kernel", found[name]) for name in kernels]
         return parts + [Part(name, kind, code) for name, kind, code in self._functions()]
+
+    def _ask_for_first_samples(self) -> None:
+        """Take back the samples of t = 0: parameters of controllers may be set before them."""
+        state, bodies = self.run.state, 9 * len(self.model.bodies)
+        begin(self.model, self._numbering, self.run.system.control, state.memory, state.frames)
+        state.frames_old[bodies:] = state.frames[bodies:]
+        self.run.sampling.begin()
 
     def _image(self, kinds: list[int]) -> Image:
         system, state = self.system, self.run.state

@@ -13,13 +13,14 @@ from sebody.compiler.inside.names import (
     AttributeTemplate,
     CFunc,
     NullCache,
+    cpu_target,
     normalize_signature,
 )
 from sebody.compiler.inside.pipeline import KernelPasses
 
 __all__ = ["SLOWER", "address", "code_of", "compile_for", "function", "function_code",
            "guarded", "is_compiled", "is_kept", "kernel", "kernel_code", "part_of_callers",
-           "show_members"]
+           "processor", "show_members"]
 
 SLOWER = 1.0        # compilation, compared with this way
 _shown = set()      # types whose members are shown
@@ -79,6 +80,12 @@ def kernel_code(function: Callable, signature, options: dict) -> Code:
 def code_of(made: CFunc) -> Code:
     """See `sebody.compiler.plain.code_of`."""
     return Code(made.native_name.removeprefix("cfunc."), _bitcode(made.inspect_llvm()))
+
+
+def processor() -> tuple[str, str]:
+    """See `sebody.compiler.plain.processor`."""
+    _, name, features = cpu_target.target_context.codegen().magic_tuple()
+    return name, features
 
 
 def _bitcode(text: str) -> bytes:
