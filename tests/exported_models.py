@@ -20,8 +20,8 @@ def feedback(t, y, x, u, parameters):
     u[0] = parameters[0] * (-0.1 - y[0]) - parameters[1] * y[1] + x[0]
 
 
-def arm(stop: bool = True) -> Model:
-    """A turned flexible arm on a motor with a controller, a wind by a function, a floor, a drive."""
+def arm() -> Model:
+    """A turned flexible arm on a motor with a controller, a wind by a function, and a floor."""
     model = Model(units="m kg N s")
     model.gravity(TURN @ (0.0, -9.81, 0.0))
     shoulder = model.node("the shoulder", TURN @ (0.1, 0.2, 0.0))
@@ -36,9 +36,8 @@ def arm(stop: bool = True) -> Model:
                 name="a wind")
     model.force(hand, TURN @ (1.0, 0.0, 0.0), [(0.0, 0.0), (0.05, 0.0), (0.05, 1.0), (0.2, 0.4)],
                 name="a pull")
-    if stop:
-        model.contact(hand, on=plane(TURN @ (0.0, 1.0, 0.0), TURN @ (0.0, 0.27, 0.0)),
-                      stiffness=1e5, restitution=0.4, friction=0.3, radius=0.02, name="the floor")
+    model.contact(hand, on=plane(TURN @ (0.0, 1.0, 0.0), TURN @ (0.0, 0.27, 0.0)), radius=0.02,
+                  stiffness=1e5, restitution=0.4, friction=0.3, name="the floor")
     return model
 
 

@@ -1,7 +1,7 @@
-"""LLVM code of compiled functions for other processors than this one, kept for exports.
+"""Code of compiled functions for other processors than this one, kept for exports.
 
-Machine code is of use to the process and the processor it was made for alone. Libraries of models
-are made from LLVM code, which processes of their own compile for a named processor, once.
+Machine code of the JIT is of use to the process and the processor it was made for alone. Libraries
+of models are made from LLVM code, which processes of their own compile for a named processor, once.
 """
 
 import sys
@@ -20,23 +20,25 @@ class Code(NamedTuple):
     bitcode: bytes
 
 
-def keep(source: Path, name: str, made_from: str, processor: str, code: Code) -> None:
-    """Keep the code of a function beside what is compiled of its module."""
-    store.write(source, _file(source, name, processor), _stamp(made_from),
-                code.symbol.encode() + b"\n" + code.bitcode)
+class Place(NamedTuple):
+    """Where code of something is kept: beside what is compiled of a module."""
 
+    source: Path
+    name: str           # of what it is the code of
+    made_from: str      # hash of all sources it depends on
 
-def kept(source: Path, name: str, made_from: str, processor: str) -> Code | None:
-    """The code that was kept; None if there is none, or of other sources."""
-    for content in store.read(source, _file(source, name, processor), _stamp(made_from)):
-        symbol, _, bitcode = content.partition(b"\n")
-        return Code(symbol.decode(), bitcode)
-    return None
+    def keep(self, kind: str, target: str, content: bytes) -> None:
+        """Keep code of a kind for a processor or platform."""
+        store.write(self.source, self._file(kind, target), self._stamp, content)
 
+    def kept(self, kind: str, target: str) -> bytes | None:
+        """The code that was kept; None if there is none, or of other sources."""
+        return next(store.read(self.source, self._file(kind, target), self._stamp), None)
 
-def _file(source: Path, name: str, processor: str) -> str:
-    return f"{source.stem}.{name}.code.{sys.implementation.cache_tag}.{processor}.sebody"
+    def _file(self, kind: str, target: str) -> str:
+        cache = sys.implementation.cache_tag
+        return f"{self.source.stem}.{self.name}.{kind}.{cache}.{target}.sebody"
 
-
-def _stamp(made_from: str) -> str:
-    return f"{made_from}, Numba {numba.__version__}"
+    @property
+    def _stamp(self) -> str:
+        return f"{self.made_from}, Numba {numba.__version__}"

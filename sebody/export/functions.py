@@ -3,12 +3,11 @@
 import sys
 from collections.abc import Iterable
 from pathlib import Path
-from typing import NamedTuple
 
 from numba import typeof
 
-from sebody.compiler import code, store, workers
-from sebody.compiler.code import Code
+from sebody.compiler import store, workers
+from sebody.compiler.code import Code, Place
 from sebody.compiler.decorators import function_code, kernel_code
 from sebody.compiler.sources import function_hash, kernel_hash
 from sebody.compiler.workers import Task
@@ -21,6 +20,7 @@ from sebody.kernels.loader import load
 from sebody.runs.first_run import examples
 
 # functions of the engine, and the types of their arguments by the names of `first_run.examples`
+KIND = "code"
 FUNCTIONS = {
     "advance": (loop.advance, "system state record scheme whole whole flag"),
     "refactorize": (matrix.refactorize, "system state whole flag"),
@@ -31,16 +31,8 @@ FUNCTIONS = {
 }
 
 
-class _Kept(NamedTuple):
-    """Where code of something is kept."""
-
-    source: Path
-    name: str
-    made_from: str
-
-
-def codes(kernels: Iterable[str], processor: str) -> dict[str, Code]:
-    """Code of the functions of the engine and of some kernels, by name.
+def codes(names: Iterable[str], processor: str) -> dict[str, Code]:
+    """LLVM code of functions of the engine and of kernels, by name.
 
     What is not kept is compiled by processes of their own, in which Numba compiles for the
     processor; a line on standard error says so.
@@ -52,9 +44,8 @@ def codes(kernels: Iterable[str], processor: str) -> dict[str, Code]:
     SebodyError
         Something could not be compiled.
     """
-    kept = {name: _of_function(name) for name in FUNCTIONS}
-    kept |= {name: _of_kernel(name) for name in kernels}
-    found = {name: code.kept(*place, tag(processor)) for name, place in kept.items()}
+    target = tag(processor)
+    found = {name: place(name).kept(KIND, target) for name in names}
     missing = [name for name, one in found.items() if one is None]
     if missing:
         if not store.writable_folder(Path(loop.__file__)):
@@ -64,10 +55,15 @@ def codes(kernels: Iterable[str], processor: str) -> dict[str, Code]:
               flush=True)
         tasks = [Task(name, f"{__name__}:compile_one", (name, processor)) for name in missing]
         workers.call_all(tasks, variables=environment(processor))
-        found |= {name: code.kept(*kept[name], tag(processor)) for name in missing}
+        found |= {name: place(name).kept(KIND, target) for name in missing}
     if lacking := [name for name, one in found.items() if one is None]:
         raise SebodyError(f"{', '.join(lacking)} could not be compiled for {processor}")
-    return {name: one for name, one in found.items() if one is not None}
+    return {name: _code(one) for name, one in found.items() if one is not None}
+
+
+def _code(kept: bytes) -> Code:
+    symbol, _, bitcode = kept.partition(b"\n")
+    return Code(symbol.decode(), bitcode)
 
 
 def compile_one(name: str, processor: str) -> None:
@@ -76,16 +72,15 @@ def compile_one(name: str, processor: str) -> None:
         function, arguments = FUNCTIONS[name]
         kinds = examples() | {"outputs": typeof(no_outputs())}
         made = function_code(function, tuple(kinds[one] for one in arguments.split()))
-        code.keep(*_of_function(name), tag(processor), made)
     else:
-        code.keep(*_of_kernel(name), tag(processor), kernel_code(load(name).kernel))
+        made = kernel_code(load(name).kernel)
+    place(name).keep(KIND, tag(processor), made.symbol.encode() + b"\n" + made.bitcode)
 
 
-def _of_function(name: str) -> _Kept:
-    function = FUNCTIONS[name][0].py_func
-    return _Kept(Path(function.__code__.co_filename), name, function_hash(function))
-
-
-def _of_kernel(name: str) -> _Kept:
+def place(name: str) -> Place:
+    """Where code of a function of the engine or of a kernel is kept."""
+    if name in FUNCTIONS:
+        function = FUNCTIONS[name][0].py_func
+        return Place(Path(function.__code__.co_filename), name, function_hash(function))
     source = Path(load(name).__file__)
-    return _Kept(source, name, kernel_hash(source))
+    return Place(source, name, kernel_hash(source))

@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 from sebody.export import toolchain
-from sebody.export.linking import object_file
+from sebody.export.objects import objects
 from sebody.export.platforms import PLATFORMS
 from sebody.export.prepared import Prepared
 from sebody.export.tables import model_h, quoted, recorded_parts
@@ -35,15 +35,17 @@ def linked(model: Prepared, work: Path, platforms: list[str], processor: str,
            sources: list[str]) -> dict[str, Path]:
     """A library of the model and of sources in C for each platform."""
     (work / "model.h").write_text(model_h(model), encoding="utf-8")
-    parts, found = model.parts(processor), {}
+    found = {}
     for platform in platforms:
-        (work / "model.o").write_bytes(object_file(parts, model.called, model.image.stored,
-                                                   platform, processor))
-        own = PLATFORMS[platform]
         place = work / platform
         place.mkdir()
+        files = []
+        for name, content in objects(model, platform, processor).items():
+            files.append(work / f"{platform}.{name}.o")
+            files[-1].write_bytes(content)
+        own = PLATFORMS[platform]
         found[platform] = place / f"{own.prefix}{model.identifier}{own.suffix}"
-        toolchain.link(work, found[platform], platform, [*sources, "memory.c"])
+        toolchain.link(work, found[platform], platform, files, [*sources, "memory.c"])
     return found
 
 

@@ -18,7 +18,6 @@ from sebody.export.platforms import PLATFORMS, target_processor
 
 OPAQUE = 17             # version of LLVM from which on pointers are opaque, as the wrappers write
 RAISED = 6              # what the loop returns if compiled code raised, see runtime.h
-KEPT = "sb_advance", "sb_evaluate", "sb_set_input", "sb_functions", "sb_image"
 
 
 class Convention(NamedTuple):
@@ -50,24 +49,42 @@ class Part(NamedTuple):
     code: Code
 
 
-def object_file(parts: Sequence[Part], called: Sequence[str], image: bytes, platform: str,
-                processor: str) -> bytes:
-    """The object file of a model for a platform.
+def functions_object(parts: Sequence[Part], platform: str, processor: str) -> bytes:
+    """The object file of some functions, which has their wrappers for C alone."""
+    return _object(_wrappers(parts), parts, [f"sb_{part.name}" for part in parts], platform,
+                   processor)
+
+
+def model_object(called: Sequence[str], image: bytes, platform: str, processor: str) -> bytes:
+    """The object file of a model's data.
 
     Parameters
     ----------
     called : sequence of str
-        Names of the parts that are called by address, as the table `sb_functions` has them.
+        Names of the functions that are called by address, in the order of the table.
     image : bytes
         Memory of an instance at the start.
     """
+    kind = f"[{max(1, len(called))} x ptr]"
+    table = ", ".join(f"ptr @sb_{name}" for name in called) or "ptr null"
+    declared = "\n".join(f"declare hidden void @sb_{name}()" for name in called)
+    text = (f"{declared}\n@sb_functions = hidden constant {kind} [{table}]\n"
+            + _bytes("sb_image", image))
+    return _object(text, (), ["sb_functions", "sb_image"], platform, processor)
+
+
+def _object(text: str, parts: Sequence[Part], kept: Sequence[str], platform: str,
+            processor: str) -> bytes:
+    """Object file of a module and of parts that are linked to it."""
     _prepare()
     own = PLATFORMS[platform]
     heading = f'target datalayout = "{own.layout}"\ntarget triple = "{own.triple}"\n'
-    main = binding.parse_assembly(heading + _wrappers(parts, called) + _bytes("sb_image", image))
+    main = binding.parse_assembly(heading + text)
     for part in parts:
         main.link_in(_alone(part, own.layout, own.triple))
-    _make_internal(main, KEPT)
+    _make_internal(main, kept)
+    for function in main.functions:
+        function.add_function_attribute("nounwind")     # no tables for exceptions of C++
     main.verify()
     machine = binding.Target.from_triple(own.triple).create_target_machine(
         *target_processor(platform, processor), opt=3, reloc="pic", codemodel="default")
@@ -112,12 +129,10 @@ def _make_internal(module: binding.ModuleRef, kept: Sequence[str]) -> None:
             one.linkage = "internal"
 
 
-def _wrappers(parts: Sequence[Part], called: Sequence[str]) -> str:
-    made = [_advance() if part.convention == "advance" else
-            _wrapper(part.name, CONVENTIONS.get(part.convention, _KERNEL)) for part in parts]
-    table = ", ".join(f"ptr @sb_{name}" for name in called) or "ptr null"
-    kind = f"[{max(1, len(called))} x ptr]"
-    return "\n".join([*made, f"@sb_functions = hidden constant {kind} [{table}]\n"])
+def _wrappers(parts: Sequence[Part]) -> str:
+    return "\n".join(_advance() if part.convention == "advance" else
+                     _wrapper(part.name, CONVENTIONS.get(part.convention, _KERNEL))
+                     for part in parts) + "\n"
 
 
 def _native(kind: str) -> str:

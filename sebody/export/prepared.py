@@ -11,12 +11,10 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.assembly.control import begin
 from sebody.compiler.choice import way
-from sebody.compiler.code import Code
 from sebody.engine.control_data import FUNCTION, OUTSIDE
 from sebody.engine.state import Scheme
 from sebody.engine.system import System
 from sebody.errors import InputError
-from sebody.export.functions import codes
 from sebody.export.image import Image, members
 from sebody.export.interface import Input, placed, with_inputs
 from sebody.export.linking import Part
@@ -63,10 +61,11 @@ class Prepared:
     sensors : list of (int, Sensor)
         These sensors and their numbers.
     image : Image
+    kernels : list of str
     called : list of str
-        Parts that are called by address.
+        Functions that are called by address.
     calls : list of (int, str)
-        Offsets of addresses in the image, and the part that each is of.
+        Offsets of addresses in the image, and the function that each is of.
     """
 
     def __init__(self, model: Model, name: str, run: Run, inputs_of: Iterable[str],
@@ -102,15 +101,6 @@ class Prepared:
                               self.image)]
         self._find_calls()
 
-    def parts(self, processor: str) -> list[Part]:
-        """The functions of the library, compiled for a processor."""
-        kernels = sorted(set(self._kernels.values()))
-        found = codes(kernels, processor)
-        parts = [Part("advance", "advance", found["advance"])]
-        parts += [Part(name, name, found[name]) for name in (*ROUTINES, "set_input", "evaluate")]
-        parts += [Part(name, "kernel", found[name]) for name in kernels]
-        return parts + [Part(name, kind, code) for name, kind, code in self._functions()]
-
     def _ask_for_first_samples(self) -> None:
         """Take back the samples of t = 0: parameters of controllers may be set before them."""
         state, bodies = self.run.state, 9 * len(self.model.bodies)
@@ -133,12 +123,13 @@ class Prepared:
         bodies = {body.kernel for body in model.bodies.values()}
         elements = {element_kernel_name(one.kind) for one in (
             *model.rigid_bodies.values(), *model.constraints, *model.loads)}
-        self._kernels = {load(name).kernel.address: name for name in bodies | elements}
+        kernels = {load(name).kernel.address: name for name in bodies | elements}
+        self.kernels = sorted(kernels.values())
         self._users = {function.address: (f"user_{k}", function)
                        for k, (_, function) in enumerate(functions(model))}
         users = {address: name for address, (name, _) in self._users.items()}
         self.calls = [
-            *self._in(system.address, self._kernels), *self._in(system.index, users),
+            *self._in(system.address, kernels), *self._in(system.index, users),
             *self._in(system.functions, users),
             *self._in(system.control.controllers, users),
             *((self.image.at(system.routines, k), name) for k, name in enumerate(ROUTINES))]
@@ -150,13 +141,13 @@ class Prepared:
         return [(self.image.at(array, int(k)), known[int(flat[k])])
                 for k in np.flatnonzero(np.isin(flat, list(known)))]
 
-    def _functions(self) -> list[tuple[str, str, Code]]:
+    def users(self) -> list[Part]:
         """Users' functions without the records of faults."""
         histories = set(self.system.functions.ravel().tolist())
         controllers = set(self.system.control.controllers[:, FUNCTION].tolist())
-        return [(name, "history" if address in histories else
-                 "controller" if address in controllers else "force",
-                 way().code_of(function.alone()))
+        return [Part(name, "history" if address in histories else
+                     "controller" if address in controllers else "force",
+                     way().code_of(function.alone()))
                 for address, (name, function) in self._users.items()]
 
 

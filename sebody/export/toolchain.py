@@ -26,13 +26,14 @@ def check_installed() -> None:
                          'platforms: pip install "sebody[fmu]"')
 
 
-def link(folder: Path, target: Path, platform: str, sources: Sequence[str]) -> None:
-    """Link an object file and sources in C to a library without symbols but those it exports.
+def link(folder: Path, target: Path, platform: str, objects: Sequence[Path],
+         sources: Sequence[str]) -> None:
+    """Link object files and sources in C to a library without symbols but those it exports.
 
     Parameters
     ----------
     folder : Path
-        Has the object file ``model.o`` and headers, and takes the files of the linker.
+        Has headers, and takes the files of the linker.
     sources : sequence of str
         Files of `SOURCES`.
 
@@ -43,7 +44,7 @@ def link(folder: Path, target: Path, platform: str, sources: Sequence[str]) -> N
     """
     own = PLATFORMS[platform]
     call("-target", own.target, "-shared", *["-fPIC"] * (own.suffix != ".dll"),
-         "-fvisibility=hidden", "-s", "-o", target, folder / "model.o",
+         "-fvisibility=hidden", "-s", "-o", target, *objects,
          *(SOURCES / name for name in sources), f"-I{folder}", f"-I{SOURCES}", "-lm",
          folder=folder)
 

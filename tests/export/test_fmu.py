@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from exported_models import H, VARIABLE, arm, pendulum
+from exported_models import VARIABLE, H, arm, pendulum
 
 from sebody import InputError, Simulation
 from sebody.export import export

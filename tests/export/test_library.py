@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 import pytest
-from exported_models import H, VARIABLE, arm
+from exported_models import VARIABLE, H, arm
 
 from sebody import InputError, Model, SebodyError, Simulation, WriteError, simulate
 from sebody.export import export, toolchain
