@@ -4,13 +4,24 @@ Machine code of the JIT is of use to the process and the processor it was made f
 of models are made from LLVM code, which processes of their own compile for a named processor, once.
 """
 
+import re
 import sys
 from pathlib import Path
 from typing import NamedTuple
 
 import numba
+from llvmlite import binding
 
 from sebody.compiler import store
+
+# Numba's counting of references, in instructions of this machine's architecture
+_COUNTING = re.compile(r"^define [^\n]*@(NRT_incref|NRT_decref)\(.*?^}", re.MULTILINE | re.DOTALL)
+
+
+def bitcode(text: str) -> bytes:
+    """LLVM code as bytes, for any architecture: references are counted by another library."""
+    made = _COUNTING.sub(r"declare void @\1(ptr)", text)
+    return binding.parse_assembly(made).as_bitcode()
 
 
 class Code(NamedTuple):

@@ -20,7 +20,7 @@ from numba import cfunc, config, njit, types
 from numba.extending import intrinsic, overload_attribute
 
 from sebody.compiler import store
-from sebody.compiler.code import Code
+from sebody.compiler.code import Code, bitcode
 
 SLOWER = 2.5        # compilation, compared with the fast way
 
@@ -98,7 +98,7 @@ def function_code(function: Callable, kinds: tuple[types.Type, ...]) -> Code:
     made = njit(kinds, **_made[function.py_func].options)(function.py_func)
     text, own = made.inspect_llvm(kinds), function.py_func.__name__
     wrapped = re.findall(r'^define .*@"?cfunc\.([^"(]+)', text, re.MULTILINE)
-    return Code(next(name for name in wrapped if own in name), _bitcode(text))
+    return Code(next(name for name in wrapped if own in name), bitcode(text))
 
 
 def kernel_code(function: Callable, signature, options: dict) -> Code:
@@ -108,17 +108,13 @@ def kernel_code(function: Callable, signature, options: dict) -> Code:
 
 def code_of(made: Callable) -> Code:
     """LLVM code of a `numba.cfunc` that this process compiled."""
-    return Code(made.native_name.removeprefix("cfunc."), _bitcode(made.inspect_llvm()))
+    return Code(made.native_name.removeprefix("cfunc."), bitcode(made.inspect_llvm()))
 
 
 def processor() -> tuple[str, str]:
     """Name and features of the processor that is compiled for, as LLVM knows them."""
     return (config.CPU_NAME or binding.get_host_cpu_name(),
             config.CPU_FEATURES or binding.get_host_cpu_features().flatten())
-
-
-def _bitcode(text: str) -> bytes:
-    return binding.parse_assembly(text).as_bitcode()
 
 
 def guarded(function: Callable) -> Callable:

@@ -2,11 +2,10 @@
 
 from collections.abc import Callable, Iterable
 
-from llvmlite import binding
 from numba import types
 from numba.extending import infer_getattr, intrinsic, lower_getattr_generic
 
-from sebody.compiler.code import Code
+from sebody.compiler.code import Code, bitcode
 from sebody.compiler.inside.cache import FunctionCache, is_kept
 from sebody.compiler.inside.callees import Callee, Function
 from sebody.compiler.inside.names import (
@@ -67,7 +66,7 @@ def function_code(function: Function, kinds: tuple[types.Type, ...]) -> Code:
     fresh._cache, fresh.callee = NullCache(), function.callee
     fresh.compile(kinds)
     made = fresh.overloads[kinds]
-    return Code(made.fndesc.llvm_func_name, _bitcode(made.library.get_llvm_str()))
+    return Code(made.fndesc.llvm_func_name, bitcode(made.library.get_llvm_str()))
 
 
 def kernel_code(function: Callable, signature, options: dict) -> Code:
@@ -79,17 +78,13 @@ def kernel_code(function: Callable, signature, options: dict) -> Code:
 
 def code_of(made: CFunc) -> Code:
     """See `sebody.compiler.plain.code_of`."""
-    return Code(made.native_name.removeprefix("cfunc."), _bitcode(made.inspect_llvm()))
+    return Code(made.native_name.removeprefix("cfunc."), bitcode(made.inspect_llvm()))
 
 
 def processor() -> tuple[str, str]:
     """See `sebody.compiler.plain.processor`."""
     _, name, features = cpu_target.target_context.codegen().magic_tuple()
     return name, features
-
-
-def _bitcode(text: str) -> bytes:
-    return binding.parse_assembly(text).as_bitcode()
 
 
 def guarded(function: Callable) -> Callable:
