@@ -52,8 +52,9 @@ ROOMS = {
     "catalogue": {*COMPILED, "scenes"},
     "verify": {*COMPILED, "engine", "fem", "reduction", "model", "assembly", "results",
                "pictures", "limits", "runs", "small_motion", "explore", "scenes", "catalogue"},
+    "export": {*COMPILED, "engine", "model", "assembly", "results", "runs"},
     "cli": {"contract", "kernels", "reduction", "io", "sebody", "results", "pictures", "runs",
-            "explore", "analysis", "scenes", "catalogue", "verify"},
+            "explore", "analysis", "scenes", "catalogue", "verify", "export"},
     "derive": {"contract", "compiler", "kernels"},
 }
 # packages that offer names of rooms above their own, loaded when they are asked for
@@ -64,6 +65,7 @@ PACKAGES = {"errors": set(), "inputs": {"numpy"}, "tabular": {"numpy"}, "memory"
             "units": set(), "files": {"numpy"}, "lazy": set(), "spelling": set(), "version": set(),
             "contract": {"numpy"}, "compiler": RUNTIME | {"llvmlite"},
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
+            "export": RUNTIME | {"llvmlite"},
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
 # modules that may import matplotlib
 PICTURES = {"plots", "control_figures", "frequency_pictures", "drawing", "film", "film_marks",

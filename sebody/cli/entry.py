@@ -15,6 +15,7 @@ from sebody.cli import (
     bench,
     chart,
     check,
+    export,
     importing,
     inspect,
     interrupts,
@@ -29,8 +30,8 @@ from sebody.cli import (
 from sebody.errors import InputError, SebodyError
 
 # in the order of the help
-COMMANDS = (run, sweep, advise, listing, new, plot, animate, report, importing, inspect, check,
-            bench, chart, atlas, warm)
+COMMANDS = (run, sweep, advise, listing, new, plot, animate, report, importing, export, inspect,
+            check, bench, chart, atlas, warm)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

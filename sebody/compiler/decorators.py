@@ -7,6 +7,7 @@ from pathlib import Path
 from numba import types
 
 from sebody.compiler.choice import way
+from sebody.compiler.code import Code
 from sebody.compiler.sources import KERNELS, function_hash, in_room, kernel_hash
 from sebody.contract.layout import ARGUMENTS
 
@@ -15,6 +16,7 @@ _POINTERS = {"int64": types.CPointer(types.int64), "float64": types.CPointer(typ
 SIGNATURE = types.int64(*[types.int64] * 4, *[_POINTERS[kind] for _, kind, _ in ARGUMENTS])
 
 CONTRACT = {"contract"}     # a product and a sum in one rounding
+_OF_KERNELS = {"error_model": "numpy", "fastmath": CONTRACT}
 
 
 def compiled(function: Callable | None = None, **options) -> Callable:
@@ -36,8 +38,18 @@ def kernel_function(function: Callable) -> Callable:
 
     The attribute `address` of the result is the address of the machine code.
     """
-    return way().kernel(function, SIGNATURE, {"error_model": "numpy", "fastmath": CONTRACT},
+    return way().kernel(function, SIGNATURE, _OF_KERNELS,
                         kernel_hash(Path(function.__code__.co_filename)))
+
+
+def function_code(function: Callable, kinds: tuple[types.Type, ...]) -> Code:
+    """LLVM code of a `compiled` function for some types of arguments, compiled anew."""
+    return way().function_code(function, kinds)
+
+
+def kernel_code(kernel: Callable) -> Code:
+    """LLVM code of what `kernel_function` made, compiled anew."""
+    return way().kernel_code(kernel.__wrapped__, SIGNATURE, _OF_KERNELS)
 
 
 def is_compiled(path: Path) -> bool:

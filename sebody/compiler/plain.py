@@ -6,6 +6,7 @@ what the function calls, so everything compiled from other sources has a folder 
 """
 
 import math
+import re
 import sys
 import zlib
 from collections.abc import Callable, Iterable, Iterator
@@ -19,6 +20,7 @@ from numba import cfunc, config, njit, types
 from numba.extending import intrinsic, overload_attribute
 
 from sebody.compiler import store
+from sebody.compiler.code import Code, bitcode
 
 SLOWER = 2.5        # compilation, compared with the fast way
 
@@ -89,6 +91,30 @@ def address(function: Callable, returns: types.Type, kinds: tuple[types.Type, ..
 
 
 _addressed: list[Callable] = []
+
+
+def function_code(function: Callable, kinds: tuple[types.Type, ...]) -> Code:
+    """LLVM code of a function for some types of arguments, compiled anew."""
+    made = njit(kinds, **_made[function.py_func].options)(function.py_func)
+    text, own = made.inspect_llvm(kinds), function.py_func.__name__
+    wrapped = re.findall(r'^define .*@"?cfunc\.([^"(]+)', text, re.MULTILINE)
+    return Code(next(name for name in wrapped if own in name), bitcode(text))
+
+
+def kernel_code(function: Callable, signature, options: dict) -> Code:
+    """LLVM code of a function to be called through its address, compiled anew."""
+    return code_of(cfunc(signature, **options)(function))
+
+
+def code_of(made: Callable) -> Code:
+    """LLVM code of a `numba.cfunc` that this process compiled."""
+    return Code(made.native_name.removeprefix("cfunc."), bitcode(made.inspect_llvm()))
+
+
+def processor() -> tuple[str, str]:
+    """Name and features of the processor that is compiled for, as LLVM knows them."""
+    return (config.CPU_NAME or binding.get_host_cpu_name(),
+            config.CPU_FEATURES or binding.get_host_cpu_features().flatten())
 
 
 def guarded(function: Callable) -> Callable:

@@ -7,6 +7,7 @@ NaN: no state that contains it is accepted, and the run stops. The arguments are
 import math
 import re
 from collections.abc import Callable, Mapping
+from functools import partial
 
 import numpy as np
 from numba import carray, cfunc, njit, types
@@ -24,6 +25,7 @@ CONTROLLER = types.int64(types.float64, _floats, _floats, _floats, _floats)
 _written = types.Array(types.float64, 1, "C")
 _CONTROL = types.void(types.float64, _given, _written, _written, _given)
 FAULT, TIME, OTHERS = range(3)      # of a record: whether there was a fault, its arguments
+NO_RECORD = 0                       # its address where none is kept
 
 
 class UserFunction:
@@ -47,6 +49,7 @@ class UserFunction:
         self.read: Mapping[str, object] = {}
         self.record = np.zeros(1 + arguments)
         self.compiled = None            # by `compile_history` or `compile_force`
+        self.alone: Callable | None = None      # compiles it without the record, for exports
 
     @property
     def address(self) -> int:
@@ -96,18 +99,20 @@ def compile_history(function: Callable[[float], float], what: str) -> UserFuncti
         Numba cannot compile it; the message begins with `what` it is.
     """
     made = UserFunction(function, 1)
-    kept = made.record.ctypes.data
     try:
         returned = choice.way().guarded(_inner(HISTORY, function))
 
-        def call(t):
-            raised, value = returned((t,))
-            if raised or not math.isfinite(value):
-                record = carray(_floats_at(kept), 2)
-                record[FAULT], record[TIME] = 1.0, t
-                return math.nan
-            return value
-        made.compiled = cfunc(HISTORY)(call)
+        def compiled(kept):
+            def call(t):
+                raised, value = returned((t,))
+                if raised or not math.isfinite(value):
+                    if kept != NO_RECORD:
+                        record = carray(_floats_at(kept), 2)
+                        record[FAULT], record[TIME] = 1.0, t
+                    return math.nan
+                return value
+            return cfunc(HISTORY)(call)
+        _compile(made, compiled)
     except Exception as error:      # Numba does not raise its own exceptions alone
         raise InputError(f"{what} {getattr(function, '__name__', function)!r} cannot be compiled: "
                          f"use only arithmetic, math and numpy in it ({_reason(error)})"
@@ -129,23 +134,26 @@ def compile_force(name: str, function: Callable[..., None], coordinates: int) ->
         Numba cannot compile it.
     """
     made = UserFunction(function, 1 + 2 * coordinates)
-    kept = made.record.ctypes.data
     try:
         returned = choice.way().guarded(_inner(_ARRAYS, function))
 
-        def call(n, t, x, v, force):
-            given = carray(x, n), carray(v, n)
-            forces = carray(force, n)
-            raised, _ = returned((t, given[0], given[1], forces))
-            for i in range(n):
-                raised |= not math.isfinite(forces[i])
-            if raised:
-                record = carray(_floats_at(kept), OTHERS + 2 * n)
-                record[FAULT], record[TIME] = 1.0, t
+        def compiled(kept):
+            def call(n, t, x, v, force):
+                given = carray(x, n), carray(v, n)
+                forces = carray(force, n)
+                raised, _ = returned((t, given[0], given[1], forces))
                 for i in range(n):
-                    record[OTHERS + i], record[OTHERS + n + i] = given[0][i], given[1][i]
-                    forces[i] = math.nan
-        made.compiled = cfunc(FORCE)(call)
+                    raised |= not math.isfinite(forces[i])
+                if raised and kept != NO_RECORD:
+                    record = carray(_floats_at(kept), OTHERS + 2 * n)
+                    record[FAULT], record[TIME] = 1.0, t
+                    for i in range(n):
+                        record[OTHERS + i], record[OTHERS + n + i] = given[0][i], given[1][i]
+                if raised:
+                    for i in range(n):
+                        forces[i] = math.nan
+            return cfunc(FORCE)(call)
+        _compile(made, compiled)
     except Exception as error:
         raise InputError(f"user force {name!r} cannot be compiled: write function(t, x, v, force) "
                          "with arithmetic, math and numpy only, which sets entries of force and "
@@ -205,38 +213,47 @@ def compile_controller(name: str, function: Callable[..., None],
         Numba cannot compile it.
     """
     made = ControlFunction(function, sizes)
-    kept = made.record.ctypes.data
     ny, nx, nu, count = sizes
     total = OTHERS + sum(sizes)
     try:
         returned = choice.way().guarded(_inner(_CONTROL, function))
 
-        def call(t, y, x, u, parameters):
-            given, states, outputs, numbers = (carray(y, ny), carray(x, nx), carray(u, nu),
-                                               carray(parameters, count))
-            record = carray(_floats_at(kept), total)
-            for i in range(ny):         # as they are before the call, which changes x and u
-                record[OTHERS + i] = given[i]
-            for i in range(nx):
-                record[OTHERS + ny + i] = states[i]
-            for i in range(nu):
-                record[OTHERS + ny + nx + i] = outputs[i]
-            for i in range(count):
-                record[OTHERS + ny + nx + nu + i] = numbers[i]
-            raised, _ = returned((t, given, states, outputs, numbers))
-            for i in range(nx):
-                raised |= not math.isfinite(states[i])
-            for i in range(nu):
-                raised |= not math.isfinite(outputs[i])
-            if raised:
-                record[FAULT], record[TIME] = 1.0, t
-            return 1 if raised else 0
-        made.compiled = cfunc(CONTROLLER)(call)
+        def compiled(kept):
+            def call(t, y, x, u, parameters):
+                given, states, outputs, numbers = (carray(y, ny), carray(x, nx), carray(u, nu),
+                                                   carray(parameters, count))
+                if kept != NO_RECORD:       # as they are before the call, which changes x and u
+                    record = carray(_floats_at(kept), total)
+                    for i in range(ny):
+                        record[OTHERS + i] = given[i]
+                    for i in range(nx):
+                        record[OTHERS + ny + i] = states[i]
+                    for i in range(nu):
+                        record[OTHERS + ny + nx + i] = outputs[i]
+                    for i in range(count):
+                        record[OTHERS + ny + nx + nu + i] = numbers[i]
+                raised, _ = returned((t, given, states, outputs, numbers))
+                for i in range(nx):
+                    raised |= not math.isfinite(states[i])
+                for i in range(nu):
+                    raised |= not math.isfinite(outputs[i])
+                if raised and kept != NO_RECORD:
+                    record = carray(_floats_at(kept), total)
+                    record[FAULT], record[TIME] = 1.0, t
+                return 1 if raised else 0
+            return cfunc(CONTROLLER)(call)
+        _compile(made, compiled)
     except Exception as error:
         raise InputError(f"controller {name!r} cannot be compiled: write a function "
                          f"({shape}) with arithmetic, math and numpy only, which sets entries of "
                          f"{written} and changes nothing else ({_reason(error)})") from error
     return made
+
+
+def _compile(made: UserFunction, compiled: Callable) -> None:
+    """Compile a function with its record now, without it where somebody asks."""
+    made.compiled = compiled(made.record.ctypes.data)
+    made.alone = partial(compiled, NO_RECORD)
 
 
 def _reason(error: Exception) -> str:

@@ -10,7 +10,7 @@ import os
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
 from threading import Condition, Thread
 from typing import NamedTuple
@@ -62,7 +62,8 @@ class Queue:
             self._changed.notify_all()
 
 
-def call_all(tasks: Sequence[Task], report: Callable[[str, float], None] | None = None) -> None:
+def call_all(tasks: Sequence[Task], report: Callable[[str, float], None] | None = None,
+             variables: Mapping[str, str] | None = None) -> None:
     """Call functions in as many processes as there are processors, two at least.
 
     A task that fails is left to whoever needs what it makes.
@@ -71,6 +72,8 @@ def call_all(tasks: Sequence[Task], report: Callable[[str, float], None] | None 
     ----------
     report : callable, optional
         Called with the name of every task that went well and the seconds it took.
+    variables : mapping, optional
+        Environment variables of the processes, beside those of this one.
     """
     queue, processes = Queue(tasks), []
 
@@ -80,7 +83,7 @@ def call_all(tasks: Sequence[Task], report: Callable[[str, float], None] | None 
             began = time.perf_counter()
             try:
                 if process is None:
-                    process = _start()
+                    process = _start(variables or {})
                     processes.append(process)
                 answer = _ask(process, task)
                 if answer == DONE and report:
@@ -104,8 +107,9 @@ def call_all(tasks: Sequence[Task], report: Callable[[str, float], None] | None 
             process.communicate()
 
 
-def _start() -> subprocess.Popen:
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+def _start(variables: Mapping[str, str]) -> subprocess.Popen:
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
+                   **variables}
     return subprocess.Popen([sys.executable, "-m", __name__], env=environment, text=True,
                             stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                             stderr=subprocess.DEVNULL)

@@ -129,8 +129,16 @@ def _reading(system, state, k):
 @compiled
 def channel_value(system, state, k):
     """The quantity that a sensor reads, as it is."""
-    own, now = system.control, state.now
-    row, c = own.channels[own.sensors[k, CHANNEL]], own.coefficients[own.sensors[k, CHANNEL]]
+    own = system.control
+    place, channel = COUNTS + own.periods.size + k, own.sensors[k, CHANNEL]
+    state.memory[place] = read_channel(state.now, own.channels[channel], own.coefficients[channel],
+                                       state.memory[place])
+    return state.memory[place]
+
+
+@compiled
+def read_channel(now, row, c, last):
+    """The quantity of a channel in a state; `last` is what it was before, for angles that turn."""
     if row[0] == DOT:           # c0 + e . x + f . y
         return c[0] + _dot(now, row[1], c, 1) + _dot(now, row[2], c, 4)
     if row[0] == TURNED:        # e . (R v)
@@ -150,10 +158,9 @@ def channel_value(system, state, k):
         cosine, sine, x, y = (np.cos(now[row[1]]), np.sin(now[row[1]]), now[row[2]],
                               now[row[2] + 1])
         return c[1] * (cosine * x + sine * y) + c[2] * (cosine * y - sine * x)
-    place = COUNTS + own.periods.size + k
     if row[0] == ANGLE:
-        state.memory[place] = _angle(now, row[1], row[2], c, state.memory[place])
-    return state.memory[place]
+        return _angle(now, row[1], row[2], c, last)
+    return last
 
 
 @compiled

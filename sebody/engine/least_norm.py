@@ -25,6 +25,7 @@ from sebody.contract.layout import (
 )
 from sebody.engine import elimination
 from sebody.engine.evaluate import run_kernels, set_loads, set_tangent_operators
+from sebody.engine.inverse import invert
 from sebody.engine.matrix import clear_matrix, sum_element
 from sebody.engine.regularization import REGULARIZATION, spread
 from sebody.engine.vectors import copy
@@ -92,7 +93,7 @@ def _factorize(system, state, norms, dense):
     for j in range(n):
         for i in range(n):
             scaled[j, i] = state.scale[i] * state.matrix[j * n + i] * state.scale[j]
-    inverse = np.linalg.inv(scaled)
+    invert(scaled)
     for j in range(n):
         for i in range(n):
-            state.inverse[j, i] = inverse[j, i]
+            state.inverse[j, i] = scaled[j, i]

@@ -5,6 +5,7 @@ import numpy as np
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import C_MASS, C_STIFFNESS
 from sebody.engine import elimination
+from sebody.engine.inverse import invert
 from sebody.engine.links import add_expanded, add_second_order
 from sebody.engine.regularization import (
     EXCHANGED,
@@ -136,25 +137,23 @@ def invert_dense(system, state, n, regularized, wanted):
             size += abs(dense[j, i])
     if not np.isfinite(size):
         return False
-    try:
-        inverse = np.linalg.inv(dense)
-    except Exception:  # noqa: BLE001  (LAPACK met a zero pivot; compiled code has no other kind)
+    if not invert(dense):
         return False
     for j in range(n):
         for i in range(n):
-            inverse_size += abs(inverse[j, i])
+            inverse_size += abs(dense[j, i])
     if not size * inverse_size < 1e16 * n:
         return False
     if regularized:
         if wanted == EVALUATED:
-            spread(system, state, inverse, True)
-        project_inverse(system, state, inverse, n)
+            spread(system, state, dense, True)
+        project_inverse(system, state, dense, n)
     for j in range(n):
         if (not regularized and system.is_multiplier[j] > 0.0
-                and WEAKEST * abs(inverse[j, j]) > 1.0):
+                and WEAKEST * abs(dense[j, j]) > 1.0):
             return False
         for i in range(n):
-            state.inverse[j, i] = state.scale[i] * inverse[j, i] * state.scale[j]
+            state.inverse[j, i] = state.scale[i] * dense[j, i] * state.scale[j]
     return True
 
 

@@ -41,7 +41,7 @@ class Part(NamedTuple):
     """A function of the loop, and what it is compiled for."""
 
     function: Callable | None       # None where it is compiled with what calls it alone
-    arguments: str                  # names in `_examples`
+    arguments: str                  # names in `examples`
     seconds: float                  # of one processor, on its own
     after: tuple[str, ...] = ()     # parts it calls, or takes most of
     compile: Callable = way().compile_for
@@ -126,11 +126,11 @@ def _jobs(kernels: dict[str, Path], parts: list[str]) -> list[Job]:
 def compile_part(name: str) -> None:
     """Compile a part of the loop here, or find it in the cache."""
     part = PARTS[name]
-    part.compile(part.function, tuple(_examples()[name] for name in part.arguments.split()))
+    part.compile(part.function, tuple(examples()[name] for name in part.arguments.split()))
 
 
 @cache
-def _examples() -> dict:
+def examples() -> dict:
     """Types of arguments, by the names in `PARTS`: from a model that compiles next to nothing."""
     model = Model(planar=True)
     model.node("point", (0.0, 0.0))

@@ -5,13 +5,21 @@ from collections.abc import Callable, Iterable
 from numba import types
 from numba.extending import infer_getattr, intrinsic, lower_getattr_generic
 
+from sebody.compiler.code import Code, bitcode
 from sebody.compiler.inside.cache import FunctionCache, is_kept
 from sebody.compiler.inside.callees import Callee, Function
-from sebody.compiler.inside.names import AttributeTemplate, CFunc, normalize_signature
+from sebody.compiler.inside.names import (
+    AttributeTemplate,
+    CFunc,
+    NullCache,
+    cpu_target,
+    normalize_signature,
+)
 from sebody.compiler.inside.pipeline import KernelPasses
 
-__all__ = ["SLOWER", "address", "compile_for", "function", "guarded", "is_compiled", "is_kept",
-           "kernel", "part_of_callers", "show_members"]
+__all__ = ["SLOWER", "address", "code_of", "compile_for", "function", "function_code",
+           "guarded", "is_compiled", "is_kept", "kernel", "kernel_code", "part_of_callers",
+           "processor", "show_members"]
 
 SLOWER = 1.0        # compilation, compared with this way
 _shown = set()      # types whose members are shown
@@ -50,6 +58,33 @@ def address(function: Function, returns: types.Type, kinds: tuple[types.Type, ..
     function.compile(kinds)
     made = function.overloads[kinds]
     return made.library.get_pointer_to_function(made.fndesc.llvm_cfunc_wrapper_name)
+
+
+def function_code(function: Function, kinds: tuple[types.Type, ...]) -> Code:
+    """See `sebody.compiler.plain.function_code`; callees come from the cache."""
+    fresh = Function(function.py_func, function.targetoptions, "")
+    fresh._cache, fresh.callee = NullCache(), function.callee
+    fresh.compile(kinds)
+    made = fresh.overloads[kinds]
+    return Code(made.fndesc.llvm_func_name, bitcode(made.library.get_llvm_str()))
+
+
+def kernel_code(function: Callable, signature, options: dict) -> Code:
+    """See `sebody.compiler.plain.kernel_code`."""
+    made = CFunc(function, normalize_signature(signature), {}, options, KernelPasses)
+    made.compile()
+    return code_of(made)
+
+
+def code_of(made: CFunc) -> Code:
+    """See `sebody.compiler.plain.code_of`."""
+    return Code(made.native_name.removeprefix("cfunc."), bitcode(made.inspect_llvm()))
+
+
+def processor() -> tuple[str, str]:
+    """See `sebody.compiler.plain.processor`."""
+    _, name, features = cpu_target.target_context.codegen().magic_tuple()
+    return name, features
 
 
 def guarded(function: Callable) -> Callable:

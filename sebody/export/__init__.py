@@ -1,0 +1,12 @@
+"""Models as libraries for C and as FMUs: see README.md."""
+
+from typing import TYPE_CHECKING
+
+from sebody.lazy import load_on_demand
+
+if TYPE_CHECKING:
+    from sebody.export.exporting import export
+
+__all__ = ["export"]
+
+load_on_demand(__name__)

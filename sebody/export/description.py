@@ -1,0 +1,127 @@
+"""Model descriptions of FMUs, of FMI 2.0 and 3.0."""
+
+from typing import NamedTuple
+from xml.sax.saxutils import quoteattr
+
+from sebody.export.interface import PARAMETER
+from sebody.export.prepared import Prepared
+from sebody.model.tables import summary
+from sebody.version import __version__
+
+
+class Variable(NamedTuple):
+    """A variable of a description."""
+
+    name: str
+    reference: int
+    causality: str
+    variability: str
+    unit: str
+    start: float | None
+
+
+def variables(model: Prepared) -> list[Variable]:
+    """The time, inputs and parameters, outputs: in the order of their value references."""
+    found = [Variable("time", 0, "independent", "continuous", "", None)]
+    for one in model.inputs:
+        kind = ("parameter", "tunable") if one.kind == PARAMETER else ("input", "continuous")
+        found.append(Variable(one.name, len(found), *kind, one.unit, one.start))
+    for name, unit in zip(model.names, model.units, strict=True):
+        found.append(Variable(name, len(found), "output", "continuous", unit, None))
+    return found
+
+
+def description(model: Prepared, token: str, fmi: str, t_end: float | None) -> str:
+    """The file modelDescription.xml."""
+    return (_fmi2 if fmi == "2.0" else _fmi3)(model, token, variables(model), t_end)
+
+
+def _fmi3(model: Prepared, token: str, found: list[Variable], t_end: float | None) -> str:
+    outputs = [one for one in found if one.causality == "output"]
+    structure = [f'<{kind} valueReference="{one.reference}"/>'
+                 for kind in ("Output", "InitialUnknown") for one in outputs]
+    return _file(_tag(
+        "fmiModelDescription", {"fmiVersion": "3.0", "instantiationToken": token}
+        | _about(model), [
+            _tag("CoSimulation", {
+                "modelIdentifier": model.identifier, "canGetAndSetFMUState": "true",
+                "canSerializeFMUState": "true", "canHandleVariableCommunicationStepSize": "true",
+                "canBeInstantiatedOnlyOncePerProcess": "false",
+                **({} if model.run.tolerance else {"fixedInternalStepSize": _number(model.run.h)}),
+            }), *_units(found), *_categories(), _experiment(model, t_end),
+            _tag("ModelVariables", {}, [_variable3(one) for one in found]),
+            _tag("ModelStructure", {}, structure)]))
+
+
+def _fmi2(model: Prepared, token: str, found: list[Variable], t_end: float | None) -> str:
+    unknowns = [f'<Unknown index="{one.reference + 1}"/>' for one in found
+                if one.causality == "output"]
+    structure = [_tag(kind, {}, unknowns) for kind in ("Outputs", "InitialUnknowns") if unknowns]
+    return _file(_tag(
+        "fmiModelDescription", {"fmiVersion": "2.0", "guid": token}
+        | _about(model) | {"numberOfEventIndicators": "0"}, [
+            _tag("CoSimulation", {
+                "modelIdentifier": model.identifier, "canGetAndSetFMUstate": "true",
+                "canSerializeFMUstate": "true", "canHandleVariableCommunicationStepSize": "true",
+                "canBeInstantiatedOnlyOncePerProcess": "false"}),
+            *_units(found), *_categories(), _experiment(model, t_end),
+            _tag("ModelVariables", {}, [_variable2(one) for one in found]),
+            _tag("ModelStructure", {}, structure)]))
+
+
+def _about(model: Prepared) -> dict[str, str]:
+    return {"modelName": model.name, "description": summary(model.model),
+            "generationTool": f"sebody {__version__}", "variableNamingConvention": "flat"}
+
+
+def _units(found: list[Variable]) -> list[str]:
+    units = dict.fromkeys(one.unit for one in found if one.unit)
+    return [_tag("UnitDefinitions", {}, [_tag("Unit", {"name": unit}) for unit in units])] * bool(
+        units)
+
+
+def _categories() -> list[str]:
+    return [_tag("LogCategories", {}, [_tag("Category", {"name": "logStatusError"})])]
+
+
+def _experiment(model: Prepared, t_end: float | None) -> str:
+    ends = {} if t_end is None else {"stopTime": _number(t_end)}
+    return _tag("DefaultExperiment", {"startTime": "0", **ends, "stepSize": _number(model.run.h)})
+
+
+def _variable3(one: Variable) -> str:
+    return _tag("Float64", {"name": one.name, "valueReference": str(one.reference),
+                            "causality": one.causality, "variability": one.variability,
+                            **_initial(one), **_start(one)})
+
+
+def _variable2(one: Variable) -> str:
+    return _tag("ScalarVariable", {
+        "name": one.name, "valueReference": str(one.reference), "causality": one.causality,
+        "variability": one.variability, **_initial(one)}, [_tag("Real", _start(one))])
+
+
+def _initial(one: Variable) -> dict[str, str]:
+    initial = {"parameter": "exact", "output": "calculated"}.get(one.causality)
+    return {"initial": initial} if initial else {}
+
+
+def _start(one: Variable) -> dict[str, str]:
+    unit = {"unit": one.unit} if one.unit else {}
+    return unit | ({} if one.start is None else {"start": _number(one.start)})
+
+
+def _number(value: float) -> str:
+    return repr(float(value))
+
+
+def _tag(name: str, attributes: dict[str, str], inside: list[str] | None = None) -> str:
+    text = "".join(f" {key}={quoteattr(value)}" for key, value in attributes.items())
+    if not inside:
+        return f"<{name}{text}/>"
+    lines = "\n".join(inside).replace("\n", "\n  ")
+    return f"<{name}{text}>\n  {lines}\n</{name}>"
+
+
+def _file(text: str) -> str:
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'

@@ -1,0 +1,175 @@
+"""Inputs of an exported model by name: actuators, loads, drives and parameters."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from sebody import inputs
+from sebody.assembly.numbering import Numbering
+from sebody.contract.layout import FIELD, Row
+from sebody.engine.inputs import VALUE
+from sebody.engine.state import State
+from sebody.engine.system import System
+from sebody.errors import InputError
+from sebody.export.image import Image
+from sebody.kernels.loader import element_kernel
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Element, Motion
+from sebody.model.time_functions import TimeFunction, input_history
+from sebody.model.variants.copying import copied
+from sebody.spelling import unknown
+
+INPUT, ACCELERATION, PARAMETER = range(3)       # kinds, as runtime.h counts them
+
+
+class Input(NamedTuple):
+    """An input, and where its value is."""
+
+    name: str
+    kind: int
+    number: int         # of the input, or offset of the time at which an acceleration was set
+    at: int             # offset of the value in the image
+    factor: float       # by which the number there is multiplied
+    start: float
+    unit: str           # in words
+
+
+class Asked(NamedTuple):
+    """An input that was asked for, and what it is an input of."""
+
+    name: str
+    kind: int
+    owner: Element | Motion | None
+
+
+def with_inputs(model: Mechanism, names: Iterable[str]) -> tuple[Mechanism, list[Asked]]:
+    """A copy of a model in which some loads and drives are inputs.
+
+    Loads and actuators keep the value of t = 0 until they are set. Inputs of drives are their
+    accelerations, constant until they are set again: a drive that jumps would need impulses.
+
+    Raises
+    ------
+    InputError
+        A name that nothing has, or of something that cannot be set.
+    """
+    made, asked = copied(model), []
+    loads = {load.name: load for load in made.loads if load.time_function is not None}
+    joints = {drive.name: (joint.name, drive) for joint in made.joints
+              for drive in joint.constraints if drive.time_function is not None}
+    drives = {name: drive for name, drive in joints.values()} | {
+        name: drive for name, (_, drive) in joints.items()}
+    motions = {motion.name: (block, motion) for block in made.dof_blocks()
+               for motion in block.motions}
+    parameters = _parameters(made)
+    for name in names:
+        inputs.name(name, "name of an input")
+        if any(name == one.name for one in asked):
+            raise InputError(f"input {name!r} is given twice: leave one out")
+        if name in loads:
+            asked.append(Asked(name, INPUT, _as_input(loads[name])))
+        elif name in drives:
+            drives[name].time_function = _begun(name, drives[name].time_function)
+            asked.append(Asked(name, ACCELERATION, drives[name]))
+        elif name in motions:
+            block, motion = motions[name]
+            changed = motion._replace(time_function=_begun(name, motion.time_function))
+            block.motions[block.motions.index(motion)] = changed
+            asked.append(Asked(name, ACCELERATION, changed))
+        elif name in parameters:
+            asked.append(Asked(name, PARAMETER, None))
+        else:
+            raise unknown("input", name, [*loads, *drives, *motions, *parameters],
+                          "the model has", "the model has no loads, drives or parameters")
+    return made, asked
+
+
+def _as_input(load: Element) -> Element:
+    own = load.time_function
+    if load.function is not None or own is None or own.is_time:
+        raise InputError(f"input {load.name!r} is a force by a function of positions and "
+                         "velocities, which nothing can be set of: add an actuator")
+    if not own.is_input:
+        load.time_function = input_history(float(own.at(0.0)[0]), 0.0, 0.0, ())
+    return load
+
+
+def _begun(name: str, own: TimeFunction | None) -> TimeFunction:
+    """A motion that goes on with the acceleration of t = 0."""
+    assert own is not None
+    value, rate, second = own.at(0.0)
+    if own.functions and len(own.functions) < 3:
+        raise InputError(f"input {name!r} is a drive by a function without rates: give the "
+                         "function with its two rates")
+    return replace(TimeFunction(), pieces=((float(value), float(rate), 0.5 * float(second), 0.0),))
+
+
+def _parameters(model: Mechanism) -> dict[str, tuple]:
+    """Numbers that can be set, by name: what has them, and which of its numbers."""
+    found: dict[str, tuple] = {f"gravity.{axis}": ("gravity", k)
+                               for k, axis in enumerate("xyz"[:model.dimension])}
+    for element in (*model.rigid_bodies.values(), *model.constraints, *model.loads):
+        if element.body is None:
+            found |= {f"{element.name}.{name}": (element, name)
+                      for name, value in element.constants.items() if np.ndim(value) == 0}
+    for name, controller in model.controllers.items():
+        found |= {f"{name}.parameters.{k}": (name, k)
+                  for k in range(controller.parameters.size)}
+    return found
+
+
+def placed(asked: list[Asked], model: Mechanism, numbering: Numbering, system: System,
+           state: State, image: Image) -> list[Input]:
+    """Where the values of inputs are."""
+    parameters, found = _parameters(model), []
+    ports = list(numbering.all_kept.inputs)
+    for one in asked:
+        if one.kind == INPUT:
+            port = numbering.all_kept.ports[one.name]
+            place = numbering.all_kept.inputs[port] + VALUE
+            at, number, factor = image.at(state.frames, place), ports.index(port), 1.0
+            start = float(state.frames[place])
+        elif one.kind == ACCELERATION:
+            assert one.owner is not None
+            row = int(system.table_at[numbering.port_names.index(one.owner.name)])
+            at = image.at(system.table_pieces, system.table_pieces.shape[1] * row + 2)
+            number, factor = image.at(system.table_times, row), 2.0
+            start = 2.0 * float(system.table_pieces[row, 2])
+        else:
+            array, place = _place(parameters[one.name], model, numbering, system, state)
+            at, number, factor = image.at(array, place), 0, 1.0
+            start = float(array[place])
+        found.append(Input(one.name, one.kind, number, at, factor, start, _unit(one)))
+    return found
+
+
+def _place(parameter: tuple, model: Mechanism, numbering: Numbering, system: System,
+           state: State) -> tuple[np.ndarray, int]:
+    """The array that has a parameter, and where."""
+    owner, which = parameter
+    if owner == "gravity":
+        return state.coefficients, FIELD + which
+    if isinstance(owner, Element):
+        slices = Row("constants", element_kernel(owner.kind).CONSTANTS).slices({})
+        return system.constants, numbering.constants_at[owner] + slices[which].start
+    names = list(model.controllers)
+    before = [model.controllers[name].parameters.size for name in names[:names.index(owner)]]
+    return system.control.parameters, sum(before) + which
+
+
+def _unit(one: Asked) -> str:
+    if one.kind == PARAMETER:
+        return "length/time^2" if one.name.startswith("gravity.") else ""
+    turns = _kind(one.owner) == "rotation"
+    if one.kind == INPUT:
+        return "force length" if turns else "force"
+    return "rad/time^2" if turns else "length/time^2"
+
+
+def _kind(owner: Element | Motion | None) -> str:
+    if isinstance(owner, Motion):
+        return owner.place.kind
+    assert owner is not None
+    return "rotation" if "turn" in owner.kind else owner.attachments[0].kind

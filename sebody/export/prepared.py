@@ -1,0 +1,157 @@
+"""A model ready to be exported: its state at the start, memory, inputs, outputs and functions."""
+
+import re
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody import inputs
+from sebody.assembly.control import begin
+from sebody.compiler.choice import way
+from sebody.engine.control_data import FUNCTION, OUTSIDE
+from sebody.engine.state import Scheme
+from sebody.engine.system import System
+from sebody.errors import InputError
+from sebody.export.image import Image, members
+from sebody.export.interface import Input, placed, with_inputs
+from sebody.export.linking import Part
+from sebody.export.quantities import Outputs
+from sebody.export.terms import Quantities
+from sebody.kernels.loader import element_kernel_name, load
+from sebody.model.model import Model
+from sebody.results.result import Result
+from sebody.results.units import unit
+from sebody.runs.simulation import Simulation
+from sebody.runs.tolerance import Tolerance
+from sebody.runs.user_faults import functions
+from sebody.units import parsed_units
+
+ROUTINES = "refactorize", "restart", "sample"       # in the order of System.routines
+
+
+class Run(NamedTuple):
+    """How a model is run: the arguments of `Simulation`."""
+
+    h: float
+    tolerance: Tolerance | None = None
+    scheme: Scheme | None = None
+    start: Result | None = None
+
+
+class Prepared:
+    """A model ready to be exported.
+
+    Attributes
+    ----------
+    name : str
+    identifier : str
+        The name as C can have it.
+    run : Simulation
+        At the start.
+    system : System
+        Of the run, with a corner to spare for a time that is no output step.
+    inputs : list of Input
+    names, units : list of str
+        Of outputs, which are numbers.
+    outputs : Outputs
+        These, then what sensors measure that the loop cannot read.
+    sensors : list of (int, Sensor)
+        These sensors and their numbers.
+    image : Image
+    kernels : list of str
+    called : list of str
+        Functions that are called by address.
+    calls : list of (int, str)
+        Offsets of addresses in the image, and the function that each is of.
+    """
+
+    def __init__(self, model: Model, name: str, run: Run, inputs_of: Iterable[str],
+                 outputs_of: Iterable[str]):
+        self.name = inputs.name(name, "name of the export")
+        self.identifier = re.sub(r"\W", "_", name, flags=re.ASCII)
+        if not self.identifier[0].isalpha():
+            self.identifier = f"model_{self.identifier}"
+        made, asked = with_inputs(model, inputs_of)
+        self.run = Simulation(made, run.h, run.scheme, 1, run.tolerance, run.start)
+        self.model, self._numbering = made, self.run.numbering
+        if self.run.state.control.pivoted:
+            raise InputError("the matrix of the model needs row exchanges at the start, which "
+                             "libraries do not have: leave out what makes a motion without mass")
+        if any(one.name.rpartition(".parameters.")[0] in made.controllers for one in asked):
+            self._ask_for_first_samples()
+        self.system = _with_spare_corner(self.run.system)
+        quantities = Quantities(made, self._numbering, self.run.system, self.run.state)
+        self.names = quantities.names(outputs_of)
+        if len(set(self.names)) < len(self.names):
+            twice = next(one for one in self.names if self.names.count(one) > 1)
+            raise InputError(f"output {twice!r} is given twice: leave one out")
+        kinds = self.system.control.channels[:, 0]
+        self.sensors = [(k, sensor) for k, sensor in enumerate(self._numbering.all_kept.sensors)
+                        if kinds[k] == OUTSIDE]
+        self.outputs: Outputs = quantities.made(self.names, [s for _, s in self.sensors])
+        found = parsed_units(made.units)
+        self.units = [unit(one, found) for one in self.names]
+        self.image = self._image([one.kind for one in asked])
+        self.inputs: list[Input] = [
+            one._replace(unit=found.of(one.unit) if found else one.unit)
+            for one in placed(asked, made, self._numbering, self.system, self.run.state,
+                              self.image)]
+        self._find_calls()
+
+    def _ask_for_first_samples(self) -> None:
+        """Take back the samples of t = 0: parameters of controllers may be set before them."""
+        state, bodies = self.run.state, 9 * len(self.model.bodies)
+        begin(self.model, self._numbering, self.run.system.control, state.memory, state.frames)
+        state.frames_old[bodies:] = state.frames[bodies:]
+        self.run.sampling.begin()
+
+    def _image(self, kinds: list[int]) -> Image:
+        system, state = self.system, self.run.state
+        changing = [*members(state), self.outputs.values, self.outputs.row, self.outputs.loads,
+                    self.outputs.sums, system.corners, system.jumps, system.table_times,
+                    system.table_pieces, system.control.parameters]
+        changing += [system.constants] * (2 in kinds)
+        state.work[:] = 0.0
+        return Image([system, state, self.outputs], changing, state.work)
+
+    def _find_calls(self) -> None:
+        """Find addresses in the arrays, and forget them: they are of this process."""
+        model, system = self.model, self.system
+        bodies = {body.kernel for body in model.bodies.values()}
+        elements = {element_kernel_name(one.kind) for one in (
+            *model.rigid_bodies.values(), *model.constraints, *model.loads)}
+        kernels = {load(name).kernel.address: name for name in bodies | elements}
+        self.kernels = sorted(kernels.values())
+        self._users = {function.address: (f"user_{k}", function)
+                       for k, (_, function) in enumerate(functions(model))}
+        users = {address: name for address, (name, _) in self._users.items()}
+        self.calls = [
+            *self._in(system.address, kernels), *self._in(system.index, users),
+            *self._in(system.functions, users),
+            *self._in(system.control.controllers, users),
+            *((self.image.at(system.routines, k), name) for k, name in enumerate(ROUTINES))]
+        self.called = list(dict.fromkeys(name for _, name in self.calls))
+        self.image.clear([at for at, _ in self.calls])
+
+    def _in(self, array: NDArray, known: dict[int, str]) -> list[tuple[int, str]]:
+        flat = array.ravel()
+        return [(self.image.at(array, int(k)), known[int(flat[k])])
+                for k in np.flatnonzero(np.isin(flat, list(known)))]
+
+    def users(self) -> list[Part]:
+        """Users' functions without the records of faults."""
+        histories = set(self.system.functions.ravel().tolist())
+        controllers = set(self.system.control.controllers[:, FUNCTION].tolist())
+        return [Part(name, "history" if address in histories else
+                     "controller" if address in controllers else "force",
+                     way().code_of(function.alone()))
+                for address, (name, function) in self._users.items()]
+
+
+def _with_spare_corner(system: System) -> System:
+    return replace(system, corners=np.append(system.corners, np.inf),
+                   jumps=np.append(system.jumps, 1))
+

@@ -1,0 +1,87 @@
+"""The numbers of a model in C: what runtime.h reads from model.h."""
+
+from collections.abc import Iterable
+from hashlib import sha256
+
+from sebody.contract.layout import RECORD
+from sebody.engine import control_data
+from sebody.engine.state import ASKED, CLOCK, CONTROL, EVALUATED, REASONS, Record
+from sebody.export.prepared import Prepared
+
+
+def model_h(model: Prepared) -> str:
+    """The header model.h."""
+    run, image, outputs = model.run, model.image, model.outputs
+    system, state, own = model.system, run.state, model.system.control
+    record = Record.of(state, 0, 1)
+    hash_of_all = sha256(image.stored + repr((model.inputs, image.size)).encode()).hexdigest()[:16]
+    numbers = {
+        "IMAGE_SIZE": image.size, "IMAGE_STORED": len(image.stored), "IMAGE_MUTABLE": image.mutable,
+        "IMAGE_SAVED": image.saved,
+        "AT_CONTROL": image.at(state.control), "AT_CLOCK": image.at(state.clock),
+        "AT_MEMORY": image.at(state.memory), "AT_NOW": image.at(state.now),
+        "AT_VALUES": image.at(outputs.values), "AT_CORNERS": image.at(system.corners),
+        "AT_JUMPS": image.at(system.jumps), "COLUMNS": state.now.size,
+        "RECORD_PARTS": record.at.size, "DENSE": int(run.dense), "ASKED": ASKED,
+        "EVALUATED": EVALUATED, "ADAPTIVE": int(state.control.adaptive),
+        "CORNERS": system.corners.size - 1, "TASKS": own.periods.size,
+        "SENSORS": len(model.sensors), "VARIABLES": len(model.names), "INPUTS": len(model.inputs),
+        "REASONS": max(REASONS) + 1, "CALLED": len(model.calls),
+        **{f"MEMORY_{name}": getattr(control_data, name) for name in (
+            "STOP", "NEXT", "HAS", "COUNTS")},
+        **{f"CONTROL_{name.upper()}": CONTROL.names.index(name) for name in (
+            "grid", "recorded", "reason", "restart", "corner", "wanted")},
+        **{f"CLOCK_{name.upper()}": CLOCK.names.index(name) for name in ("time", "step")}}
+    first = own.periods.size + control_data.COUNTS
+    listed = [
+        *(_words(name, image.words(group)) for name, group in (
+            ("SYSTEM", system), ("STATE", state), ("OUTPUTS", outputs))),
+        _array("int64_t", "RECORD_AT", record.at.tolist()),
+        _array("double", "SCHEME", [float(x).hex() for x in run.scheme]),
+        _array("double", "CORNER", [_float(x) for x in system.corners[:-1]]),
+        _array("int64_t", "CORNER_JUMPS", system.jumps[:-1].tolist()),
+        _array("double", "PERIOD", [_float(x) for x in own.periods]),
+        _array("int64_t", "SENSOR_PLACE", [first + k for k, _ in model.sensors]),
+        _array("int64_t", "SENSOR_OUTPUT", [
+            len(model.names) + k for k in range(len(model.sensors))]),
+        _array("int64_t", "CALLED_AT", [at for at, _ in model.calls]),
+        _array("int64_t", "CALLED_FUNCTION", [
+            model.called.index(name) for _, name in model.calls]),
+        _array("int", "INPUT_KIND", [one.kind for one in model.inputs]),
+        _array("int64_t", "INPUT_NUMBER", [one.number for one in model.inputs]),
+        _array("int64_t", "INPUT_AT", [one.at for one in model.inputs]),
+        _array("double", "INPUT_FACTOR", [_float(one.factor) for one in model.inputs]),
+        _array("char *const", "REASON", [quoted(REASONS.get(k, "a step failed"))
+                                         for k in range(max(REASONS) + 1)])]
+    return "\n".join([
+        "/* Numbers of a model, made by sebody: see runtime.h. */", "#include <stdint.h>",
+        f"#define MODEL_NAME {quoted(model.name)}", f"#define MODEL_HASH 0x{hash_of_all}ull",
+        f"#define NAMED(function) {model.identifier}_##function",
+        *(f"#define {name} {value}" for name, value in numbers.items()), *listed, ""])
+
+
+def quoted(text: str) -> str:
+    """A text as a constant in C; bytes beyond ASCII in octal."""
+    return '"' + "".join(chr(b) if 32 <= b < 127 and chr(b) not in '"\\?' else f"\\{b:03o}"
+                         for b in text.encode()) + '"'
+
+
+def _float(value: float) -> str:
+    return float(value).hex()
+
+
+def _words(name: str, words: list[int]) -> str:
+    return f"#define {name}_WORDS {len(words)}\n" + _array("int64_t", name, words)
+
+
+def _array(kind: str, name: str, values: Iterable[object]) -> str:
+    """A constant array, with an entry to spare: C knows no empty ones."""
+    return f"static const {kind} {name}[] = {{{', '.join([*map(str, values), '0'])}}};"
+
+
+def recorded_parts(model: Prepared) -> str:
+    """Where the parts of a row are, for the header of a library."""
+    slices = model.run.state.recorded_parts
+    meanings = {part.name: part.meaning for part in RECORD.parts}
+    return "\n".join(f"     {part.start:5d} to {part.stop - 1:5d}  {name}: {meanings[name]}"
+                     for name, part in slices.items() if part.stop > part.start)

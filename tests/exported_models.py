@@ -1,0 +1,56 @@
+"""Models of tests of exports: several features at once, names with spaces, a turned plane."""
+
+import math
+
+import numpy as np
+
+from sebody import Model, Tolerance, plane
+from sebody.fem import Section
+
+SECTION = Section(area=1e-4, inertia_y=2e-9, inertia_z=1e-9, torsion=2e-9, youngs_modulus=7e10,
+                  poisson_ratio=0.3, density=2700.0)
+TURN = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]])
+H = 2e-3
+VARIABLE = Tolerance(1e-5)
+
+
+def feedback(t, y, x, u, parameters):
+    """Proportional and derivative, with the integral as its state."""
+    x[0] += parameters[2] * (-0.1 - y[0])
+    u[0] = parameters[0] * (-0.1 - y[0]) - parameters[1] * y[1] + x[0]
+
+
+def arm() -> Model:
+    """A turned flexible arm on a motor with a controller, a wind by a function, and a floor."""
+    model = Model(units="m kg N s")
+    model.gravity(TURN @ (0.0, -9.81, 0.0))
+    shoulder = model.node("the shoulder", TURN @ (0.1, 0.2, 0.0))
+    hand = model.node("the hand", TURN @ (0.7, 0.3, 0.0))
+    model.beam("upper arm", (shoulder, hand), SECTION, 6, 1, 2, up=TURN @ (0.0, 0.0, 1.0))
+    model.revolute(shoulder, axis=TURN @ (0.0, 0.0, 1.0), name="joint 1")
+    model.rigid_body("load at the hand", hand, 0.2, 1e-3 * np.eye(3))
+    model.actuator("motor 1", joint="joint 1", limit=30.0, lag=0.004)
+    model.controller("loop", feedback, ["joint 1.angle", "joint 1.rate"], ["motor 1"], 0.004,
+                     states=[0.1], parameters=[12.0, 0.8, 0.05])
+    model.force(hand, TURN @ (0.0, 1.0, 0.0), lambda t: 0.5 * math.sin(9.0 * t) + math.exp(-t),
+                name="a wind")
+    model.force(hand, TURN @ (1.0, 0.0, 0.0), [(0.0, 0.0), (0.05, 0.0), (0.05, 1.0), (0.2, 0.4)],
+                name="a pull")
+    model.contact(hand, on=plane(TURN @ (0.0, 1.0, 0.0), TURN @ (0.0, 0.27, 0.0)), radius=0.02,
+                  stiffness=1e5, restitution=0.4, friction=0.3, name="the floor")
+    return model
+
+
+def pendulum() -> Model:
+    """A pendulum in a plane whose support is driven, with an actuator and a spring."""
+    model = Model(planar=True)
+    model.gravity((0.0, -9.81))
+    model.node("cart", (0.0, 0.0))
+    model.fix("cart", "rotation")
+    model.move("cart", (1.0, 0.0), [(0.0, 0.0), (10.0, 0.0)], name="the support")
+    model.node("bob", (0.3, -0.4))
+    model.rigid_body("rod", "bob", 1.2, 0.03)
+    model.attach("rod top", (0.0, 0.0), "bob")
+    model.revolute("cart", to="rod top", name="pin")
+    model.actuator("push", node="bob", direction=(1.0, 0.5))
+    return model
