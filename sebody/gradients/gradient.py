@@ -1,0 +1,177 @@
+"""Exact derivatives of what a run gives by what the model is made of."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody import inputs
+from sebody.engine.state import Scheme
+from sebody.errors import InputError
+from sebody.gradients.history import History, history
+from sebody.gradients.linear import Linear
+from sebody.gradients.objectives import Objectives, Seen, checked
+from sebody.gradients.parameters import Column, columns_of
+from sebody.gradients.slopes import Slope, Slopes
+from sebody.gradients.support import refuse_model, refuse_run
+from sebody.gradients.sweeps import Course, backward, forward
+from sebody.model.model import Model
+from sebody.runs.schemes import checked as checked_scheme
+from sebody.runs.schemes import generalized_alpha
+from sebody.runs.simulation import Simulation
+from sebody.runs.steps import check_steps
+
+CONVERGED = 1e-10       # of Newton's iteration: errors of gradients are a hundred times that
+MODES = "adjoint", "forward"
+
+
+@dataclass(frozen=True, eq=False)
+class Gradient:
+    """Values of objectives, and their derivatives by parameters.
+
+    Attributes
+    ----------
+    value : (m,)
+        Of the objectives: components of vectors one after the other.
+    matrix : (m, p)
+        Derivatives of each by the numbers of the parameters, in the order given.
+    rows, columns : tuple of str
+        What these are of: ``"tip[1]"`` is the second component of the objective ``tip``.
+    growth : float
+        By how much a disturbance at the start has grown at most, in the norm of rates: of a chaotic
+        run derivatives are as large and say little.
+    seconds : float
+        Of the whole, run included.
+    run_seconds : float
+        Of the run alone.
+    """
+
+    value: NDArray
+    matrix: NDArray
+    rows: tuple[str, ...]
+    columns: tuple[str, ...]
+    seconds: float = 0.0
+    run_seconds: float = 0.0
+    warnings: tuple[str, ...] = field(default=())
+
+    def __repr__(self) -> str:
+        return f"<Gradient of {len(self.rows)} values by {len(self.columns)} numbers>"
+
+    def of(self, objective: str, parameter: str) -> NDArray:
+        """Derivatives of one objective by one parameter, (components, numbers).
+
+        Raises
+        ------
+        InputError
+            Names that were not given.
+        """
+        found = [[k for k, label in enumerate(labels) if label.partition("[")[0] == name]
+                 for labels, name in ((self.rows, objective), (self.columns, parameter))]
+        if not all(found):
+            raise InputError(f"the gradient has no derivatives of {objective!r} by {parameter!r}: "
+                             f"it has those of {', '.join(self.rows)} by {', '.join(self.columns)}")
+        return self.matrix[np.ix_(*found)]
+
+
+def gradient(model: Model, h: float, t_end: float, objectives: Objectives,
+             parameters: Sequence[str], mode: Literal["adjoint", "forward"] = "adjoint",
+             scheme: Scheme | None = None) -> Gradient:
+    """Run a model, and differentiate what the run gives: exactly, without differences of runs.
+
+    Parameters
+    ----------
+    model : Model
+        As it was before, when this returns.
+    h, t_end : float
+        Fixed step, and end of the run, a multiple of it [time].
+    objectives : mapping
+        By names of your choice what `final`, `at_time`, `integral`, `rms` or `soft_maximum` return.
+    parameters : sequence of str
+        Names as of an `Ensemble`: factors of loads, stiffness and mass count from 1.
+    mode : {'adjoint', 'forward'}
+        Backwards with a cost that grows with the number of objectives, or forwards with one that
+        grows with that of parameters. Results are the same to rounding.
+    scheme : Scheme, optional
+        `generalized_alpha` with rho 0.9 and a tolerance of 1e-10 by default.
+
+    Raises
+    ------
+    InputError
+        Unknown names, objectives without derivatives, features of the model that are not
+        differentiated.
+    SimulationError
+        The run fails.
+
+    Examples
+    --------
+    >>> found = gradient(model, 0.01, 5.0, {"tip": final("tip.position")},
+    ...                  ["motor.amplitude", "beam.stiffness", "gravity"])
+    >>> found.matrix.shape
+    (3, 5)
+    """
+    began = time.perf_counter()
+    mode = inputs.choice(mode, "mode", MODES)
+    t_end = _multiple(inputs.number(t_end, "t_end", above=0), inputs.number(h, "h", above=0))
+    outputs = checked(objectives, t_end)
+    inputs.instance(model, "model", Model, "give a sebody.Model")
+    columns = columns_of(model, parameters)
+    refuse_model(model)
+    scheme = generalized_alpha(tolerance=CONVERGED) if scheme is None else checked_scheme(scheme)
+    one = Differentiated(model, h, t_end, scheme)
+    seen = Seen(outputs, one.run, one.history, one.linear)
+    slopes = Slopes(model, one.run, one.history, seen.explicit)
+    matrix = (_adjoint if mode == "adjoint" else _forward)(one, seen, slopes, columns)
+    return Gradient(seen.value, matrix, tuple(seen.labels), tuple(c.label for c in columns),
+                    time.perf_counter() - began, one.history.seconds)
+
+
+class Differentiated:
+    """A run with its accepted steps, and what linearizes them."""
+
+    def __init__(self, model: Model, h: float, t_end: float, scheme: Scheme):
+        self.run = Simulation(model, h, scheme)
+        refuse_run(self.run)
+        self.history: History = history(self.run, t_end)
+        self.linear = Linear(self.run.system, self.run.state, self.run.numbering.free)
+        self.course = Course(self.linear, self.run.scheme, self.history)
+
+
+def _multiple(t_end: float, h: float) -> float:
+    check_steps(t_end, h)
+    last = round(t_end / h)
+    if last < 1 or abs(t_end / h - last) > 1e-6:
+        raise InputError(f"t_end is {t_end:g}, which is not a multiple of the step {h:g}: give one")
+    return last * h
+
+
+def _adjoint(one: Differentiated, seen: Seen, slopes: Slopes, columns: list[Column]) -> NDArray:
+    """One sweep back, then a sum over the events for every parameter: (16)."""
+    bars = backward(one.course, seen, len(seen.value))
+    found = np.zeros((len(seen.value), len(columns)))
+    for k, column in enumerate(columns):
+        slope = slopes.of(column)
+        found[:, k] = (np.einsum("enm,en->m", bars.weights, slope.residuals)
+                       + bars.motion.T @ slope.motion + bars.rates.T @ slope.rates
+                       + slope.objectives)
+    return found
+
+
+def _forward(one: Differentiated, seen: Seen, slopes: Slopes, columns: list[Column]) -> NDArray:
+    """One sweep forth with a column for every parameter."""
+    each: list[Slope] = [slopes.of(column) for column in columns]
+    found = np.stack([slope.objectives for slope in each], axis=1)
+
+    def see(event: int, xi: NDArray, v: NDArray, a: NDArray) -> None:
+        seed = seen.at(event)
+        if seed is not None:
+            for bar, of in zip(seed, (xi, v, a), strict=True):
+                found[:] += bar.T @ of
+    forward(one.course, np.stack([s.residuals for s in each], axis=2),
+            *(np.stack([getattr(s, name) for s in each], axis=1) for name in ("motion", "rates")),
+            see)
+    return found
