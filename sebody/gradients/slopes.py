@@ -30,7 +30,7 @@ from sebody.kernels.rotations import rotate
 from sebody.results import rotations
 from sebody.kernels.abi import pointer_to
 from sebody.model.model import Model
-from sebody.limits.watch import LimitWarning
+from sebody.errors import LimitWarning
 from sebody.runs.simulation import Simulation
 
 LARGE, SHORT = 0.25, 1e-3       # steps of differences, relative to the size of a parameter

@@ -1,13 +1,14 @@
 """Which runs have exact gradients; all others are refused by name, with what to do instead."""
 
-from sebody.engine.state import Scheme
 from sebody.errors import InputError
 from sebody.generated.options import FRAMES
+from sebody.kernels.loader import element_kernel
 from sebody.model.model import Model
 from sebody.runs.simulation import Simulation
 from sebody.runs.tolerance import Tolerance
 
 USER_FORCE = "user_force"
+COUNTED = ("angle",)        # what torsion springs keep to count turns, no force depends on it else
 
 
 def refuse_model(model: Model) -> None:
@@ -40,7 +41,8 @@ def refuse_run(run: Simulation) -> None:
     InputError
         Friction, contacts, controllers, motions without mass, constraints of index 2.
     """
-    if remembering := [one.name for one in run.numbering.memories]:
+    if remembering := [one.name for one in run.numbering.memories
+                       if element_kernel(one.kind).MEMORY != COUNTED]:
         raise InputError(f"{remembering[0]!r} keeps numbers from step to step, as friction, "
                          "contacts and stops do, and these are not differentiated: leave it out, "
                          "or use an Ensemble with values on both sides")
