@@ -139,6 +139,7 @@ class Differentiated:
         self.history: History = history(self.run, t_end)
         self.linear = Linear(self.run.system, self.run.state, self.run.numbering.free)
         self.course = Course(self.linear, self.run.scheme, self.history)
+        self.course.settle()
 
 
 def _multiple(t_end: float, h: float) -> float:

@@ -23,6 +23,7 @@ from sebody.contract.layout import (
     TANGENT,
 )
 from sebody.engine.evaluate import run_kernels, set_loads_beside, sum_forces
+from sebody.engine.links import place_dependent
 from sebody.engine.state import REASONS, State
 from sebody.engine.system import System
 from sebody.errors import InputError
@@ -46,6 +47,7 @@ def _evaluate(system, state, row, end, beside, places, sums):
     for i in range(state.now.size):
         state.now[i] = row[i]
     set_loads_beside(system, state.frames, state.loads, end, beside)
+    place_dependent(system.links, state.q, state.v, state.a, state.R)
     for i in range(state.T.size):
         state.T[i] = 1.0 if i % 9 % 4 == 0 else 0.0
     c = state.coefficients

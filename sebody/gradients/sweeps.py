@@ -84,6 +84,18 @@ class Course:
         self._scales: dict[float, Scales] = {}
         self._q = linear.state.recorded_parts["q"].start
 
+    def settle(self) -> None:
+        """Multipliers at the ends of steps before jumps: the run has kept those that follow."""
+        found, state = self.history, self.linear.state
+        for k in np.flatnonzero(found.kinds[1:] != STEP):
+            row = found.rows[k]
+            q = row[self._q:self._q + self.linear.free]
+            q[self.fixed] = 0.0
+            event = self._event(int(k))
+            forces = state.residual[:self.linear.free, None].copy()
+            forces[self.fixed] = 0.0
+            q[self.fixed] = -event.factors.solve(forces)[self.fixed, 0]
+
     def events(self, backwards: bool) -> Iterator[Event]:
         """All events."""
         numbers = range(len(self.history.rows))
