@@ -16,7 +16,9 @@ if TYPE_CHECKING:
         maximum,
         minimum,
         rms,
+        soft_maximum,
     )
+    from sebody.gradients.gradient import Gradient, gradient
     from sebody.limits.watch import spin_limit
     from sebody.runs.restart import resume, save_state
     from sebody.runs.statics import equilibrium
@@ -37,6 +39,7 @@ __all__ = [
     "Campbell",
     "Ensemble",
     "FrequencyResponse",
+    "Gradient",
     "Linearization",
     "Modes",
     "Outcome",
@@ -50,6 +53,7 @@ __all__ = [
     "equilibrium",
     "final",
     "frequency_response",
+    "gradient",
     "integral",
     "linearize",
     "maximum",
@@ -58,6 +62,7 @@ __all__ = [
     "resume",
     "rms",
     "save_state",
+    "soft_maximum",
     "spin_limit",
     "state_space",
     "vibrations",

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.batches import Shape, starts
 from sebody.assembly.numbering import Numbering
+from sebody.engine.system import System
 from sebody.model.mechanism import Mechanism
 
 
@@ -25,6 +26,18 @@ def frames(model: Mechanism, numbering: Numbering) -> dict[int, int]:
     for dof_block in numbering.dependent:
         frame_of[numbering.dof_blocks[dof_block]] = -1
     return frame_of
+
+
+def in_frames(model: Mechanism, numbering: Numbering, system: System) -> NDArray:
+    """Whether the element matrices of each batch are in the axes of frames: (batches,) bool.
+
+    Those of superelements, and of loads on bodies.
+    """
+    found = np.arange(system.address.size) < system.first_joint[0]
+    for load in model.loads:
+        if load.body is not None:
+            found[np.searchsorted(system.at_g, numbering.forces_at[load], side="right") - 1] = True
+    return found
 
 
 def rotated_blocks(shapes: Iterable[Shape],

@@ -137,7 +137,7 @@ class Differentiated:
         self.run = Simulation(model, h, scheme)
         refuse_run(self.run)
         self.history: History = history(self.run, t_end)
-        self.linear = Linear(self.run.system, self.run.state, self.run.numbering.free)
+        self.linear = Linear(self.run)
         self.course = Course(self.linear, self.run.scheme, self.history)
         self.course.settle()
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from sebody.assembly.axes import in_frames
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import (
     AT_FRAME,
@@ -24,10 +25,10 @@ from sebody.contract.layout import (
 )
 from sebody.engine.evaluate import run_kernels, set_loads_beside, sum_forces
 from sebody.engine.links import place_dependent
-from sebody.engine.state import REASONS, State
-from sebody.engine.system import System
+from sebody.engine.state import REASONS
 from sebody.errors import InputError
 from sebody.gradients.links import Followers
+from sebody.runs.simulation import Simulation
 
 DENSE = 160         # most unknowns of full matrices: beyond, sparse ones are quicker
 Matrix = NDArray | sparse.csc_array
@@ -42,7 +43,7 @@ class Parts(NamedTuple):
 
 
 @compiled
-def _evaluate(system, state, row, end, beside, places, sums):
+def _evaluate(system, state, row, end, beside, turned, places, sums):
     """Sums of the element matrices M, C and K in the state of a row; the kernels' status."""
     for i in range(state.now.size):
         state.now[i] = row[i]
@@ -58,7 +59,7 @@ def _evaluate(system, state, row, end, beside, places, sums):
         status = run_kernels(TANGENT, 0, system.address.size, system, state)
         if status != OK:
             return status
-        _turn(system, state)
+        _turn(system, state, turned)
         for k in range(sums.shape[1]):
             sums[part, k] = 0.0
         for k in range(places.size):
@@ -68,10 +69,10 @@ def _evaluate(system, state, row, end, beside, places, sums):
 
 
 @compiled
-def _turn(system, state):
-    """Turn the matrices of superelements from the axes of their frames to global axes."""
+def _turn(system, state, turned):
+    """Turn the matrices of some batches from the axes of frames to global axes."""
     d = system.dimension[0]
-    for b in range(system.first_joint[0]):
+    for b in turned:
         width, stride = system.width[b], system.stride[b]
         for element in range(system.count[b]):
             at_index = system.at_index[b] + element * stride
@@ -112,15 +113,15 @@ class Linear:
 
     Parameters
     ----------
-    system, state : System, State
-        The arrays of a simulation; the state is overwritten.
-    free : int
-        Number of unknowns.
+    run : Simulation
+        Its state is overwritten.
     """
 
-    def __init__(self, system: System, state: State, free: int):
-        self.system, self.state, self.free = system, state, free
-        self.total = state.q.size
+    def __init__(self, run: Simulation):
+        self.system, self.state = run.arrays_of_loop
+        system, free = self.system, run.numbering.free
+        self.free, self.total = free, run.numbering.total
+        self.turned = np.flatnonzero(in_frames(run.model, run.numbering, system))
         self.followers = Followers(system.links, free, self.total)
         self.dense = free <= DENSE
         rows, columns = self._entries()
@@ -153,7 +154,8 @@ class Linear:
         InputError
             The state cannot be evaluated.
         """
-        status = _evaluate(self.system, self.state, row, end, beside, self.places, self.sums)
+        status = _evaluate(self.system, self.state, row, end, beside, self.turned,
+                           self.places, self.sums)
         if status != OK:
             raise InputError(f"the state at t = {row[0]:.6g} has no derivatives: {REASONS[status]}")
         M, C, K = map(self._matrix, self.sums)

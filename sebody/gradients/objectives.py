@@ -14,7 +14,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
 from sebody.assembly.numbering import Numbering, coordinates
 from sebody.errors import InputError
 from sebody.explore.ensembles.outputs import Fold, Output, outputs_of
@@ -170,8 +169,8 @@ def _seeds(name: str, one: Output, t: NDArray, values: NDArray, value: NDArray) 
         length = np.sqrt((flat**2).sum(axis=1))
         own = _weights(name, one, t, length[:, None], value.reshape(1))
         if (own[length == 0] != 0).any():
-            raise InputError(f"objective {name!r}: the length of {one.quantity} is zero in a state, "
-                             "where it has no derivative: give its components")
+            raise InputError(f"objective {name!r}: the length of {one.quantity} is zero in a "
+                             "state, where it has no derivative: give its components")
         return (own / np.where(length > 0, length, 1.0)[:, None])[:, None] * flat[:, :, None]
     own = _weights(name, one, t, flat, value.ravel())
     return own[:, :, None] * np.eye(flat.shape[1])

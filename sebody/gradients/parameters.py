@@ -26,7 +26,7 @@ def columns_of(model: Model, names: Sequence[str]) -> list[Column]:
     Raises
     ------
     InputError
-        No names, unknown ones, a number that is given twice, or a parameter whose values are bodies.
+        No names, unknown ones, a number that is given twice, or values that are bodies.
     """
     remedy = "give a list of names such as ['motor.amplitude', 'beam.stiffness']"
     if isinstance(names, str):

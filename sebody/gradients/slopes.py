@@ -17,20 +17,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.compiler.decorators import compiled
-from sebody.contract.layout import ACCELERATION, FIELD, OK, RESIDUAL
+from sebody.contract.layout import ACCELERATION, OK, RESIDUAL
 from sebody.engine.evaluate import assemble, move_prescribed, set_loads, set_loads_beside
 from sebody.engine.links import place_dependent
-from sebody.engine.state import REASONS, Scheme
-from sebody.errors import InputError
+from sebody.engine.state import REASONS
+from sebody.errors import InputError, LimitWarning
 from sebody.explore.ensembles.changes import Handle
 from sebody.gradients.history import RESTART, History
 from sebody.gradients.parameters import Column
 from sebody.gradients.start_rates import fitted_rates
-from sebody.kernels.rotations import rotate
-from sebody.results import rotations
 from sebody.kernels.abi import pointer_to
+from sebody.kernels.rotations import rotate
 from sebody.model.model import Model
-from sebody.errors import LimitWarning
+from sebody.results import rotations
 from sebody.runs.simulation import Simulation
 
 LARGE, SHORT = 0.25, 1e-3       # steps of differences, relative to the size of a parameter
@@ -86,8 +85,8 @@ def _residuals(system, state, rows, now, kinds, ends, besides, places, free, fou
             rotate(pointer_to(state.R_old), 9 * r, state.dq[at], state.dq[at + 1],
                    state.dq[at + 2], pointer_to(state.R), 9 * r)
         place_dependent(system.links, state.q, state.v, state.a, state.R)
-        status = assemble(RESIDUAL, ACCELERATION if kinds[e] == RESTART else RESIDUAL, system, state,
-                          state.residual)
+        of_others = ACCELERATION if kinds[e] == RESTART else RESIDUAL
+        status = assemble(RESIDUAL, of_others, system, state, state.residual)
         if status != OK:
             return status
         for i in range(free):
@@ -141,8 +140,8 @@ class Slopes:
         try:
             return _slope(self._around(handle, component, SHORT * size), SHORT * size)
         except InputError as error:
-            raise InputError(f"parameter {column.label}: the model cannot be changed by it alone, so there "
-                             f"is no derivative: {error}") from error
+            raise InputError(f"parameter {column.label}: the model cannot be changed by it alone, "
+                             f"so there is no derivative: {error}") from error
 
     def _least(self, name: str) -> float:
         """Size of a parameter that may be zero."""

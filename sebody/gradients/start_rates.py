@@ -4,7 +4,6 @@ A run keeps velocities that are given by a heavy mass, which leaves 1e-9 of them
 needs them exactly: the least change, in the norm of kinetic energy, of those that are not given.
 """
 
-import numpy as np
 from numpy.typing import NDArray
 
 from sebody.runs.simulation import Simulation

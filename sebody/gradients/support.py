@@ -5,7 +5,6 @@ from sebody.generated.options import FRAMES
 from sebody.kernels.loader import element_kernel
 from sebody.model.model import Model
 from sebody.runs.simulation import Simulation
-from sebody.runs.tolerance import Tolerance
 
 USER_FORCE = "user_force"
 COUNTED = ("angle",)        # what torsion springs keep to count turns, no force depends on it else

@@ -2,11 +2,12 @@
 objectives. Equations as numbered in the README of this folder.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import sparse
 
 from sebody.engine.state import Scheme
 from sebody.gradients.factors import Factors, Scales
@@ -127,14 +128,13 @@ def _initial(parts: Parts, fixed: NDArray) -> NDArray:
         J[fixed] = parts.stiffness[fixed]
         J[:, fixed] = parts.stiffness[:, fixed]
         return J
-    from scipy import sparse
     some, others = (sparse.diags_array(x.astype(float)) for x in (fixed, ~fixed))
     K = parts.stiffness
     return sparse.csc_array(others @ parts.mass @ others + some @ K + others @ K @ some)
 
 
 def forward(course: Course, slopes: NDArray, motion: NDArray, rates: NDArray,
-            see: "callable") -> None:
+            see: Callable[[int, NDArray, NDArray, NDArray], None]) -> None:
     """(8) to (10): derivatives of all states by parameters.
 
     Parameters

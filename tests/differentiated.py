@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from sebody import Model
-from sebody.explore.ensembles import Ensemble
+from sebody.analysis import Ensemble
 from sebody.fem import Section, rectangle, straight_beam
 from sebody.gradients.parameters import columns_of
 from sebody.model import profiles
@@ -37,7 +37,8 @@ def slender(modes=3, length=1.0, height=0.03, planar=False, wind=False):
         load = np.zeros((7, 6))
         load[:, :3] = 0.3 * Y + 0.2 * Z
         loads = {"wind": load.ravel()}
-    return craig_bampton(fe, [(0, "full"), (6, "full")], modes, **({"loads": loads} if wind else {}))
+    more = {"loads": loads} if wind else {}
+    return craig_bampton(fe, [(0, "full"), (6, "full")], modes, **more)
 
 
 def hinged(inertia=None, frame="converged_mean", **others):
@@ -96,7 +97,7 @@ def four_bar(flexible=False):
 
 
 def moved():
-    """A beam whose base is moved along a line and turned about an axis at once, links at its tip."""
+    """A beam whose base is moved along a line and turned at once, with a link at its tip."""
     m = Model()
     base, tip = m.node("base", place(0, 0, 0)), m.node("tip", place(1, 0, 0))
     m.superelement("beam", slender(), [base, tip])
