@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.engine.state import Scheme
 from sebody.errors import InputError
+from sebody.explore.ensembles.member import kinematic_quantities
+from sebody.explore.ensembles.outputs import Output
 from sebody.gradients.history import History, history
 from sebody.gradients.linear import Linear
 from sebody.gradients.objectives import Objectives, Seen, checked
@@ -20,6 +22,7 @@ from sebody.gradients.parameters import Column, columns_of
 from sebody.gradients.slopes import Slope, Slopes
 from sebody.gradients.support import refuse_model, refuse_run
 from sebody.gradients.sweeps import Course, backward, forward
+from sebody.gradients.tables import OfTable, port_of, weights
 from sebody.model.model import Model
 from sebody.runs.schemes import checked as checked_scheme
 from sebody.runs.schemes import generalized_alpha
@@ -114,20 +117,18 @@ def gradient(model: Model, h: float, t_end: float, objectives: Objectives,
     >>> found.matrix.shape
     (3, 5)
     """
-    began = time.perf_counter()
     mode = inputs.choice(mode, "mode", MODES)
-    t_end = _multiple(inputs.number(t_end, "t_end", above=0), inputs.number(h, "h", above=0))
+    t_end = multiple(inputs.number(t_end, "t_end", above=0), inputs.number(h, "h", above=0))
     outputs = checked(objectives, t_end)
     inputs.instance(model, "model", Model, "give a sebody.Model")
     columns = columns_of(model, parameters)
     refuse_model(model)
-    scheme = generalized_alpha(tolerance=CONVERGED) if scheme is None else checked_scheme(scheme)
-    one = Differentiated(model, h, t_end, scheme)
-    seen = Seen(outputs, one.run, one.history, one.linear)
-    slopes = Slopes(model, one.run, one.history, seen.explicit)
-    matrix = (_adjoint if mode == "adjoint" else _forward)(one, seen, slopes, columns)
-    return Gradient(seen.value, matrix, tuple(seen.labels), tuple(c.label for c in columns),
-                    time.perf_counter() - began, one.history.seconds)
+    return differentiate(model, h, t_end, outputs, columns, mode, fitting(scheme))
+
+
+def fitting(scheme: Scheme | None) -> Scheme:
+    """A scheme that converges far enough."""
+    return generalized_alpha(tolerance=CONVERGED) if scheme is None else checked_scheme(scheme)
 
 
 class Differentiated:
@@ -142,7 +143,8 @@ class Differentiated:
         self.course.settle()
 
 
-def _multiple(t_end: float, h: float) -> float:
+def multiple(t_end: float, h: float) -> float:
+    """The end of a run, which has to be a multiple of the step."""
     check_steps(t_end, h)
     last = round(t_end / h)
     if last < 1 or abs(t_end / h - last) > 1e-6:
@@ -150,11 +152,48 @@ def _multiple(t_end: float, h: float) -> float:
     return last * h
 
 
-def _adjoint(one: Differentiated, seen: Seen, slopes: Slopes, columns: list[Column]) -> NDArray:
+def differentiate(model: Model, h: float, t_end: float, outputs: Mapping[str, Output],
+                  columns: Sequence[Column], mode: str, scheme: Scheme) -> Gradient:
+    """As `gradient`, of names that are checked; `columns` may count from other values."""
+    began = time.perf_counter()
+    one = Differentiated(model, h, t_end, scheme)
+    seen = Seen(outputs, one.run, one.history, one.linear)
+    slopes = Slopes(model, one.run, one.history, seen.explicit)
+    tables = _tables(one, outputs, slopes, columns)
+    matrix = (_adjoint if mode == "adjoint" else _forward)(one, seen, slopes, columns, tables)
+    return Gradient(seen.value, matrix, tuple(seen.labels), tuple(c.label for c in columns),
+                    time.perf_counter() - began, one.history.seconds)
+
+
+Tables = Mapping[str, OfTable]
+
+
+def _tables(one: Differentiated, outputs: Mapping[str, Output], slopes: Slopes,
+            columns: Sequence[Column]) -> dict[str, OfTable]:
+    """Tables of loads by name, where objectives look at motion alone."""
+    kinematic, _ = kinematic_quantities(one.run, outputs)
+    found: dict[str, OfTable] = {}
+    if any(output.quantity not in kinematic for output in outputs.values()):
+        return found
+    for column in columns:
+        port = port_of(slopes.model, one.run, column)
+        if port is not None and column.name not in found:
+            size = max(float(np.abs(column.handle.base).max()), 1.0)
+            found[column.name] = OfTable(slopes.by_load(port, size),
+                                         weights(slopes.model, column, one.history))
+    return found
+
+
+def _adjoint(one: Differentiated, seen: Seen, slopes: Slopes, columns: Sequence[Column],
+             tables: Tables) -> NDArray:
     """One sweep back, then a sum over the events for every parameter: (16)."""
     bars = backward(one.course, seen, len(seen.value))
+    whole = {name: table.contracted(bars.weights) for name, table in tables.items()}
     found = np.zeros((len(seen.value), len(columns)))
     for k, column in enumerate(columns):
+        if column.name in whole:
+            found[:, k] = whole[column.name][:, column.component]
+            continue
         slope = slopes.of(column)
         found[:, k] = (np.einsum("enm,en->m", bars.weights, slope.residuals)
                        + bars.motion.T @ slope.motion + bars.rates.T @ slope.rates
@@ -162,9 +201,11 @@ def _adjoint(one: Differentiated, seen: Seen, slopes: Slopes, columns: list[Colu
     return found
 
 
-def _forward(one: Differentiated, seen: Seen, slopes: Slopes, columns: list[Column]) -> NDArray:
+def _forward(one: Differentiated, seen: Seen, slopes: Slopes, columns: Sequence[Column],
+             tables: Tables) -> NDArray:
     """One sweep forth with a column for every parameter."""
-    each: list[Slope] = [slopes.of(column) for column in columns]
+    each = [tables[c.name].slope(c.component, len(seen.value)) if c.name in tables
+            else slopes.of(c) for c in columns]
     found = np.stack([slope.objectives for slope in each], axis=1)
 
     def see(event: int, xi: NDArray, v: NDArray, a: NDArray) -> None:
@@ -172,7 +213,12 @@ def _forward(one: Differentiated, seen: Seen, slopes: Slopes, columns: list[Colu
         if seed is not None:
             for bar, of in zip(seed, (xi, v, a), strict=True):
                 found[:] += bar.T @ of
-    forward(one.course, np.stack([s.residuals for s in each], axis=2),
-            *(np.stack([getattr(s, name) for s in each], axis=1) for name in ("motion", "rates")),
-            see)
+    forward(one.course, *stacked(each), see)
     return found
+
+
+def stacked(each: Sequence[Slope]) -> tuple[NDArray, NDArray, NDArray]:
+    """Slopes of residuals, motion and rates of the start by all parameters, these last."""
+    residuals, motion, rates = (np.stack([getattr(slope, name) for slope in each], axis=-1)
+                                for name in ("residuals", "motion", "rates"))
+    return residuals, motion, rates

@@ -25,7 +25,6 @@ from sebody.errors import InputError, LimitWarning
 from sebody.explore.ensembles.changes import Handle
 from sebody.gradients.history import RESTART, History
 from sebody.gradients.parameters import Column
-from sebody.gradients.start_rates import fitted_rates
 from sebody.kernels.abi import pointer_to
 from sebody.kernels.rotations import rotate
 from sebody.model.model import Model
@@ -57,18 +56,22 @@ class Value(NamedTuple):
 
 
 @compiled
-def _residuals(system, state, rows, now, kinds, ends, besides, places, free, found):
+def _residuals(system, state, rows, now, kinds, ends, besides, places, free, load, found):
     """Residuals of all events but the first; fixed and prescribed coordinates are the model's own.
 
-    `rows` become states of this model: motion of the unknowns is that of the run.
+    `now` are states of this model: motion of the unknowns is that of the run. The load of a power
+    port may be changed, `load` being the port and the change.
     """
     q, R, v, a, frames, frames_old = places
+    port, change = load
     for e in range(1, rows.shape[0]):
         for i in range(state.loads.size):
             state.loads_old[i] = state.loads[i]
         for i in range(state.frames.size):
             state.frames[i], state.frames_old[i] = rows[e, frames + i], rows[e, frames_old + i]
         set_loads_beside(system, state.frames, state.loads, ends[e], besides[e])
+        if port >= 0:
+            state.loads[3 * port] += change
         for i in range(free):
             state.q[i], state.v[i], state.a[i] = rows[e, q + i], rows[e, v + i], rows[e, a + i]
         move_prescribed(system, state)
@@ -155,29 +158,41 @@ class Slopes:
         value.reshape(-1)[component] += change
         try:
             handle.set(value)
-            with catch_warnings():      # of the run as it is, all was said
-                simplefilter("ignore", LimitWarning)
-                made = Simulation(self.model, self.run.h, self.run.scheme)
-            return self._evaluated(made)
+            return self._evaluated(self._made())
         finally:
             handle.reset()
 
+    def _made(self) -> Simulation:
+        """The model as it is now, at its start; of the run as it is, all was said."""
+        with catch_warnings():
+            simplefilter("ignore", LimitWarning)
+            return Simulation(self.model, self.run.h, self.run.scheme)
+
+    def by_load(self, port: int, size: float) -> NDArray:
+        """Derivatives of the residuals by the value of a power port, (events, n)."""
+        one, other = (self._along(self._made(), (port, change))[0] for change in (size, -size))
+        return (one - other) / (2 * size)
+
     def _evaluated(self, made: Simulation) -> Value:
+        rates, motion = made.state.v[:self.free].copy(), self._turned(made.state)
+        found, now = self._along(made)
+        return Value(found, motion, rates, self.objectives(made, now[self.history.recorded]))
+
+    def _along(self, made: Simulation, load: tuple[int, float] = (-1, 0.0)
+               ) -> tuple[NDArray, NDArray]:
+        """Residuals of all events, and the states of this model that they are of."""
         system, state, history = made.system, made.state, self.history
-        rates = fitted_rates(made)[:self.free]
-        motion = self._turned(state)
         found = np.zeros((len(history.rows), self.free))
         now = history.rows.copy()
-        found[0] = self._first(made)
+        found[0] = self._first(made, load)
         now[0] = state.now
         status = _residuals(system, state, history.rows, now, history.kinds, history.ends,
-                            history.besides, self.places, self.free, found)
+                            history.besides, self.places, self.free, load, found)
         if status != OK:
             raise InputError(f"a state cannot be evaluated: {REASONS[status]}")
-        objectives = self.objectives(made, now[history.recorded])
-        return Value(found, motion, rates, objectives)
+        return found, now
 
-    def _first(self, made: Simulation) -> NDArray:
+    def _first(self, made: Simulation, load: tuple[int, float]) -> NDArray:
         """Residual of the start with accelerations and multipliers of the run."""
         system, state, n = made.system, made.state, self.free
         q, _, v, a, *_ = self.places
@@ -185,6 +200,8 @@ class Slopes:
         state.a[:n] = self.start[a:a + n]
         state.q[:n][fixed] = self.start[q:q + n][fixed]
         set_loads(system, state.frames, state.loads, 0.0)
+        if load[0] >= 0:
+            state.loads[3 * load[0]] += load[1]
         state.loads_old[:] = state.loads
         kept = state.R.copy()
         move_prescribed(system, state)

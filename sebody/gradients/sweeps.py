@@ -14,7 +14,9 @@ from sebody.gradients.factors import Factors, Scales
 from sebody.gradients.history import STEP, History
 from sebody.gradients.linear import Linear, Parts
 from sebody.gradients.second_rates import second_rates
-from sebody.gradients.turns import Turns
+from sebody.gradients.turns import Turns, turns_of
+
+PIECE = 256         # events whose rotations are prepared together
 
 
 class Bars(NamedTuple):
@@ -84,6 +86,7 @@ class Course:
         self.redundant = bool(system.regularized[0])
         self._scales: dict[float, Scales] = {}
         self._q = linear.state.recorded_parts["q"].start
+        self._turns: tuple[int, list[Turns]] = 0, []        # of some events, from the first one on
 
     def settle(self) -> None:
         """Multipliers at the ends of steps before jumps: the run has kept those that follow."""
@@ -111,9 +114,18 @@ class Course:
             rates = second_rates(self.linear, self.fixed) if k > 0 else None
             return Event(k, parts, self._factors(_initial(parts, self.fixed), 0.0), None, rates)
         c = Coefficients.of(self.scheme, h)
-        turns = Turns(self.turning, row[self._q + self.turning])
+        turns = self._turns_of(k)
         J = c.cm * parts.mass + c.cd * parts.damping + turns.of_columns(parts.stiffness)
         return Event(k, parts, self._factors(J, h), turns, None)
+
+    def _turns_of(self, k: int) -> Turns:
+        first, found = self._turns
+        if not first <= k < first + len(found):
+            first = k - k % PIECE
+            rows = self.history.rows[first:first + PIECE]
+            found = turns_of(self.turning, rows[:, self._q + self.turning])
+            self._turns = first, found
+        return found[k - first]
 
     def _factors(self, J: NDArray, h: float) -> Factors:
         if h not in self._scales:

@@ -5,6 +5,8 @@
 of rotations in space; of positions, modes, angles and multipliers both are one.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
@@ -15,22 +17,31 @@ from sebody.vectors import skew
 SMALL = 0.25        # square of an angle below which series are exact to rounding
 
 
-class Turns:
-    """H and T of a step.
+def turns_of(places: NDArray, increments: NDArray) -> "list[Turns]":
+    """H and T of some steps.
 
     Parameters
     ----------
     places : (r, 3)
         Unknowns of every rotation.
-    increments : (r, 3)
-        psi of the step.
+    increments : (steps, r, 3)
+        psi of the steps.
     """
+    if not len(places):
+        none = np.zeros((0, 3, 3))
+        return [Turns(places, none, none)] * len(increments)
+    H = Rotation.from_rotvec(-increments.reshape(-1, 3)).as_matrix().reshape(
+        *increments.shape, 3)
+    T = tangent_operators(increments.reshape(-1, 3)).reshape(*increments.shape, 3)
+    return [Turns(places, *both) for both in zip(H, T, strict=True)]
 
-    def __init__(self, places: NDArray, increments: NDArray):
-        self.places = places
-        self.H = Rotation.from_rotvec(-increments).as_matrix() if len(places) else np.zeros(
-            (0, 3, 3))
-        self.T = tangent_operators(increments)
+
+class Turns(NamedTuple):
+    """H and T of a step."""
+
+    places: NDArray     # (r, 3) unknowns of every rotation
+    H: NDArray          # (r, 3, 3)
+    T: NDArray          # (r, 3, 3)
 
     def moved(self, xi: NDArray) -> NDArray:
         """``H xi`` of columns (n, m)."""
