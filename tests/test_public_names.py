@@ -14,6 +14,7 @@ ROOMS = {
                "rest_to_rest", "simulate", "simulate_within", "sphere", "spline", "trapezoidal",
                "with_corners"},
     "sebody.analysis": {"Advice", "Campbell", "FrequencyResponse", "Gradient",
+                        "Calibration", "ValueAndGradient", "calibrate",
                         "campbell", "frequency_response", "gradient", "soft_maximum",
                         "Ensemble", "Linearization", "Modes", "Outcome",
                         "Output", "Unreached", "Vibrations", "advise", "at_time", "equilibrium",

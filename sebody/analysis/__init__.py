@@ -18,6 +18,8 @@ if TYPE_CHECKING:
         rms,
         soft_maximum,
     )
+    from sebody.gradients.calibration import Calibration, calibrate
+    from sebody.gradients.functions import ValueAndGradient
     from sebody.gradients.gradient import Gradient, gradient
     from sebody.limits.watch import spin_limit
     from sebody.runs.restart import resume, save_state
@@ -36,6 +38,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Advice",
+    "Calibration",
     "Campbell",
     "Ensemble",
     "FrequencyResponse",
@@ -46,9 +49,11 @@ __all__ = [
     "Output",
     "StateSpace",
     "Unreached",
+    "ValueAndGradient",
     "Vibrations",
     "advise",
     "at_time",
+    "calibrate",
     "campbell",
     "equilibrium",
     "final",

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Literal
+from warnings import warn
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.engine.state import Scheme
-from sebody.errors import InputError
+from sebody.errors import InputError, LimitWarning
 from sebody.explore.ensembles.member import kinematic_quantities
 from sebody.explore.ensembles.outputs import Output
 from sebody.gradients.history import History, history
@@ -30,6 +31,7 @@ from sebody.runs.simulation import Simulation
 from sebody.runs.steps import check_steps
 
 CONVERGED = 1e-10       # of Newton's iteration: errors of gradients are a hundred times that
+CHAOTIC = 1e6           # growth from which a run warns
 MODES = "adjoint", "forward"
 
 
@@ -46,8 +48,9 @@ class Gradient:
     rows, columns : tuple of str
         What these are of: ``"tip[1]"`` is the second component of the objective ``tip``.
     growth : float
-        By how much a disturbance at the start has grown at most, in the norm of rates: of a chaotic
-        run derivatives are as large and say little.
+        By how much the effect of a disturbance on the objectives is larger at its worst time than
+        at the end: near one for ordinary runs, without bound for chaotic ones, whose derivatives
+        are as large and hold in a range as small. An estimate in the mode 'forward'.
     seconds : float
         Of the whole, run included.
     run_seconds : float
@@ -58,9 +61,9 @@ class Gradient:
     matrix: NDArray
     rows: tuple[str, ...]
     columns: tuple[str, ...]
+    growth: float = float("nan")
     seconds: float = 0.0
     run_seconds: float = 0.0
-    warnings: tuple[str, ...] = field(default=())
 
     def __repr__(self) -> str:
         return f"<Gradient of {len(self.rows)} values by {len(self.columns)} numbers>"
@@ -160,9 +163,14 @@ def differentiate(model: Model, h: float, t_end: float, outputs: Mapping[str, Ou
     seen = Seen(outputs, one.run, one.history, one.linear)
     slopes = Slopes(model, one.run, one.history, seen.explicit)
     tables = _tables(one, outputs, slopes, columns)
-    matrix = (_adjoint if mode == "adjoint" else _forward)(one, seen, slopes, columns, tables)
+    matrix, growth = (_adjoint if mode == "adjoint" else _forward)(one, seen, slopes, columns,
+                                                                   tables)
+    if growth > CHAOTIC:
+        warn(f"a disturbance of this run grows {growth:.1g} times in its effect on the objectives: "
+             "the motion is unstable or chaotic, and its derivatives hold in a range as small; "
+             "shorten the run, or take objectives over a shorter time", LimitWarning, stacklevel=3)
     return Gradient(seen.value, matrix, tuple(seen.labels), tuple(c.label for c in columns),
-                    time.perf_counter() - began, one.history.seconds)
+                    growth, time.perf_counter() - began, one.history.seconds)
 
 
 Tables = Mapping[str, OfTable]
@@ -185,7 +193,7 @@ def _tables(one: Differentiated, outputs: Mapping[str, Output], slopes: Slopes,
 
 
 def _adjoint(one: Differentiated, seen: Seen, slopes: Slopes, columns: Sequence[Column],
-             tables: Tables) -> NDArray:
+             tables: Tables) -> tuple[NDArray, float]:
     """One sweep back, then a sum over the events for every parameter: (16)."""
     bars = backward(one.course, seen, len(seen.value))
     whole = {name: table.contracted(bars.weights) for name, table in tables.items()}
@@ -198,23 +206,45 @@ def _adjoint(one: Differentiated, seen: Seen, slopes: Slopes, columns: Sequence[
         found[:, k] = (np.einsum("enm,en->m", bars.weights, slope.residuals)
                        + bars.motion.T @ slope.motion + bars.rates.T @ slope.rates
                        + slope.objectives)
-    return found
+    return found, _growth(bars.sizes)
+
+
+def _growth(sizes: NDArray) -> float:
+    """Largest over last of what is not zero."""
+    seen = sizes[sizes > 0]
+    return float(seen.max() / seen[-1]) if len(seen) else 1.0
 
 
 def _forward(one: Differentiated, seen: Seen, slopes: Slopes, columns: Sequence[Column],
-             tables: Tables) -> NDArray:
+             tables: Tables) -> tuple[NDArray, float]:
     """One sweep forth with a column for every parameter."""
     each = [tables[c.name].slope(c.component, len(seen.value)) if c.name in tables
             else slopes.of(c) for c in columns]
     found = np.stack([slope.objectives for slope in each], axis=1)
 
+    sizes = np.zeros((len(one.history.rows), len(columns)))
+    extent = one.linear.system.magnitude[:one.linear.free, None]
+
     def see(event: int, xi: NDArray, v: NDArray, a: NDArray) -> None:
+        sizes[event] = np.abs(xi * extent).max(axis=0)
         seed = seen.at(event)
         if seed is not None:
             for bar, of in zip(seed, (xi, v, a), strict=True):
                 found[:] += bar.T @ of
     forward(one.course, *stacked(each), see)
-    return found
+    return found, _growth_forth(sizes)
+
+
+def _growth_forth(sizes: NDArray) -> float:
+    """Square of the growth in the second half of a run, of the column that grows least.
+
+    In a chaotic run all columns grow alike; those that begin to act late say nothing.
+    """
+    quarter, half, end = (len(sizes) // 4, len(sizes) // 2, len(sizes))
+    old = (sizes[quarter] > 0) & (sizes[half] > 0)
+    if not old.any():
+        return float("nan")
+    return float((sizes[half:end, old].max(axis=0) / sizes[half, old]).min() ** 2)
 
 
 def stacked(each: Sequence[Slope]) -> tuple[NDArray, NDArray, NDArray]:

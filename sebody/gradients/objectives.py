@@ -91,7 +91,8 @@ class Seen:
             own = _folded(one, history.times, found)
             seeds = _seeds(name, one, history.times, found, own)
             if one.quantity not in sensors:
-                sensors[one.quantity] = _sensor(run, one.quantity, found.shape[1:], linear, history)
+                sensors[one.quantity] = sensor_of(run, one.quantity, found.shape[1:], linear,
+                                                  history)
             first = len(self.labels)
             self.labels += _labels(name, own)
             self.looked.append(Looked(sensors[one.quantity], seeds,
@@ -135,7 +136,7 @@ def _labels(name: str, value: NDArray) -> list[str]:
     return [name + "".join(f"[{i}]" for i in place) for place in np.ndindex(value.shape)]
 
 
-def _sensor(run: Simulation, quantity: str, shape: tuple[int, ...], linear: Linear,
+def sensor_of(run: Simulation, quantity: str, shape: tuple[int, ...], linear: Linear,
             history: History) -> Sensor:
     found = _coordinates(run.numbering, run.model, quantity)
     if found is None:

@@ -199,7 +199,7 @@ class Adjoint(NamedTuple):
     weights: NDArray    # (events, n, m) of the slopes of the residuals: (16)
     motion: NDArray     # (n, m) of the motion at the start, given rates, accelerations solved for
     rates: NDArray      # (n, m)
-    growth: NDArray     # (events,) largest of the weights of rates, scaled
+    sizes: NDArray      # (events,) largest effect of a disturbance of each state on an objective
 
 
 def backward(course: Course, seeds: Seeds, count: int) -> Adjoint:
@@ -207,7 +207,9 @@ def backward(course: Course, seeds: Seeds, count: int) -> Adjoint:
     n, moving = course.linear.free, course.moving
     X, V, A, U = (np.zeros((n, count)) for _ in range(4))
     events = len(course.history.rows)
-    weights, growth = np.zeros((events, n, count)), np.zeros(events)
+    extent = course.linear.system.magnitude[:n, None]       # of disturbances: of rates in the run
+    duration = course.history.ends[-1]
+    weights, sizes = np.zeros((events, n, count)), np.zeros(events)
     for event in course.events(backwards=True):
         k = event.number
         M, C, K = event.parts
@@ -233,5 +235,6 @@ def backward(course: Course, seeds: Seeds, count: int) -> Adjoint:
             A = -c.af / (1 - c.af) * A1
             U = c.h * (1 - c.g) * V1 + c.am / (1 - c.af) * A1 - (0.5 - c.b) / c.b * U1
             A, U = A + (1 - offset) * U, offset * U
-        weights[k], growth[k] = w, np.abs(V).max(initial=0.0)
-    return Adjoint(weights, X, V, growth)
+        weights[k] = w
+        sizes[k] = max(np.abs(X * extent).max(), np.abs(V * extent).max() / duration)
+    return Adjoint(weights, X, V, sizes)
