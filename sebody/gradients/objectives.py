@@ -157,7 +157,7 @@ def _coordinates(numbering: Numbering, model: Model, quantity: str
         found = coordinates(numbering, node.position)
     elif owner in numbering.modes and what == "modes":
         first = numbering.modes[owner]
-        rates, found = {"modes": "q"}, list(range(first, first + model.bodies[owner].body.modes))
+        rates, found = {"modes": "q"}, list(range(first, first + model.bodies[owner].reduced.modes))
     else:
         return None
     return rates[what], found if component is None else found[component:component + 1]

@@ -152,7 +152,7 @@ def test_components_of_parameters():
     ({"x": final("tip.position")}, [], "parameters are missing"),
     ({"x": final("tip.position")}, ["gravity.y", "gravity"], "given twice"),
     ({"x": final("tip.position")}, ["beam.mass.x"], "beam.mass has one number"),
-    ({"x": final("tip.position")}, ["beam.body"], "whole bodies"),
+    ({"x": final("tip.position")}, ["beam.reduced"], "whole bodies"),
     ({"x": "tip.position"}, ["gravity"], "is a history: give final"),
     ({"x": final("torque.work")}, ["gravity"], "give the integral of a power"),
     ({"x": final("top.position")}, ["gravity"], "top"),
