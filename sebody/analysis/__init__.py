@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         soft_maximum,
     )
     from sebody.gradients.calibration import Calibration, calibrate
+    from sebody.gradients.designs import Design, sections
     from sebody.gradients.functions import ValueAndGradient
     from sebody.gradients.gradient import Gradient, gradient
     from sebody.limits.watch import spin_limit
@@ -40,6 +41,7 @@ __all__ = [
     "Advice",
     "Calibration",
     "Campbell",
+    "Design",
     "Ensemble",
     "FrequencyResponse",
     "Gradient",
@@ -67,6 +69,7 @@ __all__ = [
     "resume",
     "rms",
     "save_state",
+    "sections",
     "soft_maximum",
     "spin_limit",
     "state_space",

@@ -7,6 +7,7 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.explore.ensembles.changes import Handle
 from sebody.explore.ensembles.handles import handle
+from sebody.gradients.designs import Design
 from sebody.model.model import Model
 from sebody.results.naming import AXES
 
@@ -18,9 +19,13 @@ class Column(NamedTuple):
     handle: Handle
     component: int
     label: str          # of the number
+    design: bool = False        # whether bodies are made anew
 
 
-def columns_of(model: Model, names: Sequence[str]) -> list[Column]:
+Parameter = str | Design
+
+
+def columns_of(model: Model, names: Sequence[Parameter]) -> list[Column]:
     """Numbers of parameters, in the order given: ``gravity`` are three, ``gravity.y`` is one.
 
     Raises
@@ -42,7 +47,11 @@ def columns_of(model: Model, names: Sequence[str]) -> list[Column]:
     return list(found.values())
 
 
-def _columns(model: Model, given: str) -> list[Column]:
+def _columns(model: Model, given: Parameter) -> list[Column]:
+    if isinstance(given, Design):
+        of = given.handle(model)
+        return [Column(given.name, of, k, given.name if of.base.size == 1 else f"{given.name}[{k}]",
+                       True) for k in range(of.base.size)]
     name, component = given, None
     owner, _, last = str(given).rpartition(".")
     if owner and (last in AXES or last.isdigit()):
@@ -50,7 +59,7 @@ def _columns(model: Model, given: str) -> list[Column]:
     of = handle(model, name)
     if of.whole:
         raise InputError(f"parameter {given!r} has whole bodies for values, which have no "
-                         "derivative: give stiffness or mass of the body")
+                         "derivative: give stiffness or mass of the body, or a Design")
     if component is None:
         return [Column(name, of, k, name if of.base.ndim == 0 else f"{name}[{k}]")
                 for k in range(of.base.size)]

@@ -33,6 +33,8 @@ from sebody.runs.simulation import Simulation
 
 LARGE, SHORT = 0.25, 1e-3       # steps of differences, relative to the size of a parameter
 POLYNOMIAL = 1e-8               # differences over one and two steps that agree like this are exact
+SMOOTH = 1e-2                   # that agree worse are no differences of a smooth function
+NOISE = 1e-8                    # of values: velocities of the start have so much
 AT = 1.0, -1.0, 2.0, -2.0
 WEIGHTS = np.array([8.0, -8.0, -1.0, 1.0]) / 12.0
 
@@ -133,18 +135,28 @@ class Slopes:
         """
         handle, component, name = column.handle, column.component, column.name
         base = np.asarray(handle.base, dtype=float).ravel()
-        size = max(float(np.abs(base).max(initial=0.0)), self._least(name))
+        if column.design:
+            size = abs(base[component]) or float(np.abs(base).max()) or 1.0
+        else:
+            size = max(float(np.abs(base).max(initial=0.0)), self._least(name))
         try:
-            values = self._around(handle, component, LARGE * size)
-            if _agree(values):
+            values = [] if column.design else self._around(handle, component, LARGE * size)
+            if values and _agree(values, POLYNOMIAL):
                 return _slope(values, LARGE * size)
         except InputError:
             pass            # of small changes only
         try:
-            return _slope(self._around(handle, component, SHORT * size), SHORT * size)
+            values = self._around(handle, component, SHORT * size)
         except InputError as error:
             raise InputError(f"parameter {column.label}: the model cannot be changed by it alone, "
                              f"so there is no derivative: {error}") from error
+
+        if not _agree(values, SMOOTH, NOISE):
+            raise InputError(f"parameter {column.label}: what the model has near its value is not "
+                             "smooth, as where frequencies of a body are equal and modes change "
+                             "places, so there is no derivative: keep more modes, or make the "
+                             "frequencies differ")
+        return _slope(values, SHORT * size)
 
     def _least(self, name: str) -> float:
         """Size of a parameter that may be zero."""
@@ -170,7 +182,11 @@ class Slopes:
 
     def by_load(self, port: int, size: float) -> NDArray:
         """Derivatives of the residuals by the value of a power port, (events, n)."""
-        one, other = (self._along(self._made(), (port, change))[0] for change in (size, -size))
+        made = self._made()
+        start = made.state.now.copy()
+        one = self._along(made, (port, size))[0]
+        made.state.now[:] = start
+        other = self._along(made, (port, -size))[0]
         return (one - other) / (2 * size)
 
     def _evaluated(self, made: Simulation) -> Value:
@@ -226,13 +242,14 @@ class Slopes:
         return found
 
 
-def _agree(values: list[Value]) -> bool:
-    """Whether differences over one and over two steps are the same."""
+def _agree(values: list[Value], closely: float, noise: float = 0.0) -> bool:
+    """Whether differences over one and over two steps are the same, but for noise of the values."""
     for name in ("residuals", "motion", "rates", "objectives"):
         f = [getattr(value, name) for value in values]
         one, two = (f[0] - f[1]) / 2, (f[2] - f[3]) / 4
         size = np.maximum(np.abs(one), np.abs(two)).max(initial=0.0)
-        if np.abs(one - two).max(initial=0.0) > POLYNOMIAL * size:
+        if np.abs(one - two).max(initial=0.0) > closely * size + noise * np.abs(
+                f[0]).max(initial=0.0):
             return False
     return True
 
