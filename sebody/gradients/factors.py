@@ -30,7 +30,7 @@ class Scales:
             for axis, scale in ((1, self.rows), (0, self.columns)):
                 largest = np.asarray(size.max(axis=axis).todense()).ravel() if sparse.issparse(
                     size) else size.max(axis=axis)
-                factor = 1 / np.sqrt(np.maximum(largest, 1e-300))
+                factor = 1 / np.sqrt(np.where(largest > 0, largest, 1.0))
                 scale *= factor
                 size = (size * (factor[:, None] if axis == 1 else factor) if not sparse.issparse(
                     size) else _scaled(size, factor, axis))

@@ -25,6 +25,7 @@ from sebody.errors import InputError, LimitWarning
 from sebody.explore.ensembles.changes import Handle
 from sebody.gradients.history import RESTART, History
 from sebody.gradients.parameters import Column
+from sebody.gradients.start_rates import fitted_rates
 from sebody.kernels.abi import pointer_to
 from sebody.kernels.rotations import rotate
 from sebody.model.model import Model
@@ -190,7 +191,7 @@ class Slopes:
         return (one - other) / (2 * size)
 
     def _evaluated(self, made: Simulation) -> Value:
-        rates, motion = made.state.v[:self.free].copy(), self._turned(made.state)
+        rates, motion = fitted_rates(made), self._turned(made.state)
         found, now = self._along(made)
         return Value(found, motion, rates, self.objectives(made, now[self.history.recorded]))
 
