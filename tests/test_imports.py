@@ -46,12 +46,16 @@ ROOMS = {
                      "runs"},
     "explore": {*COMPILED, "engine", "io", "reduction", "model", "assembly", "results",
                 "pictures", "limits", "runs", "small_motion"},
-    "analysis": {"limits", "runs", "small_motion", "explore"},      # a door: names of other rooms
+    "gradients": {*COMPILED, "engine", "fem", "reduction", "model", "assembly", "results",
+                  "limits", "runs", "small_motion", "explore"},
+    # a door: names of other rooms
+    "analysis": {"limits", "runs", "small_motion", "explore", "gradients"},
     "sebody": {"model", "results", "runs"},         # its names: sebody/__init__.py
     "scenes": {"sebody", "fem", "reduction", "io", "results", "pictures", "control", "analysis"},
     "catalogue": {*COMPILED, "scenes"},
     "verify": {*COMPILED, "engine", "fem", "reduction", "model", "assembly", "results",
-               "pictures", "limits", "runs", "small_motion", "explore", "scenes", "catalogue"},
+               "pictures", "limits", "runs", "small_motion", "explore", "gradients", "scenes",
+               "catalogue"},
     "export": {*COMPILED, "engine", "model", "assembly", "results", "runs"},
     "cli": {"contract", "kernels", "reduction", "io", "sebody", "results", "pictures", "runs",
             "explore", "analysis", "scenes", "catalogue", "verify", "export"},

@@ -16,7 +16,12 @@ if TYPE_CHECKING:
         maximum,
         minimum,
         rms,
+        soft_maximum,
     )
+    from sebody.gradients.calibration import Calibration, calibrate
+    from sebody.gradients.designs import Design, sections
+    from sebody.gradients.functions import ValueAndGradient
+    from sebody.gradients.gradient import Gradient, gradient
     from sebody.limits.watch import spin_limit
     from sebody.runs.restart import resume, save_state
     from sebody.runs.statics import equilibrium
@@ -34,22 +39,28 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Advice",
+    "Calibration",
     "Campbell",
+    "Design",
     "Ensemble",
     "FrequencyResponse",
+    "Gradient",
     "Linearization",
     "Modes",
     "Outcome",
     "Output",
     "StateSpace",
     "Unreached",
+    "ValueAndGradient",
     "Vibrations",
     "advise",
     "at_time",
+    "calibrate",
     "campbell",
     "equilibrium",
     "final",
     "frequency_response",
+    "gradient",
     "integral",
     "linearize",
     "maximum",
@@ -58,6 +69,8 @@ __all__ = [
     "resume",
     "rms",
     "save_state",
+    "sections",
+    "soft_maximum",
     "spin_limit",
     "state_space",
     "vibrations",

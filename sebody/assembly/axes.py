@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.batches import Shape, starts
 from sebody.assembly.numbering import Numbering
+from sebody.engine.system import System
 from sebody.kernels.loader import element_kernel
 from sebody.model.mechanism import Mechanism
 
@@ -32,6 +33,18 @@ def frames(model: Mechanism, numbering: Numbering) -> dict[int, int]:
                     for t in constraint.attachments)
             frame_of[first] = next((frame for frame in held if frame >= 0), -1)
     return frame_of
+
+
+def in_frames(model: Mechanism, numbering: Numbering, system: System) -> NDArray:
+    """Whether the element matrices of each batch are in the axes of frames: (batches,) bool.
+
+    Those of superelements, and of loads on bodies.
+    """
+    found = np.arange(system.address.size) < system.first_joint[0]
+    for load in model.loads:
+        if load.body is not None:
+            found[np.searchsorted(system.at_g, numbering.forces_at[load], side="right") - 1] = True
+    return found
 
 
 def rotated_blocks(shapes: Iterable[Shape],

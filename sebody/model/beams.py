@@ -117,6 +117,17 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
     return nodes
 
 
+def part_bodies(model: Mechanism, beam: Beam, section: AnySection) -> list[ReducedBody]:
+    """The bodies of a beam's superelements with another section."""
+    count = len(beam.parts)
+    length = float(np.linalg.norm(beam.nodes[-1].point - beam.nodes[0].point))
+    options = beam.options
+    times = retardation_times(options["damping"], beam.name, model.planar, length, section)
+    return [_part(model, span, part_of(section, k / count, (k + 1) / count),
+                  beam.elements // count, options["modes"], options["up"], times)
+            for k, span in enumerate(pairwise(beam.nodes))]
+
+
 def _part(model: Mechanism, ends: Sequence[Node], section: AnySection, elements: int, modes: int,
           up: ArrayLike | None, times: Times) -> ReducedBody:
     """One superelement of a beam; beams that differ in place and direction alone share the work.

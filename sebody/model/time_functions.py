@@ -99,8 +99,8 @@ class TimeFunction:
 
     def of_piece(self, k: int, t: float) -> NDArray:
         """Value and two rates of a piece, also outside its interval."""
-        x, polynomial = t - self.times[k], np.polynomial.Polynomial(self.pieces[k])
-        found = np.array([polynomial.deriv(m)(x) if m else polynomial(x) for m in range(3)])
+        x = t - self.times[k]
+        found = _with_rates(self.pieces[k], x)
         if self.waves:
             A, w, p = self.waves[k]
             s, c = sin(w * x + p), cos(w * x + p)
@@ -122,8 +122,7 @@ class TimeFunction:
 
     def _summands(self, k: int, t: float) -> NDArray:
         """Sums of the sizes of what is added up in `of_piece`: they may cancel but for rounding."""
-        x, polynomial = abs(t - self.times[k]), np.polynomial.Polynomial(np.abs(self.pieces[k]))
-        found = np.array([polynomial.deriv(m)(x) if m else polynomial(x) for m in range(3)])
+        found = _with_rates([abs(c) for c in self.pieces[k]], abs(t - self.times[k]))
         if self.waves:
             A, w, _ = self.waves[k]
             found += abs(A) * np.array([1.0, abs(w), w * w])
@@ -165,6 +164,16 @@ class TimeFunction:
             return replace(self, functions=(_less(self.functions[0], value),
                                             *self.functions[1:]))
         return replace(self, pieces=tuple((c[0] - value, *c[1:]) for c in self.pieces))
+
+
+def _with_rates(coefficients: Sequence[float], x: float) -> NDArray:
+    """A polynomial and its first two derivatives: tables have thousands of them."""
+    value = rate = half = 0.0
+    for c in reversed(coefficients):
+        half = half * x + rate
+        rate = rate * x + value
+        value = value * x + c
+    return np.array([value, rate, 2.0 * half])
 
 
 def time_function(source: Source) -> TimeFunction:

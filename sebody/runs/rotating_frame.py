@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csc_matrix
 
 from sebody import inputs
+from sebody.assembly.axes import in_frames
 from sebody.assembly.numbering import coordinates
 from sebody.contract.layout import AT_FRAME, AT_POSITIONS
 from sebody.model.parts import DofBlock
@@ -135,12 +136,13 @@ def by_element(run: Simulation | Result) -> csc_matrix:
     Rows are in the order of `State.g`; of the matrices that are in `State.J`.
     """
     (system, state), blocks = run.arrays_of_loop, _Blocks()
+    turned = in_frames(run.model, run.numbering, system)
     for b, (count, width, stride) in enumerate(zip(system.count, system.width, system.stride,
                                                    strict=True)):
         forces = np.arange(system.at_g[b], system.at_g[b + 1]).reshape(count, width)
         unknowns = system.g_unknown[forces]
         J = state.J[system.at_J[b]:system.at_J[b + 1]].reshape(count, width, width).copy()
-        if b < system.first_joint[0]:       # superelements: in the axes of their frames
+        if turned[b]:
             index = system.index[system.at_index[b]:system.at_index[b + 1]].reshape(count, stride)
             frames = np.array([_frame(run, k) for k in index[:, AT_FRAME]])
             d = frames.shape[1]

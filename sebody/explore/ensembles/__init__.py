@@ -10,7 +10,8 @@ from sebody.explore.ensembles.outputs import (
     maximum,
     minimum,
     rms,
+    soft_maximum,
 )
 
 __all__ = ["Ensemble", "Outcome", "Output", "at_time", "final", "integral", "maximum", "minimum",
-           "rms"]
+           "rms", "soft_maximum"]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.errors import InputError
 
-KINDS = ("maximum", "minimum", "rms", "integral", "final", "at", "history")
+KINDS = ("maximum", "minimum", "rms", "integral", "final", "at", "soft_maximum", "history")
 
 
 @dataclass(frozen=True)
@@ -22,17 +22,20 @@ class Output:
     ----------
     quantity : str
         As in ``result[quantity]``.
-    kind : {'maximum', 'minimum', 'rms', 'integral', 'final', 'at', 'history'}
+    kind : {'maximum', 'minimum', 'rms', 'integral', 'final', 'at', 'soft_maximum', 'history'}
     time : float, optional
         Of 'at' [time].
     norm : bool
         Of vectors: of their length, in place of each component.
+    power : float
+        Of 'soft_maximum'.
     """
 
     quantity: str
     kind: str
     time: float | None = None
     norm: bool = False
+    power: float = 20.0
 
     def __post_init__(self) -> None:
         inputs.name(self.quantity, "quantity of an output")
@@ -58,6 +61,16 @@ def minimum(quantity: str, norm: bool = False) -> Output:
 def rms(quantity: str, norm: bool = False) -> Output:
     """Root of the mean square over time, by the trapezoidal rule."""
     return Output(quantity, "rms", norm=norm)
+
+
+def soft_maximum(quantity: str, power: float = 20.0, norm: bool = False) -> Output:
+    """Mean of a power of the absolute value over time, and the root of that: ``p`` of a p-norm.
+
+    It has a derivative, which the largest value has not, and comes nearer to the largest absolute
+    value from below the larger the power is.
+    """
+    power = inputs.number(power, "soft_maximum: power", least=2, most=1000)
+    return Output(quantity, "soft_maximum", norm=norm, power=power)
 
 
 def integral(quantity: str, norm: bool = False) -> Output:
@@ -106,6 +119,7 @@ class Fold:
         self._kept: NDArray | None = None       # extreme, sum, or value
         self._before: tuple[float, NDArray] | None = None
         self._length = 0.0
+        self._largest: NDArray | float = 0.0
 
     def add(self, t: NDArray, values: NDArray) -> None:
         """Take in the next recorded states, (k,) times and (k, ...) values."""
@@ -124,6 +138,9 @@ class Fold:
         """The value; None if there is none, as of a time the run did not reach."""
         if self.output.kind == "rms" and self._kept is not None:
             return np.sqrt(self._kept / self._length) if self._length else np.abs(self._before[1])
+        if self.output.kind == "soft_maximum" and self._kept is not None:
+            return self._largest * (self._kept / self._length) ** (1 / self.output.power) if (
+                self._length) else np.abs(self._before[1])
         return self._kept
 
     def _maximum(self, t: NDArray, values: NDArray, first: bool) -> None:
@@ -141,6 +158,15 @@ class Fold:
     def _rms(self, t: NDArray, values: NDArray, first: bool) -> None:
         self._length += t[-1] - t[0]
         self._integral(t, values**2, first)
+
+    def _soft_maximum(self, t: NDArray, values: NDArray, first: bool) -> None:
+        p, before = self.output.power, self._largest        # powers of large numbers overflow
+        self._largest = np.maximum(before, np.abs(values).max(axis=0))
+        size = np.where(self._largest > 0, self._largest, 1.0)
+        self._length += t[-1] - t[0]
+        if not first:
+            self._kept = self._kept * (before / size) ** p
+        self._integral(t, (np.abs(values) / size) ** p, first)
 
     def _final(self, t: NDArray, values: NDArray, first: bool) -> None:
         self._kept = values[-1].copy()      # the rows of states are written to again

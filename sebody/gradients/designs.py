@@ -1,0 +1,108 @@
+"""Bodies that are functions of numbers: sections and materials of beams, or any reduction."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sebody import inputs
+from sebody.errors import InputError
+from sebody.explore.ensembles.changes import BODIES, Handle, whole_body
+from sebody.fem.section import AnySection
+from sebody.model.beams import part_bodies
+from sebody.model.model import Model
+from sebody.reduction import ReducedBody
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """A parameter that bodies are made of anew; takes the place of a name among parameters.
+
+    Parameters
+    ----------
+    name : str
+        Of the parameter, for columns.
+    values : array_like
+        Its numbers in the model as built.
+    bodies : sequence of str
+        Superelements that follow.
+    make : function
+        Of an array of numbers: the `ReducedBody` of each superelement. It has to be smooth: of
+        repeated frequencies that change places, and of modes that leave, there is no derivative,
+        and the gradient is refused.
+
+    Examples
+    --------
+    >>> height = Design("height", [0.03], ["rod"], lambda x: [reduced(rectangle(x[0], 0.02, ...))])
+    >>> gradient(model, 0.01, 1.0, {"tip": final("tip.position")}, [height, "gravity.y"])
+    """
+
+    name: str
+    values: ArrayLike
+    bodies: Sequence[str]
+    make: Callable[[NDArray], Sequence[ReducedBody]]
+
+    def handle(self, model: Model) -> Handle:
+        """What sets the numbers of a model.
+
+        Raises
+        ------
+        InputError
+            Superelements that the model does not have.
+        """
+        base = np.array(inputs.reals(self.values, f"values of {self.name!r}", "give numbers"),
+                        dtype=float)
+        names = inputs.items(self.bodies, f"bodies of {self.name!r}", "give a list of names")
+        if unknown := [name for name in names if name not in model.bodies]:
+            raise InputError(f"design {self.name!r}: the model has no superelement {unknown[0]!r}: "
+                             f"it has {', '.join(model.bodies)}")
+        each = [whole_body(model, model.bodies[name], self.name) for name in names]
+
+        def assign(value: NDArray) -> None:
+            made = inputs.items(self.make(np.array(value)), f"what {self.name!r} makes",
+                                "return one ReducedBody for each superelement")
+            for handle, body in zip(each, made, strict=True):
+                handle.set(handle.checked(self.name, [body])[0])
+
+        def put_back() -> None:
+            for handle in reversed(each):
+                handle.reset()
+        return Handle(base, assign, put_back, BODIES)
+
+
+def sections(model: Model, beam: str, values: ArrayLike,
+             section: Callable[[NDArray], AnySection], name: str | None = None) -> Design:
+    """Numbers that the section of a beam is made of: heights, walls, moduli, densities.
+
+    Parameters
+    ----------
+    model : Model
+    beam : str
+        Name of a beam that was built by `Model.beam`.
+    values : array_like
+        The numbers as built.
+    section : function
+        Of an array of numbers like these: the section, or a function of the place along the beam.
+    name : str, optional
+        Of the parameter, ``<beam>.section`` by default.
+
+    Raises
+    ------
+    InputError
+        A beam that the model does not have.
+
+    Examples
+    --------
+    >>> height = sections(model, "rod", [0.03], lambda x: rectangle(x[0], 0.02, E, nu, rho))
+    """
+    found = [one for one in model.beams if one.name == beam]
+    if not found:
+        known = ", ".join(repr(one.name) for one in model.beams) or "no beams"
+        raise InputError(f"sections: there is no beam {beam!r}; the model has {known}: give a beam "
+                         "that was built by model.beam, or a Design of any body")
+    one = found[0]
+    return Design(name or f"{beam}.section", values, [part.name for part in one.parts],
+                  lambda x: part_bodies(model, one, section(x)))

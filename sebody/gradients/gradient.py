@@ -1,0 +1,254 @@
+"""Exact derivatives of what a run gives by what the model is made of."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+from warnings import warn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody import inputs
+from sebody.engine.state import Scheme
+from sebody.errors import InputError, LimitWarning
+from sebody.explore.ensembles.member import kinematic_quantities
+from sebody.explore.ensembles.outputs import Output
+from sebody.gradients.history import History, history
+from sebody.gradients.linear import Linear
+from sebody.gradients.objectives import Objectives, Seen, checked
+from sebody.gradients.parameters import Column, columns_of
+from sebody.gradients.slopes import Slope, Slopes
+from sebody.gradients.support import refuse_model, refuse_run
+from sebody.gradients.sweeps import Course, backward, forward
+from sebody.gradients.tables import OfTable, port_of, weights
+from sebody.model.model import Model
+from sebody.runs.schemes import checked as checked_scheme
+from sebody.runs.schemes import generalized_alpha
+from sebody.runs.simulation import Simulation
+from sebody.runs.steps import check_steps
+
+CONVERGED = 1e-10       # of Newton's iteration: errors of gradients are a hundred times that
+CHAOTIC = 1e6           # growth from which a run warns
+MODES = "adjoint", "forward"
+
+
+@dataclass(frozen=True, eq=False)
+class Gradient:
+    """Values of objectives, and their derivatives by parameters.
+
+    Attributes
+    ----------
+    value : (m,)
+        Of the objectives: components of vectors one after the other.
+    matrix : (m, p)
+        Derivatives of each by the numbers of the parameters, in the order given.
+    rows, columns : tuple of str
+        What these are of: ``"tip[1]"`` is the second component of the objective ``tip``.
+    growth : float
+        By how much the effect of a disturbance on the objectives is larger at its worst time than
+        at the end: near one for ordinary runs, without bound for chaotic ones, whose derivatives
+        are as large and hold in a range as small. An estimate in the mode 'forward'.
+    seconds : float
+        Of the whole, run included.
+    run_seconds : float
+        Of the run alone.
+    """
+
+    value: NDArray
+    matrix: NDArray
+    rows: tuple[str, ...]
+    columns: tuple[str, ...]
+    growth: float = float("nan")
+    seconds: float = 0.0
+    run_seconds: float = 0.0
+
+    def __repr__(self) -> str:
+        return f"<Gradient of {len(self.rows)} values by {len(self.columns)} numbers>"
+
+    def of(self, objective: str, parameter: str) -> NDArray:
+        """Derivatives of one objective by one parameter, (components, numbers).
+
+        Raises
+        ------
+        InputError
+            Names that were not given.
+        """
+        found = [[k for k, label in enumerate(labels) if label.partition("[")[0] == name]
+                 for labels, name in ((self.rows, objective), (self.columns, parameter))]
+        if not all(found):
+            raise InputError(f"the gradient has no derivatives of {objective!r} by {parameter!r}: "
+                             f"it has those of {', '.join(self.rows)} by {', '.join(self.columns)}")
+        return self.matrix[np.ix_(*found)]
+
+
+def gradient(model: Model, h: float, t_end: float, objectives: Objectives,
+             parameters: Sequence[str], mode: Literal["adjoint", "forward"] = "adjoint",
+             scheme: Scheme | None = None) -> Gradient:
+    """Run a model, and differentiate what the run gives: exactly, without differences of runs.
+
+    Parameters
+    ----------
+    model : Model
+        As it was before, when this returns.
+    h, t_end : float
+        Fixed step, and end of the run, a multiple of it [time].
+    objectives : mapping
+        By names of your choice what `final`, `at_time`, `integral`, `rms` or `soft_maximum` return.
+    parameters : sequence of str
+        Names as of an `Ensemble`: factors of loads, stiffness and mass count from 1.
+    mode : {'adjoint', 'forward'}
+        Backwards with a cost that grows with the number of objectives, or forwards with one that
+        grows with that of parameters. Results are the same to rounding.
+    scheme : Scheme, optional
+        `generalized_alpha` with rho 0.9 and a tolerance of 1e-10 by default.
+
+    Raises
+    ------
+    InputError
+        Unknown names, objectives without derivatives, features of the model that are not
+        differentiated.
+    SimulationError
+        The run fails.
+
+    Examples
+    --------
+    >>> found = gradient(model, 0.01, 5.0, {"tip": final("tip.position")},
+    ...                  ["motor.amplitude", "beam.stiffness", "gravity"])
+    >>> found.matrix.shape
+    (3, 5)
+    """
+    mode = inputs.choice(mode, "mode", MODES)
+    t_end = multiple(inputs.number(t_end, "t_end", above=0), inputs.number(h, "h", above=0))
+    outputs = checked(objectives, t_end)
+    inputs.instance(model, "model", Model, "give a sebody.Model")
+    columns = columns_of(model, parameters)
+    refuse_model(model)
+    return differentiate(model, h, t_end, outputs, columns, mode, fitting(scheme))
+
+
+def fitting(scheme: Scheme | None) -> Scheme:
+    """A scheme that converges far enough."""
+    return generalized_alpha(tolerance=CONVERGED) if scheme is None else checked_scheme(scheme)
+
+
+class Differentiated:
+    """A run with its accepted steps, and what linearizes them."""
+
+    def __init__(self, model: Model, h: float, t_end: float, scheme: Scheme):
+        self.run = Simulation(model, h, scheme)
+        refuse_run(self.run)
+        self.history: History = history(self.run, t_end)
+        self.linear = Linear(self.run)
+        self.course = Course(self.linear, self.run.scheme, self.history)
+        self.course.settle()
+
+
+def multiple(t_end: float, h: float) -> float:
+    """The end of a run, which has to be a multiple of the step."""
+    check_steps(t_end, h)
+    last = round(t_end / h)
+    if last < 1 or abs(t_end / h - last) > 1e-6:
+        raise InputError(f"t_end is {t_end:g}, which is not a multiple of the step {h:g}: give one")
+    return last * h
+
+
+def differentiate(model: Model, h: float, t_end: float, outputs: Mapping[str, Output],
+                  columns: Sequence[Column], mode: str, scheme: Scheme) -> Gradient:
+    """As `gradient`, of names that are checked; `columns` may count from other values."""
+    began = time.perf_counter()
+    one = Differentiated(model, h, t_end, scheme)
+    seen = Seen(outputs, one.run, one.history, one.linear)
+    slopes = Slopes(model, one.run, one.history, seen.explicit)
+    tables = _tables(one, outputs, slopes, columns)
+    matrix, growth = (_adjoint if mode == "adjoint" else _forward)(one, seen, slopes, columns,
+                                                                   tables)
+    if growth > CHAOTIC:
+        warn(f"a disturbance of this run grows {growth:.1g} times in its effect on the objectives: "
+             "the motion is unstable or chaotic, and its derivatives hold in a range as small; "
+             "shorten the run, or take objectives over a shorter time", LimitWarning, stacklevel=3)
+    return Gradient(seen.value, matrix, tuple(seen.labels), tuple(c.label for c in columns),
+                    growth, time.perf_counter() - began, one.history.seconds)
+
+
+Tables = Mapping[str, OfTable]
+
+
+def _tables(one: Differentiated, outputs: Mapping[str, Output], slopes: Slopes,
+            columns: Sequence[Column]) -> dict[str, OfTable]:
+    """Tables of loads by name, where objectives look at motion alone."""
+    kinematic, _ = kinematic_quantities(one.run, outputs)
+    found: dict[str, OfTable] = {}
+    if any(output.quantity not in kinematic for output in outputs.values()):
+        return found
+    for column in columns:
+        port = port_of(slopes.model, one.run, column)
+        if port is not None and column.name not in found:
+            size = max(float(np.abs(column.handle.base).max()), 1.0)
+            found[column.name] = OfTable(slopes.by_load(port, size),
+                                         weights(slopes.model, column, one.history))
+    return found
+
+
+def _adjoint(one: Differentiated, seen: Seen, slopes: Slopes, columns: Sequence[Column],
+             tables: Tables) -> tuple[NDArray, float]:
+    """One sweep back, then a sum over the events for every parameter: (16)."""
+    bars = backward(one.course, seen, len(seen.value))
+    whole = {name: table.contracted(bars.weights) for name, table in tables.items()}
+    found = np.zeros((len(seen.value), len(columns)))
+    for k, column in enumerate(columns):
+        if column.name in whole:
+            found[:, k] = whole[column.name][:, column.component]
+            continue
+        slope = slopes.of(column)
+        found[:, k] = (np.einsum("enm,en->m", bars.weights, slope.residuals)
+                       + bars.motion.T @ slope.motion + bars.rates.T @ slope.rates
+                       + slope.objectives)
+    return found, _growth(bars.sizes)
+
+
+def _growth(sizes: NDArray) -> float:
+    """Largest over last of what is not zero."""
+    seen = sizes[sizes > 0]
+    return float(seen.max() / seen[-1]) if len(seen) else 1.0
+
+
+def _forward(one: Differentiated, seen: Seen, slopes: Slopes, columns: Sequence[Column],
+             tables: Tables) -> tuple[NDArray, float]:
+    """One sweep forth with a column for every parameter."""
+    each = [tables[c.name].slope(c.component, len(seen.value)) if c.name in tables
+            else slopes.of(c) for c in columns]
+    found = np.stack([slope.objectives for slope in each], axis=1)
+
+    sizes = np.zeros((len(one.history.rows), len(columns)))
+    extent = one.linear.system.magnitude[:one.linear.free, None]
+
+    def see(event: int, xi: NDArray, v: NDArray, a: NDArray) -> None:
+        sizes[event] = np.abs(xi * extent).max(axis=0)
+        seed = seen.at(event)
+        if seed is not None:
+            for bar, of in zip(seed, (xi, v, a), strict=True):
+                found[:] += bar.T @ of
+    forward(one.course, *stacked(each), see)
+    return found, _growth_forth(sizes)
+
+
+def _growth_forth(sizes: NDArray) -> float:
+    """Square of the growth in the second half of a run, of the column that grows least.
+
+    In a chaotic run all columns grow alike; those that begin to act late say nothing.
+    """
+    quarter, half, end = (len(sizes) // 4, len(sizes) // 2, len(sizes))
+    old = (sizes[quarter] > 0) & (sizes[half] > 0)
+    if not old.any():
+        return float("nan")
+    return float((sizes[half:end, old].max(axis=0) / sizes[half, old]).min() ** 2)
+
+
+def stacked(each: Sequence[Slope]) -> tuple[NDArray, NDArray, NDArray]:
+    """Slopes of residuals, motion and rates of the start by all parameters, these last."""
+    residuals, motion, rates = (np.stack([getattr(slope, name) for slope in each], axis=-1)
+                                for name in ("residuals", "motion", "rates"))
+    return residuals, motion, rates

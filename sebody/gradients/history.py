@@ -1,0 +1,169 @@
+"""The accepted steps of a run: what a gradient is taken along.
+
+A run is a sequence of events: its start, steps, and restarts where accelerations jump. Each one
+leaves a state; the next begins from there. Steps have the lengths that the run has accepted,
+halved ones and parts of steps up to a jump included.
+"""
+
+import time
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody import memory
+from sebody.engine.loop import advance
+from sebody.engine.scalars import numbers_of
+from sebody.engine.state import CHUNK, DONE, FAILED, Record, State
+from sebody.engine.step import write_record
+from sebody.errors import SimulationError
+from sebody.runs.failures import explained
+from sebody.runs.simulation import Simulation
+
+RESTART, STEP = 0, 1        # kinds of events
+OFF = 1e-6                  # of a step: a time that is that near is at its end
+ROOM = 8                    # rows that may be recorded in one step of a run
+
+
+class History(NamedTuple):
+    """Events of a run, the first of which is its start."""
+
+    rows: NDArray       # (events, size of a row of `layout.RECORD`) states that they leave
+    kinds: NDArray      # (events,) RESTART or STEP
+    steps: NDArray      # (events,) length of the step; 0 of restarts [time]
+    offsets: NDArray    # (events,) length over that of the step before: (15) of the README
+    ends: NDArray       # (events,) time of the loads [time]
+    besides: NDArray    # (events,) by how much loads are read before or after that [time]
+    recorded: NDArray   # events whose states a `Result` has, ascending
+    seconds: float      # of the run
+
+    @property
+    def times(self) -> NDArray:
+        """Of the recorded states."""
+        return self.rows[self.recorded, 0]
+
+    @property
+    def states(self) -> NDArray:
+        """The recorded rows."""
+        return self.rows[self.recorded]
+
+
+def history(run: Simulation, t_end: float) -> History:
+    """Run a simulation that is at its start to a time, and keep every accepted step.
+
+    Raises
+    ------
+    SimulationError
+        A step failed; what was computed is in the error's `result`.
+    """
+    last = round(t_end / run.h)
+    memory.check(8.0 * last * run.state.now.size, f"the states of {last} steps",
+                 "give an earlier t_end or longer steps")
+    began = time.perf_counter()
+    if (whole := _whole(run, last)) is not None:
+        return whole._replace(seconds=time.perf_counter() - began)
+    events = _Events(run)
+    while run.state.control.grid < last:
+        before = run.state.control.steps, float(run.state.clock.aux_step)
+        _one_step(run, events.record, last)
+        if run.state.control.steps > before[0]:
+            events.add(before[1])
+    return events.found(time.perf_counter() - began)
+
+
+def _whole(run: Simulation, last: int) -> History | None:
+    """The run in one go; None, and the run at its start again, if a step was cut or loads jump."""
+    state, start = run.state, copy_of(run.state)
+    inside = run.system.corners <= (last + OFF) * run.h
+    if not run.every == 1 or (run.system.jumps[inside] > 0).any():
+        return None
+    record, code = Record.of(state, last + 1), CHUNK
+    state.control.recorded = 0
+    write_record(state, record)
+    while code not in (DONE, FAILED):
+        run.exchanges.serve()
+        code = advance(run.system, state, record, run.scheme, last, last + 1, run.dense)
+    if code == FAILED or state.control.steps != last or state.control.cuts:
+        put_back(state, start)
+        return None
+    ones = np.ones(last + 1)
+    kinds = np.full(last + 1, STEP)
+    kinds[0] = RESTART
+    return History(record.rows, kinds, run.h * (kinds == STEP), ones, record.rows[:, 0].copy(),
+                   0.0 * ones, np.arange(last + 1), 0.0)
+
+
+def copy_of(state: State) -> list[NDArray]:
+    """Copies of all that a state has."""
+    return [numbers_of(one).copy() if isinstance(one, np.record) else one.copy()
+            for one in (getattr(state, name) for name in State.__annotations__)]
+
+
+def put_back(state: State, numbers: list[NDArray]) -> None:
+    """Undo what was done to a state since it was copied."""
+    for name, before in zip(State.__annotations__, numbers, strict=True):
+        one = getattr(state, name)
+        (numbers_of(one) if isinstance(one, np.record) else one)[...] = before
+
+
+def _one_step(run: Simulation, record: Record, last: int) -> None:
+    """Advance by one accepted step, and by the restart that may follow."""
+    state, chunk = run.state, 1
+    state.control.recorded = 0
+    while True:
+        code = advance(run.system, state, record, run.scheme, last, chunk, run.dense)
+        if code == FAILED:
+            run.failure = explained(run.model, run.system, state, run.numbering)
+            raise SimulationError(run.failure, run.result())
+        if code in (CHUNK, DONE):
+            return
+        run.exchanges.serve()
+        chunk = 0           # the step it is in the middle of is the one
+
+
+class _Events:
+    """Collects the events of a run."""
+
+    def __init__(self, run: Simulation):
+        self.run, self.record = run, Record.of(run.state, ROOM, run.every)
+        self.kinds, self.steps, self.offsets = [RESTART], [0.0], [1.0]
+        self.ends, self.besides = [0.0], [0.0]
+        self.rows, self.recorded = [run.state.now.copy()], [0]
+
+    def add(self, aux_step: float) -> None:
+        """Add the step that was accepted last, and the restart if there was one."""
+        run, state, clock = self.run, self.run.state, self.run.state.clock
+        length = float(clock.aux_step)
+        end, beside = float(clock.end), float(clock.beside)
+        restarted = bool(run.system.corners.size) and np.array_equal(state.aux, state.a)
+        row = state.now.copy()
+        if restarted:
+            row[state.recorded_parts["a"]] = self._accelerations_before(length)
+        self._event(row, STEP, length, length / aux_step, end, beside)
+        if restarted:
+            self._event(state.now.copy(), RESTART, 0.0, 1.0, float(clock.time), -beside)
+        if state.control.recorded:
+            self.recorded.append(len(self.rows) - 1)
+
+    def _event(self, row: NDArray, kind: int, *numbers: float) -> None:
+        self.rows.append(row)
+        self.kinds.append(kind)
+        for values, number in zip((self.steps, self.offsets, self.ends, self.besides), numbers,
+                                  strict=True):
+            values.append(number)
+
+    def _accelerations_before(self, h: float) -> NDArray:
+        """Accelerations at the end of the step, before they were solved for anew: (1), (3)."""
+        state: State = self.run.state
+        s = self.run.scheme
+        aux = ((state.dq - h * state.v_old - h * h * (0.5 - s.beta) * state.aux_old)
+               / (s.beta * h * h))
+        found = ((1 - s.alpha_m) * aux + s.alpha_m * state.aux_old - s.alpha_f * state.a_old) / (
+            1 - s.alpha_f)
+        return np.where(self.run.system.is_multiplier[:len(found)] > 0, 0.0, found)
+
+    def found(self, seconds: float) -> History:
+        """All events."""
+        return History(np.array(self.rows), *map(np.array, (
+            self.kinds, self.steps, self.offsets, self.ends, self.besides, self.recorded)),
+            seconds)

@@ -1,0 +1,70 @@
+"""Parameters by name, as numbers: columns of a gradient."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from sebody import inputs
+from sebody.errors import InputError
+from sebody.explore.ensembles.changes import Handle
+from sebody.explore.ensembles.handles import handle
+from sebody.gradients.designs import Design
+from sebody.model.model import Model
+from sebody.results.naming import AXES
+
+
+class Column(NamedTuple):
+    """A number of a parameter."""
+
+    name: str           # of the parameter
+    handle: Handle
+    component: int
+    label: str          # of the number
+    design: bool = False        # whether bodies are made anew
+
+
+Parameter = str | Design
+
+
+def columns_of(model: Model, names: Sequence[Parameter]) -> list[Column]:
+    """Numbers of parameters, in the order given: ``gravity`` are three, ``gravity.y`` is one.
+
+    Raises
+    ------
+    InputError
+        No names, unknown ones, a number that is given twice, or values that are bodies.
+    """
+    remedy = "give a list of names such as ['motor.amplitude', 'beam.stiffness']"
+    if isinstance(names, str):
+        raise inputs.refusal("parameters", names, remedy)
+    found: dict[tuple[str, int], Column] = {}
+    for given in inputs.items(names, "parameters", remedy):
+        for column in _columns(model, given):
+            if (column.name, column.component) in found:
+                raise InputError(f"parameter {given!r} is given twice: give every name once")
+            found[column.name, column.component] = column
+    if not found:
+        raise InputError(f"parameters are missing: {remedy}")
+    return list(found.values())
+
+
+def _columns(model: Model, given: Parameter) -> list[Column]:
+    if isinstance(given, Design):
+        of = given.handle(model)
+        return [Column(given.name, of, k, given.name if of.base.size == 1 else f"{given.name}[{k}]",
+                       True) for k in range(of.base.size)]
+    name, component = given, None
+    owner, _, last = str(given).rpartition(".")
+    if owner and (last in AXES or last.isdigit()):
+        name, component = owner, AXES.index(last) if last in AXES else int(last)
+    of = handle(model, name)
+    if of.whole:
+        raise InputError(f"parameter {given!r} has whole bodies for values, which have no "
+                         "derivative: give stiffness or mass of the body, or a Design")
+    if component is None:
+        return [Column(name, of, k, name if of.base.ndim == 0 else f"{name}[{k}]")
+                for k in range(of.base.size)]
+    if of.base.ndim == 0 or component >= of.base.size:
+        raise InputError(f"parameter {given!r}: {name} has "
+                         + ("one number" if of.base.ndim == 0 else f"{of.base.size} numbers")
+                         + f", so none is called {last!r}: give {name!r}")
+    return [Column(name, of, component, str(given))]

@@ -1,0 +1,260 @@
+"""What a parameter changes: of the residuals of all events in states that are held, of the start,
+and of objectives beside what the motion changes.
+
+The model is built with four values of the parameter, and evaluated in the recorded states: of
+most parameters residuals are polynomials of at most the third degree, so that differences over
+large steps are exact; of others the steps are small. Motions that are prescribed, and positions
+that are fixed, follow the parameter. Nothing is integrated: these are no differences of runs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+from warnings import catch_warnings, simplefilter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import ACCELERATION, OK, RESIDUAL
+from sebody.engine.evaluate import assemble, move_prescribed, set_loads, set_loads_beside
+from sebody.engine.links import place_dependent
+from sebody.engine.state import REASONS
+from sebody.errors import InputError, LimitWarning
+from sebody.explore.ensembles.changes import Handle
+from sebody.gradients.history import RESTART, History
+from sebody.gradients.parameters import Column
+from sebody.gradients.start_rates import fitted_rates
+from sebody.kernels.abi import pointer_to
+from sebody.kernels.rotations import rotate
+from sebody.model.model import Model
+from sebody.results import rotations
+from sebody.runs.simulation import Simulation
+
+LARGE, SHORT = 0.25, 1e-3       # steps of differences, relative to the size of a parameter
+POLYNOMIAL = 1e-8               # differences over one and two steps that agree like this are exact
+SMOOTH = 1e-2                   # that agree worse are no differences of a smooth function
+NOISE = 1e-8                    # of values: velocities of the start have so much
+AT = 1.0, -1.0, 2.0, -2.0
+WEIGHTS = np.array([8.0, -8.0, -1.0, 1.0]) / 12.0
+
+
+class Slope(NamedTuple):
+    """Derivatives by one number."""
+
+    residuals: NDArray      # (events, n); of the start with what its motion changes
+    motion: NDArray         # (n,) of the start: positions, rotations
+    rates: NDArray          # (n,)
+    objectives: NDArray     # (m,) with the motion held
+
+
+class Value(NamedTuple):
+    """A model with one value of a parameter, in the states of a run."""
+
+    residuals: NDArray
+    motion: NDArray
+    rates: NDArray
+    objectives: NDArray
+
+
+@compiled
+def _residuals(system, state, rows, now, kinds, ends, besides, places, free, load, found):
+    """Residuals of all events but the first; fixed and prescribed coordinates are the model's own.
+
+    `now` are states of this model: motion of the unknowns is that of the run. The load of a power
+    port may be changed, `load` being the port and the change.
+    """
+    q, R, v, a, frames, frames_old = places
+    port, change = load
+    for e in range(1, rows.shape[0]):
+        for i in range(state.loads.size):
+            state.loads_old[i] = state.loads[i]
+        for i in range(state.frames.size):
+            state.frames[i], state.frames_old[i] = rows[e, frames + i], rows[e, frames_old + i]
+        set_loads_beside(system, state.frames, state.loads, ends[e], besides[e])
+        if port >= 0:
+            state.loads[3 * port] += change
+        for i in range(free):
+            state.q[i], state.v[i], state.a[i] = rows[e, q + i], rows[e, v + i], rows[e, a + i]
+        move_prescribed(system, state)
+        for r in range(system.rotation_at.size):
+            at = system.rotation_at[r]
+            if at < free:
+                for i in range(9):
+                    state.R[9 * r + i] = rows[e, R + 9 * r + i]
+                continue
+            if kinds[e] == RESTART:
+                continue
+            for i in range(9):
+                state.R_old[9 * r + i] = state.R[9 * r + i]
+            rotate(pointer_to(state.R_old), 9 * r, state.dq[at], state.dq[at + 1],
+                   state.dq[at + 2], pointer_to(state.R), 9 * r)
+        place_dependent(system.links, state.q, state.v, state.a, state.R)
+        of_others = ACCELERATION if kinds[e] == RESTART else RESIDUAL
+        status = assemble(RESIDUAL, of_others, system, state, state.residual)
+        if status != OK:
+            return status
+        for i in range(free):
+            found[e, i] = state.residual[i]
+        for i in range(q, now.shape[1]):
+            now[e, i] = state.now[i]
+    return OK
+
+
+class Slopes:
+    """Derivatives by the parameters of a model along a run.
+
+    Parameters
+    ----------
+    model : Model
+        Is changed for moments, and put back.
+    run : Simulation
+        At its start.
+    history : History
+    objectives : function
+        Values of all objectives, (m,), of recorded rows and a simulation of the model that is
+        changed; None where they do not depend on anything but motion.
+    """
+
+    def __init__(self, model: Model, run: Simulation, history: History,
+                 objectives: Callable[[Simulation, NDArray], NDArray]):
+        self.model, self.run, self.history, self.objectives = model, run, history, objectives
+        self.free = run.numbering.free
+        parts = run.state.recorded_parts
+        self.places = tuple(parts[name].start for name in ("q", "R", "v", "a", "frames",
+                                                           "frames_old"))
+        self.start = history.rows[0]
+
+    def of(self, column: Column) -> Slope:
+        """Derivatives by a number of a parameter.
+
+        Raises
+        ------
+        InputError
+            The model cannot have values near its own.
+        """
+        handle, component, name = column.handle, column.component, column.name
+        base = np.asarray(handle.base, dtype=float).ravel()
+        if column.design:
+            size = abs(base[component]) or float(np.abs(base).max()) or 1.0
+        else:
+            size = max(float(np.abs(base).max(initial=0.0)), self._least(name))
+        try:
+            values = [] if column.design else self._around(handle, component, LARGE * size)
+            if values and _agree(values, POLYNOMIAL):
+                return _slope(values, LARGE * size)
+        except InputError:
+            pass            # of small changes only
+        try:
+            values = self._around(handle, component, SHORT * size)
+        except InputError as error:
+            raise InputError(f"parameter {column.label}: the model cannot be changed by it alone, "
+                             f"so there is no derivative: {error}") from error
+
+        if not _agree(values, SMOOTH, NOISE):
+            raise InputError(f"parameter {column.label}: what the model has near its value is not "
+                             "smooth, as where frequencies of a body are equal and modes change "
+                             "places, so there is no derivative: keep more modes, or make the "
+                             "frequencies differ")
+        return _slope(values, SHORT * size)
+
+    def _least(self, name: str) -> float:
+        """Size of a parameter that may be zero."""
+        return self.model.size() if name.endswith(".position") else 1.0
+
+    def _around(self, handle: Handle, component: int, step: float) -> list[Value]:
+        return [self._at(handle, component, at * step) for at in AT]
+
+    def _at(self, handle: Handle, component: int, change: float) -> Value:
+        value = np.array(handle.base, dtype=float)
+        value.reshape(-1)[component] += change
+        try:
+            handle.set(value)
+            return self._evaluated(self._made())
+        finally:
+            handle.reset()
+
+    def _made(self) -> Simulation:
+        """The model as it is now, at its start; of the run as it is, all was said."""
+        with catch_warnings():
+            simplefilter("ignore", LimitWarning)
+            return Simulation(self.model, self.run.h, self.run.scheme)
+
+    def by_load(self, port: int, size: float) -> NDArray:
+        """Derivatives of the residuals by the value of a power port, (events, n)."""
+        made = self._made()
+        start = made.state.now.copy()
+        one = self._along(made, (port, size))[0]
+        made.state.now[:] = start
+        other = self._along(made, (port, -size))[0]
+        return (one - other) / (2 * size)
+
+    def _evaluated(self, made: Simulation) -> Value:
+        rates, motion = fitted_rates(made), self._turned(made.state)
+        found, now = self._along(made)
+        return Value(found, motion, rates, self.objectives(made, now[self.history.recorded]))
+
+    def _along(self, made: Simulation, load: tuple[int, float] = (-1, 0.0)
+               ) -> tuple[NDArray, NDArray]:
+        """Residuals of all events, and the states of this model that they are of."""
+        system, state, history = made.system, made.state, self.history
+        found = np.zeros((len(history.rows), self.free))
+        now = history.rows.copy()
+        found[0] = self._first(made, load)
+        now[0] = state.now
+        status = _residuals(system, state, history.rows, now, history.kinds, history.ends,
+                            history.besides, self.places, self.free, load, found)
+        if status != OK:
+            raise InputError(f"a state cannot be evaluated: {REASONS[status]}")
+        return found, now
+
+    def _first(self, made: Simulation, load: tuple[int, float]) -> NDArray:
+        """Residual of the start with accelerations and multipliers of the run."""
+        system, state, n = made.system, made.state, self.free
+        q, _, v, a, *_ = self.places
+        fixed = system.is_multiplier[:n] > 0
+        state.a[:n] = self.start[a:a + n]
+        state.q[:n][fixed] = self.start[q:q + n][fixed]
+        set_loads(system, state.frames, state.loads, 0.0)
+        if load[0] >= 0:
+            state.loads[3 * load[0]] += load[1]
+        state.loads_old[:] = state.loads
+        kept = state.R.copy()
+        move_prescribed(system, state)
+        state.R[:] = kept
+        place_dependent(system.links, state.q, state.v, state.a, state.R)
+        status = assemble(RESIDUAL, ACCELERATION, system, state, state.residual)
+        if status != OK:
+            raise InputError(f"the start cannot be evaluated: {REASONS[status]}")
+        return state.residual[:n].copy()
+
+    def _turned(self, state) -> NDArray:
+        """Motion from the start of the run to that of a changed model: of rotations a vector."""
+        q, R, *_ = self.places
+        n = self.free
+        found = state.q[:n] - self.start[q:q + n]
+        found[self.run.system.is_multiplier[:n] > 0] = 0.0
+        for r, at in enumerate(self.run.system.rotation_at):
+            if at < n:
+                own, other = (x[9 * r:9 * r + 9].reshape(3, 3) for x in (
+                    self.start[R:R + len(state.R)], state.R))
+                found[at:at + 3] = rotations.vectors((own.T @ other)[None])[0]
+        return found
+
+
+def _agree(values: list[Value], closely: float, noise: float = 0.0) -> bool:
+    """Whether differences over one and over two steps are the same, but for noise of the values."""
+    for name in ("residuals", "motion", "rates", "objectives"):
+        f = [getattr(value, name) for value in values]
+        one, two = (f[0] - f[1]) / 2, (f[2] - f[3]) / 4
+        size = np.maximum(np.abs(one), np.abs(two)).max(initial=0.0)
+        if np.abs(one - two).max(initial=0.0) > closely * size + noise * np.abs(
+                f[0]).max(initial=0.0):
+            return False
+    return True
+
+
+def _slope(values: list[Value], step: float) -> Slope:
+    return Slope(*(sum(w / step * getattr(value, name) for w, value in zip(
+        WEIGHTS, values, strict=True)) for name in Value._fields))

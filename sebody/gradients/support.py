@@ -1,0 +1,58 @@
+"""Which runs have exact gradients; all others are refused by name, with what to do instead."""
+
+from sebody.errors import InputError
+from sebody.generated.options import FRAMES
+from sebody.kernels.loader import element_kernel
+from sebody.model.model import Model
+from sebody.runs.simulation import Simulation
+
+USER_FORCE = "user_force"
+COUNTED = ("angle",)        # what torsion springs keep to count turns, no force depends on it else
+
+
+def refuse_model(model: Model) -> None:
+    """Refuse what has no derivative before anything is run.
+
+    Raises
+    ------
+    InputError
+        Incremental frames, or forces by functions of the user.
+    """
+    for body in model.bodies.values():
+        if FRAMES[body.frame].incremental:
+            exact = ", ".join(name for name, frame in FRAMES.items()
+                              if not frame.incremental)
+            raise InputError(f"superelement {body.name!r}: frame {body.frame!r} depends on the "
+                             "steps that led to a state, and its forces are not differentiated by "
+                             f"those: use one of {exact}")
+    for load in model.loads:
+        if load.kind == USER_FORCE:
+            raise InputError(f"force {load.name!r} is a function of yours, whose derivatives are "
+                             "not known: use springs, dampers, tables or profiles for gradients, "
+                             "or an Ensemble with values on both sides")
+
+
+def refuse_run(run: Simulation) -> None:
+    """Refuse runs whose steps are no functions of the state before.
+
+    Raises
+    ------
+    InputError
+        Friction, contacts, controllers, motions without mass, constraints of index 2.
+    """
+    if remembering := [one.name for one in run.numbering.memories
+                       if element_kernel(one.kind).MEMORY != COUNTED]:
+        raise InputError(f"{remembering[0]!r} keeps numbers from step to step, as friction, "
+                         "contacts and stops do, and these are not differentiated: leave it out, "
+                         "or use an Ensemble with values on both sides")
+    if run.sampling.samples or run.sampling.has_inputs:
+        raise InputError("the model has controllers or actuators, whose samples are not "
+                         "differentiated: give the history of the input as a table of a force, "
+                         "torque or drive")
+    if run.system.massless[0]:
+        raise InputError("a motion of the model has no mass, and its accelerations at the start no "
+                         "derivative: give every node mass and inertia")
+    if run.scheme.stabilized:
+        raise InputError("constraints of index 2 move positions along directions that depend on "
+                         "the iteration, so the steps have no exact derivative: use "
+                         "generalized_alpha(index=3) with a fixed step")

@@ -1,0 +1,209 @@
+"""Scenes in general position for gradients, and Richardson differences of their runs."""
+
+from functools import cache
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from sebody import Model
+from sebody.analysis import Ensemble
+from sebody.fem import Section, rectangle, straight_beam
+from sebody.gradients.parameters import columns_of
+from sebody.model import profiles
+from sebody.reduction import craig_bampton
+from sebody.runs.schemes import generalized_alpha
+
+TURN = Rotation.from_rotvec((0.4, -0.9, 0.3)).as_matrix()
+SHIFT = np.array([3.0, -1.0, 2.0])
+X, Y, Z = TURN.T                                            # axes of the scenes
+STEPS = 1, -1, 2, -2, 3, -3
+WEIGHTS = np.array([45, -45, -9, 9, 1, -1]) / 60           # of differences of the sixth order
+
+
+def place(*point):
+    return SHIFT + TURN @ np.array(point)
+
+
+@cache
+def slender(modes=3, length=1.0, height=0.03, planar=False, wind=False):
+    """A beam along the first axis of the scenes, with two full interfaces."""
+    section = rectangle(height, 0.02, 2e9, 0.3, 1200.0)
+    a, b = (np.zeros(2), np.array([length, 0.0])) if planar else (
+        place(0, 0, 0), place(length, 0, 0))
+    fe = straight_beam(a, b, section, 6) if not planar else straight_beam(
+        np.zeros(3), np.array([length, 0.0, 0.0]), section, 6)
+    loads = {}
+    if wind:
+        load = np.zeros((7, 6))
+        load[:, :3] = 0.3 * Y + 0.2 * Z
+        loads = {"wind": load.ravel()}
+    more = {"loads": loads} if wind else {}
+    return craig_bampton(fe, [(0, "full"), (6, "full")], modes, **more)
+
+
+def hinged(inertia=None, frame="converged_mean", **others):
+    """A flexible beam on a turned hinge with a torque, a damper and a spring to the ground."""
+    m = Model()
+    m.gravity(-9.81 * Y)
+    base, tip = m.node("base", place(0, 0, 0)), m.node("tip", place(1, 0, 0))
+    m.superelement("beam", slender(**others), [base, tip], inertia=inertia, frame=frame)
+    m.revolute(base, axis=Z, name="hinge")
+    m.torque(base, 3.0 * Z, [(0, 0), (0.1, 1), (0.3, -1), (0.5, 0.2)], name="torque")
+    wall = m.node("wall", place(0.4, 1.2, 0.3))
+    m.fix(wall)
+    m.spring(tip, wall, stiffness=20.0, damping=0.3, length=1.0, name="spring")
+    return m
+
+
+def spinning():
+    """The beam with given velocities of a rigid rotation about its hinge."""
+    m = hinged()
+    m.rigid_velocity(np.zeros(3), 1.5 * Z, about=place(0, 0, 0))
+    return m
+
+
+def four_bar(flexible=False):
+    """Spatial four-bar on four parallel hinges: three constraints are redundant if it is rigid."""
+    p = [place(0, 0, 0), place(0, 1, 0), place(2, 1.5, 0), place(2, 0, 0)]
+    m = Model()
+    m.gravity(-9.81 * Y)
+
+    def rod(name, node, a, b, mass):
+        d = np.subtract(b, a)
+        e = d / np.linalg.norm(d)
+        m.rigid_body(name, node, mass, mass * (d @ d) / 12 * (np.eye(3) - np.outer(e, e))
+                     + 1e-3 * mass * np.eye(3), centre=np.add(a, b) / 2)
+    a = m.node("a", p[0])
+    rod("crank", a, p[0], p[1], 1.0)
+    m.revolute(a, axis=Z, name="A")
+    b = m.attach("b", p[1], a)
+    d = m.node("d", p[3])
+    rod("rocker", d, p[3], p[2], 1.5)
+    m.revolute(d, axis=Z, name="D")
+    c = m.attach("c", p[2], d)
+    k1 = m.node("k1", p[1], at="b")
+    if flexible:
+        k2 = m.node("k2", p[2])
+        m.beam("coupler", (k1, k2), rectangle(0.05, 0.04, 2.0e9, 0.3, 1000.0), 6, 1, 3)
+    else:
+        rod("coupler", k1, p[1], p[2], 2.0)
+        k2 = m.attach("k2", p[2], k1)
+    m.revolute(k1, axis=Z, to=b, name="B")
+    m.revolute(k2, axis=Z, to=c, name="C", explicit=not flexible)
+    m.torsion_spring(a, stiffness=3.0, damping=0.2, axis=Z, name="coil")
+    m.torque(d, 2.0 * Z, [(0, 0), (0.3, 1.0), (0.6, 0.0)], name="torque")
+    m.initial_velocity(a, angular=2.0 * Z)
+    return m
+
+
+def moved():
+    """A beam whose base is moved along a line and turned at once, with a link at its tip."""
+    m = Model()
+    base, tip = m.node("base", place(0, 0, 0)), m.node("tip", place(1, 0, 0))
+    m.superelement("beam", slender(), [base, tip])
+    m.move(base, 0.1 * Y, profiles.harmonic(1.0, 7.0), name="shake")
+    m.move(base, Z + 0.3 * X, profiles.harmonic(0.4, 5.0), what="rotation", name="swing")
+    end = m.attach("end", place(1.2, 0.1, -0.2), tip)
+    m.point_mass("ball", end, 0.2)
+    m.gravity((0.5, -9.0, 1.0))
+    return m
+
+
+def driven():
+    """A rotor driven by an equation, with a beam on it and a slide with a spring."""
+    m = Model()
+    hub = m.node("hub", place(0, 0, 0))
+    m.rigid_body("rotor", hub, 2.0, np.diag([0.2, 0.3, 0.4]))
+    m.revolute(hub, axis=Z, name="bearing")
+    m.drive_angle(hub, profiles.rest_to_rest(1.2, 0.6), axis=Z, name="motor")
+    tip = m.node("tip", place(1, 0, 0))
+    m.superelement("beam", slender(), [hub, tip])
+    slide = m.node("slide", place(0, 0, 0.5))
+    m.rigid_body("carriage", slide, 0.7, 0.1 * np.eye(3))
+    m.prismatic(slide, axis=X, name="rail")
+    m.spring(tip, slide, stiffness=30.0, damping=0.5, name="spring")
+    m.gravity(-3.0 * X - 9.0 * Y)
+    return m
+
+
+def struck():
+    """A double pendulum on links and ball joints whose loads jump off the grid."""
+    m = Model()
+    a = m.node("a", place(0, 0, 0))
+    m.rigid_body("upper", a, 1.0, np.diag([0.02, 0.3, 0.3]), centre=place(0.5, 0.1, 0))
+    m.spherical(a, name="top")
+    end = m.attach("end", place(1, 0.2, 0.1), a)
+    b = m.node("b", place(1, 0.2, 0.1))
+    m.rigid_body("lower", b, 0.6, np.diag([0.2, 0.02, 0.2]), centre=place(1, -0.3, 0))
+    m.spherical(b, to=end, name="middle")
+    m.gravity(-9.81 * Y)
+    m.force(end, 2.0 * Z, [(0.0, 0.5), (0.0833, 0.5), (0.0833, 2.0), (0.31, 1.0)], name="gust")
+    m.torque(b, 1.0 * X + 0.5 * Y, [(0.0, 0.0), (0.1017, 1.0), (0.1017, -1.0), (0.4, 0.0)],
+             name="kick")
+    return m
+
+
+def blown():
+    """A beam under a load of its own body, its base on a bushing."""
+    m = Model()
+    base, tip = m.node("base", place(0, 0, 0)), m.node("tip", place(1, 0, 0))
+    m.superelement("beam", slender(wind=True), [base, tip], inertia="b")
+    ground = m.node("ground", place(0, 0, 0))
+    m.fix(ground)
+    m.bushing(base, ground, stiffness=500.0, damping=2.0, turning_stiffness=40.0,
+              turning_damping=0.5, name="bush")
+    m.body_load("beam", "wind", [(0, 1), (0.2, 3), (0.5, 0)], name="gale")
+    m.gravity(-9.81 * Y)
+    return m
+
+
+def flat():
+    """A planar flexible crank with a rod and a slider."""
+    m = Model(planar=True)
+    section = Section(area=6e-4, inertia_y=4.5e-8, inertia_z=4.5e-8, torsion=1e-8,
+                      youngs_modulus=2e9, poisson_ratio=0.3, density=1200.0)
+    a, b = m.node("a", (0.2, 0.1)), m.node("b", (0.2, 0.6))
+    m.beam("crank", (a, b), section, 4, 1, 2)
+    m.revolute(a, name="bearing")
+    c, d = m.node("c", (0.2, 0.6), at=b), m.node("d", (1.3, 0.1))
+    m.beam("rod", (c, d), section, 6, 1, 3)
+    m.point_mass("piston", d, 0.4)
+    guide = m.node("guide", (0.0, 0.1))
+    m.fix(guide)
+    m.distance(d, guide, name="bar")
+    m.torque(a, 2.0, [(0, 1), (0.2, -1)], name="torque")
+    m.gravity((0.0, -9.81))
+    m.initial_velocity(a, angular=-3.0)
+    return m
+
+
+def chain(links):
+    """Links on hinges in turned directions, beyond the size of full matrices."""
+    m = Model()
+    m.gravity(-9.81 * Y)
+    body, last = slender(modes=1), m.node("base", place(0, 0, 0))
+    m.revolute(last, axis=Z)
+    for k in range(links):
+        end = m.node("tip" if k == links - 1 else f"joint {k + 1}", place(k + 1.0, 0, 0))
+        m.superelement(f"link {k + 1}", body, [last, end])
+        if k < links - 1:
+            last = m.node(f"base {k + 2}", end.point, at=end)
+            m.revolute(end, Z, to=last)
+    m.torque("base", 5.0 * Z, [(0, 0), (0.05, 1)], name="torque")
+    return m
+
+
+def differences(model, h, t_end, outputs, parameters, relative=1e-3, scheme=None):
+    """Derivatives by differences of the sixth order of runs."""
+    ensemble = Ensemble(model, h, scheme or generalized_alpha(tolerance=1e-13))
+    columns = []
+    for column in columns_of(model, parameters):
+        base = np.array(column.handle.base, dtype=float)
+        step = relative * max(np.abs(base).max(), 1.0)
+        values = np.repeat(base[None], 6, axis=0)
+        values.reshape(6, -1)[:, column.component] += step * np.array(STEPS)
+        found = ensemble.run({column.name: values}, t_end, outputs, threads=1)
+        assert not found.failures, found.failures
+        values = np.concatenate([found[name].reshape(6, -1) for name in outputs], axis=1)
+        columns.append(WEIGHTS @ values / step)
+    return np.array(columns).T

@@ -1,0 +1,60 @@
+"""Bodies that are functions of numbers: sections of beams against runs of models built anew."""
+
+import differentiated as scenes
+import numpy as np
+import pytest
+
+from sebody import InputError, Model, generalized_alpha, simulate
+from sebody.analysis import Design, final, gradient, sections
+from sebody.fem import rectangle
+
+EXACT = generalized_alpha(tolerance=1e-13)
+MATERIAL = 2e9, 0.3, 1200.0
+
+
+def rod(height, width=0.02, bodies=1):
+    """A beam on a turned hinge under gravity and a torque."""
+    m = Model()
+    m.gravity(-9.81 * scenes.Y)
+    a, b = m.node("a", scenes.place(0, 0, 0)), m.node("b", scenes.place(1, 0, 0))
+    m.beam("rod", (a, b), rectangle(height, width, *MATERIAL), 4, bodies, 2)
+    m.revolute(a, axis=scenes.Z)
+    m.torque(a, 3 * scenes.Z, [(0, 0), (0.1, 1)], name="torque")
+    return m
+
+
+@pytest.mark.parametrize("bodies", [1, 2])
+def test_two_numbers_of_a_section(bodies):
+    """Against differences of runs of models that are built with other sections."""
+    m = rod(0.03, bodies=bodies)
+    section = sections(m, "rod", [0.03, 0.02], lambda x: rectangle(*x, *MATERIAL))
+    found = gradient(m, 0.005, 0.1, {"b": final("b.position")}, [section, "gravity.y"],
+                     scheme=EXACT)
+    assert found.columns == ("rod.section[0]", "rod.section[1]", "gravity.y")
+    step = 1e-4
+    for k in range(2):
+        ends = np.array([simulate(rod(*(np.array([0.03, 0.02]) + at * step * np.eye(2)[k]), bodies),
+                                  0.005, 0.1, scheme=EXACT)["b.position"][-1]
+                         for at in scenes.STEPS])
+        expected = scenes.WEIGHTS @ ends / step
+        assert np.abs(found.matrix[:, k] - expected).max() < 1e-6 * np.abs(expected).max()
+
+
+def test_equal_frequencies_are_refused():
+    """Of a square section modes of both planes change places: differences would be nonsense."""
+    m = rod(0.02)
+    section = sections(m, "rod", 0.02, lambda x: rectangle(float(x), 0.02, *MATERIAL))
+    with pytest.raises(InputError, match=r"rod.section: .* not smooth.*frequencies"):
+        gradient(m, 0.005, 0.05, {"b": final("b.position")}, [section])
+
+
+def test_wrong_designs():
+    m = rod(0.03)
+    with pytest.raises(InputError, match="no beam 'bar'.*'rod'"):
+        sections(m, "bar", 0.03, lambda x: rectangle(x, 0.02, *MATERIAL))
+    with pytest.raises(InputError, match="no superelement 'bar'.*rod"):
+        gradient(m, 0.005, 0.05, {"b": final("b.position")},
+                 [Design("d", [1.0], ["bar"], lambda x: [m.bodies["rod"].reduced])])
+    with pytest.raises(InputError, match="ReducedBody"):
+        gradient(m, 0.005, 0.05, {"b": final("b.position")},
+                 [Design("d", [1.0], ["rod"], lambda x: [3.0])])

@@ -1,0 +1,193 @@
+"""Gradients of runs: adjoint against forward, and both against differences of runs and theory."""
+
+import differentiated as scenes
+import numpy as np
+import pytest
+
+from sebody import InputError, Model
+from sebody.analysis import at_time, final, gradient, integral, rms, soft_maximum
+from sebody.model import profiles
+from sebody.runs.schemes import generalized_alpha
+
+EXACT = generalized_alpha(tolerance=1e-13)
+# of each scene: what builds it, step and end, objectives, parameters
+SCENES = {
+    "hinged beam": (scenes.hinged, 0.005, 0.1, {
+        "tip": final("tip.position"), "strain": final("energy.strain"),
+        "force": rms("spring.force")}, [
+        "torque.amplitude", "torque.table", "spring.stiffness", "spring.damping", "spring.length",
+        "beam.stiffness", "beam.mass", "gravity"]),
+    "given velocities": (scenes.spinning, 0.005, 0.1, {
+        "tip": at_time("tip.velocity", 0.0771), "base": integral("tip.acceleration")}, [
+        "torque.amplitude", "beam.stiffness", "spring.stiffness"]),
+    "redundant loop": (scenes.four_bar, 0.005, 0.2, {
+        "c": final("c.position"), "v": rms("c.velocity", norm=True)}, [
+        "gravity.y", "coil.stiffness", "coil.rest", "rocker.mass", "torque.amplitude"]),
+    "flexible loop": (lambda: scenes.four_bar(True), 0.002, 0.06, {
+        "c": soft_maximum("c.position", 8), "modes": integral("coupler.modes")}, [
+        "gravity", "coil.stiffness", "coupler.stiffness", "coupler.mass"]),
+    "moved base": (scenes.moved, 0.005, 0.1, {
+        "tip": final("tip.position"), "end": final("end.velocity"),
+        "base": integral("base.position")}, [
+        "shake.amplitude", "swing.amplitude", "ball.mass", "beam.stiffness"]),
+    "driven rotor": (scenes.driven, 0.005, 0.1, {
+        "tip": final("tip.position"), "slide": final("slide.velocity")}, [
+        "motor.amplitude", "rotor.mass", "carriage.mass", "spring.stiffness"]),
+    "jumps of loads": (scenes.struck, 0.01, 0.2, {
+        "b": final("b.position"), "end": final("end.velocity"), "sum": integral("end.position")}, [
+        "gust.amplitude", "gust.table", "kick.table", "upper.mass", "lower.mass", "gravity"]),
+    "load on a body": (scenes.blown, 0.005, 0.1, {
+        "tip": final("tip.position"), "modes": integral("beam.modes")}, [
+        "gale.table", "beam.mass", "beam.stiffness", "bush.stiffness"]),
+    "in a plane": (scenes.flat, 0.002, 0.06, {
+        "slider": final("d.position"), "b": final("b.velocity")}, [
+        "torque.amplitude", "piston.mass", "rod.mass", "rod.stiffness", "gravity"]),
+    "rigid-part inertia": (lambda: scenes.hinged("d", modes=2), 0.005, 0.1, {
+        "tip": final("tip.position")}, ["torque.amplitude", "beam.stiffness", "beam.mass"]),
+    "material inertia": (lambda: scenes.hinged("b", modes=2), 0.005, 0.1, {
+        "tip": final("tip.position")}, ["torque.amplitude", "beam.stiffness", "beam.mass"]),
+    "mean axes": (lambda: scenes.hinged(frame="mean_axes", modes=2), 0.005, 0.1, {
+        "tip": final("tip.position")}, ["torque.amplitude", "beam.stiffness", "beam.mass"]),
+}
+
+
+def rows(matrix):
+    """Largest entry of each row."""
+    return np.maximum(np.abs(matrix).max(axis=1, keepdims=True), 1e-300)
+
+
+def both(model, h, t_end, objectives, parameters):
+    """Gradient by both recursions, and how far they differ."""
+    one, other = (gradient(model, h, t_end, objectives, parameters, mode, scheme=EXACT)
+                  for mode in ("adjoint", "forward"))
+    return one, float((np.abs(one.matrix - other.matrix) / rows(other.matrix)).max())
+
+
+@pytest.mark.filterwarnings("ignore::sebody.LimitWarning")
+@pytest.mark.parametrize("name", SCENES)
+def test_adjoint_forward_and_differences_of_runs_agree(name):
+    """Differences of the sixth order have noise of 1e-13 of the runs over steps of 1e-3."""
+    build, *run = SCENES[name]
+    found, apart = both(build(), *run)
+    assert apart < 1e-11
+    expected = scenes.differences(build(), *run)
+    assert (np.abs(found.matrix - expected) / rows(expected)).max() < 1e-7
+
+
+def test_a_sparse_chain():
+    """Links in a chain too long for full matrices: adjoint against forward and differences."""
+    run = 0.01, 0.05, {"tip": final("tip.position")}, ["torque.amplitude", "link 7.mass"]
+    found, apart = both(scenes.chain(24), *run)
+    assert apart < 1e-11
+    expected = scenes.differences(scenes.chain(24), *run, relative=1e-2)
+    assert (np.abs(found.matrix - expected) / rows(expected)).max() < 1e-6
+
+
+def test_forces_stiffness_and_mass_together_change_nothing():
+    """Of a model without gravity, loads, stiffness and mass times one factor leave the motion."""
+    m = scenes.hinged("b")
+    m.gravity((0.0, 0.0, 0.0))
+    m.loads = [one for one in m.loads if one.name == "torque"]
+    found, _ = both(m, 0.005, 0.2, {"tip": final("tip.position"), "sum": integral("tip.velocity")},
+                    ["torque.amplitude", "beam.stiffness", "beam.mass"])
+    assert (np.abs(found.matrix.sum(axis=1)) / rows(found.matrix)[:, 0]).max() < 1e-10
+
+
+def oscillator(stiffness=40.0, damping=0.6, mass=1.3, amplitude=2.0):
+    """A mass on a spring with a damper along a line, under a harmonic force."""
+    m = Model()
+    a, wall = m.node("a", (1.0, 0.0, 0.0)), m.node("wall", (0.0, 0.0, 0.0))
+    m.fix(wall)
+    m.fix(a, "rotation")
+    m.point_mass("ball", a, mass)
+    m.spring(a, wall, stiffness=stiffness, damping=damping, length=1.0, name="spring")
+    m.force(a, (amplitude, 0, 0), profiles.harmonic(1.0, 5.0), name="push")
+    return m
+
+
+def test_a_linear_oscillator_against_its_own_recursion():
+    """The scheme applied to m x'' + c x' + k x = f, differentiated by complex steps."""
+    h, steps = 0.02, 60
+    s = generalized_alpha()
+
+    def last(k, c, m, f):
+        x = v = 0.0
+        force = [f * np.sin(5.0 * h * i) for i in range(steps + 1)]
+        a = aux = (force[0] - c * v - k * x) / m
+        for i in range(steps):
+            # aux' = ((1 - af) a' + af a - am aux) / (1 - am) in x', v'; m a' = f' - c v' - k x'
+            on = (s.alpha_f * a - s.alpha_m * aux) / (1 - s.alpha_m)
+            share = (1 - s.alpha_f) / (1 - s.alpha_m)
+            x1 = x + h * v + h * h * ((0.5 - s.beta) * aux + s.beta * on)
+            v1 = v + h * ((1 - s.gamma) * aux + s.gamma * on)
+            a1 = (force[i + 1] - c * v1 - k * x1) / (
+                m + c * h * s.gamma * share + k * h * h * s.beta * share)
+            x, v = x1 + h * h * s.beta * share * a1, v1 + h * s.gamma * share * a1
+            a, aux = a1, on + share * a1
+        return x
+    values = dict(k=40.0, c=0.6, m=1.3, f=2.0)
+    exact = [np.imag(last(**(values | {name: values[name] + 1e-30j}))) / 1e-30 for name in "kcmf"]
+    found = gradient(oscillator(), h, h * steps, {"x": final("a.position.x")},
+                     ["spring.stiffness", "spring.damping", "ball.mass", "push.amplitude"],
+                     scheme=EXACT)
+    assert found.value[0] == pytest.approx(1.0 + last(**values), rel=1e-12)
+    # factors of mass and load count from one
+    assert found.matrix[0] / (1, 1, 1.3, 2.0) == pytest.approx(exact, rel=1e-9)
+
+
+def test_components_of_parameters():
+    """Components of parameters have names, and the shipped scene is in general position enough."""
+    from sebody.scenes.hinged_beam import build
+
+    found = gradient(build().model, 0.01, 1.0, {"tip": final("tip.position.y")}, [
+        "torque on base.rotation.amplitude", "gravity.x", "base.angular_velocity.z"], scheme=EXACT)
+    assert found.columns[1:] == ("gravity.x", "base.angular_velocity.z")
+    expected = scenes.differences(build().model, 0.01, 1.0, {"tip": final("tip.position.y")}, [
+        "torque on base.rotation.amplitude", "gravity.x"], relative=1e-2)
+    assert found.matrix[:, :2] == pytest.approx(expected, rel=1e-7)
+
+
+@pytest.mark.parametrize(("objectives", "parameters", "words"), [
+    ({"x": final("tip.position")}, ["torque.amplitud"], "torque.amplitude"),
+    ({"x": final("tip.position")}, [], "parameters are missing"),
+    ({"x": final("tip.position")}, ["gravity.y", "gravity"], "given twice"),
+    ({"x": final("tip.position")}, ["beam.mass.x"], "beam.mass has one number"),
+    ({"x": final("tip.position")}, ["beam.reduced"], "whole bodies"),
+    ({"x": "tip.position"}, ["gravity"], "is a history: give final"),
+    ({"x": final("torque.work")}, ["gravity"], "give the integral of a power"),
+    ({"x": final("top.position")}, ["gravity"], "top"),
+])
+def test_refused(objectives, parameters, words):
+    with pytest.raises(InputError, match=words):
+        gradient(scenes.hinged(), 0.01, 0.05, objectives, parameters)
+
+
+def test_a_maximum_is_refused_with_what_to_take():
+    from sebody.analysis import maximum
+
+    with pytest.raises(InputError, match="soft_maximum"):
+        gradient(scenes.hinged(), 0.01, 0.05, {"x": maximum("tip.position")}, ["gravity"])
+
+
+def test_features_without_exact_derivatives_are_refused_by_name():
+    m = scenes.hinged("b", frame="mean")
+    with pytest.raises(InputError, match="'beam': frame 'mean'.*converged_mean"):
+        gradient(m, 0.01, 0.05, {"x": final("tip.position")}, ["gravity"])
+    m = scenes.hinged()
+    with pytest.raises(InputError, match="index 2.*index=3"):
+        gradient(m, 0.01, 0.05, {"x": final("tip.position")}, ["gravity"],
+                 scheme=generalized_alpha(index=2))
+    with pytest.raises(InputError, match="not a multiple of the step"):
+        gradient(m, 0.01, 0.055, {"x": final("tip.position")}, ["gravity"])
+    m.stop("hinge", upper=0.2, stiffness=100.0, name="end")
+    with pytest.raises(InputError, match="'end' keeps numbers.*Ensemble"):
+        gradient(m, 0.01, 0.05, {"x": final("tip.position")}, ["gravity"])
+
+
+def test_the_model_is_as_before():
+    m = scenes.hinged()
+    before = gradient(m, 0.01, 0.05, {"x": final("tip.position")}, ["gravity", "beam.mass"])
+    after = gradient(m, 0.01, 0.05, {"x": final("tip.position")}, ["gravity", "beam.mass"])
+    assert np.array_equal(before.value, after.value)
+    assert np.array_equal(before.matrix, after.matrix)
+    assert before.of("x", "beam.mass").shape == (3, 1)
