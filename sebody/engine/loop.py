@@ -136,7 +136,7 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
             _take_shift(system, state)
             control.phase = READY
             continue
-        verdict = apply_correction(system, state, scheme, mixed, dense)
+        verdict = apply_correction(system, state, scheme, mixed)
         reason = np.int64(_conclude(system, state, record, scheme, verdict))
 
 

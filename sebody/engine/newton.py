@@ -10,7 +10,6 @@ from sebody.contract.layout import C_DAMPING, C_MASS
 from sebody.engine.evaluate import to_body_axes, update_rotations
 from sebody.engine.matrix import ROUNDING
 from sebody.engine.regularization import regularized_norms
-from sebody.engine.secants import accelerate, update_inverse
 from sebody.engine.state import (
     CONVERGED,
     EVALUATED,
@@ -37,10 +36,11 @@ ACCELERATION_TOLERANCE = 100.0  # tolerance relative to accelerations, over that
 WIDEST_GAP = 1e-5       # between what joints demand, relative to the extent of the model
 ROUNDED = 100.0         # of the target: where new matrices do not help, what is left is rounding
 ASTRAY = 0.5            # sizes of a coordinate, that it may end from where its rates lead
+QUICK = 0.05            # a contraction rate below this needs no acceleration by mixing
 
 
 @compiled(forceinline=True)
-def apply_correction(system, state, scheme, mixed, dense):
+def apply_correction(system, state, scheme, mixed):
     """Subtract the solved correction; returns the verdict on the step, CONVERGED to GIVE_UP."""
     n = system.diagonal.size
     regularized = state.control.regularized == 1
@@ -49,16 +49,14 @@ def apply_correction(system, state, scheme, mixed, dense):
     if not np.isfinite(norm):
         state.clock.last_norm = norm
         return GIVE_UP
+    left_norm = accelerate(system, state, n, norm) if mixed else norm
+    _subtract(system, state, scheme, n)
     accelerations = max(
         scheme.beta * state.clock.current_step * state.clock.current_step * accelerations,
         state.clock.acceleration_norm)
     target = min(scheme.tolerance * size,
                  ACCELERATION_TOLERANCE * scheme.tolerance * accelerations) + state.clock.floor
     state.clock.acceleration_norm, state.clock.target = accelerations, target
-    if dense and not scheme.stabilized:
-        norm = update_inverse(system, state, n, norm, target)
-    left_norm = accelerate(system, state, n, norm) if mixed else norm
-    _subtract(system, state, scheme, n)
     verdict = _verdict(system, state, norm, left_norm, target)
     if verdict == CONVERGED and _strayed(system, state, scheme):
         return GIVE_UP
@@ -160,6 +158,36 @@ def _verdict(system, state, norm, left_norm, target):
     cost = REFACTORIZATION_COST if next_matrix(system, state) == EVALUATED else ROTATED_COST
     slow = rate > POOR or np.log(target / norm) / np.log(rate) > min(cost, left)
     return NEW_MATRIX if slow else GO_ON
+
+
+@compiled
+def accelerate(system, state, n, norm):
+    """Anderson mixing with the last correction; returns the norm of the mixed correction.
+
+    With matrices of the predicted state the error of a taut chain that rotates decays slowly in
+    one direction, which mixing with one correction removes. The multipliers of a regularized
+    matrix are too uncertain to be asked.
+    """
+    correction, last, change = state.correction, state.last_correction, state.last_change
+    along = square = mix = 0.0
+    regularized = state.control.regularized == 1
+    if state.control.secant == 1 and norm > QUICK * state.clock.last_norm:
+        for i in range(n):
+            if regularized and system.is_multiplier[i] > 0.0:
+                continue
+            w = state.weight[i]
+            difference = (correction[i] - last[i]) * w
+            along += difference * correction[i] * w
+            square += difference * difference
+        if square > 0.0 and abs(along) < square:
+            mix = along / square
+            norm = np.sqrt(max(norm * norm - along * mix, 0.0))
+    state.control.secant = 1
+    for i in range(n):
+        d = correction[i]
+        change[i] = correction[i] = d - mix * (change[i] + d - last[i])
+        last[i] = d
+    return norm
 
 
 @compiled(forceinline=True)

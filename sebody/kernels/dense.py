@@ -218,23 +218,6 @@ def _multiply_rows(builder, A, x, out, row, vectors, columns, height, add):
 
 
 @intrinsic
-def add_outer(typingctx, A, x, y, rows, columns):
-    """``A += x y^T`` of a matrix in padded columns, which are written to their padding."""
-    return called(_add_outer, 3, 2)
-
-
-def _add_outer(builder, A, x, y, rows, columns):
-    """Vector operations for a rank-one update."""
-    last = whole_vectors(builder, rows)
-    with short_loop(builder, WORD(0), columns) as column:
-        factor, own = load_broadcast(builder, y, column), builder.gep(A, [builder.mul(column, last)])
-        with short_loop(builder, WORD(0), last, LANES) as row:
-            product = builder.fmul(load_vector(builder, x, row), factor, flags=("contract",))
-            total = builder.fadd(load_vector(builder, own, row), product, flags=("contract",))
-            store_vector(builder, total, own, row)
-
-
-@intrinsic
 def subtract_product(typingctx, C, A, B):
     """``C -= A B`` of square blocks of `LANES` rows, stored by columns."""
     return types.void(FLOATS, FLOATS, FLOATS), _subtract_product
