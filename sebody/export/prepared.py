@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.assembly.control import begin
 from sebody.compiler.choice import way
-from sebody.engine.control_data import FUNCTION, OUTSIDE
+from sebody.contract.law_row import OUTSIDE
+from sebody.engine.control_data import FUNCTION
 from sebody.engine.state import Scheme
 from sebody.engine.system import System
 from sebody.errors import InputError

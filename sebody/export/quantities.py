@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from numpy.typing import NDArray
 
 from sebody.compiler.decorators import compiled
+from sebody.contract.law_row import OUTSIDE
 from sebody.contract.layout import ENERGY, OK, RESIDUAL
 from sebody.engine.arrays import Arrays
 from sebody.engine.control import read_channel
-from sebody.engine.control_data import OUTSIDE
 from sebody.engine.evaluate import assemble, run_kernels, set_loads
 from sebody.engine.vectors import copy
 

@@ -15,8 +15,9 @@ from scipy.spatial.transform import Rotation
 
 from sebody.assembly.channels import channel
 from sebody.assembly.numbering import Numbering, record_counts
+from sebody.contract.law_row import OUTSIDE
 from sebody.contract.layout import ENERGIES, RECORD
-from sebody.engine.control_data import CHANNEL_NUMBERS, CHANNEL_PLACES, OUTSIDE
+from sebody.engine.control_data import CHANNEL_NUMBERS, CHANNEL_PLACES
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.errors import InputError
