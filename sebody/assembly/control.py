@@ -60,8 +60,8 @@ def control_arrays(model: Mechanism, numbering: Numbering, table_at: NDArray) ->
         tasks=_table([(one.kind, one.number) for one in tasks], 2),
         periods=np.array([one.period for one in tasks], dtype=float),
         channels=_table([one.places for one in channels], 1 + CHANNEL_PLACES),
-        coefficients=np.array([one.numbers for one in channels],
-                              dtype=float).reshape(-1, CHANNEL_NUMBERS),
+        coefficients=np.array([s.gain * one.numbers for s, one in zip(
+            sensors, channels, strict=True)], dtype=float).reshape(-1, CHANNEL_NUMBERS),
         sensors=_table([(kept.values[s.name], k, s.delay, queues[k])
                         for k, s in enumerate(sensors)], 4),
         errors=np.array([(s.bias, s.noise) for s in sensors], dtype=float).reshape(-1, 2),

@@ -101,14 +101,14 @@ def _channel(model: Mechanism, numbering: Numbering, controller: Controller, nam
              ) -> tuple[NDArray, NDArray, float]:
     """Places and numbers of a channel, and the bias of its sensor."""
     sensor = model.sensors.get(name)
-    quantity, axes, bias = (name, "", 0.0) if sensor is None else (
-        sensor.quantity, sensor.axes, sensor.bias)
+    quantity, axes, bias, gain = (name, "", 0.0, 1.0) if sensor is None else (
+        sensor.quantity, sensor.axes, sensor.bias, sensor.gain)
     own = channel(model, numbering, quantity, axes)
     if own.places[0] == OUTSIDE:
         raise InputError(f"controller {controller.name!r} is continuous and cannot read "
                          f"{quantity!r}, which takes more than motion of nodes and angles about "
                          "axes: give a sensor with rate=, between whose samples its value holds")
-    return own.places, own.numbers, bias
+    return own.places, gain * own.numbers, bias
 
 
 def _reading(numbering: Numbering, places: NDArray, unknowns: list[int]) -> list[int]:

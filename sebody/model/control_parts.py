@@ -20,6 +20,7 @@ class Sensor:
     noise: float        # standard deviation
     seed: int
     axes: str = ""      # node in whose axes the quantity is; none: global ones
+    gain: float = 1.0   # of the quantity: -1 of one in a plane that counts the other way
 
     def __repr__(self) -> str:
         rate = f", {1 / self.period:.6g} samples a unit of time" if self.period else ""

@@ -174,7 +174,7 @@ class Sampling:
 def _measured(row: Recording, sensor: Sensor) -> NDArray:
     """What a sensor measures in the states of a recording, perhaps in axes of a node, (n, ...)."""
     if not sensor.axes:
-        return look_up(row, sensor.quantity)
+        return sensor.gain * look_up(row, sensor.quantity)
     vector, _, label = sensor.quantity.rpartition(".")
     values, R = look_up(row, vector), look_up(row, f"{sensor.axes}.rotation")
     if row.model.planar:
@@ -182,4 +182,4 @@ def _measured(row: Recording, sensor: Sensor) -> NDArray:
         R = np.stack([c, -s, s, c], axis=1).reshape(-1, 2, 2)
     if values.shape[1:] != R.shape[2:]:
         raise InputError(f"{vector!r} is no vector, which axes turn: leave out axes=")
-    return np.einsum("nji,nj->ni", R, values)[:, "xyz".index(label)]
+    return sensor.gain * np.einsum("nji,nj->ni", R, values)[:, "xyz".index(label)]
