@@ -13,6 +13,7 @@ from numba.extending import intrinsic
 from sebody.compiler.decorators import compiled
 from sebody.contract.law_row import ANGLE, DOT, IN_PLANE, INTO, TURNED
 from sebody.engine.control_data import (
+    APPLY,
     BIAS,
     CHANNEL,
     COUNTS,
@@ -25,6 +26,7 @@ from sebody.engine.control_data import (
     HAS,
     ITS_DELAY,
     ITS_QUEUE,
+    LATER,
     NEVER,
     NEXT,
     NOISE,
@@ -61,11 +63,13 @@ def sample(system, state):
     memory[WAITS] = memory[HAS] = 0.0
     changed = False
     for k in range(own.periods.size):
-        if memory[COUNTS + k] * own.periods[k] > t + near:
+        if memory[COUNTS + k] * own.periods[k] + own.offsets[k] > t + near:
             continue
         number = own.tasks[k, 1]
         if own.tasks[k, 0] == SENSOR:
             changed |= _hold(system, state, number)
+        elif own.tasks[k, 0] == APPLY:
+            changed |= _apply(system, state, number) > 0
         else:
             status = _control(system, state, number)
             if status < 0:
@@ -87,7 +91,7 @@ def set_next(own, memory):
     """Find the time at which the next step has to end."""
     memory[NEXT] = memory[STOP]
     for k in range(own.periods.size):
-        t = memory[COUNTS + k] * own.periods[k]
+        t = memory[COUNTS + k] * own.periods[k] + own.offsets[k]
         if memory[NEXT] < 0.0 or t < memory[NEXT]:
             memory[NEXT] = t
 
@@ -203,7 +207,14 @@ def _control(system, state, k):
         return -1
     if row[ITS_DELAY] > 0:
         _delay(memory, row[ITS_QUEUE], row[ITS_DELAY], u, row[ENDS])
-    changed = 0
+    return 0 if row[LATER] == 1 else _apply(system, state, k)
+
+
+@compiled
+def _apply(system, state, k):
+    """Set what a controller, or a delay after it, gave last; 1 where an input changed."""
+    own, row, memory = system.control, system.control.controllers[k], state.memory
+    changed, u = 0, row[SCRATCH] + row[WIRES]
     for i in range(row[ENDS]):
         number, signal = own.ends[row[FIRST_END] + i, 0], own.ends[row[FIRST_END] + i, 1]
         if number >= 0:

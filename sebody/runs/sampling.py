@@ -74,15 +74,17 @@ class Sampling:
         """
         for _, sensor in self._outside:
             self._check_number(sensor)
-        tasks = [(f"sensor {one.name!r}", one.period) for one in self.model.sensors.values()
-                 if one.period]
-        tasks += [(f"controller {one.name!r}", one.period)
+        tasks = [(f"sensor {one.name!r} has the period", one.period)
+                 for one in self.model.sensors.values() if one.period]
+        tasks += [(f"controller {one.name!r} has the period", one.period)
                   for one in sampled(self.model)]
+        tasks += [(f"controller {one.name!r} has a delay beside whole samples of", one.rest)
+                  for one in sampled(self.model) if one.rest]
         for what, period in tasks if fixed else ():
             steps = period / h
             if round(steps) < 1 or abs(steps - round(steps)) > MULTIPLE * max(steps, 1.0):
                 near = period / max(1, int(np.ceil(steps - MULTIPLE)))
-                raise InputError(f"{what} has the period {period:.9g}, which the step {h:.9g} does "
+                raise InputError(f"{what} {period:.9g}, which the step {h:.9g} does "
                                  f"not divide: give a step that does, such as {near:.6g}, or "
                                  "variable steps, tolerance=Tolerance(...)")
 
