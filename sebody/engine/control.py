@@ -11,7 +11,17 @@ from numba import types
 from numba.extending import intrinsic
 
 from sebody.compiler.decorators import compiled
-from sebody.contract.law_row import ANGLE, DOT, IN_PLANE, INTO, TURNED
+from sebody.contract.law_row import (
+    ALONG,
+    ANGLE,
+    DOT,
+    FLAT_ALONG,
+    FLAT_RATE,
+    IN_PLANE,
+    INTO,
+    ITS_RATE,
+    TURNED,
+)
 from sebody.engine.control_data import (
     APPLY,
     BIAS,
@@ -50,6 +60,7 @@ from sebody.engine.state import (
 )
 from sebody.engine.step_control import NEAR
 from sebody.kernels.abi import at, pointer_to
+from sebody.kernels.ways import way, way_rate
 
 
 @compiled
@@ -154,6 +165,12 @@ def channel_value(system, state, k):
         cosine, sine, x, y = (np.cos(now[row[1]]), np.sin(now[row[1]]), now[row[2]],
                               now[row[2] + 1])
         return c[1] * (cosine * x + sine * y) + c[2] * (cosine * y - sine * x)
+    if row[0] == ALONG or row[0] == FLAT_ALONG:     # c0 + (R e) . (x - y)
+        return c[0] + way(row[0] == FLAT_ALONG, now, row[1], (c[1], c[2], c[3]), now, row[2],
+                          row[3])
+    if row[0] == ITS_RATE or row[0] == FLAT_RATE:
+        return way_rate(row[0] == FLAT_RATE, now, row[1], (c[1], c[2], c[3]), now, row[2], row[3],
+                        now, row[4], row[5], row[6])
     place = COUNTS + own.periods.size + k
     if row[0] == ANGLE:
         state.memory[place] = _angle(now, row[1], row[2], c, state.memory[place])

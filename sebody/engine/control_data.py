@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from sebody.engine.arrays import Arrays
 
 # numbers of a row of `Control.channels` and `Control.coefficients`
-CHANNEL_PLACES, CHANNEL_NUMBERS = 2, 10
+CHANNEL_PLACES, CHANNEL_NUMBERS = 6, 10
 # numbers of a row of `Control.sensors`: where its value is in State.frames, its channel, its delay
 # in samples, its queue in State.memory
 SLOT, CHANNEL, DELAY, QUEUE = range(4)

@@ -23,7 +23,7 @@ def sampled(t, y, x, u, parameters):
 def continuous(t, y, x, rates, u, parameters):
     rates[0] = (y[0] - x[0]) / 0.3
     u[0] = 0.3 - 2.0 * x[0] - 0.3 * y[1] - 0.1 * y[1] * y[2]
-    u[1] = 0.1 * y[3] - 3.0 * y[4]
+    u[1] = 0.1 * y[3] - 3.0 * y[4] - 0.2 * y[5]
 
 
 def arm(axis):
@@ -61,11 +61,11 @@ def test_the_same_motion(axis):
     model.sensor("force", f"elbow.force.{one}", rate=10.0)
     model.sensor("late", f"tip.position.{other}", rate=50.0, delay=1, bias=0.1)
     model.sensor("own", f"car.velocity.{other}", axes="mount")
-    model.sensor("way", "slide.displacement", rate=50.0)
     model.controller("first", sampled, ["hinge.angle", f"hub.angular_velocity.{about}",
                                         f"tip.velocity.{one}", "force", "late"],
                      ["motor", "rope"], period=0.02, states=[0.0])
-    model.controller("second", continuous, ["elbow.angle", "elbow.rate", "own", "late", "way"],
+    model.controller("second", continuous, ["elbow.angle", "elbow.rate", "own", "late",
+                                            "slide.displacement", "slide.speed"],
                      ["elbow motor", "thrust"], states=[0.0])
     model.controller("filter", low_pass(2.0), [f"car.position.{one}"], ["smooth"])
     variant = planar(model)
