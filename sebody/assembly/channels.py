@@ -10,7 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.numbering import Numbering, record_counts
-from sebody.contract.law_row import ANGLE, DOT, IN_PLANE, INTO, OUTSIDE, TURNED
+from sebody.contract.law_row import (
+    ALONG,
+    ANGLE,
+    DOT,
+    FLAT_ALONG,
+    FLAT_RATE,
+    IN_PLANE,
+    INTO,
+    ITS_RATE,
+    OUTSIDE,
+    TURNED,
+)
 from sebody.contract.layout import RECORD
 from sebody.engine.control_data import CHANNEL_NUMBERS, CHANNEL_PLACES
 from sebody.model.mechanism import Mechanism
@@ -114,18 +125,38 @@ class _Channels:
         return _made(ANGLE, (R + 9 * self.numbering.rotations[a], of_b), (0.0, *n, *n, *m))
 
     def _slide(self, joint: Joint, name: str) -> Channel | None:
-        """Of a joint whose axis rests; else it turns with a node, for Python to read."""
+        """Of a joint whose axis rests, or turns with a node."""
         carrier: Node = joint.axes.carrier
         other, sign = (joint.to, -1.0) if carrier is joint.node else (joint.node, 1.0)
         rests = carrier.rotation.fixed and not carrier.rotation.motions
-        if not (rests and self._known(other.position)):
+        if not self._known(other.position):
             return None
+        if not rests:
+            return self._moving(carrier, other, sign, joint, name)
         way = sign * joint.axes.columns[:, 0]
         start = 0.0
         if name == "displacement":
             start = -float(way @ (other.point - carrier.point * self._known(carrier.position)))
         return self._sum("q" if name == "displacement" else "v", other.position, way,
                          carrier.position, -way, start)
+
+    def _moving(self, carrier: Node, other: Node, sign: float, joint: Joint, name: str
+                ) -> Channel | None:
+        """The same of an axis that turns."""
+        if not (self._known(carrier.position) and self._known(carrier.rotation)):
+            return None
+        way = sign * joint.axes.columns[:, 0]
+        turn = self._place("v", carrier.rotation)
+        if self.model.planar:
+            kinds, R = (FLAT_ALONG, FLAT_RATE), self._place("q", carrier.rotation)
+        else:
+            kinds = ALONG, ITS_RATE
+            R = self.at["R"].start + 9 * self.numbering.rotations[carrier.rotation]
+        places = [self._place(part, node.position) for part in "qv" for node in (other, carrier)]
+        if name == "displacement":
+            start = -float(way @ (other.point - carrier.point))
+            return _made(kinds[0], (R, *places[:2]), (start, *way))
+        return _made(kinds[1], (R, *places, turn), (0.0, *way))
 
     def _sum(self, part: str, one: DofBlock | None, factors: NDArray,
              other: DofBlock | None = None, others: NDArray | None = None, start: float = 0.0

@@ -16,6 +16,7 @@ from sebody.assembly.numbering import Numbering
 from sebody.contract.law_row import OUTSIDE
 from sebody.contract.layout import INPUT_NUMBERS
 from sebody.engine.control_data import (
+    APPLY,
     CHANNEL_NUMBERS,
     CHANNEL_PLACES,
     CONTROLLER,
@@ -38,6 +39,7 @@ class Task(NamedTuple):
     kind: int
     number: int
     period: float
+    offset: float = 0.0     # when it is due first
 
 
 def control_arrays(model: Mechanism, numbering: Numbering, table_at: NDArray) -> Control:
@@ -49,7 +51,7 @@ def control_arrays(model: Mechanism, numbering: Numbering, table_at: NDArray) ->
     channels = [channel(model, numbering, one.quantity, one.axes) for one in sensors]
     first = COUNTS + len(tasks) + 2 * len(sensors)
     queues, first = _queues([(s.delay, 1) for s in sensors], first)
-    delayed, first = _queues([(c.delay, len(c.outputs)) for c in controllers], first)
+    delayed, first = _queues([(c.whole_delay, len(c.outputs)) for c in controllers], first)
     scratch = list(accumulate((len(c.inputs) + len(c.outputs) for c in controllers),
                               initial=first))
     wires, at_wires = _wires(kept, controllers, numbers)
@@ -59,17 +61,19 @@ def control_arrays(model: Mechanism, numbering: Numbering, table_at: NDArray) ->
     return Control(
         tasks=_table([(one.kind, one.number) for one in tasks], 2),
         periods=np.array([one.period for one in tasks], dtype=float),
+        offsets=np.array([one.offset for one in tasks], dtype=float),
         channels=_table([one.places for one in channels], 1 + CHANNEL_PLACES),
-        coefficients=np.array([one.numbers for one in channels],
-                              dtype=float).reshape(-1, CHANNEL_NUMBERS),
+        coefficients=np.array([s.gain * one.numbers for s, one in zip(
+            sensors, channels, strict=True)], dtype=float).reshape(-1, CHANNEL_NUMBERS),
         sensors=_table([(kept.values[s.name], k, s.delay, queues[k])
                         for k, s in enumerate(sensors)], 4),
         errors=np.array([(s.bias, s.noise) for s in sensors], dtype=float).reshape(-1, 2),
         seeds=np.array([s.seed for s in sensors], dtype=np.int64),
         controllers=_table([(
             c.function.address, at_wires[k], len(c.inputs), at_ends[k], len(c.outputs),
-            kept.states[c.name], at_parameters[k], c.delay, delayed[k], scratch[k])
-            for k, c in enumerate(controllers)], 10),
+            kept.states[c.name], at_parameters[k], c.whole_delay, delayed[k], scratch[k],
+            int(c.rest > 0.0))
+            for k, c in enumerate(controllers)], 11),
         wires=wires, ends=ends,
         inputs=_table([(port, place, table_at[port]) for port, place in kept.inputs.items()], 3),
         limits=np.array([numbering.time_functions[port].limits or (1.0, -1.0)
@@ -95,17 +99,22 @@ def begin(model: Mechanism, numbering: Numbering, control: Control, memory: NDAr
     for k, one in enumerate(sampled(model)):
         first = kept.states[one.name]
         frames[first:first + len(one.states)] = one.states
-        if one.delay:
+        if one.whole_delay:
             starts = [numbering.time_functions[kept.ports[name]].at(0.0)[0] if name in kept.ports
                       else 0.0 for name in one.outputs]
             first = 1 + int(control.controllers[k, ITS_QUEUE])
-            memory[first:first + one.delay * len(starts)] = np.tile(starts, one.delay)
+            memory[first:first + one.whole_delay * len(starts)] = np.tile(starts, one.whole_delay)
 
 
 def _tasks(sensors: list[Sensor], controllers: list[Controller], ordered: list[Controller]
            ) -> list[Task]:
-    """Sensors before controllers, these so that signals are there before they are read."""
+    """Sensors before controllers, these so that signals are there before they are read.
+
+    What was computed before acts before the next one computes.
+    """
     return [*(Task(SENSOR, k, one.period) for k, one in enumerate(sensors) if one.period),
+            *(Task(APPLY, k, one.period, one.rest) for k, one in enumerate(controllers)
+              if one.rest),
             *(Task(CONTROLLER, controllers.index(one), one.period) for one in ordered)]
 
 

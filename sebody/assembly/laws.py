@@ -8,9 +8,13 @@ from numpy.typing import NDArray
 from sebody.assembly.channels import channel
 from sebody.assembly.numbering import Numbering, record_counts
 from sebody.contract.law_row import (
+    ALONG,
     ANGLE,
     DOT,
+    FLAT_ALONG,
+    FLAT_RATE,
     HELD,
+    ITS_RATE,
     LAW_HEADER,
     OUTPUT_PLACES,
     OUTSIDE,
@@ -73,7 +77,7 @@ def law_row(model: Mechanism, numbering: Numbering, element: Element, unknowns: 
              controller.states.size, len(controller.outputs), first]
     for name in controller.inputs:
         if name in kept.values and not _is_measured(model, name):
-            found += [HELD, 0, kept.values[name], 0, 0, 0]
+            found += [HELD, 0, kept.values[name], *(READING_PLACES - 3) * [0]]
         else:
             places = _channel(model, numbering, controller, name)[0]
             found += _reading(numbering, places, unknowns)
@@ -101,21 +105,21 @@ def _channel(model: Mechanism, numbering: Numbering, controller: Controller, nam
              ) -> tuple[NDArray, NDArray, float]:
     """Places and numbers of a channel, and the bias of its sensor."""
     sensor = model.sensors.get(name)
-    quantity, axes, bias = (name, "", 0.0) if sensor is None else (
-        sensor.quantity, sensor.axes, sensor.bias)
+    quantity, axes, bias, gain = (name, "", 0.0, 1.0) if sensor is None else (
+        sensor.quantity, sensor.axes, sensor.bias, sensor.gain)
     own = channel(model, numbering, quantity, axes)
     if own.places[0] == OUTSIDE:
         raise InputError(f"controller {controller.name!r} is continuous and cannot read "
                          f"{quantity!r}, which takes more than motion of nodes and angles about "
                          "axes: give a sensor with rate=, between whose samples its value holds")
-    return own.places, own.numbers, bias
+    return own.places, gain * own.numbers, bias
 
 
 def _reading(numbering: Numbering, places: NDArray, unknowns: list[int]) -> list[int]:
     """A row of a reading: places in q, v or R, and first unknowns among those of the law."""
     at = RECORD.slices(record_counts(numbering))
     first_of = {9 * k: numbering.dof_blocks[block] for block, k in numbering.rotations.items()}
-    kind, one, two = (int(number) for number in places[:3])
+    kind, one, two, three = (int(number) for number in places[:4])
     rated = False
 
     def coordinate(place: int) -> int:
@@ -134,13 +138,19 @@ def _reading(numbering: Numbering, places: NDArray, unknowns: list[int]) -> list
     elif kind == TURNED:
         own = matrix(one), coordinate(two)
         first = first_of[own[0]], own[1]
+    elif kind in (ALONG, ITS_RATE, FLAT_ALONG, FLAT_RATE):
+        flat = kind in (FLAT_ALONG, FLAT_RATE)
+        ends = coordinate(two), coordinate(three)
+        own = coordinate(one) if flat else matrix(one), ends[0]
+        first = own[0] if flat else first_of[own[0]], *ends
+        return [kind, 0, *own, ends[1], first[0], *(unknowns.index(i) for i in first)]
     elif at["R"].start <= one < at["R"].stop:       # INTO
         own = matrix(one), coordinate(two)
         first = first_of[own[0]], own[1]
     else:                                           # IN_PLANE
         own = coordinate(one), coordinate(two)
         first = own
-    return [kind, int(rated), *own, *(unknowns.index(i) for i in first)]
+    return [kind, int(rated), *own, 0, 0, *(unknowns.index(i) for i in first), 0]
 
 
 def _mass(model: Mechanism) -> float:

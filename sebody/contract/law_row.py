@@ -10,9 +10,12 @@ the law, then its own index row.
 LAW_FUNCTION, DERIVATIVES, INPUTS, STATES, OUTPUTS, FIRST_STATE = range(6)
 LAW_HEADER = 6
 # kinds of readings: OUTSIDE are those of Python alone, HELD a number in the frames
-OUTSIDE, DOT, TURNED, ANGLE, INTO, IN_PLANE, HELD = range(7)
-KIND, OF_RATES, FIRST, SECOND, FIRST_LOCAL, SECOND_LOCAL = range(6)     # of a row
-READING_PLACES = 6
+# ALONG the way along an axis that turns with a body, ITS_RATE that of this, FLAT_ both in a plane
+(OUTSIDE, DOT, TURNED, ANGLE, INTO, IN_PLANE, HELD, ALONG, ITS_RATE, FLAT_ALONG,
+ FLAT_RATE) = range(11)
+(KIND, OF_RATES, FIRST, SECOND, THIRD, TURN, FIRST_LOCAL, SECOND_LOCAL, THIRD_LOCAL
+ ) = range(9)       # of a row
+READING_PLACES = 9
 READING_NUMBERS = 11                # channel, then the bias of the sensor
 # of an output: its port or -1; its place in the frames; the address of the actuator's kernel, its
 # unknowns, the length of its index row, and where in the law's row its places begin

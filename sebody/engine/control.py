@@ -11,8 +11,19 @@ from numba import types
 from numba.extending import intrinsic
 
 from sebody.compiler.decorators import compiled
-from sebody.contract.law_row import ANGLE, DOT, IN_PLANE, INTO, TURNED
+from sebody.contract.law_row import (
+    ALONG,
+    ANGLE,
+    DOT,
+    FLAT_ALONG,
+    FLAT_RATE,
+    IN_PLANE,
+    INTO,
+    ITS_RATE,
+    TURNED,
+)
 from sebody.engine.control_data import (
+    APPLY,
     BIAS,
     CHANNEL,
     COUNTS,
@@ -25,6 +36,7 @@ from sebody.engine.control_data import (
     HAS,
     ITS_DELAY,
     ITS_QUEUE,
+    LATER,
     NEVER,
     NEXT,
     NOISE,
@@ -48,6 +60,7 @@ from sebody.engine.state import (
 )
 from sebody.engine.step_control import NEAR
 from sebody.kernels.abi import at, pointer_to
+from sebody.kernels.ways import way, way_rate
 
 
 @compiled
@@ -61,11 +74,13 @@ def sample(system, state):
     memory[WAITS] = memory[HAS] = 0.0
     changed = False
     for k in range(own.periods.size):
-        if memory[COUNTS + k] * own.periods[k] > t + near:
+        if memory[COUNTS + k] * own.periods[k] + own.offsets[k] > t + near:
             continue
         number = own.tasks[k, 1]
         if own.tasks[k, 0] == SENSOR:
             changed |= _hold(system, state, number)
+        elif own.tasks[k, 0] == APPLY:
+            changed |= _apply(system, state, number) > 0
         else:
             status = _control(system, state, number)
             if status < 0:
@@ -87,7 +102,7 @@ def set_next(own, memory):
     """Find the time at which the next step has to end."""
     memory[NEXT] = memory[STOP]
     for k in range(own.periods.size):
-        t = memory[COUNTS + k] * own.periods[k]
+        t = memory[COUNTS + k] * own.periods[k] + own.offsets[k]
         if memory[NEXT] < 0.0 or t < memory[NEXT]:
             memory[NEXT] = t
 
@@ -158,6 +173,12 @@ def read_channel(now, row, c, last):
         cosine, sine, x, y = (np.cos(now[row[1]]), np.sin(now[row[1]]), now[row[2]],
                               now[row[2] + 1])
         return c[1] * (cosine * x + sine * y) + c[2] * (cosine * y - sine * x)
+    if row[0] == ALONG or row[0] == FLAT_ALONG:     # c0 + (R e) . (x - y)
+        return c[0] + way(row[0] == FLAT_ALONG, now, row[1], (c[1], c[2], c[3]), now, row[2],
+                          row[3])
+    if row[0] == ITS_RATE or row[0] == FLAT_RATE:
+        return way_rate(row[0] == FLAT_RATE, now, row[1], (c[1], c[2], c[3]), now, row[2], row[3],
+                        now, row[4], row[5], row[6])
     if row[0] == ANGLE:
         return _angle(now, row[1], row[2], c, last)
     return last
@@ -210,7 +231,14 @@ def _control(system, state, k):
         return -1
     if row[ITS_DELAY] > 0:
         _delay(memory, row[ITS_QUEUE], row[ITS_DELAY], u, row[ENDS])
-    changed = 0
+    return 0 if row[LATER] == 1 else _apply(system, state, k)
+
+
+@compiled
+def _apply(system, state, k):
+    """Set what a controller, or a delay after it, gave last; 1 where an input changed."""
+    own, row, memory = system.control, system.control.controllers[k], state.memory
+    changed, u = 0, row[SCRATCH] + row[WIRES]
     for i in range(row[ENDS]):
         number, signal = own.ends[row[FIRST_END] + i, 0], own.ends[row[FIRST_END] + i, 1]
         if number >= 0:

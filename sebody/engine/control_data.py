@@ -7,15 +7,15 @@ from numpy.typing import NDArray
 from sebody.engine.arrays import Arrays
 
 # numbers of a row of `Control.channels` and `Control.coefficients`
-CHANNEL_PLACES, CHANNEL_NUMBERS = 2, 10
+CHANNEL_PLACES, CHANNEL_NUMBERS = 6, 10
 # numbers of a row of `Control.sensors`: where its value is in State.frames, its channel, its delay
 # in samples, its queue in State.memory
 SLOT, CHANNEL, DELAY, QUEUE = range(4)
 BIAS, NOISE = range(2)                  # of a row of `Control.errors`
-SENSOR, CONTROLLER = range(2)           # kinds of tasks
+SENSOR, APPLY, CONTROLLER = range(3)    # kinds of tasks; APPLY sets outputs of a controller
 # numbers of a row of `Control.controllers`
 (FUNCTION, FIRST_WIRE, WIRES, FIRST_END, ENDS, STATES, PARAMETERS, ITS_DELAY, ITS_QUEUE,
- SCRATCH) = range(10)
+ SCRATCH, LATER) = range(11)
 # State.memory: the next sample; the next stop that Python asked for; whether it waits for readings
 # of Python and whether it has them; the controller with a fault; then of every task its samples so
 # far, of every sensor its reading by Python and its readings so far, then queues and scratch memory
@@ -31,12 +31,13 @@ class Control(Arrays):
     ==============  ================================================================================
     tasks           (n, 2) what is sampled in its order: kind, number
     periods         (n,) of these
+    offsets         (n,) when they are due first
     channels        (s, 1 + CHANNEL_PLACES) kind, and places in `State.now` that it reads
     coefficients    (s, CHANNEL_NUMBERS) what they are multiplied with
     sensors         (s, 4) see SLOT
     errors          (s, 2) bias, and standard deviation of the noise
     seeds           (s,) of the noise
-    controllers     (c, 10) see FUNCTION
+    controllers     (c, 11) see FUNCTION
     wires           (w, 2) what controllers are given: place in `State.frames`, and the sensor that
                     is read for it, or -1
     ends            (e, 2) what they set: number of the input or -1, else place of the signal
@@ -52,6 +53,7 @@ class Control(Arrays):
 
     tasks: NDArray
     periods: NDArray
+    offsets: NDArray
     channels: NDArray
     coefficients: NDArray
     sensors: NDArray

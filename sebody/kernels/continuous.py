@@ -22,16 +22,20 @@ from numba.extending import intrinsic
 
 from sebody.compiler.decorators import compiled, kernel_function
 from sebody.contract.law_row import (
+    ALONG,
     ANGLE,
     DERIVATIVES,
     DOT,
     FIRST,
     FIRST_LOCAL,
     FIRST_STATE,
+    FLAT_ALONG,
+    FLAT_RATE,
     HELD,
     IN_PLANE,
     INPUTS,
     INTO,
+    ITS_RATE,
     ITS_ROW,
     KERNEL,
     KIND,
@@ -48,6 +52,9 @@ from sebody.contract.law_row import (
     SECOND_LOCAL,
     STATES,
     STRIDE,
+    THIRD,
+    THIRD_LOCAL,
+    TURN,
     TURNED,
 )
 from sebody.contract.law_row import WIDTH as ITS_WIDTH
@@ -66,6 +73,7 @@ from sebody.contract.layout import (
     Part,
 )
 from sebody.kernels.abi import Arguments, at, call_kernel
+from sebody.kernels.ways import between, carried, turned, turning, way, way_rate
 
 PLANAR = False
 N_POSITIONS = None      # any number
@@ -151,6 +159,12 @@ def _reading(row, c, q, R, v, frames, last):
         cosine, sine = np.cos(q[one]), np.sin(q[one])
         return (c[1]*(cosine*x[two] + sine*x[two + 1])
                 + c[2]*(cosine*x[two + 1] - sine*x[two]))
+    if kind == ALONG or kind == FLAT_ALONG:
+        return c[0] + way(kind == FLAT_ALONG, q if kind == FLAT_ALONG else R, one,
+                          (c[1], c[2], c[3]), q, two, row[THIRD])
+    if kind == ITS_RATE or kind == FLAT_RATE:
+        return way_rate(kind == FLAT_RATE, q if kind == FLAT_RATE else R, one,
+                        (c[1], c[2], c[3]), q, two, row[THIRD], v, two, row[THIRD], row[TURN])
     along = across = 0.0        # ANGLE: of n of a against n and m of b, or the ground
     for i in range(3):
         own = _forth(R, one, c, 1, i)
@@ -171,6 +185,24 @@ def _turn(Y, local, T, first, x, y, z, factor):
     """Add the derivatives by a rotation's increment: those by the rotation times T."""
     for j in range(3):
         Y[local + j] += factor*(x*T[first + j] + y*T[first + 3 + j] + z*T[first + 6 + j])
+
+
+@compiled
+def _shift(planar, R, first, e, b, a, factor, Y):
+    """Add the derivatives of ``(R e) . (x_b - x_a)`` by both points."""
+    r = turned(planar, R, first, e[0], e[1], e[2])
+    for i in range(2 if planar else 3):
+        Y[b + i] += factor*r[i]
+        Y[a + i] -= factor*r[i]
+
+
+@compiled
+def _spin(planar, Y, local, T, first, r, factor):
+    """Add derivatives by a rotation of a body, those by an angle in a plane."""
+    if planar:
+        Y[local] += factor*r[2]
+    else:
+        _turn(Y, local, T, first, r[0], r[1], r[2], factor)
 
 
 @compiled
@@ -206,6 +238,27 @@ def _vary(row, c, q, R, v, T, c_q, c_v, Y):
         Y[at_two + 1] += factor*(c[1]*sine + c[2]*cosine)
         Y[at_one] += c_q*(c[1]*(cosine*x[two + 1] - sine*x[two])
                           - c[2]*(sine*x[two + 1] + cosine*x[two]))
+    elif kind == ALONG or kind == FLAT_ALONG:
+        planar = kind == FLAT_ALONG
+        e, A = (c[1], c[2], c[3]), q if planar else R
+        _shift(planar, A, one, e, at_two, row[THIRD_LOCAL], c_q, Y)
+        r = turning(planar, A, one, e, between(planar, q, two, row[THIRD]))
+        _spin(planar, Y, at_one, T, one, r, c_q)
+    elif kind == ITS_RATE or kind == FLAT_RATE:
+        planar = kind == FLAT_RATE
+        e, A = (c[1], c[2], c[3]), q if planar else R
+        f = carried(planar, v, row[TURN], e[0], e[1], e[2])
+        d, w = between(planar, q, two, row[THIRD]), between(planar, v, two, row[THIRD])
+        _shift(planar, A, one, e, at_two, row[THIRD_LOCAL], c_v, Y)
+        _shift(planar, A, one, f, at_two, row[THIRD_LOCAL], c_q, Y)
+        r, s = turning(planar, A, one, e, w), turning(planar, A, one, f, d)
+        _spin(planar, Y, at_one, T, one, (r[0] + s[0], r[1] + s[1], r[2] + s[2]), c_q)
+        r = turning(planar, A, one, e, d)       # by the angular velocity
+        if planar:
+            Y[at_one] += c_v*r[2]
+        else:
+            for i in range(3):
+                Y[at_one + i] += c_v*r[i]
     elif kind == ANGLE:         # about the axis n x m, which both bodies have
         a, b, d = (c[5]*c[9] - c[6]*c[8], c[6]*c[7] - c[4]*c[9], c[4]*c[8] - c[5]*c[7])
         _turn(Y, at_one, T, one, a, b, d, c_q)

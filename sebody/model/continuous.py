@@ -96,7 +96,8 @@ def _touched(model: Mechanism, where: str, quantity: str, axes: str) -> Touched:
     if joints and last in ("angle", "rate") and joints[0].kind in TURNS:
         return Touched(at_rotations(joints[0].node, joints[0].to))
     if joints and last in ("displacement", "speed") and joints[0].kind in SLIDES:
-        return Touched(at_positions(joints[0].node, joints[0].to))
+        return Touched((*at_positions(joints[0].node, joints[0].to),
+                        *at_rotations(joints[0].own_axes.carrier)))
     name, _, part = owner.rpartition(".")
     if owner in model.nodes and model.planar and last in ("rotation", "angular_velocity"):
         name, part = owner, last

@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 from sebody.compiler.user_functions import UserFunction
 from sebody.tabular import counted
 
+ROUNDING = 1e-9     # of a sample: what is no part of one
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Sensor:
@@ -20,6 +22,7 @@ class Sensor:
     noise: float        # standard deviation
     seed: int
     axes: str = ""      # node in whose axes the quantity is; none: global ones
+    gain: float = 1.0   # of the quantity: -1 of one in a plane that counts the other way
 
     def __repr__(self) -> str:
         rate = f", {1 / self.period:.6g} samples a unit of time" if self.period else ""
@@ -35,9 +38,20 @@ class Controller:
     inputs: tuple[str, ...]         # names of sensors, of signals and of actuators
     outputs: tuple[str, ...]        # names of actuators, else of signals
     period: float                   # 0 of a continuous one
-    delay: int                      # of its outputs, in samples
+    delay: float                    # of its outputs, in samples
     states: NDArray                 # at the start
     parameters: NDArray
+
+    @property
+    def whole_delay(self) -> int:
+        """Whole samples of the delay."""
+        return int(self.delay + ROUNDING)
+
+    @property
+    def rest(self) -> float:
+        """Time from a sample to when outputs act, beside whole samples."""
+        part = self.delay - self.whole_delay
+        return part * self.period if part > ROUNDING else 0.0
 
     def __repr__(self) -> str:
         course = f"period {self.period:.6g}" if self.period else "continuous"

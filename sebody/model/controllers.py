@@ -81,7 +81,7 @@ def sensor(model: Mechanism, name: str, quantity: str, rate: float | None = None
 
 def controller(model: Mechanism, name: str, law: Law | Callable[..., None],
                inputs: Iterable[str], outputs: Iterable[str], period: float | None = None,
-               delay: int = 0, states: ArrayLike = (), parameters: ArrayLike = (),
+               delay: float = 0, states: ArrayLike = (), parameters: ArrayLike = (),
                derivatives: Callable[..., None] | None = None, corners: Sequence[float] = ()
                ) -> Controller:
     """Set actuators by a function of what sensors measure: at every sample, or continuously.
@@ -107,8 +107,9 @@ def controller(model: Mechanism, name: str, law: Law | Callable[..., None],
     period : float, optional
         Time between two samples; the first is at the start. Fixed steps divide it. Without one the
         controller is continuous.
-    delay : int
-        Samples after which outputs act; until then the actuators' start values do.
+    delay : float
+        Samples after which outputs act, also parts of one, such as 0.3 for the time that a
+        controller computes; until then the actuators' start values do.
     states : (n,) array_like
         States at the start; of a ready law its own by default.
     parameters : (m,) array_like
@@ -131,7 +132,7 @@ def controller(model: Mechanism, name: str, law: Law | Callable[..., None],
     _check_new(model, name, where)
     ins = _names(inputs, f"inputs of {where}", least=0)
     outs = _names(outputs, f"outputs of {where}", least=1)
-    delay = given.integer(delay, f"{where}: delay", least=0, most=MOST_DELAY)
+    delay = given.number(delay, f"{where}: delay", least=0, below=MOST_DELAY)
     states = given.vector(states, f"{where}: states")
     parameters = given.vector(parameters, f"{where}: parameters")
     if period is None:
@@ -162,13 +163,13 @@ def controller(model: Mechanism, name: str, law: Law | Callable[..., None],
 
 
 def _continuous(model: Mechanism, name: str, law: Law | Callable[..., None], ins: tuple[str, ...],
-                outs: tuple[str, ...], delay: int, states: NDArray, parameters: NDArray,
+                outs: tuple[str, ...], delay: float, states: NDArray, parameters: NDArray,
                 derivatives: Callable[..., None] | None, corners: Sequence[float]) -> Controller:
     """A controller without a period."""
     where = f"controller {name!r}"
     if delay:
-        raise InputError(f"{where} has a delay of {delay} samples and no period: give period=, or "
-                         "write the delay as states of the law")
+        raise InputError(f"{where} has a delay of {delay:g} samples and no period: give period=, "
+                         "or write the delay as states of the law")
     if isinstance(law, Law):
         _check_law(where, law, ins, outs, parameters)
         if law.flow is None:

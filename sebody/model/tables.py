@@ -77,7 +77,7 @@ def _sensors(model: Mechanism) -> list[tuple]:
 def _controllers(model: Mechanism) -> list[tuple]:
     return [(one.name, ", ".join(one.inputs), ", ".join(one.outputs),
              f"{one.period:.6g}" if one.period else "continuous",
-             one.delay, len(one.states)) for one in model.controllers.values()]
+             f"{one.delay:g}", len(one.states)) for one in model.controllers.values()]
 
 
 def _bodies(model: Mechanism) -> list[tuple]:

@@ -74,15 +74,17 @@ class Sampling:
         """
         for _, sensor in self._outside:
             self._check_number(sensor)
-        tasks = [(f"sensor {one.name!r}", one.period) for one in self.model.sensors.values()
-                 if one.period]
-        tasks += [(f"controller {one.name!r}", one.period)
+        tasks = [(f"sensor {one.name!r} has the period", one.period)
+                 for one in self.model.sensors.values() if one.period]
+        tasks += [(f"controller {one.name!r} has the period", one.period)
                   for one in sampled(self.model)]
+        tasks += [(f"controller {one.name!r} has a delay beside whole samples of", one.rest)
+                  for one in sampled(self.model) if one.rest]
         for what, period in tasks if fixed else ():
             steps = period / h
             if round(steps) < 1 or abs(steps - round(steps)) > MULTIPLE * max(steps, 1.0):
                 near = period / max(1, int(np.ceil(steps - MULTIPLE)))
-                raise InputError(f"{what} has the period {period:.9g}, which the step {h:.9g} does "
+                raise InputError(f"{what} {period:.9g}, which the step {h:.9g} does "
                                  f"not divide: give a step that does, such as {near:.6g}, or "
                                  "variable steps, tolerance=Tolerance(...)")
 
@@ -174,7 +176,7 @@ class Sampling:
 def _measured(row: Recording, sensor: Sensor) -> NDArray:
     """What a sensor measures in the states of a recording, perhaps in axes of a node, (n, ...)."""
     if not sensor.axes:
-        return look_up(row, sensor.quantity)
+        return sensor.gain * look_up(row, sensor.quantity)
     vector, _, label = sensor.quantity.rpartition(".")
     values, R = look_up(row, vector), look_up(row, f"{sensor.axes}.rotation")
     if row.model.planar:
@@ -182,4 +184,4 @@ def _measured(row: Recording, sensor: Sensor) -> NDArray:
         R = np.stack([c, -s, s, c], axis=1).reshape(-1, 2, 2)
     if values.shape[1:] != R.shape[2:]:
         raise InputError(f"{vector!r} is no vector, which axes turn: leave out axes=")
-    return np.einsum("nji,nj->ni", R, values)[:, "xyz".index(label)]
+    return sensor.gain * np.einsum("nji,nj->ni", R, values)[:, "xyz".index(label)]

@@ -6,10 +6,10 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from sebody import InputError, Model, Simulation, generalized_alpha
+from sebody import Model, Simulation, generalized_alpha
 from sebody.analysis import resume, save_state
 from sebody.control import state_feedback
-from sebody.model.variants import copied, planar
+from sebody.model.variants import copied
 
 TURN = Rotation.from_rotvec((0.7, -1.1, 0.4)).as_matrix()
 AXIS = TURN @ (0.2, -0.4, 1.0) / np.linalg.norm((0.2, -0.4, 1.0))
@@ -184,13 +184,10 @@ def test_an_angle_counts_turns_in_space():
     assert np.abs(result["hinge.angle"]).max() > 6 * np.pi
 
 
-def test_a_model_with_actuators_is_not_flattened():
+def test_a_copy_has_the_same_inputs():
     model = Model()
     node = model.node("a", (0.0, 0.0, 0.0))
     model.rigid_body("one", node, 1.0, np.eye(3))
     model.revolute(node, name="hinge")
     model.actuator("motor", joint="hinge")
-    with pytest.raises(InputError, match=r"the model has actuators, sensors or controllers \(motor"
-                       r"\), which are not taken to the plane: build the planar model by hand"):
-        planar(model)
     assert copied(model).loads[0].time_function is model.loads[0].time_function

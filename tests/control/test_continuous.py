@@ -100,11 +100,12 @@ def test_a_law_may_jump_at_corners(tolerance):
 
 # -- in general position -------------------------------------------------------------------------
 SENSED = ("base.angle", "elbow.angle", "elbow.rate", "tip.velocity.x", "tip.angular_velocity.y",
-          "beam.modes.0", "beam.mode_rates.1", "end.position.z", "slide.displacement")
+          "beam.modes.0", "beam.mode_rates.1", "end.position.z", "slide.displacement",
+          "groove.displacement", "groove.speed")
 MOTORS = ("base motor", "elbow motor", "rope", "wind", "thrust")
-GAIN = np.random.default_rng(3).uniform(-1.0, 1.0, (5, 9))
+GAIN = np.random.default_rng(3).uniform(-1.0, 1.0, (5, 11))
 INNER = np.array([[-3.0, 1.0], [0.5, -4.0]])        # of the law's own states
-ENTERS, LEAVES = (np.random.default_rng(4).uniform(-1.0, 1.0, shape) for shape in ((2, 9), (5, 2)))
+ENTERS, LEAVES = (np.random.default_rng(4).uniform(-1.0, 1.0, shape) for shape in ((2, 11), (5, 2)))
 
 
 def mechanism(start=None):
@@ -126,14 +127,17 @@ def mechanism(start=None):
     model.revolute(root, axis=axis, name="base")
     model.revolute(arm, to=tip, axis=TURN @ (0.0, 0.6, 0.8), name="elbow")
     model.slider(car, axis=TURN @ (0.8, 0.0, 0.6), name="slide")
+    bead = node("bead", 1.25, 0.35, -0.2, keeps="translation")
+    model.point_mass("bead", bead, 0.2)
+    model.slider(bead, to=arm, axis=TURN @ (0.5, 0.7, -0.4), name="groove")
     model.rigid_velocity((0.0, 0.0, 0.0), 0.9 * axis, about=root.point,
-                         nodes=["root", "tip", "arm", "end"])
+                         nodes=["root", "tip", "arm", "end", "bead"])
     values = np.zeros(5) if start is None else start
     model.actuator("base motor", joint="base", ratio=2.0, start=values[0])
     model.actuator("elbow motor", joint="elbow", start=values[1])
     model.actuator("rope", between=("end", "car"), start=values[2])
     model.actuator("wind", node="tip", direction=(0.2, -1.0, 0.4), start=values[3])
-    model.actuator("thrust", joint="slide", start=values[4])
+    model.actuator("thrust", joint="groove", start=values[4])
     model.torque("tip", (1.0, 0.0, 0.0), 0.0, name="push")
     return model
 
@@ -151,13 +155,13 @@ def test_the_closed_loop_of_a_mechanism():
     def law(t, y, x, rates, u, parameters):
         for i in range(5):
             u[i] = offset[i]
-            for j in range(9):
+            for j in range(11):
                 gap = y[j] - y0[j]
                 u[i] += parameters[0] * GAIN[i, j] * (gap + parameters[1] * gap**3)
             for j in range(2):
                 u[i] += LEAVES[i, j] * x[j]
         for i in range(2):
-            for j in range(9):
+            for j in range(11):
                 rates[i] += ENTERS[i, j] * (y[j] - y0[j])
             for j in range(2):
                 rates[i] += INNER[i, j] * x[j]

@@ -79,6 +79,37 @@ def test_a_rotor_is_exact(delay, tolerance):
         assert steps == 200 and matrices <= 2 * 200     # at most two factorizations a sample
 
 
+@pytest.mark.parametrize("delay", [0.3, 2.7])
+@pytest.mark.parametrize("tolerance", [None, Tolerance(1e-6)])
+def test_a_delay_of_part_of_a_sample_is_exact(delay, tolerance):
+    """Constant torques of a rotor between the samples and the times at which outputs act."""
+    model = rotor(start=0.02)
+    model.controller("law", state_feedback([[2.0, 0.3]]), ["hub.rotation", "hinge.rate"],
+                     ["motor"], PERIOD, delay)
+    model.controller("copy", state_feedback([[-1.0]]), ["motor"], ["seen"], PERIOD)
+    h = PERIOD / 10 if tolerance is None else PERIOD
+    result = Simulation(model, h, tolerance=tolerance).run_to(2.0).result()
+    whole, part = int(delay), (delay - int(delay)) * PERIOD
+    angle, rate, acts, queue, expected, seen = 0.0, 0.02, 0.0, [0.0] * int(delay), [], []
+    for _ in range(101):
+        expected.append(angle)
+        seen.append(acts)
+        queue.append(-2.0 * angle - 0.3 * rate)
+        for length in (part, PERIOD - part):
+            angle += length * rate + 5.0 * length**2 * acts     # J is 0.1
+            rate += 10.0 * length * acts
+            if length == part:
+                acts = queue.pop(0)
+    assert len(queue) == whole
+    found = result["hub.rotation"][::10 if tolerance is None else 1]
+    assert_allclose(found, expected, rtol=0, atol=1e-12)
+    # a controller that reads an actuator sees what acts, not what is on its way
+    assert_allclose(result["seen.value"][::10 if tolerance is None else 1][1:], seen[1:], rtol=0,
+                    atol=1e-11)
+    with pytest.raises(InputError, match="has a delay beside whole samples of 0.0[01]"):
+        Simulation(model, PERIOD)
+
+
 @pytest.mark.parametrize("delay", [0, 1])
 def test_a_flexible_beam_is_of_second_order(delay):
     """Against the matrix exponential of the state space."""

@@ -293,7 +293,7 @@ CONTROL = {
                    *[pair for pair in positive(f"{PUSH}: period") if pair[0] is not None]],
         "derivatives": have("leave out one of the two", _push),
         "corners": have("leave out one of the two", [0.5]),
-        "delay": are(f"{PUSH}: delay", *NO_COUNT, -1),
+        "delay": are(f"{PUSH}: delay", *NO_NUMBER, -1),
         "states": have(f"{PUSH}: states", "ab", [NAN], [[1.0]]),
         "parameters": have(f"{PUSH}: parameters", "ab", [INF], [[1.0]])}),
 }

@@ -227,7 +227,24 @@ def _bushing(flat: Flattening, one: Element) -> tuple[str, dict]:
     return "planar_bushing", kept | {"e1": turn[:2, 0], "e2": turn[:2, 1]}
 
 
+def _turn_motor(flat: Flattening, one: Element) -> tuple[str, dict]:
+    along = flat.axial(one.vector("e"), f"the axis of {one.name!r}")
+    return "planar_turn_motor", {"gain": one.number("gain") * np.sign(along)}
+
+
+def _turn_rotor(flat: Flattening, one: Element) -> tuple[str, dict]:
+    flat.axial(one.vector("e"), f"the axis of {one.name!r}")
+    return "planar_turn_rotor", {name: one.constants[name] for name in ("inertia", "ratio")}
+
+
+def _along(flat: Flattening, one: Element) -> tuple[str, dict]:
+    return f"planar_{one.kind}", dict(one.constants) | {
+        "e": flat.vector(one.vector("e"), f"the axis of {one.name!r}")}
+
+
 ELEMENTS: dict[str, Callable[[Flattening, Element], tuple[str, dict]]] = {
     "rigid_body": _rigid_body, "point_mass": _unchanged, "force": _force, "follower_force": _force,
     "torque": _torque, "follower_torque": _torque, "spring": _unchanged,
-    "torsion_spring": _torsion_spring, "bushing": _bushing}
+    "torsion_spring": _torsion_spring, "bushing": _bushing,
+    "turn_motor": _turn_motor, "turn_rotor": _turn_rotor, "slide_motor": _along,
+    "slide_rotor": _along, "line_motor": _unchanged, "line_rotor": _unchanged}

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from sebody.contract.names import body_load_kind
 from sebody.errors import InputError
 from sebody.model.bodies import superelement
-from sebody.model.controllers import actuators
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, Element, Superelement
 from sebody.model.plane import Plane
 from sebody.model.variants.copying import Variant, checked, load_name, unknowns
 from sebody.model.variants.flat_beams import flat_beams
+from sebody.model.variants.flat_control import add_control
 from sebody.model.variants.flat_elements import check_joints, flat_element, flat_joint
 from sebody.model.variants.flattening import Flattening
 from sebody.reduction.plane import PlanarBody, planar_body
@@ -59,10 +59,6 @@ def planar(model: Mechanism) -> Variant:
         raise InputError("the model is planar already")
     if not model.nodes:
         raise InputError("the model has no nodes, so it has no plane")
-    inputs = [*model.sensors, *model.controllers, *actuators(model)]
-    if inputs:
-        raise InputError(f"the model has actuators, sensors or controllers ({', '.join(inputs)}), "
-                         "which are not taken to the plane: build the planar model by hand")
     check_joints(model)
     refused: InputError | None = None
     for normal in _normals(model):
@@ -74,7 +70,7 @@ def planar(model: Mechanism) -> Variant:
                 f"the model is not symmetric about the plane through {place(plane.origin)} normal "
                 f"to {place(plane.normal)}, so its motion leaves it: {error}")
         else:
-            made = _built(model, flat_model)
+            made = _built(model, flat_model)    # sensors of other quantities are refused here
             before, after = sum(unknowns(model)), sum(unknowns(made))
             return Variant(made, f"the model is planar, normal to {place(plane.normal)}: {after} "
                                  f"instead of {before} unknowns{_of_bushings(model)}")
@@ -155,7 +151,7 @@ class _Flat(NamedTuple):
                        one.joint and joints[one.joint], one.spare)
             for one in model.connections]
         on_nodes = {load: [flat_element(flat, load)] for load in model.loads
-                    if load.mode is None and load.body is None}
+                    if load.mode is None and load.body is None and load.law is None}
         for load in model.loads:
             if load.pressed_by is not None:
                 on_nodes[load][0].pressed_by = joints[load.pressed_by]
@@ -203,6 +199,8 @@ def _built(model: Mechanism, flat_model: _Flat) -> Mechanism:
     for old in model.bodies.values():
         _add_body(made, old, flat_model)
     for load in model.loads:
+        if load.law is not None:
+            continue
         if load.body is None:
             made.loads += flat_model.loads[load]
         else:
@@ -211,6 +209,7 @@ def _built(model: Mechanism, flat_model: _Flat) -> Mechanism:
                 load.name, body_load_kind(FRAMES[body.frame].kernel, True), body.attachments,
                 {"P": body.reduced.loads[load_name(load)]}, time_function=load.time_function,
                 body=body))
+    add_control(model, made, flat_model.bodies)
     made.own_names, made.default_names = set(model.own_names), model.default_names.copy()
     made.beams = flat_beams(model, made, flat_model.flat)
     return made
