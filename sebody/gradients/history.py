@@ -72,7 +72,7 @@ def history(run: Simulation, t_end: float) -> History:
 
 
 def _whole(run: Simulation, last: int) -> History | None:
-    """The run in one go; None, and the run at its start again, if a step was rejected or loads jump."""
+    """The run in one go; None, with the run at its start, if a step was rejected or loads jump."""
     state, start = run.state, copy_of(run.state)
     inside = run.system.corners <= (last + OFF) * run.h
     if not run.every == 1 or (run.system.jumps[inside] > 0).any():
