@@ -35,7 +35,8 @@ def model_h(model: Prepared) -> str:
     first = own.periods.size + control_data.COUNTS
     listed = [
         *(_words(name, image.words(group)) for name, group in (
-            ("SYSTEM", system), ("STATE", state), ("OUTPUTS", outputs))),
+            ("SYSTEM", system), ("STATE", state), ("OUTPUTS", outputs),
+            ("EXCHANGES", model.exchanges))),
         _array("int64_t", "RECORD_AT", record.at.tolist()),
         _array("double", "SCHEME", [float(x).hex() for x in run.scheme]),
         _array("double", "CORNER", [_float(x) for x in system.corners[:-1]]),
