@@ -178,7 +178,7 @@ def test_a_model_says_what_it_is_before_a_run():
     assert f"unknowns  {free}: 4 of nodes, 5 of modes, 1 of joint equations" in said
     assert "Bodies\n" in said and "Nodes\n" in said and "Joints and drives\n" in said
     assert "prescribed by motion of pin.position, motion 2 of pin.position" in said
-    masses = [body.body.total_mass for body in model.bodies.values()]
+    masses = [body.reduced.total_mass for body in model.bodies.values()]
     assert f"mass      {sum(masses) + 0.033:.6g}" in said
     assert "free" not in said
     model = Model()

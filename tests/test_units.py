@@ -127,7 +127,7 @@ def test_units_of_a_model_are_on_axes_and_in_tables(body, tmp_path):
     spectrum, = panels({"run": result}, ["tip.position.x"], spectrum=True)
     assert spectrum.x_label == "frequency [Hz]"
     loaded = type(result).load(result.save(tmp_path / "run.npz"))
-    assert loaded.units == result.units and loaded.model.bodies["beam"].body.materials
+    assert loaded.units == result.units and loaded.model.bodies["beam"].reduced.materials
     figure = plot(loaded, "tip.position")
     assert figure.axes[0].get_ylabel() == "position [mm]"
     plain = pendulum(body, "")
@@ -147,7 +147,7 @@ def test_bodies_bring_their_units(body, tmp_path):
     path = save_body(body, tmp_path / "beam.npz", units="t mm s")
     for model, units in ((Model(), "mm t N s"), (Model(units="N mm s"), "mm t N s")):
         nodes = [model.node(f"n{k}", point) for k, point in enumerate(body.coordinates)]
-        assert model.superelement("beam", path, nodes).body.units == units == model.units
+        assert model.superelement("beam", path, nodes).reduced.units == units == model.units
     model = Model(units="SI")
     nodes = [model.node(f"n{k}", point) for k, point in enumerate(body.coordinates)]
     with pytest.raises(InputError, match="the body is in the units mm t N s and the model in m kg"):

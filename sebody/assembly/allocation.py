@@ -87,7 +87,7 @@ def _start(model: Mechanism, numbering: Numbering) -> tuple[NDArray, NDArray]:
         v[at] = dof_block.rate if dof_block.solved else 0.0
     for body in model.bodies.values():
         first = numbering.modes[body.name]
-        v[first:first + body.body.modes] = body.mode_rates
+        v[first:first + body.reduced.modes] = body.mode_rates
     return q, v
 
 

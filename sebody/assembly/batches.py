@@ -112,9 +112,9 @@ def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants)
         kernel = load(body.kernel)
         check_superelement(body, kernel)
         how = body.kernel, body.stiffening, tuple(body.alpha), tuple(body.alpha_r)
-        key = body.body, *how
+        key = body.reduced, *how
         if key not in known:
-            rows = _rows.setdefault(body.body, {})
+            rows = _rows.setdefault(body.reduced, {})
             if how not in rows:
                 rows[how] = constants_row(body.name, kernel, counts_of(body),
                                           superelement_constants(body))
@@ -123,7 +123,7 @@ def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants)
         unknowns = [c for t in (*body.positions, *body.rotations)
                     for c in coordinates(numbering, t)]
         first = numbering.modes[body.name]
-        unknowns += range(first, first + body.body.modes)
+        unknowns += range(first, first + body.reduced.modes)
         row = index_row(body.name, kernel, unknowns, constants=at_constants, frame=frame,
                         port=numbering.ports.get(body, 0), positions=len(body.positions),
                         nodes=[numbering.rotations.get(t, 0) for t in body.rotations])
@@ -145,7 +145,7 @@ def _element_batches(numbering: Numbering, constants: _Constants, elements: Iter
                         port=numbering.ports.get(element, 0), positions=positions_of(element),
                         nodes=_matrices(numbering, element))
         function = [] if element.function is None else [element.function.address]
-        modes = 0 if element.body is None else element.body.body.modes
+        modes = 0 if element.body is None else element.body.reduced.modes
         _append(batches, kernel, frame, row + function, unknowns, element,
                 len(unknowns) - modes)
     return list(batches.values())
@@ -182,7 +182,7 @@ def element_unknowns(numbering: Numbering, element: Element) -> list[int]:
     unknowns = [c for t in element.dof_blocks for c in coordinates(numbering, t)]
     if element.body is not None:
         first = numbering.modes[element.body.name]
-        unknowns += range(first, first + element.body.body.modes)
+        unknowns += range(first, first + element.body.reduced.modes)
     if element.mode is not None:
         unknowns.append(numbering.modes[element.mode[0]] + element.mode[1])
     if element.multipliers:
@@ -199,7 +199,7 @@ def _kept_at(numbering: Numbering, element: Element, otherwise: int) -> int:
 
 def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
     """Values of the constants that the kernel of a superelement reads, by name."""
-    reduced = body.body
+    reduced = body.reduced
     origin = body.alpha @ reduced.coordinates[list(reduced.position_nodes)]
     of_translations = reduced.mass @ reduced.rigid_modes[:, :len(origin)]
     option = INERTIA_OPTIONS[body.inertia]
@@ -225,8 +225,8 @@ def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
 
 def frame_constants(body: Superelement) -> dict[str, ArrayLike]:
     """Values of what places the frame of a superelement, by name."""
-    points = body.body.coordinates[list(body.body.position_nodes)]
-    of_modes = {"Gam": mean_rotation(body.body).T} if FRAMES[body.frame].traits.modes else {}
+    points = body.reduced.coordinates[list(body.reduced.position_nodes)]
+    of_modes = {"Gam": mean_rotation(body.reduced).T} if FRAMES[body.frame].traits.modes else {}
     return {"alphas": body.alpha, "fits": np.full(len(points), 1.0 / len(points)),
             "alpha_rs": body.alpha_r, "X": points - body.alpha @ points} | of_modes
 
@@ -236,7 +236,7 @@ def _filled(body: Superelement) -> int:
 
     All rows if there is a single entry off the diagonal between internal modes.
     """
-    reduced = body.body
+    reduced = body.reduced
     matrices = [A for A in (reduced.stiffness, reduced.mass, reduced.damping) if A is not None]
     n, filled = len(reduced.mass), whole_vectors(len(reduced.mass) - reduced.modes)
     inner = [matrix[filled:, filled:] for matrix in matrices]
@@ -248,7 +248,7 @@ def _full(body: Superelement, kernel: ModuleType) -> int:
     """Leading rows and columns beyond which the element matrix is diagonal."""
     # modes that move the frame act on each other through it
     apart = INERTIA_OPTIONS[kernel.INERTIA].modes_apart and not FRAMES[body.frame].traits.modes
-    return _filled(body) if apart else len(body.body.mass)
+    return _filled(body) if apart else len(body.reduced.mass)
 
 
 def starts(sizes: Iterable[int]) -> NDArray:

@@ -54,7 +54,7 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
         inertias=np.zeros(numbering.total), massless_axes=np.zeros(numbering.total),
         magnitude=_magnitude(model, numbering),
         regularized=np.zeros(1, dtype=np.int64), massless=np.zeros(1, dtype=np.int64),
-        damped=np.array([int(any(b.body.damping is not None for b in model.bodies.values()))]),
+        damped=np.array([int(any(b.reduced.damping is not None for b in model.bodies.values()))]),
         guarded=_guarded(model, numbering))
     owners = [owner for batch in batches.all for owner in batch.owners]
     first_force = starts(b.width for b in batches.all for _ in b.rows).tolist()
@@ -80,9 +80,9 @@ def work_size(model: Mechanism) -> int:
     rows = []
     for body in model.bodies.values():
         kernel = load(body.kernel)
-        rows.append(scratch_size(kernel.WORK_ROWS, kernel.WORK_SQUARES, len(body.body.stiffness),
+        rows.append(scratch_size(kernel.WORK_ROWS, kernel.WORK_SQUARES, len(body.reduced.stiffness),
                                  len(body.rotations)))
-    rows += [scratch_size(element_kernel(one.kind).WORK_ROWS, 0, len(one.body.body.stiffness),
+    rows += [scratch_size(element_kernel(one.kind).WORK_ROWS, 0, len(one.body.reduced.stiffness),
                           len(one.body.rotations)) for one in model.loads if one.body is not None]
     elements = max((sum(t.start.size for t in one.dof_blocks) for one in model.loads), default=0)
     return max([*rows, 64, 4 * elements])

@@ -91,7 +91,7 @@ class _Channels:
     def _component(self, owner: str, name: str, label: str) -> Channel | None:
         """A component of a quantity."""
         if name in OF_MODES and owner in self.model.bodies and label.isdecimal():
-            if int(label) >= self.model.bodies[owner].body.modes:
+            if int(label) >= self.model.bodies[owner].reduced.modes:
                 return None
             place = self.at[OF_MODES[name]].start + self.numbering.modes[owner] + int(label)
             return _made(DOT, (place, place), (0.0, 1.0))

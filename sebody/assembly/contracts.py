@@ -93,7 +93,7 @@ def check_superelement(body: Superelement, kernel: ModuleType) -> None:
     InputError
         What it has is not what its kernel reads; the message names both.
     """
-    reduced = body.body
+    reduced = body.reduced
     positions, rotations = len(reduced.position_nodes), len(reduced.rotation_nodes)
     wrong = _different((("positions", positions, kernel.N_POSITIONS),
                         ("rotations", rotations, kernel.N_ROTATIONS),
@@ -158,14 +158,14 @@ def positions_of(element: Element) -> int:
 
 def frame_counts(body: Superelement) -> Counts:
     """The counts that what places its frame refers to, and what its motion has."""
-    reduced = body.body
+    reduced = body.reduced
     return axes_of(reduced.planar) | superelement_counts(
         len(reduced.position_nodes), len(reduced.rotation_nodes), reduced.planar, _width(body))
 
 
 def counts_of(body: Superelement) -> Counts:
     """The counts that sizes of a superelement's rows are products of."""
-    reduced = body.body
+    reduced = body.reduced
     counts = superelement_counts(len(reduced.position_nodes), len(reduced.rotation_nodes),
                                  reduced.planar, _width(body))
     option, damped = INERTIA_OPTIONS[body.inertia], reduced.damping is not None
@@ -179,7 +179,7 @@ def counts_of(body: Superelement) -> Counts:
 
 
 def _width(body: Superelement) -> int:
-    return len(body.body.stiffness)
+    return len(body.reduced.stiffness)
 
 
 def _different(facts: Iterable[tuple[str, int, int | None]]) -> list[str]:

@@ -41,7 +41,7 @@ def elimination_order(model: Mechanism) -> tuple[list[Part], dict[Element, set[D
     awaited : dict
         id of a constraint -> ids of its DOF blocks that are numbered before its multipliers.
     """
-    parts = [_part(b.name, [*b.rotations, *b.positions], b.body.modes)
+    parts = [_part(b.name, [*b.rotations, *b.positions], b.reduced.modes)
              for b in model.bodies.values()]
     parts += [_part(e.name, e.dof_blocks[::-1], 0) for e in model.rigid_bodies.values()]
     owners: dict[DofBlock, list[int]] = {}

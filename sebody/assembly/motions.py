@@ -36,7 +36,7 @@ class Motions(NamedTuple):
 
 def motion_kernel(body: Superelement) -> str:
     """Name of the kernel of a body's motion."""
-    return motion_name(FRAMES[body.frame].kernel, body.body.planar)
+    return motion_name(FRAMES[body.frame].kernel, body.reduced.planar)
 
 
 def motions(model: Mechanism, numbering: Numbering, bodies: Iterable[Superelement]
@@ -50,7 +50,7 @@ def motions(model: Mechanism, numbering: Numbering, bodies: Iterable[Superelemen
     """
     groups: dict[tuple, list[Superelement]] = {}
     for body in bodies:
-        key = motion_kernel(body), len(body.positions), len(body.rotations), len(body.body.mass)
+        key = motion_kernel(body), len(body.positions), len(body.rotations), len(body.reduced.mass)
         groups.setdefault(key, []).append(body)
     places = {name: k for k, name in enumerate(model.bodies)}
     return [_group(name, group, numbering, places) for (name, *_), group in groups.items()]
@@ -66,7 +66,7 @@ def _group(name: str, bodies: list[Superelement], numbering: Numbering, places: 
     rows: dict[tuple, int] = {}         # where the constants of equal bodies begin
     constants, index, end = [], [], 0
     for body in bodies:
-        key = body.body, tuple(body.alpha), tuple(body.alpha_r)
+        key = body.reduced, tuple(body.alpha), tuple(body.alpha_r)
         if key not in rows:
             rows[key] = end
             constants.append(constants_row(body.name, kernel, counts, frame_constants(body)))
@@ -74,7 +74,7 @@ def _group(name: str, bodies: list[Superelement], numbering: Numbering, places: 
         unknowns = [c for t in (*body.positions, *body.rotations)
                     for c in coordinates(numbering, t)]
         modes = numbering.modes[body.name]
-        unknowns += range(modes, modes + body.body.modes)
+        unknowns += range(modes, modes + body.reduced.modes)
         index.append(index_row(
             body.name, kernel, unknowns, constants=rows[key], frame=places[body.name], port=0,
             positions=len(body.positions),

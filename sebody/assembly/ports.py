@@ -39,7 +39,7 @@ def number_ports(model: Mechanism, at: Mapping[DofBlock, int]) -> Ports:
         if element_kernel(element.kind).POWER:
             found.of[element] = add(element.name, element.time_function, _jumps(element))
     for body in model.bodies.values():
-        if body.body.damping is not None:
+        if body.reduced.damping is not None:
             found.of[body] = add(f"damping of {body.name}", None, [])
     for dof_block in model.dof_blocks():
         rotational = int(dof_block.rotational and not model.planar)

@@ -1,4 +1,8 @@
-"""Records of named scalars: compiled code and Python read and write them as attributes."""
+"""Records of named scalars: compiled code and Python read and write them as attributes.
+
+Between samples of a run, where microseconds count, Python takes items, ``control["grid"]``: an
+attribute of a NumPy record takes five times as long.
+"""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -72,7 +72,7 @@ class Axial(NamedTuple):
     @classmethod
     def of(cls, part: Superelement) -> "Axial | None":
         """Those of a body; None of one that stiffens, or bends without rotations of its nodes."""
-        body = part.body
+        body = part.reduced
         if part.stiffening or len(part.positions) < 2 or not part.rotations:
             return None
         moved, rotated = rows_of(body)

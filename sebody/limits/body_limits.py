@@ -36,7 +36,7 @@ def limits_of(bodies: Iterable[Superelement]) -> dict[str, Limits]:
     known: dict[tuple, Limits] = {}
     found = {}
     for body in bodies:
-        key = body.body, body.frame, body.inertia, body.stiffening, tuple(body.alpha_r)
+        key = body.reduced, body.frame, body.inertia, body.stiffening, tuple(body.alpha_r)
         if key not in known:
             known[key] = Limits(np.inf if body.stiffening else FAST * cautious_limit(body),
                                 _off_line(body), Axial.of(body))
@@ -78,7 +78,7 @@ def exceeded(body: Superelement, limits: Limits, y: NDArray, spins: NDArray, loc
 def flat(body: Superelement) -> Finding | None:
     """Whether a frame follows positions that lie nearly on a line."""
     spread, traits = _spread(body), FRAMES[body.frame].traits
-    if traits.needs_rotations or traits.modes or body.body.planar or spread >= FLAT:
+    if traits.needs_rotations or traits.modes or body.reduced.planar or spread >= FLAT:
         return None
     return Finding("flat", body.name, 1.0 / max(spread, 1e-300), f"nodes of body {body.name!r} lie "
                    f"nearly on a line (spread {spread:.1e} of their length): its frame turns about "
@@ -96,12 +96,12 @@ def local_rotations(y: NDArray, counts: Counts) -> NDArray:
 def _off_line(body: Superelement) -> bool:
     """Whether a body of option C has its frame on rotations, and its mass off the nodes' line."""
     on_rotations = FRAMES[body.frame].traits.needs_rotations
-    return body.inertia == "floating_field" and on_rotations and mass_off_line(body.body)
+    return body.inertia == "floating_field" and on_rotations and mass_off_line(body.reduced)
 
 
 def _too_fast(body: Superelement, spin: NDArray, speed: float) -> Iterator[Finding]:
     """A spin that bodies without stiffening do not follow."""
-    axis = np.array([0.0, 0.0, 1.0]) if body.body.planar else spin / speed
+    axis = np.array([0.0, 0.0, 1.0]) if body.reduced.planar else spin / speed
     felt, limit = speed * reach(body, axis), divergence(body, axis)
     first = first_frequency(body)
     if felt > limit:
@@ -130,11 +130,11 @@ def _too_strong(body: Superelement, axial: Axial, y: NDArray) -> Iterator[Findin
 
 def remedy(body: Superelement) -> str:
     """What to do about a spin, or an axial force."""
-    if body.body.invariants is None:
+    if body.reduced.invariants is None:
         return "divide the body in two, or reduce it from an FE model with its mass"
     if body.inertia != "floating_field":
         return "divide the body in two, or take inertia='floating_field'"
-    if body.body.invariants.stiffens:
+    if body.reduced.invariants.stiffens:
         return "divide the body in two, or let it stiffen with stiffening=True"
     return "divide the body in two, or give its FE model a geometric stiffness"
 
@@ -148,6 +148,6 @@ def _compared(limit: float, first: float) -> str:
 
 def _spread(body: Superelement) -> float:
     """Second largest extent of the nodes that keep a position, of the largest."""
-    points = body.body.coordinates[list(body.body.position_nodes)]
+    points = body.reduced.coordinates[list(body.reduced.position_nodes)]
     extents = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
     return float(extents[1] / extents[0]) if len(extents) > 1 and extents[0] > 0 else 0.0

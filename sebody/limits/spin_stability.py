@@ -61,8 +61,8 @@ def softening(part: Superelement, axis: NDArray, held: Held) -> NDArray:
     traits = INERTIA_OPTIONS[part.inertia]
     if traits.field:
         return _of_field(part, axis, held)
-    carriers = (_rigid_part(part.body, held) if traits.rates else
-                _of_nodes(part.body, traits.material, held))
+    carriers = (_rigid_part(part.reduced, held) if traits.rates else
+                _of_nodes(part.reduced, traits.material, held))
     return _of_carriers(carriers, axis, held.turn)
 
 
@@ -74,7 +74,7 @@ def divergence(part: Superelement, axis: NDArray | None) -> float:
     """
     lowest = 0.0
     for held in holds(part, axis):
-        elastic = held.free.T @ part.body.stiffness @ held.free
+        elastic = held.free.T @ part.reduced.stiffness @ held.free
         if axis is not None:
             soft = held.free.T @ softening(part, axis, held) @ held.free
         else:
@@ -102,7 +102,7 @@ def _of_all_axes(part: Superelement, held: Held) -> NDArray:
 
 def holds(part: Superelement, axis: NDArray | None) -> list[Held]:
     """Every node as the pivot, held with the frame and by itself, for an axis or for all."""
-    body = part.body
+    body = part.reduced
     moved, rotated = rows_of(body)
     points = _in_space(body.coordinates)
     of_frame = _frame_rotation(part)
@@ -132,7 +132,7 @@ def first_frequency(part: Superelement) -> float:
     A node without a rotation is held with the rotation of best fit, or where all nodes are on a
     line, which it does not see rotate about itself, with the mean of the rotations.
     """
-    return _lowest(part, lambda k: part.body.mass)
+    return _lowest(part, lambda k: part.reduced.mass)
 
 
 def cautious_limit(part: Superelement) -> float:
@@ -141,7 +141,7 @@ def cautious_limit(part: Superelement) -> float:
     By half the first frequency and, where nodes turn their own axes, the largest part that their
     momenta may have in D: it is for deciding whether the limits are looked at.
     """
-    body = part.body
+    body = part.reduced
     rotated = rows_of(body)[1]
     d, traits = body.coordinates.shape[1], INERTIA_OPTIONS[part.inertia]
     own_axes = traits.material and not (traits.rates or traits.field or body.planar)
@@ -159,7 +159,7 @@ def cautious_limit(part: Superelement) -> float:
 
 def _lowest(part: Superelement, inertia: Callable[[int], NDArray]) -> float:
     """Lowest frequency with the k-th position held, of all, with an inertia (n, n) for each."""
-    body = part.body
+    body = part.reduced
     moved, rotated = rows_of(body)
     largest = 0.0
     for k, node in enumerate(body.position_nodes):
@@ -179,7 +179,7 @@ def reach(part: Superelement, axis: NDArray) -> float:
 
     With an exact kinetic energy a body that spins about its own line misses no stiffening.
     """
-    body, found = part.body, 0.0
+    body, found = part.reduced, 0.0
     if body.planar or not INERTIA_OPTIONS[part.inertia].field:
         return 1.0
     for node in body.position_nodes:
@@ -264,7 +264,7 @@ def _of_carriers(carriers: Carriers, axis: NDArray, turn: NDArray) -> NDArray:
 
 def _of_field(part: Superelement, axis: NDArray, held: Held) -> NDArray:
     """Option C: of the moment of inertia ``n' . J(z) n'``, and of the stress by the spin."""
-    body, d = part.body, part.body.coordinates.shape[1]
+    body, d = part.reduced, part.reduced.coordinates.shape[1]
     i, n = part.invariants.about(held.pivot[:d]), len(body.mass)
     own = axis[2:] if body.planar else axis
     h = np.einsum("k,l,kln->n", own, own, i.h)

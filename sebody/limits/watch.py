@@ -124,7 +124,7 @@ def spin_limit(body: Superelement, axis: ArrayLike | None) -> float:
         No superelement, or no direction.
     """
     inputs.instance(body, "body", Superelement, "give a superelement of a model")
-    planar = body.body.planar
+    planar = body.reduced.planar
     if axis is not None:
         axis = inputs.vector(axis, "axis", None if planar else 3)
         if not np.any(axis):

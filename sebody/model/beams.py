@@ -113,7 +113,7 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
         parts.append(superelement(model, name if bodies == 1 else f"{name} {k + 1}", body, span,
                                   stiffening=stiffening, **placing))
     model.beams.append(Beam(name, tuple(nodes), section, elements, deepcopy(options), tuple(parts),
-                            tuple(part.body for part in parts)))
+                            tuple(part.reduced for part in parts)))
     return nodes
 
 

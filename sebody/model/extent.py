@@ -20,7 +20,7 @@ def extent(model: Mechanism) -> float:
     points = [node.point for node in (*model.nodes.values(), *model.grounds)]
     found = [_diameter(np.array(points)) if points else 0.0]
     found += [_size(reduced) for reduced in
-              {body.body: body.body for body in model.bodies.values()}.values()]
+              {body.reduced: body.reduced for body in model.bodies.values()}.values()]
     for body in model.rigid_bodies.values():
         moments = [body.number(name) for name in MOMENTS if name in body.constants]
         found.append(float(np.sqrt(max(moments, default=0.0) / body.number("mass"))))

@@ -64,7 +64,7 @@ def mode_force(model: Mechanism, body: str, mode: int, factor: float,
 
     A distributed load ``p`` has the factor ``shape . p``, the shape being mass-normalised.
     """
-    count = _body(model, body).body.modes
+    count = _body(model, body).reduced.modes
     mode = inputs.integer(mode, f"mode of superelement {body!r}")
     if not 0 <= mode < count:
         raise InputError(f"superelement {body!r} has no mode {mode!r}: it has {count}, from 0")
@@ -97,7 +97,7 @@ def body_load(model: Mechanism, body: str, load: str,
         A superelement or load there is not.
     """
     placed = _body(model, body)
-    loads = placed.body.loads
+    loads = placed.reduced.loads
     if not isinstance(load, str) or load not in loads:
         raise InputError(f"superelement {body!r} has no load {load!r}: "
                          + offered(load, loads, "it has", "it was reduced without loads, give "

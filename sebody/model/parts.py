@@ -110,7 +110,7 @@ class Superelement:
     """A reduced body placed on nodes, with its matrices in global axes."""
 
     name: str
-    body: ReducedBody
+    reduced: ReducedBody
     nodes: tuple[Node, ...]
     frame: str
     inertia: str
@@ -123,33 +123,33 @@ class Superelement:
 
     def __repr__(self) -> str:
         nodes = ", ".join(node.name for node in self.nodes)
-        return (f"<Superelement {self.name!r} on {nodes}: mass {self.body.total_mass:.6g}, "
-                f"{counted(self.body.modes, 'mode')}, frame {self.frame}, inertia {self.inertia}"
+        return (f"<Superelement {self.name!r} on {nodes}: mass {self.reduced.total_mass:.6g}, "
+                f"{counted(self.reduced.modes, 'mode')}, frame {self.frame}, inertia {self.inertia}"
                 + (", stiffening>" if self.stiffening else ">"))
 
     @property
     def invariants(self) -> InertiaInvariants | None:
         """The constants of its exact inertia, without those of stiffening where it has none."""
-        found = self.body.invariants
+        found = self.reduced.invariants
         return found if found is None or self.stiffening else found.unstiffened
 
     @property
     def positions(self) -> list[DofBlock]:
         """Position DOF blocks in the order of the reduced coordinates."""
         return [Attachment(self.nodes[i], "position").dof_block
-                for i in self.body.position_nodes]
+                for i in self.reduced.position_nodes]
 
     @property
     def rotations(self) -> list[DofBlock]:
         """Rotation DOF blocks in the order of the reduced coordinates."""
         return [Attachment(self.nodes[i], "rotation").dof_block
-                for i in self.body.rotation_nodes]
+                for i in self.reduced.rotation_nodes]
 
     @property
     def attachments(self) -> tuple[Attachment, ...]:
         """Where its reduced coordinates are, without internal modes."""
-        return (positions(*(self.nodes[i] for i in self.body.position_nodes))
-                + rotations(*(self.nodes[i] for i in self.body.rotation_nodes)))
+        return (positions(*(self.nodes[i] for i in self.reduced.position_nodes))
+                + rotations(*(self.nodes[i] for i in self.reduced.rotation_nodes)))
 
 
 @dataclass(eq=False, repr=False)

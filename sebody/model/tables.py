@@ -20,7 +20,7 @@ class Unknowns(NamedTuple):
 def unknowns(model: Mechanism) -> Unknowns:
     """Unknowns of a model: coordinates of nodes, amplitudes of modes, multipliers."""
     return Unknowns(sum(t.start.size for t in model.dof_blocks() if t.solved),
-                    sum(body.body.modes for body in model.bodies.values()),
+                    sum(body.reduced.modes for body in model.bodies.values()),
                     sum(joint.multipliers for joint in model.joints))
 
 
@@ -42,7 +42,7 @@ def summary(model: Mechanism) -> str:
 def described(model: Mechanism) -> str:
     """A model in words and tables: what there is to check before a run."""
     nodes, modes, equations = unknowns(model)
-    masses = [body.body.total_mass for body in model.bodies.values()]
+    masses = [body.reduced.total_mass for body in model.bodies.values()]
     masses += [body.number("mass") for body in model.rigid_bodies.values()]
     lines = [summary(model),
              f"unknowns  {nodes + modes + equations}: {nodes} of nodes, {modes} of modes, "
@@ -79,10 +79,10 @@ def _controllers(model: Mechanism) -> list[tuple]:
 
 
 def _bodies(model: Mechanism) -> list[tuple]:
-    found = [(body.name, "superelement", f"{body.body.total_mass:.6g}", _named(body.nodes),
-              f"{len(body.body.stiffness)} coordinates ({body.layout}), {body.body.modes} modes; "
-              f"frame {body.frame}, inertia {body.inertia}"
-              + ("; damped" if body.body.damping is not None else ""))
+    found = [(body.name, "superelement", f"{body.reduced.total_mass:.6g}", _named(body.nodes),
+              f"{len(body.reduced.stiffness)} coordinates ({body.layout}), "
+              f"{body.reduced.modes} modes; frame {body.frame}, inertia {body.inertia}"
+              + ("; damped" if body.reduced.damping is not None else ""))
              for body in model.bodies.values()]
     return found + [(body.name, _plain(body), f"{body.number('mass'):.6g}",
                      _named({place.node.name: place.node for place in body.attachments}.values()),

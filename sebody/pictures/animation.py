@@ -104,7 +104,7 @@ def check_animation(output: str | Path) -> Path:
 
 def _check_colour(result: Result, colour: str) -> None:
     """Refuse a colour that no body has."""
-    shapes = {name: body.body.recovery for name, body in result.model.bodies.items()}
+    shapes = {name: body.reduced.recovery for name, body in result.model.bodies.items()}
     drawn = {name: one for name, one in shapes.items() if one is not None and one.cells}
     if colour == "displacement" and not drawn:
         raise InputError("colour is 'displacement', but no body of the model has the cells of an "

@@ -75,15 +75,15 @@ def vertices(body: DrawnBody, frame: int, scale: float = 1.0) -> NDArray:
 def flexible(result: Result, body: Superelement, states: NDArray, size: float, welded: Welded,
              reference: str | None = None) -> DrawnBody | None:
     """A superelement with cells; None for others, of which links are drawn."""
-    recovery = body.body.recovery
+    recovery = body.reduced.recovery
     if recovery is None or not recovery.cells:
         return None
     motion = body_motion(result, body, states)
-    amplitudes = body.body.with_followers(motion.y)
+    amplitudes = body.reduced.with_followers(motion.y)
     surface = surface_of(recovery, amplitudes.shape[1])
     if surface is None:
         return None
-    held = body.alpha @ body.body.coordinates[list(body.body.position_nodes)]
+    held = body.alpha @ body.reduced.coordinates[list(body.reduced.position_nodes)]
     half = np.linalg.norm(surface.offsets, axis=1).max()
     larger = max(1.0, THINNEST * size / half) if half > 0 else 1.0
     surface = surface._replace(points=surface.points - spatial(held),
@@ -93,7 +93,7 @@ def flexible(result: Result, body: Superelement, states: NDArray, size: float, w
     surface = surface._replace(moves=surface.moves[kept], turns=surface.turns[kept])
     node = welded.reference(body, reference)
     still = None if node is None else _still(result, body, motion, node, states)
-    start = spatial(body.alpha @ [body.nodes[i].point for i in body.body.position_nodes])
+    start = spatial(body.alpha @ [body.nodes[i].point for i in body.reduced.position_nodes])
     return DrawnBody(body.name, surface, start, spatial(motion.origin),
                      quaternions(motion.rotation), amplitudes[:, kept], _held(body, start, kept),
                      node and node.name, still, labels=_labels(recovery, surface))
@@ -111,7 +111,7 @@ def quaternions(rotations: NDArray) -> NDArray:
 
 def with_stress(result: Result, body: DrawnBody, states: NDArray) -> DrawnBody:
     """The body with von Mises's stress at its stations, in fewer frames where it has many nodes."""
-    if not result.model.bodies[body.name].body.recovery.stress:
+    if not result.model.bodies[body.name].reduced.recovery.stress:
         return body
     field = result.field(body.name)
     stresses = field.stresses(True)
@@ -156,7 +156,7 @@ def rigid(model: Mechanism, body: Element, position: NDArray, rotation: NDArray 
 def _held(body: Superelement, start: NDArray, kept: NDArray) -> tuple[HeldNode, ...]:
     """Nodes of a body, whose amplitudes are numbered as they are kept."""
     number = np.where(kept, np.cumsum(kept) - 1, -1).tolist()
-    reduced = body.body
+    reduced = body.reduced
     D, size = (2, 1) if reduced.planar else (3, 3)
     firsts = {i: D * k for k, i in enumerate(reduced.position_nodes)}
     turns = {i: D * len(firsts) + size * k for k, i in enumerate(reduced.rotation_nodes)}

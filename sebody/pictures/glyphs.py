@@ -37,7 +37,7 @@ def links(model: Mechanism, nodes: set[str], drawn: set[str]) -> list[Link]:
     found = []
     for body in model.bodies.values():
         if body.name not in drawn:
-            held = [body.nodes[i] for i in body.body.position_nodes]
+            held = [body.nodes[i] for i in body.reduced.position_nodes]
             found += [Link("body", (held[i].name, held[j].name), body.name)
                       for i, j in neighbours(np.array([node.point for node in held]))]
     found += [Link("rod", (c.to.name, c.node.name)) for c in model.connections

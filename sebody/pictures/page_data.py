@@ -61,7 +61,7 @@ def speed_of(t: NDArray) -> float:
 def _most_frames(result: Result) -> int:
     """Frames of a page, fewer for large models."""
     model = result.model
-    numbers = 7 * len(model.nodes) + sum(7 + len(body.body.stiffness)
+    numbers = 7 * len(model.nodes) + sum(7 + len(body.reduced.stiffness)
                                          for body in model.bodies.values())
     return int(np.clip(NUMBERS // max(numbers, 1), FEWEST_FRAMES, FRAMES))
 

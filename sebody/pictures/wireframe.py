@@ -13,7 +13,7 @@ def lines_of(model: Mechanism) -> list[tuple[str, str]]:
     """
     pairs = []
     for body in model.bodies.values():
-        nodes = [body.nodes[i] for i in body.body.position_nodes]
+        nodes = [body.nodes[i] for i in body.reduced.position_nodes]
         pairs += [(nodes[i], nodes[j])
                   for i, j in neighbours(np.array([node.point for node in nodes]))]
     pairs += [(c.to, c.node) for c in model.connections if c.kind == "position" and c.to]

@@ -15,8 +15,8 @@ def kernels_that_pay(model: Mechanism) -> dict[str, list[str]]:
     for body in model.bodies.values():
         kernel = load(body.kernel)
         assert kernel is not None       # the model was built with it
-        if kernel.N_POSITIONS is None and len(body.body.stiffness) <= PAYS:
-            variant = layout_variant(body.layout, body.body.modes, bool(kernel.DAMPED))
+        if kernel.N_POSITIONS is None and len(body.reduced.stiffness) <= PAYS:
+            variant = layout_variant(body.layout, body.reduced.modes, bool(kernel.DAMPED))
             command = derive_command(variant, kernel.FRAME, kernel.INERTIA)
             found.setdefault(command, []).append(body.name)
     return found

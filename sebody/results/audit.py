@@ -155,10 +155,11 @@ def _acting(result: Recording) -> tuple[NDArray, NDArray]:
 def _mass(body: Superelement | Element) -> tuple[float, NDArray]:
     """Mass of a body and its first moment about the origin at the start."""
     if isinstance(body, Superelement):
-        held: list[Node] = [body.nodes[i] for i in body.body.position_nodes]
-        shift = np.mean([node.point for node in held], axis=0) - body.body.coordinates[
-            list(body.body.position_nodes)].mean(axis=0)
-        return body.body.total_mass, body.body.total_mass * (body.body.centre_of_mass + shift)
+        held: list[Node] = [body.nodes[i] for i in body.reduced.position_nodes]
+        reduced = body.reduced
+        shift = np.mean([node.point for node in held], axis=0) - reduced.coordinates[
+            list(reduced.position_nodes)].mean(axis=0)
+        return reduced.total_mass, reduced.total_mass * (reduced.centre_of_mass + shift)
     mass, node = body.number("mass"), body.attachments[0].node
     return mass, mass * node.point + np.asarray(body.constants.get("mc", 0.0))
 

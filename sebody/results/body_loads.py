@@ -14,7 +14,7 @@ def load_amplitudes(recording: Recording, body: Superelement, motion: BodyMotion
     A load ``P = Phi^T p`` gives the residual ``-a R_0 P_i`` at positions and ``-a P_k`` at modes:
     projected on P this is the amplitude a, also of a result that has lost its functions.
     """
-    names = list(body.body.loads)
+    names = list(body.reduced.loads)
     found = np.zeros((len(recording.rows), len(names)))
     for element in recording.model.loads:
         if element.body is not body:
@@ -24,9 +24,9 @@ def load_amplitudes(recording: Recording, body: Superelement, motion: BodyMotion
         forces = recording.forces.elements[:, first:first + len(P)]
         count, D = len(body.positions), motion.origin.shape[1]
         local = forces[:, :count * D].reshape(-1, count, D) @ motion.rotation
-        modes = len(P) - body.body.modes
+        modes = len(P) - body.reduced.modes
         known = np.r_[P[:count * D], P[modes:]]
         whole = np.hstack([local.reshape(-1, count * D), forces[:, modes:]])
-        k = next(k for k, name in enumerate(names) if np.array_equal(body.body.loads[name], P))
+        k = next(k for k, name in enumerate(names) if np.array_equal(body.reduced.loads[name], P))
         found[:, k] -= whole @ known / max(known @ known, 1e-300)
     return found

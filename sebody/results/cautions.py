@@ -11,7 +11,7 @@ def cautions(model: Mechanism) -> list[str]:
     """
     owners: dict[str, list[str]] = {}
     for body in model.bodies.values():
-        for text in body.body.cautions:
+        for text in body.reduced.cautions:
             owners.setdefault(text, []).append(repr(body.name))
     found = [f"{'body' if len(names) == 1 else 'bodies'} {_listed(names)} "
              f"{'has' if len(names) == 1 else 'have'} {text}" for text, names in owners.items()]
@@ -24,7 +24,7 @@ def _of_materials(model: Mechanism) -> list[str]:
         return []
     found: dict[str, None] = {}
     for body in model.bodies.values():
-        for text in doubts(body.body.materials, model.units):
+        for text in doubts(body.reduced.materials, model.units):
             found[f"body {body.name!r}: {text}"] = None
     return list(found)
 

@@ -20,8 +20,8 @@ class FENodes:
     """
 
     def __init__(self, recording: Recording):
-        self._bodies = {name: body.body.recovery for name, body in recording.model.bodies.items()
-                        if body.body.recovery is not None}
+        self._bodies = {name: body.reduced.recovery for name, body in recording.model.bodies.items()
+                        if body.reduced.recovery is not None}
 
     def __contains__(self, name: str) -> bool:
         body, dot, node = name.rpartition(".node")
@@ -52,7 +52,7 @@ def of_fe_node(quantity: str, recording: Recording, name: str) -> NDArray:
     """History of a quantity of one FE node."""
     body, _, node = name.rpartition(".node")
     field = field_of(recording, body)
-    recovery = recording.model.bodies[body].body.recovery
+    recovery = recording.model.bodies[body].reduced.recovery
     assert recovery is not None     # see `Field`
     number = number_of(recovery, int(node))
     assert number is not None       # names of nodes there are not were refused

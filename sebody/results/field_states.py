@@ -28,7 +28,7 @@ class FieldStates:
     def __init__(self, recording: Recording, name: str):
         bodies = recording.model.bodies
         name = inputs.choice(name, "superelement", bodies) if bodies else _no_bodies(name)
-        recovery = bodies[name].body.recovery
+        recovery = bodies[name].reduced.recovery
         if recovery is None:
             raise InputError(f"body {name!r} has reduced matrices only, so fields inside it are "
                              "unknown: reduce its FE model, by craig_bampton or "
@@ -60,14 +60,14 @@ class FieldStates:
     @cached_property
     def points(self) -> NDArray:
         """FE nodes of the undeformed body in its floating frame, (nodes, D)."""
-        reduced = self._body.body
+        reduced = self._body.reduced
         held = reduced.coordinates[list(reduced.position_nodes)]
         return self._recovery.points - self._body.alpha @ held
 
     @cached_property
     def amplitudes(self) -> NDArray:
         """Amplitudes of the `shapes` in all recorded states, (n, N)."""
-        return self._body.body.with_followers(self.motion.y)
+        return self._body.reduced.with_followers(self.motion.y)
 
     def shapes(self) -> NDArray:
         """Displacements of all FE nodes of unit amplitudes, in body axes, (N, nodes, D)."""
@@ -162,7 +162,7 @@ class FieldStates:
 
     def _products(self, left: NDArray, right: NDArray) -> NDArray:
         """``left . Q_b right`` of the coordinates that follow in second order, (n, b)."""
-        invariants = self._body.body.invariants
+        invariants = self._body.reduced.invariants
         if invariants is None:
             return np.zeros((len(left), 0))
         return np.einsum("ni,bij,nj->nb", left, invariants.Q, right, optimize=True)

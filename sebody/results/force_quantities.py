@@ -43,7 +43,7 @@ def of_body(recording: Recording, name: str) -> NDArray:
     """Forces of everything else on a body: of its places, then on its modes, (n, coordinates)."""
     body = bodies(recording)[name]
     first = recording.numbering.forces_at[body]
-    modes = body.body.modes if isinstance(body, Superelement) else 0
+    modes = body.reduced.modes if isinstance(body, Superelement) else 0
     size = sum(t.start.size for t in (getattr(*place) for place in body.attachments))
     return np.hstack([
         *(-recording.balance.on(body, *place) for place in body.attachments),

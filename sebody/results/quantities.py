@@ -96,7 +96,7 @@ def unknown_quantity(recording: Recording, name: str) -> InputError:
 
 def _of_field(recording: Recording, body: str, quantity: str) -> InputError:
     """The exception for a quantity of FE nodes that is requested for a whole body."""
-    recovery = recording.model.bodies[body].body.recovery
+    recovery = recording.model.bodies[body].reduced.recovery
     if recovery is None:
         return InputError(f"'{body}.{quantity}' is unknown: {body!r} was reduced without the "
                           "shapes of its FE model; reduce it from the FE model, or import it with "
@@ -224,7 +224,7 @@ def _modes(part: str, recording: Recording, name: str) -> NDArray:
     if name not in recording.model.bodies:
         raise InputError(f"body {name!r} is rigid: it has forces, but no modes")
     first = recording.numbering.modes[name]
-    return recording.recorded(part)[:, first:first + recording.model.bodies[name].body.modes]
+    return recording.recorded(part)[:, first:first + recording.model.bodies[name].reduced.modes]
 
 
 def _kept(recording: Recording, name: str) -> NDArray:
@@ -297,7 +297,7 @@ def _has(recording: Recording, kind: str, owner: str, quantity: str) -> bool:
     if kind == CONTROLLER:
         return recording.model.controllers[owner].states.size > 0
     if quantity in ("modes", "mode_rates"):
-        return owner in model.bodies and model.bodies[owner].body.modes > 0
+        return owner in model.bodies and model.bodies[owner].reduced.modes > 0
     if kind == "node of a body":
         body, node = forces.nodes_of_bodies(recording)[owner]
         return (node, place) in forces.bodies(recording)[body].attachments

@@ -50,7 +50,7 @@ def undeformed(recording: Recording, body: Superelement, rotation: NDArray, orig
         Recorded states in which they are.
     """
     known = recording.numbering.dof_blocks
-    held = np.array([body.nodes[i].point for i in body.body.position_nodes])
+    held = np.array([body.nodes[i].point for i in body.reduced.position_nodes])
     arm = body.alpha @ held - node.point        # from the node to the frame, both undeformed
     position = dof_block(node, "position")
     first = known[position]
@@ -151,7 +151,7 @@ class Welded:
         found: dict[str, Node] = {}
         for one in group:
             nodes = _full(one) if len(group) > 1 else [one.nodes[i]
-                                                       for i in one.body.position_nodes]
+                                                       for i in one.reduced.position_nodes]
             found |= {node.name: node for node in nodes}
         yield from found.values()
 
@@ -211,7 +211,7 @@ def _key(node: Node) -> tuple[Hashable, Hashable]:
 
 def _full(body: Superelement) -> list[Node]:
     """Nodes of which a body keeps the position and the rotation."""
-    return [body.nodes[i] for i in body.body.position_nodes if i in body.body.rotation_nodes]
+    return [body.nodes[i] for i in body.reduced.position_nodes if i in body.reduced.rotation_nodes]
 
 
 def _rotations(recording: Recording, node: Node, states: slice | NDArray) -> NDArray:

@@ -161,7 +161,7 @@ def check_numbering(model: Any, numbering: Any) -> None:
                          f"{len(numbering.names)} have names")
     sizes = {dof_block: dof_block.start.size for dof_block in model.dof_blocks()}
     ends = [first + sizes.get(key, 1) for key, first in numbering.dof_blocks.items()]
-    ends += [numbering.modes.get(name, total + 1) + body.body.modes
+    ends += [numbering.modes.get(name, total + 1) + body.reduced.modes
              for name, body in model.bodies.items()]
     ends += [numbering.multipliers.get(c, total + 1) + c.multipliers
              for c in model.constraints]
@@ -197,9 +197,9 @@ def member_lengths(model: Mechanism, numbering: Numbering) -> dict[str, int]:
 def _width(one: Any) -> int:
     """Numbers of the force of an element."""
     if isinstance(one, Superelement):
-        return len(one.body.stiffness)
+        return len(one.reduced.stiffness)
     if one.body is not None:
-        return len(one.body.body.stiffness)
+        return len(one.body.reduced.stiffness)
     read = 0 if one.pressed_by is None else one.pressed_by.multipliers
     return sum(dof_block.start.size for dof_block in one.dof_blocks) + one.multipliers + read + (
         one.mode is not None)

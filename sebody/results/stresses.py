@@ -48,17 +48,17 @@ class Stresses:
     def __init__(self, body: Superelement, motion: BodyMotion, gravity: NDArray,
                  loads: NDArray | None):
         self._body, self._motion, self._gravity = body, motion, gravity
-        recovery = body.body.recovery
+        recovery = body.reduced.recovery
         assert recovery is not None     # see FieldStates
         self._recovery = recovery
         if not self._recovery.stress:
             raise InputError(f"body {body.name!r} has no known stresses: "
-                             f"{body.body.lacks['stresses']}")
+                             f"{body.reduced.lacks['stresses']}")
         own = self._recovery.stress
         self._solids = [one for one in own if isinstance(one, SolidStress)]
         self._beams = [one for one in own if isinstance(one, BeamStress)]
         self._modes = [one for one in own if isinstance(one, StressModes)]
-        n, width = len(body.body.stiffness), len(self._recovery.node_dofs)
+        n, width = len(body.reduced.stiffness), len(self._recovery.node_dofs)
         count = len(self._recovery.coordinates)
         self._shapes = [self._recovery.shapes[:, :n].reshape(count, width, n)]
         self._amplitudes = [self._recovery.in_fe_axes(self._strained())]
@@ -196,7 +196,7 @@ class Stresses:
 
     def _strained(self) -> NDArray:
         """Reduced coordinates (n, N) whose linear stresses are those of the body."""
-        y, reduced = self._motion.y, self._body.body
+        y, reduced = self._motion.y, self._body.reduced
         i = reduced.invariants
         if not INERTIA_OPTIONS[self._body.inertia].field or i is None or not i.resultants:
             return y
@@ -205,7 +205,7 @@ class Stresses:
 
     def _inertia(self) -> NDArray:
         """Amplitudes of the static shapes: minus the accelerations that load the body, (n, ...)."""
-        reduced, m = self._body.body, self._motion
+        reduced, m = self._body.reduced, self._motion
         planar, held = reduced.planar, len(reduced.stiffness) - reduced.modes
         middle = reduced.coordinates.mean(axis=0)
         arm = middle - self._body.alpha @ reduced.coordinates[list(reduced.position_nodes)]

@@ -46,7 +46,7 @@ def save_vtk(recording: Recording, path: str | Path, every: int = 1) -> Path:
     if not len(times):
         raise InputError("the result has no recorded state: run the model first")
     parts = [_part(recording, name) for name, body in recording.model.bodies.items()
-             if body.body.recovery is not None]
+             if body.reduced.recovery is not None]
     folder = path.with_suffix("")
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder} is a file, so the states of VTK series {path} have no folder: "
@@ -84,7 +84,7 @@ def check_series(path: str | Path) -> Path:
 
 def _part(recording: Recording, name: str) -> _Part:
     field = field_of(recording, name)
-    recovery = recording.model.bodies[name].body.recovery
+    recovery = recording.model.bodies[name].reduced.recovery
     assert recovery is not None     # see `Field`
     return _Part(field, recovery.cells, bool(recovery.stress))
 

@@ -45,7 +45,7 @@ def take(model: Mechanism, numbering: Numbering, state: State, given: Result) ->
                 v[own] = R[9 * k:9 * k + 9].reshape(3, 3).T @ state.v[own]
     for body in model.bodies.values():
         if np.any(body.mode_rates):
-            own = slice(numbering.modes[body.name], numbering.modes[body.name] + body.body.modes)
+            own = slice(numbering.modes[body.name], numbering.modes[body.name] + body.reduced.modes)
             v[own] = body.mode_rates
     _check_held(model, numbering, state, q, R)
     state.q[:], state.R[:], state.v[:] = q, R, v

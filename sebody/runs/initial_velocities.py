@@ -102,8 +102,8 @@ def _is_partly_given(body: Superelement) -> bool:
 def _share(body: Superelement, numbering: Numbering, state: State) -> float:
     """Share of the kinetic energy of the nodes of a body that is in its deformation."""
     own = [c for t in (*body.positions, *body.rotations) for c in coordinates(numbering, t)]
-    v = np.concatenate([state.v[own], np.zeros(body.body.modes)])
-    return float(v @ _deformation(body.body) @ v / max(v @ body.body.mass @ v, 1e-300))
+    v = np.concatenate([state.v[own], np.zeros(body.reduced.modes)])
+    return float(v @ _deformation(body.reduced) @ v / max(v @ body.reduced.mass @ v, 1e-300))
 
 
 def _deformation(reduced: ReducedBody) -> NDArray:

@@ -63,7 +63,7 @@ def save_state(run: Simulation, path: str | Path) -> Path:
     run.flush()
     arrays = _arrays(run.state)
     arrays |= {name: getattr(run.system, name) for name in OF_START}
-    arrays["rows"] = np.concatenate(run.rows)
+    arrays["rows"] = run.rows.all()
     settings = {"version": VERSION, "h": run.h, "every": run.every, "seconds": run.seconds,
                 "scheme": list(run.scheme), "tolerance": run.tolerance and list(run.tolerance),
                 "model": fingerprint(run), "checksums": checksums(arrays)}
@@ -85,7 +85,7 @@ def resume(model: Model, path: str | Path) -> Simulation:
     with opened(path, TARGET[0], REMEDY, TARGET[1]) as reader:
         settings = _settings(file, json_of(reader, "settings"), reader.headers)
         run = _begun(file, model, settings)
-        table = Table(file, REPEAT, _members(run), {"width": run.rows[0].shape[1]})
+        table = Table(file, REPEAT, _members(run), {"width": run.rows.stretches[0].shape[1]})
         try:
             arrays = table.read(reader, others=["settings"])
         except InputError as error:
@@ -100,7 +100,7 @@ def resume(model: Model, path: str | Path) -> Simulation:
         array[...] = arrays[name]
     for name in OF_START:
         getattr(run.system, name)[:] = arrays[name]
-    run.rows = [arrays["rows"]]
+    run.rows.stretches = [arrays["rows"]]
     run.seconds = settings["seconds"]
     if run.state.control.pivoted:
         run.exchanges.factorize()

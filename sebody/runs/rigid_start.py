@@ -158,7 +158,7 @@ class _Deformation(NamedTuple):
     def of(cls, model: Mechanism, body: Superelement, numbering: Numbering,
            state: State) -> "_Deformation":
         """That of a superelement where it is."""
-        reduced, first = body.body, numbering.modes[body.name]
+        reduced, first = body.reduced, numbering.modes[body.name]
         dof_blocks = (*body.positions, *body.rotations)
         boundary = [c for t in dof_blocks for c in coordinates(numbering, t)]
         own = np.array([*boundary, *range(first, first + reduced.modes)])
@@ -261,7 +261,7 @@ def _by_unknowns(model: Mechanism, body: Superelement, numbering: Numbering,
                 else:
                     add(row, rotation, _turned(R @ arm) @ R)
         row += size
-    modes, first = body.body.modes, numbering.modes[body.name]
+    modes, first = body.reduced.modes, numbering.modes[body.name]
     own = [column.setdefault(first + k, len(column)) for k in range(modes)]
     blocks.append((row, own, np.eye(modes)))
     places = np.zeros((row + modes, len(column)))

@@ -108,7 +108,7 @@ class Sampling:
 
     def stop_at(self, t: float) -> None:
         """Let a variable step end at a time at which inputs may be set."""
-        if self._numbers and self.state.control.adaptive:
+        if self._numbers and self.state.control["adaptive"]:
             self.state.memory[STOP] = t
             set_next(self.system.control, self.state.memory)
 

@@ -9,24 +9,13 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs, memory
+from sebody import inputs
 from sebody.assembly.allocation import allocate
 from sebody.assembly.build import build
 from sebody.assembly.numbering import placed, rotational
-from sebody.contract.layout import RECORD_T
 from sebody.engine.loop import advance
 from sebody.engine.routines import addresses
-from sebody.engine.state import (
-    ASKED,
-    CHUNK,
-    DONE,
-    FAILED,
-    REASONS,
-    Record,
-    Scheme,
-    State,
-)
-from sebody.engine.step import write_record
+from sebody.engine.state import ASKED, CHUNK, DONE, FAILED, REASONS, Record, Scheme, State
 from sebody.engine.system import System
 from sebody.errors import InputError, Interrupted, SimulationError
 from sebody.limits.watch import Watch
@@ -42,19 +31,19 @@ from sebody.runs.initial_state import begin, hold
 from sebody.runs.initial_velocities import refuse_contradicted
 from sebody.runs.progress import showing
 from sebody.runs.pulses import unseen, untold
+from sebody.runs.recorded_rows import RecordedRows
 from sebody.runs.row_exchanges import RowExchanges
 from sebody.runs.sampling import Sampling
 from sebody.runs.schemes import checked, generalized_alpha
 from sebody.runs.start_remarks import start_remarks
-from sebody.runs.steps import MOST_STEPS, check_steps
+from sebody.runs.steps import MOST_STEPS, OFF_GRID, last_step
 from sebody.runs.tolerance import UNSIZED, Tolerance, given
 
 FIRST_STEP = 1e-3       # of the output grid: first step if nothing is accelerated at the start
 LOOK = 0.2              # seconds in the loop until it returns to Python, which sees Ctrl-C then
 FIRST_CHUNK = 1         # steps before the first return
 GROWTH = 8.0            # largest factor from one chunk of steps to the next
-OFF_GRID = 1e-6         # of a step: further away, a time is none of the grid's
-FEW, BUFFERED = 64, 1024        # steps of a short piece of a run, rows of a buffer for many
+FEW = 64                # most steps of a short piece of a run
 
 
 class Simulation:
@@ -108,15 +97,13 @@ class Simulation:
         self.scheme = self._fitting(scheme, tolerance is not None)
         self.dense = not self.system.slot_unknowns.size     # no elimination by blocks
         self.state = allocate(model, self.system, self.numbering, self.h, self.dense)
-        self.rows: list[NDArray] = []       # recorded states, stretch by stretch
+        self.rows = RecordedRows(self.state, self.every)
         self.watch = Watch()
         self.watch.start(model.bodies, self.scheme, bool(self.numbering.multipliers))
         self.seconds = 0.0
         self.failure = ""
         self.exchanges = RowExchanges(self.system, self.state)
         self.sampling = Sampling(model, self.numbering, self.system, self.state)
-        self._buffer: Record | None = None      # of short pieces
-        self._jumped = False    # at the state recorded last, by an input that was set since
         user_faults.forget(model)
         self.begun = start
         if start is not None:
@@ -134,10 +121,7 @@ class Simulation:
         self.sampling.check(self.h, tolerance is None)
         if self.sampling.begin():
             self._accelerate()
-        first = Record.of(self.state, 1, self.every)
-        self.state.control.recorded = 0
-        write_record(self.state, first)
-        self.rows.append(first.rows)
+        self.rows.begin()
 
     def __repr__(self) -> str:
         return (f"<Simulation of a {summary(self.model)}: {self.numbering.free} unknowns, step "
@@ -151,7 +135,7 @@ class Simulation:
     @property
     def time(self) -> float:
         """Time reached."""
-        return float(self.state.clock.time)
+        return float(self.state.clock["time"])
 
     def run_to(self, t_end: float,
                progress: Callable[[float], None] | bool | None = None) -> Simulation:
@@ -179,7 +163,7 @@ class Simulation:
             return self
         self.flush()
         user_faults.refuse_changed(self.model)
-        last = self._last_step(t_end)
+        last = last_step(t_end, self.h, self.time, int(self.state.control.grid))
         if abs(t_end / self.h - last) > OFF_GRID:
             self.watch.say("end", f"t = {t_end:.9g} is not a multiple of the step {self.h:.9g}: "
                            f"the run ends at t = {last * self.h:.9g}")
@@ -188,9 +172,7 @@ class Simulation:
                 self.watch.say(f"peak {name}", message)
             for name, message in untold(self.numbering, self.h, self.time, t_end):
                 self.watch.say(f"jump {name}", message)
-        self._forget_jumped()
-        record = self._room(last)
-        self.state.control.recorded = 0
+        record = self.rows.record_until(last)
         self.sampling.stop_at(t_end)
         code = CHUNK
         try:
@@ -199,8 +181,8 @@ class Simulation:
         except KeyboardInterrupt:
             pass                        # the rows come first
         finally:
-            self.rows.append(record.rows[:self.state.control.recorded])
-        self.watch.look(self.model, self.numbering, self.rows[-1])
+            self.rows.keep(record)
+        self.watch.look(self.model, self.numbering, self.rows.stretches[-1])
         if code == FAILED:
             self.failure = explained(self.model, self.system, self.state, self.numbering)
             raise SimulationError(self.failure, self.result())
@@ -221,11 +203,8 @@ class Simulation:
             No actuator of this name, or no finite number.
         """
         if self.sampling.set_input(name, value):
-            state = self.state
-            state.control.restart = ASKED
-            rows = self.rows[-1] if self._buffer is None else self._buffer.rows[
-                :state.control.recorded]
-            self._jumped = len(rows) > 0 and rows[-1, RECORD_T] == state.clock.time
+            self.state.control["restart"] = ASKED
+            self.rows.jump()
 
     def read(self, name: str) -> float | NDArray:
         """A quantity in the state reached, or what a sensor gave last.
@@ -250,64 +229,19 @@ class Simulation:
         if not (self.sampling.has_inputs and steps < MOST_STEPS):
             return False
         control, last = state.control, round(steps)
-        count = last - control.grid
+        count = last - control["grid"]
         if not 0 < count <= FEW or abs(steps - last) > OFF_GRID:
             return False
-        if self.sampling.needs_looks or (self._buffer is not None
-                                         and control.recorded + count + 1 > BUFFERED):
+        if self.sampling.needs_looks or (buffer := self.rows.buffer(count + 1)) is None:
             return False
-        if self._buffer is None:
-            self._forget_jumped()
-            self._buffer = Record.of(state, BUFFERED, self.every)
-            control.recorded = 0
-        elif self._jumped:
-            control.recorded -= 1
-            control.due, self._jumped = 1, False
         self.sampling.stop_at(t_end)
-        return advance(self.system, state, self._buffer, self.scheme, last, FEW + 1,
+        return advance(self.system, state, buffer, self.scheme, last, FEW + 1,
                        self.dense) == DONE
-
-    def _forget_jumped(self) -> None:
-        """Record the state recorded last again where an input jumped since."""
-        if self._jumped:
-            self.rows[-1] = self.rows[-1][:-1]
-            self.state.control.due, self._jumped = 1, False
 
     def flush(self) -> None:
         """Put what short pieces recorded into `rows`, and look whether limits are exceeded."""
-        if self._buffer is not None:
-            self.rows.append(self._buffer.rows[:self.state.control.recorded])
-            self._buffer = None
-            self.watch.look(self.model, self.numbering, self.rows[-1])
-
-    def _last_step(self, t_end: float) -> int:
-        """The grid step nearest to a time.
-
-        Raises
-        ------
-        InputError
-            A time that is past, less than half a step away, or too many steps away.
-        """
-        past = f"cannot run to t = {inputs.shown(t_end)} from t = {self.time}: give a later time"
-        t_end = inputs.number(t_end, "t_end", remedy=past)
-        check_steps(t_end, self.h)
-        steps = t_end / self.h
-        if round(steps) < self.state.control.grid:
-            raise InputError(past)
-        there = abs(t_end - self.time) <= OFF_GRID * min(self.h, max(t_end, self.time))
-        if round(steps) == self.state.control.grid and not there:
-            raise InputError(f"cannot run to t_end = {t_end:g} from t = {self.time:g}: the step is "
-                             f"{self.h:g}; give a later time or a smaller step (the step comes "
-                             "first)")
-        return round(steps)
-
-    def _room(self, last: int) -> Record:
-        """An empty record for the states up to a step of the grid."""
-        count = last // self.every - int(self.state.control.grid) // self.every + int(
-            self.state.control.due)
-        memory.check(8.0 * count * self.state.now.size, f"a record of {count} states",
-                     "keep fewer with output_every, or give an earlier t_end")
-        return Record.of(self.state, count, self.every)
+        if self.rows.flush():
+            self.watch.look(self.model, self.numbering, self.rows.stretches[-1])
 
     def _advance(self, record: Record, last: int, t_end: float,
                  progress: Callable[[float], None] | None) -> int:
@@ -334,7 +268,7 @@ class Simulation:
         """The results computed so far."""
         self.flush()
         found = Result(self.model, self.numbering, self.system, self.state,
-                       np.concatenate(self.rows), self.seconds, self.failure, self.start)
+                       self.rows.all(), self.seconds, self.failure, self.start)
         found.warnings = (self.watch.judge(found) if found.steps else
                           tuple(self.watch.messages))
         return found
@@ -377,7 +311,7 @@ class Simulation:
         self.system.routines[:] = addresses(self.system, state)
         if self.tolerance is not None:
             state.clock.current_step = FIRST_STEP * self.h     # so far ahead it looks
-        none = Record.of(state, 0, self.every)
+        none = self.rows.none()
         while code not in (DONE, FAILED):
             self.exchanges.serve()
             self.sampling.serve()

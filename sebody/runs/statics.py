@@ -70,7 +70,7 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
         state.q[run.system.is_multiplier[:state.q.size] > 0] = 0.0
     set_loads(run.system, state.frames, state.loads, t)
     loads = state.loads.copy()
-    run.rows = [state.now[None].copy()]
+    run.rows.stretches = [state.now[None].copy()]
     tensions = Tensions.of(run)
     share, step, slack = 0.0, 1.0 / steps, False
     while share < 1.0 - 1e-12:
@@ -91,7 +91,7 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
                                       _result(run, loads, field))
             share = target
             state.now[RECORD_T] = share
-            run.rows.append(state.now[None].copy())
+            run.rows.stretches.append(state.now[None].copy())
             continue
         state.now[:] = kept
         step /= 2
@@ -105,7 +105,7 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
 
 
 def _result(run: Simulation, loads: NDArray, field: NDArray) -> Result:
-    run.watch.look(run.model, run.numbering, np.concatenate(run.rows))
+    run.watch.look(run.model, run.numbering, run.rows.all())
     found = run.result()
     found.forces = _forces(run, found.unique_rows, loads, field)
     return found

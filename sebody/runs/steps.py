@@ -1,8 +1,10 @@
-"""How many steps a run may have."""
+"""How many steps a run may have, and which is the last."""
 
+from sebody import inputs
 from sebody.errors import InputError
 
 MOST_STEPS = 1e12       # of a run: weeks, at a microsecond each
+OFF_GRID = 1e-6         # of a step: further away, a time is none of the grid's
 
 
 def check_steps(t_end: float, h: float) -> None:
@@ -16,3 +18,24 @@ def check_steps(t_end: float, h: float) -> None:
     if not t_end / h <= MOST_STEPS:
         raise InputError(f"t_end is {t_end:g}: that is {t_end / h:.3g} steps of {h:g}, give an "
                          "earlier time or a longer step")
+
+
+def last_step(t_end: float, h: float, time: float, grid: int) -> int:
+    """The grid step nearest to the end of a run that has reached a time, and a step of the grid.
+
+    Raises
+    ------
+    InputError
+        A time that is past, less than half a step away, or too many steps away.
+    """
+    past = f"cannot run to t = {inputs.shown(t_end)} from t = {time}: give a later time"
+    t_end = inputs.number(t_end, "t_end", remedy=past)
+    check_steps(t_end, h)
+    steps = t_end / h
+    if round(steps) < grid:
+        raise InputError(past)
+    there = abs(t_end - time) <= OFF_GRID * min(h, max(t_end, time))
+    if round(steps) == grid and not there:
+        raise InputError(f"cannot run to t_end = {t_end:g} from t = {time:g}: the step is "
+                         f"{h:g}; give a later time or a smaller step (the step comes first)")
+    return round(steps)

@@ -20,6 +20,6 @@ def coordinate_names(run: Simulation | Result) -> list[str]:
                 found[first:first + size] = [f"{node.name}.{kind}{label}" for label in labels]
     for name, body in model.bodies.items():
         first = numbering.modes[name]
-        for k in range(body.body.modes):
+        for k in range(body.reduced.modes):
             found[first + k] = f"{name}.modes.{k}"
     return found

@@ -49,7 +49,7 @@ class Shapes:
         model, numbering = self._model, self._numbering
         if quantity == "modes" and owner in model.bodies:
             first = numbering.modes[owner]
-            return shapes[first:first + model.bodies[owner].body.modes]
+            return shapes[first:first + model.bodies[owner].reduced.modes]
         dof_block = (getattr(model.nodes.get(owner), quantity, None)
                    if quantity in ("position", "rotation") else None)
         if dof_block is None or dof_block not in numbering.dof_blocks:

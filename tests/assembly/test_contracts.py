@@ -234,11 +234,11 @@ def test_coupled_modes_are_not_taken_for_uncoupled_ones():
     """A body whose modes are mixed with each other moves as before, with option B."""
     scene = hinged_beam.build(modes=10, inertia="material")
     body = scene.model.bodies["beam"]
-    plain, reduced = body.body, body.body
+    plain, reduced = body.reduced, body.reduced
     n = len(reduced.mass)
     mix = np.eye(n)
     mix[12:, 12:] = np.linalg.qr(np.random.default_rng(0).normal(size=(n - 12, n - 12)))[0]
-    body.body = ReducedBody(mix.T @ plain.stiffness @ mix, mix.T @ plain.mass @ mix,
+    body.reduced = ReducedBody(mix.T @ plain.stiffness @ mix, mix.T @ plain.mass @ mix,
                             plain.coordinates, plain.keeps, plain.modes)
     assert superelement_constants(body)["full"] == [n]
     mixed = simulate(scene.model, 0.01, 1.0)["tip.position"]

@@ -107,7 +107,7 @@ def beam(frame="converged_mean", inertia="floating_field"):
 def test_a_rigidly_moving_body_is_a_rigid_body(frame):
     """T, momentum and its moment of a body of FE constants that turns and moves."""
     body = beam(frame)
-    kernel, counts, reduced = load(body.kernel), contracts.counts_of(body), body.body
+    kernel, counts, reduced = load(body.kernel), contracts.counts_of(body), body.reduced
     row = contracts.constants_row("beam", kernel, counts, superelement_constants(body))
     turn = Rotation.from_rotvec([0.4, -0.7, 1.1]).as_matrix()
     spin, push = np.array([0.7, -0.2, 0.5]), np.array([3.0, 1.0, -2.0])     # global
@@ -161,7 +161,7 @@ def test_frames_that_depend_on_the_last_step_are_refused(frame):
 
 
 def test_a_body_of_reduced_matrices_alone_is_refused():
-    one = replace(beam(inertia="material").body, invariants=None)
+    one = replace(beam(inertia="material").reduced, invariants=None)
     model = Model()
     ends = [model.node(f"n{k}", x) for k, x in enumerate(one.coordinates)]
     with pytest.raises(InputError, match="'one': inertia 'floating_field' needs the mass and modes "
@@ -174,14 +174,14 @@ def test_a_body_of_reduced_matrices_alone_is_refused():
 
 def test_more_slaved_coordinates_than_a_kernel_has_memory_for():
     body = beam()
-    i = body.body.invariants
+    i = body.reduced.invariants
     many = 13
-    n, N = len(body.body.mass), len(body.body.mass) + many
+    n, N = len(body.reduced.mass), len(body.reduced.mass) + many
     grown = InertiaInvariants(
         i.mass, i.c0, np.zeros((3, N)), i.J0, np.zeros((3, N)), np.zeros((3, 3, N)),
         np.zeros((3, N, N)), np.zeros((3, 3, N, N)), np.eye(N), np.zeros((many, n, n)), i.lam, i.E,
         i.Ghat, i.origin)
-    object.__setattr__(body.body, "invariants", grown)
+    object.__setattr__(body.reduced, "invariants", grown)
     with pytest.raises(InputError, match="'beam' .*it has 13 slaved coordinates and the kernel "
                                          "memory for 12"):
         contracts.check_superelement(body, load(body.kernel))

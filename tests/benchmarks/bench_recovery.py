@@ -245,7 +245,7 @@ def large_field(divisions: tuple[int, int, int] = LARGE, states: int = 3000,
     model = placed(small, amplitudes - 12)
     model.fix("root")
     model.force("end", (0, 0, 1), [(0, 0), (1e-3, FORCE)])
-    object.__setattr__(model.bodies["body"].body, "recovery", recovery)
+    object.__setattr__(model.bodies["body"].reduced, "recovery", recovery)
     result = simulate(model, 1e-6, states * 1e-6)
     recording = Recording(result.model, result.numbering, result.system, result.state,
                           result.rows[:states], 0.0)

@@ -114,7 +114,7 @@ def rod(option: dict) -> Values:
     """Middle of the slider-crank's rod, over its length."""
     scene = slider_crank.build(modes=5, **option)
     result = simulate(scene.model, scene.h, scene.t_end)
-    body = scene.model.bodies["rod"].body
+    body = scene.model.bodies["rod"].reduced
     line = result["slider.position"] - result["pin.position"]
     chord = np.unwrap(np.arctan2(line[:, 1], line[:, 0]))
     turned = [result[f"{node}.rotation"] - chord for node in ("pin", "slider")]

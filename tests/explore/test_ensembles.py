@@ -109,13 +109,13 @@ def test_several_parameters_together_with_a_joint(hinged):
 
 def test_whole_bodies_of_one_layout(hinged):
     others = [beam_body(ratio=0.02), scaled(beam_body(ratio=0.1), stiffness=2.0)]
-    found = hinged.run({"beam.body": others}, T_END, {"tip": final("tip.position")})
+    found = hinged.run({"beam.reduced": others}, T_END, {"tip": final("tip.position")})
     for k, body in enumerate(others):
-        expected = single(hinged.model, {"beam.body": body})
+        expected = single(hinged.model, {"beam.reduced": body})
         assert np.array_equal(found["tip"][k], expected["tip.position"][-1])
     assert np.abs(found["tip"][0] - found["tip"][1]).max() > 1e-6
-    with pytest.raises(InputError, match="beam.body: one has modes 1, the model's 2"):
-        handle(hinged.model, "beam.body").set(beam_body(modes=1))
+    with pytest.raises(InputError, match="beam.reduced: one has modes 1, the model's 2"):
+        handle(hinged.model, "beam.reduced").set(beam_body(modes=1))
     assert list(hinged.model.bodies) == ["beam"]
 
 
@@ -210,7 +210,7 @@ REFUSED = {
     "shape": ({"gravity": [1.0, 2.0]}, {}, r"give an array \(runs, 3\)"),
     "nan": ({"beam.mass": [np.nan]}, {}, "beam.mass"),
     "no parameters": (3, {}, "give a dict of names and arrays"),
-    "bodies": ({"beam.body": [3]}, {}, "give ReducedBody objects"),
+    "bodies": ({"beam.reduced": [3]}, {}, "give ReducedBody objects"),
     "quantity": ({"beam.mass": [1.0]}, {"outputs": {"x": "tip.place"}}, "'place' is unknown"),
     "outputs": ({"beam.mass": [1.0]}, {"outputs": []}, "give a dict of names and quantities"),
     "late": ({"beam.mass": [1.0]}, {"outputs": {"x": at_time("tip.position", 9.0)}},
@@ -246,4 +246,4 @@ def test_a_body_with_loads_of_its_own_is_not_exchanged():
     made.superelement("beam", loaded, ends)
     made.body_load("beam", "weight")
     with pytest.raises(InputError, match="'beam' has loads of its own.*build a model for each"):
-        Ensemble(made, H).run({"beam.body": [body]}, T_END, {"end": final("b.position")})
+        Ensemble(made, H).run({"beam.reduced": [body]}, T_END, {"end": final("b.position")})

@@ -55,7 +55,7 @@ def test_a_model_takes_the_file(tmp_path):
     model = Model()
     nodes = [model.node(f"n{k}", point) for k, point in enumerate(body.coordinates)]
     for k, name in enumerate((path, str(path))):
-        placed = model.superelement(f"link {k}", name, nodes).body
+        placed = model.superelement(f"link {k}", name, nodes).reduced
         assert same(placed, body)
 
 

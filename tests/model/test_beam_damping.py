@@ -130,13 +130,14 @@ def test_a_frequency_in_place_of_a_mode_is_a_time_of_all():
     slow = found.damping < 0.9
     assert found.damping[slow] == pytest.approx(RATIO * np.abs(found.values[slow]) / 50.0, rel=1e-6)
     for part in model.bodies.values():
-        assert part.body.damping == pytest.approx(2 * RATIO / 50.0 * part.body.stiffness, rel=1e-9)
+        assert part.reduced.damping == pytest.approx(
+            2 * RATIO / 50.0 * part.reduced.stiffness, rel=1e-9)
 
 
 def test_no_rigid_motion_is_damped():
     for flat in (False, True):
         for part in cantilever(2, 4, flat=flat).bodies.values():
-            body = part.body
+            body = part.reduced
             force = body.damping @ body.rigid_modes
             assert np.abs(force).max() <= 1e-9 * np.abs(body.damping).max()
 

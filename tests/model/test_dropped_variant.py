@@ -110,7 +110,7 @@ def test_a_model_moves_as_one_built_without_the_triplet(planar):
     assert sentence.startswith(f"beam keeps no rotation at tip: {saved} fewer; its first "
                                "frequency while free is ")
     before, after = (np.sqrt(eigh(b.stiffness, b.mass, eigvals_only=True)[3 if planar else 6])
-                     / (2 * np.pi) for b in (m.bodies["beam"].body for m in (model, made)))
+                     / (2 * np.pi) for b in (m.bodies["beam"].reduced for m in (model, made)))
     assert sentence.endswith(f" {after:.6g} instead of {before:.6g}")
     assert made.nodes["tip"].rotation is None and model.nodes["tip"].rotation is not None
     assert_same(pendulum("translation", planar=planar), made, ("tip.position", "base.rotation"),
@@ -126,7 +126,7 @@ def test_modes_keep_their_initial_velocities():
     rates = np.concatenate([*(t.rate for t in (*body.positions, *body.rotations)),
                             body.mode_rates])
     # a part of the motion is in the modes that are left out
-    assert rates @ body.body.mass @ rates / 2 == pytest.approx(kinetic, rel=1e-2)
+    assert rates @ body.reduced.mass @ rates / 2 == pytest.approx(kinetic, rel=1e-2)
 
 
 def test_a_node_without_any_triplet_is_gone():
@@ -161,7 +161,7 @@ def test_positions_whose_stresses_stiffen_the_body_are_not_proposed():
     model.loads = model.loads[:1]       # that on the body
     made, sentence = drop_triplet(model, "beam", "tip", "position")
     assert sentence.endswith("; stresses that it carried no longer stiffen the body")
-    assert made.bodies["beam"].body.keeps == ("full", "rotation")
+    assert made.bodies["beam"].reduced.keeps == ("full", "rotation")
     assert can_be_dropped(model) == [("beam", "base", "rotation")]
     assert can_be_dropped(with_options(model, "beam", stiffening=False).model) == [
         ("beam", "base", "rotation"), ("beam", "tip", "position")]

@@ -239,8 +239,8 @@ def test_bodies_may_be_placed_anywhere():
     nodes = [model.node("a", (7.0, 1.0, 2.0)), model.node("b", (7.0, 61.0, 2.0))]
     turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
     placed_body = model.superelement("beam", beam(), nodes, rotation=turn)
-    assert np.allclose(placed_body.body.coordinates, [[0, 0, 0], [0, 60, 0]])
-    assert placed_body.layout == "f2" == layout_name(placed_body.body.keeps, planar=False)
+    assert np.allclose(placed_body.reduced.coordinates, [[0, 0, 0], [0, 60, 0]])
+    assert placed_body.layout == "f2" == layout_name(placed_body.reduced.keeps, planar=False)
 
 
 @pytest.mark.parametrize("planar", [False, True])

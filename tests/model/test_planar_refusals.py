@@ -94,10 +94,11 @@ def test_a_section_at_an_angle_is_no_plane_beam():
 def test_a_load_on_a_body_must_be_in_the_plane():
     model = beam()
     placed = model.bodies["beam"]
-    skew = placed.body.loads["wind"].copy()
+    skew = placed.reduced.loads["wind"].copy()
     skew[:3] += 5.0 * Z
-    placed.body = replace(placed.body, loads={"skew": skew, **placed.body.loads}, recovery=None)
-    assert planar(model).model.bodies["beam"].body.loads.keys() == {"wind"}
+    placed.reduced = replace(placed.reduced, recovery=None,
+                             loads={"skew": skew, **placed.reduced.loads})
+    assert planar(model).model.bodies["beam"].reduced.loads.keys() == {"wind"}
     model.body_load("beam", "skew", name="gust")
     with pytest.raises(InputError, match="'gust' has a part out of the plane"):
         planar(model)

@@ -44,7 +44,7 @@ def test_a_beam_moves_in_its_plane_as_in_space(section, options):
     # base: an angle in the place of three and two multipliers; tip: three; two of four modes
     assert sentence.startswith("the model is planar, normal to (")
     assert sentence.endswith(": 6 instead of 15 unknowns")
-    assert made.bodies["beam"].body.modes == 2
+    assert made.bodies["beam"].reduced.modes == 2
     assert_same(model, made, QUANTITIES)
 
 
@@ -63,7 +63,7 @@ def test_a_beam_on_a_ball_stays_in_the_plane_of_its_torque():
     model = beam(FLAT)
     free = Model()
     nodes = [free.node(name, node.point) for name, node in model.nodes.items()]
-    free.superelement("beam", model.bodies["beam"].body, nodes)
+    free.superelement("beam", model.bodies["beam"].reduced, nodes)
     free.fix("base", "position")
     free.torque("base", -2e3 * Z, wind, name="motor")
     made, sentence = planar(free)
@@ -92,10 +92,10 @@ def test_a_frame_without_planar_kernels_is_said():
 
 def test_modes_of_one_frequency_are_turned_until_they_are_in_the_plane():
     model = beam()
-    body = model.bodies["beam"].body
+    body = model.bodies["beam"].reduced
     frequencies = np.sqrt(np.diag(body.stiffness)[-4:])
     assert abs(frequencies[1] / frequencies[0] - 1) < 1e-6      # a pair, in any direction
-    kept = planar(model).model.bodies["beam"].body
+    kept = planar(model).model.bodies["beam"].reduced
     assert np.allclose(np.sqrt(np.diag(kept.stiffness)[-2:]), frequencies[[0, 2]], rtol=1e-6)
 
 
@@ -119,11 +119,11 @@ def test_beams_are_divided_in_the_plane_as_in_space(up, tapered):
         "superelements of 4 finite elements")
     assert list(first.model.bodies) == list(second.model.bodies)
     for name, body in first.model.bodies.items():
-        expected = second.model.bodies[name].body
-        assert body.body.modes == expected.modes
+        expected = second.model.bodies[name].reduced
+        assert body.reduced.modes == expected.modes
         for matrix in ("stiffness", "mass"):
             # signs of modes are free: they are compared by size
-            own, other = (np.abs(getattr(one, matrix)) for one in (body.body, expected))
+            own, other = (np.abs(getattr(one, matrix)) for one in (body.reduced, expected))
             assert np.abs(own - other).max() < 1e-9 * other.max(), name
 
 
@@ -133,7 +133,7 @@ def test_half_a_pair_of_modes_is_in_no_plane():
                                          "or has a part of the modes of one frequency: "
                                          "keep all or none of them"):
         planar(keep_modes(model, "beam", 3).model)
-    assert planar(keep_modes(model, "beam", 2).model).model.bodies["beam"].body.modes == 1
+    assert planar(keep_modes(model, "beam", 2).model).model.bodies["beam"].reduced.modes == 1
 
 
 POINTS = [(0, 0, 0), (50, 0, 0), (60, 30, 0), (10, 40, 0)]
@@ -155,7 +155,7 @@ def test_frames_of_beams_with_any_boundary(keeps, frame, inertia):
     model.force("b", TURN @ (0, 2e3, 0), wind)
     model.gravity(TURN @ (0, -9.0, 0))
     made = planar(model).model
-    assert 0 < made.bodies["frame"].body.modes < 6
+    assert 0 < made.bodies["frame"].reduced.modes < 6
     assert_same(model, made, ("b.position", "d.velocity", "frame.node6.velocity", "energy.strain"))
 
 

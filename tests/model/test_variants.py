@@ -161,7 +161,7 @@ def test_fewer_modes_are_those_of_a_new_reduction(original, before):
     """Without stiffening, whose resultants a new reduction may choose differently."""
     unstiffened = with_options(original, "first", stiffening=False).model
     variant = keep_modes(unstiffened, "first", 2)
-    rich = original.bodies["first"].body
+    rich = original.bodies["first"].reduced
     frequency = np.sqrt(rich.stiffness[-2, -2]) / (2 * np.pi)
     assert variant.change == ("first keeps 2 of its 4 internal modes; first omitted mode: "
                               f"{frequency:.4g}")
@@ -356,9 +356,9 @@ def test_what_a_beam_that_is_divided_must_not_lose_is_said():
 def test_modes_that_stay_keep_their_initial_velocities(original):
     """The energy of the start is that of the modes that are kept, and of the rest."""
     made = copied(original)
-    name = next(n for n, body in made.bodies.items() if body.body.modes > 1)
+    name = next(n for n, body in made.bodies.items() if body.reduced.modes > 1)
     body = made.bodies[name]
-    rates = np.linspace(1.0, 2.0, body.body.modes)
+    rates = np.linspace(1.0, 2.0, body.reduced.modes)
     body.mode_rates = rates.copy()
     found = keep_modes(made, name, 1).model.bodies[name]
     assert np.array_equal(found.mode_rates, rates[:1])

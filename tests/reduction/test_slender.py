@@ -34,7 +34,7 @@ def test_wires_of_the_package(seed):
                            [(0, "full"), (ELEMENTS, "full")], 4)
     along = direction(seed) / LENGTH
     exact = BENDING * np.eye(3) + (TWIST - BENDING) * np.outer(along, along)
-    for body, within in ((model.bodies["wire"].body, 5e-8), (turned, 1e-6)):
+    for body, within in ((model.bodies["wire"].reduced, 5e-8), (turned, 1e-6)):
         assert np.abs(body.stiffness[6:9, 6:9] - exact).max() < within * BENDING
 
 
@@ -79,4 +79,4 @@ def test_equal_beams_are_reduced_once(monkeypatch):
                                                              ("b", start + direction))]
         model.beam(f"beam {k}", ends, section, 4, bodies=1, modes=3, damping=0.01)
     assert len(reduced) == 1 and len(turned) == 2
-    assert model.bodies["beam 0"].body is model.bodies["beam 2"].body
+    assert model.bodies["beam 0"].reduced is model.bodies["beam 2"].reduced

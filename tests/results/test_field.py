@@ -110,7 +110,7 @@ def test_rates_are_those_of_the_places_and_nodes_those_of_the_model(case):
 def test_displacements_in_both_axes(case):
     model, _ = CASES[case]()
     field, superelement = states(model).field("body"), model.bodies["body"]
-    body, motion = superelement.body, field.motion
+    body, motion = superelement.reduced, field.motion
     local = body.displacements(motion.y[1])[:, :field.points.shape[1]]
     assert np.abs(local).max() > 1e-3
     assert_allclose(field.displacement(1, axes="body"), local, rtol=0, atol=1e-14)
@@ -133,7 +133,7 @@ def test_fields_of_a_loaded_result_and_bodies_that_share_shapes(tmp_path):
         assert np.array_equal(getattr(loaded.field("beam").at(2), quantity),
                               getattr(result.field("beam").at(2), quantity))
     model, _ = spatial("converged_mean")
-    one, other = (body.body.recovery for body in model.bodies.values())
+    one, other = (body.reduced.recovery for body in model.bodies.values())
     assert one is not other and one.shapes is other.shapes
 
 
@@ -157,9 +157,9 @@ def test_what_is_refused():
 
 def test_bodies_without_recovery():
     model, _ = CASES["mean"]()
-    body = model.bodies["body"].body
+    body = model.bodies["body"].reduced
     bare = ReducedBody(body.stiffness, body.mass, body.coordinates, body.keeps, body.modes)
-    model.bodies["body"].body = bare
+    model.bodies["body"].reduced = bare
     with pytest.raises(InputError, match="'body' has reduced matrices only, so fields "
                                          "inside it are unknown: reduce its FE model"):
         states(model).field("body")

@@ -35,7 +35,7 @@ def test_they_are_the_largest_of_all_states(result):
     stresses = np.array([field.von_mises(step) for step in range(len(result.t))])
     highest = np.nanmax(stresses, axis=0)
     order = np.argsort(-highest)[:12]
-    labels = result.model.bodies["arm"].body.recovery.labels
+    labels = result.model.bodies["arm"].reduced.recovery.labels
     spots = result.hot_spots("arm", 12)
     np.testing.assert_allclose([one.von_mises for one in spots], highest[order], rtol=1e-9)
     assert {one.node for one in spots[:11]} <= set(labels[order].tolist())
@@ -71,7 +71,7 @@ def test_the_table(result):
 
 def test_nodes_are_named_by_their_labels(result):
     """A label within the range of the indices would be another node."""
-    labels = result.model.bodies["arm"].body.recovery.labels
+    labels = result.model.bodies["arm"].reduced.recovery.labels
     field = result.field("arm")
     for place in (3, 40):
         np.testing.assert_array_equal(result[f"arm.node{labels[place]}.von_mises"],

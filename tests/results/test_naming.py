@@ -130,7 +130,7 @@ def test_unknown_names_say_what_was_meant(result, name, said):
 
 def test_of_a_body_without_its_mesh_the_message_says_what_to_do():
     model = Model()
-    bare = build().bodies["rod"].body
+    bare = build().bodies["rod"].reduced
     body = ReducedBody(bare.stiffness, bare.mass, bare.coordinates, bare.keeps, bare.modes)
     model.superelement("rod", body, [model.node("base", ENDS[0]), model.node("tip", ENDS[1])])
     with pytest.raises(InputError, match="'rod' was reduced without the shapes of its FE model"):

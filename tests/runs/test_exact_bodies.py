@@ -135,5 +135,5 @@ def test_a_block_by_its_corners_keeps_energy_and_momenta():
         # of second order: a hundredth of these with a tenth of the step
         assert np.ptp(energy) < 6e-6 * energy[0]
         assert np.abs(moment - moment[0]).max() < 3e-6 * np.abs(moment).max()
-        size = np.linalg.norm(push) * result.model.bodies["block"].body.total_mass + 1.0
+        size = np.linalg.norm(push) * result.model.bodies["block"].reduced.total_mass + 1.0
         assert np.abs(momentum - momentum[0]).max() < 1e-11 * size

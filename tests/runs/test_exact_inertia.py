@@ -149,7 +149,7 @@ def middle_of_the_rod(result, rod):
     chord = np.unwrap(np.arctan2(line[:, 1], line[:, 0]))
     turned = [result[f"{node}.rotation"] - chord for node in ("pin", "slider")]
     y = np.column_stack([np.zeros((len(chord), 4)), *turned, result["rod.modes"]])
-    shapes = rod.body.recovery.shapes[3 * (slider_crank.ELEMENTS // 2) + 1]
+    shapes = rod.reduced.recovery.shapes[3 * (slider_crank.ELEMENTS // 2) + 1]
     return y @ shapes[:y.shape[1]] / slider_crank.LENGTH
 
 

@@ -223,7 +223,7 @@ def test_initial_acceleration_from_the_mass_matrix():
     run = Simulation(hinged(), 0.01)
     keep = [3, 4, 5, 8, 11]             # tip position, base and tip rotation about z
     force = np.array([0.0, 0.0, 0.0, TORQUE, 0.0])
-    mass = run.model.bodies["beam"].body.mass
+    mass = run.model.bodies["beam"].reduced.mass
     expected = np.linalg.solve(mass[np.ix_(keep, keep)], force)
     assert accelerations(run)[keep] == pytest.approx(expected, rel=1e-9, abs=1e-9)
 
@@ -236,7 +236,7 @@ def test_initial_acceleration_of_the_rigid_motion(spin):
     """
     model = hinged()
     model.rigid_velocity((0, 0, 0), (0, 0, spin))
-    body = model.bodies["beam"].body
+    body = model.bodies["beam"].reduced
     turning = body.rigid_modes[:, 5]
     run = Simulation(model, 0.01)
     # rigid motion through a condensation of condition 4e2, times EPS

@@ -144,7 +144,7 @@ def test_vibrations_at_rest_and_their_damping(planar):
     turn = Rotation.from_rotvec([0, 0, 0.7]).as_matrix() if planar else TURN
     d = 2 if planar else 3
     model = blade(turn=turn, planar=planar, damping=0.01, body_modes=2, shift=SHIFT[:d])
-    body = model.bodies["arm"].body
+    body = model.bodies["arm"].reduced
     held = np.r_[0:d, 2 * d:2 * d + (1 if planar else 3)]
     free = np.setdiff1d(np.arange(len(body.mass)), held)
     squares = eigh(body.stiffness[np.ix_(free, free)], body.mass[np.ix_(free, free)],

@@ -19,7 +19,7 @@ def oscillator(scheme, omega_h):
     body = craig_bampton(planar_beam((0, 0), (10.0, 0), SECTION, 2), [(0, "full"), (2, "full")], 2)
     model.superelement("body", body, ends, stiffening=False)    # which is not linear
     model.fix("a")
-    body = model.bodies["body"].body
+    body = model.bodies["body"].reduced
     omega = np.sqrt(body.stiffness[-2, -2] / body.mass[-2, -2])
     for node in ends:
         node.position.fixed = True

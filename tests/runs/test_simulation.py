@@ -114,15 +114,16 @@ def sooner(model):
 
 def stiffer(model):
     body = model.element("beam")
-    body.body = replace(body.body, stiffness=2.0 * body.body.stiffness)
+    body.reduced = replace(body.reduced, stiffness=2.0 * body.reduced.stiffness)
 
 
 def heavier(model):
     body = model.element("beam")
-    own = body.body.invariants
+    own = body.reduced.invariants
     doubled = {name: 2.0 * getattr(own, name) for name in (
         "mass", "c0", "S1", "J0", "g", "h", "K", "J2", "Mbar")}
-    body.body = replace(body.body, mass=2.0 * body.body.mass, invariants=replace(own, **doubled))
+    body.reduced = replace(body.reduced, mass=2.0 * body.reduced.mass,
+                           invariants=replace(own, **doubled))
 
 
 def another_frame(model):

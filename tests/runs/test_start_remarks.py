@@ -155,7 +155,7 @@ def test_a_rigid_motion_strains_nothing(planar, how):
         assert run.result()[f"{name}.velocity"][0] == pytest.approx(v + spin, abs=1e-12)
         assert run.result()[f"{name}.angular_velocity"][0] == pytest.approx(w, abs=1e-12)
     energy = run.result()["energy.kinetic"][0]
-    mass, centre = model.bodies["bar"].body.total_mass, ends.mean(axis=0) - about
+    mass, centre = model.bodies["bar"].reduced.total_mass, ends.mean(axis=0) - about
     velocity = v + (w * np.array([-centre[1], centre[0]]) if planar else np.cross(w, centre))
     assert energy > 0.5 * mass * velocity @ velocity
     assert simulate(model, 1e-3, 0.05)["energy.strain"].max() < 1e-3 * energy

@@ -150,7 +150,7 @@ def test_a_body_that_is_held_at_both_ends_sags():
         model.fix(end)
     model.gravity((1e-3, 0.0))
     result = equilibrium(model, 2)
-    body = model.bodies["beam"].body
+    body = model.bodies["beam"].reduced
     modes = result["beam.modes"][-1]
     deepest = np.abs(body.displacements(np.concatenate([np.zeros(6), modes]))[:, :2]).max()
     weight = 1e-3 * SECTION.density * SECTION.area

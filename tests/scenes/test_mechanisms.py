@@ -130,7 +130,7 @@ def shape_of_the_middle(result, body, along):
     fe_model = planar_beam(body.nodes[0].point, body.nodes[1].point, slider_crank.SECTION, n)
     ends = np.concatenate([fe_model.dofs(k, what) for what in ("translation", "rotation")
                            for k in (0, n)])
-    shapes = component_modes(fe_model.stiffness, fe_model.mass, ends, body.body.modes).basis
+    shapes = component_modes(fe_model.stiffness, fe_model.mass, ends, body.reduced.modes).basis
     row = shapes[fe_model.dofs(n // 2, "translation")[1]]
     chord = np.unwrap(np.arctan2(along[:, 1], along[:, 0]))
     turned = [result[f"{node}.rotation"] - chord for node in ("pin", "slider")]

@@ -60,7 +60,7 @@ def quantities(model):
             found += [f"{name}.{what}" for what in ("rotation", "angular_velocity")]
     return found + [f"{joint.name}.{what}" for joint in model.joints for what in (
         "force", "moment")] + [f"{name}.modes" for name, body in model.bodies.items()
-                               if body.body.modes]
+                               if body.reduced.modes]
 
 
 def frequencies(run, spin=None):

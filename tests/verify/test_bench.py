@@ -39,7 +39,7 @@ def test_json_has_cost_and_error_of_the_same_run(alone, capsys):
 def test_operations_grow_with_bodies_and_iterations():
     """At least two flops for each entry of S and M, each of which a product meets once."""
     result = simulate(hinged_beam.build().model, 0.01, 1.0)
-    n = result.model.bodies["beam"].body.stiffness.shape[0]
+    n = result.model.bodies["beam"].reduced.stiffness.shape[0]
     assert own.flops_per_step(result) > result.iterations_per_step * 2 * 2 * n * n
 
 

@@ -141,9 +141,9 @@ def _divisible(model: Mechanism, beam: Beam, pinned: set[str]) -> bool:
 def _of_beam(beam: Beam, asked: bool) -> Part:
     """A beam; one whose inside is asked for is not rigid."""
     first = beam.parts[0]
-    planar = first.body.planar
+    planar = first.reduced.planar
     given = _given(first, len(beam.parts))
-    most = max(MOST_MODES[planar], first.body.modes * given.bodies)
+    most = max(MOST_MODES[planar], first.reduced.modes * given.bodies)
     options = _options(first)
     forms, many = set() if asked else {_rigid(given)}, given.bodies > max(DIVISIONS)
     for bodies in DIVISIONS:
@@ -156,7 +156,7 @@ def _of_beam(beam: Beam, asked: bool) -> Part:
     detailed = given if many else max(
         (f for f in forms if not f.rigid and f.bodies == max(DIVISIONS)),
         key=lambda f: (_rank(f), f.stiffening, f.modes))
-    return Part(beam.name, beam, first.body, given, detailed, tuple(forms), _elements(beam))
+    return Part(beam.name, beam, first.reduced, given, detailed, tuple(forms), _elements(beam))
 
 
 def _elements(beam: Beam) -> int:
@@ -168,16 +168,16 @@ def _elements(beam: Beam) -> int:
 
 def _of_body(name: str, body: Superelement, asked: bool) -> Part:
     """A body; one whose inside is asked for is not rigid."""
-    given, most = _given(body, 1), body.body.modes
+    given, most = _given(body, 1), body.reduced.modes
     forms = {Form(False, 1, modes, *option) for modes in _counts(most)
              for option in _options(body)} | {given} | (set() if asked else {_rigid(given)})
     detailed = max((f for f in forms if not f.rigid),
                   key=lambda f: (_rank(f), f.stiffening, f.modes))
-    return Part(name, None, body.body, given, detailed, tuple(forms))
+    return Part(name, None, body.reduced, given, detailed, tuple(forms))
 
 
 def _given(body: Superelement, bodies: int) -> Form:
-    return Form(False, bodies, body.body.modes, body.inertia, body.stiffening, body.frame)
+    return Form(False, bodies, body.reduced.modes, body.inertia, body.stiffening, body.frame)
 
 
 def _rigid(given: Form) -> Form:
@@ -193,7 +193,7 @@ def _options(body: Superelement) -> list[tuple[str, bool, str]]:
     """Inertia, stiffening and frame that the part may have."""
     frame = body.frame if not FRAMES[body.frame].traits.incremental else "converged_mean"
     found = [("material", False, frame)]
-    invariants = body.body.invariants
+    invariants = body.reduced.invariants
     if invariants is None:
         return [*found, ("rigid_part", False, frame)]
     found.append(("floating_field", False, frame))

@@ -160,17 +160,17 @@ def _rate(dof_block: DofBlock, name: str) -> Handle:
 def body_factor(quantity: str) -> Callable[[Model, Superelement, str], Handle]:
     """Handle of a factor of stiffness, mass or damping; those of one body add up."""
     def make(model: Model, body: Superelement, name: str) -> Handle:
-        if quantity == "damping" and body.body.damping is None:
+        if quantity == "damping" and body.reduced.damping is None:
             raise InputError(f"{name}: superelement {body.name!r} has no damping to scale: build "
                              "it from body.damped(...)")
-        before = body.body
+        before = body.reduced
 
         def assign(value: NDArray) -> None:
             placed = model.bodies[body.name]        # perhaps with another body
-            placed.body = scaled(placed.body, **{quantity: float(value)})
+            placed.reduced = scaled(placed.reduced, **{quantity: float(value)})
 
         def put_back() -> None:
-            body.body = before
+            body.reduced = before
         bound = {"least": 0.0} if quantity == "damping" else {"above": 0.0}
         return Handle(np.array(1.0), assign, put_back, BODIES, **bound)
     return make
@@ -184,13 +184,13 @@ def whole_body(model: Model, body: Superelement, name: str) -> Handle:
     bodies = dict(model.bodies)
 
     def assign(value: ReducedBody) -> None:
-        _check_like(name, value, body.body)
+        _check_like(name, value, body.reduced)
         exchange(model, body, value, body.frame, body.inertia, body.stiffening)
 
     def put_back() -> None:
         model.bodies = dict(bodies)
         model.own_names.add(body.name)
-    return Handle(body.body, assign, put_back, BODIES)
+    return Handle(body.reduced, assign, put_back, BODIES)
 
 
 def _check_like(name: str, value: ReducedBody, base: ReducedBody) -> None:

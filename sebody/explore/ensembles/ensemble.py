@@ -25,7 +25,7 @@ from sebody.reduction import ReducedBody
 from sebody.results.result import Result
 from sebody.runs.progress import showing
 from sebody.runs.simulation import Simulation
-from sebody.runs.steps import check_steps
+from sebody.runs.steps import OFF_GRID, check_steps
 from sebody.runs.user_faults import refuse_changed
 
 PLACING = ".position", ".rotation"      # parameters that move where runs begin
@@ -151,7 +151,7 @@ class Ensemble:
         t_end = inputs.number(t_end, "t_end", above=0)
         check_steps(t_end, self.h)
         last = round(t_end / self.h)
-        if last < 1 or abs(t_end / self.h - last) > 1e-6:
+        if last < 1 or abs(t_end / self.h - last) > OFF_GRID:
             raise InputError(f"t_end is {t_end:g}, which is not a multiple of the step {self.h:g}: "
                              "give one")
         return last

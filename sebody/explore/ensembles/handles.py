@@ -9,7 +9,7 @@
 ``<body>.stiffness``        factor, of a superelement's stiffness and of its geometric stiffness
 ``<body>.mass``             factor, of a superelement or rigid body with its inertia
 ``<body>.damping``          factor, of a superelement that has damping
-``<body>.body``             a whole `ReducedBody` of the same boundary nodes, in the same axes
+``<body>.reduced``          a whole `ReducedBody` of the same boundary nodes, in the same axes
 ``<load>.amplitude``        factor of a force or torque
 ``<load>.table``            values at the times of its table, (rows,)
 ``<drive>.amplitude``       factor of a motion given by a table or profile
@@ -91,7 +91,7 @@ KINDS = (
         "rotation": changes.rotation, "angular_velocity": changes.angular_velocity}),
     Kind("superelement", lambda model: model.bodies, {
         "stiffness": changes.body_factor("stiffness"), "mass": changes.body_factor("mass"),
-        "damping": changes.body_factor("damping"), "body": changes.whole_body}),
+        "damping": changes.body_factor("damping"), "reduced": changes.whole_body}),
     Kind("rigid body", lambda model: model.rigid_bodies, {"mass": changes.rigid_mass}),
     Kind("drive", _drives, {"amplitude": changes.drive_amplitude}),
     Kind("joint", lambda model: {j.name: j for j in model.joints}, {

@@ -200,7 +200,7 @@ def kinematic_quantities(simulation: Simulation, outputs: Mapping[str, Output]
         A quantity that the model does not have.
     """
     kinematic, shapes = set(), {}
-    rows = simulation.rows[0]
+    rows = simulation.rows.stretches[0]
     for quantity in {o.quantity for o in outputs.values()}:
         try:
             found = look_up(_States(simulation.model, simulation.numbering, None, None, rows, 0.0),

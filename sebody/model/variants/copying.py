@@ -37,7 +37,7 @@ def copied(model: Mechanism) -> Mechanism:
     """
     checked(model)
     elements = (*model.constraints, *model.loads)
-    constant: list[object] = [body.body for body in model.bodies.values()]
+    constant: list[object] = [body.reduced for body in model.bodies.values()]
     constant += [one for beam in model.beams for one in (beam.section, *beam.bodies)]
     constant += [one for element in elements for one in (element.time_function, element.function)
                  if one is not None]
@@ -86,7 +86,7 @@ def loads_on(model: Mechanism, body: Superelement) -> list[Element]:
 def load_name(load: Element) -> str:
     """Name that the load of a body has there."""
     assert load.body is not None
-    return next(name for name, vector in load.body.body.loads.items()
+    return next(name for name, vector in load.body.reduced.loads.items()
                 if np.array_equal(vector, load.constants["P"]))
 
 
@@ -99,7 +99,7 @@ def exchange(model: Mechanism, old: Superelement, body: ReducedBody, frame: str,
     which are then given.
     """
     nodes = old.nodes if nodes is None else nodes
-    carrier = old.nodes[old.body.position_nodes[int(np.argmax(old.alpha))]]
+    carrier = old.nodes[old.reduced.position_nodes[int(np.argmax(old.alpha))]]
     on_node = FRAMES[old.frame].on_one_node and any(node is carrier for node in nodes)
     order = list(model.bodies)
     del model.bodies[old.name]

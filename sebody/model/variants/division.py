@@ -88,7 +88,7 @@ def _described(model: Mechanism, name: str) -> Beam:
     own = found[0]
     what = f"beam {name!r} cannot be divided anew: "
     for part, body in zip(own.parts, own.bodies, strict=True):
-        if model.bodies.get(part.name) is not part or part.body is not body:
+        if model.bodies.get(part.name) is not part or part.reduced is not body:
             raise InputError(f"{what}superelement {part.name!r} was changed; divide the beam first")
         if np.any(part.mode_rates):
             raise InputError(f"{what}modes of {part.name!r} have initial velocities")

@@ -62,17 +62,17 @@ def drop_triplet(model: Mechanism, name: str, node: Node | str,
     made = copied(model)
     old = made.bodies[name]
     try:
-        found = released(old.body, place, what)
+        found = released(old.reduced, place, what)
     except InputError as error:
         raise InputError(f"superelement {name!r} needs {own.name}: {error}") from error
-    nodes = tuple(n for n in old.nodes if n.name != node.name or old.body.keeps[place] == "full")
+    nodes = tuple(n for n in old.nodes if n.name != node.name or old.reduced.keeps[place] == "full")
     rates = _rates(old, found)
     setattr(made.nodes[node.name], what, None)
     new = exchange(made, old, found.body, old.frame, old.inertia, old.stiffening, nodes)
     new.mode_rates = rates
     if all(getattr(made.nodes[node.name], kind) is None for kind in _KINDS):
         del made.nodes[node.name]
-    before, after = (_first_frequency(one) for one in (old.body, found.body))
+    before, after = (_first_frequency(one) for one in (old.reduced, found.body))
     ending = ("; stresses that it carried no longer stiffen the body"
               if what == "position" and _stiffens(body, node.name) else "")
     return Variant(made, f"{name} keeps no {what} at {node.name}: {fewer(model, made)}; its "
@@ -135,8 +135,8 @@ def _rates(old: Superelement, found: Released) -> NDArray:
     rates = np.concatenate([*(t.rate for t in (*old.positions, *old.rotations)), old.mode_rates])
     held = len(found.bound)
     left = rates - found.basis[:, :held] @ rates[found.bound]
-    modes = found.basis[:, held:].T @ old.body.mass @ left
-    momentum = np.sqrt(rates @ old.body.mass @ rates)       # of modes of unit mass
+    modes = found.basis[:, held:].T @ old.reduced.mass @ left
+    momentum = np.sqrt(rates @ old.reduced.mass @ rates)       # of modes of unit mass
     return np.where(np.abs(modes) > _SAME * momentum, modes, 0.0)
 
 
@@ -145,7 +145,7 @@ def _stiffens(body: Superelement, node: str) -> bool:
     place = [one.name for one in body.nodes].index(node)
     invariants = body.invariants
     return body.stiffening and invariants is not None and bool(
-        invariants.E[coordinates_of(body.body, place, "position")].any())
+        invariants.E[coordinates_of(body.reduced, place, "position")].any())
 
 
 def _first_frequency(body: ReducedBody) -> float:

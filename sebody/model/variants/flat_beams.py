@@ -23,13 +23,13 @@ def flat_beams(model: Mechanism, made: Mechanism, flat: Flattening) -> list[Beam
     """
     found = []
     for beam in model.beams:
-        if all(model.bodies.get(part.name) is part and part.body is body
+        if all(model.bodies.get(part.name) is part and part.reduced is body
                for part, body in zip(beam.parts, beam.bodies, strict=True)):
             parts = tuple(made.bodies[part.name] for part in beam.parts)
-            options = {**beam.options, "up": None, "modes": max(p.body.modes for p in parts)}
+            options = {**beam.options, "up": None, "modes": max(p.reduced.modes for p in parts)}
             found.append(Beam(beam.name, tuple(flat.node(node) for node in beam.nodes),
                               _flat_section(beam, flat), beam.elements, options, parts,
-                              tuple(part.body for part in parts)))
+                              tuple(part.reduced for part in parts)))
     return found
 
 

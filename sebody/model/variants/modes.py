@@ -27,7 +27,7 @@ def keep_modes(model: Mechanism, name: str, modes: int) -> Variant:
     InputError
         An unknown superelement, more modes than there are, or a force on a mode left out.
     """
-    before = placed(model, name).body
+    before = placed(model, name).reduced
     modes = inputs.integer(modes, f"modes of superelement {name!r}", least=0, most=before.modes,
                            remedy=f"it has {before.modes}: keep 0 to {before.modes}")
     for load in model.loads:
@@ -36,7 +36,7 @@ def keep_modes(model: Mechanism, name: str, modes: int) -> Variant:
                              f"keep {load.mode[1] + 1} modes or more")
     made = copied(model)
     old = made.bodies[name]
-    exchange(made, old, truncated(old.body, modes), old.frame, old.inertia, old.stiffening)
+    exchange(made, old, truncated(old.reduced, modes), old.frame, old.inertia, old.stiffening)
     kept = f"{modes} of its {before.modes} internal modes" if modes else "no internal modes"
     left = frequencies(before.stiffness, before.mass, before.modes)[modes:]
     ending = f"; first omitted mode: {left[0]:.4g}" if len(left) else ""

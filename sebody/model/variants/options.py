@@ -33,7 +33,7 @@ def with_options(model: Mechanism, name: str, frame: str | None = None, inertia:
     old = made.bodies[name]
     if stiffening is None and inertia in (None, old.inertia):
         stiffening = old.stiffening
-    after = exchange(made, old, old.body, old.frame if frame is None else frame,
+    after = exchange(made, old, old.reduced, old.frame if frame is None else frame,
                      old.inertia if inertia is None else inertia, stiffening)
     return Variant(made, f"{name} {_change(before, after)}")
 

@@ -159,7 +159,7 @@ class _Flat(NamedTuple):
         for load in model.loads:
             if load.pressed_by is not None:
                 on_nodes[load][0].pressed_by = joints[load.pressed_by]
-        bodies = {name: planar_body(body.body, flat.plane.axes, f"superelement {name!r}")
+        bodies = {name: planar_body(body.reduced, flat.plane.axes, f"superelement {name!r}")
                   for name, body in model.bodies.items()}
         rates = {name: _rates(body, bodies[name]) for name, body in model.bodies.items()}
         for load in model.loads:
@@ -176,7 +176,7 @@ def _rates(old: Superelement, found: PlanarBody) -> NDArray:
     bound = [dof_block.rate for dof_block in (*old.positions, *old.rotations)]
     odd = np.concatenate([0.0 * v for v in bound] + [old.mode_rates - found.modes @ rates])
     every = np.concatenate([*bound, old.mode_rates])
-    if odd @ old.body.mass @ odd > _ODD**2 * (every @ old.body.mass @ every):
+    if odd @ old.reduced.mass @ odd > _ODD**2 * (every @ old.reduced.mass @ every):
         raise InputError(f"superelement {old.name!r} has initial velocities of modes out of the "
                          "plane")
     return rates
@@ -209,7 +209,7 @@ def _built(model: Mechanism, flat_model: _Flat) -> Mechanism:
             body = made.bodies[load.body.name]
             made.loads.append(Element(
                 load.name, body_load_kind(FRAMES[body.frame].kernel, True), body.attachments,
-                {"P": body.body.loads[load_name(load)]}, time_function=load.time_function,
+                {"P": body.reduced.loads[load_name(load)]}, time_function=load.time_function,
                 body=body))
     made.own_names, made.default_names = set(model.own_names), model.default_names.copy()
     made.beams = flat_beams(model, made, flat_model.flat)
@@ -218,7 +218,7 @@ def _built(model: Mechanism, flat_model: _Flat) -> Mechanism:
 
 def _add_body(made: Mechanism, old: Superelement, flat_model: _Flat) -> None:
     body = flat_model.bodies[old.name].body
-    frame_node = (old.body.position_nodes[int(np.argmax(old.alpha))]
+    frame_node = (old.reduced.position_nodes[int(np.argmax(old.alpha))]
                   if FRAMES[old.frame].on_one_node else 0)
     stiffening = old.stiffening and body.invariants is not None and body.invariants.stiffens
     new = superelement(made, old.name, body, [flat_model.flat.node(node) for node in old.nodes],

@@ -49,10 +49,10 @@ def rigid(model: Mechanism, name: str) -> Variant:
     carrier = _carrier(body)
     _check_rates(body, carrier)
     followers = [node for node in body.nodes if node is not carrier]
-    closed = [node.name for node, keep in zip(body.nodes, body.body.keeps, strict=True)
+    closed = [node.name for node, keep in zip(body.nodes, body.reduced.keeps, strict=True)
               if node is not carrier and make_dependent(made, node, carrier, keep, name)]
-    mass, inertia, centre = rigid_constants(body.body)
-    offset = carrier.point - body.body.coordinates[body.nodes.index(carrier)]
+    mass, inertia, centre = rigid_constants(body.reduced)
+    offset = carrier.point - body.reduced.coordinates[body.nodes.index(carrier)]
     bodies.rigid_body(made, name, carrier, mass, inertia, centre + offset)
     left = _replace_loads(made, body, carrier)
     links = (f", with {', '.join(node.name for node in followers)} on rigid links"
@@ -79,7 +79,7 @@ def rigid_constants(body: ReducedBody) -> tuple[float, NDArray | float, NDArray]
 def _carrier(body: Superelement) -> Node:
     """The node that the others follow by rigid links."""
     what = f"superelement {body.name!r} cannot be made rigid"
-    own = list(zip(body.nodes, body.body.keeps, strict=True))
+    own = list(zip(body.nodes, body.reduced.keeps, strict=True))
     held = {node.position: node for node, keep in own
             if keep != "rotation" and is_held(dof_block(node, "position"))}.values()
     still = [node for node in held if dof_block(node, "position").fixed]
@@ -99,9 +99,9 @@ def _carrier(body: Superelement) -> Node:
 def _check_rates(body: Superelement, carrier: Node) -> None:
     """Refuse initial velocities that the carrier and a rigid motion do not give."""
     linear, angular = (start_rate(dof_block(carrier, kind)) for kind in ("position", "rotation"))
-    for node, keep in zip(body.nodes, body.body.keeps, strict=True):
+    for node, keep in zip(body.nodes, body.reduced.keeps, strict=True):
         arm = node.point - carrier.point
-        spin = (angular[0] * np.array([-arm[1], arm[0]]) if body.body.planar else
+        spin = (angular[0] * np.array([-arm[1], arm[0]]) if body.reduced.planar else
                 np.cross(angular, arm))
         for kind, rate, other in (("position", linear + spin, "rotation"),
                                   ("rotation", angular, "translation")):
@@ -129,7 +129,7 @@ def _replace_loads(model: Mechanism, body: Superelement, carrier: Node) -> list[
 def _add_resultant(model: Mechanism, load: Element, carrier: Node) -> None:
     """Force and moment of a load on its body, which turn with the carrying node."""
     assert load.body is not None
-    body, size = load.body.body, model.dimension
+    body, size = load.body.reduced, model.dimension
     at = body.coordinates[load.body.nodes.index(carrier)]
     total = body.rigid_modes_about(at).T @ body.loads[load_name(load)]
     model.own_names.discard(load.name)

@@ -95,7 +95,7 @@ def flops_per_step(result: Result) -> float:
 def _kernel_flops(body: Superelement) -> float:
     kernel = load(body.kernel)
     alone, position, rotation, products = kernel.OPERATIONS["residual"]
-    n = len(body.body.stiffness)
+    n = len(body.reduced.stiffness)
     full = superelement_constants(body)["full"][0] if kernel.N_MODES is None else n
     return (alone + position * len(body.positions) + rotation * len(body.rotations)
             + 2.0 * products * (full * (2 * n - full) + n - full))

@@ -88,6 +88,6 @@ def _key(scene: str) -> str:
     text += [(load.name, [(k, np.asarray(v).tolist()) for k, v in load.constants.items()],
               load.time_function.times, load.time_function.pieces,
                load.time_function.waves) for load in built.model.loads]
-    text += [b.body.stiffness.tobytes() + b.body.mass.tobytes()
+    text += [b.reduced.stiffness.tobytes() + b.reduced.mass.tobytes()
              for b in built.model.bodies.values()]
     return hashlib.sha256(repr(text).encode()).hexdigest()[:12]

@@ -72,7 +72,7 @@ class Recorded:
                 made = divide(self.given, part.name, count, part.elements,
                               modes=_seen(part, count)).model
                 self._bodies[key] = [
-                    ([nodes[i], nodes[j]], body.body) for i, j, body in zip(
+                    ([nodes[i], nodes[j]], body.reduced) for i, j, body in zip(
                         places, places[1:], made.beams[-1].parts, strict=False)]
         return self._bodies[key]
 
