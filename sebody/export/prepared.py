@@ -118,7 +118,8 @@ class Prepared:
         changing += [system.constants] * (2 in kinds)
         changing += members(self.exchanges)
         state.work[:] = 0.0
-        return Image([system, state, self.outputs, self.exchanges], changing, state.work)
+        return Image([system, state, self.outputs, self.exchanges], changing,
+                     [state.work, self.exchanges.factors])
 
     def _find_calls(self) -> None:
         """Find addresses in the arrays, and forget them: they are of this process."""

@@ -30,7 +30,7 @@ def model_h(model: Prepared) -> str:
         **{f"MEMORY_{name}": getattr(control_data, name) for name in (
             "STOP", "NEXT", "HAS", "COUNTS")},
         **{f"CONTROL_{name.upper()}": CONTROL.names.index(name) for name in (
-            "grid", "recorded", "reason", "restart", "corner", "wanted")},
+            "grid", "recorded", "reason", "restart", "corner", "wanted", "pivoted")},
         **{f"CLOCK_{name.upper()}": CLOCK.names.index(name) for name in ("time", "step")}}
     first = own.periods.size + control_data.COUNTS
     listed = [

@@ -225,5 +225,7 @@ static int instance_restore(Instance *m, const char *from) {
   memcpy(m->base + IMAGE_MUTABLE, from + sizeof head, IMAGE_SAVED - IMAGE_MUTABLE);
   m->failed = (int)head.failed;
   m->stale = 1;
+  /* factors with row exchanges are no part of a state */
+  if (control(m)[CONTROL_PIVOTED]) control(m)[CONTROL_WANTED] = EVALUATED;
   return 0;
 }
