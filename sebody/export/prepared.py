@@ -12,7 +12,7 @@ from sebody import inputs
 from sebody.assembly.control import begin
 from sebody.compiler.choice import way
 from sebody.engine.control_data import FUNCTION, OUTSIDE
-from sebody.engine.state import Scheme
+from sebody.engine.state import EVALUATED, Scheme
 from sebody.engine.system import System
 from sebody.errors import InputError
 from sebody.export.image import Image, members
@@ -118,6 +118,9 @@ class Prepared:
         changing += [system.constants] * (2 in kinds)
         changing += members(self.exchanges)
         state.work[:] = 0.0
+        if state.control.wanted == EVALUATED:       # so matrices are made before they are read
+            for matrix in (state.J, state.matrix, state.inverse):
+                matrix[...] = 0.0
         return Image([system, state, self.outputs, self.exchanges], changing,
                      [state.work, self.exchanges.factors])
 
