@@ -21,13 +21,17 @@ class Variable(NamedTuple):
 
 
 def variables(model: Prepared) -> list[Variable]:
-    """The time, inputs and parameters, outputs: in the order of their value references."""
+    """The time, inputs and parameters, outputs: in the order of their value references.
+
+    Without units of the model there are none: words such as length are no units.
+    """
+    named = bool(model.model.units)
     found = [Variable("time", 0, "independent", "continuous", "", None)]
     for one in model.inputs:
         kind = ("parameter", "tunable") if one.kind == PARAMETER else ("input", "continuous")
-        found.append(Variable(one.name, len(found), *kind, one.unit, one.start))
+        found.append(Variable(one.name, len(found), *kind, one.unit * named, one.start))
     for name, unit in zip(model.names, model.units, strict=True):
-        found.append(Variable(name, len(found), "output", "continuous", unit, None))
+        found.append(Variable(name, len(found), "output", "continuous", unit * named, None))
     return found
 
 

@@ -13,7 +13,7 @@ from sebody.compiler.sources import function_hash, kernel_hash
 from sebody.compiler.workers import Task
 from sebody.engine import control, loop, matrix, restart
 from sebody.errors import InputError, SebodyError
-from sebody.export import quantities
+from sebody.export import quantities, row_exchanges
 from sebody.export.platforms import environment, tag
 from sebody.export.terms import no_outputs
 from sebody.kernels.loader import load
@@ -28,6 +28,7 @@ FUNCTIONS = {
     "sample": (control.sample, "system state"),
     "set_input": (control.set_input, "system state whole number"),
     "evaluate": (quantities.evaluate, "system state outputs"),
+    "exchange": (row_exchanges.exchange, "system state exchanges"),
 }
 
 
@@ -70,7 +71,8 @@ def compile_one(name: str, processor: str) -> None:
     """Compile a function of the engine or a kernel for the processor that Numba compiles for."""
     if name in FUNCTIONS:
         function, arguments = FUNCTIONS[name]
-        kinds = examples() | {"outputs": typeof(no_outputs())}
+        kinds = examples() | {"outputs": typeof(no_outputs()),
+                              "exchanges": typeof(row_exchanges.Exchanges.of(0))}
         made = function_code(function, tuple(kinds[one] for one in arguments.split()))
     else:
         made = kernel_code(load(name).kernel)

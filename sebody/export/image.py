@@ -31,8 +31,8 @@ class Image:
     groups : list of Arrays
     changing : iterable of ndarray
         Arrays of them that change in a run.
-    scratch : ndarray
-        Written before it is read in every step.
+    scratch : list of ndarray
+        Of these, what is written before it is read.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class Image:
     """
 
     def __init__(self, groups: list[Arrays], changing: Iterable[NDArray | np.record],
-                 scratch: NDArray):
+                 scratch: list[NDArray]):
         mutable = {_address(array) for array in changing if array.nbytes}
         found: dict[int, NDArray | np.record] = {}
         for array in sorted((one for group in groups for one in _members(group)),
@@ -55,9 +55,9 @@ class Image:
             if array.nbytes and not _holding(found.values(), array):
                 found[_address(array)] = array
         zero = {at: not any(bytes_of(array)) for at, array in found.items()}
-        last = _address(scratch)
+        last = {_address(array) for array in scratch if array.nbytes}
         order = sorted(found, key=lambda at: (at in mutable, at in mutable and zero[at],
-                                              at == last))
+                                              at in last))
         self._spans: list[_Span] = []
         self.size = 0
         self.mutable = self.saved = -1
@@ -66,7 +66,7 @@ class Image:
             array = found[at]
             if at in mutable and self.mutable < 0:
                 self.mutable = self.size
-            if at == last:
+            if at in last and self.saved < 0:
                 self.saved = self.size
             self._spans.append(_Span(at, array.nbytes, self.size))
             self.size += -(-array.nbytes // ALIGNED) * ALIGNED

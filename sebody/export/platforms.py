@@ -81,13 +81,17 @@ def target_processor(name: str, processor: str) -> tuple[str, str]:
 
 
 def tag(processor: str) -> str:
-    """Name of a processor in the names of files; that of this machine depends on the machine."""
+    """Name of a processor in the names of files, also of the way in which Numba compiles for it.
+
+    That of this machine depends on the machine.
+    """
     from sebody.compiler.choice import way
 
+    own = way().__name__.rpartition(".")[2]
     if processor != NATIVE:
-        return processor
+        return f"{own}.{processor}"
     name, features = way().processor()
-    return f"{name}-{crc32(features.encode()):08x}"
+    return f"{own}.{name}-{crc32(features.encode()):08x}"
 
 
 def environment(processor: str) -> dict[str, str]:

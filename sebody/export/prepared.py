@@ -13,13 +13,14 @@ from sebody.assembly.control import begin
 from sebody.compiler.choice import way
 from sebody.contract.law_row import OUTSIDE
 from sebody.engine.control_data import FUNCTION
-from sebody.engine.state import Scheme
+from sebody.engine.state import EVALUATED, Scheme
 from sebody.engine.system import System
 from sebody.errors import InputError
 from sebody.export.image import Image, members
 from sebody.export.interface import Input, placed, with_inputs
 from sebody.export.linking import Part
 from sebody.export.quantities import Outputs
+from sebody.export.row_exchanges import Exchanges
 from sebody.export.terms import Quantities
 from sebody.kernels.loader import element_kernel_name, load
 from sebody.model.model import Model
@@ -78,9 +79,9 @@ class Prepared:
         made, asked = with_inputs(model, inputs_of)
         self.run = Simulation(made, run.h, run.scheme, 1, run.tolerance, run.start)
         self.model, self._numbering = made, self.run.numbering
-        if self.run.state.control.pivoted:
-            raise InputError("the matrix of the model needs row exchanges at the start, which "
-                             "libraries do not have: leave out what makes a motion without mass")
+        if self.run.system.massless[0]:
+            raise InputError("a motion of the model has stiffness and no mass, for which Python "
+                             "solves at the start and at every jump: give it some mass")
         if any(one.name.rpartition(".parameters.")[0] in made.controllers for one in asked):
             self._ask_for_first_samples()
         self.system = _with_spare_corner(self.run.system)
@@ -95,6 +96,7 @@ class Prepared:
         self.outputs: Outputs = quantities.made(self.names, [s for _, s in self.sensors])
         found = parsed_units(made.units)
         self.units = [unit(one, found) for one in self.names]
+        self.exchanges = Exchanges.of(0 if self.run.dense else self._numbering.free)
         self.image = self._image([one.kind for one in asked])
         self.inputs: list[Input] = [
             one._replace(unit=found.of(one.unit) if found else one.unit)
@@ -115,8 +117,13 @@ class Prepared:
                     self.outputs.sums, system.corners, system.jumps, system.table_times,
                     system.table_pieces, system.control.parameters]
         changing += [system.constants] * (2 in kinds)
+        changing += members(self.exchanges)
         state.work[:] = 0.0
-        return Image([system, state, self.outputs], changing, state.work)
+        if state.control.wanted == EVALUATED:       # so matrices are made before they are read
+            for matrix in (state.J, state.matrix, state.inverse):
+                matrix[...] = 0.0
+        return Image([system, state, self.outputs, self.exchanges], changing,
+                     [state.work, self.exchanges.factors])
 
     def _find_calls(self) -> None:
         """Find addresses in the arrays, and forget them: they are of this process."""

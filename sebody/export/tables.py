@@ -30,12 +30,13 @@ def model_h(model: Prepared) -> str:
         **{f"MEMORY_{name}": getattr(control_data, name) for name in (
             "STOP", "NEXT", "HAS", "COUNTS")},
         **{f"CONTROL_{name.upper()}": CONTROL.names.index(name) for name in (
-            "grid", "recorded", "reason", "restart", "corner", "wanted")},
+            "grid", "recorded", "reason", "restart", "corner", "wanted", "pivoted")},
         **{f"CLOCK_{name.upper()}": CLOCK.names.index(name) for name in ("time", "step")}}
     first = own.periods.size + control_data.COUNTS
     listed = [
         *(_words(name, image.words(group)) for name, group in (
-            ("SYSTEM", system), ("STATE", state), ("OUTPUTS", outputs))),
+            ("SYSTEM", system), ("STATE", state), ("OUTPUTS", outputs),
+            ("EXCHANGES", model.exchanges))),
         _array("int64_t", "RECORD_AT", record.at.tolist()),
         _array("double", "SCHEME", [float(x).hex() for x in run.scheme]),
         _array("double", "CORNER", [_float(x) for x in system.corners[:-1]]),

@@ -26,6 +26,7 @@ from sebody.model.control_parts import Sensor
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Joint
 from sebody.results import naming
+from sebody.results.field_quantities import FENodes
 from sebody.results.postprocessing import Forces
 from sebody.results.recording import Recording
 
@@ -119,7 +120,7 @@ class Quantities:
         """
         owner, _, _ = name.rpartition(".")
         prescribed = {self.numbering.port_names[k] for k in self.system.prescribed[:, 1]}
-        refused = (axes or self.system.regularized[0] and "force" in name
+        refused = (axes or self._inside(name) or self.system.regularized[0] and "force" in name
                    or name.endswith(".power") and owner in prescribed)
         for made in () if refused else (self._linear, self._with_rotations, self._in_joint_axes):
             found = made(name)
@@ -132,8 +133,6 @@ class Quantities:
 
     def _linear(self, name: str) -> list[Term] | None:
         """Weights of numbers, from one state for each of them."""
-        if "node" in name and name not in self._known_whole(name):
-            return None
         sources = self._rest + np.vstack([np.zeros(self._rest.size), np.eye(self._rest.size)])
         values = self._values(name, sources)
         if values.ndim != 1:
@@ -143,11 +142,11 @@ class Quantities:
         found = [Term(float(weights[k]), (self._kinds[k],)) for k in np.flatnonzero(weights)]
         return found + [Term(float(constant), ())] * bool(constant)
 
-    def _known_whole(self, name: str) -> tuple[str, ...]:
-        """The name, unless it is that of a quantity inside a body."""
-        inside = [body for body in self.model.bodies if name.startswith(f"{body}.node")]
-        owners = {name.rpartition(".")[0], name.rpartition(".")[0].rpartition(".")[0]}
-        return () if inside and not owners & set(self.model.nodes) else (name,)
+    def _inside(self, name: str) -> bool:
+        """Whether it is a quantity of an FE node."""
+        recording = self._now()
+        owner = naming.split(recording, name)[0].rpartition(".")[0]
+        return owner not in self.model.nodes and owner in FENodes(recording)
 
     def _with_rotations(self, name: str) -> list[Term] | None:
         """The same with moments, which elements give in axes that turn with nodes."""

@@ -155,8 +155,7 @@ class Sampling:
             last = first + self.model.dimension
             return lambda: now[first:last].copy()
         made = channel(self.model, self.numbering, name)
-        kind, one, other = made.places
-        numbers = made.numbers
+        (kind, one), numbers = made.places[:2], made.numbers
         if kind == DOT and np.count_nonzero(numbers) == np.count_nonzero(numbers[1:4]) == 1:
             k = int(np.flatnonzero(numbers)[0])
             factor, place = float(numbers[k]), int(one + k - 1)

@@ -251,3 +251,14 @@ def test_struck_frames_beside_beams(monkeypatch, capsys):
     assert list(row) == ["default", "on rotations", "beams"]
     assert row["default"]["0.001"]["gain"] < 1e-2 and row["beams"]["0.001"]["gain"] < 1e-2
     assert row["default"]["0.001"]["end"] == pytest.approx(0.1)
+
+
+def test_exported_libraries_beside_runs(monkeypatch, capsys):
+    pytest.importorskip("ziglang", reason="exports are linked by the package ziglang")
+    bench = imported("bench_export")
+    monkeypatch.setattr(bench, "PROCESSOR", "native")
+    monkeypatch.setattr(bench, "MOST_PAIRS", 1)
+    bench.main(["heavy-top", "--json", "--pairs", "1", "--t-end", "0.2"])
+    row = json.loads(capsys.readouterr().out)["heavy-top"]
+    assert row["bitwise"] and row["largest difference"] == 0.0 and row["steps"] == 200
+    assert row["speed"] > 0.0 and row["library kB"] < 300

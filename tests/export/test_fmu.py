@@ -101,6 +101,24 @@ def test_steps_are_those_of_a_run_in_python(made):
     assert np.abs(found[:, 2] - own[:, 2]).max() < 1e-10 * np.abs(own[:, 2]).max()
 
 
+def test_a_controller_outside_is_one_inside(made):
+    """Feedback of an importer at every communication point, and the same as a controller."""
+    slave, period = Slave(*made), 2 * H
+    for k in range(STEPS // 2):
+        angle, = slave.read("pin.angle")
+        slave.put(push=-8.0 * angle + 0.3)
+        slave.fmu.doStep(currentCommunicationPoint=k * period, communicationStepSize=period)
+    model = pendulum()
+    model.controller("loop", proportional, ["pin.angle"], ["push"], period)
+    own = Simulation(model, H).run_to(STEPS * H).read("bob.position")
+    found = np.array(slave.read("bob.position.x", "bob.position.y"))
+    assert np.abs(found - own).max() < 1e-14
+
+
+def proportional(t, y, x, u, parameters):
+    u[0] = -8.0 * y[0] + 0.3
+
+
 def test_fmpy_simulates_it(made):
     times = np.arange(STEPS + 1) * H
     signal = np.array([(t, np.sin(0.1 * k)) for k, t in enumerate(times)],

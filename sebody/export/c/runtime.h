@@ -18,6 +18,7 @@ enum { INPUT, ACCELERATION, PARAMETER };                        /* kinds of inpu
 extern int64_t sb_advance(void *system, void *state, void *record, const double *scheme,
                           int64_t last, int64_t chunk, int64_t dense);
 extern int64_t sb_evaluate(void *system, void *state, void *outputs);
+extern int64_t sb_exchange(void *system, void *state, void *exchanges);    /* unless DENSE */
 extern int64_t sb_set_input(void *system, void *state, int64_t k, double value);
 extern void *const sb_functions[];
 extern const unsigned char sb_image[];
@@ -25,6 +26,7 @@ extern const unsigned char sb_image[];
 typedef struct {
   char *raw, *base;
   int64_t system[SYSTEM_WORDS], state[STATE_WORDS], outputs[OUTPUTS_WORDS], record[7], every;
+  int64_t exchanges[EXCHANGES_WORDS];
   int stale, failed;
   char message[512];
 } Instance;
@@ -59,6 +61,7 @@ static Instance *instance_new(void) {
   place(m, m->system, SYSTEM, SYSTEM_WORDS);
   place(m, m->state, STATE, STATE_WORDS);
   place(m, m->outputs, OUTPUTS, OUTPUTS_WORDS);
+  place(m, m->exchanges, EXCHANGES, EXCHANGES_WORDS);
   instance_reset(m);
   return m;
 }
@@ -101,8 +104,12 @@ static int go(Instance *m, int64_t last, double *rows, int64_t count, int64_t ch
       if (read_sensors(m)) return 1;
       continue;
     }
+#if !DENSE
+    if ((code == FACTOR || code == SOLVE)
+        && !sb_exchange(m->system, m->state, m->exchanges)) continue;
+#endif
     int64_t reason = control(m)[CONTROL_REASON];
-    return fail(m, code == FACTOR || code == SOLVE ? "a matrix needs row exchanges"
+    return fail(m, code == FACTOR || code == SOLVE ? "a matrix of masses is singular"
                    : code != FAILED || reason < 0 || reason >= REASONS ? "compiled code failed"
                    : REASON[reason]);
   }
@@ -218,5 +225,7 @@ static int instance_restore(Instance *m, const char *from) {
   memcpy(m->base + IMAGE_MUTABLE, from + sizeof head, IMAGE_SAVED - IMAGE_MUTABLE);
   m->failed = (int)head.failed;
   m->stale = 1;
+  /* factors with row exchanges are no part of a state */
+  if (control(m)[CONTROL_PIVOTED]) control(m)[CONTROL_WANTED] = EVALUATED;
   return 0;
 }
