@@ -4,8 +4,9 @@ import differentiated as scenes
 import numpy as np
 import pytest
 
-from sebody import InputError, Model
+from sebody import InputError, Model, Tolerance
 from sebody.analysis import at_time, final, gradient, integral, rms, soft_maximum
+from sebody.gradients.gradient import Differentiated
 from sebody.model import profiles
 from sebody.runs.schemes import generalized_alpha
 
@@ -105,34 +106,42 @@ def oscillator(stiffness=40.0, damping=0.6, mass=1.3, amplitude=2.0):
     return m
 
 
-def test_a_linear_oscillator_against_its_own_recursion():
-    """The scheme applied to m x'' + c x' + k x = f, differentiated by complex steps."""
-    h, steps = 0.02, 60
-    s = generalized_alpha()
+@pytest.mark.parametrize("tolerance", [None, Tolerance(1e-4)])
+def test_a_linear_oscillator_against_its_own_recursion(tolerance):
+    """The scheme applied to m x'' + c x' + k x = f, differentiated by complex steps.
+
+    With variable steps the sequence of their lengths is that of the run.
+    """
+    t_end, s = 1.2, generalized_alpha()
+    steps = Differentiated(oscillator(), 0.02, t_end, EXACT, tolerance).history.steps[1:]
+    assert (np.ptp(steps) > 0.5 * steps.max()) == (tolerance is not None)
 
     def last(k, c, m, f):
-        x = v = 0.0
-        force = [f * np.sin(5.0 * h * i) for i in range(steps + 1)]
-        a = aux = (force[0] - c * v - k * x) / m
-        for i in range(steps):
+        x = v = t = 0.0
+        a = aux = (f * np.sin(0.0) - c * v - k * x) / m
+        before = steps[0]
+        for h in steps:
             # aux' = ((1 - af) a' + af a - am aux) / (1 - am) in x', v'; m a' = f' - c v' - k x'
+            aux = a + h / before * (aux - a)
+            t, before = t + h, h
             on = (s.alpha_f * a - s.alpha_m * aux) / (1 - s.alpha_m)
             share = (1 - s.alpha_f) / (1 - s.alpha_m)
             x1 = x + h * v + h * h * ((0.5 - s.beta) * aux + s.beta * on)
             v1 = v + h * ((1 - s.gamma) * aux + s.gamma * on)
-            a1 = (force[i + 1] - c * v1 - k * x1) / (
+            a1 = (f * np.sin(5.0 * t) - c * v1 - k * x1) / (
                 m + c * h * s.gamma * share + k * h * h * s.beta * share)
             x, v = x1 + h * h * s.beta * share * a1, v1 + h * s.gamma * share * a1
             a, aux = a1, on + share * a1
         return x
     values = dict(k=40.0, c=0.6, m=1.3, f=2.0)
     exact = [np.imag(last(**(values | {name: values[name] + 1e-30j}))) / 1e-30 for name in "kcmf"]
-    found = gradient(oscillator(), h, h * steps, {"x": final("a.position.x")},
-                     ["spring.stiffness", "spring.damping", "ball.mass", "push.amplitude"],
-                     scheme=EXACT)
-    assert found.value[0] == pytest.approx(1.0 + last(**values), rel=1e-12)
-    # factors of mass and load count from one
-    assert found.matrix[0] / (1, 1, 1.3, 2.0) == pytest.approx(exact, rel=1e-9)
+    for mode in ("adjoint", "forward"):
+        found = gradient(oscillator(), 0.02, t_end, {"x": final("a.position.x")},
+                         ["spring.stiffness", "spring.damping", "ball.mass", "push.amplitude"],
+                         mode, tolerance, EXACT)
+        assert found.value[0] == pytest.approx(1.0 + last(**values), rel=1e-9)
+        # factors of mass and load count from one; times are rounded
+        assert found.matrix[0] / (1, 1, 1.3, 2.0) == pytest.approx(exact, rel=1e-8)
 
 
 def test_components_of_parameters():
@@ -177,6 +186,9 @@ def test_features_without_exact_derivatives_are_refused_by_name():
     with pytest.raises(InputError, match="index 2.*index=3"):
         gradient(m, 0.01, 0.05, {"x": final("tip.position")}, ["gravity"],
                  scheme=generalized_alpha(index=2))
+    with pytest.raises(InputError, match="fixed step"):
+        gradient(m, 0.01, 0.05, {"x": final("tip.position")}, ["gravity"],
+                 tolerance=Tolerance(1e-3))
     with pytest.raises(InputError, match="not a multiple of the step"):
         gradient(m, 0.01, 0.055, {"x": final("tip.position")}, ["gravity"])
     m.stop("hinge", upper=0.2, stiffness=100.0, name="end")
