@@ -251,3 +251,12 @@ def test_struck_frames_beside_beams(monkeypatch, capsys):
     assert list(row) == ["default", "on rotations", "beams"]
     assert row["default"]["0.001"]["gain"] < 1e-2 and row["beams"]["0.001"]["gain"] < 1e-2
     assert row["default"]["0.001"]["end"] == pytest.approx(0.1)
+
+
+@pytest.mark.filterwarnings("ignore::sebody.LimitWarning")
+def test_gradients_are_timed_and_a_torque_ends_at_rest():
+    bench = imported("bench_gradient")
+    found = bench.cost(repeats=1, t_end=0.5)
+    assert list(found)[0] == "run" and min(found.values()) > 0.0
+    found, _ = bench.torque(entries=60, t_end=0.3, angle=0.05, h=5e-3)
+    assert found["misses"][-1] < 1e-8 < found["misses"][0]
