@@ -8,7 +8,7 @@ from sebody import InputError, Model, Tolerance
 from sebody.analysis import at_time, final, gradient, integral, rms, soft_maximum
 from sebody.gradients.gradient import Differentiated
 from sebody.model import profiles
-from sebody.runs.schemes import generalized_alpha
+from sebody.runs.schemes import generalized_alpha, hht
 
 EXACT = generalized_alpha(tolerance=1e-13)
 # of each scene: what builds it, step and end, objectives, parameters
@@ -43,6 +43,12 @@ SCENES = {
     "in a plane": (scenes.flat, 0.002, 0.06, {
         "slider": final("d.position"), "b": final("b.velocity")}, [
         "torque.amplitude", "piston.mass", "rod.mass", "rod.stiffness", "gravity"]),
+    "moved in a plane": (scenes.lifted, 0.005, 0.1, {
+        "end": final("end.position"), "tip": final("b.velocity")}, [
+        "lift.amplitude", "swing.amplitude", "ball.mass", "beam.damping"]),
+    "joints": (scenes.joined, 0.005, 0.1, {
+        "ball": final("d.position"), "c": final("c.velocity")}, [
+        "upper.mass", "ball.mass", "spring.stiffness", "torque.table"]),
     "rigid-part inertia": (lambda: scenes.hinged("d", modes=2), 0.005, 0.1, {
         "tip": final("tip.position")}, ["torque.amplitude", "beam.stiffness", "beam.mass"]),
     "material inertia": (lambda: scenes.hinged("b", modes=2), 0.005, 0.1, {
@@ -73,6 +79,25 @@ def test_adjoint_forward_and_differences_of_runs_agree(name):
     assert apart < 1e-11
     expected = scenes.differences(build(), *run)
     assert (np.abs(found.matrix - expected) / rows(expected)).max() < 1e-7
+
+
+@pytest.mark.parametrize("scheme", [hht(-0.1, 1e-13), generalized_alpha(0.3, 1e-13)])
+def test_other_schemes(scheme):
+    run = scenes.hinged("b", modes=2), 0.005, 0.1, {"tip": final("tip.velocity")}, ["beam.mass"]
+    one, other = (gradient(*run, mode, scheme=scheme) for mode in ("adjoint", "forward"))
+    assert (np.abs(one.matrix - other.matrix) / rows(other.matrix)).max() < 1e-11
+    expected = scenes.differences(*run, scheme=scheme)
+    assert (np.abs(one.matrix - expected) / rows(expected)).max() < 1e-7
+
+
+def test_forces_of_joints():
+    """Of multipliers the runs themselves have more noise: differences over larger steps."""
+    run = scenes.joined(), 0.005, 0.1, {"rope": final("rope.force"), "m": final("cross.moment")}, [
+        "ball.mass", "gravity.y"]
+    found, apart = both(*run)
+    assert apart < 1e-10
+    expected = scenes.differences(*run, relative=3e-2)
+    assert (np.abs(found.matrix - expected) / rows(expected)).max() < 3e-6
 
 
 def test_a_sparse_chain():
