@@ -149,6 +149,7 @@ class Differentiated:
         self.run = Simulation(model, h, scheme, tolerance=tolerance)
         refuse_run(self.run)
         self.history: History = history(self.run, t_end, met)
+        self.run.watch.look(model, self.run.numbering, self.history.states)
         self.linear = Linear(self.run)
         self.course = Course(self.linear, self.run.scheme, self.history)
         self.course.settle()

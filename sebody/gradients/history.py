@@ -73,7 +73,10 @@ def history(run: Simulation, t_end: float, met: Sequence[float] = ()) -> History
     events = _Events(run, last)
     while run.state.control.grid < last:
         before = run.state.control.steps, float(run.state.clock.aux_step)
-        _one_step(run, events.record, last)
+        if not _one_step(run, events.record, last):
+            run.failure = explained(run.model, run.system, run.state, run.numbering)
+            run.rows.stretches.append(np.array(events.rows)[events.recorded[1:]])
+            raise SimulationError(run.failure, run.result())
         if run.state.control.steps > before[0]:
             events.add(before[1])
     return events.found(time.perf_counter() - began)
@@ -126,17 +129,14 @@ def put_back(state: State, numbers: list[NDArray]) -> None:
         (numbers_of(one) if isinstance(one, np.record) else one)[...] = before
 
 
-def _one_step(run: Simulation, record: Record, last: int) -> None:
-    """Advance by one accepted step, and by the restart that may follow."""
+def _one_step(run: Simulation, record: Record, last: int) -> bool:
+    """Advance by one accepted step, and by the restart that may follow; False if it fails."""
     state, chunk = run.state, 1
     state.control.recorded = 0
     while True:
         code = advance(run.system, state, record, run.scheme, last, chunk, run.dense)
-        if code == FAILED:
-            run.failure = explained(run.model, run.system, state, run.numbering)
-            raise SimulationError(run.failure, run.result())
-        if code in (CHUNK, DONE):
-            return
+        if code in (CHUNK, DONE, FAILED):
+            return code != FAILED
         run.exchanges.serve()
         chunk = 0           # the step it is in the middle of is the one
 

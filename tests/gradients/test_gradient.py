@@ -4,7 +4,7 @@ import differentiated as scenes
 import numpy as np
 import pytest
 
-from sebody import InputError, Model, Tolerance
+from sebody import InputError, Model, SimulationError, Tolerance
 from sebody.analysis import at_time, final, gradient, integral, rms, soft_maximum
 from sebody.gradients.gradient import Differentiated
 from sebody.model import profiles
@@ -228,3 +228,12 @@ def test_the_model_is_as_before():
     assert np.array_equal(before.value, after.value)
     assert np.array_equal(before.matrix, after.matrix)
     assert before.of("x", "beam.mass").shape == (3, 1)
+
+
+@pytest.mark.filterwarnings("ignore::sebody.LimitWarning")
+def test_a_run_that_fails_says_where_and_keeps_what_it_computed():
+    m = scenes.hinged("b", modes=2)
+    m.torque("base", 1e6 * scenes.Z, [(0, 0), (0.06, 0), (0.1, 1)], name="blow")
+    with pytest.raises(SimulationError, match="stopped at t = 0.06") as caught:
+        gradient(m, 0.02, 1.0, {"tip": final("tip.position")}, ["beam.mass"])
+    assert caught.value.result["t"] == pytest.approx([0.0, 0.02, 0.04, 0.06])
