@@ -221,6 +221,8 @@ def test_features_without_exact_derivatives_are_refused_by_name():
     m = scenes.hinged("b", frame="mean")
     with pytest.raises(InputError, match="'beam': frame 'mean'.*converged_mean"):
         gradient(m, 0.01, 0.05, {"x": final("tip.position")}, ["gravity"])
+    with pytest.raises(InputError, match="not unique.*force or moment"):
+        gradient(scenes.four_bar(), 0.01, 0.05, {"x": final("A.multipliers")}, ["gravity.x"])
     m = scenes.hinged()
     with pytest.raises(InputError, match="index 2.*index=3"):
         gradient(m, 0.01, 0.05, {"x": final("tip.position")}, ["gravity"],
