@@ -90,6 +90,10 @@ def test_several_values_are_no_function():
         f(f.base)
     with pytest.raises(InputError, match="x has shape|give 1 numbers"):
         f([1.0, 2.0])
+    f = ValueAndGradient(scenes.hinged("b", modes=2), 0.005, 0.05, final("tip.position.x"),
+                         ["beam.mass", "gravity.y"])
+    with pytest.raises(InputError, match="beam.mass is -0.5: it must be above 0; give .* bounds"):
+        f([-0.5, -9.81])
 
 
 @pytest.mark.filterwarnings("error")
