@@ -94,7 +94,7 @@ def _meet(run: Simulation, times: Sequence[float]) -> None:
 
 
 def _whole(run: Simulation, last: int) -> History | None:
-    """The run in one go; None, and the run at its start again, if a step was cut or loads jump."""
+    """The run in one go; None, and the run at its start, if steps were rejected or loads jump."""
     state, start = run.state, copy_of(run.state)
     inside = run.system.corners <= (last + OFF) * run.h
     if run.tolerance is not None or (run.system.jumps[inside] > 0).any():

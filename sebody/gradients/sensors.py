@@ -14,7 +14,7 @@ from sebody.small_motion.moved_states import SMALL, Moves, differences
 
 PIECE = 64          # motions that are compared at a time
 FINER = 30.0        # factor of the steps of differences from one try to the next
-SMALLEST = 1e-8     # of them, of the extent: rounding is 1e-8 of a derivative then
+SMALLEST = 1e-8     # of them, of the characteristic length: rounding is 1e-8 of a derivative then
 CLOSE = 1e-5        # of the largest derivative: differences that agree like this are right
 
 

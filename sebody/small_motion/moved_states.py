@@ -77,7 +77,7 @@ def differences(run: Simulation | Result, names: Sequence[str], along: Moves, pu
     pushed : (k, forces of all elements)
         Change of the forces of elements beside what the motions make.
     small : float
-        Motion of the states that are compared, of the extent or in radians.
+        Motion of the states that are compared, of the characteristic length or in radians.
     """
     rows, scale = _moved_rows(run, along, small)
     recording = Result(run.model, run.numbering, run.system, run.state, rows, 0.0)
