@@ -177,6 +177,40 @@ def flat():
     return m
 
 
+def joined():
+    """Bodies on a cylindrical and a universal joint, a spring, and a mass on a rope."""
+    m = Model()
+    m.gravity(-9.81 * Y + 2 * Z)
+    a = m.node("a", place(0, 0, 0))
+    m.rigid_body("upper", a, 1.0, np.diag([0.1, 0.2, 0.3]), centre=place(0.3, 0.1, 0))
+    m.cylindrical(a, axis=Z + 0.2 * X, name="tube")
+    end = m.attach("end", place(0.8, 0.1, 0.1), a)
+    b = m.node("b", place(0.8, 0.1, 0.1))
+    m.rigid_body("lower", b, 0.7, np.diag([0.1, 0.05, 0.1]), centre=place(0.8, -0.4, 0.1))
+    m.universal(b, X, Y, to=end, name="cross")
+    wall = m.node("wall", place(0, 0, -1))
+    m.fix(wall)
+    m.spring(a, wall, stiffness=40, damping=1, name="spring")
+    c, d = m.attach("c", place(0.8, -0.9, 0.1), b), m.node("d", place(1.6, -0.9, 0.1))
+    m.point_mass("ball", d, 0.4)
+    m.fix(d, "rotation")
+    m.distance(c, d, name="rope")
+    m.torque(b, 0.4 * Z, [(0, 1), (0.2, -1)], name="torque")
+    return m
+
+
+def lifted():
+    """A planar beam whose base is moved and turned, with a link at its tip."""
+    m = Model(planar=True)
+    a, b = m.node("a", (0.1, 0.2)), m.node("b", (1.0, 0.5))
+    m.beam("beam", (a, b), rectangle(0.03, 0.02, 2e9, 0.3, 1200.0), 4, 1, 2, damping=0.02)
+    m.move(a, (0.03, 0.1), profiles.harmonic(1.0, 6.0), name="lift")
+    m.move(a, 1.0, profiles.harmonic(0.5, 5.0), what="rotation", name="swing")
+    m.point_mass("ball", m.attach("end", (1.2, 0.3), b), 0.3)
+    m.gravity((0.4, -9.0))
+    return m
+
+
 def chain(links):
     """Links on hinges in turned directions, beyond the size of full matrices."""
     m = Model()

@@ -16,7 +16,7 @@ from sebody.errors import InputError
 
 ROUNDS = 4              # of equilibration
 REDUNDANT = 1e-9        # on the diagonal of multipliers, of equilibrated matrices
-REFINEMENTS = 1, 4      # of ordinary and of redundant systems
+REFINEMENTS = 2, 4      # of ordinary and of redundant systems
 
 
 class Scales:

@@ -29,6 +29,7 @@ from sebody.runs.schemes import checked as checked_scheme
 from sebody.runs.schemes import generalized_alpha
 from sebody.runs.simulation import Simulation
 from sebody.runs.steps import check_steps
+from sebody.runs.tolerance import Tolerance, given
 
 CONVERGED = 1e-10       # of Newton's iteration: errors of gradients are a hundred times that
 CHAOTIC = 1e6           # growth from which a run warns
@@ -86,7 +87,7 @@ class Gradient:
 
 def gradient(model: Model, h: float, t_end: float, objectives: Objectives,
              parameters: Sequence[str], mode: Literal["adjoint", "forward"] = "adjoint",
-             scheme: Scheme | None = None) -> Gradient:
+             tolerance: Tolerance | None = None, scheme: Scheme | None = None) -> Gradient:
     """Run a model, and differentiate what the run gives: exactly, without differences of runs.
 
     Parameters
@@ -102,6 +103,9 @@ def gradient(model: Model, h: float, t_end: float, objectives: Objectives,
     mode : {'adjoint', 'forward'}
         Backwards with a cost that grows with the number of objectives, or forwards with one that
         grows with that of parameters. Results are the same to rounding.
+    tolerance : Tolerance, optional
+        Variable steps, of models without constraints: the sequence of accepted steps is held, and
+        objectives are those over the states at their ends, one of which is at `t_end`.
     scheme : Scheme, optional
         `generalized_alpha` with rho 0.9 and a tolerance of 1e-10 by default.
 
@@ -126,21 +130,26 @@ def gradient(model: Model, h: float, t_end: float, objectives: Objectives,
     inputs.instance(model, "model", Model, "give a sebody.Model")
     columns = columns_of(model, parameters)
     refuse_model(model)
-    return differentiate(model, h, t_end, outputs, columns, mode, fitting(scheme))
+    return differentiate(model, h, t_end, outputs, columns, mode,
+                         fitting(scheme, given(tolerance)), tolerance)
 
 
-def fitting(scheme: Scheme | None) -> Scheme:
+def fitting(scheme: Scheme | None, tolerance: Tolerance | None = None) -> Scheme:
     """A scheme that converges far enough."""
-    return generalized_alpha(tolerance=CONVERGED) if scheme is None else checked_scheme(scheme)
+    if scheme is not None:
+        return checked_scheme(scheme)
+    return generalized_alpha(tolerance=CONVERGED, index=3 if tolerance is None else 2)
 
 
 class Differentiated:
     """A run with its accepted steps, and what linearizes them."""
 
-    def __init__(self, model: Model, h: float, t_end: float, scheme: Scheme):
-        self.run = Simulation(model, h, scheme)
+    def __init__(self, model: Model, h: float, t_end: float, scheme: Scheme,
+                 tolerance: Tolerance | None = None, met: Sequence[float] = ()):
+        self.run = Simulation(model, h, scheme, tolerance=tolerance)
         refuse_run(self.run)
-        self.history: History = history(self.run, t_end)
+        self.history: History = history(self.run, t_end, met)
+        self.run.watch.look(model, self.run.numbering, self.history.states)
         self.linear = Linear(self.run)
         self.course = Course(self.linear, self.run.scheme, self.history)
         self.course.settle()
@@ -156,10 +165,12 @@ def multiple(t_end: float, h: float) -> float:
 
 
 def differentiate(model: Model, h: float, t_end: float, outputs: Mapping[str, Output],
-                  columns: Sequence[Column], mode: str, scheme: Scheme) -> Gradient:
+                  columns: Sequence[Column], mode: str, scheme: Scheme,
+                  tolerance: Tolerance | None = None) -> Gradient:
     """As `gradient`, of names that are checked; `columns` may count from other values."""
     began = time.perf_counter()
-    one = Differentiated(model, h, t_end, scheme)
+    met = [output.time for output in outputs.values() if output.time is not None]
+    one = Differentiated(model, h, t_end, scheme, tolerance, met)
     seen = Seen(outputs, one.run, one.history, one.linear)
     slopes = Slopes(model, one.run, one.history, seen.explicit)
     tables = _tables(one, outputs, slopes, columns)

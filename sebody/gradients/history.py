@@ -6,18 +6,22 @@ halved ones and parts of steps up to a jump included.
 """
 
 import time
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody import memory
+from sebody.contract.layout import RECORD_T
 from sebody.engine.loop import advance
 from sebody.engine.scalars import numbers_of
 from sebody.engine.state import CHUNK, DONE, FAILED, Record, State
 from sebody.engine.step import write_record
 from sebody.errors import SimulationError
 from sebody.runs.failures import explained
+from sebody.runs.row_exchanges import RowExchanges
 from sebody.runs.simulation import Simulation
 
 RESTART, STEP = 0, 1        # kinds of events
@@ -40,7 +44,7 @@ class History(NamedTuple):
     @property
     def times(self) -> NDArray:
         """Of the recorded states."""
-        return self.rows[self.recorded, 0]
+        return self.rows[self.recorded, RECORD_T]
 
     @property
     def states(self) -> NDArray:
@@ -48,8 +52,10 @@ class History(NamedTuple):
         return self.rows[self.recorded]
 
 
-def history(run: Simulation, t_end: float) -> History:
+def history(run: Simulation, t_end: float, met: Sequence[float] = ()) -> History:
     """Run a simulation that is at its start to a time, and keep every accepted step.
+
+    Variable steps end there, and at the times that are to be met; their states are all recorded.
 
     Raises
     ------
@@ -60,22 +66,38 @@ def history(run: Simulation, t_end: float) -> History:
     memory.check(8.0 * last * run.state.now.size, f"the states of {last} steps",
                  "give an earlier t_end or longer steps")
     began = time.perf_counter()
+    if run.tolerance is not None:
+        _meet(run, [*met, t_end])
     if (whole := _whole(run, last)) is not None:
         return whole._replace(seconds=time.perf_counter() - began)
-    events = _Events(run)
+    events = _Events(run, last)
     while run.state.control.grid < last:
         before = run.state.control.steps, float(run.state.clock.aux_step)
-        _one_step(run, events.record, last)
+        if not _one_step(run, events.record, last):
+            run.failure = explained(run.model, run.system, run.state, run.numbering)
+            run.rows.stretches.append(np.array(events.rows)[events.recorded[1:]])
+            raise SimulationError(run.failure, run.result())
         if run.state.control.steps > before[0]:
             events.add(before[1])
     return events.found(time.perf_counter() - began)
 
 
+def _meet(run: Simulation, times: Sequence[float]) -> None:
+    """Let variable steps end at some times."""
+    system = run.system
+    more = np.setdiff1d(np.array([t for t in times if t > 0.0]), system.corners)
+    corners = np.concatenate([system.corners, more])
+    order = np.argsort(corners)
+    jumps = np.concatenate([system.jumps, np.zeros(len(more), dtype=np.int64)])
+    run.system = replace(system, corners=corners[order], jumps=jumps[order])
+    run.exchanges = RowExchanges(run.system, run.state)
+
+
 def _whole(run: Simulation, last: int) -> History | None:
-    """The run in one go; None, with the run at its start, if a step was rejected or loads jump."""
+    """The run in one go; None, and the run at its start, if steps were rejected or loads jump."""
     state, start = run.state, copy_of(run.state)
     inside = run.system.corners <= (last + OFF) * run.h
-    if not run.every == 1 or (run.system.jumps[inside] > 0).any():
+    if run.tolerance is not None or (run.system.jumps[inside] > 0).any():
         return None
     record, code = Record.of(state, last + 1), CHUNK
     state.control.recorded = 0
@@ -89,8 +111,9 @@ def _whole(run: Simulation, last: int) -> History | None:
     ones = np.ones(last + 1)
     kinds = np.full(last + 1, STEP)
     kinds[0] = RESTART
-    return History(record.rows, kinds, run.h * (kinds == STEP), ones, record.rows[:, 0].copy(),
-                   0.0 * ones, np.arange(last + 1), 0.0)
+    times = record.rows[:, RECORD_T].copy()
+    return History(record.rows, kinds, run.h * (kinds == STEP), ones, times, 0.0 * ones,
+                   np.arange(last + 1), 0.0)
 
 
 def copy_of(state: State) -> list[NDArray]:
@@ -106,17 +129,14 @@ def put_back(state: State, numbers: list[NDArray]) -> None:
         (numbers_of(one) if isinstance(one, np.record) else one)[...] = before
 
 
-def _one_step(run: Simulation, record: Record, last: int) -> None:
-    """Advance by one accepted step, and by the restart that may follow."""
+def _one_step(run: Simulation, record: Record, last: int) -> bool:
+    """Advance by one accepted step, and by the restart that may follow; False if it fails."""
     state, chunk = run.state, 1
     state.control.recorded = 0
     while True:
         code = advance(run.system, state, record, run.scheme, last, chunk, run.dense)
-        if code == FAILED:
-            run.failure = explained(run.model, run.system, state, run.numbering)
-            raise SimulationError(run.failure, run.result())
-        if code in (CHUNK, DONE):
-            return
+        if code in (CHUNK, DONE, FAILED):
+            return code != FAILED
         run.exchanges.serve()
         chunk = 0           # the step it is in the middle of is the one
 
@@ -124,8 +144,9 @@ def _one_step(run: Simulation, record: Record, last: int) -> None:
 class _Events:
     """Collects the events of a run."""
 
-    def __init__(self, run: Simulation):
-        self.run, self.record = run, Record.of(run.state, ROOM, run.every)
+    def __init__(self, run: Simulation, last: int):
+        self.run, self.varies = run, run.tolerance is not None
+        self.record = Record.of(run.state, max(ROOM, last + 1) if self.varies else ROOM)
         self.kinds, self.steps, self.offsets = [RESTART], [0.0], [1.0]
         self.ends, self.besides = [0.0], [0.0]
         self.rows, self.recorded = [run.state.now.copy()], [0]
@@ -133,7 +154,8 @@ class _Events:
     def add(self, aux_step: float) -> None:
         """Add the step that was accepted last, and the restart if there was one."""
         run, state, clock = self.run, self.run.state, self.run.state.clock
-        length = float(clock.aux_step)
+        length = float(clock.aux_step if np.isfinite(clock.aux_step) else
+                       clock.time - self.ends[-1])
         end, beside = float(clock.end), float(clock.beside)
         restarted = bool(run.system.corners.size) and np.array_equal(state.aux, state.a)
         row = state.now.copy()
@@ -142,10 +164,11 @@ class _Events:
         self._event(row, STEP, length, length / aux_step, end, beside)
         if restarted:
             self._event(state.now.copy(), RESTART, 0.0, 1.0, float(clock.time), -beside)
-        if state.control.recorded:
+        if state.control.recorded or self.varies:
             self.recorded.append(len(self.rows) - 1)
 
     def _event(self, row: NDArray, kind: int, *numbers: float) -> None:
+        row[RECORD_T] = self.run.state.clock.time
         self.rows.append(row)
         self.kinds.append(kind)
         for values, number in zip((self.steps, self.offsets, self.ends, self.besides), numbers,

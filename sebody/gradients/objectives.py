@@ -138,6 +138,9 @@ def _labels(name: str, value: NDArray) -> list[str]:
 
 def sensor_of(run: Simulation, quantity: str, shape: tuple[int, ...], linear: Linear,
             history: History) -> Sensor:
+    if run.system.regularized[0] and ".multipliers" in quantity:
+        raise InputError(f"{quantity!r}: the model has redundant constraints, whose multipliers "
+                         "are not unique and have no derivative: give force or moment of the joint")
     found = _coordinates(run.numbering, run.model, quantity)
     if found is None:
         return Evaluated(run, quantity, int(np.prod(shape, initial=1.0)), linear, history)

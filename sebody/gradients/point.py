@@ -9,6 +9,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody import inputs
+from sebody.errors import InputError
 from sebody.explore.ensembles.changes import Handle
 from sebody.gradients.parameters import Column, columns_of
 from sebody.model.model import Model
@@ -58,7 +60,12 @@ class Point:
         for column, value in zip(self.columns, x, strict=True):
             found[column.name].reshape(-1)[column.component] = value
         for name, value in found.items():
-            self._handles[name].checked(name, value[None])
+            handle = self._handles[name]
+            for bound, wrong, wanted in ((handle.least, np.less, "at least"),
+                                         (handle.above, np.less_equal, "above")):
+                if bound is not None and wrong(value, bound).any():
+                    raise InputError(f"{name} is {inputs.shown(value)}: it must be {wanted} "
+                                     f"{bound:g}; give the optimizer bounds")
         return found
 
     def _about(self, column: Column, values: dict[str, NDArray]) -> Handle:

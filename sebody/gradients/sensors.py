@@ -5,13 +5,17 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.errors import InputError
 from sebody.gradients.history import History
 from sebody.gradients.linear import Linear
 from sebody.results.result import Result
 from sebody.runs.simulation import Simulation
-from sebody.small_motion.moved_states import Moves, differences
+from sebody.small_motion.moved_states import SMALL, Moves, differences
 
 PIECE = 64          # motions that are compared at a time
+FINER = 30.0        # factor of the steps of differences from one try to the next
+SMALLEST = 1e-8     # of them, of the characteristic length: rounding is 1e-8 of a derivative then
+CLOSE = 1e-5        # of the largest derivative: differences that agree like this are right
 
 
 class Rows(NamedTuple):
@@ -65,7 +69,6 @@ class Evaluated:
         self.run, self.quantity, self.size = run, quantity, size
         self.linear, self.history = linear, history
         self.kept: dict[int, Rows] = {}     # of recorded states
-        self._active: NDArray | None = None
 
     def at(self, k: int, event: int) -> Rows:
         if k not in self.kept:
@@ -79,13 +82,33 @@ class Evaluated:
         none = np.zeros((n, linear.total))
         moves = [np.concatenate(parts) for parts in (
             (G.T, none, none), (V.T, G.T, none), (U.T, W.T, G.T))]
-        found = np.zeros((3 * n, self.size))
         one = Result(self.run.model, self.run.numbering, linear.system, linear.state,
                      linear.state.now[None].copy(), 0.0)
-        for first in range(0, 3 * n, PIECE):
-            piece = slice(first, min(first + PIECE, 3 * n))
-            along = Moves(*(move[piece] for move in moves))
-            pushed = np.zeros((len(along.positions), linear.state.g.size))
-            found[piece] = differences(one, [self.quantity], along, pushed)[
-                self.quantity].reshape(-1, self.size)
+        found = self._smooth(one, moves, float(self.history.ends[event]))
         return Rows(*(part.T for part in np.split(found, 3)))
+
+    def _smooth(self, one: Result, moves: list[NDArray], t: float) -> NDArray:
+        """Differences over steps that are so small that smaller ones give the same."""
+        small, last = SMALL, self._at(one, moves, SMALL)
+        while small > SMALLEST:
+            small /= FINER
+            found = self._at(one, moves, small)
+            apart = np.abs(found - last).max(axis=0)
+            if (apart <= CLOSE * np.abs(last).max(axis=0)).all():
+                return last
+            last = found
+        raise InputError(f"quantity {self.quantity!r} has no derivative at t = {t:.6g}: it is not "
+                         "smooth there, as the largest of several stresses is not where another "
+                         "one takes over, or a length where it is zero; give its parts, such as "
+                         "section forces")
+
+    def _at(self, one: Result, moves: list[NDArray], small: float) -> NDArray:
+        count = len(moves[0])
+        found = np.zeros((count, self.size))
+        for first in range(0, count, PIECE):
+            piece = slice(first, min(first + PIECE, count))
+            along = Moves(*(move[piece] for move in moves))
+            pushed = np.zeros((len(along.positions), self.linear.state.g.size))
+            found[piece] = differences(one, [self.quantity], along, pushed, small)[
+                self.quantity].reshape(-1, self.size)
+        return found

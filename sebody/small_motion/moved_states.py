@@ -67,8 +67,8 @@ def moves(run: Simulation | Result, spin: Spin, unknowns: NDArray, rates: NDArra
     return Moves(q, v, a)
 
 
-def differences(run: Simulation | Result, names: Sequence[str], along: Moves, pushed: NDArray
-                ) -> dict[str, NDArray]:
+def differences(run: Simulation | Result, names: Sequence[str], along: Moves, pushed: NDArray,
+                small: float = SMALL) -> dict[str, NDArray]:
     """Derivatives of quantities along some motions, (k, ...) of each.
 
     Parameters
@@ -76,8 +76,10 @@ def differences(run: Simulation | Result, names: Sequence[str], along: Moves, pu
     along : Moves
     pushed : (k, forces of all elements)
         Change of the forces of elements beside what the motions make.
+    small : float
+        Motion of the states that are compared, of the characteristic length or in radians.
     """
-    rows, scale = _moved_rows(run, along)
+    rows, scale = _moved_rows(run, along, small)
     recording = Result(run.model, run.numbering, run.system, run.state, rows, 0.0)
     base = Result(run.model, run.numbering, run.system, run.state, run.state.now[None].copy(), 0.0)
     unique = along
@@ -91,7 +93,8 @@ def differences(run: Simulation | Result, names: Sequence[str], along: Moves, pu
     return {name: _derivative(np.asarray(recording[name]), scale) for name in names}
 
 
-def _moved_rows(run: Simulation | Result, along: Moves) -> tuple[NDArray, NDArray]:
+def _moved_rows(run: Simulation | Result, along: Moves, small: float
+                ) -> tuple[NDArray, NDArray]:
     """States moved forth and back along every motion, and by how much of it, (k,)."""
     numbering, state = run.numbering, run.state
     extent = np.full(numbering.total, np.inf)   # of what has no size of its own: any
@@ -102,7 +105,7 @@ def _moved_rows(run: Simulation | Result, along: Moves) -> tuple[NDArray, NDArra
         if dof_block.rotational and not run.model.planar:
             rotated[numbering.rotations[dof_block]] = own
     largest = (np.abs(along.positions) / extent).max(axis=1)
-    scale = SMALL / np.where(largest > 0, largest, 1.0)
+    scale = small / np.where(largest > 0, largest, 1.0)
     parts = state.recorded_parts
     rows = np.tile(state.now, (len(STEPS) * len(scale), 1))
     for name, values in zip("qva", along, strict=True):

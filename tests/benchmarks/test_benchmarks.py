@@ -262,3 +262,12 @@ def test_exported_libraries_beside_runs(monkeypatch, capsys):
     row = json.loads(capsys.readouterr().out)["heavy-top"]
     assert row["bitwise"] and row["largest difference"] == 0.0 and row["steps"] == 200
     assert row["speed"] > 0.0 and row["library kB"] < 300
+
+
+@pytest.mark.filterwarnings("ignore::sebody.LimitWarning")
+def test_gradients_are_timed_and_a_torque_ends_at_rest():
+    bench = imported("bench_gradient")
+    found = bench.cost(repeats=1, t_end=0.5)
+    assert list(found)[0] == "run" and min(found.values()) > 0.0
+    found, _ = bench.torque(entries=60, t_end=0.3, angle=0.05, h=5e-3)
+    assert found["misses"][-1] < 1e-8 < found["misses"][0]

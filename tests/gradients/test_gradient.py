@@ -4,17 +4,18 @@ import differentiated as scenes
 import numpy as np
 import pytest
 
-from sebody import InputError, Model
+from sebody import InputError, Model, SimulationError, Tolerance
 from sebody.analysis import at_time, final, gradient, integral, rms, soft_maximum
+from sebody.gradients.gradient import Differentiated
 from sebody.model import profiles
-from sebody.runs.schemes import generalized_alpha
+from sebody.runs.schemes import generalized_alpha, hht
 
 EXACT = generalized_alpha(tolerance=1e-13)
 # of each scene: what builds it, step and end, objectives, parameters
 SCENES = {
     "hinged beam": (scenes.hinged, 0.005, 0.1, {
         "tip": final("tip.position"), "strain": final("energy.strain"),
-        "force": rms("spring.force")}, [
+        "force": final("spring.force")}, [
         "torque.amplitude", "torque.table", "spring.stiffness", "spring.damping", "spring.length",
         "beam.stiffness", "beam.mass", "gravity"]),
     "given velocities": (scenes.spinning, 0.005, 0.1, {
@@ -42,6 +43,12 @@ SCENES = {
     "in a plane": (scenes.flat, 0.002, 0.06, {
         "slider": final("d.position"), "b": final("b.velocity")}, [
         "torque.amplitude", "piston.mass", "rod.mass", "rod.stiffness", "gravity"]),
+    "moved in a plane": (scenes.lifted, 0.005, 0.1, {
+        "end": final("end.position"), "tip": final("b.velocity")}, [
+        "lift.amplitude", "swing.amplitude", "ball.mass", "beam.damping"]),
+    "joints": (scenes.joined, 0.005, 0.1, {
+        "ball": final("d.position"), "c": final("c.velocity")}, [
+        "upper.mass", "ball.mass", "spring.stiffness", "torque.table"]),
     "rigid-part inertia": (lambda: scenes.hinged("d", modes=2), 0.005, 0.1, {
         "tip": final("tip.position")}, ["torque.amplitude", "beam.stiffness", "beam.mass"]),
     "material inertia": (lambda: scenes.hinged("b", modes=2), 0.005, 0.1, {
@@ -72,6 +79,39 @@ def test_adjoint_forward_and_differences_of_runs_agree(name):
     assert apart < 1e-11
     expected = scenes.differences(build(), *run)
     assert (np.abs(found.matrix - expected) / rows(expected)).max() < 1e-7
+
+
+@pytest.mark.parametrize("scheme", [hht(-0.1, 1e-13), generalized_alpha(0.3, 1e-13)])
+def test_other_schemes(scheme):
+    run = scenes.hinged("b", modes=2), 0.005, 0.1, {"tip": final("tip.velocity")}, ["beam.mass"]
+    one, other = (gradient(*run, mode, scheme=scheme) for mode in ("adjoint", "forward"))
+    assert (np.abs(one.matrix - other.matrix) / rows(other.matrix)).max() < 1e-11
+    expected = scenes.differences(*run, scheme=scheme)
+    assert (np.abs(one.matrix - expected) / rows(expected)).max() < 1e-7
+
+
+def test_forces_of_joints():
+    """Of multipliers the runs themselves have more noise: differences over larger steps."""
+    run = scenes.joined(), 0.005, 0.1, {"rope": final("rope.force"), "m": final("cross.moment")}, [
+        "ball.mass", "gravity.y"]
+    found, apart = both(*run)
+    assert apart < 1e-10
+    expected = scenes.differences(*run, relative=3e-2)
+    assert (np.abs(found.matrix - expected) / rows(expected)).max() < 3e-6
+
+
+def test_stresses():
+    """Of the largest stress, whose derivative holds as long as it is that of one point."""
+    run = scenes.hinged(modes=2), 0.005, 0.1
+    parameters = ["torque.amplitude", "beam.mass"]
+    objectives = {"stress": final("beam.node0.von_mises"),
+                  "sections": final("beam.node2.section_forces")}
+    found = gradient(*run, objectives, parameters, scheme=EXACT)
+    expected = scenes.differences(*run, objectives, parameters)
+    large = np.abs(expected).max(axis=1) > 1e-6 * np.abs(expected).max()
+    assert (np.abs(found.matrix - expected) / rows(expected))[large].max() < 1e-5
+    with pytest.raises(InputError, match="von_mises' has no derivative at t.*section forces"):
+        gradient(*run, {"stress": soft_maximum("beam.node0.von_mises")}, parameters)
 
 
 def test_a_sparse_chain():
@@ -105,34 +145,42 @@ def oscillator(stiffness=40.0, damping=0.6, mass=1.3, amplitude=2.0):
     return m
 
 
-def test_a_linear_oscillator_against_its_own_recursion():
-    """The scheme applied to m x'' + c x' + k x = f, differentiated by complex steps."""
-    h, steps = 0.02, 60
-    s = generalized_alpha()
+@pytest.mark.parametrize("tolerance", [None, Tolerance(1e-4)])
+def test_a_linear_oscillator_against_its_own_recursion(tolerance):
+    """The scheme applied to m x'' + c x' + k x = f, differentiated by complex steps.
+
+    With variable steps the sequence of their lengths is that of the run.
+    """
+    t_end, s = 1.2, generalized_alpha()
+    steps = Differentiated(oscillator(), 0.02, t_end, EXACT, tolerance).history.steps[1:]
+    assert (np.ptp(steps) > 0.5 * steps.max()) == (tolerance is not None)
 
     def last(k, c, m, f):
-        x = v = 0.0
-        force = [f * np.sin(5.0 * h * i) for i in range(steps + 1)]
-        a = aux = (force[0] - c * v - k * x) / m
-        for i in range(steps):
+        x = v = t = 0.0
+        a = aux = (f * np.sin(0.0) - c * v - k * x) / m
+        before = steps[0]
+        for h in steps:
             # aux' = ((1 - af) a' + af a - am aux) / (1 - am) in x', v'; m a' = f' - c v' - k x'
+            aux = a + h / before * (aux - a)
+            t, before = t + h, h
             on = (s.alpha_f * a - s.alpha_m * aux) / (1 - s.alpha_m)
             share = (1 - s.alpha_f) / (1 - s.alpha_m)
             x1 = x + h * v + h * h * ((0.5 - s.beta) * aux + s.beta * on)
             v1 = v + h * ((1 - s.gamma) * aux + s.gamma * on)
-            a1 = (force[i + 1] - c * v1 - k * x1) / (
+            a1 = (f * np.sin(5.0 * t) - c * v1 - k * x1) / (
                 m + c * h * s.gamma * share + k * h * h * s.beta * share)
             x, v = x1 + h * h * s.beta * share * a1, v1 + h * s.gamma * share * a1
             a, aux = a1, on + share * a1
         return x
     values = dict(k=40.0, c=0.6, m=1.3, f=2.0)
     exact = [np.imag(last(**(values | {name: values[name] + 1e-30j}))) / 1e-30 for name in "kcmf"]
-    found = gradient(oscillator(), h, h * steps, {"x": final("a.position.x")},
-                     ["spring.stiffness", "spring.damping", "ball.mass", "push.amplitude"],
-                     scheme=EXACT)
-    assert found.value[0] == pytest.approx(1.0 + last(**values), rel=1e-12)
-    # factors of mass and load count from one
-    assert found.matrix[0] / (1, 1, 1.3, 2.0) == pytest.approx(exact, rel=1e-9)
+    for mode in ("adjoint", "forward"):
+        found = gradient(oscillator(), 0.02, t_end, {"x": final("a.position.x")},
+                         ["spring.stiffness", "spring.damping", "ball.mass", "push.amplitude"],
+                         mode, tolerance, EXACT)
+        assert found.value[0] == pytest.approx(1.0 + last(**values), rel=1e-9)
+        # factors of mass and load count from one; times are rounded
+        assert found.matrix[0] / (1, 1, 1.3, 2.0) == pytest.approx(exact, rel=1e-8)
 
 
 def test_components_of_parameters():
@@ -173,10 +221,15 @@ def test_features_without_exact_derivatives_are_refused_by_name():
     m = scenes.hinged("b", frame="mean")
     with pytest.raises(InputError, match="'beam': frame 'mean'.*converged_mean"):
         gradient(m, 0.01, 0.05, {"x": final("tip.position")}, ["gravity"])
+    with pytest.raises(InputError, match="not unique.*force or moment"):
+        gradient(scenes.four_bar(), 0.01, 0.05, {"x": final("A.multipliers")}, ["gravity.x"])
     m = scenes.hinged()
     with pytest.raises(InputError, match="index 2.*index=3"):
         gradient(m, 0.01, 0.05, {"x": final("tip.position")}, ["gravity"],
                  scheme=generalized_alpha(index=2))
+    with pytest.raises(InputError, match="fixed step"):
+        gradient(m, 0.01, 0.05, {"x": final("tip.position")}, ["gravity"],
+                 tolerance=Tolerance(1e-3))
     with pytest.raises(InputError, match="not a multiple of the step"):
         gradient(m, 0.01, 0.055, {"x": final("tip.position")}, ["gravity"])
     m.stop("hinge", upper=0.2, stiffness=100.0, name="end")
@@ -191,3 +244,12 @@ def test_the_model_is_as_before():
     assert np.array_equal(before.value, after.value)
     assert np.array_equal(before.matrix, after.matrix)
     assert before.of("x", "beam.mass").shape == (3, 1)
+
+
+@pytest.mark.filterwarnings("ignore::sebody.LimitWarning")
+def test_a_run_that_fails_says_where_and_keeps_what_it_computed():
+    m = scenes.hinged("b", modes=2)
+    m.torque("base", 1e6 * scenes.Z, [(0, 0), (0.06, 0), (0.1, 1)], name="blow")
+    with pytest.raises(SimulationError, match="stopped at t = 0.06") as caught:
+        gradient(m, 0.02, 1.0, {"tip": final("tip.position")}, ["beam.mass"])
+    assert caught.value.result["t"] == pytest.approx([0.0, 0.02, 0.04, 0.06])

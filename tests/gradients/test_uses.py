@@ -75,7 +75,7 @@ def test_values_elsewhere_are_those_of_a_model_built_so():
     x = f.base + [0.2, -0.1, 0.3, 0.1, -0.2, 0.0]
     value, slope = f(x)
     step = 1e-4
-    for k in (0, 1, 3):
+    for k in (0, 3):
         moved = [f(x + at * step * np.eye(len(x))[k])[0] for at in (1, -1, 2, -2)]
         assert slope[k] == pytest.approx(
             (8 * (moved[0] - moved[1]) - moved[2] + moved[3]) / (12 * step), rel=1e-6)
@@ -90,6 +90,10 @@ def test_several_values_are_no_function():
         f(f.base)
     with pytest.raises(InputError, match="x has shape|give 1 numbers"):
         f([1.0, 2.0])
+    f = ValueAndGradient(scenes.hinged("b", modes=2), 0.005, 0.05, final("tip.position.x"),
+                         ["beam.mass", "gravity.y"])
+    with pytest.raises(InputError, match="beam.mass is -0.5: it must be above 0; give .* bounds"):
+        f([-0.5, -9.81])
 
 
 @pytest.mark.filterwarnings("error")
