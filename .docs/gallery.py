@@ -9,6 +9,7 @@ import re
 import shlex
 import sys
 import textwrap
+from functools import cache
 from inspect import getdoc
 from pathlib import Path
 from types import ModuleType
@@ -59,8 +60,14 @@ def tests_of(scene: Entry) -> list[str]:
     """Tests that build the scene."""
     word = re.compile(rf"\b{scene.file.stem}\b.*\b(build|scenes)\b|"
                       rf"\b(scenes|import)\b.*\b{scene.file.stem}\b|\"{scene.name}\"")
-    found = sorted((ROOT / "tests").rglob("test_*.py"))
-    return [path.relative_to(ROOT).as_posix() for path in found if word.search(path.read_text())]
+    return [path for path, text in _tests().items() if word.search(text)]
+
+
+@cache
+def _tests() -> dict[str, str]:
+    """Text of every file of tests."""
+    return {path.relative_to(ROOT).as_posix(): path.read_text()
+            for path in sorted((ROOT / "tests").rglob("test_*.py"))}
 
 
 def write(pages: Path, extra: Path) -> str:

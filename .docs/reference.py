@@ -7,6 +7,8 @@ from pathlib import Path
 from types import ModuleType
 
 TABLE = Path(__file__).with_name("names.md")
+# also what a class has from others, but for those of Python
+MEMBERS = "\n   :members:\n   :inherited-members: tuple, dict, object, BaseException"
 
 
 def rooms() -> list[ModuleType]:
@@ -46,7 +48,7 @@ def _page(room: ModuleType, shown: dict[int, str]) -> str:
                          ", ".join(f"``{one}``" for one in entries) + ".")
         else:
             kind = "class" if inspect.isclass(value) else "function"
-            text += _rst(f".. auto{kind}:: {full}" + "\n   :members:" * (kind == "class"))
+            text += _rst(f".. auto{kind}:: {full}" + MEMBERS * (kind == "class"))
     return text
 
 

@@ -18,6 +18,7 @@ from copies import ROOT
 BLOCK = re.compile(r"(?:<!-- (?P<note>setup|not run: )(?P<text>.*?)-->\s*)?"
                    r"^(?P<space> *)```(?P<kind>python|sh)\n(?P<code>.*?)^ *```$",
                    re.DOTALL | re.MULTILINE)
+PROGRAMS = {"gmsh", "ccx"}      # others than sebody that run, where they are installed
 LINKED = re.compile(r"\]\(([^)#:\s]+\.(?:inp|geo))\)")
 
 
@@ -69,6 +70,11 @@ def run(page: Path, folder: Path) -> Iterator[str]:
         for words in _words(block.code):
             if words[0] == "sebody":
                 _sebody(words[1:])
+            elif words[0] == "pip":         # what it installs is here
+                continue
+            elif words[0] not in PROGRAMS:
+                raise AssertionError(f"{page}: no test runs {words[0]}: write <!-- not run: REASON "
+                                     "--> before the block")
             elif shutil.which(words[0]):
                 assert os.spawnvp(os.P_WAIT, words[0], words) == 0, words
             else:

@@ -14,14 +14,12 @@ ELSEWHERE = {
 }
 PAGES = {page.relative_to(ROOT).as_posix(): page for page in all_pages()
          if blocks(page.read_text())}
-MAY_BE_MISSING = {"gmsh", "ccx"}
 
 
 @pytest.mark.parametrize("name", sorted(set(PAGES) - set(ELSEWHERE)))
 def test_page(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for program in run(PAGES[name], tmp_path):
-        assert program in MAY_BE_MISSING, program
         if program == "ccx":
             pytest.skip("needs CalculiX: the commands after ccx read what it writes")
 

@@ -147,7 +147,7 @@ def test_a_new_scene_runs_sweeps_and_is_advised_on(tmp_path, monkeypatch, capsys
     shown = [shlex.split(line.replace("my arm.py", "'my arm.py'"))[1:] for line in lines]
     assert [words[0] for words in shown] == ["run", "animate", "sweep", "advise"]
     for words in shown:
-        thin = {"sweep": ["--t-end", "0.1"], "advise": ["--t-end", "0.3"]}.get(words[0], [])
+        thin = {"sweep": ["--t-end", "0.1"], "advise": ["--t-end", "0.1"]}.get(words[0], [])
         assert main([*words, *thin]) == 0, words
     said = capsys.readouterr()
     assert not said.err, said.err

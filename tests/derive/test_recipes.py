@@ -81,7 +81,7 @@ def test_tutorial(original, tmp_path):
     assert stale.returncode == 1 and "stale: element_planar_spring.py" in stale.stdout
     run(tree, DERIVE, *derived[3:])
     said = [sebody(tree, *command[1:]) for command in ours]
-    assert "of 2 kernels hold" in said[0] and "picture: chart.png" in said[2]
+    assert "of 1 kernel hold" in said[0] and "picture: chart.png" in said[2]
     result = Result.load(tree / "spring.npz")
     u = result["mass.position.x"] - 2.0
     quarter = np.interp(0.0, -u[:len(u) // 2], result.t[:len(u) // 2])
