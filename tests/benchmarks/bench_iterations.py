@@ -62,7 +62,7 @@ def measure(scene: str, options: dict, steps: int) -> dict:
         run = runs[name] = Simulation(built.model, built.h, scheme)
         run.run_to(steps * built.h)
     own, control = runs["own"], runs["own"].state.control
-    rows, exact = (np.concatenate(runs[name].rows) for name in ("own", "exact"))
+    rows, exact = (runs[name].rows.all() for name in ("own", "exact"))
     return {"steps": int(control.steps), "unknowns": int(own.system.diagonal.size),
             "corrections": int(control.iterations) / int(control.steps),
             "matrices": int(control.matrices), "cuts": int(control.cuts),
