@@ -76,7 +76,7 @@ def test_cut_steps_rejoin_the_grid():
 
 def test_failed_run_keeps_what_it_has():
     run = struck(1e12)
-    with pytest.raises(SimulationError, match="stopped at t = 0.1.*half a revolution|converge") as caught:
+    with pytest.raises(SimulationError, match="stopped at t = 0.1.*half a turn|converge") as caught:
         run.run_to(0.5)
     kept = caught.value.result
     assert 0.09 < kept.t[-1] < 0.12

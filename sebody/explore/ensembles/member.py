@@ -223,7 +223,7 @@ def forms(simulation: Simulation, outputs: Mapping[str, Output]) -> dict[str, Fo
 
 def _columns(values: NDArray, rows: NDArray) -> NDArray | None:
     """Which columns of some rows the values are, if they are a view of them."""
-    if values.dtype != rows.dtype or not np.shares_memory(values, rows):
+    if not np.shares_memory(values, rows) or values.strides[0] != rows.strides[0]:
         return None
     places = np.arange(rows.shape[1])
     first, given = (x.__array_interface__["data"][0] for x in (values, rows))

@@ -45,8 +45,8 @@ class Work:
     """
 
     def __init__(self, template: Simulation, image: Image, values: Mapping[str, Any],
-                 outputs: Mapping[str, Output], forms: Mapping[str, Form], last: int, outcome: Outcome,
-                 lock: Lock):
+                 outputs: Mapping[str, Output], forms: Mapping[str, Form], last: int,
+                 outcome: Outcome, lock: Lock):
         self.template, self.image, self.values = template, image, values
         self.outputs, self.forms, self.last, self.outcome = outputs, forms, last, outcome
         self._next, self._stop, self._lock = count(), Event(), lock
