@@ -27,6 +27,7 @@ CONSTANTS = (
     Part("c", (3,), "place of the ground [length]"),
 )
 MULTIPLIERS = 3
+VECTOR = True        # the equations are components of one vector
 WIDTH = 6
 READS = 0      # multipliers of other equations that it reads
 # numbers it keeps from step to step

@@ -28,6 +28,7 @@ CONSTANTS = (
     Part("n1", (3,), "direction normal to the axis, in axes of the first body"),
 )
 MULTIPLIERS = 1
+VECTOR = False        # the equations are components of one vector
 WIDTH = 10
 READS = 0      # multipliers of other equations that it reads
 # numbers it keeps from step to step

@@ -30,6 +30,7 @@ CONSTANTS = (
     Part("n2", (3,), "direction normal to the axis, in axes of the first body"),
 )
 MULTIPLIERS = 2
+VECTOR = False        # the equations are components of one vector
 WIDTH = 5
 READS = 0      # multipliers of other equations that it reads
 # numbers it keeps from step to step

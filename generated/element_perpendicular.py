@@ -29,6 +29,7 @@ CONSTANTS = (
     Part("n", (3,), "direction in axes of the first body"),
 )
 MULTIPLIERS = 1
+VECTOR = False        # the equations are components of one vector
 WIDTH = 7
 READS = 0      # multipliers of other equations that it reads
 # numbers it keeps from step to step

@@ -16,6 +16,7 @@ N_ROTATIONS = 0
 ROTATIONS = 4      # first rotation among the local coordinates
 CONSTANTS = ()
 MULTIPLIERS = 2
+VECTOR = True        # the equations are components of one vector
 WIDTH = 6
 READS = 0      # multipliers of other equations that it reads
 # numbers it keeps from step to step

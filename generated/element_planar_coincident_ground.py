@@ -27,6 +27,7 @@ CONSTANTS = (
     Part("c", (2,), "place of the ground [length]"),
 )
 MULTIPLIERS = 2
+VECTOR = True        # the equations are components of one vector
 WIDTH = 4
 READS = 0      # multipliers of other equations that it reads
 # numbers it keeps from step to step

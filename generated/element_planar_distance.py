@@ -28,6 +28,7 @@ CONSTANTS = (
     Part("length", (), "distance [length]"),
 )
 MULTIPLIERS = 1
+VECTOR = False        # the equations are components of one vector
 WIDTH = 5
 READS = 0      # multipliers of other equations that it reads
 # numbers it keeps from step to step

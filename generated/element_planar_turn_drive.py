@@ -26,6 +26,7 @@ N_ROTATIONS = 0
 ROTATIONS = 0      # first rotation among the local coordinates
 CONSTANTS = ()
 MULTIPLIERS = 1
+VECTOR = False        # the equations are components of one vector
 WIDTH = 3
 READS = 0      # multipliers of other equations that it reads
 # numbers it keeps from step to step

@@ -32,6 +32,7 @@ CONSTANTS = (
     Part("start", (), "way at the start [length]"),
 )
 MULTIPLIERS = 1
+VECTOR = False        # the equations are components of one vector
 WIDTH = 10
 READS = 0      # multipliers of other equations that it reads
 # numbers it keeps from step to step

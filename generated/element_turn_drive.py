@@ -34,6 +34,7 @@ CONSTANTS = (
     Part("m", (3,), "axis x n"),
 )
 MULTIPLIERS = 1
+VECTOR = False        # the equations are components of one vector
 WIDTH = 7
 READS = 0      # multipliers of other equations that it reads
 # numbers it keeps from step to step

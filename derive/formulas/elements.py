@@ -116,6 +116,19 @@ class Element(NamedTuple):
         return len(self.residual) - len(self.multipliers) - len(self.reads)
 
     @property
+    def equates_positions(self) -> bool:
+        """Its equations are the components of one vector: a sum of positions and constants.
+
+        Then its multipliers are a force, which may be solved for in any axes.
+        """
+        count, first = len(self.multipliers), self.coordinates
+        equations = sp.Matrix(self.residual[first:first + count])
+        return count > 0 and all(
+            not block.rotational
+            and equations.jacobian([x for x in block.state.symbols if x.free_symbols])
+            in (sp.eye(count), -sp.eye(count)) for block in self.blocks)
+
+    @property
     def printed(self) -> list[sp.Expr]:
         """Every expression the kernel evaluates, the multipliers' columns apart."""
         staged = [value for stage in (*self.stages, *self.slopes, *self.moves)

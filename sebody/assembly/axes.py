@@ -1,8 +1,9 @@
 """The axes that unknowns are solved for in, and which element matrices are rotated into them.
 
-Free positions are solved for in the frame of the first body they belong to. In these axes the
-tangent of the body hardly changes, so one factorization serves many steps. Element matrices of
-superelements are in the axes of their own frame, all others in global axes (-1).
+Free positions are solved for in the frame of the first body they belong to, and with them the
+force that holds such a position to another one or to the ground. In these axes the tangent of the
+body hardly changes, so one factorization serves many steps. Element matrices of superelements are
+in the axes of their own frame, all others in global axes (-1).
 """
 
 from collections.abc import Iterable, Mapping
@@ -12,11 +13,12 @@ from numpy.typing import NDArray
 
 from sebody.assembly.batches import Shape, starts
 from sebody.assembly.numbering import Numbering
+from sebody.kernels.loader import element_kernel
 from sebody.model.mechanism import Mechanism
 
 
 def frames(model: Mechanism, numbering: Numbering) -> dict[int, int]:
-    """First coordinates of positions -> number of the frame they are solved for in."""
+    """First unknowns of positions and of forces that hold them -> frame they are solved for in."""
     frame_of: dict[int, int] = {}
     for k, body in enumerate(model.bodies.values()):
         for dof_block in body.positions:
@@ -24,6 +26,11 @@ def frames(model: Mechanism, numbering: Numbering) -> dict[int, int]:
                 frame_of.setdefault(numbering.dof_blocks[dof_block], k)
     for dof_block in numbering.dependent:
         frame_of[numbering.dof_blocks[dof_block]] = -1
+    for constraint, first in numbering.multipliers.items():
+        if element_kernel(constraint.kind).VECTOR:
+            held = (frame_of.get(numbering.dof_blocks[t.dof_block], -1)
+                    for t in constraint.attachments)
+            frame_of[first] = next((frame for frame in held if frame >= 0), -1)
     return frame_of
 
 

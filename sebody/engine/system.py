@@ -58,7 +58,8 @@ class System(Arrays):
     massless_axes       (N,) the same where about some axis there is nearly none, zero elsewhere
     magnitude           (N,) size of each coordinate, for tolerances and rounding: of positions the
                         characteristic length, 1 of rotations, 0 of modes and multipliers
-    rotated             (k, 2) positions not solved for in global axes: first unknown, axes
+    rotated             (k, 2) positions, and forces that hold them, not solved for in global axes:
+                        first unknown, axes
     rotated_blocks      (k, 5) positions in element matrices that are in other axes than they are
                         solved for in: start and width of the matrix, row, axes of the unknown, of
                         the matrix

@@ -94,6 +94,8 @@ def element_head(given: Element, kernel: Kernel) -> Head:
         (*counts(planar, (known[POSITIONS], known[ROTATIONS])),
          f"ROTATIONS = {known[FIRST_ROTATION]}      # first rotation among the local coordinates",
          f"CONSTANTS = {table(constants)}", f"MULTIPLIERS = {multipliers}",
+         *[f"VECTOR = {given.equates_positions}        # the equations are components of one vector"
+           ] * (multipliers > 0),
          f"WIDTH = {known[WIDTH]}",
          f"READS = {len(given.reads)}      # multipliers of other equations that it reads",
          *memory(name for name, _ in given.memory),
