@@ -125,7 +125,7 @@ def _history(recording: Recording, quantity: str) -> NDArray:
 
 
 def _folded(output: Output, t: NDArray, values: NDArray) -> NDArray:
-    fold = Fold(output)
+    fold = Fold(output, values.shape[1:])
     fold.add(t, values)
     found = fold.value()
     assert found is not None

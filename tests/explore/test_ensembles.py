@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import trapezoid
 from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, Simulation
@@ -161,6 +162,39 @@ def test_outputs_are_made_of_the_history(hinged, monkeypatch, numbers):
                 "speed": np.linalg.norm(v, axis=1).max()}
     for name, value in expected.items():
         assert np.allclose(found[name][0], value, rtol=1e-12, atol=1e-12 * np.abs(v).max()), name
+
+
+@pytest.mark.parametrize("quantity, plain", [
+    ("tip.position", True), ("tip.velocity.z", True), ("tip.rotation", None),
+    ("tip.rotation.z", False), ("tip.velocity.norm", False), ("beam.modes", True),
+    ("energy.external_work", None), ("energy.kinetic", False)])
+def test_columns_of_recorded_rows_are_the_quantity(hinged, quantity, plain):
+    """What is read as columns is what a result gives, in states with nothing in common."""
+    run = Simulation(hinged.model, 1e-3)
+    run.run_to(3e-3)
+    found = member.forms(run, {"it": final(quantity)})[quantity]
+    if plain is not None:
+        assert (found.columns is not None) == plain
+    if found.columns is not None:
+        rows, expected = run.rows.all(), run.result()[quantity]
+        assert found.shape == expected.shape[1:]
+        assert np.array_equal(rows[:, found.columns].reshape(expected.shape), expected)
+
+
+def test_outputs_of_every_shape_and_kind(free):
+    """Columns of rows, matrices and what elements give: each kind from the history beside it."""
+    kinds = {"max": maximum, "min": minimum, "rms": rms, "int": integral, "end": final}
+    quantities = ("tip.rotation", "tip.position.y", "energy.kinetic", "tip.rotation.z")
+    outputs = {f"{q} {kind}": make(q) for q in quantities for kind, make in kinds.items()}
+    found = free.run({"beam.stiffness": np.linspace(0.8, 1.3, 11)}, T_END,
+                     outputs | {q: q for q in quantities}, threads=2)
+    for q in quantities:
+        x, t = found[q], found.t
+        expected = {"max": x.max(axis=1), "min": x.min(axis=1), "int": trapezoid(x, t, axis=1),
+                    "rms": np.sqrt(trapezoid(x**2, t, axis=1) / T_END), "end": x[:, -1]}
+        for kind, value in expected.items():
+            assert np.allclose(found[f"{q} {kind}"], value, rtol=1e-12,
+                               atol=1e-12 * np.abs(x).max()), (q, kind)
 
 
 def test_initial_rotation_of_a_rigid_body():

@@ -18,13 +18,15 @@ HALVES = (V[1:] + V[:-1]) / 2
 EXPECTED = {"maximum": V.max(axis=0), "minimum": V.min(axis=0), "final": V[-1],
             "integral": (np.diff(T)[:, None, None] * HALVES).sum(axis=0),
             "rms": np.sqrt((np.diff(T)[:, None, None] * (V[1:]**2 + V[:-1]**2) / 2).sum(axis=0)
-                           / (T[-1] - T[0]))}
+                           / (T[-1] - T[0])),
+            "soft_maximum": ((np.diff(T)[:, None, None] * (np.abs(V[1:])**20 + np.abs(V[:-1])**20)
+                              / 2).sum(axis=0) / (T[-1] - T[0]))**(1 / 20)}
 
 
 @pytest.mark.parametrize("pieces", [[40], [1, 2, 37], [7] * 5 + [5]])
 @pytest.mark.parametrize("kind", EXPECTED)
 def test_a_history_in_pieces(kind, pieces):
-    fold, first = Fold(Output("a.b", kind)), 0
+    fold, first = Fold(Output("a.b", kind), V.shape[1:]), 0
     for count in pieces:
         fold.add(T[first:first + count], V[first:first + count])
         first += count
@@ -34,14 +36,14 @@ def test_a_history_in_pieces(kind, pieces):
 @pytest.mark.parametrize("part", [0.0, 0.25, 0.8])
 def test_between_states_a_value_is_on_their_line(part):
     time = (1 - part) * T[11] + part * T[12]
-    fold = Fold(Output("a.b", "at", time))
+    fold = Fold(Output("a.b", "at", time), V.shape[1:])
     for k in range(0, 40, 6):       # the states around it come in two pieces
         fold.add(T[k:k + 6], V[k:k + 6])
     assert_allclose(fold.value(), (1 - part) * V[11] + part * V[12], rtol=1e-12)
 
 
 def test_the_length_of_a_matrix_is_of_all_entries():
-    fold = Fold(Output("a.b", "maximum", norm=True))
+    fold = Fold(Output("a.b", "maximum", norm=True), V.shape[1:])
     fold.add(T, V)
     assert_allclose(fold.value(), np.linalg.norm(V.reshape(40, 6), axis=1).max(), rtol=1e-13)
     assert_allclose(lengths(V), np.linalg.norm(V.reshape(40, 6), axis=1), rtol=1e-13)

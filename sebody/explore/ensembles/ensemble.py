@@ -14,7 +14,7 @@ from sebody.engine.state import Scheme
 from sebody.errors import InputError
 from sebody.explore.ensembles.changes import Handle
 from sebody.explore.ensembles.handles import given, handles
-from sebody.explore.ensembles.member import kinematic_quantities
+from sebody.explore.ensembles.member import Form, forms
 from sebody.explore.ensembles.outcome import Outcome
 from sebody.explore.ensembles.outputs import Output, outputs_of
 from sebody.explore.ensembles.start_values import Image
@@ -111,11 +111,11 @@ class Ensemble:
         refuse_changed(self.model)
         threads = inputs.integer(processors() if threads is None else threads, "threads", least=1)
         found, runs, last, kept = self._checked(parameters, t_end, outputs)
-        kinematic, shapes = kinematic_quantities(self._template, kept)
+        read = forms(self._template, kept)
         values = {name: handle.checked(name, parameters[name]) for name, handle in found.items()}
-        outcome = self._empty(kept, shapes, runs, last)
+        outcome = self._empty(kept, read, runs, last)
         began = time.perf_counter()
-        work = Work(self._template, self._image(found), values, kept, kinematic, last, outcome,
+        work = Work(self._template, self._image(found), values, kept, read, last, outcome,
                     self._lock)
         with showing(progress) as show:
             work.go(min(threads, max(runs, 1)), show)
@@ -132,7 +132,7 @@ class Ensemble:
             See `run`.
         """
         *_, kept = self._checked(parameters, t_end, outputs)
-        kinematic_quantities(self._template, kept)
+        forms(self._template, kept)
 
     def _checked(self, parameters: Mapping[str, Values], t_end: float,
                  outputs: Mapping[str, Output | str]
@@ -164,11 +164,11 @@ class Ensemble:
                 self._images[key] = Image(self._template, found)
             return self._images[key]
 
-    def _check_memory(self, outputs: Mapping[str, Output], shapes: Mapping[str, tuple[int, ...]],
+    def _check_memory(self, outputs: Mapping[str, Output], read: Mapping[str, Form],
                       runs: int, count: int) -> None:
         """Refuse outputs that do not fit, before they are asked for."""
         sizes = {name: 8.0 * runs * (count if one.kind == "history" else 1)
-                 * (1 if one.norm else np.prod(shapes[one.quantity], initial=1.0))
+                 * (1 if one.norm else np.prod(read[one.quantity].shape, initial=1.0))
                  for name, one in outputs.items()}
         largest = max(sizes, key=sizes.get)
         memory.check(sum(sizes.values()) + 8.0 * count, f"output {largest!r} of {runs} runs of "
@@ -176,13 +176,13 @@ class Ensemble:
                      "keep a maximum or the like instead of a history, fewer states with "
                      "output_every, or make fewer runs at a time")
 
-    def _empty(self, outputs: Mapping[str, Output], shapes: Mapping[str, tuple[int, ...]],
+    def _empty(self, outputs: Mapping[str, Output], read: Mapping[str, Form],
                runs: int, last: int) -> Outcome:
         count = last // self.every + 1
-        self._check_memory(outputs, shapes, runs, count)
+        self._check_memory(outputs, read, runs, count)
         values = {}
         for name, one in outputs.items():
-            shape = () if one.norm else shapes[one.quantity]
+            shape = () if one.norm else read[one.quantity].shape
             values[name] = np.full((runs, *((count,) if one.kind == "history" else ()), *shape),
                                    np.nan)
         return Outcome(values, np.arange(count) * self.every * self.h, np.full(runs, np.nan))

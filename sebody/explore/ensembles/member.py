@@ -2,17 +2,15 @@
 
 import time
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.engine.evaluate import move_prescribed, set_loads
-from sebody.engine.links import place_dependent
+from sebody.contract.layout import RECORD_T
 from sebody.engine.loop import advance
 from sebody.engine.scalars import numbers_of, record
 from sebody.engine.state import (
-    ASKED,
     DONE,
     FAILED,
     READ,
@@ -23,6 +21,7 @@ from sebody.engine.state import (
 from sebody.engine.step import write_record
 from sebody.engine.system import System
 from sebody.errors import InputError
+from sebody.explore.ensembles import beginning
 from sebody.explore.ensembles.outputs import Fold, Output
 from sebody.explore.ensembles.start_values import Image
 from sebody.results.naming import look_up
@@ -46,7 +45,7 @@ class Copies:
         self.system: System = image.offsets.packed(one.system, self.floats)
         state = image.offsets.packed(one.state, self.floats)
         self.state: State = _with_own_integers(state)
-        self.unstarted = [x.copy() for x in self._not_in_floats()]
+        self._given = self._beginning()
         self.exchanges = RowExchanges(self.system, self.state)
         self.sampling = Sampling(one.model, one.numbering, self.system, self.state)
         self.model, self.numbering, self.scheme = one.model, one.numbering, one.scheme
@@ -73,16 +72,8 @@ class Copies:
         InputError
             The initial state cannot be evaluated.
         """
-        lines, system, state = self.image.lines, self.system, self.state
-        self.floats[:] = self.image.floats
-        for own, begun in zip(self._not_in_floats(), self.unstarted, strict=True):
-            own[:] = begun
-        self.floats[lines.slots] += lines.slopes @ change
-        set_loads(system, state.frames, state.loads, 0.0)
-        state.loads_old[:] = state.loads
-        move_prescribed(system, state)
-        place_dependent(system.links, state.q, state.v, state.a, state.R)
-        state.control.restart, sampled = ASKED, False
+        system, state, sampled = self.system, self.state, False
+        beginning.begin(system, state, self._given, change)
         code = advance(system, state, self.none, self.scheme, 0, 0, self.dense)
         while code in (DONE, READ) and self.sampling.samples:
             if code == DONE and not sampled:
@@ -94,15 +85,19 @@ class Copies:
         if code == FAILED:
             raise InputError("the initial state has no accelerations: "
                              f"{REASONS[int(state.control.reason)]}")
-        numbers_of(state.control)[:] = self.unstarted[0]
-        state.frames_old[:] = state.frames
-        state.aux_old[:] = state.aux
+        beginning.end(state, self._given)
         return code == DONE
 
-    def _not_in_floats(self) -> tuple[NDArray, ...]:
-        """What a run writes to and `floats` does not hold."""
-        state = self.state
-        return (*map(numbers_of, (state.control, state.clock, state.guard)), state.moved)
+    def _beginning(self) -> beginning.Beginning:
+        """What runs begin with; scalars and flags are not in `floats`."""
+        lines, state = self.image.lines, self.state
+        whole = {name: numbers_of(getattr(state, name)) for name in ("control", "clock", "guard")}
+        whole["moved"] = state.moved
+        return beginning.Beginning(
+            model=self.image.floats, floats=self.floats, slots=lines.slots.astype(np.int64),
+            ends=lines.slopes.indptr.astype(np.int64),
+            components=lines.slopes.indices.astype(np.int64), slopes=lines.slopes.data,
+            **whole, **{f"{name}_built": own.copy() for name, own in whole.items()})
 
 
 def _with_own_integers(state: State) -> State:
@@ -112,6 +107,14 @@ def _with_own_integers(state: State) -> State:
            value.copy()
            for name, value in ((f, getattr(state, f)) for f in State.__annotations__)}
     return State(**own)
+
+
+class Form(NamedTuple):
+    """How a quantity is read."""
+
+    shape: tuple[int, ...]      # in a state
+    kinematic: bool             # from recorded states alone
+    columns: NDArray | None     # of recorded rows, where it is nothing but these
 
 
 class Course:
@@ -125,15 +128,15 @@ class Course:
         Grid steps between recorded states.
     outputs : mapping
         What is kept.
-    kinematic : set of str
-        Quantities that are read from recorded states alone.
+    forms : mapping
+        Of every quantity.
     """
 
     def __init__(self, run: Copies | Simulation, every: int, outputs: Mapping[str, Output],
-                 kinematic: set[str]):
-        self.run, self.every, self.kinematic = run, every, kinematic
-        self.outputs = outputs
-        self.folds = {name: Fold(o) for name, o in outputs.items() if o.kind != "history"}
+                 forms: Mapping[str, Form]):
+        self.run, self.every, self.outputs, self.forms = run, every, outputs, forms
+        self.folds = {name: Fold(o, forms[o.quantity].shape) for name, o in outputs.items()
+                      if o.kind != "history"}
         self.histories: dict[str, list[NDArray]] = {name: [] for name, o in outputs.items()
                                                     if o.kind == "history"}
         self.reason = ""
@@ -171,18 +174,24 @@ class Course:
 
     def _take(self, rows: NDArray) -> None:
         """Read the outputs of recorded states."""
-        run = self.run
-        plain = Recording(run.model, run.numbering, None, None, rows, 0.0)
-        whole = Recording(run.model, run.numbering, run.system, run.state, rows, 0.0)
-        t, found = rows[:, 0].copy(), {}
+        t, found = rows[:, RECORD_T].copy(), {}
         for name, output in self.outputs.items():
             quantity = output.quantity
+            columns = self.forms[quantity].columns
+            if name in self.folds and columns is not None:
+                self.folds[name].add_columns(t, rows, columns)
+                continue
             if quantity not in found:
-                found[quantity] = look_up(plain if quantity in self.kinematic else whole, quantity)
+                found[quantity] = look_up(self._recording(rows, quantity), quantity)
             if name in self.folds:
                 self.folds[name].add(t, found[quantity])
             else:
                 self.histories[name].append(np.array(found[quantity]))
+
+    def _recording(self, rows: NDArray, quantity: str) -> Recording:
+        run, kinematic = self.run, self.forms[quantity].kinematic
+        return Recording(run.model, run.numbering, None if kinematic else run.system,
+                         None if kinematic else run.state, rows, 0.0)
 
     def values(self) -> dict[str, Any]:
         """What the outputs are; None of those without a value."""
@@ -190,27 +199,37 @@ class Course:
                 else np.concatenate(self.histories[name]) for name in self.outputs}
 
 
-def kinematic_quantities(simulation: Simulation, outputs: Mapping[str, Output]
-                         ) -> tuple[set[str], dict[str, tuple[int, ...]]]:
-    """Quantities that recorded states alone give, and the shape of each quantity.
+def forms(simulation: Simulation, outputs: Mapping[str, Output]) -> dict[str, Form]:
+    """How each quantity is read.
 
     Raises
     ------
     InputError
         A quantity that the model does not have.
     """
-    kinematic, shapes = set(), {}
+    found = {}
     rows = simulation.rows.stretches[0]
     for quantity in {o.quantity for o in outputs.values()}:
         try:
-            found = look_up(_States(simulation.model, simulation.numbering, None, None, rows, 0.0),
-                            quantity)
-            kinematic.add(quantity)
+            values = look_up(_States(simulation.model, simulation.numbering, None, None, rows, 0.0),
+                             quantity)
+            found[quantity] = Form(values.shape[1:], True, _columns(values, rows))
         except _NeedsElements:
-            found = look_up(Recording(simulation.model, simulation.numbering, simulation.system,
-                                      simulation.state, rows, 0.0), quantity)
-        shapes[quantity] = found.shape[1:]
-    return kinematic, shapes
+            values = look_up(Recording(simulation.model, simulation.numbering, simulation.system,
+                                       simulation.state, rows, 0.0), quantity)
+            found[quantity] = Form(values.shape[1:], False, None)
+    return found
+
+
+def _columns(values: NDArray, rows: NDArray) -> NDArray | None:
+    """Which columns of some rows the values are, if they are a view of them."""
+    if not np.shares_memory(values, rows) or values.strides[0] != rows.strides[0]:
+        return None
+    places = np.arange(rows.shape[1])
+    first, given = (x.__array_interface__["data"][0] for x in (values, rows))
+    view = np.lib.stride_tricks.as_strided(places[(first - given) // rows.itemsize:],
+                                           values.shape[1:], values.strides[1:])
+    return view.ravel()
 
 
 class _NeedsElements(Exception):

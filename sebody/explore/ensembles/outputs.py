@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import prod
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.explore.ensembles.folding import FOUND, LENGTH, fold
 
+# as of `fold`
 KINDS = ("maximum", "minimum", "rms", "integral", "final", "at", "soft_maximum", "history")
 
 
@@ -112,72 +115,39 @@ def outputs_of(given: Mapping[str, Output | str], t_end: float) -> dict[str, Out
 
 
 class Fold:
-    """The value of an output of one run, from its recorded states, stretch by stretch."""
+    """The value of an output of one run, from its recorded states, stretch by stretch.
 
-    def __init__(self, output: Output):
-        self.output = output
-        self._kept: NDArray | None = None       # extreme, sum, or value
-        self._before: tuple[float, NDArray] | None = None
-        self._length = 0.0
-        self._largest: NDArray | float = 0.0
+    Parameters
+    ----------
+    shape : tuple of int
+        Of the quantity in a state.
+    """
+
+    def __init__(self, output: Output, shape: tuple[int, ...]):
+        self.output, self.shape = output, () if output.norm else shape
+        self._kind = KINDS.index(output.kind)
+        self._number = output.power if output.time is None else output.time
+        self._all = np.arange(prod(shape))
+        self._kept, self._before, self._largest = np.zeros((3, prod(self.shape)))
+        self._facts = np.zeros(4)
 
     def add(self, t: NDArray, values: NDArray) -> None:
         """Take in the next recorded states, (k,) times and (k, ...) values."""
-        if not len(t):
-            return
-        if self.output.norm:
-            values = np.sqrt((values.reshape(len(values), -1) ** 2).sum(axis=1))
-        if self._before is not None:
-            t = np.concatenate([[self._before[0]], t])
-            values = np.concatenate([self._before[1][None], values])
-        first = self._before is None
-        self._before = t[-1], values[-1].copy()
-        getattr(self, "_" + self.output.kind)(t, values, first)
+        self.add_columns(t, np.ascontiguousarray(values).reshape(len(t), -1), self._all)
+
+    def add_columns(self, t: NDArray, table: NDArray, columns: NDArray) -> None:
+        """The same of values that are columns of a table, as of recorded rows."""
+        fold(self._kind, self._number, self.output.norm, t, table, columns, self._kept,
+             self._before, self._largest, self._facts)
 
     def value(self) -> NDArray | None:
         """The value; None if there is none, as of a time the run did not reach."""
-        if self.output.kind == "rms" and self._kept is not None:
-            return np.sqrt(self._kept / self._length) if self._length else np.abs(self._before[1])
-        if self.output.kind == "soft_maximum" and self._kept is not None:
-            return self._largest * (self._kept / self._length) ** (1 / self.output.power) if (
-                self._length) else np.abs(self._before[1])
-        return self._kept
-
-    def _maximum(self, t: NDArray, values: NDArray, first: bool) -> None:
-        found = values.max(axis=0)
-        self._kept = found if first else np.maximum(self._kept, found)
-
-    def _minimum(self, t: NDArray, values: NDArray, first: bool) -> None:
-        found = values.min(axis=0)
-        self._kept = found if first else np.minimum(self._kept, found)
-
-    def _integral(self, t: NDArray, values: NDArray, first: bool) -> None:
-        found = np.tensordot(np.diff(t), values[1:] + values[:-1], axes=(0, 0)) / 2
-        self._kept = found if first else self._kept + found
-
-    def _rms(self, t: NDArray, values: NDArray, first: bool) -> None:
-        self._length += t[-1] - t[0]
-        self._integral(t, values**2, first)
-
-    def _soft_maximum(self, t: NDArray, values: NDArray, first: bool) -> None:
-        p, before = self.output.power, self._largest        # powers of large numbers overflow
-        self._largest = np.maximum(before, np.abs(values).max(axis=0))
-        size = np.where(self._largest > 0, self._largest, 1.0)
-        self._length += t[-1] - t[0]
-        if not first:
-            self._kept = self._kept * (before / size) ** p
-        self._integral(t, (np.abs(values) / size) ** p, first)
-
-    def _final(self, t: NDArray, values: NDArray, first: bool) -> None:
-        self._kept = values[-1].copy()      # the rows of states are written to again
-
-    def _at(self, t: NDArray, values: NDArray, first: bool) -> None:
-        time = self.output.time
-        k = int(np.searchsorted(t, time * (1 - 1e-12)))
-        if self._kept is not None or k == len(t):
-            return
-        if k == 0 or t[k] <= time:
-            self._kept = values[k].copy()
-            return
-        part = (time - t[k - 1]) / (t[k] - t[k - 1])
-        self._kept = values[k - 1] + part * (values[k] - values[k - 1])
+        if not self._facts[FOUND]:
+            return None
+        found, length = self._kept, self._facts[LENGTH]
+        if self.output.kind == "rms":
+            found = np.sqrt(found / length) if length else np.abs(self._before)
+        if self.output.kind == "soft_maximum":
+            found = (self._largest * (found / length) ** (1 / self.output.power) if length
+                     else np.abs(self._before))
+        return found.reshape(self.shape)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.errors import InputError
-from sebody.explore.ensembles.member import Copies, Course
+from sebody.explore.ensembles.member import Copies, Course, Form
 from sebody.explore.ensembles.outcome import Outcome
 from sebody.explore.ensembles.outputs import Output
 from sebody.explore.ensembles.start_values import Image
@@ -34,8 +34,8 @@ class Work:
         Of the parameters, for all runs.
     outputs : mapping
         What is kept.
-    kinematic : set of str
-        Quantities that recorded states alone give.
+    forms : mapping
+        How each quantity is read.
     last : int
         Last step of the grid.
     outcome : Outcome
@@ -45,10 +45,10 @@ class Work:
     """
 
     def __init__(self, template: Simulation, image: Image, values: Mapping[str, Any],
-                 outputs: Mapping[str, Output], kinematic: set[str], last: int, outcome: Outcome,
-                 lock: Lock):
+                 outputs: Mapping[str, Output], forms: Mapping[str, Form], last: int,
+                 outcome: Outcome, lock: Lock):
         self.template, self.image, self.values = template, image, values
-        self.outputs, self.kinematic, self.last, self.outcome = outputs, kinematic, last, outcome
+        self.outputs, self.forms, self.last, self.outcome = outputs, forms, last, outcome
         self._next, self._stop, self._lock = count(), Event(), lock
         self._done, self._error = 0, None
         self._changes = self._differences() if self.image.linear else None
@@ -95,7 +95,7 @@ class Work:
     def _run(self, run: int, copies: Copies | None) -> None:
         try:
             begun = self._begun(run, copies)
-            course = Course(begun, self.template.every, self.outputs, self.kinematic)
+            course = Course(begun, self.template.every, self.outputs, self.forms)
             ended = course.go(self.last, self._stop.is_set)
         except InputError as error:     # of this run: an initial state that joints do not allow
             self.outcome.failures[run] = str(error)

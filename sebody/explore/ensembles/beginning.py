@@ -1,0 +1,79 @@
+"""The start of a run from a copy of all numbers, compiled: other threads go on meanwhile."""
+
+from dataclasses import dataclass
+
+from numpy.typing import NDArray
+
+from sebody.compiler.decorators import compiled
+from sebody.engine.arrays import Arrays
+from sebody.engine.evaluate import move_prescribed, set_loads
+from sebody.engine.links import place_dependent
+from sebody.engine.state import ASKED
+from sebody.engine.vectors import copy
+
+
+@dataclass(frozen=True, eq=False)
+class Beginning(Arrays):
+    """What a run begins with, beside the arrays of a thread that get it.
+
+    ==================  ============================================================================
+    model, floats       numbers of the model as built, and those of the thread
+    slots               (k,) places of the numbers that depend on parameters
+    ends                (k + 1,) where the slopes of each begin and end
+    components, slopes  by which component of the parameters, and how much
+    control, clock,     scalars and flags of the thread, and below those of the model as built
+    guard, moved
+    ==================  ============================================================================
+    """
+
+    model: NDArray
+    floats: NDArray
+    slots: NDArray
+    ends: NDArray
+    components: NDArray
+    slopes: NDArray
+    control: NDArray
+    clock: NDArray
+    guard: NDArray
+    moved: NDArray
+    control_built: NDArray
+    clock_built: NDArray
+    guard_built: NDArray
+    moved_built: NDArray
+
+
+@compiled(nogil=True)
+def begin(system, state, given, change):
+    """Numbers for changed parameters, loads and positions; accelerations are asked for.
+
+    Parameters
+    ----------
+    change : (components,)
+        Values of the parameters less those of the model as built.
+    """
+    copy(given.model, given.floats)
+    for i in range(given.slots.size):
+        total = 0.0
+        for k in range(given.ends[i], given.ends[i + 1]):
+            total += given.slopes[k] * change[given.components[k]]
+        given.floats[given.slots[i]] += total
+    for i in range(given.control.size):
+        given.control[i] = given.control_built[i]
+    for i in range(given.moved.size):
+        given.moved[i] = given.moved_built[i]
+    copy(given.clock_built, given.clock)
+    copy(given.guard_built, given.guard)
+    set_loads(system, state.frames, state.loads, 0.0)
+    copy(state.loads, state.loads_old)
+    move_prescribed(system, state)
+    place_dependent(system.links, state.q, state.v, state.a, state.R)
+    state.control.restart = ASKED
+
+
+@compiled(nogil=True)
+def end(state, given):
+    """Nothing is counted of the start, and the first step begins from it."""
+    for i in range(given.control.size):
+        given.control[i] = given.control_built[i]
+    copy(state.frames, state.frames_old)
+    copy(state.aux, state.aux_old)
