@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.engine.state import Scheme
 from sebody.errors import InputError, LimitWarning
-from sebody.explore.ensembles.member import kinematic_quantities
+from sebody.explore.ensembles.member import forms
 from sebody.explore.ensembles.outputs import Output
 from sebody.gradients.history import History, history
 from sebody.gradients.linear import Linear
@@ -190,9 +190,8 @@ Tables = Mapping[str, OfTable]
 def _tables(one: Differentiated, outputs: Mapping[str, Output], slopes: Slopes,
             columns: Sequence[Column]) -> dict[str, OfTable]:
     """Tables of loads by name, where objectives look at motion alone."""
-    kinematic, _ = kinematic_quantities(one.run, outputs)
     found: dict[str, OfTable] = {}
-    if any(output.quantity not in kinematic for output in outputs.values()):
+    if not all(form.kinematic for form in forms(one.run, outputs).values()):
         return found
     for column in columns:
         port = port_of(slopes.model, one.run, column)
