@@ -123,9 +123,10 @@ class Element(NamedTuple):
         """
         count, first = len(self.multipliers), self.coordinates
         equations = sp.Matrix(self.residual[first:first + count])
-        return all(not block.rotational and
-                   equations.jacobian([x for x in block.state.symbols if x.free_symbols])
-                   in (sp.eye(count), -sp.eye(count)) for block in self.blocks)
+        return count > 0 and all(
+            not block.rotational
+            and equations.jacobian([x for x in block.state.symbols if x.free_symbols])
+            in (sp.eye(count), -sp.eye(count)) for block in self.blocks)
 
     @property
     def printed(self) -> list[sp.Expr]:
