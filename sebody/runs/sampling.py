@@ -155,7 +155,7 @@ class Sampling:
             last = first + self.model.dimension
             return lambda: now[first:last].copy()
         made = channel(self.model, self.numbering, name)
-        kind, one, other = made.places
+        kind, one = made.places[:2]
         numbers = made.numbers
         if kind == DOT and np.count_nonzero(numbers) == np.count_nonzero(numbers[1:4]) == 1:
             k = int(np.flatnonzero(numbers)[0])
