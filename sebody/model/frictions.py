@@ -35,7 +35,8 @@ class Dry(NamedTuple):
 def friction(model: Mechanism, joint: Joint | str, coefficient: float, static: float | None = None,
              radius: float | None = None, preload: float = 0.0, arm: float | None = None,
              reaction: bool = True, bristle: float | None = None, damping: float = 0.7,
-             speed: float = 0.0, name: str | None = None) -> Element | tuple[Element, ...]:
+             speed: float = 0.0, slip: float | None = None, name: str | None = None
+             ) -> Element | tuple[Element, ...]:
     """Dry friction in a joint or drive: it sticks up to a limit, and slides against the motion.
 
     The limit is the coefficient times the normal force, times the radius where the joint turns. The
@@ -64,6 +65,8 @@ def friction(model: Mechanism, joint: Joint | str, coefficient: float, static: f
     bristle : float, optional
         Stiffness of sticking, force/length or moment/angle. By default that with which the mass
         that the joint sees vibrates with the period 2 pi h of a step h.
+    slip : float, optional
+        In place of `bristle`: displacement, or angle, at which it gives way under the preload.
     damping : float
         Of this vibration, relative to the critical one.
     speed : float
@@ -86,9 +89,12 @@ def friction(model: Mechanism, joint: Joint | str, coefficient: float, static: f
     dry = checked_friction(what, coefficient, static, bristle, damping, speed)
     if radius is None and not sliding:
         raise InputError(f"{what}: the joint turns, so its friction acts on a radius: give radius=")
-    constants = dict(dry.constants) | {
-        "radius": 1.0 if radius is None else inputs.number(radius, f"{what}: radius", above=0),
-        "preload": inputs.number(preload, f"{what}: preload", least=0),
+    own_radius = 1.0 if radius is None else inputs.number(radius, f"{what}: radius", above=0)
+    preload = inputs.number(preload, f"{what}: preload", least=0)
+    stiffness = {} if slip is None else {"bristle": _stiffness(
+        what, slip, bristle, dry.constants["static"] * preload * own_radius)}
+    constants = dict(dry.constants) | stiffness | {
+        "radius": own_radius, "preload": preload,
         "per_moment": 0.0 if arm is None else 1.0 / inputs.number(arm, f"{what}: arm", above=0)}
     reads = inputs.flag(reaction, f"{what}: reaction") and joint.kind != "drive"
     if not reads and not preload > 0:
@@ -106,6 +112,18 @@ def friction(model: Mechanism, joint: Joint | str, coefficient: float, static: f
                             pressed_by=joint if reads else None, tuned=dry.tuned))
     model.loads.extend(made)
     return made[0] if len(made) == 1 else tuple(made)
+
+
+def _stiffness(what: str, slip: float, bristle: float | None, limit: float) -> float:
+    """Stiffness of bristles that give way at a displacement under a force."""
+    slip = inputs.number(slip, f"{what}: slip", above=0)
+    if bristle is not None:
+        raise InputError(f"{what} has a slip and a bristle, which both say how stiff sticking is: "
+                         "give one of them")
+    if not limit > 0:
+        raise InputError(f"{what} has a slip of {slip:g} and no force under which it gives way: "
+                         "give preload= and a coefficient above zero, or bristle=")
+    return limit / slip
 
 
 def checked_friction(what: str, coefficient: float, static: float | None, bristle: float | None,

@@ -281,8 +281,9 @@ class Result(Recording):
             lines.append(f"constraints          largest residual "
                          f"{self['constraints.position'].max():.1e}, of their rates "
                          f"{self['constraints.velocity'].max():.1e}")
+        laws = {load.name for load in self.model.loads if load.law is not None}     # of none
         lines += [f"work                 {self.recorded('works')[-1, k]:.6g} by {name}"
-                  for k, name in enumerate(self.numbering.port_names)]
+                  for k, name in enumerate(self.numbering.port_names) if name not in laws]
         if self.error is not None:
             lines.insert(2, f"error                {self.error:.2f} of the tolerance, estimated; "
                             f"{1e3 * self.all_seconds:.3g} ms including the coarser runs")

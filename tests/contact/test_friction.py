@@ -12,7 +12,7 @@ from contact_models import (
     turning_points,
 )
 
-from sebody import Model, Simulation, Tolerance, simulate
+from sebody import InputError, Model, Simulation, Tolerance, simulate
 from sebody.model.variants import planar as planar_variant
 
 
@@ -69,9 +69,29 @@ def test_load_below_the_limit_never_drifts(h):
     model = block()
     model.force("block", (1.0, 0.0), lambda t: 0.3 + 0.5 * np.sin(2 * np.pi * t))
     model.friction("slide", 1.0, preload=1.0, reaction=False)
-    x = simulate(model, h, 100.0)["block.position"][:, 0]
+    x = simulate(model, h, 1000.0)["block.position"][:, 0]
     assert abs(x[-1] - x[round(10.0 / h)]) < 1e-12
     assert x.max() < 2 * h**2       # bristles of m/h^2
+
+
+def test_slip_under_the_preload():
+    """Bristles of ``static preload radius / slip``, which a force and a moment bend."""
+    model = block()
+    model.force("block", (1.0, 0.0), lambda t: 0.9 * min(t, 1.0))
+    model.friction("slide", 0.3, static=0.4, preload=5.0, reaction=False, slip=2e-3)
+    x = simulate(model, 0.01, 3.0)["block.position"][-1, 0]
+    assert x == pytest.approx(0.9 / (0.4 * 5.0 / 2e-3), rel=1e-3)     # damped for two seconds
+    hub = Model(planar=True)
+    hub.rigid_body("rotor", hub.node("hub", (0.3, 0.1)), 1.0, 0.2)
+    hub.revolute("hub", name="hinge")
+    hub.torque("hub", 1.0, lambda t: 0.05 * min(t, 1.0))
+    hub.friction("hinge", 0.4, radius=0.1, preload=5.0, reaction=False, slip=1e-3)
+    angle = simulate(hub, 0.01, 3.0)["hub.rotation"][-1]
+    assert angle == pytest.approx(0.05 / (0.4 * 5.0 * 0.1 / 1e-3), rel=1e-3)
+    with pytest.raises(InputError, match="a slip and a bristle"):
+        hub.friction("hinge", 0.4, radius=0.1, preload=5.0, slip=1e-3, bristle=10.0)
+    with pytest.raises(InputError, match="no force under which it gives way: give preload="):
+        hub.friction("hinge", 0.4, radius=0.1, slip=1e-3)
 
 
 @pytest.mark.parametrize("planar", [True, False])

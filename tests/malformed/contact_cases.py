@@ -36,6 +36,7 @@ CASES = {
         "arm": unless_none(positive(f"{FRICTION}: arm")),
         "reaction": are(f"{FRICTION}: reaction", *NO_FLAG, also=": give True or False"),
         "bristle": unless_none(positive(f"{FRICTION}: bristle")),
+        "slip": unless_none(positive(f"{FRICTION}: slip")),
         "damping": not_negative(f"{FRICTION}: damping"),
         "speed": not_negative(f"{FRICTION}: speed")}),
     "stop": Right(Model.stop, {"of": "pin", "lower": -0.3, "upper": 0.5, "stiffness": 1e3}, {

@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from sebody import InputError, Model, Simulation
 from sebody.analysis import equilibrium, frequency_response, modes, state_space
 from sebody.catalogue import builder, scenes
+from sebody.control import state_feedback
 from sebody.fem import StiffnessSection, planar_beam, rectangle
 from sebody.reduction import craig_bampton
 
@@ -210,6 +211,10 @@ def test_roots_of_a_beam_with_a_controlled_hinge():
                                                             "hub.angular_velocity"])
     closed = system.A - system.B @ [[kp, kd]] @ system.C
     found = np.linalg.eigvals(closed)
+    loop = hinged()         # the same as a law in the equations of motion
+    loop.actuator("motor", joint="hinge")
+    loop.controller("law", state_feedback([[kp, kd]]), ["hinge.angle", "hinge.rate"], ["motor"])
+    values = modes(Simulation(loop, 0.01)).values
     with mp.workdps(40):
         def characteristic(s):
             b = mp.sqrt(s / mpc(0, 1))
@@ -222,6 +227,7 @@ def test_roots_of_a_beam_with_a_controlled_hinge():
             root = complex(findroot(characteristic, (guess, guess * 1.001, guess + 0.001j),
                                     solver="muller", tol=1e-30))
             assert np.abs(found - root).min() < error * abs(root)   # of four modes
+            assert np.abs(values - root).min() < error * abs(root)
 
 
 def pole_on_a_cart():

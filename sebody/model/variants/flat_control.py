@@ -17,7 +17,7 @@ from sebody.model.continuous import law_element
 from sebody.model.control_parts import Sensor
 from sebody.model.controllers import actuators, signals
 from sebody.model.mechanism import Mechanism
-from sebody.model.plane import AXIAL, POINTS, VECTORS
+from sebody.model.plane import AXIAL, POINTS, VECTORS, Plane
 from sebody.reduction.plane import PlanarBody
 
 AXES = "xyz"
@@ -53,8 +53,9 @@ def add_control(model: Mechanism, made: Mechanism, bodies: Mapping[str, PlanarBo
         if not controller.period:
             old = next(one for one in model.loads
                        if one.law is not None and one.law.controller == name)
-            corners = () if old.time_function is None else old.time_function.corners
-            made.loads.append(law_element(made, controller, old.law.derivatives, corners))
+            assert old.law is not None and old.time_function is not None
+            made.loads.append(law_element(made, controller, old.law.derivatives,
+                                          old.time_function.corners))
 
 
 def _flat_sensor(model: Mechanism, made: Mechanism, bodies: Mapping[str, PlanarBody],
@@ -75,10 +76,10 @@ def _reading(model: Mechanism, made: Mechanism, bodies: Mapping[str, PlanarBody]
     owner, _, last = quantity.rpartition(".")
     joints = [one for one in model.joints if one.name == owner]
     if joints and last in ("angle", "rate") and joints[0].kind in TURNS:
-        along = float(made.plane.normal @ joints[0].axis)
+        along = float(_plane(made).normal @ joints[0].axis)
         return Reading(quantity, np.sign(along)) if abs(along) > 1.0 - ALONG else None
     if joints and last in ("displacement", "speed") and joints[0].kind in SLIDES:
-        return Reading(quantity) if abs(made.plane.normal @ joints[0].axis) < ALONG else None
+        return Reading(quantity) if abs(_plane(made).normal @ joints[0].axis) < ALONG else None
     before, _, name = owner.rpartition(".")
     if before in bodies and name in ("modes", "mode_rates") and last.isdecimal():
         parts = bodies[before].modes[int(last)]
@@ -89,14 +90,21 @@ def _reading(model: Mechanism, made: Mechanism, bodies: Mapping[str, PlanarBody]
     return None
 
 
+def _plane(made: Mechanism) -> Plane:
+    """The plane that a planar model was made for."""
+    assert made.plane is not None
+    return made.plane
+
+
 def _component(made: Mechanism, owner: str, name: str, way: np.ndarray) -> Reading | None:
     """A component of a vector along a global axis."""
-    parts = made.plane.axes.T @ way
+    plane = _plane(made)
+    parts = plane.axes.T @ way
     own = np.flatnonzero(np.abs(parts) > ALONG)
     axial = name in AXIAL
     if len(own) > 1 or (own[0] == 2) != axial:
         return None
     if axial:
         return Reading(f"{owner}.{name}", parts[2])
-    added = float(made.plane.origin @ way) if name in POINTS else 0.0
+    added = float(plane.origin @ way) if name in POINTS else 0.0
     return Reading(f"{owner}.{name}.{AXES[own[0]]}", parts[own[0]], added)
