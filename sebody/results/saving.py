@@ -26,7 +26,7 @@ from sebody.results.postprocessing import Forces
 from sebody.results.recording import EVALUATED, Recording, Start
 from sebody.results.saved_checks import check_notes, member_lengths
 
-VERSION = 3
+VERSION = 4
 OWN = "sebody/"         # beginning of the names of members that are no named histories
 NOTES = "seconds", "failure", "warnings", "error", "all_seconds"        # members of a Recording
 WHAT, REPEAT = "results file", "run the model again"

@@ -250,8 +250,8 @@ RESULT = {
         "Node", "point", ["cloud", []])),
     "stiffening in words": Packed("a Superelement has 'yes' for its stiffening", _field(
         "Superelement", "stiffening", "yes")),
-    "a body of a name": Packed("a Superelement has 'rod' for its body", _field(
-        "Superelement", "body", "rod")),
+    "a body of a name": Packed("a Superelement has 'rod' for its reduced", _field(
+        "Superelement", "reduced", "rod")),
     "modes of a fraction": Packed("a ReducedBody has 1.5 for its modes", _field(
         "ReducedBody", "modes", 1.5)),
     "modes too many": Packed("a body of ", _field("ReducedBody", "modes", 7)),
