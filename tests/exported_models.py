@@ -41,6 +41,27 @@ def arm() -> Model:
     return model
 
 
+def law(t, y, x, rates, u, parameters):
+    """Continuous: against a filtered angle and its rate."""
+    rates[0] = (y[0] - x[0]) / parameters[0]
+    u[0] = -parameters[1] * x[0] - 0.2 * y[1]
+
+
+def derivatives(t, y, x, D, parameters):
+    """Of its rates and outputs by y and x."""
+    D[0, 0], D[0, 2] = 1.0 / parameters[0], -1.0 / parameters[0]
+    D[1, 1], D[1, 2] = -0.2, -parameters[1]
+
+
+def with_law() -> Model:
+    """The same arm with a continuous controller, its derivatives given, beside the sampled one."""
+    model = arm()
+    model.actuator("motor 2", joint="joint 1")
+    model.controller("law", law, ["joint 1.angle", "joint 1.rate"], ["motor 2"], states=[0.05],
+                     parameters=[0.03, 3.0], derivatives=derivatives)
+    return model
+
+
 def pendulum() -> Model:
     """A pendulum in a plane whose support is driven, with an actuator and a spring."""
     model = Model(planar=True)

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.assembly.control import begin
 from sebody.compiler.choice import way
+from sebody.compiler.user_functions import ControlFunction
 from sebody.contract.law_row import OUTSIDE
-from sebody.engine.control_data import FUNCTION
 from sebody.engine.state import EVALUATED, Scheme
 from sebody.engine.system import System
 from sebody.errors import InputError
@@ -137,7 +137,7 @@ class Prepared:
                        for k, (_, function) in enumerate(functions(model))}
         users = {address: name for address, (name, _) in self._users.items()}
         self.calls = [
-            *self._in(system.address, kernels), *self._in(system.index, users),
+            *self._in(system.address, kernels), *self._in(system.index, kernels | users),
             *self._in(system.functions, users),
             *self._in(system.control.controllers, users),
             *((self.image.at(system.routines, k), name) for k, name in enumerate(ROUTINES))]
@@ -152,9 +152,8 @@ class Prepared:
     def users(self) -> list[Part]:
         """Users' functions without the records of faults."""
         histories = set(self.system.functions.ravel().tolist())
-        controllers = set(self.system.control.controllers[:, FUNCTION].tolist())
         return [Part(name, "history" if address in histories else
-                     "controller" if address in controllers else "force",
+                     "controller" if isinstance(function, ControlFunction) else "force",
                      way().code_of(function.alone()))
                 for address, (name, function) in self._users.items()]
 

@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 import pytest
-from exported_models import VARIABLE, H, arm
+from exported_models import VARIABLE, H, arm, with_law
 from helpers import multipliers_first
 
 import sebody.assembly.build as assembly
@@ -84,6 +84,16 @@ def test_variable_steps_are_the_same_bit_for_bit(tmp_path):
     run = Simulation(arm(), 10 * H, tolerance=VARIABLE).run_to(STEPS * H)
     called(folder, STEPS // 10, folder / "rows")
     assert (folder / "rows").read_bytes() == run.result().rows[1:].tobytes()
+
+
+def test_continuous_laws_are_called_without_addresses_of_this_process(tmp_path):
+    folder = export(with_law(), H, library=tmp_path / "law", name="law", outputs=["law.states"],
+                    processor="native")
+    compiled_example(folder, "law")
+    called(folder, STEPS, tmp_path / "rows")
+    result = simulate(with_law(), H, STEPS * H)
+    assert np.ptp(result["law.states"]) > 0.01
+    assert (tmp_path / "rows").read_bytes() == result.rows[1:].tobytes()
 
 
 def test_matrices_with_row_exchanges(monkeypatch, tmp_path):

@@ -1,4 +1,4 @@
-/* What compiled functions ask of Numba's run-time: memory with a count of references. */
+/* What compiled functions ask of the run-time of Numba: memory with a count of references, strides. */
 #include <stdint.h>
 #include <stdlib.h>
 
@@ -30,4 +30,18 @@ LOCAL void NRT_incref(MemInfo *m) {
 }
 LOCAL void NRT_decref(MemInfo *m) {
   if (m && --m->references == 0) free(m);
+}
+
+/* New strides of an array that lies in memory without gaps, row after row; 0 of any other. */
+LOCAL int numba_attempt_nocopy_reshape(intptr_t count, const intptr_t *sizes,
+                                       const intptr_t *strides, intptr_t new_count,
+                                       const intptr_t *new_sizes, intptr_t *new_strides,
+                                       intptr_t item, int by_columns) {
+  intptr_t stride = item;
+  if (by_columns) return 0;
+  for (intptr_t k = count; k-- > 0; stride *= sizes[k])
+    if (sizes[k] != 1 && strides[k] != stride) return 0;
+  stride = item;
+  for (intptr_t k = new_count; k-- > 0; stride *= new_sizes[k]) new_strides[k] = stride;
+  return 1;
 }
