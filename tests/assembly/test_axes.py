@@ -68,3 +68,27 @@ def test_the_force_of_the_equations_is_that_of_the_joint_in_global_axes(planar):
     for name in ("hinge.force", "elbow.force", "free.position"):
         size = np.abs(expected[name]).max()
         assert np.abs(found[name] - expected[name]).max() < 1e-6 * size, name
+
+
+@pytest.mark.parametrize("planar", [True, False])
+def test_two_hinges_at_one_place_share_the_force(planar):
+    """Multipliers of least norm, in whatever axes they are solved for."""
+    single = simulate(arm(True, planar), H, 1.0)["hinge.force"]
+    model = arm(True, planar)
+    axis = (0, 0, 1) if planar else (0.3, -0.2, 0.9)
+    model.revolute("base", axis, to="ground", explicit=True, name="other hinge")
+    result = simulate(model, H, 1.0)
+    for name in ("hinge.force", "other hinge.force"):
+        assert np.abs(result[name] - single / 2).max() < 1e-5 * np.abs(single).max(), name
+
+
+@pytest.mark.parametrize("planar", [True, False])
+def test_velocities_are_fitted_to_equations_as_to_a_shared_position(planar):
+    found = []
+    for explicit in (False, True):
+        model = arms(explicit, planar)
+        model.initial_velocity("free", (0.3, 0.8) if planar else (0.3, 0.8, -0.5))
+        found.append(simulate(model, H, H))
+    for name in ("tip.velocity", "free.velocity", "upper.mode_rates"):
+        expected, own = (one[name][0] for one in found)
+        assert np.abs(own - expected).max() < 1e-9 * np.abs(found[0]["tip.velocity"]).max(), name
