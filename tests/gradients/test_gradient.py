@@ -31,6 +31,11 @@ SCENES = {
         "tip": final("tip.position"), "end": final("end.velocity"),
         "base": integral("base.position")}, [
         "shake.amplitude", "swing.amplitude", "ball.mass", "beam.stiffness"]),
+    # integrals look at the start, where velocities and positions are parameters themselves
+    "a start that is a parameter": (scenes.thrown, 0.005, 0.1, {
+        "end": integral("end.acceleration"), "v": integral("a.velocity"),
+        "energy": integral("energy.kinetic"), "x": rms("end.position")}, [
+        "a.velocity", "a.angular_velocity", "a.position", "top.mass"]),
     "driven rotor": (scenes.driven, 0.005, 0.1, {
         "tip": final("tip.position"), "slide": final("slide.velocity")}, [
         "motor.amplitude", "rotor.mass", "carriage.mass", "spring.stiffness"]),
