@@ -5,9 +5,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.pictures.palette import BODIES, DRIVE, GROUND, JOINT, LINK, LOAD, SPRING
+from sebody.pictures.contact_surfaces import ContactSurface, vertices_of
+from sebody.pictures.palette import BODIES, CONTACT, DRIVE, GROUND, JOINT, LINK, LOAD, SPRING, rgb
 from sebody.pictures.plots import ACCENT
-from sebody.pictures.rendering import Eye, ribbon
+from sebody.pictures.rendering import Eye, Painter, Solid, ribbon
 from sebody.pictures.scene import Scenery
 
 if TYPE_CHECKING:
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 HALF = 0.007            # half the width of links, of the model's extent
 ARROW = 0.2             # length of the largest force, of the model's extent
 TURN = 0.07             # radius of the largest torque, likewise
+SKIN, LINES = 0.14, 1.0     # opacities of contact surfaces
 SHAPES = {"ground": ("^", GROUND), "drive": ("o", DRIVE), "mass": ("o", JOINT)}
 
 
@@ -32,10 +34,12 @@ class Marks:
         self._largest = {kind: max((np.linalg.norm(one.values, axis=1).max()
                                     for one in drawn.arrows if one.kind == kind), default=1.0)
                          for kind in ("force", "torque")}
+        self._contacts = Painter(axes, zorder=1.2)      # behind all bodies
         self._colours = {k: entry.colour for entry in drawn.entries for k in entry.links}
 
     def draw(self, k: int) -> None:
-        """Signs, springs, the path so far and loads in a frame."""
+        """Signs, contact surfaces, springs, the path so far and loads in a frame."""
+        self._draw_contacts(k)
         nodes = self._drawn.nodes
         self._path.set_data(*self._trace[:k + 1, :2].T)
         self._springs.set_data(*self._zigzags(k))
@@ -44,6 +48,17 @@ class Marks:
         for load in self._loads:
             load.remove()
         self._loads = [self._arrow(line) for line in self._arrows(k)]
+
+    def _draw_contacts(self, k: int) -> None:
+        """Contact surfaces in a frame."""
+        self._contacts.draw(self._eye, [solid for one in self._drawn.contacts
+                                        for solid in self._skin_and_lines(one, k)])
+
+    def _skin_and_lines(self, one: ContactSurface, k: int) -> list[Solid]:
+        points, shape = vertices_of(one, self._drawn.nodes, k), one.shape
+        colour = np.array(rgb(CONTACT))
+        return [Solid(points, shape.triangles, colour, shape.lines[:0], SKIN),
+                Solid(points, shape.triangles[:0], colour, shape.lines, LINES, CONTACT)]
 
     def links(self, k: int) -> list[tuple[NDArray, str, float]]:
         """Flat polygons of the links in a frame, their colours and depths."""

@@ -81,6 +81,21 @@ def nodes(blocks: Blocks, result: Result, drawn: Scenery, measure: Measure) -> l
             for node in drawn.nodes.values()]
 
 
+def contacts(blocks: Blocks, drawn: Scenery, measure: Measure) -> list[dict]:
+    """Contact surfaces; points from the node that carries them, on the ground from the middle."""
+    number = {name: k for k, name in enumerate(drawn.nodes)}
+    found = []
+    for one in drawn.contacts:
+        points = one.shape.points
+        points = measure.places(points) if one.node is None else points / measure.size
+        found.append({"name": one.name, "kind": one.kind,
+                      "node": None if one.node is None else number[one.node],
+                      "points": blocks.values(points, SEEN / 10),
+                      "lines": blocks.indices(one.shape.lines),
+                      "triangles": blocks.indices(one.shape.triangles)})
+    return found
+
+
 def marks(blocks: Blocks, drawn: Scenery) -> dict:
     """Links, signs, and loads in parts of the largest of their kind."""
     number = {name: k for k, name in enumerate(drawn.nodes)}

@@ -19,7 +19,7 @@ from sebody.pictures.templates import filled
 from sebody.results.result import Result
 
 SCRIPTS = ("numbers", "vectors", "motion", "bodies", "references", "shapes", "renderer", "camera",
-           "marks", "labels", "scene", "legend", "pointer", "plot", "controls", "main")
+           "marks", "contacts", "labels", "scene", "legend", "pointer", "plot", "controls", "main")
 FRAMES = 1801           # at most: a minute of thirty a second
 FEWEST_FRAMES = 201
 NUMBERS = 3_000_000     # of all frames together, beyond which models have fewer of them
@@ -80,6 +80,7 @@ def _header(blocks: Blocks, result: Result, drawn: Scenery) -> dict:
         "bodies": page_bodies.bodies(blocks, drawn, measure, stress),
         "entries": [entry._asdict() for entry in drawn.entries],
         "nodes": page_bodies.nodes(blocks, result, drawn, measure),
+        "contacts": page_bodies.contacts(blocks, drawn, measure),
         **page_bodies.marks(blocks, drawn),
         "sign": _sign(drawn, measure), "view": _view(drawn, measure.places(places), measure.size),
         "trace": list(drawn.nodes).index(drawn.farthest),

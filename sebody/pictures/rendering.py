@@ -52,6 +52,7 @@ class Solid(NamedTuple):
     colours: NDArray        # (triangles, 3), or (3,) of all
     edges: NDArray          # (edges, 2) that are drawn
     alpha: float = 1.0
+    ink: str = INK          # of the edges
 
 
 def colours_of(values: NDArray, low: float, high: float) -> NDArray:
@@ -65,10 +66,10 @@ def colours_of(values: NDArray, low: float, high: float) -> NDArray:
 class Painter:
     """Polygons of a picture, from back to front."""
 
-    def __init__(self, axes: "Axes") -> None:
+    def __init__(self, axes: "Axes", zorder: float = 3) -> None:
         from matplotlib.collections import PolyCollection
 
-        self._faces = axes.add_collection(PolyCollection([], zorder=3))
+        self._faces = axes.add_collection(PolyCollection([], zorder=zorder))
 
     def draw(self, eye: Eye, solids: Sequence[Solid], ribbons: Sequence[tuple] = ()) -> None:
         """Draw surfaces, and ribbons given as flat polygons (4, 2), colour and depth."""
@@ -85,7 +86,7 @@ class Painter:
             lines = seen[solid.edges]
             # all with four corners: matplotlib takes an array faster than a list
             polygons += [corners[:, [0, 1, 2, 2], :2], lines[:, [0, 1, 1, 0], :2]]
-            ink = np.tile([*rgb(INK), 0.75 * solid.alpha], (len(lines), 1))
+            ink = np.tile([*rgb(solid.ink), 0.75 * solid.alpha], (len(lines), 1))
             faces += [shaded, np.zeros_like(ink)]
             edges += [shaded if solid.alpha == 1 else np.zeros_like(shaded), ink]
             depths += [corners[..., 2].mean(axis=1) - BEHIND * away,

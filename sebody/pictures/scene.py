@@ -1,4 +1,4 @@
-"""What a picture of a moving model shows: bodies, nodes, links, signs of joints, and loads."""
+"""What a picture of a moving model shows: bodies, nodes, joints, contact surfaces and loads."""
 
 from typing import NamedTuple
 
@@ -9,6 +9,7 @@ from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Node
 from sebody.pictures.arrows import Arrow, arrows
+from sebody.pictures.contact_surfaces import ContactSurface, contact_surfaces, vertices_of
 from sebody.pictures.drawn_bodies import DrawnBody, flexible, quaternions, rigid, with_stress
 from sebody.pictures.glyphs import Link, Sign, links, signs
 from sebody.pictures.palette import BODIES
@@ -49,6 +50,7 @@ class Scenery(NamedTuple):
     nodes: dict[str, DrawnNode]
     links: list[Link]
     signs: list[Sign]
+    contacts: list[ContactSurface]
     arrows: list[Arrow]
     gravity: NDArray        # (3,)
     planar: bool
@@ -84,9 +86,7 @@ def scenery(result: Result, most: int, stressed: bool = False, reference: str | 
                          f"{'s' * (len(result.rows) != 1)}, too few for an animation: run the "
                          "model to a later time")
     states = thinned(len(result.rows), most)
-    model = result.model
-    nodes = {node.name: drawn for node in (*model.nodes.values(), *model.grounds)
-             if (drawn := _node(result, node, states)) is not None}
+    model, nodes = result.model, drawn_nodes(result, states)
     if not nodes:
         raise InputError("no node of the model has a position: there is nothing to animate")
     bodies = _bodies(result, states, extent(nodes), reference)
@@ -97,9 +97,16 @@ def scenery(result: Result, most: int, stressed: bool = False, reference: str | 
     drawn = {body.name for body in bodies}
     lines = links(model, set(nodes), drawn)
     return Scenery(result.t[states], states, bodies, _entries(model, bodies, lines), nodes, lines,
-                   signs(model, set(nodes)), arrows(result, states, set(nodes), drawn),
+                   signs(model, set(nodes)), contact_surfaces(model, nodes, extent(nodes)),
+                   arrows(result, states, set(nodes), drawn),
                    spatial(np.asarray(model.gravity_field)), model.planar,
                    *_view(model, nodes), result.units)
+
+
+def drawn_nodes(result: Result, states: NDArray) -> dict[str, DrawnNode]:
+    """The nodes with a position, those of the ground among them, in some recorded states."""
+    return {node.name: drawn for node in (*result.model.nodes.values(), *result.model.grounds)
+            if (drawn := _node(result, node, states)) is not None}
 
 
 def thinned(count: int, most: int) -> NDArray:
@@ -117,10 +124,13 @@ def extent(nodes: dict[str, DrawnNode]) -> float:
 
 
 def seen_places(drawn: Scenery) -> NDArray:
-    """Places (n, 3) of what moves: nodes, and bodies in some frames."""
+    """Places (n, 3) of what moves: nodes, and bodies and balls in some frames."""
     found = [node.position for node in drawn.nodes.values()]
     frames = np.unique(np.linspace(0, len(drawn.t) - 1, LOOKED_AT[0]).astype(int))
-    return np.concatenate(found + [_stations(body, frames) for body in drawn.bodies])
+    found += [_stations(body, frames) for body in drawn.bodies]
+    found += [vertices_of(one, drawn.nodes, k) for one in drawn.contacts if one.kind == "ball"
+              for k in frames]
+    return np.concatenate(found)
 
 
 def _stations(body: DrawnBody, frames: NDArray) -> NDArray:

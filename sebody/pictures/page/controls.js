@@ -92,6 +92,7 @@ class Controls {
       this.listen(box.id, "change", () => { shown[name] = box.checked; });
     }
     element("loads").parentElement.hidden = !this.header.arrows.length;
+    element("contacts").parentElement.hidden = !this.header.contacts.length;
   }
 
   // A line for each body: whether it is shown, and its colour.

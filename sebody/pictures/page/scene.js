@@ -25,10 +25,11 @@ class Scene {
     this.up = unit(header.view.up);
     this.grid = gridLines(header.view.floor);
     this.marks = new Marks(header, this);
+    this.contacts = new Contacts(header, this);
     this.field = null;                          // quantity that colours bodies
     this.range = [0, 1];
-    this.shown = { scale: 1, trace: [], joints: true, loads: true, nodes: true, features: true,
-                   mesh: false, grid: true, frames: false };
+    this.shown = { scale: 1, trace: [], joints: true, loads: true, nodes: true, contacts: true,
+                   features: true, mesh: false, grid: true, frames: false };
   }
 
   // Colour by a field of the header; by bodies without one.
@@ -115,6 +116,7 @@ class Scene {
     if (shown.loads) marks.loads();
     if (shown.frames) marks.frames(this.places);
     this.eachBody((body, entry, k) => { if (body.rigid) this.body(k, entry, CLEAR); });
+    if (shown.contacts) this.contacts.draw();
   }
 
   eachBody(act) {

@@ -1,0 +1,213 @@
+"""Contact surfaces and stops of a picture: where they are, and which bodies carry them."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Element, Node
+from sebody.pictures.contact_shapes import (
+    Shape,
+    across_of,
+    ball,
+    disc,
+    hatched,
+    joined,
+    patch,
+    ray,
+    sector,
+    tube,
+)
+from sebody.pictures.surface import spatial
+
+if TYPE_CHECKING:
+    from sebody.pictures.scene import DrawnNode
+
+AROUND_CONTACT = 0.3, 0.1       # margin of surfaces of the ground, of bodies; of the extent
+HATCH = 0.02            # length of hatches, of the extent
+PLATE = 0.04            # half the width of the plates of a stop, likewise
+FAN = 0.15              # radius of the range of an angle, likewise
+Z = np.array([0.0, 0.0, 1.0])
+ALIKE = 9               # digits in which planes of several contacts are the same one
+
+
+class ContactSurface(NamedTuple):
+    """A surface that is touched, a ball that touches one, or the limits of a stop."""
+
+    name: str               # of the contact or stop
+    kind: str               # plane, sphere, cylinder, ball, limits or pointer
+    node: str | None        # that carries it; None on the ground
+    shape: Shape            # from this node, in axes that turn with it; on the ground in space
+
+
+def contact_surfaces(model: Mechanism, nodes: "Mapping[str, DrawnNode]", size: float
+                     ) -> list[ContactSurface]:
+    """Surfaces, balls and limits of the contacts and stops whose `nodes` are drawn.
+
+    Contacts with the same plane share a patch, and those of the same ball this ball.
+    """
+    found: list[ContactSurface] = []
+    planes: dict[tuple, list[tuple[Element, NDArray]]] = {}
+    balls: dict[tuple[str, float], str] = {}
+    for one in model.loads:
+        kind, _, surface = one.kind.removeprefix("planar_").partition("_on_")
+        if not (surface or kind in LIMITS) or not all(
+                _on_ground(model, held.node) or held.node.name in nodes
+                for held in one.attachments):
+            continue
+        if kind in LIMITS:
+            found += LIMITS[kind](model, one, size)
+            continue
+        path = _path(model, one, nodes)
+        if surface == "plane":
+            planes.setdefault(_same_plane(model, one, size), []).append((one, path))
+        else:
+            found.append(_round(model, one, surface, path, size))
+        if one.number("radius") > 0:
+            balls.setdefault((one.attachments[0].node.name, one.number("radius")), one.name)
+    make = disc if model.planar else ball
+    return [*(_plane(model, touching, size) for touching in planes.values()), *found,
+            *(ContactSurface(name, "ball", node, make(radius))
+              for (node, radius), name in balls.items())]
+
+
+def vertices_of(one: ContactSurface, nodes: "Mapping[str, DrawnNode]", frame: int) -> NDArray:
+    """Its points in space in a frame, (points, 3)."""
+    if one.node is None:
+        return one.shape.points
+    node = nodes[one.node]
+    turned = (one.shape.points if node.rotation is None
+              else Rotation.from_quat(node.rotation[frame]).apply(one.shape.points))
+    return node.position[frame] + turned
+
+
+def _on_ground(model: Mechanism, node: Node) -> bool:
+    return model.nodes.get(node.name) is not node
+
+
+def _carrier(model: Mechanism, node: Node) -> str | None:
+    return None if _on_ground(model, node) else node.name
+
+
+def _path(model: Mechanism, one: Element, nodes: "Mapping[str, DrawnNode]") -> NDArray:
+    """Places of the node that touches, seen from the one that carries the surface, (frames, 3)."""
+    a, b = (held.node for held in one.attachments[:2])
+    if _on_ground(model, b):
+        return nodes[a.name].position
+    away, rotation = nodes[a.name].position - nodes[b.name].position, nodes[b.name].rotation
+    return away if rotation is None else Rotation.from_quat(rotation).apply(away, inverse=True)
+
+
+def _margin(node: str | None, size: float) -> float:
+    return AROUND_CONTACT[node is not None] * size
+
+
+def _normal(model: Mechanism, one: Element) -> tuple[NDArray, float]:
+    """Normal of a plane, and how far it is from the node that carries it or from the origin."""
+    n, b = spatial(one.vector("n")), one.attachments[1].node
+    return n, one.number("level") + float(n @ spatial(b.point) if _on_ground(model, b) else 0.0)
+
+
+def _same_plane(model: Mechanism, one: Element, size: float) -> tuple:
+    n, level = _normal(model, one)
+    return (_carrier(model, one.attachments[1].node),
+            *(np.round([*n, level / size], ALIKE) + 0.0))       # no -0
+
+
+def _plane(model: Mechanism, touching: list[tuple[Element, NDArray]], size: float
+           ) -> ContactSurface:
+    """The part of a plane about all places over it that some contacts reach."""
+    first = touching[0][0]
+    n, level = _normal(model, first)
+    node = _carrier(model, first.attachments[1].node)
+    along, across = (np.cross(Z, n), Z) if model.planar else across_of(n)
+    sides = []
+    for way in (along, across):
+        room = [_margin(node, size) + one.number("radius") for one, _ in touching]
+        at = [path @ way for _, path in touching]
+        sides.append((min(x.min() - r for x, r in zip(at, room, strict=True)),
+                      max(x.max() + r for x, r in zip(at, room, strict=True))))
+    (left, right), (low, high) = sides
+    base = level * n + left * along
+    shape = (hatched(base, (right - left) * along, HATCH * size * n) if model.planar else
+             patch(base + low * across, (right - left) * along, (high - low) * across))
+    return ContactSurface(first.name, "plane", node, shape)
+
+
+def _round(model: Mechanism, one: Element, surface: str, path: NDArray, size: float
+           ) -> ContactSurface:
+    """A sphere, or the stretch of a cylinder along which it is touched."""
+    b = one.attachments[1].node
+    node, radius, inside = _carrier(model, b), one.number("size"), one.number("side") < 0
+    if surface == "sphere":
+        shape = (disc if model.planar else ball)(radius, inside)
+    else:
+        e = one.vector("e")
+        along = (path - (0.0 if node else spatial(b.point))) @ e
+        margin = _margin(node, size)
+        shape = tube(e, radius, along.min() - margin, along.max() + margin, inside)
+    return ContactSurface(one.name, surface, node, _from(model, b, shape))
+
+
+def _from(model: Mechanism, node: Node, shape: Shape) -> Shape:
+    """A shape about a node; of the ground in space."""
+    if not _on_ground(model, node):
+        return shape
+    return shape._replace(points=shape.points + spatial(node.point))
+
+
+def _angle(model: Mechanism, one: Element, size: float) -> list[ContactSurface]:
+    """The range of an angle on the second body, and a ray on the first one that stays in it."""
+    a, b = (held.node for held in one.attachments)
+    axis = Z if model.planar else np.cross(one.vector("n"), one.vector("m"))
+    zero = _towards(model, a, axis)
+    side = np.cross(axis, zero)
+    ends = [end for end in (one.number("lower"), one.number("upper")) if np.isfinite(end)]
+    fan = sector(zero, side, min(*ends, 0.0), max(*ends, 0.0), FAN * size, ends)
+    return [ContactSurface(one.name, "limits", _carrier(model, b), _from(model, b, fan)),
+            ContactSurface(one.name, "pointer", _carrier(model, a),
+                           _from(model, a, ray(FAN * size * zero)))]
+
+
+def _towards(model: Mechanism, node: Node, axis: NDArray) -> NDArray:
+    """A direction across an axis, to the farthest node that turns with a node if there is one."""
+    away = [spatial(other.point - node.point) for other in model.nodes.values()
+            if other.rotation is node.rotation]
+    across = max((way - axis * (axis @ way) for way in away), key=np.linalg.norm,
+                 default=np.zeros(3))
+    if not np.linalg.norm(across) > 0:
+        across = across_of(axis)[0]
+    return across / np.linalg.norm(across)
+
+
+def _way(model: Mechanism, one: Element, size: float) -> list[ContactSurface]:
+    """Plates on the first body, where the second node is at the limits."""
+    a, b = (held.node for held in one.attachments[:2])
+    e, start = spatial(one.vector("e")), spatial(b.point - a.point)
+    half = PLATE * size
+    along, across = (np.cross(Z, e), Z) if model.planar else across_of(e)
+    plates = []
+    for limit, side in ((one.number("lower"), 1.0), (one.number("upper"), -1.0)):
+        if np.isfinite(limit):
+            corner = start + limit * e - half * along
+            plates.append(hatched(corner, 2 * half * along, side * HATCH * size * e)
+                          if model.planar else
+                          patch(corner - half * across, 2 * half * along, 2 * half * across))
+    return [ContactSurface(one.name, "limits", _carrier(model, a), _from(model, a, joined(plates)))]
+
+
+def _distance(model: Mechanism, one: Element, size: float) -> list[ContactSurface]:
+    """Circles about the first node, without a skin: the second node is often outside of one."""
+    a = one.attachments[0].node
+    make = disc if model.planar else ball
+    limits = [end for end in (one.number("lower"), one.number("upper"))
+              if np.isfinite(end) and end > 0]
+    return [ContactSurface(one.name, "limits", _carrier(model, a),
+                           _from(model, a, shape._replace(triangles=shape.triangles[:0])))
+            for shape in (make(end, inside=True) for end in limits)]
+
+
+LIMITS = {"turn_stop": _angle, "slide_stop": _way, "distance_stop": _distance}
