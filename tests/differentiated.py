@@ -109,6 +109,20 @@ def moved():
     return m
 
 
+def thrown():
+    """A body that is free, with a spring at its node and a point at the end of a rigid link."""
+    m = Model()
+    m.gravity((0.3, -9.81, 0.2))
+    a, wall = m.node("a", place(0.1, 0.2, 0.3)), m.node("wall", place(0.5, 1.0, 0))
+    m.rigid_body("top", a, 2.0, TURN @ np.diag([0.2, 0.3, 0.4]) @ TURN.T,
+                 centre=place(0.15, 0.2, 0.3))
+    m.initial_velocity(a, (1.0, 0.2, 0.0), angular=(5.0, 2.0, -3.0))
+    m.fix(wall)
+    m.spring(a, wall, stiffness=80.0, damping=0.5, length=0.4, name="spring")
+    m.attach("end", place(0.4, 0.5, 0.1), a)
+    return m
+
+
 def driven():
     """A rotor driven by an equation, with a beam on it and a slide with a spring."""
     m = Model()

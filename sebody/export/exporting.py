@@ -73,6 +73,7 @@ def export(model: Model, h: float, *, library: str | Path | None = None,
     if (library is None) == (fmu is None):
         raise InputError("give library=, a folder, or fmu=, a file: one of the two")
     chosen = _platforms(platforms, fmi if fmu is not None else "")
+    _check_end(t_end)
     _check_processor(processor, chosen)
     target = (_check_folder(library) if library is not None else
               check_target(fmu, "FMU", (".fmu",)))
@@ -102,6 +103,11 @@ def _names(given: Sequence[str], what: str) -> list[str]:
     if isinstance(given, str):
         raise InputError(f"{what} is {given!r}: give a list of names")
     return inputs.items(given, what, "give a list of names")
+
+
+def _check_end(t_end: float | None) -> None:
+    if t_end is not None:
+        inputs.number(t_end, "t_end", above=0)
 
 
 def _platforms(given: Sequence[str], fmi: str) -> list[str]:

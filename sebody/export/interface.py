@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sebody import inputs
+from sebody.assembly.laws import law_counts
 from sebody.assembly.numbering import Numbering
 from sebody.contract.layout import FIELD, Row
 from sebody.engine.inputs import VALUE
@@ -15,6 +16,7 @@ from sebody.engine.system import System
 from sebody.errors import InputError
 from sebody.export.image import Image
 from sebody.kernels.loader import element_kernel
+from sebody.model.controllers import continuous, sampled
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Motion
 from sebody.model.time_functions import TimeFunction, input_history
@@ -64,8 +66,13 @@ def with_inputs(model: Mechanism, names: Iterable[str]) -> tuple[Mechanism, list
     motions = {motion.name: (block, motion) for block in made.dof_blocks()
                for motion in block.motions}
     parameters = _parameters(made)
+    driven = {out: one.name for one in continuous(made) for out in one.outputs}
     for name in names:
         inputs.name(name, "name of an input")
+        if name in driven:
+            raise InputError(f"input {name!r} is what the continuous controller {driven[name]!r} "
+                             "sets, so another value would have no effect: leave it or the "
+                             "controller out")
         if any(name == one.name for one in asked):
             raise InputError(f"input {name!r} is given twice: leave one out")
         if name in loads:
@@ -154,9 +161,21 @@ def _place(parameter: tuple, model: Mechanism, numbering: Numbering, system: Sys
     if isinstance(owner, Element):
         slices = Row("constants", element_kernel(owner.kind).CONSTANTS).slices({})
         return system.constants, numbering.constants_at[owner] + slices[which].start
-    names = list(model.controllers)
-    before = [model.controllers[name].parameters.size for name in names[:names.index(owner)]]
-    return system.control.parameters, sum(before) + which
+    return _place_of_controller(owner, which, model, numbering, system)
+
+
+def _place_of_controller(owner: str, which: int, model: Mechanism, numbering: Numbering,
+                         system: System) -> tuple[np.ndarray, int]:
+    """As `_place`, of a parameter of a controller: a continuous one is an element."""
+    law = next((load for load in model.loads
+                if load.law is not None and load.law.controller == owner), None)
+    if law is not None:
+        slices = Row("constants", element_kernel(law.kind).CONSTANTS).slices(law_counts(model, law))
+        return system.constants, numbering.constants_at[law] + slices["parameters"].start + which
+    names = [one.name for one in sampled(model)]
+    before = names[:names.index(owner)]
+    return system.control.parameters, which + sum(
+        model.controllers[name].parameters.size for name in before)
 
 
 def _unit(one: Asked) -> str:

@@ -23,6 +23,7 @@ from sebody.export.quantities import Outputs
 from sebody.export.row_exchanges import Exchanges
 from sebody.export.terms import Quantities
 from sebody.kernels.loader import element_kernel_name, load
+from sebody.model.controllers import sampled
 from sebody.model.model import Model
 from sebody.results.result import Result
 from sebody.results.units import unit
@@ -82,7 +83,8 @@ class Prepared:
         if self.run.system.massless[0]:
             raise InputError("a motion of the model has stiffness and no mass, for which Python "
                              "solves at the start and at every jump: give it some mass")
-        if any(one.name.rpartition(".parameters.")[0] in made.controllers for one in asked):
+        called_at_samples = {one.name for one in sampled(made)}
+        if any(one.name.rpartition(".parameters.")[0] in called_at_samples for one in asked):
             self._ask_for_first_samples()
         self.system = _with_spare_corner(self.run.system)
         quantities = Quantities(made, self._numbering, self.run.system, self.run.state)

@@ -98,6 +98,8 @@ def calibrate(model: Model, h: float, measured: Mapping[str, ArrayLike],
     """
     inputs.instance(model, "model", Model, "give a sebody.Model")
     h = inputs.number(h, "h", above=0)
+    if deviations is not None and not isinstance(deviations, Mapping):
+        raise inputs.refusal("deviations", deviations, "give a dict of quantities and numbers")
     data = _checked(measured, deviations or {})
     refuse_model(model)
     point = Point(model, parameters)

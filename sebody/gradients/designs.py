@@ -51,7 +51,7 @@ class Design:
         Raises
         ------
         InputError
-            Superelements that the model does not have.
+            Superelements that the model does not have, or a maker that is no function.
         """
         base = np.array(inputs.reals(self.values, f"values of {self.name!r}", "give numbers"),
                         dtype=float)
@@ -59,11 +59,17 @@ class Design:
         if unknown := [name for name in names if name not in model.bodies]:
             raise InputError(f"design {self.name!r}: the model has no superelement {unknown[0]!r}: "
                              f"it has {', '.join(model.bodies) or 'none'}")
+        if not callable(self.make):
+            raise inputs.refusal(f"make of {self.name!r}", self.make,
+                                 "give a function of an array of numbers")
+        remedy = "return one ReducedBody for each superelement"
         each = [whole_body(model, model.bodies[name], self.name) for name in names]
 
         def assign(value: NDArray) -> None:
-            made = inputs.items(self.make(np.array(value)), f"what {self.name!r} makes",
-                                "return one ReducedBody for each superelement")
+            made = inputs.items(self.make(np.array(value)), f"what {self.name!r} makes", remedy)
+            if len(made) != len(each):
+                raise InputError(f"design {self.name!r}: its function made {len(made)} bodies for "
+                                 f"{len(each)} superelements, {', '.join(names)}: {remedy}")
             for handle, body in zip(each, made, strict=True):
                 handle.set(handle.checked(self.name, [body])[0])
 

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody import inputs
 from sebody.assembly.numbering import Numbering, coordinates
 from sebody.errors import InputError
 from sebody.explore.ensembles.outputs import Fold, Output, outputs_of
@@ -44,6 +45,10 @@ def checked(given: Objectives, t_end: float) -> dict[str, Output]:
     if isinstance(given, Sequence) and not isinstance(given, str):
         given = {f"{one.kind} of {one.quantity}" if isinstance(one, Output) else str(k): one
                  for k, one in enumerate(given)}
+    if not isinstance(given, Mapping) or not given:
+        raise inputs.refusal("objectives", given, "give a dict such as {'tip': "
+                             "final('tip.position')}, of what final, at_time, integral, rms and "
+                             "soft_maximum return")
     found = outputs_of(given, t_end)
     for name, one in found.items():
         if one.kind in EXTREMES:

@@ -202,6 +202,7 @@ class Slopes:
         found = np.zeros((len(history.rows), self.free))
         now = history.rows.copy()
         found[0] = self._first(made, load)
+        self._hold_start(made)
         now[0] = state.now
         status = _residuals(system, state, history.rows, now, history.kinds, history.ends,
                             history.besides, self.places, self.free, load, found)
@@ -228,6 +229,23 @@ class Slopes:
         if status != OK:
             raise InputError(f"the start cannot be evaluated: {REASONS[status]}")
         return state.residual[:n].copy()
+
+    def _hold_start(self, made: Simulation) -> None:
+        """Put a changed model in the motion that the run starts with.
+
+        What a parameter changes of that is in `Slope.motion` and `Slope.rates`.
+        """
+        system, state, n = made.system, made.state, self.free
+        q, R, v, _, frames, frames_old = self.places
+        state.q[:n], state.v[:n] = self.start[q:q + n], self.start[v:v + n]
+        free = np.repeat(system.rotation_at < n, 9)
+        state.R[free] = self.start[R:R + len(state.R)][free]
+        state.frames[:] = self.start[frames:frames + len(state.frames)]
+        state.frames_old[:] = self.start[frames_old:frames_old + len(state.frames_old)]
+        place_dependent(system.links, state.q, state.v, state.a, state.R)
+        status = assemble(RESIDUAL, ACCELERATION, system, state, state.residual)
+        if status != OK:
+            raise InputError(f"the start cannot be evaluated: {REASONS[status]}")
 
     def _turned(self, state) -> NDArray:
         """Motion from the start of the run to that of a changed model: of rotations a vector."""

@@ -20,7 +20,7 @@ from sebody.engine.state import ASKED, SAMPLED, State
 from sebody.engine.system import System
 from sebody.errors import InputError
 from sebody.model.control_parts import Sensor
-from sebody.model.controllers import sampled
+from sebody.model.controllers import continuous, sampled
 from sebody.model.mechanism import Mechanism
 from sebody.results.naming import look_up
 from sebody.results.recording import Recording
@@ -43,7 +43,9 @@ class Sampling:
         # users' functions may change or jump, and short pulses be missed: for each piece to see
         self.needs_looks = any(True for _ in functions(model)) or any(
             len(one.times) > 1 or one.waves for one in numbering.time_functions)
-        self._numbers = {name: k for k, name in enumerate(numbering.all_kept.ports)}
+        self._driven = {out: one.name for one in continuous(model) for out in one.outputs}
+        self._numbers = {name: k for k, name in enumerate(numbering.all_kept.ports)
+                         if name not in self._driven}
 
     @property
     def has_inputs(self) -> bool:
@@ -122,6 +124,10 @@ class Sampling:
         InputError
             No such input, or no number.
         """
+        if name in self._driven:
+            raise InputError(f"input {name!r} is what the continuous controller "
+                             f"{self._driven[name]!r} sets, so another value would have no "
+                             "effect: leave it or the controller out")
         if name not in self._numbers:
             inputs.choice(name, "input", self._numbers or ["none: add model.actuator(...)"])
         if type(value) is not float or value - value != 0.0:

@@ -24,6 +24,32 @@ def thrown(cv, stiffness=1e4, planar=True, radius=0.0):
     return model
 
 
+@pytest.mark.parametrize("planar", [True, False])
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_a_point_at_the_end_of_a_rigid_arm_hits_a_plane(planar, friction):
+    """A bar on a hinge hits with the mass J / l^2 at its end: the restitution is that of a body."""
+    model = Model(planar=planar)
+    if planar:
+        turn = np.array([[0.8, -0.6], [0.6, 0.8]])
+    else:
+        turn = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]])
+    along, up = turn.T[:2]
+    hinge = model.node("hinge", 2.0 * up)
+    model.rigid_body("bar", hinge, 1.0, 0.4 if planar else 0.4 * np.eye(3))
+    tip = model.attach("tip", 2.0 * up + 0.5 * along + 0.005 * up, hinge)
+    if planar:
+        model.revolute(hinge, name="pin")
+        model.initial_velocity(hinge, angular=-2.0)
+    else:
+        model.revolute(hinge, axis=turn.T[2], name="pin")
+        model.initial_velocity(hinge, angular=-2.0 * turn.T[2])
+    model.contact(tip, on=plane(up, 2.0 * up), stiffness=1e5, restitution=restitution(0.5),
+                  at_speed=1.0, friction=friction, name="hit")
+    rate = simulate(model, 1e-4, 0.05)["pin.rate"]
+    assert rate[0] == pytest.approx(-2.0)
+    assert rate[-1] == pytest.approx(2.0 * restitution(0.5), rel=0.03 if friction else 2e-3)
+
+
 @pytest.mark.parametrize("cv, value", [(0.1, 0.937475579949905), (0.5, 0.748434931597434),
                                        (1.0, 0.593624260040040)])
 def test_restitution(cv, value):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from exported_models import VARIABLE, H, arm, pendulum
+from exported_models import VARIABLE, H, arm, pendulum, with_law
 
 from sebody import InputError, Simulation
 from sebody.export import export
@@ -247,6 +247,38 @@ def test_three_features_at_once(tmp_path):
     own = Simulation(model, H).run_to(40 * H).read("the hand.position")
     found = slave.read(*(f"the hand.position.{axis}" for axis in "xyz"))
     assert np.abs(np.array(found) - own).max() < 1e-9
+
+
+def test_parameters_of_sampled_and_continuous_controllers(tmp_path):
+    """The continuous one comes first: its parameters are not among those of samples."""
+    def made():
+        model = with_law()
+        model.controllers = dict(reversed(model.controllers.items()))
+        return model
+
+    changes = {"loop.parameters.0": 9.0, "law.parameters.1": 4.5}
+    path = str(export(made(), H, fmu=tmp_path / "law.fmu", inputs=list(changes),
+                      outputs=["the hand.position", "law.states"], processor="native"))
+    slave = Slave(path, fmpy.extract(path, str(tmp_path / "unzipped")), before=changes.items())
+    for k in range(40):
+        slave.fmu.doStep(currentCommunicationPoint=k * H, communicationStepSize=H)
+    found, model = slave.read("the hand.position.y", "law.states.0"), made()
+    before = Simulation(made(), H).run_to(40 * H)
+    model.controllers["loop"].parameters[0] = 9.0
+    model.controllers["law"].parameters[1] = 4.5
+    after = Simulation(model, H).run_to(40 * H)
+    own, old = ([run.read("the hand.position")[1], run.read("law.states")[0]]
+                for run in (after, before))
+    assert np.abs(np.subtract(own, old)).min() > 1e-5
+    assert found == pytest.approx(own, abs=1e-11)
+
+
+def test_an_actuator_of_a_continuous_controller_is_no_input(tmp_path):
+    said = "'motor 2' is what the continuous controller 'law' sets"
+    with pytest.raises(InputError, match=said):
+        export(with_law(), H, fmu=tmp_path / "x.fmu", inputs=["motor 2"])
+    with pytest.raises(InputError, match=said):
+        Simulation(with_law(), H).set_input("motor 2", 1.0)
 
 
 def test_fmi_2_has_no_arm(tmp_path):

@@ -121,6 +121,7 @@ BAD = {
     "native elsewhere": ({"platforms": ["windows-x86_64"]}, "is that of this machine"),
     "twice": ({"outputs": ["t", "t"]}, "output 't' is given twice"),
     "input twice": ({"inputs": ["a pull", "a pull"]}, "input 'a pull' is given twice"),
+    "end": ({"t_end": -1.0}, "t_end is -1.0: give a positive number"),
     "a text": ({"outputs": "t"}, "outputs is 't': give a list of names"),
 }
 

@@ -58,3 +58,8 @@ def test_wrong_designs():
     with pytest.raises(InputError, match="ReducedBody"):
         gradient(m, 0.005, 0.05, {"b": final("b.position")},
                  [Design("d", [1.0], ["rod"], lambda x: [3.0])])
+    with pytest.raises(InputError, match="'d': its function made 0 bodies for 1 superelements"):
+        gradient(m, 0.005, 0.05, {"b": final("b.position")},
+                 [Design("d", [1.0], ["rod"], lambda x: [])])
+    with pytest.raises(InputError, match="make of 'd' is None: give a function"):
+        gradient(m, 0.005, 0.05, {"b": final("b.position")}, [Design("d", [1.0], ["rod"], None)])

@@ -31,6 +31,11 @@ SCENES = {
         "tip": final("tip.position"), "end": final("end.velocity"),
         "base": integral("base.position")}, [
         "shake.amplitude", "swing.amplitude", "ball.mass", "beam.stiffness"]),
+    # integrals look at the start, where velocities and positions are parameters themselves
+    "a start that is a parameter": (scenes.thrown, 0.005, 0.1, {
+        "end": integral("end.acceleration"), "v": integral("a.velocity"),
+        "energy": integral("energy.kinetic"), "x": rms("end.position")}, [
+        "a.velocity", "a.angular_velocity", "a.position", "top.mass"]),
     "driven rotor": (scenes.driven, 0.005, 0.1, {
         "tip": final("tip.position"), "slide": final("slide.velocity")}, [
         "motor.amplitude", "rotor.mass", "carriage.mass", "spring.stiffness"]),
@@ -202,6 +207,7 @@ def test_components_of_parameters():
     ({"x": final("tip.position")}, ["beam.mass.x"], "beam.mass has one number"),
     ({"x": final("tip.position")}, ["beam.reduced"], "whole bodies"),
     ({"x": "tip.position"}, ["gravity"], "is a history: give final"),
+    ({}, ["gravity"], "objectives is {}: give a dict such as"),
     ({"x": final("torque.work")}, ["gravity"], "give the integral of a power"),
     ({"x": final("top.position")}, ["gravity"], "top"),
 ])
@@ -235,6 +241,35 @@ def test_features_without_exact_derivatives_are_refused_by_name():
     m.stop("hinge", upper=0.2, stiffness=100.0, name="end")
     with pytest.raises(InputError, match="'end' keeps numbers.*Ensemble"):
         gradient(m, 0.01, 0.05, {"x": final("tip.position")}, ["gravity"])
+
+
+def _law(t, y, x, rates, u, parameters):
+    rates[0] = y[0]
+    u[0] = -parameters[0] * y[0] - x[0]
+
+
+def _samples(t, y, x, u, parameters):
+    u[0] = -parameters[0] * y[0]
+
+
+@pytest.mark.parametrize("sampled", [True, False])
+def test_controllers_are_refused_by_their_names(sampled):
+    m = scenes.hinged("b", modes=2)
+    m.actuator("motor", joint="hinge")
+    with pytest.raises(InputError, match="actuator 'motor'.*table"):
+        gradient(m, 0.01, 0.05, {"x": final("tip.position")}, ["gravity"])
+    m.controller("loop", _samples if sampled else _law, ["hinge.angle"], ["motor"],
+                 period=0.01 if sampled else None, states=[] if sampled else [0.1],
+                 parameters=[2.0])
+    with pytest.raises(InputError, match="controller 'loop'.*sampled or continuous.*Ensemble"):
+        gradient(m, 0.01, 0.05, {"x": final("tip.position")}, ["gravity"])
+
+
+def test_sensors_are_refused_with_the_quantity_to_take():
+    m = scenes.hinged("b", modes=2)
+    m.sensor("encoder", "hinge.angle")
+    with pytest.raises(InputError, match="sensor 'encoder'.*'hinge.angle' itself"):
+        gradient(m, 0.01, 0.05, {"x": final("encoder.value")}, ["gravity"])
 
 
 def test_the_model_is_as_before():

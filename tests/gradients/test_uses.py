@@ -49,6 +49,12 @@ def test_wrong_measurements(rows, parameters, words):
         calibrate(scenes.hinged("b", modes=2), 0.005, rows, parameters)
 
 
+def test_deviations_are_a_dict():
+    with pytest.raises(InputError, match="deviations is 3: give a dict"):
+        calibrate(scenes.hinged("b", modes=2), 0.005, {"tip.position.x": [[0.0, 1.0]]},
+                  ["gravity.y"], deviations=3)
+
+
 def test_an_optimizer_finds_the_torque_that_reaches_a_place():
     """A pendulum is to stand at an angle: minimum against the torques of a table."""
     m = Model(planar=True)
