@@ -16,8 +16,8 @@ from sebody.pictures.contact_shapes import (
     disc,
     hatched,
     joined,
+    line,
     patch,
-    ray,
     sector,
     tube,
 )
@@ -41,6 +41,15 @@ class ContactSurface(NamedTuple):
     kind: str               # plane, sphere, cylinder, ball, limits or pointer
     node: str | None        # that carries it; None on the ground
     shape: Shape            # from this node, in axes that turn with it; on the ground in space
+
+
+def contact_lines(model: Mechanism, nodes: "Mapping[str, DrawnNode]", size: float) -> NDArray:
+    """The lines of all contact surfaces in the first frame, (points, 3), with NaN between them."""
+    found = [np.zeros((0, 3))]
+    for one in contact_surfaces(model, nodes, size):
+        ends = vertices_of(one, nodes, 0)[one.shape.lines]
+        found.append(np.concatenate([ends, np.full_like(ends[:, :1], np.nan)], 1).reshape(-1, 3))
+    return np.concatenate(found)
 
 
 def contact_surfaces(model: Mechanism, nodes: "Mapping[str, DrawnNode]", size: float
@@ -169,7 +178,7 @@ def _angle(model: Mechanism, one: Element, size: float) -> list[ContactSurface]:
     fan = sector(zero, side, min(*ends, 0.0), max(*ends, 0.0), FAN * size, ends)
     return [ContactSurface(one.name, "limits", _carrier(model, b), _from(model, b, fan)),
             ContactSurface(one.name, "pointer", _carrier(model, a),
-                           _from(model, a, ray(FAN * size * zero)))]
+                           _from(model, a, line(0 * zero, FAN * size * zero)))]
 
 
 def _towards(model: Mechanism, node: Node, axis: NDArray) -> NDArray:
@@ -184,7 +193,7 @@ def _towards(model: Mechanism, node: Node, axis: NDArray) -> NDArray:
 
 
 def _way(model: Mechanism, one: Element, size: float) -> list[ContactSurface]:
-    """Plates on the first body, where the second node is at the limits."""
+    """Plates on the first body, where the second node is at the limits, and a line at this node."""
     a, b = (held.node for held in one.attachments[:2])
     e, start = spatial(one.vector("e")), spatial(b.point - a.point)
     half = PLATE * size
@@ -196,7 +205,9 @@ def _way(model: Mechanism, one: Element, size: float) -> list[ContactSurface]:
             plates.append(hatched(corner, 2 * half * along, side * HATCH * size * e)
                           if model.planar else
                           patch(corner - half * across, 2 * half * along, 2 * half * across))
-    return [ContactSurface(one.name, "limits", _carrier(model, a), _from(model, a, joined(plates)))]
+    mark = line(half * along, -half * along)
+    return [ContactSurface(one.name, "limits", _carrier(model, a), _from(model, a, joined(plates))),
+            ContactSurface(one.name, "pointer", _carrier(model, b), _from(model, b, mark))]
 
 
 def _distance(model: Mechanism, one: Element, size: float) -> list[ContactSurface]:
