@@ -1,7 +1,7 @@
 """Contact surfaces and stops of a picture: where they are, and which bodies carry them."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,10 +21,8 @@ from sebody.pictures.contact_shapes import (
     sector,
     tube,
 )
+from sebody.pictures.drawn_nodes import DrawnNode
 from sebody.pictures.surface import spatial
-
-if TYPE_CHECKING:
-    from sebody.pictures.scene import DrawnNode
 
 AROUND_CONTACT = 0.3, 0.1       # margin of surfaces of the ground, of bodies; of the extent
 HATCH = 0.02            # length of hatches, of the extent
@@ -43,7 +41,7 @@ class ContactSurface(NamedTuple):
     shape: Shape            # from this node, in axes that turn with it; on the ground in space
 
 
-def contact_lines(model: Mechanism, nodes: "Mapping[str, DrawnNode]", size: float) -> NDArray:
+def contact_lines(model: Mechanism, nodes: Mapping[str, DrawnNode], size: float) -> NDArray:
     """The lines of all contact surfaces in the first frame, (points, 3), with NaN between them."""
     found = [np.zeros((0, 3))]
     for one in contact_surfaces(model, nodes, size):
@@ -52,7 +50,7 @@ def contact_lines(model: Mechanism, nodes: "Mapping[str, DrawnNode]", size: floa
     return np.concatenate(found)
 
 
-def contact_surfaces(model: Mechanism, nodes: "Mapping[str, DrawnNode]", size: float
+def contact_surfaces(model: Mechanism, nodes: Mapping[str, DrawnNode], size: float
                      ) -> list[ContactSurface]:
     """Surfaces, balls and limits of the contacts and stops whose `nodes` are drawn.
 
@@ -83,7 +81,7 @@ def contact_surfaces(model: Mechanism, nodes: "Mapping[str, DrawnNode]", size: f
               for (node, radius), name in balls.items())]
 
 
-def vertices_of(one: ContactSurface, nodes: "Mapping[str, DrawnNode]", frame: int) -> NDArray:
+def vertices_of(one: ContactSurface, nodes: Mapping[str, DrawnNode], frame: int) -> NDArray:
     """Its points in space in a frame, (points, 3)."""
     if one.node is None:
         return one.shape.points
@@ -101,7 +99,7 @@ def _carrier(model: Mechanism, node: Node) -> str | None:
     return None if _on_ground(model, node) else node.name
 
 
-def _path(model: Mechanism, one: Element, nodes: "Mapping[str, DrawnNode]") -> NDArray:
+def _path(model: Mechanism, one: Element, nodes: Mapping[str, DrawnNode]) -> NDArray:
     """Places of the node that touches, seen from the one that carries the surface, (frames, 3)."""
     a, b = (held.node for held in one.attachments[:2])
     if _on_ground(model, b):

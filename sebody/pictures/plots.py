@@ -13,8 +13,8 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.files import check_target, replacing
 from sebody.pictures.contact_surfaces import contact_lines
+from sebody.pictures.drawn_nodes import drawn_nodes, extent
 from sebody.pictures.palette import AXES, CONTACT
-from sebody.pictures.scene import drawn_nodes, extent
 from sebody.pictures.wireframe import lines_of
 from sebody.results.result import Result
 from sebody.results.units import with_unit
