@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.files import check_target, replacing
-from sebody.pictures.contact_surfaces import contact_lines
-from sebody.pictures.drawn_nodes import drawn_nodes, extent
 from sebody.pictures.palette import AXES, CONTACT
 from sebody.pictures.wireframe import lines_of
 from sebody.results.result import Result
@@ -197,6 +195,10 @@ def _bodies(result: Result, chosen: list[int]) -> NDArray:
 
 def _contacts(result: Result) -> NDArray:
     """Lines of contact surfaces and stops at the start, (points, 3), with NaN between them."""
+    # here: runs start faster without scipy.spatial
+    from sebody.pictures.contact_surfaces import contact_lines
+    from sebody.pictures.drawn_nodes import drawn_nodes, extent
+
     nodes = drawn_nodes(result, np.unique(np.linspace(0, len(result.rows) - 1, STATES).astype(int)))
     return contact_lines(result.model, nodes, extent(nodes))
 
