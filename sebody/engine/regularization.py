@@ -24,6 +24,7 @@ import numpy as np
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import C_MASS
 from sebody.engine import elimination
+from sebody.engine.evaluate import to_body_axes
 
 REGULARIZATION = 1e-8       # of R at multipliers, for elimination without row exchanges
 EXCHANGED = 1e-10       # the same for inverses, which rounding spoils less
@@ -117,6 +118,7 @@ def spread(system, state, inverse, dense):
     n, part = system.diagonal.size, state.projected
     for i in range(n):
         part[i] = state.q[i] * system.is_multiplier[i]
+    to_body_axes(system, state.frames, part, False)
     for _ in range(PROJECTIONS):
         for i in range(n):
             part[i] *= state.regularization[i] * system.is_multiplier[i]
@@ -124,6 +126,7 @@ def spread(system, state, inverse, dense):
             _times_inverse(state, inverse, part, n)
         else:
             elimination.solve(system, state, part, part)
+    to_body_axes(system, state.frames, part, True)
     for i in range(n):
         if system.is_multiplier[i] > 0.0:
             state.q[i] -= part[i]

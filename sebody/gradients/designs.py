@@ -58,7 +58,7 @@ class Design:
         names = inputs.items(self.bodies, f"bodies of {self.name!r}", "give a list of names")
         if unknown := [name for name in names if name not in model.bodies]:
             raise InputError(f"design {self.name!r}: the model has no superelement {unknown[0]!r}: "
-                             f"it has {', '.join(model.bodies)}")
+                             f"it has {', '.join(model.bodies) or 'none'}")
         each = [whole_body(model, model.bodies[name], self.name) for name in names]
 
         def assign(value: NDArray) -> None:

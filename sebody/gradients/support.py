@@ -16,8 +16,13 @@ def refuse_model(model: Model) -> None:
     Raises
     ------
     InputError
-        Incremental frames, or forces by functions of the user.
+        Incremental frames, controllers, or forces by functions of the user.
     """
+    if model.controllers:
+        raise InputError(f"controller {next(iter(model.controllers))!r}: gradients of models with "
+                         "controllers are not available, sampled or continuous: leave it out, "
+                         "give what it sets as a table of a force, torque or drive, or use an "
+                         "Ensemble with values on both sides")
     for body in model.bodies.values():
         if FRAMES[body.frame].incremental:
             exact = ", ".join(name for name, frame in FRAMES.items()
@@ -38,17 +43,21 @@ def refuse_run(run: Simulation) -> None:
     Raises
     ------
     InputError
-        Friction, contacts, controllers, motions without mass, constraints of index 2.
+        Friction, contacts, actuators, sensors, motions without mass, constraints of index 2.
     """
     if remembering := [one.name for one in run.numbering.memories
                        if element_kernel(one.kind).MEMORY != COUNTED]:
         raise InputError(f"{remembering[0]!r} keeps numbers from step to step, as friction, "
                          "contacts and stops do, and these are not differentiated: leave it out, "
                          "or use an Ensemble with values on both sides")
-    if run.sampling.samples or run.sampling.has_inputs:
-        raise InputError("the model has controllers or actuators, whose samples are not "
-                         "differentiated: give the history of the input as a table of a force, "
-                         "torque or drive")
+    if run.sampling.has_inputs:
+        name = next(iter(run.numbering.all_kept.ports))
+        raise InputError(f"actuator {name!r}: what is set during a run is not differentiated: give "
+                         "the history of the input as a table of a force, torque or drive")
+    if run.model.sensors:
+        name, sensor = next(iter(run.model.sensors.items()))
+        raise InputError(f"sensor {name!r}: samples are not differentiated: leave the sensor out, "
+                         f"and give {sensor.quantity!r} itself as a quantity")
     if run.system.massless[0]:
         raise InputError("a motion of the model has no mass, and its accelerations at the start no "
                          "derivative: give every node mass and inertia")

@@ -137,6 +137,7 @@ def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, stat
                     dtype=int)
     demand = np.zeros(numbering.free)
     demand[multipliers] = -rates
+    to_body_axes(system, state.frames, demand, False)
     answer = np.zeros(numbering.total)
     solve = (least(_with_mass(masses, held), system) if held.size else
              least(masses, system, solver.system))

@@ -70,6 +70,7 @@ def follow_drives(model: Mechanism, system: System, numbering: Numbering, state:
     solve = _Saddle(masses, held, _rows(bodies, system, state, n), giving, sizes[:n], system)
     before, demand = state.v.copy(), np.zeros(n)
     demand[multipliers] = -rates
+    to_body_axes(system, state.frames, demand, False)
     for _ in range(PASSES):
         answer = np.zeros(numbering.total)
         answer[:n] = solve(demand, -np.concatenate([body.rates(state.v) for body in bodies]))

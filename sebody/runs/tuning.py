@@ -111,39 +111,51 @@ def directions(element: Element, numbering: Numbering, state: State) -> list[NDA
     places = [t for t in element.dof_blocks if not t.rotational]
     turns = [t for t in element.dof_blocks if t.rotational]
     if kind.startswith(("sphere_on", "point_on")):
-        return [_pair(numbering, places, axis, [axis, axis]) for axis in np.eye(size)]
+        return [_pair(numbering, state, places, axis, [axis, axis]) for axis in np.eye(size)]
     if kind.startswith("friction_slide"):
         return [_slide(numbering, state, places, turns[0], element.vector("e"))]
     if kind.startswith("friction_cylindrical"):
         return [_slide(numbering, state, places, turns[0], element.vector("e")),
-                c["radius"] * _turn(numbering, turns, np.cross(c["n"], c["m"]))]
+                c["radius"] * _turn(numbering, state, turns, np.cross(c["n"], c["m"]))]
     if kind.startswith("friction_spherical"):
         Ra, Rb = (_rotation(numbering, state, t) for t in turns)
-        return [_pair(numbering, turns, axis, [Ra.T @ Rb @ axis, axis]) for axis in np.eye(3)]
+        return [_pair(numbering, state, turns, axis, [Ra.T @ Rb @ axis, axis])
+                for axis in np.eye(3)]
     if kind == "gear_play":
-        return [_turn(numbering, turns[:2], np.cross(c["n1"], c["m1"]) if "n1" in c else None)]
-    return [_turn(numbering, turns, np.cross(c["n"], c["m"]) if "n" in c else None)]
+        return [_turn(numbering, state, turns[:2],
+                      np.cross(c["n1"], c["m1"]) if "n1" in c else None)]
+    return [_turn(numbering, state, turns, np.cross(c["n"], c["m"]) if "n" in c else None)]
 
 
-def _turn(numbering: Numbering, turns: list[DofBlock], axis: NDArray | None) -> NDArray:
+def _turn(numbering: Numbering, state: State, turns: list[DofBlock], axis: NDArray | None
+          ) -> NDArray:
     axis = np.ones(1) if axis is None else axis
-    return _pair(numbering, turns, axis, [axis, axis])
+    return _pair(numbering, state, turns, axis, [axis, axis])
 
 
 def _slide(numbering: Numbering, state: State, places: list[DofBlock], carrier: DofBlock,
            e: NDArray) -> NDArray:
     along = _rotation(numbering, state, carrier) @ e
-    return _pair(numbering, places[::-1], along, [along, along])
+    return _pair(numbering, state, places[::-1], along, [along, along])
 
 
-def _pair(numbering: Numbering, dof_blocks: list[DofBlock], axis: NDArray,
+def _pair(numbering: Numbering, state: State, dof_blocks: list[DofBlock], axis: NDArray,
           vectors: list[NDArray]) -> NDArray:
     """A row that takes the rate of the second DOF block from that of the first."""
     row = np.zeros(numbering.total)
     for dof_block, sign, vector in zip(dof_blocks, (1.0, -1.0), vectors, strict=True):
         own = dof_block.root if dof_block.root is not None else dof_block
         row[stretch(numbering, own)] += sign * vector
+        for rotation, arm in dof_block.arms:
+            row[stretch(numbering, rotation)] += sign * _moment(
+                _rotation(numbering, state, rotation), arm, vector)
     return row
+
+
+def _moment(R: NDArray, arm: NDArray, force: NDArray) -> NDArray:
+    """Moment about the rotation of a rigid arm by a force at its end, both in its axes."""
+    f = R.T @ force
+    return np.cross(arm, f) if len(arm) == 3 else np.array([arm[0] * f[1] - arm[1] * f[0]])
 
 
 def _rotation(numbering: Numbering, state: State, dof_block: DofBlock) -> NDArray:
@@ -228,7 +240,7 @@ class LoadedBristles:
         point = q[0] - constants["radius"] * n
         rows = []
         for t in across:
-            row = _pair(self.numbering, places, t, [t, t])
+            row = _pair(self.numbering, self.state, places, t, [t, t])
             for turn, centre, sign in zip(turns, q[-len(turns):], (1.0, -1.0)[-len(turns):],
                                           strict=True):
                 arm = point - centre

@@ -68,3 +68,35 @@ def test_the_force_of_the_equations_is_that_of_the_joint_in_global_axes(planar):
     for name in ("hinge.force", "elbow.force", "free.position"):
         size = np.abs(expected[name]).max()
         assert np.abs(found[name] - expected[name]).max() < 1e-6 * size, name
+
+
+def test_two_points_on_an_axis_share_the_force_along_it():
+    """Multipliers of least norm, one in the axes of the beam and one in global axes."""
+    axis = np.array([0.3, -0.2, 0.9]) / np.linalg.norm([0.3, -0.2, 0.9])
+    start, middle = np.array([[0.4, -1.1, 0.6], [1.1, -0.8, 0.9]])
+    model = Model()
+    base, tip = model.node("base", start), model.node("tip", middle)
+    model.beam("door", (base, tip), SECTION, 6, 1, 3)
+    for k, point in enumerate((start, start + 0.4 * axis)):
+        model.fix(model.node(f"ground {k}", point))
+    model.spherical(base, "ground 0", name="lower")
+    model.spherical(model.attach("upper point", start + 0.4 * axis, base), "ground 1",
+                    name="upper")
+    model.rigid_velocity((0, 0, 0), 3.0 * axis, about=start)
+    model.gravity((0.5, -9.81, 1.0))
+    result = simulate(model, H, 1.0)
+    along = [result[f"{name}.force"] @ axis for name in ("lower", "upper")]
+    assert np.abs(along[0]).min() > 1.0
+    assert np.abs(along[0] - along[1]).max() < 1e-5 * np.abs(along[0]).max()
+
+
+@pytest.mark.parametrize("planar", [True, False])
+def test_velocities_are_fitted_where_the_axes_have_turned(planar):
+    start, model = simulate(arms(True, planar), H, 0.4), arms(True, planar)
+    given = np.array([0.3, 0.8, -0.5][:2 if planar else 3])
+    model.initial_velocity("tip", given)
+    result = simulate(model, H, H, start=start)
+    before = np.linalg.norm(start["other.velocity"][-1] - given)
+    assert before > 0.5         # what the elbow's equations have to change
+    assert np.abs(result["tip.velocity"][0] - given).max() < 1e-6 * before
+    assert np.abs(result["other.velocity"][0] - result["tip.velocity"][0]).max() < 1e-9 * before

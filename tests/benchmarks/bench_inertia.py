@@ -51,7 +51,7 @@ def beam(modes, inertia, planar):
                inertia="material" if inertia == "material" else "c")
     if inertia == "plain c":
         body = model.bodies["beam"]
-        model.bodies["beam"] = replace(body, body=without_stiffening(body.reduced))
+        model.bodies["beam"] = replace(body, reduced=without_stiffening(body.reduced))
     return Simulation(model, 0.01)
 
 
