@@ -30,6 +30,19 @@ def damping_of(restitution: float, at_speed: float, what: str) -> float:
         return 0.0
     from scipy.optimize import brentq  # here: models without contact start faster
 
-    def left(x: float) -> float:        # x = c v e, from 0 to 1
-        return x / e * (1.0 + e) - np.log1p(x / e) + np.log1p(-x)
-    return brentq(left, 1e-12 + 0.1 * (1 - e), 1.0 - 1e-15, xtol=1e-15, rtol=1e-14) / (e * v)
+    def left(z: float) -> float:        # c v e = 1 - exp(-z), which may be 1 to the last digit
+        x = -np.expm1(-z)
+        return x / e * (1.0 + e) - np.log1p(x / e) - z
+    least = -np.log1p(-1e-12 - 0.1 * (1 - e))
+    return -np.expm1(-brentq(left, least, 1.0 + 1.0 / e, xtol=1e-15, rtol=1e-14)) / (e * v)
+
+
+def restitution_of(damping: float, at_speed: float) -> float:
+    """The restitution at a speed with some damping: the inverse of `damping_of`."""
+    y = damping * at_speed              # c v
+    if y == 0:
+        return 1.0
+    from scipy.optimize import brentq
+
+    loss = y - np.log1p(y)              # with c v e = 1 - exp(-z) it is z + exp(-z) - 1
+    return -np.expm1(-brentq(lambda z: z + np.expm1(-z) - loss, 0.0, loss + 1.0, xtol=1e-15)) / y

@@ -78,9 +78,9 @@ def sector(zero: NDArray, side: NDArray, low: float, high: float, radius: float,
                  np.concatenate([row, [[AROUND, ray] for ray in rays]]), _both_sides(fan))
 
 
-def ray(way: NDArray) -> Shape:
-    """A line from the origin."""
-    return Shape(np.array([0 * way, way]), np.array([[0, 1]]), _none())
+def line(one: NDArray, other: NDArray) -> Shape:
+    """A line between two points."""
+    return Shape(np.array([one, other]), np.array([[0, 1]]), _none())
 
 
 def across_of(axis: NDArray) -> tuple[NDArray, NDArray]:

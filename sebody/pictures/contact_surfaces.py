@@ -1,7 +1,7 @@
 """Contact surfaces and stops of a picture: where they are, and which bodies carry them."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,15 +16,13 @@ from sebody.pictures.contact_shapes import (
     disc,
     hatched,
     joined,
+    line,
     patch,
-    ray,
     sector,
     tube,
 )
+from sebody.pictures.drawn_nodes import DrawnNode
 from sebody.pictures.surface import spatial
-
-if TYPE_CHECKING:
-    from sebody.pictures.scene import DrawnNode
 
 AROUND_CONTACT = 0.3, 0.1       # margin of surfaces of the ground, of bodies; of the extent
 HATCH = 0.02            # length of hatches, of the extent
@@ -43,7 +41,16 @@ class ContactSurface(NamedTuple):
     shape: Shape            # from this node, in axes that turn with it; on the ground in space
 
 
-def contact_surfaces(model: Mechanism, nodes: "Mapping[str, DrawnNode]", size: float
+def contact_lines(model: Mechanism, nodes: Mapping[str, DrawnNode], size: float) -> NDArray:
+    """The lines of all contact surfaces in the first frame, (points, 3), with NaN between them."""
+    found = [np.zeros((0, 3))]
+    for one in contact_surfaces(model, nodes, size):
+        ends = vertices_of(one, nodes, 0)[one.shape.lines]
+        found.append(np.concatenate([ends, np.full_like(ends[:, :1], np.nan)], 1).reshape(-1, 3))
+    return np.concatenate(found)
+
+
+def contact_surfaces(model: Mechanism, nodes: Mapping[str, DrawnNode], size: float
                      ) -> list[ContactSurface]:
     """Surfaces, balls and limits of the contacts and stops whose `nodes` are drawn.
 
@@ -74,7 +81,7 @@ def contact_surfaces(model: Mechanism, nodes: "Mapping[str, DrawnNode]", size: f
               for (node, radius), name in balls.items())]
 
 
-def vertices_of(one: ContactSurface, nodes: "Mapping[str, DrawnNode]", frame: int) -> NDArray:
+def vertices_of(one: ContactSurface, nodes: Mapping[str, DrawnNode], frame: int) -> NDArray:
     """Its points in space in a frame, (points, 3)."""
     if one.node is None:
         return one.shape.points
@@ -92,7 +99,7 @@ def _carrier(model: Mechanism, node: Node) -> str | None:
     return None if _on_ground(model, node) else node.name
 
 
-def _path(model: Mechanism, one: Element, nodes: "Mapping[str, DrawnNode]") -> NDArray:
+def _path(model: Mechanism, one: Element, nodes: Mapping[str, DrawnNode]) -> NDArray:
     """Places of the node that touches, seen from the one that carries the surface, (frames, 3)."""
     a, b = (held.node for held in one.attachments[:2])
     if _on_ground(model, b):
@@ -169,7 +176,7 @@ def _angle(model: Mechanism, one: Element, size: float) -> list[ContactSurface]:
     fan = sector(zero, side, min(*ends, 0.0), max(*ends, 0.0), FAN * size, ends)
     return [ContactSurface(one.name, "limits", _carrier(model, b), _from(model, b, fan)),
             ContactSurface(one.name, "pointer", _carrier(model, a),
-                           _from(model, a, ray(FAN * size * zero)))]
+                           _from(model, a, line(0 * zero, FAN * size * zero)))]
 
 
 def _towards(model: Mechanism, node: Node, axis: NDArray) -> NDArray:
@@ -184,7 +191,7 @@ def _towards(model: Mechanism, node: Node, axis: NDArray) -> NDArray:
 
 
 def _way(model: Mechanism, one: Element, size: float) -> list[ContactSurface]:
-    """Plates on the first body, where the second node is at the limits."""
+    """Plates on the first body, where the second node is at the limits, and a line at this node."""
     a, b = (held.node for held in one.attachments[:2])
     e, start = spatial(one.vector("e")), spatial(b.point - a.point)
     half = PLATE * size
@@ -196,7 +203,9 @@ def _way(model: Mechanism, one: Element, size: float) -> list[ContactSurface]:
             plates.append(hatched(corner, 2 * half * along, side * HATCH * size * e)
                           if model.planar else
                           patch(corner - half * across, 2 * half * along, 2 * half * across))
-    return [ContactSurface(one.name, "limits", _carrier(model, a), _from(model, a, joined(plates)))]
+    mark = line(half * along, -half * along)
+    return [ContactSurface(one.name, "limits", _carrier(model, a), _from(model, a, joined(plates))),
+            ContactSurface(one.name, "pointer", _carrier(model, b), _from(model, b, mark))]
 
 
 def _distance(model: Mechanism, one: Element, size: float) -> list[ContactSurface]:

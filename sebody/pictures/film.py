@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from sebody.errors import InputError
 from sebody.pictures.colouring import colourings, values_of
 from sebody.pictures.drawn_bodies import DrawnBody, vertices
+from sebody.pictures.drawn_nodes import extent
 from sebody.pictures.film_marks import Marks
 from sebody.pictures.palette import WITHOUT_VALUE, rgb
 from sebody.pictures.plots import INK, check_matplotlib
@@ -23,7 +24,7 @@ from sebody.pictures.rendering import (
     colours_of,
     short,
 )
-from sebody.pictures.scene import Scenery, extent, seen_places
+from sebody.pictures.scene import Scenery, seen_places
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

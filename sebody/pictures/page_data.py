@@ -12,9 +12,10 @@ from scipy.spatial import cKDTree
 from sebody.pictures import page_bodies, palette
 from sebody.pictures.blocks import Blocks
 from sebody.pictures.colouring import Colouring, colourings
+from sebody.pictures.drawn_nodes import extent
 from sebody.pictures.page_bodies import Measure
 from sebody.pictures.page_plots import plots
-from sebody.pictures.scene import Scenery, extent, scenery, seen_places
+from sebody.pictures.scene import Scenery, scenery, seen_places
 from sebody.pictures.templates import filled
 from sebody.results.result import Result
 

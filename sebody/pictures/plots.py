@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.files import check_target, replacing
-from sebody.pictures.palette import AXES
+from sebody.pictures.palette import AXES, CONTACT
 from sebody.pictures.wireframe import lines_of
 from sebody.results.result import Result
 from sebody.results.units import with_unit
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".png", ".pdf", ".svg")
 INSTANTS = 9            # at which the bodies are drawn
+STATES = 200            # at most, by which the size of contact surfaces is chosen
 MOST_TICKS = 5          # of the longest axis of a path
 FLAT = 0.03             # share of the motion below which motion out of the plane is not drawn
 INK, ACCENT, PALE = "#1f2a44", "#c8452d", "#9aa5b8"
@@ -150,7 +151,7 @@ def _draw_rates(axes, result: Result, rates: NDArray, title: str) -> None:
 def _draw_path(figure, result: Result, tip: str) -> None:
     path = _spatial(result[f"{tip}.position"])
     chosen = _instants(path)
-    bodies = _bodies(result, chosen)
+    bodies, touched = _bodies(result, chosen), _contacts(result)
     everything = np.concatenate([path, bodies.reshape(-1, 3)])
     extent = np.nanmax(everything, axis=0) - np.nanmin(everything, axis=0)
     flat = extent[2] <= FLAT * extent[:2].max()
@@ -164,6 +165,9 @@ def _draw_path(figure, result: Result, tip: str) -> None:
         axes.plot(*lines[:, :size].T, color=PALE if number else INK, zorder=2 if number else 3,
                   linewidth=1.0 if number else 2.0, solid_capstyle="round",
                   label={0: "bodies at the start", 1: "and later"}.get(number))
+    if len(touched):
+        axes.plot(*touched[:, :size].T, color=CONTACT, linewidth=0.8, zorder=1,
+                  label="contact surfaces")
     axes.plot(*path[:1, :size].T, "o", color=ACCENT, markersize=3, zorder=5)
     axes.set_aspect("equal", adjustable="datalim" if flat else "box")
     for name in "xyz"[:size]:
@@ -187,6 +191,16 @@ def _bodies(result: Result, chosen: list[int]) -> NDArray:
     gap = np.full((len(chosen), 3), np.nan)
     found = [points_of for one, other in lines for points_of in (points[one], points[other], gap)]
     return np.stack([gap, *found], axis=1)
+
+
+def _contacts(result: Result) -> NDArray:
+    """Lines of contact surfaces and stops at the start, (points, 3), with NaN between them."""
+    # here: runs start faster without scipy.spatial
+    from sebody.pictures.contact_surfaces import contact_lines
+    from sebody.pictures.drawn_nodes import drawn_nodes, extent
+
+    nodes = drawn_nodes(result, np.unique(np.linspace(0, len(result.rows) - 1, STATES).astype(int)))
+    return contact_lines(result.model, nodes, extent(nodes))
 
 
 def _instants(path: NDArray) -> list[int]:

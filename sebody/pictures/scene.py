@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 
 from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Node
 from sebody.pictures.arrows import Arrow, arrows
 from sebody.pictures.contact_surfaces import ContactSurface, contact_surfaces, vertices_of
-from sebody.pictures.drawn_bodies import DrawnBody, flexible, quaternions, rigid, with_stress
+from sebody.pictures.drawn_bodies import DrawnBody, flexible, rigid, with_stress
+from sebody.pictures.drawn_nodes import DrawnNode, drawn_nodes, extent
 from sebody.pictures.glyphs import Link, Sign, links, signs
 from sebody.pictures.palette import BODIES
 from sebody.pictures.surface import spatial
@@ -20,14 +20,6 @@ from sebody.units import Units
 
 LOOKED_AT = 25, 200     # frames and stations of a body that what is seen is measured by
 FLAT = 0.03             # share of the largest extent below which a motion is in a plane
-
-
-class DrawnNode(NamedTuple):
-    """A node with a position."""
-
-    name: str
-    position: NDArray       # (frames, 3)
-    rotation: NDArray | None        # (frames, 4)
 
 
 class Entry(NamedTuple):
@@ -103,24 +95,10 @@ def scenery(result: Result, most: int, stressed: bool = False, reference: str | 
                    *_view(model, nodes), result.units)
 
 
-def drawn_nodes(result: Result, states: NDArray) -> dict[str, DrawnNode]:
-    """The nodes with a position, those of the ground among them, in some recorded states."""
-    return {node.name: drawn for node in (*result.model.nodes.values(), *result.model.grounds)
-            if (drawn := _node(result, node, states)) is not None}
-
-
 def thinned(count: int, most: int) -> NDArray:
     """Numbers of at most so many of the recorded states at even distances, the last included."""
     stride = -(-(count - 1) // max(most - 1, 1))
     return np.unique([*range(0, count, stride), count - 1])
-
-
-def extent(nodes: dict[str, DrawnNode]) -> float:
-    """Largest extent of the nodes in any frame; of a single one, of its path."""
-    places = np.stack([node.position for node in nodes.values()], axis=1)
-    size = np.linalg.norm(np.ptp(places, axis=1), axis=1).max()
-    path = np.linalg.norm(np.ptp(places.reshape(-1, 3), axis=0))
-    return float(size if size > 0 else path if path > 0 else 1.0)
 
 
 def seen_places(drawn: Scenery) -> NDArray:
@@ -173,19 +151,6 @@ def _entries(model: Mechanism, bodies: list[DrawnBody], lines: list[Link]) -> li
                                                      [], []))
                 getattr(entry, kind).append(k)
     return list(found.values())
-
-
-def _node(result: Result, node: Node, states: NDArray) -> DrawnNode | None:
-    if node.position is None:
-        return None
-    if node.name not in result.model.nodes:         # of the ground
-        return DrawnNode(node.name, np.tile(spatial(node.point), (len(states), 1)), None)
-    known = result.numbering.dof_blocks
-    if node.position not in known:
-        return None
-    rotated = node.rotation is not None and node.rotation in known
-    return DrawnNode(node.name, spatial(result[f"{node.name}.position"][states]),
-                     quaternions(result[f"{node.name}.rotation"][states]) if rotated else None)
 
 
 def _view(model: Mechanism, nodes: dict[str, DrawnNode]) -> tuple[NDArray, NDArray, NDArray]:

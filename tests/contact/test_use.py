@@ -6,6 +6,7 @@ from contact_models import G, anchored, bar, block
 
 from sebody import InputError, Model, Result, SimulationError, plane, simulate, sphere
 from sebody.analysis import Ensemble, equilibrium, final, linearize
+from sebody.model.impacts import damping_of, restitution_of
 
 
 def resting(friction=0.3):
@@ -70,6 +71,60 @@ def test_ensembles_vary_coefficients_stiffness_and_limits():
     each = [simulate(build(*row), 2e-3, 1.0)["pin.rotation"][-1]
             for row in zip(*values.values(), strict=True)]
     assert found["end"] == pytest.approx(each, abs=1e-13)
+
+
+def oblique(stiffness, restitution, friction):
+    """Two balls on a slope and on a body, and a stop of another restitution and speed."""
+    model = Model()
+    model.gravity((0.4, -0.3, -9.0))
+    for name, place in (("ball", (0.1, 0.2, 0.16)), ("table", (2.0, 0.0, 0.0)),
+                        ("egg", (2.1, 0.1, 0.2))):
+        model.rigid_body(f"{name} body", model.node(name, place), 0.7, (0.01, 0.012, 0.015))
+    model.revolute("table", axis=(0.3, 1.0, 0.1), name="pin")
+    model.contact("ball", on=plane((0.2, -0.1, 1.0)), radius=0.12, stiffness=stiffness,
+                  restitution=restitution, at_speed=0.5, friction=friction, name="slope")
+    model.contact("egg", on=plane((0.2, -0.1, 1.0), node="table"), radius=0.1, stiffness=2e4,
+                  friction=friction, name="top")
+    model.stop("pin", -0.1, 0.2, restitution=restitution, at_speed=2.0, stiffness=500.0, name="end")
+    return model
+
+
+def test_ensembles_vary_contacts_in_space():
+    """Stiffness, restitution and friction together, against models built with them."""
+    cases = [(1e4, 0.3, 0.1), (4e4, 0.95, 0.5), (2e4, 0.02, 0.0), (1e4, 1.0, 0.3)]
+    k, e, mu = np.transpose(cases)
+    values = {"slope.stiffness": k, "slope.restitution": e, "end.restitution": e,
+              "slope.coefficient": mu, "top.coefficient": mu}
+    outputs = {"ball": final("ball.position"), "egg": final("egg.position")}
+    found = Ensemble(oblique(3e4, 0.6, 0.2), 2e-3).run(values, t_end=0.5, outputs=outputs)
+    for row, case in enumerate(cases):
+        result = simulate(oblique(*case), 2e-3, 0.5)
+        for name in outputs:
+            # impacts enlarge rounding
+            assert found[name][row] == pytest.approx(result[f"{name}.position"][-1], abs=1e-9)
+    assert np.ptp(found["ball"], axis=0).min() > 1e-4
+
+
+@pytest.mark.parametrize("e", [0.01, 0.02, 0.1, 0.7, 0.999, 1.0])
+def test_restitution_and_damping(e):
+    """The damping satisfies its equation, and gives the restitution back."""
+    c = damping_of(e, 3.0, "law")
+    assert restitution_of(c, 3.0) == pytest.approx(e, rel=1e-9)
+    if 0.1 <= e < 1:        # below, 1 - c v e is lost in the last digit
+        # about e = 1 both sides are about 1e-3, and their difference is of third order
+        assert 3 * c * (1 + e) == pytest.approx(np.log((1 + 3 * c) / (1 - 3 * c * e)), rel=1e-9)
+
+
+@pytest.mark.parametrize("name, value, said", [
+    ("end.restitution", 1.2, "end.restitution of run 0 is 1.2: it must be at most 1"),
+    ("top.restitution", 0.0, "top.restitution of run 0 is 0.0: it must be at least 0.01"),
+    ("pin friction.restitution", 0.5, "has no restitution")])
+def test_restitution_refused(name, value, said):
+    model = oblique(2e4, 0.5, 0.2)
+    model.friction("pin", 0.1, radius=0.1, name="pin friction")
+    with pytest.raises(InputError, match=said):
+        Ensemble(model, 2e-3).run({name: [value]}, t_end=0.01,
+                                  outputs={"ball": final("ball.position")})
 
 
 def test_results_are_saved(tmp_path):

@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.model.contacts import SLOW
 from sebody.model.history_rows import rows_of
+from sebody.model.impacts import LEAST, damping_of, restitution_of
 from sebody.model.model import Model
 from sebody.model.parts import DofBlock, Element, Joint, Motion, Node, Superelement
 from sebody.model.time_functions import TimeFunction, time_function
@@ -44,7 +46,7 @@ class Handle:
     touches : str
         MOTION where initial velocities may have to be fitted anew, BODIES where masses change the
         fit, LOADS where neither.
-    least, above : float, optional
+    least, above, most : float, optional
         Bounds of the values.
     """
 
@@ -54,6 +56,7 @@ class Handle:
     touches: str
     least: float | None = None
     above: float | None = None
+    most: float | None = None
 
     @property
     def whole(self) -> bool:
@@ -76,11 +79,14 @@ class Handle:
         remedy = "give " + (f"an array (runs, {', '.join(map(str, self.base.shape))})"
                             if self.base.shape else "one number for each run")
         found = inputs.array(values, name, (None, *self.base.shape), remedy=remedy)
-        lowest = found.reshape(len(found), -1).min(axis=1, initial=np.inf)
-        for bound, wrong, wanted in ((self.least, np.less, "at least"),
-                                     (self.above, np.less_equal, "above")):
-            if bound is not None and wrong(lowest, bound).any():
-                run = int(np.argmin(lowest))
+        rows = found.reshape(len(found), -1)
+        lowest, highest = rows.min(axis=1, initial=np.inf), rows.max(axis=1, initial=-np.inf)
+        for values_of, bound, wrong, wanted in (
+                (lowest, self.least, np.less, "at least"),
+                (lowest, self.above, np.less_equal, "above"),
+                (highest, self.most, np.greater, "at most")):
+            if bound is not None and wrong(values_of, bound).any():
+                run = int(np.argmax(wrong(values_of, bound)))
                 raise InputError(f"{name} of run {run} is {inputs.shown(found[run])}: it must be "
                                  f"{wanted} {bound:g}")
         return found
@@ -259,6 +265,16 @@ def contact_constant(constant: str) -> Callable[[Model, Element, str], Handle]:
         return _constants(contact, lambda value: {"coefficient": value, "static": more * value},
                           LOADS, base, **bound)
     return make
+
+
+def restitution(model: Model, contact: Element, name: str) -> Handle:
+    """Handle of the restitution of a contact, stop or gear, at the speed it was given for."""
+    if "damping" not in contact.constants or "slow" not in contact.constants:
+        raise InputError(f"{name}: {contact.name!r} has no restitution")
+    v = contact.number("slow") / SLOW
+    base = np.array(restitution_of(contact.number("damping"), v))
+    return _constants(contact, lambda e: {"damping": damping_of(float(e), v, name)}, LOADS, base,
+                      least=LEAST, most=1.0)
 
 
 def backlash(model: Model, gear: Element, name: str) -> Handle:

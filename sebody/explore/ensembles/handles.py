@@ -100,7 +100,7 @@ KINDS = (
                               for quantity in changes.OF_SPRINGS}),
     Kind("contact, stop or friction", _contacts, {
         **{constant: changes.contact_constant(constant) for constant in changes.OF_CONTACTS},
-        "backlash": changes.backlash}),
+        "restitution": changes.restitution, "backlash": changes.backlash}),
     Kind("load", lambda model: {e.name: e for e in model.loads if e.law is None}, {
         "amplitude": changes.load_amplitude, "table": changes.load_table}),
 )
