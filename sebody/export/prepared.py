@@ -17,7 +17,7 @@ from sebody.engine.state import EVALUATED, Scheme
 from sebody.engine.system import System
 from sebody.errors import InputError
 from sebody.export.image import Image, members
-from sebody.export.interface import Input, placed, with_inputs
+from sebody.export.interface import PARAMETER, Input, placed, with_inputs
 from sebody.export.linking import Part
 from sebody.export.quantities import Outputs
 from sebody.export.row_exchanges import Exchanges
@@ -118,7 +118,7 @@ class Prepared:
         changing = [*members(state), self.outputs.values, self.outputs.row, self.outputs.loads,
                     self.outputs.sums, system.corners, system.jumps, system.table_times,
                     system.table_pieces, system.control.parameters]
-        changing += [system.constants] * (2 in kinds)
+        changing += [system.constants] * (PARAMETER in kinds)
         changing += members(self.exchanges)
         state.work[:] = 0.0
         if state.control.wanted == EVALUATED:       # so matrices are made before they are read

@@ -11,11 +11,12 @@ from sebody import inputs
 from sebody.engine.state import Scheme
 from sebody.errors import InputError
 from sebody.explore.ensembles.outputs import Output
-from sebody.gradients.gradient import MODES, Gradient, differentiate, fitting, multiple
+from sebody.gradients.gradient import MODES, Gradient, differentiate, fitting
 from sebody.gradients.objectives import checked
 from sebody.gradients.point import Point
 from sebody.gradients.support import refuse_model
 from sebody.model.model import Model
+from sebody.runs.steps import whole_steps
 
 
 class ValueAndGradient:
@@ -63,7 +64,7 @@ class ValueAndGradient:
         self.model = inputs.instance(model, "model", Model, "give a sebody.Model")
         self.mode = inputs.choice(mode, "mode", MODES)
         self.h = inputs.number(h, "h", above=0)
-        self.t_end = multiple(inputs.number(t_end, "t_end", above=0), self.h)
+        self.t_end = self.h * whole_steps(inputs.number(t_end, "t_end", above=0), self.h)
         self.outputs = checked(objectives, self.t_end)
         refuse_model(model)
         self.point, self.scheme = Point(model, parameters), fitting(scheme)

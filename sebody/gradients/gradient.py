@@ -28,7 +28,7 @@ from sebody.model.model import Model
 from sebody.runs.schemes import checked as checked_scheme
 from sebody.runs.schemes import generalized_alpha
 from sebody.runs.simulation import Simulation
-from sebody.runs.steps import check_steps
+from sebody.runs.steps import whole_steps
 from sebody.runs.tolerance import Tolerance, given
 
 CONVERGED = 1e-10       # of Newton's iteration: errors of gradients are a hundred times that
@@ -125,7 +125,8 @@ def gradient(model: Model, h: float, t_end: float, objectives: Objectives,
     (3, 5)
     """
     mode = inputs.choice(mode, "mode", MODES)
-    t_end = multiple(inputs.number(t_end, "t_end", above=0), inputs.number(h, "h", above=0))
+    h = inputs.number(h, "h", above=0)
+    t_end = h * whole_steps(inputs.number(t_end, "t_end", above=0), h)
     outputs = checked(objectives, t_end)
     inputs.instance(model, "model", Model, "give a sebody.Model")
     columns = columns_of(model, parameters)
@@ -153,15 +154,6 @@ class Differentiated:
         self.linear = Linear(self.run)
         self.course = Course(self.linear, self.run.scheme, self.history)
         self.course.settle()
-
-
-def multiple(t_end: float, h: float) -> float:
-    """The end of a run, which has to be a multiple of the step."""
-    check_steps(t_end, h)
-    last = round(t_end / h)
-    if last < 1 or abs(t_end / h - last) > 1e-6:
-        raise InputError(f"t_end is {t_end:g}, which is not a multiple of the step {h:g}: give one")
-    return last * h
 
 
 def differentiate(model: Model, h: float, t_end: float, outputs: Mapping[str, Output],

@@ -6,16 +6,16 @@ fourth order, at a few states of a run.
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from sebody.contract.layout import ACCELERATION, OK
 from sebody.engine.evaluate import run_kernels, sum_forces
 from sebody.engine.links import place_dependent
 from sebody.errors import InputError
 from sebody.gradients.linear import Linear
+from sebody.results import rotations
+from sebody.small_motion.moved_states import STEPS, WEIGHTS
 
 STEP = 1e-3         # of differences, of the size of a coordinate or in radians
-AT, WEIGHTS = (1.0, -1.0, 2.0, -2.0), np.array([8.0, -8.0, -1.0, 1.0]) / 12.0
 
 
 def second_rates(linear: Linear, fixed: NDArray) -> tuple[NDArray, NDArray]:
@@ -32,14 +32,14 @@ def second_rates(linear: Linear, fixed: NDArray) -> tuple[NDArray, NDArray]:
         size = STEP * max(float(system.magnitude[i]), float(np.abs(state.q[:n]).max()) * 1e-3
                           ) if i not in turning else STEP
         for found, by, step in ((by_motion, "motion", size or STEP), (by_rates, "rates", speed)):
-            for at, weight in zip(AT, WEIGHTS, strict=True):
+            for at, weight in zip(STEPS, WEIGHTS, strict=True):
                 state.now[:] = now
                 if by == "rates":
                     state.v[i] += at * step
                 elif i in turning:
                     r, k = turning[i]
                     R = state.R[9 * r:9 * r + 9].reshape(3, 3)
-                    R[:] = R @ Rotation.from_rotvec(at * step * np.eye(3)[k]).as_matrix()
+                    R[:] = R @ rotations.matrices(at * step * np.eye(3)[k])
                 else:
                     state.q[i] += at * step
                 found[:, i] += weight / step * _evaluated(linear)[:n][fixed]

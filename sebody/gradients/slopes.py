@@ -31,13 +31,12 @@ from sebody.kernels.rotations import rotate
 from sebody.model.model import Model
 from sebody.results import rotations
 from sebody.runs.simulation import Simulation
+from sebody.small_motion.moved_states import STEPS, WEIGHTS
 
 LARGE, SHORT = 0.25, 1e-3       # steps of differences, relative to the size of a parameter
 POLYNOMIAL = 1e-8               # differences over one and two steps that agree like this are exact
 SMOOTH = 1e-2                   # that agree worse are no differences of a smooth function
 NOISE = 1e-8                    # of values: velocities of the start have so much
-AT = 1.0, -1.0, 2.0, -2.0
-WEIGHTS = np.array([8.0, -8.0, -1.0, 1.0]) / 12.0
 
 
 class Slope(NamedTuple):
@@ -164,7 +163,7 @@ class Slopes:
         return self.model.size() if name.endswith(".position") else 1.0
 
     def _around(self, handle: Handle, component: int, step: float) -> list[Value]:
-        return [self._at(handle, component, at * step) for at in AT]
+        return [self._at(handle, component, at * step) for at in STEPS]
 
     def _at(self, handle: Handle, component: int, change: float) -> Value:
         value = np.array(handle.base, dtype=float)

@@ -20,7 +20,6 @@ from sebody.model.model import Model
 from sebody.runs.simulation import Simulation
 
 TABLE = ".table"
-LINEAR = 1e-9       # of the largest value: how well the weights give back the values of a run
 
 
 class OfTable(NamedTuple):

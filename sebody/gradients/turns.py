@@ -10,11 +10,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
-from scipy.spatial.transform import Rotation
 
-from sebody.vectors import skew
-
-SMALL = 0.25        # square of an angle below which series are exact to rounding
+from sebody.compiler.decorators import compiled
+from sebody.kernels.rotations import tangent_operator
+from sebody.results import rotations
 
 
 def turns_of(places: NDArray, increments: NDArray) -> "list[Turns]":
@@ -30,9 +29,9 @@ def turns_of(places: NDArray, increments: NDArray) -> "list[Turns]":
     if not len(places):
         none = np.zeros((0, 3, 3))
         return [Turns(places, none, none)] * len(increments)
-    H = Rotation.from_rotvec(-increments.reshape(-1, 3)).as_matrix().reshape(
-        *increments.shape, 3)
-    T = tangent_operators(increments.reshape(-1, 3)).reshape(*increments.shape, 3)
+    psi = increments.reshape(-1, 3)
+    H = rotations.matrices(-psi).reshape(*increments.shape, 3)
+    T = _tangent_operators(psi).reshape(*increments.shape, 3)
     return [Turns(places, *both) for both in zip(H, T, strict=True)]
 
 
@@ -84,17 +83,12 @@ class Turns(NamedTuple):
              np.concatenate([ordinary, columns.ravel()]))), shape=(n, n))
 
 
-def tangent_operators(psi: NDArray) -> NDArray:
-    """T of increments (r, 3)."""
-    s = (psi * psi).sum(axis=-1)[:, None, None]
-    near = np.minimum(s, SMALL)
-    c2 = 1 / 2 - near * (1 / 24 - near * (1 / 720 - near * (1 / 40320 - near * (
-        1 / 3628800 - near * (1 / 479001600 - near / 87178291200)))))
-    c3 = 1 / 6 - near * (1 / 120 - near * (1 / 5040 - near * (1 / 362880 - near * (
-        1 / 39916800 - near * (1 / 6227020800 - near / 1307674368000)))))
-    far = np.maximum(s, SMALL)
-    t = np.sqrt(far)
-    c2 = np.where(s < SMALL, c2, 2 * np.sin(t / 2) ** 2 / far)
-    c3 = np.where(s < SMALL, c3, (t - np.sin(t)) / (far * t))
-    S = skew(psi)
-    return np.eye(3) - c2 * S + c3 * (S @ S)
+@compiled
+def _tangent_operators(psi):
+    """T of increments (r, 3), row by row."""
+    found = np.empty((psi.shape[0], 9))
+    for k in range(psi.shape[0]):
+        entries = tangent_operator(psi[k, 0], psi[k, 1], psi[k, 2])
+        for i in range(9):
+            found[k, i] = entries[i]
+    return found

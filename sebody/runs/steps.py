@@ -20,6 +20,21 @@ def check_steps(t_end: float, h: float) -> None:
                          "earlier time or a longer step")
 
 
+def whole_steps(t_end: float, h: float) -> int:
+    """How many steps a time is a multiple of.
+
+    Raises
+    ------
+    InputError
+        It is none, or too many steps away.
+    """
+    check_steps(t_end, h)
+    steps = round(t_end / h)
+    if steps < 1 or abs(t_end / h - steps) > OFF_GRID:
+        raise InputError(f"t_end is {t_end:g}, which is not a multiple of the step {h:g}: give one")
+    return steps
+
+
 def last_step(t_end: float, h: float, time: float, grid: int) -> int:
     """The grid step nearest to the end of a run that has reached a time, and a step of the grid.
 

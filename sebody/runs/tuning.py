@@ -26,6 +26,7 @@ from sebody.kernels.loader import element_kernel
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Element
 from sebody.runs.redundancy import least
+from sebody.vectors import moment_of
 
 STILL = 1e-9            # of the mobility of the parts alone: that of what a drive moves
 AT_REST = 1e-9          # rate of a joint at rest, relative to that of the model
@@ -147,15 +148,9 @@ def _pair(numbering: Numbering, state: State, dof_blocks: list[DofBlock], axis: 
         own = dof_block.root if dof_block.root is not None else dof_block
         row[stretch(numbering, own)] += sign * vector
         for rotation, arm in dof_block.arms:
-            row[stretch(numbering, rotation)] += sign * _moment(
-                _rotation(numbering, state, rotation), arm, vector)
+            force = _rotation(numbering, state, rotation).T @ vector    # in axes of the arm
+            row[stretch(numbering, rotation)] += sign * moment_of(arm, force)
     return row
-
-
-def _moment(R: NDArray, arm: NDArray, force: NDArray) -> NDArray:
-    """Moment about the rotation of a rigid arm by a force at its end, both in its axes."""
-    f = R.T @ force
-    return np.cross(arm, f) if len(arm) == 3 else np.array([arm[0] * f[1] - arm[1] * f[0]])
 
 
 def _rotation(numbering: Numbering, state: State, dof_block: DofBlock) -> NDArray:

@@ -25,7 +25,7 @@ from sebody.reduction import ReducedBody
 from sebody.results.result import Result
 from sebody.runs.progress import showing
 from sebody.runs.simulation import Simulation
-from sebody.runs.steps import OFF_GRID, check_steps
+from sebody.runs.steps import whole_steps
 from sebody.runs.user_faults import refuse_changed
 
 PLACING = ".position", ".rotation"      # parameters that move where runs begin
@@ -144,17 +144,8 @@ class Ensemble:
         if placing := [name for name in found if self._template.begun and name.endswith(PLACING)]:
             raise InputError(f"{placing[0]} cannot be varied: all runs begin at the start that was "
                              "given; leave it out, or build an ensemble without a start")
-        last = self._last_step(t_end)
+        last = whole_steps(inputs.number(t_end, "t_end", above=0), self.h)
         return found, runs, last, outputs_of(outputs, last * self.h)
-
-    def _last_step(self, t_end: float) -> int:
-        t_end = inputs.number(t_end, "t_end", above=0)
-        check_steps(t_end, self.h)
-        last = round(t_end / self.h)
-        if last < 1 or abs(t_end / self.h - last) > OFF_GRID:
-            raise InputError(f"t_end is {t_end:g}, which is not a multiple of the step {self.h:g}: "
-                             "give one")
-        return last
 
     def _image(self, found: dict[str, Handle]) -> Image:
         """What runs begin with that these parameters vary in."""

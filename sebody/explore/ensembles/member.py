@@ -159,7 +159,7 @@ class Course:
         if code == FAILED:
             reason = REASONS[int(state.control.reason)]
             self.reason = f"stopped at t = {state.clock.time:.6g}: {reason}"
-        return code in (DONE, FAILED) or run is None
+        return code in (DONE, FAILED)
 
     def _advance(self, record: Record, last: int, stop: Stop) -> int:
         run, state, chunk = self.run, self.run.state, 1000
