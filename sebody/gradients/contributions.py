@@ -1,0 +1,274 @@
+"""What every part of a model contributes to some quantities: modes and flexibility of its bodies,
+by one run and one sweep for all, and their options, by a run each.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody import inputs
+from sebody.engine.state import Scheme
+from sebody.errors import InputError
+from sebody.gradients.answers import Histories, linearized
+from sebody.gradients.gradient import Differentiated, fitting
+from sebody.gradients.simplifications import Amplitude, Deformation, Motion
+from sebody.gradients.support import refuse_model
+from sebody.model.model import Model
+from sebody.model.variants import with_options
+from sebody.runs.simulation import Simulation, simulate
+from sebody.runs.steps import whole_steps
+from sebody.small_motion.moved_states import ADDED_UP, UNMOVED
+from sebody.spelling import unknown
+from sebody.tabular import text
+
+LARGE = 0.3         # of a quantity's largest change: beyond, estimates say that a change is large
+
+
+class Simplification(NamedTuple):
+    """A body that is simplified: by what it loses of the motion, or by other options."""
+
+    body: str
+    change: str
+    motions: tuple[Motion, ...] = ()
+    options: dict[str, object] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Contribution:
+    """How much some quantities change if a body is simplified.
+
+    Attributes
+    ----------
+    body, change : str
+    sizes : (quantities,)
+        Largest change of each at any time, relative to its largest change from the start.
+    times : (quantities,)
+        When [time].
+    """
+
+    body: str
+    change: str
+    sizes: NDArray
+    times: NDArray
+
+    @property
+    def large(self) -> bool:
+        """Whether the change is so large that an estimate of first order tells its size alone."""
+        return bool(self.sizes.max() > LARGE)
+
+
+@dataclass(frozen=True, eq=False)
+class Contributions:
+    """What parts of a model contribute to some quantities.
+
+    Attributes
+    ----------
+    quantities : tuple of str
+    t : (n,)
+        Times [time].
+    values : dict of str to (n, ...)
+        Histories of the quantities in the full model.
+    rows : tuple of Contribution
+        All simplifications, those of the largest effect first.
+    seconds, run_seconds : float
+        Of all, and of the run in it.
+    """
+
+    quantities: tuple[str, ...]
+    t: NDArray
+    values: dict[str, NDArray]
+    rows: tuple[Contribution, ...]
+    changes: dict[str, NDArray]
+    seconds: float = 0.0
+    run_seconds: float = 0.0
+
+    def __repr__(self) -> str:
+        return (f"<Contributions of {len(self.rows)} simplifications to "
+                f"{', '.join(self.quantities)}>")
+
+    def history(self, quantity: str, body: str, change: str) -> NDArray:
+        """Change of a quantity over time by a simplification: of the simplified model less the full
+        one, (n, ...).
+
+        Raises
+        ------
+        InputError
+            Names that it does not have.
+        """
+        if quantity not in self.changes:
+            raise unknown("quantity", quantity, self.quantities, "there are", "there is none")
+        k = next((k for k, one in enumerate(self.rows) if (one.body, one.change) == (body, change)),
+                 None)
+        if k is None:
+            raise unknown("simplification", f"{body}: {change}",
+                          [f"{one.body}: {one.change}" for one in self.rows], "there are",
+                          "there is none")
+        return self.changes[quantity][..., k]
+
+    def table(self) -> str:
+        """A line for each simplification, those of the largest effect first."""
+        heads = ["body", "change", *(head for name in self.quantities for head in (name, "at t"))]
+        lines = [[one.body, one.change, *(cell for size, t in zip(
+            one.sizes, one.times, strict=True) for cell in (
+                f"{size:.2g}{' (large)' if size > LARGE else ''}", f"{t:.4g}"))]
+            for one in self.rows]
+        return text("largest change of each quantity, relative to its largest change from the "
+                    "start", heads, lines)
+
+    def __str__(self) -> str:
+        return self.table()
+
+    def save_picture(self, path: str | Path) -> Path:
+        """Bars of all contributions, and their histories; PNG.
+
+        Raises
+        ------
+        InputError
+            A picture that cannot be made.
+        """
+        from sebody.gradients.picture import draw
+
+        return draw(self, path)
+
+
+def contributions(model: Model, h: float, t_end: float, quantities: str | Iterable[str],
+                  bodies: Iterable[str] | None = None, scheme: Scheme | None = None
+                  ) -> Contributions:
+    """What modes, flexibility and options of each body contribute to some quantities.
+
+    The model runs once. Its equations, linearized along this run, then give at once how it would
+    move without each mode, with each body rigid, without stiffening and with a simpler inertia:
+    changes of first order, over all of the run.
+
+    Parameters
+    ----------
+    model : Model
+        As rich as it may have to be. Stays as it is.
+    h, t_end : float
+        Fixed step, and end of the run, a multiple of it [time].
+    quantities : str or iterable of str
+        Names as results have them.
+    bodies : iterable of str, optional
+        Superelements that are looked at; all by default.
+    scheme : Scheme, optional
+        `generalized_alpha` with rho 0.9 and a tolerance of 1e-10 by default.
+
+    Raises
+    ------
+    InputError
+        Unknown names, quantities that do not change or have no derivatives, no superelements,
+        features of the model that are not differentiated, see `gradient`.
+    SimulationError
+        The run fails.
+
+    Examples
+    --------
+    >>> found = contributions(model, 0.01, 5.0, ["tip.position", "hinge.force"])
+    >>> print(found)
+    >>> found.history("tip.position", "beam", "without mode 1")
+    """
+    inputs.instance(model, "model", Model, "give a sebody.Model")
+    h = inputs.number(h, "h", above=0)
+    t_end = h * whole_steps(inputs.number(t_end, "t_end", above=0), h)
+    names = _names(quantities)
+    chosen = _bodies(model, bodies)
+    refuse_model(model)
+    began, scheme = time.perf_counter(), fitting(scheme)
+    one = Differentiated(model, h, t_end, scheme)
+    each = simplifications(one.run, chosen)
+    like = [j for j, simpler in enumerate(each) if simpler.options is None]
+    values, found = linearized(one, [each[j].motions for j in like], names)
+    changes = {name: np.full((*own.shape, len(each)), np.nan) for name, own in values.items()}
+    for name in names:
+        changes[name][..., like] = found[name]
+    for j, simpler in enumerate(each):
+        if simpler.options is not None:
+            _measure(model, simpler, h, t_end, scheme, values, changes, j)
+    rows, order = _ranked(names, each, one.history.times, values, changes)
+    return Contributions(names, one.history.times, values, rows,
+                         {name: own[..., order] for name, own in changes.items()},
+                         time.perf_counter() - began, one.history.seconds)
+
+
+def _measure(model: Model, simpler: Simplification, h: float, t_end: float, scheme: Scheme,
+             values: Histories, changes: Histories, j: int) -> None:
+    """Changes by other options, from a run with these."""
+    assert simpler.options is not None
+    made = with_options(model, simpler.body, **simpler.options).model
+    result = simulate(made, h, t_end, scheme=scheme)
+    for name, own in values.items():
+        changes[name][..., j] = result[name] - own
+
+
+def _names(quantities: str | Iterable[str]) -> tuple[str, ...]:
+    given = [quantities] if isinstance(quantities, str) else inputs.items(
+        quantities, "quantities", "give names of quantities")
+    if not given:
+        raise InputError("quantities: none is given; give names of quantities")
+    for name in given:
+        inputs.name(name, "name of a quantity")
+        if name in UNMOVED or name.endswith(ADDED_UP):
+            raise InputError(f"quantity {name!r} is no function of a state: give a motion, a force "
+                             "or another quantity of a state")
+    return tuple(dict.fromkeys(given))
+
+
+def _bodies(model: Model, bodies: Iterable[str] | None) -> list[str]:
+    if not model.bodies:
+        raise InputError("the model has no superelement: there are no modes, flexibility or "
+                         "options whose contributions could be found")
+    if bodies is None:
+        return list(model.bodies)
+    given = inputs.items(bodies, "bodies", "give names of superelements")
+    for name in given:
+        if name not in model.bodies:
+            raise unknown("superelement", name, model.bodies, "the model has", "the model has none")
+    return list(dict.fromkeys(given))
+
+
+def simplifications(run: Simulation, bodies: Iterable[str]) -> list[Simplification]:
+    """Every mode left out, every body rigid, every simpler option, of some bodies."""
+    model, numbering = run.model, run.numbering
+    found = []
+    for name in bodies:
+        body = model.bodies[name]
+        each = amplitudes(run, name)
+        found += [Simplification(name, f"without mode {k}", (one,)) for k, one in enumerate(each)]
+        if len(each) > 1:
+            found.append(Simplification(name, "without modes", tuple(each)))
+        found.append(Simplification(name, "rigid", (Deformation(body, numbering),)))
+        if body.stiffening:
+            found.append(Simplification(name, "without stiffening", options={"stiffening": False}))
+        if body.inertia == "floating_field":
+            found.append(Simplification(name, "inertia 'material'", options={
+                "inertia": "material", "stiffening": False}))
+    return found
+
+
+def amplitudes(run: Simulation, body: str) -> list[Amplitude]:
+    """Those of all modes of a superelement."""
+    first, total = run.numbering.modes.get(body, 0), run.numbering.total
+    return [Amplitude(first + k, total) for k in range(run.model.bodies[body].reduced.modes)]
+
+
+def _ranked(names: Sequence[str], each: Sequence[Simplification], t: NDArray,
+            values: dict[str, NDArray], changes: dict[str, NDArray]
+            ) -> tuple[tuple[Contribution, ...], list[int]]:
+    """All simplifications by their largest effect on any quantity, and their places."""
+    sizes, times = np.zeros((2, len(names), len(each)))
+    for k, name in enumerate(names):
+        whole = np.abs(values[name] - values[name][0]).max()
+        if whole == 0:
+            raise InputError(f"quantity {name!r} does not change: give one that the motion changes")
+        own = np.abs(changes[name]).reshape(len(t), -1, len(each)).max(axis=1) / whole
+        sizes[k], times[k] = own.max(axis=0), t[own.argmax(axis=0)]
+    order = [int(j) for j in np.argsort(-sizes.max(axis=0), kind="stable")]
+    return tuple(Contribution(each[j].body, each[j].change, sizes[:, j], times[:, j])
+                 for j in order), order
