@@ -189,6 +189,28 @@ class Slopes:
         other = self._along(made, (port, -size))[0]
         return (one - other) / (2 * size)
 
+    def by_constants(self, place: int, rows: NDArray) -> NDArray:
+        """Derivatives of the residuals by changes of a row of constants, (events, n, k).
+
+        Parameters
+        ----------
+        place : int
+            Where the row is in `System.constants`.
+        rows : (k, numbers)
+            Changes, of which residuals are linear functions.
+        """
+        made = self._made()
+        start, own = made.state.now.copy(), slice(place, place + rows.shape[1])
+        base = made.system.constants[own].copy()
+        still = self._along(made)[0]
+        found = np.zeros((*still.shape, len(rows)))
+        for k, row in enumerate(rows):
+            made.state.now[:] = start
+            made.system.constants[own] = base + row
+            found[..., k] = self._along(made)[0] - still
+        made.system.constants[own] = base
+        return found
+
     def _evaluated(self, made: Simulation) -> Value:
         rates, motion = fitted_rates(made), self._turned(made.state)
         found, now = self._along(made)
