@@ -47,7 +47,7 @@ ROOMS = {
     "explore": {*COMPILED, "engine", "io", "reduction", "model", "assembly", "results",
                 "pictures", "limits", "runs", "small_motion"},
     "gradients": {*COMPILED, "engine", "fem", "reduction", "model", "assembly", "results",
-                  "limits", "runs", "small_motion", "explore"},
+                  "pictures", "limits", "runs", "small_motion", "explore"},
     # a door: names of other rooms
     "analysis": {"limits", "runs", "small_motion", "explore", "gradients"},
     "sebody": {"model", "results", "runs"},         # its names: sebody/__init__.py

@@ -19,9 +19,11 @@ if TYPE_CHECKING:
         soft_maximum,
     )
     from sebody.gradients.calibration import Calibration, calibrate
+    from sebody.gradients.contributions import Contribution, Contributions, contributions
     from sebody.gradients.designs import Design, sections
     from sebody.gradients.functions import ValueAndGradient
     from sebody.gradients.gradient import Gradient, gradient
+    from sebody.gradients.sizing import BeamStress, Sizing, size_heights
     from sebody.limits.watch import spin_limit
     from sebody.runs.restart import resume, save_state
     from sebody.runs.statics import equilibrium
@@ -39,8 +41,11 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Advice",
+    "BeamStress",
     "Calibration",
     "Campbell",
+    "Contribution",
+    "Contributions",
     "Design",
     "Ensemble",
     "FrequencyResponse",
@@ -49,6 +54,7 @@ __all__ = [
     "Modes",
     "Outcome",
     "Output",
+    "Sizing",
     "StateSpace",
     "Unreached",
     "ValueAndGradient",
@@ -57,6 +63,7 @@ __all__ = [
     "at_time",
     "calibrate",
     "campbell",
+    "contributions",
     "equilibrium",
     "final",
     "frequency_response",
@@ -70,6 +77,7 @@ __all__ = [
     "rms",
     "save_state",
     "sections",
+    "size_heights",
     "soft_maximum",
     "spin_limit",
     "state_space",

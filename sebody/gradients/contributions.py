@@ -126,7 +126,7 @@ class Contributions:
         return self.table()
 
     def save_picture(self, path: str | Path) -> Path:
-        """Bars of all contributions, and their histories; PNG.
+        """Bars of the largest contributions, and histories of four; PNG.
 
         Raises
         ------

@@ -42,7 +42,6 @@ class Element(NamedTuple):
     mass: NDArray           # (elements, k, k)
     forces: NDArray         # (elements, 2, 6, k) section forces at both ends of unit DOFs
     fibres: NDArray         # (elements, fibres, 6) normal stresses of unit section forces
-    weight: NDArray         # (elements,) masses
 
 
 class Elements:
@@ -100,13 +99,16 @@ class Elements:
         """Their derivatives by the height."""
         return self._parted(self._at(self.slopes, heights))
 
+    def weights(self, heights: NDArray) -> tuple[NDArray, NDArray]:
+        """Masses of all elements, and their derivatives, (elements,) each."""
+        return self._at(self.coefficients[:, -1], heights), self._at(self.slopes[:, -1], heights)
+
     def _parted(self, rows: NDArray) -> Element:
         k, n = len(self.kept), len(rows)
-        K, M, forces, fibres, weight = np.split(rows, np.cumsum([k * k, k * k, 12 * k, rows.shape[
-            1] - 2 * k * k - 12 * k - 1]), axis=1)
+        K, M, forces, fibres = np.split(rows[:, :-1], np.cumsum([k * k, k * k, 12 * k]), axis=1)
         sign = np.array([-1.0, 1.0])[:, None, None]     # of the part before the first end
         return Element(K.reshape(n, k, k), M.reshape(n, k, k), sign * forces.reshape(n, 2, 6, k),
-                       fibres.reshape(n, -1, 6), weight[:, 0])
+                       fibres.reshape(n, -1, 6))
 
 
 class HeldBeam:

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -107,8 +108,8 @@ class BeamStress:
 
     def mass(self, heights: NDArray) -> tuple[float, NDArray]:
         """Mass of the beam, and its derivatives."""
-        elements = self.beam.elements
-        return (float(elements.at(heights).weight.sum()), elements.slopes_at(heights).weight)
+        each, slopes = self.beam.elements.weights(np.asarray(heights, dtype=float))
+        return float(each.sum()), slopes
 
     def at(self, heights: ArrayLike) -> Stresses:
         """Stresses with some heights; the last ones are kept.
@@ -342,6 +343,8 @@ class Sizing:
     seconds : float
     history : tuple of float
         Mass after each iteration.
+    limit : float
+        Of the stresses.
     """
 
     heights: NDArray
@@ -354,6 +357,19 @@ class Sizing:
     message: str
     seconds: float
     history: tuple[float, ...]
+    limit: float
+
+    def save_picture(self, path: str | Path) -> Path:
+        """Heights and stresses along the beam; PNG.
+
+        Raises
+        ------
+        InputError
+            A picture that cannot be made.
+        """
+        from sebody.gradients.picture import draw_sizing
+
+        return draw_sizing(self, path)
 
     def __repr__(self) -> str:
         return (f"<Sizing: mass {self.mass:.6g} instead of {self.mass_before:.6g}, largest stress "
@@ -412,4 +428,4 @@ def size_heights(model: Model, h: float, t_end: float, beam: str, heights: Array
     x = unit * found.x
     last = stress.at(x)
     return Sizing(x, last.values, last.times, stress.mass(x)[0], before, int(found.nit),
-                  stress.runs, str(found.message), time.perf_counter() - began, tuple(masses))
+                  stress.runs, str(found.message), time.perf_counter() - began, tuple(masses), limit)

@@ -1,0 +1,86 @@
+"""Pictures of contributions and of sizing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sebody.files import replacing
+from sebody.pictures.plots import ACCENT, PALE, STYLE
+
+if TYPE_CHECKING:
+    from sebody.gradients.contributions import Contributions
+    from sebody.gradients.sizing import Sizing
+
+MOST = 12           # bars of a quantity
+LINES = 4           # histories of a quantity
+LEAST = 1e-6        # of the largest bar: shorter ones are drawn like this
+
+
+def draw(found: Contributions, path: str | Path) -> Path:
+    """Of every quantity a row: bars of the largest contributions, and histories of some; PNG."""
+    from matplotlib import rc_context
+    from matplotlib.figure import Figure
+
+    names = found.quantities
+    with rc_context(STYLE):
+        bars = min(MOST, len(found.rows))
+        figure = Figure(figsize=(10, (1.2 + 0.22 * bars) * len(names)), layout="constrained")
+        axes = figure.subplots(len(names), 2, squeeze=False)
+        for k, (name, (left, right)) in enumerate(zip(names, axes, strict=True)):
+            order = sorted(range(len(found.rows)), key=lambda j: -found.rows[j].sizes[k])[:MOST]
+            _bars(left, [(f"{found.rows[j].body}: {found.rows[j].change}", found.rows[j].sizes[k])
+                         for j in order], name)
+            _histories(right, found, name, order[:LINES])
+        path = Path(path)
+        with replacing(path, "picture") as file:
+            figure.savefig(file, format="png", dpi=120)
+    return path
+
+
+def _bars(axis, bars: list[tuple[str, float]], name: str) -> None:
+    labels, sizes = zip(*reversed(bars), strict=True)
+    colors = [ACCENT if k >= len(bars) - LINES else PALE for k in range(len(bars))]
+    axis.barh(labels, np.maximum(sizes, LEAST * max(sizes)), color=colors)
+    axis.set_xscale("log")
+    axis.set_xlabel(f"largest change of {name}, relative to its range", fontsize=8)
+    axis.tick_params(labelsize=7)
+    axis.grid(False, axis="y")
+
+
+def _histories(axis, found: Contributions, name: str, order: list[int]) -> None:
+    for width, j in zip(np.linspace(1.8, 0.8, LINES), order, strict=False):
+        own = found.changes[name][..., j].reshape(len(found.t), -1)
+        axis.plot(found.t, np.linalg.norm(own, axis=1) if own.shape[1] > 1 else own[:, 0],
+                  linewidth=width, label=f"{found.rows[j].body}: {found.rows[j].change}")
+    axis.set_xlabel("t", fontsize=8)
+    axis.set_ylabel(f"change of {name}" + (", length" if found.values[name][0].size > 1 else ""),
+                    fontsize=8)
+    axis.tick_params(labelsize=7)
+    axis.legend(fontsize=7)
+
+
+def draw_sizing(found: Sizing, path: str | Path) -> Path:
+    """Heights along the beam, and the largest stress in each element; PNG."""
+    from matplotlib import rc_context
+    from matplotlib.figure import Figure
+
+    places = (np.arange(len(found.heights)) + 0.5) / len(found.heights)
+    with rc_context(STYLE):
+        figure = Figure(figsize=(8, 4.6), layout="constrained")
+        upper, lower = figure.subplots(2, 1, sharex=True)
+        upper.fill_between(places, -found.heights / 2, found.heights / 2, color=PALE, step="mid")
+        upper.set_ylabel("height")
+        upper.set_title(f"mass {found.mass:.3g} instead of {found.mass_before:.3g}, "
+                        f"{found.iterations} iterations", fontsize=9)
+        lower.plot(places, found.stresses / found.limit, color=ACCENT)
+        lower.axhline(1.0, color="0.5", linewidth=0.8, linestyle="--")
+        lower.set_ylim(0.0, 1.15)
+        lower.set_ylabel("largest stress / limit")
+        lower.set_xlabel("place along the beam")
+        path = Path(path)
+        with replacing(path, "picture") as file:
+            figure.savefig(file, format="png", dpi=120)
+    return path
