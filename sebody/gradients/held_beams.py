@@ -8,8 +8,14 @@ vibration modes Phi of the heights as built. Psi changes with the height of an e
     (26) dS = Psi^T dK_e Psi + Phi^T dK_e Phi
          dM = T^T dM_e T - [Z^T dK_e Psi, 0] - [Z^T dK_e Psi, 0]^T,   Z = P M T
 
-No mode is differentiated: equal frequencies, as of square sections, do no harm, and all heights
-take one factorization.
+Section forces are those of the static equilibrium with the inertia forces, as results have them;
+of vibration modes alone they would follow curvatures that cannot change with a height:
+
+    (27) q = Psi y_B - Z c
+
+with the accelerations c in space of boundary and modes, in axes of the body, without what the spin
+adds inside. No mode is differentiated: equal frequencies, as of square sections, do no harm, and
+all heights take one factorization.
 """
 
 from __future__ import annotations
@@ -23,7 +29,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 from scipy import sparse
 from scipy.linalg import block_diag, eigh
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import eigsh, splu
 
 from sebody.errors import InputError
 from sebody.fem import beam_element
@@ -32,6 +38,7 @@ from sebody.reduction import ReducedBody
 
 IN_PLANE = np.array([0, 1, 5, 6, 7, 11])    # DOFs of an element in the xy plane
 PLACES = 49             # heights between the bounds that elements are made for
+DENSE = 100             # free DOFs up to which all modes are computed
 EXACT = 1e-9            # of the largest number: between these places they are known like this
 
 
@@ -136,11 +143,20 @@ class HeldBeam:
         self.edge = np.r_[:self.width, self.size - self.width:self.size]
         self.inside = np.arange(self.width, self.size - self.width)
         self.order = self._order()
-        K, M = (A[self.width:-self.width, self.width:-self.width].toarray()
-                for A in self.matrices(elements.at(built)))
         self.Phi = np.zeros((self.size, modes))
-        if modes:
-            self.Phi[self.inside] = eigh(K, M, subset_by_index=[0, modes - 1])[1]
+        self.hold(built)
+
+    def hold(self, heights: NDArray) -> None:
+        """Hold the vibration modes of some heights from here on."""
+        if not self.modes:
+            return
+        K, M = (A[self.inside][:, self.inside] for A in self.matrices(self.elements.at(heights)))
+        if len(self.inside) <= DENSE:
+            found = eigh(K.toarray(), M.toarray(), subset_by_index=[0, self.modes - 1])[1]
+        else:
+            found = eigsh(K, self.modes, M, sigma=0.0, v0=np.ones(len(self.inside)))[1]
+        self.Phi = np.zeros((self.size, self.modes))
+        self.Phi[self.inside] = found
 
     def _order(self) -> NDArray:
         """Boundary DOFs as reduced coordinates have them: positions first, then rotations."""
@@ -182,6 +198,7 @@ class Held:
         self.Psi, self.T = Psi, np.hstack([Psi, beam.Phi])
         self.stiffness = block_diag(Psi.T @ (self.K @ Psi), beam.Phi.T @ (self.K @ beam.Phi))
         self.mass = self.T.T @ (self.M @ self.T)
+        self.Z = self.inverse(self.M @ self.T)
 
     def inverse(self, loads: NDArray) -> NDArray:
         """Displacements (size, k) of the clamped beam under loads (size, k)."""
@@ -199,16 +216,25 @@ class Held:
         S, M = np.zeros((beam.count, n, n)), np.einsum("eai,eab,ebj->eij", T, dM, T)
         S[:, :b, :b] = np.einsum("eai,eab,ebj->eij", Psi, dK, Psi)
         S[:, b:, b:] = np.einsum("eai,eab,ebj->eij", Phi, dK, Phi)
-        Z = self.inverse(self.M @ self.T)[beam.dofs]
-        turned = np.einsum("eai,eab,ebj->eij", Z, dK, Psi)
+        turned = np.einsum("eai,eab,ebj->eij", self.Z[beam.dofs], dK, Psi)
         M[:, :, :b] -= turned
         M[:, :b, :] -= turned.transpose(0, 2, 1)
         return S, M
 
-    def section_forces(self, y: NDArray) -> NDArray:
-        """Of reduced coordinates (t, n): of both ends of all elements, (t, elements, 2, 6)."""
-        u = (y @ self.T.T)[:, self.beam.dofs]
-        return np.einsum("egfa,tea->tegf", self.elements.forces, u, optimize=True)
+    def fields(self, y: NDArray, c: NDArray) -> NDArray:
+        """Displacements of all DOFs in equilibrium, (t, size): (27).
+
+        Parameters
+        ----------
+        y, c : (t, n)
+            Reduced coordinates, and accelerations in space of the boundary and of the modes.
+        """
+        return y[:, :len(self.beam.order)] @ self.Psi.T - c @ self.Z.T
+
+    def section_forces(self, fields: NDArray) -> NDArray:
+        """Of both ends of all elements, (t, elements, 2, 6)."""
+        return np.einsum("egfa,tea->tegf", self.elements.forces, fields[:, self.beam.dofs],
+                         optimize=True)
 
     def body(self, turn: NDArray, units: str = "") -> ReducedBody:
         """The reduced body, rotated from the beam's axes to those of a model."""

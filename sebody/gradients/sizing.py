@@ -38,6 +38,7 @@ from sebody.small_motion.moved_states import STEPS, WEIGHTS
 RANK = 1e-12        # of the largest: independent changes of the reduced matrices
 STEP = 0.1          # of the matrices, by which they are changed: residuals are linear
 TURN = 1e-4         # of differences of reduced coordinates, in radians and in lengths of the beam
+FINE = 1e-5         # of the mass: the search ends where it changes less
 LINEAR = "frame_axes", "material"       # inertia with forces that are linear in the matrices
 
 
@@ -96,15 +97,22 @@ class BeamStress:
             raise InputError(f"bounds are {low:g} and {high:g}, and heights are "
                              f"{self.built.min():g} to {self.built.max():g}: give heights between "
                              "two bounds")
+        self.bounds = low, high
         refuse_model(model)
         ends = one.nodes[-1].point - one.nodes[0].point
         length = float(np.linalg.norm(ends))
-        self.beam = HeldBeam(model.planar, length, one.elements, self.part.reduced.modes, Elements(
-            section, length / one.elements, low, high, model.planar), self.built)
+        self.beam = HeldBeam(
+            model.planar, length, one.elements, self.part.reduced.modes, Elements(
+                section, length / one.elements, low, high, model.planar), self.built)
         self.turn = _turn(one, model.planar)
         self.scheme, self.runs = fitting(scheme), 0
         self._handle = whole_body(model, self.part, beam)
-        self._last: tuple[NDArray, Stresses] | None = None
+        self._last: tuple[NDArray, _Run] | None = None
+
+    def hold(self, heights: NDArray) -> None:
+        """Hold the vibration modes of other heights from here on."""
+        self.beam.hold(heights)
+        self._last = None
 
     def mass(self, heights: NDArray) -> tuple[float, NDArray]:
         """Mass of the beam, and its derivatives."""
@@ -112,26 +120,34 @@ class BeamStress:
         return float(each.sum()), slopes
 
     def at(self, heights: ArrayLike) -> Stresses:
-        """Stresses with some heights; the last ones are kept.
+        """Stresses with some heights, and their derivatives; the last ones are kept.
 
         Raises
         ------
         SimulationError
             The run fails.
         """
-        x = np.asarray(heights, dtype=float)
-        if self._last is None or not np.array_equal(self._last[0], x):
-            self._last = x.copy(), self._found(self.beam.at(x))
-        return self._last[1]
+        run = self._run(np.asarray(heights, dtype=float))
+        if run.slopes is None:
+            with self._built(run.held):
+                run.differentiate()
+        return Stresses(run.values, run.times, run.slopes)
 
-    def _found(self, held: Held) -> Stresses:
-        with self._built(held) as part:
-            one = Differentiated(self.model, self.h, self.t_end, self.scheme)
-            if one.run.start.changed:
-                raise InputError("velocities at the start do not fit the joints, so they would "
-                                 "depend on the heights: give velocities that fit")
-            self.runs += 1
-            return _Run(self, held, part, one).stresses()
+    def values(self, heights: ArrayLike) -> NDArray:
+        """Stresses alone, (elements,)."""
+        return self._run(np.asarray(heights, dtype=float)).values
+
+    def _run(self, x: NDArray) -> _Run:
+        if self._last is None or not np.array_equal(self._last[0], x):
+            held = self.beam.at(x)
+            with self._built(held) as part:
+                one = Differentiated(self.model, self.h, self.t_end, self.scheme)
+                if one.run.start.changed:
+                    raise InputError("velocities at the start do not fit the joints, so they would "
+                                     "depend on the heights: give velocities that fit")
+                self.runs += 1
+                self._last = x.copy(), _Run(self, held, part, one)
+        return self._last[1]
 
     @contextmanager
     def _built(self, held: Held) -> Iterator[Superelement]:
@@ -151,51 +167,71 @@ class _Run:
     def __init__(self, of: BeamStress, held: Held, part: Superelement, one: Differentiated):
         self.of, self.held, self.part, self.one = of, held, part, one
         D, n = len(of.turn), held.stiffness.shape[0]
-        self.Q = np.eye(n)
-        angles = 0 if of.beam.planar else 2
-        for k in range(2 + angles):
+        self.Q = np.eye(n)      # from axes of the beam to those of the model
+        for k in range(2 if of.beam.planar else 4):
             own = slice(D * k, D * (k + 1))
             self.Q[own, own] = of.turn
-
-    def stresses(self) -> Stresses:
-        """Largest ones, and their derivatives by all heights."""
-        held, y = self.held, self._y(self.one.history.states)
-        forces = held.section_forces(y)
-        each = np.einsum("tegf,epf->tegp", forces, held.elements.fibres, optimize=True)
         count = held.beam.count
+        both = self._coordinates(one.history.states)
+        fields = held.fields(*both)
+        forces = held.section_forces(fields)
+        each = np.einsum("tegf,epf->tegp", forces, held.elements.fibres, optimize=True)
         flat = np.abs(each).transpose(1, 0, 2, 3).reshape(count, -1)
-        found = flat.argmax(axis=1)
-        when, end, fibre = np.unravel_index(found, (len(y), *each.shape[2:]))
-        places = np.arange(count)
-        sign = np.sign(each[when, places, end, fibre])
-        rows = self._rows(end, fibre, sign)
-        slopes = self._explicit(y[when], end, fibre, sign, rows, forces[when, places, end])
-        coefficients, motion = self._motion(np.unique(when))
-        at = np.searchsorted(np.unique(when), when)
-        by_y = np.einsum("ea,eai->ei", rows, held.T[held.beam.dofs])
-        slopes += np.einsum("ei,eik->ek", by_y, motion[at]) @ coefficients
-        return Stresses(flat[places, found], self.one.history.times[when], slopes)
+        found, places = flat.argmax(axis=1), np.arange(count)
+        self.when, self.end, self.fibre = np.unravel_index(found, (len(fields), *each.shape[2:]))
+        self.sign = np.sign(each[self.when, places, self.end, self.fibre])
+        self.values, self.times = flat[places, found], one.history.times[self.when]
+        self.fields, self.c = fields[self.when], both[1][self.when]
+        self.forces = forces[self.when, places, self.end]
+        self.slopes: NDArray | None = None
 
-    def _rows(self, end: NDArray, fibre: NDArray, sign: NDArray) -> NDArray:
-        """Derivatives of the stress of each element by its DOFs, (elements, k)."""
-        e = np.arange(len(end))
-        own = self.held.elements
-        return sign[:, None] * np.einsum("ef,efa->ea", own.fibres[e, fibre], own.forces[e, end])
-
-    def _explicit(self, y: NDArray, end: NDArray, fibre: NDArray, sign: NDArray, rows: NDArray,
-                  forces: NDArray) -> NDArray:
-        """Derivatives with the reduced coordinates (elements, n) held: of sections and of Psi."""
-        held, beam, e = self.held, self.held.beam, np.arange(len(end))
-        u = np.einsum("eai,ei->ea", held.T[beam.dofs], y)
-        own = np.einsum("ef,ef->e", held.by_height.fibres[e, fibre], forces) + np.einsum(
-            "ef,efa,ea->e", held.elements.fibres[e, fibre], held.by_height.forces[e, end], u)
+    def differentiate(self) -> None:
+        """Find the derivatives of the largest stresses by all heights."""
+        held, beam = self.held, self.held.beam
+        places = np.arange(beam.count)
         loads = np.zeros((beam.size, beam.count))
-        loads[beam.dofs.T, e] = rows.T
-        answers = held.inverse(loads)[beam.dofs]            # (elements, k, stresses)
-        b = len(beam.order)
-        moved = np.einsum("eab,ebi,si->eas", held.by_height.stiffness, held.Psi[beam.dofs],
-                          y[:, :b], optimize=True)
-        return np.diag(sign * own) - np.einsum("eas,eas->se", answers, moved)
+        loads[beam.dofs.T, places] = self._rows().T
+        answers = held.inverse(loads)
+        found = self._explicit(answers)
+        found[places, places] += self.sign * self._own()
+        events, at = np.unique(self.when, return_inverse=True)
+        coefficients, motion = self._motion(events)
+        none = np.zeros((beam.count, beam.modes))
+        by = np.hstack([loads.T @ held.Psi, none, -answers.T @ (held.M @ held.T)])
+        self.slopes = found + np.einsum("ei,eik->ek", by, motion[at]) @ coefficients
+
+    def _rows(self) -> NDArray:
+        """Derivatives of the stress of each element by its DOFs, (elements, k)."""
+        own, e = self.held.elements, np.arange(len(self.end))
+        return self.sign[:, None] * np.einsum("ef,efa->ea", own.fibres[e, self.fibre],
+                                              own.forces[e, self.end])
+
+    def _own(self) -> NDArray:
+        """Derivatives by the height of the element itself, displacements held."""
+        held, e = self.held, np.arange(len(self.end))
+        u = self.fields[e[:, None], held.beam.dofs]
+        return np.einsum("ef,ef->e", held.by_height.fibres[e, self.fibre], self.forces) + np.einsum(
+            "ef,efa,ea->e", held.elements.fibres[e, self.fibre],
+            held.by_height.forces[e, self.end], u)
+
+    def _explicit(self, answers: NDArray) -> NDArray:
+        """Derivatives with the motion held, by displacements: of stiffness and of mass.
+
+        Parameters
+        ----------
+        answers : (size, stresses)
+            Of the clamped beam to what each stress is of its displacements.
+        """
+        fields, c = self.fields, self.c
+        held, dofs = self.held, self.held.beam.dofs
+        static = c[:, :len(held.beam.order)] @ held.Psi.T
+        found = np.zeros((len(fields), len(dofs)))
+        for answer, change, of in (
+                (-answers, held.by_height.stiffness, fields),
+                (-answers, held.by_height.mass, c @ held.T.T),
+                (held.inverse(held.M @ answers), held.by_height.stiffness, static)):
+            found += np.einsum("eas,eab,seb->se", answer[dofs], change, of[:, dofs], optimize=True)
+        return found
 
     def _motion(self, events: NDArray) -> tuple[NDArray, NDArray]:
         """Derivatives of the heights' independent changes of the matrices, (k, elements), and of
@@ -206,14 +242,15 @@ class _Run:
         place = one.run.numbering.constants_at[self.part]
         residuals = slopes.by_constants(place, STEP * rows) / STEP
         none = np.zeros((one.linear.free, len(rows)))
-        found = np.zeros((len(events), *none.shape))
+        found = np.zeros((3, len(events), *none.shape))
         wanted = {int(one.history.recorded[k]): i for i, k in enumerate(events)}
 
         def see(event: int, xi: NDArray, v: NDArray, a: NDArray) -> None:
             if event in wanted:
-                found[wanted[event]] = xi
+                found[:, wanted[event]] = xi, v, a
         forward(one.course, residuals, none, none, see)
-        return coefficients, np.einsum("sic,sck->sik", self._by_motion(events), found)
+        return coefficients, sum(by @ of for by, of in zip(self._by_motion(events), found,
+                                                           strict=True))
 
     def _directions(self) -> tuple[NDArray, NDArray]:
         """Independent changes of stiffness and mass, as rows of constants."""
@@ -238,54 +275,76 @@ class _Run:
         return constants_row(part.name, load(part.kernel), counts_of(part),
                              superelement_constants(part))
 
-    def _y(self, rows: NDArray) -> NDArray:
-        """Reduced coordinates in some states, in axes of the beam."""
-        run = self.one.run
+    def _coordinates(self, rows: NDArray) -> tuple[NDArray, NDArray]:
+        """Reduced coordinates in some states, and accelerations in space, in axes of the beam."""
+        run, planar = self.one.run, self.of.beam.planar
         recording = Recording(run.model, run.numbering, run.system, run.state, rows, 0.0)
-        return body_motion(recording, self.part, slice(None)).y @ self.Q
+        motion = body_motion(recording, self.part, slice(None))
+        parts, c = run.state.recorded_parts, []
+        a, R = rows[:, parts["a"]], rows[:, parts["R"]]
+        for own, number in self._blocks():
+            value = a[:, own]
+            if number is not None and not planar:
+                value = np.einsum("nij,nj->ni", R[:, 9 * number:9 * number + 9].reshape(-1, 3, 3),
+                                  value)
+            if number is None or not planar:
+                value = np.einsum("nji,nj->ni", motion.rotation, value)
+            c.append(value)
+        return motion.y @ self.Q, np.hstack([*c, a[:, self._modes()]]) @ self.Q
 
-    def _by_motion(self, events: NDArray) -> NDArray:
-        """Derivatives of reduced coordinates by the unknowns, (states, n, unknowns)."""
-        linear, history, run = self.one.linear, self.one.history, self.one.run
-        parts = run.state.recorded_parts
-        own = self._coordinates()
-        found = np.zeros((len(events), self.held.stiffness.shape[0], linear.total))
+    def _blocks(self) -> list[tuple[slice, int | None]]:
+        """Coordinates of positions, then of rotations with the numbers of their matrices."""
+        numbering, found = self.one.run.numbering, []
+        for block in (*self.part.positions, *self.part.rotations):
+            first = numbering.dof_blocks[block]
+            found.append((slice(first, first + block.start.size),
+                          numbering.rotations.get(block, 0) if block.rotational else None))
+        return found
+
+    def _modes(self) -> slice:
+        first = self.one.run.numbering.modes[self.part.name]
+        return slice(first, first + self.part.reduced.modes)
+
+    def _by_motion(self, events: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+        """Derivatives of both by motion, rates and second rates of the unknowns in some recorded
+        states, (states, 2 n, unknowns) each.
+        """
+        linear, history = self.one.linear, self.one.history
         states = history.states[events]
-        for c, turn in own.items():
-            size = TURN if turn is not None else TURN * self.of.beam.length
-            for at, weight in zip(STEPS, WEIGHTS, strict=True):
-                rows = states.copy()
-                if turn is None or self.of.beam.planar:
-                    rows[:, parts["q"].start + c] += at * size
-                if turn is not None and not self.of.beam.planar:
-                    number, axis = turn
-                    first = parts["R"].start + 9 * number
-                    R = rows[:, first:first + 9].reshape(-1, 3, 3)
-                    rows[:, first:first + 9] = (R @ rotations.matrices(
-                        at * size * np.eye(3)[axis])).reshape(-1, 9)
-                found[..., c] += weight / size * self._y(rows)
+        by_q, by_a = (self._differences(states, what) for what in "qa")
         if not linear.followers:
-            return found[..., :linear.free]
-        G = []
-        for k in events:
+            own = slice(0, linear.free)
+            return by_q[..., own], 0.0 * by_q[..., own], by_a[..., own]
+        found = []
+        for k, (q, a) in zip(events, zip(by_q, by_a, strict=True), strict=True):
             event = history.recorded[k]
             linear.at(history.rows[event], history.ends[event], history.besides[event])
-            G.append(linear.followers.motion(linear.state, dense=True).G)
-        return np.einsum("sic,scn->sin", found, np.array(G))
+            G, _, W, U = linear.followers.motion(linear.state, dense=True)
+            found.append((q @ G + a @ U, a @ W, a @ G))
+        return tuple(np.array(each) for each in zip(*found, strict=True))
 
-    def _coordinates(self) -> dict[int, tuple[int, int] | None]:
-        """Those of the beam; of rotations the number of the matrix and the axis."""
-        numbering, part = self.one.run.numbering, self.part
-        found: dict[int, tuple[int, int] | None] = {}
-        for block in part.positions:
-            first = numbering.dof_blocks[block]
-            found |= dict.fromkeys(range(first, first + block.start.size))
-        for block in part.rotations:
-            first = numbering.dof_blocks[block]
-            found |= {first + k: (numbering.rotations.get(block, 0), k)
-                      for k in range(block.start.size)}
-        first = numbering.modes[part.name]
-        return found | dict.fromkeys(range(first, first + part.reduced.modes))
+    def _differences(self, states: NDArray, what: str) -> NDArray:
+        """Derivatives by all coordinates of the beam, or by their accelerations."""
+        linear, planar = self.one.linear, self.of.beam.planar
+        parts = self.one.run.state.recorded_parts
+        found = np.zeros((len(states), 2 * len(self.held.stiffness), linear.total))
+        blocks = [*self._blocks(), (self._modes(), None)]
+        for own, number in blocks:
+            for axis, c in enumerate(range(own.start, own.stop)):
+                turned = what == "q" and number is not None and not planar
+                size = 1.0 if what == "a" else TURN if number is not None else (
+                    TURN * self.of.beam.length)
+                for at, weight in zip(STEPS, WEIGHTS, strict=True):
+                    rows = states.copy()
+                    if turned:
+                        first = parts["R"].start + 9 * number
+                        R = rows[:, first:first + 9].reshape(-1, 3, 3)
+                        rows[:, first:first + 9] = (R @ rotations.matrices(
+                            at * size * np.eye(3)[axis])).reshape(-1, 9)
+                    else:
+                        rows[:, parts[what].start + c] += at * size
+                    found[..., c] += weight / size * np.hstack(self._coordinates(rows))
+        return found
 
 
 def _unchecked(body: ReducedBody, stiffness: NDArray, mass: NDArray) -> ReducedBody:
@@ -383,7 +442,8 @@ def size_heights(model: Model, h: float, t_end: float, beam: str, heights: Array
     """Heights of a beam's elements, of least mass with stresses within a limit in a run.
 
     `scipy.optimize.minimize` with its method SLSQP and exact derivatives of the largest stress in
-    every element at any time: each is one condition.
+    every element at any time: each is one condition. Vibration modes are those of the heights at
+    hand, and are held in the derivatives.
 
     Parameters
     ----------
@@ -411,21 +471,30 @@ def size_heights(model: Model, h: float, t_end: float, beam: str, heights: Array
     limit = inputs.number(limit, "limit", above=0)
     iterations = inputs.integer(iterations, "iterations", least=1)
     stress = BeamStress(model, h, t_end, beam, heights, section, bounds, scheme)
-    unit, before = stress.built.mean(), stress.mass(stress.built)[0]
+    unit, before = float(stress.built.mean()), stress.mass(stress.built)[0]
     masses: list[float] = []
+    last: list[NDArray] = []
 
     def mass(x: NDArray) -> tuple[float, NDArray]:
         value, slope = stress.mass(unit * x)
         return value / before, slope * unit / before
 
+    def at(x: NDArray) -> NDArray:
+        """The heights, whose modes are held from here on."""
+        if not last or not np.array_equal(last[-1], x):
+            stress.hold(unit * x)
+            last[:] = [x.copy()]
+        return unit * x
+
     found = minimize(
         mass, stress.built / unit, jac=True, method="SLSQP",
-        bounds=[(bounds[0] / unit, bounds[1] / unit)] * len(stress.built),
-        constraints={"type": "ineq", "fun": lambda x: 1.0 - stress.at(unit * x).values / limit,
-                     "jac": lambda x: -stress.at(unit * x).slopes * unit / limit},
+        bounds=[tuple(bound / unit for bound in stress.bounds)] * len(stress.built),
+        constraints={"type": "ineq", "fun": lambda x: 1.0 - stress.values(at(x)) / limit,
+                     "jac": lambda x: -stress.at(at(x)).slopes * unit / limit},
         callback=lambda x: masses.append(stress.mass(unit * x)[0]),
-        options={"maxiter": iterations, "ftol": 1e-6})
-    x = unit * found.x
-    last = stress.at(x)
-    return Sizing(x, last.values, last.times, stress.mass(x)[0], before, int(found.nit),
-                  stress.runs, str(found.message), time.perf_counter() - began, tuple(masses), limit)
+        options={"maxiter": iterations, "ftol": FINE})
+    x = np.clip(found.x, *(bound / unit for bound in stress.bounds))
+    stresses = stress.at(at(x))
+    return Sizing(unit * x, stresses.values, stresses.times, stress.mass(unit * x)[0], before,
+                  int(found.nit), stress.runs, str(found.message), time.perf_counter() - began,
+                  tuple(masses), limit)

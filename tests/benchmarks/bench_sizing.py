@@ -1,6 +1,7 @@
 """Least mass of the rod of a slider-crank within a stress limit: a height for each element.
 
-    python tests/benchmarks/bench_sizing.py [--json] [--elements N] [--iterations N] [--picture FILE]
+    python tests/benchmarks/bench_sizing.py [--json] [--elements N] [--iterations N]
+        [--picture FILE]
 
 The crank turns at a constant speed, one turn is looked at. All largest stresses, one in each
 element, are conditions of `scipy.optimize.minimize`, with exact derivatives.
@@ -8,6 +9,7 @@ element, are conditions of `scipy.optimize.minimize`, with exact derivatives.
 
 import argparse
 import json
+import time
 import warnings
 from math import cos, sin
 
@@ -58,12 +60,14 @@ def main(given=None):
     parser.add_argument("--iterations", type=int, default=50, metavar="N")
     parser.add_argument("--picture", metavar="FILE", help="of heights and stresses")
     options = parser.parse_args(given)
+    began = time.process_time()
     found = sizing(options.elements, options.iterations)
     rows = {"mass": found.mass, "mass before": found.mass_before,
             "largest stress / limit": float(found.stresses.max() / LIMIT),
             "elements at a stress within 1 % of the limit or the least height": float(np.mean(
                 (found.stresses > 0.99 * LIMIT) | (found.heights < 1.01 * BOUNDS[0]))),
             "iterations": found.iterations, "runs": found.runs, "seconds": found.seconds,
+            "of the processor": time.process_time() - began,
             "ended": found.message}
     if options.picture:
         found.save_picture(options.picture)

@@ -102,7 +102,7 @@ def free():
 @pytest.mark.parametrize("make, quantities, more, words", [
     (scenes.hinged, [], {}, "quantities: none is given; give names"),
     (scenes.hinged, "tip.place", {}, "'place' is unknown"),
-    (scenes.hinged, "base.position", {}, "'base.position' does not change: give one that the motion"),
+    (scenes.hinged, "base.position", {}, "'base.position' does not change: give one"),
     (scenes.hinged, "hinge.work", {}, "'hinge.work' is no function of a state: give a motion"),
     (scenes.hinged, "tip.position", {"bodies": ["bean"]}, "did you mean 'beam'"),
     (free, "a.position", {}, "no superelement: there are no modes"),

@@ -1,4 +1,4 @@
-"""Beams with held modes, and the stresses in them by heights: against differences and reductions."""
+"""Beams with held modes, and stresses in them by heights: against differences and reductions."""
 
 from dataclasses import replace
 from math import cos, sin
@@ -91,21 +91,28 @@ def test_slopes_of_the_reduction(planar, heights):
 
 @pytest.mark.parametrize("planar", [True, False])
 def test_stresses_are_those_of_the_result(planar):
-    """At the heights as built the largest stress of the first element follows from the section
-    forces that the result has at the first FE node.
+    """Of a run of the model as built, from the section forces that it recovers at FE nodes.
+
+    These take the modes that are kept from their motion, so with what the spin adds inside the
+    body, and only others from static equilibrium: a few percent apart in so stiff a motion.
     """
-    stress = BeamStress(slider_crank(planar), 1e-3, 0.05, "rod", HEIGHTS, section, BOUNDS)
+    stress = BeamStress(slider_crank(planar), 5e-4, 0.04, "rod", HEIGHTS, section, BOUNDS)
     found = stress.at(HEIGHTS)
-    run = simulate(slider_crank(planar), 1e-3, 0.05, scheme=generalized_alpha(tolerance=1e-10))
-    field = run.field("rod")
-    print(field)
+    run = simulate(slider_crank(planar), 5e-4, 0.04, scheme=generalized_alpha(tolerance=1e-10))
+    at = [run[f"rod.node{k}.section_forces"] for k in range(COUNT + 1)]     # of elements there
+    for e, height in enumerate(HEIGHTS):
+        fibres = np.array([fibre.stress[0] for fibre in section(height).fibres])
+        ends = np.stack([at[e][:, -1], at[e + 1][:, 0]], axis=1) @ fibres.T
+        largest = np.abs(ends).max(axis=(1, 2))
+        assert np.isclose(found.values[e], largest.max(), rtol=0.08)
+        assert largest[np.searchsorted(run["t"], found.times[e] - 1e-9)] > 0.9 * largest.max()
 
 
 @pytest.mark.parametrize("planar", [True, False])
 def test_slopes_of_stresses(planar):
     """Against differences of runs with the same held modes."""
     heights = HEIGHTS * 1.1
-    stress = BeamStress(slider_crank(planar), 1e-3, 0.06, "rod", HEIGHTS, section, BOUNDS)
+    stress = BeamStress(slider_crank(planar), 5e-4, 0.03, "rod", HEIGHTS, section, BOUNDS)
     slopes = stress.at(heights).slopes
     for e in (1, 4):
         own = 0
@@ -117,14 +124,14 @@ def test_slopes_of_stresses(planar):
 
 
 def test_least_mass():
-    limit = 25e6
+    limit = 60e6
     model = slider_crank()
-    found = size_heights(model, 1e-3, 0.05, "rod", HEIGHTS, section, limit, BOUNDS, 30)
+    found = size_heights(model, 5e-4, 0.04, "rod", HEIGHTS, section, limit, BOUNDS, 30)
     assert found.mass < found.mass_before and found.stresses.max() < 1.001 * limit
     assert ((found.stresses > 0.99 * limit) | (found.heights < 1.01 * BOUNDS[0])).sum() >= 4
     assert model.bodies["rod"].reduced is model.beams[0].bodies[0]      # put back
     again = slider_crank(heights=found.heights)                        # modes anew
-    stress = BeamStress(again, 1e-3, 0.05, "rod", found.heights, section, BOUNDS)
+    stress = BeamStress(again, 5e-4, 0.04, "rod", found.heights, section, BOUNDS)
     assert np.isclose(stress.at(found.heights).values.max(), limit, rtol=0.02)
 
 
@@ -139,7 +146,7 @@ def test_least_mass():
     ({"model": slider_crank(inertia="floating_field")}, "build it with inertia='material'")],
     ids=["name", "count", "outside", "bounds", "limit", "fibres", "jump", "inertia"])
 def test_refused(change, words):
-    given = {"model": slider_crank(), "h": 1e-3, "t_end": 0.01, "beam": "rod", "heights": HEIGHTS,
+    given = {"model": slider_crank(), "h": 5e-4, "t_end": 0.005, "beam": "rod", "heights": HEIGHTS,
              "section": section, "limit": 1e8, "bounds": BOUNDS} | change
     with pytest.raises(InputError) as caught:
         size_heights(**given)
