@@ -12,7 +12,7 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.explore.ensembles.changes import BODIES, Handle, whole_body
 from sebody.fem.section import AnySection
-from sebody.model.beams import part_bodies
+from sebody.model.beams import part_bodies, part_shapes
 from sebody.model.model import Model
 from sebody.reduction import ReducedBody
 
@@ -80,8 +80,13 @@ class Design:
 
 
 def sections(model: Model, beam: str, values: ArrayLike,
-             section: Callable[[NDArray], AnySection], name: str | None = None) -> Design:
+             section: Callable[[NDArray], AnySection], name: str | None = None,
+             held_modes: bool = True) -> Design:
     """Numbers that the section of a beam is made of: heights, walls, moduli, densities.
+
+    Bodies are reduced anew for every number, with constraint modes of their own and, unless
+    `held_modes` is false, the vibration modes of the section as built: these need not be
+    differentiated, and equal frequencies, as of square sections, do no harm.
 
     Parameters
     ----------
@@ -94,6 +99,9 @@ def sections(model: Model, beam: str, values: ArrayLike,
         Of an array of numbers like these: the section, or a function of the place along the beam.
     name : str, optional
         Of the parameter, ``<beam>.section`` by default.
+    held_modes : bool
+        Whether vibration modes stay; otherwise they are those of every section, and where they
+        change places there is no gradient.
 
     Raises
     ------
@@ -110,5 +118,8 @@ def sections(model: Model, beam: str, values: ArrayLike,
         raise InputError(f"sections: there is no beam {beam!r}; the model has {known}: give a beam "
                          "that was built by model.beam, or a Design of any body")
     one = found[0]
+    held = None
+    if inputs.flag(held_modes, "held_modes"):
+        held = part_shapes(model, one, section(np.array(values, dtype=float)))
     return Design(name or f"{beam}.section", values, [part.name for part in one.parts],
-                  lambda x: part_bodies(model, one, section(x)))
+                  lambda x: part_bodies(model, one, section(x), held))

@@ -9,12 +9,13 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs, memory
 from sebody.errors import InputError
 from sebody.fem import planar_beam, straight_beam
 from sebody.fem.beam import section_axes
+from sebody.fem.model import FEModel
 from sebody.fem.section import AnySection, part_of
 from sebody.model.beam_damping import Damping, Times, damped, retardation_times
 from sebody.model.bodies import superelement
@@ -23,6 +24,7 @@ from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import node
 from sebody.model.parts import Beam, Node
 from sebody.reduction import ReducedBody, craig_bampton
+from sebody.reduction.held import vibration_shapes, with_held_modes
 
 KEPT = 64       # bodies of beams that are kept for further models
 
@@ -117,14 +119,38 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
     return nodes
 
 
-def part_bodies(model: Mechanism, beam: Beam, section: AnySection) -> list[ReducedBody]:
-    """The bodies of a beam's superelements with another section."""
+def part_bodies(model: Mechanism, beam: Beam, section: AnySection,
+                held: Sequence[NDArray] | None = None) -> list[ReducedBody]:
+    """The bodies of a beam's superelements with another section.
+
+    Parameters
+    ----------
+    held : sequence of (DOFs, modes), optional
+        Of `part_shapes`: vibration modes that each keeps.
+    """
     count = len(beam.parts)
     length = float(np.linalg.norm(beam.nodes[-1].point - beam.nodes[0].point))
     options = beam.options
     times = retardation_times(options["damping"], beam.name, model.planar, length, section)
-    return [_part(model, span, part_of(section, k / count, (k + 1) / count),
-                  beam.elements // count, options["modes"], options["up"], times)
+    parts = [part_of(section, k / count, (k + 1) / count) for k in range(count)]
+    each = beam.elements // count
+    if held is None:
+        return [_part(model, span, part, each, options["modes"], options["up"], times)
+                for span, part in zip(pairwise(beam.nodes), parts, strict=True)]
+    found = []
+    for span, part, shapes in zip(pairwise(beam.nodes), parts, held, strict=True):
+        turn, own = _line(model, span, options["up"])
+        body = with_held_modes(_fe_model(model.planar, own, part, each), _ends(each), shapes)
+        found.append(_turned(damped(body, times) if times else body, turn))
+    return found
+
+
+def part_shapes(model: Mechanism, beam: Beam, section: AnySection) -> list[NDArray]:
+    """Vibration modes of a beam's superelements with a section, along their own axes."""
+    count, each = len(beam.parts), beam.elements // len(beam.parts)
+    return [vibration_shapes(_fe_model(model.planar, _line(model, span, beam.options["up"])[1],
+                                       part_of(section, k / count, (k + 1) / count), each),
+                             _ends(each), beam.options["modes"])
             for k, span in enumerate(pairwise(beam.nodes))]
 
 
@@ -134,17 +160,22 @@ def _part(model: Mechanism, ends: Sequence[Node], section: AnySection, elements:
 
     Along its own axes stretching and bending are not mixed, so slender beams lose no digits.
     """
-    line = np.zeros(3)
-    line[:model.dimension] = ends[1].point - ends[0].point
-    axes = section_axes(line, None if up is None else inputs.vector(up, "up", 3))
-    length = float(np.linalg.norm(line))
-    turn = tuple(map(tuple, axes[:model.dimension, :model.dimension].T.tolist()))
+    turn, length = _line(model, ends, up)
     arguments = model.planar, length, section, elements, modes, times
     try:
         hash(arguments)
     except TypeError:       # a section of arrays, or input that is refused below
         return _turned(_straight.__wrapped__(*arguments), turn)
     return _placed(turn, *arguments)
+
+
+def _line(model: Mechanism, ends: Sequence[Node], up: ArrayLike | None) -> tuple[tuple, float]:
+    """Rows of the rotation from a beam's axes to those of the model, and its length."""
+    line = np.zeros(3)
+    line[:model.dimension] = ends[1].point - ends[0].point
+    axes = section_axes(line, None if up is None else inputs.vector(up, "up", 3))
+    turn = tuple(map(tuple, axes[:model.dimension, :model.dimension].T.tolist()))
+    return turn, float(np.linalg.norm(line))
 
 
 @lru_cache(maxsize=KEPT, typed=True)
@@ -162,9 +193,18 @@ def _turned(body: ReducedBody, turn: tuple) -> ReducedBody:
 def _straight(planar: bool, length: float, section: AnySection, elements: int, modes: int,
               times: Times) -> ReducedBody:
     """A beam along x, its section's y axis along y."""
+    body = craig_bampton(_fe_model(planar, length, section, elements), _ends(elements), modes)
+    return damped(body, times) if times else body
+
+
+def _ends(elements: int) -> list[tuple[int, str]]:
+    """The boundary of a beam: its end nodes."""
+    return [(0, "full"), (elements, "full")]
+
+
+def _fe_model(planar: bool, length: float, section: AnySection, elements: int) -> FEModel:
+    """A beam along x, its section's y axis along y."""
     first, last = np.zeros((2, 2 if planar else 3))
     last[0] = length
-    fe_model = (planar_beam(first, last, section, elements) if planar else
-                straight_beam(first, last, section, elements, (0.0, 1.0, 0.0)))
-    body = craig_bampton(fe_model, [(0, "full"), (elements, "full")], modes)
-    return damped(body, times) if times else body
+    return (planar_beam(first, last, section, elements) if planar else
+            straight_beam(first, last, section, elements, (0.0, 1.0, 0.0)))

@@ -47,8 +47,9 @@ def static_correction(fe_model: FEModel, boundary: Boundary, component: Componen
     loads = np.hstack([ties.project(fe_model.mass) @ component.basis[:, :held],
                        ties.gather(_spin_loads(fe_model, body)), forces])
     loads[boundary.held] = 0.0
-    return (interior.displacement(loads)
-            - modes @ ((modes.T @ loads) / component.omega_squared[:, None]))
+    # of modes that are held this stiffness is full, otherwise it has the squares of frequencies
+    return interior.displacement(loads) - modes @ np.linalg.solve(body.stiffness[held:, held:],
+                                                                  modes.T @ loads)
 
 
 def _spin_loads(fe_model: FEModel, body: ReducedBody) -> NDArray:

@@ -27,7 +27,8 @@ def rod(height, width=0.02, bodies=1):
 def test_two_numbers_of_a_section(bodies):
     """Against differences of runs of models that are built with other sections."""
     m = rod(0.03, bodies=bodies)
-    section = sections(m, "rod", [0.03, 0.02], lambda x: rectangle(*x, *MATERIAL))
+    section = sections(m, "rod", [0.03, 0.02], lambda x: rectangle(*x, *MATERIAL),
+                       held_modes=False)
     found = gradient(m, 0.005, 0.1, {"b": final("b.position")}, [section, "gravity.y"],
                      scheme=EXACT)
     assert found.columns == ("rod.section[0]", "rod.section[1]", "gravity.y")
@@ -43,9 +44,28 @@ def test_two_numbers_of_a_section(bodies):
 def test_equal_frequencies_are_refused():
     """Of a square section modes of both planes change places: differences would be nonsense."""
     m = rod(0.02)
-    section = sections(m, "rod", 0.02, lambda x: rectangle(float(x), 0.02, *MATERIAL))
+    section = sections(m, "rod", 0.02, lambda x: rectangle(float(x), 0.02, *MATERIAL),
+                       held_modes=False)
     with pytest.raises(InputError, match=r"rod.section: .* not smooth.*frequencies"):
         gradient(m, 0.005, 0.05, {"b": final("b.position")}, [section])
+
+
+@pytest.mark.parametrize("height, bodies", [(0.02, 1), (0.03, 2)], ids=["square", "two bodies"])
+def test_held_modes(height, bodies):
+    """Against differences of runs with the same held modes; near the change by modes made anew."""
+    m = rod(height, bodies=bodies)
+    design = sections(m, "rod", height, lambda x: rectangle(float(x), 0.02, *MATERIAL))
+    found = gradient(m, 0.005, 0.1, {"b": final("b.position")}, [design], scheme=EXACT).matrix[:, 0]
+    of, step, ends = design.handle(m), 1e-4, {True: [], False: []}
+    for at in scenes.STEPS:
+        of.set(np.array(height + at * step))
+        ends[True].append(simulate(m, 0.005, 0.1, scheme=EXACT)["b.position"][-1])
+        of.reset()
+        ends[False].append(simulate(rod(height + at * step, bodies=bodies), 0.005, 0.1,
+                                    scheme=EXACT)["b.position"][-1])
+    held, anew = (scenes.WEIGHTS @ np.array(ends[key]) / step for key in (True, False))
+    assert np.abs(found - held).max() < 1e-6 * np.abs(held).max()
+    assert np.abs(found - anew).max() < 1e-2 * np.abs(anew).max() or height == 0.02
 
 
 def test_wrong_designs():
