@@ -15,6 +15,8 @@ ROOMS = {
                "with_corners"},
     "sebody.analysis": {"Advice", "Campbell", "FrequencyResponse", "Gradient",
                         "Calibration", "Design", "ValueAndGradient", "calibrate",
+                        "BeamStress", "Contribution", "Contributions", "Sizing",
+                        "contributions", "size_heights",
                         "sections",
                         "campbell", "frequency_response", "gradient", "soft_maximum",
                         "Ensemble", "Linearization", "Modes", "Outcome",

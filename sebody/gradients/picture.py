@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
 from sebody.files import replacing
 from sebody.pictures.plots import ACCENT, PALE, STYLE
 
-if TYPE_CHECKING:
-    from sebody.gradients.contributions import Contributions
-    from sebody.gradients.sizing import Sizing
-
 MOST = 12           # bars of a quantity
 LINES = 4           # histories of a quantity
 LEAST = 1e-6        # of the largest bar: shorter ones are drawn like this
 
 
-def draw(found: Contributions, path: str | Path) -> Path:
-    """Of every quantity a row: bars of the largest contributions, and histories of some; PNG."""
+def draw(found: Any, path: str | Path) -> Path:
+    """Of `Contributions`, a row for each quantity: bars of the largest, histories of some; PNG."""
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 
@@ -50,7 +46,7 @@ def _bars(axis, bars: list[tuple[str, float]], name: str) -> None:
     axis.grid(False, axis="y")
 
 
-def _histories(axis, found: Contributions, name: str, order: list[int]) -> None:
+def _histories(axis, found: Any, name: str, order: list[int]) -> None:
     for width, j in zip(np.linspace(1.8, 0.8, LINES), order, strict=False):
         own = found.changes[name][..., j].reshape(len(found.t), -1)
         axis.plot(found.t, np.linalg.norm(own, axis=1) if own.shape[1] > 1 else own[:, 0],
@@ -62,8 +58,8 @@ def _histories(axis, found: Contributions, name: str, order: list[int]) -> None:
     axis.legend(fontsize=7)
 
 
-def draw_sizing(found: Sizing, path: str | Path) -> Path:
-    """Heights along the beam, and the largest stress in each element; PNG."""
+def draw_sizing(found: Any, path: str | Path) -> Path:
+    """Of a `Sizing`: heights along the beam, and the largest stress in each element; PNG."""
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 

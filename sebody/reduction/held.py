@@ -1,6 +1,6 @@
 """Reductions whose vibration modes are held while the FE model changes.
 
-Constraint modes are those of the model at hand, so rigid motions and static answers are exact; the
+Constraint modes are those of the model at hand, so rigid motions and static responses are exact; the
 vibration modes are shapes that another model has, such as the one before a change of its sections.
 They are no modes of this model: their stiffness and mass are full. So the reduction is a smooth
 function of the model also where frequencies are equal and modes change places.
