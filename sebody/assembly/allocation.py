@@ -6,7 +6,8 @@ from numpy.typing import NDArray
 from sebody.assembly.build import work_size
 from sebody.assembly.control import begin
 from sebody.assembly.numbering import Numbering, record_counts, stretch
-from sebody.contract.layout import COEFFICIENTS, ENERGIES, FIELD, LANES, whole_vectors
+from sebody.contract.counts import LANES, whole_vectors
+from sebody.contract.layout import COEFFICIENTS, ENERGIES, FIELD
 from sebody.engine.growth import new_guard
 from sebody.engine.newton import SLOWEST
 from sebody.engine.scalars import record

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
-from sebody.contract.layout import Counts
+from sebody.contract.counts import Counts
 from sebody.reduction.invariants import InertiaInvariants
 
 # Of what an inertia, or a geometric stiffness beside inertias, can be. High modes are exact to

@@ -11,8 +11,9 @@ from sebody.assembly.links import Ends, link_ends
 from sebody.assembly.numbering import Numbering, number, stretch
 from sebody.assembly.ports import port_arrays
 from sebody.assembly.structure import Structure, indices
+from sebody.contract.counts import scratch_size
 from sebody.contract.law_row import scratch
-from sebody.contract.layout import AT_CONSTANTS, scratch_size
+from sebody.contract.layout import AT_CONSTANTS
 from sebody.engine.links import Links
 from sebody.engine.system import System
 from sebody.errors import InputError

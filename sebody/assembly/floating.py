@@ -14,7 +14,7 @@ from sebody.assembly.body_axes import (
     stiff_without_rounding,
     without_rounding,
 )
-from sebody.contract.layout import Counts, first_rotation
+from sebody.contract.counts import Counts, first_rotation
 from sebody.errors import InputError
 from sebody.generated.options import CONDITIONS
 from sebody.kernels.packed import pack

@@ -15,7 +15,7 @@ from sebody.assembly.axes import rotated_blocks, summands
 from sebody.assembly.batches import Shape, starts
 from sebody.assembly.links import Ends, link_tables
 from sebody.assembly.scatter import dense_layout, element_scatter, sparse_layout
-from sebody.contract.layout import LANES
+from sebody.contract.counts import LANES
 
 REMEMBERED = 16         # structures
 

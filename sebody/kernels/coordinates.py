@@ -6,7 +6,7 @@ All of a kind at once: each entry of a matrix is read once for values, rates and
 from llvmlite import ir
 from numba.extending import intrinsic
 
-from sebody.contract.layout import LANES, MOST_SLAVED
+from sebody.contract.counts import LANES, MOST_SLAVED
 from sebody.kernels.instructions import (
     WORD,
     add_product,

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.contract.layout import Counts
+from sebody.contract.counts import Counts
 from sebody.limits.axial import Axial
 from sebody.limits.spin_stability import cautious_limit, divergence, first_frequency, reach
 from sebody.limits.thresholds import AXIAL, BENT, FAST, FLAT, LINEAR

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
-from sebody.contract.layout import layout_name
+from sebody.contract.counts import layout_name
 from sebody.errors import InputError
 from sebody.io.body_file import load_body
 from sebody.kernels.loader import superelement_kernel_name

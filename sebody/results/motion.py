@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from sebody.assembly.motions import Motions, motions
 from sebody.assembly.numbering import record_counts
 from sebody.compiler.decorators import compiled
-from sebody.contract.layout import MOTION, OK, RECORD, RESIDUAL, Counts
+from sebody.contract.counts import Counts
+from sebody.contract.layout import MOTION, OK, RECORD, RESIDUAL
 from sebody.errors import InputError
 from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
 from sebody.model.parts import Superelement

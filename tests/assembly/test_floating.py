@@ -11,14 +11,8 @@ from sebody import InputError, Model
 from sebody.assembly import contracts
 from sebody.assembly.batches import superelement_constants
 from sebody.assembly.floating import determining, floating_constants, frame_conditions
-from sebody.contract.layout import (
-    ENERGY,
-    KINETIC,
-    RESIDUAL,
-    STRAIN,
-    floating_counts,
-    superelement_counts,
-)
+from sebody.contract.counts import floating_counts, superelement_counts
+from sebody.contract.layout import ENERGY, KINETIC, RESIDUAL, STRAIN
 from sebody.fem import Section
 from sebody.kernels.loader import load
 from sebody.kernels.packed import unpack

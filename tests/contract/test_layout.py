@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from sebody.contract.counts import LANES, layout_name, superelement_counts, whole_vectors
 from sebody.contract.layout import (
     AT_CONSTANTS,
     AT_FRAME,
@@ -15,7 +16,6 @@ from sebody.contract.layout import (
     HEADER,
     INDEX,
     KINETIC,
-    LANES,
     MOMENT,
     MOMENTUM,
     POTENTIAL,
@@ -25,9 +25,6 @@ from sebody.contract.layout import (
     ContractError,
     Part,
     Row,
-    layout_name,
-    superelement_counts,
-    whole_vectors,
 )
 
 COUNTS = {"n": 5, "D": 3}

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.optimize import root
 from scipy.spatial.transform import Rotation
 
-from sebody.contract.layout import FrameTraits
+from sebody.contract.traits import FrameTraits
 from sebody.generated.options import FRAMES, INERTIA_OPTIONS
 from sebody.verify.check.states import Case, constants_of
 

@@ -12,6 +12,15 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from sebody.compiler.decorators import compiled
+from sebody.contract.counts import (
+    bound_counts,
+    first_mode,
+    first_rotation,
+    floating_counts,
+    rigid_part_counts,
+    scratch_size,
+    superelement_counts,
+)
 from sebody.contract.layout import (
     AT_POSITIONS,
     AT_ROTATIONS,
@@ -22,13 +31,6 @@ from sebody.contract.layout import (
     RESIDUAL,
     TANGENT,
     Row,
-    bound_counts,
-    first_mode,
-    first_rotation,
-    floating_counts,
-    rigid_part_counts,
-    scratch_size,
-    superelement_counts,
 )
 from sebody.errors import InputError
 from sebody.generated.options import INERTIA_OPTIONS

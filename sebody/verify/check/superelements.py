@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from sebody.contract.counts import first_mode
 from sebody.contract.layout import (
     ENERGY,
     KINETIC,
@@ -16,7 +17,6 @@ from sebody.contract.layout import (
     RESIDUAL,
     STRAIN,
     TANGENT,
-    first_mode,
 )
 from sebody.generated.options import INERTIA_OPTIONS
 from sebody.verify.check import rigid_part
