@@ -229,8 +229,9 @@ RECORD = Row("what is recorded of a state", (
     Part("R", ("rotations", 9), "rotation matrices"),
     Part("v", ("coordinates",), "velocities"),
     Part("a", ("coordinates",), "accelerations"),
-    Part("frames", ("kept",), "frames of superelements, nine numbers each, and what elements keep"),
-    Part("frames_old", ("kept",), "the same of the last accepted step"),
+    Part("frames", ("stored",), "frames of superelements, nine numbers each, then what elements, "
+         "inputs, sensors and controllers store"),
+    Part("frames_old", ("stored",), "the same of the last accepted step"),
 ))
 # places that are the same in all models; of other parts their number, see `Record.at`
 RECORD_T, RECORD_ITERATIONS, RECORD_WORKS = (

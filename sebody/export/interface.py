@@ -131,11 +131,11 @@ def placed(asked: list[Asked], model: Mechanism, numbering: Numbering, system: S
            state: State, image: Image) -> list[Input]:
     """Where the values of inputs are."""
     parameters, found = _parameters(model), []
-    ports = list(numbering.all_kept.inputs)
+    ports = list(numbering.memory.inputs)
     for one in asked:
         if one.kind == INPUT:
-            port = numbering.all_kept.ports[one.name]
-            place = numbering.all_kept.inputs[port] + VALUE
+            port = numbering.memory.ports[one.name]
+            place = numbering.memory.inputs[port] + VALUE
             at, number, factor = image.at(state.frames, place), ports.index(port), 1.0
             start = float(state.frames[place])
         elif one.kind == ACCELERATION:

@@ -38,17 +38,17 @@ def remarks(run: Recording) -> dict[str, str]:
         return _steps(run) | _guarded(run)
     message = energy_balance.warning(run.energy_balance(),
                                      bool(run.state.control.adaptive))
-    found = ({"balance": message} if message else {}) | _steps(run) | _guarded(run)
+    by_key = ({"balance": message} if message else {}) | _steps(run) | _guarded(run)
     if run.failure or run.state.control.adaptive:
-        return found
+        return by_key
     columns = ENERGIES.slices(record_counts(run.numbering))
     kinetic, strain, potential = (run.energies[:, columns[name]][:, 0]
                                   for name in ("kinetic", "strain", "potential"))
     part = Recording(run.model, run.numbering, run.system, scratch, run.rows, 0.0)
     work = part.recorded("works").sum(axis=1)
     grown = increase(kinetic + strain + potential, work) / max((kinetic + strain).max(), 1e-300)
-    if grown > GROWN and "balance" not in found:
-        found["growth"] = (
+    if grown > GROWN and "balance" not in by_key:
+        by_key["growth"] = (
             f"energy grows by {grown:.2g} of its maximum although no work is done on the model "
             f"(limit {GROWN:g}): the steps do not resolve vibrations of a strongly bent body; "
             "take a smaller step, divide the body, or keep the position of a node off the line of "
@@ -56,12 +56,12 @@ def remarks(run: Recording) -> dict[str, str]:
     if kinetic.max() > NO_MOTION * (np.abs(potential).max() + strain.max()):
         states = {int(np.argmax(kinetic)), int(np.argmax(strain))}
         h = float(run.rows[-1, RECORD_T]) / max(int(run.state.control.steps), 1)
-        found |= _vibrations(part, sorted(states), h, kinetic.max())
+        by_key |= _vibrations(part, sorted(states), h, kinetic.max())
     if run.numbering.multipliers:
         chosen = np.unique(np.linspace(0, len(run.rows) - 1, LOOKED_AT).astype(int))
         part.rows = run.rows[chosen]
-        found |= _constraints(part)
-    return found
+        by_key |= _constraints(part)
+    return by_key
 
 
 def increase(energy: NDArray, work: NDArray) -> float:

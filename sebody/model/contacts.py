@@ -192,10 +192,10 @@ def _impact(what: str, restitution: float, at_speed: float, stiffness: float | N
 
 
 def _joint(model: Mechanism, joint: object, what: str) -> Joint:
-    found = model.element(joint) if isinstance(joint, str) else joint
-    if not isinstance(found, Joint) or found not in model.joints:
+    element = model.element(joint) if isinstance(joint, str) else joint
+    if not isinstance(element, Joint) or element not in model.joints:
         raise inputs.refusal(what, joint, "give a joint of the model or its name")
-    return found
+    return element
 
 
 def _measured(model: Mechanism, of: object) -> tuple[str, str, tuple, dict, float]:

@@ -75,13 +75,13 @@ def evaluated(group: Motions, rows: NDArray, counts: Counts) -> tuple[NDArray, i
     status : int
         OK, or why a frame is not defined.
     """
-    found = np.zeros((len(rows), len(group.bodies), group.size))
+    values = np.zeros((len(rows), len(group.bodies), group.size))
     slices = RECORD.slices(counts)
     places = np.array([slices[name].start for name in READ])
     status = _evaluate(group.address, len(group.index[0]), group.counts["n"], group.index,
                        group.constants, np.ascontiguousarray(rows), places,
-                       np.zeros(counts["kept"]), np.zeros(group.scratch), found)
-    return found, status
+                       np.zeros(counts["stored"]), np.zeros(group.scratch), values)
+    return values, status
 
 
 @compiled

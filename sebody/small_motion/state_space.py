@@ -72,19 +72,19 @@ class StateSpace(NamedTuple):
             States that no quantity is: rotations in space, drives, and those of `minimal` and
             `reduce`.
         """
-        found = []
+        quantities = []
         for name in self.states:
             whole, rate = name.removesuffix(".rate"), name.endswith(".rate")
             owner, kind, component = [*whole.split("."), "", ""][:3]
             if kind == "states":        # of a continuous controller
-                found.append(name)
+                quantities.append(name)
                 continue
             if kind not in RATES or (kind == "rotation" and component):
                 raise InputError(f"no quantity is the state {name!r}: use outputs, of which "
                                  "measurements determine the states")
             parts = owner, RATES[kind] if rate else kind, component
-            found.append(".".join(part for part in parts if part))
-        return tuple(found)
+            quantities.append(".".join(part for part in parts if part))
+        return tuple(quantities)
 
     @property
     def poles(self) -> NDArray:
@@ -99,15 +99,15 @@ class StateSpace(NamedTuple):
         InputError
             A frequency that is a pole.
         """
-        found = []
+        responses = []
         for w in given.vector(np.atleast_1d(omega), "omega"):
             try:
                 X = np.linalg.solve(1j * w * np.eye(len(self.A)) - self.A, self.B)
             except np.linalg.LinAlgError as error:
                 raise InputError(f"the response at omega = {w:.6g} is infinite: a pole is there; "
                                  "leave out this frequency") from error
-            found.append(self.C @ X + self.D)
-        return np.array(found).reshape(-1, *self.D.shape)
+            responses.append(self.C @ X + self.D)
+        return np.array(responses).reshape(-1, *self.D.shape)
 
     def minimal(self, tolerance: float = 1e-9) -> StateSpace:
         """The part that inputs move and outputs show, in modal coordinates.
@@ -194,36 +194,36 @@ def state_space(run: Simulation | Result, inputs: str | Iterable[str],
     refuse_unmoved(wanted, "linear model")
     steady = Spin.of(run, spin)
     matrices = small_motion(run, steady)
-    own = [inputs_of_motion.found(run, steady, name) for name in names]
+    drives = [inputs_of_motion.found(run, steady, name) for name in names]
     axes = motion(run)[:run.numbering.free].toarray()   # of the unknowns, to global ones
     system = _Constrained(run, [axes @ X @ axes.T for X in matrices],
-                          [one._replace(pushes=one.pushes @ axes.T) for one in own])
+                          [one._replace(pushes=one.pushes @ axes.T) for one in drives])
     A, B = system.matrices()
     unknowns = [z @ axes for z in system.motions(A, B)]
-    amplitudes, moved = system.amplitudes(), np.array([one.motion for one in own])
+    amplitudes, moved = system.amplitudes(), np.array([one.motion for one in drives])
     along = moves(run, steady, *unknowns).plus(*(u @ moved for u in amplitudes))
-    pushed = amplitudes[0] @ np.array([one.elements for one in own])
+    pushed = amplitudes[0] @ np.array([one.elements for one in drives])
     answers = differences(run, wanted, along, pushed)
     Y = np.hstack([answers[name].reshape(len(pushed), -1) for name in wanted])
     base = Result(run.model, run.numbering, run.system, run.state, run.state.now[None].copy(), 0.0)
     values = np.concatenate([np.asarray(base[name]).ravel() for name in wanted])
     labels = [f"{name}.{label}".rstrip(".") for name in wanted
               for label in component_names(answers[name], name)]
-    size, kept = len(A), system.own_states
-    return StateSpace(A[np.ix_(kept, kept)], B[kept], Y[kept].T, Y[size:].T, system.names(),
+    size, states = len(A), system.own_states
+    return StateSpace(A[np.ix_(states, states)], B[states], Y[states].T, Y[size:].T, system.names(),
                       tuple(ACCELERATED.format(one.name) if one.moves else one.name
-                            for one in own), tuple(labels), values)
+                            for one in drives), tuple(labels), values)
 
 
 def _listed(names: str | Iterable[str], what: str, one: str) -> list[str]:
-    found = [names] if isinstance(names, str) else given.items(names, what, "give a list of names")
-    if not found:
+    listed = [names] if isinstance(names, str) else given.items(names, what, "give a list of names")
+    if not listed:
         raise given.refusal(what, names, "name at least one")
-    for name in found:
+    for name in listed:
         given.name(name, one)
-    if len(set(found)) < len(found):
+    if len(set(listed)) < len(listed):
         raise given.refusal(what, names, "name each once")
-    return list(found)
+    return list(listed)
 
 
 class _Constrained:
@@ -297,23 +297,23 @@ class _Constrained:
         A[:r, r:2 * r] = np.eye(r)
         A[r:2 * r, :r], A[r:2 * r, r:2 * r] = -accelerated(K), -accelerated(C)
         B[r:2 * r] = by_value
-        own = self._driven
-        A[r:2 * r, 2 * r:2 * r + d], A[r:2 * r, 2 * r + d:] = by_value[:, own], by_rate[:, own]
-        B[r:2 * r, own] = by_second[:, own]
+        at = self._driven
+        A[r:2 * r, 2 * r:2 * r + d], A[r:2 * r, 2 * r + d:] = by_value[:, at], by_rate[:, at]
+        B[r:2 * r, at] = by_second[:, at]
         A[2 * r:2 * r + d, 2 * r + d:] = np.eye(d)
-        B[2 * r + d + np.arange(d), own] = 1.0
+        B[2 * r + d + np.arange(d), at] = 1.0
         return A, B
 
     def amplitudes(self) -> NDArray:
         """Inputs and their rates, (3, size + m, m), of every state and every input alone."""
         r, m, d = self._N.shape[1], len(self._own), len(self._driven)
         size = 2 * r + 2 * d
-        found = np.zeros((3, size + m, m))
-        found[0, size + np.arange(m), np.arange(m)] = 1.0
+        values = np.zeros((3, size + m, m))
+        values[0, size + np.arange(m), np.arange(m)] = 1.0
         for k, j in enumerate(self._driven):
-            found[:, size + j, j] = 0.0, 0.0, 1.0
-            found[0, 2 * r + k, j] = found[1, 2 * r + d + k, j] = 1.0
-        return found
+            values[:, size + j, j] = 0.0, 0.0, 1.0
+            values[0, 2 * r + k, j] = values[1, 2 * r + d + k, j] = 1.0
+        return values
 
     def motions(self, A: NDArray, B: NDArray) -> list[NDArray]:
         """Motion of all unknowns, multipliers included, and its rates, by every state and input."""
@@ -322,23 +322,23 @@ class _Constrained:
         cases = np.eye(len(A) + B.shape[1])
         second = np.vstack([A[r:2 * r].T, B[r:2 * r].T])
         n = len(self._moving) + len(self._multipliers)
-        found = [np.zeros((len(cases), n)) for _ in range(3)]
-        for z, xi, u in zip(found, (cases[:, :r], cases[:, r:2 * r], second), amplitudes,
+        rows = [np.zeros((len(cases), n)) for _ in range(3)]
+        for z, xi, u in zip(rows, (cases[:, :r], cases[:, r:2 * r], second), amplitudes,
                             strict=True):
             z[:, self._moving] = xi @ self._N.T + u @ self._P.T
         if self._multipliers.size:
             M, C, K = self._matrices
             left = (sum(u @ f[self._moving].T for u, f in zip(amplitudes, self._pushes,
                                                               strict=True))
-                    - sum(z[:, self._moving] @ X.T for z, X in zip(found, (K, C, M),
+                    - sum(z[:, self._moving] @ X.T for z, X in zip(rows, (K, C, M),
                                                                   strict=True)))
             constraint_columns = self._scale[:, None] * self._constraint_columns
             columns = np.linalg.norm(constraint_columns, axis=0)
             columns[columns == 0.0] = 1.0
             held = lstsq(constraint_columns / columns, self._scale[:, None] * left.T,
                          cond=DEPENDENT)[0]
-            found[0][:, self._multipliers] = (held / columns[:, None]).T
-        return found
+            rows[0][:, self._multipliers] = (held / columns[:, None]).T
+        return rows
 
     def names(self) -> tuple[str, ...]:
         """Names of the states."""
@@ -346,8 +346,8 @@ class _Constrained:
         free = self._moving[self._independent]
         rates = [self._hidden.get(at, RATE.format(name))
                  for at, name in zip(free, self._free_names, strict=True)]
-        found = [*self._free_names, *rates, *driven, *map(RATE.format, driven)]
-        return tuple(found[k] for k in self.own_states)
+        listed = [*self._free_names, *rates, *driven, *map(RATE.format, driven)]
+        return tuple(listed[k] for k in self.own_states)
 
     @property
     def own_states(self) -> NDArray:

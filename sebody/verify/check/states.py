@@ -184,13 +184,13 @@ def scratch(case: Case) -> int:
 def evaluate(case: Case, task: int, coefficients: Iterable[float] = (0, 0, 0, 1, 1)
              ) -> tuple[NDArray, NDArray, NDArray]:
     """Forces, matrix and energies of a kernel in the state of a case."""
-    n, given = case.n, arguments(case, coefficients)
-    status = called(case, task, given)
+    n, read = case.n, arguments(case, coefficients)
+    status = called(case, task, read)
     if status:
         raise InputError(f"kernel {case.module.__name__} refuses the check's state (status "
                          f"{status})")
-    return (given.forces, _in_global_axes(given.matrices.reshape(n, n), given.frames, case),
-            given.energies)
+    return (read.forces, _in_global_axes(read.matrices.reshape(n, n), read.frames, case),
+            read.energies)
 
 
 def _in_global_axes(J: NDArray, frame: NDArray, case: Case) -> NDArray:
