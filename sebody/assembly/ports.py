@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.contract.layout import INPUT
-from sebody.engine.tables import AMPLITUDE, PIECE, POLYNOMIAL
+from sebody.engine.load_amplitudes import AMPLITUDE, PIECE, POLYNOMIAL
 from sebody.kernels.loader import element_kernel
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Element, Superelement

@@ -6,7 +6,7 @@ import re
 import textwrap
 from collections.abc import Callable
 
-from sebody.cli.inputs import described, parameters, source
+from sebody.cli.scene_arguments import described, parameters, source
 
 RESULTS = ".npz", ".h5"         # files of results
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sebody.cli import interrupts
-from sebody.cli.inputs import build_scene, check_picture, given_arguments, source
+from sebody.cli.scene_arguments import build_scene, check_picture, given_arguments, source
 from sebody.errors import InputError
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 def run(options: argparse.Namespace) -> int:
     """Run the sweep; 1 if all of its runs fail."""
     from sebody.explore.sweep import sobol, sweep
-    from sebody.explore.sweep.axes import distribution_of, values_of
+    from sebody.explore.sweep.variations import distribution_of, values_of
     from sebody.runs.progress import Progress
 
     build, _, _ = source(options.scene)

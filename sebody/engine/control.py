@@ -22,6 +22,7 @@ from sebody.contract.law_row import (
     ITS_RATE,
     TURNED,
 )
+from sebody.engine.actuator_inputs import FROM, SINCE, VALUE, input_at
 from sebody.engine.control_data import (
     APPLY,
     BIAS,
@@ -50,7 +51,6 @@ from sebody.engine.control_data import (
     WAITS,
     WIRES,
 )
-from sebody.engine.inputs import FROM, SINCE, VALUE, input_at
 from sebody.engine.state import (
     BAD_CONTROL,
     DONE,

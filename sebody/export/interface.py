@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from sebody import inputs
-from sebody.assembly.laws import law_counts
+from sebody.assembly.controller_rows import law_counts
 from sebody.assembly.numbering import Numbering
 from sebody.contract.layout import FIELD, Row
-from sebody.engine.inputs import VALUE
+from sebody.engine.actuator_inputs import VALUE
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.errors import InputError

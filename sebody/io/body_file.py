@@ -22,7 +22,7 @@ from sebody.fem.beam_stress import BeamStress
 from sebody.fem.materials import doubts
 from sebody.fem.stress import SolidStress, StressModes
 from sebody.files import check_target, replacing
-from sebody.files.arrays import json_of, opened
+from sebody.files.array_files import json_of, opened
 from sebody.files.checksums import changed, checksums
 from sebody.io.body_table import body_table
 from sebody.reduction.body import ReducedBody

@@ -31,7 +31,7 @@ from sebody.io.modal import ModalBody, ModalNode
 from sebody.io.reading import Reading
 from sebody.io.text import fault, read_text
 from sebody.reduction.body import ReducedBody
-from sebody.reduction.rigid import rigid_motions
+from sebody.reduction.rigid_motions import rigid_motions
 
 TARGET = "SID file", (".SID_FEM", ".sid_fem", ".sid")
 _REMEDY = "give a file that begins with 'part' and 'new modal', as FEMBS and sebody write them"

@@ -29,7 +29,7 @@ from scipy.linalg import eigh, null_space
 from sebody.assembly.batches import frame_constants
 from sebody.assembly.contracts import frame_counts
 from sebody.assembly.floating import frame_conditions
-from sebody.assembly.rigid_part import rigid_part_constants
+from sebody.assembly.rigid_part_constants import rigid_part_constants
 from sebody.generated.options import INERTIA_OPTIONS
 from sebody.model.frames import FRAMES
 from sebody.model.parts import Superelement

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.model.inputs import chosen_name, dof_block, known, rotation_vector, vector
+from sebody.model.arguments import chosen_name, dof_block, known, rotation_vector, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import pair
 from sebody.model.parts import Attachment, Element, Joint, Node, positions, rotations

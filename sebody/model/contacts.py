@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.model.arguments import chosen_name, direction, dof_block, known, vector
 from sebody.model.frictions import checked_friction, turning
 from sebody.model.impacts import damping_of
-from sebody.model.inputs import chosen_name, direction, dof_block, known, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import ground
 from sebody.model.parts import Element, Joint, Node, positions, rotations

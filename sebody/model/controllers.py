@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from sebody import inputs as given
 from sebody.control.law import Law
 from sebody.errors import InputError
+from sebody.model.arguments import dof_block, known
 from sebody.model.continuous import law_element
 from sebody.model.control_parts import Controller, Sensor
 from sebody.model.functions import (
@@ -20,7 +21,6 @@ from sebody.model.functions import (
     compiled_derivatives,
     compiled_law,
 )
-from sebody.model.inputs import dof_block, known
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Node
 from sebody.spelling import offered

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.model.apart import has_forces, take_apart
-from sebody.model.inputs import chosen_name
+from sebody.model.arguments import chosen_name
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Attachment, Axes, Element, Joint, positions, rotations
 

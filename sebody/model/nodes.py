@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.model.inputs import dof_block, known, rotation_vector, vector
+from sebody.model.arguments import dof_block, known, rotation_vector, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, DofBlock, Node
 from sebody.spelling import unknown

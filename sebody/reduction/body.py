@@ -21,7 +21,7 @@ from sebody.reduction.loads import named_vectors
 from sebody.reduction.missing import checked_missing, lacks, sentences
 from sebody.reduction.recovery import Recovery
 from sebody.reduction.recovery_checks import check_recovery
-from sebody.reduction.rigid import rigid_motions, strainless_coordinates
+from sebody.reduction.rigid_motions import rigid_motions, strainless_coordinates
 from sebody.reduction.summary import mode_lines, place
 from sebody.tabular import counted
 from sebody.units import parsed_units

@@ -43,7 +43,7 @@ from sebody.reduction.constants import with_constants, with_shapes
 from sebody.reduction.factor import is_strainless
 from sebody.reduction.loads import fe_loads, with_residual_modes
 from sebody.reduction.missing import missing_of
-from sebody.reduction.rigid import strainless_coordinates
+from sebody.reduction.rigid_motions import strainless_coordinates
 from sebody.reduction.watch import SILENT, Watch, watching
 
 METHODS = ("craig-bampton", "guyan", "macneal", "rubin")

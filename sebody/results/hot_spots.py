@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody import inputs
-from sebody.model.tables import table
+from sebody.model.summary import table
 from sebody.results.field import Field
 from sebody.results.units import with_unit
 from sebody.units import Units
@@ -64,7 +64,7 @@ class HotSpots(tuple):
         InputError
             pandas is missing.
         """
-        from sebody.results.tables import check_installed
+        from sebody.results.dataframes import check_installed
         check_installed("pandas")
         from pandas import DataFrame
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.model.inputs import dof_block
+from sebody.model.arguments import dof_block
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Node, Superelement
 from sebody.results.recording import Recording

@@ -16,7 +16,7 @@ from sebody.assembly.numbering import Numbering
 from sebody.contract.layout import RECORD_T
 from sebody.engine.state import CONTROL
 from sebody.errors import InputError
-from sebody.files.arrays import json_of, opened
+from sebody.files.array_files import json_of, opened
 from sebody.files.checksums import changed, checksums
 from sebody.files.members import Member, Table
 from sebody.files.reading import existing

@@ -26,7 +26,7 @@ from sebody.engine.state import (
 )
 from sebody.errors import InputError
 from sebody.files import check_target, replacing
-from sebody.files.arrays import json_of, opened
+from sebody.files.array_files import json_of, opened
 from sebody.files.checksums import changed, checksums
 from sebody.files.members import Header, Member, Table
 from sebody.model.model import Model

@@ -20,7 +20,7 @@ from sebody.engine.system import System
 from sebody.errors import InputError, Interrupted, SimulationError
 from sebody.limits.watch import Watch
 from sebody.model.model import Model
-from sebody.model.tables import summary
+from sebody.model.summary import summary
 from sebody.results.recording import Start
 from sebody.results.result import Result
 from sebody.runs import user_faults

@@ -8,7 +8,7 @@ from scipy.linalg import eigh, null_space
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.model.inputs import dof_block, known
+from sebody.model.arguments import dof_block, known
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Node, Superelement
 from sebody.model.variants.copying import (

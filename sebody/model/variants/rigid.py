@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from sebody.errors import InputError
 from sebody.model import bodies, loads
-from sebody.model.inputs import dof_block
+from sebody.model.arguments import dof_block
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement
 from sebody.model.variants.copying import Variant, copied, load_name, loads_on, placed

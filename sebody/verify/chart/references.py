@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sebody.errors import InputError
 from sebody.files import replacing
-from sebody.files.arrays import opened
+from sebody.files.array_files import opened
 from sebody.files.members import Member, Table
 from sebody.kernels.loader import user_directory
 from sebody.runs.schemes import generalized_alpha
