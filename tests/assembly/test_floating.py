@@ -19,7 +19,7 @@ from sebody.kernels.packed import unpack
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.verify.check import states
 from sebody.verify.check.definitions import local_coordinates
-from sebody.verify.check.superelements import superelement_case
+from sebody.verify.check.superelement_cases import superelement_case
 
 DATA = dict(np.load(Path(__file__).parents[1] / "data" / "stiffened_states.npz"))
 ORDER = np.r_[0:3, 6:9, 3:6, 9:12, 12:20]      # positions, rotations, modes, slaved coordinates

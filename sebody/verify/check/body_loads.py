@@ -19,7 +19,7 @@ from sebody.verify.check.states import (
     tangent_rate,
     with_constants,
 )
-from sebody.verify.check.superelements import Nodes, nodes_of, placed_case
+from sebody.verify.check.superelement_cases import Nodes, nodes_of, placed_case
 
 
 def body_load_case(module: ModuleType, seed: int, nodes: Nodes) -> Case:

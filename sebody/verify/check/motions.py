@@ -20,7 +20,7 @@ from sebody.verify.check.states import (
     difference,
     with_constants,
 )
-from sebody.verify.check.superelements import Nodes, nodes_of, placed_case
+from sebody.verify.check.superelement_cases import Nodes, nodes_of, placed_case
 
 STEP = 0.003        # of differences in time
 MOTION_LIMIT = 1e-10    # searches and differences of sixth order: 1e-13 in these states
