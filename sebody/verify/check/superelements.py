@@ -57,7 +57,6 @@ LIMITS = {"K - K^T = skew(G)": 1e-10, "energies (24), (34)": 1e-10,
           "momentum = rigid dT/dv": 1e-10, SIZE: np.inf}
 
 
-
 def without(case: Case, what: str) -> Case:
     """The case with no stiffness and no gravity, or no inertia."""
     name = {"stiffness": "S", "inertia": "M"}[what]
