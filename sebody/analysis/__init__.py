@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from sebody.runs.restart import resume, save_state
     from sebody.runs.statics import equilibrium
     from sebody.small_motion.campbell import Campbell, campbell
+    from sebody.small_motion.energy_gain import EnergyGain, energy_gain
     from sebody.small_motion.frequency import FrequencyResponse, frequency_response
     from sebody.small_motion.linearization import (
         Linearization,
@@ -47,6 +48,7 @@ __all__ = [
     "Contribution",
     "Contributions",
     "Design",
+    "EnergyGain",
     "Ensemble",
     "FrequencyResponse",
     "Gradient",
@@ -64,6 +66,7 @@ __all__ = [
     "calibrate",
     "campbell",
     "contributions",
+    "energy_gain",
     "equilibrium",
     "final",
     "frequency_response",

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.engine.state import Scheme
 from sebody.errors import InputError
-from sebody.gradients.answers import Histories, linearized
 from sebody.gradients.gradient import Differentiated, fitting
+from sebody.gradients.responses import Histories, linearized
 from sebody.gradients.simplifications import Amplitude, Deformation, Motion
 from sebody.gradients.support import refuse_model
 from sebody.model.model import Model

@@ -191,13 +191,13 @@ class _Run:
         places = np.arange(beam.count)
         loads = np.zeros((beam.size, beam.count))
         loads[beam.dofs.T, places] = self._rows().T
-        answers = held.inverse(loads)
-        found = self._explicit(answers)
+        displaced = held.inverse(loads)
+        found = self._explicit(displaced)
         found[places, places] += self.sign * self._own()
         events, at = np.unique(self.when, return_inverse=True)
         coefficients, motion = self._motion(events)
         none = np.zeros((beam.count, beam.modes))
-        by = np.hstack([loads.T @ held.Psi, none, -answers.T @ (held.M @ held.T)])
+        by = np.hstack([loads.T @ held.Psi, none, -displaced.T @ (held.M @ held.T)])
         self.slopes = found + np.einsum("ei,eik->ek", by, motion[at]) @ coefficients
 
     def _rows(self) -> NDArray:
@@ -214,23 +214,23 @@ class _Run:
             "ef,efa,ea->e", held.elements.fibres[e, self.fibre],
             held.by_height.forces[e, self.end], u)
 
-    def _explicit(self, answers: NDArray) -> NDArray:
+    def _explicit(self, displaced: NDArray) -> NDArray:
         """Derivatives with the motion held, by displacements: of stiffness and of mass.
 
         Parameters
         ----------
-        answers : (size, stresses)
+        displaced : (size, stresses)
             Of the clamped beam to what each stress is of its displacements.
         """
         fields, c = self.fields, self.c
         held, dofs = self.held, self.held.beam.dofs
         static = c[:, :len(held.beam.order)] @ held.Psi.T
         found = np.zeros((len(fields), len(dofs)))
-        for answer, change, of in (
-                (-answers, held.by_height.stiffness, fields),
-                (-answers, held.by_height.mass, c @ held.T.T),
-                (held.inverse(held.M @ answers), held.by_height.stiffness, static)):
-            found += np.einsum("eas,eab,seb->se", answer[dofs], change, of[:, dofs], optimize=True)
+        for one, change, of in (
+                (-displaced, held.by_height.stiffness, fields),
+                (-displaced, held.by_height.mass, c @ held.T.T),
+                (held.inverse(held.M @ displaced), held.by_height.stiffness, static)):
+            found += np.einsum("eas,eab,seb->se", one[dofs], change, of[:, dofs], optimize=True)
         return found
 
     def _motion(self, events: NDArray) -> tuple[NDArray, NDArray]:

@@ -1,7 +1,7 @@
 """Reductions whose vibration modes are held while the FE model changes.
 
-Constraint modes are those of the model at hand, so rigid motions and static responses are exact; the
-vibration modes are shapes that another model has, such as the one before a change of its sections.
+Constraint modes are those of the model at hand, so rigid motions and static responses are exact;
+the vibration modes are shapes that another model has, as before a change of its sections.
 They are no modes of this model: their stiffness and mass are full. So the reduction is a smooth
 function of the model also where frequencies are equal and modes change places.
 """

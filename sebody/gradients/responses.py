@@ -40,19 +40,19 @@ def linearized(one: Differentiated, models: Sequence[Sequence[Motion]], names: S
     changes = {name: np.zeros((*own.shape, len(models))) for name, own in values.items()}
     if not models:
         return values, changes
-    answers = [Answer(one, name, values[name].shape[1:]) for name in names]
+    responses = [Response(one, name, values[name].shape[1:]) for name in names]
     place = {int(event): k for k, event in enumerate(history.recorded)}
 
     def see(event: int, change: Change) -> None:
         if (k := place.get(event)) is not None:
-            for answer in answers:
-                changes[answer.name][k] = answer.to(k, event, change)
+            for response in responses:
+                changes[response.name][k] = response.to(k, event, change)
     Sweep(run, one.course, models).go(see)
     return values, changes
 
 
-class Answer:
-    """How a quantity answers to changes of a state.
+class Response:
+    """How a quantity responds to changes of a state.
 
     Motions of nodes and modes follow exactly; other quantities by differences along the changes,
     forces of elements by their exact matrices, with the forces that hold rigid bodies.
