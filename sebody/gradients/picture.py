@@ -12,6 +12,7 @@ from sebody.pictures.plots import ACCENT, PALE, STYLE
 
 MOST = 12           # bars of a quantity
 LINES = 4           # histories of a quantity
+DECADES = 4         # of a history below its largest value, that are shown
 LEAST = 1e-6        # of the largest bar: shorter ones are drawn like this
 
 
@@ -38,7 +39,7 @@ def draw(found: Any, path: str | Path) -> Path:
 
 def _bars(axis, bars: list[tuple[str, float]], name: str) -> None:
     labels, sizes = zip(*reversed(bars), strict=True)
-    colors = [ACCENT if k >= len(bars) - LINES else PALE for k in range(len(bars))]
+    colors = [f"C{k}" if k < LINES else PALE for k in reversed(range(len(bars)))]
     axis.barh(labels, np.maximum(sizes, LEAST * max(sizes)), color=colors)
     axis.set_xscale("log")
     axis.set_xlabel(f"largest change of {name}, relative to its range", fontsize=8)
@@ -47,15 +48,16 @@ def _bars(axis, bars: list[tuple[str, float]], name: str) -> None:
 
 
 def _histories(axis, found: Any, name: str, order: list[int]) -> None:
-    for width, j in zip(np.linspace(1.8, 0.8, LINES), order, strict=False):
-        own = found.changes[name][..., j].reshape(len(found.t), -1)
-        axis.plot(found.t, np.linalg.norm(own, axis=1) if own.shape[1] > 1 else own[:, 0],
-                  linewidth=width, label=f"{found.rows[j].body}: {found.rows[j].change}")
+    """Sizes over time, in the colours of their bars."""
+    for k, (width, j) in enumerate(zip(np.linspace(1.8, 0.8, LINES), order, strict=False)):
+        size = np.linalg.norm(found.changes[name][..., j].reshape(len(found.t), -1), axis=1)
+        axis.plot(found.t, np.where(size > 0, size, np.nan), linewidth=width, color=f"C{k}")
+    axis.set_yscale("log")
+    highest = axis.get_ylim()[1]
+    axis.set_ylim(max(axis.get_ylim()[0], highest / 10**DECADES), highest)
     axis.set_xlabel("t", fontsize=8)
-    axis.set_ylabel(f"change of {name}" + (", length" if found.values[name][0].size > 1 else ""),
-                    fontsize=8)
+    axis.set_ylabel(f"size of the change of {name}", fontsize=8)
     axis.tick_params(labelsize=7)
-    axis.legend(fontsize=7)
 
 
 def draw_sizing(found: Any, path: str | Path) -> Path:

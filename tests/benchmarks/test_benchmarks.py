@@ -271,3 +271,22 @@ def test_gradients_are_timed_and_a_torque_ends_at_rest():
     assert list(found)[0] == "run" and min(found.values()) > 0.0
     found, _ = bench.torque(entries=60, t_end=0.3, angle=0.05, h=5e-3)
     assert found["misses"][-1] < 1e-8 < found["misses"][0]
+
+
+@pytest.mark.filterwarnings("ignore::sebody.LimitWarning")
+def test_a_rod_is_sized(tmp_path, capsys):
+    bench = imported("bench_sizing")
+    picture = tmp_path / "rod.png"
+    bench.main(["--json", "--elements", "10", "--iterations", "4", "--picture", str(picture)])
+    rows = json.loads(capsys.readouterr().out)
+    assert rows["mass"] < rows["mass before"] and rows["iterations"] <= 4
+    assert picture.read_bytes()[:4] == b"\x89PNG"
+
+
+@pytest.mark.filterwarnings("ignore::sebody.LimitWarning")
+def test_contributions_are_compared_with_runs(capsys):
+    bench = imported("bench_contributions")
+    bench.main(["--json", "stiff drives"])
+    found = json.loads(capsys.readouterr().out)
+    assert found["summary"]["all"] == {"count": len(found["rows"]), "within": 1.0}
+    assert {row["change"] for row in found["rows"]} >= {"rigid", "without modes"}
