@@ -8,7 +8,7 @@ import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,13 +31,20 @@ from sebody.tabular import text
 LARGE = 0.3         # of a quantity's largest change: beyond, estimates say that a change is large
 
 
+class Options(NamedTuple):
+    """Those of `with_options`."""
+
+    inertia: str | None
+    stiffening: bool
+
+
 class Simplification(NamedTuple):
     """A body that is simplified: by what it loses of the motion, or by other options."""
 
     body: str
     change: str
     motions: tuple[Motion, ...] = ()
-    options: dict[str, object] | None = None
+    options: Options | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,8 +208,9 @@ def _measure(model: Model, simpler: Simplification, h: float, t_end: float, sche
              values: Histories, changes: Histories, j: int) -> None:
     """Changes by other options, from a run with these."""
     assert simpler.options is not None
-    made = with_options(model, simpler.body, **simpler.options).model
-    result = simulate(made, h, t_end, scheme=scheme)
+    made = with_options(model, simpler.body, inertia=simpler.options.inertia,
+                        stiffening=simpler.options.stiffening).model
+    result = simulate(cast(Model, made), h, t_end, scheme=scheme)
     for name, own in values.items():
         changes[name][..., j] = result[name] - own
 
@@ -245,14 +253,15 @@ def simplifications(run: Simulation, bodies: Iterable[str]) -> list[Simplificati
             found.append(Simplification(name, "without modes", tuple(each)))
         found.append(Simplification(name, "rigid", (Deformation(body, numbering),)))
         if body.stiffening:
-            found.append(Simplification(name, "without stiffening", options={"stiffening": False}))
+            found.append(Simplification(name, "without stiffening", options=Options(
+                None, False)))
         if body.inertia == "floating_field":
-            found.append(Simplification(name, "inertia 'material'", options={
-                "inertia": "material", "stiffening": False}))
+            found.append(Simplification(name, "inertia 'material'", options=Options(
+                "material", False)))
     return found
 
 
-def amplitudes(run: Simulation, body: str) -> list[Amplitude]:
+def amplitudes(run: Simulation, body: str) -> list[Motion]:
     """Those of all modes of a superelement."""
     first, total = run.numbering.modes.get(body, 0), run.numbering.total
     return [Amplitude(first + k, total) for k in range(run.model.bodies[body].reduced.modes)]

@@ -33,7 +33,7 @@ from scipy.sparse.linalg import eigsh, splu
 
 from sebody.errors import InputError
 from sebody.fem import beam_element
-from sebody.fem.section import AnySection
+from sebody.fem.section import Section, StiffnessSection
 from sebody.reduction import ReducedBody
 
 IN_PLANE = np.array([0, 1, 5, 6, 7, 11])    # DOFs of an element in the xy plane
@@ -69,8 +69,8 @@ class Elements:
         No fibres, or numbers that are not smooth functions.
     """
 
-    def __init__(self, section: Callable[[float], AnySection], length: float, low: float,
-                 high: float, planar: bool):
+    def __init__(self, section: Callable[[float], Section | StiffnessSection], length: float,
+                 low: float, high: float, planar: bool):
         self.section, self.length = section, length
         self.kept = IN_PLANE if planar else np.arange(12)
         nodes = np.cos(np.pi * (np.arange(PLACES) + 0.5) / PLACES)

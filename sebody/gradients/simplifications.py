@@ -54,7 +54,7 @@ class Amplitude:
         Number of all coordinates.
     """
 
-    forces = None
+    forces: slice | None = None
 
     def __init__(self, place: int, total: int):
         self.own = slice(place, place + 1)
@@ -87,7 +87,8 @@ class Deformation:
         self.modes = list(range(first, first + reduced.modes))
         self.own = [*(i for own in self.positions.values() for i in own),
                     *(i for own, _ in self.turns.values() for i in own), *self.modes]
-        self.forces = slice(numbering.forces_at[body], numbering.forces_at[body] + len(self.own))
+        at = numbering.forces_at[body]
+        self.forces: slice | None = slice(at, at + len(self.own))
 
     def at(self, state: State) -> Part:
         d, T, gamma = (self._in_plane if self.planar else self._in_space)(state)

@@ -18,7 +18,7 @@ from sebody.engine.state import Scheme
 from sebody.errors import InputError
 from sebody.explore.ensembles.changes import whole_body
 from sebody.fem.beam import section_axes
-from sebody.fem.section import AnySection
+from sebody.fem.section import Section, StiffnessSection
 from sebody.gradients.beam_stresses import StressedBeam
 from sebody.gradients.gradient import Differentiated, fitting
 from sebody.gradients.held_beams import Elements, Held, HeldBeam
@@ -72,8 +72,8 @@ class BeamStress:
     """
 
     def __init__(self, model: Model, h: float, t_end: float, beam: str, heights: ArrayLike,
-                 section: Callable[[float], AnySection], bounds: tuple[float, float],
-                 scheme: Scheme | None = None):
+                 section: Callable[[float], Section | StiffnessSection],
+                 bounds: tuple[float, float], scheme: Scheme | None = None):
         self.model = inputs.instance(model, "model", Model, "give a sebody.Model")
         self.h = inputs.number(h, "h", above=0)
         self.t_end = self.h * whole_steps(inputs.number(t_end, "t_end", above=0), self.h)
@@ -120,6 +120,7 @@ class BeamStress:
         if run.slopes is None:
             with self._built(run.held):
                 run.differentiate()
+        assert run.slopes is not None
         return Stresses(run.values, run.times, run.slopes)
 
     def values(self, heights: ArrayLike) -> NDArray:
@@ -225,7 +226,7 @@ class Sizing:
 
 
 def size_heights(model: Model, h: float, t_end: float, beam: str, heights: ArrayLike,
-                 section: Callable[[float], AnySection], limit: float,
+                 section: Callable[[float], Section | StiffnessSection], limit: float,
                  bounds: tuple[float, float], iterations: int = 50,
                  scheme: Scheme | None = None) -> Sizing:
     """Heights of a beam's elements, of least mass with stresses within a limit in a run.
@@ -282,7 +283,7 @@ def size_heights(model: Model, h: float, t_end: float, beam: str, heights: Array
                      "jac": lambda x: -stress.at(at(x)).slopes * unit / limit},
         callback=lambda x: masses.append(stress.mass(unit * x)[0]),
         options={"maxiter": iterations, "ftol": FINE})
-    x = np.clip(found.x, *(bound / unit for bound in stress.bounds))
+    x = np.clip(found.x, stress.bounds[0] / unit, stress.bounds[1] / unit)
     stresses = stress.at(at(x))
     return Sizing(unit * x, stresses.values, stresses.times, stress.mass(unit * x)[0], before,
                   int(found.nit), stress.runs, str(found.message), time.perf_counter() - began,

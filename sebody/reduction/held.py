@@ -51,7 +51,7 @@ def with_held_modes(fe_model: FEModel, boundary: Items, shapes: NDArray) -> Redu
     reduced[1][n:, n:] = shapes.T @ (mass @ shapes)
     body = ReducedBody(block_diag(reduced[0][:n, :n], own), reduced[1], edge.coordinates,
                        edge.keeps, shapes.shape[1], missing=missing_of(fe_model, "craig-bampton"),
-                       materials=fe_model.materials, units=fe_model.units,
+                       materials=tuple(fe_model.materials), units=fe_model.units,
                        notes=("vibration modes of another model are held", *edge.notes))
     none = np.zeros((stiffness.shape[0], 0))
     return with_constants(body, fe_model, edge, component, interior, none, SILENT)

@@ -87,6 +87,17 @@ def test_a_rigid_start_fits_the_joints():
     assert one.large and "(large)" in str(found)
 
 
+def test_sparse_matrices_give_the_same(monkeypatch):
+    """As of models with many unknowns, with a position at the end of a rigid link."""
+    found = []
+    for dense in (160, 0):
+        monkeypatch.setattr("sebody.gradients.linear.DENSE", dense)
+        found.append(contributions(scenes.moved(), 0.005, 0.05, "end.position"))
+    assert [one.change for one in found[0].rows] == [one.change for one in found[1].rows]
+    for one, other in zip(found[0].rows, found[1].rows, strict=True):
+        assert np.allclose(one.sizes, other.sizes, rtol=1e-6)
+
+
 def test_picture(tmp_path):
     found = contributions(scenes.hinged(), 0.005, 0.1, ["tip.position", "hinge.force"])
     assert found.save_picture(tmp_path / "found.png").read_bytes()[:4] == b"\x89PNG"
