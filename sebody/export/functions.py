@@ -11,9 +11,9 @@ from sebody.compiler.code import Code, Place
 from sebody.compiler.decorators import function_code, kernel_code
 from sebody.compiler.sources import function_hash, kernel_hash
 from sebody.compiler.workers import Task
-from sebody.engine import control, loop, matrix, restart
+from sebody.engine import control, loop, matrix, restart, row_exchanges
 from sebody.errors import InputError, SebodyError
-from sebody.export import quantities, row_exchanges
+from sebody.export import quantities
 from sebody.export.platforms import environment, tag
 from sebody.export.terms import no_outputs
 from sebody.kernels.loader import load
@@ -72,7 +72,7 @@ def compile_one(name: str, processor: str) -> None:
     if name in FUNCTIONS:
         function, arguments = FUNCTIONS[name]
         kinds = examples() | {"outputs": typeof(no_outputs()),
-                              "exchanges": typeof(row_exchanges.Exchanges.of(0))}
+                              "exchanges": typeof(row_exchanges.Exchanges.of(0, 0))}
         made = function_code(function, tuple(kinds[one] for one in arguments.split()))
     else:
         made = kernel_code(load(name).kernel)

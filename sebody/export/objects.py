@@ -11,18 +11,16 @@ from sebody.export.linking import Part, functions_object, model_object
 from sebody.export.platforms import tag
 from sebody.export.prepared import Prepared
 
-KIND, ENGINE, EXCHANGE = "object", "engine", "exchange"
-IN_ENGINE = [name for name in FUNCTIONS if name != EXCHANGE]    # that is for large models alone
+KIND, ENGINE = "object", "engine"
 
 
 def objects(model: Prepared, platform: str, processor: str) -> dict[str, bytes]:
     """The object files of a model for a platform, by name."""
-    apart = [*model.kernels, *[EXCHANGE] * (not model.run.dense)]
-    places = {ENGINE: _engine()} | {name: _own(place(name)) for name in apart}
+    places = {ENGINE: _engine()} | {name: _own(place(name)) for name in model.kernels}
     target = f"{platform}.{tag(processor)}"
     found = {name: one.kept(KIND, target) for name, one in places.items()}
     missing = [name for name, content in found.items() if content is None]
-    wanted = [one for name in missing for one in (IN_ENGINE if name == ENGINE else (name,))]
+    wanted = [one for name in missing for one in (FUNCTIONS if name == ENGINE else (name,))]
     made = codes(wanted, processor)
     for name in missing:
         found[name] = functions_object(_parts(name, made), platform, processor)
@@ -36,12 +34,12 @@ def objects(model: Prepared, platform: str, processor: str) -> dict[str, bytes]:
 
 def _parts(name: str, made: dict[str, Code]) -> Sequence[Part]:
     if name == ENGINE:
-        return [Part(one, one, made[one]) for one in IN_ENGINE]
-    return [Part(name, EXCHANGE if name == EXCHANGE else "kernel", made[name])]
+        return [Part(one, one, made[one]) for one in FUNCTIONS]
+    return [Part(name, "kernel", made[name])]
 
 
 def _engine() -> Place:
-    hashes = " ".join(dict.fromkeys(place(name).made_from for name in IN_ENGINE))
+    hashes = " ".join(dict.fromkeys(place(name).made_from for name in FUNCTIONS))
     return _own(Place(Path(loop.__file__), ENGINE, hashes))
 
 

@@ -13,6 +13,7 @@ from sebody.assembly.control import begin
 from sebody.compiler.choice import way
 from sebody.compiler.user_functions import ControlFunction
 from sebody.contract.law_row import OUTSIDE
+from sebody.engine.row_exchanges import Exchanges
 from sebody.engine.state import EVALUATED, Scheme
 from sebody.engine.system import System
 from sebody.errors import InputError
@@ -20,7 +21,6 @@ from sebody.export.image import Image, members
 from sebody.export.interface import PARAMETER, Input, placed, with_inputs
 from sebody.export.linking import Part
 from sebody.export.quantities import Outputs
-from sebody.export.row_exchanges import Exchanges
 from sebody.export.terms import Quantities
 from sebody.kernels.loader import element_kernel_name, load
 from sebody.model.controllers import sampled
@@ -80,9 +80,6 @@ class Prepared:
         made, asked = with_inputs(model, inputs_of)
         self.run = Simulation(made, run.h, run.scheme, 1, run.tolerance, run.start)
         self.model, self._numbering = made, self.run.numbering
-        if self.run.system.massless[0]:
-            raise InputError("a motion of the model has stiffness and no mass, for which Python "
-                             "solves at the start and at every jump: give it some mass")
         called_at_samples = {one.name for one in sampled(made)}
         if any(one.name.rpartition(".parameters.")[0] in called_at_samples for one in asked):
             self._ask_for_first_samples()
@@ -98,7 +95,7 @@ class Prepared:
         self.outputs: Outputs = quantities.made(self.names, [s for _, s in self.sensors])
         found = parsed_units(made.units)
         self.units = [unit(one, found) for one in self.names]
-        self.exchanges = Exchanges.of(0 if self.run.dense else self._numbering.free)
+        self.exchanges = Exchanges.of(self._numbering.free, self.system.rows.size)
         self.image = self._image([one.kind for one in asked])
         self.inputs: list[Input] = [
             one._replace(unit=found.of(one.unit) if found else one.unit)
@@ -125,7 +122,7 @@ class Prepared:
             for matrix in (state.J, state.matrix, state.inverse):
                 matrix[...] = 0.0
         return Image([system, state, self.outputs, self.exchanges], changing,
-                     [state.work, self.exchanges.factors])
+                     [state.work, *members(self.exchanges)])
 
     def _find_calls(self) -> None:
         """Find addresses in the arrays, and forget them: they are of this process."""

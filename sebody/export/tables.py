@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from hashlib import sha256
 
 from sebody.contract.layout import RECORD
-from sebody.engine import control_data
+from sebody.engine import control_data, sparse_lu
 from sebody.engine.state import ASKED, CLOCK, CONTROL, EVALUATED, REASONS, Record
 from sebody.export.prepared import Prepared
 
@@ -23,14 +23,15 @@ def model_h(model: Prepared) -> str:
         "AT_VALUES": image.at(outputs.values), "AT_CORNERS": image.at(system.corners),
         "AT_JUMPS": image.at(system.jumps), "COLUMNS": state.now.size,
         "RECORD_PARTS": record.at.size, "DENSE": int(run.dense), "ASKED": ASKED,
-        "EVALUATED": EVALUATED, "ADAPTIVE": int(state.control.adaptive),
+        "ROOM": sparse_lu.ROOM,
+        "AT_KIND": image.at(model.exchanges.kind), "ADAPTIVE": int(state.control.adaptive),
         "CORNERS": system.corners.size - 1, "TASKS": own.periods.size,
         "SENSORS": len(model.sensors), "VARIABLES": len(model.names), "INPUTS": len(model.inputs),
         "REASONS": max(REASONS) + 1, "CALLED": len(model.calls),
         **{f"MEMORY_{name}": getattr(control_data, name) for name in (
             "STOP", "NEXT", "HAS", "COUNTS")},
         **{f"CONTROL_{name.upper()}": CONTROL.names.index(name) for name in (
-            "grid", "recorded", "reason", "restart", "corner", "wanted", "pivoted")},
+            "grid", "recorded", "reason", "restart", "corner", "wanted")},
         **{f"CLOCK_{name.upper()}": CLOCK.names.index(name) for name in ("time", "step")}}
     first = own.periods.size + control_data.COUNTS
     listed = [
