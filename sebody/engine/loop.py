@@ -66,7 +66,7 @@ UNMOVED = 0.03          # share of the tolerance that elements may move and keep
 
 @compiled(nogil=True)
 def advance(system, state, record, scheme, last_grid, chunk, dense):
-    """Run until `last_grid`, for at most `chunk` steps, or until the caller has to factorize or solve.
+    """Run until `last_grid`, for at most `chunk` steps, or until the caller factorizes or solves.
 
     Other threads of Python run meanwhile: no two simulations write to the same memory.
     """

@@ -5,7 +5,7 @@ from hashlib import sha256
 
 from sebody.contract.layout import RECORD
 from sebody.engine import control_data, sparse_lu
-from sebody.engine.state import ASKED, CLOCK, CONTROL, EVALUATED, REASONS, Record
+from sebody.engine.state import ASKED, CLOCK, CONTROL, REASONS, Record
 from sebody.export.prepared import Prepared
 
 
@@ -23,7 +23,7 @@ def model_h(model: Prepared) -> str:
         "AT_VALUES": image.at(outputs.values), "AT_CORNERS": image.at(system.corners),
         "AT_JUMPS": image.at(system.jumps), "COLUMNS": state.now.size,
         "RECORD_PARTS": record.at.size, "DENSE": int(run.dense), "ASKED": ASKED,
-        "ROOM": sparse_lu.ROOM,
+        "EVALUATED": EVALUATED, "ROOM": sparse_lu.ROOM,
         "AT_KIND": image.at(model.exchanges.kind), "ADAPTIVE": int(state.control.adaptive),
         "CORNERS": system.corners.size - 1, "TASKS": own.periods.size,
         "SENSORS": len(model.sensors), "VARIABLES": len(model.names), "INPUTS": len(model.inputs),
