@@ -5,7 +5,7 @@ from hashlib import sha256
 
 from sebody.contract.layout import RECORD
 from sebody.engine import control_data, sparse_lu
-from sebody.engine.state import ASKED, CLOCK, CONTROL, REASONS, Record
+from sebody.engine.state import ASKED, CLOCK, CONTROL, EVALUATED, REASONS, Record
 from sebody.export.prepared import Prepared
 
 
