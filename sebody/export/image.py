@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator
 from dataclasses import fields
 from typing import NamedTuple
+from zlib import MAX_WBITS, compressobj
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,6 +75,12 @@ class Image:
                 content += bytes_of(array).ljust(-(-array.nbytes // ALIGNED) * ALIGNED, b"\0")
         self.stored = bytes(content)
         self.size += ALIGNED
+
+    @property
+    def packed(self) -> bytes:
+        """What is stored, compressed by deflate: most numbers of reduced bodies are zeros."""
+        packer = compressobj(9, wbits=-MAX_WBITS)
+        return packer.compress(self.stored) + packer.flush()
 
     def at(self, array: NDArray | np.record, item: int = 0) -> int:
         """Offset of an array, or of one of its items of eight bytes."""

@@ -28,7 +28,7 @@ def objects(model: Prepared, platform: str, processor: str) -> dict[str, bytes]:
     users = model.users()
     if users:
         found["users"] = functions_object(users, platform, processor)
-    found["model"] = model_object(model.called, model.image.stored, platform, processor)
+    found["model"] = model_object(model.called, model.image.packed, platform, processor)
     return {name: content for name, content in found.items() if content is not None}
 
 

@@ -103,6 +103,14 @@ class Prepared:
                               self.image)]
         self._find_calls()
 
+    @property
+    def differentiable(self) -> bool:
+        """Whether outputs have derivatives by inputs: not where motions have no mass.
+
+        An input moves these in the next step, however short it is.
+        """
+        return not self.system.massless[0]
+
     def _ask_for_first_samples(self) -> None:
         """Take back the samples of t = 0: parameters of controllers may be set before them."""
         state, bodies = self.run.state, 9 * len(self.model.bodies)

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "inflate.h"
 #include "model.h"
 
 enum { DONE, CHUNK, FACTOR, SOLVE, FAILED, READ, RAISED };      /* what the loop returns */
@@ -43,7 +44,7 @@ static void place(Instance *m, int64_t *to, const int64_t *words, int count) {
 }
 
 static void instance_reset(Instance *m) {
-  memcpy(m->base, sb_image, IMAGE_STORED);
+  inflate(sb_image, (unsigned char *)m->base);
   memset(m->base + IMAGE_STORED, 0, IMAGE_SIZE - IMAGE_STORED);
   for (int i = 0; i < CALLED; i++)
     *(int64_t *)(m->base + CALLED_AT[i]) = (int64_t)(intptr_t)sb_functions[CALLED_FUNCTION[i]];
