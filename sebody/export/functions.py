@@ -14,8 +14,8 @@ from sebody.compiler.workers import Task
 from sebody.engine import control, loop, matrix, restart, row_exchanges
 from sebody.errors import InputError, SebodyError
 from sebody.export import quantities
+from sebody.export.outputs import no_outputs
 from sebody.export.platforms import environment, tag
-from sebody.export.terms import no_outputs
 from sebody.kernels.loader import load
 from sebody.runs.first_run import examples
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.assembly.control import begin
+from sebody.assembly.motions import motion_kernel
 from sebody.compiler.choice import way
 from sebody.compiler.user_functions import ControlFunction
 from sebody.contract.law_row import OUTSIDE
@@ -20,8 +21,8 @@ from sebody.errors import InputError
 from sebody.export.image import Image, members
 from sebody.export.interface import PARAMETER, Input, placed, with_inputs
 from sebody.export.linking import Part
+from sebody.export.outputs import Quantities
 from sebody.export.quantities import Outputs
-from sebody.export.terms import Quantities
 from sebody.kernels.loader import element_kernel_name, load
 from sebody.model.controllers import sampled
 from sebody.model.model import Model
@@ -84,7 +85,8 @@ class Prepared:
         if any(one.name.rpartition(".parameters.")[0] in called_at_samples for one in asked):
             self._ask_for_first_samples()
         self.system = _with_spare_corner(self.run.system)
-        quantities = Quantities(made, self._numbering, self.run.system, self.run.state)
+        quantities = Quantities(made, self._numbering, self.run.system, self.run.state,
+                                any(one.name.startswith("gravity.") for one in asked))
         self.names = quantities.names(outputs_of)
         if len(set(self.names)) < len(self.names):
             twice = next(one for one in self.names if self.names.count(one) > 1)
@@ -120,9 +122,11 @@ class Prepared:
 
     def _image(self, kinds: list[int]) -> Image:
         system, state = self.system, self.run.state
-        changing = [*members(state), self.outputs.values, self.outputs.row, self.outputs.loads,
-                    self.outputs.sums, system.corners, system.jumps, system.table_times,
-                    system.table_pieces, system.control.parameters]
+        outputs = self.outputs
+        changing = [*members(state), outputs.values, outputs.row, outputs.loads, outputs.sums,
+                    outputs.moved, outputs.residues, outputs.frames, outputs.work, system.corners,
+                    system.jumps, system.table_times, system.table_pieces,
+                    system.control.parameters]
         changing += [system.constants] * (PARAMETER in kinds)
         changing += members(self.exchanges)
         state.work[:] = 0.0
@@ -139,12 +143,16 @@ class Prepared:
         elements = {element_kernel_name(one.kind) for one in (
             *model.rigid_bodies.values(), *model.constraints, *model.loads)}
         kernels = {load(name).kernel.address: name for name in bodies | elements}
+        moved = {motion_kernel(body) for body in model.bodies.values()} if (
+            self.outputs.bodies.size) else set()
+        kernels |= {load(name).kernel.address: name for name in moved}
         self.kernels = sorted(kernels.values())
         self._users = {function.address: (f"user_{k}", function)
                        for k, (_, function) in enumerate(functions(model))}
         users = {address: name for address, (name, _) in self._users.items()}
         self.calls = [
             *self._in(system.address, kernels), *self._in(system.index, kernels | users),
+            *self._in(self.outputs.bodies, kernels),
             *self._in(system.functions, users),
             *self._in(system.control.controllers, users),
             *((self.image.at(system.routines, k), name) for k, name in enumerate(ROUTINES))]
