@@ -78,7 +78,7 @@ class Quantities:
         if own.places[0] != OUTSIDE:
             program.channels[k], read[k] = own, name
             return
-        if axes or self.system.regularized[0] and "force" in name:
+        if axes:
             raise _refused(name)
         recording = self._terms.recording()
         whole, components = naming.split(recording, name)
@@ -94,7 +94,8 @@ class Quantities:
                 raise _refused(name)
             return
         terms = self._terms.found(name)
-        if terms is None:
+        if terms is None or self.system.regularized[0] and self._terms.shared.intersection(
+                factor for term in terms for factor in term.factors):
             raise _refused(name)
         program.put(k, terms)
 

@@ -5,6 +5,8 @@ states in which one number is one and all others are zero, and what is found is 
 quantity in states of random numbers.
 """
 
+from bisect import bisect
+from functools import cached_property
 from itertools import product
 
 import numpy as np
@@ -114,6 +116,21 @@ class Terms:
         vars(recording).update(unique_rows=rows, forces=Forces(elements, sums), energies=energies,
                                powers=powers, constraint_residuals=residues)
         return naming.look_up(recording, name)
+
+    @cached_property
+    def shared(self) -> set[tuple[int, int]]:
+        """Numbers that are not unique where constraints are redundant."""
+        numbering, q = self.numbering, self._parts["q"].start
+        powers = ENERGIES.slices(record_counts(numbering))["powers"].start
+        found = {(SUM, k) for k in range(self.state.residual.size)}
+        found |= {(NOW, q + int(k)) for k in np.flatnonzero(self.system.is_multiplier)}
+        starts = sorted([*numbering.forces_at.values(), self.state.g.size])
+        for element in self.model.constraints:
+            if element.name in numbering.port_names:
+                found.add((OF_ENERGY, powers + numbering.port_names.index(element.name)))
+            first = numbering.forces_at[element]
+            found |= {(FORCE, k) for k in range(first, starts[bisect(starts, first)])}
+        return found
 
     def found(self, name: str) -> list[Term] | None:
         """A quantity as a sum of products; None if it is none."""

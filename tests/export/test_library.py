@@ -162,7 +162,7 @@ def test_motions_without_mass_are_the_same_bit_for_bit(tmp_path):
 BAD = {
     "unknown input": ({"inputs": ["a wnd"]}, "did you mean 'a wind'"),
     "unknown output": ({"outputs": ["the hand.postion"]}, "did you mean 'the hand.position'"),
-    "length": ({"outputs": ["the hand.velocity.norm"]}, "cannot be compiled"),
+    "FE node": ({"outputs": ["upper arm.node2.displacement"]}, "cannot be compiled"),
     "platform": ({"platforms": ["linux-sparc"]}, "'linux-sparc' is unknown: use 'linux-x86_64'"),
     "processor": ({"processor": "x86-64-v9"}, "'x86-64-v9' is unknown"),
     "native elsewhere": ({"platforms": ["windows-x86_64"]}, "is that of this machine"),
