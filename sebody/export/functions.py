@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Iterable
 from pathlib import Path
+from types import ModuleType
 
 from numba import typeof
 
@@ -69,6 +70,13 @@ def _code(kept: bytes) -> Code:
     return Code(symbol.decode(), bitcode)
 
 
+def kernel_module(name: str) -> ModuleType:
+    """The module of a kernel that a model has."""
+    found = load(name)
+    assert found is not None        # assembly refuses a model without one of its kernels
+    return found
+
+
 def compile_one(name: str, processor: str) -> None:
     """Compile a function of the engine or a kernel for the processor that Numba compiles for."""
     if name in FUNCTIONS:
@@ -77,7 +85,7 @@ def compile_one(name: str, processor: str) -> None:
                               "exchanges": typeof(row_exchanges.Exchanges.of(0, 0))}
         made = function_code(function, tuple(kinds[one] for one in arguments.split()))
     else:
-        made = kernel_code(load(name).kernel)
+        made = kernel_code(kernel_module(name).kernel)
     place(name).keep(KIND, tag(processor), made.symbol.encode() + b"\n" + made.bitcode)
 
 
@@ -86,5 +94,5 @@ def place(name: str) -> Place:
     if name in FUNCTIONS:
         function = FUNCTIONS[name][0].py_func
         return Place(Path(function.__code__.co_filename), name, function_hash(function))
-    source = Path(load(name).__file__)
+    source = Path(str(kernel_module(name).__file__))
     return Place(source, name, kernel_hash(source))

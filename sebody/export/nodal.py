@@ -53,7 +53,7 @@ class Nodal:
         """Enter a quantity as output k; False if it has no such form."""
         body, _, node = owner.rpartition(".node")
         recovery = self.model.bodies[body].reduced.recovery
-        place = recovery and number_of(recovery, int(node))
+        place = None if recovery is None else number_of(recovery, int(node))
         if place is None:
             return False
         if quantity in MOTIONS:

@@ -57,7 +57,7 @@ class Quantities:
             A quantity that compiled code cannot evaluate.
         """
         asked = [(name, "") for name in names] + [(s.quantity, s.axes) for s in sensors]
-        program, read = Program(len(asked)), {}
+        program, read = Program(len(asked)), dict[int, str]()
         nodal = Nodal(self.model, self.numbering, self._terms.recording(), program)
         for k, (name, axes) in enumerate(asked):
             self._put(program, nodal, read, k, name, axes)

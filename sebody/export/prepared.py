@@ -18,12 +18,13 @@ from sebody.engine.row_exchanges import Exchanges
 from sebody.engine.state import EVALUATED, Scheme
 from sebody.engine.system import System
 from sebody.errors import InputError
+from sebody.export.functions import kernel_module
 from sebody.export.image import Image, members
 from sebody.export.interface import PARAMETER, Input, placed, with_inputs
 from sebody.export.linking import Part
 from sebody.export.outputs import Quantities
 from sebody.export.quantities import Outputs
-from sebody.kernels.loader import element_kernel_name, load
+from sebody.kernels.loader import element_kernel_name
 from sebody.model.controllers import sampled
 from sebody.model.model import Model
 from sebody.results.result import Result
@@ -142,10 +143,10 @@ class Prepared:
         bodies = {body.kernel for body in model.bodies.values()}
         elements = {element_kernel_name(one.kind) for one in (
             *model.rigid_bodies.values(), *model.constraints, *model.loads)}
-        kernels = {load(name).kernel.address: name for name in bodies | elements}
+        kernels = {kernel_module(name).kernel.address: name for name in bodies | elements}
         moved = {motion_kernel(body) for body in model.bodies.values()} if (
             self.outputs.bodies.size) else set()
-        kernels |= {load(name).kernel.address: name for name in moved}
+        kernels |= {kernel_module(name).kernel.address: name for name in moved}
         self.kernels = sorted(kernels.values())
         self._users = {function.address: (f"user_{k}", function)
                        for k, (_, function) in enumerate(functions(model))}

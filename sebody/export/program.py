@@ -1,6 +1,6 @@
 """Outputs in the making: what compiled code evaluates, and what that gives in given states."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from itertools import groupby
 from typing import NamedTuple
 
@@ -33,8 +33,9 @@ from sebody.export.quantities import (
 from sebody.model.mechanism import Mechanism
 
 NONE = ONE, 0
-FUNCTIONS = {COSINE: np.cos, SINE: np.sin, POSITIVE: lambda x: (x > 0.0).astype(float),
-             BELOW_HALF: lambda x: (x < 0.5).astype(float)}
+FUNCTIONS: dict[int, Callable[[NDArray], NDArray]] = {
+    COSINE: np.cos, SINE: np.sin, POSITIVE: lambda x: (x > 0.0).astype(float),
+    BELOW_HALF: lambda x: (x < 0.5).astype(float)}
 
 
 class Term(NamedTuple):

@@ -107,18 +107,16 @@ def _run_kernels(system, state, outputs):
             state.energy[i] = 0.0
         status = run_kernels(ENERGY, 0, system.address.size, system, state)
         copy(outputs.row, state.now)
-    for j in range(2 if outputs.needs[NEEDS_RESIDUES] == 1 else 0):
+    residues, forces = outputs.needs[NEEDS_RESIDUES] == 1, outputs.needs[NEEDS_FORCES] == 1
+    for j in range(1, -1, -1):          # forces are those of the last, and of the only call
+        if status != OK or not (residues or (forces and j == 0)):
+            continue
+        status = assemble(RESIDUAL, RESIDUAL if j == 0 else VELOCITY, system, state, outputs.sums)
+        copy(outputs.row, state.now)
         outputs.residues[j] = 0.0
-        if status == OK:
-            status = assemble(RESIDUAL, RESIDUAL if j == 0 else VELOCITY, system, state,
-                              outputs.sums)
-            copy(outputs.row, state.now)
         for i in range(system.diagonal.size):
             if system.is_multiplier[i] > 0.0:
                 outputs.residues[j] = max(outputs.residues[j], abs(outputs.sums[i]))
-    if status == OK and outputs.needs[NEEDS_FORCES] == 1:
-        status = assemble(RESIDUAL, RESIDUAL, system, state, outputs.sums)
-        copy(outputs.row, state.now)
     if status == OK:
         status = _move(state, outputs)
     return status
@@ -160,8 +158,6 @@ def _add_terms(state, outputs):
 
 @compiled
 def _factor(state, outputs, kind, place):
-    if kind == ONE:
-        return 1.0
     if kind == FORCE:
         return state.g[place]
     if kind == SUM:
@@ -176,6 +172,8 @@ def _factor(state, outputs, kind, place):
         return outputs.moved[place]
     if kind == VALUE:
         return outputs.values[place]
+    if kind == ONE:
+        return 1.0
     x = state.now[place]
     if kind == COSINE:
         return np.cos(x)

@@ -3,6 +3,8 @@
 from collections.abc import Iterable
 from hashlib import sha256
 
+import numpy as np
+
 from sebody.contract.layout import RECORD
 from sebody.engine import control_data, sparse_lu
 from sebody.engine.state import ASKED, CLOCK, CONTROL, EVALUATED, REASONS, Record
@@ -32,9 +34,9 @@ def model_h(model: Prepared) -> str:
         "REASONS": max(REASONS) + 1, "CALLED": len(model.calls),
         **{f"MEMORY_{name}": getattr(control_data, name) for name in (
             "STOP", "NEXT", "HAS", "COUNTS")},
-        **{f"CONTROL_{name.upper()}": CONTROL.names.index(name) for name in (
+        **{f"CONTROL_{name.upper()}": _number(CONTROL, name) for name in (
             "grid", "recorded", "reason", "restart", "corner", "wanted")},
-        **{f"CLOCK_{name.upper()}": CLOCK.names.index(name) for name in ("time", "step")}}
+        **{f"CLOCK_{name.upper()}": _number(CLOCK, name) for name in ("time", "step")}}
     first = own.periods.size + control_data.COUNTS
     listed = [
         *(_words(name, image.words(group)) for name, group in (
@@ -68,6 +70,11 @@ def quoted(text: str) -> str:
     """A text as a constant in C; bytes beyond ASCII in octal."""
     return '"' + "".join(chr(b) if 32 <= b < 127 and chr(b) not in '"\\?' else f"\\{b:03o}"
                          for b in text.encode()) + '"'
+
+
+def _number(fields: np.dtype, name: str) -> int:
+    """Which of the fields of a record one is."""
+    return list(fields.fields or ()).index(name)
 
 
 def _float(value: float) -> str:

@@ -35,7 +35,7 @@ from sebody.export.quantities import (
 )
 from sebody.kernels.loader import element_kernel
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import DofBlock, Joint
+from sebody.model.parts import DofBlock, Element, Joint, Superelement
 from sebody.results import naming
 from sebody.results.contact_quantities import pressing
 from sebody.results.motion import evaluated
@@ -258,8 +258,9 @@ class Terms:
             return {}
         found = {}
         numbering, model = self.numbering, self.model
-        for part in (*model.bodies.values(), *model.rigid_bodies.values(), *model.constraints,
-                     *model.loads):
+        parts: list[Element | Superelement] = [
+            *model.bodies.values(), *model.rigid_bodies.values(), *model.constraints, *model.loads]
+        for part in parts:
             first = numbering.forces_at[part]
             for place in part.attachments:
                 block = getattr(place.node, place.kind)

@@ -23,14 +23,14 @@ class RowExchanges:
         """Factorize or solve if the loop waits for it, perhaps since an interrupted call."""
         if self.state.control.phase not in (FACTORED, PROJECTED, SOLVED):
             return
-        if self.exchanges is None:
-            self._make_room(0)
-        while exchange(self.system, self.state, self.exchanges) == ROOM:
-            self._make_room(int(self.exchanges.kind[1]))
+        own = self.exchanges or self._room(0)
+        while exchange(self.system, self.state, own) == ROOM:
+            own = self._room(int(own.kind[1]))
+        self.exchanges = own
 
     def forget(self) -> None:
         """Forget factors: another state was put in place of the one they are of."""
         self.exchanges = None
 
-    def _make_room(self, entries: int) -> None:
-        self.exchanges = Exchanges.of(self.system.diagonal.size, self.system.rows.size, entries)
+    def _room(self, entries: int) -> Exchanges:
+        return Exchanges.of(self.system.diagonal.size, self.system.rows.size, entries)

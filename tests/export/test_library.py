@@ -21,7 +21,7 @@ from sebody import (
     generalized_alpha,
     simulate,
 )
-from sebody.export import export, toolchain
+from sebody.export import export, objects, toolchain
 from sebody.export.platforms import host
 from sebody.fem import straight_beam
 from sebody.reduction import reduce
@@ -179,6 +179,15 @@ def test_what_cannot_be_exported_is_refused(case, tmp_path):
     with pytest.raises(InputError) as error:
         export(arm(), H, library=tmp_path / "x", **{"processor": "native", **arguments})
     assert said in str(error.value) and not list(tmp_path.iterdir())
+
+
+def test_a_failure_of_llvm_is_said(monkeypatch, tmp_path):
+    """It ends its process, which is none of the user's: nothing is kept then."""
+    monkeypatch.setattr(objects, "KIND", "none")
+    monkeypatch.setattr(objects, "call_all", lambda tasks: None)
+    with pytest.raises(SebodyError, match="LLVM has made no code of engine, .* and native"):
+        export(arm(), H, library=tmp_path / "x", processor="native")
+    assert not list(tmp_path.iterdir())
 
 
 def test_no_linker_is_said(monkeypatch, tmp_path):
