@@ -38,25 +38,25 @@ def remarks(run: Recording) -> dict[str, str]:
         return _steps(run) | _guarded(run)
     message = energy_balance.warning(run.energy_balance(),
                                      bool(run.state.control.adaptive))
-    found = ({"balance": message} if message else {}) | _steps(run) | _guarded(run)
+    by_key = ({"balance": message} if message else {}) | _steps(run) | _guarded(run)
     if run.failure or run.state.control.adaptive:
-        return found
+        return by_key
     columns = ENERGIES.slices(record_counts(run.numbering))
     kinetic, strain, potential = (run.energies[:, columns[name]][:, 0]
                                   for name in ("kinetic", "strain", "potential"))
     part = Recording(run.model, run.numbering, run.system, scratch, run.rows, 0.0)
     work = part.recorded("works").sum(axis=1)
     h = float(run.rows[-1, RECORD_T]) / max(int(run.state.control.steps), 1)
-    if "balance" not in found:
-        found |= _grown(part, h, kinetic, strain, kinetic + strain + potential, work)
+    if "balance" not in by_key:
+        by_key |= _grown(part, h, kinetic, strain, kinetic + strain + potential, work)
     if kinetic.max() > NO_MOTION * (np.abs(potential).max() + strain.max()):
         states = {int(np.argmax(kinetic)), int(np.argmax(strain))}
-        found |= _vibrations(part, sorted(states), h, kinetic.max())
+        by_key |= _vibrations(part, sorted(states), h, kinetic.max())
     if run.numbering.multipliers:
         chosen = np.unique(np.linspace(0, len(run.rows) - 1, LOOKED_AT).astype(int))
         part.rows = run.rows[chosen]
-        found |= _constraints(part)
-    return found
+        by_key |= _constraints(part)
+    return by_key
 
 
 def _grown(part: Recording, h: float, kinetic: NDArray, strain: NDArray, energy: NDArray,

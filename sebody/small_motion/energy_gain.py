@@ -6,7 +6,7 @@ system this keeps, up to the fourth order of the step h,
     H + h^2 / 12 Q,      Q = v . K v + a . M a,
 
 the second derivative of the energy H along the motion, with velocities v, accelerations a, mass M
-and stiffness K (`tests/benchmarks/README.md`, "Why energy wobbles"). A vibration of angular
+and stiffness K (`tests/benchmarks/README.md`, "Why energy oscillates"). A vibration of angular
 frequency omega and energy E adds ``2 omega^2 E`` to Q. As long as vibrations are linear, Q is
 constant and so is H. Bodies that bend far exchange energy between vibrations, at most all of it,
 and H gains up to
