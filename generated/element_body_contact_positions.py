@@ -67,7 +67,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 17
 OPERATIONS = {"residual": (508, 225, 238, 0),
-              "column": (875, 264, 595, 0)}
+              "column": (830, 342, 595, 0)}
 
 
 @kernel_function
@@ -89,8 +89,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     s = at(work, 7*row)
     h = at(work, 8*row)
     dqe = at(work, 9*row)
-    dy = at(work, 10*row)
-    dve = at(work, 11*row)
+    dve = at(work, 10*row)
+    dy = at(work, 11*row)
     dyd = at(work, 12*row)
     deta = at(work, 13*row)
     dg = at(work, 14*row)
@@ -1040,6 +1040,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 if column >= n + 3:
                     for r in range(3):
                         dqe[n + 3 + r] = T[9*nodes[N_ROTATIONS] + 3*r + column - n - 3]*c_stiffness
+                # directions of positions in frame axes
+                for i in range(N_POSITIONS):
+                    i3 = 3*i
+                    dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
+                    dv_x, dv_y, dv_z = dve[i3], dve[i3 + 1], dve[i3 + 2]
+                    dqe[i3] = R0_xx*dx_x + R0_yx*dx_y + R0_zx*dx_z
+                    dqe[i3 + 1] = R0_xy*dx_x + R0_yy*dx_y + R0_zy*dx_z
+                    dqe[i3 + 2] = R0_xz*dx_x + R0_yz*dx_y + R0_zz*dx_z
+                    dve[i3] = R0_xx*dv_x + R0_yx*dv_y + R0_zx*dv_z
+                    dve[i3 + 1] = R0_xy*dv_x + R0_yy*dv_y + R0_zy*dv_z
+                    dve[i3 + 2] = R0_xz*dv_x + R0_yz*dv_y + R0_zz*dv_z
                 # origin of the frame, (14)
                 dx0_x = dx0_y = dx0_z = 0.0
                 for i in range(N_POSITIONS):
@@ -1334,15 +1345,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     + t340*(-R0_yx*dth0_z + R0_yz*dth0_x) + t341*(R0_yy*dth0_z - R0_yz*dth0_y))
                 dva_z = (R0_zx*t336 + R0_zy*t337 + R0_zz*t338 + t339*(R0_zx*dth0_y - R0_zy*dth0_x)
                     + t340*(-R0_zx*dth0_z + R0_zz*dth0_x) + t341*(R0_zy*dth0_z - R0_zz*dth0_y))
-                dxb_x = dqe[n]*R0_xx + dqe[n + 1]*R0_xy + dqe[n + 2]*R0_xz
-                dxb_y = dqe[n]*R0_yx + dqe[n + 1]*R0_yy + dqe[n + 2]*R0_yz
-                dxb_z = dqe[n]*R0_zx + dqe[n + 1]*R0_zy + dqe[n + 2]*R0_zz
-                uxb_x = dve[n]*R0_xx + dve[n + 1]*R0_xy + dve[n + 2]*R0_xz
-                uxb_y = dve[n]*R0_yx + dve[n + 1]*R0_yy + dve[n + 2]*R0_yz
-                uxb_z = dve[n]*R0_zx + dve[n + 1]*R0_zy + dve[n + 2]*R0_zz
+                dxb_x = dqe[n]
+                dxb_y = dqe[n + 1]
+                dxb_z = dqe[n + 2]
                 dthb_x = dqe[n + 3]
                 dthb_y = dqe[n + 4]
                 dthb_z = dqe[n + 5]
+                uxb_x = dve[n]
+                uxb_y = dve[n + 1]
+                uxb_z = dve[n + 2]
                 uthb_x = dve[n + 3]
                 uthb_y = dve[n + 4]
                 uthb_z = dve[n + 5]
@@ -1473,15 +1484,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dFp_x = t413
                 dFp_y = t417
                 dFp_z = t421
-                dFb_1 = -t413
-                dFb_2 = -t417
-                dFb_3 = -t421
+                dg[n] = -t413
+                dg[n + 1] = -t417
+                dg[n + 2] = -t421
                 dg[n + 3] = -t373*t432 + t378*t431 + t387*t425 + t388*t427 + t411*t425 + t412*t427
                 dg[n + 4] = t373*t435 - t381*t431 + t386*t434 + t388*t433 + t409*t434 + t412*t433
                 dg[n + 5] = -t378*t435 + t381*t432 + t386*t426 + t387*t436 + t409*t426 + t411*t436
-                dg[n] = R0_xx*dFb_1 + R0_yx*dFb_2 + R0_zx*dFb_3
-                dg[n + 1] = R0_xy*dFb_1 + R0_yy*dFb_2 + R0_zy*dFb_3
-                dg[n + 2] = R0_xz*dFb_1 + R0_yz*dFb_2 + R0_zz*dFb_3
                 # differential: force on the point in frame axes
                 dfp_x = (Fp_x*(R0_xy*dth0_z - R0_xz*dth0_y) + Fp_y*(R0_yy*dth0_z - R0_yz*dth0_y) +
                     Fp_z*(R0_zy*dth0_z - R0_zz*dth0_y) + R0_xx*dFp_x + R0_yx*dFp_y + R0_zx*dFp_z)
@@ -1614,14 +1622,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dh[i3] = X_y*t457 + alpha*dF_x + df_x - dwp_y*t458
                     dh[i3 + 1] = -X_x*t457 + alpha*dF_y + df_y + dwp_x*t458
                     dh[i3 + 2] = X_x*dwp_y*fit - X_y*dwp_x*fit + alpha*dF_z + df_z
-                # differential: force on the nodes, left in frame axes
+                # differential: force on the nodes
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     h_x, h_y, h_z = h[i3], h[i3 + 1], h[i3 + 2]
                     dh_x, dh_y, dh_z = dh[i3], dh[i3 + 1], dh[i3 + 2]
-                    dg[i3] = dh_x + dth0_y*h_z - dth0_z*h_y
-                    dg[i3 + 1] = dh_y - dth0_x*h_z + dth0_z*h_x
-                    dg[i3 + 2] = dh_z + dth0_x*h_y - dth0_y*h_x
+                    dg[i3] = (R0_xx*dh_x + R0_xy*dh_y + R0_xz*dh_z + h_x*(R0_xy*dth0_z -
+                        R0_xz*dth0_y) + h_y*(-R0_xx*dth0_z + R0_xz*dth0_x) + h_z*(R0_xx*dth0_y -
+                        R0_xy*dth0_x))
+                    dg[i3 + 1] = (R0_yx*dh_x + R0_yy*dh_y + R0_yz*dh_z + h_x*(R0_yy*dth0_z -
+                        R0_yz*dth0_y) + h_y*(-R0_yx*dth0_z + R0_yz*dth0_x) + h_z*(R0_yx*dth0_y -
+                        R0_yy*dth0_x))
+                    dg[i3 + 2] = (R0_zx*dh_x + R0_zy*dh_y + R0_zz*dh_z + h_x*(R0_zy*dth0_z -
+                        R0_zz*dth0_y) + h_y*(-R0_zx*dth0_z + R0_zz*dth0_x) + h_z*(R0_zx*dth0_y -
+                        R0_zy*dth0_x))
                 # differential: moment on the nodes, (30), (57)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j

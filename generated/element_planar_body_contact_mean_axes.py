@@ -66,7 +66,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 15
 OPERATIONS = {"residual": (235, 87, 14, 0),
-              "column": (312, 99, 16, 0)}
+              "column": (294, 123, 16, 0)}
 
 
 @kernel_function
@@ -86,8 +86,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     s = at(work, 5*row)
     h = at(work, 6*row)
     dqe = at(work, 7*row)
-    dy = at(work, 8*row)
-    dve = at(work, 9*row)
+    dve = at(work, 8*row)
+    dy = at(work, 9*row)
     dyd = at(work, 10*row)
     deta = at(work, 11*row)
     dg = at(work, 12*row)
@@ -661,6 +661,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dve[i] = 0.0
                 dqe[column] = c_stiffness
                 dve[column] = c_damping
+                # directions of positions in frame axes
+                for i in range(N_POSITIONS):
+                    i3 = 2*i
+                    dx_x, dx_y = dqe[i3], dqe[i3 + 1]
+                    dv_x, dv_y = dve[i3], dve[i3 + 1]
+                    dqe[i3] = R0_cos*dx_x + R0_sin*dx_y
+                    dqe[i3 + 1] = R0_cos*dx_y - R0_sin*dx_x
+                    dve[i3] = R0_cos*dv_x + R0_sin*dv_y
+                    dve[i3 + 1] = R0_cos*dv_y - R0_sin*dv_x
                 # origin of the frame, (14)
                 dx0_x = dx0_y = 0.0
                 for i in range(N_POSITIONS):
@@ -828,11 +837,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t138 = -Om0_z*drp_y - dOm0_z*rp_y + dupd_x + dv0_x
                 dva_x = R0_cos*t138 - R0_sin*t137 - t133*t134 - t135*t136
                 dva_y = R0_cos*t137 + R0_sin*t138 - t133*t136 + t134*t135
-                dxb_x = dqe[n]*R0_cos - dqe[n + 1]*R0_sin
-                dxb_y = dqe[n]*R0_sin + dqe[n + 1]*R0_cos
-                uxb_x = dve[n]*R0_cos - dve[n + 1]*R0_sin
-                uxb_y = dve[n]*R0_sin + dve[n + 1]*R0_cos
+                dxb_x = dqe[n]
+                dxb_y = dqe[n + 1]
                 dthb_z = dqe[n + 2]
+                uxb_x = dve[n]
+                uxb_y = dve[n + 1]
                 uthb_z = dve[n + 2]
                 t139 = dxa_x - dxb_x
                 t140 = dxa_y - dxb_y
@@ -900,13 +909,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t190 = -t188 - t189
                 dFp_x = -t180
                 dFp_y = t181
-                dFb_1 = t180
-                dFb_2 = -t181
+                dg[n] = t180
+                dg[n + 1] = -t181
                 dg[n + 2] = (t157*(-Rb_cos*t186 + Rb_sin*dthb_z*t184 - Rb_sin*t187 - dthb_z*t183)
                     + t160*(Rb_cos*t187 - Rb_sin*t186 - dthb_z*t188 - dthb_z*t189) + t165*t190 +
                     t166*t185 + t178*t190 + t179*t185)
-                dg[n] = R0_cos*dFb_1 + R0_sin*dFb_2
-                dg[n + 1] = R0_cos*dFb_2 - R0_sin*dFb_1
                 # differential: force on the point in frame axes
                 t191 = R0_cos*dth0_z
                 t192 = R0_sin*dth0_z
@@ -974,13 +981,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     df_x, df_y = ds[i3], ds[i3 + 1]
                     dh[i3] = -Gam_positionx_z*dwp_z + alpha*dF_x + df_x
                     dh[i3 + 1] = -Gam_positiony_z*dwp_z + alpha*dF_y + df_y
-                # differential: force on the nodes, left in frame axes
+                # differential: force on the nodes
                 for i in range(N_POSITIONS):
                     i3 = 2*i
                     h_x, h_y = h[i3], h[i3 + 1]
                     dh_x, dh_y = dh[i3], dh[i3 + 1]
-                    dg[i3] = dh_x - dth0_z*h_y
-                    dg[i3 + 1] = dh_y + dth0_z*h_x
+                    t193 = R0_cos*dth0_z
+                    t194 = R0_sin*dth0_z
+                    dg[i3] = R0_cos*dh_x - R0_sin*dh_y - h_x*t194 - h_y*t193
+                    dg[i3 + 1] = R0_cos*dh_y + R0_sin*dh_x + h_x*t193 - h_y*t194
                 # differential: moment on the nodes, (30), (57)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + j

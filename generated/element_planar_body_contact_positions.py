@@ -65,7 +65,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 15
 OPERATIONS = {"residual": (395, 92, 9, 0),
-              "column": (312, 107, 10, 0)}
+              "column": (294, 131, 10, 0)}
 
 
 @kernel_function
@@ -85,8 +85,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     s = at(work, 5*row)
     h = at(work, 6*row)
     dqe = at(work, 7*row)
-    dy = at(work, 8*row)
-    dve = at(work, 9*row)
+    dve = at(work, 8*row)
+    dy = at(work, 9*row)
     dyd = at(work, 10*row)
     deta = at(work, 11*row)
     dg = at(work, 12*row)
@@ -646,6 +646,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dve[i] = 0.0
                 dqe[column] = c_stiffness
                 dve[column] = c_damping
+                # directions of positions in frame axes
+                for i in range(N_POSITIONS):
+                    i3 = 2*i
+                    dx_x, dx_y = dqe[i3], dqe[i3 + 1]
+                    dv_x, dv_y = dve[i3], dve[i3 + 1]
+                    dqe[i3] = R0_cos*dx_x + R0_sin*dx_y
+                    dqe[i3 + 1] = R0_cos*dx_y - R0_sin*dx_x
+                    dve[i3] = R0_cos*dv_x + R0_sin*dv_y
+                    dve[i3 + 1] = R0_cos*dv_y - R0_sin*dv_x
                 # origin of the frame, (14)
                 dx0_x = dx0_y = 0.0
                 for i in range(N_POSITIONS):
@@ -795,11 +804,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t140 = -Om0_z*drp_y - dOm0_z*rp_y + dupd_x + dv0_x
                 dva_x = R0_cos*t140 - R0_sin*t139 - t135*t136 - t137*t138
                 dva_y = R0_cos*t139 + R0_sin*t140 - t135*t138 + t136*t137
-                dxb_x = dqe[n]*R0_cos - dqe[n + 1]*R0_sin
-                dxb_y = dqe[n]*R0_sin + dqe[n + 1]*R0_cos
-                uxb_x = dve[n]*R0_cos - dve[n + 1]*R0_sin
-                uxb_y = dve[n]*R0_sin + dve[n + 1]*R0_cos
+                dxb_x = dqe[n]
+                dxb_y = dqe[n + 1]
                 dthb_z = dqe[n + 2]
+                uxb_x = dve[n]
+                uxb_y = dve[n + 1]
                 uthb_z = dve[n + 2]
                 t141 = dxa_x - dxb_x
                 t142 = dxa_y - dxb_y
@@ -867,13 +876,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t192 = -t190 - t191
                 dFp_x = -t182
                 dFp_y = t183
-                dFb_1 = t182
-                dFb_2 = -t183
+                dg[n] = t182
+                dg[n + 1] = -t183
                 dg[n + 2] = (t159*(-Rb_cos*t188 + Rb_sin*dthb_z*t186 - Rb_sin*t189 - dthb_z*t185)
                     + t162*(Rb_cos*t189 - Rb_sin*t188 - dthb_z*t190 - dthb_z*t191) + t167*t192 +
                     t168*t187 + t180*t192 + t181*t187)
-                dg[n] = R0_cos*dFb_1 + R0_sin*dFb_2
-                dg[n + 1] = R0_cos*dFb_2 - R0_sin*dFb_1
                 # differential: force on the point in frame axes
                 t193 = R0_cos*dth0_z
                 t194 = R0_sin*dth0_z
@@ -943,13 +950,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     t196 = dwp_z*fit
                     dh[i3] = X_y*t196 + alpha*dF_x + df_x
                     dh[i3 + 1] = -X_x*t196 + alpha*dF_y + df_y
-                # differential: force on the nodes, left in frame axes
+                # differential: force on the nodes
                 for i in range(N_POSITIONS):
                     i3 = 2*i
                     h_x, h_y = h[i3], h[i3 + 1]
                     dh_x, dh_y = dh[i3], dh[i3 + 1]
-                    dg[i3] = dh_x - dth0_z*h_y
-                    dg[i3 + 1] = dh_y + dth0_z*h_x
+                    t197 = R0_cos*dth0_z
+                    t198 = R0_sin*dth0_z
+                    dg[i3] = R0_cos*dh_x - R0_sin*dh_y - h_x*t198 - h_y*t197
+                    dg[i3 + 1] = R0_cos*dh_y + R0_sin*dh_x + h_x*t197 - h_y*t198
                 # differential: moment on the nodes, (30), (57)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + j

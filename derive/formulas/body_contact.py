@@ -23,7 +23,7 @@ from sebody.contract.layout import Part
 from sebody.derive.form.arrays import Place, constant
 from sebody.derive.form.counts import i3, j3, k
 from sebody.derive.form.spaces import AXES, Quantity, Space
-from sebody.derive.form.steps import Invert, Role, Solve, Stage, Step
+from sebody.derive.form.steps import Invert, Solve, Stage, Step
 from sebody.derive.formulas.contacts import contact
 from sebody.derive.formulas.damping import rates
 from sebody.derive.formulas.elastic import conjugate_to
@@ -35,7 +35,7 @@ from sebody.derive.formulas.kinematics import (
     local_velocity,
     unknown_rules,
 )
-from sebody.derive.formulas.pulled_back import forces_on_unknowns, left_in_frame_axes
+from sebody.derive.formulas.pulled_back import forces_on_unknowns
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.passes.linearize import Linearizer, along_own
 from sebody.derive.symbolic.rotations import cross
@@ -68,8 +68,7 @@ def body_contact(planar: bool, frame: FrameOption) -> Steps:
                        | along_own(q.space, q.vm))
     moved = _moved(q, chosen, chain, place, velocity)
     chain.move(_force(q))
-    turned = tuple(left_in_frame_axes(q, chain, step) if step.role is Role.NODE_FORCE else
-                   chain.step(step) for step in after)
+    turned = tuple(chain.step(step) for step in after)
     inverses = tuple(Invert(step) for step in chosen.velocity if isinstance(step, Solve))
     located = origin_stage(q, q.x0, q.x), *chosen.locate
     return Steps(q, law, (*located, *place, *velocity), after, inverses, moved, turned)
@@ -153,7 +152,10 @@ def _moved(q: Quantities, frame: Frame, chain: Linearizer, place: tuple[Step, ..
            velocity: tuple[Step, ...]) -> tuple[Step, ...]:
     """Differentials of place and velocity."""
     d, (displacement, _, *others) = q.space.d, place
+    R0, dv = q.R0.symbols, q.dv.symbols
     steps: list[Step] = [
+        Stage("directions of positions in frame axes", "position",
+              sets=((q.dx, R0.T * q.dx.symbols), (q.dv, R0.T * dv))),
         origin_stage(q, q.dx0, q.dx), *frame.variation, chain.stage(displacement),
         Stage("variation of the elastic rotations, (17)", "rotation",
               sets=((d(q.psi), elastic_rotation_variation(q)),)),

@@ -10,9 +10,6 @@ from sebody.derive.form.steps import Role, Solve, Stage
 from sebody.derive.formulas.frames.frame import Frame
 from sebody.derive.formulas.inertia.option import Inertia
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.passes.linearize import Linearizer
-from sebody.derive.symbolic.rotations import cross
-from sebody.derive.symbolic.variation import check_same, differential
 
 NONE = sp.zeros(3, 1)
 MASSLESS = Inertia((), (), NONE, NONE, NONE, NONE, NONE, {}, (), None)
@@ -52,13 +49,3 @@ def forces_on_unknowns(q: Quantities, frame: Frame, share: sp.Matrix, on_frame: 
         Stage("force of the internal modes", "mode",
               sets=((q.gm, q.fm.symbols + frame.mode + (
                   q.pmd.symbols if inertia.products else sp.zeros(1, 1))),)),)
-
-
-def left_in_frame_axes(q: Quantities, chain: Linearizer, step: Stage) -> Stage:
-    """Differential of the force on the nodes, rotated into frame axes: what the matrix holds."""
-    R0, h = q.R0.symbols, q.h.symbols
-    short = q.space.d(q.h).symbols + cross(q.dth0.symbols, h)
-    check_same("force on the nodes in frame axes", short,
-               R0.T * differential(step.sets[0][1], chain.rules), [R0])
-    return Stage("differential: force on the nodes, left in frame axes", "position",
-                 sets=((q.space.d(q.gx), short),))

@@ -7,7 +7,7 @@ which the loops of the body do not see.
 import sympy as sp
 
 from sebody.derive.form import counts
-from sebody.derive.form.arrays import pointed
+from sebody.derive.form.arrays import Array, View, pointed
 from sebody.derive.form.counts import agreed
 from sebody.derive.form.kernel import Kernel
 from sebody.derive.form.loops import size_of
@@ -20,6 +20,7 @@ from sebody.derive.form.statements import (
     Return,
     Set,
     Statement,
+    Target,
     compared,
 )
 from sebody.derive.form.whole import Number, Whole, largest
@@ -51,7 +52,7 @@ def body_contact_form(kernel: BodyContact) -> Kernel:
     """The kernel as statements."""
     steps, planar = kernel.steps, kernel.layout.planar
     lowering = Lowering(steps.q.space, kernel.names)
-    own = _Law(steps.law, steps.q.R0.symbols, planar)
+    own = _Law(steps.law, planar)
     point, prepared = lowering.statements(steps.point), lowering.statements(steps.prepared)
     law, start = own.forces(lowering.temporaries)
     slopes, start = staged(steps.law.slopes, start)
@@ -101,7 +102,7 @@ def _pointers(reference: bool) -> tuple[Statement, ...]:
     return tuple(found)
 
 
-def _behind(kernel: BodyContact, planar: bool):
+def _behind(kernel: BodyContact, planar: bool) -> Array | View:
     """Where the constants of the law are: behind the others."""
     last = chain(kernel.constants, planar, {})[-1]
     return last.array.at(size_of("position", planar))
@@ -121,8 +122,8 @@ def _columns(planar: bool, steps: tuple[Statement, ...]) -> For:
 class _Law:
     """The contact of the point, whose place and velocity are known, with the surface."""
 
-    def __init__(self, law: Element, R0: sp.Matrix, planar: bool) -> None:
-        self.law, self.R0, self.size = law, R0, size_of("position", planar)
+    def __init__(self, law: Element, planar: bool) -> None:
+        self.law, self.size = law, size_of("position", planar)
         self.turns = size_of("rotation", planar)
         self.a, self.b, self.rb = law.blocks
         self.place = [counts.n + k for k in range(self.size + self.turns)]
@@ -165,20 +166,12 @@ class _Law:
             *sums, *power, *lost))), start
 
     def column(self, start: int) -> tuple[tuple[Statement, ...], int]:
-        """Differentials of the forces as the point and the surface's node move.
-
-        Positions are in axes of the body's frame, directions and forces.
-        """
-        law, R0 = self.law, self.R0[:self.size, :self.size]
-        row, rate = (one.d for one in (arrays.qe, arrays.ve))
-        found: list[Statement] = []
-        for block, source in ((self.b.direction, row), (self.b.unit, rate)):
-            values = R0 * sp.Matrix(
-                [source[at] for at in self.place[:self.size]])
-            found += [Set((s,), (v,)) for s, v in zip(block.kept, values, strict=True)]
-        for block, source in ((self.rb.direction, row), (self.rb.unit, rate)):
+        """Differentials of the forces as the point and the surface's node move."""
+        law, found = self.law, []
+        for source, blocks in ((arrays.qe.d, (self.b.direction, self.rb.direction)),
+                               (arrays.ve.d, (self.b.unit, self.rb.unit))):
             found += [Set((s,), (source[at],)) for s, at in zip(
-                block.kept, self.place[self.size:], strict=True)]
+                [s for block in blocks for s in block.kept], self.place, strict=True)]
         # directions have the factors of the matrix, and the rate of the point its whole variation
         one = {sp.Symbol(f"c_{name}"): sp.S.One for name in ("stiffness", "damping")}
         one |= {u: sp.Symbol(f"d{v}") for u, v in zip(self.a.unit.kept, self.a.rate.kept,
@@ -186,19 +179,13 @@ class _Law:
         moves = [tuple((s, sp.sympify(value).xreplace(one)) for s, value in stage)
                  for stage in law.moves]
         staged_moves, start = staged(moves, start)
-        force = [sp.Symbol(f"dFp_{axis}") for axis in "xyz"[:self.size]]
-        on_b = sp.symbols(f"dFb_1:{self.size + 1}")
-        turned = [arrays.g.d[at] for at in self.place[self.size:]]
         values = [sp.sympify(value).xreplace(one) for value in law.linear]
-        linear, start = stored(values, [*force, *on_b, *turned], start)
-        in_frame = R0.T * sp.Matrix(on_b)
-        return (*found, *staged_moves, *linear, *(
-            Set((arrays.g.d[at],), (value,)) for at, value in zip(
-                self.place[:self.size], in_frame, strict=True))), start
+        linear, start = stored(values, self._targets(arrays.g.d, "dFp"), start)
+        return (*found, *staged_moves, *linear), start
 
-    def _targets(self, g) -> list:
+    def _targets(self, g: Array, point: str = "Fp") -> list[Target]:
         """Where the force goes: on the point in variables, on the surface's node in place."""
-        return [*(sp.Symbol(f"Fp_{axis}") for axis in "xyz"[:self.size]),
+        return [*(sp.Symbol(f"{point}_{axis}") for axis in "xyz"[:self.size]),
                 *(g[at] for at in self.place)]
 
 

@@ -13,7 +13,6 @@ from sebody.derive.formulas import arrays
 from sebody.derive.formulas.frames.frame import FrameOption, origin_stage
 from sebody.derive.formulas.inertia.option import InertiaOption
 from sebody.derive.formulas.kinematics import elastic_rotation_variation, unknown_rules
-from sebody.derive.formulas.pulled_back import left_in_frame_axes
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.kernels.superelement import (
     Superelement,
@@ -21,6 +20,8 @@ from sebody.derive.kernels.superelement import (
     node_formulas,
 )
 from sebody.derive.passes.linearize import Linearizer, along_own
+from sebody.derive.symbolic.rotations import cross
+from sebody.derive.symbolic.variation import check_same, differential
 
 
 def linearized(kernel: Superelement) -> Superelement:
@@ -48,9 +49,19 @@ def node_tangent(planar: bool, frame: FrameOption, inertia: InertiaOption) -> tu
     steps += [*formulas.local.held, _geometric_switch(q), *formulas.frame.differentials,
               *formulas.local.column(chain, tuple(velocities))]
     for step in formulas.after:
-        steps.append(left_in_frame_axes(q, chain, step) if step.role is Role.NODE_FORCE else
+        steps.append(_in_frame_axes(q, chain, step) if step.role is Role.NODE_FORCE else
                      chain.step(step))
     return tuple(steps)
+
+
+def _in_frame_axes(q: Quantities, chain: Linearizer, step: Stage) -> Stage:
+    """Differential of the force on the nodes, rotated into frame axes: what the matrix holds."""
+    R0, h = q.R0.symbols, q.h.symbols
+    short = q.space.d(q.h).symbols + cross(q.dth0.symbols, h)
+    check_same("force on the nodes in frame axes", short,
+               R0.T * differential(step.sets[0][1], chain.rules), [R0])
+    return Stage("differential: force on the nodes, left in frame axes", "position",
+                 sets=((q.space.d(q.gx), short),))
 
 
 def _geometric_switch(q: Quantities) -> Scaling:

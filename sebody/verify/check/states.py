@@ -210,11 +210,11 @@ def evaluate(case: Case, task: int, coefficients: Iterable[float] = (0, 0, 0, 1,
 
 def _in_global_axes(J: NDArray, frame: NDArray, case: Case) -> NDArray:
     """Matrix with positions rotated to global axes, from those of the frame of a superelement."""
-    if not hasattr(case.module, "FRAME"):       # a joint, rigid body or load
+    if case.carriers or not hasattr(case.module, "FRAME"):  # a joint, rigid body, load or contact
         return J
     turn, d = np.eye(len(J)), case.dimension
-    R0 = frame[:9].reshape(3, 3)[:d, :d]
-    for i in case.positions:
+    R0 = frame.reshape(3, 3)[:d, :d]
+    for i in range(0, case.first_rotation, d):
         turn[i:i + d, i:i + d] = R0
     return turn @ J @ turn.T
 
