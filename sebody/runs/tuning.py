@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 
+from sebody.assembly.contracts import counts_of
 from sebody.assembly.evaluation import evaluate
 from sebody.assembly.numbering import Numbering, stretch
 from sebody.contract.layout import RESIDUAL, Row
@@ -23,6 +24,7 @@ from sebody.engine.evaluate import to_body_axes
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.kernels.loader import element_kernel
+from sebody.model.body_points import shapes, start_place
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Element
 from sebody.runs.redundancy import least
@@ -92,7 +94,8 @@ class _Constants:
 
     def __init__(self, element: Element, system: System, numbering: Numbering) -> None:
         kernel = element_kernel(element.kind)
-        self.places = Row(element.name, kernel.CONSTANTS).slices({})
+        counts = {} if element.point is None else counts_of(element.point.body)
+        self.places = Row(element.name, kernel.CONSTANTS).slices(counts)
         self.all, self.first = system.constants, numbering.constants_at[element]
 
     def __setitem__(self, name: str, value: float) -> None:
@@ -111,6 +114,8 @@ def directions(element: Element, numbering: Numbering, state: State) -> list[NDA
     kind = element.kind.removeprefix("planar_")
     places = [t for t in element.dof_blocks if not t.rotational]
     turns = [t for t in element.dof_blocks if t.rotational]
+    if element.point is not None:
+        return [_of_point(element, numbering, state, axis) for axis in np.eye(size)]
     if kind.startswith(("sphere_on", "point_on")):
         return [_pair(numbering, state, places, axis, [axis, axis]) for axis in np.eye(size)]
     if kind.startswith("friction_slide"):
@@ -126,6 +131,20 @@ def directions(element: Element, numbering: Numbering, state: State) -> list[NDA
         return [_turn(numbering, state, turns[:2],
                       np.cross(c["n1"], c["m1"]) if "n1" in c else None)]
     return [_turn(numbering, state, turns, np.cross(c["n"], c["m"]) if "n" in c else None)]
+
+
+def _of_point(element: Element, numbering: Numbering, state: State, axis: NDArray) -> NDArray:
+    """The row of a point inside a body, undeformed as at the start, against the surface's node."""
+    assert element.point is not None
+    row, body = np.zeros(numbering.total), element.point.body
+    by = shapes(element.point) @ axis
+    for one, at in zip(body.attachments, body.firsts, strict=True):
+        size = one.dof_block.start.size
+        _add(row, numbering, state, one.dof_block, by[at:at + size])
+    first = numbering.modes[body.name]
+    row[first:first + body.reduced.modes] = by[len(by) - body.reduced.modes:]
+    _add(row, numbering, state, element.dof_blocks[-2], -axis)
+    return row
 
 
 def _turn(numbering: Numbering, state: State, turns: list[DofBlock], axis: NDArray | None
@@ -145,12 +164,18 @@ def _pair(numbering: Numbering, state: State, dof_blocks: list[DofBlock], axis: 
     """A row that takes the rate of the second DOF block from that of the first."""
     row = np.zeros(numbering.total)
     for dof_block, sign, vector in zip(dof_blocks, (1.0, -1.0), vectors, strict=True):
-        own = dof_block.root if dof_block.root is not None else dof_block
-        row[stretch(numbering, own)] += sign * vector
-        for rotation, arm in dof_block.arms:
-            force = _rotation(numbering, state, rotation).T @ vector    # in axes of the arm
-            row[stretch(numbering, rotation)] += sign * moment_of(arm, force)
+        _add(row, numbering, state, dof_block, sign * vector)
     return row
+
+
+def _add(row: NDArray, numbering: Numbering, state: State, dof_block: DofBlock, vector: NDArray
+         ) -> None:
+    """Add a vector along a DOF block, or along what it follows."""
+    own = dof_block.root if dof_block.root is not None else dof_block
+    row[stretch(numbering, own)] += vector
+    for rotation, arm in dof_block.arms:
+        force = _rotation(numbering, state, rotation).T @ vector    # in axes of the arm
+        row[stretch(numbering, rotation)] += moment_of(arm, force)
 
 
 def _rotation(numbering: Numbering, state: State, dof_block: DofBlock) -> NDArray:
@@ -225,6 +250,8 @@ class LoadedBristles:
         size = len(load.dof_blocks[0].start)
         first = self.numbering.forces_at[load]
         push = -self.state.g[first:first + size]
+        if load.point is not None:
+            return self._touching_inside(load, first)
         places = [t for t in load.dof_blocks if not t.rotational]
         if not np.any(push) or any(t.root is not None for t in places):
             return [], np.zeros((size, 0))
@@ -244,6 +271,25 @@ class LoadedBristles:
                 row[stretch(self.numbering, turn)] += sign * moment
             rows.append(row)
         return rows, _rotation(self.numbering, self.state, turns[-1]).T @ across.T
+
+    def _touching_inside(self, load: Element, first: int) -> tuple[list[NDArray], NDArray]:
+        """The same of a point inside a body: the force on the surface's node is minus its own."""
+        size, carrier = len(load.dof_blocks[-2].start), load.dof_blocks[-2:]
+        at = first + load.firsts[-2]
+        push = self.state.g[at:at + size]
+        if not np.any(push):
+            return [], np.zeros((size, 0))
+        n = push / np.linalg.norm(push)
+        across = np.linalg.svd(n[None])[2][1:]
+        arm = start_place(load.point) - self.state.q[stretch(self.numbering, carrier[0])]
+        rows = []
+        for t in across:
+            row = _of_point(load, self.numbering, self.state, t)
+            moment = (np.atleast_1d(arm[0] * t[1] - arm[1] * t[0]) if size == 2 else
+                      _rotation(self.numbering, self.state, carrier[1]).T @ np.cross(arm, t))
+            row[stretch(self.numbering, carrier[1])] -= moment
+            rows.append(row)
+        return rows, _rotation(self.numbering, self.state, carrier[1]).T @ across.T
 
     def load(self, masses: csc_matrix, solve_again: Callable[..., Any]) -> None:
         """Bend the bristles so that what they hold stays at rest."""

@@ -100,7 +100,7 @@ def place(case: Case) -> float:
 
 def rate(case: Case) -> float:
     """Its rate against differences along a path."""
-    exact = derivative(lambda t: _depth(along_path(case, t)), 0.005)
+    exact = derivative(lambda t: _depth(along_path(case, t)), 0.002)
     return abs(_kept(case, "rate") / exact - 1)
 
 
