@@ -373,13 +373,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         kept_place_3 = references[index[first + AT_FRAME] + 2]
         kept_rate = references[index[first + AT_FRAME] + 3]
         kept_impact = references[index[first + AT_FRAME] + 4]
-        kept_depth = references[index[first + AT_FRAME] + 5]
         kept_bent_1 = references[index[first + AT_FRAME] + 6]
         kept_bent_2 = references[index[first + AT_FRAME] + 7]
         kept_bent_3 = references[index[first + AT_FRAME] + 8]
         kept_slid = references[index[first + AT_FRAME] + 9]
         kept_begun = references[index[first + AT_FRAME] + 10]
-        kept_normal = references[index[first + AT_FRAME] + 11]
         t50 = xa_x - xb_x
         t51 = xa_y - xb_y
         t52 = xa_z - xb_z

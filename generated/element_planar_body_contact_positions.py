@@ -269,17 +269,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Omb_z = ve[n + 2]
         Rb_cos = cos(qe[n + 2])
         Rb_sin = sin(qe[n + 2])
-        thb = qe[n + 2]
         kept_place_1 = references[index[first + AT_FRAME]]
         kept_place_2 = references[index[first + AT_FRAME] + 1]
         kept_rate = references[index[first + AT_FRAME] + 2]
         kept_impact = references[index[first + AT_FRAME] + 3]
-        kept_depth = references[index[first + AT_FRAME] + 4]
         kept_bent_1 = references[index[first + AT_FRAME] + 5]
         kept_bent_2 = references[index[first + AT_FRAME] + 6]
         kept_slid = references[index[first + AT_FRAME] + 7]
         kept_begun = references[index[first + AT_FRAME] + 8]
-        kept_normal = references[index[first + AT_FRAME] + 9]
         t4 = xa_x - xb_x
         t5 = xa_y - xb_y
         t6 = Rb_cos*t4 + Rb_sin*t5

@@ -38,7 +38,7 @@ from sebody.derive.kernels.bodies import (
     read_counts,
 )
 from sebody.derive.kernels.body_contact import BodyContact
-from sebody.derive.kernels.element_form import SUMS, staged, stored
+from sebody.derive.kernels.element_form import SUMS, staged, stored, used_symbols
 from sebody.derive.kernels.layouts import Layout
 from sebody.derive.kernels.memory import Memory, chain
 from sebody.derive.passes.lower import Lowering
@@ -146,7 +146,8 @@ class _Law:
                       (self.rb.angle, angle)]
         found += [(kept(name), ARGUMENTS["references"][_kept_at(k)])
                   for k, (name, _) in enumerate(self.law.memory)]
-        return tuple(Set((s,), (value,)) for s, value in found)
+        used = used_symbols(self.law.printed)
+        return tuple(Set((s,), (value,)) for s, value in found if s in used)
 
     def forces(self, start: int) -> tuple[tuple[Statement, ...], int]:
         """Force on the point and the surface, kept numbers; those of the losses for the energies.

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from sebody.errors import InputError
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import BodyPoint, Superelement
+from sebody.model.parts import BodyPoint, Element, Superelement
 from sebody.reduction.recovery import Recovery
 from sebody.spelling import unknown
 
@@ -79,6 +79,17 @@ def start_place(point: BodyPoint) -> NDArray:
     placed: NDArray = body.nodes[first].point + (
         _recovery(point).points[point.place] - body.reduced.coordinates[first])
     return placed
+
+
+def surface_touched(one: Element) -> tuple[str, dict[str, float | NDArray]]:
+    """The surface that a contact inside a body touches, and the constants of one of a node."""
+    constants = dict(one.constants)
+    e, flat = constants.pop("e"), constants.pop("flat")
+    if flat:
+        return "plane", {"n": e} | {name: value for name, value in constants.items()
+                                    if name not in ("size", "side")}
+    del constants["level"]
+    return ("cylinder", {"e": e} | constants) if np.any(e) else ("sphere", constants)
 
 
 def held_points(body: Superelement) -> NDArray:

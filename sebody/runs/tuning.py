@@ -35,6 +35,7 @@ AT_REST = 1e-9          # rate of a joint at rest, relative to that of the model
 HELD = 1e-12            # acceleration of what is held, relative to that without friction
 MOST = 30               # iterations for the forces at the start
 RESOLVED = 0.1          # angular frequency of teeth in contact, times the step, for the guard
+OPEN = 1e-200           # force of a contact that is open, rounded up
 BEYOND = 2.0            # of the static limit: force of a bristle that is to slide
 
 
@@ -253,9 +254,10 @@ class LoadedBristles:
         if load.point is not None:
             return self._touching_inside(load, first)
         places = [t for t in load.dof_blocks if not t.rotational]
-        if not np.any(push) or any(t.root is not None for t in places):
+        pressing = np.linalg.norm(push)
+        if not pressing > OPEN or any(t.root is not None for t in places):
             return [], np.zeros((size, 0))
-        n = push / np.linalg.norm(push)
+        n = push / pressing
         across = np.linalg.svd(n[None])[2][1:]
         turns = [t for t in load.dof_blocks if t.rotational]
         q = [self.state.q[stretch(self.numbering, t)] for t in places]
@@ -277,9 +279,10 @@ class LoadedBristles:
         size, carrier = len(load.dof_blocks[-2].start), load.dof_blocks[-2:]
         at = first + load.firsts[-2]
         push = self.state.g[at:at + size]
-        if not np.any(push):
+        pressing = np.linalg.norm(push)
+        if not pressing > OPEN:
             return [], np.zeros((size, 0))
-        n = push / np.linalg.norm(push)
+        n = push / pressing
         across = np.linalg.svd(n[None])[2][1:]
         arm = start_place(load.point) - self.state.q[stretch(self.numbering, carrier[0])]
         rows = []
