@@ -207,7 +207,7 @@ def test_a_pinned_block_leans_on_nodes_of_its_face():
         body.centre_of_mass - pin, weight)
     assert pressing.sum() > 0.4 * np.linalg.norm(weight)
     assert np.abs(moment).max() < 1e-2 * np.abs(np.cross(body.centre_of_mass - pin, weight)).max()
-    for label, place, push in zip(FEET, feet, pressing, strict=True):
+    for place, push in zip(feet, pressing, strict=True):
         depth = max(2e-4 - place @ TURN[:, 2], 0.0)
         assert push == pytest.approx(1e5 * depth, abs=1.0)
     result = simulate(model, 1e-3, 0.05, start=found)
