@@ -21,7 +21,7 @@ def body_point(model: Mechanism, name: object, what: str) -> BodyPoint | None:
     Raises
     ------
     InputError
-        A body that knows no FE nodes or not this one, or whose frame averages increments.
+        A body without FE nodes or without this one, or whose frame averages increments.
     """
     if not isinstance(name, str) or NODE not in name or name in model.nodes:
         return None
