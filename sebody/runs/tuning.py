@@ -24,11 +24,11 @@ from sebody.engine.evaluate import to_body_axes
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.kernels.loader import element_kernel
-from sebody.model.body_points import shapes, start_place
+from sebody.model.body_points import start_place
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import DofBlock, Element
+from sebody.model.parts import Element
+from sebody.runs.directions import directions, of_point, pair, rotation_of
 from sebody.runs.redundancy import least
-from sebody.vectors import moment_of
 
 STILL = 1e-9            # of the mobility of the parts alone: that of what a drive moves
 AT_REST = 1e-9          # rate of a joint at rest, relative to that of the model
@@ -104,88 +104,6 @@ class _Constants:
 
     def __getitem__(self, name: str) -> float:
         return float(self.all[self.first + self.places[name].start])
-
-
-def directions(element: Element, numbering: Numbering, state: State) -> list[NDArray]:
-    """Directions of an element's measures among all coordinates: rates are ``row . v``.
-
-    Of contacts the axes of space at its nodes: of the centre against the surface.
-    """
-    c, size = element.constants, len(element.dof_blocks[0].start)
-    kind = element.kind.removeprefix("planar_")
-    places = [t for t in element.dof_blocks if not t.rotational]
-    turns = [t for t in element.dof_blocks if t.rotational]
-    if element.point is not None:
-        return [_of_point(element, numbering, state, axis) for axis in np.eye(size)]
-    if kind.startswith(("sphere_on", "point_on")):
-        return [_pair(numbering, state, places, axis, [axis, axis]) for axis in np.eye(size)]
-    if kind.startswith("friction_slide"):
-        return [_slide(numbering, state, places, turns[0], element.vector("e"))]
-    if kind.startswith("friction_cylindrical"):
-        return [_slide(numbering, state, places, turns[0], element.vector("e")),
-                c["radius"] * _turn(numbering, state, turns, np.cross(c["n"], c["m"]))]
-    if kind.startswith("friction_spherical"):
-        Ra, Rb = (_rotation(numbering, state, t) for t in turns)
-        return [_pair(numbering, state, turns, axis, [Ra.T @ Rb @ axis, axis])
-                for axis in np.eye(3)]
-    if kind == "gear_play":
-        return [_turn(numbering, state, turns[:2],
-                      np.cross(c["n1"], c["m1"]) if "n1" in c else None)]
-    return [_turn(numbering, state, turns, np.cross(c["n"], c["m"]) if "n" in c else None)]
-
-
-def _of_point(element: Element, numbering: Numbering, state: State, axis: NDArray) -> NDArray:
-    """The row of a point inside a body, undeformed as at the start, against the surface's node."""
-    assert element.point is not None
-    row, body = np.zeros(numbering.total), element.point.body
-    by = shapes(element.point) @ axis
-    for one, at in zip(body.attachments, body.firsts, strict=True):
-        size = one.dof_block.start.size
-        _add(row, numbering, state, one.dof_block, by[at:at + size])
-    first = numbering.modes[body.name]
-    row[first:first + body.reduced.modes] = by[len(by) - body.reduced.modes:]
-    _add(row, numbering, state, element.dof_blocks[-2], -axis)
-    return row
-
-
-def _turn(numbering: Numbering, state: State, turns: list[DofBlock], axis: NDArray | None
-          ) -> NDArray:
-    axis = np.ones(1) if axis is None else axis
-    return _pair(numbering, state, turns, axis, [axis, axis])
-
-
-def _slide(numbering: Numbering, state: State, places: list[DofBlock], carrier: DofBlock,
-           e: NDArray) -> NDArray:
-    along = _rotation(numbering, state, carrier) @ e
-    return _pair(numbering, state, places[::-1], along, [along, along])
-
-
-def _pair(numbering: Numbering, state: State, dof_blocks: list[DofBlock], axis: NDArray,
-          vectors: list[NDArray]) -> NDArray:
-    """A row that takes the rate of the second DOF block from that of the first."""
-    row = np.zeros(numbering.total)
-    for dof_block, sign, vector in zip(dof_blocks, (1.0, -1.0), vectors, strict=True):
-        _add(row, numbering, state, dof_block, sign * vector)
-    return row
-
-
-def _add(row: NDArray, numbering: Numbering, state: State, dof_block: DofBlock, vector: NDArray
-         ) -> None:
-    """Add a vector along a DOF block, or along what it follows."""
-    own = dof_block.root if dof_block.root is not None else dof_block
-    row[stretch(numbering, own)] += vector
-    for rotation, arm in dof_block.arms:
-        force = _rotation(numbering, state, rotation).T @ vector    # in axes of the arm
-        row[stretch(numbering, rotation)] += moment_of(arm, force)
-
-
-def _rotation(numbering: Numbering, state: State, dof_block: DofBlock) -> NDArray:
-    """Rotation matrix of a DOF block in space; in a plane (2, 2)."""
-    if dof_block in numbering.rotations:
-        k = numbering.rotations[dof_block]
-        return state.R[9 * k:9 * k + 9].reshape(3, 3)
-    angle = state.q[numbering.dof_blocks[dof_block]]
-    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
 def unbend(model: Mechanism, numbering: Numbering, state: State) -> None:
@@ -264,15 +182,15 @@ class LoadedBristles:
         point = q[0] - constants["radius"] * n
         rows = []
         for t in across:
-            row = _pair(self.numbering, self.state, places, t, [t, t])
+            row = pair(self.numbering, self.state, places, t, [t, t])
             for turn, centre, sign in zip(turns, q[-len(turns):], (1.0, -1.0)[-len(turns):],
                                           strict=True):
                 arm = point - centre
                 moment = (np.atleast_1d(arm[0] * t[1] - arm[1] * t[0]) if size == 2 else
-                          _rotation(self.numbering, self.state, turn).T @ np.cross(arm, t))
+                          rotation_of(self.numbering, self.state, turn).T @ np.cross(arm, t))
                 row[stretch(self.numbering, turn)] += sign * moment
             rows.append(row)
-        return rows, _rotation(self.numbering, self.state, turns[-1]).T @ across.T
+        return rows, rotation_of(self.numbering, self.state, turns[-1]).T @ across.T
 
     def _touching_inside(self, load: Element, first: int) -> tuple[list[NDArray], NDArray]:
         """The same of a point inside a body: the force on the surface's node is minus its own."""
@@ -287,12 +205,12 @@ class LoadedBristles:
         arm = start_place(load.point) - self.state.q[stretch(self.numbering, carrier[0])]
         rows = []
         for t in across:
-            row = _of_point(load, self.numbering, self.state, t)
+            row = of_point(load, self.numbering, self.state, t)
             moment = (np.atleast_1d(arm[0] * t[1] - arm[1] * t[0]) if size == 2 else
-                      _rotation(self.numbering, self.state, carrier[1]).T @ np.cross(arm, t))
+                      rotation_of(self.numbering, self.state, carrier[1]).T @ np.cross(arm, t))
             row[stretch(self.numbering, carrier[1])] -= moment
             rows.append(row)
-        return rows, _rotation(self.numbering, self.state, carrier[1]).T @ across.T
+        return rows, rotation_of(self.numbering, self.state, carrier[1]).T @ across.T
 
     def load(self, masses: csc_matrix, solve_again: Callable[..., Any]) -> None:
         """Bend the bristles so that what they hold stays at rest."""
