@@ -30,7 +30,7 @@ from sebody.verify.check.states import (
     index_row,
     with_constants,
 )
-from sebody.verify.check.superelements import Nodes, nodes_of, placed_case
+from sebody.verify.check.superelement_cases import Nodes, nodes_of, placed_case
 
 FRAME = 9       # numbers of the frame, before those that the contact keeps
 SURFACES = ("plane", 1.0), ("round", 0.0)   # with values of the constant `flat`
