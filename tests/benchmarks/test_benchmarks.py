@@ -290,3 +290,12 @@ def test_contributions_are_compared_with_runs(capsys):
     found = json.loads(capsys.readouterr().out)
     assert found["summary"]["all"] == {"count": len(found["rows"]), "within": 1.0}
     assert {row["change"] for row in found["rows"]} >= {"rigid", "without modes"}
+
+
+def test_row_exchanges_are_compared_with_superlu(monkeypatch, capsys):
+    bench = imported("bench_row_exchanges")
+    monkeypatch.setattr(bench, "MODELS", {"chain": bench.MODELS["chain of 8"]})
+    bench.main(["--json", "--pairs", "2"])
+    found = json.loads(capsys.readouterr().out)["chain"]
+    assert found["unknowns"] == 120 and found["entries"][0] <= found["entries"][1]
+    assert max(found["errors"]) < 1e-14
