@@ -152,7 +152,7 @@ class Differentiated:
         self.history: History = history(self.run, t_end, met)
         self.run.watch.look(model, self.run.numbering, self.history.states)
         self.linear = Linear(self.run)
-        self.course = Course(self.linear, self.run.scheme, self.history)
+        self.course = Course(self.run, self.linear, self.history)
         self.course.settle()
 
 
@@ -205,7 +205,7 @@ def _adjoint(one: Differentiated, seen: Seen, slopes: Slopes, columns: Sequence[
             found[:, k] = whole[column.name][:, column.component]
             continue
         slope = slopes.of(column)
-        found[:, k] = (np.einsum("enm,en->m", bars.weights, slope.residuals)
+        found[:, k] = (np.einsum("emn,en->m", bars.weights, slope.residuals)
                        + bars.motion.T @ slope.motion + bars.rates.T @ slope.rates
                        + slope.objectives)
     return found, _growth(bars.sizes)
@@ -227,12 +227,10 @@ def _forward(one: Differentiated, seen: Seen, slopes: Slopes, columns: Sequence[
     sizes = np.zeros((len(one.history.rows), len(columns)))
     extent = one.linear.system.magnitude[:one.linear.free, None]
 
-    def see(event: int, xi: NDArray, v: NDArray, a: NDArray) -> None:
-        sizes[event] = np.abs(xi * extent).max(axis=0)
-        seed = seen.at(event)
-        if seed is not None:
-            for bar, of in zip(seed, (xi, v, a), strict=True):
-                found[:] += bar.T @ of
+    def see(first: int, states: NDArray) -> None:
+        sizes[first:first + len(states)] = np.abs(states[:, 0] * extent).max(axis=1)
+        seeds, seeded = seen.of_events(first, first + len(states) - 1)
+        found[:] += np.einsum("emcn,ecnp->mp", seeds[seeded], states[seeded])
     forward(one.course, *stacked(each), see)
     return found, _growth_forth(sizes)
 

@@ -36,7 +36,7 @@ class OfTable(NamedTuple):
 
     def contracted(self, bars: NDArray) -> NDArray:
         """``sum w . r_p`` by all values, (m, rows), of the weights of a sweep back."""
-        return np.einsum("enm,en->me", bars, self.residuals) @ self.weights
+        return np.einsum("emn,en->me", bars, self.residuals) @ self.weights
 
 
 def port_of(model: Model, run: Simulation, column: Column) -> int | None:
