@@ -11,7 +11,8 @@ from sebody.gradients.history import History
 from sebody.gradients.linear import Linear
 from sebody.gradients.products import Products
 
-FINEST = 1e-13          # corrections of solutions, relative: rounding of products
+FINE = 1e-12            # tolerance of runs whose steps are refined to rounding
+ROUNDING = 1e-15
 
 
 class Refined:
@@ -35,11 +36,11 @@ class Refined:
                  columns: int, back: bool, places: NDArray, redundant: bool):
         self.linear, self.products, self.history = linear, products, history
         self.back, self.redundant, n = back, redundant, linear.free
-        self.columns = steps.Columns.of(columns, n, places, max(scheme.tolerance, FINEST))
+        self.columns = steps.Columns.of(
+            columns, n, places, scheme.tolerance if scheme.tolerance > FINE else ROUNDING)
         self.numbers = (scheme.alpha_m, scheme.alpha_f, scheme.beta, scheme.gamma,
                         float(history.ends[-1]))
         self.scales: dict[float, Scales] = {}
-        self.whole = np.zeros((n, n))
 
     def begin(self, motion: tuple[NDArray, ...]) -> None:
         """Columns (n, m) of motion, rates, second and auxiliary rates; what was before is no guide.
@@ -81,27 +82,30 @@ class Refined:
             begin, end = (begin, at) if self.back else (at, end)
 
     def _invert(self, event: int) -> None:
-        """The inverse of the matrix of a step."""
+        """The inverse of the matrix of a step, or of its transpose."""
         found, columns, h = self.history, self.columns, float(self.history.steps[event])
         am, af, b, g, _ = self.numbers
-        if steps.put(self.linear.system, self.linear.state, self.products, columns,
-                     found.rows[event], found.ends[event], found.besides[event]):
+        made = self.linear.system, self.linear.state, self.products, columns
+        if steps.put(*made, found.rows[event], found.ends[event], found.besides[event]):
             raise InputError(f"the state at t = {found.ends[event]:.6g} has no derivatives")
-        steps.matrix(self.linear.system, self.linear.state, self.products, columns,
-                     (1 - am) / ((1 - af) * b * h**2), g / (b * h), self.back, self.whole)
+        numbers = (1 - am) / ((1 - af) * b * h**2), g / (b * h), self.back
         if h not in self.scales:
-            self.scales[h] = Scales(self.whole)
-        rows, of_columns = self.scales[h].rows, self.scales[h].columns
-        scaled = rows[:, None] * self.whole * of_columns
-        invert = np.linalg.inv if not self.redundant else _least
-        columns.inverse[:] = of_columns[:, None] * invert(scaled) * rows
-        columns.scale[:] = 1.0 / of_columns
+            steps.matrix(*made, *numbers, columns.inverse)
+            self.scales[h] = Scales(columns.inverse)
+        columns.rows[:], columns.scale[:] = self.scales[h].rows, 1.0 / self.scales[h].columns
+        if self.redundant:
+            steps.matrix(*made, *numbers, columns.inverse)
+            columns.inverse[:] = self._least(columns.inverse, h)
+        elif not steps.invert_now(*made, *numbers):
+            raise InputError(f"the matrix of the step to t = {found.ends[event]:.6g} is singular, "
+                             "so the run has no gradient there")
         columns.length[0] = h
         counts = columns.counts
         counts[steps.INVERSES] += 1
         counts[steps.SPENT], counts[steps.FRESH] = 0, 1
 
-
-def _least(A: NDArray) -> NDArray:
-    """Of least solutions where constraints are redundant."""
-    return np.linalg.pinv(A, rcond=REDUNDANT)
+    def _least(self, A: NDArray, h: float) -> NDArray:
+        """Gives least solutions where constraints are redundant."""
+        rows, columns = self.scales[h].rows, self.scales[h].columns
+        scaled = np.linalg.pinv(rows[:, None] * A * columns, rcond=REDUNDANT)
+        return columns[:, None] * scaled * rows

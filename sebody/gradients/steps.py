@@ -17,6 +17,7 @@ from sebody.compiler.decorators import compiled
 from sebody.contract.layout import OK
 from sebody.engine.arrays import Arrays
 from sebody.engine.evaluate import set_loads_beside, to_body_axes
+from sebody.engine.inverse import invert
 from sebody.engine.links import place_dependent
 from sebody.gradients.products import along, prepare, transposed
 from sebody.kernels.rotations import exp_map, tangent_operator
@@ -43,7 +44,8 @@ class Columns(Arrays):
     last        (3, m, n) solutions of the events before, newest first, in axes of frames
     now         (m, n) that of the event at hand
     inverse     (n, n) of the matrix of a step or of its transpose, in axes of frames
-    scale       (n,) sizes of the unknowns of the equation
+    rows        (n,) factors of the rows of the matrix that make its entries about one
+    scale       (n,) sizes of the unknowns of the equation: of the columns likewise, inverse
     right       (n,) right side, then residual
     change      (n,) vector that is multiplied, or correction
     product     (n,)
@@ -62,6 +64,7 @@ class Columns(Arrays):
     last: NDArray
     now: NDArray
     inverse: NDArray
+    rows: NDArray
     scale: NDArray
     right: NDArray
     change: NDArray
@@ -78,7 +81,7 @@ class Columns(Arrays):
         """All zero."""
         r = len(places)
         return cls(*(np.zeros(shape) for shape in (
-            (4, m, n), (3, m, n), (3, m, n), (3, m, n), (m, n), (n, n), n, n, n, n)),
+            (4, m, n), (3, m, n), (3, m, n), (3, m, n), (m, n), (n, n), n, n, n, n, n)),
             np.ascontiguousarray(places, dtype=np.int64), np.zeros((r, 9)), np.zeros((r, 9)),
             np.zeros(5, dtype=np.int64), np.array([tolerance]), np.zeros(1))
 
@@ -124,6 +127,22 @@ def matrix(system, state, products, columns, cm, cd, back, found):
         _multiply(system, state, products, columns, 0, cm, cd, back)
         for k in range(n):
             found[k, i] = columns.product[k]
+
+
+@compiled
+def invert_now(system, state, products, columns, cm, cd, back):
+    """The inverse of the matrix of the step that is put, with known scales; False if singular."""
+    A, n = columns.inverse, columns.right.size
+    matrix(system, state, products, columns, cm, cd, back, A)
+    for i in range(n):
+        for j in range(n):
+            A[i, j] *= columns.rows[i] / columns.scale[j]
+    if not invert(A):
+        return False
+    for i in range(n):
+        for j in range(n):
+            A[i, j] *= columns.rows[j] / columns.scale[i]
+    return True
 
 
 @compiled
