@@ -56,6 +56,8 @@ class Gradient:
         Of the whole, run included.
     run_seconds : float
         Of the run alone.
+    sweep_seconds : float
+        Of the recursion back, or forth.
     """
 
     value: NDArray
@@ -65,6 +67,7 @@ class Gradient:
     growth: float = float("nan")
     seconds: float = 0.0
     run_seconds: float = 0.0
+    sweep_seconds: float = 0.0
 
     def __repr__(self) -> str:
         return f"<Gradient of {len(self.rows)} values by {len(self.columns)} numbers>"
@@ -154,6 +157,7 @@ class Differentiated:
         self.linear = Linear(self.run)
         self.course = Course(self.run, self.linear, self.history)
         self.course.settle()
+        self.sweep_seconds = 0.0
 
 
 def differentiate(model: Model, h: float, t_end: float, outputs: Mapping[str, Output],
@@ -173,7 +177,7 @@ def differentiate(model: Model, h: float, t_end: float, outputs: Mapping[str, Ou
              "the motion is unstable or chaotic, and its derivatives hold in a range as small; "
              "shorten the run, or take objectives over a shorter time", LimitWarning, stacklevel=3)
     return Gradient(seen.value, matrix, tuple(seen.labels), tuple(c.label for c in columns),
-                    growth, time.perf_counter() - began, one.history.seconds)
+                    growth, time.perf_counter() - began, one.history.seconds, one.sweep_seconds)
 
 
 Tables = Mapping[str, OfTable]
@@ -197,7 +201,9 @@ def _tables(one: Differentiated, outputs: Mapping[str, Output], slopes: Slopes,
 def _adjoint(one: Differentiated, seen: Seen, slopes: Slopes, columns: Sequence[Column],
              tables: Tables) -> tuple[NDArray, float]:
     """One sweep back, then a sum over the events for every parameter: (16)."""
+    began = time.perf_counter()
     bars = backward(one.course, seen, len(seen.value))
+    one.sweep_seconds = time.perf_counter() - began
     whole = {name: table.contracted(bars.weights) for name, table in tables.items()}
     found = np.zeros((len(seen.value), len(columns)))
     for k, column in enumerate(columns):
@@ -231,7 +237,9 @@ def _forward(one: Differentiated, seen: Seen, slopes: Slopes, columns: Sequence[
         sizes[first:first + len(states)] = np.abs(states[:, 0] * extent).max(axis=1)
         seeds, seeded = seen.of_events(first, first + len(states) - 1)
         found[:] += np.einsum("emcn,ecnp->mp", seeds[seeded], states[seeded])
-    forward(one.course, *stacked(each), see)
+    given, began = stacked(each), time.perf_counter()
+    forward(one.course, *given, see)
+    one.sweep_seconds = time.perf_counter() - began
     return found, _growth_forth(sizes)
 
 
