@@ -185,16 +185,16 @@ Tables = Mapping[str, OfTable]
 
 def _tables(one: Differentiated, outputs: Mapping[str, Output], slopes: Slopes,
             columns: Sequence[Column]) -> dict[str, OfTable]:
-    """Tables of loads by name, where objectives look at motion alone."""
+    """Tables and amplitudes of loads by name, where objectives look at motion alone."""
     found: dict[str, OfTable] = {}
     if not all(form.kinematic for form in forms(one.run, outputs).values()):
         return found
-    for column in columns:
+    for column in {column.name: column for column in columns}.values():
         port = port_of(slopes.model, one.run, column)
-        if port is not None and column.name not in found:
-            size = max(float(np.abs(column.handle.base).max()), 1.0)
-            found[column.name] = OfTable(slopes.by_load(port, size),
-                                         weights(slopes.model, column, one.history))
+        if port is not None:
+            residuals, values = slopes.by_load(port)
+            found[column.name] = OfTable(residuals, weights(slopes.model, column, one.history,
+                                                            values))
     return found
 
 
