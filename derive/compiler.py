@@ -79,8 +79,8 @@ def compile_kernel(kernel: Variant | Products | str, shipped: bool = True) -> st
     Parameters
     ----------
     kernel : Variant, Products or str
-        A superelement, products, or the name of a joint, rigid body, load or motion. The matrix of a
-        load on a body is derived with its force; motions have none.
+        A superelement, products, or the name of a joint, rigid body, load or motion. The matrix of
+        a load on a body is derived with its force; motions have none.
     shipped : bool
         The file goes with the package; else it carries a hash of the functions that it calls.
 

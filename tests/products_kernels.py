@@ -3,11 +3,12 @@
 import numpy as np
 from plain_kernels import evaluated, executed
 
-from sebody.contract.layout import ALONG, OK, PREPARE, RESIDUAL, TANGENT, TRANSPOSED, whole_vectors
+from sebody.contract.counts import whole_vectors
+from sebody.contract.layout import ALONG, OK, PREPARE, RESIDUAL, TANGENT, TRANSPOSED
 from sebody.derive.compiler import Products, Variant, compile_kernel, statements_of
 from sebody.verify.check.elements import element_case
 from sebody.verify.check.states import arguments, scratch
-from sebody.verify.check.superelements import superelement_case
+from sebody.verify.check.superelement_cases import superelement_case
 
 ROUNDING = 1e-12        # of the largest entry: both sum some hundred terms, in other orders
 FACTORS = (0, 0, 1, 1, 1), (0, 1, 0, 1, 0), (1, 0, 0, 1, 0)     # of K, C and M

@@ -19,7 +19,7 @@ from collections.abc import Iterable, Mapping
 
 import sympy as sp
 
-from sebody.contract.layout import MARGIN, whole_vectors
+from sebody.contract.counts import MARGIN, whole_vectors
 from sebody.contract.names import element_name, products_name
 from sebody.derive.form import counts
 from sebody.derive.form.arrays import Array, pointed

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.axes import in_frames
 from sebody.compiler.decorators import compiled
+from sebody.contract.counts import scratch_size, whole_vectors
 from sebody.contract.layout import (
     ALONG,
     AT_FRAME,
@@ -24,8 +25,6 @@ from sebody.contract.layout import (
     OK,
     PREPARE,
     TRANSPOSED,
-    scratch_size,
-    whole_vectors,
 )
 from sebody.engine.arrays import Arrays
 from sebody.engine.evaluate import sum_forces

@@ -4,7 +4,7 @@ from numba import types
 from numba.extending import intrinsic
 
 from sebody.compiler.decorators import compiled
-from sebody.contract.layout import LANES
+from sebody.contract.counts import LANES
 from sebody.kernels.abi import at, padded
 from sebody.kernels.instructions import (
     FLOATS,

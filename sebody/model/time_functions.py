@@ -84,31 +84,31 @@ class TimeFunction:
         starts = np.array(self.times)
         row = np.maximum(np.searchsorted(starts, times, side="right") - 1, 0)
         x = np.maximum(times - starts[row], 0.0)
-        found = (self.polynomials()[row] * x[:, None]**np.arange(COEFFICIENTS)).sum(axis=1)
+        totals = (self.polynomials()[row] * x[:, None]**np.arange(COEFFICIENTS)).sum(axis=1)
         if self.waves:
             A, w, p = np.array(self.waves)[row].T
-            found += A * np.sin(w * x + p)
-        return found
+            totals += A * np.sin(w * x + p)
+        return totals
 
     def polynomials(self) -> NDArray:
         """Coefficients of all pieces, (pieces, COEFFICIENTS)."""
-        found = np.zeros((len(self.pieces), COEFFICIENTS))
+        rows = np.zeros((len(self.pieces), COEFFICIENTS))
         if len(sizes := set(map(len, self.pieces))) == 1:       # as of tables, of thousands
-            found[:, :sizes.pop()] = self.pieces
-            return found
-        for row, coefficients in zip(found, self.pieces, strict=True):
+            rows[:, :sizes.pop()] = self.pieces
+            return rows
+        for row, coefficients in zip(rows, self.pieces, strict=True):
             row[:len(coefficients)] = coefficients
-        return found
+        return rows
 
     def of_piece(self, k: int, t: float) -> NDArray:
         """Value and two rates of a piece, also outside its interval."""
         x = t - self.times[k]
-        found = _with_rates(self.pieces[k], x)
+        values = _with_rates(self.pieces[k], x)
         if self.waves:
             A, w, p = self.waves[k]
             s, c = sin(w * x + p), cos(w * x + p)
-            found += A * np.array([s, w * c, -w * w * s])
-        return found
+            values += A * np.array([s, w * c, -w * w * s])
+        return values
 
     def described(self) -> str:
         """What it is, in a few words."""
@@ -153,14 +153,14 @@ class TimeFunction:
             half = half * x + rate
             rate = rate * x + value
             value = value * x + c
-        found = np.stack([value, rate, 2.0 * half], axis=1)
+        values = np.stack([value, rate, 2.0 * half], axis=1)
         if self.waves:
             A, w, p = np.array(self.waves)[pieces].T
             s, c = (np.ones_like(x), np.ones_like(x)) if sums else (np.sin(w * x + p),
                                                                     np.cos(w * x + p))
             of_waves = np.stack([A * s, A * w * c, -A * w * w * s], axis=1)
-            found += np.abs(of_waves) if sums else of_waves
-        return found
+            values += np.abs(of_waves) if sums else of_waves
+        return values
 
     def abrupt(self, rate: int) -> list[float]:
         """Times after the start at which the value jumps (0), or its first or second rate (2)."""

@@ -5,7 +5,8 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.contract.layout import ALONG, PREPARE, RESIDUAL, TANGENT, TRANSPOSED, whole_vectors
+from sebody.contract.counts import whole_vectors
+from sebody.contract.layout import ALONG, PREPARE, RESIDUAL, TANGENT, TRANSPOSED
 from sebody.contract.names import PRODUCTS, SUPERELEMENT
 from sebody.errors import InputError
 from sebody.kernels.abi import Arguments
@@ -13,7 +14,7 @@ from sebody.kernels.loader import load
 from sebody.verify.check.body_loads import body_load_case
 from sebody.verify.check.elements import element_case
 from sebody.verify.check.states import STATES, Case, CheckRow, arguments, called, scratch
-from sebody.verify.check.superelements import nodes_of, superelement_case
+from sebody.verify.check.superelement_cases import nodes_of, superelement_case
 
 LIMIT = 1e-12       # of the largest entry: both sum some hundred terms, in other orders
 PARTS = (0, 0, 1, 1, 1), (0, 1, 0, 1, 0), (1, 0, 0, 1, 0)      # coefficients that leave K, C, M
