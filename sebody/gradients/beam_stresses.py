@@ -131,9 +131,10 @@ class StressedBeam:
         found = np.zeros((3, len(events), *none.shape))
         wanted = {int(one.history.recorded[k]): i for i, k in enumerate(events)}
 
-        def see(event: int, xi: NDArray, v: NDArray, a: NDArray) -> None:
-            if event in wanted:
-                found[:, wanted[event]] = xi, v, a
+        def see(first: int, states: NDArray) -> None:
+            for event, state in enumerate(states, first):
+                if event in wanted:
+                    found[:, wanted[event]] = state
         forward(one.course, residuals, none, none, see)
         return coefficients, sum(by @ of for by, of in zip(self._by_motion(events), found,
                                                            strict=True))

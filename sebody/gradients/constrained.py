@@ -72,7 +72,8 @@ class Sweep:
         """The whole sweep; `see` is given the number of every event, and what changes there."""
         shape = self.linear.free, len(self.models)
         xi, v, a, aux = (np.zeros(shape) for _ in range(4))
-        for event in self.course.events(backwards=False):
+        for k in range(len(self.course.history.rows)):
+            event = self.course.event(k)
             lost = self._lost()
             if event.turns is None:
                 xi, v, a, mu = self._restart(event, lost, xi, v)
