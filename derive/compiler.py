@@ -6,6 +6,8 @@ from typing import Any, NamedTuple
 from sebody.contract.names import element_name, products_name, superelement_name
 from sebody.derive.form.kernel import Kernel
 from sebody.derive.formulas import elements
+from sebody.derive.kernels.body_contact import BODY_CONTACTS, body_contact_kernel
+from sebody.derive.kernels.body_contact_form import body_contact_form
 from sebody.derive.kernels.body_load import BODY_LOADS, body_load_kernel
 from sebody.derive.kernels.body_load_form import body_load_form
 from sebody.derive.kernels.catalogue import ELEMENTS
@@ -19,6 +21,7 @@ from sebody.derive.kernels.superelement import superelement
 from sebody.derive.kernels.superelement_form import superelement_form
 from sebody.derive.printing.numba.files import Head, file_text
 from sebody.derive.printing.numba.heads import (
+    body_contact_head,
     body_load_head,
     element_head,
     motion_head,
@@ -59,6 +62,8 @@ SUPERELEMENT = Stages(
     lambda v: superelement(Layout.parse(v.layout), v.frame, v.inertia), linearized,
     superelement_form, superelement_head,
     lambda v: superelement_name(Layout.parse(v.layout).name, v.frame, v.inertia))
+BODY_CONTACT = Stages(body_contact_kernel, _same, body_contact_form, body_contact_head,
+                      element_name)
 BODY_LOAD = Stages(body_load_kernel, _same, body_load_form, body_load_head, element_name)
 ELEMENT = Stages(lambda name: ELEMENTS[name](), elements.linearized, element_form, element_head,
                  element_name)
@@ -108,6 +113,8 @@ def stages_of(kernel: Variant | Products | str) -> Stages:
         return _of_products(kernel)
     if isinstance(kernel, Variant):
         return SUPERELEMENT
+    if kernel in BODY_CONTACTS:
+        return BODY_CONTACT
     return MOTION if kernel in MOTIONS else BODY_LOAD if kernel in BODY_LOADS else ELEMENT
 
 

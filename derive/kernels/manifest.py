@@ -5,6 +5,7 @@ compiler sees all of its arithmetic. The formulas are derived once for each and 
 sources add, and files multiply no further than this table; any other combination is made on demand.
 """
 
+from sebody.derive.kernels.body_contact import BODY_CONTACTS
 from sebody.derive.kernels.body_load import BODY_LOADS
 from sebody.derive.kernels.catalogue import ELEMENTS as CATALOGUE
 from sebody.derive.kernels.catalogue import SMOOTH
@@ -58,7 +59,7 @@ SUPERELEMENTS = (
     ("planar-any", "converged_mean", "rigid_part"),
     ("planar-any", "positions", "rigid_part"),
 )
-ELEMENTS = (*CATALOGUE, *BODY_LOADS, *MOTIONS)
+ELEMENTS = (*CATALOGUE, *BODY_LOADS, *BODY_CONTACTS, *MOTIONS)
 
 # with products of their derivatives, of which gradients of runs are made: general superelements and
 # the layouts of beams, others take these; no laws, nor frames that depend on the steps before

@@ -22,6 +22,11 @@ def body_load_kind(frame: str, planar: bool) -> str:
     return IN_PLANE * planar + f"body_load_{frame}"
 
 
+def body_contact_kind(frame: str, planar: bool) -> str:
+    """Kind of a contact of a point inside a body with this frame."""
+    return IN_PLANE * planar + f"body_contact_{frame}"
+
+
 def motion_name(frame: str, planar: bool) -> str:
     """The kernel of the motion of bodies with a frame: its place, local coordinates, rates."""
     return MOTION + IN_PLANE * planar + frame

@@ -11,6 +11,7 @@ from sebody.contract.names import MOTION, PRODUCTS, SUPERELEMENT
 from sebody.kernels.loader import load
 from sebody.runs.first_run import compile_missing
 from sebody.spelling import unknown
+from sebody.verify.check.body_contacts import check_body_contact
 from sebody.verify.check.body_loads import check_body_load
 from sebody.verify.check.elements import check_element
 from sebody.verify.check.motions import check_motion
@@ -42,6 +43,7 @@ def check_kernels(names: Iterable[str] | None = None) -> list[CheckRow]:
         check = (check_superelement if name.startswith(SUPERELEMENT) else
                  check_products if name.startswith(PRODUCTS) else
                  check_motion if name.startswith(MOTION) else
+                 check_body_contact if hasattr(module, "CARRIERS") else
                  check_body_load if hasattr(module, "FRAME") else check_element)
         rows += check(name, module)
     return rows
