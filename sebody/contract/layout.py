@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 LANES = 4           # columns of a body's matrices are padded to whole vectors of so many
+MEMBERS = 8         # of an ensemble that are evaluated at a time, see `sebody.engine.lanes`
 
 # tasks of a kernel; VELOCITY and ACCELERATION are the constraints differentiated in time
 RESIDUAL, TANGENT, ENERGY, VELOCITY, ACCELERATION = range(5)

@@ -12,6 +12,7 @@ from llvmlite import binding
 from numba import types
 
 from sebody.compiler.inside.cache import FunctionCache
+from sebody.compiler.inside.lanes import takes_lanes
 from sebody.compiler.inside.lookups import Lowering, TypeInference
 from sebody.compiler.inside.names import (
     AnnotateTypes,
@@ -157,13 +158,18 @@ class Function(CPUDispatcher):
         self.callee = Callee(function, options, made_from)
         # constants make kernels faster; elsewhere they come with the code that callers take in
         self._specialized = in_room(function, KERNELS)
+        self.in_lanes: Function | None = None       # what is called with lanes in its place
 
     def get_call_template(self, args, kws):
         """For Numba: the signature of a call in a compiled function."""
+        if self.in_lanes is not None and takes_lanes(args):
+            return self.in_lanes.get_call_template(args, kws)
         if not self._specialized:
             args = [types.unliteral(kind) for kind in args]
         return self.callee.get_call_template(args, kws)
 
     def get_overload(self, sig):
         """For Numba: the function of a signature, for its callers."""
+        if self.in_lanes is not None and takes_lanes(sig):
+            return self.in_lanes.get_overload(sig)
         return self.callee.get_overload(sig)

@@ -2,12 +2,14 @@
 
 from collections.abc import Callable, Iterable
 
-from numba import types
+import numpy as np
+from numba import from_dtype, types
 from numba.extending import infer_getattr, intrinsic, lower_getattr_generic
 
 from sebody.compiler.code import Code, bitcode
-from sebody.compiler.inside.cache import FunctionCache, is_kept
+from sebody.compiler.inside.cache import FunctionCache, LanesCache, is_kept
 from sebody.compiler.inside.callees import Callee, Function
+from sebody.compiler.inside.lanes import NUMPY_KIND, RecordOfLanes, lanes
 from sebody.compiler.inside.names import (
     AttributeTemplate,
     CFunc,
@@ -19,7 +21,8 @@ from sebody.compiler.inside.pipeline import KernelPasses
 
 __all__ = ["SLOWER", "address", "code_of", "compile_for", "function", "function_code",
            "guarded", "is_compiled", "is_kept", "kernel", "kernel_code", "part_of_callers",
-           "processor", "show_members"]
+           "processor", "show_members",
+           "type_of"]
 
 SLOWER = 1.0        # compilation, compared with this way
 _shown = set()      # types whose members are shown
@@ -34,6 +37,14 @@ def kernel(function: Callable, signature, options: dict, made_from: str) -> CFun
     """See `sebody.compiler.plain.kernel`."""
     made = CFunc(function, normalize_signature(signature), {}, options, KernelPasses)
     made._cache = FunctionCache(function, made_from)
+    made.compile()
+    return made
+
+
+def kernel_in_lanes(function: Callable, signature, options: dict, made_from: str) -> CFunc:
+    """The same kernel for arguments that are lanes, kept beside that for numbers."""
+    made = CFunc(function, normalize_signature(signature), {}, options, KernelPasses)
+    made._cache = LanesCache(function, made_from)
     made.compile()
     return made
 
@@ -79,6 +90,15 @@ def kernel_code(function: Callable, signature, options: dict) -> Code:
 def code_of(made: CFunc) -> Code:
     """See `sebody.compiler.plain.code_of`."""
     return Code(made.native_name.removeprefix("cfunc."), bitcode(made.inspect_llvm()))
+
+
+def type_of(kind: np.dtype) -> types.Type:
+    """See `sebody.compiler.plain.type_of`; here numbers may be lanes, those of a record, too."""
+    if kind == NUMPY_KIND:
+        return lanes
+    if kind.fields is None or not any(own.subdtype for own, _ in kind.fields.values()):
+        return from_dtype(kind)
+    return RecordOfLanes(kind)
 
 
 def processor() -> tuple[str, str]:

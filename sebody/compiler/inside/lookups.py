@@ -9,6 +9,7 @@ import operator
 
 from numba import types
 
+from sebody.compiler.inside.lanes import Lanes, Mask
 from sebody.compiler.inside.names import (
     UNDEFINED,
     BaseContext,
@@ -18,7 +19,7 @@ from sebody.compiler.inside.names import (
     register_pass,
 )
 
-_PLAIN = types.Number, types.Boolean, types.RawPointer, types.Array, types.BaseTuple
+_PLAIN = types.Number, types.Boolean, types.RawPointer, types.Array, types.BaseTuple, Lanes, Mask
 _signatures: dict[tuple, Signature] = {}        # by operation and types of arguments
 
 

@@ -13,6 +13,7 @@ from sebody import inputs, memory
 from sebody.engine.state import Scheme
 from sebody.errors import InputError
 from sebody.explore.ensembles.changes import Handle
+from sebody.explore.ensembles.choice import WORTH_IT, one_by_one
 from sebody.explore.ensembles.handles import given, handles
 from sebody.explore.ensembles.member import Form, forms
 from sebody.explore.ensembles.outcome import Outcome
@@ -108,6 +109,17 @@ class Ensemble:
             Before the first run: unknown names, arrays of different lengths, values that a body
             cannot have, an unknown quantity, a time that is not a multiple of the step.
         """
+        return self._run(parameters, t_end, outputs, threads, progress)
+
+    def part(self, parameters: Mapping[str, Values], t_end: float,
+             outputs: Mapping[str, Output | str], runs: int) -> Outcome:
+        """A part of so many runs, in one thread: with the same bits as among all of them."""
+        return self._run(parameters, t_end, outputs, 1, None, runs)
+
+    def _run(self, parameters: Mapping[str, Values], t_end: float,
+             outputs: Mapping[str, Output | str], threads: int | None,
+             progress: Callable[[float], None] | bool | None, of: int = 0) -> Outcome:
+        """Some runs of `of` in all."""
         refuse_changed(self.model)
         threads = inputs.integer(processors() if threads is None else threads, "threads", least=1)
         found, runs, last, kept = self._checked(parameters, t_end, outputs)
@@ -115,8 +127,9 @@ class Ensemble:
         values = {name: handle.checked(name, parameters[name]) for name, handle in found.items()}
         outcome = self._empty(kept, read, runs, last)
         began = time.perf_counter()
-        work = Work(self._template, self._image(found), values, kept, read, last, outcome,
-                    self._lock)
+        image = self._image(found)
+        in_lanes = max(runs, of) * last >= WORTH_IT and not one_by_one(self._template, image)
+        work = Work(self._template, image, values, kept, read, last, outcome, self._lock, in_lanes)
         with showing(progress) as show:
             work.go(min(threads, max(runs, 1)), show)
         outcome.seconds = time.perf_counter() - began

@@ -154,7 +154,7 @@ class Course:
             room = rows - int(state.control.recorded)
             reached = min(last, (reached // self.every + room) * self.every)
             code = self._advance(record, reached, stop)
-            self._take(record.rows[:state.control.recorded])
+            self.take(record.rows[:state.control.recorded])
             state.control.recorded = 0
         if code == FAILED:
             reason = REASONS[int(state.control.reason)]
@@ -172,7 +172,7 @@ class Course:
                 return code
             chunk = max(1, int(chunk * min(8.0, CHUNK / max(time.perf_counter() - began, 1e-9))))
 
-    def _take(self, rows: NDArray) -> None:
+    def take(self, rows: NDArray) -> None:
         """Read the outputs of recorded states."""
         t, found = rows[:, RECORD_T].copy(), {}
         for name, output in self.outputs.items():
