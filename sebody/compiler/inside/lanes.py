@@ -303,8 +303,29 @@ def _each(function: Callable) -> Callable:
     return implement
 
 
-overload(math.sin)(_each(math.sin))
-overload(math.cos)(_each(math.cos))
+for _function in (math.sin, math.cos, math.floor):
+    overload(_function)(_each(_function))
+
+
+def _each_two(function: Callable) -> Callable:
+    """The same of two arguments."""
+    def implement(x, y):
+        if not _given((x, y)):
+            return None
+
+        def each(x, y):
+            found = a = spread(x)
+            b = spread(y)
+            for member in range(MEMBERS):
+                found = with_number(found, member, function(number_of(a, member),
+                                                            number_of(b, member)))
+            return found
+        return each
+    return implement
+
+
+for _function in (math.atan2, math.hypot, operator.pow):
+    overload(_function)(_each_two(_function))
 
 
 @overload(abs)

@@ -36,14 +36,34 @@ class Scratch(Arrays):
     """What an iteration keeps of members that need not be evaluated again.
 
     ==================  ============================================================================
-    g, frames           forces and frames of the last evaluation
+    g                   forces of an evaluation, where another one follows for other members
+    frames, found       frames before an evaluation, and those it found
+    J                   element matrices of bodies, where bodies are coupled that rotate
     dense               (n, n) matrix that is inverted
     ==================  ============================================================================
     """
 
     g: NDArray
     frames: NDArray
+    found: NDArray
+    J: NDArray
     dense: NDArray
+
+
+@dataclass(frozen=True, eq=False)
+class Columns(Arrays):
+    """Recorded numbers of some steps.
+
+    ==================  ============================================================================
+    places              (c,) which numbers of `State.now`, ascending
+    rows                (records, c) their values
+    every               (1,) grid steps between records
+    ==================  ============================================================================
+    """
+
+    places: NDArray
+    rows: NDArray
+    every: NDArray
 
 
 def empty(*shape: int) -> NDArray:

@@ -11,13 +11,13 @@ import numpy as np
 
 from sebody.compiler.decorators import compiled
 from sebody.compiler.inside.lanes import every, some, spread, where
-from sebody.contract.layout import RESIDUAL, TANGENT
+from sebody.contract.layout import RECORD_ITERATIONS, RECORD_T, RESIDUAL, TANGENT
 from sebody.engine.evaluate import run_kernels, set_tangent_operators, sum_forces, to_body_axes
 from sebody.engine.lanes.growth import grows
 from sebody.engine.lanes.matrix import factorize
-from sebody.engine.lanes.newton import correct, watch_age
+from sebody.engine.lanes.newton import begin_with_matrix, correct, watch_age
 from sebody.engine.matrix import solve
-from sebody.engine.state import EVALUATED, KEPT
+from sebody.engine.state import EVALUATED, KEPT, ROTATED
 from sebody.engine.step import (
     MEMORY,
     ORTHOGONAL,
@@ -25,7 +25,6 @@ from sebody.engine.step import (
     changes,
     orthogonalize,
     predict,
-    write_record,
 )
 from sebody.engine.step_control import choose_part, set_end
 from sebody.engine.work import add_work
@@ -37,7 +36,7 @@ def advance(system, state, scratch, record, scheme, last_grid):
     """Run until `last_grid`, or until no member is left that has not given up."""
     control = state.control
     if control.steps == 0:
-        write_record(state, record)
+        _write(state, record)
     while control.grid < last_grid:
         running = control.reason == 0.0
         if not some(running):
@@ -62,7 +61,8 @@ def _begin_step(system, state, scheme):
     steady = kept & (bend < STEADY * STEADY * constant)
     follow = where(steady, spread(1.0), spread(0.0))
     predict(system, state, scheme, follow, offset)
-    control.iteration = control.fresh = spread(0.0)
+    begin_with_matrix(state)
+    control.iteration = spread(0.0)
     clock.last_norm = spread(0.0)
 
 
@@ -73,12 +73,12 @@ def _iterate(system, state, scratch, scheme, active):
     n = system.diagonal.size
     iteration = 0
     while some(active):
-        wanted = active & (control.wanted == float(EVALUATED))
-        _evaluate(system, state, scratch, active, wanted)
-        sum_forces(system, state, state.residual)
+        evaluated = active & (control.wanted == float(EVALUATED))
+        wanted = evaluated | (active & (control.wanted == float(ROTATED)))
+        _evaluate(system, state, scratch, active, wanted, evaluated)
         to_body_axes(system, state.frames, state.residual, False)
         if some(wanted):
-            active = active & ~factorize(system, state, scratch.dense, wanted)
+            active = active & ~factorize(system, state, scratch.dense, wanted, evaluated)
         solve(system, state, True)
         for i in range(n):
             state.correction[i] = where(active, state.correction[i], spread(0.0))
@@ -87,34 +87,60 @@ def _iterate(system, state, scratch, scheme, active):
 
 
 @compiled(forceinline=True)
-def _evaluate(system, state, scratch, active, wanted):
-    """Evaluate forces, and the element matrices of the members that want them.
+def _evaluate(system, state, scratch, active, wanted, evaluated):
+    """Evaluate forces, and the element matrices that members want.
+
+    Those that want their matrix rotated keep the matrices of the bodies. Members that have
+    converged keep their frames.
+    """
+    bodies, batches = system.first_joint[0], system.address.size
+    frames, J, old_J = state.frames, state.J, scratch.J
+    if some(evaluated):
+        set_tangent_operators(system, state)
+        if system.linked[0] == 1:
+            for k in range(old_J.size):
+                old_J[k] = J[k]
+    for k in range(frames.size):
+        scratch.frames[k] = frames[k]
+    _evaluate_part(system, state, scratch, active, evaluated, 0, bodies)
+    _evaluate_part(system, state, scratch, active, wanted, bodies, batches)
+    for k in range(frames.size):
+        frames[k] = where(active, frames[k], scratch.frames[k])
+    if some(evaluated) and system.linked[0] == 1:
+        for k in range(old_J.size):
+            J[k] = where(evaluated, J[k], old_J[k])
+    sum_forces(system, state, state.residual)
+    if some(wanted) and system.links.dependent.shape[0] > 0:
+        for i in range(state.residual.size):
+            state.forces[i] = state.residual[i]
+
+
+@compiled
+def _evaluate_part(system, state, scratch, active, wanted, first, last):
+    """Evaluate some batches, with matrices where they are wanted.
 
     Forces beside matrices are rounded differently from forces alone, so members that want no matrix
-    have theirs evaluated alone. Those that have converged keep their frames.
+    have theirs evaluated alone.
     """
-    batches = system.address.size
-    frames, old, g, kept = state.frames, scratch.frames, state.g, scratch.g
-    for k in range(frames.size):
-        old[k] = frames[k]
+    frames, begun, g, kept = state.frames, scratch.frames, state.g, scratch.g
     if some(wanted):
-        set_tangent_operators(system, state)
-        run_kernels(TANGENT, 0, batches, system, state)
-    if not every(wanted | ~active):
-        if some(wanted):
-            for k in range(g.size):
-                kept[k] = g[k]
-            for k in range(frames.size):
-                found = frames[k]
-                frames[k], old[k] = old[k], where(wanted, found, old[k])
-            run_kernels(RESIDUAL, 0, batches, system, state)
-            for k in range(g.size):
-                g[k] = where(wanted, kept[k], g[k])
-            active = active & ~wanted
-        else:
-            run_kernels(RESIDUAL, 0, batches, system, state)
-    for k in range(frames.size):
-        frames[k] = where(active, frames[k], old[k])
+        run_kernels(TANGENT, first, last, system, state)
+    if every(wanted | ~active):
+        return
+    if not some(wanted):
+        run_kernels(RESIDUAL, first, last, system, state)
+        return
+    for k in range(system.at_g[first], system.at_g[last]):
+        kept[k] = g[k]
+    of_bodies = frames.size if first == 0 else 0        # others do not change them
+    for k in range(of_bodies):
+        scratch.found[k] = frames[k]
+        frames[k] = begun[k]
+    run_kernels(RESIDUAL, first, last, system, state)
+    for k in range(system.at_g[first], system.at_g[last]):
+        g[k] = where(wanted, kept[k], g[k])
+    for k in range(of_bodies):
+        frames[k] = where(wanted, scratch.found[k], frames[k])
 
 
 @compiled(forceinline=True)
@@ -125,12 +151,24 @@ def _accept(system, state, record):
         for r in range(system.rotation_at.size):
             orthogonalize(at(pointer_to(state.R), 9 * r))
     watch_age(state)
+    control.back_off = where(control.fresh == 0.0, spread(0.0), control.back_off)
     clock.acceleration_norm *= MEMORY
     control.steps += 1
     control.grid += 1
     clock.time = control.grid * clock.step
     if control.grid % record.every[0] == 0:
-        write_record(state, record)
+        _write(state, record)
+
+
+@compiled(forceinline=True)
+def _write(state, record):
+    """Store the numbers of the accepted state that are asked for."""
+    row = state.control.recorded
+    state.now[RECORD_T] = spread(state.clock.time)
+    state.now[RECORD_ITERATIONS] = state.control.iterations
+    for k in range(record.places.size):
+        record.rows[row, k] = state.now[record.places[k]]
+    state.control.recorded = row + 1
 
 
 @compiled(nogil=True)

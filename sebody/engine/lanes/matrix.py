@@ -15,20 +15,22 @@ SMALL_PIVOT = 1e-9      # relative to the scaled matrix, whose diagonal is one
 
 
 @compiled
-def factorize(system, state, dense, wanted):
+def factorize(system, state, dense, wanted, evaluated):
     """Sum and invert the matrices of some members; returns those that give up.
 
-    Members cannot exchange rows with each other's: who would have to, gives up.
+    Members whose matrices would need row exchanges give up. `evaluated` are those whose element
+    matrices are all new: their scales are, too.
     """
     control, clock = state.control, state.clock
     zero = spread(0.0)
     sum_matrices(system, state, state.forces)
-    _equilibrate(system, state, wanted)
+    if some(evaluated):
+        _equilibrate(system, state, evaluated)
     failed = wanted & ~_invert(system, state, dense, wanted)
     clock.factor_step = clock.current_step
-    clock.baseline_contraction = where(wanted, spread(0.5), clock.baseline_contraction)
-    clock.excess = where(wanted, zero, clock.excess)
-    control.age = where(wanted, zero, control.age)
+    clock.baseline_contraction = where(evaluated, spread(0.5), clock.baseline_contraction)
+    clock.excess = where(evaluated, zero, clock.excess)
+    control.age = where(evaluated, zero, control.age)
     control.wanted = where(wanted, spread(float(KEPT)), control.wanted)
     one = where(wanted, spread(1.0), zero)
     control.fresh += one

@@ -7,18 +7,20 @@ from sebody.engine.newton import (
     ASTRAY,
     BASELINE_STEPS,
     FASTEST,
+    LONGEST_BACK_OFF,
     MAX_ITERATIONS,
     MOST_MATRICES,
     OLDEST,
     POOR,
     REFACTORIZATION_COST,
+    ROTATED_COST,
     ROUNDED,
     SLOWEST,
     UNSURE,
     norms,
     subtract,
 )
-from sebody.engine.state import EVALUATED
+from sebody.engine.state import EVALUATED, KEPT, ROTATED
 
 HUGE = 1e300            # a norm above this is no number, or as good as none
 GAVE_UP = 1.0           # reason of a member that is to be run alone
@@ -57,20 +59,41 @@ def correct(system, state, scheme, active, iteration):
         if iteration >= MAX_ITERATIONS - 1:
             failed = failed | left
         if iteration > 0:
-            _want_matrices(state, left, rate, norm, target, iteration)
+            _want_matrices(system, state, left, rate, norm, target, iteration)
     control.reason = where(failed, spread(GAVE_UP), control.reason)
     return left & ~failed
 
 
 @compiled(forceinline=True)
-def _want_matrices(state, left, rate, norm, target, iteration):
+def begin_with_matrix(state):
+    """Choose which members factorize before their first iteration, and from which matrices."""
+    control = state.control
+    control.fresh = spread(0.0)
+    if state.clock.factor_step != state.clock.current_step:
+        control.wanted = spread(float(EVALUATED))
+    rotated = (control.wanted == float(KEPT)) & (control.back_off_left > 0.0)
+    control.back_off_left = where(rotated, control.back_off_left - 1.0, control.back_off_left)
+    control.wanted = where(rotated, spread(float(ROTATED)), control.wanted)
+
+
+@compiled(forceinline=True)
+def _want_matrices(system, state, left, rate, norm, target, iteration):
     """Ask for matrices where the iterations to come cost more: the loop compares logarithms."""
-    product = norm
-    for _ in range(min(int(REFACTORIZATION_COST), MAX_ITERATIONS - iteration - 1)):
-        product = product * rate
-    slow = left & (state.control.fresh < float(MOST_MATRICES)) & (
-        (rate > POOR) | (product > target))
-    state.control.wanted = where(slow, spread(float(EVALUATED)), state.control.wanted)
+    control, rest = state.control, MAX_ITERATIONS - iteration - 1
+    rotated = left & (control.fresh == 0.0) & (spread(float(system.linked[0])) == 1.0)
+    few = many = norm
+    for _ in range(min(int(ROTATED_COST), rest)):
+        few = few * rate
+    for _ in range(min(int(REFACTORIZATION_COST), rest)):
+        many = many * rate
+    slow = left & (control.fresh < float(MOST_MATRICES)) & (
+        (rate > POOR) | (where(rotated, few, many) > target))
+    rotated = slow & rotated
+    control.back_off = where(rotated, min(2.0 * control.back_off + 1.0,
+                                          spread(float(LONGEST_BACK_OFF))), control.back_off)
+    control.back_off_left = where(rotated, control.back_off, control.back_off_left)
+    control.wanted = where(slow, where(rotated, spread(float(ROTATED)), spread(float(EVALUATED))),
+                           control.wanted)
 
 
 @compiled

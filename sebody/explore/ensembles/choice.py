@@ -33,9 +33,6 @@ FACTS = (
     Fact("constraints that are redundant, or motions without mass",
          lambda one: bool(one.system.regularized[0] or one.system.massless[0])),
     Fact("constraints that hold for velocities, too", lambda one: one.scheme.stabilized),
-    Fact("bodies that rotate against each other and are coupled",
-         lambda one: bool(one.system.linked[0])),
-    Fact("rigid links", lambda one: one.system.links.dependent.shape[0] > 0),
     Fact("contacts, stops or friction",
          lambda one: one.system.guarded.size > 0 or _keeps_numbers(one)),
     Fact("sensors, controllers or inputs", lambda one: bool(
@@ -48,15 +45,13 @@ FACTS = (
 )
 
 
-def one_by_one(template: Simulation, image: Image) -> str:
-    """Why the runs of an ensemble are made one by one; empty where they are made eight at a time.
+def why_one_by_one(template: Simulation) -> str:
+    """Why the runs of a model are made one by one; empty where they can be made eight at a time.
 
     Parameters
     ----------
     template : Simulation
         Of the model as built.
-    image : Image
-        What runs begin with.
     """
     if choice.way().__name__ == "sebody.compiler.plain":
         return "the plain way to compile"
@@ -65,9 +60,21 @@ def one_by_one(template: Simulation, image: Image) -> str:
     for fact in FACTS:
         if fact.holds(template):
             return fact.reason
+    return ""
+
+
+def can_be_together(image: Image) -> bool:
+    """Whether runs with some parameters can be made eight at a time, if those of the model can.
+
+    Not if the model is built anew for each run, or members differ in what lanes have in common.
+    """
     if not image.linear:
-        return "parameters for which the model is built anew"
-    return "" if _numbers_of_members(image) else "a parameter that moves times or sizes of a model"
+        return False
+    from sebody.engine.lanes.arrays import shared_places    # imports the lanes
+
+    one, slots = image.template, image.lines.slots
+    return not any(np.any((slots >= part.start) & (slots < part.stop))
+                   for part in shared_places(one.system, one.state, image.offsets))
 
 
 def kernels_of(model: Model) -> list[str]:
@@ -86,11 +93,3 @@ def _keeps_numbers(one: Simulation) -> bool:
     """Whether elements keep numbers from step to step, by which they choose."""
     return one.state.frames.size > 9 * len(one.model.bodies)
 
-
-def _numbers_of_members(image: Image) -> bool:
-    """Whether members differ in nothing that lanes have in common."""
-    from sebody.engine.lanes.arrays import shared_places
-
-    one, slots = image.template, image.lines.slots
-    return not any(np.any((slots >= part.start) & (slots < part.stop))
-                   for part in shared_places(one.system, one.state, image.offsets))

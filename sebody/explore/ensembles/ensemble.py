@@ -13,7 +13,7 @@ from sebody import inputs, memory
 from sebody.engine.state import Scheme
 from sebody.errors import InputError
 from sebody.explore.ensembles.changes import Handle
-from sebody.explore.ensembles.choice import WORTH_IT, one_by_one
+from sebody.explore.ensembles.choice import WORTH_IT, can_be_together, why_one_by_one
 from sebody.explore.ensembles.handles import given, handles
 from sebody.explore.ensembles.member import Form, forms
 from sebody.explore.ensembles.outcome import Outcome
@@ -73,7 +73,9 @@ class Ensemble:
         self._images: dict[tuple[str, ...], Image] = {}
 
     def __repr__(self) -> str:
-        return f"<Ensemble of a {summary(self.model)}: step {self.h:.6g}>"
+        reason = why_one_by_one(self._template)
+        how = f"one by one: {reason}" if reason else "eight at a time if they are many"
+        return f"<Ensemble of a {summary(self.model)}: step {self.h:.6g}; runs {how}>"
 
     @property
     def parameters(self) -> list[str]:
@@ -128,7 +130,8 @@ class Ensemble:
         outcome = self._empty(kept, read, runs, last)
         began = time.perf_counter()
         image = self._image(found)
-        in_lanes = max(runs, of) * last >= WORTH_IT and not one_by_one(self._template, image)
+        in_lanes = (max(runs, of) * last >= WORTH_IT and not why_one_by_one(self._template)
+                    and can_be_together(image))
         work = Work(self._template, image, values, kept, read, last, outcome, self._lock, in_lanes)
         with showing(progress) as show:
             work.go(min(threads, max(runs, 1)), show)

@@ -1,20 +1,21 @@
 """Runs of an ensemble eight at a time: the arrays of a thread, and what becomes of their members."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.contract.layout import MEMBERS
+from sebody.contract.layout import AT_CONSTANTS, AT_FRAME, MEMBERS, RECORD_T, Row
+from sebody.assembly.contracts import counts_of
 from sebody.engine.lanes import loop
-from sebody.engine.lanes.arrays import Scratch, empty, fill, in_lanes, numbers
-from sebody.engine.state import Record
+from sebody.engine.lanes.arrays import Columns, Scratch, empty, fill, in_lanes, numbers
 from sebody.engine.system import System
-from sebody.explore.ensembles.member import Copies, Course
+from sebody.explore.ensembles.member import Copies, Course, Form
 from sebody.kernels.lanes.kernel import address_in_lanes
+from sebody.kernels.lanes.straight import write_address
 from sebody.kernels.loader import load
 
-STRETCH = 64        # recorded states at a time: they stay in the processor's cache
+MOST_NUMBERS = 8_000        # of recorded states at a time: they stay in the processor's cache
 ALONE = 1.0         # reason of a lane without a member
 
 
@@ -27,22 +28,58 @@ class Lanes:
         Where members begin, one after the other.
     kernels : sequence of str
         Names of the model's kernels.
+    forms : mapping
+        How each quantity of the outputs is read.
+    last : int
+        Last step of the grid.
+
+    Attributes
+    ----------
+    forms : dict
+        The same of the rows that are kept here.
     """
 
-    def __init__(self, copies: Copies, kernels: Sequence[str]):
+    def __init__(self, copies: Copies, kernels: Sequence[str], forms: Mapping[str, Form],
+                 last: int):
         self.copies = copies
         image, one = copies.image, copies.image.template
         buffer = empty(image.offsets.size)
         self._numbers = numbers(buffer)
         self.system = _with_addresses(in_lanes(one.system, image.offsets, buffer), kernels)
+        self._write_straight_code()
         self.state = in_lanes(one.state, image.offsets, buffer)
         n = len(one.system.diagonal)
-        self._scratch = Scratch(g=empty(one.state.g.size), frames=empty(one.state.frames.size),
+        frames = one.state.frames.size
+        self._scratch = Scratch(g=empty(one.state.g.size), frames=empty(frames),
+                                found=empty(frames),
+                                J=empty(int(one.system.at_J[one.system.first_joint[0]])),
                                 dense=empty(n, n))
         self._places = self._own_places()
-        rows = (STRETCH + 1, one.state.now.size)
-        self._record = Record(empty(*rows), np.array([one.every]), copies.none.at)
+        columns = _columns(forms, one.state.now.size)
+        self.forms = {name: form if form.columns is None else form._replace(
+            columns=np.searchsorted(columns, form.columns)) for name, form in forms.items()}
+        self._stretch = max(1, min(last // one.every, MOST_NUMBERS // len(columns)))
+        rows = (self._stretch + 1, len(columns))
+        self._record = Columns(places=columns, rows=empty(*rows), every=np.array([one.every]))
         self._rows = np.empty(rows)
+        self._last, self._begun = last, []
+
+    def _write_straight_code(self) -> None:
+        """Straight code for the packed matrices among the constants of bodies."""
+        image = self.copies.image
+        bodies, system = list(image.template.model.bodies.values()), image.template.system
+        constants = image.offsets.of(system.constants).start
+        floats = image.floats.copy()
+        slots = image.lines.slots           # not zero in some members
+        floats[slots] = np.where(floats[slots] == 0.0, 1.0, floats[slots])
+        for index in _index_rows(system):
+            body, first = bodies[index[AT_FRAME]], constants + index[AT_CONSTANTS]
+            counts, row = counts_of(body), Row("constants", load(body.kernel).CONSTANTS)
+            places = row.slices(counts)
+            for part in row.parts:
+                if part.packed and part.size(counts):
+                    own = slice(first + places[part.name].start, first + places[part.name].stop)
+                    write_address(floats[own], self._numbers[own])
 
     def _own_places(self) -> NDArray:
         """Places in the buffer of what members begin with: parameters, and their state."""
@@ -57,23 +94,22 @@ class Lanes:
         """Give a lane the member that `copies` has begun."""
         loop.take_member(self.copies.floats, self._places, member, self._numbers)
 
-    def run(self, courses: Sequence[Course], last: int, stop: Callable[[], bool]) -> NDArray | None:
-        """Run members that were taken to a grid step, and take in their outputs.
+    def run(self, courses: Sequence[Course], stop: Callable[[], bool]) -> NDArray | None:
+        """Run members that were taken to their end, and take in their outputs.
 
         Returns
         -------
         ndarray or None
             Which of them gave up, (members,): they are to be run alone. None if it was stopped.
         """
-        state, first, count = self.state, self.copies.state, len(courses)
-        for name in ("control", "clock", "guard"):
-            fill(getattr(state, name), getattr(first, name))
+        state, count = self.state, len(courses)
+        self._begin_records()
         for member in range(count, MEMBERS):        # lanes without a member: another one's numbers
             self.take(member)
         state.control["reason"] = np.where(np.arange(MEMBERS) < count, 0.0, ALONE)
         every, reached = int(self._record.every[0]), 0
-        while reached < last:
-            reached = min(last, (reached // every + STRETCH) * every)
+        while reached < self._last:
+            reached = min(self._last, (reached // every + self._stretch) * every)
             state.control["recorded"] = 0
             loop.advance(self.system, state, self._scratch, self._record, self.copies.scheme,
                          reached)
@@ -85,10 +121,34 @@ class Lanes:
                 return None
         return state.control["reason"][:count] != 0.0
 
+    def _begin_records(self) -> None:
+        """Set scalars and counters to those of a member that has begun, the same for all."""
+        records = [getattr(self.state, name) for name in ("control", "clock", "guard")]
+        if not self._begun:
+            for record, name in zip(records, ("control", "clock", "guard"), strict=True):
+                fill(record, getattr(self.copies.state, name))
+                self._begun.append(record.base.copy())
+        for record, begun in zip(records, self._begun, strict=True):
+            record.base[...] = begun
+
     @property
     def time(self) -> float:
         """Time reached."""
         return float(self.state.clock["time"])
+
+
+def _columns(forms: Mapping[str, Form], count: int) -> NDArray:
+    """Which numbers of a state are recorded: all, if a quantity is computed from them."""
+    if any(form.columns is None for form in forms.values()):
+        return np.arange(count)
+    return np.unique(np.concatenate([[RECORD_T], *(form.columns for form in forms.values())]))
+
+
+def _index_rows(system: System) -> Iterator[NDArray]:
+    """The index rows of all superelements."""
+    for b in range(int(system.first_joint[0])):
+        rows = system.index[system.at_index[b]:system.at_index[b + 1]]
+        yield from rows.reshape(system.count[b], -1)
 
 
 def _with_addresses(system: System, kernels: Sequence[str]) -> System:

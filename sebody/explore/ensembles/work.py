@@ -111,7 +111,7 @@ class Work:
             return None
         from sebody.explore.ensembles.lanes import Lanes        # imports the lanes themselves
 
-        lanes = Lanes(copies, kernels_of(self.template.model))
+        lanes = Lanes(copies, kernels_of(self.template.model), self.forms, self.last)
 
         def together(group: Sequence[int]) -> Sequence[int]:
             taken, courses, alone = [], [], []
@@ -125,8 +125,8 @@ class Work:
                     continue
                 lanes.take(len(taken))
                 taken.append(run)
-                courses.append(Course(copies, self.template.every, self.outputs, self.forms))
-            gave_up = lanes.run(courses, self.last, self._stop.is_set) if taken else ()
+                courses.append(Course(copies, self.template.every, self.outputs, lanes.forms))
+            gave_up = lanes.run(courses, self._stop.is_set) if taken else ()
             if gave_up is None:
                 return alone
             for run, course, failed in zip(taken, courses, gave_up, strict=True):
@@ -135,6 +135,7 @@ class Work:
                 else:
                     self._keep(run, course, lanes.time)
                     self._done += 1
+                    self.outcome.in_lanes += 1
             return alone
         return together
 

@@ -9,6 +9,7 @@ from llvmlite import ir
 from sebody.compiler.inside.lanes import VECTOR
 from sebody.contract.layout import LANES
 from sebody.kernels import coordinates, dense, packed_products
+from sebody.kernels.lanes.straight import AT_ADDRESS
 from sebody.kernels.instructions import (
     WORD,
     call,
@@ -20,6 +21,7 @@ from sebody.kernels.instructions import (
 
 _ROWS = 8, 4, 2, 1      # of a product at a time: their sums stay in registers
 _COLUMNS = 4, 2, 1      # likewise of a product of columns with a vector
+_BITS = ir.IntType(VECTOR.count)
 _NOTHING = ir.Constant(VECTOR, [0.0] * VECTOR.count)
 
 
@@ -198,7 +200,19 @@ def packed(builder, matrices, x, out, count):
 
 @in_lanes(packed_products.write_more_packed)
 def add_packed(builder, matrices, x, out):
-    """Of `add_packed_times`: the numbers of `x` stay in registers while strips follow."""
+    """Of `add_packed_times`: straight code if there is some, see `straight`."""
+    words = builder.bitcast(matrices, WORD.as_pointer())
+    address = builder.load(builder.gep(words, [WORD(AT_ADDRESS)]))
+    with builder.if_else(builder.icmp_signed("!=", address, WORD(0))) as (straight, by_strips):
+        with straight:
+            kind = ir.FunctionType(ir.VoidType(), [VECTOR.as_pointer()] * 3)
+            builder.call(builder.inttoptr(address, kind.as_pointer()), (matrices, x, out))
+        with by_strips:
+            _add_strips(builder, matrices, x, out)
+
+
+def _add_strips(builder, matrices, x, out):
+    """The numbers of `x` stay in registers while strips follow."""
     words = _Words(builder, matrices)
     with short_loop(builder, WORD(0), words.at(WORD(0))) as group:
         first, columns, strips, heads, at = words.of_group(group)
@@ -241,14 +255,27 @@ def sum_packed(builder, matrices, factors, out, height):
 
 @in_lanes(coordinates.write_all_to_free)
 def all_to_free(builder, *args):
-    """Of `all_to_free`; numbers beyond the last are zeros, as strips read whole vectors."""
+    """Of `all_to_free`; numbers beyond the last are zeros, as strips read whole vectors.
+
+    Axes of a body are often those of its frame: entries that are zero in all lanes are left out.
+    """
     rows, (axes, order, moved), to = args[:3], args[3:6], args[6:9]
     bound, bound_free, free, end = args[9:]
     height = whole_vectors(builder, bound_free)
     length = builder.add(height, builder.sub(free, bound_free))
     own = [builder.gep(moved, [builder.mul(length, WORD(k))]) for k in range(len(rows))]
+    with short_loop(builder, WORD(0), bound_free) as k:
+        for place in own:
+            _store(builder, _NOTHING, place, k)
+    with short_loop(builder, WORD(0), bound) as column, \
+            short_loop(builder, WORD(0), bound_free) as k:
+        entry = _load(builder, axes, builder.add(builder.mul(column, height), k))
+        is_entry = builder.bitcast(builder.fcmp_unordered("!=", entry, _NOTHING), _BITS)
+        with builder.if_then(builder.icmp_unsigned("!=", is_entry, _BITS(0))):
+            for given, place in zip(rows, own, strict=True):
+                _store(builder, _fused(builder, _load(builder, place, k), entry,
+                                       _load(builder, given, column)), place, k)
     for given, place in zip(rows, own, strict=True):
-        _by_rows(builder, [(axes, given, bound)], place, bound_free, height, False)
         with short_loop(builder, WORD(0), builder.sub(free, bound_free)) as mode:
             _store(builder, _load(builder, given, builder.add(bound, mode)), place,
                    builder.add(bound_free, mode))
