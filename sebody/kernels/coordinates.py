@@ -27,7 +27,8 @@ from sebody.kernels.instructions import (
 def all_to_free(typingctx, y, yd, ydd, axes, order, moved, z, zd, zdd, bound, bound_free, free,
                 end):
     """`to_free` of coordinates, of their rates and of their second rates."""
-    return called(write_all_to_free, y, yd, ydd, axes, order, moved, z, zd, zdd, bound, bound_free, free, end)
+    return called(write_all_to_free, y, yd, ydd, axes, order, moved, z, zd, zdd, bound, bound_free,
+                  free, end)
 
 
 @intrinsic

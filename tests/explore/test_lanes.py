@@ -7,7 +7,8 @@ from scipy.spatial.transform import Rotation
 
 from sebody import Model, simulate
 from sebody.analysis import Ensemble, at_time, final, maximum
-from sebody.explore.ensembles import choice, ensemble
+from sebody.compiler.choice import way
+from sebody.explore.ensembles import ensemble
 from sebody.explore.ensembles.handles import handle
 from sebody.explore.ensembles.work import alike
 from sebody.fem import Section, straight_beam
@@ -22,7 +23,7 @@ OUTPUTS = {"end": final("tip.position"), "most": maximum("tip.velocity"), "cours
            "late": at_time("tip.velocity", 0.041)}
 
 pytestmark = pytest.mark.skipif(
-    choice.way().__name__.endswith("plain"), reason="the plain way makes runs one by one")
+    way().__name__.endswith("plain"), reason="the plain way makes runs one by one")
 
 
 @pytest.fixture

@@ -68,12 +68,6 @@ class FunctionCache(NullCache):
             store.say_not_kept(self._source)
 
 
-class LanesCache(FunctionCache):
-    """Compiled code of a kernel for arguments that are lanes."""
-
-    kind = "lanes"
-
-
 def is_kept(source: Path, function: str, made_from: str, kind: str = "") -> bool:
     """Whether a function of a file that need not be imported was compiled."""
     return store.holds(source, _file_name(source, function, kind), _stamp(made_from))

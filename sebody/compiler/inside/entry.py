@@ -7,7 +7,7 @@ from numba import from_dtype, types
 from numba.extending import infer_getattr, intrinsic, lower_getattr_generic
 
 from sebody.compiler.code import Code, bitcode
-from sebody.compiler.inside.cache import FunctionCache, LanesCache, is_kept
+from sebody.compiler.inside.cache import FunctionCache, is_kept
 from sebody.compiler.inside.callees import Callee, Function
 from sebody.compiler.inside.lanes import NUMPY_KIND, RecordOfLanes, lanes
 from sebody.compiler.inside.names import (
@@ -37,14 +37,6 @@ def kernel(function: Callable, signature, options: dict, made_from: str) -> CFun
     """See `sebody.compiler.plain.kernel`."""
     made = CFunc(function, normalize_signature(signature), {}, options, KernelPasses)
     made._cache = FunctionCache(function, made_from)
-    made.compile()
-    return made
-
-
-def kernel_in_lanes(function: Callable, signature, options: dict, made_from: str) -> CFunc:
-    """The same kernel for arguments that are lanes, kept beside that for numbers."""
-    made = CFunc(function, normalize_signature(signature), {}, options, KernelPasses)
-    made._cache = LanesCache(function, made_from)
     made.compile()
     return made
 

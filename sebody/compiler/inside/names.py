@@ -10,9 +10,9 @@ from numba.core.cgutils import get_or_insert_function
 from numba.core.codegen import CPUCodegen, JITCodeLibrary
 from numba.core.compiler import CompilerBase, CompileResult
 from numba.core.compiler_machinery import FunctionPass, PassManager, register_pass
-from numba.core.ir import UNDEFINED, Jump
 from numba.core.datamodel.models import RecordModel
 from numba.core.imputils import lower_constant
+from numba.core.ir import UNDEFINED, Jump
 from numba.core.lowering import Lower
 from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.serialize import dumps
@@ -48,9 +48,10 @@ __all__ = [
     "CFunc", "CPUCodegen", "CPUDispatcher", "CompileResult", "CompilerBase", "Conversion",
     "FixupArgs", "FunctionPass", "GenericRewrites", "IRLegalization", "IRProcessing",
     "JITCodeLibrary", "Jump", "Lower", "NoPythonBackend", "NopythonTypeInference", "NullCache",
-    "PassManager", "PreLowerStripPhis", "ReconstructSSA", "RecordModel", "Signature", "TranslateByteCode",
-    "UNDEFINED", "canonicalize_cfg", "cpu_target", "dumps", "get_or_insert_function",
-    "infer_global", "lower_constant", "normalize_signature", "register_pass", "signature", "take_reloads"]
+    "PassManager", "PreLowerStripPhis", "ReconstructSSA", "RecordModel", "Signature",
+    "TranslateByteCode", "UNDEFINED", "canonicalize_cfg", "cpu_target", "dumps",
+    "get_or_insert_function", "infer_global", "lower_constant", "normalize_signature",
+    "register_pass", "signature", "take_reloads"]
 
 ATTRIBUTES = {
     CFunc: ("compile", "address"),

@@ -38,6 +38,7 @@ class Scratch(Arrays):
     ==================  ============================================================================
     g                   forces of an evaluation, where another one follows for other members
     frames, found       frames before an evaluation, and those it found
+    T                   tangent operators before an evaluation
     J                   element matrices of bodies, where bodies are coupled that rotate
     dense               (n, n) matrix that is inverted
     ==================  ============================================================================
@@ -46,6 +47,7 @@ class Scratch(Arrays):
     g: NDArray
     frames: NDArray
     found: NDArray
+    T: NDArray
     J: NDArray
     dense: NDArray
 

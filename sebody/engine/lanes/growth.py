@@ -17,20 +17,22 @@ from sebody.engine.growth import (
 
 
 @compiled
-def grows(system, state):
+def grows(system, state, scratch):
     """Which members would have their step rejected, because energy grows in it."""
     guard, none = state.guard, spread(0.0) > 1.0
     for k in range(state.works.size):
         guard.supplied += abs(state.works[k] - state.works_old[k])
     guard.wait -= 1.0
     due = (guard.off == 0.0) & (guard.wait <= 0.0)
-    return _judge(system, state, due) if some(due) else none
+    return _judge(system, state, scratch, due) if some(due) else none
 
 
 @compiled
-def _judge(system, state, due):
+def _judge(system, state, scratch, due):
     """Look at the energies of some members; of the others nothing changes."""
-    guard = state.guard
+    guard, frames = state.guard, state.frames
+    for k in range(frames.size):
+        scratch.frames[k] = frames[k]
     strain, kinetic = guard.most_strain, guard.most_kinetic
     before = strain + kinetic
     balance = take_balance(system, state)
@@ -42,6 +44,8 @@ def _judge(system, state, due):
     lowest = where(driven | (before == 0.0), balance, guard.lowest + WORKED * guard.supplied)
     rise = balance - lowest
     turned = turn_of_frames(system, state)
+    for k in range(frames.size):        # energies are those of the end of the step: so are frames
+        frames[k] = where(due, frames[k], scratch.frames[k])
     allowed = SHARE * most_strain + (KEPT + TURNED * turned) * most_kinetic
     allowed += ROUNDED * state.clock.floor * state.clock.floor
     stride = where(rise > ATTENTIVE * allowed, spread(1.0),

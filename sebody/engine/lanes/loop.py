@@ -7,7 +7,6 @@ others go on. A member that the loop would have to cut the step for, or to ask P
 `control.reason` is set, and it is run alone from its start.
 """
 
-import numpy as np
 
 from sebody.compiler.decorators import compiled
 from sebody.compiler.inside.lanes import every, some, spread, where
@@ -46,7 +45,7 @@ def advance(system, state, scratch, record, scheme, last_grid):
         _begin_step(system, state, scheme)
         _iterate(system, state, scratch, scheme, running)
         add_work(system, state, state.clock.current_step)
-        control.reason = where(grows(system, state) & (control.reason == 0.0), spread(1.0),
+        control.reason = where(grows(system, state, scratch) & (control.reason == 0.0), spread(1.0),
                                control.reason)
         _accept(system, state, record)
 
@@ -94,9 +93,13 @@ def _evaluate(system, state, scratch, active, wanted, evaluated):
     converged keep their frames.
     """
     bodies, batches = system.first_joint[0], system.address.size
-    frames, J, old_J = state.frames, state.J, scratch.J
+    frames, T, J, old_J = state.frames, state.T, state.J, scratch.J
     if some(evaluated):
+        for k in range(T.size):
+            scratch.T[k] = T[k]
         set_tangent_operators(system, state)
+        for k in range(T.size):
+            T[k] = where(evaluated, T[k], scratch.T[k])
         if system.linked[0] == 1:
             for k in range(old_J.size):
                 old_J[k] = J[k]

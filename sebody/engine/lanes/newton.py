@@ -49,7 +49,8 @@ def correct(system, state, scheme, active, iteration):
     clock.last_norm = where(active, norm, last)
     rate = min(max(rate, spread(UNSURE if iteration == 0 else FASTEST)), spread(SLOWEST))
     done = active & (rate / (1.0 - rate) * norm <= target)
-    failed = failed | (done & _strayed(system, state, scheme))
+    if some(done):
+        failed = failed | (done & _strayed(system, state, scheme))
     left = active & ~done & ~failed
     if some(left):
         if iteration > 2:       # where new matrices do not help, what is left is rounding

@@ -70,7 +70,7 @@ def can_be_together(image: Image) -> bool:
     """
     if not image.linear:
         return False
-    from sebody.engine.lanes.arrays import shared_places    # imports the lanes
+    from sebody.engine.lanes.arrays import shared_places  # imports the lanes
 
     one, slots = image.template, image.lines.slots
     return not any(np.any((slots >= part.start) & (slots < part.stop))

@@ -1,12 +1,12 @@
-"""Runs of an ensemble eight at a time: the arrays of a thread, and what becomes of their members."""
+"""Runs of an ensemble eight at a time: the arrays of a thread, and what its members give."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.contract.layout import AT_CONSTANTS, AT_FRAME, MEMBERS, RECORD_T, Row
 from sebody.assembly.contracts import counts_of
+from sebody.contract.layout import AT_CONSTANTS, AT_FRAME, MEMBERS, RECORD_T, Row
 from sebody.engine.lanes import loop
 from sebody.engine.lanes.arrays import Columns, Scratch, empty, fill, in_lanes, numbers
 from sebody.engine.system import System
@@ -51,7 +51,7 @@ class Lanes:
         n = len(one.system.diagonal)
         frames = one.state.frames.size
         self._scratch = Scratch(g=empty(one.state.g.size), frames=empty(frames),
-                                found=empty(frames),
+                                found=empty(frames), T=empty(one.state.T.size),
                                 J=empty(int(one.system.at_J[one.system.first_joint[0]])),
                                 dense=empty(n, n))
         self._places = self._own_places()

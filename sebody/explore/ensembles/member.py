@@ -177,9 +177,12 @@ class Course:
         t, found = rows[:, RECORD_T].copy(), {}
         for name, output in self.outputs.items():
             quantity = output.quantity
-            columns = self.forms[quantity].columns
-            if name in self.folds and columns is not None:
-                self.folds[name].add_columns(t, rows, columns)
+            form = self.forms[quantity]
+            if form.columns is not None:
+                if name in self.folds:
+                    self.folds[name].add_columns(t, rows, form.columns)
+                else:
+                    self.histories[name].append(rows[:, form.columns].reshape(-1, *form.shape))
                 continue
             if quantity not in found:
                 found[quantity] = look_up(self._recording(rows, quantity), quantity)

@@ -61,6 +61,10 @@ class Work:
 
     def go(self, threads: int, progress: Callable[[float], None] | None) -> None:
         """Do all runs; Ctrl-C ends them, and the outcome says so."""
+        if self._in_lanes:
+            from sebody.explore.ensembles.compiling import prepare
+
+            prepare(kernels_of(self.template.model))
         workers = [Thread(target=self._work, daemon=True)
                    for _ in range(threads if self.outcome.runs > 1 else 0)]
         try:
@@ -109,7 +113,7 @@ class Work:
         """What makes runs eight at a time, and returns those that are to be made alone."""
         if not self._in_lanes:
             return None
-        from sebody.explore.ensembles.lanes import Lanes        # imports the lanes themselves
+        from sebody.explore.ensembles.lanes import Lanes  # imports the lanes themselves
 
         lanes = Lanes(copies, kernels_of(self.template.model), self.forms, self.last)
 

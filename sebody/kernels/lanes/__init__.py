@@ -1,8 +1,4 @@
-"""What kernels call, for numbers that are lanes: put in its place by importing this room.
+"""What kernels call, for numbers that are lanes; of the fast way to compile alone.
 
-Of the fast way to compile alone.
+`sebody.engine.lanes` imports these modules, which puts their functions in place.
 """
-
-from sebody.kernels.lanes import frame_search, products, rotations
-
-__all__ = ["frame_search", "products", "rotations"]

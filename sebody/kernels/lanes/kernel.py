@@ -7,7 +7,7 @@ from types import ModuleType
 from numba import types
 
 from sebody.compiler.decorators import OF_KERNELS
-from sebody.compiler.inside.entry import kernel_in_lanes
+from sebody.compiler.inside.lane_kernels import is_kept_in_lanes, kernel_in_lanes
 from sebody.compiler.inside.lanes import lanes
 from sebody.compiler.sources import kernel_hash
 from sebody.contract.layout import ARGUMENTS
@@ -21,3 +21,8 @@ def address_in_lanes(module: ModuleType) -> int:
     """Address of a kernel for lanes; compiled, or read from the cache, where it is asked for."""
     return kernel_in_lanes(module.kernel.__wrapped__, SIGNATURE, OF_KERNELS,
                            kernel_hash(Path(module.__file__))).address
+
+
+def is_compiled(path: Path) -> bool:
+    """Whether the kernel in a file was compiled for lanes; the file is not imported."""
+    return is_kept_in_lanes(path, kernel_hash(path))

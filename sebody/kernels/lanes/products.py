@@ -9,7 +9,6 @@ from llvmlite import ir
 from sebody.compiler.inside.lanes import VECTOR
 from sebody.contract.layout import LANES
 from sebody.kernels import coordinates, dense, packed_products
-from sebody.kernels.lanes.straight import AT_ADDRESS
 from sebody.kernels.instructions import (
     WORD,
     call,
@@ -18,6 +17,7 @@ from sebody.kernels.instructions import (
     stack_vectors,
     whole_vectors,
 )
+from sebody.kernels.lanes.straight import AT_ADDRESS
 
 _ROWS = 8, 4, 2, 1      # of a product at a time: their sums stay in registers
 _COLUMNS = 4, 2, 1      # likewise of a product of columns with a vector
