@@ -11,6 +11,7 @@ from sebody.engine.lanes import loop
 from sebody.engine.lanes.arrays import Columns, Scratch, empty, fill, in_lanes, numbers
 from sebody.engine.system import System
 from sebody.explore.ensembles.member import Copies, Course, Form
+from sebody.explore.ensembles.outputs import Folds, Output
 from sebody.kernels.lanes.kernel import address_in_lanes
 from sebody.kernels.lanes.straight import write_address
 from sebody.kernels.loader import load
@@ -28,19 +29,21 @@ class Lanes:
         Where members begin, one after the other.
     kernels : sequence of str
         Names of the model's kernels.
+    outputs : mapping
+        What is kept.
     forms : mapping
-        How each quantity of the outputs is read.
+        How each quantity is read.
     last : int
         Last step of the grid.
 
     Attributes
     ----------
-    forms : dict
-        The same of the rows that are kept here.
+    courses : list of Course
+        Outputs of the members that were run last.
     """
 
-    def __init__(self, copies: Copies, kernels: Sequence[str], forms: Mapping[str, Form],
-                 last: int):
+    def __init__(self, copies: Copies, kernels: Sequence[str], outputs: Mapping[str, Output],
+                 forms: Mapping[str, Form], last: int):
         self.copies = copies
         image, one = copies.image, copies.image.template
         buffer = empty(image.offsets.size)
@@ -56,13 +59,19 @@ class Lanes:
                                 dense=empty(n, n))
         self._places = self._own_places()
         columns = _columns(forms, one.state.now.size)
-        self.forms = {name: form if form.columns is None else form._replace(
+        self._forms = {name: form if form.columns is None else form._replace(
             columns=np.searchsorted(columns, form.columns)) for name, form in forms.items()}
         self._stretch = max(1, min(last // one.every, MOST_NUMBERS // len(columns)))
         rows = (self._stretch + 1, len(columns))
         self._record = Columns(places=columns, rows=empty(*rows), every=np.array([one.every]))
         self._rows = np.empty(rows)
         self._last, self._begun = last, []
+        self._outputs = outputs
+        self._folds = {name: Folds(one, forms[one.quantity].shape,
+                                   self._forms[one.quantity].columns, MEMBERS)
+                       for name, one in outputs.items()
+                       if one.kind != "history" and forms[one.quantity].columns is not None}
+        self.courses = []
 
     def _write_straight_code(self) -> None:
         """Straight code for the packed matrices among the constants of bodies."""
@@ -94,16 +103,21 @@ class Lanes:
         """Give a lane the member that `copies` has begun."""
         loop.take_member(self.copies.floats, self._places, member, self._numbers)
 
-    def run(self, courses: Sequence[Course], stop: Callable[[], bool]) -> NDArray | None:
-        """Run members that were taken to their end, and take in their outputs.
+    def run(self, count: int, stop: Callable[[], bool]) -> NDArray | None:
+        """Run the members that were taken to their end, and take in their outputs.
 
         Returns
         -------
         ndarray or None
             Which of them gave up, (members,): they are to be run alone. None if it was stopped.
         """
-        state, count = self.state, len(courses)
+        state = self.state
         self._begin_records()
+        for folds in self._folds.values():
+            folds.begin()
+        self.courses = [Course(self.copies, int(self._record.every[0]), self._outputs, self._forms,
+                               {name: folds.members[member] for name, folds in self._folds.items()})
+                        for member in range(count)]
         for member in range(count, MEMBERS):        # lanes without a member: another one's numbers
             self.take(member)
         state.control["reason"] = np.where(np.arange(MEMBERS) < count, 0.0, ALONE)
@@ -113,13 +127,21 @@ class Lanes:
             state.control["recorded"] = 0
             loop.advance(self.system, state, self._scratch, self._record, self.copies.scheme,
                          reached)
-            rows = self._rows[:state.control["recorded"]]
-            for member in np.flatnonzero(state.control["reason"][:count] == 0.0):
-                loop.rows_of(numbers(self._record.rows), member, rows)
-                courses[member].take(rows)
+            self._take_outputs(np.flatnonzero(state.control["reason"][:count] == 0.0))
             if stop():
                 return None
         return state.control["reason"][:count] != 0.0
+
+    def _take_outputs(self, members: NDArray) -> None:
+        """Take in recorded states: folds of all members together, all else of each."""
+        table, rows = numbers(self._record.rows), self._rows[:self.state.control["recorded"]]
+        t = table[:len(rows), 0, 0].copy()
+        for folds in self._folds.values():
+            folds.add(t, table, members)
+        if len(self._folds) < len(self._outputs):
+            for member in members:
+                loop.rows_of(table, member, rows)
+                self.courses[member].take(rows)
 
     def _begin_records(self) -> None:
         """Set scalars and counters to those of a member that has begun, the same for all."""

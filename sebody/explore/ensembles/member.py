@@ -130,12 +130,16 @@ class Course:
         What is kept.
     forms : mapping
         Of every quantity.
+    folds : mapping, optional
+        Of outputs that are taken in with those of other runs.
     """
 
     def __init__(self, run: Copies | Simulation, every: int, outputs: Mapping[str, Output],
-                 forms: Mapping[str, Form]):
+                 forms: Mapping[str, Form], folds: Mapping[str, Fold] | None = None):
         self.run, self.every, self.outputs, self.forms = run, every, outputs, forms
-        self.folds = {name: Fold(o, forms[o.quantity].shape) for name, o in outputs.items()
+        self._apart = folds or {}
+        self.folds = {name: self._apart[name] if name in self._apart else
+                      Fold(o, forms[o.quantity].shape) for name, o in outputs.items()
                       if o.kind != "history"}
         self.histories: dict[str, list[NDArray]] = {name: [] for name, o in outputs.items()
                                                     if o.kind == "history"}
@@ -176,6 +180,8 @@ class Course:
         """Read the outputs of recorded states."""
         t, found = rows[:, RECORD_T].copy(), {}
         for name, output in self.outputs.items():
+            if name in self._apart:
+                continue
             quantity = output.quantity
             form = self.forms[quantity]
             if form.columns is not None:

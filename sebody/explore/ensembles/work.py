@@ -1,10 +1,12 @@
 """Threads that take runs one after the other until all are done."""
 
+from __future__ import annotations
+
 import os
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from threading import Event, Lock, Thread
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +19,9 @@ from sebody.explore.ensembles.outcome import Outcome
 from sebody.explore.ensembles.outputs import Output
 from sebody.explore.ensembles.start_values import Image
 from sebody.runs.simulation import Simulation
+
+if TYPE_CHECKING:
+    from sebody.explore.ensembles.lanes import Lanes
 
 LOOK = 0.05     # seconds between looks at the threads, for progress and Ctrl-C
 INTERRUPTED = "interrupted before its end"
@@ -97,7 +102,7 @@ class Work:
             while group := self._next_group():
                 if self._stop.is_set():
                     return
-                for run in lanes(group) if lanes else group:
+                for run in self._run_together(group, lanes) if lanes else group:
                     self._run(run, copies)
                     self._done += 1
         except Exception as error:      # of the program: raised by the thread that waits
@@ -109,39 +114,39 @@ class Work:
         with self._lock:
             return next(self._groups, ())
 
-    def _lanes(self, copies: Copies | None) -> Callable[[Sequence[int]], Sequence[int]] | None:
-        """What makes runs eight at a time, and returns those that are to be made alone."""
+    def _lanes(self, copies: Copies | None) -> Lanes | None:
+        """The arrays of a thread for runs that are made eight at a time."""
         if not self._in_lanes:
             return None
-        from sebody.explore.ensembles.lanes import Lanes  # imports the lanes themselves
+        from sebody.explore.ensembles.lanes import Lanes    # imports the lanes themselves
 
-        lanes = Lanes(copies, kernels_of(self.template.model), self.forms, self.last)
+        return Lanes(copies, kernels_of(self.template.model), self.outputs, self.forms, self.last)
 
-        def together(group: Sequence[int]) -> Sequence[int]:
-            taken, courses, alone = [], [], []
-            for run in group:
-                try:
-                    begun = copies.begin(self._changes[run])
-                except InputError:      # told where it is begun alone
-                    begun = False
-                if not begun:
-                    alone.append(run)
-                    continue
+    def _run_together(self, group: Sequence[int], lanes: Lanes) -> Sequence[int]:
+        """Make some runs at a time; returns those that are to be made alone."""
+        taken, alone = [], []
+        for run in group:
+            try:
+                begun = lanes.copies.begin(self._changes[run])
+            except InputError:      # told where it is begun alone
+                begun = False
+            if begun:
                 lanes.take(len(taken))
                 taken.append(run)
-                courses.append(Course(copies, self.template.every, self.outputs, lanes.forms))
-            gave_up = lanes.run(courses, self._stop.is_set) if taken else ()
-            if gave_up is None:
-                return alone
-            for run, course, failed in zip(taken, courses, gave_up, strict=True):
-                if failed:
-                    alone.append(run)
-                else:
-                    self._keep(run, course, lanes.time)
-                    self._done += 1
-                    self.outcome.in_lanes += 1
+            else:
+                alone.append(run)
+        gave_up = lanes.run(len(taken), self._stop.is_set) if taken else None
+        if gave_up is None:         # no member, or interrupted
             return alone
-        return together
+        for run, course, failed in zip(taken, lanes.courses, gave_up, strict=True):
+            if failed:
+                alone.append(run)
+            else:
+                self._keep(run, course, lanes.time)
+        with self._lock:
+            self.outcome.in_lanes += int(np.sum(~gave_up))
+        self._done += int(np.sum(~gave_up))
+        return alone
 
     def _run(self, run: int, copies: Copies | None) -> None:
         try:
