@@ -61,11 +61,11 @@ def number(value: Any, what: str, *, least: float | None = None, above: float | 
     InputError
         Anything else.
     """
-    found = _real(value)
-    if not (np.isfinite(found) and _within(found, least, above, most, below)):
+    real = _real(value)
+    if not (np.isfinite(real) and _within(real, least, above, most, below)):
         raise refusal(what, value, remedy or "give " + _wanted("finite number", least, above, most,
                                                                below))
-    return found
+    return real
 
 
 def integer(value: Any, what: str, *, least: int | None = None, most: int | None = None,
@@ -82,9 +82,9 @@ def integer(value: Any, what: str, *, least: int | None = None, most: int | None
     InputError
         A fraction, or anything that is no number.
     """
-    found = _real(value)
-    if not (np.isfinite(found) and found == np.floor(found)
-            and _within(found, least, None, most, None)):
+    real = _real(value)
+    if not (np.isfinite(real) and real == np.floor(real)
+            and _within(real, least, None, most, None)):
         raise refusal(what, value, remedy or "give " + _wanted("whole number", least, None, most,
                                                                None))
     return int(_scalar(value))
@@ -111,17 +111,17 @@ def array(value: Any, what: str, shape: Sequence[int | None], *,
     shape = tuple(shape)
     if remedy is None:
         remedy = f"give {_size(shape)} finite number{'s' * (shape != (1,))}"
-    found = reals(value, what, remedy)
-    if len(shape) == 1 and not _fits(found, shape):
+    numbers = reals(value, what, remedy)
+    if len(shape) == 1 and not _fits(numbers, shape):
         raise refusal(what, value, remedy)
-    if not _fits(found, shape):
-        raise InputError(f"{what} has shape {found.shape}: {remedy}")
-    if not np.isfinite(found).all():
+    if not _fits(numbers, shape):
+        raise InputError(f"{what} has shape {numbers.shape}: {remedy}")
+    if not np.isfinite(numbers).all():
         if len(shape) == 1:
             raise refusal(what, value, remedy)
-        at = [int(i) for i in np.argwhere(~np.isfinite(found))[0]]
-        raise InputError(f"{what} has the entry {found[tuple(at)]} at {at}: {remedy}")
-    return found
+        at = [int(i) for i in np.argwhere(~np.isfinite(numbers))[0]]
+        raise InputError(f"{what} has the entry {numbers[tuple(at)]} at {at}: {remedy}")
+    return numbers
 
 
 def vector(value: ArrayLike, what: str, size: int | None = None, *,
@@ -274,19 +274,19 @@ def path(value: Any, what: str, suffixes: Sequence[str] = ()) -> Path:
     if not (isinstance(value, str | os.PathLike) and isinstance(os.fspath(value), str)
             and os.fspath(value).strip()):
         raise refusal(what, value, "give the path of a file")
-    found = Path(value)
-    if suffixes and found.suffix not in suffixes:
-        raise InputError(f"{what} {found} must end in {', '.join(suffixes)}")
+    file = Path(value)
+    if suffixes and file.suffix not in suffixes:
+        raise InputError(f"{what} {file} must end in {', '.join(suffixes)}")
     try:
-        is_folder = S_ISDIR(os.stat(found).st_mode)
+        is_folder = S_ISDIR(os.stat(file).st_mode)
     except (FileNotFoundError, NotADirectoryError):     # files to be written: `check_target`
-        return found
+        return file
     except (OSError, ValueError) as error:      # too long, a loop of links, a zero character
-        raise InputError(f"{what} {shown(str(found))} cannot be a file ({error}): give another "
+        raise InputError(f"{what} {shown(str(file))} cannot be a file ({error}): give another "
                          "path") from error
     if is_folder:
-        raise InputError(f"{what} {found} is a folder: give the path of a file")
-    return found
+        raise InputError(f"{what} {file} is a folder: give the path of a file")
+    return file
 
 
 def reals(value: Any, what: str, remedy: str) -> NDArray:
@@ -297,20 +297,20 @@ def reals(value: Any, what: str, remedy: str) -> NDArray:
     InputError
         Texts, complex numbers, truth values, rows of different lengths.
     """
-    found = _numbers(value)
-    if found is None:
+    numbers = _numbers(value)
+    if numbers is None:
         raise refusal(what, value, remedy)
-    return found
+    return numbers
 
 
 def _numbers(value: Any) -> NDArray | None:
     """An array of floats; None for what cannot be one."""
     try:
-        found = value if isinstance(value, np.ndarray) else np.asarray(value, dtype=object)
-        if found.dtype.kind not in "iuf" and not (found.dtype.kind == "O"
-                                                  and all(map(_is_real, found.flat))):
+        entries = value if isinstance(value, np.ndarray) else np.asarray(value, dtype=object)
+        if entries.dtype.kind not in "iuf" and not (entries.dtype.kind == "O"
+                                                    and all(map(_is_real, entries.flat))):
             return None
-        return np.array(found, dtype=float)
+        return np.array(entries, dtype=float)
     except (TypeError, ValueError, OverflowError):      # rows that do not fit, 10**400
         return None
 

@@ -72,18 +72,18 @@ def parsed_units(text: Any, what: str = "units") -> Units | None:
         return None
     if [word.upper() for word in words] == ["SI"]:
         words = ["m", "kg", "N", "s"]
-    found: dict[str, str] = {}
+    units: dict[str, str] = {}
     for word in words:
         kind, name = _known(word, what, text)
-        if kind in found:
-            raise InputError(f"{what} {text!r} names two units of {kind}, {found[kind]} and "
+        if kind in units:
+            raise InputError(f"{what} {text!r} names two units of {kind}, {units[kind]} and "
                              f"{name}: name one")
-        found[kind] = name
-    found.setdefault("time", "s")
-    if "length" not in found or not {"mass", "force", "pressure"} & set(found):
-        missing = "length" if "length" not in found else "mass or force"
+        units[kind] = name
+    units.setdefault("time", "s")
+    if "length" not in units or not {"mass", "force", "pressure"} & set(units):
+        missing = "length" if "length" not in units else "mass or force"
         raise InputError(f"{what} {text!r} names no unit of {missing}: {_REMEDY}")
-    return _consistent(found, what, text)
+    return _consistent(units, what, text)
 
 
 def common_units() -> list[Units]:
@@ -145,9 +145,9 @@ def _factor(units: Units, name: str) -> float:
 
 def _powers(words: str) -> list[tuple[str, int]]:
     """Quantities of words and their powers: those behind a stroke are divided by."""
-    found = []
+    powers = []
     for part, sign in zip(words.split("/", 1), (1, -1), strict=False):
         for word in part.split():
             name, _, power = word.partition("^")
-            found.append((name, sign * int(power or 1)))
-    return found
+            powers.append((name, sign * int(power or 1)))
+    return powers

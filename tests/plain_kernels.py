@@ -12,7 +12,8 @@ import mpmath
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from sebody.contract.layout import LANES, OK, packed_size, whole_vectors
+from sebody.contract.counts import LANES, packed_size, whole_vectors
+from sebody.contract.layout import OK
 from sebody.derive.symbolic.rotations import stumpff_value, tangent_inverse_value
 from sebody.kernels.abi import Arguments
 from sebody.kernels.packed import GROUP, HEAD

@@ -20,7 +20,7 @@ from sebody.runs.first_run import prepare
 from sebody.verify.bench.own import cases
 from sebody.verify.check.elements import element_case
 from sebody.verify.check.states import arguments, called
-from sebody.verify.check.superelements import superelement_case
+from sebody.verify.check.superelement_cases import superelement_case
 
 FACTORS = (0.7, 0.4, 1.3, 1.0, 0.9)     # of the parts of a matrix, all different
 STEPS = 40

@@ -78,8 +78,8 @@ FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
 # modules of extras by room, and what they may import
 OTHERS = {"io/nastran": {"pyyeti"}, "io/ansys_apart": {"ansys"}, "io/ngsolve_space": {"ngsolve"},
-          "results/hdf5": {"h5py"}, "files/hdf5": {"h5py"}, "results/tables": {"pandas", "xarray"},
-          "results/hot_spots": {"pandas"},
+          "results/hdf5": {"h5py"}, "files/hdf5": {"h5py"},
+          "results/dataframes": {"pandas", "xarray"}, "results/hot_spots": {"pandas"},
           "results/vtk_series": {"meshio"}, "pictures/film": {"PIL", "imageio"},
           "small_motion/state_space": {"control"},
           "explore/executors": {"distributed"}, "explore/table": {"pandas"}}

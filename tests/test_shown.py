@@ -21,7 +21,7 @@ from sebody.analysis import (
 )
 from sebody.fem import rectangle, straight_beam, tube
 from sebody.io.body_file import BodyFile
-from sebody.model.tables import unknowns
+from sebody.model.summary import unknowns
 from sebody.reduction import component_modes, craig_bampton
 from sebody.scenes import four_bar, hinged_beam, slider_crank
 from sebody.tabular import table, text

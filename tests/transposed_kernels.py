@@ -8,7 +8,7 @@ from sebody.derive.compiler import Variant, compile_kernel, stages_of
 from sebody.derive.kernels.transposed import transposed_element, transposed_superelement
 from sebody.derive.printing.numba.files import file_text
 from sebody.verify.check.elements import element_case
-from sebody.verify.check.superelements import superelement_case
+from sebody.verify.check.superelement_cases import superelement_case
 
 ROUNDING = 1e-12        # of the largest entry: both sum some hundred terms, in other orders
 FACTORS = (0, 0, 1, 1, 1), (0, 1, 0, 1, 1), (1, 0, 0, 1, 1)     # of K, C and M

@@ -4,15 +4,9 @@ import re
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from sebody.contract.layout import (
-    LETTERS,
-    FrameTraits,
-    InertiaTraits,
-    first_mode,
-    first_rotation,
-    layout_name,
-)
+from sebody.contract.counts import LETTERS, first_mode, first_rotation, layout_name
 from sebody.contract.names import ANY, layout_variant
+from sebody.contract.traits import FrameTraits, InertiaTraits
 
 PATTERN = re.compile(rf"(planar-)?(?:{ANY}|(?=[ftr])(f\d+)?(t\d+)?(r\d+)?(?:m(\d+))?)(d)?")
 NUMBERS = "no", "one", "two", "three", "four", "five", "six"

@@ -3,7 +3,8 @@
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from sebody.contract.layout import Part, axes_of
+from sebody.contract.counts import axes_of
+from sebody.contract.layout import Part
 from sebody.derive.form import counts
 from sebody.derive.form.arrays import Array, Held, constant
 from sebody.derive.form.functions import PACKED_ROOM

@@ -1,6 +1,6 @@
 """Frames and inertia options by name: a kernel combines one of each."""
 
-from sebody.contract.layout import FrameTraits, InertiaTraits
+from sebody.contract.traits import FrameTraits, InertiaTraits
 from sebody.derive.form.spaces import Space
 from sebody.derive.formulas.frames import converged_mean, mean, mean_axes, mean_small, positions
 from sebody.derive.formulas.frames.frame import Condition

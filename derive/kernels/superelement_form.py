@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 import sympy as sp
 
-from sebody.contract.layout import MARGIN
+from sebody.contract.counts import MARGIN
 from sebody.derive.form import counts
 from sebody.derive.form.arrays import Array
 from sebody.derive.form.counts import agreed

@@ -10,7 +10,7 @@ In the array ``matrices`` are the weights, n numbers, and behind them n of each 
 
 import sympy as sp
 
-from sebody.contract.layout import MARGIN
+from sebody.contract.counts import MARGIN
 from sebody.derive.form import counts
 from sebody.derive.form.arrays import scratch
 from sebody.derive.form.counts import agreed

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from sebody.runs.restart import resume, save_state
     from sebody.runs.statics import equilibrium
     from sebody.small_motion.campbell import Campbell, campbell
+    from sebody.small_motion.energy_gain import EnergyGain, energy_gain
     from sebody.small_motion.frequency import FrequencyResponse, frequency_response
     from sebody.small_motion.linearization import (
         Linearization,
@@ -42,6 +43,7 @@ __all__ = [
     "Calibration",
     "Campbell",
     "Design",
+    "EnergyGain",
     "Ensemble",
     "FrequencyResponse",
     "Gradient",
@@ -57,6 +59,7 @@ __all__ = [
     "at_time",
     "calibrate",
     "campbell",
+    "energy_gain",
     "equilibrium",
     "final",
     "frequency_response",

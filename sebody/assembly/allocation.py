@@ -6,7 +6,8 @@ from numpy.typing import NDArray
 from sebody.assembly.build import work_size
 from sebody.assembly.control import begin
 from sebody.assembly.numbering import Numbering, record_counts, stretch
-from sebody.contract.layout import COEFFICIENTS, ENERGIES, FIELD, LANES, whole_vectors
+from sebody.contract.counts import LANES, whole_vectors
+from sebody.contract.layout import COEFFICIENTS, ENERGIES, FIELD
 from sebody.engine.growth import new_guard
 from sebody.engine.newton import SLOWEST
 from sebody.engine.scalars import record
@@ -93,19 +94,19 @@ def _start(model: Mechanism, numbering: Numbering) -> tuple[NDArray, NDArray]:
 
 def _rotations(model: Mechanism, numbering: Numbering) -> NDArray:
     """Initial rotation matrices, row by row."""
-    found = _identities(9 * len(numbering.rotations))
+    rotations = _identities(9 * len(numbering.rotations))
     for dof_block in model.dof_blocks():
         if dof_block in numbering.rotations and dof_block.start.any():
             at = 9 * numbering.rotations[dof_block]
-            rotate(found, at, *dof_block.start, found, at)
-    return found
+            rotate(rotations, at, *dof_block.start, rotations, at)
+    return rotations
 
 
 def _identities(size: int) -> NDArray:
     """Identity matrices, row by row, of so many numbers."""
-    found = np.zeros(size)
-    found.reshape(-1, 9)[:, ::4] = 1.0
-    return found
+    numbers = np.zeros(size)
+    numbers.reshape(-1, 9)[:, ::4] = 1.0
+    return numbers
 
 
 def _expansion_size(system: System) -> int:

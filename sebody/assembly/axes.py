@@ -40,11 +40,11 @@ def in_frames(model: Mechanism, numbering: Numbering, system: System) -> NDArray
 
     Those of superelements, and of loads on bodies.
     """
-    found = np.arange(system.address.size) < system.first_joint[0]
+    turned = np.arange(system.address.size) < system.first_joint[0]
     for load in model.loads:
         if load.body is not None:
-            found[np.searchsorted(system.at_g, numbering.forces_at[load], side="right") - 1] = True
-    return found
+            turned[np.searchsorted(system.at_g, numbering.forces_at[load], side="right") - 1] = True
+    return turned
 
 
 def rotated_blocks(shapes: Iterable[Shape],
@@ -52,10 +52,10 @@ def rotated_blocks(shapes: Iterable[Shape],
     """The members `rotated` and `rotated_blocks` of `System`."""
     blocks, start = [], 0
     for shape in shapes:
-        for own, unknowns in zip(shape.frames, shape.unknowns, strict=True):
+        for numbers, unknowns in zip(shape.frames, shape.unknowns, strict=True):
             for local, unknown in enumerate(unknowns):
-                if frame_of.get(unknown, own) != own:
-                    blocks.append((start, shape.width, local, frame_of[unknown], own))
+                if frame_of.get(unknown, numbers) != numbers:
+                    blocks.append((start, shape.width, local, frame_of[unknown], numbers))
             start += shape.width ** 2
     return (np.array([item for item in frame_of.items() if item[1] >= 0],
                      dtype=np.int64).reshape(-1, 2),
@@ -70,11 +70,11 @@ def summands(shapes: Iterable[Shape], rotated: NDArray, linked: NDArray,
     """
     width = [s.width for s in shapes for _ in s.unknowns]
     start = starts(w * w for w in width)
-    found = np.full((len(width), 7), -1)
-    found[:, 0], found[:, 1] = start[:-1], width
+    rows = np.full((len(width), 7), -1)
+    rows[:, 0], rows[:, 1] = start[:-1], width
     firsts = np.searchsorted(rotated[:, 0], start)
-    found[:, 2], found[:, 3] = firsts[:-1], firsts[1:]
-    found[np.searchsorted(start, linked[:, 0]), 4] = np.arange(len(linked))
+    rows[:, 2], rows[:, 3] = firsts[:-1], firsts[1:]
+    rows[np.searchsorted(start, linked[:, 0]), 4] = np.arange(len(linked))
     ends = np.searchsorted(kept, start)
-    found[:, 5], found[:, 6] = ends[:-1], ends[1:]
-    return (kept - np.repeat(start[:-1], np.diff(ends))).astype(np.int32), found
+    rows[:, 5], rows[:, 6] = ends[:-1], ends[1:]
+    return (kept - np.repeat(start[:-1], np.diff(ends))).astype(np.int32), rows

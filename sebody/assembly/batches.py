@@ -18,11 +18,12 @@ from sebody.assembly.contracts import (
     index_row,
     positions_of,
 )
+from sebody.assembly.controller_rows import ActuatorRow, law_constants, law_counts, law_row
 from sebody.assembly.floating import floating_constants, frame_conditions
-from sebody.assembly.laws import ActuatorRow, law_constants, law_counts, law_row
 from sebody.assembly.numbering import Numbering, coordinates
-from sebody.assembly.rigid_part import rigid_part_constants
-from sebody.contract.layout import AT_POSITIONS, AT_ROTATIONS, whole_vectors
+from sebody.assembly.rigid_part_constants import rigid_part_constants
+from sebody.contract.counts import whole_vectors
+from sebody.contract.layout import AT_POSITIONS, AT_ROTATIONS
 from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.loader import element_kernel, load
 from sebody.model.frames import FRAMES

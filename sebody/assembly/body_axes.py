@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
-from sebody.contract.layout import Counts
+from sebody.contract.counts import Counts
 from sebody.reduction.invariants import InertiaInvariants
 
 # Of what an inertia, or a geometric stiffness beside inertias, can be. High modes are exact to
@@ -68,11 +68,11 @@ def _directions(vectors: NDArray) -> list[NDArray]:
     sizes = np.linalg.norm(vectors, axis=1)
     kept = sizes > 1e-6 * sizes.max()
     units = vectors[kept] / sizes[kept, None]
-    cosines, found = np.abs(units @ units.T), []
+    cosines, different = np.abs(units @ units.T), []
     for k in range(len(units)):
-        if not (cosines[k, found] >= 1 - 1e-6).any():
-            found.append(k)
-    return [units[k] for k in found]
+        if not (cosines[k, different] >= 1 - 1e-6).any():
+            different.append(k)
+    return [units[k] for k in different]
 
 
 def of_coordinates(rotation: NDArray, counts: Counts) -> NDArray:

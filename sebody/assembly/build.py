@@ -11,8 +11,9 @@ from sebody.assembly.links import Ends, link_ends
 from sebody.assembly.numbering import Numbering, number, stretch
 from sebody.assembly.ports import port_arrays
 from sebody.assembly.structure import Structure, indices
+from sebody.contract.counts import scratch_size
 from sebody.contract.law_row import scratch
-from sebody.contract.layout import AT_CONSTANTS, scratch_size
+from sebody.contract.layout import AT_CONSTANTS
 from sebody.engine.links import Links
 from sebody.engine.system import System
 from sebody.errors import InputError
@@ -44,7 +45,7 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
     ends, vectors = link_ends(model, numbering)
     own = indices(_structure(model, numbering, batches, ends))
     ports = port_arrays(numbering.time_functions, numbering.prescribed, numbering.jumps,
-                        numbering.kept.inputs)
+                        numbering.memory.inputs)
     system = System(
         **own.system, **ports, links=Links(arm_vectors=vectors, **own.links),
         control=control_arrays(model, numbering, ports["table_at"]),
@@ -101,16 +102,16 @@ def _law_scratch(model: Mechanism, element: Element) -> int:
 
 def _parts(model: Mechanism, numbering: Numbering) -> NDArray:
     """First coordinate of the position, rotation or equation each coordinate belongs to."""
-    found = np.arange(numbering.total)
+    firsts = np.arange(numbering.total)
     for node in model.nodes.values():
         for dof_block in (node.position, node.rotation):
             if dof_block is not None and dof_block in numbering.dof_blocks:
                 own = stretch(numbering, dof_block)
-                found[own] = own.start
+                firsts[own] = own.start
     for equation in model.constraints:
         first = numbering.multipliers[equation]
-        found[first:first + equation.multipliers] = first
-    return found
+        firsts[first:first + equation.multipliers] = first
+    return firsts
 
 
 def _guarded(model: Mechanism, numbering: Numbering) -> NDArray:
@@ -122,10 +123,10 @@ def _guarded(model: Mechanism, numbering: Numbering) -> NDArray:
 
 def _rotation_starts(numbering: Numbering) -> NDArray:
     """First coordinate of every rotation matrix."""
-    found = np.zeros(len(numbering.rotations), dtype=np.int64)
+    starts = np.zeros(len(numbering.rotations), dtype=np.int64)
     for key, k in numbering.rotations.items():
-        found[k] = numbering.dof_blocks[key]
-    return found
+        starts[k] = numbering.dof_blocks[key]
+    return starts
 
 
 def _magnitude(model: Mechanism, numbering: Numbering) -> NDArray:

@@ -55,11 +55,11 @@ class _Channels:
     def of(self, quantity: str) -> Channel:
         """The channel of a quantity."""
         owner, _, last = quantity.rpartition(".")
-        found = self._whole(owner, last)
-        if found is None and owner:
+        channel = self._whole(owner, last)
+        if channel is None and owner:
             before, _, name = owner.rpartition(".")
-            found = self._component(before, name, last)
-        return _made(OUTSIDE) if found is None else found
+            channel = self._component(before, name, last)
+        return _made(OUTSIDE) if channel is None else channel
 
     def in_axes(self, quantity: str, axes: Node) -> Channel:
         """The channel of a component of the motion of a node in the axes of one."""
@@ -180,7 +180,7 @@ class _Channels:
 
 
 def _made(kind: int, places: tuple[int, ...] = (), numbers: tuple[float, ...] = ()) -> Channel:
-    row, found = np.zeros(1 + CHANNEL_PLACES, dtype=np.int64), np.zeros(CHANNEL_NUMBERS)
+    row, constants = np.zeros(1 + CHANNEL_PLACES, dtype=np.int64), np.zeros(CHANNEL_NUMBERS)
     row[0], row[1:1 + len(places)] = kind, places
-    found[:len(numbers)] = numbers
-    return Channel(row, found)
+    constants[:len(numbers)] = numbers
+    return Channel(row, constants)

@@ -10,12 +10,9 @@ from types import ModuleType
 from numpy.typing import ArrayLike, NDArray
 
 from sebody.assembly.numbering import Numbering
-from sebody.contract.layout import (
-    INDEX,
+from sebody.contract.counts import (
     MOST_SLAVED,
-    ContractError,
     Counts,
-    Row,
     axes_of,
     bound_counts,
     first_mode,
@@ -23,6 +20,7 @@ from sebody.contract.layout import (
     rigid_part_counts,
     superelement_counts,
 )
+from sebody.contract.layout import INDEX, ContractError, Row
 from sebody.contract.names import IN_PLANE, element_name
 from sebody.errors import InputError
 from sebody.generated.options import INERTIA_OPTIONS

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.channels import channel
-from sebody.assembly.kept import Kept
+from sebody.assembly.memory_map import MemoryMap
 from sebody.assembly.numbering import Numbering
 from sebody.contract.law_row import OUTSIDE
 from sebody.contract.layout import INPUT_NUMBERS
@@ -44,8 +44,8 @@ class Task(NamedTuple):
 
 def control_arrays(model: Mechanism, numbering: Numbering, table_at: NDArray) -> Control:
     """The arrays of a model."""
-    kept = numbering.kept
-    sensors, controllers = list(kept.sensors), sampled(model)
+    stored = numbering.memory
+    sensors, controllers = list(stored.sensors), sampled(model)
     tasks = _tasks(sensors, controllers, order(model))
     numbers = {sensor.name: k for k, sensor in enumerate(sensors)}
     channels = [channel(model, numbering, one.quantity, one.axes) for one in sensors]
@@ -54,8 +54,8 @@ def control_arrays(model: Mechanism, numbering: Numbering, table_at: NDArray) ->
     delayed, first = _queues([(c.whole_delay, len(c.outputs)) for c in controllers], first)
     scratch = list(accumulate((len(c.inputs) + len(c.outputs) for c in controllers),
                               initial=first))
-    wires, at_wires = _wires(kept, controllers, numbers)
-    ends, at_ends = _ends(kept, controllers)
+    wires, at_wires = _wires(stored, controllers, numbers)
+    ends, at_ends = _ends(stored, controllers)
     held = {*signals(model), *(one.name for one in sensors if one.period)}
     at_parameters = list(accumulate((len(c.parameters) for c in controllers), initial=0))
     return Control(
@@ -65,22 +65,22 @@ def control_arrays(model: Mechanism, numbering: Numbering, table_at: NDArray) ->
         channels=_table([one.places for one in channels], 1 + CHANNEL_PLACES),
         coefficients=np.array([s.gain * one.numbers for s, one in zip(
             sensors, channels, strict=True)], dtype=float).reshape(-1, CHANNEL_NUMBERS),
-        sensors=_table([(kept.values[s.name], k, s.delay, queues[k])
+        sensors=_table([(stored.values[s.name], k, s.delay, queues[k])
                         for k, s in enumerate(sensors)], 4),
         errors=np.array([(s.bias, s.noise) for s in sensors], dtype=float).reshape(-1, 2),
         seeds=np.array([s.seed for s in sensors], dtype=np.int64),
         controllers=_table([(
             c.function.address, at_wires[k], len(c.inputs), at_ends[k], len(c.outputs),
-            kept.states[c.name], at_parameters[k], c.whole_delay, delayed[k], scratch[k],
+            stored.states[c.name], at_parameters[k], c.whole_delay, delayed[k], scratch[k],
             int(c.rest > 0.0))
             for k, c in enumerate(controllers)], 11),
         wires=wires, ends=ends,
-        inputs=_table([(port, place, table_at[port]) for port, place in kept.inputs.items()], 3),
+        inputs=_table([(port, place, table_at[port]) for port, place in stored.inputs.items()], 3),
         limits=np.array([numbering.time_functions[port].limits or (1.0, -1.0)
-                         for port in kept.inputs], dtype=float).reshape(-1, 2),
+                         for port in stored.inputs], dtype=float).reshape(-1, 2),
         parameters=np.concatenate([np.zeros(0), *(c.parameters for c in controllers)]),
         outside=np.array([int(any(one.places[0] == OUTSIDE for one in channels))]),
-        flowing=np.array([kept.values[name] for one in continuous(model) for name in one.outputs],
+        flowing=np.array([stored.values[name] for one in continuous(model) for name in one.outputs],
                          dtype=np.int64),
         read=np.array([int(any(name in held for one in continuous(model)
                                for name in one.inputs))]),
@@ -90,18 +90,18 @@ def control_arrays(model: Mechanism, numbering: Numbering, table_at: NDArray) ->
 def begin(model: Mechanism, numbering: Numbering, control: Control, memory: NDArray,
           frames: NDArray) -> None:
     """Set what inputs, signals, delayed outputs and states are before the first sample."""
-    kept = numbering.kept
+    stored = numbering.memory
     memory[:] = 0.0
     memory[NEXT] = memory[STOP] = NEVER
-    for port, place in kept.inputs.items():
+    for port, place in stored.inputs.items():
         start = numbering.time_functions[port].at(0.0)[0]
         frames[place:place + INPUT_NUMBERS] = start, 0.0, start
     for k, one in enumerate(sampled(model)):
-        first = kept.states[one.name]
+        first = stored.states[one.name]
         frames[first:first + len(one.states)] = one.states
         if one.whole_delay:
-            starts = [numbering.time_functions[kept.ports[name]].at(0.0)[0] if name in kept.ports
-                      else 0.0 for name in one.outputs]
+            starts = [numbering.time_functions[stored.ports[name]].at(0.0)[0]
+                      if name in stored.ports else 0.0 for name in one.outputs]
             first = 1 + int(control.controllers[k, ITS_QUEUE])
             memory[first:first + one.whole_delay * len(starts)] = np.tile(starts, one.whole_delay)
 
@@ -125,22 +125,23 @@ def _queues(delays: list[tuple[int, int]], first: int) -> tuple[list[int], int]:
     return places[:-1], places[-1]
 
 
-def _wires(kept: Kept, controllers: list[Controller], numbers: dict[str, int]
+def _wires(stored: MemoryMap, controllers: list[Controller], numbers: dict[str, int]
            ) -> tuple[NDArray, list[int]]:
     """What controllers are given."""
     rows = []
     for one in controllers:
         for name in one.inputs:
             k = numbers.get(name, -1)
-            asked = k >= 0 and not kept.sensors[k].period       # read when it is asked for
-            rows.append((kept.values[name], k if asked else -1))
+            asked = k >= 0 and not stored.sensors[k].period       # read when it is asked for
+            rows.append((stored.values[name], k if asked else -1))
     return _table(rows, 2), list(accumulate((len(c.inputs) for c in controllers), initial=0))
 
 
-def _ends(kept: Kept, controllers: list[Controller]) -> tuple[NDArray, list[int]]:
+def _ends(stored: MemoryMap, controllers: list[Controller]) -> tuple[NDArray, list[int]]:
     """What controllers set."""
-    ports = list(kept.inputs)
-    rows = [(ports.index(kept.ports[name]), -1) if name in kept.ports else (-1, kept.values[name])
+    ports = list(stored.inputs)
+    rows = [(ports.index(stored.ports[name]), -1) if name in stored.ports
+            else (-1, stored.values[name])
             for one in controllers for name in one.outputs]
     return _table(rows, 2), list(accumulate((len(c.outputs) for c in controllers), initial=0))
 

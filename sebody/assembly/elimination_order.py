@@ -65,14 +65,14 @@ def _part(name: str, dof_blocks: Iterable[DofBlock], modes: int) -> Part:
 def _couplings(model: Mechanism, owners: Owners,
                awaited: Mapping[Element, set[DofBlock]]) -> list[Coupling]:
     """What couples several bodies beside the DOF blocks they share."""
-    found = []
+    couplings = []
     for element in (*model.constraints, *model.loads):
         keys = {p: None for p in parents(element.dof_blocks) if p.solved and p in owners}
         if len({k for key in keys for k in owners[key]}) > 1:
             # a DOF block without a body is refused by the numbering, which names it
             known = [key for key in awaited.get(element, ()) if key in owners]
-            found.append(Coupling(keys, element.multipliers, known))
-    return found
+            couplings.append(Coupling(keys, element.multipliers, known))
+    return couplings
 
 
 def _awaited(model: Mechanism, parts: list[Part], owners: Owners) -> dict[Element, set[DofBlock]]:
@@ -103,10 +103,10 @@ def _awaited(model: Mechanism, parts: list[Part], owners: Owners) -> dict[Elemen
 
 def _side(joint: Joint, part: int, owners: Owners) -> dict[Element, set[DofBlock]] | None:
     """The DOF blocks of every equation on one body; None unless all are free and of this one."""
-    found = {}
+    blocks = {}
     for constraint in joint.constraints:
-        own = [p for p in parents(constraint.dof_blocks) if part in owners.get(p, ())]
-        if not own or not all(p.solved and len(owners[p]) == 1 for p in own):
+        bodies = [p for p in parents(constraint.dof_blocks) if part in owners.get(p, ())]
+        if not bodies or not all(p.solved and len(owners[p]) == 1 for p in bodies):
             return None
-        found[constraint] = {p for p in own}
-    return found
+        blocks[constraint] = {p for p in bodies}
+    return blocks

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.contract.layout import LANES
+from sebody.contract.counts import LANES
 from sebody.engine.elimination import BLOCK
 
 

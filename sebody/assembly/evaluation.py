@@ -58,8 +58,8 @@ def assembled(system: System, state: State) -> csc_matrix:
     n, entries = system.diagonal.size, state.matrix[:-1]
     stored = entries != 0.0
     stored[system.diagonal] = True
-    kept = np.flatnonzero(stored & (system.rows < n))
-    kept = kept[np.lexsort((system.rows[kept], system.columns[kept]))]
-    starts = np.searchsorted(system.columns[kept], np.arange(n + 1)).astype(np.int32)
+    chosen = np.flatnonzero(stored & (system.rows < n))
+    chosen = chosen[np.lexsort((system.rows[chosen], system.columns[chosen]))]
+    starts = np.searchsorted(system.columns[chosen], np.arange(n + 1)).astype(np.int32)
     # in SciPy's own order: sorting it out takes SciPy three times as long
-    return csc_matrix((entries[kept], system.rows[kept], starts), shape=(n, n))
+    return csc_matrix((entries[chosen], system.rows[chosen], starts), shape=(n, n))

@@ -118,12 +118,12 @@ class _Graph:
         children: list[list[int]] = [[] for _ in range(len(self.steps) + 1)]
         for step, (_, rest) in enumerate(self.steps):
             children[min((self.step_of[item] for item in rest), default=-1)].append(step)
-        found, stack = [], children[-1]
+        order, stack = [], children[-1]
         while stack:            # backwards: parents before children
             step = stack.pop()
-            found.extend(self.steps[step][0][::-1])
+            order.extend(self.steps[step][0][::-1])
             stack.extend(children[step])
-        return found[::-1] + [body for body, items in enumerate(self.items_of) if not items]
+        return order[::-1] + [body for body, items in enumerate(self.items_of) if not items]
 
 
 def _fill(graph: _Graph, bodies: Sequence[Mapping[int, int]],

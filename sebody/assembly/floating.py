@@ -14,7 +14,7 @@ from sebody.assembly.body_axes import (
     stiff_without_rounding,
     without_rounding,
 )
-from sebody.contract.layout import Counts, first_rotation
+from sebody.contract.counts import Counts, first_rotation
 from sebody.errors import InputError
 from sebody.generated.options import CONDITIONS
 from sebody.kernels.packed import pack
@@ -119,15 +119,15 @@ def frame_conditions(frame: str, counts: Counts, values: Mapping[str, ArrayLike]
         raise InputError(f"frame {frame!r} declares no linear condition of the local coordinates, "
                          "which inertia='floating_field' needs: use another frame or option")
     condition, first = CONDITIONS[key], first_rotation(counts["N_POSITIONS"], D == 2)
-    found = np.zeros((D + turns, counts["n"]))
-    found[:D, :first] = np.kron(values["alphas"], np.eye(D))
+    rows = np.zeros((D + turns, counts["n"]))
+    rows[:D, :first] = np.kron(values["alphas"], np.eye(D))
     begin, size = {"position": (0, D), "rotation": (first, turns), "coordinate": (0, 1)}[
         condition.of]
     constants = (np.asarray(values[name]) for name in condition.constants)
     for j, of_node in enumerate(zip(*constants, strict=True)):
         at = begin + size * j
-        found[D:, at:at + size] = condition.coefficients(*of_node)
-    return found
+        rows[D:, at:at + size] = condition.coefficients(*of_node)
+    return rows
 
 
 def free_coordinates(conditions: NDArray, counts: Counts, turn: NDArray) -> tuple[Free, NDArray]:
@@ -143,10 +143,10 @@ def free_coordinates(conditions: NDArray, counts: Counts, turn: NDArray) -> tupl
         axes[3:, 3:] = turn.T
     conditions = axes @ conditions @ by.T
     conditions[np.abs(conditions) < 1e-14 * np.abs(conditions).max(axis=1, keepdims=True)] = 0.0
-    kept, basis = determining(conditions, counts["bound"])
-    bound_free = np.count_nonzero(kept < counts["bound"])
-    rows = kept[:bound_free]
-    return Free(turn, by[rows, :counts["bound"]], np.arange(len(kept))), basis
+    free, basis = determining(conditions, counts["bound"])
+    bound_free = np.count_nonzero(free < counts["bound"])
+    rows = free[:bound_free]
+    return Free(turn, by[rows, :counts["bound"]], np.arange(len(free))), basis
 
 
 def determining(conditions: NDArray, bound: int) -> tuple[NDArray, NDArray]:
@@ -157,11 +157,11 @@ def determining(conditions: NDArray, bound: int) -> tuple[NDArray, NDArray]:
     count, n = conditions.shape
     scale = np.abs(conditions).max(axis=1, keepdims=True)
     others = qr((conditions / scale)[:, :bound], mode="r", pivoting=True)[1][:count]
-    kept = np.setdiff1d(np.arange(n), others)
+    free = np.setdiff1d(np.arange(n), others)
     basis = np.zeros((n, n - count))
-    basis[kept, np.arange(n - count)] = 1.0
-    basis[others] = -np.linalg.solve(conditions[:, others], conditions[:, kept])
-    return kept, basis
+    basis[free, np.arange(n - count)] = 1.0
+    basis[others] = -np.linalg.solve(conditions[:, others], conditions[:, free])
+    return free, basis
 
 
 def _restricted(i: InertiaInvariants, basis: NDArray) -> InertiaInvariants:

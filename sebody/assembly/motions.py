@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from sebody.assembly.batches import frame_constants
 from sebody.assembly.contracts import constants_row, frame_counts, index_row
 from sebody.assembly.numbering import Numbering, coordinates
-from sebody.contract.layout import MOTION, Counts, scratch_size
+from sebody.contract.counts import Counts, scratch_size
+from sebody.contract.layout import MOTION
 from sebody.contract.names import motion_name
 from sebody.errors import InputError
 from sebody.kernels.loader import derive_command, load

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.elimination_order import elimination_order, parents
-from sebody.assembly.kept import Kept, kept
+from sebody.assembly.memory_map import MemoryMap, memory_map
 from sebody.assembly.ports import number_ports
 from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
@@ -33,7 +33,7 @@ class Numbering(NamedTuple):
     groups: NDArray                     # where the unknowns of each body begin
     # body, constraint or load -> its first force in State.g
     forces_at: dict[Element | Superelement, int] = {}
-    kept: Kept | None = None            # what is kept from step to step
+    memory_map: MemoryMap | None = None      # what is stored from step to step
     # body or element -> its row in System.constants
     constants_at: dict[Element | Superelement, int] = {}
     bristles: dict[Element, float] = {}     # element -> stiffness of its bristles in the run
@@ -43,13 +43,13 @@ class Numbering(NamedTuple):
     @property
     def memories(self) -> dict[Element, list[int]]:
         """What elements keep: places in `State.frames`."""
-        return self.kept.memories
+        return self.memory.memories
 
     @property
-    def all_kept(self) -> Kept:
-        """What is kept, of a numbering that is complete."""
-        assert self.kept is not None
-        return self.kept
+    def memory(self) -> MemoryMap:
+        """What is stored from step to step, of a numbering that is complete."""
+        assert self.memory_map is not None
+        return self.memory_map
 
 
 def coordinates(numbering: Numbering, dof_block: DofBlock) -> list[int]:
@@ -74,22 +74,22 @@ def hidden_states(model: Mechanism, numbering: Numbering) -> dict[int, str]:
 
 def rotational(model: Mechanism, numbering: Numbering) -> NDArray:
     """Which coordinates belong to rotations, (total,) of bool."""
-    found = np.zeros(numbering.total, dtype=bool)
+    flags = np.zeros(numbering.total, dtype=bool)
     for node in model.nodes.values():
         if node.rotation is not None and node.rotation in numbering.dof_blocks:
-            found[coordinates(numbering, node.rotation)] = True
-    return found
+            flags[coordinates(numbering, node.rotation)] = True
+    return flags
 
 
 def placed(model: Mechanism, numbering: Numbering) -> NDArray:
     """Which coordinates belong to positions or rotations, (total,) of bool: no modes, multipliers.
     """
-    found = np.zeros(numbering.total, dtype=bool)
+    flags = np.zeros(numbering.total, dtype=bool)
     for node in model.nodes.values():
         for dof_block in (node.position, node.rotation):
             if dof_block is not None and dof_block in numbering.dof_blocks:
-                found[coordinates(numbering, dof_block)] = True
-    return found
+                flags[coordinates(numbering, dof_block)] = True
+    return flags
 
 
 def number(model: Mechanism) -> Numbering:
@@ -132,7 +132,7 @@ def number(model: Mechanism) -> Numbering:
     return Numbering(free, len(order.names), order.at, rotations, modes, order.multipliers,
                      order.names, dependent, ports.of, ports.names, ports.time_functions,
                      ports.prescribed, np.array(groups), jumps=ports.jumps,
-                     kept=kept(model, ports.of), reads=_reads(model, order.multipliers))
+                     memory_map=memory_map(model, ports.of), reads=_reads(model, order.multipliers))
 
 
 class _Order:
@@ -176,14 +176,14 @@ def _reads(model: Mechanism, multipliers: dict[Element, int]) -> dict[Element, l
 
 def _coupled(model: Mechanism, last: dict[DofBlock, int]) -> dict[DofBlock, int]:
     """Of every DOF block the last body it belongs to or is coupled to by a joint or spring."""
-    found = dict(last)
+    last_bodies = dict(last)
     for element in (*model.constraints, *model.loads):
         keys = [p for p in parents(element.dof_blocks) if p in last]
         if len(keys) > 1:
             latest = max(last[key] for key in keys)
             for key in keys:
-                found[key] = max(found[key], latest)
-    return found
+                last_bodies[key] = max(last_bodies[key], latest)
+    return last_bodies
 
 
 def _refuse_loose(model: Mechanism, held: dict) -> None:
@@ -224,13 +224,13 @@ def _refuse_idle_drives(model: Mechanism) -> None:
 def _used(model: Mechanism) -> list[DofBlock]:
     """DOF blocks of nodes and elements, those of the ground included, and their parents."""
     elements = (*model.rigid_bodies.values(), *model.constraints, *model.loads)
-    found = [t for n in model.nodes.values() for t in (n.position, n.rotation) if t is not None]
-    found += [t for e in elements for t in e.dof_blocks]
-    found += parents(found)
-    return list(dict.fromkeys(found))
+    blocks = [t for n in model.nodes.values() for t in (n.position, n.rotation) if t is not None]
+    blocks += [t for e in elements for t in e.dof_blocks]
+    blocks += parents(blocks)
+    return list(dict.fromkeys(blocks))
 
 
 def record_counts(numbering: Numbering) -> dict[str, int]:
     """The counts of a model that sizes in `layout.RECORD` and `layout.ENERGIES` refer to."""
     return {"ports": len(numbering.time_functions), "coordinates": numbering.total,
-            "rotations": len(numbering.rotations), "kept": numbering.kept.size}
+            "rotations": len(numbering.rotations), "stored": numbering.memory_map.size}

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.contract.layout import INPUT
-from sebody.engine.tables import AMPLITUDE, PIECE, POLYNOMIAL
+from sebody.engine.load_amplitudes import AMPLITUDE, PIECE, POLYNOMIAL
 from sebody.kernels.loader import element_kernel
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Element, Superelement
@@ -27,27 +27,27 @@ class Ports(NamedTuple):
 
 def number_ports(model: Mechanism, at: Mapping[DofBlock, int]) -> Ports:
     """Power ports of a model; `at` is the first coordinate of each DOF block, by id."""
-    found = Ports({}, [], [], [], [])
+    ports = Ports({}, [], [], [], [])
 
     def add(name: str, time_function: TimeFunction | None, jumps: list[float]) -> int:
-        found.names.append(name)
-        found.time_functions.append(time_function or TimeFunction())
-        found.jumps.append(jumps)
-        return len(found.names) - 1
+        ports.names.append(name)
+        ports.time_functions.append(time_function or TimeFunction())
+        ports.jumps.append(jumps)
+        return len(ports.names) - 1
 
     for element in (*model.constraints, *model.loads):
         if element_kernel(element.kind).POWER:
-            found.of[element] = add(element.name, element.time_function, _jumps(element))
+            ports.of[element] = add(element.name, element.time_function, _jumps(element))
     for body in model.bodies.values():
         if body.reduced.damping is not None:
-            found.of[body] = add(f"damping of {body.name}", None, [])
+            ports.of[body] = add(f"damping of {body.name}", None, [])
     for dof_block in model.dof_blocks():
         rotational = int(dof_block.rotational and not model.planar)
         for motion in dof_block.motions:
             port = add(motion.name, motion.time_function, motion.time_function.abrupt(2))
-            found.prescribed.extend((at[dof_block] + k, port, rotational, d)
+            ports.prescribed.extend((at[dof_block] + k, port, rotational, d)
                                     for k, d in enumerate(motion.direction) if d != 0.0)
-    return found
+    return ports
 
 
 def _jumps(element: Element) -> list[float]:
@@ -82,9 +82,9 @@ def port_arrays(time_functions: list[TimeFunction], prescribed: list[tuple[int, 
 
 def _pieces(time_functions: list[TimeFunction]) -> NDArray:
     """Polynomials and harmonics of all pieces of all time functions, (pieces, PIECE)."""
-    found = np.zeros((sum(len(h.pieces) for h in time_functions), PIECE))
+    rows = np.zeros((sum(len(h.pieces) for h in time_functions), PIECE))
     if time_functions:
-        found[:, :POLYNOMIAL] = np.concatenate([h.polynomials() for h in time_functions])
+        rows[:, :POLYNOMIAL] = np.concatenate([h.polynomials() for h in time_functions])
     if waves := same_waves(time_functions):
-        found[:, AMPLITUDE:] = waves
-    return found
+        rows[:, AMPLITUDE:] = waves
+    return rows

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly import elimination_pattern
 from sebody.assembly.batches import Shape
-from sebody.contract.layout import LANES
+from sebody.contract.counts import LANES
 
 
 def element_scatter(shapes: Iterable[Shape], unused: int) -> tuple[NDArray, NDArray]:

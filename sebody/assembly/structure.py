@@ -15,7 +15,7 @@ from sebody.assembly.axes import rotated_blocks, summands
 from sebody.assembly.batches import Shape, starts
 from sebody.assembly.links import Ends, link_tables
 from sebody.assembly.scatter import dense_layout, element_scatter, sparse_layout
-from sebody.contract.layout import LANES
+from sebody.contract.counts import LANES
 
 REMEMBERED = 16         # structures
 
@@ -83,10 +83,10 @@ def _batch_arrays(shapes: Iterable[Shape]) -> dict[str, NDArray]:
 
 def _multipliers(of: Structure) -> NDArray:
     """1.0 for every multiplier, and zeros behind the last coordinate."""
-    found = np.zeros(of.total + LANES)
+    flags = np.zeros(of.total + LANES)
     for first, count in of.equations:
-        found[first:first + count] = 1.0
-    return found
+        flags[first:first + count] = 1.0
+    return flags
 
 
 def _constraint_columns(matrix: dict[str, NDArray], is_multiplier: NDArray, free: int) -> NDArray:

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sebody.cli import interrupts, scene_files
-from sebody.cli.inputs import build_scene, check_picture, given_arguments, source
+from sebody.cli.scene_arguments import build_scene, check_picture, given_arguments, source
 
 if TYPE_CHECKING:
     from sebody.analysis import Advice

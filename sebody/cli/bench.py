@@ -18,6 +18,6 @@ def run(options: argparse.Namespace) -> int:
     from sebody.verify import bench
 
     rate = bench.machine_rate()
-    found = bench.measure(options.scenes)
-    print(bench.to_json(found, rate) if options.json else bench.report(found, rate))
+    measured = bench.measure(options.scenes)
+    print(bench.to_json(measured, rate) if options.json else bench.report(measured, rate))
     return 0

@@ -4,7 +4,7 @@ import argparse
 from dataclasses import replace
 from pathlib import Path
 
-from sebody.cli.inputs import build_scene, check_distinct, check_picture
+from sebody.cli.scene_arguments import build_scene, check_distinct, check_picture
 
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:

@@ -5,7 +5,7 @@ import os
 import sys
 from pathlib import Path
 
-from sebody.cli.inputs import build_scene
+from sebody.cli.scene_arguments import build_scene
 
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:

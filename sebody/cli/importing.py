@@ -106,8 +106,8 @@ def _damping(text: str | None) -> float | list[float]:
     if text is None:
         return 0.0
     try:
-        found = [float(word) for word in text.split(",")]
+        ratios = [float(word) for word in text.split(",")]
     except ValueError as error:
         raise InputError(f"--damping is {text!r}: give a ratio, or ratios with commas between, "
                          "such as 0.01 or 0.005,0.01,0.02") from error
-    return found if len(found) > 1 else found[0]
+    return ratios if len(ratios) > 1 else ratios[0]

@@ -4,7 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from sebody.cli.inputs import check_distinct, check_picture
+from sebody.cli.scene_arguments import check_distinct, check_picture
 from sebody.errors import InputError
 
 

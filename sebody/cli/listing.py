@@ -6,7 +6,7 @@ import re
 import textwrap
 from collections.abc import Callable
 
-from sebody.cli.inputs import described, parameters, source
+from sebody.cli.scene_arguments import described, parameters, source
 
 RESULTS = ".npz", ".h5"         # files of results
 
@@ -52,12 +52,12 @@ def meanings_of(build: Callable) -> dict[str, str]:
     """What the parameters of a function mean, by the section of its docstring (numpydoc)."""
     text = inspect.getdoc(build) or ""
     section = re.search(r"^Parameters\n-+\n(.*?)(?=^\S[^\n]*\n-+$|\Z)", text, re.M | re.S)
-    found = {}
+    meanings = {}
     for entry in re.findall(r"^(\w[^\n]*)\n((?:[ \n][^\n]*\n?)*)", section[1] if section else "",
                             re.M):
         names, meaning = entry[0].partition(":")[0], " ".join(entry[1].split())
-        found |= {name.strip(): meaning for name in names.split(",")}
-    return found
+        meanings |= {name.strip(): meaning for name in names.split(",")}
+    return meanings
 
 
 def _list_all() -> None:
@@ -68,9 +68,9 @@ def _list_all() -> None:
     for name, summary in scenes().items():
         print(f"  {name:24} {summary}")
     print("  parameters of a scene: sebody list SCENE; scenes of your own: sebody run FILE.py")
-    found = kernels()
+    listed = kernels()
     print("\nsuperelement kernels\n  layout         frame            inertia")
-    for kernel in found:
+    for kernel in listed:
         if kernel.layout:
             print(f"  {kernel.layout:14} {kernel.frame:16} {kernel.inertia}")
     print("  frame 'node' is the converged_mean kernel with all weight on one node\n"
@@ -80,5 +80,5 @@ def _list_all() -> None:
           "kernel:\n"
           "  python -m sebody.derive LAYOUT")
     print("\njoints and loads")
-    names = ", ".join(k.name.removeprefix(ELEMENT) for k in found if not k.layout)
+    names = ", ".join(k.name.removeprefix(ELEMENT) for k in listed if not k.layout)
     print(textwrap.fill(names, 100, initial_indent="  ", subsequent_indent="  "))

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from sebody.cli.inputs import check_distinct, check_picture, labelled_results
+from sebody.cli.scene_arguments import check_distinct, check_picture, labelled_results
 
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:

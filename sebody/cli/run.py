@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from sebody.cli import interrupts
-from sebody.cli.inputs import build_scene, check_distinct, check_picture
+from sebody.cli.scene_arguments import build_scene, check_distinct, check_picture
 from sebody.errors import InputError, Interrupted, LimitWarning, SebodyError, SimulationError
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sebody.cli import interrupts
-from sebody.cli.inputs import build_scene, check_picture, given_arguments, source
+from sebody.cli.scene_arguments import build_scene, check_picture, given_arguments, source
 from sebody.errors import InputError
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 def run(options: argparse.Namespace) -> int:
     """Run the sweep; 1 if all of its runs fail."""
     from sebody.explore.sweep import sobol, sweep
-    from sebody.explore.sweep.axes import distribution_of, values_of
+    from sebody.explore.sweep.variations import distribution_of, values_of
     from sebody.runs.progress import Progress
 
     build, _, _ = source(options.scene)
@@ -101,12 +101,12 @@ def run(options: argparse.Namespace) -> int:
 
 def _by_name(option: str, pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
     """What an option gives, each name once."""
-    found: dict[str, Any] = {}
+    by_name: dict[str, Any] = {}
     for name, value in pairs:
-        if name in found:
+        if name in by_name:
             raise InputError(f"{option} {name} is given twice: give it once, with all its values")
-        found[name] = value
-    return found
+        by_name[name] = value
+    return by_name
 
 
 def _beside(stem: Path, suffix: str) -> Path:
@@ -123,7 +123,7 @@ def _outputs(texts: Sequence[str], build, options: argparse.Namespace) -> "dict[
         return {f"final({quantity})": ensembles.final(quantity)}
     makers = {name: getattr(ensembles, name) for name in
               ("maximum", "minimum", "rms", "integral", "final", "at_time")}
-    found = {}
+    outputs = {}
     for text in texts:
         match = KEEP.match(text.strip())
         if not match or match[1] not in makers:
@@ -134,8 +134,8 @@ def _outputs(texts: Sequence[str], build, options: argparse.Namespace) -> "dict[
             raise InputError(f"--keep {text}: at_time takes a time, such as "
                              "at_time(tip.position,2.5), and the others take none")
         arguments = [quantity.strip()] + ([_time(text, time)] if time else [])
-        found[text.strip()] = makers[kind](*arguments, norm=bool(norm))
-    return found
+        outputs[text.strip()] = makers[kind](*arguments, norm=bool(norm))
+    return outputs
 
 
 def _time(text: str, time: str) -> float:

@@ -32,10 +32,10 @@ def room_hash(*rooms: str) -> str:
     """
     paths = []
     for room in rooms:
-        found = sorted((PACKAGE / room).rglob("*.py"))
-        if not found:
+        files = sorted((PACKAGE / room).rglob("*.py"))
+        if not files:
             raise FileNotFoundError(f"{PACKAGE / room} holds no modules: its hash would be empty")
-        paths += found
+        paths += files
     return _syntax_hash("-".join(rooms), *paths)
 
 

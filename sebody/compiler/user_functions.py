@@ -139,16 +139,16 @@ def compile_force(name: str, function: Callable[..., None], coordinates: int) ->
 
         def compiled(kept):
             def call(n, t, x, v, force):
-                given = carray(x, n), carray(v, n)
+                motion = carray(x, n), carray(v, n)
                 forces = carray(force, n)
-                raised, _ = returned((t, given[0], given[1], forces))
+                raised, _ = returned((t, motion[0], motion[1], forces))
                 for i in range(n):
                     raised |= not math.isfinite(forces[i])
                 if raised and kept != NO_RECORD:
                     record = carray(_floats_at(kept), OTHERS + 2 * n)
                     record[FAULT], record[TIME] = 1.0, t
                     for i in range(n):
-                        record[OTHERS + i], record[OTHERS + n + i] = given[0][i], given[1][i]
+                        record[OTHERS + i], record[OTHERS + n + i] = motion[0][i], motion[1][i]
                 if raised:
                     for i in range(n):
                         forces[i] = math.nan
@@ -179,14 +179,14 @@ class ControlFunction(UserFunction):
         if not (self.record[FAULT] and self.record[TIME] >= since):
             return ""
         t = float(self.record[TIME])
-        given = np.split(self.record[OTHERS:].copy(), np.cumsum(self.sizes)[:-1])
+        inputs = np.split(self.record[OTHERS:].copy(), np.cumsum(self.sizes)[:-1])
         for k in (0, 3):
-            given[k].flags.writeable = False
+            inputs[k].flags.writeable = False
         try:
             with np.errstate(all="ignore"):
-                self.function(t, *given)
-            did = f"gave u = {shown(given[2])}" if not np.isfinite(given[2]).all() else (
-                f"gave states {shown(given[1])}")
+                self.function(t, *inputs)
+            did = f"gave u = {shown(inputs[2])}" if not np.isfinite(inputs[2]).all() else (
+                f"gave states {shown(inputs[1])}")
         except Exception as error:      # whatever the user's function raises
             did = f"raised {type(error).__name__}: {error}"
         return f"{did} at t = {t:.6g}"
@@ -220,19 +220,19 @@ def compile_controller(name: str, function: Callable[..., None],
 
         def compiled(kept):
             def call(t, y, x, u, parameters):
-                given, states, outputs, numbers = (carray(y, ny), carray(x, nx), carray(u, nu),
-                                                   carray(parameters, count))
+                motion, states, outputs, numbers = (carray(y, ny), carray(x, nx), carray(u, nu),
+                                                    carray(parameters, count))
                 if kept != NO_RECORD:       # as they are before the call, which changes x and u
                     record = carray(_floats_at(kept), total)
                     for i in range(ny):
-                        record[OTHERS + i] = given[i]
+                        record[OTHERS + i] = motion[i]
                     for i in range(nx):
                         record[OTHERS + ny + i] = states[i]
                     for i in range(nu):
                         record[OTHERS + ny + nx + i] = outputs[i]
                     for i in range(count):
                         record[OTHERS + ny + nx + nu + i] = numbers[i]
-                raised, _ = returned((t, given, states, outputs, numbers))
+                raised, _ = returned((t, motion, states, outputs, numbers))
                 for i in range(nx):
                     raised |= not math.isfinite(states[i])
                 for i in range(nu):

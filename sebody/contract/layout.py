@@ -15,15 +15,14 @@ N             these, and the coordinates that follow them
 ============  ======================================================================================
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from math import prod
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-LANES = 4           # columns of a body's matrices are padded to whole vectors of so many
-MEMBERS = 8         # of an ensemble that are evaluated at a time, see `sebody.engine.lanes`
+from sebody.contract.counts import Counts, Size, packed_size, whole_vectors
 
 # tasks of a kernel; VELOCITY and ACCELERATION are the constraints differentiated in time
 RESIDUAL, TANGENT, ENERGY, VELOCITY, ACCELERATION = range(5)
@@ -33,9 +32,6 @@ AT_RATE, AT_IMPACT = range(2)
 # status that a kernel returns: HALF_TURN if a node is rotated by nearly half a turn against the
 # frame of its body, NO_FRAME if the search for this frame does not converge
 OK, HALF_TURN, NO_FRAME = range(3)
-
-Counts = Mapping[str, int]
-Size = str | int        # a count, or a number
 
 
 class Part(NamedTuple):
@@ -161,11 +157,6 @@ class _Fixed(dict):
     """No counts: only parts behind parts of fixed size have a place."""
 
 
-def whole_vectors(n: int) -> int:
-    """Length of a column of n numbers in a kernel's matrices: whole vectors."""
-    return (n + LANES - 1) // LANES * LANES
-
-
 def padded_columns(matrix: NDArray) -> NDArray:
     """Columns of a matrix one after the other, each filled with zeros to whole vectors."""
     height, width = matrix.shape
@@ -238,8 +229,9 @@ RECORD = Row("what is recorded of a state", (
     Part("R", ("rotations", 9), "rotation matrices"),
     Part("v", ("coordinates",), "velocities"),
     Part("a", ("coordinates",), "accelerations"),
-    Part("frames", ("kept",), "frames of superelements, nine numbers each, and what elements keep"),
-    Part("frames_old", ("kept",), "the same of the last accepted step"),
+    Part("frames", ("stored",), "frames of superelements, nine numbers each, then what elements, "
+         "inputs, sensors and controllers store"),
+    Part("frames_old", ("stored",), "the same of the last accepted step"),
 ))
 # places that are the same in all models; of other parts their number, see `Record.at`
 RECORD_T, RECORD_ITERATIONS, RECORD_WORKS = (
@@ -281,128 +273,6 @@ SUPERELEMENT_CONSTANTS = (
 CLOCK, INPUT = 1, 2
 # of an input, in State.frames: the value that was set, when, and the force or torque at that time
 INPUT_NUMBERS = 3
-MOST_SLAVED = 12        # coordinates that may follow the unknowns: load modes of three
-# translations, three rotations and six products of angular velocities
-MARGIN = MOST_SLAVED + 6    # what scratch rows of option C have beyond n: these, a force, a moment
 DAMPING_CONSTANTS = (Part("C", ("n", "n"), "reduced damping", columns=True),)
 
 
-def superelement_counts(positions: int, rotations: int, planar: bool, unknowns: int
-                        ) -> dict[str, int]:
-    """The counts that sizes of a superelement's rows are products of."""
-    return {"N_POSITIONS": positions, "N_ROTATIONS": rotations, "D": 2 if planar else 3,
-            "n": unknowns}
-
-
-def floating_counts(planar: bool, unknowns: int, slaved: int, resultants: int,
-                    damped: bool = False) -> dict[str, int]:
-    """The further counts of option C."""
-    axes = axes_of(planar)
-    free = unknowns - axes["motions"]
-    return axes | {"free": free, "N": free + slaved, "slaved": slaved, "resultants": resultants,
-                   "stretching": resultants + 1, "damped": int(damped)}
-
-
-def bound_counts(positions: int, rotations: int, planar: bool) -> dict[str, int]:
-    """Coordinates of the boundary, and those that determine the others in the frame."""
-    bound = first_mode(positions, rotations, planar)
-    return {"bound": bound, "bound_free": bound - axes_of(planar)["motions"]}
-
-
-def packed_size(count: int, rows: int, columns: int) -> int:
-    """Length of the row of some packed matrices, see `sebody.kernels.packed`."""
-    height, width = whole_vectors(rows), whole_vectors(columns)
-    return count * height * (width + width // 4) + 2 * width + 1
-
-
-def rigid_part_counts(planar: bool, unknowns: int, damped: bool = False) -> dict[str, int]:
-    """The further counts of option D."""
-    return axes_of(planar) | {"damped": unknowns * damped}
-
-
-def scratch_size(work_rows: int, work_squares: int, unknowns: int, rotations: int) -> int:
-    """Scratch memory of a superelement's kernel: rows, and squares of as many rows."""
-    longest = max(unknowns + MARGIN * (work_squares > 0), 9 * rotations)
-    return (work_rows + work_squares * (unknowns + MARGIN)) * whole_vectors(longest)
-
-
-def axes_of(planar: bool) -> dict[str, int]:
-    """The counts that follow from the space: of a position, a rotation, a symmetric matrix.
-
-    ``lines`` are a first moment, a rotation and an inertia for each coordinate, ``motions`` those
-    of the frame, ``entries`` of its rotation: cosine and sine in a plane. ``placed`` and ``rated``
-    are matrices that multiply coordinates, and their rates.
-    """
-    D, turns, pairs = (2, 1, 1) if planar else (3, 3, 6)
-    return {"D": D, "turns": turns, "pairs": pairs, "lines": D + turns + pairs,
-            "motions": D + turns, "entries": 2 if planar else 9, "placed": pairs + turns,
-            "rated": 2 * turns}
-
-
-def first_rotation(positions: int, planar: bool) -> int:
-    """Where rotations begin among a superelement's coordinates: positions, rotations, modes."""
-    return (2 if planar else 3) * positions
-
-
-def first_mode(positions: int, rotations: int, planar: bool) -> int:
-    """Where its internal modes begin."""
-    return first_rotation(positions, planar) + (1 if planar else 3) * rotations
-
-
-class FrameTraits(NamedTuple):
-    """Properties of a floating frame."""
-
-    summary: str
-    needs_rotations: bool = True    # averages rotations of nodes; else follows positions
-    modes: bool = False             # these, rotations and internal modes
-    fewest_positions: tuple[int, int] = (1, 1)      # in space, in a plane
-    planar: bool = True             # False: in a plane the frame equals another one
-    exact: bool = True              # forces are derivatives of the energy
-    incremental: bool = False       # averages rotation increments of the step
-    constants: tuple[Part, ...] = ()        # read in addition to SUPERELEMENT_CONSTANTS
-
-
-class InertiaTraits(NamedTuple):
-    """Properties of an inertia option."""
-
-    summary: str
-    letter: str                     # of Cardona's options (a, b) and of those beyond the paper
-    rank: int                       # options of a higher rank describe more of the motion
-    cost: float                     # of an operation, relative to option A: measured
-    softening: float                # of stiffness by a spin: share of (spin / frequency)^2
-    material: bool                  # T in material angular velocities; else in those of the frame
-    modes_apart: bool = False       # internal modes meet in S, M and C alone, nowhere else
-    rates: bool = False             # T in rates of deformation: frames that depend on the state
-    # alone, and the same kernels for bodies with and without damping
-    field: bool = False             # T of the displacement field, from integrals over the body
-    constants: tuple[Part, ...] = ()        # read in addition to SUPERELEMENT_CONSTANTS
-
-
-class Condition(NamedTuple):
-    """What the local coordinates of a body obey in its frame, beside zero mean displacements.
-
-    A sum over the nodes vanishes: coefficients times the displacement or rotation of each. Or one
-    over all coordinates does. In incremental frames it is zero to first order.
-    """
-
-    of: str                     # position | rotation | coordinate
-    constants: tuple[str, ...]  # that the coefficients are made of, by name: those of a node
-    coefficients: Callable      # (rows, components) of the constants of a node, in this order
-
-
-LETTERS = {"full": "f", "translation": "t", "rotation": "r"}    # by kept DOF blocks of a node
-
-
-def layout_name(keeps: Iterable[str], planar: bool) -> str:
-    """Name of a layout, such as ``f2t1``; the order of the nodes does not enter.
-
-    Parameters
-    ----------
-    keeps : iterable of 'full', 'translation' or 'rotation'
-        What each boundary node keeps.
-    planar : bool
-        Motion in a plane.
-    """
-    kept = list(keeps)
-    counts = (f"{letter}{kept.count(keep)}" for keep, letter in LETTERS.items() if keep in kept)
-    return "planar-" * planar + "".join(counts)

@@ -146,15 +146,15 @@ def _linear_flow(matrices: list[NDArray]) -> Flow:
 def _linear(t, y, x, rates, u, parameters):
     n, k, m = y.size, x.size, u.size
     for i in range(k + m):
-        row, found = i * (n + k), 0.0
+        row, total = i * (n + k), 0.0
         for j in range(n):
-            found += parameters[row + j] * y[j]
+            total += parameters[row + j] * y[j]
         for j in range(k):
-            found += parameters[row + n + j] * x[j]
+            total += parameters[row + n + j] * x[j]
         if i < k:
-            rates[i] = found
+            rates[i] = total
         else:
-            u[i - k] = found
+            u[i - k] = total
 
 
 def _linear_derivatives(t, y, x, derivatives, parameters):

@@ -22,6 +22,7 @@ from sebody.contract.law_row import (
     ITS_RATE,
     TURNED,
 )
+from sebody.engine.actuator_inputs import FROM, SINCE, VALUE, input_at
 from sebody.engine.control_data import (
     APPLY,
     BIAS,
@@ -50,7 +51,6 @@ from sebody.engine.control_data import (
     WAITS,
     WIRES,
 )
-from sebody.engine.inputs import FROM, SINCE, VALUE, input_at
 from sebody.engine.state import (
     BAD_CONTROL,
     DONE,
@@ -66,20 +66,20 @@ from sebody.kernels.ways import way, way_rate
 @compiled
 def sample(system, state):
     """Sample what is due at the time reached; DONE, FAILED, or READ for Python to read sensors."""
-    own, memory, t = system.control, state.memory, state.clock.time
+    control, memory, t = system.control, state.memory, state.clock.time
     near = NEAR * state.clock.step
-    if own.outside[0] == 1 and memory[HAS] == 0.0:
+    if control.outside[0] == 1 and memory[HAS] == 0.0:
         memory[WAITS] = 1.0
         return READ
     memory[WAITS] = memory[HAS] = 0.0
     changed = False
-    for k in range(own.periods.size):
-        if memory[COUNTS + k] * own.periods[k] + own.offsets[k] > t + near:
+    for k in range(control.periods.size):
+        if memory[COUNTS + k] * control.periods[k] + control.offsets[k] > t + near:
             continue
-        number = own.tasks[k, 1]
-        if own.tasks[k, 0] == SENSOR:
+        number = control.tasks[k, 1]
+        if control.tasks[k, 0] == SENSOR:
             changed |= _hold(system, state, number)
-        elif own.tasks[k, 0] == APPLY:
+        elif control.tasks[k, 0] == APPLY:
             changed |= _apply(system, state, number) > 0
         else:
             status = _control(system, state, number)
@@ -91,18 +91,18 @@ def sample(system, state):
         memory[COUNTS + k] += 1.0
     if 0.0 <= memory[STOP] <= t + near:
         memory[STOP] = NEVER
-    set_next(own, memory)
+    set_next(control, memory)
     if not changed and state.control.meets == SAMPLED and state.control.inside == 0:
         state.control.restart = 0      # nothing jumps
     return DONE
 
 
 @compiled
-def set_next(own, memory):
+def set_next(control, memory):
     """Find the time at which the next step has to end."""
     memory[NEXT] = memory[STOP]
-    for k in range(own.periods.size):
-        t = memory[COUNTS + k] * own.periods[k] + own.offsets[k]
+    for k in range(control.periods.size):
+        t = memory[COUNTS + k] * control.periods[k] + control.offsets[k]
         if memory[NEXT] < 0.0 or t < memory[NEXT]:
             memory[NEXT] = t
 
@@ -113,17 +113,17 @@ def _hold(system, state, k):
 
     Returns whether something jumps with it.
     """
-    own, row = system.control, system.control.sensors[k]
+    control, row = system.control, system.control.sensors[k]
     value = _reading(system, state, k)
     if row[DELAY] > 0:
         queue = state.memory[row[QUEUE]:row[QUEUE] + 1 + row[DELAY]]
-        if state.memory[COUNTS + own.periods.size + own.sensors.shape[0] + k] == 1.0:
+        if state.memory[COUNTS + control.periods.size + control.sensors.shape[0] + k] == 1.0:
             for i in range(row[DELAY]):
                 queue[1 + i] = value        # before the first reading there is none
         place = 1 + np.int64(queue[0])
         value, queue[place] = queue[place], value
         queue[0] = place % row[DELAY]
-    jumps = own.read[0] == 1 and state.frames[row[SLOT]] != value
+    jumps = control.read[0] == 1 and state.frames[row[SLOT]] != value
     state.frames[row[SLOT]] = value
     return jumps
 
@@ -131,23 +131,23 @@ def _hold(system, state, k):
 @compiled
 def _reading(system, state, k):
     """What a sensor reads now, with bias and noise."""
-    own, first = system.control, COUNTS + system.control.periods.size
-    value, counts = channel_value(system, state, k), first + own.sensors.shape[0] + k
+    control, first = system.control, COUNTS + system.control.periods.size
+    value, counts = channel_value(system, state, k), first + control.sensors.shape[0] + k
     count = state.memory[counts]
     state.memory[counts] = count + 1.0
-    value += own.errors[k, BIAS]
-    if own.errors[k, NOISE] > 0.0:
-        value += own.errors[k, NOISE] * normal(own.seeds[k], np.int64(count))
+    value += control.errors[k, BIAS]
+    if control.errors[k, NOISE] > 0.0:
+        value += control.errors[k, NOISE] * normal(control.seeds[k], np.int64(count))
     return value
 
 
 @compiled
 def channel_value(system, state, k):
     """The quantity that a sensor reads, as it is."""
-    own = system.control
-    place, channel = COUNTS + own.periods.size + k, own.sensors[k, CHANNEL]
-    state.memory[place] = read_channel(state.now, own.channels[channel], own.coefficients[channel],
-                                       state.memory[place])
+    control = system.control
+    place, channel = COUNTS + control.periods.size + k, control.sensors[k, CHANNEL]
+    state.memory[place] = read_channel(state.now, control.channels[channel],
+                                       control.coefficients[channel], state.memory[place])
     return state.memory[place]
 
 
@@ -215,10 +215,10 @@ def _of_row(now, R, i, c, first):
 @compiled
 def _control(system, state, k):
     """Call a controller; 1 where an input changed, 0 where none did, -1 after a fault."""
-    own, row, memory = system.control, system.control.controllers[k], state.memory
+    control, row, memory = system.control, system.control.controllers[k], state.memory
     y, u = row[SCRATCH], row[SCRATCH] + row[WIRES]
     for i in range(row[WIRES]):
-        place, sensor = own.wires[row[FIRST_WIRE] + i, 0], own.wires[row[FIRST_WIRE] + i, 1]
+        place, sensor = control.wires[row[FIRST_WIRE] + i, 0], control.wires[row[FIRST_WIRE] + i, 1]
         if sensor >= 0:
             state.frames[place] = _reading(system, state, sensor)
         memory[y + i] = state.frames[place]
@@ -226,7 +226,7 @@ def _control(system, state, k):
         memory[u + i] = _held(system, state, row[FIRST_END] + i)
     status = _call(row[FUNCTION], state.clock.time, at(pointer_to(memory), y),
                    at(pointer_to(state.frames), row[STATES]), at(pointer_to(memory), u),
-                   at(pointer_to(own.parameters), row[PARAMETERS]))
+                   at(pointer_to(control.parameters), row[PARAMETERS]))
     if status != 0:
         return -1
     if row[ITS_DELAY] > 0:
@@ -237,14 +237,14 @@ def _control(system, state, k):
 @compiled
 def _apply(system, state, k):
     """Set what a controller, or a delay after it, gave last; 1 where an input changed."""
-    own, row, memory = system.control, system.control.controllers[k], state.memory
+    control, row, memory = system.control, system.control.controllers[k], state.memory
     changed, u = 0, row[SCRATCH] + row[WIRES]
     for i in range(row[ENDS]):
-        number, signal = own.ends[row[FIRST_END] + i, 0], own.ends[row[FIRST_END] + i, 1]
+        number, signal = control.ends[row[FIRST_END] + i, 0], control.ends[row[FIRST_END] + i, 1]
         if number >= 0:
             changed |= set_input(system, state, number, memory[u + i])
         else:
-            changed |= np.int64(own.read[0] == 1 and state.frames[signal] != memory[u + i])
+            changed |= np.int64(control.read[0] == 1 and state.frames[signal] != memory[u + i])
             state.frames[signal] = memory[u + i]
     return changed
 
@@ -252,9 +252,9 @@ def _apply(system, state, k):
 @compiled
 def _held(system, state, end):
     """What an output of a controller is now."""
-    own = system.control
-    number = own.ends[end, 0]
-    return state.frames[own.inputs[number, 1] + VALUE if number >= 0 else own.ends[end, 1]]
+    control = system.control
+    number = control.ends[end, 0]
+    return state.frames[control.inputs[number, 1] + VALUE if number >= 0 else control.ends[end, 1]]
 
 
 @compiled
@@ -270,10 +270,10 @@ def _delay(memory, queue, delay, u, size):
 @compiled
 def set_input(system, state, k, value):
     """Set an input, within its limits; 1 where it changed."""
-    own = system.control
-    place, piece = own.inputs[k, 1], own.inputs[k, 2]
-    if own.limits[k, 0] <= own.limits[k, 1]:
-        value = min(max(value, own.limits[k, 0]), own.limits[k, 1])
+    control = system.control
+    place, piece = control.inputs[k, 1], control.inputs[k, 2]
+    if control.limits[k, 0] <= control.limits[k, 1]:
+        value = min(max(value, control.limits[k, 0]), control.limits[k, 1])
     if value == state.frames[place + VALUE]:
         return 0
     t = state.clock.time

@@ -11,7 +11,7 @@ of the blocks; free slots have ones on the diagonal.
 
 
 from sebody.compiler.decorators import compiled
-from sebody.contract.layout import LANES
+from sebody.contract.counts import LANES
 from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.dense import subtract_block_times, subtract_product
 

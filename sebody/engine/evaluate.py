@@ -6,9 +6,9 @@ from numba.extending import intrinsic
 
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import C_DAMPING, CLOCK, INPUT, OK, RESIDUAL, VELOCITY
-from sebody.engine.inputs import input_at
+from sebody.engine.actuator_inputs import input_at
 from sebody.engine.links import place_dependent, pull_back
-from sebody.engine.tables import time_function_at
+from sebody.engine.load_amplitudes import time_function_at
 from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
 from sebody.kernels.rotations import rotate, tangent_operator
 

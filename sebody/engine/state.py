@@ -209,7 +209,7 @@ class State(Arrays):
     def recorded_parts(self) -> dict[str, slice]:
         """Where the parts of `RECORD` are in `now` and in the rows of a record."""
         return RECORD.slices({"ports": self.works.size, "coordinates": self.q.size,
-                              "rotations": self.R.size // 9, "kept": self.frames.size})
+                              "rotations": self.R.size // 9, "stored": self.frames.size})
 
     def set_coefficients(self, **values: float) -> None:
         """Set some of the coefficients of the matrix, by their names in `COEFFICIENTS`."""

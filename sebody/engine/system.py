@@ -72,7 +72,7 @@ class System(Arrays):
     ------------------------------------------------------------------------------------------------
     table_at            (p + 1,) where the table of each port begins
     table_times         times of the tables, ascending in each
-    table_pieces        (times, PIECE) see `sebody.engine.tables`
+    table_pieces        (times, PIECE) see `sebody.engine.load_amplitudes`
     functions           (p, 3) addresses of a compiled time function and its rates, 0 for a table;
                         CLOCK where it is the time itself
     corners             times at which a time function has a corner, ascending

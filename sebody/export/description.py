@@ -5,7 +5,7 @@ from xml.sax.saxutils import quoteattr
 
 from sebody.export.interface import PARAMETER
 from sebody.export.prepared import Prepared
-from sebody.model.tables import summary
+from sebody.model.summary import summary
 from sebody.version import __version__
 
 

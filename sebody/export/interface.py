@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from sebody import inputs
-from sebody.assembly.laws import law_counts
+from sebody.assembly.controller_rows import law_counts
 from sebody.assembly.numbering import Numbering
 from sebody.contract.layout import FIELD, Row
-from sebody.engine.inputs import VALUE
+from sebody.engine.actuator_inputs import VALUE
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.errors import InputError
@@ -131,11 +131,11 @@ def placed(asked: list[Asked], model: Mechanism, numbering: Numbering, system: S
            state: State, image: Image) -> list[Input]:
     """Where the values of inputs are."""
     parameters, found = _parameters(model), []
-    ports = list(numbering.all_kept.inputs)
+    ports = list(numbering.memory.inputs)
     for one in asked:
         if one.kind == INPUT:
-            port = numbering.all_kept.ports[one.name]
-            place = numbering.all_kept.inputs[port] + VALUE
+            port = numbering.memory.ports[one.name]
+            place = numbering.memory.inputs[port] + VALUE
             at, number, factor = image.at(state.frames, place), ports.index(port), 1.0
             start = float(state.frames[place])
         elif one.kind == ACCELERATION:

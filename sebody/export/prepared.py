@@ -93,7 +93,7 @@ class Prepared:
             twice = next(one for one in self.names if self.names.count(one) > 1)
             raise InputError(f"output {twice!r} is given twice: leave one out")
         kinds = self.system.control.channels[:, 0]
-        self.sensors = [(k, sensor) for k, sensor in enumerate(self._numbering.all_kept.sensors)
+        self.sensors = [(k, sensor) for k, sensor in enumerate(self._numbering.memory.sensors)
                         if kinds[k] == OUTSIDE]
         self.outputs: Outputs = quantities.made(self.names, [s for _, s in self.sensors])
         found = parsed_units(made.units)

@@ -88,10 +88,10 @@ def frame(
     """
     points = inputs.reals(points, "points", "give 2 or 3 finite coordinates for each")
     points = _points(points, 2 if points.shape[-1:] == (2,) else 3)
-    found = _members(members, len(points))
-    elements = _count(elements, len(found))
+    pairs_of_nodes = _members(members, len(points))
+    elements = _count(elements, len(pairs_of_nodes))
     nodes, pairs = list(points), []
-    for first, last in found:
+    for first, last in pairs_of_nodes:
         inner = range(len(nodes), len(nodes) + elements - 1)
         nodes.extend(np.linspace(points[first], points[last], elements + 1)[1:-1])
         chain = [first, *inner, last]
@@ -102,7 +102,7 @@ def frame(
 def _members(members: Sequence[tuple[int, int]], points: int) -> list[tuple[int, int]]:
     """Start and end of each member."""
     remedy = "give pairs (start, end) of numbers of points"
-    found: list[tuple[int, int]] = []
+    pairs: list[tuple[int, int]] = []
     for member in inputs.items(members, "members", remedy):
         pair = inputs.items(member, "a member", remedy)
         if len(pair) != 2:
@@ -111,12 +111,12 @@ def _members(members: Sequence[tuple[int, int]], points: int) -> list[tuple[int,
         if not all(0 <= point < points for point in ends):
             raise InputError(f"member {member} names an unknown point: there are points 0 to "
                              f"{points - 1}")
-        if ends in found or ends[::-1] in found:
+        if ends in pairs or ends[::-1] in pairs:
             raise InputError(f"member {member} is given twice: leave one out")
-        found.append(ends)
-    if not found:
+        pairs.append(ends)
+    if not pairs:
         raise InputError(f"members is empty: {remedy}")
-    return found
+    return pairs
 
 
 def _line(ends: NDArray, section: AnySection, elements: int, up: ArrayLike | None) -> FEModel:

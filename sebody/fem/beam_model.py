@@ -123,15 +123,15 @@ def _stresses(elements: _Elements, pairs: NDArray, sections: Sequence[StiffnessS
     """One operator for the elements with equally many fibres."""
     forces = (elements.stiffness @ elements.turns).reshape(len(pairs), 2, 6, -1)
     forces[:, 0] *= -1      # of the part that lies before the first end on the element
-    counts, found = np.array([len(one.fibres) for one in sections]), []
+    counts, operators = np.array([len(one.fibres) for one in sections]), []
     for count in np.unique(counts):
-        own = np.flatnonzero(counts == count)
-        fibres = [[fibre.stress for fibre in sections[k].fibres] for k in own]
-        offsets = [[(fibre.y, fibre.z) for fibre in sections[k].fibres] for k in own]
-        found.append(BeamStress(pairs[own], forces[own],
-                                np.array(fibres, dtype=float).reshape(len(own), count, 3, 6),
-                                np.array(offsets, dtype=float).reshape(len(own), count, 2)))
-    return tuple(found)
+        these = np.flatnonzero(counts == count)
+        fibres = [[fibre.stress for fibre in sections[k].fibres] for k in these]
+        offsets = [[(fibre.y, fibre.z) for fibre in sections[k].fibres] for k in these]
+        operators.append(BeamStress(pairs[these], forces[these],
+                                    np.array(fibres, dtype=float).reshape(len(these), count, 3, 6),
+                                    np.array(offsets, dtype=float).reshape(len(these), count, 2)))
+    return tuple(operators)
 
 
 def _mass_field(elements: _Elements, nodes: NDArray, pairs: NDArray, size: int) -> MassField:

@@ -50,13 +50,13 @@ class BeamStress:
     def stress(self, moved: NDArray, elements: NDArray | slice = slice(None)) -> NDArray:
         """Stresses in the fibres of both ends, in axes of the section, (elements, 2, p, 6, s)."""
         forces = self.section_forces(moved, elements)
-        found = np.einsum("epcf,eafs->eapcs", self.fibres[elements], forces)
-        whole = np.zeros((*found.shape[:3], 6, found.shape[4]))
-        whole[:, :, :, [0, 5, 4]] = found
+        stresses = np.einsum("epcf,eafs->eapcs", self.fibres[elements], forces)
+        whole = np.zeros((*stresses.shape[:3], 6, stresses.shape[4]))
+        whole[:, :, :, [0, 5, 4]] = stresses
         return whole
 
     def restricted(self, place: NDArray, coordinates: NDArray) -> "BeamStress":
         """Of the elements whose nodes are kept: `place` has their new numbers, -1 for others."""
-        kept = np.all(place[self.nodes] >= 0, axis=1)
-        return replace(self, nodes=place[self.nodes[kept]], forces=self.forces[kept],
-                       fibres=self.fibres[kept], offsets=self.offsets[kept])
+        inside = np.all(place[self.nodes] >= 0, axis=1)
+        return replace(self, nodes=place[self.nodes[inside]], forces=self.forces[inside],
+                       fibres=self.fibres[inside], offsets=self.offsets[inside])

@@ -72,8 +72,8 @@ def middle_of(model: FEModel, nodes: Iterable[int]) -> Middle | None:
     if facets is None:
         return None
     centroid = facets.areas @ facets.middles / facets.areas.sum()
-    found = _fitted(model, facets)
-    return Middle(centroid if found is None else found.foot(centroid), found)
+    cylinder = _fitted(model, facets)
+    return Middle(centroid if cylinder is None else cylinder.foot(centroid), cylinder)
 
 
 def nodes_on_cylinder_faces(model: FEModel, point: ArrayLike, axis: ArrayLike, radius: float,
@@ -140,12 +140,12 @@ def _fitted(model: FEModel, facets: _Facets) -> Cylinder | None:
     planar = points.shape[1] == 2
     if len(points) < 5 or squares[0 if planar else 1] < _ARC:
         return None
-    found = _circle(points) if planar else _cylinder(points, turn[:, 0])
-    off = np.abs(found.off(points)).max()
-    arms = found.arms(facets.middles)
+    cylinder = _circle(points) if planar else _cylinder(points, turn[:, 0])
+    off = np.abs(cylinder.off(points)).max()
+    arms = cylinder.arms(facets.middles)
     radial = np.abs(np.einsum("fd,fd->f", facets.normals, arms)) / np.maximum(
         np.linalg.norm(arms, axis=1), 1e-300)
-    return found if off <= ROUND * found.radius and radial.min() >= _RADIAL else None
+    return cylinder if off <= ROUND * cylinder.radius and radial.min() >= _RADIAL else None
 
 
 def _circle(points: NDArray) -> Cylinder:
@@ -179,12 +179,12 @@ def _cylinder(points: NDArray, axis: NDArray) -> Cylinder:
 def _on(cylinder: Cylinder, facets: _Facets, length: float | None) -> NDArray:
     """Faces whose corners all lie on a cylinder."""
     room = ROUND * cylinder.radius
-    found = np.array([np.abs(cylinder.off(own)).max() <= room for own in facets.places])
+    lies_on = np.array([np.abs(cylinder.off(corners)).max() <= room for corners in facets.places])
     if length is not None:
         half = inputs.number(length, "length of a cylinder", above=0) / 2 + room
-        found &= np.array([np.abs((own - cylinder.point) @ cylinder.axis).max() <= half
-                           for own in facets.places])
-    return found
+        lies_on &= np.array([np.abs((corners - cylinder.point) @ cylinder.axis).max() <= half
+                             for corners in facets.places])
+    return lies_on
 
 
 def _radii(cylinder: Cylinder, facets: _Facets, length: float | None) -> str:
@@ -197,8 +197,8 @@ def _radii(cylinder: Cylinder, facets: _Facets, length: float | None) -> str:
         if np.ptp(arms) <= ROUND * one.radius and (
                 abs(normal @ arm) >= _RADIAL * np.linalg.norm(arm)):
             radii.append(one.radius)
-    found = sorted({float(f"{radius:.4g}") for radius in radii})
-    if not found:
+    sizes = sorted({float(f"{radius:.4g}") for radius in radii})
+    if not sizes:
         return "no outer faces are about this axis; correct its point and direction"
     within = "" if length is None else ", or give a larger length"
-    return f"those about this axis have the radii {', '.join(f'{r:g}' for r in found[:8])}{within}"
+    return f"those about this axis have the radii {', '.join(f'{r:g}' for r in sizes[:8])}{within}"

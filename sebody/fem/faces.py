@@ -38,9 +38,9 @@ def faces_within(model: FEModel, nodes: Iterable[int]) -> list[tuple[str, NDArra
     for kind, cells in model.cells:
         middles = model.coordinates[cells].mean(axis=1)
         for face_kind, columns in _faces_of(kind, planar):
-            found = cells[:, columns]
-            taken = inside[found].all(axis=1)
-            groups.setdefault(face_kind, []).append((found[taken], middles[taken]))
+            candidates = cells[:, columns]
+            taken = inside[candidates].all(axis=1)
+            groups.setdefault(face_kind, []).append((candidates[taken], middles[taken]))
     result = []
     for kind, parts in groups.items():
         faces, middles = (np.vstack(arrays) for arrays in zip(*parts, strict=True))

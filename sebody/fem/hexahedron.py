@@ -150,9 +150,9 @@ def _brick(
         strains.append(strain)
         full += weight * strain.T @ law @ strain
         mass += weight * density * np.outer(shape, shape)
-    own, extra = slice(0, 24), slice(24, 33)
-    condensed = np.linalg.solve(full[extra, extra], full[extra, own])
-    stiffness = full[own, own] - full[own, extra] @ condensed
+    nodal, extra = slice(0, 24), slice(24, 33)
+    condensed = np.linalg.solve(full[extra, extra], full[extra, nodal])
+    stiffness = full[nodal, nodal] - full[nodal, extra] @ condensed
     whole = np.vstack([np.eye(24), -condensed])     # incompatible modes follow the nodes
     return ((stiffness + stiffness.T) / 2, np.kron(mass, np.eye(3)), np.array(strains) @ whole,
             np.array(gradients)[:, :8])

@@ -98,9 +98,9 @@ def nodal_field(mass: sparse.csc_array, coordinates: NDArray, rows: NDArray) -> 
         return None
     by_axes = []
     for axis in range(dimension):
-        own = same_axis & (first == axis)
-        at = nodes[entries.row[own]], nodes[entries.col[own]]
-        by_axes.append(sparse.csr_array(sparse.coo_array((entries.data[own], at),
+        diagonal = same_axis & (first == axis)
+        at = nodes[entries.row[diagonal]], nodes[entries.col[diagonal]]
+        by_axes.append(sparse.csr_array(sparse.coo_array((entries.data[diagonal], at),
                                                          shape=(count, count))))
         rest = by_axes[axis] - by_axes[0]
         if rest.nnz and abs(rest).max() > limit[0, 0]:

@@ -45,18 +45,18 @@ def checked_materials(materials: Sequence[Material], what: str = "materials"
         Others, or something else.
     """
     remedy = "give Material(name, speed, density)"
-    found = []
+    checked = []
     for one in inputs.items(materials, what, remedy):
         if not isinstance(one, tuple | list) or len(one) not in (2, 3):
             raise inputs.refusal(f"{what}: one", one, remedy)
         name, speed, density = (*one, None)[:3]
         if not isinstance(name, str):
             raise inputs.refusal(f"{what}: a name", name, remedy)
-        found.append(Material(
+        checked.append(Material(
             name, inputs.number(speed, f"speed of sound of material {name!r}", above=0),
             None if density is None else inputs.number(
                 density, f"density of material {name!r}", above=0)))
-    return tuple(found)
+    return tuple(checked)
 
 
 def doubt(material: Material, units: Units | None) -> tuple[str, str] | None:

@@ -13,16 +13,16 @@ def labels(values: ArrayLike | None, count: int) -> NDArray | None:
     """Different whole numbers, one for each of `count` nodes."""
     if values is None:
         return None
-    found = _whole(values, "labels", f"give {count} different whole numbers, one per node")
-    if found.shape != (count,):
-        raise InputError(f"labels have shape {found.shape}; {count} nodes need ({count},)")
-    unique, places, times = np.unique(found, return_index=True, return_counts=True)
+    numbers = _whole(values, "labels", f"give {count} different whole numbers, one per node")
+    if numbers.shape != (count,):
+        raise InputError(f"labels have shape {numbers.shape}; {count} nodes need ({count},)")
+    unique, places, times = np.unique(numbers, return_index=True, return_counts=True)
     if len(unique) < count:
         twice = unique[np.argmax(times > 1)]
-        first, second = np.flatnonzero(found == twice)[:2]
+        first, second = np.flatnonzero(numbers == twice)[:2]
         raise InputError(f"label {twice} is that of the nodes {first} and {second}: give each node "
                          "a label of its own")
-    return found
+    return numbers
 
 
 def node_sets(sets: Mapping[str, Sequence[int]], count: int) -> dict[str, tuple[int, ...]]:
@@ -30,20 +30,20 @@ def node_sets(sets: Mapping[str, Sequence[int]], count: int) -> dict[str, tuple[
     remedy = "give a dict of names and node indices"
     if not isinstance(sets, Mapping):
         raise inputs.refusal("node_sets", sets, remedy)
-    found = {}
+    checked = {}
     for name, nodes in sets.items():
         what = f"node set {inputs.shown(inputs.name(name, 'name of a node set'))}"
         nodes = _nodes(inputs.items(nodes, what, remedy), what, count)
         if len(np.unique(nodes)) < nodes.size:
             raise InputError(f"{what} names a node more than once: name it once")
-        found[name] = tuple(nodes.tolist())
-    return found
+        checked[name] = tuple(nodes.tolist())
+    return checked
 
 
 def cells(groups: Sequence[tuple[str, ArrayLike]], count: int) -> tuple[tuple[str, NDArray], ...]:
     """Elements by kind, of nodes from 0 to `count` - 1."""
     remedy = "give pairs (kind, array of nodes of shape (n, k)), as meshio does"
-    found = []
+    checked = []
     for group in inputs.items(groups, "cells", remedy):
         pair = inputs.items(group, "cells: one kind", remedy)
         if len(pair) != 2:
@@ -53,22 +53,22 @@ def cells(groups: Sequence[tuple[str, ArrayLike]], count: int) -> tuple[tuple[st
         if nodes.ndim != 2:
             raise InputError(f"cells of kind {kind!r} have shape {nodes.shape}: {remedy}")
         nodes.flags.writeable = False
-        found.append((kind, nodes))
-    return tuple(found)
+        checked.append((kind, nodes))
+    return tuple(checked)
 
 
 def _nodes(values: ArrayLike, what: str, count: int) -> NDArray:
     remedy = f"give node indices from 0 to {count - 1}"
-    found = _whole(values, what, remedy)
-    outside = (found < 0) | (found >= count)
+    nodes = _whole(values, what, remedy)
+    outside = (nodes < 0) | (nodes >= count)
     if outside.any():
-        raise InputError(f"{what} has the node {found[outside][0]}: {remedy}")
-    return found
+        raise InputError(f"{what} has the node {nodes[outside][0]}: {remedy}")
+    return nodes
 
 
 def _whole(values: ArrayLike, what: str, remedy: str) -> NDArray:
     """An array of whole numbers."""
-    found = inputs.reals(values, what, remedy)
-    if not (found == np.floor(found)).all():
+    numbers = inputs.reals(values, what, remedy)
+    if not (numbers == np.floor(numbers)).all():
         raise inputs.refusal(what, values, remedy)
-    return found.astype(np.int64)
+    return numbers.astype(np.int64)

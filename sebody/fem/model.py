@@ -196,8 +196,8 @@ class FEModel:
             "translation": ~is_rotation,
             "rotation": is_rotation,
         }
-        found = self.rows[node, wanted[inputs.choice(kind, "kind of DOFs", wanted)]]
-        return found[found >= 0]
+        rows = self.rows[node, wanted[inputs.choice(kind, "kind of DOFs", wanted)]]
+        return rows[rows >= 0]
 
     def node_at(self, point: ArrayLike) -> int:
         """Index of the node at `point`; InputError when the nearest is not there."""
@@ -217,12 +217,12 @@ class FEModel:
             raise InputError("the model has no node labels; use node indices, from 0 to "
                              f"{len(self.coordinates) - 1}")
         label = inputs.integer(label, "node label")
-        found = np.flatnonzero(self.labels == label)
-        if not len(found):
+        nodes = np.flatnonzero(self.labels == label)
+        if not len(nodes):
             near = self.labels[np.argsort(np.abs(self.labels - label), kind="stable")[:3]]
             raise InputError(f"the model has no node with the label {label}; labels near it are "
                              f"{', '.join(map(str, sorted(near)))}")
-        return int(found[0])
+        return int(nodes[0])
 
     def node_set(self, name: str) -> tuple[int, ...]:
         """Node indices of a named set; InputError for an unknown one."""

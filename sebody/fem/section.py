@@ -214,13 +214,13 @@ def section_at(section: AnySection, place: float) -> StiffnessSection:
     InputError
         Something that is no section.
     """
-    found = _called(section, place) if callable(section) else section
-    if not isinstance(found, (Section, StiffnessSection)):
+    value = _called(section, place) if callable(section) else section
+    if not isinstance(value, (Section, StiffnessSection)):
         raise InputError(
-            f"section {inputs.shown(found)} is none: give a Section, a StiffnessSection or a "
+            f"section {inputs.shown(value)} is none: give a Section, a StiffnessSection or a "
             "function of the place along the beam, from 0 to 1, that returns one"
         )
-    return found.stiffnesses
+    return value.stiffnesses
 
 
 def part_of(section: AnySection, first: float, last: float) -> AnySection:
@@ -233,12 +233,12 @@ def part_of(section: AnySection, first: float, last: float) -> AnySection:
 def _check_fibres(section: Section | StiffnessSection) -> None:
     remedy = "give Fibre, as Section.fibre makes them"
     what = f"{type(section).__name__}.fibres"
-    found = tuple(inputs.instance(fibre, what, Fibre, remedy)
-                  for fibre in inputs.items(section.fibres, what, remedy))
-    for fibre in found:
+    checked = tuple(inputs.instance(fibre, what, Fibre, remedy)
+                    for fibre in inputs.items(section.fibres, what, remedy))
+    for fibre in checked:
         inputs.vector((fibre.y, fibre.z), what, 2)
         inputs.array(fibre.stress, what, (3, 6))
-    object.__setattr__(section, "fibres", found)
+    object.__setattr__(section, "fibres", checked)
 
 
 def _check_number(section: object, name: str, value: float, may_be_zero: bool = False) -> None:

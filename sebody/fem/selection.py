@@ -120,11 +120,11 @@ def _axis(model: FEModel, axis: ArrayLike, what: str) -> NDArray:
 def _within(model: FEModel, distance: NDArray, tolerance: float, where: str) -> tuple[int, ...]:
     """Nodes at most tolerance times the extent away."""
     tolerance = inputs.number(tolerance, "tolerance of a selection", least=0)
-    found = np.flatnonzero(distance <= tolerance * model.extent)
-    if not len(found):
+    nodes = np.flatnonzero(distance <= tolerance * model.extent)
+    if not len(nodes):
         nearest = int(np.argmin(distance))
         raise InputError(
             f"no node {where}: the nearest, {model.node_name(nearest)} at "
             f"{model.coordinates[nearest]}, is {distance[nearest]:.3g} away; correct the place or "
             f"raise the tolerance, which is {tolerance:g} of {model.extent:.3g}")
-    return tuple(found.tolist())
+    return tuple(nodes.tolist())

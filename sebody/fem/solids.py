@@ -75,10 +75,10 @@ class SolidPrestress:
 
     def forces(self, displacement: NDArray) -> NDArray:
         """Internal forces (n_dofs,) of the stresses: those of the stiffness of such elements."""
-        found = np.zeros((self._count, 3))
+        total = np.zeros((self._count, 3))
         for nodes, _, pushed in self._stressed(displacement):
-            np.add.at(found, nodes, pushed.sum(axis=1))
-        return self._motion.T @ found.ravel()
+            np.add.at(total, nodes, pushed.sum(axis=1))
+        return self._motion.T @ total.ravel()
 
     @property
     def volume(self) -> float:

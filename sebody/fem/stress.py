@@ -74,15 +74,15 @@ class SolidStress:
         -------
         (elements, g, 6, s)
         """
-        own = moved[self.nodes[elements], :3]
-        n, k, _, s = own.shape
+        nodal = moved[self.nodes[elements], :3]
+        n, k, _, s = nodal.shape
         if self.strains is not None:
-            return (self.strains.reshape(-1, 3 * k) @ own.reshape(n, 3 * k, s)).reshape(
+            return (self.strains.reshape(-1, 3 * k) @ nodal.reshape(n, 3 * k, s)).reshape(
                 n, -1, 6, s)
         g = self.points_per_element
         slopes = element_kind(self.kind).slopes.reshape(3 * g, k)
         # by the element's coordinates, (n, g, 3, 3 s), then by x, y and z
-        derived = (slopes @ own.reshape(n, k, 3 * s)).reshape(n, g, 3, 3 * s)
+        derived = (slopes @ nodal.reshape(n, k, 3 * s)).reshape(n, g, 3, 3 * s)
         gradient = (self._inverse[elements] @ derived).reshape(n, g, 3, 3, s)    # [axis, component]
         strain = np.empty((n, g, 6, s))
         for axis in range(3):
@@ -158,8 +158,8 @@ class StressModes:
 
     def restricted(self, place: NDArray, coordinates: NDArray) -> StressModes:
         """Of the points that belong to kept nodes."""
-        own = np.where(self.nodes < 0, -1, place[self.nodes])
-        return StressModes(self.points[own >= 0], self.modes[own >= 0], own[own >= 0])
+        nodes = np.where(self.nodes < 0, -1, place[self.nodes])
+        return StressModes(self.points[nodes >= 0], self.modes[nodes >= 0], nodes[nodes >= 0])
 
 
 def solid_stress(coordinates: ArrayLike, cells: Sequence[tuple[str, ArrayLike]],
@@ -187,7 +187,7 @@ def solid_stress(coordinates: ArrayLike, cells: Sequence[tuple[str, ArrayLike]],
     inputs.number(youngs_modulus, "youngs_modulus", above=0)
     inputs.number(poisson_ratio, "poisson_ratio", above=-1, below=0.5)
     law = elasticity(youngs_modulus, poisson_ratio)
-    found = []
+    operators = []
     for kind, nodes in mesh.cells(cells, len(coordinates)):
         if kind not in SOLID_KINDS:
             continue
@@ -195,15 +195,15 @@ def solid_stress(coordinates: ArrayLike, cells: Sequence[tuple[str, ArrayLike]],
         if nodes.shape[1] != count:
             raise InputError(f"cells of kind {kind!r} have {nodes.shape[1]} nodes each: give "
                              f"{count}, in meshio's order")
-        found.append(SolidStress(kind, nodes, coordinates, law))
-        volumes = found[-1].volumes()
-        _refuse(found[-1], np.abs(volumes).min(axis=1) <= FLAT, "has no volume")
-        _refuse(found[-1], (volumes > 0).any(axis=1) & (volumes < 0).any(axis=1),
+        operators.append(SolidStress(kind, nodes, coordinates, law))
+        volumes = operators[-1].volumes()
+        _refuse(operators[-1], np.abs(volumes).min(axis=1) <= FLAT, "has no volume")
+        _refuse(operators[-1], (volumes > 0).any(axis=1) & (volumes < 0).any(axis=1),
                 "is partly inverted")
-    if not found:
+    if not operators:
         raise InputError(f"cells have no solid elements: give cells of the kinds "
                          f"{', '.join(SOLID_KINDS)}")
-    return tuple(found)
+    return tuple(operators)
 
 
 def _refuse(one: SolidStress, wrong: NDArray, what: str) -> None:

@@ -53,8 +53,8 @@ def serve(read: Callable[..., Mapping[str, NDArray]]) -> None:
     """
     path, target, *arguments = sys.argv[1:]
     try:
-        found = read(path, *arguments)
+        content = read(path, *arguments)
     except Exception as error:      # of many classes, of files that are cut off or of other kinds
         print(f"{type(error).__name__}: {error}", file=sys.stderr)
         raise SystemExit(SAID) from None
-    np.savez(target, **found)
+    np.savez(target, **content)

@@ -64,19 +64,19 @@ class Archive:
                 raise ValueError(f"member {name} is of version {version} of its format")
             shape, _, dtype = read[version](stream, max_header_size=LONGEST_HEADER)
             begin = stream.tell()
-        found = Header(shape, dtype)
-        if dtype.hasobject or info.file_size != begin + found.size:
+        header = Header(shape, dtype)
+        if dtype.hasobject or info.file_size != begin + header.size:
             raise ValueError(f"member {name} has {info.file_size - begin} bytes, its header "
-                             f"lists {found.size}")
-        return found
+                             f"lists {header.size}")
+        return header
 
     def read(self, name: str) -> NDArray:
         """A member; what is unpacked is compared with its checksum."""
         with self._file.open(self._infos[name]) as stream:
-            found = npy.read_array(stream, allow_pickle=False)
+            array = npy.read_array(stream, allow_pickle=False)
             if stream.read(1):          # the checksum is compared at the end
                 raise ValueError(f"member {name} is longer than its header says")
-        return np.asarray(found)
+        return np.asarray(array)
 
 
 def _refuse_bombs(infos: list[ZipInfo]) -> None:

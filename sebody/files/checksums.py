@@ -20,8 +20,8 @@ def changed(arrays: Mapping[str, NDArray], noted: Mapping[str, int] | None) -> l
     """Names of arrays that are not those whose checksums were noted; none without checksums."""
     if not noted:
         return []
-    found = checksums(arrays)
-    return [name for name in {**noted, **found} if noted.get(name) != found.get(name)]
+    current = checksums(arrays)
+    return [name for name in {**noted, **current} if noted.get(name) != current.get(name)]
 
 
 def _checksum(array: NDArray) -> int:

@@ -41,10 +41,10 @@ def is_hdf5(path: Path) -> bool:
         begin = file.read(SIZE)
         if not begin.startswith(GUARD):
             return begin.startswith(SIGNATURE)
-        found = 0
+        signature = 0
         while block := file.read(BLOCK):
-            found = zlib.crc32(block, found)
-    if begin[len(GUARD):len(GUARD) + 8] != b"%08x" % found:
+            signature = zlib.crc32(block, signature)
+    if begin[len(GUARD):len(GUARD) + 8] != b"%08x" % signature:
         raise ValueError("its checksum is not that of its content: damaged, or changed by another "
                          "program")
     return True
@@ -78,8 +78,8 @@ class Group:
 
     def read(self, name: str) -> NDArray:
         """A dataset; texts as arrays of numpy."""
-        found = self._group[name][()]
-        return np.array(found.decode()) if isinstance(found, bytes) else np.asarray(found)
+        dataset = self._group[name][()]
+        return np.array(dataset.decode()) if isinstance(dataset, bytes) else np.asarray(dataset)
 
 
 @contextmanager

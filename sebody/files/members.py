@@ -28,10 +28,10 @@ class Header(NamedTuple):
     @property
     def size(self) -> int:
         """Bytes of its numbers."""
-        found = self.dtype.itemsize
+        item_size = self.dtype.itemsize
         for length in self.shape:
-            found *= length
-        return found
+            item_size *= length
+        return item_size
 
 
 class Member(NamedTuple):
@@ -109,10 +109,10 @@ class Table:
         """
         headers = {name: one for name, one in reader.headers.items() if name not in others}
         self.check_headers(headers)
-        found = {name: reader.read(name) for name in headers}
-        for name, values in found.items():
+        arrays = {name: reader.read(name) for name in headers}
+        for name, values in arrays.items():
             self._check_values(name, values)
-        return found
+        return arrays
 
     def check_headers(self, headers: Mapping[str, Header]) -> None:
         """Refuse members that are missing, unknown, too large, or of another type or shape.

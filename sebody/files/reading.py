@@ -38,18 +38,18 @@ def existing(path: str | os.PathLike, what: str, remedy: str,
     InputError
         No path, no file, a folder, a pipe or a device, or a file that cannot be read.
     """
-    found = inputs.path(path, what, suffixes)
+    file = inputs.path(path, what, suffixes)
     try:
-        kind = os.stat(found).st_mode
+        kind = os.stat(file).st_mode
     except (FileNotFoundError, NotADirectoryError) as error:
         raise InputError(f"{what} {path} does not exist: {remedy}") from error
     if not S_ISREG(kind):
         raise InputError(f"{what} {path} is a pipe or a device: give the path of a file")
     try:
-        found.open("rb").close()
+        file.open("rb").close()
     except OSError as error:
         raise unreadable(path, what, error, remedy) from error
-    return found
+    return file
 
 
 def unreadable(path: str | os.PathLike, what: str, error: OSError, remedy: str) -> InputError:
@@ -73,11 +73,11 @@ def content(path: str | os.PathLike, what: str, remedy: str, suffixes: Sequence[
     InputError
         See `existing`, or a file that does not fit into memory.
     """
-    found = existing(path, what, remedy, suffixes)
+    file = existing(path, what, remedy, suffixes)
     try:
-        memory.check(times * found.stat().st_size, f"{what} {path}", "give a smaller file, or use "
+        memory.check(times * file.stat().st_size, f"{what} {path}", "give a smaller file, or use "
                      "a machine with more memory")
-        return found.read_bytes()
+        return file.read_bytes()
     except OSError as error:
         raise unreadable(path, what, error, remedy) from error
 
@@ -90,8 +90,8 @@ def text(path: str | os.PathLike, what: str, remedy: str) -> str:
     InputError
         See `content`.
     """
-    found = content(path, what, remedy, times=LINES).decode("latin-1")
-    return found.replace("\r\n", "\n").replace("\r", "\n")
+    decoded = content(path, what, remedy, times=LINES).decode("latin-1")
+    return decoded.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def parsed(json_text: str) -> Any:
@@ -103,15 +103,15 @@ def parsed(json_text: str) -> Any:
         It is none, or brackets are nested deeper than `DEEPEST`.
     """
     try:
-        found = json.loads(json_text)
+        content = json.loads(json_text)
     except RecursionError as error:
         raise ValueError(f"brackets are nested deeper than {DEEPEST}") from error
-    level: list = [found]
+    level: list = [content]
     for _ in range(DEEPEST):
         level = [inner for one in level if isinstance(one, list | dict)
                  for inner in (one.values() if isinstance(one, dict) else one)]
         if not level:
-            return found
+            return content
     raise ValueError(f"brackets are nested deeper than {DEEPEST}")
 
 

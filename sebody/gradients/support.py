@@ -51,7 +51,7 @@ def refuse_run(run: Simulation) -> None:
                          "contacts and stops do, and these are not differentiated: leave it out, "
                          "or use an Ensemble with values on both sides")
     if run.sampling.has_inputs:
-        name = next(iter(run.numbering.all_kept.ports))
+        name = next(iter(run.numbering.memory.ports))
         raise InputError(f"actuator {name!r}: what is set during a run is not differentiated: give "
                          "the history of the input as a table of a force, torque or drive")
     if run.model.sensors:

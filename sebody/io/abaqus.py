@@ -95,10 +95,10 @@ def _substructure(path: Path) -> tuple[list[int], list[list[int]], dict]:
 
 def _count(path: Path, number: int, line: str) -> int:
     """Number of nodes that *USER ELEMENT states; each has an entry in a list."""
-    found = re.search(r"NODES\s*=\s*(\d{1,9})\b", line)
-    if not found:
+    match = re.search(r"NODES\s*=\s*(\d{1,9})\b", line)
+    if not match:
         raise fault(path, number, "*USER ELEMENT has no number of nodes", _SUBSTRUCTURE)
-    return int(found[1])
+    return int(match[1])
 
 
 def _keyword(path: Path, number: int, line: str) -> str:
@@ -115,10 +115,10 @@ def _keyword(path: Path, number: int, line: str) -> str:
 
 def _whole(path: Path, number: int, words: list[str]) -> list[int]:
     try:
-        found = [int(word) for word in words]
+        numbers = [int(word) for word in words]
     except ValueError as error:
         raise fault(path, number, "no list of DOFs", _SUBSTRUCTURE) from error
-    return _directions(path, number, found)
+    return _directions(path, number, numbers)
 
 
 def _directions(path: Path, number: int, found: list[int]) -> list[int]:
@@ -131,12 +131,12 @@ def _directions(path: Path, number: int, found: list[int]) -> list[int]:
 
 def _numbers(path: Path, number: int, words: list[str]) -> list[float]:
     try:
-        found = [float(word.upper().replace("D", "E")) for word in words]
+        numbers = [float(word.upper().replace("D", "E")) for word in words]
     except ValueError as error:
         raise fault(path, number, "no row of numbers", _SUBSTRUCTURE) from error
-    if not np.isfinite(found).all():
+    if not np.isfinite(numbers).all():
         raise fault(path, number, "a number is not finite", _SUBSTRUCTURE)
-    return found
+    return numbers
 
 
 def read_generated(path: Path) -> Reading:
@@ -155,13 +155,13 @@ def read_generated(path: Path) -> Reading:
     entries = [_entries(path.with_name(f"{job}_{kind}{step}.mtx")) for kind in ("STIF", "MASS")]
     deck = _deck(path.with_name(f"{job}.mtx"))
     # rows of both, by label and direction; what has mass but no stiffness is there, too
-    keys = np.unique(np.concatenate([found[:, pair] for found in entries
+    keys = np.unique(np.concatenate([rows[:, pair] for rows in entries
                                      for pair in ([0, 1], [2, 3])]).astype(int), axis=0)
     unknown = [label for label in keys[:, 0].tolist() if label not in deck.nodes]
     if unknown:
         raise InputError(f"{path} has rows of node {unknown[0]}, which {deck.path} does not have: "
                          "give files of one job, flattened (no parts and instances)")
-    stiffness, mass = (_matrix(found, keys) for found in entries)
+    stiffness, mass = (_matrix(rows, keys) for rows in entries)
     dofs = [(label, direction - 1) for label, direction in keys.tolist()]
     return deck_model(deck, list(deck.nodes), dofs, stiffness, mass, f"Abaqus {job}",
                       _OWN_WAYS)
@@ -170,7 +170,7 @@ def read_generated(path: Path) -> Reading:
 def _entries(path: Path) -> NDArray:
     """Rows of label, direction, label, direction, value, (n, 5)."""
     lines = read_text(path, "matrix file", _GENERATE).splitlines()
-    found = []
+    entries = []
     for number, line in enumerate(lines, 1):
         words = line.replace(",", " ").split()
         if not words or line.startswith("*"):
@@ -188,10 +188,10 @@ def _entries(path: Path) -> NDArray:
         if abs(row[4]) >= _HELD:
             raise fault(path, number, f"node {row[0]:g}, DOF {row[1]:g}, is fixed",
                         "remove *BOUNDARY: the body must be free")
-        found.append(row)
-    if not found:
+        entries.append(row)
+    if not entries:
         raise InputError(f"matrix file {path} is empty: {_GENERATE}")
-    return np.array(found)
+    return np.array(entries)
 
 
 def _matrix(entries: NDArray, keys: NDArray):

@@ -32,11 +32,11 @@ def read(path: Path) -> Reading:
         A damaged file, DOFs that are not mechanical, supports, or nodes without coordinates.
     """
     reference, stiffness, mass = full_matrices(path)
-    held = np.flatnonzero((stiffness.diagonal() == 0) & (mass.diagonal() == 0))
-    if len(held):
-        nodes = list(dict.fromkeys(reference[held, 0].tolist()))
+    empty = np.flatnonzero((stiffness.diagonal() == 0) & (mass.diagonal() == 0))
+    if len(empty):
+        nodes = list(dict.fromkeys(reference[empty, 0].tolist()))
         shown = ", ".join(map(str, nodes[:6])) + (", ..." if len(nodes) > 6 else "")
-        raise InputError(f"{path} is of a model that is held: {len(held)} rows of the nodes "
+        raise InputError(f"{path} is of a model that is held: {len(empty)} rows of the nodes "
                          f"{shown} are empty; delete its supports (DDELE), a body must be free")
     mesh = _mesh(path)
     labels = mesh["labels"]
@@ -60,11 +60,11 @@ def full_matrices(path: Path) -> tuple[np.ndarray, sparse.csc_array, sparse.csc_
     InputError
         A file of another kind or damaged, or DOFs that are not mechanical.
     """
-    found = _read(path, "matrices")
-    reference, size = found["reference"], len(found["reference"])
+    parts = _read(path, "matrices")
+    reference, size = parts["reference"], len(parts["reference"])
     matrices = []
     for name in ("stiffness", "mass"):
-        rows, columns, values = (found[f"{name}_{part}"] for part in ("rows", "columns", "values"))
+        rows, columns, values = (parts[f"{name}_{part}"] for part in ("rows", "columns", "values"))
         if rows.size and max(rows.max(), columns.max()) >= size:
             raise InputError(f"{path} is damaged (an entry in row {max(rows.max(), columns.max())} "
                              f"of {size}): {_REMEDY}")
@@ -105,9 +105,9 @@ def _sets(mesh: dict[str, np.ndarray], labels: np.ndarray) -> dict[str, list[int
 
 def _cells(mesh: dict[str, np.ndarray], labels: np.ndarray) -> list[tuple[str, np.ndarray]]:
     """Solids of full numbers of nodes; others are left out of the picture."""
-    found: dict[str, list] = {}
+    by_kind: dict[str, list] = {}
     for nodes in np.split(mesh["elements"], mesh["ends"][:-1]):
         nodes = nodes[nodes > 0]
         if len(nodes) in _SOLIDS and len(set(nodes)) == len(nodes):
-            found.setdefault(_SOLIDS[len(nodes)], []).append(np.searchsorted(labels, nodes))
-    return [(kind, np.array(cells)) for kind, cells in found.items()]
+            by_kind.setdefault(_SOLIDS[len(nodes)], []).append(np.searchsorted(labels, nodes))
+    return [(kind, np.array(cells)) for kind, cells in by_kind.items()]

@@ -23,12 +23,12 @@ def _matrices(path: str) -> dict[str, NDArray]:
     if not hasattr(full, "load_km"):
         raise ValueError("no .full file")
     reference, *matrices = full.load_km(sort=True)
-    found = {"reference": reference}
+    values = {"reference": reference}
     for name, matrix in zip(("stiffness", "mass"), matrices, strict=True):
         whole = matrix.tocoo()
-        found |= {f"{name}_rows": whole.row, f"{name}_columns": whole.col,
-                  f"{name}_values": whole.data}
-    return found
+        values |= {f"{name}_rows": whole.row, f"{name}_columns": whole.col,
+                   f"{name}_values": whole.data}
+    return values
 
 
 def _mesh(path: str) -> dict[str, NDArray]:

@@ -22,7 +22,7 @@ from sebody.fem.beam_stress import BeamStress
 from sebody.fem.materials import doubts
 from sebody.fem.stress import SolidStress, StressModes
 from sebody.files import check_target, replacing
-from sebody.files.arrays import json_of, opened
+from sebody.files.array_files import json_of, opened
 from sebody.files.checksums import changed, checksums
 from sebody.io.body_table import body_table
 from sebody.reduction.body import ReducedBody
@@ -77,8 +77,8 @@ class BodyFile:
         """What the body lacks, and materials of other units: ``what; what to do``."""
         parts = self.parts
         stressed = parts.get("recovery") is not None and bool(parts["recovery"].stress)
-        found = lacks(stressed, parts.get("invariants") is not None, parts.get("missing", {}))
-        return sentences(found, stressed) + doubts(parts.get("materials", ()), self.units)
+        missing = lacks(stressed, parts.get("invariants") is not None, parts.get("missing", {}))
+        return sentences(missing, stressed) + doubts(parts.get("materials", ()), self.units)
 
     def body(self) -> ReducedBody:
         """The body, checked.
@@ -88,12 +88,12 @@ class BodyFile:
         InputError
             See `ReducedBody`, or members that are not those that were written.
         """
-        found = ReducedBody(**self.parts, units=self.units)
+        reduced = ReducedBody(**self.parts, units=self.units)
         if self.changed:
             raise InputError(f"{', '.join(self.changed)} changed since the file was written; "
                              "import the body again, or write what was changed with "
                              "sebody.io.save_body")
-        return found
+        return reduced
 
 
 def save_body(body: ReducedBody, path: str | Path, names: tuple[str, ...] | None = None, *,
@@ -202,12 +202,12 @@ def checked_names(names: tuple[str, ...] | None, count: int) -> tuple[str, ...]:
     """
     if names is None:
         return tuple(f"node {k}" for k in range(count))
-    found = tuple(inputs.name(name, "name of a boundary node") for name in inputs.items(
+    checked = tuple(inputs.name(name, "name of a boundary node") for name in inputs.items(
         names, "names", "give a text for each boundary node"))
-    if len(found) != count or len(set(found)) != count:
-        raise inputs.refusal("names", found, f"give {count} different names, one for each "
+    if len(checked) != count or len(set(checked)) != count:
+        raise inputs.refusal("names", checked, f"give {count} different names, one for each "
                              "boundary node")
-    return found
+    return checked
 
 
 def _check_version(path: Path, version: Any) -> None:
@@ -253,10 +253,10 @@ def _made(arrays: dict[str, NDArray], notes: dict) -> BodyFile:
     values |= {name: array for name, array in arrays.items() if "/" not in name}
     parts = {name: value for name, value in values.items() if "." not in name}
     for part, kind in PARTS.items():
-        found = {name.removeprefix(f"{part}."): value for name, value in values.items()
-                 if name.startswith(f"{part}.")}
-        if found:
-            parts[part] = kind(**found)
+        fields = {name.removeprefix(f"{part}."): value for name, value in values.items()
+                  if name.startswith(f"{part}.")}
+        if fields:
+            parts[part] = kind(**fields)
     parts["loads"] = {name.removeprefix("loads."): array for name, array in arrays.items()
                       if name.startswith("loads.")}
     return BodyFile(parts, checked_names(notes["names"], len(parts["coordinates"])),

@@ -51,9 +51,9 @@ def body_table(file: str, headers: Mapping[str, Header], notes: dict) -> Table:
     D = headers["coordinates"].shape[-1:] if "coordinates" in headers else ()
     lengths = {"boundary": len(notes["body"]["keeps"]), "r": 1 if D == (2,) else 3}
     dofs = notes["body"].get("recovery.node_dofs")
-    own = headers.get("recovery.coordinates")
-    if dofs is not None and own is not None:
-        lengths |= {"rows": len(dofs) * own.shape[0] if own.shape else 0}
+    coordinates = headers.get("recovery.coordinates")
+    if dofs is not None and coordinates is not None:
+        lengths |= {"rows": len(dofs) * coordinates.shape[0] if coordinates.shape else 0}
     table.lengths |= lengths
     return table
 

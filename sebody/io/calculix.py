@@ -79,22 +79,22 @@ def _check_free(deck: Deck) -> None:
 
 def _labels(path: Path) -> list[tuple[int, int]]:
     """Node and direction, from 0, of every row."""
-    found = []
+    labels = []
     for number, line in enumerate(read_text(path, "DOF file", _REMEDY).splitlines(), 1):
         node, point, direction = line.strip().partition(".")
         if not (point and node.isdecimal() and direction in ("1", "2", "3")):
             raise fault(path, number, f"{line.strip()!r} is not node.direction with a direction "
                         "from 1 to 3", "write the matrices of a mechanical model again")
-        found.append((int(node), int(direction) - 1))
-    if not found:
+        labels.append((int(node), int(direction) - 1))
+    if not labels:
         raise InputError(f"DOF file {path} is empty: {_REMEDY}")
-    twice = first_repeated(found)
+    twice = first_repeated(labels)
     if twice:
-        node, direction = found[twice[1]]
+        node, direction = labels[twice[1]]
         raise fault(path, twice[1] + 1, f"label {node}.{direction + 1} is that of line "
                     f"{twice[0] + 1}, too", "CalculiX makes solids of beams and shells (B31, B32, "
                     "S4, S8 ...), whose rows it does not distinguish; use solids, C3D8 or C3D20")
-    return found
+    return labels
 
 
 def _rotation_nodes(deck: Deck, labels: list[tuple[int, int]], stiffness: sparse.csc_array,
@@ -110,21 +110,21 @@ def _rotation_nodes(deck: Deck, labels: list[tuple[int, int]], stiffness: sparse
     InputError
         Rows of nodes that the deck does not have, and that are not of these kinds.
     """
-    found = {body.rotation: body.reference for body in deck.rigid_bodies
-             if body.rotation not in (None, body.reference)}
+    references = {body.rotation: body.reference for body in deck.rigid_bodies
+                  if body.rotation not in (None, body.reference)}
     unknown = {label: row for row, (label, _) in enumerate(labels) if label not in deck.nodes}
     without = {body.reference for body in deck.rigid_bodies if body.rotation is None}
     rows = {label: row for row, (label, _) in enumerate(labels) if label in without}
     for label, row in unknown.items():
         alike = [node for node, own in rows.items() if np.array_equal(
             _columns(stiffness, own), _columns(stiffness, row))]
-        if len(alike) != 1 or alike[0] in found.values():
+        if len(alike) != 1 or alike[0] in references.values():
             number = next(k for k, (other, _) in enumerate(labels, 1) if other == label)
             raise fault(path, number, f"node {label} is not in the deck {deck.path}", (
                 "give every *RIGID BODY a ROT NODE, and tie with *RIGID BODY in place of "
                 "*KINEMATIC" if without else "give files of one run of ccx"))
-        found[label] = alike[0]
-    return found
+        references[label] = alike[0]
+    return references
 
 
 def _columns(matrix: sparse.csc_array, row: int) -> NDArray:

@@ -20,7 +20,7 @@ from sebody.io.registry import naming, read_source
 from sebody.reduction.accuracy import Accuracy
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.methods import reduce
-from sebody.reduction.rigid import rigid_motions
+from sebody.reduction.rigid_motions import rigid_motions
 from sebody.reduction.watch import SILENT, Watch, watching
 from sebody.units import parsed_units
 

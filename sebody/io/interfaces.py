@@ -93,12 +93,12 @@ def parsed(interfaces: Mapping[str, str | int] | Iterable[str]) -> list[Interfac
             if not isinstance(text, str) or "=" not in text:
                 raise inputs.refusal("interface", text, REMEDY)
             pairs.append(tuple(text.split("=", 1)))
-    found = [_one(*pair) for pair in pairs]
-    names = [one.name for one in found]
+    checked = [_one(*pair) for pair in pairs]
+    names = [one.name for one in checked]
     for name in names:
         if names.count(name) > 1:
             raise InputError(f"interface {name!r} is given twice: give each a name of its own")
-    return found
+    return checked
 
 
 def _one(name: str, text: str) -> Interface:

@@ -80,11 +80,11 @@ def _matrix(path: Path, size: int, mapping: Path) -> sparse.csc_array:
 
 def _mapping(path: Path) -> list[tuple[int, str]]:
     """Node and name of the DOF of every row, in the order of the rows."""
-    found: dict[int, tuple[int, str]] = {}
+    mapping: dict[int, tuple[int, str]] = {}
     for number, line in enumerate(read_text(path, "mapping", _REMEDY).splitlines(), 1):
         words = line.replace(",", " ").split()
         if len(words) != 3 or not (words[0].isdecimal() and words[1].isdecimal()):
-            if found and words:
+            if mapping and words:
                 raise fault(path, number, "no row, node and DOF", _REMEDY)
             continue                    # headings
         row, node, kind = int(words[0]), int(words[1]), _DIRECTIONS.get(words[2].upper())
@@ -92,14 +92,14 @@ def _mapping(path: Path) -> list[tuple[int, str]]:
             raise fault(path, number, f"DOF {words[2]} is not a mechanical DOF", "leave out "
                                                                                  "elements "
                         "with pressures, temperatures and Lagrange multipliers")
-        if row in found:
+        if row in mapping:
             raise fault(path, number, f"row {row} occurs twice", "export it again")
-        found[row] = node, kind
-    missing = sorted(set(range(1, len(found) + 1)) - set(found))
-    if not found or missing:
+        mapping[row] = node, kind
+    missing = sorted(set(range(1, len(mapping) + 1)) - set(mapping))
+    if not mapping or missing:
         raise InputError(f"mapping {path} has no row {missing[0] if missing else 1}: the file is "
                          "cut off, export it again")
-    rows = [found[row] for row in sorted(found)]
+    rows = [mapping[row] for row in sorted(mapping)]
     twice = first_repeated(rows)
     if twice:
         raise InputError(f"mapping {path} gives rows {twice[0] + 1} and {twice[1] + 1} the same "
@@ -109,7 +109,7 @@ def _mapping(path: Path) -> list[tuple[int, str]]:
 
 def _nodes(path: Path) -> dict[int, list[float]]:
     """Places by label; lines that begin with no whole number are headings."""
-    found: dict[int, list[float]] = {}
+    coordinates: dict[int, list[float]] = {}
     for number, line in enumerate(read_text(path, "node file", _REMEDY).splitlines(), 1):
         words = line.replace(",", " ").split()
         if not words or not words[0].isdecimal():
@@ -120,9 +120,9 @@ def _nodes(path: Path) -> dict[int, list[float]]:
             place = []
         if len(place) != 3 or not np.isfinite(place).all():
             raise fault(path, number, "no node with three coordinates", _REMEDY)
-        if int(words[0]) in found:
+        if int(words[0]) in coordinates:
             raise fault(path, number, f"node {words[0]} occurs twice", "list each node once")
-        found[int(words[0])] = place
-    if not found:
+        coordinates[int(words[0])] = place
+    if not coordinates:
         raise InputError(f"node file {path} has no nodes: {_REMEDY}")
-    return found
+    return coordinates

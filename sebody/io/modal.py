@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, eigh, null_space
 
 from sebody.errors import InputError
-from sebody.reduction.rigid import rigid_motions
+from sebody.reduction.rigid_motions import rigid_motions
 
 _SPAN = 1e-8    # smallest singular value of the nodes' motions, relative to the largest
 
@@ -61,17 +61,17 @@ class ModalBody(NamedTuple):
                                  ":translation")
         points = np.array([node.point for node in chosen])
         motion = self._motion(chosen, points, tuple(keeps))
-        held, whole = motion.shape
+        rows, whole = motion.shape
         scale = self._scale(points)
         of_rows = np.concatenate([np.full(3 * sum(k != "rotation" for k in keeps), scale[0]),
-                                  np.ones(held - 3 * sum(k != "rotation" for k in keeps))])
+                                  np.ones(rows - 3 * sum(k != "rotation" for k in keeps))])
         unit_free = motion * scale / of_rows[:, None]
         spread = np.linalg.svd(unit_free, compute_uv=False)
-        if held > whole or spread[-1] <= _SPAN * spread[0]:
-            free = int(np.sum(spread > _SPAN * spread[0])) if held <= whole else whole
+        if rows > whole or spread[-1] <= _SPAN * spread[0]:
+            free = int(np.sum(spread > _SPAN * spread[0])) if rows <= whole else whole
             raise InputError(
                 f"{self.source}: its {whole - 6} modes and rigid motion give the nodes "
-                f"{', '.join(labels)} {min(free, whole)} of {held} independent motions: name fewer "
+                f"{', '.join(labels)} {min(free, whole)} of {rows} independent motions: name fewer "
                 "nodes, keep :translation, or write it with constraint modes of these nodes")
         static = scale[:, None] * np.linalg.pinv(unit_free) / of_rows
         inner = scale[:, None] * null_space(unit_free, rcond=_SPAN)

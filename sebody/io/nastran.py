@@ -32,9 +32,9 @@ def read_op4(path: Path) -> Reading:
     InputError
         A damaged file, no pair of stiffness and mass, or nodes that do not fit their rows.
     """
-    found = _called(lambda: _nastran().op4.read(str(path), into="dct", justmatrix=True), path)
-    found = {name.lower(): matrix for name, matrix in found.items()}
-    stiffness, mass = _pair(found, path)
+    matrices = _called(lambda: _nastran().op4.read(str(path), into="dct", justmatrix=True), path)
+    matrices = {name.lower(): matrix for name, matrix in matrices.items()}
+    stiffness, mass = _pair(matrices, path)
     cards = _beside(path)
     table = _uset(cards)
     told = len(table.index)
@@ -57,8 +57,8 @@ def read_dmig(path: Path) -> Reading:
     InputError
         As for `read_op4`.
     """
-    found = _called(lambda: _nastran().rddmig(str(path), square=True), path)
-    frames = {name.lower(): frame for name, frame in found.items()}
+    matrices = _called(lambda: _nastran().rddmig(str(path), square=True), path)
+    frames = {name.lower(): frame for name, frame in matrices.items()}
     stiffness, mass = _pair({name: frame.values for name, frame in frames.items()}, path)
     indices = [list(frame.index) for frame in frames.values() if frame.shape == stiffness.shape]
     if indices[0] != indices[1]:
@@ -78,9 +78,9 @@ def _reading(stiffness: NDArray, mass: NDArray, index: list, table: Any, path: P
     place = {row: i for i, row in enumerate(rows) if row is not None}
     for node, axes in turns.items():
         for first in (0, 3):
-            own = [place.get((node, first + k)) for k in range(3)]
-            if None not in own:
-                turn[np.ix_(own, own)] = axes       # output from basic components
+            rows_of_node = [place.get((node, first + k)) for k in range(3)]
+            if None not in rows_of_node:
+                turn[np.ix_(rows_of_node, rows_of_node)] = axes       # output from basic components
     parts, names = reduced_parts(turn.T @ stiffness @ turn, turn.T @ mass @ turn, rows, points,
                                  str(path))
     return Reading(parts, names, source=f"Nastran {path.name}")

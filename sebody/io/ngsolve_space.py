@@ -86,18 +86,18 @@ def _rows(space: Any) -> tuple[Any, int, NDArray]:
     try:
         mesh = space.mesh
         dimension, components = mesh.dim, len(space.components)
-        found = [list(space.GetDofNrs(NodeId(VERTEX, k))) for k in range(mesh.nv)]
+        rows = [list(space.GetDofNrs(NodeId(VERTEX, k))) for k in range(mesh.nv)]
         edges = [list(space.GetDofNrs(NodeId(EDGE, k))) for k in range(mesh.nedge)]
         free = sum(space.FreeDofs())
     except (AttributeError, TypeError) as error:
         raise inputs.refusal("space", space, _REMEDY) from error
-    found += [own for own in edges if own]
-    if components != dimension or any(len(own) != dimension for own in found) or (
-            len(found) * dimension != space.ndof) or free != space.ndof:
+    rows += [numbers for numbers in edges if numbers]
+    if components != dimension or any(len(numbers) != dimension for numbers in rows) or (
+            len(rows) * dimension != space.ndof) or free != space.ndof:
         raise InputError(f"the space has {space.ndof} DOFs, {free} of them free, and "
-                         f"{len(found)} vertices and edges with {dimension} displacements: "
+                         f"{len(rows)} vertices and edges with {dimension} displacements: "
                          f"{_REMEDY}")
-    return mesh, dimension, np.array(found)
+    return mesh, dimension, np.array(rows)
 
 
 def _matrix(form: Any, name: str, size: int) -> sparse.csc_array:
@@ -124,10 +124,10 @@ def _nodal(space: Any, mesh: Any, rows: NDArray, ends: NDArray) -> sparse.csr_ar
         scale = _edge_value(space, mesh, rows, ends)
         first = mesh.nv
         for axis in range(rows.shape[1]):
-            own = rows[first:, axis]
-            matrix[own, own] = 1 / scale
+            inner = rows[first:, axis]
+            matrix[inner, inner] = 1 / scale
             for end in ends.T:
-                matrix[own, rows[end, axis]] = -0.5 / scale
+                matrix[inner, rows[end, axis]] = -0.5 / scale
     return sparse.csr_array(matrix)
 
 
@@ -163,14 +163,14 @@ def _edge_value(space: Any, mesh: Any, rows: NDArray, ends: NDArray) -> float:
     from ngsolve import GridFunction
 
     field = GridFunction(space)
-    found = []
+    sizes = []
     for edge in {0, len(ends) // 2, len(ends) - 1}:
         field.vec[:] = 0.0
         field.vec[int(rows[mesh.nv + edge, 0])] = 1.0
-        found.append(_at_middle(field, mesh, edge))
-    if np.ptp(found) > 1e-12 or not abs(found[0]) > 1e-12:
-        raise InputError(f"the shapes of edges have the values {found} in their middles: {_REMEDY}")
-    return float(found[0])
+        sizes.append(_at_middle(field, mesh, edge))
+    if np.ptp(sizes) > 1e-12 or not abs(sizes[0]) > 1e-12:
+        raise InputError(f"the shapes of edges have the values {sizes} in their middles: {_REMEDY}")
+    return float(sizes[0])
 
 
 def _at_middle(field: Any, mesh: Any, edge: int) -> float:
@@ -191,7 +191,7 @@ def _at_middle(field: Any, mesh: Any, edge: int) -> float:
 def _cells(mesh: Any, points: NDArray, count: int, ends: NDArray) -> list[tuple[str, NDArray]]:
     """Tetrahedra in meshio's order of nodes, turned right way round."""
     edge_of = {tuple(sorted(pair)): count + k for k, pair in enumerate(ends.tolist())}
-    found: dict[str, list] = {}
+    by_kind: dict[str, list] = {}
     for element in mesh.Elements():
         kind = _KINDS.get((str(element.type).removeprefix("ET."), 2 if len(ends) else 1))
         if kind is None:
@@ -201,18 +201,18 @@ def _cells(mesh: Any, points: NDArray, count: int, ends: NDArray) -> list[tuple[
             corners[:2] = corners[1::-1]
         middles = [edge_of[tuple(sorted((corners[i], corners[j])))]
                    for i, j in TETRAHEDRON_EDGES] if len(ends) else []
-        found.setdefault(kind, []).append(corners + middles)
-    return [(kind, np.array(cells)) for kind, cells in found.items()]
+        by_kind.setdefault(kind, []).append(corners + middles)
+    return [(kind, np.array(cells)) for kind, cells in by_kind.items()]
 
 
 def _boundaries(mesh: Any, ends: NDArray) -> dict[str, list[int]]:
     """Named boundaries as node sets."""
-    found, count = {}, mesh.nv
+    sets, count = {}, mesh.nv
     for name in dict.fromkeys(mesh.GetBoundaries()):
         elements = list(mesh.Boundaries(name).Elements())
         corners = {vertex.nr for element in elements for vertex in element.vertices}
         middles = {count + edge.nr for element in elements for edge in element.edges
                    if len(ends)}
         if name:
-            found[str(name)] = sorted(corners | middles)
-    return found
+            sets[str(name)] = sorted(corners | middles)
+    return sets

@@ -50,13 +50,13 @@ def reduced_parts(stiffness: NDArray, mass: NDArray, rows: Sequence[tuple[int, i
 
 
 def _keep(label: int, directions: list[int], source: str) -> str:
-    found = {(0, 1, 2): "translation", (3, 4, 5): "rotation", (0, 1, 2, 3, 4, 5): "full"}.get(
+    keeps = {(0, 1, 2): "translation", (3, 4, 5): "rotation", (0, 1, 2, 3, 4, 5): "full"}.get(
         tuple(directions))
-    if found is None:
+    if keeps is None:
         have = ", ".join(NAMES[k] for k in directions)
         raise InputError(f"{source} keeps {have} of node {label}: retain all three translations, "
                          "all three rotations, or both, when reducing")
-    return found
+    return keeps
 
 
 def chosen_interfaces(file: BodyFile, labels: Sequence[str], names: Sequence[str]) -> BodyFile:

@@ -108,14 +108,14 @@ def naming(path: str | Path) -> Iterator[None]:
 def _named(kind: str, path: Path) -> Source:
     """The source of a name, refused where the file has the ending of another one."""
     by_name = {source.name: source for source in SOURCES}
-    found = by_name[inputs.choice(kind, "format", by_name)]
+    chosen = by_name[inputs.choice(kind, "format", by_name)]
     ending = path.suffix.lower()
     others = [source.name for source in SOURCES if ending in source.suffixes]
-    if others and found.name not in others:
+    if others and chosen.name not in others:
         raise InputError(f"{path} is a file of {' or '.join(others)}, by its ending, and the "
-                         f"format is {kind}, which reads {', '.join(found.suffixes)}: leave the "
+                         f"format is {kind}, which reads {', '.join(chosen.suffixes)}: leave the "
                          "format out, or give it the ending of its kind")
-    return found
+    return chosen
 
 
 def _guessed(path: Path) -> Source:

@@ -87,15 +87,15 @@ def _nodes(basis: Any) -> NDArray:
         parts = [np.asarray(part) for part in (basis.nodal_dofs, basis.edge_dofs, basis.facet_dofs,
                                                basis.interior_dofs)]
         several = any(len(part) not in (0, dimension) for part in parts if part.size)
-        found = np.hstack([part for part in parts if part.size])
+        numbers = np.hstack([part for part in parts if part.size])
     except (AttributeError, ValueError) as error:
         raise inputs.refusal("basis", basis, _REMEDY) from error
-    places = basis.doflocs[:, found]                    # (dimension, components, nodes)
+    places = basis.doflocs[:, numbers]                    # (dimension, components, nodes)
     if several or dimension not in (2, 3) or not np.array_equal(
             places, np.broadcast_to(places[:, :1], places.shape)):
         raise InputError(f"the basis of {_name(basis)} elements does not consist of displacements "
                          f"at nodes: {_REMEDY}")
-    return found
+    return numbers
 
 
 def _name(basis: Any) -> str:

@@ -31,7 +31,7 @@ from sebody.io.modal import ModalBody, ModalNode
 from sebody.io.reading import Reading
 from sebody.io.text import fault, read_text
 from sebody.reduction.body import ReducedBody
-from sebody.reduction.rigid import rigid_motions
+from sebody.reduction.rigid_motions import rigid_motions
 
 TARGET = "SID file", (".SID_FEM", ".sid_fem", ".sid")
 _REMEDY = "give a file that begins with 'part' and 'new modal', as FEMBS and sebody write them"
@@ -169,23 +169,23 @@ def read(path: Path) -> Reading:
     InputError
         A file that is cut off or of another kind.
     """
-    found: dict[str, NDArray] = {}
+    parts: dict[str, NDArray] = {}
     nodes: list[ModalNode] = []
     for where, name, matrix in _blocks(path):
         if where is None:
-            found[name] = matrix
+            parts[name] = matrix
         else:
             if not nodes or nodes[-1].name != where:
                 nodes.append(ModalNode(where, np.zeros(3), None, None))
-            own = {"origin": "point", "phi": "phi", "psi": "psi"}.get(name)
-            if own:
-                value = matrix[:, 0] if own == "point" else matrix
-                nodes[-1] = nodes[-1]._replace(**{own: value})
-    missing = {"mass", "mdCM", "J", "Ct", "Cr", "Me", "Ke"} - set(found)
+            item = {"origin": "point", "phi": "phi", "psi": "psi"}.get(name)
+            if item:
+                value = matrix[:, 0] if item == "point" else matrix
+                nodes[-1] = nodes[-1]._replace(**{item: value})
+    missing = {"mass", "mdCM", "J", "Ct", "Cr", "Me", "Ke"} - set(parts)
     if missing or not nodes:
         what = ", ".join(sorted(missing)) or "node"
         raise InputError(f"SID file {path} has no {what}: it is cut off, or {_REMEDY}")
-    return Reading(_modal(path, found, nodes), tuple(node.name for node in nodes),
+    return Reading(_modal(path, parts, nodes), tuple(node.name for node in nodes),
                    source=f"SID {path.name}", notes={
                        "exact inertia": "none: SID mixes its constants with those of stiffening"})
 
@@ -202,10 +202,10 @@ def _modal(path: Path, found: dict[str, NDArray], nodes: list[ModalNode]) -> Mod
             raise InputError(f"SID file {path}: node {node.name} has no shapes phi and psi of "
                              f"{nq} modes: {_REMEDY}")
     for name, what in (("Me", "mass"), ("Ke", "stiffness")):
-        own = np.diag(found[name])
-        if (own < 0).any():
-            raise InputError(f"SID file {path}: mode {np.argmin(own) + 1} has the {what} "
-                             f"{own.min():g}: write the file again")
+        diagonal = np.diag(found[name])
+        if (diagonal < 0).any():
+            raise InputError(f"SID file {path}: mode {np.argmin(diagonal) + 1} has the {what} "
+                             f"{diagonal.min():g}: write the file again")
     J = found["J"]
     if J.shape == (6, 1):
         whole = np.zeros((3, 3))
@@ -254,16 +254,16 @@ def _blocks(path: Path) -> Iterator[tuple[str | None, str, NDArray]]:
 def _matrix(path: Path, number: int, sizes: dict[str, int], entries: list) -> NDArray:
     """M0: its structure is 0 zero, 1 diagonal, 2 symmetric, 3 full, 4 the unit matrix."""
     shape = sizes.get("nrow", 0), sizes.get("ncol", 0)
-    found = np.eye(*shape) if sizes.get("structure") == 4 else np.zeros(shape)
+    matrix = np.eye(*shape) if sizes.get("structure") == 4 else np.zeros(shape)
     for i, j, value in entries:
         if not (1 <= i <= shape[0] and 1 <= j <= shape[1]):
             raise fault(path, number, f"m0({i}, {j}) is not within {shape[0]} x {shape[1]}",
                         "write the file again")
-        found[i - 1, j - 1] = value
+        matrix[i - 1, j - 1] = value
     if sizes.get("structure") == 2:
-        upper, lower = np.triu(found, 1), np.tril(found, -1)
-        found += (upper.T if not lower.any() else 0) + (lower.T if not upper.any() else 0)
-    return found
+        upper, lower = np.triu(matrix, 1), np.tril(matrix, -1)
+        matrix += (upper.T if not lower.any() else 0) + (lower.T if not upper.any() else 0)
+    return matrix
 
 
 def _size(path: Path, number: int, key: str, text: str, most: int) -> int:

@@ -28,17 +28,17 @@ def table(path: Path, columns: int, what: str, remedy: str) -> NDArray:
     text = read_text(path, what, remedy)
     values = text.replace("D", "E").replace("d", "e").split()
     try:
-        found = np.array(values, dtype=float)
+        rows = np.array(values, dtype=float)
     except ValueError as error:
         raise _worst_line(path, text, columns, remedy) from error
-    if len(found) % columns or len(text.splitlines()) * columns != len(found) or not (
-            np.isfinite(found).all()):
+    if len(rows) % columns or len(text.splitlines()) * columns != len(rows) or not (
+            np.isfinite(rows).all()):
         raise _worst_line(path, text, columns, remedy)
-    if not len(found):
+    if not len(rows):
         raise InputError(f"{what} {path} is empty: {remedy}")
     if not text.endswith("\n"):
         raise fault(path, len(text.splitlines()), "the file ends within a line", remedy)
-    return found.reshape(-1, columns)
+    return rows.reshape(-1, columns)
 
 
 def _worst_line(path: Path, text: str, columns: int, remedy: str) -> InputError:

@@ -27,15 +27,15 @@ def read_triplets(path: Path, size: int, what: str, remedy: str,
         A line that is no entry of such a matrix, rows beyond `size`, entries on both sides of
         the diagonal or twice, or diagonal entries that are missing, as of a file cut off.
     """
-    found = table(path, 3, what, remedy)
-    beyond = found[:, :2].max(axis=1) > size
+    entries = table(path, 3, what, remedy)
+    beyond = entries[:, :2].max(axis=1) > size
     if beyond.any():
         line = int(np.argmax(beyond))
-        raise fault(path, line + 1, f"row {found[line, :2].max():g}, but {rows_of} lists {size}",
+        raise fault(path, line + 1, f"row {entries[line, :2].max():g}, but {rows_of} lists {size}",
                     "give files of one run of the program")
-    rows, columns = (whole(found[:, k], path, size, "row or column", remedy) for k in (0, 1))
+    rows, columns = (whole(entries[:, k], path, size, "row or column", remedy) for k in (0, 1))
     _check_entries(path, rows, columns, size, remedy)
-    return symmetric(rows - 1, columns - 1, found[:, 2], size)
+    return symmetric(rows - 1, columns - 1, entries[:, 2], size)
 
 
 def _check_entries(path: Path, rows: NDArray, columns: NDArray, size: int, remedy: str) -> None:

@@ -22,7 +22,8 @@ from numba import TypingError, types
 from numba.extending import intrinsic
 
 from sebody.compiler.decorators import compiled
-from sebody.contract.layout import ARGUMENTS, LANES
+from sebody.contract.counts import LANES
+from sebody.contract.layout import ARGUMENTS
 
 
 @compiled

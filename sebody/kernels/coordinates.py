@@ -6,7 +6,7 @@ All of a kind at once: each entry of a matrix is read once for values, rates and
 from llvmlite import ir
 from numba.extending import intrinsic
 
-from sebody.contract.layout import LANES, MOST_SLAVED
+from sebody.contract.counts import LANES, MOST_SLAVED
 from sebody.kernels.instructions import (
     WORD,
     add_product,
@@ -51,7 +51,7 @@ def write_all_to_free(builder, *args):
     bound, bound_free, free, end = args[9:]
     height = whole_vectors(builder, bound_free)
     length = builder.add(height, builder.sub(free, bound_free))
-    own = [builder.gep(moved, [builder.mul(length, WORD(k))]) for k in range(3)]
+    targets = [builder.gep(moved, [builder.mul(length, WORD(k))]) for k in range(3)]
     with short_loop(builder, WORD(0), height, LANES) as row:
         sums = totals(builder, 3)
         for total in sums:
@@ -60,12 +60,12 @@ def write_all_to_free(builder, *args):
             entries = load_vector(builder, axes, builder.add(builder.mul(column, height), row))
             for given, total in zip(rows, sums, strict=True):
                 add_product(builder, total, entries, load_broadcast(builder, given, column))
-        for total, place in zip(sums, own, strict=True):
+        for total, place in zip(sums, targets, strict=True):
             store_vector(builder, builder.load(total), place, row)
     with short_loop(builder, WORD(0), builder.sub(free, bound_free)) as mode:
-        for given, place in zip(rows, own, strict=True):
+        for given, place in zip(rows, targets, strict=True):
             _copy(builder, given, builder.add(bound, mode), place, builder.add(bound_free, mode))
-    _in_order(builder, own, order, to, free, end)
+    _in_order(builder, targets, order, to, free, end)
 
 
 def _in_order(builder, rows, order, to, count, end):

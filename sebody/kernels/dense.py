@@ -3,7 +3,7 @@
 from numba.extending import intrinsic
 
 from sebody.compiler.decorators import compiled
-from sebody.contract.layout import LANES
+from sebody.contract.counts import LANES
 from sebody.kernels.abi import at, padded
 from sebody.kernels.instructions import (
     WORD,

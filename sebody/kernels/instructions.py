@@ -13,7 +13,7 @@ from llvmlite import ir
 from numba import types
 
 from sebody.compiler.short_loops import mark_short
-from sebody.contract.layout import LANES
+from sebody.contract.counts import LANES
 
 FLOATS, WORD = types.CPointer(types.float64), ir.IntType(64)
 VECTOR = ir.VectorType(ir.DoubleType(), LANES)

@@ -20,7 +20,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody.contract.layout import LANES, packed_size, whole_vectors
+from sebody.contract.counts import LANES, packed_size, whole_vectors
 
 WIDE, NARROW = WIDTHS = 8, 4    # columns of a strip
 GROUP, HEAD = 5, 3      # whole numbers that tell of a group, and of a strip

@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from numba.extending import intrinsic
 
 from sebody.compiler.decorators import compiled
-from sebody.contract.layout import LANES
+from sebody.contract.counts import LANES
 from sebody.kernels.abi import padded
 from sebody.kernels.dense import columns_times
 from sebody.kernels.instructions import (
@@ -23,7 +23,7 @@ from sebody.kernels.packed import GROUP, HEAD, WIDTHS
 
 @compiled
 def packed_room(count, rows, columns):
-    """Numbers that a row of packed matrices takes, see `sebody.contract.layout.packed_size`."""
+    """Numbers that a row of packed matrices takes, see `sebody.contract.counts.packed_size`."""
     width = padded(columns)
     return count * padded(rows) * (width + width // 4) + 2 * width + 1
 

@@ -73,13 +73,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 for i in range(n):
                     J[i*n + column] = 0.0
                 for values, c in ((x, coefficients[C_STIFFNESS]), (rate, coefficients[C_DAMPING])):
-                    kept = values[column]
-                    h = STEP*max(1.0, abs(kept))
-                    values[column] = kept + h
+                    value = values[column]
+                    h = STEP*max(1.0, abs(value))
+                    values[column] = value + h
                     _evaluate(address, n, t, x, rate, force)
-                    values[column] = kept - h
+                    values[column] = value - h
                     _evaluate(address, n, t, x, rate, other)
-                    values[column] = kept
+                    values[column] = value
                     for i in range(n):
                         J[i*n + column] -= c*(force[i] - other[i])/(2.0*h)
     return 0

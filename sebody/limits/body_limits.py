@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.contract.layout import Counts
+from sebody.contract.counts import Counts
 from sebody.limits.axial import Axial
 from sebody.limits.spin_stability import cautious_limit, divergence, first_frequency, reach
 from sebody.limits.thresholds import AXIAL, BENT, FAST, FLAT, LINEAR
@@ -34,14 +34,14 @@ class Limits(NamedTuple):
 def limits_of(bodies: Iterable[Superelement]) -> dict[str, Limits]:
     """Those of some bodies by name, equal ones computed once."""
     known: dict[tuple, Limits] = {}
-    found = {}
+    limits = {}
     for body in bodies:
         key = body.reduced, body.frame, body.inertia, body.stiffening, tuple(body.alpha_r)
         if key not in known:
             known[key] = Limits(np.inf if body.stiffening else FAST * cautious_limit(body),
                                 _off_line(body), Axial.of(body))
-        found[body.name] = known[key]
-    return found
+        limits[body.name] = known[key]
+    return limits
 
 
 def exceeded(body: Superelement, limits: Limits, y: NDArray, spins: NDArray, local: float,

@@ -11,7 +11,7 @@ from sebody.contract.layout import ENERGIES, RECORD_T
 from sebody.engine import growth
 from sebody.engine.evaluate import to_body_axes
 from sebody.errors import InputError
-from sebody.limits.thresholds import CUT, EXCITED, GROWN, PERIOD
+from sebody.limits.thresholds import CUT, EXCITED, GROWN, PERIOD, WAVERS
 from sebody.model.parts import Element
 from sebody.results import energy_balance
 from sebody.results.audit import DRIFT
@@ -38,43 +38,73 @@ def remarks(run: Recording) -> dict[str, str]:
         return _steps(run) | _guarded(run)
     message = energy_balance.warning(run.energy_balance(),
                                      bool(run.state.control.adaptive))
-    found = ({"balance": message} if message else {}) | _steps(run) | _guarded(run)
+    by_key = ({"balance": message} if message else {}) | _steps(run) | _guarded(run)
     if run.failure or run.state.control.adaptive:
-        return found
+        return by_key
     columns = ENERGIES.slices(record_counts(run.numbering))
     kinetic, strain, potential = (run.energies[:, columns[name]][:, 0]
                                   for name in ("kinetic", "strain", "potential"))
     part = Recording(run.model, run.numbering, run.system, scratch, run.rows, 0.0)
     work = part.recorded("works").sum(axis=1)
-    grown = increase(kinetic + strain + potential, work) / max((kinetic + strain).max(), 1e-300)
-    if grown > GROWN and "balance" not in found:
-        found["growth"] = (
-            f"energy grows by {grown:.2g} of its maximum although no work is done on the model "
-            f"(limit {GROWN:g}): the steps do not resolve vibrations of a strongly bent body; "
-            "take a smaller step, divide the body, or keep the position of a node off the line of "
-            "the others")
+    h = float(run.rows[-1, RECORD_T]) / max(int(run.state.control.steps), 1)
+    if "balance" not in by_key:
+        by_key |= _grown(part, h, kinetic, strain, kinetic + strain + potential, work)
     if kinetic.max() > NO_MOTION * (np.abs(potential).max() + strain.max()):
         states = {int(np.argmax(kinetic)), int(np.argmax(strain))}
-        h = float(run.rows[-1, RECORD_T]) / max(int(run.state.control.steps), 1)
-        found |= _vibrations(part, sorted(states), h, kinetic.max())
+        by_key |= _vibrations(part, sorted(states), h, kinetic.max())
     if run.numbering.multipliers:
         chosen = np.unique(np.linspace(0, len(run.rows) - 1, LOOKED_AT).astype(int))
         part.rows = run.rows[chosen]
-        found |= _constraints(part)
-    return found
+        by_key |= _constraints(part)
+    return by_key
 
 
-def increase(energy: NDArray, work: NDArray) -> float:
+def _grown(part: Recording, h: float, kinetic: NDArray, strain: NDArray, energy: NDArray,
+           work: NDArray) -> dict[str, str]:
+    """Whether energy grows that nothing supplies: of all that there is, or of vibrations."""
+    grown = increase(energy, work) / max((kinetic + strain).max(), 1e-300)
+    if grown > GROWN:
+        return {"growth": f"energy grows by {grown:.2g} of its maximum "
+                f"although no work is done on the model (limit {GROWN:g}): the steps do not "
+                "resolve vibrations of a strongly bent body; take a smaller step, divide the body, "
+                "or keep the position of a node off the line of the others"}
+    most = strain.max()
+    rise = increase(energy, work, from_lowest=False)
+    allowed = WAVERS * most + growth.TURNED * _turned(part, h)**2 * kinetic.max()
+    if rise <= allowed or most <= EXCITED * kinetic.max():
+        return {}
+    # the gain is of second order in the step
+    step = h * np.sqrt(WAVERS * most / rise)
+    return {"growth": f"energy grows by {rise / most:.2g} of the largest strain energy although no "
+            f"work is done on the model (limit {WAVERS:g}): bodies that bend far exchange energy "
+            "between vibrations, and the steps follow it to second order; below a step of "
+            f"{step:.2g} the gain is within the limit (sebody.analysis.energy_gain predicts it)"}
+
+
+def _turned(part: Recording, h: float) -> float:
+    """Largest rotation of the frame of a body in a step, from recorded states."""
+    frames = part.recorded("frames")[:, :9 * len(part.numbering.modes)]
+    if len(frames) < 2 or not frames.size:
+        return 0.0
+    changes = np.diff(frames, axis=0).reshape(len(frames) - 1, -1, 9)
+    between = np.linalg.norm(changes, axis=2).max(axis=1) / np.sqrt(2.0)
+    return float(h * (between / np.diff(part.rows[:, RECORD_T])).max())
+
+
+def increase(energy: NDArray, work: NDArray, from_lowest: bool = True) -> float:
     """Largest increase of an energy over stretches of states between which no work is done.
 
     Parameters
     ----------
     energy, work : (n,)
+    from_lowest : bool
+        Above the lowest value in the stretch so far, else above the first one.
     """
     idle = np.abs(np.diff(work)) <= IDLE * max(np.ptp(work), np.ptp(energy))
     least, most = energy[0], 0.0
     for still, now in zip(idle, energy[1:], strict=True):
-        least = min(least, now) if still else now
+        if not still or (from_lowest and now < least):
+            least = now
         most = max(most, now - least)
     return float(most)
 

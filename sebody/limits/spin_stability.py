@@ -29,7 +29,7 @@ from scipy.linalg import eigh, null_space
 from sebody.assembly.batches import frame_constants
 from sebody.assembly.contracts import frame_counts
 from sebody.assembly.floating import frame_conditions
-from sebody.assembly.rigid_part import rigid_part_constants
+from sebody.assembly.rigid_part_constants import rigid_part_constants
 from sebody.generated.options import INERTIA_OPTIONS
 from sebody.model.frames import FRAMES
 from sebody.model.parts import Superelement
@@ -73,12 +73,12 @@ def divergence(part: Superelement, axis: NDArray | None) -> float:
     products ``n_k y_i``, and the largest ratio of all such numbers to the strain energy counts.
     """
     lowest = 0.0
-    for held in holds(part, axis):
-        elastic = held.free.T @ part.reduced.stiffness @ held.free
+    for pivot in holds(part, axis):
+        elastic = pivot.free.T @ part.reduced.stiffness @ pivot.free
         if axis is not None:
-            soft = held.free.T @ softening(part, axis, held) @ held.free
+            soft = pivot.free.T @ softening(part, axis, pivot) @ pivot.free
         else:
-            soft = _of_all_axes(part, held)
+            soft = _of_all_axes(part, pivot)
             elastic = np.kron(np.eye(3), elastic)
         if len(soft):
             lowest = max(lowest, eigh(soft, elastic, eigvals_only=True)[-1])
@@ -106,14 +106,14 @@ def holds(part: Superelement, axis: NDArray | None) -> list[Held]:
     moved, rotated = rows_of(body)
     points = _in_space(body.coordinates)
     of_frame = _frame_rotation(part)
-    found = []
+    holders = []
     for k, node in enumerate(body.position_nodes):
         free = null_space(np.vstack([moved[k], of_frame]))
         turns = [np.zeros((3, len(body.mass)))]
         if node in body.rotation_nodes and _principal(body, node, axis):
             turns.append(rotated[body.rotation_nodes.index(node)])
-        found += [Held(points[node], turn, free) for turn in turns]
-    return found
+        holders += [Held(points[node], turn, free) for turn in turns]
+    return holders
 
 
 def _frame_rotation(part: Superelement) -> NDArray:
@@ -179,13 +179,13 @@ def reach(part: Superelement, axis: NDArray) -> float:
 
     With an exact kinetic energy a body that spins about its own line misses no stiffening.
     """
-    body, found = part.reduced, 0.0
+    body, share = part.reduced, 0.0
     if body.planar or not INERTIA_OPTIONS[part.inertia].field:
         return 1.0
     for node in body.position_nodes:
         J = _moments(body, node)
-        found = max(found, axis @ J @ axis / np.linalg.norm(J, 2))
-    return float(np.sqrt(found))
+        share = max(share, axis @ J @ axis / np.linalg.norm(J, 2))
+    return float(np.sqrt(share))
 
 
 def rows_of(body: ReducedBody) -> tuple[NDArray, NDArray]:
@@ -266,9 +266,9 @@ def _of_field(part: Superelement, axis: NDArray, held: Held) -> NDArray:
     """Option C: of the moment of inertia ``n' . J(z) n'``, and of the stress by the spin."""
     body, d = part.reduced, part.reduced.coordinates.shape[1]
     i, n = part.invariants.about(held.pivot[:d]), len(body.mass)
-    own = axis[2:] if body.planar else axis
-    h = np.einsum("k,l,kln->n", own, own, i.h)
-    D = np.einsum("k,l,klmn->mn", own, own, i.J2[..., :n, :n], optimize=True)
+    direction = axis[2:] if body.planar else axis
+    h = np.einsum("k,l,kln->n", direction, direction, i.h)
+    D = np.einsum("k,l,klmn->mn", direction, direction, i.J2[..., :n, :n], optimize=True)
     D = D + np.tensordot(h[n:], i.Q, 1)
     if i.resultants:
         pulled = held.free @ np.linalg.solve(held.free.T @ body.stiffness @ held.free,

@@ -13,4 +13,5 @@ FLAT = 1e-3         # smallest ratio of the spreads of nodes that define a frame
 CUT = 0.3           # rejected steps per accepted step: most of the time goes into rejected ones
 PERIOD = 6.0        # steps a period: periods are off by (2 pi / 6)^2 / 12, a tenth
 GROWN = 0.01        # energy that nothing gives, of the largest: speeds grow by half of it
+WAVERS = 1e-3       # the same above its start, of the largest strain energy
 EXCITED = 1e-3      # share of the largest kinetic energy: amplitudes of a thirtieth

@@ -79,16 +79,16 @@ class Watch:
             self._limits = limits_of(model.bodies.values())
         most = min(max(FEWEST, STATES // max(len(model.bodies), 1)), MOST)
         rows = rows[::-(-len(rows) // most)]
-        found: list[Finding] = []
+        findings: list[Finding] = []
         for group in self._groups:
             motion, _ = evaluated(group, rows, record_counts(numbering))
             parts = MOTION.slices(group.counts)
             y, spins = motion[:, :, parts["y"]], motion[:, :, parts["spin"]]
             local = local_rotations(y, group.counts).max(axis=0)
             for k, name in enumerate(group.bodies):
-                found += exceeded(model.bodies[name], self._limits[name], y[:, k], spins[:, k],
-                                  local[k], self._said)
-        self.say_of_bodies(found)
+                findings += exceeded(model.bodies[name], self._limits[name], y[:, k], spins[:, k],
+                                     local[k], self._said)
+        self.say_of_bodies(findings)
 
     def judge(self, run: Recording) -> tuple[str, ...]:
         """All warnings of a run up to now, with those of its energies and steps.

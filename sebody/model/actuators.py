@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.model.inputs import chosen_name, dof_block, known, rotation_vector, vector
+from sebody.model.arguments import chosen_name, dof_block, known, rotation_vector, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import pair
 from sebody.model.parts import Attachment, Element, Joint, Node, positions, rotations
@@ -117,22 +117,22 @@ def _of_joint(model: Mechanism, where: str, joint: str | Joint, what: str | None
     names = {one.name: one for one in model.joints}
     if isinstance(joint, str) and joint not in names:
         raise unknown("joint", joint, names, "the model has", "the model has none")
-    own = names[joint] if isinstance(joint, str) else inputs.instance(
+    pair = names[joint] if isinstance(joint, str) else inputs.instance(
         joint, f"{where}: joint", Joint, "give a joint or its name")
-    kinds = ["torque"] * (own.kind in TURNS) + ["force"] * (own.kind in SLIDES)
+    kinds = ["torque"] * (pair.kind in TURNS) + ["force"] * (pair.kind in SLIDES)
     if not kinds:
-        raise InputError(f"{where}: {own.name!r} is a {own.kind}, in which nothing moves along or "
-                         f"about one axis: {WAYS}")
+        raise InputError(f"{where}: {pair.name!r} is a {pair.kind}, in which nothing moves along "
+                         f"or about one axis: {WAYS}")
     if what is None and len(kinds) > 1:
-        raise InputError(f"{where}: {own.name!r} slides and turns: give what='force' or 'torque'")
+        raise InputError(f"{where}: {pair.name!r} slides and turns: give what='force' or 'torque'")
     chosen = inputs.choice(what or kinds[0], f"{where}: what", kinds)
     axis: dict[str, float | NDArray] = (
-        {} if model.planar and chosen == "torque" else {"e": own.axis})
+        {} if model.planar and chosen == "torque" else {"e": pair.axis})
     if chosen == "torque":
-        return "turn", 1.0, rotations(own.node, own.to), axis
+        return "turn", 1.0, rotations(pair.node, pair.to), axis
     # the way is that of the other node in the axes of the carrier
-    carrier = own.own_axes.carrier
-    other, sign = (own.to, -1.0) if carrier is own.node else (own.node, 1.0)
+    carrier = pair.own_axes.carrier
+    other, sign = (pair.to, -1.0) if carrier is pair.node else (pair.node, 1.0)
     return "slide", sign, positions(carrier, other) + rotations(carrier), axis
 
 

@@ -4,7 +4,7 @@ Friction reads the force in a joint as multipliers. A joint of a shared position
 """
 
 from sebody.errors import InputError
-from sebody.model.inputs import dof_block
+from sebody.model.arguments import dof_block
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, DofBlock, Element, Joint, Node, positions
 
@@ -57,17 +57,17 @@ def take_apart(model: Mechanism, joint: Joint) -> None:
 def _side(model: Mechanism, start: Node, end: Node, connections: list[Connection]
           ) -> list[Node] | None:
     """Nodes that share the position of `start` without the joint; None if `end` does."""
-    found, left = {start: start}, [start]
+    reached, left = {start: start}, [start]
     while left:
         one = left.pop()
         for c in connections:
             if c.to is None or one not in (c.node, c.to):
                 continue
             other = c.to if one is c.node else c.node
-            if other not in found and other.position is start.position:
-                found[other] = other
+            if other not in reached and other.position is start.position:
+                reached[other] = other
                 left.append(other)
-    return None if end in found else list(found.values())
+    return None if end in reached else list(reached.values())
 
 
 def _linked(side: list[Node], connections: list[Connection]) -> bool:

@@ -67,10 +67,10 @@ def retardation_times(damping: Damping, name: str, planar: bool, length: float,
     try:
         hash(arguments)
     except TypeError:       # a section of arrays
-        found = _frequencies.__wrapped__(*arguments)
+        times = _frequencies.__wrapped__(*arguments)
     else:
-        found = _frequencies(*arguments)
-    return tuple(2.0 * ratio / omega if omega else 0.0 for omega in found)
+        times = _frequencies(*arguments)
+    return tuple(2.0 * ratio / omega if omega else 0.0 for omega in times)
 
 
 def damped(body: ReducedBody, times: Times) -> ReducedBody:
@@ -99,8 +99,8 @@ def damped(body: ReducedBody, times: Times) -> ReducedBody:
     for k in range(bound, bound + body.modes):
         shares = np.array([_share(body, axes, body.mass[:bound, k]) for axes in kinds])
         D[k, k] = np.sqrt(shares @ np.array(times) / max(shares.sum(), 1e-300))
-    found = D @ body.stiffness @ D
-    return replace(body, damping=(found + found.T) / 2)
+    matrix = D @ body.stiffness @ D
+    return replace(body, damping=(matrix + matrix.T) / 2)
 
 
 def _share(body: ReducedBody, axes: dict[str, NDArray], momenta: NDArray) -> float:
@@ -145,17 +145,17 @@ def _frequency(K: NDArray, M: NDArray, axes: dict[str, NDArray], held: str, numb
     columns = [np.linalg.svd(axes[kind])[0][:, :round(np.trace(axes[kind]))]
                for kind in ("position", "rotation")]
     d, turns = len(axes["position"]), len(axes["rotation"])
-    own = columns[0].shape[1] + columns[1].shape[1]
-    one = np.zeros((d + turns, own))
+    size = columns[0].shape[1] + columns[1].shape[1]
+    one = np.zeros((d + turns, size))
     one[:d, :columns[0].shape[1]], one[d:, columns[0].shape[1]:] = columns
     nodes = len(K) // (d + turns)
     basis = np.kron(np.eye(nodes), one)
-    fixed = {"free": [], "clamped": range(own),
-             "hinged": [0, (nodes - 1) * own]}[held]    # tension and torsion have one coordinate
+    fixed = {"free": [], "clamped": range(size),
+             "hinged": [0, (nodes - 1) * size]}[held]    # tension and torsion have one coordinate
     basis = np.delete(basis, list(fixed), axis=1)
     mass = basis.T @ M @ basis
     if not np.any(mass):
         return 0.0
-    rigid = own if held == "free" else 0      # a shift, and of bending a turn
+    rigid = size if held == "free" else 0      # a shift, and of bending a turn
     squares = eigh(basis.T @ K @ basis, mass, eigvals_only=True)
     return float(np.sqrt(squares[rigid + number - 1]))

@@ -16,9 +16,9 @@ from sebody.errors import InputError
 from sebody.fem import planar_beam, straight_beam
 from sebody.fem.beam import section_axes
 from sebody.fem.section import AnySection, part_of
+from sebody.model.arguments import known
 from sebody.model.beam_damping import Damping, Times, damped, retardation_times
 from sebody.model.bodies import superelement
-from sebody.model.inputs import known
 from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import node
 from sebody.model.parts import Beam, Node

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
-from sebody.contract.layout import layout_name
+from sebody.contract.counts import layout_name
 from sebody.errors import InputError
 from sebody.io.body_file import load_body
 from sebody.kernels.loader import superelement_kernel_name
+from sebody.model.arguments import dof_block, known, refuse_taken, vector
 from sebody.model.frames import check_frame, default_frame, frame_weights, known_frame
 from sebody.model.inertias import chosen_inertia, known_inertia, needs_damped_kernel
-from sebody.model.inputs import dof_block, known, refuse_taken, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement, positions, rotations
 from sebody.reduction import ReducedBody

@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.model.arguments import chosen_name, direction, dof_block, known, vector
 from sebody.model.frictions import checked_friction, turning
 from sebody.model.impacts import damping_of
-from sebody.model.inputs import chosen_name, direction, dof_block, known, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import ground
 from sebody.model.parts import Element, Joint, Node, positions, rotations
@@ -192,10 +192,10 @@ def _impact(what: str, restitution: float, at_speed: float, stiffness: float | N
 
 
 def _joint(model: Mechanism, joint: object, what: str) -> Joint:
-    found = model.element(joint) if isinstance(joint, str) else joint
-    if not isinstance(found, Joint) or found not in model.joints:
+    element = model.element(joint) if isinstance(joint, str) else joint
+    if not isinstance(element, Joint) or element not in model.joints:
         raise inputs.refusal(what, joint, "give a joint of the model or its name")
-    return found
+    return element
 
 
 def _measured(model: Mechanism, of: object) -> tuple[str, str, tuple, dict, float]:

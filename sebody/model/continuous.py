@@ -10,8 +10,8 @@ import numpy as np
 from sebody.compiler.user_functions import UserFunction
 from sebody.errors import InputError
 from sebody.model.actuators import SLIDES, TURNS
+from sebody.model.arguments import chosen_name
 from sebody.model.control_parts import Controller
-from sebody.model.inputs import chosen_name
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Attachment, DofBlock, Element, LawParts, Node
 from sebody.model.parts import positions as at_positions

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from sebody import inputs as given
 from sebody.control.law import Law
 from sebody.errors import InputError
+from sebody.model.arguments import dof_block, known
 from sebody.model.continuous import law_element
 from sebody.model.control_parts import Controller, Sensor
 from sebody.model.functions import (
@@ -20,7 +21,6 @@ from sebody.model.functions import (
     compiled_derivatives,
     compiled_law,
 )
-from sebody.model.inputs import dof_block, known
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Node
 from sebody.spelling import offered
@@ -228,11 +228,11 @@ def order(model: Mechanism) -> list[Controller]:
     """
     of = {signal: one for one in sampled(model) if not one.delay
           for signal in one.outputs}
-    found: list[Controller] = []
+    ordered: list[Controller] = []
     path: list[Controller] = []
 
     def visit(one: Controller) -> None:
-        if one in found:
+        if one in ordered:
             return
         if one in path:
             names = [p.name for p in path[path.index(one):]] + [one.name]
@@ -243,10 +243,10 @@ def order(model: Mechanism) -> list[Controller]:
             if signal in of and not _is_actuator(model, signal):
                 visit(of[signal])
         path.pop()
-        found.append(one)
+        ordered.append(one)
     for one in sampled(model):
         visit(one)
-    return found
+    return ordered
 
 
 def signals(model: Mechanism) -> list[str]:
@@ -299,10 +299,10 @@ def _check_new(model: Mechanism, name: str, where: str) -> None:
 
 
 def _names(wanted: Iterable[str], what: str, least: int) -> tuple[str, ...]:
-    found = [wanted] if isinstance(wanted, str) else given.items(wanted, what,
+    names = [wanted] if isinstance(wanted, str) else given.items(wanted, what,
                                                                 "give a list of names")
-    for one in found:
+    for one in names:
         given.name(one, what)
-    if len(found) < least or len(set(found)) < len(found):
-        raise given.refusal(what, wanted, "name each once" if found else "name at least one")
-    return tuple(found)
+    if len(names) < least or len(set(names)) < len(names):
+        raise given.refusal(what, wanted, "name each once" if names else "name at least one")
+    return tuple(names)

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from sebody.errors import InputError
 from sebody.model import motions
-from sebody.model.inputs import (
+from sebody.model.arguments import (
     along,
     chosen_name,
     dof_block,

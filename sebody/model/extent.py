@@ -18,22 +18,22 @@ def extent(model: Mechanism) -> float:
     model is put, and which way it is turned, does not matter.
     """
     points = [node.point for node in (*model.nodes.values(), *model.grounds)]
-    found = [_diameter(np.array(points)) if points else 0.0]
-    found += [_size(reduced) for reduced in
-              {body.reduced: body.reduced for body in model.bodies.values()}.values()]
+    lengths = [_diameter(np.array(points)) if points else 0.0]
+    lengths += [_size(reduced) for reduced in
+                {body.reduced: body.reduced for body in model.bodies.values()}.values()]
     for body in model.rigid_bodies.values():
         moments = [body.number(name) for name in MOMENTS if name in body.constants]
-        found.append(float(np.sqrt(max(moments, default=0.0) / body.number("mass"))))
-    found += [element.number(name) for element in (*model.loads, *model.constraints)
-              for name in LENGTHS if name in element.constants]
-    return max(found)
+        lengths.append(float(np.sqrt(max(moments, default=0.0) / body.number("mass"))))
+    lengths += [element.number(name) for element in (*model.loads, *model.constraints)
+                for name in LENGTHS if name in element.constants]
+    return max(lengths)
 
 
 def _size(body: ReducedBody) -> float:
     """Distance of the outermost nodes; of a body on one node its radius of gyration."""
-    found = _diameter(body.coordinates)
-    if found > 0.0:
-        return found
+    size = _diameter(body.coordinates)
+    if size > 0.0:
+        return size
     turns = body.rigid_modes_about(body.centre_of_mass)[:, body.coordinates.shape[1]:]
     return float(np.sqrt(max((turns.T @ body.mass @ turns).diagonal().max(), 0.0)
                          / body.total_mass))

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody import inputs
-from sebody.contract.layout import FrameTraits
+from sebody.contract.traits import FrameTraits
 from sebody.errors import InputError
 from sebody.generated import options
 from sebody.reduction import ReducedBody, body_weights

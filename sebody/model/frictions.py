@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.model.apart import has_forces, take_apart
-from sebody.model.inputs import chosen_name
+from sebody.model.arguments import chosen_name
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Attachment, Axes, Element, Joint, positions, rotations
 
@@ -143,10 +143,10 @@ def checked_friction(what: str, coefficient: float, static: float | None, bristl
 
 
 def _joint(model: Mechanism, joint: Joint | str) -> Joint:
-    found = model.element(joint) if isinstance(joint, str) else joint
-    if not isinstance(found, Joint) or found not in model.joints:
+    element = model.element(joint) if isinstance(joint, str) else joint
+    if not isinstance(element, Joint) or element not in model.joints:
         raise inputs.refusal("joint", joint, "give a joint of the model or its name")
-    return found
+    return element
 
 
 def _sliding(joint: Joint) -> bool:

@@ -62,11 +62,11 @@ def rows_of(times: Sequence[float], pieces: Sequence[Sequence[float]]) -> NDArra
     """The table that `linear` makes these pieces of, (n, 2); None of another time function."""
     if any(any(piece[2:]) for piece in pieces) or any(pieces[-1][1:]):
         return None
-    found = [(times[0], pieces[0][0])]
+    rows = [(times[0], pieces[0][0])]
     for k in range(1, len(times)):
         value, slope = (*pieces[k - 1], 0.0)[:2]
         before = value + slope * (times[k] - times[k - 1])
         if abs(before - pieces[k][0]) > 1e-12 * max(abs(before), abs(pieces[k][0]), abs(value)):
-            found.append((times[k], before))
-        found.append((times[k], pieces[k][0]))
-    return np.array(found)
+            rows.append((times[k], before))
+        rows.append((times[k], pieces[k][0]))
+    return np.array(rows)

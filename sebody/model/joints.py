@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.model.inputs import along, axes, chosen_name, dof_block, known, turning_axes
+from sebody.model.arguments import along, axes, chosen_name, dof_block, known, turning_axes
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import NEAR, check_together, pair
 from sebody.model.parts import (

@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike
 from sebody import inputs
 from sebody.contract.names import body_load_kind
 from sebody.errors import InputError
+from sebody.model.arguments import chosen_name, dof_block, known, rotation_vector, vector
 from sebody.model.frames import FRAMES
 from sebody.model.functions import compiled_force
-from sebody.model.inputs import chosen_name, dof_block, known, rotation_vector, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement, positions, rotations
 from sebody.model.time_functions import TimeFunction, clock, time_function

@@ -106,11 +106,11 @@ class Mechanism:
         InputError
             Nothing, or more than one thing, has this name.
         """
-        found = [e for e in self.elements() if e.name == name]
-        if len(found) == 1:
-            return found[0]
-        if found:
-            raise InputError(f"{len(found)} elements are called {name!r}: build them with name= to "
+        named = [e for e in self.elements() if e.name == name]
+        if len(named) == 1:
+            return named[0]
+        if named:
+            raise InputError(f"{len(named)} elements are called {name!r}: build them with name= to "
                              "tell them apart")
         raise unknown("element", name, (e.name for e in self.elements()), "the model has",
                       "the model has none")

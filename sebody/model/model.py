@@ -22,7 +22,7 @@ from sebody.model import (
 )
 from sebody.model.atomic import atomic
 from sebody.model.mechanism import Mechanism
-from sebody.model.tables import described, model_tables, summary
+from sebody.model.summary import described, model_tables, summary
 
 
 class Model(Mechanism):

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.model.inputs import dof_block, known, rotation_vector, vector
+from sebody.model.arguments import dof_block, known, rotation_vector, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, DofBlock, Node
 from sebody.spelling import unknown
@@ -142,9 +142,9 @@ def rigid_velocity(model: Mechanism, linear: ArrayLike, angular: ArrayLike,
         arm = node.point - centre
         spin = (angular[0] * np.array([-arm[1], arm[0]]) if model.planar
                 else np.cross(angular, arm))
-        for own, rate in ((node.position, linear + spin), (node.rotation, angular)):
-            if own is not None and (own.solved or not whole):
-                own.rate, own.given = rate.copy(), own.given or not whole
+        for block, rate in ((node.position, linear + spin), (node.rotation, angular)):
+            if block is not None and (block.solved or not whole):
+                block.rate, block.given = rate.copy(), block.given or not whole
 
 
 def _moved(model: Mechanism, body: str | None,

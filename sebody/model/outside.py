@@ -58,11 +58,11 @@ class Code(NamedTuple):
 
 def values_read(function: Callable) -> dict[str, object]:
     """What a function computes with: its code, and copies of what it and its helpers read."""
-    found: dict[str, object] = {"its code": Code.of(function.__code__)}
+    read: dict[str, object] = {"its code": Code.of(function.__code__)}
     for one in _reads(function):
-        found[one.said] = (Code.of(one.value.__code__) if is_helper(one.value) else
-                           _copy(one.value))
-    return found
+        read[one.said] = (Code.of(one.value.__code__) if is_helper(one.value) else
+                          _copy(one.value))
+    return read
 
 
 def changed(before: Mapping[str, object], function: Callable) -> str:
@@ -174,15 +174,15 @@ def _lookups(code: CodeType, own: frozenset[str] = frozenset()) -> tuple[tuple[s
     """Names from outside that code looks up, each with the attributes that it reads of it."""
     own = own | set(code.co_cellvars)
     steps = [one for one in dis.get_instructions(code) if one.opname != "EXTENDED_ARG"]
-    found = []
+    lookups = []
     for k, step in enumerate(steps):
         if step.opname in LOOKUPS and not (step.opname == "LOAD_DEREF" and step.argval in own):
             attributes = takewhile(lambda one: one.opname in ATTRIBUTES, steps[k + 1:])
-            found.append((step.argval, *[one.argval for one in attributes]))
+            lookups.append((step.argval, *[one.argval for one in attributes]))
     for inner in code.co_consts:
         if isinstance(inner, CodeType):
-            found += _lookups(inner, own)
-    return tuple(dict.fromkeys(found))
+            lookups += _lookups(inner, own)
+    return tuple(dict.fromkeys(lookups))
 
 
 def _copy(value: object) -> object:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from sebody.errors import InputError
-from sebody.model.inputs import dof_block, known
+from sebody.model.arguments import dof_block, known
 from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import ground
 from sebody.model.parts import Node

@@ -130,8 +130,8 @@ class Superelement:
     @property
     def invariants(self) -> InertiaInvariants | None:
         """The constants of its exact inertia, without those of stiffening where it has none."""
-        found = self.reduced.invariants
-        return found if found is None or self.stiffening else found.unstiffened
+        constants = self.reduced.invariants
+        return constants if constants is None or self.stiffening else constants.unstiffened
 
     @property
     def positions(self) -> list[DofBlock]:

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.model.inputs import chosen_name, known, turning_axes
+from sebody.model.arguments import chosen_name, known, turning_axes
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import check_together, pair
 from sebody.model.parts import Attachment, Element, Node, positions, rotations

@@ -30,11 +30,11 @@ def untied(model: Mechanism) -> list[list[str]]:
     links = coo_array((np.ones(len(rows)), (rows, columns)), shape=(len(places), len(places)))
     groups = connected_components(links, directed=False)[1]
     grounded = {groups[places[key]] for key in held if key in places}
-    found: dict[int, list[str]] = {}
+    bodies_by_group: dict[int, list[str]] = {}
     for name, body in bodies.items():
         if (group := groups[places[_tied(body)[0]]]) not in grounded:
-            found.setdefault(group, []).append(name)
-    return list(found.values())
+            bodies_by_group.setdefault(group, []).append(name)
+    return list(bodies_by_group.values())
 
 
 def _tied(element: Superelement | Element) -> list[DofBlock]:

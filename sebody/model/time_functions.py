@@ -84,28 +84,28 @@ class TimeFunction:
         starts = np.array(self.times)
         row = np.maximum(np.searchsorted(starts, times, side="right") - 1, 0)
         x = np.maximum(times - starts[row], 0.0)
-        found = (self.polynomials()[row] * x[:, None]**np.arange(COEFFICIENTS)).sum(axis=1)
+        totals = (self.polynomials()[row] * x[:, None]**np.arange(COEFFICIENTS)).sum(axis=1)
         if self.waves:
             A, w, p = np.array(self.waves)[row].T
-            found += A * np.sin(w * x + p)
-        return found
+            totals += A * np.sin(w * x + p)
+        return totals
 
     def polynomials(self) -> NDArray:
         """Coefficients of all pieces, (pieces, COEFFICIENTS)."""
-        found = np.zeros((len(self.pieces), COEFFICIENTS))
-        for row, coefficients in zip(found, self.pieces, strict=True):
+        rows = np.zeros((len(self.pieces), COEFFICIENTS))
+        for row, coefficients in zip(rows, self.pieces, strict=True):
             row[:len(coefficients)] = coefficients
-        return found
+        return rows
 
     def of_piece(self, k: int, t: float) -> NDArray:
         """Value and two rates of a piece, also outside its interval."""
         x = t - self.times[k]
-        found = _with_rates(self.pieces[k], x)
+        values = _with_rates(self.pieces[k], x)
         if self.waves:
             A, w, p = self.waves[k]
             s, c = sin(w * x + p), cos(w * x + p)
-            found += A * np.array([s, w * c, -w * w * s])
-        return found
+            values += A * np.array([s, w * c, -w * w * s])
+        return values
 
     def described(self) -> str:
         """What it is, in a few words."""
@@ -122,18 +122,18 @@ class TimeFunction:
 
     def _summands(self, k: int, t: float) -> NDArray:
         """Sums of the sizes of what is added up in `of_piece`: they may cancel but for rounding."""
-        found = _with_rates([abs(c) for c in self.pieces[k]], abs(t - self.times[k]))
+        sums = _with_rates([abs(c) for c in self.pieces[k]], abs(t - self.times[k]))
         if self.waves:
             A, w, _ = self.waves[k]
-            found += abs(A) * np.array([1.0, abs(w), w * w])
-        return found
+            sums += abs(A) * np.array([1.0, abs(w), w * w])
+        return sums
 
     def jumps(self) -> list[tuple[float, NDArray, NDArray]]:
         """Times after the start at which value or rates jump, with what they are on both sides.
 
         What does not jump but for rounding is the same on both sides.
         """
-        found = []
+        times = []
         for k, t in enumerate(self.times):
             if t <= 0.0:
                 continue
@@ -142,8 +142,8 @@ class TimeFunction:
             size = np.maximum(np.abs(after), self._summands(k - 1, t) if k else 0.0)
             jump = np.abs(after - before) > SMALL * size
             if jump.any():
-                found.append((t, np.where(jump, before, after), after))
-        return found
+                times.append((t, np.where(jump, before, after), after))
+        return times
 
     def abrupt(self, rate: int) -> list[float]:
         """Times after the start at which the value jumps (0), or its first or second rate (2)."""

@@ -28,13 +28,13 @@ def arrows(result: Result, states: NDArray, nodes: set[str], bodies: set[str]) -
 
     Those that vanish at all times are left out.
     """
-    found = []
+    drawn = []
     for load in result.model.loads:
         if load.kind.endswith(("force", "torque")):
-            found += _on_nodes(result, load, states, nodes)
+            drawn += _on_nodes(result, load, states, nodes)
         elif load.body is not None and load.body.name in bodies:
-            found.append(_resultant(result, load, states))
-    return [arrow for arrow in found if np.any(arrow.values)]
+            drawn.append(_resultant(result, load, states))
+    return [arrow for arrow in drawn if np.any(arrow.values)]
 
 
 def _on_nodes(result: Result, load: Element, states: NDArray, nodes: set[str]) -> list[Arrow]:

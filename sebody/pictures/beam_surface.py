@@ -79,16 +79,16 @@ def _cap(outline: NDArray) -> NDArray:
     """Triangles (n, 3) of the corners of a flat polygon that need not be convex, by its ears."""
     left = [k for k in range(len(outline)) if np.any(outline[k] != outline[k - 1])]
     normal = sum(np.cross(outline[left[k - 1]], outline[left[k]]) for k in range(len(left)))
-    found = []
+    triangles = []
     while len(left) > 3:
         for k in range(len(left)):
             a, b, c = left[k - 1], left[k], left[(k + 1) % len(left)]
             others = [outline[j] for j in left if j not in (a, b, c)]
             if _is_ear(*outline[[a, b, c]], others, normal):
                 break
-        found.append((a, b, c))
+        triangles.append((a, b, c))
         left.remove(b)
-    return np.array([*found, left])
+    return np.array([*triangles, left])
 
 
 def _is_ear(a: NDArray, b: NDArray, c: NDArray, others: list[NDArray], normal: NDArray) -> bool:

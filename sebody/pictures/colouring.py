@@ -29,16 +29,16 @@ class Colouring(NamedTuple):
 
 def colourings(bodies: list[DrawnBody], units: Units | None) -> list[Colouring]:
     """The quantities of which some body has values, with their units, in words without units."""
-    found = []
+    seen = []
     for name, title in TITLES.items():
         peaks = [(*_peak(body, name), k) for k, body in enumerate(bodies)]
         value, frame, station, body = max(peaks, default=(0.0, 0, 0, 0))
         rounding = 0.0 if name == "von_mises" or not bodies else ROUNDING * max(
             np.ptp(one.surface.points, axis=0).max() for one in bodies)
         if value > rounding:
-            found.append(Colouring(name, title, unit(f"body.{name}", units), value, frame, body,
-                                   station))
-    return found
+            seen.append(Colouring(name, title, unit(f"body.{name}", units), value, frame, body,
+                                  station))
+    return seen
 
 
 def values_of(body: DrawnBody, name: str, frame: int) -> NDArray | None:
@@ -60,9 +60,9 @@ def _peak(body: DrawnBody, name: str) -> tuple[float, int, int]:
             return 0.0, 0, 0
         row, station = np.unravel_index(body.stress.argmax(), body.stress.shape)
         return float(body.stress[row, station]), int(row) * body.stride, int(station)
-    found = 0.0, 0, 0
+    largest = 0.0, 0, 0
     if body.rigid:
-        return found
+        return largest
     count, stations = body.amplitudes.shape[1], len(body.surface.points)
     frames = np.arange(len(body.amplitudes))
     frames = frames[::-(-len(frames) * stations * count // MOST) or 1]
@@ -71,8 +71,8 @@ def _peak(body: DrawnBody, name: str) -> tuple[float, int, int]:
         some = frames[first:first + at_once]
         lengths = np.linalg.norm(_moved(body, some), axis=2)
         row, station = np.unravel_index(lengths.argmax(), lengths.shape)
-        found = max(found, (float(lengths[row, station]), int(some[row]), int(station)))
-    return found
+        largest = max(largest, (float(lengths[row, station]), int(some[row]), int(station)))
+    return largest
 
 
 def _moved(body: DrawnBody, frames: NDArray | list[int]) -> NDArray:

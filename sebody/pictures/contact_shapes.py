@@ -115,8 +115,8 @@ def _between_rows(rows: int, inside: bool) -> NDArray:
     one, next_one = _loop(AROUND).T
     row = np.concatenate([np.column_stack([one, next_one, AROUND + one]),
                           np.column_stack([next_one, AROUND + next_one, AROUND + one])])
-    found = np.concatenate([k * AROUND + row for k in range(rows)])
-    return found[:, ::-1] if inside else found
+    triangles = np.concatenate([k * AROUND + row for k in range(rows)])
+    return triangles[:, ::-1] if inside else triangles
 
 
 def _both_sides(triangles: NDArray) -> NDArray:

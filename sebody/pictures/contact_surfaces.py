@@ -43,11 +43,11 @@ class ContactSurface(NamedTuple):
 
 def contact_lines(model: Mechanism, nodes: Mapping[str, DrawnNode], size: float) -> NDArray:
     """The lines of all contact surfaces in the first frame, (points, 3), with NaN between them."""
-    found = [np.zeros((0, 3))]
+    lines = [np.zeros((0, 3))]
     for one in contact_surfaces(model, nodes, size):
         ends = vertices_of(one, nodes, 0)[one.shape.lines]
-        found.append(np.concatenate([ends, np.full_like(ends[:, :1], np.nan)], 1).reshape(-1, 3))
-    return np.concatenate(found)
+        lines.append(np.concatenate([ends, np.full_like(ends[:, :1], np.nan)], 1).reshape(-1, 3))
+    return np.concatenate(lines)
 
 
 def contact_surfaces(model: Mechanism, nodes: Mapping[str, DrawnNode], size: float
@@ -56,7 +56,7 @@ def contact_surfaces(model: Mechanism, nodes: Mapping[str, DrawnNode], size: flo
 
     Contacts with the same plane share a patch, and those of the same ball this ball.
     """
-    found: list[ContactSurface] = []
+    surfaces: list[ContactSurface] = []
     planes: dict[tuple, list[tuple[Element, NDArray]]] = {}
     balls: dict[tuple[str, float], str] = {}
     for one in model.loads:
@@ -66,17 +66,17 @@ def contact_surfaces(model: Mechanism, nodes: Mapping[str, DrawnNode], size: flo
                 for held in one.attachments):
             continue
         if kind in LIMITS:
-            found += LIMITS[kind](model, one, size)
+            surfaces += LIMITS[kind](model, one, size)
             continue
         path = _path(model, one, nodes)
         if surface == "plane":
             planes.setdefault(_same_plane(model, one, size), []).append((one, path))
         else:
-            found.append(_round(model, one, surface, path, size))
+            surfaces.append(_round(model, one, surface, path, size))
         if one.number("radius") > 0:
             balls.setdefault((one.attachments[0].node.name, one.number("radius")), one.name)
     make = disc if model.planar else ball
-    return [*(_plane(model, touching, size) for touching in planes.values()), *found,
+    return [*(_plane(model, touching, size) for touching in planes.values()), *surfaces,
             *(ContactSurface(name, "ball", node, make(radius))
               for (node, radius), name in balls.items())]
 

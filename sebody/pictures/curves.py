@@ -59,15 +59,15 @@ def panels(results: Mapping[str, Result], words: Sequence[str], spectrum: bool =
         if len(result.t) < 2:
             raise InputError(f"{label} holds the state at t = {result.t[0]:g} alone, which makes "
                              "no curve: run the model to a later time")
-    found: list[Panel] = []
+    drawn: list[Panel] = []
     for word in words:
         inputs.name(word, "name of a quantity")
         first = next(iter(results.values()))
         pair = _pair(first, word)
         if pair and spectrum:
             raise InputError(f"{word} is a phase plot, which has no spectrum: name one quantity")
-        found += _phase(results, word, *pair) if pair else _histories(results, word)
-    return [_spectrum(panel, _units(results)) for panel in found] if spectrum else found
+        drawn += _phase(results, word, *pair) if pair else _histories(results, word)
+    return [_spectrum(panel, _units(results)) for panel in drawn] if spectrum else drawn
 
 
 def _pair(result: Result, word: str) -> tuple[str, str] | None:
@@ -93,16 +93,16 @@ def _phase(results: Mapping[str, Result], word: str, across: str, up: str) -> li
 
 def _one(results: Mapping[str, Result], label: str, word: str, side: str) -> NDArray:
     """The numbers of one side of a phase plot."""
-    found = _values_of(results, label, side)
-    if len(found.labels) > 1:
-        raise InputError(f"{word}: {side} has the components {', '.join(found.labels)}: a phase "
-                         f"plot takes one of them, such as {side}.{found.labels[0]}")
-    return found.numbers[:, 0]
+    values = _values_of(results, label, side)
+    if len(values.labels) > 1:
+        raise InputError(f"{word}: {side} has the components {', '.join(values.labels)}: a phase "
+                         f"plot takes one of them, such as {side}.{values.labels[0]}")
+    return values.numbers[:, 0]
 
 
 def _histories(results: Mapping[str, Result], word: str) -> list[Panel]:
-    found = {label: _values_of(results, label, word) for label in results}
-    first = next(iter(found.values()))
+    histories = {label: _values_of(results, label, word) for label in results}
+    first = next(iter(histories.values()))
     if len(results) == 1:
         t = next(iter(results.values())).t
         curves = [Curve(label, t, column)
@@ -112,7 +112,7 @@ def _histories(results: Mapping[str, Result], word: str) -> list[Panel]:
     for component in first.labels:
         name = f"{first.name}.{component}".rstrip(".")
         curves = []
-        for label, one in found.items():
+        for label, one in histories.items():
             if component not in one.labels:
                 raise InputError(f"{label} has no {name}: {one.name} has the components "
                                  f"{', '.join(one.labels)}")
@@ -130,8 +130,8 @@ def _history(name: str, curves: list[Curve], results: Mapping[str, Result]) -> P
 
 def _units(results: Mapping[str, Result]) -> Units | None:
     """The units of results, if all have the same."""
-    found = {result.units for result in results.values()}
-    return found.pop() if len(found) == 1 else None
+    systems = {result.units for result in results.values()}
+    return systems.pop() if len(systems) == 1 else None
 
 
 def _values_of(results: Mapping[str, Result], label: str, word: str) -> Values:

@@ -81,16 +81,16 @@ def overview(result: Result) -> list[str]:
     known = set(names(result))
     moving = _largest(result, "position", known)
     turning = _largest(result, "angular_velocity", known)
-    found = [f"{moving}.position"] if moving else []
-    found += [f"{turning}.angular_velocity"] if turning else []
-    found += ["energy"]
+    quantities = [f"{moving}.position"] if moving else []
+    quantities += [f"{turning}.angular_velocity"] if turning else []
+    quantities += ["energy"]
     for quantity in ("force", "reaction", "modes"):
         joints = [joint.name for joint in result.model.joints]
         owners = {"force": joints, "reaction": result.model.nodes, "modes": result.model.bodies}
         named = [f"{owner}.{quantity}" for owner in owners[quantity]]
         if offered := [name for name in named if name in known]:
-            return [*found, offered[0]]
-    return found
+            return [*quantities, offered[0]]
+    return quantities
 
 
 def _largest(result: Result, quantity: str, known: set[str]) -> str | None:
@@ -162,14 +162,14 @@ def _keep_shape(axes: "Axes", panel: Panel) -> None:
 def _labelled(results: Result | Mapping[str, Result] | Sequence[Result]) -> dict[str, Result]:
     remedy = "give the Result of a run, several by label, or a list of them"
     if isinstance(results, Result):
-        found = {"the result": results}
+        labelled = {"the result": results}
     elif isinstance(results, Mapping):
-        found = {inputs.name(label, "label of a result"): one for label, one in results.items()}
+        labelled = {inputs.name(label, "label of a result"): one for label, one in results.items()}
     else:
-        found = {f"result {k + 1}": one
-                 for k, one in enumerate(inputs.items(results, "results", remedy))}
-    if not found:
+        labelled = {f"result {k + 1}": one
+                    for k, one in enumerate(inputs.items(results, "results", remedy))}
+    if not labelled:
         raise InputError(f"results is empty: {remedy}")
-    for label, one in found.items():
+    for label, one in labelled.items():
         inputs.instance(one, label, Result, remedy)
-    return found
+    return labelled

@@ -89,13 +89,13 @@ def flexible(result: Result, body: Superelement, states: NDArray, size: float, w
     surface = surface._replace(points=surface.points - spatial(held),
                                offsets=larger * surface.offsets)
     reach = np.abs(surface.moves).max(axis=(1, 2)) * np.abs(amplitudes).max(axis=0)
-    kept = reach > max(NEGLIGIBLE * reach.max(initial=0.0), ROUNDING * size)
-    surface = surface._replace(moves=surface.moves[kept], turns=surface.turns[kept])
+    seen = reach > max(NEGLIGIBLE * reach.max(initial=0.0), ROUNDING * size)
+    surface = surface._replace(moves=surface.moves[seen], turns=surface.turns[seen])
     node = welded.reference(body, reference)
     still = None if node is None else _still(result, body, motion, node, states)
     start = spatial(body.alpha @ [body.nodes[i].point for i in body.reduced.position_nodes])
     return DrawnBody(body.name, surface, start, spatial(motion.origin),
-                     quaternions(motion.rotation), amplitudes[:, kept], _held(body, start, kept),
+                     quaternions(motion.rotation), amplitudes[:, seen], _held(body, start, seen),
                      node and node.name, still, labels=_labels(recovery, surface))
 
 
@@ -117,13 +117,13 @@ def with_stress(result: Result, body: DrawnBody, states: NDArray) -> DrawnBody:
     stresses = field.stresses(True)
     stride = max(1, -(-len(states) * field.count // STRESSES))
     chosen, surface = states[::stride], body.surface
-    found = np.zeros((len(chosen), len(surface.points)))
+    values = np.zeros((len(chosen), len(surface.points)))
     for first in range(0, len(chosen), stresses.states_at_once):
         some = slice(first, first + stresses.states_at_once)
         nodes = np.nan_to_num(von_mises(stresses.at_nodes(chosen[some])))
         one, other = nodes[:, surface.nodes[:, 0]], nodes[:, surface.nodes[:, 1]]
-        found[some] = one + surface.shares * (other - one)
-    return body._replace(stress=found, stride=stride)
+        values[some] = one + surface.shares * (other - one)
+    return body._replace(stress=values, stride=stride)
 
 
 def rigid(model: Mechanism, body: Element, position: NDArray, rotation: NDArray | None
@@ -160,13 +160,13 @@ def _held(body: Superelement, start: NDArray, kept: NDArray) -> tuple[HeldNode, 
     D, size = (2, 1) if reduced.planar else (3, 3)
     firsts = {i: D * k for k, i in enumerate(reduced.position_nodes)}
     turns = {i: D * len(firsts) + size * k for k, i in enumerate(reduced.rotation_nodes)}
-    found = []
+    nodes = []
     for i, first in firsts.items():
         position = [*number[first:first + D], -1][:3]
         turn = number[turns[i]:turns[i] + size] if i in turns else [-1] * size
-        found.append(HeldNode(body.nodes[i].name, spatial(body.nodes[i].point) - start,
+        nodes.append(HeldNode(body.nodes[i].name, spatial(body.nodes[i].point) - start,
                               tuple(position), tuple([-1, -1, *turn][-3:]), i in turns))
-    return tuple(found)
+    return tuple(nodes)
 
 
 def _labels(recovery: Recovery, surface: Surface) -> NDArray:
@@ -180,12 +180,12 @@ def _labels(recovery: Recovery, surface: Surface) -> NDArray:
 def _still(result: Result, body: Superelement, motion: BodyMotion, node: Node, states: NDArray
            ) -> Undeformed:
     """The undeformed body at a node in space, in a plane too."""
-    found = undeformed(result, body, motion.rotation, motion.origin, node, states)
+    drawn = undeformed(result, body, motion.rotation, motion.origin, node, states)
     if not result.model.planar:
-        return found
+        return drawn
     rotation = np.tile(np.eye(3), (len(states), 1, 1))
-    rotation[:, :2, :2] = found.rotation
-    return Undeformed(rotation, spatial(found.shift))
+    rotation[:, :2, :2] = drawn.rotation
+    return Undeformed(rotation, spatial(drawn.shift))
 
 
 def _along(model: Mechanism, node: Node, centre: NDArray) -> NDArray:

@@ -62,13 +62,13 @@ class Marks:
 
     def links(self, k: int) -> list[tuple[NDArray, str, float]]:
         """Flat polygons of the links in a frame, their colours and depths."""
-        found = []
+        polygons = []
         for number, link in enumerate(self._drawn.links):
             if link.kind != "spring":
                 ends = self._ends(link.ends, k)
                 colour = self._colours.get(number, BODIES[0]) if link.kind == "body" else LINK
-                found.append((ribbon(ends, HALF), colour, float(ends[:, 2].mean())))
-        return found
+                polygons.append((ribbon(ends, HALF), colour, float(ends[:, 2].mean())))
+        return polygons
 
     def _ends(self, names: tuple[str, str], k: int) -> NDArray:
         return self._eye.seen(np.array([self._drawn.nodes[name].position[k] for name in names]))
@@ -94,7 +94,7 @@ class Marks:
 
     def _arrows(self, k: int) -> list[NDArray]:
         """Lines (n, 2) of the loads in a frame."""
-        found, size = [], self._eye.size
+        lines, size = [], self._eye.size
         bodies = {body.name: body for body in self._drawn.bodies}
         for arrow in self._drawn.arrows:
             value = arrow.values[k] / self._largest[arrow.kind]
@@ -107,8 +107,8 @@ class Marks:
                 line = at + np.outer([0.0, 1.0], ARROW * size * value * (0.15 / long + 0.85))
             else:
                 line = at + _turn(value / long) * TURN * size * (0.35 + 0.65 * long)
-            found.append(self._eye.seen(line)[:, :2])
-        return found
+            lines.append(self._eye.seen(line)[:, :2])
+        return lines
 
     def _arrow(self, line: NDArray):
         """A line with a head at its end."""

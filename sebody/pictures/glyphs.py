@@ -34,19 +34,19 @@ class Sign(NamedTuple):
 
 def links(model: Mechanism, nodes: set[str], drawn: set[str]) -> list[Link]:
     """Lines between some `nodes`; `drawn` bodies have a surface."""
-    found = []
+    lines = []
     for body in model.bodies.values():
         if body.name not in drawn:
             held = [body.nodes[i] for i in body.reduced.position_nodes]
-            found += [Link("body", (held[i].name, held[j].name), body.name)
+            lines += [Link("body", (held[i].name, held[j].name), body.name)
                       for i, j in neighbours(np.array([node.point for node in held]))]
-    found += [Link("rod", (c.to.name, c.node.name)) for c in model.connections
+    lines += [Link("rod", (c.to.name, c.node.name)) for c in model.connections
               if c.kind == "position" and c.to and not np.array_equal(c.to.point, c.node.point)]
-    found += [Link("distance", (joint.node.name, joint.to.name)) for joint in model.joints
+    lines += [Link("distance", (joint.node.name, joint.to.name)) for joint in model.joints
               if joint.kind == "distance"]
-    found += [Link("spring", (load.attachments[0].node.name, load.attachments[1].node.name))
+    lines += [Link("spring", (load.attachments[0].node.name, load.attachments[1].node.name))
               for load in model.loads if load.kind in SPRINGS]
-    return [link for link in dict.fromkeys(found) if set(link.ends) <= nodes]
+    return [link for link in dict.fromkeys(lines) if set(link.ends) <= nodes]
 
 
 def signs(model: Mechanism, nodes: set[str]) -> list[Sign]:
@@ -54,20 +54,20 @@ def signs(model: Mechanism, nodes: set[str]) -> list[Sign]:
     def on_ground(node: Node) -> bool:
         return model.nodes.get(node.name) is not node
 
-    found = [Sign(joint.kind, joint.name, (joint.to if on_ground(joint.node) else joint.node).name,
+    drawn = [Sign(joint.kind, joint.name, (joint.to if on_ground(joint.node) else joint.node).name,
                   _columns(joint), joint.axes.carrier.name)
              for joint in model.joints if joint.axes is not None]
-    found += [Sign("ground", f"ground of {joint.name}", node.name, ABOUT_Z, node.name)
+    drawn += [Sign("ground", f"ground of {joint.name}", node.name, ABOUT_Z, node.name)
               for joint in model.joints for node in (joint.node, joint.to) if on_ground(node)
               and joint.kind not in SLIDING]
     for node in model.nodes.values():
         if node.position is not None and node.position.fixed:
             kind = "drive" if node.position.motions else "ground"
-            found.append(Sign(kind, node.name, node.name, ABOUT_Z, node.name))
-    found += [Sign("mass", body.name, body.attachments[0].node.name, ABOUT_Z,
+            drawn.append(Sign(kind, node.name, node.name, ABOUT_Z, node.name))
+    drawn += [Sign("mass", body.name, body.attachments[0].node.name, ABOUT_Z,
                    body.attachments[0].node.name)
               for body in model.rigid_bodies.values() if body.kind.endswith("point_mass")]
-    return [sign for sign in found if {sign.node, sign.carrier} <= nodes]
+    return [sign for sign in drawn if {sign.node, sign.carrier} <= nodes]
 
 
 def _columns(joint: Joint) -> NDArray:
@@ -77,6 +77,6 @@ def _columns(joint: Joint) -> NDArray:
         return columns
     if joint.kind not in SLIDING and not any("slide" in c.kind for c in joint.constraints):
         return ABOUT_Z
-    found = np.eye(3)
-    found[:2, :2] = columns
-    return found
+    axes = np.eye(3)
+    axes[:2, :2] = columns
+    return axes

@@ -60,9 +60,9 @@ def _body(blocks: Blocks, body: DrawnBody, measure: Measure, stress: float,
         "thickness": 0.0 if skin else 2 * float(
             np.median(np.linalg.norm(surface.offsets, axis=1))) / size,
         "rigid": body.rigid, "start": measure.places(body.start).tolist(),
-        "held": [{"node": number[held.name], "point": (held.point / size).tolist(),
-                  "position": held.position, "rotation": held.rotation, "full": held.full}
-                 for held in body.nodes],
+        "held": [{"node": number[node.name], "point": (node.point / size).tolist(),
+                  "position": node.position, "rotation": node.rotation, "full": node.full}
+                 for node in body.nodes],
         "reference": None if body.reference is None else number[body.reference],
         "stress": None if body.stress is None else blocks.values(body.stress / stress, bits=COLOUR),
         "stride": body.stride}
@@ -84,16 +84,16 @@ def nodes(blocks: Blocks, result: Result, drawn: Scenery, measure: Measure) -> l
 def contacts(blocks: Blocks, drawn: Scenery, measure: Measure) -> list[dict]:
     """Contact surfaces; points from the node that carries them, on the ground from the middle."""
     number = {name: k for k, name in enumerate(drawn.nodes)}
-    found = []
+    surfaces = []
     for one in drawn.contacts:
         points = one.shape.points
         points = measure.places(points) if one.node is None else points / measure.size
-        found.append({"name": one.name, "kind": one.kind,
-                      "node": None if one.node is None else number[one.node],
-                      "points": blocks.values(points, SEEN / 10),
-                      "lines": blocks.indices(one.shape.lines),
-                      "triangles": blocks.indices(one.shape.triangles)})
-    return found
+        surfaces.append({"name": one.name, "kind": one.kind,
+                         "node": None if one.node is None else number[one.node],
+                         "points": blocks.values(points, SEEN / 10),
+                         "lines": blocks.indices(one.shape.lines),
+                         "triangles": blocks.indices(one.shape.triangles)})
+    return surfaces
 
 
 def marks(blocks: Blocks, drawn: Scenery) -> dict:

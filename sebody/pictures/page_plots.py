@@ -30,8 +30,8 @@ def plots(blocks: Blocks, result: Result, drawn: Scenery, chosen: Sequence[str])
     InputError
         A chosen quantity there is not.
     """
-    found = [(OVERVIEW, one) for one in _chosen(result, chosen)]
-    columns, most = sum(one.numbers.shape[1] for _, one in found), NUMBERS // FEWEST
+    shown = [(OVERVIEW, one) for one in _chosen(result, chosen)]
+    columns, most = sum(one.numbers.shape[1] for _, one in shown), NUMBERS // FEWEST
     known, left = _names(result), 0
     for at, name in enumerate(known):
         one = values(result, name)
@@ -40,10 +40,10 @@ def plots(blocks: Blocks, result: Result, drawn: Scenery, chosen: Sequence[str])
             break
         if np.isfinite(one.numbers).all():
             columns += one.numbers.shape[1]
-            found.append((_owner(name), one))
+            shown.append((_owner(name), one))
     frames = thinned(len(drawn.t), max(FEWEST, NUMBERS // max(columns, 1)))
     return {"frames": blocks.indices(frames), "left": left,
-            "all": [_plot(blocks, owner, one, drawn, drawn.states[frames]) for owner, one in found]}
+            "all": [_plot(blocks, owner, one, drawn, drawn.states[frames]) for owner, one in shown]}
 
 
 def _chosen(result: Result, words: Sequence[str]) -> Iterator[Values]:

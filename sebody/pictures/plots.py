@@ -189,8 +189,8 @@ def _bodies(result: Result, chosen: list[int]) -> NDArray:
     points = {name: _spatial(result[f"{name}.position"][chosen])
               for name in dict.fromkeys(name for line in lines for name in line)}
     gap = np.full((len(chosen), 3), np.nan)
-    found = [points_of for one, other in lines for points_of in (points[one], points[other], gap)]
-    return np.stack([gap, *found], axis=1)
+    rows = [points_of for one, other in lines for points_of in (points[one], points[other], gap)]
+    return np.stack([gap, *rows], axis=1)
 
 
 def _contacts(result: Result) -> NDArray:

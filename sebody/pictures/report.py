@@ -8,7 +8,7 @@ from pathlib import Path
 
 from sebody import inputs
 from sebody.files import check_target, replacing
-from sebody.model.tables import model_tables, summary, table
+from sebody.model.summary import model_tables, summary, table
 from sebody.pictures.curves import Curve, Panel, panels
 from sebody.pictures.drawing import draw, overview
 from sebody.pictures.page_data import page

@@ -103,12 +103,12 @@ def thinned(count: int, most: int) -> NDArray:
 
 def seen_places(drawn: Scenery) -> NDArray:
     """Places (n, 3) of what moves: nodes, and bodies and balls in some frames."""
-    found = [node.position for node in drawn.nodes.values()]
+    points = [node.position for node in drawn.nodes.values()]
     frames = np.unique(np.linspace(0, len(drawn.t) - 1, LOOKED_AT[0]).astype(int))
-    found += [_stations(body, frames) for body in drawn.bodies]
-    found += [vertices_of(one, drawn.nodes, k) for one in drawn.contacts if one.kind == "ball"
-              for k in frames]
-    return np.concatenate(found)
+    points += [_stations(body, frames) for body in drawn.bodies]
+    points += [vertices_of(one, drawn.nodes, k) for one in drawn.contacts if one.kind == "ball"
+               for k in frames]
+    return np.concatenate(points)
 
 
 def _stations(body: DrawnBody, frames: NDArray) -> NDArray:
@@ -140,17 +140,17 @@ def _bodies(result: Result, states: NDArray, size: float, reference: str | None
 
 def _entries(model: Mechanism, bodies: list[DrawnBody], lines: list[Link]) -> list[Entry]:
     owner = {part.name: beam.name for beam in model.beams for part in beam.parts}
-    found: dict[str, Entry] = {}
+    entries: dict[str, Entry] = {}
     for kind, names in (("bodies", [body.name for body in bodies]),
                         ("links", [link.body for link in lines])):
         for k, part in enumerate(names):
             if part:
                 name = owner.get(part, part)
-                colour = BODIES[len(found) % len(BODIES)]
-                entry = found.setdefault(name, Entry(name, name in model.rigid_bodies, colour,
-                                                     [], []))
+                colour = BODIES[len(entries) % len(BODIES)]
+                entry = entries.setdefault(name, Entry(name, name in model.rigid_bodies, colour,
+                                                       [], []))
                 getattr(entry, kind).append(k)
-    return list(found.values())
+    return list(entries.values())
 
 
 def _view(model: Mechanism, nodes: dict[str, DrawnNode]) -> tuple[NDArray, NDArray, NDArray]:

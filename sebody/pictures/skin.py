@@ -38,8 +38,8 @@ def outer_faces(cells: tuple[tuple[str, NDArray], ...]) -> list[NDArray]:
         base = first_order(kind)
         if base in FACES:
             for face in faces_of(kind, nodes.shape[1]):
-                found = solids if base in SOLIDS else shells
-                found.setdefault(len(face), []).append(nodes[:, face])
+                elements = solids if base in SOLIDS else shells
+                elements.setdefault(len(face), []).append(nodes[:, face])
     for count, parts in solids.items():
         faces, corners = np.concatenate(parts), 3 if count in (3, 6) else 4
         _, first, times = np.unique(np.sort(faces[:, :corners], axis=1), axis=0,
@@ -141,17 +141,17 @@ def _vertices(faces: list[NDArray], lattices: list[Lattice], stations: int
     points, width = [], max(face.shape[1] for face in faces)
     for face, one in zip(faces, lattices, strict=True):
         values = np.where(np.abs(one.values) > ROUNDING, one.values, 0.0)
-        own = np.where(values != 0, face[:, None] + 1, 0)       # 0: not of this point
-        blank = (0, width - own.shape[2])
-        own = np.pad(own, ((0, 0), (0, 0), blank))
-        values = np.broadcast_to(np.pad(values, ((0, 0), blank)), own.shape)
-        order = np.argsort(own, axis=2)
-        points.append(np.stack([np.take_along_axis(own, order, 2),
+        labels = np.where(values != 0, face[:, None] + 1, 0)       # 0: not of this point
+        blank = (0, width - labels.shape[2])
+        labels = np.pad(labels, ((0, 0), (0, 0), blank))
+        values = np.broadcast_to(np.pad(values, ((0, 0), blank)), labels.shape)
+        order = np.argsort(labels, axis=2)
+        points.append(np.stack([np.take_along_axis(labels, order, 2),
                                 np.take_along_axis(values, order, 2)]).reshape(2, -1, width))
-    own, values = np.concatenate(points, axis=1)
-    keys = np.hstack([own, np.round(values / ROUNDING)])        # those of two faces nearly agree
+    labels, values = np.concatenate(points, axis=1)
+    keys = np.hstack([labels, np.round(values / ROUNDING)])        # those of two faces nearly agree
     _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-    found, values = own[first].astype(int) - 1, values[first]
+    found, values = labels[first].astype(int) - 1, values[first]
     at = np.broadcast_to(np.arange(len(found))[:, None], found.shape)
     weights = sparse.csr_array((values[found >= 0], (at[found >= 0], found[found >= 0])),
                                shape=(len(found), stations))

@@ -51,16 +51,16 @@ def _outlines(recovery: Recovery) -> NDArray | None:
     """Outlines in axes of the body, (lines, corners, 3)."""
     if recovery.outlines is None or recovery.axes is None:
         return recovery.outlines
-    found, D = recovery.outlines.copy(), recovery.dimension
-    found[..., :D] = found[..., :D] @ recovery.axes.T
-    return found
+    corners, D = recovery.outlines.copy(), recovery.dimension
+    corners[..., :D] = corners[..., :D] @ recovery.axes.T
+    return corners
 
 
 def _turns(rotations: NDArray, shape: tuple[int, ...]) -> NDArray:
     """Rotation vectors, about z in a plane; none where nodes have no rotation."""
-    found = np.zeros(shape)
+    vectors = np.zeros(shape)
     if rotations.shape[-1] == 3:
         return rotations
     if rotations.shape[-1] == 1:
-        found[..., 2] = rotations[..., 0]
-    return found
+        vectors[..., 2] = rotations[..., 0]
+    return vectors

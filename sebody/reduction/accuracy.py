@@ -130,8 +130,8 @@ def _expected(known: Omission, errors: NDArray, accuracy: Accuracy) -> int:
     if not there.any() or np.ptp(np.log(values[there])) < 1e-6:
         return 2 * computed         # there is no trend to follow
     slope, start = np.polyfit(np.log(values[there]), np.log(numbers[there]), 1)
-    found = np.exp(np.clip(start + slope * np.log(aim), 0.0, np.log(1e6)))
-    return int(max(found, computed + 1))
+    estimate = np.exp(np.clip(start + slope * np.log(aim), 0.0, np.log(1e6)))
+    return int(max(estimate, computed + 1))
 
 
 def _forecast(known: Omission, accuracy: Accuracy, error: float, expected: int, seconds: float

@@ -21,7 +21,7 @@ from sebody.reduction.loads import named_vectors
 from sebody.reduction.missing import checked_missing, lacks, sentences
 from sebody.reduction.recovery import Recovery
 from sebody.reduction.recovery_checks import check_recovery
-from sebody.reduction.rigid import rigid_motions, strainless_coordinates
+from sebody.reduction.rigid_motions import rigid_motions, strainless_coordinates
 from sebody.reduction.summary import mode_lines, place
 from sebody.tabular import counted
 from sebody.units import parsed_units
@@ -261,11 +261,11 @@ class ReducedBody:
             raise InputError("recover: the body has no shapes of an FE model to keep a part of")
         count = len(self.recovery.coordinates)
         remedy = f"give nodes of the FE model, from 0 to {count - 1}"
-        found = [inputs.integer(node, "recover: a node", least=0, most=count - 1, remedy=remedy)
-                 for node in inputs.items(nodes, "recover", remedy)]
-        if not found:
+        numbers = [inputs.integer(node, "recover: a node", least=0, most=count - 1, remedy=remedy)
+                   for node in inputs.items(nodes, "recover", remedy)]
+        if not numbers:
             raise InputError(f"recover names no node: {remedy}")
-        return replace(self, recovery=self.recovery.restricted(np.array(found)))
+        return replace(self, recovery=self.recovery.restricted(np.array(numbers)))
 
     def damped(self, ratio: float | Sequence[float] = 0.0, *, mass: float = 0.0,
                stiffness: float = 0.0) -> ReducedBody:

@@ -117,11 +117,11 @@ def boundary_of(fe_model: FEModel, items: Items) -> Boundary:
                 mean_rows.get(item, {})[kind] = np.zeros(0, dtype=int)
                 continue
             if isinstance(item, MeanFace):
-                found = _mean_rows(motions[item], kind, ties)
-                mean_rows[item][kind] = len(mean_columns) + np.arange(found.shape[0])
-                means.append(found)
-                mean_columns.extend(width + np.arange(found.shape[0]))
-                width += found.shape[0]
+                rows = _mean_rows(motions[item], kind, ties)
+                mean_rows[item][kind] = len(mean_columns) + np.arange(rows.shape[0])
+                means.append(rows)
+                mean_columns.extend(width + np.arange(rows.shape[0]))
+                width += rows.shape[0]
             else:
                 own = (ties.face_rows(item, kind) if isinstance(item, RigidFace)
                        else ties.independent[fe_model.dofs(item, kind)])

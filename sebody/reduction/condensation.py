@@ -71,27 +71,27 @@ def released(body: ReducedBody, node: int, kind: str, modes: int | None = None) 
     _check_resisted(body, gone)
     basis[gone] = -np.linalg.solve(K[np.ix_(gone, gone)], K[np.ix_(gone, bound)])
     squares, vectors = eigh(body.mass[np.ix_(inner, inner)], K[np.ix_(inner, inner)])
-    own = np.flatnonzero(squares > _MASSLESS * squares[-1])[::-1]
-    shapes = np.zeros((n, len(own)))
-    shapes[inner] = vectors[:, own] / np.sqrt(squares[own])
+    massive = np.flatnonzero(squares > _MASSLESS * squares[-1])[::-1]
+    shapes = np.zeros((n, len(massive)))
+    shapes[inner] = vectors[:, massive] / np.sqrt(squares[massive])
     basis = np.hstack([basis, shapes])
     other = "translation" if kind == "rotation" else "rotation"
     left = [k for k in range(len(body.keeps)) if k != node or body.keeps[k] == "full"]
     keeps = tuple(other if k == node else body.keeps[k] for k in left)
 
     def projected(matrix: NDArray) -> NDArray:
-        found = basis.T @ matrix @ basis
+        reduced = basis.T @ matrix @ basis
         summed = np.abs(basis).T @ np.abs(matrix) @ np.abs(basis)
-        return np.where(np.abs(found) > _CANCELLED * summed, (found + found.T) / 2, 0.0)
+        return np.where(np.abs(reduced) > _CANCELLED * summed, (reduced + reduced.T) / 2, 0.0)
     made = ReducedBody(
-        projected(K), projected(body.mass), body.coordinates[left], keeps, len(own),
+        projected(K), projected(body.mass), body.coordinates[left], keeps, len(massive),
         None if body.damping is None else projected(body.damping),
         body.invariants and _projected(body.invariants, basis),
-        body.recovery and _recovery(body, basis, gone, keeps, len(own)),
+        body.recovery and _recovery(body, basis, gone, keeps, len(massive)),
         (*body.notes, f"{kind} of boundary node {node} released"),
         {name: basis.T @ load for name, load in body.loads.items()},
         body.missing, body.materials, body.units)
-    kept = min(body.modes if modes is None else modes, len(own))
+    kept = min(body.modes if modes is None else modes, len(massive))
     return Released(truncated(made, kept), basis[:, :len(bound) + kept], bound)
 
 
@@ -142,9 +142,9 @@ def _recovery(body: ReducedBody, basis: NDArray, gone: NDArray, keeps: tuple[str
                         np.eye(angles) if body.planar else np.kron(np.eye(angles), turn),
                         np.eye(modes))
         basis = recovery.by.T @ basis @ by
-    held = n - body.modes
-    of_bound = block_diag(basis[:held, :held - len(gone)], np.eye(
-        0 if recovery.static is None else recovery.static.shape[1] - held))
+    first_mode = n - body.modes
+    of_bound = block_diag(basis[:first_mode, :first_mode - len(gone)], np.eye(
+        0 if recovery.static is None else recovery.static.shape[1] - first_mode))
     return replace(
         recovery, by=by,
         shapes=np.hstack([recovery.shapes[:, :n] @ basis, recovery.shapes[:, n:]]),

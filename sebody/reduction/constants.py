@@ -97,10 +97,10 @@ def _invariants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
     else:
         extra = _stiffening(fe_model, boundary, component, interior, body, integrals, watch)
     watch.stage("integrals of the inertia")
-    found = integrals.integrals(np.hstack([shapes, extra.load_modes]))
-    _check_mass(found["Mbar"][:len(body.mass), :len(body.mass)], body.mass)
+    values = integrals.integrals(np.hstack([shapes, extra.load_modes]))
+    _check_mass(values["Mbar"][:len(body.mass), :len(body.mass)], body.mass)
     return InertiaInvariants(
-        mass=float(fe_model.mass_field.mass.sum()), **found, Q=extra.Q, lam=extra.lam, E=extra.E,
+        mass=float(fe_model.mass_field.mass.sum()), **values, Q=extra.Q, lam=extra.lam, E=extra.E,
         Ghat=extra.Ghat, origin=origin), extra
 
 
@@ -143,13 +143,13 @@ def _stiffening(fe_model: FEModel, boundary: Boundary, component: ComponentModes
     loads[boundary.held] = 0.0
     answers, on_means = interior.answer(loads)
     above = np.zeros((len(on_means), len(component.omega_squared)))
-    found = GeometricStiffness(
+    stress_stiffness = GeometricStiffness(
         geometric, np.vstack([basis, np.hstack([component.on_means, above])]), body.stiffness,
         body.mass, scale, rigid / [*[1.0] * dimension, *[size] * (rigid.shape[1] - dimension)],
         largest
     ).stiffening(np.vstack([loads, np.zeros(on_means.shape)]), np.vstack([answers, on_means]),
                  answers.T @ (ties.project(fe_model.mass) @ answers))
-    return replace(found, load_modes=ties.spread(found.load_modes[:n]))
+    return replace(stress_stiffness, load_modes=ties.spread(stress_stiffness.load_modes[:n]))
 
 
 def _check_linear(fe_model: FEModel, displacement: NDArray) -> None:

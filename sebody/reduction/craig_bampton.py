@@ -106,8 +106,8 @@ def component_modes(
 
 def _boundary_rows(rows: Sequence[int], size: int) -> NDArray:
     remedy = f"give different rows of the matrices, from 0 to {size - 1}"
-    found = [inputs.integer(row, "boundary_dofs: one", least=0, most=size - 1, remedy=remedy)
-             for row in inputs.items(rows, "boundary_dofs", remedy)]
-    if len(set(found)) != len(found):
-        raise inputs.refusal("boundary_dofs", found, remedy)
-    return np.array(found, dtype=int)
+    numbers = [inputs.integer(row, "boundary_dofs: one", least=0, most=size - 1, remedy=remedy)
+               for row in inputs.items(rows, "boundary_dofs", remedy)]
+    if len(set(numbers)) != len(numbers):
+        raise inputs.refusal("boundary_dofs", numbers, remedy)
+    return np.array(numbers, dtype=int)

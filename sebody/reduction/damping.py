@@ -47,9 +47,9 @@ def _ratios(ratio: float | Sequence[float], count: int) -> NDArray:
     """Damping ratios of all free vibration modes."""
     if np.ndim(ratio) == 0:
         return np.full(count, inputs.number(ratio, "damping: ratio", least=0))
-    found = [inputs.number(one, "damping: a ratio", least=0)
-             for one in inputs.items(ratio, "damping: ratio", "give numbers >= 0")]
-    if not 0 < len(found) <= count:
-        raise InputError(f"damping: {len(found)} ratios, but the body has {count} free vibration "
+    ratios = [inputs.number(one, "damping: a ratio", least=0)
+              for one in inputs.items(ratio, "damping: ratio", "give numbers >= 0")]
+    if not 0 < len(ratios) <= count:
+        raise InputError(f"damping: {len(ratios)} ratios, but the body has {count} free vibration "
                          f"modes: give 1 to {count}")
-    return np.array(found + [found[-1]] * (count - len(found)))
+    return np.array(ratios + [ratios[-1]] * (count - len(ratios)))

@@ -68,8 +68,8 @@ def motions_without_strain(stiffness: sparse.csc_array, rigid: NDArray, lengths:
     them: a body that is tied to the ground.
     """
     _, values, turn = linalg.svd(np.vstack([rigid[held], np.zeros((rigid.shape[1],) * 2)]))
-    found = rigid @ turn[values < _STILL * max(1.0, values.max(initial=0.0))].T
-    return found if is_strainless(stiffness, found / lengths[:, None]) else found[:, :0]
+    motions = rigid @ turn[values < _STILL * max(1.0, values.max(initial=0.0))].T
+    return motions if is_strainless(stiffness, motions / lengths[:, None]) else motions[:, :0]
 
 
 def is_strainless(stiffness: sparse.csc_array, motions: NDArray) -> bool:

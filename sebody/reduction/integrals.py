@@ -81,7 +81,7 @@ class MassIntegrals:
         arms = np.array([[weighed_r[0][:, c].T @ part for part in parts]
                          for c in range(self.dimension)])
         turns = self._turns
-        found = {
+        values = {
             "c0": self._first_moment(), "S1": self._dot(rigid_t, weighed),
             "J0": self._dot(rigid_r, weighed_r), "g": self._dot(rigid_r, weighed),
             "h": np.einsum("lcb,cbrn->rln", turns, arms),
@@ -90,9 +90,9 @@ class MassIntegrals:
             "Mbar": np.einsum("ccmn->mn", S),
         }
         if self._field.inertia is not None:
-            self._add_rotations(found, shapes[1], weighed[1], weighed_r[1])
-        found["J2"] = (found["J2"] + found["J2"].transpose(1, 0, 2, 3)) / 2
-        return found
+            self._add_rotations(values, shapes[1], weighed[1], weighed_r[1])
+        values["J2"] = (values["J2"] + values["J2"].transpose(1, 0, 2, 3)) / 2
+        return values
 
     def _add_rotations(self, found: dict[str, NDArray], psi: NDArray, moments: NDArray,
                        rigid_moments: NDArray) -> None:
@@ -142,8 +142,8 @@ class MassIntegrals:
 
     def _dot(self, first: tuple[NDArray, NDArray], second: tuple[NDArray, NDArray]) -> NDArray:
         """Sum over points of the products of two sets of shapes, (m1, m2)."""
-        found = _flat(first[0]).T @ _flat(second[0])
-        return found if self._field.inertia is None else found + (
+        products = _flat(first[0]).T @ _flat(second[0])
+        return products if self._field.inertia is None else products + (
             _flat(first[1]).T @ _flat(second[1]))
 
     def _turned(self, shapes: tuple[NDArray, NDArray]) -> list[tuple[NDArray, NDArray]]:

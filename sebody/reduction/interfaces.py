@@ -110,11 +110,11 @@ class MeanFace:
 
 def _nodes(nodes: Sequence[int], what: str, how: str) -> tuple[int, ...]:
     remedy = f"name the FE nodes {how}"
-    found = tuple(inputs.integer(node, f"node of {what}", remedy=remedy)
-                  for node in inputs.items(nodes, f"nodes of {what}", remedy))
-    if not found:
+    numbers = tuple(inputs.integer(node, f"node of {what}", remedy=remedy)
+                    for node in inputs.items(nodes, f"nodes of {what}", remedy))
+    if not numbers:
         raise InputError(f"{what} has no nodes: {remedy}")
-    return found
+    return numbers
 
 
 class MeanMotion:
@@ -233,12 +233,12 @@ def _weights(model: FEModel, face: MeanFace) -> sparse.csr_array:
         return sparse.csr_array(sparse.diags_array(face.weights))
     if face.weights == "equal":
         return sparse.csr_array(sparse.eye_array(len(face.nodes)))
-    found = surface_mass(model, np.array(face.nodes))
-    bare = np.flatnonzero(found.diagonal() == 0)
+    weights = surface_mass(model, np.array(face.nodes))
+    bare = np.flatnonzero(weights.diagonal() == 0)
     if len(bare):
         names = ", ".join(model.node_name(face.nodes[k]) for k in bare[:5])
         raise InputError(
             f"{face.called} by area has nodes on no face that lies within it: {names}"
             f"{' and more' if len(bare) > 5 else ''}; name all nodes of the faces and no others, "
             "give the FEModel its cells, or use weights='equal'")
-    return found
+    return weights

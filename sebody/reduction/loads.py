@@ -37,7 +37,7 @@ def named_vectors(loads: Mapping[str, ArrayLike], size: int, entries: str) -> di
         The same as of `fe_loads`.
     """
     inputs.instance(loads, "loads", Mapping, "give a dict of vectors by name")
-    found = {}
+    vectors = {}
     for name, value in loads.items():
         inputs.name(name, "name of a load")
         vector = inputs.reals(value, f"load {name!r}", f"give {size} numbers")
@@ -47,8 +47,8 @@ def named_vectors(loads: Mapping[str, ArrayLike], size: int, entries: str) -> di
         if not np.isfinite(vector).all():
             row = int(np.argmin(np.isfinite(vector)))
             raise InputError(f"load {name!r}[{row}] is {vector[row]}: give finite numbers")
-        found[name] = np.array(vector)
-    return found
+        vectors[name] = np.array(vector)
+    return vectors
 
 
 def with_residual_modes(component: ComponentModes, interior: ClampedInterior,
@@ -81,8 +81,8 @@ def with_residual_modes(component: ComponentModes, interior: ClampedInterior,
         raise InputError("residual modes: the static response to a load has no mass, so it "
                          "has no frequency; give the DOFs under the load mass, or leave "
                          "residual_modes out")
-    found = (unit @ (turn / np.sqrt(inverse)))[:, ::-1]
+    residual = (unit @ (turn / np.sqrt(inverse)))[:, ::-1]
     omega_squared = 1.0 / inverse[::-1]
-    found = found @ canonical_turn(omega_squared, found)
-    return replace(component, fixed_interface=np.hstack([shapes, found]),
+    residual = residual @ canonical_turn(omega_squared, residual)
+    return replace(component, fixed_interface=np.hstack([shapes, residual]),
                    omega_squared=np.concatenate([squares, omega_squared]))

@@ -22,8 +22,8 @@ def mean_rotation(body: ReducedBody) -> NDArray:
     no mean rotation, as if it did not rotate.
     """
     moments, axes = np.linalg.eigh(central_inertia(body))
-    kept = moments > MASSLESS * max(moments.max(), 0.0)
-    return axes[:, kept] / moments[kept] @ axes[:, kept].T @ _rotations(body).T @ body.mass
+    massive = moments > MASSLESS * max(moments.max(), 0.0)
+    return axes[:, massive] / moments[massive] @ axes[:, massive].T @ _rotations(body).T @ body.mass
 
 
 def _rotations(body: ReducedBody) -> NDArray:

@@ -43,7 +43,7 @@ from sebody.reduction.constants import with_constants, with_shapes
 from sebody.reduction.factor import is_strainless
 from sebody.reduction.loads import fe_loads, with_residual_modes
 from sebody.reduction.missing import missing_of
-from sebody.reduction.rigid import strainless_coordinates
+from sebody.reduction.rigid_motions import strainless_coordinates
 from sebody.reduction.watch import SILENT, Watch, watching
 
 METHODS = ("craig-bampton", "guyan", "macneal", "rubin")
@@ -235,14 +235,14 @@ def _without_residual_mass(component: ComponentModes, stiffness: NDArray, free: 
                            mass: sparse.csc_array) -> tuple[ComponentModes, tuple]:
     """MacNeal's mass: that of the parts of the shapes along rigid motions and free modes."""
     momenta = np.hstack([free.rigid, free.elastic]).T @ (mass @ component.basis)
-    held = component.constraint.shape[1]
-    inner = momenta[:, held:]
+    boundary = component.constraint.shape[1]
+    inner = momenta[:, boundary:]
     omega_squared, turn = _vibrations(np.diag(component.omega_squared), inner.T @ inner)
     turn = turn @ canonical_turn(omega_squared, component.fixed_interface @ turn)
     component = replace(component, fixed_interface=component.fixed_interface @ turn,
                         omega_squared=omega_squared)
-    momenta = np.hstack([momenta[:, :held], inner @ turn])
-    reduced = linalg.block_diag(stiffness[:held, :held], np.diag(omega_squared))
+    momenta = np.hstack([momenta[:, :boundary], inner @ turn])
+    reduced = linalg.block_diag(stiffness[:boundary, :boundary], np.diag(omega_squared))
     return component, (reduced, momenta.T @ momenta)
 
 

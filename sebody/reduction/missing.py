@@ -26,13 +26,13 @@ def missing_of(fe_model: FEModel, method: str) -> dict[str, str]:
     has = {"stresses": bool(fe_model.stress),
            "stiffening": fe_model.geometric_stiffness is not None,
            "exact inertia": fe_model.mass_field is not None}
-    found = {what: fe_model.missing.get(what, _OF_MODEL[what]) for what in WHAT
-             if not has[what] or what in fe_model.missing}
+    reasons = {what: fe_model.missing.get(what, _OF_MODEL[what]) for what in WHAT
+               if not has[what] or what in fe_model.missing}
     if method == "macneal":
-        found |= dict.fromkeys(("stiffening", "exact inertia"), _MACNEAL)
+        reasons |= dict.fromkeys(("stiffening", "exact inertia"), _MACNEAL)
     elif not has["exact inertia"]:
-        found["stiffening"] = found["exact inertia"]        # which it takes
-    return found
+        reasons["stiffening"] = reasons["exact inertia"]        # which it takes
+    return reasons
 
 
 def checked_missing(reasons: Mapping[str, str], what: str = "missing") -> dict[str, str]:
@@ -62,10 +62,10 @@ def lacks(stressed: bool, exact: bool, missing: Mapping[str, str]) -> dict[str, 
     missing : mapping of str to str
         The reasons that its source has given.
     """
-    found = {} if stressed else {"stresses": _REDUCED}
+    reasons = {} if stressed else {"stresses": _REDUCED}
     if not exact:
-        found |= dict.fromkeys(("stiffening", "exact inertia"), _REDUCED)
-    return found | dict(missing)
+        reasons |= dict.fromkeys(("stiffening", "exact inertia"), _REDUCED)
+    return reasons | dict(missing)
 
 
 def sentences(found: Mapping[str, str], stressed: bool) -> list[str]:

@@ -107,10 +107,10 @@ class Omission:
             return np.full(len(self.squares) + 1, np.inf)
         squares, errors = self.free_errors()
         own = errors[squares <= omega**2]
-        found = own.max(axis=0, initial=0.0)
+        largest = own.max(axis=0, initial=0.0)
         below = self._coupled & (self.squares <= omega**2)
-        found[:np.max(np.flatnonzero(below), initial=-1) + 1] = np.inf
-        return found
+        largest[:np.max(np.flatnonzero(below), initial=-1) + 1] = np.inf
+        return largest
 
     def free_errors(self) -> tuple[NDArray, NDArray]:
         """Squares of the free angular frequencies (f,), and their errors (f, computed + 1).
@@ -139,9 +139,9 @@ class Omission:
         shift = _SHIFT * np.trace(K) / np.trace(M)
         inverse, shapes = linalg.eigh(M, K + shift * M)
         inverse, shapes = inverse[::-1], shapes[:, ::-1]
-        kept = inverse > 1e-13 * inverse[0]
-        squares = 1 / inverse[kept] - shift
-        motions = (scale[:, None] * shapes[:, kept] / np.sqrt(inverse[kept]))[:r].T
+        massive = inverse > 1e-13 * inverse[0]
+        squares = 1 / inverse[massive] - shift
+        motions = (scale[:, None] * shapes[:, massive] / np.sqrt(inverse[massive]))[:r].T
         elastic = squares > _RIGID * squares.max(initial=0.0) if not count else (
             squares > _RIGID * self.squares[0])
         return squares[elastic], motions[elastic]

@@ -188,19 +188,19 @@ def _couplings(body: ReducedBody, invariants: InertiaInvariants | None, mass: ND
 
 def _modes(body: ReducedBody, invariants: InertiaInvariants | None, boundary: NDArray) -> _Basis:
     """Even and odd internal modes, those of one frequency together."""
-    held, count = len(boundary), body.modes
-    rows, signs = _couplings(body, invariants, body.mass, boundary, slice(held, held + count))
-    squares = np.diag(body.stiffness)[held:] / np.where(
-        np.diag(body.mass)[held:] > 0, np.diag(body.mass)[held:], 1.0)
+    inner, count = len(boundary), body.modes
+    rows, signs = _couplings(body, invariants, body.mass, boundary, slice(inner, inner + count))
+    squares = np.diag(body.stiffness)[inner:] / np.where(
+        np.diag(body.mass)[inner:] > 0, np.diag(body.mass)[inner:], 1.0)
     starts = np.flatnonzero(np.diff(squares, prepend=-np.inf) > _REPEATED * np.abs(squares))
-    turns, found = [], []
+    turns, modes = [], []
     for first, last in pairwise([*starts, count]):
         part = _split(rows[:, first:last], signs)
         turns.append(part.turn)
-        found.append(part.signs)
+        modes.append(part.signs)
     if not turns:
         return _Basis(np.zeros((0, 0)), np.zeros(0, dtype=int))
-    return _Basis(block_diag(*turns), np.concatenate(found))
+    return _Basis(block_diag(*turns), np.concatenate(modes))
 
 
 def _planar_invariants(i: InertiaInvariants, body: ReducedBody, every: _Basis,
@@ -225,8 +225,8 @@ def _planar_invariants(i: InertiaInvariants, body: ReducedBody, every: _Basis,
         J2=whole.T @ i.J2 @ whole, Mbar=whole.T @ i.Mbar @ whole,
         Q=np.einsum("ab,bij->aij", back, i.Q), lam=lam, E=E, Ghat=Ghat)
     _check_constants(full, signs, slaved.signs, resultants.signs, names, what)
-    found, eta = _even(full, signs, slaved.signs, resultants.signs)
-    return found, slaved.turn[:, eta]
+    even, eta = _even(full, signs, slaved.signs, resultants.signs)
+    return even, slaved.turn[:, eta]
 
 
 def _load_modes(body: ReducedBody, i: InertiaInvariants, mass: NDArray, signs: NDArray
@@ -236,8 +236,8 @@ def _load_modes(body: ReducedBody, i: InertiaInvariants, mass: NDArray, signs: N
     root = np.linalg.cholesky(mass[n:, n:])
     rows, of_rows = _couplings(body, i, mass, signs, slice(n, N))
     rows = rows * np.sqrt(np.diag(mass)[n:])        # they need another measure than their length
-    found = _split(np.linalg.solve(root, rows.T).T, of_rows)
-    return found.turn.T @ root.T, found._replace(turn=np.linalg.solve(root.T, found.turn))
+    split = _split(np.linalg.solve(root, rows.T).T, of_rows)
+    return split.turn.T @ root.T, split._replace(turn=np.linalg.solve(root.T, split.turn))
 
 
 def _resultants(i: InertiaInvariants, stiffness: NDArray, signs: NDArray) -> _Basis:
@@ -280,10 +280,10 @@ def _second_order(array: NDArray) -> tuple[NDArray, ...]:
 
 def _outer(vectors: tuple[NDArray, ...]) -> NDArray:
     """Products of one entry of each vector."""
-    found = np.ones(())
+    product = np.ones(())
     for vector in vectors:
-        found = np.multiply.outer(found, vector)
-    return found
+        product = np.multiply.outer(product, vector)
+    return product
 
 
 def _even(i: InertiaInvariants, signs: NDArray, slaved: NDArray, resultants: NDArray

@@ -34,34 +34,34 @@ def planar_recovery(body: ReducedBody, kept: NDArray, slaved: NDArray, loads: li
     Recovery or None
         Its FE axes are those of the plane.
     """
-    own = body.recovery
-    if own is None or own.node_dofs != SPATIAL:
+    recovery = body.recovery
+    if recovery is None or recovery.node_dofs != SPATIAL:
         return None
-    off = own.points[:, 2] - body.coordinates[0, 2]
-    if np.abs(off).max() > _NEAR * np.ptp(own.points, axis=0).max():
+    off = recovery.points[:, 2] - body.coordinates[0, 2]
+    if np.abs(off).max() > _NEAR * np.ptp(recovery.points, axis=0).max():
         return None
-    n, held = len(body.mass), len(body.mass) - body.modes
+    n, first_mode = len(body.mass), len(body.mass) - body.modes
     # of a node: x, y and the angle by its DOFs in FE axes, and these by the former
-    to_plane = block_diag(own.axes[:2], own.axes[2:])
-    basis = own.by.T @ kept
-    bound = np.count_nonzero(kept[:held].any(axis=0))
+    to_plane = block_diag(recovery.axes[:2], recovery.axes[2:])
+    basis = recovery.by.T @ kept
+    bound = np.count_nonzero(kept[:first_mode].any(axis=0))
 
     def rows(shapes: NDArray) -> NDArray:
-        nodes = shapes.reshape(len(own.coordinates), 6, -1)
+        nodes = shapes.reshape(len(recovery.coordinates), 6, -1)
         return np.einsum("ij,njk->nik", to_plane, nodes).reshape(-1, shapes.shape[1])
     static = None
-    if own.static is not None:
-        normal = own.axes[2]
+    if recovery.static is not None:
+        normal = recovery.axes[2]
         pairs = [(k, m) for k in range(3) for m in range(k, 3)]
         products = np.array([normal[k] * normal[m] for k, m in pairs])
-        first = held + len(pairs)
-        static = rows(np.hstack([own.static[:, :held] @ basis[:held, :bound],
-                                 own.static[:, held:first] @ products[:, None],
-                                 own.static[:, first:][:, loads]]))
+        first = first_mode + len(pairs)
+        static = rows(np.hstack([recovery.static[:, :first_mode] @ basis[:first_mode, :bound],
+                                 recovery.static[:, first_mode:first] @ products[:, None],
+                                 recovery.static[:, first:][:, loads]]))
     return Recovery(
-        rows(np.hstack([own.shapes[:, :n] @ basis, own.shapes[:, n:] @ slaved])),
-        own.points[:, :2], PLANAR, cells=own.cells, labels=own.labels,
-        outlines=None if own.outlines is None else own.outlines @ own.axes.T,
+        rows(np.hstack([recovery.shapes[:, :n] @ basis, recovery.shapes[:, n:] @ slaved])),
+        recovery.points[:, :2], PLANAR, cells=recovery.cells, labels=recovery.labels,
+        outlines=None if recovery.outlines is None else recovery.outlines @ recovery.axes.T,
         stress=tuple(replace(one, forces=one.forces @ block_diag(to_plane.T, to_plane.T))
-                     for one in own.stress if isinstance(one, BeamStress)),
-        static=static, nodes=own.nodes)
+                     for one in recovery.stress if isinstance(one, BeamStress)),
+        static=static, nodes=recovery.nodes)

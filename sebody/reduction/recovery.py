@@ -139,15 +139,15 @@ class Recovery:
 
     def _vectors(self, z: NDArray, nodes: ArrayLike | None, kind: str) -> NDArray:
         turning = [name.startswith("r") for name in self.node_dofs]
-        own = np.flatnonzero(np.array(turning) == (kind == "rotation"))
+        chosen = np.flatnonzero(np.array(turning) == (kind == "rotation"))
         count, width = len(self.coordinates), len(self.node_dofs)
-        if nodes is None and len(own) == width:
+        if nodes is None and len(chosen) == width:
             shapes, at = self.shapes[:, :z.shape[1]], np.arange(count)
         else:
             at = np.arange(count) if nodes is None else np.asarray(nodes)
-            shapes = self.shapes[(width * at[:, None] + own).ravel(), :z.shape[1]]
-        found = (self.in_fe_axes(z) @ shapes.T).reshape(len(z), len(at), len(own))
-        return found if self.axes is None or len(own) < 2 else found @ self.axes.T
+            shapes = self.shapes[(width * at[:, None] + chosen).ravel(), :z.shape[1]]
+        vectors = (self.in_fe_axes(z) @ shapes.T).reshape(len(z), len(at), len(chosen))
+        return vectors if self.axes is None or len(chosen) < 2 else vectors @ self.axes.T
 
     def all_dofs(self, z: NDArray) -> NDArray:
         """All DOFs in the axes of the body, node after node, (n, n_dofs)."""

@@ -89,9 +89,9 @@ class GeometricStiffness:
                  largest: Callable[[NDArray], NDArray]):
         self._of, self._basis, self._largest = of, basis, largest
         self._stiffness, self._held = stiffness, len(scale)
-        held = slice(0, self._held)
-        count = np.linalg.matrix_rank(rigid[held] * scale[:, None])
-        values, vectors = np.linalg.eigh(stiffness[held, held] / np.outer(scale, scale))
+        boundary = slice(0, self._held)
+        count = np.linalg.matrix_rank(rigid[boundary] * scale[:, None])
+        values, vectors = np.linalg.eigh(stiffness[boundary, boundary] / np.outer(scale, scale))
         self._boundary = vectors[:, count:] / scale[:, None] / np.sqrt(values[count:])
         modes = 1 / np.sqrt(np.diag(stiffness)[self._held:])
         self._elastic = block_diag(self._boundary, np.diag(modes))   # orthonormal in strain energy
@@ -110,8 +110,8 @@ class GeometricStiffness:
             FE mass, projected on the displacements.
         """
         values, vectors = np.linalg.eigh(loads.T @ answers)
-        kept = values > _NULL * values.max(initial=0.0)
-        orthonormal = vectors[:, kept] / np.sqrt(values[kept])
+        independent = values > _NULL * values.max(initial=0.0)
+        orthonormal = vectors[:, independent] / np.sqrt(values[independent])
         moved = self._elastic @ (self._elastic.T @ (self._basis.T @ loads))
         turn, G = self._prestresses(answers @ orthonormal,
                                     (answers + self._basis @ moved) @ orthonormal)
@@ -120,14 +120,14 @@ class GeometricStiffness:
         # of unit modal mass; the strain energy kap is then 1 / modal
         Q = -G * np.sqrt(modal)[:, None, None]
 
-        held = slice(0, self._held)
-        shapes = self._basis[:, held] @ self._boundary
+        boundary = slice(0, self._held)
+        shapes = self._basis[:, boundary] @ self._boundary
         turn, G = self._prestresses(shapes, shapes)
         size = self._largest(shapes @ turn)     # motions d_e of largest rotation 1
-        kept = self._that_matter(G / size[:, None, None])
-        turn, G, size = turn[:, kept], G[kept], size[kept]
+        independent = self._that_matter(G / size[:, None, None])
+        turn, G, size = turn[:, independent], G[independent], size[independent]
         E = np.zeros((len(self._stiffness), len(size)))
-        E[held] = self._stiffness[held, held] @ self._boundary @ turn * size
+        E[boundary] = self._stiffness[boundary, boundary] @ self._boundary @ turn * size
         return Stiffening(answers @ (weights / np.sqrt(modal)), Q, 1 / size**2, E,
                           G / size[:, None, None], shapes.shape[1])
 
@@ -174,6 +174,6 @@ class GeometricStiffness:
         for changed in (np.eye(len(matrix)) + matrix, np.eye(len(matrix)) - matrix):
             if np.linalg.eigvalsh(changed)[0] <= _WEAK:     # it buckles, or nearly
                 return first, np.inf
-            found = eigh(np.diag(inverse), changed, eigvals_only=True)
-            most = max(most, np.abs(inverse[lowest] / found[lowest] - 1).max())
+            changes = eigh(np.diag(inverse), changed, eigvals_only=True)
+            most = max(most, np.abs(inverse[lowest] / changes[lowest] - 1).max())
         return first, most

@@ -49,8 +49,8 @@ class Ties:
         """``T^T A T`` of an FE matrix A."""
         if self._matrix is None:
             return matrix
-        found = sparse.csc_array(self._matrix.T @ matrix @ self._matrix)
-        return sparse.csc_array((found + found.T) / 2)
+        projected = sparse.csc_array(self._matrix.T @ matrix @ self._matrix)
+        return sparse.csc_array((projected + projected.T) / 2)
 
     def gather(self, forces: NDArray) -> NDArray:
         """``T^T f``."""
@@ -121,15 +121,15 @@ class Ties:
         lengths = np.ones(self.size)
         rigid = np.zeros((self.size, self._dimension + self._angles))
         there = (model.rows >= 0) & (self.independent[model.rows] >= 0)
-        own = self.independent[model.rows[there]]
-        rigid[own] = _rigid_rows((model.coordinates - middle) / extent, model.node_dofs)[there]
+        rows = self.independent[model.rows[there]]
+        rigid[rows] = _rigid_rows((model.coordinates - middle) / extent, model.node_dofs)[there]
         turns = np.arange(len(model.node_dofs)) >= self._dimension
-        lengths[own] = np.where(np.broadcast_to(turns, there.shape)[there], extent, 1.0)
+        lengths[rows] = np.where(np.broadcast_to(turns, there.shape)[there], extent, 1.0)
         for face in self._faces:
             arm = (face.point - middle)[None] / extent
             turning = self.face_rows(face, "rotation")
-            own = np.concatenate([self.face_rows(face, "translation"), turning])
-            rigid[own] = _rigid_rows(arm, SPATIAL if self._dimension == 3 else PLANAR)[0]
+            rows = np.concatenate([self.face_rows(face, "translation"), turning])
+            rigid[rows] = _rigid_rows(arm, SPATIAL if self._dimension == 3 else PLANAR)[0]
             lengths[turning] = extent
         return lengths, rigid
 

@@ -46,14 +46,14 @@ def truncated(body: ReducedBody, modes: int) -> ReducedBody:
     if modes == body.modes:
         return body
     size = len(body.stiffness) - body.modes + modes
-    own = slice(0, size)
+    first = slice(0, size)
     return replace(
-        body, stiffness=body.stiffness[own, own], mass=body.mass[own, own], modes=modes,
-        damping=None if body.damping is None else body.damping[own, own],
+        body, stiffness=body.stiffness[first, first], mass=body.mass[first, first], modes=modes,
+        damping=None if body.damping is None else body.damping[first, first],
         invariants=body.invariants and _truncated_invariants(body.invariants, size),
         recovery=body.recovery and _truncated_recovery(body, size),
         notes=(*body.notes, f"{modes} of {body.modes} internal modes kept"),
-        loads={name: load[own] for name, load in body.loads.items()})
+        loads={name: load[first] for name, load in body.loads.items()})
 
 
 def _kept(size: int, before: int, count: int) -> NDArray:
@@ -62,11 +62,11 @@ def _kept(size: int, before: int, count: int) -> NDArray:
 
 
 def _truncated_invariants(i: InertiaInvariants, size: int) -> InertiaInvariants:
-    kept, own = _kept(size, i.Q.shape[1], len(i.Mbar)), slice(0, size)
+    kept, first = _kept(size, i.Q.shape[1], len(i.Mbar)), slice(0, size)
     return replace(
         i, S1=i.S1[:, kept], g=i.g[:, kept], h=i.h[..., kept], K=i.K[:, kept][:, :, kept],
-        J2=i.J2[:, :, kept][..., kept], Mbar=i.Mbar[np.ix_(kept, kept)], Q=i.Q[:, own, own],
-        E=i.E[own], Ghat=i.Ghat[:, own, own])
+        J2=i.J2[:, :, kept][..., kept], Mbar=i.Mbar[np.ix_(kept, kept)], Q=i.Q[:, first, first],
+        E=i.E[first], Ghat=i.Ghat[:, first, first])
 
 
 def _truncated_recovery(body: ReducedBody, size: int) -> Recovery:
@@ -99,11 +99,11 @@ def _spins(body: ReducedBody) -> NDArray:
     pairs = [(k, m) for k in range(angles) for m in range(k, angles)]
     if body.invariants is None:
         return np.zeros((n, len(pairs)))
-    found = body.invariants
+    invariants = body.invariants
     if body.recovery.by is not None:
-        found = found.rotated(body.recovery.axes.T, body.recovery.by.T)
+        invariants = invariants.rotated(body.recovery.axes.T, body.recovery.by.T)
         middle = body.coordinates.mean(axis=0) @ body.recovery.axes
     else:
         middle = body.coordinates.mean(axis=0)
-    h = found.about(middle).h[..., :n]
+    h = invariants.about(middle).h[..., :n]
     return np.column_stack([h[k, m] if k == m else h[k, m] + h[m, k] for k, m in pairs])

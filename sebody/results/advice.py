@@ -11,12 +11,12 @@ PAYS = 24
 
 def kernels_that_pay(model: Mechanism) -> dict[str, list[str]]:
     """Commands that make kernels, and the bodies on general kernels that gain by each."""
-    found: dict[str, list[str]] = {}
+    commands: dict[str, list[str]] = {}
     for body in model.bodies.values():
         kernel = load(body.kernel)
         assert kernel is not None       # the model was built with it
         if kernel.N_POSITIONS is None and len(body.reduced.stiffness) <= PAYS:
             variant = layout_variant(body.layout, body.reduced.modes, bool(kernel.DAMPED))
             command = derive_command(variant, kernel.FRAME, kernel.INERTIA)
-            found.setdefault(command, []).append(body.name)
-    return found
+            commands.setdefault(command, []).append(body.name)
+    return commands

@@ -33,15 +33,15 @@ class Finding(NamedTuple):
 
 def audit(result: Recording) -> list[Finding]:
     """Completion, energy, momenta and constraints of a run, each with a verdict."""
-    found = [_completion(result), _energy(result)]
-    found += [_momentum(result, name) for name in ("momentum", "angular momentum")]
+    lines = [_completion(result), _energy(result)]
+    lines += [_momentum(result, name) for name in ("momentum", "angular momentum")]
     if result.numbering.multipliers:
-        found += _constraints(result)
+        lines += _constraints(result)
     if result.error is not None:
-        found.append(Finding("error in time", f"{result.error:.2g} of the tolerance",
+        lines.append(Finding("error in time", f"{result.error:.2g} of the tolerance",
                              "good" if result.error <= 1 else "bad",
                              "estimated from the difference of two runs; limit 1"))
-    return found
+    return lines
 
 
 def momentum_defect(result: Recording, angular: bool) -> tuple[NDArray, NDArray]:
@@ -171,6 +171,6 @@ def _sums(result: Recording, name: str) -> NDArray:
 
 def _integral(t: NDArray, rates: NDArray) -> NDArray:
     """Integral from the first state on by trapezoids, (n, c)."""
-    found = np.zeros_like(rates)
-    np.cumsum(np.diff(t)[:, None] * (rates[1:] + rates[:-1]) / 2, axis=0, out=found[1:])
-    return found
+    integral = np.zeros_like(rates)
+    np.cumsum(np.diff(t)[:, None] * (rates[1:] + rates[:-1]) / 2, axis=0, out=integral[1:])
+    return integral

@@ -15,7 +15,7 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 from sebody.assembly.numbering import Numbering, stretch
-from sebody.model.inputs import dof_block
+from sebody.model.arguments import dof_block
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, DofBlock, Element, Joint, Node, Superelement
 from sebody.vectors import moment_of
@@ -70,29 +70,29 @@ class Balance:
         Of a body it is the force of inertia, weight and deformation, which is minus that of
         everything else on the body.
         """
-        found = np.zeros((len(self._q), self._size(kind)))
+        total = np.zeros((len(self._q), self._size(kind)))
         first = self._numbering.forces_at[part]
         for place in part.attachments:
-            own = getattr(place.node, place.kind)
-            size = own.start.size
+            block = getattr(place.node, place.kind)
+            size = block.start.size
             if place.node is node and place.kind == kind:
                 values = -self._elements[:, first:first + size]
-                if own.rotational and not self._model.planar:
-                    values = np.einsum("nij,nj->ni", self.rotation(own), values)
-                found += values
+                if block.rotational and not self._model.planar:
+                    values = np.einsum("nij,nj->ni", self.rotation(block), values)
+                total += values
             first += size
-        return found
+        return total
 
     def of_joint(self, joint: Joint, kind: str) -> NDArray:
         """Force or moment of a joint on its node, of its equations and without them."""
         connections, values = self._passed[kind]
-        found = np.zeros((len(self._q), self._size(kind)))
+        total = np.zeros((len(self._q), self._size(kind)))
         for k, connection in enumerate(connections):
             if connection.joint is joint:
-                found += values[:, k]
+                total += values[:, k]
         for equation in joint.constraints:
-            found += self.on(equation, joint.node, kind)
-        return found
+            total += self.on(equation, joint.node, kind)
+        return total
 
     def axes(self, joint: Joint) -> NDArray:
         """Matrices (n, d, d) whose columns are the axes of a joint, in global axes."""
@@ -179,12 +179,12 @@ class _Groups:
 
 def _kept(connections: Iterable[Connection]) -> list[Connection]:
     """Connections without the spare ones where joints join the same nodes."""
-    found, groups = [], {"position": _Groups(), "rotation": _Groups()}
+    connections_used, groups = [], {"position": _Groups(), "rotation": _Groups()}
     for connection in sorted(connections, key=lambda c: c.spare):
         two = groups[connection.kind].join(connection.node, connection.to)
         if two or not connection.spare:
-            found.append(connection)
-    return found
+            connections_used.append(connection)
+    return connections_used
 
 
 def _representatives(connections: Iterable[Connection]) -> set[Node]:

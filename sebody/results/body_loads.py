@@ -15,7 +15,7 @@ def load_amplitudes(recording: Recording, body: Superelement, motion: BodyMotion
     projected on P this is the amplitude a, also of a result that has lost its functions.
     """
     names = list(body.reduced.loads)
-    found = np.zeros((len(recording.rows), len(names)))
+    amplitudes = np.zeros((len(recording.rows), len(names)))
     for element in recording.model.loads:
         if element.body is not body:
             continue
@@ -28,5 +28,5 @@ def load_amplitudes(recording: Recording, body: Superelement, motion: BodyMotion
         known = np.r_[P[:count * D], P[modes:]]
         whole = np.hstack([local.reshape(-1, count * D), forces[:, modes:]])
         k = next(k for k, name in enumerate(names) if np.array_equal(body.reduced.loads[name], P))
-        found[:, k] -= whole @ known / max(known @ known, 1e-300)
-    return found
+        amplitudes[:, k] -= whole @ known / max(known @ known, 1e-300)
+    return amplitudes

@@ -13,20 +13,20 @@ def cautions(model: Mechanism) -> list[str]:
     for body in model.bodies.values():
         for text in body.reduced.cautions:
             owners.setdefault(text, []).append(repr(body.name))
-    found = [f"{'body' if len(names) == 1 else 'bodies'} {_listed(names)} "
-             f"{'has' if len(names) == 1 else 'have'} {text}" for text, names in owners.items()]
-    return found + _of_materials(model)
+    sentences = [f"{'body' if len(names) == 1 else 'bodies'} {_listed(names)} "
+                 f"{'has' if len(names) == 1 else 'have'} {text}" for text, names in owners.items()]
+    return sentences + _of_materials(model)
 
 
 def _of_materials(model: Mechanism) -> list[str]:
     """What speaks against the materials in units that were named."""
     if not model.units:
         return []
-    found: dict[str, None] = {}
+    sentences: dict[str, None] = {}
     for body in model.bodies.values():
         for text in doubts(body.reduced.materials, model.units):
-            found[f"body {body.name!r}: {text}"] = None
-    return list(found)
+            sentences[f"body {body.name!r}: {text}"] = None
+    return list(sentences)
 
 
 def _listed(names: list[str]) -> str:

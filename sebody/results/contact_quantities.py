@@ -61,19 +61,19 @@ def dissipation(recording: Recording, name: str) -> NDArray:
 
 def states(model: Mechanism, numbering: Numbering, frames: NDArray) -> dict[str, str]:
     """What every contact, stop and friction is in: sticks, slides, presses or open."""
-    found = {}
+    states_by_name = {}
     for load in model.loads:
         memory = element_kernel(load.kind).MEMORY
         if "normal" not in memory:
             continue
         own = dict(zip(memory, frames[numbering.memories[load]], strict=True))
         if not own["normal"] > 0:
-            found[load.name] = "open"
+            states_by_name[load.name] = "open"
         elif load.constants.get("static", 0.0) == 0.0:
-            found[load.name] = "presses"
+            states_by_name[load.name] = "presses"
         else:
-            found[load.name] = "slides" if own["slid"] > 0.5 else "sticks"
-    return found
+            states_by_name[load.name] = "slides" if own["slid"] > 0.5 else "sticks"
+    return states_by_name
 
 
 def _kept(recording: Recording, name: str, number: str, quantity: str = "") -> NDArray:

@@ -50,9 +50,9 @@ def envelope(field: FieldStates, quantity: str, static: bool,
     at_once = field.stresses(static).states_at_once if read in _OF_STRESS else AT_ONCE
     for first in range(0, len(field.t), at_once):
         states = np.arange(first, min(first + at_once, len(field.t)))
-        found = sign * read(field, states, static)
-        best = np.nan_to_num(found, nan=-np.inf).argmax(axis=0)
-        highest = found[best, np.arange(field.count)]
+        largest = sign * read(field, states, static)
+        best = np.nan_to_num(largest, nan=-np.inf).argmax(axis=0)
+        highest = largest[best, np.arange(field.count)]
         larger = highest > value
         value[larger], step[larger] = highest[larger], states[best[larger]]
     known = np.isfinite(value)

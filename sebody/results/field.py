@@ -187,17 +187,17 @@ class Field(FieldStates):
         InputError
             No such node, or one that is not among those whose data was kept.
         """
-        kept = self._recovery.nodes
-        if kept is None:
+        nodes = self._recovery.nodes
+        if nodes is None:
             return inputs.integer(node, f"node of body {self.name!r}", least=0,
                                   most=self.count - 1,
                                   remedy=f"its FE model has nodes 0 to {self.count - 1}" + (
                                       "" if self._recovery.labels is None else
                                       "; field.label(label) is the number of a label"))
         node = inputs.integer(node, f"node of body {self.name!r}", least=0)
-        place = int(np.searchsorted(kept, node))
-        if place == len(kept) or kept[place] != node:
-            raise InputError(f"node {node} of body {self.name!r} is not among the {len(kept)} "
+        place = int(np.searchsorted(nodes, node))
+        if place == len(nodes) or nodes[place] != node:
+            raise InputError(f"node {node} of body {self.name!r} is not among the {len(nodes)} "
                              "nodes whose recovery data was kept: reduce the FE model with "
                              "recover= that names it")
         return place
@@ -214,11 +214,11 @@ class Field(FieldStates):
         if labels is None:
             raise InputError(f"the nodes of body {self.name!r} have no labels: give their numbers")
         label = inputs.integer(label, "label of a node")
-        found = np.flatnonzero(labels == label)
-        if not len(found):
+        numbers = np.flatnonzero(labels == label)
+        if not len(numbers):
             raise InputError(f"body {self.name!r} has no node with the label {label}: there are "
                              f"{labels.min()} to {labels.max()}")
-        return self.number(int(found[0]))
+        return self.number(int(numbers[0]))
 
     def _state(self, step: int | None, t: float | None) -> NDArray:
         return np.array([self.state(step, t)])

@@ -63,5 +63,5 @@ def number_of(recovery: Recovery, node: int) -> int | None:
     """Number in the FE model of a node by its label, or number if it has none; None for no node."""
     if recovery.labels is None:
         return node if recovery.has(node) else None
-    found = np.flatnonzero(recovery.labels == node)
-    return recovery.number(int(found[0])) if len(found) else None
+    numbers = np.flatnonzero(recovery.labels == node)
+    return recovery.number(int(numbers[0])) if len(numbers) else None

@@ -28,10 +28,10 @@ def joints(recording: Recording) -> dict[str, Joint]:
 
 def drives(recording: Recording) -> dict[str, Joint | Motion]:
     """Drives by equations, and prescribed motions."""
-    found: dict[str, Joint | Motion] = {name: joint for name, joint in joints(recording).items()
-                                        if joint.time_function is not None}
-    return found | {motion.name: motion for dof_block in recording.model.dof_blocks()
-                    for motion in dof_block.motions}
+    by_name: dict[str, Joint | Motion] = {name: joint for name, joint in joints(recording).items()
+                                          if joint.time_function is not None}
+    return by_name | {motion.name: motion for dof_block in recording.model.dof_blocks()
+                      for motion in dof_block.motions}
 
 
 def loads(recording: Recording) -> dict[str, Element]:
@@ -79,13 +79,13 @@ def of_load(kind: str, recording: Recording, name: str) -> NDArray:
 def effort(what: str, recording: Recording, name: str) -> NDArray:
     """Thrust or torque of a drive along or about its axis, (n,): times the rate it is the power."""
     drive = drives(recording)[name]
-    own = "rotation" if what == "torque" else "position"
-    if own != driven(drive):
+    kind = "rotation" if what == "torque" else "position"
+    if kind != driven(drive):
         other = "thrust" if what == "torque" else "torque"
         raise InputError(f"drive {name!r} moves a {driven(drive)}: ask for {name}.{other}")
     if isinstance(drive, Joint):
-        values = recording.balance.of_joint(drive, own)
-        if own == "position":       # it pushes the other node along the axis
+        values = recording.balance.of_joint(drive, kind)
+        if kind == "position":       # it pushes the other node along the axis
             return -np.einsum("ni,ni->n", values, recording.balance.axes(drive)[:, :, 0])
         return values[:, 0] if recording.model.planar else np.einsum(
             "ni,ni->n", values, recording.balance.axes(drive)[:, :, 0])

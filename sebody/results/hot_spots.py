@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody import inputs
-from sebody.model.tables import table
+from sebody.model.summary import table
 from sebody.results.field import Field
 from sebody.results.units import with_unit
 from sebody.units import Units
@@ -64,7 +64,7 @@ class HotSpots(tuple):
         InputError
             pandas is missing.
         """
-        from sebody.results.tables import check_installed
+        from sebody.results.dataframes import check_installed
         check_installed("pandas")
         from pandas import DataFrame
 
@@ -103,16 +103,16 @@ def hot_spots(field: Field, count: int, apart: float, units: Units | None) -> Ho
     apart = inputs.number(apart, "apart", least=0)
     over_time = field.envelope("von_mises")
     places = field.fe_places
-    found: list[int] = []
+    nodes: list[int] = []
     for node in np.argsort(-over_time.value, kind="stable"):
-        if len(found) == count or not np.isfinite(over_time.value[node]):
+        if len(nodes) == count or not np.isfinite(over_time.value[node]):
             break
         if apart == 0 or all(np.linalg.norm(places[node] - places[other]) >= apart
-                             for other in found):
-            found.append(int(node))
+                             for other in nodes):
+            nodes.append(int(node))
     spots = HotSpots(HotSpot(
         field.called(node), float(over_time.value[node]), float(over_time.t[node]), places[node],
         field.at(field.number(node)).stress[field.state(t=float(over_time.t[node]))])
-        for node in found)
+        for node in nodes)
     spots.units = units
     return spots

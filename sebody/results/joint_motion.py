@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.numbering import stretch
 from sebody.errors import InputError
-from sebody.model.inputs import dof_block
+from sebody.model.arguments import dof_block
 from sebody.model.parts import DofBlock, Joint, Node
 from sebody.results.force_quantities import joints
 from sebody.results.recording import Recording

@@ -32,24 +32,24 @@ def least_norm(model: Mechanism, numbering: Numbering, system: System, state: St
     InputError
         A state that cannot be evaluated.
     """
-    found = rows.copy()
+    fitted = rows.copy()
     kept = [(array, array.copy()) for array in vars(state).values()
             if isinstance(array, np.ndarray)]
-    status = take_least_norm(system, state, found, _norms(model, numbering),
+    status = take_least_norm(system, state, fitted, _norms(model, numbering),
                              not system.slot_unknowns.size)
     for array, values in kept:
         array[...] = values
     if status:
         raise InputError("the multipliers of a recorded state cannot be evaluated")
-    return found
+    return fitted
 
 
 def _norms(model: Mechanism, numbering: Numbering) -> NDArray:
     """Squared norms of multipliers; of coordinates what makes constraints about equally strong."""
     square = arm(model)**2
-    found = np.where(rotational(model, numbering), square, 1.0)
+    norms = np.where(rotational(model, numbering), square, 1.0)
     for equation in model.constraints:
         first = numbering.multipliers[equation]
         if all(place.kind == "rotation" for place in equation.attachments):
-            found[first:first + equation.multipliers] = 1.0 / square
-    return found[:numbering.free]
+            norms[first:first + equation.multipliers] = 1.0 / square
+    return norms[:numbering.free]

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from sebody.assembly.motions import Motions, motions
 from sebody.assembly.numbering import record_counts
 from sebody.compiler.decorators import compiled
-from sebody.contract.layout import MOTION, OK, RECORD, RESIDUAL, Counts
+from sebody.contract.counts import Counts
+from sebody.contract.layout import MOTION, OK, RECORD, RESIDUAL
 from sebody.errors import InputError
 from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
 from sebody.model.parts import Superelement
@@ -74,13 +75,13 @@ def evaluated(group: Motions, rows: NDArray, counts: Counts) -> tuple[NDArray, i
     status : int
         OK, or why a frame is not defined.
     """
-    found = np.zeros((len(rows), len(group.bodies), group.size))
+    values = np.zeros((len(rows), len(group.bodies), group.size))
     slices = RECORD.slices(counts)
     places = np.array([slices[name].start for name in READ])
     status = _evaluate(group.address, len(group.index[0]), group.counts["n"], group.index,
                        group.constants, np.ascontiguousarray(rows), places,
-                       np.zeros(counts["kept"]), np.zeros(group.scratch), found)
-    return found, status
+                       np.zeros(counts["stored"]), np.zeros(group.scratch), values)
+    return values, status
 
 
 @compiled

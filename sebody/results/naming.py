@@ -49,12 +49,12 @@ def look_up(recording: Recording, name: str) -> NDArray:
         A name that nothing has, or a component that a quantity does not have.
     """
     whole, components = split(recording, name)
-    found = (np.column_stack([quantities.look_up(recording, one) for one in GROUPS[whole]])
-             if whole in GROUPS else quantities.look_up(recording, whole))
+    history = (np.column_stack([quantities.look_up(recording, one) for one in GROUPS[whole]])
+               if whole in GROUPS else quantities.look_up(recording, whole))
     for component in components:
-        found = component_of(whole, found, component)
+        history = component_of(whole, history, component)
         whole = f"{whole}.{component}"
-    return found
+    return history
 
 
 def values(recording: Recording, name: str) -> Values:
@@ -65,11 +65,11 @@ def values(recording: Recording, name: str) -> Values:
     InputError
         As of `look_up`.
     """
-    found = look_up(recording, name)
-    if _is_rotation(found):
-        found = rotation_vectors(found)
-    labels = [label.replace("_", " ") for label in component_names(found, name)]
-    return Values(name, tuple(labels), found.reshape(len(found), -1))
+    columns = look_up(recording, name)
+    if _is_rotation(columns):
+        columns = rotation_vectors(columns)
+    labels = [label.replace("_", " ") for label in component_names(columns, name)]
+    return Values(name, tuple(labels), columns.reshape(len(columns), -1))
 
 
 def is_known(recording: Recording, name: object) -> bool:

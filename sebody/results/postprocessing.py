@@ -33,9 +33,9 @@ def energies(system: System, state: State, rows: NDArray) -> NDArray:
     InputError
         A state that cannot be evaluated.
     """
-    found = np.zeros((len(rows), state.energy.size))
-    _over_records("energies", _evaluate_energies, system, state, rows, found)
-    return found
+    values = np.zeros((len(rows), state.energy.size))
+    _over_records("energies", _evaluate_energies, system, state, rows, values)
+    return values
 
 
 def forces(system: System, state: State, rows: NDArray) -> Forces:
@@ -46,10 +46,10 @@ def forces(system: System, state: State, rows: NDArray) -> Forces:
     InputError
         A state that cannot be evaluated.
     """
-    found = Forces(np.zeros((len(rows), state.g.size)),
-                   np.zeros((len(rows), state.residual.size)))
-    _over_records("forces", _evaluate_forces, system, state, rows, *found)
-    return found
+    recorded = Forces(np.zeros((len(rows), state.g.size)),
+                      np.zeros((len(rows), state.residual.size)))
+    _over_records("forces", _evaluate_forces, system, state, rows, *recorded)
+    return recorded
 
 
 def prescribed_powers(system: System, t: NDArray, kept: NDArray, sums: NDArray,
@@ -68,16 +68,16 @@ def prescribed_powers(system: System, t: NDArray, kept: NDArray, sums: NDArray,
     powers : (n, ports)
         Those of elements.
     """
-    found = powers.copy()
+    with_prescribed = powers.copy()
     ports = np.unique(system.prescribed[:, 1])
-    found[:, ports] = 0.0
+    with_prescribed[:, ports] = 0.0
     loads = np.zeros((len(t), 3 * powers.shape[1]))
     for k in range(len(t) if ports.size else 0):
         set_loads(system, kept[k], loads[k], t[k])
     for (coordinate, port, _), factor in zip(system.prescribed, system.prescribed_factor,
                                              strict=True):
-        found[:, port] += sums[:, coordinate] * factor * loads[:, 3 * port + 1]
-    return found
+        with_prescribed[:, port] += sums[:, coordinate] * factor * loads[:, 3 * port + 1]
+    return with_prescribed
 
 
 def constraint_residuals(system: System, state: State, rows: NDArray) -> NDArray:
@@ -88,10 +88,10 @@ def constraint_residuals(system: System, state: State, rows: NDArray) -> NDArray
     InputError
         A state that cannot be evaluated.
     """
-    found = np.zeros((len(rows), 2))
+    residuals = np.zeros((len(rows), 2))
     if system.is_multiplier.any():
-        _over_records("constraints", _evaluate_constraints, system, state, rows, found)
-    return found
+        _over_records("constraints", _evaluate_constraints, system, state, rows, residuals)
+    return residuals
 
 
 def _over_records(what: str, evaluate: Callable[..., int], system: System, state: State,

@@ -79,13 +79,13 @@ def unknown_quantity(recording: Recording, name: str) -> InputError:
     model = recording.model
     if owner in model.bodies and quantity in OF_FIELD:
         return _of_field(recording, owner, quantity)
-    found = [one for one in OWNERS if owner in one.names(recording)]
+    owners = [one for one in OWNERS if owner in one.names(recording)]
     inside = fields.QUANTITIES if owner in fields.FENodes(recording) else ()
     near = alike(name, [*names(recording), *(f"{owner}.{q}" for q in inside)], cutoff=ALIKE)
     meant = f"did you mean {' or '.join(map(repr, near))}? " if near else ""
-    if found:
+    if owners:
         return InputError(f"{quantity!r} is unknown: {meant}" + "; ".join(
-            f"a {one.kind} has {', '.join(one.quantities)}" for one in found))
+            f"a {one.kind} has {', '.join(one.quantities)}" for one in owners))
     *offers, of_fe_nodes = [one.offer.format(names=_listed(one, recording),
                                              quantities=_enumerated(one.quantities))
                             for one in OWNERS
@@ -229,7 +229,7 @@ def _modes(part: str, recording: Recording, name: str) -> NDArray:
 
 def _kept(recording: Recording, name: str) -> NDArray:
     """What a sensor, a controller or Python gave last, (n,)."""
-    return recording.recorded("frames")[:, recording.numbering.all_kept.values[name]]
+    return recording.recorded("frames")[:, recording.numbering.memory.values[name]]
 
 
 def _states(recording: Recording, name: str) -> NDArray:
@@ -238,7 +238,7 @@ def _states(recording: Recording, name: str) -> NDArray:
         if load.law is not None and load.law.controller == name:
             own = stretch(recording.numbering, load.law.states)
             return recording.recorded("v")[:, own]
-    first = recording.numbering.all_kept.states[name]
+    first = recording.numbering.memory.states[name]
     size = recording.model.controllers[name].states.size
     return recording.recorded("frames")[:, first:first + size]
 
@@ -274,7 +274,7 @@ OWNERS = (
           lambda recording: recording.numbering.port_names,
           {"work": forces.work, "power": forces.power}),
     Owner(SIGNAL, "of sensors, signals and actuators {quantities}",
-          lambda recording: recording.numbering.all_kept.values, {"value": _kept}),
+          lambda recording: recording.numbering.memory.values, {"value": _kept}),
     Owner(CONTROLLER, "of controllers {quantities}",
           lambda recording: recording.model.controllers, {"states": _states}),
     # the last one: its names are too many to be searched for names like another

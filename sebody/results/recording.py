@@ -15,7 +15,7 @@ from sebody.engine.scalars import numbers_of
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.model.mechanism import Mechanism
-from sebody.model.tables import summary
+from sebody.model.summary import summary
 from sebody.results.balance import Balance
 from sebody.results.energy_balance import energy_balance
 from sebody.results.least_norm import least_norm

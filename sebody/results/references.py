@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.model.inputs import dof_block
+from sebody.model.arguments import dof_block
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Node, Superelement
 from sebody.results.recording import Recording
@@ -148,12 +148,12 @@ class Welded:
     def candidates(self, body: Superelement) -> Iterator[Node]:
         """Nodes that displacements of a body can be measured from, each once."""
         group = self.bodies(body)
-        found: dict[str, Node] = {}
+        by_name: dict[str, Node] = {}
         for one in group:
             nodes = _full(one) if len(group) > 1 else [one.nodes[i]
                                                        for i in one.reduced.position_nodes]
-            found |= {node.name: node for node in nodes}
-        yield from found.values()
+            by_name |= {node.name: node for node in nodes}
+        yield from by_name.values()
 
     def clusters(self) -> dict[str, int]:
         """Numbers of nodes by name, equal for those that move as one."""
@@ -170,13 +170,13 @@ class Welded:
 
     def _with_joints(self) -> set[Hashable]:
         """Clusters with a joint; nodes that share a position alone have one, too."""
-        found = {self._cluster(node) for joint in self._model.joints if joint.kind != "weld"
-                 for node in (joint.node, joint.to)}
+        clusters = {self._cluster(node) for joint in self._model.joints if joint.kind != "weld"
+                    for node in (joint.node, joint.to)}
         sharing: dict[DofBlock, set[Hashable]] = {}
         for node in self._model.nodes.values():
             if node.position is not None:
                 sharing.setdefault(node.position, set()).add(self._cluster(node))
-        return found.union(*(group for group in sharing.values() if len(group) > 1))
+        return clusters.union(*(group for group in sharing.values() if len(group) > 1))
 
     def _cluster(self, node: Node) -> Hashable:
         """Representative of all nodes that move as one with a node."""

@@ -13,8 +13,8 @@ from sebody import inputs
 from sebody.engine.scalars import record
 from sebody.engine.state import CONTROL
 from sebody.files import check_target, replacing
-from sebody.model.tables import table
-from sebody.results import hdf5, naming, quantities, tables
+from sebody.model.summary import table
+from sebody.results import dataframes, hdf5, naming, quantities
 from sebody.results.advice import kernels_that_pay
 from sebody.results.cautions import cautions
 from sebody.results.field import Field
@@ -227,7 +227,7 @@ class Result(Recording):
         """
         return save_vtk(self, path, every)
 
-    def to_pandas(self, names: Iterable[str] | None = None) -> tables.DataFrame:
+    def to_pandas(self, names: Iterable[str] | None = None) -> dataframes.DataFrame:
         """Histories as columns, ``tip.position.x``, indexed by time (extra ``tables``).
 
         Parameters
@@ -240,11 +240,11 @@ class Result(Recording):
         InputError
             pandas is missing, or a name that nothing has.
         """
-        return tables.to_pandas(self, names)
+        return dataframes.to_pandas(self, names)
 
-    def to_xarray(self, names: Iterable[str] | None = None) -> tables.Dataset:
+    def to_xarray(self, names: Iterable[str] | None = None) -> dataframes.Dataset:
         """Histories as variables with their units in words (extra ``tables``); see `to_pandas`."""
-        return tables.to_xarray(self, names)
+        return dataframes.to_xarray(self, names)
 
     @classmethod
     def load(cls, path: str | Path) -> Result:

@@ -92,8 +92,8 @@ def check_tuple(kind: type[NamedTuple], values: list) -> None:
 
 @cache
 def _hints(kind: type) -> dict[str, Any]:
-    found = get_type_hints(kind)
-    return {one.name: found[one.name] for one in fields(kind)}
+    hints = get_type_hints(kind)
+    return {one.name: hints[one.name] for one in fields(kind)}
 
 
 def _fits(value: Any, hint: Any) -> bool:

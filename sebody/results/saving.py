@@ -16,7 +16,7 @@ from sebody.assembly.numbering import Numbering
 from sebody.contract.layout import RECORD_T
 from sebody.engine.state import CONTROL
 from sebody.errors import InputError
-from sebody.files.arrays import json_of, opened
+from sebody.files.array_files import json_of, opened
 from sebody.files.checksums import changed, checksums
 from sebody.files.members import Member, Table
 from sebody.files.reading import existing
@@ -62,8 +62,8 @@ def unpacked(make: Callable[..., Any], path: str | Path) -> Any:
     InputError
         No such file, one of another kind or version, or parts that do not fit together.
     """
-    found, file = existing(path, WHAT, "give one that was saved"), f"{WHAT} {path}"
-    with opened(found, WHAT, REMEDY, group=OWN.strip("/")) as reader:
+    file_path, file = existing(path, WHAT, "give one that was saved"), f"{WHAT} {path}"
+    with opened(file_path, WHAT, REMEDY, group=OWN.strip("/")) as reader:
         notes = json_of(reader, "notes")
         if notes["version"] != VERSION:
             raise InputError(f"{file} is of version {notes['version']}, this program reads "

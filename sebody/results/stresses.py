@@ -54,10 +54,10 @@ class Stresses:
         if not self._recovery.stress:
             raise InputError(f"body {body.name!r} has no known stresses: "
                              f"{body.reduced.lacks['stresses']}")
-        own = self._recovery.stress
-        self._solids = [one for one in own if isinstance(one, SolidStress)]
-        self._beams = [one for one in own if isinstance(one, BeamStress)]
-        self._modes = [one for one in own if isinstance(one, StressModes)]
+        operators = self._recovery.stress
+        self._solids = [one for one in operators if isinstance(one, SolidStress)]
+        self._beams = [one for one in operators if isinstance(one, BeamStress)]
+        self._modes = [one for one in operators if isinstance(one, StressModes)]
         n, width = len(body.reduced.stiffness), len(self._recovery.node_dofs)
         count = len(self._recovery.coordinates)
         self._shapes = [self._recovery.shapes[:, :n].reshape(count, width, n)]
@@ -80,7 +80,7 @@ class Stresses:
         section. NaN where nothing is known.
         """
         count = len(self._recovery.coordinates)
-        found = np.full((len(states), count, 6), np.nan)
+        nodal = np.full((len(states), count, 6), np.nan)
         self._refuse_strain(what)
         moved = self._moved(states)
         if self._solids:
@@ -88,14 +88,14 @@ class Stresses:
             # (elements and nodes, 6 states)
             whole = np.concatenate([part.reshape(-1, 6 * len(states)) for part in parts])
             mean = (self._averaging @ whole).reshape(count, 6, len(states)).transpose(2, 0, 1)
-            found[:, self._held] = mean[:, self._held]
+            nodal[:, self._held] = mean[:, self._held]
         for one in self._modes:
             known = np.flatnonzero(one.nodes >= 0)
             values = np.einsum("pca,sa->spc", one.modes[known], self._amplitudes[0][states])
-            found[:, one.nodes[known]] = values
+            nodal[:, one.nodes[known]] = values
         for beam in self._beams:
-            self._most_stressed(beam, beam.stress(moved), found)
-        return found
+            self._most_stressed(beam, beam.stress(moved), nodal)
+        return nodal
 
     def at_points(self, states: NDArray, what: str = "stress") -> NDArray:
         """Of all points of integration, or fibres, in the order of `places`, (states, p, 6)."""
@@ -110,10 +110,10 @@ class Stresses:
     def places(self) -> NDArray:
         """The points of integration, and the nodes of the fibres, in FE axes, (p, D)."""
         coordinates = self._recovery.coordinates
-        found = [one.places().reshape(-1, 3) for one in self._solids]
-        found += [np.repeat(coordinates[one.nodes.ravel()], one.fibres.shape[1], axis=0)
-                  for one in self._beams]
-        return np.concatenate(found + [one.points for one in self._modes])
+        points = [one.places().reshape(-1, 3) for one in self._solids]
+        points += [np.repeat(coordinates[one.nodes.ravel()], one.fibres.shape[1], axis=0)
+                   for one in self._beams]
+        return np.concatenate(points + [one.points for one in self._modes])
 
     def of_node(self, node: int, what: str = "stress") -> NDArray:
         """History at one node, (n, 6): the elements around it alone, each shape once."""
@@ -180,12 +180,12 @@ class Stresses:
 
     def _at_ends(self, node: int, what: str) -> list[NDArray]:
         """Values of unit amplitudes at the element ends at a node, (ends, ..., s) a kind."""
-        found = []
+        values = []
         for one in self._beams:
             elements, end = np.nonzero(one.nodes == node)
             if len(elements):
-                found.append(self._of_elements(one, elements, what)[np.arange(len(end)), end])
-        return found
+                values.append(self._of_elements(one, elements, what)[np.arange(len(end)), end])
+        return values
 
     def _moved(self, states: NDArray) -> NDArray:
         """DOFs of all nodes in some states, in FE axes, (nodes, width, states)."""
@@ -206,7 +206,7 @@ class Stresses:
     def _inertia(self) -> NDArray:
         """Amplitudes of the static shapes: minus the accelerations that load the body, (n, ...)."""
         reduced, m = self._body.reduced, self._motion
-        planar, held = reduced.planar, len(reduced.stiffness) - reduced.modes
+        planar, first_mode = reduced.planar, len(reduced.stiffness) - reduced.modes
         middle = reduced.coordinates.mean(axis=0)
         arm = middle - self._body.alpha @ reduced.coordinates[list(reduced.position_nodes)]
         if planar:
@@ -216,11 +216,11 @@ class Stresses:
             centre = (m.acceleration + np.cross(m.spin_rate, arm)
                       + np.cross(m.spin, np.cross(m.spin, arm)))
         felt = centre - np.einsum("nji,j->ni", m.rotation, self._gravity)
-        rigid = reduced.rigid_modes_about(middle)[:held]
-        boundary = np.hstack([felt, m.spin_rate]) @ rigid.T + m.y_second[:, :held]
+        rigid = reduced.rigid_modes_about(middle)[:first_mode]
+        boundary = np.hstack([felt, m.spin_rate]) @ rigid.T + m.y_second[:, :first_mode]
         spin, recovery = m.spin, self._recovery
         if recovery.by is not None:
-            boundary = boundary @ recovery.by[:held, :held]
+            boundary = boundary @ recovery.by[:first_mode, :first_mode]
             spin = spin if planar else spin @ recovery.axes
         pairs = [(k, j) for k in range(spin.shape[1]) for j in range(k, spin.shape[1])]
         products = np.stack([spin[:, k] * spin[:, j] for k, j in pairs], axis=1)

@@ -50,5 +50,5 @@ def unit_of_curves(name: str, units: Units | None = None) -> str:
 
 def with_unit(label: str, name: str, units: Units | None) -> str:
     """The label of an axis or a legend, with the unit of a quantity if the model has units."""
-    found = "" if units is None else unit_of_curves(name, units).replace("^2", "\u00b2")
-    return f"{label} [{found}]" if found else label
+    unit = "" if units is None else unit_of_curves(name, units).replace("^2", "\u00b2")
+    return f"{label} [{unit}]" if unit else label

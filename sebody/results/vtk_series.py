@@ -122,12 +122,12 @@ def _write_state(recording: Recording, parts: list[_Part], state: int, path: Pat
 
 def _nodes(recording: Recording, state: int) -> tuple[NDArray, NDArray]:
     """Places and velocities of the nodes of the model, (n, 3)."""
-    numbering, found = recording.numbering, []
+    numbering, parts = recording.numbering, []
     for node in recording.model.nodes.values():
         if node.position is not None and node.position in numbering.dof_blocks:
             first = numbering.dof_blocks[node.position]
-            found.append(np.arange(first, first + node.position.start.size))
-    at = np.array(found, dtype=int).reshape(-1, recording.model.dimension)
+            parts.append(np.arange(first, first + node.position.start.size))
+    at = np.array(parts, dtype=int).reshape(-1, recording.model.dimension)
     q, v = (_spatial(recording.recorded(name)[state][at]) for name in "qv")
     return q, v
 

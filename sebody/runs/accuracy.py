@@ -106,13 +106,13 @@ def _refined(model: Model, h: float, t_end: float, wanted: Tolerance, scheme: Sc
 
 def difference(one: Result, other: Result, allowed: Tolerance) -> float:
     """Largest root mean square difference of two runs on one grid, relative to the allowed one."""
-    own, rotations = placed(one.model, one.numbering), rotational(one.model, one.numbering)
+    moving, rotations = placed(one.model, one.numbering), rotational(one.model, one.numbering)
     if not one.model.planar:
-        own &= ~rotations       # these are compared by their matrices
-    q = (one.recorded("q") - other.recorded("q"))[:, own]
-    found = np.sqrt((q**2).mean(axis=0)) / allowed.allowed(one.arrays_of_loop[0].magnitude[own],
-                                                           rotations[own])
+        moving &= ~rotations       # these are compared by their matrices
+    q = (one.recorded("q") - other.recorded("q"))[:, moving]
+    errors = np.sqrt((q**2).mean(axis=0)) / allowed.allowed(one.arrays_of_loop[0].magnitude[moving],
+                                                            rotations[moving])
     R = one.recorded("R") - other.recorded("R")
     angles = np.sqrt((R**2).reshape(len(R), -1, 9).sum(axis=2).mean(axis=0) / 2.0)
-    found = np.append(found, angles / allowed.allowed(1.0, True))
-    return float(found.max(initial=0.0))
+    errors = np.append(errors, angles / allowed.allowed(1.0, True))
+    return float(errors.max(initial=0.0))

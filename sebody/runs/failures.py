@@ -42,8 +42,8 @@ def explained(model: Model, system: System, state: State, numbering: Numbering) 
 
 def _jammed(model: Model, numbering: Numbering, state: State) -> str:
     """A remark on what slides, or will: with much friction bodies may have no motion (Painleve)."""
-    found = states(model, numbering, state.frames)
-    jams = [load.name for load in model.loads if found.get(load.name) == "slides"
+    contacts = states(model, numbering, state.frames)
+    jams = [load.name for load in model.loads if contacts.get(load.name) == "slides"
             or load.constants.get("coefficient", 0.0) > MUCH]
     if not jams:
         return ""

@@ -137,11 +137,11 @@ def examples() -> dict:
     model.rigid_body("mass", "point", 1.0, 1.0)
     system, numbering = build(model)
     state = allocate(model, system, numbering, 1.0, True)
-    found = {"system": system, "state": state, "record": Record.of(state, 1), "links": system.links,
+    parts = {"system": system, "state": state, "record": Record.of(state, 1), "links": system.links,
              "scheme": generalized_alpha(), "vector": state.residual, "table": state.inverse,
              "movements": np.zeros((1, 1, 1)), "indices": np.zeros((1, 1), dtype=np.int64),
              "places": np.zeros(1, dtype=np.int64), "whole": 1, "number": 1.0, "flag": True}
-    return {name: typeof(value) for name, value in found.items()}
+    return {name: typeof(value) for name, value in parts.items()}
 
 
 def _file(name: str) -> Path | None:

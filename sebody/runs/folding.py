@@ -61,13 +61,13 @@ class Tensions(NamedTuple):
 
     def _worst(self, run: Simulation) -> tuple[str, Load] | None:
         """The body whose tension is largest against that at which it folds up."""
-        found = []
+        ratios = []
         for group in self.groups:
             motion, _ = evaluated(group, run.state.now[None], record_counts(run.numbering))
             y = motion[0][:, MOTION.slices(group.counts)["y"]]
-            found += [(name, self.axial[name].load(y[k])) for k, name in enumerate(group.bodies)
-                      if self.axial[name].bound(y[k:k + 1])[0] > NEAR]
-        return max(found, key=lambda item: item[1].folding, default=None)
+            ratios += [(name, self.axial[name].load(y[k])) for k, name in enumerate(group.bodies)
+                       if self.axial[name].bound(y[k:k + 1])[0] > NEAR]
+        return max(ratios, key=lambda item: item[1].folding, default=None)
 
 
 def _unstable(run: Simulation) -> bool:

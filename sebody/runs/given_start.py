@@ -35,18 +35,18 @@ def take(model: Mechanism, numbering: Numbering, state: State, given: Result) ->
     for dof_block in model.dof_blocks():
         if dof_block not in numbering.dof_blocks:
             continue
-        own, k = stretch(numbering, dof_block), numbering.rotations.get(dof_block)
+        at, k = stretch(numbering, dof_block), numbering.rotations.get(dof_block)
         is_given = dof_block.given or bool(dof_block.rate.any())
         if is_given or not dof_block.solved:
-            v[own] = state.v[own]
+            v[at] = state.v[at]
         if k is not None:
-            q[own] = 0.0        # in space R has the rotation, and q the increment in a step
+            q[at] = 0.0        # in space R has the rotation, and q the increment in a step
             if is_given:        # in global axes
-                v[own] = R[9 * k:9 * k + 9].reshape(3, 3).T @ state.v[own]
+                v[at] = R[9 * k:9 * k + 9].reshape(3, 3).T @ state.v[at]
     for body in model.bodies.values():
         if np.any(body.mode_rates):
-            own = slice(numbering.modes[body.name], numbering.modes[body.name] + body.reduced.modes)
-            v[own] = body.mode_rates
+            at = slice(numbering.modes[body.name], numbering.modes[body.name] + body.reduced.modes)
+            v[at] = body.mode_rates
     _check_held(model, numbering, state, q, R)
     state.q[:], state.R[:], state.v[:] = q, R, v
     state.q_old[:], state.R_old[:], state.v_old[:] = q, R, v

@@ -99,12 +99,12 @@ def _masses(system: System, state: State) -> csc_matrix:
 
 def _lengths(model: Mechanism, system: System, numbering: Numbering, state: State) -> NDArray:
     """What residuals of constraints are compared with: sizes of positions, or one radian."""
-    found = np.full(numbering.total, max(np.abs(state.q).max(), system.magnitude.max()))
+    lengths = np.full(numbering.total, max(np.abs(state.q).max(), system.magnitude.max()))
     for equation in model.constraints:
         if all(dof_block.rotational for dof_block in equation.dof_blocks):
             first = numbering.multipliers[equation]
-            found[first:first + equation.multipliers] = 1.0
-    return found
+            lengths[first:first + equation.multipliers] = 1.0
+    return lengths
 
 
 def _check(values: NDArray, size: NDArray | float, what: str, multipliers: NDArray,
@@ -170,10 +170,10 @@ def _with_mass(masses: csc_matrix, held: NDArray) -> csc_matrix:
     across = masses.shape[0]
     diagonal = np.flatnonzero(       # all of it is stored, see `assembled`
         masses.indices == np.repeat(np.arange(across), np.diff(masses.indptr)))
-    found = copy(masses)        # shares the pattern: SciPy's own copy verifies it once more
-    found.data = masses.data.copy()
-    found.data[diagonal[held]] += HEAVY * np.abs(masses.data[diagonal]).max()
-    return found
+    matrix = copy(masses)        # shares the pattern: SciPy's own copy verifies it once more
+    matrix.data = masses.data.copy()
+    matrix.data[diagonal[held]] += HEAVY * np.abs(masses.data[diagonal]).max()
+    return matrix
 
 
 def _rates(system: System, state: State, multipliers: NDArray) -> NDArray:

@@ -38,15 +38,15 @@ def changed(model: Mechanism, numbering: Numbering, state: State) -> str:
 
     Nothing where they do not.
     """
-    found = [f"{dof_block.name} {_shown(_round(state, actual))} in place of "
-             f"{_shown(dof_block.rate)}"
-             for dof_block, actual in _dof_blocks(model, numbering, state)
-             if dof_block.solved and not dof_block.given and dof_block.rate.any()
-             and _differ(state, dof_block.rate, actual)]
-    if not found:
+    blocks = [f"{dof_block.name} {_shown(_round(state, actual))} in place of "
+              f"{_shown(dof_block.rate)}"
+              for dof_block, actual in _dof_blocks(model, numbering, state)
+              if dof_block.solved and not dof_block.given and dof_block.rate.any()
+              and _differ(state, dof_block.rate, actual)]
+    if not blocks:
         return ""
     return ("rigid_velocity contradicts the initial velocities that joints and drives demand: "
-            f"{_listed(found)}; give a motion that the joints allow, or give body= and name only "
+            f"{_listed(blocks)}; give a motion that the joints allow, or give body= and name only "
             "bodies that are free to move like this")
 
 
@@ -55,11 +55,11 @@ def strained(model: Mechanism, numbering: Numbering, state: State) -> str:
 
     Their velocities are not those of a rigid motion, nor were all of them given on purpose.
     """
-    found = [body for body in model.bodies.values()
-             if _is_partly_given(body) and _share(body, numbering, state) > STRAINED]
-    if not found:
+    bodies = [body for body in model.bodies.values()
+              if _is_partly_given(body) and _share(body, numbering, state) > STRAINED]
+    if not bodies:
         return ""
-    first, others = found[0], [repr(body.name) for body in found[1:]]
+    first, others = bodies[0], [repr(body.name) for body in bodies[1:]]
     own = dict.fromkeys((*first.positions, *first.rotations))
     values = [(t, _round(state, state.v[coordinates(numbering, t)])) for t in own]
     given = [f"{t.name} {_shown(v)}" for t, v in values if _is_given(t)]

@@ -95,8 +95,8 @@ class Scaled:
     @cached_property
     def matrix(self) -> csc_matrix:
         """The scaled matrix."""
-        own = self._pattern
-        return csc_matrix((self._entries, own.indices, own.indptr), shape=own.shape)
+        pattern = self._pattern
+        return csc_matrix((self._entries, pattern.indices, pattern.indptr), shape=pattern.shape)
 
     @cached_property
     def regular(self) -> bool:
@@ -197,10 +197,10 @@ class Relaxed:
         """Solution of least norm, and the scaled residuals that remain."""
         answer = np.zeros(len(right))
         for _ in range(ATTEMPTS):
-            found = self._solve(right - self.matrix @ answer)
-            found -= self._solve(self.regularization * found)
-            answer += found
-            if np.abs(found / self.scale).max() <= SETTLED * np.abs(answer / self.scale).max():
+            correction = self._solve(right - self.matrix @ answer)
+            correction -= self._solve(self.regularization * correction)
+            answer += correction
+            if np.abs(correction / self.scale).max() <= SETTLED * np.abs(answer / self.scale).max():
                 break
         return answer, np.abs(self.scale * (right - self.matrix @ answer))
 

@@ -60,10 +60,10 @@ def untold(numbering: Numbering, h: float, begin: float, end: float) -> Iterator
     times = np.linspace(begin, end, min(SAMPLES, max(2, round((end - begin) / h) + 1)))
     for name, time_function in zip(numbering.port_names, numbering.time_functions, strict=True):
         if time_function.functions and not time_function.corners:
-            found = _jump(time_function.functions[-1].ctypes, times)
-            if found:
-                yield name, (f"the function of {name} jumps from {found[1]:.4g} to {found[2]:.4g} "
-                             f"at t = {found[0]:.9g}, which is not declared: give it as "
+            jumps = _jump(time_function.functions[-1].ctypes, times)
+            if jumps:
+                yield name, (f"the function of {name} jumps from {jumps[1]:.4g} to {jumps[2]:.4g} "
+                             f"at t = {jumps[0]:.9g}, which is not declared: give it as "
                              "with_corners(function, times), so that steps end at its jumps; "
                              "otherwise errors fall in proportion to the step only, not to "
                              "its square")

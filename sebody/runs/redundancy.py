@@ -48,13 +48,13 @@ def part_sizes(matrix: csc_matrix, system: System) -> NDArray:
     diagonal, part = np.abs(matrix.diagonal()), system.part[:n]
     # of a model whose only place is the origin: magnitudes are zero
     magnitude = np.where(system.magnitude[:n] > 0.0, system.magnitude[:n], 1.0)
-    found = np.zeros(n)
-    np.maximum.at(found, part, diagonal)
-    found = found[part]
+    sizes = np.zeros(n)
+    np.maximum.at(sizes, part, diagonal)
+    sizes = sizes[part]
     typical = (diagonal * magnitude**2).max() or 1.0    # one of a model without any inertia
-    empty = found == 0.0
-    found[empty] = typical / magnitude[empty]**2
-    return found
+    empty = sizes == 0.0
+    sizes[empty] = typical / magnitude[empty]**2
+    return sizes
 
 
 class Solver:
@@ -173,8 +173,8 @@ def massless_axes(matrix: csc_matrix, system: System) -> NDArray:
     part, inertias = system.part[:n], system.inertias[:n]
     blocks = np.tile(np.eye(3), (n, 1, 1))
     entries = matrix.tocoo()
-    own = (part[entries.row] == part[entries.col]) & ~multiplying(system)[entries.row]
-    row, column, value = entries.row[own], entries.col[own], entries.data[own]
+    inertial = (part[entries.row] == part[entries.col]) & ~multiplying(system)[entries.row]
+    row, column, value = entries.row[inertial], entries.col[inertial], entries.data[inertial]
     first = part[row]
     diagonal = np.arange(n) - part
     blocks[part, diagonal, diagonal] = 0.0

@@ -26,7 +26,7 @@ from sebody.engine.state import (
 )
 from sebody.errors import InputError
 from sebody.files import check_target, replacing
-from sebody.files.arrays import json_of, opened
+from sebody.files.array_files import json_of, opened
 from sebody.files.checksums import changed, checksums
 from sebody.files.members import Header, Member, Table
 from sebody.model.model import Model
@@ -146,20 +146,20 @@ def _other_model(file: str) -> InputError:
 
 def _members(run: Simulation) -> dict[str, Member]:
     """What the members of a file of this run are; scratch memory may hold anything."""
-    found = {"rows": Member((None, "width")), "regularized": Member((1,), "i", least=0),
-             "massless": Member((1,), "i", least=0)}
+    members = {"rows": Member((None, "width")), "regularized": Member((1,), "i", least=0),
+               "massless": Member((1,), "i", least=0)}
     for name in ("inertias", "massless_axes"):
-        found[name] = Member(getattr(run.system, name).shape, least=0)
+        members[name] = Member(getattr(run.system, name).shape, least=0)
     for name, array in _arrays(run.state).items():
-        found[name] = Member(array.shape, array.dtype.kind, finite=name in FINITE)
-    return found
+        members[name] = Member(array.shape, array.dtype.kind, finite=name in FINITE)
+    return members
 
 
 def _arrays(state: State) -> dict[str, NDArray]:
     """The members of a state by name; scalars as arrays that share their memory."""
-    found = {field.name: getattr(state, field.name) for field in fields(State)}
+    arrays = {field.name: getattr(state, field.name) for field in fields(State)}
     return {name: numbers_of(value) if isinstance(value, np.record) else value
-            for name, value in found.items()}
+            for name, value in arrays.items()}
 
 
 def _check_numbers(table: Table, run: Simulation, arrays: Mapping[str, NDArray]) -> None:

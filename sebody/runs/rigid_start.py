@@ -97,10 +97,10 @@ def _sizes(masses: csc_matrix, kinds: NDArray, system: System) -> NDArray:
     All of a kind have that of the largest: light bodies between heavy ones follow from the
     constraints, not from small differences.
     """
-    n, found = masses.shape[0], np.zeros(kinds.max() + 1)
+    n, inertias = masses.shape[0], np.zeros(kinds.max() + 1)
     moving = np.flatnonzero(system.is_multiplier[:n] == 0.0)
-    np.maximum.at(found, kinds[moving], part_sizes(masses, system)[moving])
-    return np.where(found > 0.0, found, 1.0)[kinds]
+    np.maximum.at(inertias, kinds[moving], part_sizes(masses, system)[moving])
+    return np.where(inertias > 0.0, inertias, 1.0)[kinds]
 
 
 class _Saddle:
@@ -139,9 +139,9 @@ class _Saddle:
         right = self._scale * np.concatenate([right, deformation])
         answer = np.zeros(len(right))
         for _ in range(REFINED):
-            found = self._factors.solve(right - self._matrix @ answer)
-            answer += found
-            if np.abs(found).max() <= SETTLED * np.abs(answer).max():
+            changes = self._factors.solve(right - self._matrix @ answer)
+            answer += changes
+            if np.abs(changes).max() <= SETTLED * np.abs(answer).max():
                 break
         return (self._scale * answer)[:self._n]
 
@@ -162,12 +162,12 @@ class _Deformation(NamedTuple):
         reduced, first = body.reduced, numbering.modes[body.name]
         dof_blocks = (*body.positions, *body.rotations)
         boundary = [c for t in dof_blocks for c in coordinates(numbering, t)]
-        own = np.array([*boundary, *range(first, first + reduced.modes)])
+        inner = np.array([*boundary, *range(first, first + reduced.modes)])
         weights = np.sqrt(_weights(reduced.mass.diagonal(), dof_blocks))
         rows = null_space((weights[:, None] * _rigid(model, dof_blocks, numbering, state,
-                                                     len(own))).T).T * weights
-        modes = rows[:, len(own) - reduced.modes:] @ body.mode_rates
-        return cls(rows, own, *_by_unknowns(model, body, numbering, state), modes)
+                                                     len(inner))).T).T * weights
+        modes = rows[:, len(inner) - reduced.modes:] @ body.mode_rates
+        return cls(rows, inner, *_by_unknowns(model, body, numbering, state), modes)
 
     def rates(self, v: NDArray) -> NDArray:
         """Rates of deformation beyond those that were given."""
@@ -176,29 +176,29 @@ class _Deformation(NamedTuple):
 
 def _weights(masses: NDArray, dof_blocks: tuple[DofBlock, ...]) -> NDArray:
     """Masses of a body's coordinates, the same for all axes of a position or rotation."""
-    found, row = np.maximum(masses, LEAST * np.abs(masses).mean()), 0
+    weights, row = np.maximum(masses, LEAST * np.abs(masses).mean()), 0
     for dof_block in dof_blocks:
         size = dof_block.start.size
-        found[row:row + size] = found[row:row + size].mean()
+        weights[row:row + size] = weights[row:row + size].mean()
         row += size
-    return found
+    return weights
 
 
 def _rigid(model: Mechanism, dof_blocks: tuple[DofBlock, ...], numbering: Numbering, state: State,
            count: int) -> NDArray:
     """Velocities of a body's coordinates in rigid motions of where it is, (count, motions)."""
     d, turns = model.dimension, model.rotation_size
-    found, row = np.zeros((count, d + turns)), 0
+    rates, row = np.zeros((count, d + turns)), 0
     middle = np.mean([state.q[stretch(numbering, t)] for t in dof_blocks if not t.rotational]
                      or [np.zeros(d)], axis=0)
     for dof_block in dof_blocks:
         if dof_block.rotational:
-            found[row:row + turns, d:] = _orientation(model, dof_block, numbering, state).T
+            rates[row:row + turns, d:] = _orientation(model, dof_block, numbering, state).T
         else:
-            found[row:row + d, :d] = np.eye(d)
-            found[row:row + d, d:] = _turned(state.q[stretch(numbering, dof_block)] - middle)
+            rates[row:row + d, :d] = np.eye(d)
+            rates[row:row + d, d:] = _turned(state.q[stretch(numbering, dof_block)] - middle)
         row += dof_block.start.size
-    return found
+    return rates
 
 
 def _orientation(model: Mechanism, dof_block: DofBlock, numbering: Numbering,
@@ -244,8 +244,8 @@ def _by_unknowns(model: Mechanism, body: Superelement, numbering: Numbering,
 
     def add(row: int, dof_block: DofBlock, block: NDArray) -> None:
         if dof_block.solved:
-            own = [column.setdefault(c, len(column)) for c in coordinates(numbering, dof_block)]
-            blocks.append((row, own, block))
+            columns = [column.setdefault(c, len(column)) for c in coordinates(numbering, dof_block)]
+            blocks.append((row, columns, block))
 
     row = 0
     for dof_block in (*body.positions, *body.rotations):
@@ -263,9 +263,9 @@ def _by_unknowns(model: Mechanism, body: Superelement, numbering: Numbering,
                     add(row, rotation, _turned(R @ arm) @ R)
         row += size
     modes, first = body.reduced.modes, numbering.modes[body.name]
-    own = [column.setdefault(first + k, len(column)) for k in range(modes)]
-    blocks.append((row, own, np.eye(modes)))
+    columns = [column.setdefault(first + k, len(column)) for k in range(modes)]
+    blocks.append((row, columns, np.eye(modes)))
     places = np.zeros((row + modes, len(column)))
-    for row, own, block in blocks:
-        places[row:row + len(block), own] += block
+    for row, columns, block in blocks:
+        places[row:row + len(block), columns] += block
     return np.array(list(column), dtype=int), places

@@ -84,14 +84,14 @@ class Spin:
         velocity, place, rate = (_Blocks() for _ in range(3))
         for dof_block, at in _dof_blocks(run):
             if not dof_block.rotational:
-                own = self.across
-                velocity.add(at, at, own)
-                place.add(at, at, own @ own)
-                rate.add(at, at, 2.0 * own)
+                across = self.across
+                velocity.add(at, at, across)
+                place.add(at, at, across @ across)
+                rate.add(at, at, 2.0 * across)
             elif not self.planar:
-                own = skew(_material(run, dof_block, self))
-                velocity.add(at, at, own)
-                rate.add(at, at, own)
+                across = skew(_material(run, dof_block, self))
+                velocity.add(at, at, across)
+                rate.add(at, at, across)
         total = run.numbering.total
         return tuple(one.matrix(total, total) for one in (velocity, place, rate))
 

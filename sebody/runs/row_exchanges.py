@@ -74,12 +74,12 @@ class RowExchanges:
         scale = diags(self.state.scale[:self.system.diagonal.size])
         matrix = csc_matrix(scale @ assembled(self.system, self.state) @ scale)
         try:
-            found = factors(matrix, permc_spec="NATURAL", diag_pivot_thresh=THRESHOLD)
+            factors_of_it = factors(matrix, permc_spec="NATURAL", diag_pivot_thresh=THRESHOLD)
         except RuntimeError:
             self._factors = None
             return False
-        self._factors = found
-        pivots = np.abs(found.U.diagonal())
+        self._factors = factors_of_it
+        pivots = np.abs(factors_of_it.U.diagonal())
         return bool(pivots.min() >= SINGULAR * pivots.max())
 
     def _solved(self, right: NDArray) -> NDArray:

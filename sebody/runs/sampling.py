@@ -37,14 +37,14 @@ class Sampling:
         self.model, self.numbering, self.system, self.state = model, numbering, system, state
         kinds = system.control.channels[:, 0]
         self._outside = [(COUNTS + system.control.periods.size + k, sensor)
-                         for k, sensor in enumerate(numbering.all_kept.sensors)
+                         for k, sensor in enumerate(numbering.memory.sensors)
                          if kinds[k] == OUTSIDE]
         self._readers: dict[str, Callable[[], float | NDArray]] = {}
         # users' functions may change or jump, and short pulses be missed: for each piece to see
         self.needs_looks = any(True for _ in functions(model)) or any(
             len(one.times) > 1 or one.waves for one in numbering.time_functions)
         self._driven = {out: one.name for one in continuous(model) for out in one.outputs}
-        self._numbers = {name: k for k, name in enumerate(numbering.all_kept.ports)
+        self._numbers = {name: k for k, name in enumerate(numbering.memory.ports)
                          if name not in self._driven}
 
     @property
@@ -93,11 +93,11 @@ class Sampling:
     def _check_number(self, sensor: Sensor) -> None:
         name, quantity = sensor.name, sensor.quantity
         try:
-            found = _measured(self._row(), sensor)
+            value = _measured(self._row(), sensor)
         except InputError as error:
             raise InputError(f"sensor {name!r}: {error}") from error
-        if found.ndim > 1:
-            parts = "xyz"[:found.shape[1]] if found.ndim == 2 and found.shape[1] < 4 else "012"
+        if value.ndim > 1:
+            parts = "xyz"[:value.shape[1]] if value.ndim == 2 and value.shape[1] < 4 else "012"
             given = ", ".join(f"{quantity}.{part}" for part in parts[:3])
             raise InputError(f"sensor {name!r} measures {quantity!r}, which is several numbers: "
                              f"give one of them, such as {given}")
@@ -149,7 +149,7 @@ class Sampling:
         return reader()
 
     def _reader(self, name: str) -> Callable[[], float | NDArray]:
-        now, frames, values = self.state.now, self.state.frames, self.numbering.all_kept.values
+        now, frames, values = self.state.now, self.state.frames, self.numbering.memory.values
         if name in values:
             place = values[name]
             return lambda: float(frames[place])

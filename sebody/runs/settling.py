@@ -95,9 +95,9 @@ def settle(run: Simulation, tolerance: float, spin: Spin, near: bool) -> bool:
     last = np.inf
     for _ in range(STEPS):
         kept, ending = run.state.now.copy(), rate <= LAST * pace
-        found = balance(run, tolerance, spin, _springs(run, rate))
+        state = balance(run, tolerance, spin, _springs(run, rate))
         moved = size(run, _moved(run, kept))
-        if not found or moved > FAR:
+        if not state or moved > FAR:
             run.state.now[:] = kept
             rate, faster = AGAIN * rate, max(np.sqrt(faster), SLOWEST)
             if rate > pace / LAST:
@@ -171,14 +171,14 @@ def _displacement(run: Simulation, q: NDArray, R: NDArray) -> NDArray:
     In the axes of the unknowns.
     """
     state, n = run.state, run.numbering.free
-    found = state.q - q
+    change = state.q - q
     if len(R):
         relative = np.swapaxes(R.reshape(-1, 3, 3), 1, 2) @ state.R.reshape(-1, 3, 3)
         at = run.system.rotation_at[:, None] + np.arange(3)
-        found[at] = rotations.vectors(relative)
-    found *= run.system.is_multiplier[:found.size] == 0.0
-    to_body_axes(run.system, state.frames, found, False)
-    return found[:n]
+        change[at] = rotations.vectors(relative)
+    change *= run.system.is_multiplier[:change.size] == 0.0
+    to_body_axes(run.system, state.frames, change, False)
+    return change[:n]
 
 
 def _pace(run: Simulation, spin: Spin) -> float:

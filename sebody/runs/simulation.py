@@ -20,7 +20,7 @@ from sebody.engine.system import System
 from sebody.errors import InputError, Interrupted, SimulationError
 from sebody.limits.watch import Watch
 from sebody.model.model import Model
-from sebody.model.tables import summary
+from sebody.model.summary import summary
 from sebody.results.recording import Start
 from sebody.results.result import Result
 from sebody.runs import user_faults
@@ -267,11 +267,11 @@ class Simulation:
     def result(self) -> Result:
         """The results computed so far."""
         self.flush()
-        found = Result(self.model, self.numbering, self.system, self.state,
-                       self.rows.all(), self.seconds, self.failure, self.start)
-        found.warnings = (self.watch.judge(found) if found.steps else
-                          tuple(self.watch.messages))
-        return found
+        results = Result(self.model, self.numbering, self.system, self.state,
+                         self.rows.all(), self.seconds, self.failure, self.start)
+        results.warnings = (self.watch.judge(results) if results.steps else
+                            tuple(self.watch.messages))
+        return results
 
     def _fitting(self, scheme: Scheme | None, variable: bool) -> Scheme:
         """The given scheme, or by default one that suits the steps and the constraints."""
@@ -286,12 +286,12 @@ class Simulation:
     def _choose_steps(self, tolerance: Tolerance) -> None:
         """Switch on variable steps; the first step is short against the accelerations."""
         n, state = self.numbering.free, self.state
-        own = np.flatnonzero(placed(self.model, self.numbering)[:n])
-        sizes = self.system.magnitude[own]
+        coordinates = np.flatnonzero(placed(self.model, self.numbering)[:n])
+        sizes = self.system.magnitude[coordinates]
         if tolerance.position == 0.0 and not np.all(sizes):
             self.watch.say("unsized", UNSIZED)
-        state.error_weights[own] = 1.0 / tolerance.allowed(
-            sizes, rotational(self.model, self.numbering)[own])
+        state.error_weights[coordinates] = 1.0 / tolerance.allowed(
+            sizes, rotational(self.model, self.numbering)[coordinates])
         bend = np.abs(state.a[:n] * state.error_weights[:n]).max()
         state.clock.chosen = min(self.h, 0.1 / np.sqrt(bend)) if bend > 0 else FIRST_STEP * self.h
         state.clock.largest_error = 0.0

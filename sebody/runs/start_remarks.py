@@ -14,9 +14,9 @@ MOST = 6        # bodies that a message lists
 
 def start_remarks(model: Mechanism, numbering: Numbering, state: State) -> dict[str, str]:
     """Warnings by key of a model in the state that a run starts from."""
-    found = {"changed": changed(model, numbering, state),
-             "strained": strained(model, numbering, state), "falling": _falling(model)}
-    return {key: message for key, message in found.items() if message}
+    remarks = {"changed": changed(model, numbering, state),
+               "strained": strained(model, numbering, state), "falling": _falling(model)}
+    return {key: message for key, message in remarks.items() if message}
 
 
 def _falling(model: Mechanism) -> str:

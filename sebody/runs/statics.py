@@ -75,26 +75,26 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     tensions = Tensions.of(run)
     share, step, slack = 0.0, 1.0 / steps, False
     while share < 1.0 - 1e-12:
-        kept = state.now.copy()
+        start_state = state.now.copy()
         target = min(share + step, 1.0)
         state.loads[:], state.coefficients[FIELD:] = target * loads, target * field
         spinning = steady.times(np.sqrt(target))
-        found = balance(run, tolerance, spinning, stiff=slack)
-        if not found and (slack or steady.rotates or share == 0.0 and step == 1.0 / steps):
+        at_rest = balance(run, tolerance, spinning, stiff=slack)
+        if not at_rest and (slack or steady.rotates or share == 0.0 and step == 1.0 / steps):
             # nothing may hold it at the start, and motions of one that spins may have no stiffness
-            state.now[:] = kept
-            found = settle(run, tolerance, spinning, near=slack)
-            slack |= found and not steady.rotates
-        if found:
+            state.now[:] = start_state
+            at_rest = settle(run, tolerance, spinning, near=slack)
+            slack |= at_rest and not steady.rotates
+        if at_rest:
             if not steady.rotates and (folded := tensions.spurious(run)):
-                state.now[:] = kept
+                state.now[:] = start_state
                 raise SimulationError(f"the equilibrium at {target:.4g} of the load {folded}",
                                       _result(run, loads, field))
             share = target
             state.now[RECORD_T] = share
             run.rows.stretches.append(state.now[None].copy())
             continue
-        state.now[:] = kept
+        state.now[:] = start_state
         step /= 2
         if step < SMALLEST:
             reason = user_faults.fault(model, -np.inf) or tensions.reason(run) or (
@@ -116,19 +116,19 @@ def _refuse_states(model: Model) -> None:
 
 def _result(run: Simulation, loads: NDArray, field: NDArray) -> Result:
     run.watch.look(run.model, run.numbering, run.rows.all())
-    found = run.result()
-    found.forces = _forces(run, found.unique_rows, loads, field)
-    return found
+    results = run.result()
+    results.forces = _forces(run, results.unique_rows, loads, field)
+    return results
 
 
 def _forces(run: Simulation, rows: NDArray, loads: NDArray, field: NDArray) -> Forces:
     """Forces under the share of the load of each row; the time in a row is that share."""
-    state, found = run.state, []
+    state, forces = run.state, []
     kept = [array.copy() for array in (state.now, state.loads, state.coefficients)]
     for row in rows:
         state.now[:], share = row, row[RECORD_T]
         state.loads[:], state.coefficients[FIELD:] = share * loads, share * field
         evaluate(run.system, state, RESIDUAL, RESIDUAL, "a load step")
-        found.append((state.g.copy(), state.residual.copy()))
+        forces.append((state.g.copy(), state.residual.copy()))
     state.now[:], state.loads[:], state.coefficients[:] = kept
-    return Forces(*(np.array(values) for values in zip(*found, strict=True)))
+    return Forces(*(np.array(values) for values in zip(*forces, strict=True)))

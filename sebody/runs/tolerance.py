@@ -57,9 +57,9 @@ class Tolerance(NamedTuple):
             Positions or rotations are allowed less than `FINEST`.
         """
         sizes, rotational = np.array([extent, 1.0]), np.array([False, True])
-        found = (self.allowed(sizes, rotational) / sizes)[sizes > 0.0].min()
-        if found < FINEST:
-            raise InputError(f"the tolerance allows errors of {found:.3g}, relative to the model's "
+        least = (self.allowed(sizes, rotational) / sizes)[sizes > 0.0].min()
+        if least < FINEST:
+            raise InputError(f"the tolerance allows errors of {least:.3g}, relative to the model's "
                              f"characteristic length or in radians: give at least {FINEST:g}, "
                              "below which shorter steps do not help")
 
@@ -70,9 +70,9 @@ class Tolerance(NamedTuple):
         relative to one unit of length (`UNSIZED`).
         """
         absolute = np.where(rotational, self.rotation, self.position)
-        found = absolute + self.relative * np.asarray(magnitude)
-        found = np.where(found == 0.0, self.relative, found)
-        return found
+        errors = absolute + self.relative * np.asarray(magnitude)
+        errors = np.where(errors == 0.0, self.relative, errors)
+        return errors
 
 
 def given(tolerance: Tolerance | None) -> Tolerance | None:

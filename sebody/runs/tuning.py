@@ -71,8 +71,8 @@ def _mobility(row: NDArray, solve: Callable[[NDArray], NDArray], system: System,
     """
     own = row[:free] != 0.0
     alone = float((row[:free][own]**2 / np.maximum(system.inertias[:free][own], 1e-300)).sum())
-    found = float(response(row, solve, system, state, free) @ row)
-    return found if found > STILL * alone else max(alone, 1e-300)
+    mobility = float(response(row, solve, system, state, free) @ row)
+    return mobility if mobility > STILL * alone else max(alone, 1e-300)
 
 
 def response(row: NDArray, solve: Callable[[NDArray], NDArray], system: System, state: State,
@@ -80,11 +80,11 @@ def response(row: NDArray, solve: Callable[[NDArray], NDArray], system: System, 
     """Accelerations by a unit force along a direction, (coordinates,)."""
     force = row.copy()
     to_body_axes(system, state.frames, force, False)
-    found = np.zeros(len(row))
-    found[:free] = solve(force[:free])
-    found *= system.is_multiplier[:len(row)] == 0.0
-    to_body_axes(system, state.frames, found, True)
-    return found
+    accelerations = np.zeros(len(row))
+    accelerations[:free] = solve(force[:free])
+    accelerations *= system.is_multiplier[:len(row)] == 0.0
+    to_body_axes(system, state.frames, accelerations, True)
+    return accelerations
 
 
 class _Constants:
@@ -272,13 +272,13 @@ class LoadedBristles:
         """Set the bristles; those that would be bent beyond their limit slide."""
         at = 0
         for one in self.held:
-            own = slice(at, at + len(one.rows))
-            at = own.stop
+            rows = slice(at, at + len(one.rows))
+            at = rows.stop
             limit = one.constants["static"] * one.lever * self.state.frames[one.normal]
-            size = np.linalg.norm(forces[own])
+            size = np.linalg.norm(forces[rows])
             if size > limit * (1.0 + 1e-12):
-                slides[own] = True
-                forces[own] *= BEYOND * max(limit, 1e-300) / size
+                slides[rows] = True
+                forces[rows] *= BEYOND * max(limit, 1e-300) / size
             else:
-                slides[own] = False
-            self.state.frames_old[one.bent] = one.axes @ forces[own] / one.constants["bristle"]
+                slides[rows] = False
+            self.state.frames_old[one.bent] = one.axes @ forces[rows] / one.constants["bristle"]

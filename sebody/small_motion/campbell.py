@@ -103,14 +103,14 @@ def campbell(model: Model, speeds: ArrayLike, axis: ArrayLike | None = None, cou
         if not length > 0.0:
             raise InputError("axis has no length: give its direction")
         spins = speeds[:, None] * (direction / length)
-    found: list[Modes] = [modes(equilibrium(model, steps, spin=spin), spin) for spin in spins]
-    if len(found[0].values) < count:
-        raise InputError(f"count is {count}, but there are {len(found[0].values)} modes: ask for "
+    rows: list[Modes] = [modes(equilibrium(model, steps, spin=spin), spin) for spin in spins]
+    if len(rows[0].values) < count:
+        raise InputError(f"count is {count}, but there are {len(rows[0].values)} modes: ask for "
                          "fewer")
     chosen = [np.arange(count)]
-    for last, now in zip(found, found[1:], strict=False):
+    for last, now in zip(rows, rows[1:], strict=False):
         chosen.append(_followed(last, chosen[-1], now))
-    values = np.array([one.values[own] for one, own in zip(found, chosen, strict=True)])
+    values = np.array([one.values[own] for one, own in zip(rows, chosen, strict=True)])
     return Campbell(speeds, values.imag, values.real)
 
 

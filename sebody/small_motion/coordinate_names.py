@@ -9,20 +9,20 @@ from sebody.runs.simulation import Simulation
 def coordinate_names(run: Simulation | Result) -> list[str]:
     """Names of all coordinates; rotations in space are about the axes of their node."""
     model, numbering = run.model, run.numbering
-    found = list(numbering.names)
+    names = list(numbering.names)
     for node in model.nodes.values():
         for kind in ("position", "rotation"):
             dof_block = getattr(node, kind)
             if dof_block is None or dof_block not in numbering.dof_blocks:
                 continue
             first, size = numbering.dof_blocks[dof_block], dof_block.start.size
-            if found[first] == numbering.names[first]:      # of nodes that share it, the first
+            if names[first] == numbering.names[first]:      # of nodes that share it, the first
                 labels = [f".{axis}" for axis in AXES[:size]] if size > 1 else [""]
-                found[first:first + size] = [f"{node.name}.{kind}{label}" for label in labels]
+                names[first:first + size] = [f"{node.name}.{kind}{label}" for label in labels]
     for name, body in model.bodies.items():
         first = numbering.modes[name]
         for k in range(body.reduced.modes):
-            found[first + k] = f"{name}.modes.{k}"
+            names[first + k] = f"{name}.modes.{k}"
     for coordinate, name in hidden_states(model, numbering).items():
-        found[coordinate] = f"integral of {name}"
-    return found
+        names[coordinate] = f"integral of {name}"
+    return names

@@ -49,14 +49,14 @@ def eigenvalues(M: NDArray, C: NDArray, K: NDArray) -> Eigenvalues:
     try:
         L = cholesky((M + M.T) / 2, lower=True)
     except LinAlgError:
-        found = _without_mass(M, C, K)
+        roots = _without_mass(M, C, K)
     else:
         own = _by_mass(*(_over(A, L) for A in (C, K)), *_noise(M, K, L))
-        found = own._replace(right=_under(own.right, L), left=_under(own.left, L))
-    order = np.lexsort((found.values.real, found.values.imag))
-    values, right, left = found.values[order], found.right[:, order], found.left[:, order]
+        roots = own._replace(right=_under(own.right, L), left=_under(own.left, L))
+    order = np.lexsort((roots.values.real, roots.values.imag))
+    values, right, left = roots.values[order], roots.right[:, order], roots.left[:, order]
     return Eigenvalues(values, _normalised(right),
-                       _rounding(M, C, K, values, right, left) + found.added)
+                       _rounding(M, C, K, values, right, left) + roots.added)
 
 
 def _over(A: NDArray, L: NDArray) -> NDArray:
@@ -94,8 +94,8 @@ def _by_mass(C: NDArray, K: NDArray, inert: NDArray, elastic: NDArray) -> _Pairs
     forces = V * k if conservative else K @ V
     A = np.block([[np.zeros((n, n)), D[:, None] * V.T], [-forces / D, -C]])
     values, left, right = eig(A, left=True)
-    kept = values.imag >= 0.0
-    return _Pairs(values[kept], V @ (right[:n, kept] / D[:, None]), left[n:, kept],
+    upper = values.imag >= 0.0
+    return _Pairs(values[upper], V @ (right[:n, upper] / D[:, None]), left[n:, upper],
                   n * EPS * fastest + damping * conservative)
 
 
@@ -124,9 +124,9 @@ def _without_mass(M: NDArray, C: NDArray, K: NDArray) -> _Pairs:
     identity, zero = np.eye(n), np.zeros((n, n))
     values, left, right = eig(np.block([[zero, identity], [-K, -C]]),
                               np.block([[identity, zero], [zero, M]]), left=True)
-    kept = np.isfinite(values) & (values.imag >= 0.0)
-    return _Pairs(values[kept], right[:n, kept], left[n:, kept],
-                  EPS * np.abs(values[kept]).max(initial=0.0))
+    finite = np.isfinite(values) & (values.imag >= 0.0)
+    return _Pairs(values[finite], right[:n, finite], left[n:, finite],
+                  EPS * np.abs(values[finite]).max(initial=0.0))
 
 
 def _rounding(M: NDArray, C: NDArray, K: NDArray, values: NDArray, right: NDArray, left: NDArray

@@ -150,14 +150,14 @@ def by_amplitude(run: Simulation | Result, load: Element) -> tuple[NDArray, NDAr
     the difference is exact.
     """
     state, at = run.state, 3 * run.numbering.ports[load]
-    kept, found = state.loads.copy(), []
+    kept, derivatives = state.loads.copy(), []
     set_loads(run.system, state.frames, state.loads, state.now[RECORD_T])
     for step in (0.5, -1.0):
         state.loads[at] += step
         evaluate(run.system, state, RESIDUAL, RESIDUAL, "the state")
-        found.append((state.g.copy(), state.residual.copy()))
+        derivatives.append((state.g.copy(), state.residual.copy()))
     state.loads[:] = kept
-    forces, residual = (high - low for high, low in zip(*found, strict=True))
+    forces, residual = (high - low for high, low in zip(*derivatives, strict=True))
     to_body_axes(run.system, state.frames, residual, False)
     return forces, -residual[:run.numbering.free]
 
@@ -168,7 +168,7 @@ def _answers(matrices: tuple[NDArray, ...], push: NDArray, omega: NDArray) -> ND
     # unknowns of different units: rows and columns of one size, for the judgment of solvability
     size = np.sqrt(np.abs(stiffness).max(axis=1) + np.abs(mass).max(axis=1))
     size[size == 0.0] = 1.0
-    found = []
+    responses = []
     for w in omega:
         A = (stiffness - w * w * mass + 1j * w * damping) / np.outer(size, size)
         try:
@@ -181,5 +181,5 @@ def _answers(matrices: tuple[NDArray, ...], push: NDArray, omega: NDArray) -> ND
             raise InputError(f"the response at omega = {w:.6g} is infinite: the undamped model has "
                              "a natural frequency there, or a motion without stiffness; add "
                              "damping, or leave out this frequency")
-        found.append(answer / size)
-    return np.array(found).reshape(len(omega), -1)
+        responses.append(answer / size)
+    return np.array(responses).reshape(len(omega), -1)

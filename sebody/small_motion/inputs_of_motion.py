@@ -49,17 +49,17 @@ def found(run: Simulation | Result, spin: Spin, name: str) -> Input:
     if not known:
         raise InputError("the model has no load, actuator or drive, so no input: add one, a load "
                          "of amplitude 0 if it shall not act at rest")
-    own = known[inputs.choice(name, "input", known)]
-    if own.time_function.is_time:
+    input = known[inputs.choice(name, "input", known)]
+    if input.time_function.is_time:
         raise InputError(f"{name!r} is a user force, which has no amplitude: name a load, an "
                          "actuator or a drive")
     none = np.zeros(run.numbering.total)
-    if isinstance(own, Motion):
-        return _of_motion(run, spin, own)
-    if own.multipliers:
-        forces, push = _by_drive(run, own)
+    if isinstance(input, Motion):
+        return _of_motion(run, spin, input)
+    if input.multipliers:
+        forces, push = _by_drive(run, input)
         return Input(name, np.stack([push, 0 * push, 0 * push]), forces, none, True)
-    forces, push = by_amplitude(run, own)
+    forces, push = by_amplitude(run, input)
     return Input(name, np.stack([push, 0 * push, 0 * push]), forces, none, False)
 
 

@@ -203,10 +203,10 @@ def modes(run: Simulation | Result, spin: ArrayLike | None = None) -> Modes:
     positive, growth is zero by construction. Otherwise a growth below `Modes.rounding` is none.
     """
     M, C, K, free = linearize(run, spin)[:4]
-    found = eigenvalues(M, C, K)
+    roots = eigenvalues(M, C, K)
     # on integrals of controllers' states nothing depends: each has the value 0, which is no mode
-    own = np.sort(np.argsort(np.abs(found.values), kind="stable")[
+    order = np.sort(np.argsort(np.abs(roots.values), kind="stable")[
         len(hidden_states(run.model, run.numbering)):])
-    shapes = free @ found.shapes[:, own]
-    return Modes(found.values[own], shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300),
-                 Shapes(run), found.rounding[own])
+    shapes = free @ roots.shapes[:, order]
+    return Modes(roots.values[order], shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300),
+                 Shapes(run), roots.rounding[order])

@@ -100,10 +100,10 @@ def _moved_rows(run: Simulation | Result, along: Moves, small: float
     extent = np.full(numbering.total, np.inf)   # of what has no size of its own: any
     rotated = {}
     for dof_block in numbering.dof_blocks:
-        own = coordinates(numbering, dof_block)
-        extent[own] = 1.0 if dof_block.rotational else run.model.size()
+        columns = coordinates(numbering, dof_block)
+        extent[columns] = 1.0 if dof_block.rotational else run.model.size()
         if dof_block.rotational and not run.model.planar:
-            rotated[numbering.rotations[dof_block]] = own
+            rotated[numbering.rotations[dof_block]] = columns
     largest = (np.abs(along.positions) / extent).max(axis=1)
     scale = small / np.where(largest > 0, largest, 1.0)
     parts = state.recorded_parts
@@ -111,41 +111,41 @@ def _moved_rows(run: Simulation | Result, along: Moves, small: float
     for name, values in zip("qva", along, strict=True):
         rows[:, parts[name]] += _steps(scale[:, None] * values)
     turns = _steps(scale[:, None] * along.positions)
-    for number, own in rotated.items():
+    for number, columns in rotated.items():
         first = parts["R"].start + 9 * number
         R = rows[:, first:first + 9].reshape(-1, 3, 3)
-        rows[:, first:first + 9] = (R @ rotations.matrices(turns[:, own])).reshape(-1, 9)
+        rows[:, first:first + 9] = (R @ rotations.matrices(turns[:, columns])).reshape(-1, 9)
     return rows, scale
 
 
 def _forces(run: Simulation | Result, along: Moves) -> NDArray:
     """Change of the forces of all elements along some motions, by the exact matrices."""
-    found = np.zeros((len(along.positions), run.state.g.size))
+    forces = np.zeros((len(along.positions), run.state.g.size))
     for values, weights in zip(along, ((0, 0, 1), (0, 1, 0), (1, 0, 0)), strict=True):
         derivative(run, *map(float, weights))
-        found += (by_element(run) @ values.T).T
-    return found
+        forces += (by_element(run) @ values.T).T
+    return forces
 
 
 def _sums(run: Simulation | Result, elements: NDArray, rows: NDArray) -> NDArray:
     """Sums of the forces of elements; those on ends of rigid links act on roots and rotations."""
     system, parts = run.system, run.state.recorded_parts
-    found = np.zeros((len(rows), run.numbering.total))
-    for row, forces, sums in zip(rows, elements, found, strict=True):
+    totals = np.zeros((len(rows), run.numbering.total))
+    for row, forces, sums in zip(rows, elements, totals, strict=True):
         np.add.at(sums, system.g_unknown, forces)
         if system.links.dependent.shape[0]:
             pull_back(system.links, row[parts["q"]], row[parts["R"]], sums)
-    return found
+    return totals
 
 
 def _steps(values: NDArray) -> NDArray:
     """Rows times the steps, those of one row one behind the other."""
-    found = np.multiply.outer(STEPS, values)
-    return np.swapaxes(found, 0, 1).reshape(-1, *values.shape[1:])
+    steps = np.multiply.outer(STEPS, values)
+    return np.swapaxes(steps, 0, 1).reshape(-1, *values.shape[1:])
 
 
 def _derivative(values: NDArray, scale: NDArray) -> NDArray:
     """Derivatives from values in states moved by steps of these scales."""
-    found = values.reshape(len(scale), len(STEPS), *values.shape[1:])
-    return np.einsum("j,kj...->k...", WEIGHTS, found) / scale.reshape(
+    differences = values.reshape(len(scale), len(STEPS), *values.shape[1:])
+    return np.einsum("j,kj...->k...", WEIGHTS, differences) / scale.reshape(
         -1, *[1] * (values.ndim - 1))

@@ -30,9 +30,9 @@ class Block(NamedTuple):
 
 def minimal(A: NDArray, B: NDArray, C: NDArray, D: NDArray, tolerance: float) -> dict:
     """The members of a `StateSpace` without modes of a smaller share."""
-    found = blocks(A, B, C)
-    largest = max((one.share for one in found if np.isfinite(one.share)), default=0.0)
-    return joined([one for one in found if one.share > tolerance * largest], B, C, D)
+    parts = blocks(A, B, C)
+    largest = max((one.share for one in parts if np.isfinite(one.share)), default=0.0)
+    return joined([one for one in parts if one.share > tolerance * largest], B, C, D)
 
 
 def reduced(A: NDArray, B: NDArray, C: NDArray, D: NDArray, order: int) -> dict:
@@ -43,13 +43,13 @@ def reduced(A: NDArray, B: NDArray, C: NDArray, D: NDArray, order: int) -> dict:
     InputError
         An order that does not hold what must be kept.
     """
-    found = sorted(blocks(A, B, C), key=lambda one: (not one.kept, -one.share))
-    needed = sum(len(one.A) for one in found if one.kept and one.share > 0.0)
+    ranked = sorted(blocks(A, B, C), key=lambda one: (not one.kept, -one.share))
+    needed = sum(len(one.A) for one in ranked if one.kept and one.share > 0.0)
     if order < needed:
         raise InputError(f"order is {order}: poles at zero and unstable ones alone have {needed} "
                          "states, give at least these")
     kept, left, D = [], order, D.copy()
-    for one in found:
+    for one in ranked:
         if len(one.A) <= left and one.share > 0.0:
             kept.append(one)
             left -= len(one.A)
@@ -72,12 +72,12 @@ def blocks(A: NDArray, B: NDArray, C: NDArray) -> list[Block]:
     """Blocks that do not act on each other: of one pole, of a pair, or of poles that are near."""
     # states of one size: rounding is relative to the largest entry
     A, (size, _) = matrix_balance(A, permute=False, separate=True)
-    found, rest, poles = [], (A, B / size[:, None], C * size), np.linalg.eigvals(A)
+    parts, rest, poles = [], (A, B / size[:, None], C * size), np.linalg.eigvals(A)
     typical = float(np.median(np.abs(poles))) if len(poles) else 0.0
     for group in _near_groups(poles, typical):
         one, rest = _parted(*rest, group)
-        found += _reached(*one, typical)
-    return found + _single(*rest)
+        parts += _reached(*one, typical)
+    return parts + _single(*rest)
 
 
 def _near_groups(poles: NDArray, size: float) -> list[NDArray]:
@@ -122,7 +122,7 @@ def _single(A: NDArray, B: NDArray, C: NDArray) -> list[Block]:
     """Blocks of single poles and pairs, in real form."""
     poles, right = np.linalg.eig(A)
     left = np.linalg.inv(right) if len(A) else right
-    found = []
+    parts = []
     for k in np.argsort(np.abs(poles)):
         s, reached, shown = poles[k], left[k] @ B, C @ right[:, k]
         if s.imag < 0.0:
@@ -131,16 +131,16 @@ def _single(A: NDArray, B: NDArray, C: NDArray) -> list[Block]:
         balance = np.sqrt(np.linalg.norm(reached) / max(np.linalg.norm(shown), 1e-300)) or 1.0
         reached, shown = reached / balance, shown * balance
         if s.imag == 0.0:
-            found.append(Block(np.array([[s.real]]), reached.real[None], shown.real[:, None],
+            parts.append(Block(np.array([[s.real]]), reached.real[None], shown.real[:, None],
                                (f"pole {s.real:.4g}",), share, s.real >= 0.0))
             continue
         names = tuple(f"pole {s.real:.4g} + {s.imag:.4g}i {part}" for part in ("real", "imaginary"))
-        found.append(Block(
+        parts.append(Block(
             np.array([[s.real, s.imag], [-s.imag, s.real]]),
             np.stack([2.0 * reached.real, -2.0 * reached.imag]),
             np.stack([shown.real, shown.imag], axis=1), names, 2.0 * share,
             s.real > NEAR * abs(s)))
-    return found
+    return parts
 
 
 def _reached(A: NDArray, B: NDArray, C: NDArray, typical: float) -> list[Block]:
@@ -165,6 +165,6 @@ def _krylov(A: NDArray, B: NDArray) -> NDArray:
     for _ in range(len(A)):
         parts.append(columns)
         columns = A @ columns / size
-    found = np.hstack(parts) if parts else np.zeros((0, 1))
-    U, s, _ = np.linalg.svd(found, full_matrices=False)
+    basis = np.hstack(parts) if parts else np.zeros((0, 1))
+    U, s, _ = np.linalg.svd(basis, full_matrices=False)
     return U[:, s > RANK * s.max(initial=0.0)]

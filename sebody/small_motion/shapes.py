@@ -33,15 +33,15 @@ class Shapes:
         InputError
             A name that nothing has.
         """
-        found = self._whole(str(name), shapes)
+        rows = self._whole(str(name), shapes)
         whole, _, component = str(name).rpartition(".")
-        if found is None and (found := self._whole(whole, shapes)) is not None:
-            return component_of(whole, found.T, component)
-        if found is None:
+        if rows is None and (rows := self._whole(whole, shapes)) is not None:
+            return component_of(whole, rows.T, component)
+        if rows is None:
             raise InputError(f"{name!r} has no shape: there are <node>.position and "
                              f"<node>.rotation of {', '.join(self._model.nodes)}, and "
                              "<superelement>.modes")
-        return found
+        return rows
 
     def _whole(self, name: str, shapes: NDArray) -> NDArray | None:
         """Part of some shapes, without components; None of an unknown name."""
@@ -55,8 +55,8 @@ class Shapes:
         if dof_block is None or dof_block not in numbering.dof_blocks:
             return None
         first = numbering.dof_blocks[dof_block]
-        found = self._motion[first:first + dof_block.start.size] @ shapes
+        rows = self._motion[first:first + dof_block.start.size] @ shapes
         if dof_block.rotational and not model.planar:
             k = numbering.rotations[dof_block]
-            found = self._R[9 * k:9 * k + 9].reshape(3, 3) @ found
-        return np.asarray(found)
+            rows = self._R[9 * k:9 * k + 9].reshape(3, 3) @ rows
+        return np.asarray(rows)

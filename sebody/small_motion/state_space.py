@@ -17,18 +17,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import lstsq, lu_factor, lu_solve, qr, solve_triangular
 
 from sebody import inputs as given
-from sebody.assembly.numbering import hidden_states
 from sebody.errors import InputError
 from sebody.results.naming import component_names
 from sebody.results.result import Result
 from sebody.runs.rotating_frame import Spin, motion
 from sebody.runs.simulation import Simulation
 from sebody.small_motion import inputs_of_motion, realization
-from sebody.small_motion.coordinate_names import coordinate_names
-from sebody.small_motion.inputs_of_motion import Input
+from sebody.small_motion.constrained_motion import ConstrainedMotion
 from sebody.small_motion.linearization import small_motion
 from sebody.small_motion.moved_states import differences, moves, refuse_unmoved
 from sebody.tabular import brief
@@ -36,9 +33,7 @@ from sebody.tabular import brief
 if TYPE_CHECKING:
     from control import StateSpace as ControlSystem
 
-DEPENDENT = 1e-9    # pivot, of the largest, of constraints that others contain
-MASSLESS = 1e-13    # likewise, of the masses
-ACCELERATED, RATE = "{}.acceleration", "{}.rate"
+ACCELERATED = "{}.acceleration"
 RATES = {"position": "velocity", "rotation": "angular_velocity", "modes": "mode_rates"}
 
 
@@ -72,19 +67,19 @@ class StateSpace(NamedTuple):
             States that no quantity is: rotations in space, drives, and those of `minimal` and
             `reduce`.
         """
-        found = []
+        quantities = []
         for name in self.states:
             whole, rate = name.removesuffix(".rate"), name.endswith(".rate")
             owner, kind, component = [*whole.split("."), "", ""][:3]
             if kind == "states":        # of a continuous controller
-                found.append(name)
+                quantities.append(name)
                 continue
             if kind not in RATES or (kind == "rotation" and component):
                 raise InputError(f"no quantity is the state {name!r}: use outputs, of which "
                                  "measurements determine the states")
             parts = owner, RATES[kind] if rate else kind, component
-            found.append(".".join(part for part in parts if part))
-        return tuple(found)
+            quantities.append(".".join(part for part in parts if part))
+        return tuple(quantities)
 
     @property
     def poles(self) -> NDArray:
@@ -99,15 +94,15 @@ class StateSpace(NamedTuple):
         InputError
             A frequency that is a pole.
         """
-        found = []
+        responses = []
         for w in given.vector(np.atleast_1d(omega), "omega"):
             try:
                 X = np.linalg.solve(1j * w * np.eye(len(self.A)) - self.A, self.B)
             except np.linalg.LinAlgError as error:
                 raise InputError(f"the response at omega = {w:.6g} is infinite: a pole is there; "
                                  "leave out this frequency") from error
-            found.append(self.C @ X + self.D)
-        return np.array(found).reshape(-1, *self.D.shape)
+            responses.append(self.C @ X + self.D)
+        return np.array(responses).reshape(-1, *self.D.shape)
 
     def minimal(self, tolerance: float = 1e-9) -> StateSpace:
         """The part that inputs move and outputs show, in modal coordinates.
@@ -194,165 +189,33 @@ def state_space(run: Simulation | Result, inputs: str | Iterable[str],
     refuse_unmoved(wanted, "linear model")
     steady = Spin.of(run, spin)
     matrices = small_motion(run, steady)
-    own = [inputs_of_motion.found(run, steady, name) for name in names]
+    drives = [inputs_of_motion.found(run, steady, name) for name in names]
     axes = motion(run)[:run.numbering.free].toarray()   # of the unknowns, to global ones
-    system = _Constrained(run, [axes @ X @ axes.T for X in matrices],
-                          [one._replace(pushes=one.pushes @ axes.T) for one in own])
+    system = ConstrainedMotion(run, [axes @ X @ axes.T for X in matrices],
+                               [one._replace(pushes=one.pushes @ axes.T) for one in drives])
     A, B = system.matrices()
     unknowns = [z @ axes for z in system.motions(A, B)]
-    amplitudes, moved = system.amplitudes(), np.array([one.motion for one in own])
+    amplitudes, moved = system.amplitudes(), np.array([one.motion for one in drives])
     along = moves(run, steady, *unknowns).plus(*(u @ moved for u in amplitudes))
-    pushed = amplitudes[0] @ np.array([one.elements for one in own])
+    pushed = amplitudes[0] @ np.array([one.elements for one in drives])
     answers = differences(run, wanted, along, pushed)
     Y = np.hstack([answers[name].reshape(len(pushed), -1) for name in wanted])
     base = Result(run.model, run.numbering, run.system, run.state, run.state.now[None].copy(), 0.0)
     values = np.concatenate([np.asarray(base[name]).ravel() for name in wanted])
     labels = [f"{name}.{label}".rstrip(".") for name in wanted
               for label in component_names(answers[name], name)]
-    size, kept = len(A), system.own_states
-    return StateSpace(A[np.ix_(kept, kept)], B[kept], Y[kept].T, Y[size:].T, system.names(),
+    size, states = len(A), system.states
+    return StateSpace(A[np.ix_(states, states)], B[states], Y[states].T, Y[size:].T, system.names(),
                       tuple(ACCELERATED.format(one.name) if one.moves else one.name
-                            for one in own), tuple(labels), values)
+                            for one in drives), tuple(labels), values)
 
 
 def _listed(names: str | Iterable[str], what: str, one: str) -> list[str]:
-    found = [names] if isinstance(names, str) else given.items(names, what, "give a list of names")
-    if not found:
+    listed = [names] if isinstance(names, str) else given.items(names, what, "give a list of names")
+    if not listed:
         raise given.refusal(what, names, "name at least one")
-    for name in found:
+    for name in listed:
         given.name(name, one)
-    if len(set(found)) < len(found):
+    if len(set(listed)) < len(listed):
         raise given.refusal(what, names, "name each once")
-    return list(found)
-
-
-class _Constrained:
-    """Small motion of a constrained model: its coordinates that may move freely, and the rest.
-
-    Matrices and pushes are of all unknowns, positions in global axes.
-    """
-
-    def __init__(self, run: Simulation | Result, matrices: list[NDArray], own: list[Input]):
-        M, C, K = matrices
-        n = len(K)
-        self._own = own
-        self._multipliers = np.flatnonzero(run.system.is_multiplier[:n])
-        self._moving = np.setdiff1d(np.arange(n), self._multipliers)
-        moving, inner = self._moving, np.ix_(self._moving, self._moving)
-        self._matrices = M[inner], C[inner], K[inner]
-        self._constraint_columns = K[np.ix_(moving, self._multipliers)]
-        self._pushes = np.array([one.pushes for one in own]).transpose(1, 2, 0)     # (3, n, m)
-        self._scale = 1.0 / np.sqrt(np.maximum(np.diag(self._matrices[0]),
-                                               1e-12 * np.diag(self._matrices[0]).max()))
-        self._eliminate(K[np.ix_(self._multipliers, moving)])
-        driven = [bool(one.moves) for one in own]
-        self._driven = np.flatnonzero(driven)
-        self._free_names = [coordinate_names(run)[moving[k]] for k in self._independent]
-        self._hidden = hidden_states(run.model, run.numbering)
-
-    def _eliminate(self, G: NDArray) -> None:
-        """Choose coordinates that follow from the others: those that the constraints hold best."""
-        m, n = G.shape
-        rows = np.linalg.norm(G * self._scale, axis=1)
-        rows[rows == 0.0] = 1.0
-        Q, R, order = qr(G * self._scale / rows[:, None], pivoting=True)
-        pivots = np.abs(np.diag(R))
-        rank = int(np.sum(pivots > DEPENDENT * pivots.max(initial=0.0)))
-        dependent, self._independent = order[:rank], np.sort(order[rank:])
-        back = np.argsort(order[rank:])
-        follow = -solve_triangular(R[:rank, :rank], R[:rank, rank:][:, back])
-        free = self._independent
-        self._N = np.zeros((n, len(free)))
-        self._N[free, np.arange(len(free))] = 1.0
-        self._N[dependent] = self._scale[dependent, None] * follow / self._scale[free]
-        b = self._pushes[0][self._multipliers] / rows[:, None]
-        turned = Q.T @ b
-        if np.abs(turned[rank:]).max(initial=0.0) > 1e-7 * np.abs(b).max(initial=0.0):
-            raise InputError(f"a drive among {', '.join(one.name for one in self._own)} cannot "
-                             "move: other joints or drives hold what it drives; name another input")
-        self._P = np.zeros((n, b.shape[1]))
-        self._P[dependent] = self._scale[dependent, None] * solve_triangular(
-            R[:rank, :rank], turned[:rank])
-
-    def _independent_pushes(self) -> list[NDArray]:
-        """``f_k - X_k P`` of the moving unknowns, for stiffness, damping and mass."""
-        M, C, K = self._matrices
-        return [f[self._moving] - X @ self._P for f, X in zip(self._pushes, (K, C, M), strict=True)]
-
-    def matrices(self) -> tuple[NDArray, NDArray]:
-        """A and B."""
-        N, r, m, d = self._N, self._N.shape[1], len(self._own), len(self._driven)
-        M, C, K = (N.T @ X @ N for X in self._matrices)
-        size = 1.0 / np.sqrt(np.maximum(np.abs(np.diag(M)), 1e-300))
-        factors = lu_factor(size[:, None] * M * size)
-        pivots = np.abs(np.diag(factors[0]))
-        if r and pivots.min() < MASSLESS * pivots.max():
-            raise InputError("the model has motions without mass, which have no state: give every "
-                             "node that moves mass and rotation inertia")
-
-        def accelerated(X: NDArray) -> NDArray:
-            return size[:, None] * lu_solve(factors, size[:, None] * X)
-        by_value, by_rate, by_second = (accelerated(N.T @ X) for X in self._independent_pushes())
-        A, B = np.zeros((2 * r + 2 * d, 2 * r + 2 * d)), np.zeros((2 * r + 2 * d, m))
-        A[:r, r:2 * r] = np.eye(r)
-        A[r:2 * r, :r], A[r:2 * r, r:2 * r] = -accelerated(K), -accelerated(C)
-        B[r:2 * r] = by_value
-        own = self._driven
-        A[r:2 * r, 2 * r:2 * r + d], A[r:2 * r, 2 * r + d:] = by_value[:, own], by_rate[:, own]
-        B[r:2 * r, own] = by_second[:, own]
-        A[2 * r:2 * r + d, 2 * r + d:] = np.eye(d)
-        B[2 * r + d + np.arange(d), own] = 1.0
-        return A, B
-
-    def amplitudes(self) -> NDArray:
-        """Inputs and their rates, (3, size + m, m), of every state and every input alone."""
-        r, m, d = self._N.shape[1], len(self._own), len(self._driven)
-        size = 2 * r + 2 * d
-        found = np.zeros((3, size + m, m))
-        found[0, size + np.arange(m), np.arange(m)] = 1.0
-        for k, j in enumerate(self._driven):
-            found[:, size + j, j] = 0.0, 0.0, 1.0
-            found[0, 2 * r + k, j] = found[1, 2 * r + d + k, j] = 1.0
-        return found
-
-    def motions(self, A: NDArray, B: NDArray) -> list[NDArray]:
-        """Motion of all unknowns, multipliers included, and its rates, by every state and input."""
-        r = self._N.shape[1]
-        amplitudes = self.amplitudes()
-        cases = np.eye(len(A) + B.shape[1])
-        second = np.vstack([A[r:2 * r].T, B[r:2 * r].T])
-        n = len(self._moving) + len(self._multipliers)
-        found = [np.zeros((len(cases), n)) for _ in range(3)]
-        for z, xi, u in zip(found, (cases[:, :r], cases[:, r:2 * r], second), amplitudes,
-                            strict=True):
-            z[:, self._moving] = xi @ self._N.T + u @ self._P.T
-        if self._multipliers.size:
-            M, C, K = self._matrices
-            left = (sum(u @ f[self._moving].T for u, f in zip(amplitudes, self._pushes,
-                                                              strict=True))
-                    - sum(z[:, self._moving] @ X.T for z, X in zip(found, (K, C, M),
-                                                                  strict=True)))
-            constraint_columns = self._scale[:, None] * self._constraint_columns
-            columns = np.linalg.norm(constraint_columns, axis=0)
-            columns[columns == 0.0] = 1.0
-            held = lstsq(constraint_columns / columns, self._scale[:, None] * left.T,
-                         cond=DEPENDENT)[0]
-            found[0][:, self._multipliers] = (held / columns[:, None]).T
-        return found
-
-    def names(self) -> tuple[str, ...]:
-        """Names of the states."""
-        driven = [self._own[j].name for j in self._driven]
-        free = self._moving[self._independent]
-        rates = [self._hidden.get(at, RATE.format(name))
-                 for at, name in zip(free, self._free_names, strict=True)]
-        found = [*self._free_names, *rates, *driven, *map(RATE.format, driven)]
-        return tuple(found[k] for k in self.own_states)
-
-    @property
-    def own_states(self) -> NDArray:
-        """Numbers of the states without integrals of controllers' states: nothing depends on them.
-        """
-        hidden = np.isin(self._moving[self._independent], list(self._hidden))
-        total = 2 * len(self._independent) + 2 * len(self._driven)
-        return np.setdiff1d(np.arange(total), np.flatnonzero(hidden))
+    return list(listed)

@@ -11,21 +11,15 @@ from sebody import InputError, Model
 from sebody.assembly import contracts
 from sebody.assembly.batches import superelement_constants
 from sebody.assembly.floating import determining, floating_constants, frame_conditions
-from sebody.contract.layout import (
-    ENERGY,
-    KINETIC,
-    RESIDUAL,
-    STRAIN,
-    floating_counts,
-    superelement_counts,
-)
+from sebody.contract.counts import floating_counts, superelement_counts
+from sebody.contract.layout import ENERGY, KINETIC, RESIDUAL, STRAIN
 from sebody.fem import Section
 from sebody.kernels.loader import load
 from sebody.kernels.packed import unpack
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.verify.check import states
 from sebody.verify.check.definitions import local_coordinates
-from sebody.verify.check.superelements import superelement_case
+from sebody.verify.check.superelement_cases import superelement_case
 
 DATA = dict(np.load(Path(__file__).parents[1] / "data" / "stiffened_states.npz"))
 ORDER = np.r_[0:3, 6:9, 3:6, 9:12, 12:20]      # positions, rotations, modes, slaved coordinates

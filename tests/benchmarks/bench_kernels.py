@@ -18,7 +18,7 @@ from sebody.kernels.abi import call_kernel
 from sebody.kernels.loader import load
 from sebody.scenes import hinged_beam, planar_hinged_beam
 from sebody.verify.check.states import arguments, difference, evaluate
-from sebody.verify.check.superelements import superelement_case
+from sebody.verify.check.superelement_cases import superelement_case
 from sebody.verify.references import tip_error
 
 KERNELS = (("f2", "converged_mean"), ("f2t1", "converged_mean"), ("f2t1", "positions"),

@@ -15,8 +15,8 @@ from sebody import Model
 from sebody.analysis import final
 from sebody.explore.sweep import batches
 from sebody.explore.sweep import executors as places
-from sebody.explore.sweep.axes import Distribution
 from sebody.explore.sweep.design import design
+from sebody.explore.sweep.variations import Distribution
 from sebody.scenes.scene import Scene
 
 MEMBERS, TASKS = 100, 200

@@ -11,7 +11,7 @@ from pages import all_pages
 
 from sebody import catalogue, errors, simulate
 from sebody.catalogue import scenes
-from sebody.cli import inputs, run
+from sebody.cli import run, scene_arguments
 from sebody.cli.entry import main
 from sebody.runs import first_run, progress
 from sebody.scenes import hinged_beam, planar_hinged_beam
@@ -148,13 +148,13 @@ def test_a_failed_run_keeps_what_it_has(tmp_path, capsys, monkeypatch):
 
 
 def test_values_take_the_type_of_the_default():
-    assert inputs._value("modes", "3", 4) == 3
-    assert inputs._value("length", "3", 4.0) == 3.0
-    assert inputs._value("frame", "3", "mean") == "3"
-    assert inputs._value("planar", "True", False) is True
-    assert inputs._value("load", "(0, 1)", None) == (0, 1)
+    assert scene_arguments._value("modes", "3", 4) == 3
+    assert scene_arguments._value("length", "3", 4.0) == 3.0
+    assert scene_arguments._value("frame", "3", "mean") == "3"
+    assert scene_arguments._value("planar", "True", False) is True
+    assert scene_arguments._value("load", "(0, 1)", None) == (0, 1)
     with pytest.raises(errors.InputError, match="type int, such as 4"):
-        inputs._value("modes", "3.5", 4)
+        scene_arguments._value("modes", "3.5", 4)
 
 
 def test_list_shows_every_scene_and_kernel(capsys):

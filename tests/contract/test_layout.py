@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from sebody.contract.counts import LANES, layout_name, superelement_counts, whole_vectors
 from sebody.contract.layout import (
     AT_CONSTANTS,
     AT_FRAME,
@@ -15,7 +16,6 @@ from sebody.contract.layout import (
     HEADER,
     INDEX,
     KINETIC,
-    LANES,
     MOMENT,
     MOMENTUM,
     POTENTIAL,
@@ -25,9 +25,6 @@ from sebody.contract.layout import (
     ContractError,
     Part,
     Row,
-    layout_name,
-    superelement_counts,
-    whole_vectors,
 )
 
 COUNTS = {"n": 5, "D": 3}
@@ -120,7 +117,7 @@ def test_named_places_are_those_of_the_rows():
     assert FIELD == 5 and COEFFICIENTS.size({}) == 8
     assert (KINETIC, STRAIN, MOMENTUM, MOMENT, POTENTIAL, POWERS) == (0, 1, 2, 5, 8, 9)
     assert ENERGIES.size({"ports": 4}) == 13
-    assert list(RECORD.slices({"ports": 1, "coordinates": 2, "rotations": 1, "kept": 9}))[:3] == [
+    assert list(RECORD.slices({"ports": 1, "coordinates": 2, "rotations": 1, "stored": 9}))[:3] == [
         "t", "iterations", "works"]
 
 

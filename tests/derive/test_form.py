@@ -6,14 +6,8 @@ import inspect
 import pytest
 import sympy as sp
 
-from sebody.contract.layout import (
-    SUPERELEMENT_CONSTANTS,
-    Part,
-    axes_of,
-    packed_size,
-    superelement_counts,
-    whole_vectors,
-)
+from sebody.contract.counts import axes_of, packed_size, superelement_counts, whole_vectors
+from sebody.contract.layout import SUPERELEMENT_CONSTANTS, Part
 from sebody.derive.form import counts, functions
 from sebody.derive.form.arrays import Entry, Place, constant, pointed, scratch
 from sebody.derive.form.functions import Function

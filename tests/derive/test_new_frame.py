@@ -15,7 +15,7 @@ from sebody.derive.compiler import compile_kernel
 from sebody.derive.kernels import motion, options
 from sebody.verify.check.motions import motion_case
 from sebody.verify.check.states import along_path, derivative
-from sebody.verify.check.superelements import Nodes
+from sebody.verify.check.superelement_cases import Nodes
 
 
 @pytest.fixture

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from sebody.contract.layout import FrameTraits, InertiaTraits, Part
+from sebody.contract.layout import Part
+from sebody.contract.traits import FrameTraits, InertiaTraits
 from sebody.derive.form import counts
 from sebody.derive.form.arrays import pointed, scratch
 from sebody.derive.form.functions import CLEAR, INVERSE_3, PACKED_TIMES

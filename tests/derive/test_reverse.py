@@ -22,7 +22,7 @@ from sebody.derive.passes.reverse import Reversal, transposed_forms
 from sebody.derive.symbolic.variation import DerivationError
 from sebody.kernels.loader import load
 from sebody.verify.check.states import evaluate
-from sebody.verify.check.superelements import superelement_case
+from sebody.verify.check.superelement_cases import superelement_case
 
 
 @pytest.mark.parametrize("layout, frame, inertia, options", [

@@ -191,7 +191,7 @@ def test_change_a_function_that_a_kernel_reaches_through_another(original, tmp_p
      "elimination", "0.666667", "0.5"),
     # constants of other files
     ("kernels/rotations.py", "NEAR_PI = -0.98", "NEAR_PI = 0.98", "near_half_a_turn", "0", "1"),
-    ("contract/layout.py", "LANES = 4 ", "LANES = 8 ", "column", "4", "8"),
+    ("contract/counts.py", "LANES = 4 ", "LANES = 8 ", "column", "4", "8"),
     ("engine/state.py", "FINEST = 4096 ", "FINEST = 2 ", "cut", "True True", "True False"),
 ], ids=["log_map", "subtract_product", "NEAR_PI", "LANES", "FINEST"])
 def test_compiled_functions_follow_what_they_call(original, tmp_path, file, old, new, name, before,

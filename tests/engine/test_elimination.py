@@ -10,7 +10,8 @@ from scipy.sparse.linalg import spsolve
 from sebody import Simulation, generalized_alpha
 from sebody.assembly import build as assembly
 from sebody.assembly import elimination_pattern
-from sebody.contract.layout import LANES, RESIDUAL
+from sebody.contract.counts import LANES
+from sebody.contract.layout import RESIDUAL
 from sebody.engine import elimination
 from sebody.engine.evaluate import assemble, assemble_moved
 from sebody.kernels.abi import pointer_to

@@ -177,3 +177,27 @@ def test_neighbours_are_alike():
     assert {len(group) for group in groups} == {8, 3}
     within = np.mean([np.ptp(changes[group], axis=0)[:2] / (1.0, 3.0) for group in groups])
     assert within < 0.3         # by chance (8 - 1) / (8 + 1)
+
+
+def linkage() -> Model:
+    """A planar crank, coupler of option C and rocker in general position, driven by a torque."""
+    made = Model(planar=True)
+    crank = made.node("crank", (0.3, -0.1))
+    made.fix(crank, "position")
+    made.rigid_body("wheel", crank, 1.3, 0.05, (0.35, -0.06))
+    pin = made.attach("pin", (0.55, 0.2), crank)
+    foot = made.node("foot", pin.point, at=pin)
+    tip = made.node("tip", (1.6, 0.9))
+    section = Section(area=4e-4, inertia_y=1.4e-8, inertia_z=1.4e-8, torsion=2.2e-8,
+                      youngs_modulus=7e10, poisson_ratio=0.3, density=2.7e3)
+    length = float(np.linalg.norm(tip.point - pin.point))
+    made.beam("rod", foot, tip, section=section, modes=2) if length else None
+    rocker = made.node("rocker", (1.8, -0.2))
+    made.fix(rocker, "position")
+    made.rigid_body("arm", rocker, 0.8, 0.09, (1.7, 0.3))
+    made.spherical(made.attach("elbow", tip.point, rocker), tip)
+    made.spring(tip, made.node("wall", (2.5, 1.5)), stiffness=30.0, damping=0.4, name="spring")
+    made.fix("wall")
+    made.torque(crank, [(0, 0.5), (0.3, 2.0)], name="motor")
+    made.gravity((0.4, -9.81))
+    return made

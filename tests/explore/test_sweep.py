@@ -15,9 +15,9 @@ from sebody.cli.entry import main
 from sebody.explore import sweep as room
 from sebody.explore.sweep import Distribution, sobol, sweep
 from sebody.explore.sweep import executors as places
-from sebody.explore.sweep.axes import distribution_of, values_of
 from sebody.explore.sweep.design import design
 from sebody.explore.sweep.table import Table
+from sebody.explore.sweep.variations import distribution_of, values_of
 
 OUTPUTS = {"tip": final("tip.position"), "speed": maximum("tip.velocity", norm=True)}
 PENDULUM = '''

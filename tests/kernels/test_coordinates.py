@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from sebody.compiler.decorators import compiled
-from sebody.contract.layout import padded_columns, whole_vectors
+from sebody.contract.counts import whole_vectors
+from sebody.contract.layout import padded_columns
 from sebody.kernels.abi import opaque, pointer_to
 from sebody.kernels.coordinates import all_to_free, follow, follow_changes
 

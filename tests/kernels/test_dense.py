@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from sebody.compiler.decorators import compiled
-from sebody.contract.layout import LANES, padded_columns, whole_vectors
+from sebody.contract.counts import LANES, whole_vectors
+from sebody.contract.layout import padded_columns
 from sebody.kernels.abi import pointer_to
 from sebody.kernels.dense import (
     add_block_times,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sebody.compiler.decorators import compiled
-from sebody.contract.layout import packed_size, whole_vectors
+from sebody.contract.counts import packed_size, whole_vectors
 from sebody.kernels.abi import pointer_to
 from sebody.kernels.packed import pack, unpack
 from sebody.kernels.packed_products import (

@@ -14,7 +14,7 @@ from malformed.run_cases import pendulum
 from sebody import Model, Result, Simulation, fem, io, reduction, results
 from sebody import analysis as an
 from sebody.explore.ensembles import Output
-from sebody.explore.sweep import axes, sweep
+from sebody.explore.sweep import sweep, variations
 from sebody.model import variants
 
 X, Y = (0.0, 0.0, 0.0), (4.0, 0.0, 0.0)
@@ -253,7 +253,7 @@ SWEEP = {
         "listed": {"push": [1.0, 2.0]}, "sampled": None, "runs": None, "seed": 0, "sampler": "lhs",
         "sobol_n": None, "fixed": {"t_end": 0.2}, "output": None, "threads": 1, "cluster": None,
         "progress": None}),
-    "distribution": Call(axes.distribution, lambda: {
+    "distribution": Call(variations.distribution, lambda: {
         "kind": "normal", "numbers": (1.0, 0.1), "what": "push"}),
 }
 CALLS = ANALYSIS | RESULTS | FEM | REDUCTION | IO | VARIANTS | SWEEP

@@ -13,10 +13,10 @@ from scipy import sparse
 from sebody import Model, Result, Simulation, simulate
 from sebody.analysis import resume, save_state
 from sebody.cli import scene_files
-from sebody.cli.inputs import checked_scene
+from sebody.cli.scene_arguments import checked_scene
 from sebody.explore.ensembles import final
 from sebody.explore.sweep import Table, sweep
-from sebody.explore.sweep.axes import distribution
+from sebody.explore.sweep.variations import distribution
 from sebody.fem import Section, planar_beam
 from sebody.io import import_body, load_body, save_body, write_sid
 from sebody.reduction import craig_bampton

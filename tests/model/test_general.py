@@ -17,7 +17,7 @@ from sebody.model.frames import FRAMES
 from sebody.reduction import craig_bampton
 from sebody.scenes.hinged_beam import SECTION
 from sebody.verify.check import states
-from sebody.verify.check.superelements import superelement_case
+from sebody.verify.check.superelement_cases import superelement_case
 
 GENERAL = [row for row in SUPERELEMENTS if ANY in row[0]]
 

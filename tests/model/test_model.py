@@ -5,7 +5,8 @@ import pytest
 
 from sebody import InputError, Model
 from sebody.assembly.build import build, number
-from sebody.contract.layout import FrameTraits, layout_name
+from sebody.contract.counts import layout_name
+from sebody.contract.traits import FrameTraits
 from sebody.fem import Section, frame, planar_beam, straight_beam
 from sebody.model import frames
 from sebody.reduction import ReducedBody, craig_bampton

@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from sebody.contract.layout import FrameTraits
+from sebody.contract.traits import FrameTraits
 from sebody.derive.form.counts import FIRST_ROTATION, ROTATIONS
 from sebody.derive.form.functions import CONVERGED_MEAN, PLANAR_MEAN
 from sebody.derive.form.spaces import Quantity

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import sympy as sp
 
-from sebody.contract.layout import FrameTraits
+from sebody.contract.traits import FrameTraits
 from sebody.derive.form.arrays import Place
 from sebody.derive.form.functions import INVERSE_TANGENT
 from sebody.derive.form.spaces import Quantity

@@ -7,7 +7,9 @@ a translation. So the frame is the same wherever its origin is, and it follows n
 
 import sympy as sp
 
-from sebody.contract.layout import FrameTraits, Part, axes_of
+from sebody.contract.counts import axes_of
+from sebody.contract.layout import Part
+from sebody.contract.traits import FrameTraits
 from sebody.derive.form.arrays import Place, constant
 from sebody.derive.form.counts import (
     FIRST_ROTATION,

@@ -4,7 +4,7 @@ The forces are no gradient of the energy; they differ from those of (19) by term
 in psi where beta_0 = 0. The tangent is the exact differential of these forces.
 """
 
-from sebody.contract.layout import FrameTraits
+from sebody.contract.traits import FrameTraits
 from sebody.derive.form.steps import Stage
 from sebody.derive.formulas.elastic import virtual_work_small
 from sebody.derive.formulas.frames.converged_mean import condition

@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from sebody.contract.layout import FrameTraits
+from sebody.contract.traits import FrameTraits
 from sebody.derive.form.counts import FIRST_ROTATION, POSITIONS, ROTATIONS
 from sebody.derive.form.functions import (
     BEST_FIT,

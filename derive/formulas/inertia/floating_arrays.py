@@ -1,6 +1,7 @@
 """The arrays of option C: coordinates in axes of the body, their products, and constants."""
 
-from sebody.contract.layout import MARGIN, MOST_SLAVED, Part, axes_of
+from sebody.contract.counts import MARGIN, MOST_SLAVED, axes_of
+from sebody.contract.layout import Part
 from sebody.derive.form import counts
 from sebody.derive.form.arrays import Array, constant, scratch
 from sebody.derive.form.counts import padded

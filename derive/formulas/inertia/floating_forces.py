@@ -4,7 +4,7 @@ Contractions of the constants with coordinates are products with stacked matrice
 left out.
 """
 
-from sebody.contract.layout import whole_vectors
+from sebody.contract.counts import whole_vectors
 from sebody.derive.form.arrays import Array, View
 from sebody.derive.form.counts import N, bound, bound_free, free, hN, hn, resultants
 from sebody.derive.form.functions import (

@@ -6,7 +6,7 @@ the most zeros.
 
 import sympy as sp
 
-from sebody.contract.layout import axes_of
+from sebody.contract.counts import axes_of
 from sebody.derive.form.arrays import Array, Place
 from sebody.derive.form.counts import N, hN, i
 from sebody.derive.form.spaces import Quantity

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import sympy as sp
 
-from sebody.contract.layout import InertiaTraits
+from sebody.contract.traits import InertiaTraits
 from sebody.derive.form.arrays import Array
 from sebody.derive.form.statements import Let
 from sebody.derive.form.steps import Product, Stage, Step

@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from sebody.contract.layout import InertiaTraits
+from sebody.contract.traits import InertiaTraits
 from sebody.derive.form.steps import Stage
 from sebody.derive.formulas import arrays
 from sebody.derive.formulas.elastic import conjugate_to

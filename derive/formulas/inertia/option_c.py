@@ -20,7 +20,7 @@ work.
 
 import sympy as sp
 
-from sebody.contract.layout import InertiaTraits
+from sebody.contract.traits import InertiaTraits
 from sebody.derive.formulas.frames.frame import Frame
 from sebody.derive.formulas.inertia import floating_field as field
 from sebody.derive.formulas.inertia import floating_forces, floating_tangents

@@ -14,7 +14,9 @@ from typing import NamedTuple
 
 import sympy as sp
 
-from sebody.contract.layout import InertiaTraits, Part, axes_of
+from sebody.contract.counts import axes_of
+from sebody.contract.layout import Part
+from sebody.contract.traits import InertiaTraits
 from sebody.derive.form.arrays import Array, Place, constant, scratch
 from sebody.derive.form.counts import damped, n, padded
 from sebody.derive.form.functions import ADD_BLOCK_TIMES, STUMPFF_1_TO_7

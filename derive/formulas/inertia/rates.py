@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import sympy as sp
 
-from sebody.contract.layout import axes_of
+from sebody.contract.counts import axes_of
 from sebody.derive.form.arrays import Array, Place, scratch
 from sebody.derive.form.functions import BLOCK_TIMES, INVERSE_TANGENT_SECOND, ROWS_TIMES
 from sebody.derive.form.spaces import Quantity

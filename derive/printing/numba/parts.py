@@ -3,7 +3,8 @@
 import json
 from collections.abc import Iterable
 
-from sebody.contract.layout import Part, Size
+from sebody.contract.counts import Size
+from sebody.contract.layout import Part
 from sebody.derive.printing.lines import INDENT, WIDTH, nested
 
 

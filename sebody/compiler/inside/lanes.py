@@ -23,7 +23,7 @@ from sebody.compiler.inside.names import (
     lower_constant,
     signature,
 )
-from sebody.contract.layout import MEMBERS
+from sebody.contract.counts import MEMBERS
 
 NUMPY_KIND = np.dtype([("members", np.float64, (MEMBERS,))])     # of NumPy's arrays of lanes
 _INDEX, _WORD, _FLOAT = ir.IntType(32), ir.IntType(64), ir.DoubleType()

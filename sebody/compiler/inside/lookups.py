@@ -26,10 +26,10 @@ _signatures: dict[tuple, Signature] = {}        # by operation and types of argu
 def _remembered(operation: object, arguments: tuple[types.Type, ...], find) -> Signature:
     """The signature of an operation on numbers and pointers, found once in a process."""
     key = operation, arguments
-    found = _signatures.get(key)
-    if found is None and (found := find()) is not None:
-        _signatures[key] = found
-    return found
+    signature = _signatures.get(key)
+    if signature is None and (signature := find()) is not None:
+        _signatures[key] = signature
+    return signature
 
 
 def _plain(arguments: tuple[types.Type, ...]) -> bool:

@@ -52,8 +52,8 @@ def main() -> None:
         globals()["_scaled"] = entry.function(python, _OPTIONS, _MADE_FROM)
         summed = entry.function(_summed, _OPTIONS, _MADE_FROM)
         assert entry.is_compiled(summed) is kept, "compiled code is not kept"
-        found = summed(values, out)
-        np.testing.assert_allclose([found, *out], [expected, *sums], rtol=1e-12)
+        total = summed(values, out)
+        np.testing.assert_allclose([total, *out], [expected, *sums], rtol=1e-12)
         kernel = entry.kernel(_kernel, _SIGNATURE, _OPTIONS, _MADE_FROM)
         status = kernel.ctypes(7, *(a.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
                                     for a in (values, out)))

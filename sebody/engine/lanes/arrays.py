@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.compiler.inside.lanes import NUMPY_KIND
-from sebody.contract.layout import MEMBERS
+from sebody.contract.counts import MEMBERS
 from sebody.engine.arrays import Arrays
 from sebody.engine.offsets import Offsets
 from sebody.engine.state import State

@@ -10,7 +10,7 @@ import ast
 import re
 from functools import cache
 
-from sebody.contract.layout import layout_name
+from sebody.contract.counts import layout_name
 from sebody.contract.names import PLANAR, element_name
 from sebody.errors import InputError
 from sebody.explore.advice.changes import Choice, Step

@@ -21,7 +21,7 @@ from sebody.explore.ensembles.outputs import Output, outputs_of
 from sebody.explore.ensembles.start_values import Image
 from sebody.explore.ensembles.work import Work, processors
 from sebody.model.model import Model
-from sebody.model.tables import summary
+from sebody.model.summary import summary
 from sebody.reduction import ReducedBody
 from sebody.results.result import Result
 from sebody.runs.progress import showing

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.contracts import counts_of
-from sebody.contract.layout import AT_CONSTANTS, AT_FRAME, MEMBERS, RECORD_T, Row
+from sebody.contract.counts import MEMBERS
+from sebody.contract.layout import AT_CONSTANTS, AT_FRAME, RECORD_T, Row
 from sebody.engine.lanes import loop
 from sebody.engine.lanes.arrays import Columns, Scratch, empty, fill, in_lanes, numbers
 from sebody.engine.system import System

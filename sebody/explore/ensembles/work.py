@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.contract.layout import MEMBERS
+from sebody.contract.counts import MEMBERS
 from sebody.errors import InputError
 from sebody.explore.ensembles.choice import kernels_of
 from sebody.explore.ensembles.member import Copies, Course, Form
@@ -118,7 +118,7 @@ class Work:
         """The arrays of a thread for runs that are made eight at a time."""
         if not self._in_lanes:
             return None
-        from sebody.explore.ensembles.lanes import Lanes    # imports the lanes themselves
+        from sebody.explore.ensembles.lanes import Lanes  # imports the lanes themselves
 
         return Lanes(copies, kernels_of(self.template.model), self.outputs, self.forms, self.last)
 

@@ -21,7 +21,7 @@ from sebody.reduction.checks import (
     rigid_residual,
     unit_scale,
 )
-from sebody.reduction.rigid import rigid_motions
+from sebody.reduction.rigid_motions import rigid_motions
 
 SHOWN = 12          # frequencies
 _MASSLESS = 1e-12   # eigenvalue of the unit-free mass, relative to the largest

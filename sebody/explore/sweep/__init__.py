@@ -19,10 +19,10 @@ from sebody.explore.ensembles import Output
 from sebody.explore.ensembles.work import processors
 from sebody.explore.sweep import executors as places
 from sebody.explore.sweep import sobol
-from sebody.explore.sweep.axes import Distribution
 from sebody.explore.sweep.batches import OF_RUN, Plan, check_plan, tasks_of
 from sebody.explore.sweep.design import Design, design
 from sebody.explore.sweep.table import Table
+from sebody.explore.sweep.variations import Distribution
 from sebody.files import check_target
 from sebody.runs.progress import showing
 
@@ -134,7 +134,7 @@ def _checked(build: Callable[..., Any], outputs: Mapping[str, Output],
             raise InputError(f"{name} has the value {inputs.shown(twice[0])} twice: give it once")
     for name, one in found[1].items():
         inputs.instance(one, f"distribution of {name}", Distribution, "give what "
-                        "sebody.explore.sweep.axes.distribution returns")
+                        "sebody.explore.sweep.variations.distribution returns")
     return found
 
 

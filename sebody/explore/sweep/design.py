@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.explore.sweep.axes import SAMPLERS, Distribution
+from sebody.explore.sweep.variations import SAMPLERS, Distribution
 
 MOST_RUNS = 10_000_000
 

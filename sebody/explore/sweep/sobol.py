@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.explore.sweep.axes import Distribution
 from sebody.explore.sweep.design import Design, check_runs
 from sebody.explore.sweep.table import Table
+from sebody.explore.sweep.variations import Distribution
 
 
 def saltelli(sampled: dict[str, Distribution], n: int, seed: int) -> Design:

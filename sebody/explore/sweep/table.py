@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sebody.errors import InputError
 from sebody.explore.sweep.batches import Answer
 from sebody.files import members, replacing
-from sebody.files.arrays import json_of, opened
+from sebody.files.array_files import json_of, opened
 from sebody.files.checksums import changed, checksums
 
 if TYPE_CHECKING:

@@ -59,10 +59,10 @@ class Card(NamedTuple):
         InputError
             It is not there.
         """
-        found = plain_name(self.parameters.get(parameter.replace(" ", ""), ""))
-        if not found:
+        set_name = plain_name(self.parameters.get(parameter.replace(" ", ""), ""))
+        if not set_name:
             raise self.row.fault(f"*{self.keyword} has no {parameter}", f"give {parameter}=")
-        return found
+        return set_name
 
     def label(self, parameter: str) -> int:
         """A parameter that must be there, as the label of a node."""

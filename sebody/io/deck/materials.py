@@ -70,9 +70,9 @@ class Orientation(NamedTuple):
         else:
             first, third = _unit(self.a), _unit(np.cross(self.a, self.b))
         first, third = np.broadcast_arrays(first, np.broadcast_to(third, places.shape))
-        found = np.stack([first, np.cross(third, first), third], axis=1)
+        rows = np.stack([first, np.cross(third, first), third], axis=1)
         turn = Rotation.from_rotvec(np.radians(self.angle) * np.eye(3)[self.axis]).as_matrix()
-        return turn.T @ found
+        return turn.T @ rows
 
 
 def read_orientation(card: Card) -> Orientation:

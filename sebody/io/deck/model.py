@@ -69,8 +69,8 @@ def deck_model(deck: Deck, labels: Sequence[int], dofs: Sequence[tuple[int, int]
 def _materials(deck: Deck) -> list[Material]:
     """Materials that sections use and of which the deck says enough."""
     used = {section.material: deck.materials.get(section.material) for section in deck.sections}
-    found = [one.substance(name) for name, one in used.items() if one is not None]
-    return [one for one in found if one is not None]
+    substances = [one.substance(name) for name, one in used.items() if one is not None]
+    return [one for one in substances if one is not None]
 
 
 def _node_sets(deck: Deck, index: dict[int, int]) -> dict[str, list[int]]:
@@ -81,9 +81,9 @@ def _node_sets(deck: Deck, index: dict[int, int]) -> dict[str, list[int]]:
 
 def _cells(deck: Deck, index: dict[int, int]) -> list[tuple[str, np.ndarray]]:
     """Connectivity of the solids by meshio's names."""
-    found: dict[str, list] = {}
+    by_kind: dict[str, list] = {}
     for group in deck.elements:
         if group.kind in CELLS:
-            found.setdefault(CELLS[group.kind], []).extend(
+            by_kind.setdefault(CELLS[group.kind], []).extend(
                 [index[label] for label in nodes] for nodes in group.nodes.values())
-    return [(kind, np.array(cells)) for kind, cells in found.items()]
+    return [(kind, np.array(cells)) for kind, cells in by_kind.items()]

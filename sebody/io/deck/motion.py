@@ -60,11 +60,11 @@ def deck_motion(deck: Deck, index: dict[int, int], points: NDArray, rows: NDArra
         followed[nodes] = rows[leader]
         arms[nodes] = points[nodes] - points[leader]
         rigid.append((rows[leader, 3:], nodes, arms[nodes]))
-    found = Motion(points, motion_of(followed, arms, size), (followed[:, :3] >= 0).all(axis=1),
-                   rigid)
+    motion = Motion(points, motion_of(followed, arms, size), (followed[:, :3] >= 0).all(axis=1),
+                    rigid)
     for tie in deck.ties:
-        found = _with_tie(deck, tie, index, found)
-    return found
+        motion = _with_tie(deck, tie, index, motion)
+    return motion
 
 
 def _with_tie(deck: Deck, tie: Tie, index: dict[int, int], motion: Motion) -> Motion:
@@ -78,11 +78,11 @@ def _with_tie(deck: Deck, tie: Tie, index: dict[int, int], motion: Motion) -> Mo
     if not len(nodes) or not faces:
         return motion
     weights = on_faces(motion.points[nodes], motion.points,
-                       [(kind, np.array(own)) for kind, own in faces.items()])
+                       [(kind, np.array(rows)) for kind, rows in faces.items()])
     count = len(motion.points)
     place = sparse.csr_array((np.ones(len(nodes)), (nodes, np.arange(len(nodes)))),
                              shape=(count, len(nodes)))
-    own = sparse.kron(place @ weights, sparse.eye_array(3), format="csr")
+    tied = sparse.kron(place @ weights, sparse.eye_array(3), format="csr")
     points = motion.points
     if tie.adjusted:
         points = points.copy()
@@ -90,4 +90,4 @@ def _with_tie(deck: Deck, tie: Tie, index: dict[int, int], motion: Motion) -> Mo
     known = motion.known.copy()
     held = np.asarray((weights != 0).sum(axis=1)).ravel()
     known[nodes] = (weights != 0) @ motion.known.astype(float) >= held
-    return motion._replace(points=points, matrix=motion.matrix + own @ motion.matrix, known=known)
+    return motion._replace(points=points, matrix=motion.matrix + tied @ motion.matrix, known=known)

@@ -98,12 +98,12 @@ class Deck:
         if body.kind == "SURFACE":
             if body.name not in self.surfaces:
                 raise body.row.fault(f"surface {body.name} is unknown", "define it in the deck")
-            found = self.surface_nodes(body.name)
+            labels = self.surface_nodes(body.name)
         elif body.kind == "ELSET":
-            found = self.element_nodes(self.element_sets.member(body.row, body.name))
+            labels = self.element_nodes(self.element_sets.member(body.row, body.name))
         else:
-            found = self.node_sets.member(body.row, body.name)
-        return [label for label in dict.fromkeys(found) if label != body.reference]
+            labels = self.node_sets.member(body.row, body.name)
+        return [label for label in dict.fromkeys(labels) if label != body.reference]
 
     def named_nodes(self) -> Iterator[tuple[str, tuple[int, ...] | list[int]]]:
         """Names of node sets and surfaces with their nodes; a set goes before a surface."""
@@ -136,16 +136,16 @@ def read_deck(path: Path) -> Deck:
 
 
 def _node(deck: Deck, card: Card) -> None:
-    found = []
+    coordinates = []
     for row in card.data:
         label = row.label(row.words[0])
         x, y, z = ([row.real(word) for word in row.words[1:4]] + [0.0] * 3)[:3]
         if label in deck.nodes and deck.nodes[label] != (x, y, z):
             raise row.fault(f"node {label} has two places", "give every node a label of its own")
         deck.nodes[label] = (x, y, z)
-        found.append(label)
+        coordinates.append(label)
     if "NSET" in card.parameters:
-        deck.node_sets.add(card.name("NSET"), found)
+        deck.node_sets.add(card.name("NSET"), coordinates)
 
 
 def _element(deck: Deck, card: Card) -> None:

@@ -62,10 +62,10 @@ class Sets:
         return self.labels(plain_name(word))
 
     def _resolved(self, name: str, outer: tuple[str, ...]) -> list[int]:
-        found: list[int] = []
+        labels: list[int] = []
         for member in self._members[name]:
             if isinstance(member, int):
-                found.append(member)
+                labels.append(member)
                 continue
             other, row = member
             if other == name or other in outer:
@@ -73,8 +73,8 @@ class Sets:
             if other not in self._members:
                 raise row.fault(f"{other!r} is neither a label nor a set of {self._of}s",
                                 "define the set in this deck, flattened (no parts and instances)")
-            found += self._resolved(other, (*outer, name))
-        return found
+            labels += self._resolved(other, (*outer, name))
+        return labels
 
 
 def _generated(row: Row, words: list[str]) -> range:

@@ -76,7 +76,7 @@ def deck_solids(deck: Deck, index: dict[int, int], motion: Motion) -> Solids:
         if group.kind not in _POINTS:
             for label, nodes in group.nodes.items():
                 sorted_out.setdefault((group.kind, section_of.get(label)), {})[label] = nodes
-    found, lacks, count = [], Counter(), Counter()
+    groups, lacks, count = [], Counter(), Counter()
     for (kind, section), elements in sorted_out.items():
         count[kind] += len(elements)
         lack = _lack(deck, kind, section)
@@ -89,14 +89,14 @@ def deck_solids(deck: Deck, index: dict[int, int], motion: Motion) -> Solids:
             lacks["are at nodes that have no rows in the matrices and follow no others"] += int(
                 np.sum(~whole))
         if whole.any():
-            found.append(Group(CELLS[kind], nodes[whole],
-                               _law(deck, section, motion.points[nodes[whole]].mean(axis=1)),
-                               np.array(list(elements))[whole]))
+            groups.append(Group(CELLS[kind], nodes[whole],
+                                _law(deck, section, motion.points[nodes[whole]].mean(axis=1)),
+                                np.array(list(elements))[whole]))
     total = sum(count.values())
     if not total:
         return Solids([], ["the deck has no elements"])
-    return Solids(found, [f"{number} of {total} elements {lack}"
-                          for lack, number in lacks.items()])
+    return Solids(groups, [f"{number} of {total} elements {lack}"
+                           for lack, number in lacks.items()])
 
 
 def _lack(deck: Deck, kind: str, section: Section | None) -> str:
@@ -147,15 +147,15 @@ def deck_prestress(deck: Deck, solids: Solids, motion: Motion, stiffness: sparse
     if unknown:
         return Prestress(None, f"cells of kind {unknown[0]} have no full integration here")
     try:
-        found = SolidPrestress(motion.points, [group[:3] for group in solids.groups],
-                               motion.matrix, motion.rigid)
+        prestress = SolidPrestress(motion.points, [group[:3] for group in solids.groups],
+                                   motion.matrix, motion.rigid)
     except InvertedCell as error:
         label = solids.groups[error.group].labels[error.cell]
         raise InputError(f"element {label} of the deck is inverted or has no volume: "
                          "correct the order of its nodes, or their places") from error
-    off = _difference(found, motion, stiffness)
+    off = _difference(prestress, motion, stiffness)
     if off < _ALIKE:
-        return Prestress(found, f"of the mesh; energy of its stresses off by {off:.1e}")
+        return Prestress(prestress, f"of the mesh; energy of its stresses off by {off:.1e}")
     own = sorted({group.kind for group in deck.elements} & {*own_ways, *_SPRINGS})
     note = ("the strain energy of the deck's mesh and materials differs from that of the "
             f"stiffness by {off:.1%}")

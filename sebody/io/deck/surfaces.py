@@ -63,10 +63,10 @@ def surface_nodes(surface: Surface, node_sets: Sets, element_sets: Sets,
                   solids: Mapping[int, Solid]) -> list[int]:
     """Labels of the nodes of a surface, each once."""
     if surface.of_nodes:
-        found = [label for row in surface.rows for label in node_sets.member(row, row.words[0])]
+        labels = [label for row in surface.rows for label in node_sets.member(row, row.words[0])]
     else:
-        found = [label for face in surface_faces(surface, element_sets, solids) for label in face]
-    return list(dict.fromkeys(found))
+        labels = [label for face in surface_faces(surface, element_sets, solids) for label in face]
+    return list(dict.fromkeys(labels))
 
 
 def _corners(row: Row, kind: str, face: str) -> tuple[tuple[int, ...], ...]:

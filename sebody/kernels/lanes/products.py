@@ -7,7 +7,7 @@ neither read nor written. Matrices are lanes as well, since members have constan
 from llvmlite import ir
 
 from sebody.compiler.inside.lanes import VECTOR
-from sebody.contract.layout import LANES
+from sebody.contract.counts import LANES
 from sebody.kernels import coordinates, dense, packed_products
 from sebody.kernels.instructions import (
     WORD,

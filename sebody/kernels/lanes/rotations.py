@@ -8,7 +8,7 @@ import math
 
 from sebody.compiler.decorators import in_lanes_of
 from sebody.compiler.inside.lanes import chosen_in, every, number_of, spread, where, with_number
-from sebody.contract.layout import MEMBERS
+from sebody.contract.counts import MEMBERS
 from sebody.kernels import rotations
 from sebody.kernels.rotations import NEAR_PI, SMALL, SMALL_SINE
 

@@ -12,7 +12,7 @@ from llvmlite import binding, ir
 from numpy.typing import NDArray
 
 from sebody.compiler.inside.lanes import VECTOR
-from sebody.contract.layout import LANES, MEMBERS
+from sebody.contract.counts import LANES, MEMBERS
 from sebody.kernels.packed import GROUP, HEAD
 
 AT_ADDRESS = 1      # lane of the first number of a row that has the address of its straight code

@@ -12,7 +12,7 @@ from sebody.model.bodies import superelement
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement
-from sebody.model.tables import unknowns
+from sebody.model.summary import unknowns
 from sebody.reduction import ReducedBody
 from sebody.spelling import unknown
 

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.errors import InputError
-from sebody.model.inputs import dof_block
+from sebody.model.arguments import dof_block
 from sebody.model.joints import spherical
 from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import attach
@@ -126,9 +126,9 @@ def _move_root(model: Mechanism, old: DofBlock, new: DofBlock, arms: tuple) -> N
 
 def _shortened(arms: tuple) -> tuple:
     """Arms without neighbours that go there and back."""
-    found: list[tuple[DofBlock, NDArray]] = []
+    shortened: list[tuple[DofBlock, NDArray]] = []
     for rotation, arm in arms:
-        if found and found[-1][0] is rotation:
-            arm = found.pop()[1] + arm
-        found.append((rotation, arm))
-    return tuple((rotation, arm) for rotation, arm in found if np.any(arm))
+        if shortened and shortened[-1][0] is rotation:
+            arm = shortened.pop()[1] + arm
+        shortened.append((rotation, arm))
+    return tuple((rotation, arm) for rotation, arm in shortened if np.any(arm))

@@ -54,12 +54,12 @@ def divide(model: Mechanism, name: str, bodies: int, elements: int | None = None
     made.connections = [one for one in made.connections
                         if not any(one.node is node for node in between)]
     elements = old.elements if elements is None else elements
-    found = beam(made, name, (old.nodes[0], old.nodes[-1]), old.section, elements, bodies,
-                 **{**old.options, **options})
+    divided = beam(made, name, (old.nodes[0], old.nodes[-1]), old.section, elements, bodies,
+                   **{**old.options, **options})
     new = made.beams[-1]
-    _start_like(found, old.nodes)
+    _start_like(divided, old.nodes)
     ends = max(nodes.index(old.nodes[k].name) for k in (0, -1))
-    made.nodes = _in_place(made.nodes, nodes, [n.name for n in found[1:-1]],
+    made.nodes = _in_place(made.nodes, nodes, [n.name for n in divided[1:-1]],
                            nodes.index(between[0].name) if between else ends + 1)
     made.bodies = _in_place(made.bodies, placed, [p.name for p in new.parts],
                             placed.index(old.parts[0].name))
@@ -79,15 +79,15 @@ def _counted(one: Beam) -> str:
 def _described(model: Mechanism, name: str) -> Beam:
     """How a beam was built; refused if it cannot be built anew."""
     inputs.name(name, "name of a beam")
-    found = [one for one in checked(model).beams if one.name == name]
-    if len(found) != 1:
+    beams = [one for one in checked(model).beams if one.name == name]
+    if len(beams) != 1:
         names = ", ".join(dict.fromkeys(one.name for one in model.beams)) or "no beam"
-        raise InputError(f"model.beam has built {len(found)} beams {name!r}, where one is expected "
+        raise InputError(f"model.beam has built {len(beams)} beams {name!r}, where one is expected "
                          f"(it has built {names}): divide other bodies by building the model anew, "
                          "with a body for each part")
-    own = found[0]
+    beam = beams[0]
     what = f"beam {name!r} cannot be divided anew: "
-    for part, body in zip(own.parts, own.bodies, strict=True):
+    for part, body in zip(beam.parts, beam.bodies, strict=True):
         if model.bodies.get(part.name) is not part or part.reduced is not body:
             raise InputError(f"{what}superelement {part.name!r} was changed; divide the beam first")
         if np.any(part.mode_rates):
@@ -95,34 +95,34 @@ def _described(model: Mechanism, name: str) -> Beam:
         for load in loads_on(model, part):
             raise InputError(f"{what}{load.name!r} acts on superelement {part.name!r}; apply it to "
                              "nodes")
-    used = _used(model, own)
-    for node in own.nodes[1:-1]:
+    used = _used(model, beam)
+    for node in beam.nodes[1:-1]:
         if used & {node, node.position, node.rotation} or any(
                 t is not None and (t.fixed or t.given) for t in (node.position, node.rotation)):
             raise InputError(f"{what}something else acts on or holds its node {node.name!r}; build "
                              "two beams that meet there")
-    return own
+    return beam
 
 
 def _used(model: Mechanism, own: Beam) -> set[Node | DofBlock | None]:
     """Nodes and DOF blocks that anything but a beam needs."""
-    found: set[Node | DofBlock | None] = set()
+    used: set[Node | DofBlock | None] = set()
     for element in (*model.constraints, *model.loads, *model.rigid_bodies.values()):
-        found |= {place.node for place in element.attachments}
+        used |= {place.node for place in element.attachments}
     for joint in model.joints:
-        found |= {joint.node, joint.to}
+        used |= {joint.node, joint.to}
     for body in model.bodies.values():
         if body not in own.parts:
-            found |= {node for node in body.nodes}
+            used |= {node for node in body.nodes}
     for one in model.connections:
-        found |= {one.node, one.to}
+        used |= {one.node, one.to}
     for dof_block in model.dof_blocks():
         if dof_block.root is not None:
-            found |= {parent for parent in dof_block.parents()}
+            used |= {parent for parent in dof_block.parents()}
     for node in (*model.nodes.values(), *model.grounds):
         if node not in own.nodes:
-            found |= {t for t in (node.position, node.rotation) if t is not None}
-    return found
+            used |= {t for t in (node.position, node.rotation) if t is not None}
+    return used
 
 
 def _start_like(nodes: list[Node], before: tuple[Node, ...]) -> None:

@@ -8,7 +8,7 @@ from scipy.linalg import eigh, null_space
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.model.inputs import dof_block, known
+from sebody.model.arguments import dof_block, known
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Node, Superelement
 from sebody.model.variants.copying import (
@@ -62,17 +62,17 @@ def drop_triplet(model: Mechanism, name: str, node: Node | str,
     made = copied(model)
     old = made.bodies[name]
     try:
-        found = released(old.reduced, place, what)
+        condensed = released(old.reduced, place, what)
     except InputError as error:
         raise InputError(f"superelement {name!r} needs {own.name}: {error}") from error
     nodes = tuple(n for n in old.nodes if n.name != node.name or old.reduced.keeps[place] == "full")
-    rates = _rates(old, found)
+    rates = _rates(old, condensed)
     setattr(made.nodes[node.name], what, None)
-    new = exchange(made, old, found.body, old.frame, old.inertia, old.stiffening, nodes)
+    new = exchange(made, old, condensed.body, old.frame, old.inertia, old.stiffening, nodes)
     new.mode_rates = rates
     if all(getattr(made.nodes[node.name], kind) is None for kind in _KINDS):
         del made.nodes[node.name]
-    before, after = (_first_frequency(one) for one in (old.reduced, found.body))
+    before, after = (_first_frequency(one) for one in (old.reduced, condensed.body))
     ending = ("; stresses that it carried no longer stiffen the body"
               if what == "position" and _stiffens(body, node.name) else "")
     return Variant(made, f"{name} keeps no {what} at {node.name}: {fewer(model, made)}; its "
@@ -86,7 +86,7 @@ def can_be_dropped(model: Mechanism) -> list[tuple[str, str, str]]:
     Of those of which one must stay, such as the last rotation of a body, the first are listed;
     rotations come first. Positions whose stresses stiffen their body stay.
     """
-    found = []
+    candidates = []
     checked(model)
     for what in reversed(_KINDS):
         for body, node in [(one.name, node.name) for one in model.bodies.values()
@@ -97,8 +97,8 @@ def can_be_dropped(model: Mechanism) -> list[tuple[str, str, str]]:
                 model = drop_triplet(model, body, node, what).model
             except InputError:
                 continue
-            found.append((body, node, what))
-    return found
+            candidates.append((body, node, what))
+    return candidates
 
 
 def _check_unused(model: Mechanism, body: Superelement, node: Node, what: str,

@@ -21,16 +21,16 @@ def flat_beams(model: Mechanism, made: Mechanism, flat: Flattening) -> list[Beam
     model, made : Mechanism
         Spatial and planar.
     """
-    found = []
+    beams = []
     for beam in model.beams:
         if all(model.bodies.get(part.name) is part and part.reduced is body
                for part, body in zip(beam.parts, beam.bodies, strict=True)):
             parts = tuple(made.bodies[part.name] for part in beam.parts)
             options = {**beam.options, "up": None, "modes": max(p.reduced.modes for p in parts)}
-            found.append(Beam(beam.name, tuple(flat.node(node) for node in beam.nodes),
+            beams.append(Beam(beam.name, tuple(flat.node(node) for node in beam.nodes),
                               _flat_section(beam, flat), beam.elements, options, parts,
                               tuple(part.reduced for part in parts)))
-    return found
+    return beams
 
 
 def _flat_section(beam: Beam, flat: Flattening) -> AnySection:

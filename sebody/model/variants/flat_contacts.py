@@ -14,10 +14,10 @@ Made = tuple[str, dict[str, Any]]
 
 def flat_places(flat: Flattening, one: Element, kind: str) -> tuple[Attachment, ...]:
     """Its places; of a cylindrical joint that only turns in the plane the rotations."""
-    kept = [p for p in one.attachments if "turn" not in kind or p.kind == "rotation"]
+    attachments = [p for p in one.attachments if "turn" not in kind or p.kind == "rotation"]
     if "friction_slide" in kind:
-        kept = kept[:3]
-    return tuple(flat.place(p) for p in kept)
+        attachments = attachments[:3]
+    return tuple(flat.place(p) for p in attachments)
 
 
 def _scalars(one: Element) -> dict[str, Any]:

@@ -60,14 +60,14 @@ def add_control(model: Mechanism, made: Mechanism, bodies: Mapping[str, PlanarBo
 
 def _flat_sensor(model: Mechanism, made: Mechanism, bodies: Mapping[str, PlanarBody],
                  sensor: Sensor) -> Sensor:
-    found = _reading(model, made, bodies, sensor.quantity)
-    if found is None:
+    reading = _reading(model, made, bodies, sensor.quantity)
+    if reading is None:
         raise InputError(f"sensor {sensor.name!r} measures {sensor.quantity!r}, which is no "
                          "quantity of the planar model, or not one of its numbers: measure an "
                          "angle, a motion in the plane along a global axis that lies in it, or "
                          "build the planar model by hand")
-    return replace(sensor, quantity=found.quantity, gain=found.gain,
-                   bias=sensor.bias + found.added)
+    return replace(sensor, quantity=reading.quantity, gain=reading.gain,
+                   bias=sensor.bias + reading.added)
 
 
 def _reading(model: Mechanism, made: Mechanism, bodies: Mapping[str, PlanarBody], quantity: str
@@ -83,8 +83,11 @@ def _reading(model: Mechanism, made: Mechanism, bodies: Mapping[str, PlanarBody]
     before, _, name = owner.rpartition(".")
     if before in bodies and name in ("modes", "mode_rates") and last.isdecimal():
         parts = bodies[before].modes[int(last)]
-        own = np.flatnonzero(np.abs(parts) > ALONG)
-        return Reading(f"{before}.{name}.{own[0]}", parts[own[0]]) if len(own) == 1 else None
+        components = np.flatnonzero(np.abs(parts) > ALONG)
+        if len(components) != 1:
+            return None
+        k = components[0]
+        return Reading(f"{before}.{name}.{k}", parts[k])
     if last in AXES and name in (*POINTS, *VECTORS, *AXIAL):
         return _component(made, before, name, np.eye(3)[AXES.index(last)])
     return None
@@ -100,11 +103,11 @@ def _component(made: Mechanism, owner: str, name: str, way: np.ndarray) -> Readi
     """A component of a vector along a global axis."""
     plane = _plane(made)
     parts = plane.axes.T @ way
-    own = np.flatnonzero(np.abs(parts) > ALONG)
+    components = np.flatnonzero(np.abs(parts) > ALONG)
     axial = name in AXIAL
-    if len(own) > 1 or (own[0] == 2) != axial:
+    if len(components) > 1 or (components[0] == 2) != axial:
         return None
     if axial:
         return Reading(f"{owner}.{name}", parts[2])
     added = float(plane.origin @ way) if name in POINTS else 0.0
-    return Reading(f"{owner}.{name}.{AXES[own[0]]}", parts[own[0]], added)
+    return Reading(f"{owner}.{name}.{AXES[components[0]]}", parts[components[0]], added)

@@ -72,10 +72,10 @@ def flat_joint(flat: Flattening, joint: Joint) -> Joint:
     node, to = flat.node(joint.node), flat.node(joint.to)
     equations: list[Element] = []
     for one in joint.constraints:
-        found = EQUATIONS[one.kind](flat, joint, one)
-        if found is not None and not (found.kind == "planar_aligned" and any(
-                e.kind == found.kind for e in equations)):
-            equations.append(found)
+        equation = EQUATIONS[one.kind](flat, joint, one)
+        if equation is not None and not (equation.kind == "planar_aligned" and any(
+                e.kind == equation.kind for e in equations)):
+            equations.append(equation)
     if any(e.kind == "planar_turn_drive" for e in equations) and (
             flat.plane.normal @ joint.axis < 0):
         node, to = to, node     # it turns `to` about the normal as `node` about its axis
@@ -218,8 +218,8 @@ def _bushing(flat: Flattening, one: Element) -> tuple[str, dict]:
         first = np.delete(axes, np.argmax(abs(axes[:, 2])), axis=0)[0]
         turn[:2, 0], turn[:2, 1] = first[:2], [-first[1], first[0]]
     for name, matrix in of.items():
-        own = of[name] = turn.T @ matrix @ turn
-        if np.abs(own - np.diag(np.diag(own))).max() > 1e-9 * np.abs(own).max():
+        turned = of[name] = turn.T @ matrix @ turn
+        if np.abs(turned - np.diag(np.diag(turned))).max() > 1e-9 * np.abs(turned).max():
             raise InputError(f"{one.name!r} has other coefficients along axes that are neither in "
                              "the plane nor normal to it")
     kept: dict[str, NDArray] = {name: np.diag(matrix)[:2] if name in ("k", "c") else

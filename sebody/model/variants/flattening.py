@@ -34,10 +34,10 @@ class Flattening:
         InputError
             It is off the plane.
         """
-        own = self.plane.axes.T @ (point - self.plane.origin)
-        if abs(own[2]) > self._near:
-            raise InputError(f"{what} is {abs(own[2]):.4g} off the plane")
-        return own[:2]
+        components = self.plane.axes.T @ (point - self.plane.origin)
+        if abs(components[2]) > self._near:
+            raise InputError(f"{what} is {abs(components[2]):.4g} off the plane")
+        return components[:2]
 
     def vector(self, vector: NDArray, what: str) -> NDArray:
         """Planar components of a vector, (2,).
@@ -47,10 +47,10 @@ class Flattening:
         InputError
             It has a component along the normal.
         """
-        own = self.plane.axes.T @ vector
-        if abs(own[2]) > _SAME * np.linalg.norm(own):
+        components = self.plane.axes.T @ vector
+        if abs(components[2]) > _SAME * np.linalg.norm(components):
             raise InputError(f"{what} has a component out of the plane")
-        return own[:2]
+        return components[:2]
 
     def axial(self, vector: NDArray, what: str) -> float:
         """Component of an axial vector about the normal.
@@ -60,10 +60,10 @@ class Flattening:
         InputError
             It has a component about an axis in the plane.
         """
-        own = self.plane.axes.T @ vector
-        if np.abs(own[:2]).max() > _SAME * np.linalg.norm(own):
+        components = self.plane.axes.T @ vector
+        if np.abs(components[:2]).max() > _SAME * np.linalg.norm(components):
             raise InputError(f"{what} is not normal to the plane")
-        return own[2]
+        return components[2]
 
     def is_normal(self, direction: NDArray) -> bool:
         """Whether a direction is normal to the plane."""

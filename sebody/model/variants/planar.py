@@ -103,10 +103,10 @@ def _normals(model: Mechanism) -> Iterator[NDArray]:
     rows = [v / np.linalg.norm(v) for v in inside if np.any(v)]
     _, values, directions = np.linalg.svd(np.vstack([*rows, np.zeros((3, 3))]))
     around = np.eye(3) if values[1] <= _SAME * values[0] else ()     # all nodes are on a line
-    found: list[NDArray] = []
+    normals: list[NDArray] = []
     for unit in (*driven, *map(_upright, (*axial, directions[2], *around))):
-        if np.any(unit) and all(np.abs(np.cross(unit, one)).max() > _SAME for one in found):
-            found.append(unit)
+        if np.any(unit) and all(np.abs(np.cross(unit, one)).max() > _SAME for one in normals):
+            normals.append(unit)
             yield unit
 
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from sebody.errors import InputError
 from sebody.model import bodies, loads
-from sebody.model.inputs import dof_block
+from sebody.model.arguments import dof_block
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement
 from sebody.model.variants.copying import Variant, copied, load_name, loads_on, placed
@@ -105,12 +105,12 @@ def _check_rates(body: Superelement, carrier: Node) -> None:
                 np.cross(angular, arm))
         for kind, rate, other in (("position", linear + spin, "rotation"),
                                   ("rotation", angular, "translation")):
-            own = getattr(node, kind)
-            if keep != other and own.given and np.abs(own.rate - rate).max() > (
-                    _SAME * np.abs([*own.rate, *rate]).max()):
+            block = getattr(node, kind)
+            if keep != other and block.given and np.abs(block.rate - rate).max() > (
+                    _SAME * np.abs([*block.rate, *rate]).max()):
                 raise InputError(
                     f"superelement {body.name!r} cannot be made rigid: the initial velocity of "
-                    f"{own.name} is not that of a rigid motion with {carrier.name}; give that of "
+                    f"{block.name} is not that of a rigid motion with {carrier.name}; give that of "
                     f"{carrier.name}, or use model.rigid_velocity")
 
 

@@ -41,11 +41,11 @@ def impulses() -> Finding:
         errors[option] = [abs(_energy(F, inertia=option) / exact[F] - 1) for F in IMPULSES]
         finding.curves[f"option {option.upper()}"] = IMPULSES, errors[option]
     for name, stiffening in (("option C", False), ("option C with stiffening", True)):
-        found = [abs(_energy(F, stiffening=stiffening) / exact[F] - 1) for F in IMPULSES]
-        finding.curves[name] = IMPULSES, found
+        deviations = [abs(_energy(F, stiffening=stiffening) / exact[F] - 1) for F in IMPULSES]
+        finding.curves[name] = IMPULSES, deviations
         # four modes; eight leave 7e-4
         finding.rows.append(Row(f"{name}, force 2800: energy", exact[2800.0],
-                                exact[2800.0] * (1 + found[-1]), 5e-3))
+                                exact[2800.0] * (1 + deviations[-1]), 5e-3))
     for F, a, b in zip(IMPULSES, errors["a"], errors["b"], strict=True):
         finding.rows.append(Row(f"force {F:g}: the error of A exceeds that of B", 1.0,
                                 float(a > b), 0.0))
@@ -82,10 +82,10 @@ def small_increments() -> Finding:
         "sebody offers (20) as frame 'mean_small' for comparison; the default frame is exact.",
         "elastic rotation [rad]", "relative error of the forces", logarithmic="xy")
     angles = np.geomspace(0.01, 0.8, 9)
-    found = [_force_difference(angle) for angle in angles]
-    finding.curves["measured"] = angles, found
-    finding.predict("second order", angles, found[0] * (angles / angles[0])**2)
-    slope = np.polyfit(np.log(angles[:6]), np.log(found[:6]), 1)[0]
+    differences = [_force_difference(angle) for angle in angles]
+    finding.curves["measured"] = angles, differences
+    finding.predict("second order", angles, differences[0] * (angles / angles[0])**2)
+    slope = np.polyfit(np.log(angles[:6]), np.log(differences[:6]), 1)[0]
     finding.rows.append(Row("order in the elastic rotation", 2.0, slope, 0.1))
     return finding
 

@@ -26,11 +26,11 @@ def damping_of_constraints() -> Finding:
         "steps", "acceleration across the constraint, h a / v_0", logarithmic="y")
     for alpha in (0.0, -0.05, -0.1, -0.2, -1 / 3):
         scheme = hht(alpha, tolerance=1e-13)
-        found = _pushed(scheme)
+        pushed = _pushed(scheme)
         theory = _powers(scheme)
         finding.rows.append(Row(f"alpha {alpha:.3g}: after {STEPS} steps", abs(theory[-1]),
-                                abs(found[-1]), 1e-4))
-        finding.curves[f"HHT, alpha {alpha:.3g}"] = np.arange(1, STEPS + 1), np.abs(found) + 1e-16
+                                abs(pushed[-1]), 1e-4))
+        finding.curves[f"HHT, alpha {alpha:.3g}"] = np.arange(1, STEPS + 1), np.abs(pushed) + 1e-16
         if alpha in DRAWN:
             finding.predict(f"theory, alpha {alpha:.3g}", np.arange(1, STEPS + 1),
                             np.abs(theory) + 1e-16)
@@ -47,22 +47,22 @@ def _pushed(scheme: Scheme, push: float = 1e-3, h: float = 0.01) -> np.ndarray:
     model.slider(node, (1.0, 0.0))
     run = Simulation(model, h, scheme)
     run.state.v[1] = push
-    found = []
+    residuals = []
     for k in range(1, STEPS + 1):
         run.run_to(k * h)
-        found.append(h * run.state.aux[1] / push)
-    return np.array(found)
+        residuals.append(h * run.state.aux[1] / push)
+    return np.array(residuals)
 
 
 def _powers(scheme: Scheme) -> list[float]:
     """Powers of the matrix of a constrained direction, on a unit push."""
     b, g = scheme.beta, scheme.gamma
     T = np.array([[1 - g / b, 1 - g / (2 * b)], [-1 / b, 1 - 1 / (2 * b)]])
-    state, found = np.array([1.0, 0.0]), []
+    state, sizes = np.array([1.0, 0.0]), []
     for _ in range(STEPS):
         state = T @ state
-        found.append(state[1])
-    return found
+        sizes.append(state[1])
+    return sizes
 
 
 def newton() -> Finding:

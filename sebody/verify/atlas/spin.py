@@ -46,10 +46,10 @@ def spurious_divergence() -> Finding:
                    lambda: spinning(arm(n, frame), eta), eta), 0.7 * theory, 1.3 * theory, 7),
                2e-3)
     for frame in ("node", "mean"):
-        found = onset(lambda eta, own=frame: grows(
+        onsets = onset(lambda eta, own=frame: grows(
             lambda: spinning(arm(1, own, MODES, None), eta), eta), 2.0, 20.0, 7)
         finding.rows.append(Row(f"{frame} frame, one body with stiffening, up to 20", np.inf,
-                                found, 0.0))
+                                onsets, 0.0))
         finding.predict(f"{frame} frame, exact inertia, theory", COUNTS, [
             divergence(cantilever(n, frame)) for n in COUNTS])
     finding.predict("chord frame, exact inertia, theory", COUNTS, [
@@ -75,10 +75,10 @@ def frequencies() -> Finding:
              "exact inertia, no stiffening": {"inertia": None, "stiffening": False},
              "option B": {"inertia": "material"}}
     for name, kind in kinds.items():
-        found = [_lowest(arm(1, "mean", MODES, **kind), eta) for eta in SPINS]
-        stable = SPINS[:found.index(0.0) + 1] if 0.0 in found else SPINS
-        finding.curves[name] = stable, found[:len(stable)]
-        end = dict(zip(SPINS, found, strict=True))
+        lowest = [_lowest(arm(1, "mean", MODES, **kind), eta) for eta in SPINS]
+        stable = SPINS[:lowest.index(0.0) + 1] if 0.0 in lowest else SPINS
+        finding.curves[name] = stable, lowest[:len(stable)]
+        end = dict(zip(SPINS, lowest, strict=True))
         if kind == {"inertia": None}:
             finding.rows += [Row(f"{name}, spin {eta:g}", exact, end[eta], within)
                              for (eta, exact), within in zip(LAG.items(), WITHIN, strict=True)]
@@ -194,19 +194,19 @@ def flutter() -> Finding:
 def _of_one_body(finding: Finding, exact: float, follower: bool, within: float) -> None:
     """Rows of one body that stiffens, in both frames."""
     for frame in ("node", "mean"):
-        found = onset(lambda p, own=frame: grows(lambda: pressed(
+        spin = onset(lambda p, own=frame: grows(lambda: pressed(
             arm(1, own, MODES, None), p, follower)), 0.9 * exact, 1.1 * exact, 3)
-        finding.rows.append(Row(f"{frame} frame, one body with stiffening", exact, found, within))
-    finding.curves["one body with stiffening"] = (1,), [found]
+        finding.rows.append(Row(f"{frame} frame, one body with stiffening", exact, spin, within))
+    finding.curves["one body with stiffening"] = (1,), [spin]
 
 
 def _by_bodies(finding: Finding, theory: Callable[[int, str], float],
                measured: Callable[[int, str, float], float], within: float) -> None:
     """A row for every frame and number of bodies, a curve for every frame."""
     for frame in ("node", "mean"):
-        found = []
+        rows = []
         for n in COUNTS:
             expected = theory(n, frame)
-            found.append(measured(n, frame, expected))
-            finding.rows.append(Row(f"{frame} frame, bodies: {n}", expected, found[-1], within))
-        finding.curves[f"{frame} frame, measured"] = COUNTS, found
+            rows.append(measured(n, frame, expected))
+            finding.rows.append(Row(f"{frame} frame, bodies: {n}", expected, rows[-1], within))
+        finding.curves[f"{frame} frame, measured"] = COUNTS, rows

@@ -52,12 +52,12 @@ def soft_torsion() -> Finding:
             finding.rows.append(Row(f"{frame} frame, G J / E I {torsion:g}: limit of the body",
                                     theory, limits[-1], 1e-3))
             if torsion == MEASURED:
-                found = onset(lambda spin, own=model: _diverges(own, spin), 0.8 * theory,
-                              1.2 * theory, STEPS)
+                onset_spin = onset(lambda spin, own=model: _diverges(own, spin), 0.8 * theory,
+                                   1.2 * theory, STEPS)
                 finding.rows.append(Row(f"{frame} frame, G J / E I {torsion:g}: measured", theory,
-                                        found, 1e-3))
+                                        onset_spin, 1e-3))
         finding.curves[f"{frame} frame, limit"] = SOFTNESS, limits
-        finding.curves[f"{frame} frame, measured"] = [MEASURED], [found]
+        finding.curves[f"{frame} frame, measured"] = [MEASURED], [onset_spin]
     stable = not any(_diverges(blade(1e-3, "mean", {}), spin) for spin in (1.0, 3.0, 6.0))
     finding.rows.append(Row("stiffening, G J / E I 0.001: stable at 1, 3, 6", 1.0, float(stable),
                             0.0))

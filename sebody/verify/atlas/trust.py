@@ -43,7 +43,7 @@ def missed_loads() -> Finding:
         "refused.", "step / duration of the pulse", "impulse that the mass gets / true one",
         logarithmic="x")
     pulse = [(0.0, 0.0), (PULSE - WIDTH, 0.0), (PULSE, 1.0), (PULSE + WIDTH, 0.0)]
-    loads, expected, found = time_function(pulse), [], []
+    loads, expected, shares = time_function(pulse), [], []
     parts = (1, 2, 4, 8, 16, 32, 64, 128)
     steps = 0.02 / np.array(parts)
     for h in steps:
@@ -53,12 +53,12 @@ def missed_loads() -> Finding:
         model.point_mass("mass", model.node("a", (1.0, 2.0), "translation"), 2.0)
         model.force("a", (0.6, 0.8), pulse)
         velocity = simulate(model, h, 0.12)["a.velocity"][-1]
-        found.append(2.0 * float(velocity @ (0.6, 0.8)) / WIDTH)
+        shares.append(2.0 * float(velocity @ (0.6, 0.8)) / WIDTH)
     over = steps / (2.0 * WIDTH)
     finding.predict("sum at the steps", over, expected)
-    finding.curves["measured"] = over, found
+    finding.curves["measured"] = over, shares
     finding.rows += [Row(f"step {h:g}: impulse", a, b, 1e-3)
-                     for h, a, b in zip(steps, expected, found, strict=True)]
+                     for h, a, b in zip(steps, expected, shares, strict=True)]
     whole = missed(["pulse"], [loads], 0.01, 0.12)
     finding.rows.append(Row("steps of 0.01 miss all of it", 1.0, whole.share, 0.05))
     advice = advise(_struck([(t, 400.0 * f) for t, f in pulse]), 0.01, 0.16, "tip.position", 1e-2)
@@ -96,11 +96,11 @@ def damping_by_division() -> Finding:
         "bodies", "damping ratio", logarithmic="xy")
     counts = (1, 2, 4, 8)
     expected = [RATIO * (root / CLAMPED[0])**2 for root in CLAMPED]
-    found = np.array([_ratios(_damped(n)) for n in counts])
+    ratios = np.array([_ratios(_damped(n)) for n in counts])
     for k, name in enumerate(("first", "second")):
         finding.predict(f"beam, {name} mode", counts, [expected[k]] * len(counts))
-        finding.curves[f"{name} mode"] = counts, found[:, k]
-        finding.rows += [Row(f"{name} mode, bodies: {n}", expected[k], found[i, k], 0.01)
+        finding.curves[f"{name} mode"] = counts, ratios[:, k]
+        finding.rows += [Row(f"{name} mode, bodies: {n}", expected[k], ratios[i, k], 0.01)
                          for i, n in enumerate(counts)]
     advice = advise(_damped(1, struck=True), 1e-3, 0.15, "tip.position", 2e-2)
     given = next(one for one in advice.table if one.kind == "given")
@@ -112,8 +112,8 @@ def damping_by_division() -> Finding:
 
 def _ratios(model: Model) -> list[float]:
     """Of the two slowest vibrations."""
-    found = modes(equilibrium(model))
-    return list(found.damping[found.omega > 0.0][:2])
+    vibrations = modes(equilibrium(model))
+    return list(vibrations.damping[vibrations.omega > 0.0][:2])
 
 
 def _damped(bodies: int, struck: bool = False) -> Model:
@@ -140,12 +140,12 @@ def frequencies_that_rotate() -> Finding:
     unit = float(np.sqrt(BENDING / (MASS * LENGTH**4)))
     line = np.linspace(SPINS[0], SPINS[-1], 25)
     finding.predict("beam, theory", line, [lag(eta) for eta in line])
-    found = [_first(_blade(eta * unit)) / unit for eta in SPINS]
-    finding.curves["as advise keeps it"] = SPINS, found
+    frequencies = [_first(_blade(eta * unit)) / unit for eta in SPINS]
+    finding.curves["as advise keeps it"] = SPINS, frequencies
     finding.curves["frequency at rest"] = SPINS, [float(
         vibrations(Simulation(_blade(0.0), 1e-3)).omega[0]) / unit] * len(SPINS)
     finding.rows += [Row(f"spin {eta:g}", lag(eta), one, 3e-3)
-                     for eta, one in zip(SPINS, found, strict=True)]
+                     for eta, one in zip(SPINS, frequencies, strict=True)]
     finding.rows += [Row(f"theory, spin {eta:g}", exact, lag(eta), 1e-4, REFERENCE)
                      for eta, exact in LAG.items()]
     try:
@@ -192,13 +192,13 @@ def instability() -> Finding:
     def theory(load: float) -> float:
         phase = first * GROWING * np.sqrt(complex(1.0 - load))
         return float(abs(np.sin(phase) / phase)) if phase else 1.0
-    found = [_grown(load) for load in LOADS]
+    growths = [_grown(load) for load in LOADS]
     line = np.linspace(LOADS[0], LOADS[-1], 60)
     finding.predict("column, theory", line, [max(theory(load), 1e-3) for load in line])
-    finding.curves["measured"] = LOADS, found
+    finding.curves["measured"] = LOADS, growths
     # steps resolve the growth, shear and shortening are left out: exponents to some per mille
     finding.rows += [Row(f"load {load:g}: growth", theory(load), one, 0.05)
-                     for load, one in zip(LOADS, found, strict=True) if load > 1.0]
+                     for load, one in zip(LOADS, growths, strict=True) if load > 1.0]
     for load, stable in ((0.6, 1.0), (1.6, 0.0)):
         advice = _advised_column(load)
         finding.rows.append(Row(f"advise, load {load:g}: confirmed", stable,

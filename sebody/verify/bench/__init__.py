@@ -31,12 +31,12 @@ def measure(scenes: Iterable[str] = ()) -> list[Measurement]:
                              f"{', '.join(SCENES + EXTRA)}")
     others = [name for name in chosen if name != ensemble.SCENE]
     prepare(case.build().model for name in others for case in own.cases(name)[:4])
-    found = ensemble.measure() if ensemble.SCENE in chosen else []
+    rows = ensemble.measure() if ensemble.SCENE in chosen else []
     for name in others:
-        found += [own.measure(case) for case in own.cases(name)]
+        rows += [own.measure(case) for case in own.cases(name)]
         if peer.available():
-            found += peer.measure(name)
-    return found
+            rows += peer.measure(name)
+    return rows
 
 
 def report(measurements: list[Measurement], rate: float) -> str:

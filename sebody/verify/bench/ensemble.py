@@ -28,8 +28,8 @@ def measure(runs: int = RUNS) -> list[Measurement]:
     processors together. `thread_efficiency` is the time of one thread over that of all threads
     times their number; none for single runs and for Exudyn.
     """
-    found = [_together(inertia, runs) for inertia in (None, "material")] + [_one_by_one(runs)]
-    return found + ([_peer(runs)] if peer.available() else [])
+    rows = [_together(inertia, runs) for inertia in (None, "material")] + [_one_by_one(runs)]
+    return rows + ([_peer(runs)] if peer.available() else [])
 
 
 def _parameters(runs: int) -> dict[str, np.ndarray]:

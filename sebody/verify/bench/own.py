@@ -48,17 +48,17 @@ def cases(scene: str) -> list[Case]:
     if scene == "four-bar":
         return [Case(scene, f"{n} loops", {"loops": n}, 0.0, "", 3) for n in LOOPS]
     if scene == "modes":
-        found = [Case(scene, f"12 + {n} coordinates", {"modes": n}, 0.0, "hinged_beam", 5)
-                 for n in MODES]
+        cases_of_scene = [Case(scene, f"12 + {n} coordinates", {"modes": n}, 0.0, "hinged_beam", 5)
+                          for n in MODES]
     elif scene == "chain":
-        found = [Case(scene, f"{n} links", {"links": n}, 1.0, "", 9 if n < 256 else 3)
-                 for n in CHAINS]
+        cases_of_scene = [Case(scene, f"{n} links", {"links": n}, 1.0, "", 9 if n < 256 else 3)
+                          for n in CHAINS]
     elif scene == "slider-crank":
-        found = [Case(scene, "4 superelements", {"bodies": 4, "modes": 0}, 0.0, "", 5)]
+        cases_of_scene = [Case(scene, "4 superelements", {"bodies": 4, "modes": 0}, 0.0, "", 5)]
     else:
         name = "spherical_beam" if scene == "spherical-beam" else "hinged_beam"
-        found = [Case(scene, "superelement", {}, 0.0, name, 9)]
-    return [one for case in found for one in (case, case._replace(
+        cases_of_scene = [Case(scene, "superelement", {}, 0.0, name, 9)]
+    return [one for case in cases_of_scene for one in (case, case._replace(
         variant=case.variant + OPTION_B, parameters=case.parameters | {"inertia": "material"}))]
 
 

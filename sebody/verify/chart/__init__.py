@@ -42,13 +42,13 @@ def measure(scene: str, tolerance: float = TOLERANCE) -> Study:
     prepare(builder(scene)(**v.parameters).model for v in chosen)
     exact, base = reference(scene), builder(scene)()
     with poor_variants():
-        found = advised(base.model, base.h, base.t_end, [SCENES[scene]], tolerance)
-        points = _points(scene, chosen, exact, found)
+        advice = advised(base.model, base.h, base.t_end, [SCENES[scene]], tolerance)
+        points = _points(scene, chosen, exact, advice)
     choice = next((one for one in points if one.family == FAMILY), None)
     if peer.available():
         points += _peer(scene, exact)
     return Study(points, SCENES[scene], exact.error, choice, tolerance,
-                 (ERROR, BARS, found.told, peer.told(scene)))
+                 (ERROR, BARS, advice.told, peer.told(scene)))
 
 
 class _Begun(NamedTuple):

@@ -34,10 +34,10 @@ def advised(model: Model, h: float, t_end: float, quantities: list[str],
             tolerance: float) -> Advised:
     """Advice for a chart; a scene may have none."""
     try:
-        found = advise(model, h, t_end, quantities, tolerance)
+        advice = advise(model, h, t_end, quantities, tolerance)
     except SebodyError as reason:
         text = str(reason)
         return Advised(None, f"no model is advised at {tolerance:g}: "
                        + (text if len(text) <= MOST else f"{text[:MOST]} ..."))
-    return Advised(found, f"advised: the cheapest model that `advise` found for {tolerance:g}"
-                   + ("" if found.confirmed else ", not confirmed"))
+    return Advised(advice, f"advised: the cheapest model that `advise` found for {tolerance:g}"
+                   + ("" if advice.confirmed else ", not confirmed"))

@@ -82,11 +82,11 @@ def measure_any(scene: "Scene", quantities: Sequence[str] = (),
 def _measured(chart: "_Chart", tolerance: float) -> list[Study]:
     exact = chart.reference()
     kept, runs = [], []
-    found = advised(chart.model, chart.h, chart.t_end, chart.names, tolerance)
-    chosen = [Plan(FAMILY, found.label, Choice((), found.step))] if found.advice else []
+    advice = advised(chart.model, chart.h, chart.t_end, chart.names, tolerance)
+    chosen = [Plan(FAMILY, advice.label, Choice((), advice.step))] if advice.advice else []
     for plan in [*chosen, *chart.plans()]:
         try:
-            model = (found.advice.model if plan in chosen else
+            model = (advice.advice.model if plan in chosen else
                      chart.builder.make(plan.choice).model)
             values, result = chart.run(model, plan.choice.step, plan.scheme)
             errors = [max(difference(one, best.values, best.sizes, (1, 1)), best.error)
@@ -97,7 +97,7 @@ def _measured(chart: "_Chart", tolerance: float) -> list[Study]:
         runs.append(lambda model=model, plan=plan: processor_seconds(
             chart.simulation(model, plan.choice.step, plan.scheme), chart.t_end))
     times = repeated(runs)
-    return [_study(chart, k, best, kept, times, found, tolerance)
+    return [_study(chart, k, best, kept, times, advice, tolerance)
             for k, best in enumerate(exact)]
 
 
@@ -195,11 +195,11 @@ class _Chart:
 
     def plans(self) -> list[Plan]:
         """All variants, none twice."""
-        found: dict[tuple, Plan] = {}
+        by_key: dict[tuple, Plan] = {}
         for plan in chain(self._modes_and_bodies(), self._options(), self._rigid(),
                           self._steps(), self._schemes()):
-            found.setdefault((plan.choice, plan.scheme), plan)
-        return list(found.values())
+            by_key.setdefault((plan.choice, plan.scheme), plan)
+        return list(by_key.values())
 
     def _plan(self, family: str, label: str, forms: Iterable[Form],
               step: Step | None = None) -> Plan:

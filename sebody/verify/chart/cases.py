@@ -31,31 +31,31 @@ def variants(scene: str) -> list[Variant]:
     """All points of a scene's chart, as far as it has the parameters."""
     known = inspect.signature(builder(scene)).parameters
     planar = not builder(scene)().model.rotation_size == 3
-    found = [*_frames(planar), *_divisions(), *_beams(), *_schemes()]
-    return [v for v in found if set(v.parameters) <= set(known)]
+    points = [*_frames(planar), *_divisions(), *_beams(), *_schemes()]
+    return [v for v in points if set(v.parameters) <= set(known)]
 
 
 def _frames(planar: bool) -> list[Variant]:
     frames = ["node", "converged_mean"] + ([] if planar else ["mean", "mean_small"])
     titles = {"node": "frame at a node", "converged_mean": "mean frame",
               "mean": "mean frame, one iteration", "mean_small": "mean frame, linear increments"}
-    found = [(f"{titles[f]}, option b", {"frame": f, "inertia": "material"}) for f in frames]
-    found += [("mean frame, option a", {"inertia": "frame_axes"}),
+    kinds = [(f"{titles[f]}, option b", {"frame": f, "inertia": "material"}) for f in frames]
+    kinds += [("mean frame, option a", {"inertia": "frame_axes"}),
               ("frame at a node, option c", {"frame": "node"}), ("mean frame, option c", {}),
               ("mean frame, option c, no stiffening", {"stiffening": False})]
-    return [Variant("frames and inertia", *one) for one in found]
+    return [Variant("frames and inertia", *one) for one in kinds]
 
 
 def _divisions() -> list[Variant]:
-    found = [Variant("modes" + of, f"1 body, {m} modes" + of.replace("B", "option b"),
+    kinds = [Variant("modes" + of, f"1 body, {m} modes" + of.replace("B", "option b"),
                      {"modes": m, "bodies": 1} | given)
              for of, given in (("", {}), (", B", {"inertia": "material"})) for m in (0, 1, 2, 4, 8)]
-    found += [Variant("bodies", f"{n} bodies, {m} modes", {"bodies": n, "modes": m,
+    kinds += [Variant("bodies", f"{n} bodies, {m} modes", {"bodies": n, "modes": m,
                                                            "elements": 24})
               for n in (2, 4, 8) for m in (0, 2)]
-    found += [Variant("steps", f"1 body, 4 modes, {STEPS[f]}", {"bodies": 1, "modes": 4}, f)
+    kinds += [Variant("steps", f"1 body, 4 modes, {STEPS[f]}", {"bodies": 1, "modes": 4}, f)
               for f in STEPS if f != 1.0]
-    return found + [Variant("steps", f"2 bodies, 0 modes, {STEPS[f]}",
+    return kinds + [Variant("steps", f"2 bodies, 0 modes, {STEPS[f]}",
                             {"bodies": 2, "modes": 0, "elements": 24}, f)
                     for f in STEPS if f != 1.0]
 

@@ -172,20 +172,20 @@ def _families(axes, points: list[Point]) -> None:
 
 def _methods(group: list[Point]) -> list[list[Point]]:
     """Runs of one method with several steps or tolerances, from the longest step down."""
-    found: dict[str, list[Point]] = {}
+    methods: dict[str, list[Point]] = {}
     for point in group:
-        found.setdefault(STEP.sub("", point.label), []).append(point)
-    return [sorted(one, key=lambda p: -p.h) for one in found.values() if len(one) > 1]
+        methods.setdefault(STEP.sub("", point.label), []).append(point)
+    return [sorted(one, key=lambda p: -p.h) for one in methods.values() if len(one) > 1]
 
 
 def _named(line: list[Point]) -> list[Point]:
     """Points of the front that are named: none that is hardly better than a cheaper one."""
-    found: list[Point] = []
+    points: list[Point] = []
     for point in line:
-        if not found or point.error < APART * found[-1].error:
-            found.append(point)
-    last = len(found) - 1
-    return [found[round(k)] for k in np.linspace(0, last, min(MOST_NAMES, len(found)))]
+        if not points or point.error < APART * points[-1].error:
+            points.append(point)
+    last = len(points) - 1
+    return [points[round(k)] for k in np.linspace(0, last, min(MOST_NAMES, len(points)))]
 
 
 def _annotation(axes, point: Point, color: str):
@@ -204,11 +204,11 @@ def _level(axes, level: float, what: str, below: bool = False) -> None:
 
 def _legend(figure, every) -> None:
     """Of all axes, below them, in as many columns as fit."""
-    found = {}
+    entries = {}
     for axes in every:
         for handle, name in zip(*axes.get_legend_handles_labels(), strict=True):
-            found.setdefault(name, handle)
-    handles, names = list(found.values()), list(found)
+            entries.setdefault(name, handle)
+    handles, names = list(entries.values()), list(entries)
     for columns in range(min(COLUMNS, len(names)), 0, -1):
         legend = figure.legend(handles, names, loc="outside lower center", ncols=columns,
                                frameon=False, fontsize=8)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sebody.errors import InputError
 from sebody.files import replacing
-from sebody.files.arrays import opened
+from sebody.files.array_files import opened
 from sebody.files.members import Member, Table
 from sebody.kernels.loader import user_directory
 from sebody.runs.schemes import generalized_alpha
@@ -46,15 +46,15 @@ def reference(scene: str, folder: Path | None = None) -> Reference:
     finer_steps = history(scene, ELEMENTS, 2 * FINER)
     correction = (finer_beams - coarse) / 3 + (finer_steps - coarse) * 4 / 3
     values = finer_beams + correction
-    found = Reference(values, float(np.linalg.norm(correction) / np.linalg.norm(values)))
+    computed = Reference(values, float(np.linalg.norm(correction) / np.linalg.norm(values)))
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with replacing(path, "reference") as file:
-            np.savez_compressed(file, values=found.values, error=found.error)
+            np.savez_compressed(file, values=computed.values, error=computed.error)
     except OSError as error:
         warnings.warn(f"the reference is computed again next time: {error}", RuntimeWarning,
                       stacklevel=2)
-    return found
+    return computed
 
 
 def kept(path: Path) -> Reference:
@@ -66,8 +66,8 @@ def kept(path: Path) -> Reference:
         There is none, or it is damaged.
     """
     with opened(path, "reference", "remove it") as reader:
-        found = Table(f"reference {path}", "remove it", MEMBERS).read(reader)
-    return Reference(found["values"], float(found["error"]))
+        table = Table(f"reference {path}", "remove it", MEMBERS).read(reader)
+    return Reference(table["values"], float(table["error"]))
 
 
 def history(scene: str, elements: int, finer: int) -> NDArray:

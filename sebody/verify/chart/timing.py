@@ -54,10 +54,10 @@ def repeated(runs: Sequence[Callable[[], float]], least: int = LEAST, most: int 
     """
     seconds: list[list[float]] = [[] for _ in runs]
     for round_ in range(most):
-        for run, own in zip(runs, seconds, strict=True):
-            if sum(own) < LONG and (round_ < least or not _settled(own)):
-                own.append(run())
-    return [Times(min(own), max(own)) for own in seconds]
+        for run, times in zip(runs, seconds, strict=True):
+            if sum(times) < LONG and (round_ < least or not _settled(times)):
+                times.append(run())
+    return [Times(min(times), max(times)) for times in seconds]
 
 
 def _settled(seconds: list[float]) -> bool:

@@ -19,7 +19,7 @@ from sebody.verify.check.states import (
     tangent_rate,
     with_constants,
 )
-from sebody.verify.check.superelements import Nodes, nodes_of, placed_case
+from sebody.verify.check.superelement_cases import Nodes, nodes_of, placed_case
 
 
 def body_load_case(module: ModuleType, seed: int, nodes: Nodes) -> Case:
@@ -33,12 +33,12 @@ def body_load_case(module: ModuleType, seed: int, nodes: Nodes) -> Case:
 def _forces(case: Case) -> NDArray:
     """What the load does, ``-G``, by rotations of SciPy: its vectors turn with the frame."""
     P, R0 = AMPLITUDES[0] * constants_of(case)["P"], frame_rotation(case).as_matrix()
-    d, found = case.dimension, P.copy()
+    d, forces = case.dimension, P.copy()
     on_positions = P[:case.first_rotation].reshape(-1, d) @ R0[:d, :d].T
-    found[:case.first_rotation] = on_positions.ravel()
+    forces[:case.first_rotation] = on_positions.ravel()
     for j, at in enumerate(case.rotations):
-        found[at:at + 3] = case.R[9 * j:9 * j + 9].reshape(3, 3).T @ R0 @ P[at:at + 3]
-    return found
+        forces[at:at + 3] = case.R[9 * j:9 * j + 9].reshape(3, 3).T @ R0 @ P[at:at + 3]
+    return forces
 
 
 def turning_force(case: Case) -> float:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.optimize import root
 from scipy.spatial.transform import Rotation
 
-from sebody.contract.layout import FrameTraits
+from sebody.contract.traits import FrameTraits
 from sebody.generated.options import FRAMES, INERTIA_OPTIONS
 from sebody.verify.check.states import Case, constants_of
 
@@ -80,8 +80,8 @@ def mean_axes(case: Case) -> Rotation:
 
     def frame(step: NDArray) -> Rotation:
         return start * Rotation.from_rotvec([0, 0, *step] if d == 2 else step)
-    found = root(lambda step: Gam.T @ _local(case, frame(step)), np.zeros(Gam.shape[1]), tol=1e-15)
-    return frame(found.x)
+    answer = root(lambda step: Gam.T @ _local(case, frame(step)), np.zeros(Gam.shape[1]), tol=1e-15)
+    return frame(answer.x)
 
 
 def mean_rotation(case: Case) -> NDArray:

@@ -148,8 +148,8 @@ def body_momentum(case: Case) -> float:
         moment[2] += p[first:].sum()
     for j, at in enumerate(case.rotations):
         moment += case.R[9 * j:9 * j + 9].reshape(3, 3) @ p[at:at + 3]
-    found, exact = evaluate(case, ENERGY)[2][MOMENTUM:POTENTIAL], np.r_[linear, moment]
-    return float(np.abs(found - exact).max() / np.abs(p).max())     # both may vanish
+    momentum, exact = evaluate(case, ENERGY)[2][MOMENTUM:POTENTIAL], np.r_[linear, moment]
+    return float(np.abs(momentum - exact).max() / np.abs(p).max())     # both may vanish
 
 
 def criteria(module: ModuleType) -> dict:

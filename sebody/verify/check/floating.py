@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from sebody.assembly.floating import Free, frame_conditions, free_coordinates, packed
-from sebody.contract.layout import axes_of
+from sebody.contract.counts import axes_of
 from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.packed import unpack
 from sebody.reduction.invariants import InertiaInvariants

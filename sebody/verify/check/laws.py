@@ -46,12 +46,12 @@ def cases(module: ModuleType, case: Case) -> dict[str, Case]:
     directions = {name: constants_of(case)[name] for name in names & {"e", "n"}}
     case = changed(case, **{name: v / np.linalg.norm(v) for name, v in directions.items()})
     contact = "level" in names or "size" in names or "upper" in names
-    found = {"": _with(case, PRESSED) if contact else case}
+    branches = {"": _with(case, PRESSED) if contact else case}
     if "static" in names:
-        found = {branch: _with(found[""], factors) for branch, factors in BRANCHES.items()}
+        branches = {branch: _with(branches[""], factors) for branch, factors in BRANCHES.items()}
     if contact:
-        found["open"] = _with(case, OPEN)
-    return found
+        branches["open"] = _with(case, OPEN)
+    return branches
 
 
 def _with(case: Case, factors: dict[str, float]) -> Case:
@@ -63,12 +63,12 @@ def _with(case: Case, factors: dict[str, float]) -> Case:
 
 def _remembering(module: ModuleType, case: Case) -> Case:
     """The case with kept numbers near those of the state, as after a step."""
-    given = case.reference.copy()
+    memory = case.reference.copy()
     random = np.random.default_rng(len(module.MEMORY))
-    given[:len(module.MEMORY)] = 0.1 * random.normal(size=len(module.MEMORY))
+    memory[:len(module.MEMORY)] = 0.1 * random.normal(size=len(module.MEMORY))
     if "begun" in module.MEMORY:
-        given[module.MEMORY.index("begun")] = 1.0
-    return case._replace(reference=given)
+        memory[module.MEMORY.index("begun")] = 1.0
+    return case._replace(reference=memory)
 
 
 def tangent(case: Case) -> float:

@@ -20,7 +20,7 @@ from sebody.verify.check.states import (
     difference,
     with_constants,
 )
-from sebody.verify.check.superelements import Nodes, nodes_of, placed_case
+from sebody.verify.check.superelement_cases import Nodes, nodes_of, placed_case
 
 STEP = 0.003        # of differences in time
 MOTION_LIMIT = 1e-10    # searches and differences of sixth order: 1e-13 in these states
@@ -39,9 +39,9 @@ def moved(case: Case) -> dict[str, NDArray]:
     given = arguments(case)._replace(forces=np.zeros(MOTION.size(case.counts)))
     if called(case, RESIDUAL, given) != OK:
         raise InputError(f"kernel {case.module.__name__} refuses the check's state")
-    found = {name: given.forces[place] for name, place in slices.items()}
+    written = {name: given.forces[place] for name, place in slices.items()}
     d = case.dimension
-    return found | {"rotation": found["rotation"].reshape(3, 3)[:d, :d]}
+    return written | {"rotation": written["rotation"].reshape(3, 3)[:d, :d]}
 
 
 def _along(case: Case, of: str) -> NDArray:

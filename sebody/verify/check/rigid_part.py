@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
-from sebody.contract.layout import axes_of
+from sebody.contract.counts import axes_of
 from sebody.generated.options import INERTIA_OPTIONS
 from sebody.verify.check.definitions import frame_rotation, local_coordinates
 from sebody.verify.check.states import Case, along_path, constants_of, derivative

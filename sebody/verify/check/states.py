@@ -12,6 +12,15 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from sebody.compiler.decorators import compiled
+from sebody.contract.counts import (
+    bound_counts,
+    first_mode,
+    first_rotation,
+    floating_counts,
+    rigid_part_counts,
+    scratch_size,
+    superelement_counts,
+)
 from sebody.contract.layout import (
     AT_POSITIONS,
     AT_ROTATIONS,
@@ -22,13 +31,6 @@ from sebody.contract.layout import (
     RESIDUAL,
     TANGENT,
     Row,
-    bound_counts,
-    first_mode,
-    first_rotation,
-    floating_counts,
-    rigid_part_counts,
-    scratch_size,
-    superelement_counts,
 )
 from sebody.errors import InputError
 from sebody.generated.options import INERTIA_OPTIONS
@@ -182,13 +184,13 @@ def scratch(case: Case) -> int:
 def evaluate(case: Case, task: int, coefficients: Iterable[float] = (0, 0, 0, 1, 1)
              ) -> tuple[NDArray, NDArray, NDArray]:
     """Forces, matrix and energies of a kernel in the state of a case."""
-    n, given = case.n, arguments(case, coefficients)
-    status = called(case, task, given)
+    n, read = case.n, arguments(case, coefficients)
+    status = called(case, task, read)
     if status:
         raise InputError(f"kernel {case.module.__name__} refuses the check's state (status "
                          f"{status})")
-    return (given.forces, _in_global_axes(given.matrices.reshape(n, n), given.frames, case),
-            given.energies)
+    return (read.forces, _in_global_axes(read.matrices.reshape(n, n), read.frames, case),
+            read.energies)
 
 
 def _in_global_axes(J: NDArray, frame: NDArray, case: Case) -> NDArray:

@@ -26,10 +26,10 @@ def known(model: Mechanism, node: Node | str) -> Node:
 
 def dof_block(node: Node, kind: str) -> DofBlock:
     """A DOF block of a node, which must have it."""
-    found = getattr(node, kind)
-    if found is None:
+    block = getattr(node, kind)
+    if block is None:
         raise InputError(f"node {node.name!r} has no {kind}: make it with keeps='full'")
-    return found
+    return block
 
 
 def vector(model: Mechanism, value: ArrayLike, what: str) -> NDArray:
@@ -42,10 +42,10 @@ def rotation_vector(model: Mechanism, value: ArrayLike, what: str) -> NDArray:
     if not model.planar:
         return inputs.vector(value, what, 3)
     remedy = "give 1 finite number"
-    given = inputs.reals(value, what, remedy)
-    if given.shape not in ((), (1,)) or not np.isfinite(given).all():
+    numbers = inputs.reals(value, what, remedy)
+    if numbers.shape not in ((), (1,)) or not np.isfinite(numbers).all():
         raise inputs.refusal(what, value, remedy)
-    return np.atleast_1d(given)
+    return np.atleast_1d(numbers)
 
 
 def direction(model: Mechanism, axis: ArrayLike, what: str, node: Node) -> NDArray:
@@ -88,12 +88,12 @@ def turning_axes(model: Mechanism, axis: ArrayLike, what: str, node: Node, signe
     remedy = "the model is planar, where all rotations are about (0, 0, 1): leave the axis out, "
     other = remedy + "or take a model in space, Model()"
     normal = np.array([0.0, 0.0, 1.0])
-    given = (inputs.number(axis, what, remedy=other) * normal if np.ndim(axis) == 0 else
-             inputs.vector(axis, what, 3, remedy=other))
-    size = np.abs(given).max()
-    if not size > 0 or np.abs(given[:2]).max() > PLANE * size:
+    axes_given = (inputs.number(axis, what, remedy=other) * normal if np.ndim(axis) == 0 else
+                  inputs.vector(axis, what, 3, remedy=other))
+    size = np.abs(axes_given).max()
+    if not size > 0 or np.abs(axes_given[:2]).max() > PLANE * size:
         raise inputs.refusal(what, axis, other)
-    if signed and given[2] < 0:
+    if signed and axes_given[2] < 0:
         raise inputs.refusal(what, axis, remedy + "and change the sign of angles and torques "
                                                  "about it")
     return None

@@ -34,9 +34,9 @@ def summary(model: Mechanism) -> str:
     parts = ((len(model.bodies), "superelement"), (len(model.rigid_bodies), "rigid body"),
              (len(model.nodes), "node"), (len(model.joints), "joint"),
              (sum(load.law is None for load in model.loads), "load"))
-    found = [counted(count, what) for count, what in parts if count]
+    counts = [counted(count, what) for count, what in parts if count]
     gravity = ", ".join(f"{value:g}" for value in model.gravity_field)
-    return (f"{'planar' if model.planar else 'spatial'} model: {', '.join(found) or 'empty'}"
+    return (f"{'planar' if model.planar else 'spatial'} model: {', '.join(counts) or 'empty'}"
             + (f"; gravity ({gravity})" if model.gravity_field.any() else ""))
 
 
@@ -56,16 +56,16 @@ def described(model: Mechanism) -> str:
 
 def _tables(model: Mechanism) -> list[tuple[str, Sequence[str], list[tuple]]]:
     """Titles, heads and rows of the tables that have rows."""
-    found = [("Bodies", ("body", "kind", "mass", "nodes", "formulation"), _bodies(model)),
-             ("Nodes", ("node", "point", "position", "rotation", "initial velocity"),
-              _nodes(model)),
-             ("Joints and drives", ("name", "kind", "of", "to", "equations"), _joints(model)),
-             ("Loads, springs and dampers", ("name", "kind", "on", "course"), _loads(model)),
-             ("Sensors", ("name", "quantity", "between samples", "delay", "noise"),
-              _sensors(model)),
-             ("Controllers", ("name", "from", "to", "period", "delay", "states"),
-              _controllers(model))]
-    return [one for one in found if one[2]]
+    tables = [("Bodies", ("body", "kind", "mass", "nodes", "formulation"), _bodies(model)),
+              ("Nodes", ("node", "point", "position", "rotation", "initial velocity"),
+               _nodes(model)),
+              ("Joints and drives", ("name", "kind", "of", "to", "equations"), _joints(model)),
+              ("Loads, springs and dampers", ("name", "kind", "on", "course"), _loads(model)),
+              ("Sensors", ("name", "quantity", "between samples", "delay", "noise"),
+               _sensors(model)),
+              ("Controllers", ("name", "from", "to", "period", "delay", "states"),
+               _controllers(model))]
+    return [one for one in tables if one[2]]
 
 
 def _sensors(model: Mechanism) -> list[tuple]:
@@ -81,15 +81,15 @@ def _controllers(model: Mechanism) -> list[tuple]:
 
 
 def _bodies(model: Mechanism) -> list[tuple]:
-    found = [(body.name, "superelement", f"{body.reduced.total_mass:.6g}", _named(body.nodes),
-              f"{len(body.reduced.stiffness)} coordinates ({body.layout}), "
-              f"{body.reduced.modes} modes; frame {body.frame}, inertia {body.inertia}"
-              + ("; damped" if body.reduced.damping is not None else ""))
-             for body in model.bodies.values()]
-    return found + [(body.name, _plain(body), f"{body.number('mass'):.6g}",
-                     _named({place.node.name: place.node for place in body.attachments}.values()),
-                     "")
-                    for body in model.rigid_bodies.values()]
+    rows = [(body.name, "superelement", f"{body.reduced.total_mass:.6g}", _named(body.nodes),
+             f"{len(body.reduced.stiffness)} coordinates ({body.layout}), "
+             f"{body.reduced.modes} modes; frame {body.frame}, inertia {body.inertia}"
+             + ("; damped" if body.reduced.damping is not None else ""))
+            for body in model.bodies.values()]
+    return rows + [(body.name, _plain(body), f"{body.number('mass'):.6g}",
+                    _named({place.node.name: place.node for place in body.attachments}.values()),
+                    "")
+                   for body in model.rigid_bodies.values()]
 
 
 def _nodes(model: Mechanism) -> list[tuple]:

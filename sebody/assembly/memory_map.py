@@ -1,4 +1,4 @@
-"""What is kept from step to step beside unknowns, and its places in `State.frames`.
+"""What is stored from step to step beside unknowns, and its places in `State.frames`.
 
 Behind the frames of the superelements there is what elements keep; then, of every input, what was
 set and when; what sensors measured last; signals of controllers; their states.
@@ -17,7 +17,7 @@ from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Superelement
 
 
-class Kept(NamedTuple):
+class MemoryMap(NamedTuple):
     """Places in `State.frames`."""
 
     memories: dict[Element, list[int]]  # element -> the numbers that it keeps
@@ -29,8 +29,8 @@ class Kept(NamedTuple):
     size: int                   # of `State.frames`
 
 
-def kept(model: Mechanism, ports: Mapping[Element | Superelement, int]) -> Kept:
-    """Number what is kept; `ports` are those of loads."""
+def memory_map(model: Mechanism, ports: Mapping[Element | Superelement, int]) -> MemoryMap:
+    """Number what is stored; `ports` are those of loads."""
     memories, first = {}, 9 * len(model.bodies)
     for one in model.loads:
         if count := _count(model, one):
@@ -48,7 +48,7 @@ def kept(model: Mechanism, ports: Mapping[Element | Superelement, int]) -> Kept:
     controllers = sampled(model)
     places = list(accumulate((len(one.states) for one in controllers), initial=first))
     states = {one.name: place for one, place in zip(controllers, places, strict=False)}
-    return Kept(memories, inputs, own, sensors, values, states, places[-1])
+    return MemoryMap(memories, inputs, own, sensors, values, states, places[-1])
 
 
 def _count(model: Mechanism, one: Element) -> int:
@@ -60,14 +60,14 @@ def _count(model: Mechanism, one: Element) -> int:
 
 def _sensors(model: Mechanism) -> list[Sensor]:
     """Sensors, and quantities that controllers name without one."""
-    found = dict(model.sensors)
-    known = {*found, *signals(model), *actuators(model)}
+    sensors = dict(model.sensors)
+    known = {*sensors, *signals(model), *actuators(model)}
     for controller in sampled(model):
         for name in controller.inputs:
-            if name not in known and name not in found:
+            if name not in known and name not in sensors:
                 _check_quantity(model, controller, name, known)
-                found[name] = Sensor(name, name, 0.0, 0, 0.0, 0.0, 0)
-    return list(found.values())
+                sensors[name] = Sensor(name, name, 0.0, 0, 0.0, 0.0, 0)
+    return list(sensors.values())
 
 
 def _check_quantity(model: Mechanism, controller: Controller, name: str, known: set[str]) -> None:

@@ -48,9 +48,9 @@ def law_constants(model: Mechanism, numbering: Numbering, element: Element) -> d
     controller = model.controllers[law_parts(element).controller]
     readings = np.zeros((len(controller.inputs), READING_NUMBERS))
     for row, name in zip(readings, controller.inputs, strict=True):
-        if name not in numbering.all_kept.values or _is_measured(model, name):
+        if name not in numbering.memory.values or _is_measured(model, name):
             _, row[:-1], row[-1] = _channel(model, numbering, controller, name)
-    ports = numbering.all_kept.ports
+    ports = numbering.memory.ports
     limits = [numbering.time_functions[ports[name]].limits or (1.0, -1.0) if name in ports
               else (1.0, -1.0) for name in controller.outputs]
     return {"mass": np.array(_mass(model)), "readings": readings,
@@ -69,31 +69,31 @@ def law_row(model: Mechanism, numbering: Numbering, element: Element, unknowns: 
     """What follows the unknowns in the index row of a law."""
     law = law_parts(element)
     controller = model.controllers[law.controller]
-    kept = numbering.all_kept
+    memory = numbering.memory
     state = law.states
     first = unknowns.index(numbering.dof_blocks[state]) if controller.states.size else 0
     derivatives = 0 if law.derivatives is None else law.derivatives.address
-    found = [controller.function.address, derivatives, len(controller.inputs),
-             controller.states.size, len(controller.outputs), first]
+    row = [controller.function.address, derivatives, len(controller.inputs),
+           controller.states.size, len(controller.outputs), first]
     for name in controller.inputs:
-        if name in kept.values and not _is_measured(model, name):
-            found += [HELD, 0, kept.values[name], *(READING_PLACES - 3) * [0]]
+        if name in memory.values and not _is_measured(model, name):
+            row += [HELD, 0, memory.values[name], *(READING_PLACES - 3) * [0]]
         else:
             places = _channel(model, numbering, controller, name)[0]
-            found += _reading(numbering, places, unknowns)
+            row += _reading(numbering, places, unknowns)
     loads = {load.name: load for load in model.loads}
     end = LAW_HEADER + READING_PLACES * len(controller.inputs) + (
         OUTPUT_PLACES * len(controller.outputs))
     rows: list[int] = []
     for name in controller.outputs:
-        if name not in kept.ports:
-            found += [-1, kept.values[name], 0, 0, 0, 0]
+        if name not in memory.ports:
+            row += [-1, memory.values[name], 0, 0, 0, 0]
             continue
-        own = actuators[loads[name]]
-        found += [kept.ports[name], kept.values[name], own.address, len(own.unknowns),
-                  len(own.row), end + len(rows)]
-        rows += [unknowns.index(i) for i in own.unknowns] + own.row
-    return found + rows
+        actuator = actuators[loads[name]]
+        row += [memory.ports[name], memory.values[name], actuator.address, len(actuator.unknowns),
+                len(actuator.row), end + len(rows)]
+        rows += [unknowns.index(i) for i in actuator.unknowns] + actuator.row
+    return row + rows
 
 
 def _is_measured(model: Mechanism, name: str) -> bool:
@@ -107,12 +107,12 @@ def _channel(model: Mechanism, numbering: Numbering, controller: Controller, nam
     sensor = model.sensors.get(name)
     quantity, axes, bias, gain = (name, "", 0.0, 1.0) if sensor is None else (
         sensor.quantity, sensor.axes, sensor.bias, sensor.gain)
-    own = channel(model, numbering, quantity, axes)
-    if own.places[0] == OUTSIDE:
+    read = channel(model, numbering, quantity, axes)
+    if read.places[0] == OUTSIDE:
         raise InputError(f"controller {controller.name!r} is continuous and cannot read "
                          f"{quantity!r}, which takes more than motion of nodes and angles about "
                          "axes: give a sensor with rate=, between whose samples its value holds")
-    return own.places, gain * own.numbers, bias
+    return read.places, gain * read.numbers, bias
 
 
 def _reading(numbering: Numbering, places: NDArray, unknowns: list[int]) -> list[int]:
@@ -130,27 +130,27 @@ def _reading(numbering: Numbering, places: NDArray, unknowns: list[int]) -> list
     def matrix(place: int) -> int:
         return place - at["R"].start
     if kind == DOT:
-        own = coordinate(one), coordinate(two)
-        first = own
+        values = coordinate(one), coordinate(two)
+        first = values
     elif kind == ANGLE:
-        own = matrix(one), matrix(two) if two >= 0 else -1
-        first = first_of[own[0]], first_of[own[1]] if two >= 0 else first_of[own[0]]
+        values = matrix(one), matrix(two) if two >= 0 else -1
+        first = first_of[values[0]], first_of[values[1]] if two >= 0 else first_of[values[0]]
     elif kind == TURNED:
-        own = matrix(one), coordinate(two)
-        first = first_of[own[0]], own[1]
+        values = matrix(one), coordinate(two)
+        first = first_of[values[0]], values[1]
     elif kind in (ALONG, ITS_RATE, FLAT_ALONG, FLAT_RATE):
         flat = kind in (FLAT_ALONG, FLAT_RATE)
         ends = coordinate(two), coordinate(three)
-        own = coordinate(one) if flat else matrix(one), ends[0]
-        first = own[0] if flat else first_of[own[0]], *ends
-        return [kind, 0, *own, ends[1], first[0], *(unknowns.index(i) for i in first)]
+        values = coordinate(one) if flat else matrix(one), ends[0]
+        first = values[0] if flat else first_of[values[0]], *ends
+        return [kind, 0, *values, ends[1], first[0], *(unknowns.index(i) for i in first)]
     elif at["R"].start <= one < at["R"].stop:       # INTO
-        own = matrix(one), coordinate(two)
-        first = first_of[own[0]], own[1]
+        values = matrix(one), coordinate(two)
+        first = first_of[values[0]], values[1]
     else:                                           # IN_PLANE
-        own = coordinate(one), coordinate(two)
-        first = own
-    return [kind, int(rated), *own, 0, 0, *(unknowns.index(i) for i in first), 0]
+        values = coordinate(one), coordinate(two)
+        first = values
+    return [kind, int(rated), *values, 0, 0, *(unknowns.index(i) for i in first), 0]
 
 
 def _mass(model: Mechanism) -> float:

@@ -32,13 +32,13 @@ def opened(path: str | Path, what: str, remedy: str, suffixes: Sequence[str] = (
     InputError
         No such file, or one that is damaged or of another kind.
     """
-    found = existing(path, what, remedy, suffixes)
+    file = existing(path, what, remedy, suffixes)
     try:
-        with (hdf5.opened(found, group) if group and hdf5.is_hdf5(found) else
-              archive.opened(found, group and group + "/")) as reader:
+        with (hdf5.opened(file, group) if group and hdf5.is_hdf5(file) else
+              archive.opened(file, group and group + "/")) as reader:
             yield reader
     except InputError as error:
-        if found.stem in str(error):
+        if file.stem in str(error):
             raise
         raise InputError(f"{what} {path}: {error}") from error
     except OSError as error:

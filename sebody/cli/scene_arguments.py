@@ -121,9 +121,9 @@ def check_distinct(targets: Mapping[str, Path | None]) -> None:
     InputError
         They do.
     """
-    found: dict[Path, str] = {}
+    options_of: dict[Path, str] = {}
     for option, path in targets.items():
-        if path and (other := found.setdefault(path.resolve(), option)) != option:
+        if path and (other := options_of.setdefault(path.resolve(), option)) != option:
             raise InputError(f"{other} and {option} are the same file, {path}: give each its own")
 
 
