@@ -11,6 +11,7 @@ from sebody.contract.layout import AT_CONSTANTS, AT_FRAME, RECORD_T, Row
 from sebody.engine.lanes import loop
 from sebody.engine.lanes.arrays import Columns, Scratch, empty, fill, in_lanes, numbers
 from sebody.engine.system import System
+from sebody.errors import InputError
 from sebody.explore.ensembles.member import Copies, Course, Form
 from sebody.explore.ensembles.outputs import Folds, Output
 from sebody.kernels.lanes.kernel import address_in_lanes
@@ -67,7 +68,8 @@ class Lanes:
         self._record = Columns(places=columns, rows=empty(*rows), every=np.array([one.every]))
         self._rows = np.empty(rows)
         self._last, self._begun = last, []
-        self._outputs = outputs
+        self._outputs, self._changes = outputs, []
+        self._evaluated = not all(form.kinematic for form in forms.values())
         self._folds = {name: Folds(one, forms[one.quantity].shape,
                                    self._forms[one.quantity].columns, MEMBERS)
                        for name, one in outputs.items()
@@ -100,19 +102,36 @@ class Lanes:
         return np.unique(np.concatenate([image.lines.slots.astype(np.int64),
                                          *(np.arange(part.start, part.stop) for part in begun)]))
 
-    def take(self, member: int) -> None:
-        """Give a lane the member that `copies` has begun."""
+    def begin(self, change: NDArray) -> bool:
+        """Begin a run in the next free lane; False if it is to be run alone.
+
+        Parameters
+        ----------
+        change : (components,)
+            As of `Copies.begin`.
+        """
+        try:
+            begun = self.copies.begin(change)
+        except InputError:      # told where it is run alone
+            return False
+        if begun:
+            self._take(len(self._changes))
+            self._changes.append(change)
+        return begun
+
+    def _take(self, member: int) -> None:
+        """Give a lane the numbers of the run that `copies` has begun."""
         loop.take_member(self.copies.floats, self._places, member, self._numbers)
 
-    def run(self, count: int, stop: Callable[[], bool]) -> NDArray | None:
-        """Run the members that were taken to their end, and take in their outputs.
+    def run(self, stop: Callable[[], bool]) -> NDArray | None:
+        """Run the members that have begun to their end, and take in their outputs.
 
         Returns
         -------
         ndarray or None
             Which of them gave up, (members,): they are to be run alone. None if it was stopped.
         """
-        state = self.state
+        state, count = self.state, len(self._changes)
         self._begin_records()
         for folds in self._folds.values():
             folds.begin()
@@ -120,7 +139,7 @@ class Lanes:
                                {name: folds.members[member] for name, folds in self._folds.items()})
                         for member in range(count)]
         for member in range(count, MEMBERS):        # lanes without a member: another one's numbers
-            self.take(member)
+            self._take(member)
         state.control["reason"] = np.where(np.arange(MEMBERS) < count, 0.0, ALONE)
         every, reached = int(self._record.every[0]), 0
         while reached < self._last:
@@ -130,7 +149,9 @@ class Lanes:
                          reached)
             self._take_outputs(np.flatnonzero(state.control["reason"][:count] == 0.0))
             if stop():
+                self._changes.clear()
                 return None
+        self._changes.clear()
         return state.control["reason"][:count] != 0.0
 
     def _take_outputs(self, members: NDArray) -> None:
@@ -141,6 +162,8 @@ class Lanes:
             folds.add(t, table, members)
         if len(self._folds) < len(self._outputs):
             for member in members:
+                if self._evaluated:         # quantities of elements: with the member's constants
+                    self.copies.begin(self._changes[member])
                 loop.rows_of(table, member, rows)
                 self.courses[member].take(rows)
 

@@ -126,16 +126,8 @@ class Work:
         """Make some runs at a time; returns those that are to be made alone."""
         taken, alone = [], []
         for run in group:
-            try:
-                begun = lanes.copies.begin(self._changes[run])
-            except InputError:      # told where it is begun alone
-                begun = False
-            if begun:
-                lanes.take(len(taken))
-                taken.append(run)
-            else:
-                alone.append(run)
-        gave_up = lanes.run(len(taken), self._stop.is_set) if taken else None
+            (taken if lanes.begin(self._changes[run]) else alone).append(run)
+        gave_up = lanes.run(self._stop.is_set) if taken else None
         if gave_up is None:         # no member, or interrupted
             return alone
         for run, course, failed in zip(taken, lanes.courses, gave_up, strict=True):
