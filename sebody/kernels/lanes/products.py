@@ -20,7 +20,7 @@ from sebody.kernels.instructions import (
 from sebody.kernels.lanes.straight import AT_ADDRESS
 
 _ROWS = 8, 4, 2, 1      # of a product at a time: their sums stay in registers
-_COLUMNS = 4, 2, 1      # likewise of a product of columns with a vector
+_COLUMNS = 8, 4, 2, 1   # likewise of a product of columns with a vector
 _BITS = ir.IntType(VECTOR.count)
 _NOTHING = ir.Constant(VECTOR, [0.0] * VECTOR.count)
 
@@ -202,8 +202,8 @@ def packed(builder, matrices, x, out, count):
 def add_packed(builder, matrices, x, out):
     """Of `add_packed_times`: straight code if there is some, see `straight`."""
     words = builder.bitcast(matrices, WORD.as_pointer())
-    address = builder.load(builder.gep(words, [WORD(AT_ADDRESS)]))
-    with builder.if_else(builder.icmp_signed("!=", address, WORD(0))) as (straight, by_strips):
+    groups, address = builder.load(words), builder.load(builder.gep(words, [WORD(AT_ADDRESS)]))
+    with builder.if_else(builder.icmp_signed("!=", address, groups)) as (straight, by_strips):
         with straight:
             kind = ir.FunctionType(ir.VoidType(), [VECTOR.as_pointer()] * 3)
             builder.call(builder.inttoptr(address, kind.as_pointer()), (matrices, x, out))

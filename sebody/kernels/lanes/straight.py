@@ -15,7 +15,9 @@ from sebody.compiler.inside.lanes import VECTOR
 from sebody.contract.counts import LANES, MEMBERS
 from sebody.kernels.packed import GROUP, HEAD
 
-AT_ADDRESS = 1      # lane of the first number of a row that has the address of its straight code
+# lane of the first number of a row that has the address of its straight code, where there is some;
+# the number of groups stands in all others
+AT_ADDRESS = 1
 Entries = tuple[tuple[int, int, int], ...]      # places of an entry, of its factor and of its sum
 
 _engines = []       # own the code
