@@ -148,7 +148,7 @@ class Lanes:
             loop.advance(self.system, state, self._scratch, self._record, self.copies.scheme,
                          reached)
             self._take_outputs(np.flatnonzero(state.control["reason"][:count] == 0.0))
-            if stop():
+            if reached < self._last and stop():
                 self._changes.clear()
                 return None
         self._changes.clear()
