@@ -87,8 +87,10 @@ class Ensemble:
             progress: Callable[[float], None] | bool | None = None) -> Outcome:
         """Run the model once for each set of values.
 
-        Results do not depend on the number of threads, bit for bit, nor on which runs are asked for
-        together.
+        Many runs are made eight at a time where the model allows it, see `repr` of the ensemble and
+        ``sebody/explore/ensembles/README.md``. Results do not depend on the number of threads, bit
+        for bit, nor on which runs are asked for together; those of few runs, which are made one by
+        one, are rounded differently.
 
         Parameters
         ----------
@@ -115,7 +117,20 @@ class Ensemble:
 
     def part(self, parameters: Mapping[str, Values], t_end: float,
              outputs: Mapping[str, Output | str], runs: int) -> Outcome:
-        """A part of so many runs, in one thread: with the same bits as among all of them."""
+        """Some of the runs of a larger ensemble, in one thread: the same bits as among all.
+
+        Parameters
+        ----------
+        parameters, t_end, outputs
+            As of `run`.
+        runs : int
+            How many there are in all.
+
+        Raises
+        ------
+        InputError
+            As `run`.
+        """
         return self._run(parameters, t_end, outputs, 1, None, runs)
 
     def _run(self, parameters: Mapping[str, Values], t_end: float,

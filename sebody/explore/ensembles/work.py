@@ -120,7 +120,9 @@ class Work:
             return None
         from sebody.explore.ensembles.lanes import Lanes  # imports the lanes themselves
 
-        return Lanes(copies, kernels_of(self.template.model), self.outputs, self.forms, self.last)
+        with self._lock:        # straight code is compiled by one thread
+            return Lanes(copies, kernels_of(self.template.model), self.outputs, self.forms,
+                         self.last)
 
     def _run_together(self, group: Sequence[int], lanes: Lanes) -> Sequence[int]:
         """Make some runs at a time; returns those that are to be made alone."""
