@@ -5,8 +5,9 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from sebody import Model, simulate
+from sebody import Model, generalized_alpha, simulate
 from sebody.analysis import Ensemble, at_time, final, maximum
+from sebody.catalogue import builder
 from sebody.compiler.choice import way
 from sebody.explore.ensembles import ensemble
 from sebody.explore.ensembles.handles import handle
@@ -223,3 +224,16 @@ def test_coupled_and_linked_bodies(small):
         assert np.abs(found["end"][run] - result["tip.position"]).max() < 1e-11
         assert found["energy"][run] == pytest.approx(result["energy.strain"][-1], rel=1e-7)
 
+
+
+@pytest.mark.parametrize("scene, options, scheme, reason", [
+    ("chain", {"links": 3}, None, "more unknowns"), ("stick-slip", {}, None, "friction"),
+    ("heavy-top", {"explicit": True}, generalized_alpha(index=2), "velocities")])
+def test_the_ensemble_says_why_its_runs_are_made_one_by_one(scene, options, scheme, reason, small):
+    """By facts of the model; its runs are those of the scalar loop."""
+    built = builder(scene)(**options)
+    found = Ensemble(built.model, built.h, scheme)
+    assert "runs one by one" in repr(found) and reason in repr(found)
+    outcome = found.run({"gravity": np.ones((2, 1)) * built.model.gravity_field}, 2 * built.h,
+                        {"end": final(f"{built.tip}.position")})
+    assert outcome.in_lanes == 0 and not outcome.failures
