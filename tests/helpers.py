@@ -15,7 +15,7 @@ def order(steps: ArrayLike, errors: ArrayLike) -> float:
 def multipliers_first(number):
     """A numbering with multipliers before what they act on: their pivots are zero.
 
-    In place of `sebody.assembly.build.number` it makes SuperLU factorize every matrix.
+    In place of `sebody.assembly.build.number` it makes every large matrix need row exchanges.
     """
     def changed(model):
         old = number(model)

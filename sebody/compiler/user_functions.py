@@ -49,7 +49,7 @@ class UserFunction:
         self.read: Mapping[str, object] = {}
         self.record = np.zeros(1 + arguments)
         self.compiled = None            # by `compile_history` or `compile_force`
-        self.alone: Callable | None = None      # compiles it without the record, for exports
+        self.alone: Callable            # compiles it without the record, for exports
 
     @property
     def address(self) -> int:

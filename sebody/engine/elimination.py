@@ -3,7 +3,7 @@
 Multipliers are numbered after the unknowns they act on, so no row exchanges between blocks are
 needed and the pattern of the factors, fill included, is known beforehand. The cost of a chain is
 linear in its number of bodies. If a pivot is small nevertheless, the loop asks for a factorization
-with row exchanges (SuperLU).
+with row exchanges (`row_exchanges.py`).
 
 Blocks have `LANES` rows and columns, stored by columns. Every unknown has a slot, a row and column
 of the blocks; free slots have ones on the diagonal.

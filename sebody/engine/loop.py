@@ -1,8 +1,8 @@
 """The compiled time loop: generalized-alpha on the Lie group, modified Newton, step control.
 
 One loop for every scene: it works on flat arrays, returns a code and can be called again to go on.
-Where the matrix needs row exchanges, it returns FACTOR and SOLVE: the caller factorizes or solves
-and calls it again.
+Where the matrix needs row exchanges, it returns FACTOR and SOLVE: the caller calls
+`row_exchanges.exchange`, makes room for factors if asked, and calls the loop again.
 """
 
 import numpy as np
@@ -66,7 +66,7 @@ UNMOVED = 0.03          # share of the tolerance that elements may move and keep
 
 @compiled(nogil=True)
 def advance(system, state, record, scheme, last_grid, chunk, dense):
-    """Run until `last_grid`, for at most `chunk` steps, or until Python has to factorize or solve.
+    """Run until `last_grid`, for at most `chunk` steps, or until the caller factorizes or solves.
 
     Other threads of Python run meanwhile: no two simulations write to the same memory.
     """

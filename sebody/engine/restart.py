@@ -79,7 +79,7 @@ def restart(system, state, lead, dense):
     Returns
     -------
     int
-        DONE; FAILED with a reason; FACTOR or SOLVE for Python to do so and call again.
+        DONE; FAILED with a reason; FACTOR or SOLVE for the caller to do so and call again.
     """
     control = state.control
     while True:
@@ -117,7 +117,7 @@ def restart(system, state, lead, dense):
 
 @compiled
 def _factorize(system, state, dense):
-    """Factorize masses and constraints; False where Python has to."""
+    """Factorize masses and constraints; False where row exchanges are needed."""
     control = state.control
     control.wanted = KEPT
     control.fresh += 1

@@ -254,7 +254,7 @@ CONTROL = np.dtype([(name, np.int64) for name in (
     "cuts",                  # steps repeated with a shorter one since the start
     "recorded",              # rows written to the record
     "age",                   # steps since all element matrices were evaluated
-    "pivoted",               # 1 where the matrix needs row exchanges: SuperLU factorizes it
+    "pivoted",               # 1 where the matrix needs row exchanges
     "back_off",              # steps that begin with a refreshed matrix after reuse failed
     "back_off_left",         # of these, still to come
     "adaptive",              # 1 for variable steps

@@ -51,6 +51,7 @@ def _fmi3(model: Prepared, token: str, found: list[Variable], t_end: float | Non
                 "modelIdentifier": model.identifier, "canGetAndSetFMUState": "true",
                 "canSerializeFMUState": "true", "canHandleVariableCommunicationStepSize": "true",
                 "canBeInstantiatedOnlyOncePerProcess": "false",
+                "providesDirectionalDerivatives": _flag(model.differentiable),
                 **({} if model.run.tolerance else {"fixedInternalStepSize": _number(model.run.h)}),
             }), *_units(found), *_categories(), _experiment(model, t_end),
             _tag("ModelVariables", {}, [_variable3(one) for one in found]),
@@ -67,7 +68,8 @@ def _fmi2(model: Prepared, token: str, found: list[Variable], t_end: float | Non
             _tag("CoSimulation", {
                 "modelIdentifier": model.identifier, "canGetAndSetFMUstate": "true",
                 "canSerializeFMUstate": "true", "canHandleVariableCommunicationStepSize": "true",
-                "canBeInstantiatedOnlyOncePerProcess": "false"}),
+                "canBeInstantiatedOnlyOncePerProcess": "false",
+                "providesDirectionalDerivative": _flag(model.differentiable)}),
             *_units(found), *_categories(), _experiment(model, t_end),
             _tag("ModelVariables", {}, [_variable2(one) for one in found]),
             _tag("ModelStructure", {}, structure)]))
@@ -113,6 +115,10 @@ def _initial(one: Variable) -> dict[str, str]:
 def _start(one: Variable) -> dict[str, str]:
     unit = {"unit": one.unit} if one.unit else {}
     return unit | ({} if one.start is None else {"start": _number(one.start)})
+
+
+def _flag(value: bool) -> str:
+    return "true" if value else "false"
 
 
 def _number(value: float) -> str:

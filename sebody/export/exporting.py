@@ -75,8 +75,7 @@ def export(model: Model, h: float, *, library: str | Path | None = None,
     chosen = _platforms(platforms, fmi if fmu is not None else "")
     _check_end(t_end)
     _check_processor(processor, chosen)
-    target = (_check_folder(library) if library is not None else
-              check_target(fmu, "FMU", (".fmu",)))
+    target = _check_folder(library) if library is not None else _check_file(fmu)
     toolchain.check_installed()
     made = Prepared(model, name, Run(h, tolerance, scheme, start), _names(inputs, "inputs"),
                     _names(outputs, "outputs"))
@@ -160,6 +159,18 @@ def _check_folder(folder: str | Path) -> Path:
     if folder.is_dir():
         check_target(folder / "example.c", "example")
     return folder
+
+
+def _check_file(file: str | Path | None) -> Path:
+    """The file for an FMU.
+
+    Raises
+    ------
+    InputError
+        Another ending, or it cannot be written.
+    """
+    assert file is not None         # one of both was given
+    return check_target(file, "FMU", (".fmu",))
 
 
 def _move(made: Path, target: Path) -> None:

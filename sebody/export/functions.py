@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Iterable
 from pathlib import Path
+from types import ModuleType
 
 from numba import typeof
 
@@ -11,16 +12,18 @@ from sebody.compiler.code import Code, Place
 from sebody.compiler.decorators import function_code, kernel_code
 from sebody.compiler.sources import function_hash, kernel_hash
 from sebody.compiler.workers import Task
-from sebody.engine import control, loop, matrix, restart
+from sebody.engine import control, loop, matrix, restart, row_exchanges
 from sebody.errors import InputError, SebodyError
-from sebody.export import quantities, row_exchanges
+from sebody.export import quantities
+from sebody.export.outputs import no_outputs
 from sebody.export.platforms import environment, tag
-from sebody.export.terms import no_outputs
 from sebody.kernels.loader import load
 from sebody.runs.first_run import examples
 
+KIND = "scalar"         # of code: its loops do not use vectors
+# loops in vectors are a fifth of the engine's size; the numbers are the same, and so is the time
+VARIABLES = {"NUMBA_LOOP_VECTORIZE": "0"}
 # functions of the engine, and the types of their arguments by the names of `first_run.examples`
-KIND = "code"
 FUNCTIONS = {
     "advance": (loop.advance, "system state record scheme whole whole flag"),
     "refactorize": (matrix.refactorize, "system state whole flag"),
@@ -55,7 +58,7 @@ def codes(names: Iterable[str], processor: str) -> dict[str, Code]:
         print(f"first export for {processor}: compiling {len(missing)} functions", file=sys.stderr,
               flush=True)
         tasks = [Task(name, f"{__name__}:compile_one", (name, processor)) for name in missing]
-        workers.call_all(tasks, variables=environment(processor))
+        workers.call_all(tasks, variables=environment(processor) | VARIABLES)
         found |= {name: place(name).kept(KIND, target) for name in missing}
     if lacking := [name for name, one in found.items() if one is None]:
         raise SebodyError(f"{', '.join(lacking)} could not be compiled for {processor}")
@@ -67,15 +70,22 @@ def _code(kept: bytes) -> Code:
     return Code(symbol.decode(), bitcode)
 
 
+def kernel_module(name: str) -> ModuleType:
+    """The module of a kernel that a model has."""
+    found = load(name)
+    assert found is not None        # assembly refuses a model without one of its kernels
+    return found
+
+
 def compile_one(name: str, processor: str) -> None:
     """Compile a function of the engine or a kernel for the processor that Numba compiles for."""
     if name in FUNCTIONS:
         function, arguments = FUNCTIONS[name]
         kinds = examples() | {"outputs": typeof(no_outputs()),
-                              "exchanges": typeof(row_exchanges.Exchanges.of(0))}
+                              "exchanges": typeof(row_exchanges.Exchanges.of(0, 0))}
         made = function_code(function, tuple(kinds[one] for one in arguments.split()))
     else:
-        made = kernel_code(load(name).kernel)
+        made = kernel_code(kernel_module(name).kernel)
     place(name).keep(KIND, tag(processor), made.symbol.encode() + b"\n" + made.bitcode)
 
 
@@ -84,5 +94,5 @@ def place(name: str) -> Place:
     if name in FUNCTIONS:
         function = FUNCTIONS[name][0].py_func
         return Place(Path(function.__code__.co_filename), name, function_hash(function))
-    source = Path(load(name).__file__)
+    source = Path(str(kernel_module(name).__file__))
     return Place(source, name, kernel_hash(source))

@@ -1,8 +1,8 @@
 """The memory of an instance of an exported model: its arrays in one block of bytes."""
 
-from collections.abc import Iterable, Iterator
-from dataclasses import fields
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
+from zlib import MAX_WBITS, compressobj
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +31,7 @@ class Image:
     groups : list of Arrays
     changing : iterable of ndarray
         Arrays of them that change in a run.
-    scratch : list of ndarray
+    scratch : sequence of ndarray
         Of these, what is written before it is read.
 
     Attributes
@@ -47,7 +47,7 @@ class Image:
     """
 
     def __init__(self, groups: list[Arrays], changing: Iterable[NDArray | np.record],
-                 scratch: list[NDArray]):
+                 scratch: Sequence[NDArray | np.record]):
         mutable = {_address(array) for array in changing if array.nbytes}
         found: dict[int, NDArray | np.record] = {}
         for array in sorted((one for group in groups for one in _members(group)),
@@ -75,6 +75,12 @@ class Image:
         self.stored = bytes(content)
         self.size += ALIGNED
 
+    @property
+    def packed(self) -> bytes:
+        """What is stored, compressed by deflate: most numbers of reduced bodies are zeros."""
+        packer = compressobj(9, wbits=-MAX_WBITS)
+        return packer.compress(self.stored) + packer.flush()
+
     def at(self, array: NDArray | np.record, item: int = 0) -> int:
         """Offset of an array, or of one of its items of eight bytes."""
         if not array.nbytes:
@@ -92,9 +98,9 @@ class Image:
 
     def words(self, group: Arrays) -> list[int]:
         """The words with which compiled code is given a group; pointers as -1 - offset."""
-        found = []
-        for one in fields(group):
-            value = getattr(group, one.name)
+        found: list[int] = []
+        for name in type(group).__annotations__:
+            value = getattr(group, name)
             if isinstance(value, Arrays):
                 found += self.words(value)
             elif isinstance(value, np.record):
@@ -105,8 +111,8 @@ class Image:
 
 
 def _members(group: Arrays) -> Iterator[NDArray | np.record]:
-    for one in fields(group):
-        value = getattr(group, one.name)
+    for name in type(group).__annotations__:
+        value = getattr(group, name)
         if isinstance(value, Arrays):
             yield from _members(value)
         else:

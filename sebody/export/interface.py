@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from sebody.export.image import Image
 from sebody.kernels.loader import element_kernel
 from sebody.model.controllers import continuous, sampled
 from sebody.model.mechanism import Mechanism
+from sebody.model.model import Model
 from sebody.model.parts import Element, Motion
 from sebody.model.time_functions import TimeFunction, input_history
 from sebody.model.variants.copying import copied
@@ -46,7 +47,7 @@ class Asked(NamedTuple):
     owner: Element | Motion | None
 
 
-def with_inputs(model: Mechanism, names: Iterable[str]) -> tuple[Mechanism, list[Asked]]:
+def with_inputs(model: Model, names: Iterable[str]) -> tuple[Model, list[Asked]]:
     """A copy of a model in which some loads and drives are inputs.
 
     Loads and actuators keep the value of t = 0 until they are set. Inputs of drives are their
@@ -57,7 +58,7 @@ def with_inputs(model: Mechanism, names: Iterable[str]) -> tuple[Mechanism, list
     InputError
         A name that nothing has, or of something that cannot be set.
     """
-    made, asked = copied(model), []
+    made, asked = cast(Model, copied(model)), list[Asked]()
     loads = {load.name: load for load in made.loads if load.time_function is not None}
     joints = {drive.name: (joint.name, drive) for joint in made.joints
               for drive in joint.constraints if drive.time_function is not None}

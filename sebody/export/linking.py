@@ -64,7 +64,7 @@ def model_object(called: Sequence[str], image: bytes, platform: str, processor: 
     called : sequence of str
         Names of the functions that are called by address, in the order of the table.
     image : bytes
-        Memory of an instance at the start.
+        Memory of an instance at the start, compressed.
     """
     kind = f"[{max(1, len(called))} x ptr]"
     table = ", ".join(f"ptr @sb_{name}" for name in called) or "ptr null"

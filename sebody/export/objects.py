@@ -1,50 +1,72 @@
 """Object files of a model: those of the engine and of kernels are kept and never made again."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from pathlib import Path
 
-from sebody.compiler.code import Code, Place
+from sebody.compiler.code import Place
 from sebody.compiler.sources import room_hash
+from sebody.compiler.workers import Task, call_all
 from sebody.engine import loop
+from sebody.errors import SebodyError
 from sebody.export.functions import FUNCTIONS, codes, place
 from sebody.export.linking import Part, functions_object, model_object
 from sebody.export.platforms import tag
 from sebody.export.prepared import Prepared
 
-KIND, ENGINE, EXCHANGE = "object", "engine", "exchange"
-IN_ENGINE = [name for name in FUNCTIONS if name != EXCHANGE]    # that is for large models alone
+KIND, ENGINE = "object", "engine"
 
 
 def objects(model: Prepared, platform: str, processor: str) -> dict[str, bytes]:
-    """The object files of a model for a platform, by name."""
-    apart = [*model.kernels, *[EXCHANGE] * (not model.run.dense)]
-    places = {ENGINE: _engine()} | {name: _own(place(name)) for name in apart}
-    target = f"{platform}.{tag(processor)}"
-    found = {name: one.kept(KIND, target) for name, one in places.items()}
+    """The object files of a model for a platform, by name.
+
+    LLVM ends the process that asks for an instruction which a target lacks. So object files that
+    are not kept yet are made in processes of their own, except those of users' functions.
+
+    Raises
+    ------
+    InputError
+        No folder for compiled code can be written.
+    SebodyError
+        LLVM has failed.
+    """
+    names, target = (ENGINE, *model.kernels), f"{platform}.{tag(processor)}"
+    found = {name: _place(name).kept(KIND, target) for name in names}
     missing = [name for name, content in found.items() if content is None]
-    wanted = [one for name in missing for one in (IN_ENGINE if name == ENGINE else (name,))]
-    made = codes(wanted, processor)
-    for name in missing:
-        found[name] = functions_object(_parts(name, made), platform, processor)
-        places[name].keep(KIND, target, found[name])
+    if missing:
+        codes(_of(missing), processor)
+        call_all([Task(name, f"{__name__}:keep_one", (name, platform, processor))
+                  for name in missing])
+        found |= {name: _place(name).kept(KIND, target) for name in missing}
+    if lacking := [name for name, content in found.items() if content is None]:
+        raise SebodyError(f"LLVM has made no code of {', '.join(lacking)} for {platform} and "
+                          f"{processor}: leave this platform out, or give another processor")
+    made = {name: content for name, content in found.items() if content is not None}
     users = model.users()
     if users:
-        found["users"] = functions_object(users, platform, processor)
-    found["model"] = model_object(model.called, model.image.stored, platform, processor)
-    return {name: content for name, content in found.items() if content is not None}
+        made["users"] = functions_object(users, platform, processor)
+    made["model"] = model_object(model.called, model.image.packed, platform, processor)
+    return made
 
 
-def _parts(name: str, made: dict[str, Code]) -> Sequence[Part]:
-    if name == ENGINE:
-        return [Part(one, one, made[one]) for one in IN_ENGINE]
-    return [Part(name, EXCHANGE if name == EXCHANGE else "kernel", made[name])]
+def keep_one(name: str, platform: str, processor: str) -> None:
+    """Make an object file, of the engine or of a kernel, and keep it."""
+    made = codes(_of([name]), processor)
+    parts = ([Part(one, one, made[one]) for one in FUNCTIONS] if name == ENGINE else
+             [Part(name, "kernel", made[name])])
+    _place(name).keep(KIND, f"{platform}.{tag(processor)}",
+                      functions_object(parts, platform, processor))
 
 
-def _engine() -> Place:
-    hashes = " ".join(dict.fromkeys(place(name).made_from for name in IN_ENGINE))
-    return _own(Place(Path(loop.__file__), ENGINE, hashes))
+def _of(names: Iterable[str]) -> list[str]:
+    """Functions of the engine and kernels that some object files consist of."""
+    return [one for name in names for one in (FUNCTIONS if name == ENGINE else (name,))]
 
 
-def _own(one: Place) -> Place:
-    """Object files depend on this room, too."""
-    return one._replace(made_from=f"{one.made_from} {room_hash('export')}")
+def _place(name: str) -> Place:
+    """Where an object file is kept; it depends on this room, too."""
+    if name != ENGINE:
+        own = place(name)
+    else:
+        hashes = " ".join(dict.fromkeys(place(one).made_from for one in FUNCTIONS))
+        own = Place(Path(loop.__file__), ENGINE, hashes)
+    return own._replace(made_from=f"{own.made_from} {room_hash('export')}")

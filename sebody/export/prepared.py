@@ -10,19 +10,21 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.assembly.control import begin
+from sebody.assembly.motions import motion_kernel
 from sebody.compiler.choice import way
 from sebody.compiler.user_functions import ControlFunction
 from sebody.contract.law_row import OUTSIDE
+from sebody.engine.row_exchanges import Exchanges
 from sebody.engine.state import EVALUATED, Scheme
 from sebody.engine.system import System
 from sebody.errors import InputError
+from sebody.export.functions import kernel_module
 from sebody.export.image import Image, members
 from sebody.export.interface import PARAMETER, Input, placed, with_inputs
 from sebody.export.linking import Part
+from sebody.export.outputs import Quantities
 from sebody.export.quantities import Outputs
-from sebody.export.row_exchanges import Exchanges
-from sebody.export.terms import Quantities
-from sebody.kernels.loader import element_kernel_name, load
+from sebody.kernels.loader import element_kernel_name
 from sebody.model.controllers import sampled
 from sebody.model.model import Model
 from sebody.results.result import Result
@@ -80,14 +82,12 @@ class Prepared:
         made, asked = with_inputs(model, inputs_of)
         self.run = Simulation(made, run.h, run.scheme, 1, run.tolerance, run.start)
         self.model, self._numbering = made, self.run.numbering
-        if self.run.system.massless[0]:
-            raise InputError("a motion of the model has stiffness and no mass, for which Python "
-                             "solves at the start and at every jump: give it some mass")
         called_at_samples = {one.name for one in sampled(made)}
         if any(one.name.rpartition(".parameters.")[0] in called_at_samples for one in asked):
             self._ask_for_first_samples()
         self.system = _with_spare_corner(self.run.system)
-        quantities = Quantities(made, self._numbering, self.run.system, self.run.state)
+        quantities = Quantities(made, self._numbering, self.run.system, self.run.state,
+                                any(one.name.startswith("gravity.") for one in asked))
         self.names = quantities.names(outputs_of)
         if len(set(self.names)) < len(self.names):
             twice = next(one for one in self.names if self.names.count(one) > 1)
@@ -98,13 +98,21 @@ class Prepared:
         self.outputs: Outputs = quantities.made(self.names, [s for _, s in self.sensors])
         found = parsed_units(made.units)
         self.units = [unit(one, found) for one in self.names]
-        self.exchanges = Exchanges.of(0 if self.run.dense else self._numbering.free)
+        self.exchanges = Exchanges.of(self._numbering.free, self.system.rows.size)
         self.image = self._image([one.kind for one in asked])
         self.inputs: list[Input] = [
             one._replace(unit=found.of(one.unit) if found else one.unit)
             for one in placed(asked, made, self._numbering, self.system, self.run.state,
                               self.image)]
         self._find_calls()
+
+    @property
+    def differentiable(self) -> bool:
+        """Whether outputs have derivatives by inputs: not where motions have no mass.
+
+        An input moves these in the next step, however short it is.
+        """
+        return not self.system.massless[0]
 
     def _ask_for_first_samples(self) -> None:
         """Take back the samples of t = 0: parameters of controllers may be set before them."""
@@ -115,9 +123,11 @@ class Prepared:
 
     def _image(self, kinds: list[int]) -> Image:
         system, state = self.system, self.run.state
-        changing = [*members(state), self.outputs.values, self.outputs.row, self.outputs.loads,
-                    self.outputs.sums, system.corners, system.jumps, system.table_times,
-                    system.table_pieces, system.control.parameters]
+        outputs = self.outputs
+        changing = [*members(state), outputs.values, outputs.row, outputs.loads, outputs.sums,
+                    outputs.moved, outputs.residues, outputs.frames, outputs.work, system.corners,
+                    system.jumps, system.table_times, system.table_pieces,
+                    system.control.parameters]
         changing += [system.constants] * (PARAMETER in kinds)
         changing += members(self.exchanges)
         state.work[:] = 0.0
@@ -125,7 +135,7 @@ class Prepared:
             for matrix in (state.J, state.matrix, state.inverse):
                 matrix[...] = 0.0
         return Image([system, state, self.outputs, self.exchanges], changing,
-                     [state.work, self.exchanges.factors])
+                     [state.work, *members(self.exchanges)])
 
     def _find_calls(self) -> None:
         """Find addresses in the arrays, and forget them: they are of this process."""
@@ -133,13 +143,17 @@ class Prepared:
         bodies = {body.kernel for body in model.bodies.values()}
         elements = {element_kernel_name(one.kind) for one in (
             *model.rigid_bodies.values(), *model.constraints, *model.loads)}
-        kernels = {load(name).kernel.address: name for name in bodies | elements}
+        kernels = {kernel_module(name).kernel.address: name for name in bodies | elements}
+        moved = {motion_kernel(body) for body in model.bodies.values()} if (
+            self.outputs.bodies.size) else set()
+        kernels |= {kernel_module(name).kernel.address: name for name in moved}
         self.kernels = sorted(kernels.values())
         self._users = {function.address: (f"user_{k}", function)
                        for k, (_, function) in enumerate(functions(model))}
         users = {address: name for address, (name, _) in self._users.items()}
         self.calls = [
             *self._in(system.address, kernels), *self._in(system.index, kernels | users),
+            *self._in(self.outputs.bodies, kernels),
             *self._in(system.functions, users),
             *self._in(system.control.controllers, users),
             *((self.image.at(system.routines, k), name) for k, name in enumerate(ROUTINES))]

@@ -3,8 +3,10 @@
 from collections.abc import Iterable
 from hashlib import sha256
 
+import numpy as np
+
 from sebody.contract.layout import RECORD
-from sebody.engine import control_data
+from sebody.engine import control_data, sparse_lu
 from sebody.engine.state import ASKED, CLOCK, CONTROL, EVALUATED, REASONS, Record
 from sebody.export.prepared import Prepared
 
@@ -22,16 +24,19 @@ def model_h(model: Prepared) -> str:
         "AT_MEMORY": image.at(state.memory), "AT_NOW": image.at(state.now),
         "AT_VALUES": image.at(outputs.values), "AT_CORNERS": image.at(system.corners),
         "AT_JUMPS": image.at(system.jumps), "COLUMNS": state.now.size,
-        "RECORD_PARTS": record.at.size, "DENSE": int(run.dense), "ASKED": ASKED,
-        "EVALUATED": EVALUATED, "ADAPTIVE": int(state.control.adaptive),
+        "AT_A": image.at(state.a), "AT_Q": image.at(state.q), "AT_WEIGHT": image.at(state.weight),
+        "AT_MULTIPLIERS": image.at(system.is_multiplier), "UNKNOWNS": system.diagonal.size,
+        "DERIVATIVES": int(model.differentiable), "RECORD_PARTS": record.at.size,
+        "DENSE": int(run.dense), "ASKED": ASKED, "EVALUATED": EVALUATED, "ROOM": sparse_lu.ROOM,
+        "AT_KIND": image.at(model.exchanges.kind), "ADAPTIVE": int(state.control.adaptive),
         "CORNERS": system.corners.size - 1, "TASKS": own.periods.size,
         "SENSORS": len(model.sensors), "VARIABLES": len(model.names), "INPUTS": len(model.inputs),
         "REASONS": max(REASONS) + 1, "CALLED": len(model.calls),
         **{f"MEMORY_{name}": getattr(control_data, name) for name in (
             "STOP", "NEXT", "HAS", "COUNTS")},
-        **{f"CONTROL_{name.upper()}": CONTROL.names.index(name) for name in (
-            "grid", "recorded", "reason", "restart", "corner", "wanted", "pivoted")},
-        **{f"CLOCK_{name.upper()}": CLOCK.names.index(name) for name in ("time", "step")}}
+        **{f"CONTROL_{name.upper()}": _number(CONTROL, name) for name in (
+            "grid", "recorded", "reason", "restart", "corner", "wanted")},
+        **{f"CLOCK_{name.upper()}": _number(CLOCK, name) for name in ("time", "step")}}
     first = own.periods.size + control_data.COUNTS
     listed = [
         *(_words(name, image.words(group)) for name, group in (
@@ -65,6 +70,11 @@ def quoted(text: str) -> str:
     """A text as a constant in C; bytes beyond ASCII in octal."""
     return '"' + "".join(chr(b) if 32 <= b < 127 and chr(b) not in '"\\?' else f"\\{b:03o}"
                          for b in text.encode()) + '"'
+
+
+def _number(fields: np.dtype, name: str) -> int:
+    """Which of the fields of a record one is."""
+    return list(fields.fields or ()).index(name)
 
 
 def _float(value: float) -> str:

@@ -1,152 +1,188 @@
-"""Outputs by name: as channels of sensors, or as sums of products that compiled code evaluates.
+"""Quantities as sums of products of numbers of a state, of forces and of energies.
 
 How a quantity follows from a state is written once, in `sebody.results`. Here it is asked there in
 states in which one number is one and all others are zero, and what is found is compared with the
-quantity in a state of random numbers: a quantity that is no such sum is refused.
+quantity in states of random numbers.
 """
 
-from collections.abc import Iterable
+from bisect import bisect
+from functools import cached_property
 from itertools import product
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from sebody.assembly.channels import channel
 from sebody.assembly.numbering import Numbering, record_counts
-from sebody.contract.law_row import OUTSIDE
 from sebody.contract.layout import ENERGIES, RECORD
-from sebody.engine.control_data import CHANNEL_NUMBERS, CHANNEL_PLACES
+from sebody.engine.evaluate import set_loads
 from sebody.engine.state import State
 from sebody.engine.system import System
-from sebody.errors import InputError
-from sebody.export.quantities import FACTORS, FORCE, NOW, OF_ENERGY, ONE, SUM, Outputs
-from sebody.model.control_parts import Sensor
+from sebody.export.program import Program, Term, product_of
+from sebody.export.quantities import (
+    BELOW_HALF,
+    COSINE,
+    FORCE,
+    LOAD,
+    MOVED,
+    NOW,
+    OF_ENERGY,
+    ONE,
+    POSITIVE,
+    RESIDUES,
+    SINE,
+    SUM,
+)
+from sebody.kernels.loader import element_kernel
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import DofBlock, Joint
+from sebody.model.parts import DofBlock, Element, Joint, Superelement
 from sebody.results import naming
-from sebody.results.field_quantities import FENodes
-from sebody.results.postprocessing import Forces
+from sebody.results.contact_quantities import pressing
+from sebody.results.motion import evaluated
+from sebody.results.postprocessing import Forces, prescribed_powers
 from sebody.results.recording import Recording
 
-SEED, SAME = 7, 1e-9    # of the state of random numbers, and how far both may differ in it
-NONE = ONE, 0
+SEED, SAME = 7, 1e-9    # of states of random numbers, and how far both may differ in them
+STATES = 4              # of them
+AROUND = 0.3            # how far they are from the start: positions, and angles of rotations [rad]
 LOCAL = {"local_force": "force", "local_moment": "moment", "torque": "moment", "thrust": "force"}
 
 
-class Term(NamedTuple):
-    """A product of a weight and some numbers."""
-
-    weight: float
-    factors: tuple[tuple[int, int], ...]    # what each is of, and its place
-
-
-class Quantities:
-    """What compiled code evaluates of a model."""
+class Terms:
+    """Sums of products that are quantities of a model."""
 
     def __init__(self, model: Mechanism, numbering: Numbering, system: System, state: State):
         self.model, self.numbering, self.system, self.state = model, numbering, system, state
         counts = record_counts(numbering)
         self._parts = RECORD.slices(counts)
-        sizes = state.now.size, state.g.size, state.residual.size, ENERGIES.size(counts)
-        self._kinds = [(kind, k) for kind, size in zip((NOW, FORCE, SUM, OF_ENERGY), sizes,
-                                                       strict=True) for k in range(size)]
+        sizes = state.now.size, state.g.size, state.residual.size, ENERGIES.size(counts), 2
+        self._kinds = [(kind, k) for kind, size in zip(
+            (NOW, FORCE, SUM, OF_ENERGY, RESIDUES), sizes, strict=True) for k in range(size)]
         self._ends = np.cumsum(sizes)[:-1]
         rest = np.zeros(len(self._kinds))
         R = self._parts["R"]
         rest[R] = np.tile(np.eye(3).ravel(), (R.stop - R.start) // 9)
-        random = np.random.default_rng(SEED).uniform(-1.0, 1.0, rest.size)
-        random[R] = Rotation.random((R.stop - R.start) // 9, random_state=SEED).as_matrix().ravel()
-        self._rest, self._random = rest, random
+        self._rest, self.states = rest, self._random_states()
+        self.numbers = self._numbers()
         self._turned = self._of_rotations()
 
-    def names(self, names: Iterable[str]) -> list[str]:
-        """Names of numbers: of a vector those of its components.
-
-        Raises
-        ------
-        InputError
-            A name that nothing has.
-        """
-        found = []
-        for name in names:
-            values = naming.look_up(self._now(), name)
-            found += [name + "." * bool(label) + label
-                      for label in naming.component_names(values, name)]
+    def _random_states(self) -> NDArray:
+        """The start, then states of random numbers around it, (1 + STATES, numbers)."""
+        random, start = np.random.default_rng(SEED), self.state.now
+        found = random.uniform(-1.0, 1.0, (1 + STATES, len(self._kinds)))
+        q, R = self._parts["q"], self._parts["R"]
+        found[:, q] = start[q] + AROUND * found[:, q]
+        for row in found:
+            turns = Rotation.from_rotvec(random.uniform(-AROUND, AROUND, ((R.stop - R.start) // 9,
+                                                                          3))).as_matrix()
+            row[R] = (start[R].reshape(-1, 3, 3) @ turns).ravel()
+        for name in ("frames", "frames_old"):       # of bodies: rotations
+            first = self._parts[name].start
+            own = slice(first, first + 9 * len(self.model.bodies))
+            found[:, own] = start[own]
+        found[0, :start.size] = start
         return found
 
-    def made(self, names: list[str], sensors: list[Sensor]) -> Outputs:
-        """Outputs of some numbers, then of what sensors measure.
+    def _numbers(self) -> dict[int, NDArray]:
+        """Numbers of every kind in these states, but of motions and of other outputs."""
+        rows, elements, sums, energies, residues = np.split(self.states, self._ends, axis=1)
+        loads = np.zeros((len(rows), self.state.loads.size))
+        for row, own in zip(rows, loads, strict=True):
+            set_loads(self.system, np.ascontiguousarray(row[self._parts["frames"]]), own,
+                      float(row[self._parts["t"]][0]))
+        return {ONE: np.ones((len(rows), 1)), NOW: rows, FORCE: elements, SUM: sums,
+                OF_ENERGY: energies, RESIDUES: residues, LOAD: loads}
 
-        Raises
-        ------
-        InputError
-            A quantity that compiled code cannot evaluate.
-        """
-        asked = [(name, "") for name in names] + [(s.quantity, s.axes) for s in sensors]
-        channels = [channel(self.model, self.numbering, *one) for one in asked]
-        terms = [(k, term) for k, (name, axes) in enumerate(asked)
-                 if channels[k].places[0] == OUTSIDE for term in self._terms(name, axes)]
-        kinds = {kind for _, term in terms for kind, _ in term.factors}
-        rows = [(k, *(n for factor in (term.factors + (NONE,) * FACTORS)[:FACTORS] for n in factor))
-                for k, term in terms]
-        return _outputs(
-            np.array([one.places for one in channels], dtype=np.int64),
-            np.array([one.numbers for one in channels], dtype=float),
-            np.array(rows, dtype=np.int64), np.array([term.weight for _, term in terms]),
-            [int(bool(kinds & {FORCE, SUM})), int(OF_ENERGY in kinds)], self.state)
+    def numbers_of(self, program: Program) -> dict[int, NDArray]:
+        """The same with the motions of bodies that a program asks for."""
+        rows, counts = np.ascontiguousarray(self.numbers[NOW]), record_counts(self.numbering)
+        found = [evaluated(group, rows, counts)[0].reshape(len(rows), -1)
+                 for group, _ in program.bodies.values()]
+        return self.numbers | {MOVED: np.hstack([np.zeros((len(rows), 0)), *found])}
 
-    def _now(self) -> Recording:
+    def recording(self) -> Recording:
+        """The state at the start."""
         return Recording(self.model, self.numbering, self.system, self.state,
                          self.state.now[None].copy(), 0.0)
 
-    def _values(self, name: str, sources: NDArray) -> NDArray:
-        """A quantity in states, (n,), of given forces and energies."""
-        rows, elements, sums, energies = np.split(sources, self._ends, axis=1)
+    def values(self, name: str, sources: NDArray) -> NDArray:
+        """A quantity in states, (n,), of given forces, energies and residuals."""
+        rows, elements, sums, energies, residues = np.split(sources, self._ends, axis=1)
         recording = Recording(self.model, self.numbering, self.system, self.state, rows, 0.0)
-        powers = ENERGIES.slices(record_counts(self.numbering))["powers"]
+        powers = prescribed_powers(
+            self.system, rows[:, self._parts["t"]][:, 0],
+            np.ascontiguousarray(rows[:, self._parts["frames"]]), sums,
+            energies[:, ENERGIES.slices(record_counts(self.numbering))["powers"]])
         vars(recording).update(unique_rows=rows, forces=Forces(elements, sums), energies=energies,
-                               powers=energies[:, powers])
+                               powers=powers, constraint_residuals=residues)
         return naming.look_up(recording, name)
 
-    def _terms(self, name: str, axes: str) -> list[Term]:
-        """A quantity as a sum of products.
+    @cached_property
+    def shared(self) -> set[tuple[int, int]]:
+        """Numbers that are not unique where constraints are redundant."""
+        numbering, q = self.numbering, self._parts["q"].start
+        powers = ENERGIES.slices(record_counts(numbering))["powers"].start
+        found = {(SUM, k) for k in range(self.state.residual.size)}
+        found |= {(NOW, q + int(k)) for k in np.flatnonzero(self.system.is_multiplier)}
+        starts = sorted([*numbering.forces_at.values(), self.state.g.size])
+        for element in self.model.constraints:
+            if element.name in numbering.port_names:
+                found.add((OF_ENERGY, powers + numbering.port_names.index(element.name)))
+            first = numbering.forces_at[element]
+            found |= {(FORCE, k) for k in range(first, starts[bisect(starts, first)])}
+        return found
 
-        Raises
-        ------
-        InputError
-            It is none.
-        """
-        owner, _, _ = name.rpartition(".")
-        prescribed = {self.numbering.port_names[k] for k in self.system.prescribed[:, 1]}
-        refused = (axes or self._inside(name) or self.system.regularized[0] and "force" in name
-                   or name.endswith(".power") and owner in prescribed)
-        for made in () if refused else (self._linear, self._with_rotations, self._in_joint_axes):
-            found = made(name)
-            if found is not None and self._same(name, found):
-                return found
-        raise InputError(
-            f"output {name!r} cannot be compiled: motion of nodes and modes, angles of joints, "
-            "forces and moments of joints, loads and supports, works, energies, sensors and "
-            "signals can, unless constraints are redundant; quantities of FE nodes cannot")
+    def found(self, name: str) -> list[Term] | None:
+        """A quantity as a sum of products; None if it is none."""
+        for made in (self._of_contact, self._of_motion, self._linear, self._with_rotations,
+                     self._in_joint_axes):
+            terms = made(name)
+            if terms is not None and self._same(name, terms):
+                return terms
+        return None
+
+    def _of_contact(self, name: str) -> list[Term] | None:
+        """Whether friction sticks, and what it has dissipated."""
+        owner, _, quantity = name.rpartition(".")
+        element = pressing(self.recording()).get(owner)
+        if element is None or quantity not in ("sticks", "dissipation"):
+            return None
+        memory, places = element_kernel(element.kind).MEMORY, self.numbering.memories[element]
+        at = {part: self._parts["frames"].start + int(place)
+              for part, place in zip(memory, places, strict=True)}
+        if quantity == "sticks":
+            return [Term(1.0, ((POSITIVE, at["normal"]), (BELOW_HALF, at["slid"])))]
+        port = self.numbering.port_names.index(owner)
+        found = [Term(-1.0, ((NOW, self._parts["works"].start + port),))]
+        bent = [part for part in memory if part.startswith("bent")]
+        if bent and self.numbering.bristles:
+            half = 0.5 * self.numbering.bristles[element]
+            for part in bent:
+                found += [Term(-half, ((NOW, at[part]), (NOW, at[part]))),
+                          Term(float(half * self.state.now[at[part]]**2))]
+        return found
+
+    def _of_motion(self, name: str) -> list[Term] | None:
+        """Power of a prescribed motion."""
+        owner, _, quantity = name.rpartition(".")
+        if quantity != "power" or owner not in self.numbering.port_names:
+            return None
+        port = self.numbering.port_names.index(owner)
+        return [Term(float(factor), ((SUM, int(coordinate)), (LOAD, 3 * port + 1)))
+                for (coordinate, of_port, _), factor in zip(
+                    self.system.prescribed, self.system.prescribed_factor, strict=True)
+                if of_port == port] or None
 
     def _linear(self, name: str) -> list[Term] | None:
         """Weights of numbers, from one state for each of them."""
         sources = self._rest + np.vstack([np.zeros(self._rest.size), np.eye(self._rest.size)])
-        values = self._values(name, sources)
+        values = self.values(name, sources)
         if values.ndim != 1:
             return None
         weights = values[1:] - values[0]
         constant = values[0] - weights @ self._rest
         found = [Term(float(weights[k]), (self._kinds[k],)) for k in np.flatnonzero(weights)]
         return found + [Term(float(constant), ())] * bool(constant)
-
-    def _inside(self, name: str) -> bool:
-        """Whether it is a quantity of an FE node."""
-        recording = self._now()
-        owner = naming.split(recording, name)[0].rpartition(".")[0]
-        return owner not in self.model.nodes and owner in FENodes(recording)
 
     def _with_rotations(self, name: str) -> list[Term] | None:
         """The same with moments, which elements give in axes that turn with nodes."""
@@ -188,18 +224,30 @@ class Quantities:
         if block is None or block not in self.numbering.dof_blocks:
             return [Term(float(columns[i, axis]), ())]
         if self.model.planar:
-            return None
+            return self._along_in_plane(self._parts["q"].start + self.numbering.dof_blocks[block],
+                                        columns[:, axis], i)
         first = self._matrix(block) + 3 * i
         return [Term(float(columns[k, axis]), ((NOW, first + k),)) for k in range(3)
                 if columns[k, axis] != 0.0]
 
+    @staticmethod
+    def _along_in_plane(angle: int, column: NDArray, i: int) -> list[Term]:
+        """Component i of a direction that turns by an angle."""
+        x, y = (float(v) for v in column)
+        return [Term(weight, ((kind, angle),)) for weight, kind in (
+            ((x, COSINE), (-y, SINE)) if i == 0 else ((x, SINE), (y, COSINE))) if weight]
+
     def _same(self, name: str, terms: list[Term]) -> bool:
-        """Whether a sum is the quantity in a state of random numbers."""
-        places = {kind: k for k, kind in enumerate(self._kinds)}
-        products = [term.weight * np.prod([self._random[places[one]] for one in term.factors])
-                    for term in terms]
-        value = self._values(name, self._random[None])[0]
-        return bool(abs(sum(products) - value) <= SAME * max(1.0, np.abs(products).sum()))
+        """Whether a sum is the quantity in all states, the start included."""
+        products = np.array([product_of(term, self.numbers) for term in terms]).reshape(
+            -1, len(self.states))
+        return self.agree(name, products.sum(axis=0), np.abs(products).sum(axis=0))
+
+    def agree(self, name: str, found: NDArray, size: NDArray | float = 1.0) -> bool:
+        """Whether values are those of a quantity in all states."""
+        own = self.values(name, self.states)
+        return bool(np.all(np.abs(found - own) <= SAME * np.maximum(
+            1.0, np.maximum(size, np.abs(own)))))
 
     def _matrix(self, block: DofBlock) -> int:
         return self._parts["R"].start + 9 * self.numbering.rotations[block]
@@ -210,8 +258,9 @@ class Quantities:
             return {}
         found = {}
         numbering, model = self.numbering, self.model
-        for part in (*model.bodies.values(), *model.rigid_bodies.values(), *model.constraints,
-                     *model.loads):
+        parts: list[Element | Superelement] = [
+            *model.bodies.values(), *model.rigid_bodies.values(), *model.constraints, *model.loads]
+        for part in parts:
             first = numbering.forces_at[part]
             for place in part.attachments:
                 block = getattr(place.node, place.kind)
@@ -224,20 +273,3 @@ class Quantities:
             for k in range(3):
                 found[SUM, first + k] = self._matrix(block), first, k
         return found
-
-
-def no_outputs() -> Outputs:
-    """Outputs of nothing, for their types."""
-    return _outputs(np.zeros((0, 1 + CHANNEL_PLACES), dtype=np.int64),
-                    np.zeros((0, CHANNEL_NUMBERS)), np.zeros(0, dtype=np.int64), np.zeros(0),
-                    [0, 0], None)
-
-
-def _outputs(channels: NDArray, coefficients: NDArray, terms: NDArray, weights: NDArray,
-             needs: list[int], state: State | None) -> Outputs:
-    row, loads, sums = ((state.now, state.loads, state.residual) if state else [np.zeros(0)] * 3)
-    return Outputs(channels.reshape(-1, 1 + CHANNEL_PLACES),
-                   coefficients.reshape(-1, CHANNEL_NUMBERS),
-                   terms.reshape(-1, 1 + 2 * FACTORS), weights.astype(float), np.array(needs),
-                   np.zeros(len(channels)), np.zeros(row.size), np.zeros(loads.size),
-                   np.zeros(sums.size))

@@ -9,6 +9,9 @@ The displacements whose stresses are taken are those of the reduced coordinates,
   body itself, is added, see `sebody.reduction.static_correction`.
 """
 
+from __future__ import annotations
+
+from copy import copy
 from functools import cached_property
 
 import numpy as np
@@ -65,6 +68,18 @@ class Stresses:
         if loads is not None and self._recovery.static is not None:
             self._shapes.append(self._recovery.static.reshape(count, width, -1))
             self._amplitudes.append(np.hstack([self._inertia(), loads]))
+
+    @property
+    def amplitudes(self) -> NDArray:
+        """Amplitudes of all shapes that strain the body, the static ones last, (n, s)."""
+        return np.hstack(self._amplitudes)
+
+    def of_unit_amplitudes(self) -> Stresses:
+        """The same in s states, in each of which one amplitude is one and all others are zero."""
+        other = copy(self)
+        ends = np.cumsum([part.shape[1] for part in self._amplitudes])
+        other._amplitudes = np.split(np.eye(ends[-1]), ends[:-1], axis=1)
+        return other
 
     @property
     def states_at_once(self) -> int:
@@ -171,7 +186,7 @@ class Stresses:
 
     def _history(self, row: NDArray) -> NDArray:
         """Values over time (n, 6) of those of unit amplitudes (6, s)."""
-        return np.hstack(self._amplitudes) @ row.T
+        return self.amplitudes @ row.T
 
     def _of_elements(self, one: SolidStress | BeamStress, elements: NDArray, what: str) -> NDArray:
         """Values of unit amplitudes, the shapes along the last axis."""

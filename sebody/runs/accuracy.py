@@ -2,6 +2,7 @@
 
 import warnings
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -21,6 +22,8 @@ COARSE = 1e-3       # largest relative local tolerance of the first run
 REFINED = 3.0       # the second run takes so many times the steps of the first
 LEAST, MOST = 1.5, 6.0      # bounds of that factor for further runs
 AIM = 0.5           # share of the tolerance that a further run aims at
+SLOWEST, QUICKEST = 0.25, 2.0       # orders at which errors may fall with the number of steps
+BISECTIONS = 20     # of the order that three runs show
 HOPELESS = 0.5      # two refinements must reduce the difference of runs by this factor
 
 
@@ -31,9 +34,11 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
     """Run a model so that its error in time is within a tolerance; steps are chosen.
 
     The run is repeated with a finer local tolerance until the difference of the last two runs shows
-    that the last one is good enough: errors fall with the square of the number of steps. Errors
-    are root mean squares over the run, of every position and rotation. The error of the model
-    itself, from too few modes or bodies, is not part of them.
+    that the last one is good enough: errors fall with the square of the number of steps. Where
+    only that makes it good enough, and not a fall with the number itself, a third run in between
+    shows how they fall: vibrations that steps do not resolve converge slowly. Errors are root mean
+    squares over the run, of every position and rotation. The error of the model itself, from too
+    few modes or bodies, is not part of them.
 
     Parameters
     ----------
@@ -67,29 +72,20 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
 def _refined(model: Model, h: float, t_end: float, wanted: Tolerance, scheme: Scheme | None,
              progress: Callable[[float], None] | None, start: Result | None) -> Result:
     """The run that is within the tolerance `wanted`, after coarser ones."""
-    share, seconds = min(FIRST, COARSE / max(wanted.relative, 1e-300)), 0.0
-    before: Result | None = None
+    runs = _Runs(model, h, t_end, wanted, scheme, progress, start)
+    coarse = min(FIRST, COARSE / max(wanted.relative, 1e-300))
+    before, share = runs.run(coarse), coarse / REFINED**3
     differences: list[float] = []
     while True:
-        local = Tolerance(*(share * value for value in wanted))
-        try:
-            with warnings.catch_warnings():     # what is wrong with a coarse run need not stay
-                warnings.simplefilter("ignore", LimitWarning)
-                run = Simulation(model, h, scheme, tolerance=local, start=start)
-                now = run.run_to(t_end, progress).result()
-        except KeyboardInterrupt as stop:
-            if before is None:
-                raise
-            before.failure = (f"{stop or 'interrupted'}; the result is that of the previous run, "
-                              "with larger steps, and its error may be above the tolerance")
-            raise Interrupted(before.failure, before) from stop
-        seconds += now.seconds
-        now.all_seconds = seconds
-        if before is None:
-            share, before = share / REFINED**3, now
-            continue
+        now = runs.run(share)
         differences.append(difference(now, before, wanted))
-        now.error = differences[-1] / max((now.steps / before.steps)**2 - 1.0, 1.0)
+        now.error, most = _falling(differences[-1], before, now, 2), MOST
+        if now.error <= 1.0 < (slowly := _falling(differences[-1], before, now, 1)):
+            between = runs.run(np.sqrt(share * coarse))
+            now.error, most = error_by_three(before, between, now, wanted), REFINED
+        elif now.error <= 1.0:
+            now.error = slowly
+        now.all_seconds = runs.seconds
         if now.error <= 1.0:
             for message in now.warnings:
                 warnings.warn(message, LimitWarning, stacklevel=3)
@@ -100,8 +96,65 @@ def _refined(model: Model, h: float, t_end: float, wanted: Tolerance, scheme: Sc
                 f"{differences[-1]:.3g} times the tolerance with {now.steps} steps. The motion may "
                 "be chaotic, so that only its beginning can be computed: use a larger tolerance "
                 "or an earlier end", now)
-        share /= min(max(np.sqrt(now.error / AIM), LEAST), MOST)**3
-        before = now
+        before, coarse = now, share
+        share /= min(max(np.sqrt(now.error / AIM), LEAST), most)**3
+
+
+@dataclass
+class _Runs:
+    """Runs of a model with local tolerances that are shares of the wanted one."""
+
+    model: Model
+    h: float
+    t_end: float
+    wanted: Tolerance
+    scheme: Scheme | None
+    progress: Callable[[float], None] | None
+    start: Result | None
+    finest: Result | None = None
+    seconds: float = 0.0
+
+    def run(self, share: float) -> Result:
+        """One run; what is wrong with a coarse one need not stay, so it does not warn."""
+        local = Tolerance(*(share * value for value in self.wanted))
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", LimitWarning)
+                one = Simulation(self.model, self.h, self.scheme, tolerance=local,
+                                 start=self.start)
+                found = one.run_to(self.t_end, self.progress).result()
+        except KeyboardInterrupt as stop:
+            if self.finest is None:
+                raise
+            last = self.finest
+            last.failure = (f"{stop or 'interrupted'}; the result is that of the previous run, "
+                            "with larger steps, and its error may be above the tolerance")
+            raise Interrupted(last.failure, last) from stop
+        self.seconds += found.seconds
+        if self.finest is None or found.steps > self.finest.steps:
+            self.finest = found
+        return found
+
+
+def _falling(change: float, coarse: Result, fine: Result, order: int) -> float:
+    """Error of a run by its difference from a coarser one, if errors fall with that order."""
+    return change / max((fine.steps / coarse.steps)**order - 1.0, LEAST - 1.0)
+
+
+def error_by_three(coarse: Result, between: Result, fine: Result, allowed: Tolerance) -> float:
+    """Error of the last of three runs, relative to the allowed one, at the order they show.
+
+    Errors ``c n^-p`` of runs with n steps have differences whose ratio tells p.
+    """
+    first, last = difference(between, coarse, allowed), difference(fine, between, allowed)
+    steps = np.array([coarse.steps, between.steps, fine.steps]) / fine.steps
+    low, high = SLOWEST, QUICKEST
+    for _ in range(BISECTIONS):
+        order = (low + high) / 2.0
+        errors = steps**-order
+        slower = first * (errors[1] - errors[2]) < last * (errors[0] - errors[1])
+        low, high = (low, order) if slower else (order, high)
+    return float(last / max(steps[1]**-low - 1.0, 1e-3))
 
 
 def difference(one: Result, other: Result, allowed: Tolerance) -> float:

@@ -102,8 +102,7 @@ def resume(model: Model, path: str | Path) -> Simulation:
         getattr(run.system, name)[:] = arrays[name]
     run.rows.stretches = [arrays["rows"]]
     run.seconds = settings["seconds"]
-    if run.state.control.pivoted:
-        run.exchanges.factorize()
+    run.exchanges.forget()
     return run
 
 

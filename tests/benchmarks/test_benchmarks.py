@@ -271,3 +271,12 @@ def test_gradients_are_timed_and_a_torque_ends_at_rest():
     assert list(found)[0] == "run" and min(found.values()) > 0.0
     found, _ = bench.torque(entries=60, t_end=0.3, angle=0.05, h=5e-3)
     assert found["misses"][-1] < 1e-8 < found["misses"][0]
+
+
+def test_row_exchanges_are_compared_with_superlu(monkeypatch, capsys):
+    bench = imported("bench_row_exchanges")
+    monkeypatch.setattr(bench, "MODELS", {"chain": bench.MODELS["chain of 8"]})
+    bench.main(["--json", "--pairs", "2"])
+    found = json.loads(capsys.readouterr().out)["chain"]
+    assert found["unknowns"] == 120 and found["entries"][0] <= found["entries"][1]
+    assert max(found["errors"]) < 1e-14

@@ -1,4 +1,4 @@
-"""Elimination by blocks against SciPy, and the loop with it against the loop with SuperLU."""
+"""Elimination by blocks against SciPy, and the loop with it against one with row exchanges."""
 
 import numpy as np
 import pytest
@@ -133,7 +133,7 @@ def test_every_entry_has_its_place():
 
 
 @pytest.mark.parametrize("index", [3, 2])
-def test_superlu_takes_over_at_small_pivots(monkeypatch, index):
+def test_row_exchanges_take_over_at_small_pivots(monkeypatch, index):
     """With index 2 the loop stops twice an iteration: for the constraints and for their rates."""
     scheme = generalized_alpha(index=index)
     own = Simulation(chain.build(links=8).model, 0.01, scheme).run_to(0.3)

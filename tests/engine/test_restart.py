@@ -233,7 +233,7 @@ def exponential(model, tip, pieces, t_end):
 @pytest.mark.parametrize("bodies, index, distributed, exchanged", [
     (1, 3, True, False), (3, 3, False, False), (3, 2, True, False), (2, 3, False, True)])
 def test_flexible_bodies_in_space(bodies, index, distributed, exchanged, monkeypatch):
-    """Small matrices and large ones, and those that need row exchanges by Python."""
+    """Small matrices and large ones, and those that need row exchanges."""
     if exchanged:
         monkeypatch.setattr(assembly, "number", multipliers_first(assembly.number))
     model, tip = hinged(bodies, distributed=distributed)

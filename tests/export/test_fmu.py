@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from exported_models import VARIABLE, H, arm, pendulum, with_law
+from slave import Slave
 
 from sebody import InputError, Simulation
 from sebody.export import export
@@ -11,57 +12,6 @@ pytest.importorskip("ziglang", reason="exports are linked by the package ziglang
 fmpy = pytest.importorskip("fmpy", reason="FMUs are read by the package fmpy")
 STEPS = 60
 INPUTS = ["push", "the support", "gravity.x"]
-
-
-class Slave:
-    """An instance of an FMU, set and read by names."""
-
-    def __init__(self, path, folder, log=None, before=()):
-        from fmpy.fmi2 import FMU2Slave
-        from fmpy.fmi3 import FMU3Slave
-
-        own = fmpy.read_model_description(path, validate=False)
-        self.names = {one.name: one.valueReference for one in own.modelVariables}
-        three = own.fmiVersion == "3.0"
-        self.fmu = (FMU3Slave if three else FMU2Slave)(
-            guid=own.guid, unzipDirectory=str(folder), instanceName="a",
-            modelIdentifier=own.coSimulation.modelIdentifier)
-        self.get, self.set = ((self.fmu.getFloat64, self.fmu.setFloat64) if three else
-                              (self.fmu.getReal, self.fmu.setReal))
-        self.states = ((self.fmu.getFMUState, self.fmu.setFMUState, self.fmu.serializeFMUState,
-                        self.fmu.deserializeFMUState) if three else
-                       (self.fmu.getFMUstate, self.fmu.setFMUstate, self.fmu.serializeFMUstate,
-                        self.fmu.deSerializeFMUstate))
-        if three:
-            self.fmu.instantiate(**({"logMessage": log} if log else {}))
-        else:
-            self.fmu.instantiate()
-        self.begin(before)
-
-    def begin(self, before=()):
-        """Initialize it, after setting some parameters by name."""
-        if hasattr(self.fmu, "setupExperiment"):
-            self.fmu.setupExperiment(startTime=0.0)
-        self.fmu.enterInitializationMode()
-        for name, value in before:
-            self.set([self.names[name]], [value])
-        self.fmu.exitInitializationMode()
-
-    def put(self, **values):
-        for name, value in values.items():
-            self.set([self.names[name.replace("_", " ")]], [value])
-
-    def read(self, *names):
-        return self.get([self.names[name] for name in names])
-
-    def steps(self, first, last, h=H):
-        """Tip and pin force after every step, with a push that changes in each."""
-        found = []
-        for k in range(first, last):
-            self.put(push=np.sin(0.1 * k))
-            self.fmu.doStep(currentCommunicationPoint=k * h, communicationStepSize=h)
-            found.append(self.read("bob.position.x", "bob.position.y", "pin.force.y"))
-        return np.array(found)
 
 
 @pytest.fixture(scope="module", params=["3.0", "2.0"])

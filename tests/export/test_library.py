@@ -1,5 +1,6 @@
 """Libraries for C: rows of a program without Python against runs in Python, bit for bit."""
 
+import ctypes
 import re
 import shutil
 import subprocess
@@ -7,13 +8,23 @@ import sys
 
 import numpy as np
 import pytest
-from exported_models import VARIABLE, H, arm, with_law
+from exported_models import SECTION, TURN, VARIABLE, H, arm, with_law
 from helpers import multipliers_first
 
 import sebody.assembly.build as assembly
-from sebody import InputError, Model, SebodyError, Simulation, WriteError, simulate
-from sebody.export import export, toolchain
+from sebody import (
+    InputError,
+    Model,
+    SebodyError,
+    Simulation,
+    WriteError,
+    generalized_alpha,
+    simulate,
+)
+from sebody.export import export, objects, toolchain
 from sebody.export.platforms import host
+from sebody.fem import straight_beam
+from sebody.reduction import reduce
 from sebody.scenes import chain
 
 pytest.importorskip("ziglang", reason="exports are linked by the package ziglang")
@@ -96,26 +107,62 @@ def test_continuous_laws_are_called_without_addresses_of_this_process(tmp_path):
     assert (tmp_path / "rows").read_bytes() == result.rows[1:].tobytes()
 
 
-def test_matrices_with_row_exchanges(monkeypatch, tmp_path):
-    """The numbering makes the elimination in the loop meet zero pivots; in Python SuperLU helps."""
+def loaded(folder, name):
+    """The functions of a library in this process."""
+    found = ctypes.CDLL(str(next((folder / host()).glob("lib*"))))
+    for one in ("new", "state_size", "error"):
+        getattr(found, f"{name}_{one}").restype = ctypes.c_void_p
+    return lambda one, *given: getattr(found, f"{name}_{one}")(*given)
+
+
+@pytest.mark.parametrize("index", [3, 2])
+def test_matrices_with_row_exchanges_are_the_same_bit_for_bit(index, monkeypatch, tmp_path):
+    """The numbering makes the elimination in the loop meet zero pivots; states are put back."""
     monkeypatch.setattr(assembly, "number", multipliers_first(assembly.number))
-    scene, steps = chain.build(links=6), 40
-    folder = export(scene.model, scene.h, library=tmp_path / "x", name="x", processor="native")
-    compiled_example(folder, "x")
-    called(folder, steps, folder / "rows")
-    run = Simulation(scene.model, scene.h).run_to(steps * scene.h)
+    scene, scheme, (half, steps) = chain.build(links=6), generalized_alpha(index=index), (25, 40)
+    folder = export(scene.model, 1e-3, library=tmp_path / "x", name="x", processor="native",
+                    scheme=scheme)
+    call, rows = loaded(folder, "x"), np.zeros((steps, 0))
+    run = Simulation(scene.model, 1e-3, scheme).run_to(steps * 1e-3)
     assert run.state.control.pivoted == 1
-    own, q = run.result().rows[1:], run.state.recorded_parts["q"]
-    rows = np.fromfile(folder / "rows").reshape(own.shape)
-    scale = np.abs(own[:, q]).max()
-    # rounding of matrices with condition numbers of 1e6
-    assert np.abs(rows - own)[:, q].max() < 1e-9 * scale
+    own = run.result().rows[1:]
+    rows, again = np.zeros_like(own), np.zeros_like(own[half:])
+    first, second = (ctypes.c_void_p(call("new")) for _ in range(2))
+    state = ctypes.create_string_buffer(call("state_size"))
+    assert call("run", first, ctypes.c_int64(half), rows.ctypes.data_as(ctypes.c_void_p)) == 0
+    call("save", first, state)
+    assert call("run", first, ctypes.c_int64(steps - half),
+                rows[half:].ctypes.data_as(ctypes.c_void_p)) == 0
+    assert call("restore", second, state) == 0
+    assert call("run", second, ctypes.c_int64(steps - half),
+                again.ctypes.data_as(ctypes.c_void_p)) == 0
+    for one in (first, second):
+        call("free", one)
+    assert rows.tobytes() == own.tobytes() and again.tobytes() == own[half:].tobytes()
+
+
+def test_motions_without_mass_are_the_same_bit_for_bit(tmp_path):
+    """MacNeal's body has stiffness without mass: least squares where its load jumps."""
+    start, end = TURN @ (0.1, 0.2, 0.3), TURN @ (0.9, 0.2, 0.4)
+    model = Model()
+    body = reduce(straight_beam(start, end, SECTION, elements=6), [(0, "full"), (6, "full")], 4,
+                  "macneal")
+    ends = model.node("a", start), model.node("b", end)
+    model.superelement("bar", body, ends, inertia="rigid_part", stiffening=False)
+    model.fix("a")
+    model.force("b", (0.3, -1.0, 0.8), [(0.0, 0.2), (0.05, 0.2), (0.05, 1.0), (1.0, 1.0)])
+    folder = export(model, 1e-3, library=tmp_path / "bar", name="bar", processor="native")
+    compiled_example(folder, "bar")
+    called(folder, 100, folder / "rows")
+    run = Simulation(model, 1e-3).run_to(0.1)
+    assert run.system.massless[0] == 1 and np.ptp(run.result()["b.position"]) > 0.0
+    assert (folder / "rows").read_bytes() == run.result().rows[1:].tobytes()
 
 
 BAD = {
     "unknown input": ({"inputs": ["a wnd"]}, "did you mean 'a wind'"),
     "unknown output": ({"outputs": ["the hand.postion"]}, "did you mean 'the hand.position'"),
-    "length": ({"outputs": ["the hand.velocity.norm"]}, "cannot be compiled"),
+    "FE node": ({"outputs": ["upper arm.node2.displacement"]}, "cannot be compiled"),
     "platform": ({"platforms": ["linux-sparc"]}, "'linux-sparc' is unknown: use 'linux-x86_64'"),
     "processor": ({"processor": "x86-64-v9"}, "'x86-64-v9' is unknown"),
     "native elsewhere": ({"platforms": ["windows-x86_64"]}, "is that of this machine"),
@@ -132,6 +179,15 @@ def test_what_cannot_be_exported_is_refused(case, tmp_path):
     with pytest.raises(InputError) as error:
         export(arm(), H, library=tmp_path / "x", **{"processor": "native", **arguments})
     assert said in str(error.value) and not list(tmp_path.iterdir())
+
+
+def test_a_failure_of_llvm_is_said(monkeypatch, tmp_path):
+    """It ends its process, which is none of the user's: nothing is kept then."""
+    monkeypatch.setattr(objects, "KIND", "none")
+    monkeypatch.setattr(objects, "call_all", lambda tasks: None)
+    with pytest.raises(SebodyError, match="LLVM has made no code of engine, .* and native"):
+        export(arm(), H, library=tmp_path / "x", processor="native")
+    assert not list(tmp_path.iterdir())
 
 
 def test_no_linker_is_said(monkeypatch, tmp_path):

@@ -7,6 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from sebody import Model, simulate
+from sebody.model.extent import extent
 from sebody.runs.accuracy import difference, simulate_within
 from sebody.runs.tolerance import Tolerance
 
@@ -29,6 +30,31 @@ def test_the_estimated_error_is_the_true_one(allowed):
     exact = 1.0 + amplitude * np.sin(omega * result.t)
     true = np.sqrt(np.mean((result["ball.position"][:, 0] - exact)**2)) / allowed
     assert result.error == pytest.approx(true, rel=0.05)
+
+
+@pytest.mark.parametrize(("fast", "amplitude"), [(100.0, 0.01), (100.0, 0.03), (200.0, 0.01)])
+def test_vibrations_that_coarse_runs_do_not_resolve(fast, amplitude):
+    """Their phase is lost: errors fall more slowly than with the square of the steps at first.
+
+    At that rate the second or third run would count as good enough, at four times the tolerance.
+    """
+    model = Model(planar=True)
+    wall = model.node("wall", (0.0, 0.0), keeps="translation")
+    model.fix(wall, "position")
+    moves = [(5.0, 0.5), *((fast * (1 + 0.3 * k), amplitude) for k in range(3))]
+    for k, (omega, size) in enumerate(moves):
+        along = np.array([np.cos(k), np.sin(k)])
+        ball = model.node(f"ball {k}", along, keeps="translation")
+        model.point_mass(ball.name, ball, 1.0)
+        model.spring(wall, ball, omega**2, name=f"spring {k}")
+        model.initial_velocity(ball, size * omega * along)
+    result = simulate_within(model, 0.01, 2.0, Tolerance(1e-3))
+    true = max(
+        np.sqrt((((1 + size * np.sin(omega * result.t))[:, None] * (np.cos(k), np.sin(k))
+                  - result[f"ball {k}.position"])**2).mean(axis=0)).max()
+        for k, (omega, size) in enumerate(moves)) / (1e-3 * extent(model))
+    assert true < 1.0
+    assert 0.5 * true < result.error <= 1.0
 
 
 def test_difference_of_rotations_is_their_angle():

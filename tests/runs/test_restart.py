@@ -29,7 +29,7 @@ def test_bit_for_bit(tmp_path, build, h, t_end, options):
 
 
 def test_factors_with_row_exchanges_are_made_again(tmp_path, monkeypatch):
-    """They live in Python and are in no file; the matrix is kept over steps as short as these."""
+    """They are in no file; the matrix is kept over steps as short as these."""
     monkeypatch.setattr(assembly, "number", multipliers_first(assembly.number))
     whole = Simulation(chain.build(4).model, 1e-3).run_to(6e-3).run_to(12e-3)
     first = Simulation(chain.build(4).model, 1e-3).run_to(6e-3)

@@ -1,7 +1,7 @@
 /* What FMI 2.0 and 3.0 have in common: an instance of the model, its variables and its messages.
 
    Value references: 0 is the time, then come inputs, then outputs. */
-#include "runtime.h"
+#include "derivatives.h"
 #include "token.h"
 #ifdef _WIN32
 #define EXPORT __declspec(dllexport)
@@ -102,6 +102,31 @@ static int fmu_get(Fmu *fmu, const uint32_t *references, size_t count, double *v
                 : instance_output(fmu->model, (int)at - INPUTS - 1);
   }
   return OK;
+}
+
+/* Derivatives of outputs along a direction, `seed`, of inputs and parameters. */
+static int fmu_derivatives(Fmu *fmu, const uint32_t *unknowns, size_t wanted,
+                           const uint32_t *knowns, size_t count, const double *seed, double *to) {
+  if (!DERIVATIVES)
+    return refuse(fmu, "there are no directional derivatives, because some motions have no mass");
+  if (fmu->phase != INITIALIZED && fmu->phase != STEPS)
+    return refuse(fmu, "directional derivatives are those of an initialized model");
+  for (size_t k = 0; k < count; k++) {
+    if (knowns[k] < 1 || knowns[k] > INPUTS)
+      return refuse(fmu, "derivatives by a variable that is no input or parameter");
+    if (!isfinite(seed[k])) return refuse(fmu, "a seed is not finite");
+  }
+  for (size_t k = 0; k < wanted; k++)
+    if (unknowns[k] <= INPUTS || unknowns[k] > INPUTS + VARIABLES)
+      return refuse(fmu, "derivatives of a variable that is no output");
+  int *places = malloc((wanted + count + 1) * sizeof *places);
+  if (!places) return refuse(fmu, "there is no memory");
+  for (size_t k = 0; k < wanted; k++) places[k] = (int)unknowns[k] - INPUTS - 1;
+  for (size_t k = 0; k < count; k++) places[wanted + k] = (int)knowns[k] - 1;
+  int failed = instance_derivatives(fmu->model, places, (int)wanted, places + wanted, seed,
+                                    (int)count, to);
+  free(places);
+  return failed ? refuse(fmu, fmu->model->message) : OK;
 }
 
 static int fmu_step(Fmu *fmu, double t, double length) {

@@ -69,13 +69,19 @@ EXPORT int fmi2DeSerializeFMUstate(Fmu *fmu, const uint8_t bytes[], size_t size,
   return fmu_from_bytes(fmu, bytes, size, state);
 }
 
+EXPORT int fmi2GetDirectionalDerivative(
+    Fmu *fmu, const uint32_t unknowns[], size_t wanted, const uint32_t knowns[], size_t count,
+    const double seed[], double sensitivity[]) {
+  return fmu_derivatives(fmu, unknowns, wanted, knowns, count, seed, sensitivity);
+}
+
 /* What importers look for, and what a model of inputs and outputs that are numbers has not. */
 #define NONE(name) \
   EXPORT int name(Fmu *fmu) { return refuse(fmu, #name " is not supported"); }
 #define NO_VALUES(type) NONE(fmi2Get##type) NONE(fmi2Set##type)
 
 NO_VALUES(Integer) NO_VALUES(Boolean) NO_VALUES(String)
-NONE(fmi2GetDirectionalDerivative) NONE(fmi2SetRealInputDerivatives)
+NONE(fmi2SetRealInputDerivatives)
 NONE(fmi2GetRealOutputDerivatives) NONE(fmi2CancelStep) NONE(fmi2GetStatus)
 NONE(fmi2GetRealStatus) NONE(fmi2GetIntegerStatus) NONE(fmi2GetBooleanStatus)
 NONE(fmi2GetStringStatus)

@@ -65,6 +65,13 @@ EXPORT int fmi3DeserializeFMUState(Fmu *fmu, const uint8_t bytes[], size_t size,
 }
 EXPORT int fmi3GetOutputDerivatives(Fmu *fmu) { return refuse(fmu, "there are no derivatives"); }
 
+EXPORT int fmi3GetDirectionalDerivative(
+    Fmu *fmu, const uint32_t unknowns[], size_t wanted, const uint32_t knowns[], size_t count,
+    const double seed[], size_t seeds, double sensitivity[], size_t size) {
+  if (seeds < count || size < wanted) return refuse(fmu, "too few values");
+  return fmu_derivatives(fmu, unknowns, wanted, knowns, count, seed, sensitivity);
+}
+
 /* What importers look for, and what a model of inputs and outputs that are numbers has not. */
 #define NONE(name) \
   EXPORT int name(Fmu *fmu) { return refuse(fmu, #name " is not supported"); }
@@ -80,7 +87,7 @@ NO_VALUES(IntervalDecimal) NO_VALUES(IntervalFraction) NO_VALUES(ShiftDecimal)
 NO_VALUES(ShiftFraction)
 NONE(fmi3EnterEventMode) NONE(fmi3EnterConfigurationMode) NONE(fmi3ExitConfigurationMode)
 NONE(fmi3GetNumberOfVariableDependencies) NONE(fmi3GetVariableDependencies)
-NONE(fmi3GetDirectionalDerivative) NONE(fmi3GetAdjointDerivative)
+NONE(fmi3GetAdjointDerivative)
 NONE(fmi3EvaluateDiscreteStates) NONE(fmi3UpdateDiscreteStates)
 NONE(fmi3EnterContinuousTimeMode) NONE(fmi3CompletedIntegratorStep) NONE(fmi3SetTime)
 NONE(fmi3GetContinuousStates) NONE(fmi3SetContinuousStates)

@@ -43,6 +43,10 @@ int @ID@_set(@ID@ *model, int input, double value);
 /* An output in the state reached. */
 double @ID@_get(@ID@ *model, int output);
 
+/* Derivative of an output by an input, at the time reached: what changes at once, with positions,
+   velocities and states of controllers as they are. The model stays as it is. */
+int @ID@_derivative(@ID@ *model, int output, int input, double *value);
+
 /* The last error in words. */
 const char *@ID@_error(const @ID@ *model);
 

@@ -1,5 +1,5 @@
 /* The functions of a library, see its header. */
-#include "runtime.h"
+#include "derivatives.h"
 #ifdef _WIN32
 #define EXPORT __declspec(dllexport)
 #else
@@ -25,6 +25,17 @@ EXPORT int NAMED(set)(Instance *m, int input, double value) {
 }
 EXPORT double NAMED(get)(Instance *m, int output) {
   return output < 0 || output >= VARIABLES ? NAN : instance_output(m, output);
+}
+EXPORT int NAMED(derivative)(Instance *m, int output, int input, double *value) {
+  double one = 1.0;
+  if (!DERIVATIVES || output < 0 || output >= VARIABLES || input < 0 || input >= INPUTS) {
+    snprintf(m->message, sizeof m->message, DERIVATIVES
+             ? "%s: output %d by input %d: there are %d outputs and %d inputs"
+             : "%s: there are no derivatives, because some motions have no mass",
+             MODEL_NAME, output, input, VARIABLES, INPUTS);
+    return 1;
+  }
+  return instance_derivatives(m, &output, 1, &input, &one, 1, value);
 }
 EXPORT const double *NAMED(row)(const Instance *m) { return numbers(m, AT_NOW); }
 EXPORT const char *NAMED(error)(const Instance *m) { return m->message; }

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "inflate.h"
 #include "model.h"
 
 enum { DONE, CHUNK, FACTOR, SOLVE, FAILED, READ, RAISED };      /* what the loop returns */
@@ -18,13 +19,13 @@ enum { INPUT, ACCELERATION, PARAMETER };                        /* kinds of inpu
 extern int64_t sb_advance(void *system, void *state, void *record, const double *scheme,
                           int64_t last, int64_t chunk, int64_t dense);
 extern int64_t sb_evaluate(void *system, void *state, void *outputs);
-extern int64_t sb_exchange(void *system, void *state, void *exchanges);    /* unless DENSE */
+extern int64_t sb_exchange(void *system, void *state, void *exchanges);
 extern int64_t sb_set_input(void *system, void *state, int64_t k, double value);
 extern void *const sb_functions[];
 extern const unsigned char sb_image[];
 
 typedef struct {
-  char *raw, *base;
+  char *raw, *base, *factors;
   int64_t system[SYSTEM_WORDS], state[STATE_WORDS], outputs[OUTPUTS_WORDS], record[7], every;
   int64_t exchanges[EXCHANGES_WORDS];
   int stale, failed;
@@ -43,7 +44,7 @@ static void place(Instance *m, int64_t *to, const int64_t *words, int count) {
 }
 
 static void instance_reset(Instance *m) {
-  memcpy(m->base, sb_image, IMAGE_STORED);
+  inflate(sb_image, (unsigned char *)m->base);
   memset(m->base + IMAGE_STORED, 0, IMAGE_SIZE - IMAGE_STORED);
   for (int i = 0; i < CALLED; i++)
     *(int64_t *)(m->base + CALLED_AT[i]) = (int64_t)(intptr_t)sb_functions[CALLED_FUNCTION[i]];
@@ -67,7 +68,7 @@ static Instance *instance_new(void) {
 }
 
 static void instance_free(Instance *m) {
-  if (m) { free(m->raw); free(m); }
+  if (m) { free(m->factors); free(m->raw); free(m); }
 }
 
 static int fail(Instance *m, const char *why) {
@@ -88,6 +89,25 @@ static int read_sensors(Instance *m) {
   return 0;
 }
 
+/* Factorize or solve with row exchanges, which the loop waits for. Room for factors is made where
+   they are needed: their values and rows are the first two arrays of the words. */
+static int exchange(Instance *m) {
+  for (;;) {
+    int64_t found = sb_exchange(m->system, m->state, m->exchanges);
+    if (found != ROOM) return found ? fail(m, "compiled code failed") : 0;
+    int64_t entries = ((int64_t *)(m->base + AT_KIND))[1];
+    free(m->factors);
+    m->factors = malloc((size_t)entries * (sizeof(double) + sizeof(int64_t)));
+    if (!m->factors) {
+      place(m, m->exchanges, EXCHANGES, EXCHANGES_WORDS);
+      return fail(m, "there is no memory for a factorization");
+    }
+    int64_t at = (int64_t)(intptr_t)m->factors;
+    m->exchanges[0] = at, m->exchanges[2] = at + entries * (int64_t)sizeof(double);
+    m->exchanges[1] = m->exchanges[3] = entries;
+  }
+}
+
 /* Call the loop until the step `last` of the grid, or for `chunk` steps; 0 if all went well. */
 static int go(Instance *m, int64_t last, double *rows, int64_t count, int64_t chunk) {
   double none[1];
@@ -100,17 +120,12 @@ static int go(Instance *m, int64_t last, double *rows, int64_t count, int64_t ch
   for (;;) {
     int64_t code = sb_advance(m->system, m->state, m->record, SCHEME, last, chunk, DENSE);
     if (code == DONE || code == CHUNK) return 0;
-    if (code == READ) {
-      if (read_sensors(m)) return 1;
+    if (code == READ || code == FACTOR || code == SOLVE) {
+      if (code == READ ? read_sensors(m) : exchange(m)) return 1;
       continue;
     }
-#if !DENSE
-    if ((code == FACTOR || code == SOLVE)
-        && !sb_exchange(m->system, m->state, m->exchanges)) continue;
-#endif
     int64_t reason = control(m)[CONTROL_REASON];
-    return fail(m, code == FACTOR || code == SOLVE ? "a matrix of masses is singular"
-                   : code != FAILED || reason < 0 || reason >= REASONS ? "compiled code failed"
+    return fail(m, code != FAILED || reason < 0 || reason >= REASONS ? "compiled code failed"
                    : REASON[reason]);
   }
 }
@@ -225,7 +240,6 @@ static int instance_restore(Instance *m, const char *from) {
   memcpy(m->base + IMAGE_MUTABLE, from + sizeof head, IMAGE_SAVED - IMAGE_MUTABLE);
   m->failed = (int)head.failed;
   m->stale = 1;
-  /* factors with row exchanges are no part of a state */
-  if (control(m)[CONTROL_PIVOTED]) control(m)[CONTROL_WANTED] = EVALUATED;
+  ((int64_t *)(m->base + AT_KIND))[0] = 0;      /* factors are no part of a state: made again */
   return 0;
 }
