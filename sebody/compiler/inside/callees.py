@@ -12,7 +12,6 @@ from llvmlite import binding
 from numba import types
 
 from sebody.compiler.inside.cache import FunctionCache
-from sebody.compiler.inside.lanes import takes_lanes
 from sebody.compiler.inside.lookups import Lowering, TypeInference
 from sebody.compiler.inside.names import (
     AnnotateTypes,
@@ -162,7 +161,7 @@ class Function(CPUDispatcher):
 
     def get_call_template(self, args, kws):
         """For Numba: the signature of a call in a compiled function."""
-        if self.in_lanes is not None and takes_lanes(args):
+        if self.in_lanes is not None and _takes_lanes(args):
             return self.in_lanes.get_call_template(args, kws)
         if not self._specialized:
             args = [types.unliteral(kind) for kind in args]
@@ -170,6 +169,12 @@ class Function(CPUDispatcher):
 
     def get_overload(self, sig):
         """For Numba: the function of a signature, for its callers."""
-        if self.in_lanes is not None and takes_lanes(sig):
+        if self.in_lanes is not None and _takes_lanes(sig):
             return self.in_lanes.get_overload(sig)
         return self.callee.get_overload(sig)
+
+
+def _takes_lanes(kinds):
+    from sebody.compiler.inside.lanes import takes_lanes  # 5 ms that most runs do not need
+
+    return takes_lanes(kinds)

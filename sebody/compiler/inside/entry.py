@@ -9,7 +9,6 @@ from numba.extending import infer_getattr, intrinsic, lower_getattr_generic
 from sebody.compiler.code import Code, bitcode
 from sebody.compiler.inside.cache import FunctionCache, is_kept
 from sebody.compiler.inside.callees import Callee, Function
-from sebody.compiler.inside.lanes import NUMPY_KIND, RecordOfLanes, lanes
 from sebody.compiler.inside.names import (
     AttributeTemplate,
     CFunc,
@@ -86,11 +85,11 @@ def code_of(made: CFunc) -> Code:
 
 def type_of(kind: np.dtype) -> types.Type:
     """See `sebody.compiler.plain.type_of`; here numbers may be lanes, those of a record, too."""
-    if kind == NUMPY_KIND:
-        return lanes
     if kind.fields is None or not any(own.subdtype for own, _ in kind.fields.values()):
         return from_dtype(kind)
-    return RecordOfLanes(kind)
+    from sebody.compiler.inside.lanes import NUMPY_KIND, RecordOfLanes, lanes
+
+    return lanes if kind == NUMPY_KIND else RecordOfLanes(kind)
 
 
 def processor() -> tuple[str, str]:

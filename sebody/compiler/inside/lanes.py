@@ -14,6 +14,7 @@ from llvmlite import ir
 from numba import from_dtype, types
 from numba.extending import intrinsic, lower_builtin, lower_cast, models, overload, register_model
 
+from sebody.compiler.inside.lookups import remember_operations_on
 from sebody.compiler.inside.names import (
     AbstractTemplate,
     Conversion,
@@ -64,6 +65,7 @@ def _is_number(kind):
 
 
 lanes, mask = Lanes(), Mask()
+remember_operations_on(Lanes, Mask)
 
 
 @register_model(Lanes)
