@@ -127,6 +127,13 @@ def element_head(given: Element, kernel: Kernel) -> Head:
         (), (PART,) if constants else ())
 
 
+def products_head(own: Head, kernel: Kernel) -> Head:
+    """Of products with the derivatives of the forces of a kernel with a head of its own."""
+    return own._replace(
+        title="Products with derivatives of forces", summary=(f"{own.title}.", *own.summary),
+        facts=(*own.facts, f"KEPT = {kernel.kept}      # numbers kept between two calls"))
+
+
 def memory(names: Iterable[str]) -> list[str]:
     """The line that names the numbers which a kernel keeps from step to step."""
     return ["# numbers it keeps from step to step",
