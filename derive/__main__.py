@@ -4,6 +4,7 @@
     python -m sebody.derive --check                 compare, writing nothing
     python -m sebody.derive distance [spring ...]   kernels of the catalogue: joints, bodies, loads
     python -m sebody.derive f2t1 [f3:mean:a ...]    add kernels: LAYOUT[:FRAME[:INERTIA]]
+    python -m sebody.derive products:spring         products with the derivatives of one of these
 """
 
 import argparse
@@ -17,21 +18,23 @@ from pathlib import Path
 
 import sebody.generated
 from sebody.contract.names import PREFIXES, motion_name
-from sebody.derive.compiler import Variant, compile_kernel, file_name
+from sebody.contract.names import PRODUCTS as OF_PRODUCTS
+from sebody.derive.compiler import Products, Variant, compile_kernel, file_name
 from sebody.derive.kernels.layouts import Layout, LayoutError
-from sebody.derive.kernels.manifest import ELEMENTS, SUPERELEMENTS
+from sebody.derive.kernels.manifest import ELEMENTS, PRODUCTS, SUPERELEMENTS
 from sebody.derive.kernels.options import frame_conditions, frame_traits, inertia_traits
 from sebody.derive.names import kernel_of
 from sebody.derive.printing.numba.options import options_text
 from sebody.files import replacing
 from sebody.kernels.loader import find, user_directory
 
-SECONDS = {True: 2.5, False: 0.4}       # to derive a superelement, or another element
+SECONDS = {Variant: 2.5, str: 0.4, Products: 2.5}       # to derive a kernel
 
 
 def shipped() -> dict[str, str]:
     """File name and text of every kernel of the manifest, and of the options' traits."""
-    return _traits() | files([*(Variant(*row) for row in SUPERELEMENTS), *ELEMENTS])
+    products = (Products(one if isinstance(one, str) else Variant(*one)) for one in PRODUCTS)
+    return _traits() | files([*(Variant(*row) for row in SUPERELEMENTS), *ELEMENTS, *products])
 
 
 def _traits() -> dict[str, str]:
@@ -39,7 +42,7 @@ def _traits() -> dict[str, str]:
     return {"options.py": options_text(frame_traits(), inertia_traits(), frame_conditions())}
 
 
-def files(kernels: Iterable[Variant | str], shipped: bool = True) -> dict[str, str]:
+def files(kernels: Iterable[Variant | Products | str], shipped: bool = True) -> dict[str, str]:
     """File name and text of some kernels, derived in as many processes as there are processors.
 
     Raises
@@ -52,7 +55,7 @@ def files(kernels: Iterable[Variant | str], shipped: bool = True) -> dict[str, s
     processes = min(processors, len(kernels))
     if processes < 2:
         return dict(zip(names, map(compiled, kernels), strict=True))
-    seconds = sum(SECONDS[isinstance(kernel, Variant)] for kernel in kernels) / processes
+    seconds = sum(SECONDS[type(kernel)] for kernel in kernels) / processes
     print(f"deriving {len(kernels)} kernels in {processes} processes, about {seconds:.0f} s",
           file=sys.stderr, flush=True)
     with ProcessPoolExecutor(processes) as pool:
@@ -92,7 +95,7 @@ def differences(directory: Path, files: dict[str, str], orphans: bool = True) ->
             out += difflib.unified_diff(path.read_text().splitlines(), text.splitlines(),
                                         f"generated/{name}", f"derived/{name}", lineterm="", n=1)
     for path in sorted(directory.glob("*.py")) if orphans else ():
-        if path.name.startswith(PREFIXES) and path.name not in files:
+        if path.name.startswith((*PREFIXES, OF_PRODUCTS)) and path.name not in files:
             out.append(f"orphaned: {path.name} is not in derive/kernels/manifest.py: "
                        "add it or delete it")
     return out
@@ -117,7 +120,7 @@ def main(arguments: list[str] | None = None) -> int:
     except LayoutError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
-    count = sum(name.startswith(PREFIXES) for name in texts)
+    count = sum(name.startswith((*PREFIXES, OF_PRODUCTS)) for name in texts)
     kernels, are = ("kernel", "is") if count == 1 else ("kernels", "are")
     if options.check:
         found = differences(directory, texts, orphans=not options.kernels)

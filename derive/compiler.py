@@ -3,23 +3,29 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from sebody.contract.names import element_name, superelement_name
+from sebody.contract.names import element_name, products_name, superelement_name
 from sebody.derive.form.kernel import Kernel
 from sebody.derive.formulas import elements
+from sebody.derive.kernels.body_contact import BODY_CONTACTS, body_contact_kernel
+from sebody.derive.kernels.body_contact_form import body_contact_form
 from sebody.derive.kernels.body_load import BODY_LOADS, body_load_kernel
 from sebody.derive.kernels.body_load_form import body_load_form
 from sebody.derive.kernels.catalogue import ELEMENTS
 from sebody.derive.kernels.element_form import element_form
+from sebody.derive.kernels.element_products import products_element
 from sebody.derive.kernels.layouts import Layout
 from sebody.derive.kernels.linearize import linearized
 from sebody.derive.kernels.motion import MOTIONS, frame_motion, motion_form
+from sebody.derive.kernels.products import products_body_load, products_superelement
 from sebody.derive.kernels.superelement import superelement
 from sebody.derive.kernels.superelement_form import superelement_form
 from sebody.derive.printing.numba.files import Head, file_text
 from sebody.derive.printing.numba.heads import (
+    body_contact_head,
     body_load_head,
     element_head,
     motion_head,
+    products_head,
     superelement_head,
 )
 
@@ -30,6 +36,12 @@ class Variant(NamedTuple):
     layout: str
     frame: str
     inertia: str
+
+
+class Products(NamedTuple):
+    """A kernel of products with the derivatives of the forces of another one."""
+
+    of: Variant | str
 
 
 class Stages(NamedTuple):
@@ -50,13 +62,15 @@ SUPERELEMENT = Stages(
     lambda v: superelement(Layout.parse(v.layout), v.frame, v.inertia), linearized,
     superelement_form, superelement_head,
     lambda v: superelement_name(Layout.parse(v.layout).name, v.frame, v.inertia))
+BODY_CONTACT = Stages(body_contact_kernel, _same, body_contact_form, body_contact_head,
+                      element_name)
 BODY_LOAD = Stages(body_load_kernel, _same, body_load_form, body_load_head, element_name)
 ELEMENT = Stages(lambda name: ELEMENTS[name](), elements.linearized, element_form, element_head,
                  element_name)
 MOTION = Stages(frame_motion, _same, motion_form, motion_head, _same)
 
 
-def compile_kernel(kernel: Variant | str, shipped: bool = True) -> str:
+def compile_kernel(kernel: Variant | Products | str, shipped: bool = True) -> str:
     """The file of a kernel.
 
     1. derive: steps of the forces and energies, from kinematics and energies. Input: the names;
@@ -69,9 +83,9 @@ def compile_kernel(kernel: Variant | str, shipped: bool = True) -> str:
 
     Parameters
     ----------
-    kernel : Variant or str
-        A superelement, or the name of a joint, rigid body, load or motion. The matrix of a load on
-        a body is derived with its force; motions have none.
+    kernel : Variant, Products or str
+        A superelement, products, or the name of a joint, rigid body, load or motion. The matrix of
+        a load on a body is derived with its force; motions have none.
     shipped : bool
         The file goes with the package; else it carries a hash of the functions that it calls.
 
@@ -87,19 +101,33 @@ def compile_kernel(kernel: Variant | str, shipped: bool = True) -> str:
     return file_text(stages.head(description, statements), statements, shipped)     # 4
 
 
-def statements_of(kernel: Variant | str) -> Kernel:
+def statements_of(kernel: Variant | Products | str) -> Kernel:
     """The first three stages: a kernel for any target."""
     stages = stages_of(kernel)
     return stages.assemble(stages.linearize(stages.derive(kernel)))
 
 
-def stages_of(kernel: Variant | str) -> Stages:
+def stages_of(kernel: Variant | Products | str) -> Stages:
     """How a kernel is compiled."""
+    if isinstance(kernel, Products):
+        return _of_products(kernel)
     if isinstance(kernel, Variant):
         return SUPERELEMENT
+    if kernel in BODY_CONTACTS:
+        return BODY_CONTACT
     return MOTION if kernel in MOTIONS else BODY_LOAD if kernel in BODY_LOADS else ELEMENT
 
 
-def file_name(kernel: Variant | str) -> str:
+def _of_products(kernel: Products) -> Stages:
+    """As the kernel that has the forces, up to the assembly."""
+    own = stages_of(kernel.of)
+    assemble = {SUPERELEMENT: products_superelement, BODY_LOAD: products_body_load,
+                ELEMENT: products_element}[own]
+    return Stages(lambda given: own.derive(given.of), own.linearize, assemble,
+                  lambda description, made: products_head(own.head(description, made), made),
+                  lambda given: products_name(own.name(given.of)))
+
+
+def file_name(kernel: Variant | Products | str) -> str:
     """Name of the file of a kernel."""
     return stages_of(kernel).name(kernel) + ".py"

@@ -2,23 +2,26 @@
 
 from difflib import get_close_matches
 
-from sebody.derive.compiler import Variant
+from sebody.derive.compiler import Products, Variant
 from sebody.derive.kernels.layouts import Layout, LayoutError, fits
 from sebody.derive.kernels.manifest import ELEMENTS
 from sebody.derive.kernels.options import FRAMES, INERTIA_OPTIONS, frame_traits, inertia_traits
 
 DEFAULT_INERTIA = "material"
+OF_PRODUCTS = "products:"
 BY_LETTER = {traits.letter: name for name, traits in inertia_traits().items()}
 
 
-def kernel_of(text: str) -> Variant | str:
-    """A kernel of the catalogue by its name, or ``LAYOUT[:FRAME[:INERTIA]]``.
+def kernel_of(text: str) -> Variant | Products | str:
+    """A kernel of the catalogue by its name, or ``LAYOUT[:FRAME[:INERTIA]]``, or its products.
 
     Raises
     ------
     LayoutError
         Neither; the message has names that are close.
     """
+    if text.startswith(OF_PRODUCTS):
+        return Products(kernel_of(text.removeprefix(OF_PRODUCTS)))
     if text in ELEMENTS:
         return text
     try:

@@ -8,7 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
-from sebody.contract.names import PREFIXES
+from sebody.contract.names import PREFIXES, PRODUCTS
 from sebody.kernels.loader import user_directory
 from sebody.spelling import unknown
 
@@ -50,9 +50,18 @@ def builder(scene: str) -> Callable:
 
 def kernel_files() -> dict[str, Path]:
     """Files of the kernels by name; those of the package precede those of the user's directory."""
+    return _kernel_files(PREFIXES)
+
+
+def product_files() -> dict[str, Path]:
+    """The same of products with their derivatives, which are compiled for gradients alone."""
+    return _kernel_files((PRODUCTS,))
+
+
+def _kernel_files(prefixes: tuple[str, ...]) -> dict[str, Path]:
     found = {path.stem: path for folder in (sorted(user_directory().glob("*.py")),
                                             _files("sebody.generated")) for path in folder}
-    return {name: found[name] for name in sorted(found) if name.startswith(PREFIXES)}
+    return {name: found[name] for name in sorted(found) if name.startswith(prefixes)}
 
 
 def kernels() -> list[Kernel]:

@@ -28,3 +28,4 @@ class Kernel(NamedTuple):
     squares: int                # of scratch memory, each of as many rows as coordinates
     residual: Operations
     column: Operations          # of a column of the matrix
+    kept: int = 0               # numbers before the scratch memory that stay between two calls

@@ -8,7 +8,14 @@ of the sphere has the velocity ``s' - r (Q Om_a - Om_b) x n`` against the body's
 import sympy as sp
 
 from sebody.derive.form.spaces import Space
-from sebody.derive.formulas.elements import Element, constant, kept, position, rotation
+from sebody.derive.formulas.elements import (
+    Element,
+    choose,
+    constant,
+    kept,
+    position,
+    rotation,
+)
 from sebody.derive.formulas.frictions import bristle_constants
 from sebody.derive.formulas.law_elements import Forces, Measures, law_element
 from sebody.derive.formulas.laws import friction, impact
@@ -43,7 +50,22 @@ def _cylinder(space: Space, s: sp.Matrix) -> tuple[list, sp.Expr, sp.Matrix]:
     return [e, *found], gap, normal
 
 
-SURFACES = {"plane": _plane, "sphere": _sphere, "cylinder": _cylinder}
+def _any(space: Space, s: sp.Matrix) -> tuple[list, sp.Expr, sp.Matrix]:
+    """Each of these by constants: a plane where `flat` is 1; a sphere is a cylinder without axis.
+    """
+    e = constant(space, "e", "vector", "normal of a plane, axis of a cylinder, in axes of body b")
+    level = constant(space, "level", "scalar", "distance of a plane from the place of body b "
+                     "[length]")
+    flat = constant(space, "flat", "scalar", "1 of a plane, else 0")
+    found, far, normal = _round(space, s - e.symbols * e.symbols.dot(s))
+    near = e.symbols.dot(s) - level.symbols[0]
+    which = flat.symbols[0]
+    return ([e, level, flat, *found], choose(which, near, far),
+            sp.Matrix([choose(which, *pair) if pair != (0, 0) else sp.S.Zero
+                       for pair in zip(e.symbols, normal, strict=True)]))
+
+
+SURFACES = {"plane": _plane, "sphere": _sphere, "cylinder": _cylinder, "any": _any}
 
 
 def contact(surface: str, planar: bool, turning: bool) -> Element:

@@ -55,22 +55,23 @@ def pointers(reference: bool) -> tuple[Statement, ...]:
             Point(arrays.unknowns, arrays.nodes.at(counts.ROTATIONS)))
 
 
-def gathered(rows: tuple[Array, ...]) -> For:
+def gathered(rows: tuple[Array, ...], size: Whole = counts.n) -> For:
     """The state of the element in rows of its own."""
     given = (ARGUMENTS[name] for name in ("q", "v", "a"))
-    return For(counts.i, Number(0), counts.n, tuple(
+    return For(counts.i, Number(0), size, tuple(
         Set((row[counts.i],), (of[arrays.unknowns[counts.i]],))
         for row, of in zip(rows, given, strict=False)))
 
 
-def columns(planar: bool, directions: tuple[Array, ...], steps: tuple[Statement, ...]) -> For:
+def columns(planar: bool, directions: tuple[Array, ...], steps: tuple[Statement, ...],
+            size: Whole = counts.n) -> For:
     """Columns of the matrix: directions set, the steps, and what they leave in `dg` kept."""
     i, column = counts.i, counts.column
-    clear = For(i, Number(0), counts.n, tuple(
+    clear = For(i, Number(0), size, tuple(
         Set((row[i],), (sp.Float(0.0),)) for row in directions))
-    keep = For(i, Number(0), counts.n, (
-        Set((MATRIX[i * counts.n + column],), (arrays.g.d[i],)),))
-    return For(column, Number(0), counts.n,
+    keep = For(i, Number(0), size, (
+        Set((MATRIX[i * size + column],), (arrays.g.d[i],)),))
+    return For(column, Number(0), size,
                (clear, *_seeds(planar, directions), *steps, keep))
 
 

@@ -12,7 +12,7 @@ from sebody.derive.formulas import (
     stops,
 )
 
-ELEMENTS = {
+SMOOTH = {          # joints, bodies and forces whose column is written in the unknowns
     "parallel_ground": lambda: joints.parallel(True),
     "parallel": lambda: joints.parallel(False),
     "perpendicular": joints.perpendicular,
@@ -48,6 +48,8 @@ ELEMENTS = {
     "planar_torsion_spring": lambda: forces.torsion_spring(True),
     "bushing": lambda: forces.bushing(False),
     "planar_bushing": lambda: forces.bushing(True),
+}
+ELEMENTS = SMOOTH | {
     **{"planar_" * planar + f"{way}_{part.__name__}": partial(part, way, planar)
        for way in actuators.WAYS for part in (actuators.motor, actuators.rotor)
        for planar in (False, True)},

@@ -56,7 +56,7 @@ def element_form(element: Element) -> Kernel:
         If(compared(counts.task, "==", agreed("TANGENT")), _matrix(element, count)))
     body = (For(counts.element, Number(0), counts.count, of_element), Return(agreed("OK")))
     return Kernel(element_name(element.name), body, known_counts(element), 2, 0,
-                  _counted(element.residual), _counted(element.linear))
+                  counted(element.residual), counted(element.linear))
 
 
 def places(element: Element) -> tuple[Statement, ...]:
@@ -82,7 +82,8 @@ def _matrices(element: Element) -> int:
     return 0 if element.space.planar else sum(b.rotational for b in element.blocks)
 
 
-def _counted(expressions: Iterable[sp.Expr]) -> Operations:
+def counted(expressions: Iterable[sp.Expr]) -> Operations:
+    """Arithmetic of some expressions."""
     temporaries, reduced = sp.cse(list(expressions), order="canonical")
     return Operations(sum(int(sp.count_ops(e)) for e in [v for _, v in temporaries]
                           + list(reduced)), 0, 0, 0)

@@ -5,9 +5,17 @@ compiler sees all of its arithmetic. The formulas are derived once for each and 
 sources add, and files multiply no further than this table; any other combination is made on demand.
 """
 
+from sebody.derive.kernels.body_contact import BODY_CONTACTS
 from sebody.derive.kernels.body_load import BODY_LOADS
 from sebody.derive.kernels.catalogue import ELEMENTS as CATALOGUE
+from sebody.derive.kernels.catalogue import SMOOTH
 from sebody.derive.kernels.motion import MOTIONS
+from sebody.derive.kernels.options import frame_traits
+
+
+def _lasts(frame: str) -> bool:
+    return not frame_traits()[frame].incremental
+
 
 SUPERELEMENTS = (
     # layout, frame, inertia option; pinned numbers of modes where beams mostly need no others
@@ -51,4 +59,12 @@ SUPERELEMENTS = (
     ("planar-any", "converged_mean", "rigid_part"),
     ("planar-any", "positions", "rigid_part"),
 )
-ELEMENTS = (*CATALOGUE, *BODY_LOADS, *MOTIONS)
+ELEMENTS = (*CATALOGUE, *BODY_LOADS, *BODY_CONTACTS, *MOTIONS)
+
+# with products of their derivatives, of which gradients of runs are made: general superelements and
+# the layouts of beams, others take these; no laws, nor frames that depend on the steps before
+LAYOUTS = "f2", "planar-f2", "any", "anyd", "planar-any", "planar-anyd"
+PRODUCTS = (
+    *(row for row in SUPERELEMENTS if _lasts(row[1])
+      and (row[0] in LAYOUTS or row[2] == "frame_axes")),
+    *SMOOTH, *(name for name, (frame, _) in BODY_LOADS.items() if _lasts(frame)))

@@ -17,12 +17,13 @@ from sebody.derive.form.spaces import Space
 from sebody.derive.form.statements import Let
 from sebody.derive.form.steps import Damping, Role, Solve, Stage, Step, Sum
 from sebody.derive.formulas.damping import damping, linearized_damping
-from sebody.derive.formulas.elastic import ELASTIC, VirtualWork, conjugate_to
+from sebody.derive.formulas.elastic import ELASTIC, conjugate_to
 from sebody.derive.formulas.frames.frame import Frame, FrameOption, origin_stage
 from sebody.derive.formulas.gravity import TAKEN_OFF, Gravity, gravity, linearized
 from sebody.derive.formulas.inertia.option import Inertia, InertiaOption, Local
 from sebody.derive.formulas.inertia.rates import rigid_angle
 from sebody.derive.formulas.kinematics import local_displacement, local_velocity
+from sebody.derive.formulas.pulled_back import forces_on_unknowns
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.kernels.layouts import Layout, check_frame, check_inertia
 from sebody.derive.kernels.options import (
@@ -138,7 +139,7 @@ def node_formulas(planar: bool, frame: FrameOption, inertia: InertiaOption) -> F
     local = (option.local or _of_nodes(option))(q, chosen)
     before = local_displacement(q), local_velocity(q), *local.motion
     return Formulas(q, chosen, option, local, before,
-                    _forces(q, chosen, option, chosen.work(q), local))
+                    forces_on_unknowns(q, chosen, local.share, local.on_frame, option))
 
 
 def _of_nodes(inertia: Inertia) -> Callable[[Quantities, Frame], Local]:
@@ -168,33 +169,6 @@ def _of_nodes(inertia: Inertia) -> Callable[[Quantities, Frame], Local]:
             energy=_energy(q, inertia, weight), prepared=(), held=(ELASTIC.differential(),),
             column=column)
     return local
-
-
-def _forces(q: Quantities, frame: Frame, inertia: Inertia, work: VirtualWork,
-            local: Local) -> tuple[Stage | Solve, ...]:
-    R0, h, alpha = q.R0.symbols, q.h.symbols, q.alpha.symbols[0]
-    origin = [Stage("force on the origin, through the frame", "position",
-                    adds=((q.F, frame.origin),), continues=True)] if any(frame.origin) else []
-    on_mean = [Stage("moment on the mean of the variations, (20)", "rotation",
-                     adds=((q.Ms, work.mean),))] if work.mean else []
-    of_mean = q.alpha_r.symbols[0] * q.Ms.symbols if work.mean else sp.zeros(3, 1)
-    return (
-        Stage("forces on the frame: elastic (30) and inertia (57)", "position",
-              adds=((q.F, work.origin + alpha * local.share),
-                    (q.W, work.frame_positions + inertia.frame_positions))),
-        local.on_frame,
-        Stage("moments on the frame: elastic (30) and inertia (45)", "rotation",
-              adds=((q.W, work.frame_rotations + inertia.frame_rotations),), continues=True),
-        *frame.pull, *origin, *on_mean,
-        Stage("force on the nodes in frame axes, (30), (57)", "position",
-              sets=((q.h, work.position + inertia.position + frame.position
-                     + alpha * q.F.symbols),)),
-        Stage("force on the nodes", "position", sets=((q.gx, R0 * h),), role=Role.NODE_FORCE),
-        Stage("moment on the nodes, (30), (57)", "rotation",
-              sets=((q.gt, work.rotation + inertia.rotation + frame.rotation + of_mean),)),
-        Stage("force of the internal modes", "mode",
-              sets=((q.gm, q.fm.symbols + frame.mode + (
-                  q.pmd.symbols if inertia.products else sp.zeros(1, 1))),)),)
 
 
 def _energy(q: Quantities, inertia: Inertia, weight: Gravity) -> tuple[Stage, ...]:

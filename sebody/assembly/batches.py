@@ -26,6 +26,7 @@ from sebody.contract.counts import whole_vectors
 from sebody.contract.layout import AT_POSITIONS, AT_ROTATIONS
 from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.loader import element_kernel, load
+from sebody.model.body_points import point_constants
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Superelement
@@ -149,9 +150,11 @@ def _element_batches(numbering: Numbering, constants: _Constants, elements: Iter
                         constants=constants.add(_element_constants(element, kernel)),
                         port=numbering.ports.get(element, 0), positions=positions_of(element),
                         nodes=_matrices(numbering, element))
-        function = [] if element.function is None else [element.function.address]
+        behind = [] if element.function is None else [element.function.address]
+        if element.point is not None:
+            behind = [frames[element.point.body]]
         modes = 0 if element.body is None else element.body.reduced.modes
-        _append(batches, kernel, frame, row + function, unknowns, element,
+        _append(batches, kernel, frame, row + behind, unknowns, element,
                 len(unknowns) - modes)
     return list(batches.values())
 
@@ -177,17 +180,19 @@ def _law_batches(model: Mechanism, numbering: Numbering, constants: _Constants,
 
 
 def _element_constants(element: Element, kernel: ModuleType) -> NDArray:
-    """The row of constants; a load on a body has what places the frame, too."""
-    if element.body is None:
+    """The row of constants; with what places the frame of a body, and a point in it."""
+    body = element.body if element.point is None else element.point.body
+    if body is None:
         return constants_row(element.name, kernel, {}, element.constants)
-    return constants_row(element.name, kernel, counts_of(element.body),
-                         frame_constants(element.body) | dict(element.constants))
+    of_point = {} if element.point is None else point_constants(element.point)
+    return constants_row(element.name, kernel, counts_of(body),
+                         frame_constants(body) | of_point | dict(element.constants))
 
 
 def _matrices(numbering: Numbering, element: Element) -> list[int]:
-    """Numbers of the rotation matrices; a load on a planar body counts its angles by zeros."""
-    if element.body is not None:
-        return [numbering.rotations.get(t, 0) for t in element.body.rotations]
+    """Numbers of the rotation matrices; on planar bodies angles are counted by zeros."""
+    if element.body is not None or element.point is not None:
+        return [numbering.rotations.get(t, 0) for t in element.dof_blocks if t.rotational]
     return [numbering.rotations[t] for t in element.dof_blocks if t in numbering.rotations]
 
 
@@ -205,6 +210,11 @@ def _append(batches: dict[tuple, Batch], kernel: ModuleType, frame: int, row: li
 def element_unknowns(numbering: Numbering, element: Element) -> list[int]:
     """Coordinates of an element, then its multipliers."""
     unknowns = [c for t in element.dof_blocks for c in coordinates(numbering, t)]
+    if element.point is not None:       # internal modes come behind the nodes of the body
+        body = element.point.body
+        at, first = element.firsts[len(body.attachments)], numbering.modes[body.name]
+        unknowns[at - body.reduced.modes:at - body.reduced.modes] = range(
+            first, first + body.reduced.modes)
     if element.body is not None:
         first = numbering.modes[element.body.name]
         unknowns += range(first, first + element.body.reduced.modes)

@@ -87,6 +87,10 @@ def work_size(model: Mechanism) -> int:
                                  len(body.rotations)))
     rows += [scratch_size(element_kernel(one.kind).WORK_ROWS, 0, len(one.body.reduced.stiffness),
                           len(one.body.rotations)) for one in model.loads if one.body is not None]
+    rows += [scratch_size(element_kernel(one.kind).WORK_ROWS, 0,
+                          one.firsts[-1] + one.dof_blocks[-1].start.size,
+                          len(one.point.body.rotations))
+             for one in model.loads if one.point is not None]
     elements = max((sum(t.start.size for t in one.dof_blocks) for one in model.loads), default=0)
     rows += [_law_scratch(model, one) for one in model.loads if one.law is not None]
     return max([*rows, 64, 4 * elements])

@@ -142,7 +142,8 @@ def index_row(name: str, kernel: ModuleType, unknowns: list[int], nodes: list[in
         The row is longer or shorter than the kernel reads.
     """
     rotations = len(nodes) if kernel.N_ROTATIONS is None else kernel.N_ROTATIONS
-    lists = {"rotations": rotations, "nodes": nodes, "unknowns": unknowns}
+    own = rotations - getattr(kernel, "CARRIERS", 0)
+    lists = {"rotations": own, "nodes": nodes, "unknowns": unknowns}
     try:
         return INDEX.pack_integers({"N_ROTATIONS": rotations, "n": len(unknowns)}, values | lists)
     except ContractError as error:
@@ -150,7 +151,12 @@ def index_row(name: str, kernel: ModuleType, unknowns: list[int], nodes: list[in
 
 
 def positions_of(element: Element) -> int:
-    """How many positions an element is on; an internal mode counts as one."""
+    """How many positions an element is on; an internal mode counts as one.
+
+    Of a contact inside a body those of the body.
+    """
+    if element.point is not None:
+        return len(element.point.body.positions)
     return sum(not t.rotational for t in element.dof_blocks) + (element.mode is not None)
 
 

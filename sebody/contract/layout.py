@@ -26,6 +26,8 @@ from sebody.contract.counts import Counts, Size, packed_size, whole_vectors
 
 # tasks of a kernel; VELOCITY and ACCELERATION are the constraints differentiated in time
 RESIDUAL, TANGENT, ENERGY, VELOCITY, ACCELERATION = range(5)
+# tasks of kernels of products: see sebody/derive/kernels/products.py
+PREPARE, ALONG, TRANSPOSED = range(5, 8)
 # numbers that contacts keep beside each other, for the time loop: their rate, and the speed of the
 # impact under way
 AT_RATE, AT_IMPACT = range(2)

@@ -1,6 +1,7 @@
 """Names of kernels, which are the names of their modules."""
 
 SUPERELEMENT, ELEMENT, MOTION = PREFIXES = "superelement_", "element_", "motion_"
+PRODUCTS = "products_"      # before the name of a kernel: products with its derivatives
 PLANAR = "planar-"  # begins names of layouts in a plane
 IN_PLANE = "planar_"     # begins names of kernels of elements in a plane
 ANY = "any"         # layout of the general kernels, which read the counts of nodes at run time
@@ -21,9 +22,19 @@ def body_load_kind(frame: str, planar: bool) -> str:
     return IN_PLANE * planar + f"body_load_{frame}"
 
 
+def body_contact_kind(frame: str, planar: bool) -> str:
+    """Kind of a contact of a point inside a body with this frame."""
+    return IN_PLANE * planar + f"body_contact_{frame}"
+
+
 def motion_name(frame: str, planar: bool) -> str:
     """The kernel of the motion of bodies with a frame: its place, local coordinates, rates."""
     return MOTION + IN_PLANE * planar + frame
+
+
+def products_name(kernel: str) -> str:
+    """The kernel of products with the derivatives of the forces of another kernel."""
+    return PRODUCTS + kernel
 
 
 def general_layout(layout: str) -> str:

@@ -188,12 +188,13 @@ class _Fit:
             histories, np.split(explicit, ends), strict=True)}
         place = {int(event): k for k, event in enumerate(one.history.recorded)}
 
-        def see(event: int, *moved: NDArray) -> None:
-            if (k := place.get(event)) is None:
-                return
-            for name, sensor in sensors.items():
-                for rows, of in zip(sensor.at(k, event), moved, strict=True):
-                    found[name][k] += rows @ of
+        def see(first: int, states: NDArray) -> None:
+            for event, moved in enumerate(states, first):
+                if (k := place.get(event)) is None:
+                    continue
+                for name, sensor in sensors.items():
+                    for rows, of in zip(sensor.at(k, event), moved, strict=True):
+                        found[name][k] += rows @ of
         forward(one.course, *stacked(each), see)
         t = one.history.times
         return ({name: _between(t, histories[name], of.times) for name, of in self.data.items()},

@@ -56,6 +56,8 @@ class Gradient:
         Of the whole, run included.
     run_seconds : float
         Of the run alone.
+    sweep_seconds : float
+        Of the recursion back, or forth.
     """
 
     value: NDArray
@@ -65,6 +67,7 @@ class Gradient:
     growth: float = float("nan")
     seconds: float = 0.0
     run_seconds: float = 0.0
+    sweep_seconds: float = 0.0
 
     def __repr__(self) -> str:
         return f"<Gradient of {len(self.rows)} values by {len(self.columns)} numbers>"
@@ -152,8 +155,9 @@ class Differentiated:
         self.history: History = history(self.run, t_end, met)
         self.run.watch.look(model, self.run.numbering, self.history.states)
         self.linear = Linear(self.run)
-        self.course = Course(self.linear, self.run.scheme, self.history)
+        self.course = Course(self.run, self.linear, self.history)
         self.course.settle()
+        self.sweep_seconds = 0.0
 
 
 def differentiate(model: Model, h: float, t_end: float, outputs: Mapping[str, Output],
@@ -173,7 +177,7 @@ def differentiate(model: Model, h: float, t_end: float, outputs: Mapping[str, Ou
              "the motion is unstable or chaotic, and its derivatives hold in a range as small; "
              "shorten the run, or take objectives over a shorter time", LimitWarning, stacklevel=3)
     return Gradient(seen.value, matrix, tuple(seen.labels), tuple(c.label for c in columns),
-                    growth, time.perf_counter() - began, one.history.seconds)
+                    growth, time.perf_counter() - began, one.history.seconds, one.sweep_seconds)
 
 
 Tables = Mapping[str, OfTable]
@@ -181,23 +185,25 @@ Tables = Mapping[str, OfTable]
 
 def _tables(one: Differentiated, outputs: Mapping[str, Output], slopes: Slopes,
             columns: Sequence[Column]) -> dict[str, OfTable]:
-    """Tables of loads by name, where objectives look at motion alone."""
+    """Tables and amplitudes of loads by name, where objectives look at motion alone."""
     found: dict[str, OfTable] = {}
     if not all(form.kinematic for form in forms(one.run, outputs).values()):
         return found
-    for column in columns:
+    for column in {column.name: column for column in columns}.values():
         port = port_of(slopes.model, one.run, column)
-        if port is not None and column.name not in found:
-            size = max(float(np.abs(column.handle.base).max()), 1.0)
-            found[column.name] = OfTable(slopes.by_load(port, size),
-                                         weights(slopes.model, column, one.history))
+        if port is not None:
+            residuals, values = slopes.by_load(port)
+            found[column.name] = OfTable(residuals, weights(slopes.model, column, one.history,
+                                                            values))
     return found
 
 
 def _adjoint(one: Differentiated, seen: Seen, slopes: Slopes, columns: Sequence[Column],
              tables: Tables) -> tuple[NDArray, float]:
     """One sweep back, then a sum over the events for every parameter: (16)."""
+    began = time.perf_counter()
     bars = backward(one.course, seen, len(seen.value))
+    one.sweep_seconds = time.perf_counter() - began
     whole = {name: table.contracted(bars.weights) for name, table in tables.items()}
     found = np.zeros((len(seen.value), len(columns)))
     for k, column in enumerate(columns):
@@ -205,7 +211,7 @@ def _adjoint(one: Differentiated, seen: Seen, slopes: Slopes, columns: Sequence[
             found[:, k] = whole[column.name][:, column.component]
             continue
         slope = slopes.of(column)
-        found[:, k] = (np.einsum("enm,en->m", bars.weights, slope.residuals)
+        found[:, k] = (np.einsum("emn,en->m", bars.weights, slope.residuals)
                        + bars.motion.T @ slope.motion + bars.rates.T @ slope.rates
                        + slope.objectives)
     return found, _growth(bars.sizes)
@@ -227,13 +233,13 @@ def _forward(one: Differentiated, seen: Seen, slopes: Slopes, columns: Sequence[
     sizes = np.zeros((len(one.history.rows), len(columns)))
     extent = one.linear.system.magnitude[:one.linear.free, None]
 
-    def see(event: int, xi: NDArray, v: NDArray, a: NDArray) -> None:
-        sizes[event] = np.abs(xi * extent).max(axis=0)
-        seed = seen.at(event)
-        if seed is not None:
-            for bar, of in zip(seed, (xi, v, a), strict=True):
-                found[:] += bar.T @ of
-    forward(one.course, *stacked(each), see)
+    def see(first: int, states: NDArray) -> None:
+        sizes[first:first + len(states)] = np.abs(states[:, 0] * extent).max(axis=1)
+        seeds, seeded = seen.of_events(first, first + len(states) - 1)
+        found[:] += np.einsum("emcn,ecnp->mp", seeds[seeded], states[seeded])
+    given, began = stacked(each), time.perf_counter()
+    forward(one.course, *given, see)
+    one.sweep_seconds = time.perf_counter() - began
     return found, _growth_forth(sizes)
 
 

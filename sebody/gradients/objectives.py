@@ -104,6 +104,8 @@ class Seen:
                                       slice(first, len(self.labels))))
             values.append(own.ravel())
         self.value = np.concatenate(values)
+        any_of = np.any([one.seeds.any(axis=(1, 2)) for one in self.looked], axis=0)
+        self.acting = set(history.recorded[any_of].tolist())
 
     def at(self, event: int) -> Bars | None:
         """Derivatives of all objectives by the state that an event leaves."""
@@ -116,6 +118,18 @@ class Seen:
             for own, bar in zip(found, one.sensor.at(k, event), strict=True):
                 own[:, one.columns] += bar.T @ one.seeds[k]
         return found
+
+    def of_events(self, first: int, last: int) -> tuple[NDArray, NDArray]:
+        """The same of some events, (events, m, 3, n), and which of them have any, (events,)."""
+        found = np.zeros((last + 1 - first, len(self.value), 3, self.free))
+        acting = np.zeros(len(found), dtype=bool)
+        for e in range(len(found)):
+            bars = self.at(first + e) if first + e in self.acting else None
+            if bars is not None:
+                acting[e] = True
+                for c, bar in enumerate(bars):
+                    found[e, :, c] = bar.T
+        return found, acting
 
     def explicit(self, made: Simulation, rows: NDArray) -> NDArray:
         """Values of all objectives with other numbers in the model, the motion being that of rows.

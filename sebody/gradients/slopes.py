@@ -101,6 +101,14 @@ def _residuals(system, state, rows, now, kinds, ends, besides, places, free, loa
     return OK
 
 
+@compiled
+def _values(system, state, port, ends, besides, found):
+    """Value of a power port at all events."""
+    for e in range(ends.size):
+        set_loads_beside(system, state.frames, state.loads, ends[e], besides[e])
+        found[e] = state.loads[3 * port]
+
+
 class Slopes:
     """Derivatives by the parameters of a model along a run.
 
@@ -180,14 +188,17 @@ class Slopes:
             simplefilter("ignore", LimitWarning)
             return Simulation(self.model, self.run.h, self.run.scheme)
 
-    def by_load(self, port: int, size: float) -> NDArray:
-        """Derivatives of the residuals by the value of a power port, (events, n)."""
-        made = self._made()
-        start = made.state.now.copy()
+    def by_load(self, port: int) -> tuple[NDArray, NDArray]:
+        """Derivatives of the residuals by the value of a power port, and this value, (events, n).
+        """
+        made, history = self._made(), self.history
+        values = np.zeros(len(history.rows))
+        _values(made.system, made.state, port, history.ends, history.besides, values)
+        start, size = made.state.now.copy(), max(float(np.abs(values).max()), 1.0)
         one = self._along(made, (port, size))[0]
         made.state.now[:] = start
         other = self._along(made, (port, -size))[0]
-        return (one - other) / (2 * size)
+        return (one - other) / (2 * size), values
 
     def _evaluated(self, made: Simulation) -> Value:
         rates, motion = fitted_rates(made), self._turned(made.state)

@@ -2,7 +2,7 @@
 objectives. Equations as numbered in the README of this folder.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Sequence
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -11,12 +11,15 @@ from scipy import sparse
 
 from sebody.engine.state import Scheme
 from sebody.gradients.factors import Factors, Scales
-from sebody.gradients.history import STEP, History
+from sebody.gradients.history import RESTART, STEP, History
 from sebody.gradients.linear import Linear, Parts
+from sebody.gradients.products import Products
+from sebody.gradients.refined import Refined
 from sebody.gradients.second_rates import second_rates
 from sebody.gradients.turns import Turns, turns_of
+from sebody.runs.simulation import Simulation
 
-PIECE = 256         # events whose rotations are prepared together
+PIECE = 256         # events that are prepared together
 
 
 class Bars(NamedTuple):
@@ -32,6 +35,9 @@ class Seeds(Protocol):
 
     def at(self, event: int) -> Bars | None:
         """Derivatives of all objectives by the state that an event leaves."""
+
+    def of_events(self, first: int, last: int) -> tuple[NDArray, NDArray]:
+        """The same of some events, (events, m, 3, n), and which of them have any, (events,)."""
 
 
 class Coefficients(NamedTuple):
@@ -76,14 +82,15 @@ class Event(NamedTuple):
 class Course:
     """Linearized events of a run, forth or back."""
 
-    def __init__(self, linear: Linear, scheme: Scheme, history: History):
-        self.linear, self.scheme, self.history = linear, scheme, history
+    def __init__(self, run: Simulation, linear: Linear, history: History):
+        self.linear, self.scheme, self.history = linear, run.scheme, history
         system, n = linear.system, linear.free
         self.fixed = system.is_multiplier[:n] > 0       # multipliers, which do not move
         self.moving = (~self.fixed).astype(float)[:, None]
         places = system.rotation_at[system.rotation_at < n]
         self.turning = places[:, None] + np.arange(3)
         self.redundant = bool(system.regularized[0])
+        self.products = Products.of(run) if linear.dense else None
         self._scales: dict[float, Scales] = {}
         self._q = linear.state.recorded_parts["q"].start
         self._turns: tuple[int, list[Turns]] = 0, []        # of some events, from the first one on
@@ -95,18 +102,33 @@ class Course:
             row = found.rows[k]
             q = row[self._q:self._q + self.linear.free]
             q[self.fixed] = 0.0
-            event = self._event(int(k))
+            event = self.event(int(k))
             forces = state.residual[:self.linear.free, None].copy()
             forces[self.fixed] = 0.0
             q[self.fixed] = -event.factors.solve(forces)[self.fixed, 0]
 
-    def events(self, backwards: bool) -> Iterator[Event]:
-        """All events."""
-        numbers = range(len(self.history.rows))
-        for k in reversed(numbers) if backwards else numbers:
-            yield self._event(k)
+    def refined(self, columns: int, back: bool) -> Refined | None:
+        """The recursion by products; None where matrices are quicker, or there are no products.
 
-    def _event(self, k: int) -> Event:
+        A matrix is worth as many products as it has columns.
+        """
+        if self.products is None or columns > self.linear.free:
+            return None
+        return Refined(self.linear, self.products, self.scheme, self.history, columns, back,
+                       self.turning[:, 0], self.redundant)
+
+    def stretches(self) -> list[tuple[int, int, int]]:
+        """Kind, first and last of events in a row: pieces of steps, single restarts."""
+        found: list[tuple[int, int, int]] = []
+        for k, kind in enumerate(self.history.kinds.tolist()):
+            last = found[-1] if found else (RESTART, 0, 0)
+            if kind == STEP == last[0] and k - last[1] < PIECE:
+                found[-1] = STEP, last[1], k
+            else:
+                found.append((kind, k, k))
+        return found
+
+    def event(self, k: int) -> Event:
         found = self.history
         row, h = found.rows[k], float(found.steps[k])
         parts = self.linear.at(row, found.ends[k], found.besides[k])
@@ -146,7 +168,7 @@ def _initial(parts: Parts, fixed: NDArray) -> NDArray:
 
 
 def forward(course: Course, slopes: NDArray, motion: NDArray, rates: NDArray,
-            see: Callable[[int, NDArray, NDArray, NDArray], None]) -> None:
+            see: Callable[[int, NDArray], None]) -> None:
     """(8) to (10): derivatives of all states by parameters.
 
     Parameters
@@ -157,33 +179,54 @@ def forward(course: Course, slopes: NDArray, motion: NDArray, rates: NDArray,
     motion, rates : (n, p)
         Of the start.
     see : function
-        Is given the number of an event, and derivatives of its state: of motion with multipliers,
-        rates and second rates, (n, p) each.
+        Is given the number of the first of some events, and derivatives of their states: of motion
+        with multipliers, rates and second rates, (events, 3, n, p).
     """
-    moving = course.moving
-    xi, v = motion * moving, rates * moving
-    a = aux = np.zeros_like(xi)
-    for event in course.events(backwards=False):
-        M, C, K = event.parts
-        if event.turns is None:
-            y = -slopes[event.number]
-            if event.number:        # the slopes of the start hold what its motion does
-                y -= _of_restart(event, course.fixed, xi * moving, v)
-            y = event.factors.solve(y)
-            a = y * moving
-            xi, aux = xi * moving + y * (1 - moving), a
+    now = motion * course.moving, rates * course.moving, 0.0 * motion, 0.0 * motion
+    refined = course.refined(motion.shape[1], back=False)
+    for kind, first, last in course.stretches():
+        if kind == RESTART:
+            now = _over_restart(course, course.event(first), slopes[first], now)
+            see(first, np.array(now[:3])[None])
+        elif refined is None:
+            for k in range(first, last + 1):
+                now = _over_step(course, course.event(k), slopes[k], now)
+                see(k, np.array(now[:3])[None])
         else:
-            c = Coefficients.of(course.scheme, float(course.history.steps[event.number]))
-            offset = course.history.offsets[event.number]
-            aux = (1 - offset) * a + offset * aux
-            auxp = -(v / c.h + (0.5 - c.b) * aux) / c.b
-            vp = v + c.h * (1 - c.g) * aux + c.h * c.g * auxp
-            ap = ((1 - c.am) * auxp + c.am * aux - c.af * a) / (1 - c.af)
-            xip = event.turns.moved(xi) * moving
-            y = event.factors.solve(-(slopes[event.number] + K @ xip + C @ vp + M @ ap))
-            xi, y = xip + event.turns.turned(y), y * moving
-            v, a, aux = vp + c.cd * y, ap + c.cm * y, auxp + c.cu * y
-        see(event.number, xi, v, a)
+            refined.begin(now)
+            states = np.zeros((last + 1 - first, motion.shape[1], 3, len(motion)))
+            refined.over(first, last, np.ascontiguousarray(slopes[first:last + 1].swapaxes(1, 2)),
+                         states)
+            now = refined.motion
+            see(first, np.moveaxis(states, 1, -1))
+
+
+Motion = Sequence[NDArray]      # motion, rates, second and auxiliary rates, or bars of them
+
+
+def _over_restart(course: Course, event: Event, slopes: NDArray, now: Motion) -> Motion:
+    """Accelerations and multipliers anew."""
+    xi, v, *_ = now
+    moving, y = course.moving, -slopes
+    if event.number:        # the slopes of the start hold what its motion does
+        y -= _of_restart(event, course.fixed, xi * moving, v)
+    y = event.factors.solve(y)
+    return xi * moving + y * (1 - moving), v, y * moving, y * moving
+
+
+def _over_step(course: Course, event: Event, slopes: NDArray, now: Motion) -> Motion:
+    """(8) to (10)."""
+    (M, C, K), moving, (xi, v, a, aux) = event.parts, course.moving, now
+    c = Coefficients.of(course.scheme, float(course.history.steps[event.number]))
+    offset = course.history.offsets[event.number]
+    aux = (1 - offset) * a + offset * aux
+    auxp = -(v / c.h + (0.5 - c.b) * aux) / c.b
+    vp = v + c.h * (1 - c.g) * aux + c.h * c.g * auxp
+    ap = ((1 - c.am) * auxp + c.am * aux - c.af * a) / (1 - c.af)
+    xip = event.turns.moved(xi) * moving
+    y = event.factors.solve(-(slopes + K @ xip + C @ vp + M @ ap))
+    xi, y = xip + event.turns.turned(y), y * moving
+    return xi, vp + c.cd * y, ap + c.cm * y, auxp + c.cu * y
 
 
 def _of_restart(event: Event, fixed: NDArray, xi: NDArray, v: NDArray) -> NDArray:
@@ -196,7 +239,7 @@ def _of_restart(event: Event, fixed: NDArray, xi: NDArray, v: NDArray) -> NDArra
 class Adjoint(NamedTuple):
     """Result of a sweep back."""
 
-    weights: NDArray    # (events, n, m) of the slopes of the residuals: (16)
+    weights: NDArray    # (events, m, n) of the slopes of the residuals: (16)
     motion: NDArray     # (n, m) of the motion at the start, given rates, accelerations solved for
     rates: NDArray      # (n, m)
     sizes: NDArray      # (events,) largest effect of a disturbance of each state on an objective
@@ -204,37 +247,58 @@ class Adjoint(NamedTuple):
 
 def backward(course: Course, seeds: Seeds, count: int) -> Adjoint:
     """(11) to (15): derivatives of objectives by the residuals of all events and by the start."""
-    n, moving = course.linear.free, course.moving
-    X, V, A, U = (np.zeros((n, count)) for _ in range(4))
-    events = len(course.history.rows)
+    n, events = course.linear.free, len(course.history.rows)
     extent = course.linear.system.magnitude[:n, None]       # of disturbances: of rates in the run
     duration = course.history.ends[-1]
-    weights, sizes = np.zeros((events, n, count)), np.zeros(events)
-    for event in course.events(backwards=True):
-        k = event.number
-        M, C, K = event.parts
-        if (seed := seeds.at(k)) is not None:
-            X, V, A = X + seed.motion, V + seed.rates * moving, A + seed.seconds * moving
-        if event.turns is None:
-            w = event.factors.solve(-(A * moving + U + X * (1 - moving)), transposed=True)
-            X, A, U = X * moving, np.zeros_like(A), np.zeros_like(U)
-            if k:
-                of_forces = w.copy()
-                of_forces[course.fixed] = 0.0
-                X = X + (K.T @ of_forces + event.rates[0].T @ w[course.fixed]) * moving
-                V = V + (C.T @ of_forces + event.rates[1].T @ w[course.fixed]) * moving
-        else:
-            c = Coefficients.of(course.scheme, float(course.history.steps[k]))
-            offset = course.history.offsets[k]
-            w = event.factors.solve(-(event.turns.turned_back(X) + moving * (
-                c.cd * V + c.cm * A + c.cu * U)), transposed=True)
-            X1, V1, A1 = ((X + K.T @ w) * moving, (V + C.T @ w) * moving, (A + M.T @ w) * moving)
-            U1 = U + c.h * c.g * V1 + (1 - c.am) / (1 - c.af) * A1
-            X = event.turns.moved_back(X1)
-            V = V1 - U1 / (c.b * c.h)
-            A = -c.af / (1 - c.af) * A1
-            U = c.h * (1 - c.g) * V1 + c.am / (1 - c.af) * A1 - (0.5 - c.b) / c.b * U1
-            A, U = A + (1 - offset) * U, offset * U
-        weights[k] = w
-        sizes[k] = max(np.abs(X * extent).max(), np.abs(V * extent).max() / duration)
-    return Adjoint(weights, X, V, sizes)
+    weights, sizes = np.zeros((events, count, n)), np.zeros(events)
+    bars: Motion = [np.zeros((n, count)) for _ in range(4)]
+    refined = course.refined(count, back=True)
+    for kind, first, last in reversed(course.stretches()):
+        if kind == STEP and refined is not None:
+            refined.begin(bars)
+            piece = slice(first, last + 1)
+            refined.over(first, last, *seeds.of_events(first, last), weights[piece], sizes[piece])
+            bars = refined.motion
+            continue
+        for k in range(last, first - 1, -1):
+            over = _back_over_restart if kind == RESTART else _back_over_step
+            w, bars = over(course, course.event(k), _seeded(course, seeds.at(k), bars))
+            weights[k] = w.T
+            sizes[k] = max(np.abs(bars[0] * extent).max(),
+                           np.abs(bars[1] * extent).max() / duration)
+    return Adjoint(weights, bars[0], bars[1], sizes)
+
+
+def _seeded(course: Course, seed: Bars | None, bars: Motion) -> Motion:
+    """With what objectives say of the state."""
+    if seed is None:
+        return bars
+    (X, V, A, U), moving = bars, course.moving
+    return X + seed.motion, V + seed.rates * moving, A + seed.seconds * moving, U
+
+
+def _back_over_restart(course: Course, event: Event, bars: Motion) -> tuple[NDArray, Motion]:
+    """Weights, and bars before."""
+    (_, C, K), moving, (X, V, A, U) = event.parts, course.moving, bars
+    w = event.factors.solve(-(A * moving + U + X * (1 - moving)), transposed=True)
+    X = X * moving
+    if event.number:
+        of_forces = w.copy()
+        of_forces[course.fixed] = 0.0
+        X = X + (K.T @ of_forces + event.rates[0].T @ w[course.fixed]) * moving
+        V = V + (C.T @ of_forces + event.rates[1].T @ w[course.fixed]) * moving
+    return w, (X, V, np.zeros_like(A), np.zeros_like(U))
+
+
+def _back_over_step(course: Course, event: Event, bars: Motion) -> tuple[NDArray, Motion]:
+    """(11) to (15)."""
+    (M, C, K), moving, (X, V, A, U) = event.parts, course.moving, bars
+    c = Coefficients.of(course.scheme, float(course.history.steps[event.number]))
+    offset = course.history.offsets[event.number]
+    w = event.factors.solve(-(event.turns.turned_back(X) + moving * (
+        c.cd * V + c.cm * A + c.cu * U)), transposed=True)
+    X1, V1, A1 = ((X + K.T @ w) * moving, (V + C.T @ w) * moving, (A + M.T @ w) * moving)
+    U1 = U + c.h * c.g * V1 + (1 - c.am) / (1 - c.af) * A1
+    X, V, A = event.turns.moved_back(X1), V1 - U1 / (c.b * c.h), -c.af / (1 - c.af) * A1
+    U = c.h * (1 - c.g) * V1 + c.am / (1 - c.af) * A1 - (0.5 - c.b) / c.b * U1
+    return w, (X, V, A + (1 - offset) * U, offset * U)

@@ -1,8 +1,8 @@
-"""All values of a load's table in one go.
+"""Amplitude of a load, and all values of its table in one go.
 
 A force is the value of its time function times a direction, and the value linear in those of the
 table: derivatives of residuals by the table are those by the value, once for all rows, times the
-weights of the rows at the time of an event.
+weights of the rows at the time of an event. Of the amplitude the weight is the value itself.
 """
 
 from __future__ import annotations
@@ -17,13 +17,14 @@ from sebody.gradients.parameters import Column
 from sebody.gradients.slopes import Slope
 from sebody.model.history_rows import rows_of
 from sebody.model.model import Model
+from sebody.model.parts import Element
 from sebody.runs.simulation import Simulation
 
-TABLE = ".table"
+TABLE, AMPLITUDE = ".table", ".amplitude"
 
 
 class OfTable(NamedTuple):
-    """Derivatives by the values of a table."""
+    """Derivatives by the values of a table, or by an amplitude as the only one."""
 
     residuals: NDArray      # (events, n) by the value of the time function
     weights: NDArray        # (events, rows) of the table's values in that
@@ -36,31 +37,41 @@ class OfTable(NamedTuple):
 
     def contracted(self, bars: NDArray) -> NDArray:
         """``sum w . r_p`` by all values, (m, rows), of the weights of a sweep back."""
-        return np.einsum("enm,en->me", bars, self.residuals) @ self.weights
+        return np.einsum("emn,en->me", bars, self.residuals) @ self.weights
 
 
 def port_of(model: Model, run: Simulation, column: Column) -> int | None:
-    """The power port of a load whose table a column is of; None of anything else."""
-    owner, dot, _ = column.name.rpartition(TABLE)
-    if not dot:
+    """The power port of a load whose table or amplitude a column is of; None of anything else."""
+    load = _load(model, column)
+    if load is None or (column.name.endswith(AMPLITUDE) and not column.handle.base):
         return None
-    load = next(one for one in model.loads if one.name == owner)
     return run.numbering.ports.get(load)
 
 
-def weights(model: Model, column: Column, history: History) -> NDArray:
-    """Weights of the rows of a table in its value at the loads of all events, (events, rows)."""
-    load = next(one for one in model.loads if one.name == column.name.rpartition(TABLE)[0])
+def _load(model: Model, column: Column) -> Element | None:
+    owner = column.name.removesuffix(TABLE).removesuffix(AMPLITUDE)
+    return None if owner == column.name else next(
+        (one for one in model.loads if one.name == owner), None)
+
+
+def weights(model: Model, column: Column, history: History, values: NDArray) -> NDArray:
+    """Weights of a parameter's numbers in the value of its load at all events, (events, numbers).
+
+    `values` are those of the load, (events,).
+    """
+    if column.name.endswith(AMPLITUDE):
+        return values[:, None] / float(column.handle.base)
+    load = _load(model, column)
+    assert load is not None and load.time_function is not None
     rows = rows_of(load.time_function.times, load.time_function.pieces)
     assert rows is not None
-    t, last = rows[:, 0], len(rows) - 1
-    found = np.zeros((len(history.ends), len(rows)))
-    beside = history.ends + history.besides
-    first = np.searchsorted(t, beside, side="right") - 1
-    for e, (k, time) in enumerate(zip(first, history.ends, strict=True)):
-        if k < 0 or k == last:
-            found[e, max(k, 0)] = 1.0
-            continue
-        part = (time - t[k]) / (t[k + 1] - t[k])
-        found[e, k], found[e, k + 1] = 1.0 - part, part
+    t, last, events = rows[:, 0], len(rows) - 1, np.arange(len(history.ends))
+    first = np.searchsorted(t, history.ends + history.besides, side="right") - 1
+    found = np.zeros((len(events), len(rows)))
+    inside = (first >= 0) & (first < last)
+    outside = ~inside
+    found[events[outside], np.maximum(first[outside], 0)] = 1.0
+    e, k = events[inside], first[inside]
+    part = (history.ends[e] - t[k]) / (t[k + 1] - t[k])
+    found[e, k], found[e, k + 1] = 1.0 - part, part
     return found

@@ -18,6 +18,7 @@ from sebody.contract.names import (
     element_name,
     general_layout,
     layout_variant,
+    products_name,
     superelement_name,
 )
 from sebody.errors import InputError
@@ -107,6 +108,24 @@ def superelement_kernel_name(layout: str, frame: str, inertia: str, modes: int,
     raise InputError(f"there is no kernel for layout {variants[1]!r}, frame {frame!r}, inertia "
                      f"{inertia!r}: make it with\n    "
                      f"{derive_command(variants[1], frame, inertia)}")
+
+
+def products_kernel_name(kernel: str) -> str | None:
+    """Name of the kernel of products with a kernel's derivatives; None if there is none.
+
+    Superelements with as many nodes or modes as their kernel is made for take the general products.
+    """
+    if find(products_name(kernel)) or not kernel.startswith(SUPERELEMENT):
+        own = products_name(kernel)
+        return own if find(own) else None
+    module = load(kernel)
+    layout, damped = re.sub(r"m\d+", "", module.LAYOUT).removesuffix("d"), module.DAMPED is True
+    for variant in (layout, general_layout(layout)):
+        name = products_name(superelement_name(layout_variant(variant, None, damped), module.FRAME,
+                                               module.INERTIA))
+        if find(name):
+            return name
+    return None
 
 
 def derive_command(*name: str) -> str:

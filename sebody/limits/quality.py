@@ -88,7 +88,7 @@ def _turned(part: Recording, h: float) -> float:
         return 0.0
     changes = np.diff(frames, axis=0).reshape(len(frames) - 1, -1, 9)
     between = np.linalg.norm(changes, axis=2).max(axis=1) / np.sqrt(2.0)
-    return float(h * (between / np.diff(part.rows[:, RECORD_T])).max())
+    return float(h * (between / np.maximum(np.diff(part.rows[:, RECORD_T]), h)).max())
 
 
 def increase(energy: NDArray, work: NDArray, from_lowest: bool = True) -> float:

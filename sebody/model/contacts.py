@@ -6,13 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody import inputs
+from sebody.contract.names import body_contact_kind
 from sebody.errors import InputError
 from sebody.model.arguments import chosen_name, direction, dof_block, known, vector
-from sebody.model.frictions import checked_friction, turning
+from sebody.model.body_points import body_point, start_place
+from sebody.model.frames import FRAMES
+from sebody.model.frictions import Dry, checked_friction, turning
 from sebody.model.impacts import damping_of
 from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import ground
-from sebody.model.parts import Element, Joint, Node, positions, rotations
+from sebody.model.parts import BodyPoint, Element, Joint, Node, positions, rotations
 from sebody.model.surfaces import Surface
 
 DEEP = 0.1          # of its radius, or of the model: a start in deeper contact is refused
@@ -137,7 +140,9 @@ def contact(model: Mechanism, node: Node | str, on: Surface, radius: float = 0.0
     Parameters
     ----------
     node : Node or str
-        Centre of the sphere. For points of a body away from its nodes, `attach` one.
+        Centre of the sphere; or ``"BODY.nodeLABEL"``, as in results, a point of a superelement: a
+        node of its FE model, which moves as the recovery says. For other points of a body
+        `attach` a node.
     on : Surface
         `sebody.plane`, `sebody.sphere` or `sebody.cylinder`, of the ground or of a node.
     radius : float
@@ -153,8 +158,14 @@ def contact(model: Mechanism, node: Node | str, on: Surface, radius: float = 0.0
     ------
     InputError
         No surface, a node of another model, a sphere without rotation, a surface of the node
-        itself, a start in deep penetration, or numbers that make no sense.
+        itself, an FE node that the body does not have, a start in deep penetration, or numbers
+        that make no sense.
     """
+    if point := body_point(model, node, "contact"):
+        return _inside(model, point, str(node), on, radius, _impact(
+            f"contact of {node!r}", restitution, at_speed, stiffness, exponent), checked_friction(
+                f"contact of {node!r}", friction, static, bristle, damping, speed, "friction"),
+            name)
     a = known(model, node)
     what = f"contact of {a.name!r}"
     on = inputs.instance(on, f"{what}: on", Surface, "give a sebody.plane, sphere or cylinder")
@@ -177,6 +188,35 @@ def contact(model: Mechanism, node: Node | str, on: Surface, radius: float = 0.0
     kind = f"{'sphere' if r > 0 else 'point'}_on_{on.kind}"
     made = Element(name, model.kind_of(kind), attachments,
                    constants | dict(dry.constants) | {"radius": r} | shape, tuned=dry.tuned)
+    model.loads.append(made)
+    return made
+
+
+def _inside(model: Mechanism, point: BodyPoint, called: str, on: Surface, radius: float,
+            impact: dict[str, float | NDArray], dry: Dry, name: str | None) -> Element:
+    """Contact of a point inside a body with a surface."""
+    what = f"contact of {called!r}"
+    on = inputs.instance(on, f"{what}: on", Surface, "give a sebody.plane, sphere or cylinder")
+    if inputs.number(radius, f"{what}: radius", least=0) > 0:
+        raise InputError(f"{what}: radius is {radius:g}, but an FE node is a point: leave radius "
+                         "out, or shift the surface by it")
+    if isinstance(on.node, Node | str) and known(model, on.node) in point.body.nodes:
+        raise InputError(f"{what}: the {on.kind} is on node {known(model, on.node).name!r} of the "
+                         "same body: give another one")
+    a = Node(called, start_place(point), None, None)
+    b = _carrier(model, on, a, what)
+    shape, gap = _shape(model, on, a, b, what)
+    if -gap > DEEP * model.size():
+        raise InputError(f"{what}: it starts {-gap:g} deep in the {on.kind}: start it outside, or "
+                         "turn the normal (inside=True for a bore)")
+    own = {"e": shape.get("n", shape.get("e", np.zeros(model.dimension))),
+           "level": shape.get("level", 0.0), "flat": float(on.kind == "plane"),
+           "size": shape.get("size", 1.0), "side": shape.get("side", 1.0), "radius": 0.0}
+    dof_block(b, "rotation")
+    made = Element(chosen_name(model, name, what.replace("'", "")),
+                   body_contact_kind(FRAMES[point.body.frame].kernel, model.planar),
+                   point.body.attachments + positions(b) + rotations(b),
+                   impact | dict(dry.constants) | own, tuned=dry.tuned, point=point)
     model.loads.append(made)
     return made
 

@@ -62,11 +62,10 @@ def rows_of(times: Sequence[float], pieces: Sequence[Sequence[float]]) -> NDArra
     """The table that `linear` makes these pieces of, (n, 2); None of another time function."""
     if any(any(piece[2:]) for piece in pieces) or any(pieces[-1][1:]):
         return None
-    rows = [(times[0], pieces[0][0])]
-    for k in range(1, len(times)):
-        value, slope = (*pieces[k - 1], 0.0)[:2]
-        before = value + slope * (times[k] - times[k - 1])
-        if abs(before - pieces[k][0]) > 1e-12 * max(abs(before), abs(pieces[k][0]), abs(value)):
-            rows.append((times[k], before))
-        rows.append((times[k], pieces[k][0]))
-    return np.array(rows)
+    t = np.array(times, dtype=float)
+    value, slope = np.array([(*piece, 0.0)[:2] for piece in pieces], dtype=float).T
+    before = np.append(value[0], value[:-1] + slope[:-1] * np.diff(t))
+    size = np.maximum(np.maximum(np.abs(before), np.abs(value)), np.abs(np.append(0.0, value[:-1])))
+    rows = np.stack([np.stack([t, before], axis=1), np.stack([t, value], axis=1)], axis=1)
+    kept = np.stack([np.abs(before - value) > 1e-12 * size, np.ones(len(t), dtype=bool)], axis=1)
+    return rows[kept]

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import accumulate
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -146,10 +147,23 @@ class Superelement:
                 for i in self.reduced.rotation_nodes]
 
     @property
+    def firsts(self) -> list[int]:
+        """Where each of its attachments begins among its unknowns."""
+        sizes = [one.dof_block.start.size for one in self.attachments]
+        return [0, *accumulate(sizes)][:len(sizes)]
+
+    @property
     def attachments(self) -> tuple[Attachment, ...]:
         """Where its reduced coordinates are, without internal modes."""
         return (positions(*(self.nodes[i] for i in self.reduced.position_nodes))
                 + rotations(*(self.nodes[i] for i in self.reduced.rotation_nodes)))
+
+
+class BodyPoint(NamedTuple):
+    """A point of a body away from its boundary nodes: a node of its FE model."""
+
+    body: Superelement
+    place: int      # of the node among those of the recovery
 
 
 class LawParts(NamedTuple):
@@ -174,6 +188,7 @@ class Element:
     mode: tuple[str, int] | None = None     # superelement and internal mode of a mode force
     function: UserFunction | None = None    # compiled function of a user force, kept alive
     body: Superelement | None = None        # on all whose coordinates a load on a body acts
+    point: BodyPoint | None = None  # of a contact; the body's coordinates come first
     pressed_by: "Joint | None" = None       # whose multipliers the friction in it reads
     law: LawParts | None = None             # of a continuous controller
     tuned: Mapping[str, float] = field(default_factory=dict)    # see `sebody.runs.tuning`
@@ -181,6 +196,15 @@ class Element:
 
     def __post_init__(self) -> None:
         self.dof_blocks = tuple(one.dof_block for one in self.attachments)
+
+    @property
+    def firsts(self) -> list[int]:
+        """Where each of its attachments begins among its unknowns."""
+        own = [] if self.point is None else self.point.body.attachments
+        sizes = [dof_block.start.size for dof_block in self.dof_blocks]
+        if self.point is not None:      # internal modes come behind the nodes of the body
+            sizes[len(own) - 1] += self.point.body.reduced.modes
+        return [0, *accumulate(sizes)][:len(sizes)]
 
     @property
     def direction(self) -> NDArray:

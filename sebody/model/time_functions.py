@@ -93,6 +93,9 @@ class TimeFunction:
     def polynomials(self) -> NDArray:
         """Coefficients of all pieces, (pieces, COEFFICIENTS)."""
         rows = np.zeros((len(self.pieces), COEFFICIENTS))
+        if len(sizes := set(map(len, self.pieces))) == 1:       # as of tables, of thousands
+            rows[:, :sizes.pop()] = self.pieces
+            return rows
         for row, coefficients in zip(rows, self.pieces, strict=True):
             row[:len(coefficients)] = coefficients
         return rows
@@ -120,30 +123,44 @@ class TimeFunction:
     def __repr__(self) -> str:
         return f"<TimeFunction: {self.described()}>"
 
-    def _summands(self, k: int, t: float) -> NDArray:
-        """Sums of the sizes of what is added up in `of_piece`: they may cancel but for rounding."""
-        sums = _with_rates([abs(c) for c in self.pieces[k]], abs(t - self.times[k]))
-        if self.waves:
-            A, w, _ = self.waves[k]
-            sums += abs(A) * np.array([1.0, abs(w), w * w])
-        return sums
-
     def jumps(self) -> list[tuple[float, NDArray, NDArray]]:
         """Times after the start at which value or rates jump, with what they are on both sides.
 
         What does not jump but for rounding is the same on both sides.
         """
-        times = []
-        for k, t in enumerate(self.times):
-            if t <= 0.0:
-                continue
-            after = self.of_piece(k, t)
-            before = self.of_piece(k - 1, t) if k else np.array([after[0], 0.0, 0.0])
-            size = np.maximum(np.abs(after), self._summands(k - 1, t) if k else 0.0)
-            jump = np.abs(after - before) > SMALL * size
-            if jump.any():
-                times.append((t, np.where(jump, before, after), after))
-        return times
+        own = np.array([k for k, t in enumerate(self.times) if t > 0.0], dtype=int)
+        if not own.size:
+            return []
+        t = np.array(self.times)[own]
+        after, before = self._at_each(own, t), self._at_each(np.maximum(own - 1, 0), t)
+        size = np.maximum(np.abs(after), self._at_each(np.maximum(own - 1, 0), t, sums=True))
+        if own[0] == 0:
+            before[0], size[0] = [after[0, 0], 0.0, 0.0], np.abs(after[0])
+        jump = np.abs(after - before) > SMALL * size
+        return [(self.times[own[i]], np.where(jump[i], before[i], after[i]), after[i])
+                for i in np.flatnonzero(jump.any(axis=1))]
+
+    def _at_each(self, pieces: NDArray, t: NDArray, sums: bool = False) -> NDArray:
+        """Value and two rates of some pieces, each at a time: tables have thousands of them.
+
+        With `sums` the sums of the sizes of what is added up, as it may cancel but for rounding.
+        """
+        x, coefficients = t - np.array(self.times)[pieces], self.polynomials()[pieces].T
+        if sums:
+            x, coefficients = np.abs(x), np.abs(coefficients)
+        value, rate, half = np.zeros((3, len(t)))
+        for c in coefficients[::-1]:
+            half = half * x + rate
+            rate = rate * x + value
+            value = value * x + c
+        values = np.stack([value, rate, 2.0 * half], axis=1)
+        if self.waves:
+            A, w, p = np.array(self.waves)[pieces].T
+            s, c = (np.ones_like(x), np.ones_like(x)) if sums else (np.sin(w * x + p),
+                                                                    np.cos(w * x + p))
+            of_waves = np.stack([A * s, A * w * c, -A * w * w * s], axis=1)
+            values += np.abs(of_waves) if sums else of_waves
+        return values
 
     def abrupt(self, rate: int) -> list[float]:
         """Times after the start at which the value jumps (0), or its first or second rate (2)."""

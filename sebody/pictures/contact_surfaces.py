@@ -1,14 +1,16 @@
 """Contact surfaces and stops of a picture: where they are, and which bodies carry them."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from sebody.model.body_points import start_place, surface_touched
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Element, Node
+from sebody.model.parts import Element, Node, positions, rotations
 from sebody.pictures.contact_shapes import (
     Shape,
     across_of,
@@ -60,6 +62,9 @@ def contact_surfaces(model: Mechanism, nodes: Mapping[str, DrawnNode], size: flo
     planes: dict[tuple, list[tuple[Element, NDArray]]] = {}
     balls: dict[tuple[str, float], str] = {}
     for one in model.loads:
+        arm = None
+        if one.point is not None:
+            one, arm = _as_of_node(one)
         kind, _, surface = one.kind.removeprefix("planar_").partition("_on_")
         if not (surface or kind in LIMITS) or not all(
                 _on_ground(model, held.node) or held.node.name in nodes
@@ -68,7 +73,7 @@ def contact_surfaces(model: Mechanism, nodes: Mapping[str, DrawnNode], size: flo
         if kind in LIMITS:
             surfaces += LIMITS[kind](model, one, size)
             continue
-        path = _path(model, one, nodes)
+        path = _path(model, one, nodes, arm)
         if surface == "plane":
             planes.setdefault(_same_plane(model, one, size), []).append((one, path))
         else:
@@ -99,12 +104,31 @@ def _carrier(model: Mechanism, node: Node) -> str | None:
     return None if _on_ground(model, node) else node.name
 
 
-def _path(model: Mechanism, one: Element, nodes: Mapping[str, DrawnNode]) -> NDArray:
-    """Places of the node that touches, seen from the one that carries the surface, (frames, 3)."""
+def _as_of_node(one: Element) -> tuple[Element, NDArray]:
+    """The contact of a point inside a body as one of its nearest node, and the arm from there."""
+    assert one.point is not None
+    place, (surface, constants) = start_place(one.point), surface_touched(one)
+    a = min((p.node for p in one.point.body.attachments if p.kind == "position"),
+            key=lambda node: float(np.linalg.norm(place - node.point)))
+    b = one.attachments[-1].node
+    return (replace(one, kind=f"point_on_{surface}", constants=constants, point=None,
+                    attachments=positions(a, b) + rotations(b)), spatial(place - a.point))
+
+
+def _path(model: Mechanism, one: Element, nodes: Mapping[str, DrawnNode], arm: NDArray | None
+          ) -> NDArray:
+    """Places of what touches, seen from the node that carries the surface, (frames, 3).
+
+    `arm` is that of a point inside a body, from its nearest node, as if this part were rigid.
+    """
     a, b = (held.node for held in one.attachments[:2])
+    place = nodes[a.name].position
+    if arm is not None:
+        turn = nodes[a.name].rotation
+        place = place + (arm if turn is None else Rotation.from_quat(turn).apply(arm))
     if _on_ground(model, b):
-        return nodes[a.name].position
-    away, rotation = nodes[a.name].position - nodes[b.name].position, nodes[b.name].rotation
+        return place
+    away, rotation = place - nodes[b.name].position, nodes[b.name].rotation
     return away if rotation is None else Rotation.from_quat(rotation).apply(away, inverse=True)
 
 

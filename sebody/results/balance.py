@@ -72,15 +72,14 @@ class Balance:
         """
         total = np.zeros((len(self._q), self._size(kind)))
         first = self._numbering.forces_at[part]
-        for place in part.attachments:
+        for place, at in zip(part.attachments, part.firsts, strict=True):
             block = getattr(place.node, place.kind)
-            size = block.start.size
             if place.node is node and place.kind == kind:
-                values = -self._elements[:, first:first + size]
+                begin = first + at
+                values = -self._elements[:, begin:begin + block.start.size]
                 if block.rotational and not self._model.planar:
                     values = np.einsum("nij,nj->ni", self.rotation(block), values)
                 total += values
-            first += size
         return total
 
     def of_joint(self, joint: Joint, kind: str) -> NDArray:

@@ -85,3 +85,13 @@ def _kept(recording: Recording, name: str, number: str, quantity: str = "") -> N
             "it is friction in a joint, whose parts always touch"))
     places = recording.numbering.memories[element]
     return np.asarray(recording.recorded("frames")[:, places[memory.index(number)]])
+
+
+def normal_forces(model: Mechanism) -> list[str]:
+    """What presses in the friction of joints: equations of the joint, or a preload alone."""
+    rubbing = [load for load in model.loads if "friction" in load.kind]
+    read = {load.name: load.pressed_by.name for load in rubbing if load.pressed_by is not None}
+    preloaded = [load.name for load in rubbing if load.name not in read]
+    found = [f"{', '.join(read)}: read from equations of {', '.join(dict.fromkeys(read.values()))}"
+             ] if read else []
+    return [*found, *([f"{', '.join(preloaded)}: the preload alone"] if preloaded else [])]

@@ -73,6 +73,10 @@ def in_joint_axes(kind: str, recording: Recording, name: str) -> NDArray:
 def of_load(kind: str, recording: Recording, name: str) -> NDArray:
     """Force or moment of a load or spring on its node, the first if it has several."""
     load = loads(recording)[name]
+    if load.point is not None:          # minus that on the node of the surface; it has no moment
+        node = load.attachments[-1].node
+        return _flat(recording, kind, -recording.balance.on(load, node, kind)
+                     * (kind == "position"))
     return _flat(recording, kind, recording.balance.on(load, load.attachments[0].node, kind))
 
 

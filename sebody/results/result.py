@@ -17,6 +17,7 @@ from sebody.model.summary import table
 from sebody.results import dataframes, hdf5, naming, quantities
 from sebody.results.advice import kernels_that_pay
 from sebody.results.cautions import cautions
+from sebody.results.contact_quantities import normal_forces
 from sebody.results.field import Field
 from sebody.results.field_quantities import field_of
 from sebody.results.hot_spots import HotSpots, hot_spots
@@ -281,6 +282,7 @@ class Result(Recording):
             lines.append(f"constraints          largest residual "
                          f"{self['constraints.position'].max():.1e}, of their rates "
                          f"{self['constraints.velocity'].max():.1e}")
+        lines += [f"normal forces        of {text}" for text in normal_forces(self.model)]
         laws = {load.name for load in self.model.loads if load.law is not None}     # of none
         lines += [f"work                 {self.recorded('works')[-1, k]:.6g} by {name}"
                   for k, name in enumerate(self.numbering.port_names) if name not in laws]

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 
+from sebody.assembly.contracts import counts_of
 from sebody.assembly.evaluation import evaluate
 from sebody.assembly.numbering import Numbering, stretch
 from sebody.contract.layout import RESIDUAL, Row
@@ -23,16 +24,18 @@ from sebody.engine.evaluate import to_body_axes
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.kernels.loader import element_kernel
+from sebody.model.body_points import start_place
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import DofBlock, Element
+from sebody.model.parts import Element
+from sebody.runs.directions import directions, of_point, pair, rotation_of
 from sebody.runs.redundancy import least
-from sebody.vectors import moment_of
 
 STILL = 1e-9            # of the mobility of the parts alone: that of what a drive moves
 AT_REST = 1e-9          # rate of a joint at rest, relative to that of the model
 HELD = 1e-12            # acceleration of what is held, relative to that without friction
 MOST = 30               # iterations for the forces at the start
 RESOLVED = 0.1          # angular frequency of teeth in contact, times the step, for the guard
+OPEN = 1e-200           # force of a contact that is open, rounded up
 BEYOND = 2.0            # of the static limit: force of a bristle that is to slide
 
 
@@ -92,7 +95,8 @@ class _Constants:
 
     def __init__(self, element: Element, system: System, numbering: Numbering) -> None:
         kernel = element_kernel(element.kind)
-        self.places = Row(element.name, kernel.CONSTANTS).slices({})
+        counts = {} if element.point is None else counts_of(element.point.body)
+        self.places = Row(element.name, kernel.CONSTANTS).slices(counts)
         self.all, self.first = system.constants, numbering.constants_at[element]
 
     def __setitem__(self, name: str, value: float) -> None:
@@ -100,66 +104,6 @@ class _Constants:
 
     def __getitem__(self, name: str) -> float:
         return float(self.all[self.first + self.places[name].start])
-
-
-def directions(element: Element, numbering: Numbering, state: State) -> list[NDArray]:
-    """Directions of an element's measures among all coordinates: rates are ``row . v``.
-
-    Of contacts the axes of space at its nodes: of the centre against the surface.
-    """
-    c, size = element.constants, len(element.dof_blocks[0].start)
-    kind = element.kind.removeprefix("planar_")
-    places = [t for t in element.dof_blocks if not t.rotational]
-    turns = [t for t in element.dof_blocks if t.rotational]
-    if kind.startswith(("sphere_on", "point_on")):
-        return [_pair(numbering, state, places, axis, [axis, axis]) for axis in np.eye(size)]
-    if kind.startswith("friction_slide"):
-        return [_slide(numbering, state, places, turns[0], element.vector("e"))]
-    if kind.startswith("friction_cylindrical"):
-        return [_slide(numbering, state, places, turns[0], element.vector("e")),
-                c["radius"] * _turn(numbering, state, turns, np.cross(c["n"], c["m"]))]
-    if kind.startswith("friction_spherical"):
-        Ra, Rb = (_rotation(numbering, state, t) for t in turns)
-        return [_pair(numbering, state, turns, axis, [Ra.T @ Rb @ axis, axis])
-                for axis in np.eye(3)]
-    if kind == "gear_play":
-        return [_turn(numbering, state, turns[:2],
-                      np.cross(c["n1"], c["m1"]) if "n1" in c else None)]
-    return [_turn(numbering, state, turns, np.cross(c["n"], c["m"]) if "n" in c else None)]
-
-
-def _turn(numbering: Numbering, state: State, turns: list[DofBlock], axis: NDArray | None
-          ) -> NDArray:
-    axis = np.ones(1) if axis is None else axis
-    return _pair(numbering, state, turns, axis, [axis, axis])
-
-
-def _slide(numbering: Numbering, state: State, places: list[DofBlock], carrier: DofBlock,
-           e: NDArray) -> NDArray:
-    along = _rotation(numbering, state, carrier) @ e
-    return _pair(numbering, state, places[::-1], along, [along, along])
-
-
-def _pair(numbering: Numbering, state: State, dof_blocks: list[DofBlock], axis: NDArray,
-          vectors: list[NDArray]) -> NDArray:
-    """A row that takes the rate of the second DOF block from that of the first."""
-    row = np.zeros(numbering.total)
-    for dof_block, sign, vector in zip(dof_blocks, (1.0, -1.0), vectors, strict=True):
-        own = dof_block.root if dof_block.root is not None else dof_block
-        row[stretch(numbering, own)] += sign * vector
-        for rotation, arm in dof_block.arms:
-            force = _rotation(numbering, state, rotation).T @ vector    # in axes of the arm
-            row[stretch(numbering, rotation)] += sign * moment_of(arm, force)
-    return row
-
-
-def _rotation(numbering: Numbering, state: State, dof_block: DofBlock) -> NDArray:
-    """Rotation matrix of a DOF block in space; in a plane (2, 2)."""
-    if dof_block in numbering.rotations:
-        k = numbering.rotations[dof_block]
-        return state.R[9 * k:9 * k + 9].reshape(3, 3)
-    angle = state.q[numbering.dof_blocks[dof_block]]
-    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
 def unbend(model: Mechanism, numbering: Numbering, state: State) -> None:
@@ -225,25 +169,48 @@ class LoadedBristles:
         size = len(load.dof_blocks[0].start)
         first = self.numbering.forces_at[load]
         push = -self.state.g[first:first + size]
+        if load.point is not None:
+            return self._touching_inside(load, first)
         places = [t for t in load.dof_blocks if not t.rotational]
-        if not np.any(push) or any(t.root is not None for t in places):
+        pressing = np.linalg.norm(push)
+        if not pressing > OPEN or any(t.root is not None for t in places):
             return [], np.zeros((size, 0))
-        n = push / np.linalg.norm(push)
+        n = push / pressing
         across = np.linalg.svd(n[None])[2][1:]
         turns = [t for t in load.dof_blocks if t.rotational]
         q = [self.state.q[stretch(self.numbering, t)] for t in places]
         point = q[0] - constants["radius"] * n
         rows = []
         for t in across:
-            row = _pair(self.numbering, self.state, places, t, [t, t])
+            row = pair(self.numbering, self.state, places, t, [t, t])
             for turn, centre, sign in zip(turns, q[-len(turns):], (1.0, -1.0)[-len(turns):],
                                           strict=True):
                 arm = point - centre
                 moment = (np.atleast_1d(arm[0] * t[1] - arm[1] * t[0]) if size == 2 else
-                          _rotation(self.numbering, self.state, turn).T @ np.cross(arm, t))
+                          rotation_of(self.numbering, self.state, turn).T @ np.cross(arm, t))
                 row[stretch(self.numbering, turn)] += sign * moment
             rows.append(row)
-        return rows, _rotation(self.numbering, self.state, turns[-1]).T @ across.T
+        return rows, rotation_of(self.numbering, self.state, turns[-1]).T @ across.T
+
+    def _touching_inside(self, load: Element, first: int) -> tuple[list[NDArray], NDArray]:
+        """The same of a point inside a body: the force on the surface's node is minus its own."""
+        size, carrier = len(load.dof_blocks[-2].start), load.dof_blocks[-2:]
+        at = first + load.firsts[-2]
+        push = self.state.g[at:at + size]
+        pressing = np.linalg.norm(push)
+        if not pressing > OPEN:
+            return [], np.zeros((size, 0))
+        n = push / pressing
+        across = np.linalg.svd(n[None])[2][1:]
+        arm = start_place(load.point) - self.state.q[stretch(self.numbering, carrier[0])]
+        rows = []
+        for t in across:
+            row = of_point(load, self.numbering, self.state, t)
+            moment = (np.atleast_1d(arm[0] * t[1] - arm[1] * t[0]) if size == 2 else
+                      rotation_of(self.numbering, self.state, carrier[1]).T @ np.cross(arm, t))
+            row[stretch(self.numbering, carrier[1])] -= moment
+            rows.append(row)
+        return rows, rotation_of(self.numbering, self.state, carrier[1]).T @ across.T
 
     def load(self, masses: csc_matrix, solve_again: Callable[..., Any]) -> None:
         """Bend the bristles so that what they hold stays at rest."""

@@ -31,7 +31,7 @@ from sebody.runs.simulation import Simulation
 from sebody.small_motion.linearization import vibrations
 
 SAMPLES = 400           # of the loads, besides their corners
-RIGID = 1e-6            # of the highest frequency, below which motions are rigid
+RIGID = 1e-6            # of the highest frequency, or of 1 / until: below it motions are rigid
 
 
 class EnergyGain(NamedTuple):
@@ -86,7 +86,7 @@ def energy_gain(model: Model, until: float) -> EnergyGain:
     velocity = state.v.copy()
     state.v[:] = state.a[:] = 0.0
     found = vibrations(run)
-    elastic = found.omega > RIGID * found.omega.max(initial=0.0)
+    elastic = found.omega > RIGID * found.omega.max(initial=1.0 / until)
     omega, shapes = found.omega[elastic], found.shapes[:, elastic]
     times = np.union1d(np.linspace(0.0, until, SAMPLES + 1),
                        run.system.corners[run.system.corners < until])
@@ -97,7 +97,7 @@ def energy_gain(model: Model, until: float) -> EnergyGain:
     energy = float(energies.sum())
     if not energy > 0.0:
         raise InputError(f"nothing vibrates at t = {until:.6g}: give the model loads that act "
-                         "before, or initial velocities")
+                         "before, or initial velocities, on something elastic")
     return EnergyGain(energy, float(np.sqrt(omega**2 @ energies / energy)))
 
 

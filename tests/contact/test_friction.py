@@ -253,3 +253,13 @@ def test_motor_with_friction():
     model.friction("motor", 0.2, radius=0.1, preload=50.0)
     result = simulate(model, 1e-2, 0.5)
     assert result["motor.torque"][1:] == pytest.approx(0.2 * 0.1 * 50.0, abs=1e-6)
+
+
+def test_the_summary_says_what_presses():
+    model = bar()
+    model.friction("hinge", 0.3, radius=0.05, name="dry")
+    model.friction("hinge", 0.1, radius=0.02, preload=3.0, reaction=False, name="seal")
+    text = simulate(model, 1e-2, 0.1).summary()
+    assert "normal forces        of dry: read from equations of hinge\n" in text
+    assert "normal forces        of seal: the preload alone\n" in text
+    assert "normal forces" not in simulate(bar(), 1e-2, 0.1).summary()

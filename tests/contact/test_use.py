@@ -6,7 +6,9 @@ from contact_models import G, anchored, bar, block
 
 from sebody import InputError, Model, Result, SimulationError, plane, simulate, sphere
 from sebody.analysis import Ensemble, equilibrium, final, linearize
+from sebody.explore.sweep import Distribution, sweep
 from sebody.model.impacts import damping_of, restitution_of
+from sebody.scenes.scene import Scene
 
 
 def resting(friction=0.3):
@@ -71,6 +73,45 @@ def test_ensembles_vary_coefficients_stiffness_and_limits():
     each = [simulate(build(*row), 2e-3, 1.0)["pin.rotation"][-1]
             for row in zip(*values.values(), strict=True)]
     assert found["end"] == pytest.approx(each, abs=1e-13)
+
+
+def geared(play=2e-3, friction=0.2):
+    """Two wheels in gear, and a ball that falls on the first, in general position."""
+    model = Model(planar=True)
+    for name, place, J in (("a", (0.3, -0.2), 0.1), ("b", (1.1, 0.1), 0.4)):
+        model.rigid_body(f"{name} wheel", model.node(name, place), 1.0, J)
+        model.revolute(name, name=f"shaft {name}")
+    model.torque("a", 1.0, 1.0)
+    model.gear("shaft a", "shaft b", ratio=-2, backlash=play, name="teeth")
+    model.rigid_body("body", model.node("ball", (0.33, 0.12)), 0.2, 2e-4)
+    model.gravity((0.0, -G))
+    model.contact("ball", on=sphere(0.2, node="a"), radius=0.05, stiffness=2e5, friction=friction,
+                  name="hit")
+    return model
+
+
+def test_sweeps_vary_friction_stiffness_and_play():
+    """By name, without building the model anew; and by arguments of the scene."""
+    def build(play=2e-3, friction=0.2):
+        return Scene("geared", "wheels in gear", geared(play, friction), h=1e-3, t_end=0.2,
+                     base="a")
+    outputs = {"b": final("b.rotation"), "ball": final("ball.position")}
+    asked = {"hit.coefficient": [0.1, 0.4], "teeth.backlash": [1e-3, 4e-3]}
+    stiffness = {"hit.stiffness": Distribution("uniform", (1e5, 3e5))}
+    table = sweep(build, outputs, asked, stiffness, runs=2, seed=3, threads=1)
+    assert table.good.all() and table.runs == 8
+    for k in range(8):
+        model = geared(table["teeth.backlash"][k])
+        constants = model.element("hit").constants
+        constants["coefficient"] = constants["static"] = table["hit.coefficient"][k]
+        constants["stiffness"] = table["hit.stiffness"][k]
+        alone = simulate(model, 1e-3, 0.2)
+        assert table["b"][k] == pytest.approx(alone["b.rotation"][-1], rel=1e-9)
+        assert table["ball"][k] == pytest.approx(alone["ball.position"][-1], rel=1e-9)
+    anew = sweep(build, outputs, {"play": [1e-3, 4e-3], "friction": [0.1]}, threads=1)
+    assert anew["b"][0] == pytest.approx(simulate(geared(1e-3, 0.1), 1e-3, 0.2)["b.rotation"][-1],
+                                         rel=1e-9)
+    assert len(set(table["b"])) == 8
 
 
 def oblique(stiffness, restitution, friction):

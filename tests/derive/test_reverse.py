@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import sympy as sp
 from plain_kernels import evaluated, executed
-from transposed_kernels import ROUNDING, element_error, superelement_error
+from products_kernels import ROUNDING, element_error, superelement_error
 
 from sebody.contract.layout import TANGENT
 from sebody.derive.compiler import Variant, compile_kernel

@@ -16,9 +16,10 @@ MANIFEST = '''"""A small manifest."""
 
 SUPERELEMENTS = (("planar-f2", "positions", "material"),)
 ELEMENTS = ("force", "torque", "planar_force", "planar_torque", "motion_planar_positions")
+PRODUCTS = ("force",)
 '''
 SHIPPED = ["element_force.py", "element_planar_force.py", "element_planar_torque.py",
-           "element_torque.py", "motion_planar_positions.py",
+           "element_torque.py", "motion_planar_positions.py", "products_element_force.py",
            "superelement_planar_f2_positions_material.py"]
 
 # Residuals of two kernels, called through their addresses: the time loop need not be compiled.
@@ -142,7 +143,7 @@ def original(tmp_path_factory) -> Path:
 @pytest.mark.parametrize("seed", ["1", "2"])
 def test_text_is_the_same_for_every_hash_seed(original, seed):
     done = derive(original, "--check", PYTHONHASHSEED=seed)
-    assert (done.returncode, done.stdout) == (0, "6 kernels are up to date\n"), done.stderr
+    assert (done.returncode, done.stdout) == (0, "7 kernels are up to date\n"), done.stderr
 
 
 def stale(tree: Path) -> list[str]:
@@ -158,12 +159,13 @@ def test_change_a_formula(original, tmp_path):
     package = tree / "sebody"
     edit(package / "derive" / "formulas" / "forces.py", "load=AMPLITUDE[0] * direction.dot(x.",
          "load=2 * AMPLITUDE[0] * direction.dot(x.")
-    assert stale(tree) == ["element_force.py", "element_planar_force.py"]
+    assert stale(tree) == ["element_force.py", "element_planar_force.py",
+                           "products_element_force.py"]
     assert "-        g[1] = -amplitude*d_y" in derive(tree, "--check").stdout
     untouched = (package / "generated" / "element_torque.py").stat().st_mtime_ns
     done = derive(tree)
     assert done.returncode == 0, done.stderr
-    assert done.stdout.startswith("6 kernels derived, 2 written")
+    assert done.stdout.startswith("7 kernels derived, 3 written")
     assert (package / "generated" / "element_torque.py").stat().st_mtime_ns == untouched
     assert residuals(tree) == [[-10.0, 0.0, 10.0, 0.0, 0.0, 0.0], [0.0, -6.0]]
     assert stale(tree) == []
@@ -220,7 +222,8 @@ def test_one_kernel_of_the_catalogue(original, tmp_path):
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("1 kernel derived, 1 written to ")
     assert residuals(tree)[1] == [0.0, -6.0]
-    assert stale(tree) == ["element_force.py"] and not (generated / "element_torque.py").exists()
+    assert stale(tree) == ["element_force.py", "products_element_force.py"]
+    assert not (generated / "element_torque.py").exists()
     done = derive(tree, "planar_forse")
     assert done.returncode == 2
     assert done.stderr == ("error: there is no kernel 'planar_forse' in the catalogue: is it "

@@ -6,6 +6,7 @@ import pytest
 
 from sebody import InputError, Model, SimulationError, Tolerance
 from sebody.analysis import at_time, final, gradient, integral, rms, soft_maximum
+from sebody.gradients import sweeps
 from sebody.gradients.gradient import Differentiated
 from sebody.model import profiles
 from sebody.runs.schemes import generalized_alpha, hht
@@ -84,6 +85,18 @@ def test_adjoint_forward_and_differences_of_runs_agree(name):
     assert apart < 1e-11
     expected = scenes.differences(build(), *run)
     assert (np.abs(found.matrix - expected) / rows(expected)).max() < 1e-7
+
+
+@pytest.mark.filterwarnings("ignore::sebody.LimitWarning")
+@pytest.mark.parametrize("name", ["flexible loop", "jumps of loads", "moved in a plane"])
+@pytest.mark.parametrize("mode", ["adjoint", "forward"])
+def test_products_give_what_matrices_in_every_step_do(name, mode, monkeypatch):
+    """Old inverses and refinement, against a factorized exact matrix in every step."""
+    build, *run = SCENES[name]
+    found = gradient(build(), *run, mode, scheme=EXACT)
+    monkeypatch.setattr(sweeps.Course, "refined", lambda *_, **others: None)
+    exact = gradient(build(), *run, mode, scheme=EXACT)
+    assert (np.abs(found.matrix - exact.matrix) / rows(exact.matrix)).max() < 1e-11
 
 
 @pytest.mark.parametrize("scheme", [hht(-0.1, 1e-13), generalized_alpha(0.3, 1e-13)])

@@ -128,6 +128,7 @@ ANALYSIS = {
     "linearize": Call(an.linearize, lambda: {"run": hanging(), "spin": None}),
     "modes": Call(an.modes, lambda: {"run": hanging(), "spin": None}),
     "vibrations": Call(an.vibrations, lambda: {"run": hanging(), "count": 1}),
+    "energy_gain": Call(an.energy_gain, lambda: {"model": mechanism(), "until": 0.1}),
     "resume": Call(an.resume, lambda: {"model": mechanism(), "path": "none.npz"}),
     "save_state": Call(an.save_state, lambda: {"run": run(), "path": "state.npz"}),
     "advise": Call(an.advise, lambda: {

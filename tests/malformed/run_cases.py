@@ -33,6 +33,7 @@ from sebody import (
     with_corners,
 )
 from sebody.analysis import (
+    energy_gain,
     equilibrium,
     linearize,
     modes,
@@ -60,6 +61,13 @@ def pendulum() -> Model:
     model.rigid_body("body", "pin", 2.0, 1.0, centre=(0.0, -1.0))
     model.fix("pin", "position")
     model.gravity((0.0, -9.81))
+    return model
+
+
+def struck() -> Model:
+    """The pendulum under a torque."""
+    model = pendulum()
+    model.torque("pin", 3.0)
     return model
 
 
@@ -170,6 +178,9 @@ RUNS = {
     "vibrations": Right(lambda **a: vibrations(**{"run": Shared.hanging(), **a}), {"count": 1}, {
         "run": NO_RUN,
         "count": [pair for pair in are("count", *NO_COUNT, 0, -1) if pair[0] is not None]}),
+    "energy_gain": Right(energy_gain, {"model": struck(), "until": 0.1}, {
+        "model": [*NO_MODEL, (ball(), "nothing vibrates at t = 0.1: give the model loads")],
+        "until": are("until", *NO_NUMBER, 0.0, -1.0)}),
     "spin_limit": Right(spin_limit, {"body": beam(), "axis": (0.0, 0.0, 1.0)}, {
         "body": are("body", None, 3, "beam", also=": give a superelement"),
         "axis": [*[pair for pair in vectors("axis", 3) if pair[0] is not None],

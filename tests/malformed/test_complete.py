@@ -23,7 +23,8 @@ BUILDERS = [name for name, value in vars(Model).items()
             if inspect.isfunction(value) and not name.startswith("_") and name != "summary"]
 # refused by `planar(model)` by name: their planar kernels exist, the way from space is not written
 WITHOUT = {f"{way}_{part}" for way in ("line", "slide", "turn") for part in ("motor", "rotor")}
-OF_BODIES = ("body_load_", "mode_force")        # on coordinates of a body, see variants/planar.py
+# on coordinates of a body, see variants/planar.py
+OF_BODIES = ("body_load_", "body_contact_", "mode_force")
 
 
 def variants(right):

@@ -120,7 +120,7 @@ def test_tables(result):
 ])
 def test_what_is_missing_is_named(result, tmp_path, monkeypatch, package, call, message):
     found = importlib.util.find_spec
-    for module in ("hdf5", "tables"):
+    for module in ("hdf5", "dataframes"):
         monkeypatch.setattr(f"sebody.results.{module}.find_spec",
                             lambda name: None if name == package else found(name))
     with pytest.raises(InputError, match=message):

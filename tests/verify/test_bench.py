@@ -110,6 +110,18 @@ def test_operations_are_those_of_all_elements():
         result.iterations_per_step * (sum(counts) + 8))
 
 
+def test_gradients_are_measured_in_runs(capsys, monkeypatch):
+    from sebody.verify.bench import gradient
+
+    found = gradient.measure(steps=20, runs=1)
+    assert {m.scene for m in found} == {"gradient"} and len(found) == 8
+    assert [found[k].variant for k in (0, 5)] == ["run", "adjoint, 1 parameter, inertia material"]
+    assert all(m.us_per_step > 0 and m.wall_seconds * 1e6 >= 20 * m.us_per_step for m in found)
+    text = bench.report(found, 1e10)
+    assert "gradient, adjoint, 1000 values of a table: a sweep takes" in text
+    assert text.count("runs\n") == 6
+
+
 def test_many_short_runs_are_measured_by_all_threads_and_alone(monkeypatch):
     from sebody.verify.bench import ensemble, peer
 

@@ -10,10 +10,17 @@ from helpers import order
 
 from sebody import InputError
 from sebody.catalogue import kernel_files
-from sebody.contract.layout import ACCELERATION, POTENTIAL, POWERS, VELOCITY
+from sebody.contract.layout import (
+    ACCELERATION,
+    ALONG,
+    POTENTIAL,
+    POWERS,
+    TRANSPOSED,
+    VELOCITY,
+)
 from sebody.kernels.loader import load
 from sebody.verify import check
-from sebody.verify.check import definitions, elements, states, superelements
+from sebody.verify.check import definitions, elements, products, states, superelements
 
 
 @pytest.mark.parametrize("name", kernel_files())
@@ -25,6 +32,32 @@ def test_kernel_is_consistent(name):
     judged = [row for row in rows if row.slope is None and row.criterion != superelements.SIZE]
     assert judged and all(row.error <= 1e-7 for row in judged)
     assert {row.state for row in rows} == {0, 1}
+
+
+@pytest.mark.parametrize("name", [
+    "superelement_f2_converged_mean_floating_field", "element_rigid_body", "element_spring",
+    "element_body_load_converged_mean"])
+def test_products_are_those_of_the_matrix(name):
+    """Those that gradients in the tests compile anyway; `sebody check` has them all."""
+    rows = check.check_kernels(["products_" + name])
+    assert {row.criterion for row in rows} == {"forces", "products with weights",
+                                               "products with motions"}
+    assert all(row.passed and row.limit == 1e-12 for row in rows), check.table(rows)
+
+
+@pytest.mark.parametrize("criterion", ["products with weights", "products with motions"])
+def test_check_notices_wrong_products(criterion, monkeypatch):
+    name = "products_element_spring"
+    (case, _), *_ = products.cases(name)
+    called = products.called
+
+    def wrong(case, task, given):
+        status = called(case, task, given)
+        given.matrices[:] *= 1.0 + 1e-9 * (task in (ALONG, TRANSPOSED))
+        return status
+    monkeypatch.setattr(products, "called", wrong)
+    error = products.CRITERIA[criterion](case, load(name), np.random.default_rng(0))
+    assert error > products.LIMIT
 
 
 def test_small_increments_differ_to_second_order():

@@ -6,6 +6,7 @@ from sebody.contract.layout import Part
 from sebody.derive.form.counts import FIRST_ROTATION, POSITIONS, ROTATIONS, WIDTH
 from sebody.derive.form.kernel import Kernel
 from sebody.derive.formulas.elements import Constant, Element
+from sebody.derive.kernels.body_contact import BodyContact
 from sebody.derive.kernels.body_load import BodyLoad
 from sebody.derive.kernels.layouts import Layout
 from sebody.derive.kernels.motion import FrameMotion
@@ -62,6 +63,26 @@ def body_load_head(given: BodyLoad, kernel: Kernel) -> Head:
         ("FRAME_CONSTANTS",), (PART,))
 
 
+def body_contact_head(given: BodyContact, kernel: Kernel) -> Head:
+    """Of a contact of a point inside a body: any layout and surface, one frame."""
+    planar, law = given.layout.planar, given.steps.law
+    parts = (*given.declared, *(_part(constant) for constant in law.constants))
+    return Head(
+        "Element kernel: contact of a point inside a body with a plane, sphere or cylinder",
+        (f"Any number of positions and rotations of {SPACES[planar]}; any number of internal "
+         "modes.", f"Frame: {given.option.traits.summary}."),
+        (f'FRAME = "{given.frame}"', *counts(planar, (None, None)),
+         "CARRIERS = 1         # nodes behind those of the body: that of the surface",
+         f"CONSTANTS = FRAME_CONSTANTS + {table(parts)}", "MULTIPLIERS = 0", "READS = 0",
+         *memory(name for name, _ in law.memory),
+         "WIDTH = None            # any number",
+         "INERTIAL = False        # has kinetic energy",
+         "POWER = True        # does work on the system: a load, damper or drive",
+         "DRIVEN = False        # a constraint that depends on time",
+         f"WORK_ROWS = {kernel.rows}", *operations(kernel)),
+        ("FRAME_CONSTANTS",), (PART,))
+
+
 def _nodes(layout: Layout) -> str:
     """Its counts in words."""
     if layout.nodes is None:
@@ -104,6 +125,13 @@ def element_head(given: Element, kernel: Kernel) -> Head:
          f"DRIVEN = {multipliers > 0 and power}        # a constraint that depends on time",
          f"WORK_ROWS = {kernel.rows}", *operations(kernel)),
         (), (PART,) if constants else ())
+
+
+def products_head(own: Head, kernel: Kernel) -> Head:
+    """Of products with the derivatives of the forces of a kernel with a head of its own."""
+    return own._replace(
+        title="Products with derivatives of forces", summary=(f"{own.title}.", *own.summary),
+        facts=(*own.facts, f"KEPT = {kernel.kept}      # numbers kept between two calls"))
 
 
 def memory(names: Iterable[str]) -> list[str]:

@@ -32,7 +32,7 @@ def _lines(statement: Statement, level: int) -> list[str]:
     pad = INDENT * level
     match statement:
         case Remark(text):
-            return [f"{pad}# {text}"]
+            return filled(f"{pad}# ", words(text), "", f"{pad}# ")
         case Set((target,), (value,)):
             return assigned(f"{pad}{code(target)} = ", words(code(value)), pad + INDENT)
         case Set(targets, values):

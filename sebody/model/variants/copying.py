@@ -13,6 +13,7 @@ from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement
 from sebody.model.summary import unknowns
+from sebody.model.variants.moved_points import on_body
 from sebody.reduction import ReducedBody
 from sebody.spelling import unknown
 
@@ -80,9 +81,10 @@ def placed(model: Mechanism, name: str) -> Superelement:
 
 
 def loads_on(model: Mechanism, body: Superelement) -> list[Element]:
-    """Loads on a superelement itself or on its modes."""
+    """Loads on a superelement itself, on its modes or on points inside it."""
     return [one for one in model.loads
-            if one.body is body or (one.mode is not None and one.mode[0] == body.name)]
+            if one.body is body or (one.mode is not None and one.mode[0] == body.name)
+            or (one.point is not None and one.point.body is body)]
 
 
 def load_name(load: Element) -> str:
@@ -114,6 +116,7 @@ def exchange(model: Mechanism, old: Superelement, body: ReducedBody, frame: str,
     kind = body_load_kind(FRAMES[frame].kernel, model.planar)
     model.loads = [
         replace(one, kind=kind, attachments=made.attachments, body=made,
-                constants={"P": body.loads[load_name(one)]}) if one.body is old else one
+                constants={"P": body.loads[load_name(one)]}) if one.body is old else
+        on_body(one, made, model.planar) if one.point is not None and one.point.body is old else one
         for one in model.loads]
     return made

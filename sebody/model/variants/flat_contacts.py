@@ -5,8 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from sebody.contract.names import body_contact_kind
 from sebody.errors import InputError
-from sebody.model.parts import Attachment, Element
+from sebody.model.frames import FRAMES
+from sebody.model.parts import Attachment, Element, Superelement
 from sebody.model.variants.flattening import Flattening
 
 Made = tuple[str, dict[str, Any]]
@@ -108,3 +110,26 @@ LAWS: dict[str, Callable[[Flattening, Element], Made]] = {
     "sphere_on_sphere": _ball("planar_sphere_on_sphere"),
     "point_on_sphere": _ball("planar_point_on_sphere"),
     "sphere_on_cylinder": _on_cylinder, "point_on_cylinder": _on_cylinder}
+
+
+def flat_point_contact(flat: Flattening, one: Element, body: Superelement) -> Element:
+    """The contact of a point inside a body, on the planar body in the place of its own.
+
+    Raises
+    ------
+    InputError
+        A planar body that does not know its FE nodes, or a surface that leaves the plane.
+    """
+    assert one.point is not None
+    if body.reduced.recovery is None:
+        raise InputError(f"{one.name!r} touches an FE node of {body.name!r}, whose FE nodes are "
+                         "not all in the plane")
+    e = np.zeros(2)
+    if one.number("flat"):
+        e = flat.vector(one.vector("e"), f"the normal of {one.name!r}")
+    elif np.any(one.vector("e")) and not flat.is_normal(one.vector("e")):
+        raise InputError(f"the axis of {one.name!r} is not normal to the plane")
+    return Element(one.name, body_contact_kind(FRAMES[body.frame].kernel, True),
+                   body.attachments + tuple(flat.place(p) for p in one.attachments[-2:]),
+                   _scalars(one) | {"e": e}, tuned=one.tuned,
+                   point=one.point._replace(body=body))

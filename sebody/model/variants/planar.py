@@ -17,6 +17,7 @@ from sebody.model.parts import Connection, Element, Superelement
 from sebody.model.plane import Plane
 from sebody.model.variants.copying import Variant, checked, load_name, unknowns
 from sebody.model.variants.flat_beams import flat_beams
+from sebody.model.variants.flat_contacts import flat_point_contact
 from sebody.model.variants.flat_control import add_control
 from sebody.model.variants.flat_elements import check_joints, flat_element, flat_joint
 from sebody.model.variants.flattening import Flattening
@@ -151,7 +152,8 @@ class _Flat(NamedTuple):
                        one.joint and joints[one.joint], one.spare)
             for one in model.connections]
         on_nodes = {load: [flat_element(flat, load)] for load in model.loads
-                    if load.mode is None and load.body is None and load.law is None}
+                    if load.mode is None and load.body is None and load.law is None
+                    and load.point is None}
         for load in model.loads:
             if load.pressed_by is not None:
                 on_nodes[load][0].pressed_by = joints[load.pressed_by]
@@ -201,7 +203,10 @@ def _built(model: Mechanism, flat_model: _Flat) -> Mechanism:
     for load in model.loads:
         if load.law is not None:
             continue
-        if load.body is None:
+        if load.point is not None:
+            made.loads.append(flat_point_contact(flat_model.flat, load,
+                                                 made.bodies[load.point.body.name]))
+        elif load.body is None:
             made.loads += flat_model.loads[load]
         else:
             body = made.bodies[load.body.name]

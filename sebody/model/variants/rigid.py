@@ -12,6 +12,7 @@ from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement
 from sebody.model.variants.copying import Variant, copied, load_name, loads_on, placed
 from sebody.model.variants.dependent import is_held, make_dependent, start_rate
+from sebody.model.variants.moved_points import on_rigid_body
 from sebody.reduction import ReducedBody
 from sebody.reduction.summary import place
 
@@ -123,7 +124,9 @@ def _replace_loads(model: Mechanism, body: Superelement, carrier: Node) -> list[
             model.loads.append(load)
         elif load.body is body:
             _add_resultant(model, load, carrier)
-    return [load.name for load in own if load.body is not body]
+        elif load.point is not None:
+            model.loads.append(on_rigid_body(model, load, carrier))
+    return [load.name for load in own if load.mode is not None]
 
 
 def _add_resultant(model: Mechanism, load: Element, carrier: Node) -> None:

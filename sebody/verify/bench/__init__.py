@@ -5,19 +5,19 @@ from collections.abc import Iterable
 
 from sebody.errors import InputError
 from sebody.runs.first_run import prepare
-from sebody.verify.bench import ensemble, machine, own, peer
+from sebody.verify.bench import ensemble, gradient, machine, own, peer
 from sebody.verify.bench.measurement import Measurement
 
 SCENES = ("hinged-beam", "planar-hinged-beam", "spherical-beam", "chain", "slider-crank",
           "four-bar", "heavy-top")
-EXTRA = ("modes", ensemble.SCENE)       # only by name: the peer takes a minute
+EXTRA = ("modes", ensemble.SCENE, gradient.SCENE)       # only by name
 
 
 def measure(scenes: Iterable[str] = ()) -> list[Measurement]:
     """Measure scenes, all by default, each beside the peer's models in the same run.
 
     "modes" is the hinged beam by the number of its internal modes, "ensemble" ten thousand short
-    runs of it.
+    runs of it, "gradient" exact gradients of it beside its run.
 
     Raises
     ------
@@ -29,9 +29,10 @@ def measure(scenes: Iterable[str] = ()) -> list[Measurement]:
         if name not in SCENES + EXTRA:
             raise InputError(f"there is no benchmark of scene {name!r}: use "
                              f"{', '.join(SCENES + EXTRA)}")
-    others = [name for name in chosen if name != ensemble.SCENE]
+    others = [name for name in chosen if name not in (ensemble.SCENE, gradient.SCENE)]
     prepare(case.build().model for name in others for case in own.cases(name)[:4])
     rows = ensemble.measure() if ensemble.SCENE in chosen else []
+    rows += gradient.measure() if gradient.SCENE in chosen else []
     for name in others:
         rows += [own.measure(case) for case in own.cases(name)]
         if peer.available():
@@ -52,6 +53,7 @@ def report(measurements: list[Measurement], rate: float) -> str:
     lines += [f"{m.scene}, {m.variant}: {m.wall_seconds:.2f} s for all runs" + (
         "" if m.thread_efficiency is None else f", thread efficiency {m.thread_efficiency:.2f}")
         for m in measurements if m.scene == ensemble.SCENE]
+    lines += gradient.in_runs([m for m in measurements if m.scene == gradient.SCENE])
     lines += ["", f"this machine: {rate / 1e9:.2f} Gflop/s on 16 x 16 products, one core"]
     return "\n".join([*lines, *ratios(measurements)])
 

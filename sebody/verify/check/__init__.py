@@ -6,14 +6,16 @@ rotations of the order of one radian, elastic rotations to 0.3, moving and accel
 
 from collections.abc import Iterable
 
-from sebody.catalogue import kernel_files
-from sebody.contract.names import MOTION, SUPERELEMENT
+from sebody.catalogue import kernel_files, product_files
+from sebody.contract.names import MOTION, PRODUCTS, SUPERELEMENT
 from sebody.kernels.loader import load
 from sebody.runs.first_run import compile_missing
 from sebody.spelling import unknown
+from sebody.verify.check.body_contacts import check_body_contact
 from sebody.verify.check.body_loads import check_body_load
 from sebody.verify.check.elements import check_element
 from sebody.verify.check.motions import check_motion
+from sebody.verify.check.products import check_products
 from sebody.verify.check.report import summary, table, verdict
 from sebody.verify.check.states import CheckRow
 from sebody.verify.check.superelements import check_superelement
@@ -29,16 +31,19 @@ def check_kernels(names: Iterable[str] | None = None) -> list[CheckRow]:
     InputError
         An unknown name.
     """
-    known, rows = list(kernel_files()), []
+    known, rows = [*kernel_files(), *product_files()], []
     chosen = list(names or known)
     for name in chosen:
         if name not in known:
             raise unknown("kernel", name, known)
-    compile_missing(chosen)
+    of_products = [name.removeprefix(PRODUCTS) for name in chosen]
+    compile_missing(dict.fromkeys((*chosen, *of_products)))
     for name in chosen:
         module = load(name)
         check = (check_superelement if name.startswith(SUPERELEMENT) else
+                 check_products if name.startswith(PRODUCTS) else
                  check_motion if name.startswith(MOTION) else
+                 check_body_contact if hasattr(module, "CARRIERS") else
                  check_body_load if hasattr(module, "FRAME") else check_element)
         rows += check(name, module)
     return rows

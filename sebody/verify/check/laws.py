@@ -11,7 +11,7 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.contract.layout import ENERGY, POWERS, RESIDUAL, STRAIN, TANGENT
+from sebody.contract.layout import AT_FRAME, ENERGY, POWERS, RESIDUAL, STRAIN, TANGENT
 from sebody.verify.check.states import (
     LIMIT,
     STATES,
@@ -65,9 +65,10 @@ def _remembering(module: ModuleType, case: Case) -> Case:
     """The case with kept numbers near those of the state, as after a step."""
     memory = case.reference.copy()
     random = np.random.default_rng(len(module.MEMORY))
-    memory[:len(module.MEMORY)] = 0.1 * random.normal(size=len(module.MEMORY))
+    first = case.index[AT_FRAME]
+    memory[first:first + len(module.MEMORY)] = 0.1 * random.normal(size=len(module.MEMORY))
     if "begun" in module.MEMORY:
-        memory[module.MEMORY.index("begun")] = 1.0
+        memory[first + module.MEMORY.index("begun")] = 1.0
     return case._replace(reference=memory)
 
 
@@ -101,17 +102,16 @@ def balance(case: Case) -> float:
 
     The moment is seen from a rigid rotation of all: it does no work.
     """
-    if case.planar or not case.n_rotations:
+    if case.planar or not case.rotations:
         return 0.0
-    force, d = evaluate(case, RESIDUAL)[0], case.dimension
-    positions = case.module.N_POSITIONS
-    x = case.q[:d * positions].reshape(-1, d)
-    f = force[:d * positions].reshape(-1, d)
-    total = np.abs(f.sum(axis=0)).max() if positions else 0.0
-    moment = np.cross(x, f).sum(axis=0) if positions else np.zeros(3)
+    force, places = evaluate(case, RESIDUAL)[0], case.positions
+    x, f = (np.array([values[at:at + 3] for at in places]).reshape(-1, 3)
+            for values in (case.q, force))
+    total = np.abs(f.sum(axis=0)).max() if places else 0.0
+    moment = np.cross(x, f).sum(axis=0) if places else np.zeros(3)
     for j, at in enumerate(case.rotations):
         moment = moment + case.R[9 * j:9 * j + 9].reshape(3, 3) @ force[at:at + 3]
-    axes = case.n_rotations > 1
+    axes = len(case.rotations) > 1
     return float(max(total, np.abs(moment).max() * axes) / max(np.abs(force).max(), 1e-9))
 
 

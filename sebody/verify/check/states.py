@@ -108,9 +108,19 @@ class Case(NamedTuple):
         return first_mode(self.n_positions, self.n_rotations, self.planar)
 
     @property
+    def own(self) -> int:
+        """Unknowns of the body; behind them are those of a node that carries a surface."""
+        return self.n - (self.dimension + (1 if self.planar else 3)) * self.carriers
+
+    @property
+    def carriers(self) -> int:
+        """Nodes behind those of the body."""
+        return getattr(self.module, "CARRIERS", 0)
+
+    @property
     def counts(self) -> dict[str, int]:
         """The counts that sizes of the constants are products of."""
-        counts = superelement_counts(self.n_positions, self.n_rotations, self.planar, self.n)
+        counts = superelement_counts(self.n_positions, self.n_rotations, self.planar, self.own)
         option = INERTIA_OPTIONS.get(getattr(self.module, "INERTIA", ""))
         if option is not None and option.field:
             return counts | bound_counts(
@@ -126,8 +136,15 @@ class Case(NamedTuple):
     @property
     def rotations(self) -> list[int]:
         """First unknown of each rotation DOF block."""
-        first = self.first_rotation
-        return [] if not self.R.size else [first + 3 * j for j in range(self.n_rotations)]
+        if not self.R.size:
+            return []
+        return [*(self.first_rotation + 3 * j for j in range(self.n_rotations)),
+                *[self.own + self.dimension] * self.carriers]
+
+    @property
+    def positions(self) -> list[int]:
+        """First unknown of each position DOF block."""
+        return [*range(0, self.first_rotation, self.dimension), *[self.own] * self.carriers]
 
 
 def index_row(n: int, positions: int, rotations: int) -> NDArray:
@@ -163,7 +180,7 @@ def arguments(case: Case, coefficients: Iterable[float] = (0, 0, 0, 1, 1)) -> Ar
     return Arguments(
         index=case.index, constants=case.constants, q=case.q, R=case.R, v=case.v, a=case.a,
         references=case.reference, frames=case.frames.copy(),
-        T=np.tile(np.eye(3).ravel(), max(case.n_rotations, 1)), loads=case.loads,
+        T=np.tile(np.eye(3).ravel(), max(len(case.rotations), 1)), loads=case.loads,
         coefficients=np.array([*coefficients, *case.field], dtype=float), forces=np.zeros(n),
         matrices=np.zeros(n * n),
         work=np.zeros(scratch(case)),
@@ -195,7 +212,7 @@ def evaluate(case: Case, task: int, coefficients: Iterable[float] = (0, 0, 0, 1,
 
 def _in_global_axes(J: NDArray, frame: NDArray, case: Case) -> NDArray:
     """Matrix with positions rotated to global axes, from those of the frame of a superelement."""
-    if not hasattr(case.module, "FRAME"):       # a joint, rigid body or load
+    if case.carriers or not hasattr(case.module, "FRAME"):  # a joint, rigid body, load or contact
         return J
     turn, d = np.eye(len(J)), case.dimension
     R0 = frame.reshape(3, 3)[:d, :d]

@@ -1,0 +1,364 @@
+"""Compiled recursions over steps, by products in place of matrices.
+
+The equation of a step is solved with the inverse of an older step's matrix and refined by products
+with the exact one, until corrections are as small as asked. Unknowns are those of the run: in axes
+of frames, where the matrix hardly changes, so that an inverse serves many steps. Where corrections
+do not shrink any more, the caller is asked for an inverse of the step at hand.
+
+Equations as numbered in the README of this folder; a column each for objectives or parameters.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import OK
+from sebody.engine.arrays import Arrays
+from sebody.engine.evaluate import set_loads_beside, to_body_axes
+from sebody.engine.inverse import invert
+from sebody.engine.links import place_dependent
+from sebody.gradients.products import along, prepare, transposed
+from sebody.kernels.rotations import exp_map, tangent_operator
+
+DONE = -1               # in place of the number of an event that asks for an inverse
+FAILED = -2             # an evaluation, or refinement with the inverse of the step itself
+ASKED, REFUSED = 1, 2   # what a solution ends with, beside 0
+MOST = 12               # products for a column of a step
+SLOW = 0.4              # corrections that shrink less ask for an inverse
+ROUNDED = 1e-11         # corrections as small, relative, that do not shrink: rounding
+LOOSE = 1e-7            # the same with the inverse of the step itself
+SPARE = 3               # products of a column that are worth no new inverse
+PRODUCTS, INVERSES, SPENT, FRESH, GUESSES = range(5)    # places in `Columns.counts`
+
+
+@dataclass(frozen=True, eq=False)
+class Columns(Arrays):
+    """What a recursion carries from step to step, of m columns and n unknowns.
+
+    ==========  ====================================================================================
+    motion      (4, m, n) motion, rates, second rates and auxiliary ones, or bars of these
+    given       (3, m, n) the same for the event at hand: with what objectives say, or predicted
+    found       (3, m, n) products of the solutions
+    last        (3, m, n) solutions of the events before, newest first, in axes of frames
+    now         (m, n) that of the event at hand
+    inverse     (n, n) of the matrix of a step or of its transpose, in axes of frames
+    rows        (n,) factors of the rows of the matrix that make its entries about one
+    scale       (n,) sizes of the unknowns of the equation: of the columns likewise, inverse
+    right       (n,) right side, then residual
+    change      (n,) vector that is multiplied, or correction
+    product     (n,)
+    places      (r,) first coordinate of every rotation that is solved for
+    H, T        (r, 9) of the step
+    counts      products, inverses, products spent on an old inverse; whether it is this event's;
+                solutions in `last`
+    reach       (1,) size of corrections at which refinement ends
+    length      (1,) step that the inverse is of
+    ==========  ====================================================================================
+    """
+
+    motion: NDArray
+    given: NDArray
+    found: NDArray
+    last: NDArray
+    now: NDArray
+    inverse: NDArray
+    rows: NDArray
+    scale: NDArray
+    right: NDArray
+    change: NDArray
+    product: NDArray
+    places: NDArray
+    H: NDArray
+    T: NDArray
+    counts: NDArray
+    reach: NDArray
+    length: NDArray
+
+    @classmethod
+    def of(cls, m: int, n: int, places: NDArray, tolerance: float) -> "Columns":
+        """All zero."""
+        r = len(places)
+        return cls(*(np.zeros(shape) for shape in (
+            (4, m, n), (3, m, n), (3, m, n), (3, m, n), (m, n), (n, n), n, n, n, n, n)),
+            np.ascontiguousarray(places, dtype=np.int64), np.zeros((r, 9)), np.zeros((r, 9)),
+            np.zeros(5, dtype=np.int64), np.array([tolerance]), np.zeros(1))
+
+
+@compiled
+def put(system, state, products, columns, row, end, beside):
+    """The state of an event, with its H and T, ready for products; a status."""
+    for i in range(state.now.size):
+        state.now[i] = row[i]
+    set_loads_beside(system, state.frames, state.loads, end, beside)
+    place_dependent(system.links, state.q, state.v, state.a, state.R)
+    for r in range(columns.places.size):
+        first = columns.places[r]
+        x, y, z = state.q[first], state.q[first + 1], state.q[first + 2]
+        H, T = exp_map(-x, -y, -z), tangent_operator(x, y, z)
+        for i in range(9):
+            columns.H[r, i], columns.T[r, i] = H[i], T[i]
+    return prepare(system, state, products)
+
+
+@compiled(forceinline=True)
+def _turn(columns, operators, x, back):
+    """Multiply rotations in a vector by operators, or by their transposes."""
+    for r in range(columns.places.size):
+        first, R = columns.places[r], operators[r]
+        a, b, c = x[first], x[first + 1], x[first + 2]
+        for i in range(3):
+            x[first + i] = (R[i] * a + R[3 + i] * b + R[6 + i] * c if back else
+                            R[3 * i] * a + R[3 * i + 1] * b + R[3 * i + 2] * c)
+
+
+@compiled
+def matrix(system, state, products, columns, cm, cd, back, found):
+    """The matrix of a step, or its transpose, in axes of frames, column by column: (7).
+
+    The state is put.
+    """
+    n = columns.right.size
+    for i in range(n):
+        for k in range(n):
+            columns.change[k] = 0.0
+        columns.change[i] = 1.0
+        _multiply(system, state, products, columns, 0, cm, cd, back)
+        for k in range(n):
+            found[k, i] = columns.product[k]
+
+
+@compiled
+def invert_now(system, state, products, columns, cm, cd, back):
+    """The inverse of the matrix of the step that is put, with known scales; False if singular."""
+    A, n = columns.inverse, columns.right.size
+    matrix(system, state, products, columns, cm, cd, back, A)
+    for i in range(n):
+        for j in range(n):
+            A[i, j] *= columns.rows[i] / columns.scale[j]
+    if not invert(A):
+        return False
+    for i in range(n):
+        for j in range(n):
+            A[i, j] *= columns.rows[j] / columns.scale[i]
+    return True
+
+
+@compiled
+def _multiply(system, state, products, columns, j, cm, cd, back):
+    """The matrix, or its transpose, times `change`, both in axes of frames, goes to `product`."""
+    n, w, bars, moved = columns.right.size, products.forces, products.motion, columns.product
+    columns.counts[PRODUCTS] += 1
+    if back:
+        for i in range(n):
+            w[i] = columns.change[i]
+        to_body_axes(system, state.frames, w, True)
+        transposed(system, state, products, n)
+        for i in range(n):
+            for c in range(3):
+                columns.found[c, j, i] = bars[c, i]
+            moved[i] = bars[0, i]
+        _turn(columns, columns.T, moved, True)
+        for i in range(n):
+            if system.is_multiplier[i] == 0.0:
+                moved[i] += cd * bars[1, i] + cm * bars[2, i]
+        to_body_axes(system, state.frames, moved, False)
+        return
+    xi = bars[0]
+    for i in range(n):
+        xi[i] = columns.change[i]
+    to_body_axes(system, state.frames, xi, True)
+    for i in range(n):
+        free = 1.0 - system.is_multiplier[i]
+        bars[1, i], bars[2, i] = cd * free * xi[i], cm * free * xi[i]
+    _turn(columns, columns.T, xi, False)
+    along(system, state, products, n)
+    for i in range(n):
+        moved[i] = w[i]
+    to_body_axes(system, state.frames, moved, False)
+
+
+@compiled
+def _solve(system, state, products, columns, j, cm, cd, back):
+    """Solve for column j with `right`, in axes of frames; 0, ASKED or REFUSED."""
+    n, counts, own, before = columns.right.size, columns.counts, columns.now[j], columns.last
+    known, last = counts[GUESSES], np.inf
+    for i in range(n):
+        one, two, three = before[0, j, i], before[1, j, i], before[2, j, i]
+        own[i] = (3.0 * (one - two) + three if known > 2 else 2.0 * one - two if known > 1 else one)
+    for k in range(MOST):
+        for i in range(n):
+            columns.change[i] = own[i]
+        _multiply(system, state, products, columns, j, cm, cd, back)
+        counts[SPENT] += k >= SPARE
+        for i in range(n):
+            columns.product[i] = columns.right[i] - columns.product[i]
+        size = largest = 0.0
+        for i in range(n):
+            change = 0.0
+            for c in range(n):
+                change += columns.inverse[i, c] * columns.product[c]
+            columns.change[i] = change
+            size = max(size, abs(change) * columns.scale[i])
+            largest = max(largest, abs(own[i]) * columns.scale[i])
+        if size <= columns.reach[0] * largest:
+            return 0
+        if not size < SLOW * last or k == MOST - 1:
+            if size <= ROUNDED * largest:
+                return 0
+            if counts[FRESH] == 0:
+                return ASKED
+            if not size <= LOOSE * largest:
+                return REFUSED
+            columns.reach[0] = max(columns.reach[0], size / largest)
+            return 0
+        last = size
+        for i in range(n):
+            own[i] += columns.change[i]
+    return REFUSED
+
+
+@compiled
+def _conclude(system, state, columns):
+    """Shift the solutions of the events before."""
+    counts = columns.counts
+    for j in range(columns.now.shape[0]):
+        for i in range(columns.right.size):
+            columns.last[2, j, i] = columns.last[1, j, i]
+            columns.last[1, j, i] = columns.last[0, j, i]
+            columns.last[0, j, i] = columns.now[j, i]
+    counts[FRESH], counts[GUESSES] = 0, min(counts[GUESSES] + 1, 3)
+
+
+@compiled
+def is_old(columns, h):
+    """Whether the inverse is of another step length, or has cost more than a new one."""
+    counts = columns.counts
+    return counts[FRESH] == 0 and (h != columns.length[0] or counts[SPENT] > columns.right.size)
+
+
+@compiled
+def backward(system, state, products, columns, rows, lengths, offsets, ends, besides, seeds, seeded,
+             numbers, first, last, weights, sizes):
+    """(11) to (15) over steps from the last to the first; the event that asks for an inverse.
+
+    DONE in place of it, or FAILED. `numbers` are alpha_m, alpha_f, beta, gamma and the duration of
+    the run; `seeds` (events, m, 3, n) and `weights` (events, m, n) are written or read.
+    """
+    n, m = columns.right.size, columns.now.shape[0]
+    am, af, b, g, duration = numbers
+    given, found, motion = columns.given, columns.found, columns.motion
+    for e in range(last, first - 1, -1):
+        h = lengths[e]
+        cm, cd, cu = (1.0 - am) / ((1.0 - af) * b * h * h), g / (b * h), 1.0 / (b * h * h)
+        if is_old(columns, h):
+            return e
+        if put(system, state, products, columns, rows[e], ends[e], besides[e]) != OK:
+            return FAILED
+        for j in range(m):
+            for i in range(n):
+                free = 1.0 - system.is_multiplier[i]
+                for c in range(3):
+                    given[c, j, i] = motion[c, j, i]
+                    if seeded[e]:
+                        given[c, j, i] += seeds[e, j, c, i] * (1.0 if c == 0 else free)
+                columns.right[i] = given[0, j, i]
+            _turn(columns, columns.T, columns.right, True)
+            for i in range(n):
+                columns.right[i] = -columns.right[i]
+                if system.is_multiplier[i] == 0.0:
+                    columns.right[i] -= (cd * given[1, j, i] + cm * given[2, j, i]
+                                         + cu * motion[3, j, i])
+            to_body_axes(system, state.frames, columns.right, False)
+            code = _solve(system, state, products, columns, j, cm, cd, True)
+            if code != 0:
+                return e if code == ASKED else FAILED
+        size = 0.0
+        for j in range(m):
+            for i in range(n):
+                weights[e, j, i] = columns.now[j, i]
+            to_body_axes(system, state.frames, weights[e, j], True)
+            for i in range(n):
+                free = 1.0 - system.is_multiplier[i]
+                X, V, A = (free * (given[0, j, i] + found[0, j, i]),
+                           free * (given[1, j, i] + found[1, j, i]),
+                           free * (given[2, j, i] + found[2, j, i]))
+                U = motion[3, j, i] + h * g * V + (1.0 - am) / (1.0 - af) * A
+                motion[0, j, i], motion[1, j, i] = X, V - U / (b * h)
+                motion[2, j, i] = -af / (1.0 - af) * A
+                motion[3, j, i] = h * (1.0 - g) * V + am / (1.0 - af) * A - (0.5 - b) / b * U
+            _turn(columns, columns.H, motion[0, j], True)
+            for i in range(n):
+                motion[2, j, i] += (1.0 - offsets[e]) * motion[3, j, i]
+                motion[3, j, i] *= offsets[e]
+                size = max(size, abs(motion[0, j, i]) * system.magnitude[i],
+                           abs(motion[1, j, i]) * system.magnitude[i] / duration)
+        sizes[e] = size
+        _conclude(system, state, columns)
+    return DONE
+
+
+@compiled
+def forward(system, state, products, columns, rows, lengths, offsets, ends, besides, slopes,
+            numbers, first, last, states):
+    """(8) to (10) over steps from the first to the last; the event that asks for an inverse.
+
+    DONE in place of it, or FAILED. `slopes` (events, m, n) are those of the residuals by
+    parameters; `states` (events, m, 3, n), motion, rates and second rates, is written.
+    """
+    n, m = columns.right.size, columns.now.shape[0]
+    am, af, b, g, _ = numbers
+    given, motion = columns.given, columns.motion
+    for e in range(first, last + 1):
+        h = lengths[e]
+        cm, cd, cu = (1.0 - am) / ((1.0 - af) * b * h * h), g / (b * h), 1.0 / (b * h * h)
+        if is_old(columns, h):
+            return e
+        if put(system, state, products, columns, rows[e], ends[e], besides[e]) != OK:
+            return FAILED
+        for j in range(m):
+            for i in range(n):
+                free = 1.0 - system.is_multiplier[i]
+                aux, aux_now = _predicted(motion, j, i, offsets[e], h, b)
+                v, a = motion[1, j, i], motion[2, j, i]
+                given[0, j, i] = motion[0, j, i]
+                given[1, j, i] = free * (v + h * (1.0 - g) * aux + h * g * aux_now)
+                given[2, j, i] = free * ((1.0 - am) * aux_now + am * aux - af * a) / (1.0 - af)
+            _turn(columns, columns.H, given[0, j], False)
+            for i in range(n):
+                given[0, j, i] *= 1.0 - system.is_multiplier[i]
+                for c in range(3):
+                    products.motion[c, i] = given[c, j, i]
+            along(system, state, products, n)
+            for i in range(n):
+                columns.right[i] = -(slopes[e, j, i] + products.forces[i])
+            to_body_axes(system, state.frames, columns.right, False)
+            code = _solve(system, state, products, columns, j, cm, cd, False)
+            if code != 0:
+                return e if code == ASKED else FAILED
+        for j in range(m):
+            y = columns.right
+            for i in range(n):
+                y[i] = columns.now[j, i]
+            to_body_axes(system, state.frames, y, True)
+            for i in range(n):
+                free = 1.0 - system.is_multiplier[i]
+                _, aux_now = _predicted(motion, j, i, offsets[e], h, b)
+                motion[3, j, i] = free * (aux_now + cu * y[i])
+                motion[1, j, i] = given[1, j, i] + free * cd * y[i]
+                motion[2, j, i] = given[2, j, i] + free * cm * y[i]
+            _turn(columns, columns.T, y, False)
+            for i in range(n):
+                motion[0, j, i] = given[0, j, i] + y[i]
+                for c in range(3):
+                    states[e, j, c, i] = motion[c, j, i]
+        _conclude(system, state, columns)
+    return DONE
+
+
+@compiled(forceinline=True)
+def _predicted(motion, j, i, offset, h, b):
+    """Auxiliary acceleration at the begin of a step, and at its end without increments."""
+    aux = (1.0 - offset) * motion[2, j, i] + offset * motion[3, j, i]
+    return aux, -(motion[1, j, i] / h + (0.5 - b) * aux) / b
