@@ -80,10 +80,8 @@ def _file_name(source: Path, function: str, kind: str = "") -> str:
 
 @cache
 def _processor() -> str:
-    """Short name of the processor that is compiled for, and of loops without vectors."""
+    """Short name of the processor that is compiled for."""
     described = repr(cpu_target.target_context.codegen().magic_tuple())
-    if not numba.config.LOOP_VECTORIZE:     # for exports, which have no parts of the code of runs
-        described += " scalar"
     return f"{zlib.crc32(described.encode()):08x}"
 
 
