@@ -16,7 +16,7 @@ _POINTERS = {"int64": types.CPointer(types.int64), "float64": types.CPointer(typ
 SIGNATURE = types.int64(*[types.int64] * 4, *[_POINTERS[kind] for _, kind, _ in ARGUMENTS])
 
 CONTRACT = {"contract"}     # a product and a sum in one rounding
-_OF_KERNELS = {"error_model": "numpy", "fastmath": CONTRACT}
+OF_KERNELS = {"error_model": "numpy", "fastmath": CONTRACT}
 
 
 def compiled(function: Callable | None = None, **options) -> Callable:
@@ -33,12 +33,24 @@ def compiled(function: Callable | None = None, **options) -> Callable:
     return way().function(function, options, function_hash(function))
 
 
+def in_lanes_of(function: Callable) -> Callable:
+    """Decorator of a compiled function that is called in place of another one with lanes.
+
+    Of the fast way alone: functions that choose by their numbers need it, all others are compiled
+    for lanes as they are.
+    """
+    def put(own: Callable) -> Callable:
+        function.in_lanes = compiled(own)
+        return function.in_lanes
+    return put
+
+
 def kernel_function(function: Callable) -> Callable:
     """Compile a kernel, a function of the `SIGNATURE`, and keep the compiled code.
 
     The attribute `address` of the result is the address of the machine code.
     """
-    return way().kernel(function, SIGNATURE, _OF_KERNELS,
+    return way().kernel(function, SIGNATURE, OF_KERNELS,
                         kernel_hash(Path(function.__code__.co_filename)))
 
 
@@ -49,7 +61,7 @@ def function_code(function: Callable, kinds: tuple[types.Type, ...]) -> Code:
 
 def kernel_code(kernel: Callable) -> Code:
     """LLVM code of what `kernel_function` made, compiled anew."""
-    return way().kernel_code(kernel.__wrapped__, SIGNATURE, _OF_KERNELS)
+    return way().kernel_code(kernel.__wrapped__, SIGNATURE, OF_KERNELS)
 
 
 def is_compiled(path: Path) -> bool:

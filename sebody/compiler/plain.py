@@ -15,8 +15,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numba
+import numpy as np
 from llvmlite import binding
-from numba import cfunc, config, njit, types
+from numba import cfunc, config, from_dtype, njit, types
 from numba.extending import intrinsic, overload_attribute
 
 from sebody.compiler import store
@@ -109,6 +110,11 @@ def kernel_code(function: Callable, signature, options: dict) -> Code:
 def code_of(made: Callable) -> Code:
     """LLVM code of a `numba.cfunc` that this process compiled."""
     return Code(made.native_name.removeprefix("cfunc."), bitcode(made.inspect_llvm()))
+
+
+def type_of(kind: np.dtype) -> types.Type:
+    """The compiled type of the numbers of an array, or of a record of scalars."""
+    return from_dtype(kind)
 
 
 def processor() -> tuple[str, str]:

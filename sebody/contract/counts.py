@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping
 
 LANES = 4           # columns of a body's matrices are padded to whole vectors of so many
+MEMBERS = 8         # of an ensemble that are evaluated at a time, see `sebody.engine.lanes`
 MOST_SLAVED = 12        # coordinates that may follow the unknowns: load modes of three
 # translations, three rotations and six products of angular velocities
 MARGIN = MOST_SLAVED + 6    # what scratch rows of option C have beyond n: these, a force, a moment

@@ -10,7 +10,7 @@ from functools import cache
 
 import numpy as np
 from llvmlite import ir
-from numba import from_dtype, types
+from numba import types
 from numba.extending import NativeValue, models, register_model, unbox
 
 from sebody.compiler.choice import way
@@ -53,8 +53,9 @@ class Arrays:
 @cache
 def _view(group: type[Arrays], facts: tuple, sources: str) -> "View":
     """The type of a group, looked up: typing a hundred arrays takes a millisecond."""
+    type_of = way().type_of
     members = [_view(kind, own, sources) if isinstance(own, tuple) else
-               from_dtype(kind) if own is None else types.Array(from_dtype(kind), own, "C")
+               type_of(kind) if own is None else types.Array(type_of(kind), own, "C")
                for kind, own in facts]
     names = [field.name for field in fields(group)]
     way().show_members(View, names, _kind_of_member, _member)

@@ -78,13 +78,13 @@ def _judge(system, state):
     """Look at the energies; whether the step is to be rejected."""
     guard = state.guard
     before = guard.most_strain + guard.most_kinetic
-    balance = _take_balance(system, state)
+    balance = take_balance(system, state)
     more = guard.most_strain + guard.most_kinetic - before
     driven = more > DRIVEN * before and guard.supplied > DRIVEN * more
     guard.lowest = balance if driven or before == 0.0 else guard.lowest + WORKED * guard.supplied
     guard.supplied = 0.0
     rise = balance - guard.lowest
-    turned = _turned(system, state)
+    turned = turn_of_frames(system, state)
     allowed = SHARE * guard.most_strain + (KEPT + TURNED * turned) * guard.most_kinetic
     allowed += ROUNDED * state.clock.floor * state.clock.floor
     if rise > allowed:
@@ -101,7 +101,7 @@ def _judge(system, state):
 
 
 @compiled
-def _take_balance(system, state):
+def take_balance(system, state):
     """Energies of the state less all works so far; remembers the largest energies."""
     guard, energy = state.guard, state.energy
     energy[KINETIC] = energy[STRAIN] = energy[POTENTIAL] = 0.0
@@ -115,7 +115,7 @@ def _take_balance(system, state):
 
 
 @compiled
-def _turned(system, state):
+def turn_of_frames(system, state):
     """Square of the largest rotation of a body's frame in the step."""
     now, old = pointer_to(state.frames), pointer_to(state.frames_old)
     most, first = 0.0, 0

@@ -9,9 +9,9 @@ and acceleration of a dependent position depend on the unknowns, are left out: o
 iteration matrix, without influence on a converged step.
 """
 
+import math
 from dataclasses import dataclass
 
-import numpy as np
 from numpy.typing import NDArray
 
 from sebody.compiler.decorators import compiled
@@ -93,7 +93,7 @@ def _cross(a, b, c, x, y, z):
 
 @compiled(forceinline=True)
 def _rotated(angle, r):
-    c, s = np.cos(angle), np.sin(angle)
+    c, s = math.cos(angle), math.sin(angle)
     return c * r[0] - s * r[1], s * r[0] + c * r[1]
 
 

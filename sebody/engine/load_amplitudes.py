@@ -1,6 +1,6 @@
 """Time functions of loads and drives in compiled code."""
 
-import numpy as np
+import math
 
 from sebody.compiler.decorators import compiled
 
@@ -23,22 +23,29 @@ def time_function_at(times, pieces, first, last, t, beside, out, at):
     while i < last and times[i + 1] <= t + beside:
         i += 1
     x = max(t - times[i], 0.0)
-    a, b, c, d, e, f = (pieces[i, 0], pieces[i, 1], pieces[i, 2], pieces[i, 3], pieces[i, 4],
-                        pieces[i, 5])
-    out[at] = a + x * (b + x * (c + x * (d + x * (e + x * f))))
-    out[at + 1] = b + x * (2.0 * c + x * (3.0 * d + x * (4.0 * e + x * 5.0 * f)))
-    out[at + 2] = 2.0 * c + x * (6.0 * d + x * (12.0 * e + x * 20.0 * f))
+    polynomial_at(pieces, i, x, out, at)
     if pieces[i, AMPLITUDE] != 0.0:
-        _add_harmonic(pieces, i, x, out, at)
+        add_harmonic(pieces, i, x, out, at)
     if t + beside < times[first]:
         out[at + 1], out[at + 2] = 0.0, 0.0
 
 
 @compiled
-def _add_harmonic(pieces, i, x, out, at):
+def polynomial_at(pieces, i, x, out, at):
+    """Set the value of a polynomial and its two rates."""
+    a, b, c, d, e, f = (pieces[i, 0], pieces[i, 1], pieces[i, 2], pieces[i, 3], pieces[i, 4],
+                        pieces[i, 5])
+    out[at] = a + x * (b + x * (c + x * (d + x * (e + x * f))))
+    out[at + 1] = b + x * (2.0 * c + x * (3.0 * d + x * (4.0 * e + x * 5.0 * f)))
+    out[at + 2] = 2.0 * c + x * (6.0 * d + x * (12.0 * e + x * 20.0 * f))
+
+
+@compiled
+def add_harmonic(pieces, i, x, out, at):
+    """Add the harmonic of a piece and its two rates."""
     w = pieces[i, OMEGA]
     angle = w * x + pieces[i, PHASE]
-    wave = pieces[i, AMPLITUDE] * np.sin(angle)
+    wave = pieces[i, AMPLITUDE] * math.sin(angle)
     out[at] += wave
-    out[at + 1] += pieces[i, AMPLITUDE] * w * np.cos(angle)
+    out[at + 1] += pieces[i, AMPLITUDE] * w * math.cos(angle)
     out[at + 2] -= w * w * wave

@@ -3,6 +3,8 @@
 The factorized matrix is kept in body axes and reused until slow convergence asks for a new one.
 """
 
+import math
+
 import numpy as np
 
 from sebody.compiler.decorators import compiled
@@ -45,12 +47,12 @@ def apply_correction(system, state, scheme, mixed):
     n = system.diagonal.size
     regularized = state.control.regularized == 1
     norm, size, accelerations = (regularized_norms(system, state, n) if regularized else
-                                 _norms(system, state, n))
+                                 norms(system, state, n))
     if not np.isfinite(norm):
         state.clock.last_norm = norm
         return GIVE_UP
     left_norm = accelerate(system, state, n, norm) if mixed else norm
-    _subtract(system, state, scheme, n)
+    subtract(system, state, scheme, n)
     accelerations = max(
         scheme.beta * state.clock.current_step * state.clock.current_step * accelerations,
         state.clock.acceleration_norm)
@@ -98,7 +100,7 @@ def leaves_gap(system, state, norm, stabilized):
 
 
 @compiled(forceinline=True)
-def _norms(system, state, n):
+def norms(system, state, n):
     """Norms of the correction, of the increment with the multipliers, and of the accelerations."""
     norm = size = accelerations = 0.0
     for i in range(n):
@@ -109,11 +111,11 @@ def _norms(system, state, n):
         norm += d * d + s * s
         size += x * x * state.weight[i] * state.weight[i]
         accelerations += z * z
-    return np.sqrt(norm), np.sqrt(size), np.sqrt(accelerations)
+    return math.sqrt(norm), math.sqrt(size), math.sqrt(accelerations)
 
 
 @compiled(forceinline=True)
-def _subtract(system, state, scheme, n):
+def subtract(system, state, scheme, n):
     """Subtract the correction, in global axes, and the shift that moves positions alone."""
     h = state.clock.current_step
     to_body_axes(system, state.frames, state.correction, True)

@@ -40,17 +40,35 @@ def begin_step(system, state, scheme):
     """Remember the accepted state, predict the next one at the end of the step."""
     h = state.clock.current_step
     set_end(system, state)
+    # auxiliary accelerations belong to a time that is later by (alpha_m - alpha_f) h
+    offset = h / state.clock.aux_step
+    kept = state.control.fresh == 0 and state.control.wanted == KEPT and offset == 1.0
+    constant, bend = changes(system, state)
+    follow = 1.0 if bend < STEADY * STEADY * constant and kept else 0.0
+    predict(system, state, scheme, follow, offset)
+    state.control.iteration, state.control.secant = 0, 0
+    state.clock.last_norm = 0.0
+
+
+@compiled(forceinline=True)
+def predict(system, state, scheme, follow, offset):
+    """Remember the accepted state, predict the next one.
+
+    Parameters
+    ----------
+    follow : float
+        1 if auxiliary accelerations are predicted to change as they did in the last step, else 0.
+    offset : float
+        Length of the step over that of the last one.
+    """
+    h = state.clock.current_step
     for i in range(state.R.size):
         state.R_old[i] = state.R[i]
     for i in range(state.frames.size):
         state.frames_old[i] = state.frames[i]
     alpha_m, beta, gamma = scheme.alpha_m, scheme.beta, scheme.gamma
     to_a = 1.0 / (1.0 - scheme.alpha_f)
-    # auxiliary accelerations belong to a time that is later by (alpha_m - alpha_f) h
-    offset = h / state.clock.aux_step
     state.clock.aux_step = h
-    kept = state.control.fresh == 0 and state.control.wanted == KEPT and offset == 1.0
-    follow = 1.0 if _steady(system, state) and kept else 0.0
     for i in range(state.dq.size):
         q, v, a, aux = state.q[i], state.v[i], state.a[i], state.aux[i]
         change = follow * state.aux_change[i]
@@ -67,17 +85,16 @@ def begin_step(system, state, scheme):
     set_coefficients(state, scheme, h)
     move_prescribed(system, state)
     update_rotations(system, state)
-    state.control.iteration, state.control.secant = 0, 0
-    state.clock.last_norm = 0.0
 
 
 @compiled(forceinline=True)
-def _steady(system, state):
-    """Whether auxiliary accelerations changed in the last step as in the step before, roughly.
+def changes(system, state):
+    """Squares of the last change of auxiliary accelerations, and of its own change.
 
-    If so, they are predicted to go on changing like that, else to stay as they are: after rejected
-    steps and new matrices, too, which come where a motion is not smooth. The error that Newton's
-    iteration with old matrices leaves is proportional to the error of the prediction.
+    If they changed in the last step as in the step before, roughly, they are predicted to go on
+    changing like that, else to stay as they are: after rejected steps and new matrices, too, which
+    come where a motion is not smooth. The error that Newton's iteration with old matrices leaves is
+    proportional to the error of the prediction.
     """
     constant = linear = 0.0
     for i in range(system.diagonal.size):
@@ -86,7 +103,7 @@ def _steady(system, state):
         state.aux_change[i] = change
         constant += change * change * w * w
         linear += bend * bend * w * w
-    return linear < STEADY * STEADY * constant
+    return constant, linear
 
 
 @compiled(forceinline=True)
@@ -106,7 +123,7 @@ def accept(system, state, record):
     clock, control = state.clock, state.control
     if control.steps % ORTHOGONAL == 0:
         for r in range(system.rotation_at.size):
-            _orthogonalize(at(pointer_to(state.R), 9 * r))
+            orthogonalize(at(pointer_to(state.R), 9 * r))
     watch_age(state)
     if control.fresh == 0:
         control.back_off = 0
@@ -151,7 +168,7 @@ def go_on_grid(state, record):
 
 
 @compiled(forceinline=True)
-def _orthogonalize(R):
+def orthogonalize(R):
     """One Newton step ``R (3 I - R^T R) / 2`` towards the nearest rotation."""
     for i in range(3):
         a, b, c = R[3 * i], R[3 * i + 1], R[3 * i + 2]

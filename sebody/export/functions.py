@@ -20,9 +20,7 @@ from sebody.export.platforms import environment, tag
 from sebody.kernels.loader import load
 from sebody.runs.first_run import examples
 
-KIND = "scalar"         # of code: its loops do not use vectors
-# loops in vectors are a fifth of the engine's size; the numbers are the same, and so is the time
-VARIABLES = {"NUMBA_LOOP_VECTORIZE": "0"}
+KIND = "code"
 # functions of the engine, and the types of their arguments by the names of `first_run.examples`
 FUNCTIONS = {
     "advance": (loop.advance, "system state record scheme whole whole flag"),
@@ -58,7 +56,7 @@ def codes(names: Iterable[str], processor: str) -> dict[str, Code]:
         print(f"first export for {processor}: compiling {len(missing)} functions", file=sys.stderr,
               flush=True)
         tasks = [Task(name, f"{__name__}:compile_one", (name, processor)) for name in missing]
-        workers.call_all(tasks, variables=environment(processor) | VARIABLES)
+        workers.call_all(tasks, variables=environment(processor))
         found |= {name: place(name).kept(KIND, target) for name in missing}
     if lacking := [name for name, one in found.items() if one is None]:
         raise SebodyError(f"{', '.join(lacking)} could not be compiled for {processor}")

@@ -49,6 +49,8 @@ class History(NamedTuple):
     @property
     def states(self) -> NDArray:
         """The recorded rows."""
+        if len(self.recorded) == len(self.rows):        # no copy: of long runs they are most
+            return self.rows
         return self.rows[self.recorded]
 
 

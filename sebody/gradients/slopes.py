@@ -61,8 +61,8 @@ class Value(NamedTuple):
 def _residuals(system, state, rows, now, kinds, ends, besides, places, free, load, found):
     """Residuals of all events but the first; fixed and prescribed coordinates are the model's own.
 
-    `now` are states of this model: motion of the unknowns is that of the run. The load of a power
-    port may be changed, `load` being the port and the change.
+    `now` are states of this model, as many as are asked for: motion of the unknowns is that of the
+    run. The load of a power port may be changed, `load` being the port and the change.
     """
     q, R, v, a, frames, frames_old = places
     port, change = load
@@ -96,7 +96,7 @@ def _residuals(system, state, rows, now, kinds, ends, besides, places, free, loa
             return status
         for i in range(free):
             found[e, i] = state.residual[i]
-        for i in range(q, now.shape[1]):
+        for i in range(q, now.shape[1] if e < now.shape[0] else 0):
             now[e, i] = state.now[i]
     return OK
 
@@ -195,9 +195,9 @@ class Slopes:
         values = np.zeros(len(history.rows))
         _values(made.system, made.state, port, history.ends, history.besides, values)
         start, size = made.state.now.copy(), max(float(np.abs(values).max()), 1.0)
-        one = self._along(made, (port, size))[0]
+        one = self._along(made, (port, size), False)[0]
         made.state.now[:] = start
-        other = self._along(made, (port, -size))[0]
+        other = self._along(made, (port, -size), False)[0]
         return (one - other) / (2 * size), values
 
     def by_constants(self, place: int, rows: NDArray) -> NDArray:
@@ -227,12 +227,12 @@ class Slopes:
         found, now = self._along(made)
         return Value(found, motion, rates, self.objectives(made, now[self.history.recorded]))
 
-    def _along(self, made: Simulation, load: tuple[int, float] = (-1, 0.0)
+    def _along(self, made: Simulation, load: tuple[int, float] = (-1, 0.0), states: bool = True
                ) -> tuple[NDArray, NDArray]:
-        """Residuals of all events, and the states of this model that they are of."""
+        """Residuals of all events, and the states of this model that they are of if asked for."""
         system, state, history = made.system, made.state, self.history
         found = np.zeros((len(history.rows), self.free))
-        now = history.rows.copy()
+        now = history.rows[:len(history.rows) if states else 1].copy()
         found[0] = self._first(made, load)
         self._hold_start(made)
         now[0] = state.now

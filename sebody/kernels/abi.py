@@ -71,7 +71,7 @@ def call_kernel(typingctx, address, task, count, stride, width, arguments):
     if getattr(arguments, "instance_class", None) is not Arguments:
         raise TypingError(f"a kernel is called with Arguments of arrays by name, not {arguments}")
     for (name, kind, _), given in zip(ARGUMENTS, arguments, strict=True):
-        if str(given.dtype) != kind:
+        if str(given.dtype) != kind and not (kind == "float64" and str(given.dtype) == "lanes"):
             raise TypingError(f"a kernel's argument {name} has numbers of type {kind}, not {given}")
     signature = types.int64(address, task, count, stride, width, arguments)
 

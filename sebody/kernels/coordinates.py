@@ -27,7 +27,8 @@ from sebody.kernels.instructions import (
 def all_to_free(typingctx, y, yd, ydd, axes, order, moved, z, zd, zdd, bound, bound_free, free,
                 end):
     """`to_free` of coordinates, of their rates and of their second rates."""
-    return called(_all_to_free, 9, 4)
+    return called(write_all_to_free, y, yd, ydd, axes, order, moved, z, zd, zdd, bound, bound_free,
+                  free, end)
 
 
 @intrinsic
@@ -36,16 +37,16 @@ def follow(typingctx, Zq, Zd, z, zd, zdd, free, slaved, height):
 
     `Zq` and `Zd` are the products ``Q_b z`` and ``Q_b zd``, `height` numbers apart.
     """
-    return called(_follow, 5, 3)
+    return called(write_follow, Zq, Zd, z, zd, zdd, free, slaved, height)
 
 
 @intrinsic
 def follow_changes(typingctx, Zq, Zd, Za, dz, dzd, dzdd, free, slaved, height):
     """Changes of the rates of slaved coordinates by those of z, zd and zdd; see `follow`."""
-    return called(_follow_changes, 6, 3)
+    return called(write_follow_changes, Zq, Zd, Za, dz, dzd, dzdd, free, slaved, height)
 
 
-def _all_to_free(builder, *args):
+def write_all_to_free(builder, *args):
     rows, (axes, order, moved), to = args[:3], args[3:6], args[6:9]
     bound, bound_free, free, end = args[9:]
     height = whole_vectors(builder, bound_free)
@@ -88,7 +89,7 @@ def _copy(builder, given, at, out, to):
     builder.store(builder.load(builder.gep(given, [at])), builder.gep(out, [to]))
 
 
-def _follow(builder, Zq, Zd, z, zd, zdd, free, slaved, height):
+def write_follow(builder, Zq, Zd, z, zd, zdd, free, slaved, height):
     half = ir.Constant(ir.DoubleType(), 0.5)
     kept = _room(builder)
     with short_loop(builder, WORD(0), slaved) as b:
@@ -102,7 +103,7 @@ def _follow(builder, Zq, Zd, z, zd, zdd, free, slaved, height):
             builder.store(number, builder.gep(out, [place]))
 
 
-def _follow_changes(builder, Zq, Zd, Za, dz, dzd, dzdd, free, slaved, height):
+def write_follow_changes(builder, Zq, Zd, Za, dz, dzd, dzdd, free, slaved, height):
     kept = _room(builder)
     with short_loop(builder, WORD(0), slaved) as b:
         Zq_b, Zd_b, Za_b = _of_one((Zq, Zd, Za), builder, b, height)

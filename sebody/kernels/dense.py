@@ -1,18 +1,17 @@
 """Small dense products the kernels and the loop call."""
 
-from numba import types
 from numba.extending import intrinsic
 
 from sebody.compiler.decorators import compiled
 from sebody.contract.counts import LANES
 from sebody.kernels.abi import at, padded
 from sebody.kernels.instructions import (
-    FLOATS,
     WORD,
     add_product,
     added_up,
     broadcast,
     called,
+    inlined,
     load_broadcast,
     load_vector,
     no_sum,
@@ -35,11 +34,7 @@ def columns_times(typingctx, A, x, out, rows, columns):
     registers: without them this product takes a third of a kernel's time. Written wherever it is
     used, since sizes may be constants there.
     """
-    def codegen(context, builder, sig, args):
-        _multiply(builder, *args, whole_vectors(builder, args[3]), False)
-        return context.get_dummy_value()
-
-    return types.void(FLOATS, FLOATS, FLOATS, types.int64, types.int64), codegen
+    return inlined(write_columns, A, x, out, rows, columns)
 
 
 @intrinsic
@@ -49,19 +44,19 @@ def block_times(typingctx, A, x, out, rows, columns, height):
     Eight vectors of rows at a time, so that a factor is read once for all of them: tall matrices
     take half the time of `columns_times`.
     """
-    return called(_block, 3, 3)
+    return called(write_block, A, x, out, rows, columns, height)
 
 
 @intrinsic
 def add_blocks_times(typingctx, A, x, B, y, out, rows, columns, of_B, height):
     """``out += A x + B y``: see `add_block_times`."""
-    return called(_add_blocks, 5, 4)
+    return called(write_more_blocks, A, x, B, y, out, rows, columns, of_B, height)
 
 
 @intrinsic
 def add_block_times(typingctx, A, x, out, rows, columns, height):
     """``out += A x`` of the first `rows` of some columns that are `height` numbers apart."""
-    return called(_add_block, 3, 3)
+    return called(write_more_block, A, x, out, rows, columns, height)
 
 
 @compiled
@@ -86,18 +81,18 @@ def rows_times(typingctx, A, x, out, rows, columns, height):
 
     Vectors are read to their padding, where those of A are zero and `x` is finite.
     """
-    return called(_dots, 3, 3)
+    return called(write_dots, A, x, out, rows, columns, height)
 
 
 @intrinsic
 def add_rows_times(typingctx, A, x, out, rows, columns, height):
     """``out_k += a_k . x``; see `rows_times`."""
-    return called(_add_dots, 3, 3)
+    return called(write_more_dots, A, x, out, rows, columns, height)
 
 
 @intrinsic
 def _add_columns_times(typingctx, A, x, out, rows, columns, height):
-    return called(_add_columns, 3, 3)
+    return called(write_more_columns, A, x, out, rows, columns, height)
 
 
 def _dot(builder, A, x, out, rows, columns, height, add):
@@ -128,11 +123,11 @@ def _dot(builder, A, x, out, rows, columns, height, add):
         done = end
 
 
-def _dots(builder, A, x, out, rows, columns, height):
+def write_dots(builder, A, x, out, rows, columns, height):
     _dot(builder, A, x, out, rows, columns, height, False)
 
 
-def _add_dots(builder, A, x, out, rows, columns, height):
+def write_more_dots(builder, A, x, out, rows, columns, height):
     _dot(builder, A, x, out, rows, columns, height, True)
 
 
@@ -161,20 +156,25 @@ def _wide(builder, given, out, rows, height, add):
         done = end
 
 
-def _block(builder, A, x, out, rows, columns, height):
+def write_block(builder, A, x, out, rows, columns, height):
     _wide(builder, [(A, x, columns)], out, rows, height, False)
 
 
-def _add_block(builder, A, x, out, rows, columns, height):
+def write_more_block(builder, A, x, out, rows, columns, height):
     _wide(builder, [(A, x, columns)], out, rows, height, True)
 
 
-def _add_blocks(builder, A, x, B, y, out, rows, columns, of_B, height):
+def write_more_blocks(builder, A, x, B, y, out, rows, columns, of_B, height):
     _wide(builder, [(A, x, columns), (B, y, of_B)], out, rows, height, True)
 
 
-def _add_columns(builder, A, x, out, rows, columns, height):
+def write_more_columns(builder, A, x, out, rows, columns, height):
     _multiply(builder, A, x, out, rows, columns, height, True)
+
+
+def write_columns(builder, A, x, out, rows, columns):
+    """Instructions of `columns_times`."""
+    _multiply(builder, A, x, out, rows, columns, whole_vectors(builder, rows), False)
 
 
 def _multiply(builder, A, x, out, rows, columns, height, add):
@@ -220,11 +220,11 @@ def _multiply_rows(builder, A, x, out, row, vectors, columns, height, add):
 @intrinsic
 def subtract_product(typingctx, C, A, B):
     """``C -= A B`` of square blocks of `LANES` rows, stored by columns."""
-    return types.void(FLOATS, FLOATS, FLOATS), _subtract_product
+    return inlined(write_subtract_product, C, A, B)
 
 
-def _subtract_product(context, builder, sig, args):
-    C, A, B = args
+def write_subtract_product(builder, C, A, B):
+    """Instructions of `subtract_product`."""
     columns = [load_vector(builder, A, WORD(LANES * k)) for k in range(LANES)]
     for j in range(LANES):
         total = load_vector(builder, C, WORD(LANES * j))
@@ -234,17 +234,16 @@ def _subtract_product(context, builder, sig, args):
                                    flags=("contract",))
             total = builder.fsub(total, product, flags=("contract",))
         store_vector(builder, total, C, WORD(LANES * j))
-    return context.get_dummy_value()
 
 
 @intrinsic
 def subtract_block_times(typingctx, y, A, x):
     """``y -= A x`` of a square block of `LANES` rows, stored by columns."""
-    return types.void(FLOATS, FLOATS, FLOATS), _subtract_block_times
+    return inlined(write_subtract_block_times, y, A, x)
 
 
-def _subtract_block_times(context, builder, sig, args):
-    y, A, x = args
+def write_subtract_block_times(builder, y, A, x):
+    """Instructions of `subtract_block_times`."""
     total = load_vector(builder, y, WORD(0))
     for k in range(LANES):
         number = builder.load(builder.gep(x, [WORD(k)]))
@@ -252,7 +251,6 @@ def _subtract_block_times(context, builder, sig, args):
                                broadcast(builder, number), flags=("contract",))
         total = builder.fsub(total, product, flags=("contract",))
     store_vector(builder, total, y, WORD(0))
-    return context.get_dummy_value()
 
 
 @compiled

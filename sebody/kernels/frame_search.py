@@ -34,7 +34,7 @@ def converged_mean(count, nodes, alpha, R, frame, psi):
             z += alpha[j] * psi[3 * j + 2]
         if x * x + y * y + z * z < 1e-30:
             return 0
-        x, y, z = _mean_step(count, alpha, psi, x, y, z)
+        x, y, z = mean_step(count, alpha, psi, x, y, z)
         rotate(frame, 0, x, y, z, frame, 0)
         if x * x + y * y + z * z < 1e-16:       # Newton: the error left is the square of the step
             return relative_rotations(count, nodes, R, frame, psi)
@@ -66,7 +66,7 @@ def _mean_of_two(nodes, alpha, R, frame, psi):
 
 
 @compiled
-def _mean_step(count, alpha, psi, x, y, z):
+def mean_step(count, alpha, psi, x, y, z):
     """``B^-1 (x, y, z)`` with ``B = sum alpha_j T^-T(psi_j)``."""
     xx = xy = xz = yx = yy = yz = zx = zy = zz = 0.0
     for j in range(count):

@@ -19,16 +19,40 @@ FLOATS, WORD = types.CPointer(types.float64), ir.IntType(64)
 VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 
 
-def called(write: Callable, pointers: int, counts: int) -> tuple:
+_lanes: dict[Callable, Callable] = {}       # writers of products in lanes, by those of numbers
+
+
+def in_lanes(write: Callable) -> Callable:
+    """Decorator of the function that writes, of lanes, what `write` writes of numbers."""
+    def remember(own):
+        _lanes[write] = own
+        return own
+    return remember
+
+
+def called(write: Callable, *kinds: types.Type) -> tuple:
     """What an intrinsic returns whose instructions are a function of the module: see `call`.
 
-    `write` gets a builder and the arguments: pointers to floats, then whole numbers.
+    `write` gets a builder and the arguments, whose types are `kinds`: pointers to floats, or to
+    lanes, then whole numbers.
     """
+    return _written(write, kinds, call)
+
+
+def inlined(write: Callable, *kinds: types.Type) -> tuple:
+    """The same where instructions are written wherever they are used."""
+    return _written(write, kinds, lambda builder, chosen, args: chosen(builder, *args))
+
+
+def _written(write, kinds, put):
+    pointers = [kind for kind in kinds if isinstance(kind, types.CPointer)]
+    chosen = write if all(kind == FLOATS for kind in pointers) else _lanes[write]
+
     def codegen(context, builder, sig, args):
-        call(builder, write, args)
+        put(builder, chosen, args)
         return context.get_dummy_value()
 
-    return types.void(*[FLOATS] * pointers, *[types.int64] * counts), codegen
+    return types.void(*pointers, *[types.int64] * (len(kinds) - len(pointers))), codegen
 
 
 def call(builder: ir.IRBuilder, write: Callable, args: Sequence[ir.Value]) -> None:
@@ -95,10 +119,10 @@ def totals(builder, count):
     return [stack_vectors(builder, 1) for _ in range(count)]
 
 
-def stack_vectors(builder, count):
+def stack_vectors(builder, count, kind=VECTOR):
     """Place of some vectors, made once where a function begins."""
     with builder.goto_entry_block():
-        return builder.alloca(VECTOR, WORD(count))
+        return builder.alloca(kind, WORD(count))
 
 
 def no_sum():

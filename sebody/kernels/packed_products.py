@@ -56,13 +56,13 @@ def packed_times(typingctx, matrices, x, out, count):
 
     Of `x` whole vectors are read, whose numbers beyond the columns only have to be finite.
     """
-    return called(_packed, 3, 1)
+    return called(write_packed, matrices, x, out, count)
 
 
 @intrinsic
 def add_packed_times(typingctx, matrices, x, out):
     """``out += A_k x`` of all matrices, one product after the other."""
-    return called(_add_packed, 3, 0)
+    return called(write_more_packed, matrices, x, out)
 
 
 @intrinsic
@@ -71,28 +71,28 @@ def add_packed(typingctx, matrices, factors, out, height):
 
     Zeros are added to columns of `out` up to a multiple of `LANES`.
     """
-    return called(_sum_packed, 3, 1)
+    return called(write_sum_packed, matrices, factors, out, height)
 
 
-def _packed(builder, matrices, x, out, count):
+def write_packed(builder, matrices, x, out, count):
     """Clear what the products are added to: whole vectors."""
     with short_loop(builder, WORD(0), count, LANES) as place:
         store_vector(builder, no_sum(), out, place)
-    call(builder, _add_packed, (matrices, x, out))
+    call(builder, write_more_packed, (matrices, x, out))
 
 
-def _add_packed(builder, matrices, x, out):
+def write_more_packed(builder, matrices, x, out):
     """Group by group; the numbers of `x` stay in registers while its strips follow."""
     words = builder.bitcast(matrices, WORD.as_pointer())
     with short_loop(builder, WORD(0), builder.load(words)) as group:
         first, columns, strips, heads, at = _group(builder, words, group)
-        with _by_width(builder, columns) as widths:
+        with by_width(builder, columns) as widths:
             for width in widths:
                 factors = [load_broadcast(builder, x, builder.add(first, WORD(k)))
                            for k in range(width)]
                 with short_loop(builder, WORD(0), strips) as strip:
                     place = _whole(builder, words, _head(builder, heads, strip, 0))
-                    own = _entries(builder, matrices, at, strip, width)
+                    own = entries(builder, matrices, at, strip, width)
                     total = load_vector(builder, out, place)
                     for k, factor in enumerate(factors):
                         total = _added(builder, total,
@@ -101,7 +101,7 @@ def _add_packed(builder, matrices, x, out):
 
 
 @contextmanager
-def _by_width(builder, columns):
+def by_width(builder, columns):
     """Goes through the widths of strips; instructions stand where a group has this width."""
     end = builder.append_basic_block("end")
     by_width = builder.switch(columns, end)
@@ -132,7 +132,7 @@ def _head(builder, heads, strip, k):
     return builder.add(heads, builder.add(builder.mul(strip, WORD(HEAD)), WORD(k)))
 
 
-def _entries(builder, matrices, at, strip, width):
+def entries(builder, matrices, at, strip, width):
     """Pointer to the entries of a strip."""
     return builder.gep(matrices, [builder.add(at, builder.mul(strip, WORD(LANES * width)))])
 
@@ -141,18 +141,18 @@ def _added(builder, total, a, b):
     return builder.fadd(total, builder.fmul(a, b, flags=("contract",)), flags=("contract",))
 
 
-def _sum_packed(builder, matrices, factors, out, height):
+def write_sum_packed(builder, matrices, factors, out, height):
     """Strip by strip."""
     words = builder.bitcast(matrices, WORD.as_pointer())
     with short_loop(builder, WORD(0), builder.load(words)) as group:
         first, columns, strips, heads, at = _group(builder, words, group)
-        with _by_width(builder, columns) as widths:
+        with by_width(builder, columns) as widths:
             for width in widths:
                 with short_loop(builder, WORD(0), strips) as strip:
                     matrix, row = (_whole(builder, words, _head(builder, heads, strip, k))
                                    for k in (1, 2))
                     scale = load_broadcast(builder, factors, matrix)
-                    own = _entries(builder, matrices, at, strip, width)
+                    own = entries(builder, matrices, at, strip, width)
                     for k in range(width):
                         place = builder.add(builder.mul(builder.add(first, WORD(k)), height), row)
                         total = _added(builder, load_vector(builder, out, place),

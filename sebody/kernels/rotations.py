@@ -8,6 +8,8 @@ import math
 from sebody.compiler.decorators import compiled
 
 NEAR_PI = -0.98     # cosine beyond which the logarithm of a relative rotation is refused
+SMALL = 0.25        # square of an angle below which nested series are used
+SMALL_SINE = 0.09   # square of a sine, likewise
 
 
 @compiled
@@ -28,12 +30,22 @@ def stumpff(k, s):
 @compiled
 def stumpff_23(s):
     """``c_2, c_3``: nested series for small arguments, closed forms where these are exact."""
-    if s < 0.25:
-        c2 = 1 / 2 - s * (1 / 24 - s * (1 / 720 - s * (1 / 40320 - s * (
-            1 / 3628800 - s * (1 / 479001600 - s * (1 / 87178291200))))))
-        c3 = 1 / 6 - s * (1 / 120 - s * (1 / 5040 - s * (1 / 362880 - s * (
-            1 / 39916800 - s * (1 / 6227020800 - s * (1 / 1307674368000))))))
-        return c2, c3
+    return stumpff_23_small(s) if s < SMALL else stumpff_23_large(s)
+
+
+@compiled
+def stumpff_23_small(s):
+    """`stumpff_23` by nested series."""
+    c2 = 1 / 2 - s * (1 / 24 - s * (1 / 720 - s * (1 / 40320 - s * (
+        1 / 3628800 - s * (1 / 479001600 - s * (1 / 87178291200))))))
+    c3 = 1 / 6 - s * (1 / 120 - s * (1 / 5040 - s * (1 / 362880 - s * (
+        1 / 39916800 - s * (1 / 6227020800 - s * (1 / 1307674368000))))))
+    return c2, c3
+
+
+@compiled
+def stumpff_23_large(s):
+    """`stumpff_23` in closed form."""
     t = math.sqrt(s)
     half = math.sin(0.5 * t)
     return 2.0 * half * half / s, (t - math.sin(t)) / (s * t)
@@ -49,7 +61,7 @@ def stumpff_2345(s):
 @compiled
 def stumpff_1_to_7(s):
     """``c_1`` to ``c_7``: the last two from series, the others by ``c_k = 1/k! - s c_k+2``."""
-    if s < 0.25:
+    if s < SMALL:
         c6 = 1 / 720 - s * (1 / 40320 - s * (1 / 3628800 - s * (1 / 479001600 - s * (
             1 / 87178291200 - s * (1 / 20922789888000)))))
         c7 = 1 / 5040 - s * (1 / 362880 - s * (1 / 39916800 - s * (1 / 6227020800 - s * (
@@ -64,13 +76,23 @@ def stumpff_1_to_7(s):
 @compiled
 def inverse_tangent_coefficients(s):
     """``e`` and ``de/ds`` of ``T^-1 = I + skew/2 + e skew^2``, ``e = (c_3 - 2 c_4)/(2 c_2)``."""
-    if s < 0.25:        # series in Bernoulli numbers: B_2k / (2k)!
-        e = 1 / 12 + s * (1 / 720 + s * (1 / 30240 + s * (1 / 1209600 + s * (
-            1 / 47900160 + s * (691 / 1307674368000 + s * (
-                1 / 74724249600 + s * (3617 / 10670622842880000)))))))
-        d = 1 / 720 + s * (1 / 15120 + s * (1 / 403200 + s * (1 / 11975040 + s * (
-            691 / 261534873600 + s * (1 / 12454041600 + s * (25319 / 10670622842880000))))))
-        return e, d
+    return inverse_tangent_small(s) if s < SMALL else inverse_tangent_large(s)
+
+
+@compiled
+def inverse_tangent_small(s):
+    """`inverse_tangent_coefficients` by series in Bernoulli numbers, B_2k / (2k)!."""
+    e = 1 / 12 + s * (1 / 720 + s * (1 / 30240 + s * (1 / 1209600 + s * (
+        1 / 47900160 + s * (691 / 1307674368000 + s * (
+            1 / 74724249600 + s * (3617 / 10670622842880000)))))))
+    d = 1 / 720 + s * (1 / 15120 + s * (1 / 403200 + s * (1 / 11975040 + s * (
+        691 / 261534873600 + s * (1 / 12454041600 + s * (25319 / 10670622842880000))))))
+    return e, d
+
+
+@compiled
+def inverse_tangent_large(s):
+    """`inverse_tangent_coefficients` from Stumpff's functions."""
     c2, c3, c4, c5 = stumpff_2345(s)
     c6 = stumpff(6, s)
     top = c3 - 2.0 * c4
@@ -82,11 +104,21 @@ def inverse_tangent_coefficients(s):
 @compiled
 def inverse_tangent_second(s):
     """``d^2 e/ds^2`` of `inverse_tangent_coefficients`."""
-    if s < 0.25:
-        return 1 / 15120 + s * (1 / 201600 + s * (1 / 3991680 + s * (691 / 65383718400 + s * (
-            1 / 2490808320 + s * (25319 / 1778437140480000 + s * (
-                56 * 43867 / 5109094217170944000 + s * (
-                    72 * 174611 / 802857662698291200000)))))))
+    return inverse_tangent_second_small(s) if s < SMALL else inverse_tangent_second_large(s)
+
+
+@compiled
+def inverse_tangent_second_small(s):
+    """`inverse_tangent_second` by a series in Bernoulli numbers."""
+    return 1 / 15120 + s * (1 / 201600 + s * (1 / 3991680 + s * (691 / 65383718400 + s * (
+        1 / 2490808320 + s * (25319 / 1778437140480000 + s * (
+            56 * 43867 / 5109094217170944000 + s * (
+                72 * 174611 / 802857662698291200000)))))))
+
+
+@compiled
+def inverse_tangent_second_large(s):
+    """`inverse_tangent_second` from Stumpff's functions."""
     c2, c3, c4, c5 = stumpff_2345(s)
     c6, c7, c8 = stumpff(6, s), stumpff(7, s), stumpff(8, s)
     d_c2, d_c3 = 0.5 * (2.0 * c4 - c3), 0.5 * (3.0 * c5 - c4)
@@ -123,16 +155,28 @@ def log_map(xx, xy, xz, yx, yy, yz, zx, zy, zz):
     x, y, z = 0.5 * (zy - yz), 0.5 * (xz - zx), 0.5 * (yx - xy)
     cosine = 0.5 * (xx + yy + zz - 1.0)
     s2 = x * x + y * y + z * z
-    if cosine > 0.0 and s2 < 0.09:      # t / sin t in powers of sin^2 t
-        ratio = 1 + s2 * (1 / 6 + s2 * (3 / 40 + s2 * (5 / 112 + s2 * (35 / 1152 + s2 * (
-            63 / 2816 + s2 * (231 / 13312 + s2 * (143 / 10240 + s2 * (6435 / 557056 + s2 * (
-                12155 / 1245184 + s2 * (46189 / 5505024 + s2 * (
-                    88179 / 12058624 + s2 * (676039 / 104857600 + s2 * (
-                        1300075 / 226492416)))))))))))))
+    if cosine > 0.0 and s2 < SMALL_SINE:
+        ratio = angle_by_sine_small(s2)
     else:
-        sine = math.sqrt(s2)
-        ratio = math.atan2(sine, cosine) / sine
+        ratio = angle_by_sine_large(s2, cosine)
     return ratio * x, ratio * y, ratio * z, cosine
+
+
+@compiled
+def angle_by_sine_small(s2):
+    """``t / sin t`` in powers of ``sin^2 t``."""
+    return 1 + s2 * (1 / 6 + s2 * (3 / 40 + s2 * (5 / 112 + s2 * (35 / 1152 + s2 * (
+        63 / 2816 + s2 * (231 / 13312 + s2 * (143 / 10240 + s2 * (6435 / 557056 + s2 * (
+            12155 / 1245184 + s2 * (46189 / 5505024 + s2 * (
+                88179 / 12058624 + s2 * (676039 / 104857600 + s2 * (
+                    1300075 / 226492416)))))))))))))
+
+
+@compiled
+def angle_by_sine_large(s2, cosine):
+    """``t / sin t`` of an angle between a right one and half a turn, or not small."""
+    sine = math.sqrt(s2)
+    return math.atan2(sine, cosine) / sine
 
 
 @compiled

@@ -194,6 +194,7 @@ class LoadedBristles:
 
     def _touching_inside(self, load: Element, first: int) -> tuple[list[NDArray], NDArray]:
         """The same of a point inside a body: the force on the surface's node is minus its own."""
+        assert load.point is not None
         size, carrier = len(load.dof_blocks[-2].start), load.dof_blocks[-2:]
         at = first + load.firsts[-2]
         push = self.state.g[at:at + size]

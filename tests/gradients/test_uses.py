@@ -8,6 +8,7 @@ from scipy.optimize import minimize
 from sebody import InputError, LimitWarning, Model, simulate
 from sebody.analysis import ValueAndGradient, calibrate, final, gradient, rms
 from sebody.gradients.point import Point
+from sebody.runs.schemes import generalized_alpha
 
 PARAMETERS = ["spring.stiffness", "beam.mass", "beam.stiffness"]
 TRUE = np.array([24.0, 1.1, 0.9])
@@ -119,3 +120,13 @@ def test_chaotic_runs_are_named():
         with pytest.warns(LimitWarning, match="unstable or chaotic"):
             gradient(m, 0.01, 16.0, final("tip.position"), ["upper.mass"], mode)
     assert gradient(m, 0.01, 0.5, final("tip.position"), ["upper.mass"]).growth < 10
+
+
+@pytest.mark.parametrize("amplitude", [2.0, 0.0])
+def test_gradient_by_an_amplitude_at_other_values(amplitude):
+    """Of a load that jumps off the grid; at zero there is no value to scale."""
+    f = ValueAndGradient(scenes.struck(), 0.01, 0.12, final("b.position.x"), ["gust.amplitude"],
+                         scheme=generalized_alpha(tolerance=1e-13))
+    _, slope = f(np.array([amplitude]))
+    values = [f(np.array([amplitude + 1e-2 * k]))[0] for k in scenes.STEPS]
+    assert slope[0] == pytest.approx(scenes.WEIGHTS @ values / 1e-2, rel=1e-7)

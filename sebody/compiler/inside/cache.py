@@ -68,9 +68,9 @@ class FunctionCache(NullCache):
             store.say_not_kept(self._source)
 
 
-def is_kept(source: Path, function: str, made_from: str) -> bool:
+def is_kept(source: Path, function: str, made_from: str, kind: str = "") -> bool:
     """Whether a function of a file that need not be imported was compiled."""
-    return store.holds(source, _file_name(source, function), _stamp(made_from))
+    return store.holds(source, _file_name(source, function, kind), _stamp(made_from))
 
 
 def _file_name(source: Path, function: str, kind: str = "") -> str:
@@ -80,10 +80,8 @@ def _file_name(source: Path, function: str, kind: str = "") -> str:
 
 @cache
 def _processor() -> str:
-    """Short name of the processor that is compiled for, and of loops without vectors."""
+    """Short name of the processor that is compiled for."""
     described = repr(cpu_target.target_context.codegen().magic_tuple())
-    if not numba.config.LOOP_VECTORIZE:     # for exports, which have no parts of the code of runs
-        described += " scalar"
     return f"{zlib.crc32(described.encode()):08x}"
 
 

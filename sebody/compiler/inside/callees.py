@@ -157,13 +157,24 @@ class Function(CPUDispatcher):
         self.callee = Callee(function, options, made_from)
         # constants make kernels faster; elsewhere they come with the code that callers take in
         self._specialized = in_room(function, KERNELS)
+        self.in_lanes: Function | None = None       # what is called with lanes in its place
 
     def get_call_template(self, args, kws):
         """For Numba: the signature of a call in a compiled function."""
+        if self.in_lanes is not None and _takes_lanes(args):
+            return self.in_lanes.get_call_template(args, kws)
         if not self._specialized:
             args = [types.unliteral(kind) for kind in args]
         return self.callee.get_call_template(args, kws)
 
     def get_overload(self, sig):
         """For Numba: the function of a signature, for its callers."""
+        if self.in_lanes is not None and _takes_lanes(sig):
+            return self.in_lanes.get_overload(sig)
         return self.callee.get_overload(sig)
+
+
+def _takes_lanes(kinds):
+    from sebody.compiler.inside.lanes import takes_lanes  # 5 ms that most runs do not need
+
+    return takes_lanes(kinds)

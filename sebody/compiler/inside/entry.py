@@ -2,7 +2,8 @@
 
 from collections.abc import Callable, Iterable
 
-from numba import types
+import numpy as np
+from numba import from_dtype, types
 from numba.extending import infer_getattr, intrinsic, lower_getattr_generic
 
 from sebody.compiler.code import Code, bitcode
@@ -19,7 +20,8 @@ from sebody.compiler.inside.pipeline import KernelPasses
 
 __all__ = ["SLOWER", "address", "code_of", "compile_for", "function", "function_code",
            "guarded", "is_compiled", "is_kept", "kernel", "kernel_code", "part_of_callers",
-           "processor", "show_members"]
+           "processor", "show_members",
+           "type_of"]
 
 SLOWER = 1.0        # compilation, compared with this way
 _shown = set()      # types whose members are shown
@@ -79,6 +81,15 @@ def kernel_code(function: Callable, signature, options: dict) -> Code:
 def code_of(made: CFunc) -> Code:
     """See `sebody.compiler.plain.code_of`."""
     return Code(made.native_name.removeprefix("cfunc."), bitcode(made.inspect_llvm()))
+
+
+def type_of(kind: np.dtype) -> types.Type:
+    """See `sebody.compiler.plain.type_of`; here numbers may be lanes, those of a record, too."""
+    if kind.fields is None or not any(own.subdtype for own, _ in kind.fields.values()):
+        return from_dtype(kind)
+    from sebody.compiler.inside.lanes import NUMPY_KIND, RecordOfLanes, lanes
+
+    return lanes if kind == NUMPY_KIND else RecordOfLanes(kind)
 
 
 def processor() -> tuple[str, str]:

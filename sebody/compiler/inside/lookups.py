@@ -18,7 +18,7 @@ from sebody.compiler.inside.names import (
     register_pass,
 )
 
-_PLAIN = types.Number, types.Boolean, types.RawPointer, types.Array, types.BaseTuple
+_plain_kinds = [types.Number, types.Boolean, types.RawPointer, types.Array, types.BaseTuple]
 _signatures: dict[tuple, Signature] = {}        # by operation and types of arguments
 
 
@@ -32,7 +32,13 @@ def _remembered(operation: object, arguments: tuple[types.Type, ...], find) -> S
 
 
 def _plain(arguments: tuple[types.Type, ...]) -> bool:
-    return all(isinstance(kind, _PLAIN) for kind in arguments)
+    plain = tuple(_plain_kinds)
+    return all(isinstance(kind, plain) for kind in arguments)
+
+
+def remember_operations_on(*kinds: type[types.Type]) -> None:
+    """Remember operations on types of these kinds, too."""
+    _plain_kinds.extend(kinds)
 
 
 class _Remembering:

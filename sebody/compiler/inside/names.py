@@ -6,15 +6,19 @@ that instances get as they are made are not seen here: see `sebody.compiler.insi
 
 from numba.core.caching import NullCache
 from numba.core.ccallback import CFunc
+from numba.core.cgutils import get_or_insert_function
 from numba.core.codegen import CPUCodegen, JITCodeLibrary
 from numba.core.compiler import CompilerBase, CompileResult
 from numba.core.compiler_machinery import FunctionPass, PassManager, register_pass
+from numba.core.datamodel.models import RecordModel
+from numba.core.imputils import lower_constant
 from numba.core.ir import UNDEFINED, Jump
 from numba.core.lowering import Lower
 from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 from numba.core.transforms import canonicalize_cfg
+from numba.core.typeconv import Conversion
 from numba.core.typed_passes import (
     AnnotateTypes,
     BaseNativeLowering,
@@ -24,7 +28,13 @@ from numba.core.typed_passes import (
     PreLowerStripPhis,
 )
 from numba.core.typing.context import BaseContext
-from numba.core.typing.templates import AttributeTemplate, Signature
+from numba.core.typing.templates import (
+    AbstractTemplate,
+    AttributeTemplate,
+    Signature,
+    infer_global,
+    signature,
+)
 from numba.core.untyped_passes import (
     FixupArgs,
     GenericRewrites,
@@ -34,12 +44,14 @@ from numba.core.untyped_passes import (
 )
 
 __all__ = [
-    "AnnotateTypes", "AttributeTemplate", "BaseContext", "BaseNativeLowering", "CFunc",
-    "CPUCodegen", "CPUDispatcher", "CompileResult", "CompilerBase", "FixupArgs", "FunctionPass",
-    "GenericRewrites", "IRLegalization", "IRProcessing", "JITCodeLibrary", "Jump", "Lower",
-    "NoPythonBackend", "NopythonTypeInference", "NullCache", "PassManager", "PreLowerStripPhis",
-    "ReconstructSSA", "Signature", "TranslateByteCode", "UNDEFINED", "canonicalize_cfg",
-    "cpu_target", "dumps", "normalize_signature", "register_pass", "take_reloads"]
+    "AbstractTemplate", "AnnotateTypes", "AttributeTemplate", "BaseContext", "BaseNativeLowering",
+    "CFunc", "CPUCodegen", "CPUDispatcher", "CompileResult", "CompilerBase", "Conversion",
+    "FixupArgs", "FunctionPass", "GenericRewrites", "IRLegalization", "IRProcessing",
+    "JITCodeLibrary", "Jump", "Lower", "NoPythonBackend", "NopythonTypeInference", "NullCache",
+    "PassManager", "PreLowerStripPhis", "ReconstructSSA", "RecordModel", "Signature",
+    "TranslateByteCode", "UNDEFINED", "canonicalize_cfg", "cpu_target", "dumps",
+    "get_or_insert_function", "infer_global", "lower_constant", "normalize_signature",
+    "register_pass", "signature", "take_reloads"]
 
 ATTRIBUTES = {
     CFunc: ("compile", "address"),

@@ -13,6 +13,7 @@ from sebody import inputs, memory
 from sebody.engine.state import Scheme
 from sebody.errors import InputError
 from sebody.explore.ensembles.changes import Handle
+from sebody.explore.ensembles.choice import WORTH_IT, can_be_together, why_one_by_one
 from sebody.explore.ensembles.handles import given, handles
 from sebody.explore.ensembles.member import Form, forms
 from sebody.explore.ensembles.outcome import Outcome
@@ -72,7 +73,9 @@ class Ensemble:
         self._images: dict[tuple[str, ...], Image] = {}
 
     def __repr__(self) -> str:
-        return f"<Ensemble of a {summary(self.model)}: step {self.h:.6g}>"
+        reason = why_one_by_one(self._template)
+        how = f"one by one: {reason}" if reason else "eight at a time if they are many"
+        return f"<Ensemble of a {summary(self.model)}: step {self.h:.6g}; runs {how}>"
 
     @property
     def parameters(self) -> list[str]:
@@ -84,8 +87,10 @@ class Ensemble:
             progress: Callable[[float], None] | bool | None = None) -> Outcome:
         """Run the model once for each set of values.
 
-        Results do not depend on the number of threads, bit for bit, nor on which runs are asked for
-        together.
+        Many runs are made eight at a time where the model allows it, see `repr` of the ensemble and
+        ``sebody/explore/ensembles/README.md``. Results do not depend on the number of threads, bit
+        for bit, nor on which runs are asked for together; those of few runs, which are made one by
+        one, are rounded differently.
 
         Parameters
         ----------
@@ -108,6 +113,30 @@ class Ensemble:
             Before the first run: unknown names, arrays of different lengths, values that a body
             cannot have, an unknown quantity, a time that is not a multiple of the step.
         """
+        return self._run(parameters, t_end, outputs, threads, progress)
+
+    def part(self, parameters: Mapping[str, Values], t_end: float,
+             outputs: Mapping[str, Output | str], runs: int) -> Outcome:
+        """Some of the runs of a larger ensemble, in one thread: the same bits as among all.
+
+        Parameters
+        ----------
+        parameters, t_end, outputs
+            As of `run`.
+        runs : int
+            How many there are in all.
+
+        Raises
+        ------
+        InputError
+            As `run`.
+        """
+        return self._run(parameters, t_end, outputs, 1, None, runs)
+
+    def _run(self, parameters: Mapping[str, Values], t_end: float,
+             outputs: Mapping[str, Output | str], threads: int | None,
+             progress: Callable[[float], None] | bool | None, of: int = 0) -> Outcome:
+        """Some runs of `of` in all."""
         refuse_changed(self.model)
         threads = inputs.integer(processors() if threads is None else threads, "threads", least=1)
         found, runs, last, kept = self._checked(parameters, t_end, outputs)
@@ -115,8 +144,10 @@ class Ensemble:
         values = {name: handle.checked(name, parameters[name]) for name, handle in found.items()}
         outcome = self._empty(kept, read, runs, last)
         began = time.perf_counter()
-        work = Work(self._template, self._image(found), values, kept, read, last, outcome,
-                    self._lock)
+        image = self._image(found)
+        in_lanes = (max(runs, of) * last >= WORTH_IT and not why_one_by_one(self._template)
+                    and can_be_together(image))
+        work = Work(self._template, image, values, kept, read, last, outcome, self._lock, in_lanes)
         with showing(progress) as show:
             work.go(min(threads, max(runs, 1)), show)
         outcome.seconds = time.perf_counter() - began

@@ -68,6 +68,31 @@ def fold(kind, number, norm, t, table, columns, kept, before, largest, facts):
         facts[LAST] = t[k]
 
 
+@compiled(nogil=True)
+def fold_members(kind, number, norm, t, table, columns, rows, members, kept, before, largest,
+                 facts):
+    """Take in the next states of some members of a group: see `fold`.
+
+    Parameters
+    ----------
+    table : (n, m, lanes)
+        Numbers of the states of all members.
+    rows : (n, c)
+        Scratch memory.
+    members : (k,)
+        Which members.
+    kept, before, largest, facts : (lanes, ...)
+        As of `fold`, of each member.
+    """
+    own = np.arange(columns.size)
+    for member in members:
+        for k in range(t.size):
+            for c in range(columns.size):
+                rows[k, c] = table[k, columns[c], member]
+        fold(kind, number, norm, t, rows, own, kept[member], before[member], largest[member],
+             facts[member])
+
+
 @compiled(forceinline=True)
 def _length(table, k, columns):
     total = 0.0

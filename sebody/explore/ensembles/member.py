@@ -130,12 +130,16 @@ class Course:
         What is kept.
     forms : mapping
         Of every quantity.
+    folds : mapping, optional
+        Of outputs that are taken in with those of other runs.
     """
 
     def __init__(self, run: Copies | Simulation, every: int, outputs: Mapping[str, Output],
-                 forms: Mapping[str, Form]):
+                 forms: Mapping[str, Form], folds: Mapping[str, Fold] | None = None):
         self.run, self.every, self.outputs, self.forms = run, every, outputs, forms
-        self.folds = {name: Fold(o, forms[o.quantity].shape) for name, o in outputs.items()
+        self._apart = folds or {}
+        self.folds = {name: self._apart[name] if name in self._apart else
+                      Fold(o, forms[o.quantity].shape) for name, o in outputs.items()
                       if o.kind != "history"}
         self.histories: dict[str, list[NDArray]] = {name: [] for name, o in outputs.items()
                                                     if o.kind == "history"}
@@ -154,7 +158,7 @@ class Course:
             room = rows - int(state.control.recorded)
             reached = min(last, (reached // self.every + room) * self.every)
             code = self._advance(record, reached, stop)
-            self._take(record.rows[:state.control.recorded])
+            self.take(record.rows[:state.control.recorded])
             state.control.recorded = 0
         if code == FAILED:
             reason = REASONS[int(state.control.reason)]
@@ -172,14 +176,19 @@ class Course:
                 return code
             chunk = max(1, int(chunk * min(8.0, CHUNK / max(time.perf_counter() - began, 1e-9))))
 
-    def _take(self, rows: NDArray) -> None:
+    def take(self, rows: NDArray) -> None:
         """Read the outputs of recorded states."""
         t, found = rows[:, RECORD_T].copy(), {}
         for name, output in self.outputs.items():
+            if name in self._apart:
+                continue
             quantity = output.quantity
-            columns = self.forms[quantity].columns
-            if name in self.folds and columns is not None:
-                self.folds[name].add_columns(t, rows, columns)
+            form = self.forms[quantity]
+            if form.columns is not None:
+                if name in self.folds:
+                    self.folds[name].add_columns(t, rows, form.columns)
+                else:
+                    self.histories[name].append(rows[:, form.columns].reshape(-1, *form.shape))
                 continue
             if quantity not in found:
                 found[quantity] = look_up(self._recording(rows, quantity), quantity)

@@ -29,6 +29,8 @@ class Outcome:
         Whether Ctrl-C ended it; the runs that were not done are among the failures.
     seconds : float
         Time of all runs together, set-up apart.
+    in_lanes : int
+        How many runs were made eight at a time; all others were made one by one.
     """
 
     values: dict[str, NDArray]
@@ -37,6 +39,7 @@ class Outcome:
     failures: dict[int, str] = field(default_factory=dict)
     interrupted: bool = False
     seconds: float = 0.0
+    in_lanes: int = 0
 
     def __repr__(self) -> str:
         return tabular.text(*self._table())

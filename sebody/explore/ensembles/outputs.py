@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import prod
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.explore.ensembles.folding import FOUND, LENGTH, fold
+from sebody.explore.ensembles.folding import FOUND, LENGTH, fold, fold_members
 
 # as of `fold`
 KINDS = ("maximum", "minimum", "rms", "integral", "final", "at", "soft_maximum", "history")
@@ -114,6 +115,52 @@ def outputs_of(given: Mapping[str, Output | str], t_end: float) -> dict[str, Out
     return found
 
 
+class Room(NamedTuple):
+    """What `fold` keeps of a history, or of those of several members, (members, ...)."""
+
+    kept: NDArray
+    before: NDArray
+    largest: NDArray
+    facts: NDArray
+
+    @classmethod
+    def of(cls, output: Output, shape: tuple[int, ...], *members: int) -> Room:
+        """Room for an output of a quantity of some shape."""
+        size = 1 if output.norm else prod(shape)
+        return cls(*np.zeros((3, *members, size)), np.zeros((*members, 4)))
+
+    def member(self, number: int) -> Room:
+        """That of one of the members."""
+        return Room(*(one[number] for one in self))
+
+
+class Folds:
+    """The values of an output of the members of a group, taken in together.
+
+    Parameters
+    ----------
+    columns : (c,)
+        Which of the recorded numbers the values are.
+    count : int
+        Number of members.
+    """
+
+    def __init__(self, output: Output, shape: tuple[int, ...], columns: NDArray, count: int):
+        self._room, self._columns = Room.of(output, shape, count), columns
+        self.members = [Fold(output, shape, self._room.member(k)) for k in range(count)]
+        self._kind = KINDS.index(output.kind), self.members[0]._number, output.norm
+
+    def begin(self) -> None:
+        """Forget what was taken in."""
+        for one in self._room:
+            one[...] = 0.0
+
+    def add(self, t: NDArray, table: NDArray, members: NDArray) -> None:
+        """Take in the next recorded states of some members; the table is (states, numbers, all)."""
+        fold_members(*self._kind, t, table, self._columns, np.empty((len(t), len(self._columns))),
+                     members, *self._room)
+
+
 class Fold:
     """The value of an output of one run, from its recorded states, stretch by stretch.
 
@@ -121,15 +168,16 @@ class Fold:
     ----------
     shape : tuple of int
         Of the quantity in a state.
+    room : Room, optional
+        Where its numbers are kept.
     """
 
-    def __init__(self, output: Output, shape: tuple[int, ...]):
+    def __init__(self, output: Output, shape: tuple[int, ...], room: Room | None = None):
         self.output, self.shape = output, () if output.norm else shape
         self._kind = KINDS.index(output.kind)
         self._number = output.power if output.time is None else output.time
         self._all = np.arange(prod(shape))
-        self._kept, self._before, self._largest = np.zeros((3, prod(self.shape)))
-        self._facts = np.zeros(4)
+        self._kept, self._before, self._largest, self._facts = room or Room.of(output, shape)
 
     def add(self, t: NDArray, values: NDArray) -> None:
         """Take in the next recorded states, (k,) times and (k, ...) values."""

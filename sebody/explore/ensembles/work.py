@@ -1,21 +1,27 @@
 """Threads that take runs one after the other until all are done."""
 
+from __future__ import annotations
+
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from copy import copy
-from itertools import count
 from threading import Event, Lock, Thread
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.contract.counts import MEMBERS
 from sebody.errors import InputError
+from sebody.explore.ensembles.choice import kernels_of
 from sebody.explore.ensembles.member import Copies, Course, Form
 from sebody.explore.ensembles.outcome import Outcome
 from sebody.explore.ensembles.outputs import Output
 from sebody.explore.ensembles.start_values import Image
 from sebody.runs.simulation import Simulation
+
+if TYPE_CHECKING:
+    from sebody.explore.ensembles.lanes import Lanes
 
 LOOK = 0.05     # seconds between looks at the threads, for progress and Ctrl-C
 INTERRUPTED = "interrupted before its end"
@@ -42,19 +48,28 @@ class Work:
         Is filled.
     lock : Lock
         Held while the model is changed.
+    in_lanes : bool
+        Whether runs are made eight at a time.
     """
 
     def __init__(self, template: Simulation, image: Image, values: Mapping[str, Any],
                  outputs: Mapping[str, Output], forms: Mapping[str, Form], last: int,
-                 outcome: Outcome, lock: Lock):
+                 outcome: Outcome, lock: Lock, in_lanes: bool = False):
         self.template, self.image, self.values = template, image, values
         self.outputs, self.forms, self.last, self.outcome = outputs, forms, last, outcome
-        self._next, self._stop, self._lock = count(), Event(), lock
+        self._stop, self._lock = Event(), lock
         self._done, self._error = 0, None
         self._changes = self._differences() if self.image.linear else None
+        self._groups = (iter(alike(self._changes, MEMBERS)) if in_lanes else
+                        ([run] for run in range(outcome.runs)))
+        self._in_lanes = in_lanes
 
     def go(self, threads: int, progress: Callable[[float], None] | None) -> None:
         """Do all runs; Ctrl-C ends them, and the outcome says so."""
+        if self._in_lanes:
+            from sebody.explore.ensembles.compiling import prepare
+
+            prepare(kernels_of(self.template.model))
         workers = [Thread(target=self._work, daemon=True)
                    for _ in range(threads if self.outcome.runs > 1 else 0)]
         try:
@@ -83,14 +98,49 @@ class Work:
         """Of a thread: take runs until none is left."""
         try:
             copies = Copies(self.image) if self.image.linear else None
-            for run in self._next:
-                if run >= self.outcome.runs or self._stop.is_set():
+            lanes = self._lanes(copies)
+            while group := self._next_group():
+                if self._stop.is_set():
                     return
-                self._run(run, copies)
-                self._done += 1
+                for run in self._run_together(group, lanes) if lanes else group:
+                    self._run(run, copies)
+                    self._done += 1
         except Exception as error:      # of the program: raised by the thread that waits
             self._error = error
             self._stop.set()
+
+    def _next_group(self) -> Sequence[int]:
+        """Runs that no thread has taken yet; none if all are taken."""
+        with self._lock:
+            return next(self._groups, ())
+
+    def _lanes(self, copies: Copies | None) -> Lanes | None:
+        """The arrays of a thread for runs that are made eight at a time."""
+        if not self._in_lanes:
+            return None
+        from sebody.explore.ensembles.lanes import Lanes  # imports the lanes themselves
+
+        with self._lock:        # straight code is compiled by one thread
+            return Lanes(copies, kernels_of(self.template.model), self.outputs, self.forms,
+                         self.last)
+
+    def _run_together(self, group: Sequence[int], lanes: Lanes) -> Sequence[int]:
+        """Make some runs at a time; returns those that are to be made alone."""
+        taken, alone = [], []
+        for run in group:
+            (taken if lanes.begin(self._changes[run]) else alone).append(run)
+        gave_up = lanes.run(self._stop.is_set) if taken else None
+        if gave_up is None:         # no member, or interrupted
+            return alone
+        for run, course, failed in zip(taken, lanes.courses, gave_up, strict=True):
+            if failed:
+                alone.append(run)
+            else:
+                self._keep(run, course, lanes.time)
+        with self._lock:
+            self.outcome.in_lanes += int(np.sum(~gave_up))
+        self._done += int(np.sum(~gave_up))
+        return alone
 
     def _run(self, run: int, copies: Copies | None) -> None:
         try:
@@ -102,7 +152,11 @@ class Work:
             return
         if not ended or course.reason:
             self.outcome.failures[run] = course.reason or INTERRUPTED
-        self.outcome.reached[run] = begun.state.clock.time
+        self._keep(run, course, begun.state.clock.time)
+
+    def _keep(self, run: int, course: Course, reached: float) -> None:
+        """Put what a run gave where it belongs."""
+        self.outcome.reached[run] = reached
         for name, value in course.values().items():
             if value is None:
                 continue
@@ -132,6 +186,27 @@ class Work:
         """Values less those of the model as built, (runs, components)."""
         return np.hstack([(self.values[name] - handle.base).reshape(self.outcome.runs, -1)
                           for name, handle in self.image.handles.items()])
+
+
+def alike(changes: NDArray, count: int) -> list[Sequence[int]]:
+    """Runs in groups of some number whose parameters are close to each other.
+
+    Those that are alike need about as many iterations in a step, and matrices at the same times.
+    By the two parameters that vary most: stripes of the first are put in order by the second.
+
+    Parameters
+    ----------
+    changes : (runs, components)
+        Values of the parameters less those of the model as built.
+    """
+    runs, spread = len(changes), np.ptp(changes, axis=0)
+    first, second = (np.argsort(-spread, kind="stable").tolist() * 2)[:2]
+    order = np.argsort(changes[:, first], kind="stable")
+    stripes = max(1, round(np.sqrt(runs / count)))
+    ordered = [order[part[np.argsort(changes[order[part], second], kind="stable")]]
+               for part in np.array_split(np.arange(runs), stripes)]
+    whole = np.concatenate(ordered).tolist()
+    return [whole[k:k + count] for k in range(0, runs, count)]
 
 
 def processors() -> int:

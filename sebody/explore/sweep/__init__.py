@@ -81,7 +81,7 @@ def sweep(build: Callable[..., Any], outputs: Mapping[str, Output],
         raise InputError("nothing varies: give --vary NAME=VALUES or --sample NAME=DISTRIBUTION")
     if both := sorted(set(fixed) & set(made.columns)):
         raise InputError(f"{both[0]} varies and is set to {fixed[both[0]]}: leave out one of them")
-    plan = Plan(uuid4().hex, build, tuple(fixed.items()), tuple(outputs.items()))
+    plan = Plan(uuid4().hex, build, tuple(fixed.items()), tuple(outputs.items()), made.runs)
     structural = set(made.columns) & {*OF_RUN, *signature(build).parameters}
     check_plan(plan, made.columns, structural)
     path = None if output is None else check_target(output, "table", (".npz",))

@@ -31,6 +31,7 @@ class Plan(NamedTuple):
     build: Callable[..., Any]       # returns a Scene
     fixed: tuple[tuple[str, Any], ...]      # of the run and of `build`, that do not vary
     outputs: tuple[tuple[str, Output], ...]
+    runs: int = 1                   # of the whole sweep: the same bits in parts of any size
 
 
 class Batch(NamedTuple):
@@ -60,7 +61,7 @@ def _run(batch: Batch) -> Answer:
     """Run a batch; a model that cannot be built fails all of its runs."""
     try:
         ensemble, t_end = _ensemble(batch.plan, batch.structure)
-        outcome = ensemble.run(batch.parameters, t_end, dict(batch.plan.outputs), threads=1)
+        outcome = ensemble.part(batch.parameters, t_end, dict(batch.plan.outputs), batch.plan.runs)
     except SebodyError as error:
         count = len(batch.rows)
         return Answer(batch.rows, {}, np.full(count, np.nan),

@@ -1,0 +1,10 @@
+"""The time loop for eight members of an ensemble at a time.
+
+Of the fast way to compile alone. Importing this room puts in place what the loop's functions and
+kernels call for lanes.
+"""
+
+from sebody.engine.lanes import load_amplitudes
+from sebody.kernels.lanes import frame_search, products, rotations
+
+__all__ = ["frame_search", "load_amplitudes", "products", "rotations"]

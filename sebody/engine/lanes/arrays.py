@@ -1,0 +1,127 @@
+"""Systems and states whose numbers are lanes: the same groups, with arrays of another kind.
+
+Times, the grid and all whole numbers are the same for all members. Of the records of scalars, what
+depends on the motion is lanes; counters of theirs are floats in lanes.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, fields
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.compiler.inside.lanes import NUMPY_KIND
+from sebody.contract.counts import MEMBERS
+from sebody.engine.arrays import Arrays
+from sebody.engine.offsets import Offsets
+from sebody.engine.state import State
+from sebody.engine.system import System
+
+# floats that are the same for all members: times, and what branches are taken by
+SHARED = {"is_multiplier", "table_times", "corners", "prescribed_factor", "memory"}
+OWN_GROUPS = {"control"}        # of a system: the same for all
+# scalars of all members together; the other ones of the records are lanes
+TIMES = {"time", "step", "current_step", "factor_step", "aux_step", "chosen", "end", "beside",
+         "largest_error"}
+WHOLE = {"phase", "grid", "unit", "level", "steps", "recorded", "pivoted", "adaptive", "corner",
+         "meets", "split", "inside", "restart", "due", "held", "regularized", "cuts", "rejected"}
+_ALIGNED = 64       # bytes of a vector
+
+Group = TypeVar("Group", bound=Arrays)
+
+
+@dataclass(frozen=True, eq=False)
+class Scratch(Arrays):
+    """What an iteration keeps of members that need not be evaluated again.
+
+    ==================  ============================================================================
+    g                   forces of an evaluation, where another one follows for other members
+    frames, found       frames before an evaluation, and those it found
+    T                   tangent operators before an evaluation
+    J                   element matrices of bodies, where bodies are coupled that rotate
+    dense               (n, n) matrix that is inverted
+    ==================  ============================================================================
+    """
+
+    g: NDArray
+    frames: NDArray
+    found: NDArray
+    T: NDArray
+    J: NDArray
+    dense: NDArray
+
+
+@dataclass(frozen=True, eq=False)
+class Columns(Arrays):
+    """Recorded numbers of some steps.
+
+    ==================  ============================================================================
+    places              (c,) which numbers of `State.now`, ascending
+    rows                (records, c) their values
+    every               (1,) grid steps between records
+    ==================  ============================================================================
+    """
+
+    places: NDArray
+    rows: NDArray
+    every: NDArray
+
+
+def empty(*shape: int) -> NDArray:
+    """An array of lanes, zeros, aligned as vectors are."""
+    size = int(np.prod(shape))
+    room = np.zeros(size * MEMBERS + MEMBERS)
+    first = -room.ctypes.data % _ALIGNED // room.itemsize
+    return room[first:first + size * MEMBERS].view(NUMPY_KIND).reshape(shape)
+
+
+def numbers(array: NDArray) -> NDArray:
+    """The numbers of an array of lanes, those of the members along the last axis."""
+    return array["members"]
+
+
+def shared_places(system: System, state: State, offsets: Offsets) -> Iterator[slice]:
+    """Parts of the buffer of all numbers that members cannot have of their own."""
+    for group in (system, state):
+        for one in fields(group):
+            value = getattr(group, one.name)
+            if isinstance(value, Arrays):
+                if one.name in OWN_GROUPS:
+                    yield from (offsets.of(getattr(value, own.name)) for own in fields(value)
+                                if getattr(value, own.name).dtype == np.float64)
+            elif one.name in SHARED:
+                yield offsets.of(value)
+
+
+def in_lanes(group: Group, offsets: Offsets, buffer: NDArray) -> Group:
+    """The same group with its floats in a buffer of lanes, which get their numbers."""
+    made = {}
+    for one in fields(group):
+        value = getattr(group, one.name)
+        if isinstance(value, Arrays):
+            made[one.name] = value if one.name in OWN_GROUPS else in_lanes(value, offsets, buffer)
+        elif isinstance(value, np.record):
+            made[one.name] = _record(value)
+        elif value.dtype != np.float64 or one.name in SHARED:
+            made[one.name] = value
+        else:
+            view = buffer[offsets.of(value)].reshape(value.shape)
+            numbers(view)[...] = value[..., np.newaxis]
+            made[one.name] = view
+    return type(group)(**made)
+
+
+def _record(scalars: np.record) -> np.record:
+    """A record of the same names, whose scalars are lanes but for those of all members."""
+    kind = np.dtype([(name, own) if name in TIMES | WHOLE else (name, np.float64, (MEMBERS,))
+                     for name, (own, _) in scalars.dtype.fields.items()])
+    made = np.zeros(1, kind).view(np.recarray)[0]
+    fill(made, scalars)
+    return made
+
+
+def fill(record: np.record, scalars: np.record, names: Iterable[str] | None = None) -> None:
+    """Set the scalars of a record of lanes, the same for all members."""
+    for name in names or scalars.dtype.names:
+        record[name] = scalars[name]

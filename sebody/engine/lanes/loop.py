@@ -1,0 +1,189 @@
+"""The compiled loop for eight members with fixed steps: `sebody.engine.loop` with masks.
+
+Predictions, forces, matrices and corrections are the functions of the loop, compiled for lanes.
+What a member does next follows from its own numbers alone, so results do not depend on which
+members are run together: a member that has converged, or keeps its matrix, keeps its numbers while
+others go on. A member that the loop would have to cut the step for, or to ask Python, gives up: its
+`control.reason` is set, and it is run alone from its start.
+"""
+
+
+from sebody.compiler.decorators import compiled
+from sebody.compiler.inside.lanes import every, some, spread, where
+from sebody.contract.layout import RECORD_ITERATIONS, RECORD_T, RESIDUAL, TANGENT
+from sebody.engine.evaluate import run_kernels, set_tangent_operators, sum_forces, to_body_axes
+from sebody.engine.lanes.growth import grows
+from sebody.engine.lanes.matrix import factorize
+from sebody.engine.lanes.newton import begin_with_matrix, correct, watch_age
+from sebody.engine.matrix import solve
+from sebody.engine.state import EVALUATED, KEPT, ROTATED
+from sebody.engine.step import (
+    MEMORY,
+    ORTHOGONAL,
+    STEADY,
+    changes,
+    orthogonalize,
+    predict,
+)
+from sebody.engine.step_control import choose_part, set_end
+from sebody.engine.work import add_work
+from sebody.kernels.abi import at, pointer_to
+
+
+@compiled(nogil=True)
+def advance(system, state, scratch, record, scheme, last_grid):
+    """Run until `last_grid`, or until no member is left that has not given up."""
+    control = state.control
+    if control.steps == 0:
+        _write(state, record)
+    while control.grid < last_grid:
+        running = control.reason == 0.0
+        if not some(running):
+            return
+        if system.corners.size > 0:
+            choose_part(system, state)
+        _begin_step(system, state, scheme)
+        _iterate(system, state, scratch, scheme, running)
+        add_work(system, state, state.clock.current_step)
+        control.reason = where(grows(system, state, scratch) & (control.reason == 0.0), spread(1.0),
+                               control.reason)
+        _accept(system, state, record)
+
+
+@compiled(forceinline=True)
+def _begin_step(system, state, scheme):
+    control, clock = state.control, state.clock
+    set_end(system, state)
+    offset = clock.current_step / clock.aux_step
+    constant, bend = changes(system, state)
+    kept = (control.fresh == 0.0) & (control.wanted == float(KEPT))
+    steady = kept & (bend < STEADY * STEADY * constant)
+    follow = where(steady, spread(1.0), spread(0.0))
+    predict(system, state, scheme, follow, offset)
+    begin_with_matrix(state)
+    control.iteration = spread(0.0)
+    clock.last_norm = spread(0.0)
+
+
+@compiled(forceinline=True)
+def _iterate(system, state, scratch, scheme, active):
+    """Newton's iteration of a step, until every member has converged or given up."""
+    control = state.control
+    n = system.diagonal.size
+    iteration = 0
+    while some(active):
+        evaluated = active & (control.wanted == float(EVALUATED))
+        wanted = evaluated | (active & (control.wanted == float(ROTATED)))
+        _evaluate(system, state, scratch, active, wanted, evaluated)
+        to_body_axes(system, state.frames, state.residual, False)
+        if some(wanted):
+            active = active & ~factorize(system, state, scratch.dense, wanted, evaluated)
+        solve(system, state, True)
+        for i in range(n):
+            state.correction[i] = where(active, state.correction[i], spread(0.0))
+        active = correct(system, state, scheme, active, iteration)
+        iteration += 1
+
+
+@compiled(forceinline=True)
+def _evaluate(system, state, scratch, active, wanted, evaluated):
+    """Evaluate forces, and the element matrices that members want.
+
+    Those that want their matrix rotated keep the matrices of the bodies. Members that have
+    converged keep their frames.
+    """
+    bodies, batches = system.first_joint[0], system.address.size
+    frames, T, J, old_J = state.frames, state.T, state.J, scratch.J
+    if some(evaluated):
+        for k in range(T.size):
+            scratch.T[k] = T[k]
+        set_tangent_operators(system, state)
+        for k in range(T.size):
+            T[k] = where(evaluated, T[k], scratch.T[k])
+        if system.linked[0] == 1:
+            for k in range(old_J.size):
+                old_J[k] = J[k]
+    for k in range(frames.size):
+        scratch.frames[k] = frames[k]
+    _evaluate_part(system, state, scratch, active, evaluated, 0, bodies)
+    _evaluate_part(system, state, scratch, active, wanted, bodies, batches)
+    for k in range(frames.size):
+        frames[k] = where(active, frames[k], scratch.frames[k])
+    if some(evaluated) and system.linked[0] == 1:
+        for k in range(old_J.size):
+            J[k] = where(evaluated, J[k], old_J[k])
+    sum_forces(system, state, state.residual)
+    if some(wanted) and system.links.dependent.shape[0] > 0:
+        for i in range(state.residual.size):
+            state.forces[i] = state.residual[i]
+
+
+@compiled
+def _evaluate_part(system, state, scratch, active, wanted, first, last):
+    """Evaluate some batches, with matrices where they are wanted.
+
+    Forces beside matrices are rounded differently from forces alone, so members that want no matrix
+    have theirs evaluated alone.
+    """
+    frames, begun, g, kept = state.frames, scratch.frames, state.g, scratch.g
+    if some(wanted):
+        run_kernels(TANGENT, first, last, system, state)
+    if every(wanted | ~active):
+        return
+    if not some(wanted):
+        run_kernels(RESIDUAL, first, last, system, state)
+        return
+    for k in range(system.at_g[first], system.at_g[last]):
+        kept[k] = g[k]
+    of_bodies = frames.size if first == 0 else 0        # others do not change them
+    for k in range(of_bodies):
+        scratch.found[k] = frames[k]
+        frames[k] = begun[k]
+    run_kernels(RESIDUAL, first, last, system, state)
+    for k in range(system.at_g[first], system.at_g[last]):
+        g[k] = where(wanted, kept[k], g[k])
+    for k in range(of_bodies):
+        frames[k] = where(wanted, scratch.found[k], frames[k])
+
+
+@compiled(forceinline=True)
+def _accept(system, state, record):
+    """End a step: orthogonal rotations, output."""
+    clock, control = state.clock, state.control
+    if control.steps % ORTHOGONAL == 0:
+        for r in range(system.rotation_at.size):
+            orthogonalize(at(pointer_to(state.R), 9 * r))
+    watch_age(state)
+    control.back_off = where(control.fresh == 0.0, spread(0.0), control.back_off)
+    clock.acceleration_norm *= MEMORY
+    control.steps += 1
+    control.grid += 1
+    clock.time = control.grid * clock.step
+    if control.grid % record.every[0] == 0:
+        _write(state, record)
+
+
+@compiled(forceinline=True)
+def _write(state, record):
+    """Store the numbers of the accepted state that are asked for."""
+    row = state.control.recorded
+    state.now[RECORD_T] = spread(state.clock.time)
+    state.now[RECORD_ITERATIONS] = state.control.iterations
+    for k in range(record.places.size):
+        record.rows[row, k] = state.now[record.places[k]]
+    state.control.recorded = row + 1
+
+
+@compiled(nogil=True)
+def take_member(floats, places, member, lanes):
+    """Set the numbers of one member at some places of a buffer of lanes, (size, members)."""
+    for k in range(places.size):
+        lanes[places[k], member] = floats[places[k]]
+
+
+@compiled(nogil=True)
+def rows_of(table, member, rows):
+    """Recorded states of one member from those of all, (records, numbers, members)."""
+    for k in range(rows.shape[0]):
+        for i in range(rows.shape[1]):
+            rows[k, i] = table[k, i, member]

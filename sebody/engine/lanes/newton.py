@@ -1,0 +1,134 @@
+"""Corrections, convergence and when to refactorize, member by member: `sebody.engine.newton`."""
+
+from sebody.compiler.decorators import compiled
+from sebody.compiler.inside.lanes import some, spread, where
+from sebody.engine.newton import (
+    ACCELERATION_TOLERANCE,
+    ASTRAY,
+    BASELINE_STEPS,
+    FASTEST,
+    LONGEST_BACK_OFF,
+    MAX_ITERATIONS,
+    MOST_MATRICES,
+    OLDEST,
+    POOR,
+    REFACTORIZATION_COST,
+    ROTATED_COST,
+    ROUNDED,
+    SLOWEST,
+    UNSURE,
+    norms,
+    subtract,
+)
+from sebody.engine.state import EVALUATED, KEPT, ROTATED
+
+HUGE = 1e300            # a norm above this is no number, or as good as none
+GAVE_UP = 1.0           # reason of a member that is to be run alone
+
+
+@compiled(forceinline=True)
+def correct(system, state, scheme, active, iteration):
+    """Subtract the correction of the active members; returns those that have to go on."""
+    clock, control, h = state.clock, state.control, state.clock.current_step
+    norm, size, accelerations = norms(system, state, system.diagonal.size)
+    failed = active & ~(norm < HUGE)
+    subtract(system, state, scheme, system.diagonal.size)
+    accelerations = max(scheme.beta * h * h * accelerations, clock.acceleration_norm)
+    target = min(scheme.tolerance * size,
+                 ACCELERATION_TOLERANCE * scheme.tolerance * accelerations) + clock.floor
+    clock.acceleration_norm = where(active, accelerations, clock.acceleration_norm)
+    rate, last = clock.contraction, clock.last_norm
+    if iteration == 0:
+        clock.span = where(active, norm / target, clock.span)     # of which the loop has the log
+    else:
+        rate = where(active & (last > 0.0), norm / last, rate)
+        clock.contraction = rate
+    count = where(active, spread(1.0), spread(0.0))
+    control.iteration += count
+    control.iterations += count
+    clock.last_norm = where(active, norm, last)
+    rate = min(max(rate, spread(UNSURE if iteration == 0 else FASTEST)), spread(SLOWEST))
+    done = active & (rate / (1.0 - rate) * norm <= target)
+    if some(done):
+        failed = failed | (done & _strayed(system, state, scheme))
+    left = active & ~done & ~failed
+    if some(left):
+        if iteration > 2:       # where new matrices do not help, what is left is rounding
+            hopeless = left & (control.fresh > 2.0) & (rate > 0.9)
+            failed = failed | (hopeless & ~(norm <= ROUNDED * target))
+            left = left & ~hopeless
+        if iteration >= MAX_ITERATIONS - 1:
+            failed = failed | left
+        if iteration > 0:
+            _want_matrices(system, state, left, rate, norm, target, iteration)
+    control.reason = where(failed, spread(GAVE_UP), control.reason)
+    return left & ~failed
+
+
+@compiled(forceinline=True)
+def begin_with_matrix(state):
+    """Choose which members factorize before their first iteration, and from which matrices."""
+    control = state.control
+    control.fresh = spread(0.0)
+    if state.clock.factor_step != state.clock.current_step:
+        control.wanted = spread(float(EVALUATED))
+    rotated = (control.wanted == float(KEPT)) & (control.back_off_left > 0.0)
+    control.back_off_left = where(rotated, control.back_off_left - 1.0, control.back_off_left)
+    control.wanted = where(rotated, spread(float(ROTATED)), control.wanted)
+
+
+@compiled(forceinline=True)
+def _want_matrices(system, state, left, rate, norm, target, iteration):
+    """Ask for matrices where the iterations to come cost more: the loop compares logarithms."""
+    control, rest = state.control, MAX_ITERATIONS - iteration - 1
+    rotated = left & (control.fresh == 0.0) & (spread(float(system.linked[0])) == 1.0)
+    few = many = norm
+    for _ in range(min(int(ROTATED_COST), rest)):
+        few = few * rate
+    for _ in range(min(int(REFACTORIZATION_COST), rest)):
+        many = many * rate
+    slow = left & (control.fresh < float(MOST_MATRICES)) & (
+        (rate > POOR) | (where(rotated, few, many) > target))
+    rotated = slow & rotated
+    control.back_off = where(rotated, min(2.0 * control.back_off + 1.0,
+                                          spread(float(LONGEST_BACK_OFF))), control.back_off)
+    control.back_off_left = where(rotated, control.back_off, control.back_off_left)
+    control.wanted = where(slow, where(rotated, spread(float(ROTATED)), spread(float(EVALUATED))),
+                           control.wanted)
+
+
+@compiled
+def _strayed(system, state, scheme):
+    """Which members end their step far from where their rates led."""
+    reach = ASTRAY / (scheme.beta * state.clock.current_step * state.clock.current_step)
+    strayed = spread(0.0) > 1.0
+    for i in range(system.diagonal.size):
+        strayed = strayed | ((system.magnitude[i] > 0.0) & (
+            abs(state.aux[i] - state.aux_old[i]) > reach * system.magnitude[i]))
+    return strayed
+
+
+@compiled(forceinline=True)
+def watch_age(state):
+    """Ask for new element matrices once the old ones have cost as much as a refactorization."""
+    clock, control = state.clock, state.control
+    control.age += 1.0
+    old = control.age > float(OLDEST)
+    counted = control.iteration >= 2.0
+    young = counted & (control.age <= float(BASELINE_STEPS))
+    clock.baseline_contraction = where(
+        young, min(clock.baseline_contraction, max(clock.contraction, spread(FASTEST))),
+        clock.baseline_contraction)
+    grown = counted & ~young
+    if some(grown):
+        # iterations that the baseline rate would have needed: one, and one for every factor
+        needed, left = spread(1.0), clock.span
+        for _ in range(MAX_ITERATIONS):
+            more = left > 1.0
+            if not some(more & grown):
+                break
+            needed, left = where(more, needed + 1.0, needed), left * clock.baseline_contraction
+        lost = max(control.iteration - needed, spread(0.0))
+        clock.excess = where(grown, clock.excess + lost, clock.excess)
+        old = old | (grown & (clock.excess > REFACTORIZATION_COST))
+    control.wanted = where(old, spread(float(EVALUATED)), control.wanted)

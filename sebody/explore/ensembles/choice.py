@@ -1,0 +1,97 @@
+"""Whether the runs of an ensemble are made eight at a time or one by one: a table of facts.
+
+The choice depends on the model, its parameters and the number of steps of all runs, never on which
+runs are asked for together or on what was compiled before: a run has the same bits in both.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from sebody.compiler import choice
+from sebody.contract.layout import INPUT
+from sebody.explore.ensembles.start_values import Image
+from sebody.kernels.loader import BY_HAND, element_kernel_name
+from sebody.model.model import Model
+from sebody.runs.simulation import Simulation
+
+WORTH_IT = 500_000      # steps of all runs together, a second or more one by one
+# frames whose search has no version for lanes, and elements that choose by their numbers, as parts
+# of the names of kernels
+NOT_IN_LANES = ("mean_axes", "positions", "_mean_material", "_mean_small", "load_mean", "stop",
+                "friction", "play", "point_on_", "sphere_on_")
+
+
+class Fact(NamedTuple):
+    """Something that lets runs be made one by one alone."""
+
+    reason: str
+    holds: Callable[[Simulation], bool]
+
+
+FACTS = (
+    Fact("more unknowns than an inverse is kept for", lambda one: not one.dense),
+    Fact("constraints that are redundant, or motions without mass",
+         lambda one: bool(one.system.regularized[0] or one.system.massless[0])),
+    Fact("constraints that hold for velocities, too", lambda one: one.scheme.stabilized),
+    Fact("contacts, stops or friction",
+         lambda one: one.system.guarded.size > 0 or _keeps_numbers(one)),
+    Fact("sensors, controllers or inputs", lambda one: bool(
+        one.system.control.periods.size or one.system.control.inputs.size
+        or (one.system.functions[:, 0] == INPUT).any())),
+    Fact("loads at whose jumps accelerations are solved for anew",
+         lambda one: bool(one.system.jumps.any())),
+    Fact("kernels without a version for lanes",
+         lambda one: any(not _has_lanes(name) for name in kernels_of(one.model))),
+)
+
+
+def why_one_by_one(template: Simulation) -> str:
+    """Why the runs of a model are made one by one; empty where they can be made eight at a time.
+
+    Parameters
+    ----------
+    template : Simulation
+        Of the model as built.
+    """
+    if choice.way().__name__ == "sebody.compiler.plain":
+        return "the plain way to compile"
+    if "+avx2" not in choice.way().processor()[1].split(","):
+        return "a processor without AVX2"
+    for fact in FACTS:
+        if fact.holds(template):
+            return fact.reason
+    return ""
+
+
+def can_be_together(image: Image) -> bool:
+    """Whether runs with some parameters can be made eight at a time, if those of the model can.
+
+    Not if the model is built anew for each run, or members differ in what lanes have in common.
+    """
+    if not image.linear:
+        return False
+    from sebody.engine.lanes.arrays import shared_places  # imports the lanes
+
+    one, slots = image.template, image.lines.slots
+    return not any(np.any((slots >= part.start) & (slots < part.stop))
+                   for part in shared_places(one.system, one.state, image.offsets))
+
+
+def kernels_of(model: Model) -> list[str]:
+    """Names of the kernels of a model."""
+    elements = (*model.rigid_bodies.values(), *model.constraints, *model.loads)
+    return sorted({body.kernel for body in model.bodies.values()}
+                  | {element_kernel_name(element.kind) for element in elements})
+
+
+def _has_lanes(kernel: str) -> bool:
+    return kernel not in BY_HAND and ("_converged_mean_" in kernel
+                                      or not any(part in kernel for part in NOT_IN_LANES))
+
+
+def _keeps_numbers(one: Simulation) -> bool:
+    """Whether elements keep numbers from step to step, by which they choose."""
+    return one.state.frames.size > 9 * len(one.model.bodies)
+

@@ -1,0 +1,58 @@
+"""What the first ensemble in lanes compiles, side by side in several processes."""
+
+from collections.abc import Iterable
+from pathlib import Path
+from threading import Lock
+
+import numpy as np
+from numba import typeof, types
+
+from sebody.assembly.allocation import allocate
+from sebody.assembly.build import build
+from sebody.compiler.choice import way
+from sebody.compiler.first_run import Job, compile_apart
+from sebody.compiler.workers import Task
+from sebody.engine.lanes import loop
+from sebody.engine.lanes.arrays import Columns, Scratch, empty, in_lanes
+from sebody.engine.offsets import Offsets
+from sebody.kernels.lanes.kernel import address_in_lanes, is_compiled
+from sebody.kernels.loader import find, load
+from sebody.model.model import Model
+from sebody.runs.schemes import generalized_alpha
+
+LOOP_SECONDS = 7.0              # of one processor
+SECONDS_A_LETTER = 7e-5         # of a kernel's file
+
+_lock = Lock()
+
+
+def prepare(kernels: Iterable[str]) -> None:
+    """Compile kernels and the loop for lanes where the cache lacks them; a line says so."""
+    with _lock:
+        missing = [name for name in kernels if not is_compiled(find(name))]
+        jobs = [Job(Task(f"{name} in lanes", f"{__name__}:compile_kernel", (name,)),
+                    SECONDS_A_LETTER * find(name).stat().st_size) for name in missing]
+        if not way().is_compiled(loop.advance):
+            jobs.append(Job(Task("loop in lanes", f"{__name__}:compile_loop"), LOOP_SECONDS))
+        compile_apart(jobs, "what makes eight runs at a time", Path(loop.__file__))
+
+
+def compile_kernel(name: str) -> None:
+    """Compile a kernel for lanes here, or find it in the cache."""
+    address_in_lanes(load(name))
+
+
+def compile_loop() -> None:
+    """The same of the loop, for the types of a small model's arrays: those of every model."""
+    model = Model(planar=True)
+    model.node("point", (0.0, 0.0))
+    model.rigid_body("mass", "point", 1.0, 1.0)
+    system, numbering = build(model)
+    state = allocate(model, system, numbering, 1.0, True)
+    offsets = Offsets(system, state)
+    buffer = empty(offsets.size)
+    scratch = Scratch(*(empty(1) for _ in range(5)), dense=empty(1, 1))
+    columns = Columns(np.zeros(1, dtype=np.int64), empty(1, 1), np.zeros(1, dtype=np.int64))
+    given = (in_lanes(system, offsets, buffer), in_lanes(state, offsets, buffer), scratch, columns,
+             generalized_alpha())
+    way().compile_for(loop.advance, (*map(typeof, given), types.int64))

@@ -1,0 +1,239 @@
+"""Runs eight at a time: each equals a single run, in whatever company it is made."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
+
+from sebody import Model, generalized_alpha, simulate
+from sebody.analysis import Ensemble, at_time, final, maximum
+from sebody.catalogue import builder
+from sebody.compiler.choice import way
+from sebody.explore.ensembles import ensemble
+from sebody.explore.ensembles.handles import handle
+from sebody.explore.ensembles.work import alike
+from sebody.fem import Section, straight_beam
+from sebody.reduction import craig_bampton
+
+H, T_END = 2e-3, 0.06
+TURN = Rotation.from_rotvec((0.4, -0.7, 0.5)).as_matrix()
+SECTION = Section(area=9.0, inertia_y=6.75, inertia_z=5.1, torsion=11.387, youngs_modulus=2.1e6,
+                  poisson_ratio=0.3, density=7.8e-3)
+RUNS = 11       # one group of eight, and one that is not full
+OUTPUTS = {"end": final("tip.position"), "most": maximum("tip.velocity"), "course": "tip.position",
+           "late": at_time("tip.velocity", 0.041)}
+
+pytestmark = pytest.mark.skipif(
+    way().__name__.endswith("plain"), reason="the plain way makes runs one by one")
+
+
+@pytest.fixture
+def small(monkeypatch):
+    """Ensembles of few steps are made in lanes, too."""
+    monkeypatch.setattr(ensemble, "WORTH_IT", 0)
+
+
+def turned_beam() -> Model:
+    """A beam on a turned hinge far from the origin, with gravity, a tip mass and a motor."""
+    end = np.array([3.0, -2.0, 1.0]) + TURN @ (100.0, 0, 0)
+    body = craig_bampton(straight_beam((3.0, -2.0, 1.0), end, SECTION, elements=6),
+                         [(0, "full"), (6, "full")], modes=4)
+    made = Model()
+    base, tip = (made.node(name, point) for name, point in zip(("base", "tip"), body.coordinates,
+                                                               strict=True))
+    made.superelement("beam", body, [base, tip], inertia="material")
+    made.point_mass("weight", tip, 0.5)
+    made.gravity((0.0, -3.0, 9.0))
+    made.revolute(base, axis=TURN @ (0, 0, 1), name="hinge")
+    made.torque(base, TURN @ (0, 0, 1), [(0, 0), (0.01, 9e3), (0.02, 2e3)], name="motor")
+    return made
+
+
+@pytest.fixture(scope="module")
+def beam() -> Ensemble:
+    return Ensemble(turned_beam(), H)
+
+
+def parameters(runs: int = RUNS, seed: int = 3) -> dict:
+    rng = np.random.default_rng(seed)
+    return {"beam.stiffness": rng.uniform(0.6, 1.6, runs), "weight.mass": rng.uniform(0.3, 3, runs),
+            "motor.amplitude": rng.uniform(-1.0, 2.0, runs)}
+
+
+def single(model: Model, values: dict, h: float, t_end: float):
+    """The run of a model with some quantities set, by `simulate`."""
+    handles = [handle(model, name) for name in values]
+    for one, value in zip(handles, values.values(), strict=True):
+        one.set(np.asarray(value, dtype=float))
+    try:
+        return simulate(model, h, t_end)
+    finally:
+        for one in handles:
+            one.reset()
+
+
+def assert_same(found, other, runs=slice(None)):
+    """Equal bit by bit."""
+    for name, values in found.values.items():
+        np.testing.assert_array_equal(values, other.values[name][runs])
+
+
+def test_members_equal_single_runs(beam, small):
+    """Unequal members of a turned model, with outputs that are folded and whole histories."""
+    given = parameters()
+    found = beam.run(given, T_END, OUTPUTS)
+    assert found.in_lanes == RUNS and not found.failures
+    assert np.all(found.reached == pytest.approx(T_END, rel=1e-12))
+    for run in range(RUNS):
+        result = single(turned_beam(), {name: v[run] for name, v in given.items()}, H, T_END)
+        # both stop Newton's iteration at the same iterate: they differ by rounding, which a run
+        # of 30 steps amplifies by less than 1e3
+        scale = np.abs(result["tip.position"]).max()
+        assert np.abs(found["course"][run] - result["tip.position"]).max() < 1e-12 * scale
+        speed = np.abs(result["tip.velocity"]).max()
+        assert np.abs(found["most"][run] - result["tip.velocity"].max(axis=0)).max() < 1e-10 * speed
+
+
+def test_bits_do_not_depend_on_company_order_or_threads(beam, small):
+    """Alone, among others, in another order, in two threads: the same bits."""
+    given = parameters(2 * RUNS, seed=8)
+    whole = beam.run(given, T_END, OUTPUTS, threads=1)
+    assert whole.in_lanes == 2 * RUNS
+    assert_same(beam.run(given, T_END, OUTPUTS, threads=2), whole)
+    order = np.random.default_rng(0).permutation(2 * RUNS)
+    for some in (order, order[:5], order[7:8]):
+        part = beam.run({name: v[some] for name, v in given.items()}, T_END, OUTPUTS)
+        assert part.in_lanes == len(some)
+        assert_same(part, whole, some)
+
+
+def test_what_is_made_together_does_not_depend_on_the_parts_asked_for(beam, monkeypatch):
+    """A part of a sweep is made as all of it is, an ensemble by its own steps."""
+    monkeypatch.setattr(ensemble, "WORTH_IT", 100 * T_END / H)
+    given = parameters()
+    assert beam.run(given, T_END, OUTPUTS).in_lanes == 0
+    assert beam.part(given, T_END, OUTPUTS, 99).in_lanes == 0
+    assert beam.part(given, T_END, OUTPUTS, 101).in_lanes == RUNS
+
+
+def test_a_member_that_fails_keeps_its_reason_and_harms_no_other(beam, small):
+    """A torque that the step does not resolve: it stops where a run alone stops."""
+    given = parameters()
+    good = beam.run(given, T_END, OUTPUTS)
+    given["motor.amplitude"][[2, 9]] = 3e4, -4e4
+    found = beam.run(given, T_END, OUTPUTS)
+    others = np.setdiff1d(np.arange(RUNS), [2, 9])
+    assert found.in_lanes == len(others)
+    assert_same(beam.run({name: v[others] for name, v in given.items()}, T_END, OUTPUTS), good,
+                others)
+    for name, values in found.values.items():
+        np.testing.assert_array_equal(values[others], good.values[name][others])
+    alone = Ensemble(turned_beam(), H)
+    ensemble.WORTH_IT, kept = np.inf, ensemble.WORTH_IT
+    try:
+        expected = alone.run(given, T_END, OUTPUTS)
+    finally:
+        ensemble.WORTH_IT = kept
+    assert found.failures == expected.failures
+    for run in (2, 9):
+        assert found.reached[run] == expected.reached[run]
+        np.testing.assert_array_equal(found["course"][run], expected["course"][run])
+
+
+def test_members_agree_with_an_independent_integration(small):
+    """A planar pendulum of a rigid body, large angles, against the equation of its angle.
+
+    The scheme is of second order: a third of the step leaves a ninth of the error.
+    """
+    mass, inertia, arm, foot = 2.0, 0.7, 0.9, np.array([0.4, -0.2])
+    made = Model(planar=True)
+    hinge = made.node("hinge", foot)
+    made.fix(hinge, "position")
+    made.rigid_body("body", hinge, mass, inertia, foot + (arm, 0.0))
+    made.attach("tip", foot + (1.5 * arm, 0.0), hinge)      # a rigid link
+    fields = np.outer(np.linspace(0.5, 1.5, 9), (0.3, -9.81))
+
+    def turned(field):
+        def rate(t, y):
+            moment = mass * arm * (np.cos(y[0]) * field[1] - np.sin(y[0]) * field[0])
+            return y[1], moment / (inertia + mass * arm * arm)
+        angle = solve_ivp(rate, (0, 1.2), (0.0, 0.0), rtol=1e-11, atol=1e-12).y[0, -1]
+        return foot + 1.5 * arm * np.array([np.cos(angle), np.sin(angle)])
+
+    expected, errors = [turned(field) for field in fields], []
+    for h in (6e-3, 2e-3):
+        found = Ensemble(made, h).run({"gravity": fields}, 1.2, {"end": final("tip.position")})
+        assert found.in_lanes == 9
+        errors.append(np.abs(found["end"] - expected).max())
+    assert errors[1] < 1e-3
+    assert errors[0] / errors[1] == pytest.approx(9.0, rel=0.15)
+
+
+def test_neighbours_are_alike():
+    """Groups have every run once, and runs of a group differ less than runs by chance."""
+    rng = np.random.default_rng(5)
+    changes = rng.uniform(size=(403, 3)) * (1.0, 3.0, 0.1)
+    groups = alike(changes, 8)
+    assert sorted(run for group in groups for run in group) == list(range(403))
+    assert {len(group) for group in groups} == {8, 3}
+    within = np.mean([np.ptp(changes[group], axis=0)[:2] / (1.0, 3.0) for group in groups])
+    assert within < 0.3         # by chance (8 - 1) / (8 + 1)
+
+
+def linkage() -> Model:
+    """A planar crank, coupler of option C and rocker in general position, driven by a torque."""
+    made = Model(planar=True)
+    crank = made.node("crank", (0.3, -0.1))
+    made.fix(crank, "position")
+    made.rigid_body("wheel", crank, 1.3, 0.05, (0.35, -0.06))
+    pin = made.attach("pin", (0.55, 0.2), crank)
+    foot = made.node("foot", pin.point, at=pin)
+    tip = made.node("tip", (1.6, 0.9))
+    section = Section(area=4e-4, inertia_y=1.4e-8, inertia_z=1.4e-8, torsion=2.2e-8,
+                      youngs_modulus=7e10, poisson_ratio=0.3, density=2.7e3)
+    made.beam("rod", (foot, tip), section, elements=4, bodies=1, modes=2)
+    rocker = made.node("rocker", (1.8, -0.2))
+    made.fix(rocker, "position")
+    made.rigid_body("arm", rocker, 0.8, 0.09, (1.7, 0.3))
+    made.spherical(made.attach("elbow", tip.point, rocker), tip)
+    wall = made.node("wall", (2.5, 1.5))
+    made.fix(wall)
+    made.spring(tip, wall, stiffness=30.0, damping=0.4, name="spring")
+    made.torque(crank, 1.0, [(0, 0.5), (0.1, 2.0)], name="motor")
+    made.gravity((0.4, -9.81))
+    return made
+
+
+def test_coupled_and_linked_bodies(small):
+    """A four-bar: multipliers, rigid links, matrices that are rotated, packed products of option C.
+
+    Members in another order, and each as a single run.
+    """
+    rng = np.random.default_rng(7)
+    given = {"spring.stiffness": rng.uniform(5, 90, 9), "motor.amplitude": rng.uniform(-1, 4, 9),
+             "gravity": rng.uniform(-12, 12, (9, 2))}
+    outputs = {"end": "tip.position", "energy": final("energy.strain")}
+    four_bar = Ensemble(linkage(), 4e-3)
+    found = four_bar.run(given, 0.3, outputs)
+    assert found.in_lanes == 9 and "eight at a time" in repr(four_bar)
+    back = four_bar.run({name: v[::-1] for name, v in given.items()}, 0.3, outputs)
+    assert_same(back, found, slice(None, None, -1))
+    for run in range(0, 9, 4):
+        result = single(linkage(), {name: v[run] for name, v in given.items()}, 4e-3, 0.3)
+        # of a size of 2: rounding, amplified by 75 steps of a mechanism
+        assert np.abs(found["end"][run] - result["tip.position"]).max() < 1e-11
+        assert found["energy"][run] == pytest.approx(result["energy.strain"][-1], rel=1e-7)
+
+
+
+@pytest.mark.parametrize("scene, options, scheme, reason", [
+    ("chain", {"links": 3}, None, "more unknowns"), ("stick-slip", {}, None, "friction"),
+    ("heavy-top", {"explicit": True}, generalized_alpha(index=2), "velocities")])
+def test_the_ensemble_says_why_its_runs_are_made_one_by_one(scene, options, scheme, reason, small):
+    """By facts of the model; its runs are those of the scalar loop."""
+    built = builder(scene)(**options)
+    found = Ensemble(built.model, built.h, scheme)
+    assert "runs one by one" in repr(found) and reason in repr(found)
+    outcome = found.run({"gravity": np.ones((2, 1)) * built.model.gravity_field}, 2 * built.h,
+                        {"end": final(f"{built.tip}.position")})
+    assert outcome.in_lanes == 0 and not outcome.failures
