@@ -14,6 +14,7 @@ import pytest
 from numba import config
 
 from sebody.compiler import store
+from sebody.compiler.choice import way
 
 PROGRAM = '''
 import sys
@@ -227,3 +228,29 @@ def test_files_made_from_something_else_are_passed_over(without_named, tmp_path)
     store.write(source, "name", "new", b"2")
     assert list(store.read(source, "name", "old")) == [b"1"]
     assert list(store.read(source, "name", "new")) == [b"2"]
+
+
+OPERATORS = """
+import operator
+from sebody.compiler.decorators import compiled
+from sebody.compiler.inside.names import cpu_target
+
+@compiled
+def turned(x):
+    return -x
+
+turned(2.0)
+context = cpu_target.typing_context
+found = context.resolve_value_type(operator.neg)
+import sebody.compiler.inside.lanes     # as where kept code has signatures of lanes
+context.refresh()
+print(context.resolve_value_type(operator.neg) is found)
+"""
+
+
+def test_operators_of_lanes_are_known_before_anything_is_compiled(program):
+    """Kept code imports them: while a function is compiled, its operators would become others."""
+    if way().__name__.endswith("plain"):
+        pytest.skip("the plain way has no lanes")
+    program.write_text(OPERATORS)
+    assert run(program)[0] == "True"

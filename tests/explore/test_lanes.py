@@ -237,3 +237,32 @@ def test_the_ensemble_says_why_its_runs_are_made_one_by_one(scene, options, sche
     outcome = found.run({"gravity": np.ones((2, 1)) * built.model.gravity_field}, 2 * built.h,
                         {"end": final(f"{built.tip}.position")})
     assert outcome.in_lanes == 0 and not outcome.failures
+
+
+def test_a_member_without_a_start_and_steps_after_the_last_record(beam, small):
+    """The last member that begins has no accelerations; 30 steps, every seventh is recorded."""
+    given = parameters(5)
+    given["gravity"] = np.tile(turned_beam().gravity_field, (5, 1))
+    given["gravity"][4] = 1e160
+    outputs = OUTPUTS | {"energy": "energy.strain", "strained": maximum("energy.strain")}
+    seventh = Ensemble(turned_beam(), H, output_every=7)
+    found = seventh.run(given, T_END, outputs)
+    assert found.in_lanes == 4 and list(found.failures) == [4]
+    assert "no accelerations" in found.failures[4]
+    ensemble.WORTH_IT = np.inf      # the fixture puts it back
+    expected = seventh.run(given, T_END, outputs)
+    assert found.failures == expected.failures and expected["energy"].shape == (5, 5)
+    for name, values in found.values.items():
+        size = np.abs(expected[name][:4]).max()
+        assert np.abs(values[:4] - expected[name][:4]).max() < 1e-10 * size
+
+
+def test_long_groups_look_whether_they_are_to_stop(beam, small, monkeypatch):
+    """Few records of many steps: interrupted between these, with the numbers of single runs."""
+    monkeypatch.setattr("sebody.explore.ensembles.lanes.MOST_STEPS", 4)
+    fifteenth, given = Ensemble(turned_beam(), H, output_every=15), parameters(3)
+    outputs = {"course": "tip.position", "most": maximum("tip.velocity")}
+    found = fifteenth.run(given, T_END, outputs, threads=1)
+    monkeypatch.setattr("sebody.explore.ensembles.lanes.MOST_STEPS", 10**6)
+    assert found.in_lanes == 3
+    assert_same(found, fifteenth.run(given, T_END, outputs, threads=1))

@@ -70,7 +70,12 @@ class TypeInference(NopythonTypeInference):
 
     def run_pass(self, state):
         """Infer types."""
+        # Kept code may have signatures of lanes, whose operators would come while this function is
+        # compiled: what is lowered would not be what was inferred. 10 ms that most runs do not need
+        import sebody.compiler.inside.lanes  # noqa: F401
+
         context = state.typingctx
+        context.refresh()
         state.typingctx = _Remembering(context)
         try:
             return super().run_pass(state)

@@ -49,14 +49,15 @@ def correct(system, state, scheme, active, iteration):
     clock.last_norm = where(active, norm, last)
     rate = min(max(rate, spread(UNSURE if iteration == 0 else FASTEST)), spread(SLOWEST))
     done = active & (rate / (1.0 - rate) * norm <= target)
+    if iteration > 2:       # where new matrices do not help, what is left is rounding
+        hopeless = active & ~done & (control.fresh > 2.0) & (rate > 0.9)
+        rounded = norm <= ROUNDED * target
+        failed = failed | (hopeless & ~rounded)
+        done = done | (hopeless & rounded)
     if some(done):
         failed = failed | (done & _strayed(system, state, scheme))
     left = active & ~done & ~failed
     if some(left):
-        if iteration > 2:       # where new matrices do not help, what is left is rounding
-            hopeless = left & (control.fresh > 2.0) & (rate > 0.9)
-            failed = failed | (hopeless & ~(norm <= ROUNDED * target))
-            left = left & ~hopeless
         if iteration >= MAX_ITERATIONS - 1:
             failed = failed | left
         if iteration > 0:

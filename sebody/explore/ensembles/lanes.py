@@ -19,6 +19,7 @@ from sebody.kernels.lanes.straight import write_address
 from sebody.kernels.loader import load
 
 MOST_NUMBERS = 8_000        # of recorded states at a time: they stay in the processor's cache
+MOST_STEPS = 20_000         # until a thread looks whether it is to stop: tenths of a second
 ALONE = 1.0         # reason of a lane without a member
 
 
@@ -67,7 +68,7 @@ class Lanes:
         rows = (self._stretch + 1, len(columns))
         self._record = Columns(places=columns, rows=empty(*rows), every=np.array([one.every]))
         self._rows = np.empty(rows)
-        self._last, self._begun = last, []
+        self._last, self._begun = last, {}
         self._outputs, self._changes = outputs, []
         self._evaluated = not all(form.kinematic for form in forms.values())
         self._folds = {name: Folds(one, forms[one.quantity].shape,
@@ -115,6 +116,8 @@ class Lanes:
         except InputError:      # told where it is run alone
             return False
         if begun:
+            if not self._begun:
+                self._keep_begun()
             self._take(len(self._changes))
             self._changes.append(change)
         return begun
@@ -143,7 +146,8 @@ class Lanes:
         state.control["reason"] = np.where(np.arange(MEMBERS) < count, 0.0, ALONE)
         every, reached = int(self._record.every[0]), 0
         while reached < self._last:
-            reached = min(self._last, (reached // every + self._stretch) * every)
+            reached = min(self._last, (reached // every + self._stretch) * every,
+                          reached + MOST_STEPS)
             state.control["recorded"] = 0
             loop.advance(self.system, state, self._scratch, self._record, self.copies.scheme,
                          reached)
@@ -167,15 +171,17 @@ class Lanes:
                 loop.rows_of(table, member, rows)
                 self.courses[member].take(rows)
 
+    def _keep_begun(self) -> None:
+        """Keep the scalars and counters of the member that has begun; failed starts have others."""
+        for name in ("control", "clock", "guard"):
+            record = getattr(self.state, name)
+            fill(record, getattr(self.copies.state, name))
+            self._begun[name] = record.base.copy()
+
     def _begin_records(self) -> None:
         """Set scalars and counters to those of a member that has begun, the same for all."""
-        records = [getattr(self.state, name) for name in ("control", "clock", "guard")]
-        if not self._begun:
-            for record, name in zip(records, ("control", "clock", "guard"), strict=True):
-                fill(record, getattr(self.copies.state, name))
-                self._begun.append(record.base.copy())
-        for record, begun in zip(records, self._begun, strict=True):
-            record.base[...] = begun
+        for name, begun in self._begun.items():
+            getattr(self.state, name).base[...] = begun
 
     @property
     def time(self) -> float:

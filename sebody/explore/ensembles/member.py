@@ -178,6 +178,8 @@ class Course:
 
     def take(self, rows: NDArray) -> None:
         """Read the outputs of recorded states."""
+        if not len(rows):       # the last steps of a run reach no recorded one
+            return
         t, found = rows[:, RECORD_T].copy(), {}
         for name, output in self.outputs.items():
             if name in self._apart:
