@@ -84,8 +84,10 @@ class Contributions:
         Histories of the quantities in the full model.
     rows : tuple of Contribution
         All simplifications, those of the largest effect first.
+    changes : dict of str to (n, ..., rows)
+        How each quantity changes over time, in the order of the rows; see `history`.
     seconds, run_seconds : float
-        Of all, and of the run in it.
+        Time that all of it took, and the run of the full model in it.
     """
 
     quantities: tuple[str, ...]
@@ -150,9 +152,9 @@ def contributions(model: Model, h: float, t_end: float, quantities: str | Iterab
                   ) -> Contributions:
     """What modes, flexibility and options of each body contribute to some quantities.
 
-    The model runs once. Its equations, linearized along this run, then give at once how it would
-    move without each mode, with each body rigid, without stiffening and with a simpler inertia:
-    changes of first order, over all of the run.
+    The model runs once. Its equations, linearized along this run, then tell how it would move
+    without each mode and with each body rigid: changes of first order, over all of the run. What
+    stiffening and the inertia option contribute is the exact change, by a run each.
 
     Parameters
     ----------
@@ -235,6 +237,9 @@ def _bodies(model: Model, bodies: Iterable[str] | None) -> list[str]:
     if bodies is None:
         return list(model.bodies)
     given = inputs.items(bodies, "bodies", "give names of superelements")
+    if not given:
+        raise InputError("bodies: none is given; give names of superelements, or leave it out for "
+                         "all")
     for name in given:
         if name not in model.bodies:
             raise unknown("superelement", name, model.bodies, "the model has", "the model has none")

@@ -31,6 +31,7 @@ from scipy import sparse
 from scipy.linalg import block_diag, eigh
 from scipy.sparse.linalg import eigsh, splu
 
+from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem import beam_element
 from sebody.fem.section import Section, StiffnessSection
@@ -85,7 +86,9 @@ class Elements:
                              f"{high:g}: give closer bounds, or a smooth function")
 
     def _row(self, height: float) -> NDArray:
-        own = self.section(float(height)).stiffnesses
+        own = inputs.instance(self.section(float(height)), f"section of height {height:.4g}",
+                              Section | StiffnessSection,
+                              "return one, such as rectangle").stiffnesses
         if not own.fibres:
             raise InputError("section: it has no fibres to take stresses in: give fibres, or a "
                              "section such as rectangle")

@@ -27,7 +27,9 @@ from sebody.model.model import Model
 from sebody.model.parts import Beam, Superelement
 from sebody.runs.steps import whole_steps
 
+CLEARLY = 1.01      # of the limit: a search that has ended well leaves less above it
 FINE = 1e-5         # of the mass: the search ends where it changes less
+OVERSTEPPED = 1e-3  # of the range of heights: how far beyond a bound a search may go
 LINEAR = "frame_axes", "material"       # inertia with forces that are linear in the matrices
 
 
@@ -50,14 +52,15 @@ class BeamStress:
     model : Model
         Is put back after every run.
     h, t_end : float
+        Fixed step, and end of every run, a multiple of it [time].
     beam : str
         Name of a beam of `Model.beam` in one superelement, with inertia 'material'.
     heights : (elements,)
-        As built.
+        As built [length].
     section : function
         Of a height: the section, with fibres.
     bounds : (float, float)
-        Least and largest height.
+        Least and largest height [length].
     scheme : Scheme, optional
 
     Attributes
@@ -79,7 +82,9 @@ class BeamStress:
         self.t_end = self.h * whole_steps(inputs.number(t_end, "t_end", above=0), self.h)
         one = _beam(model, beam)
         self.part = one.parts[0]
-        low, high = (inputs.number(x, "bounds: one", above=0) for x in bounds)
+        two = inputs.array(bounds, "bounds", (2,), remedy="give the least and the largest height")
+        low, high = (inputs.number(float(x), "bounds: one", above=0) for x in two)
+        inputs.function(section, "section", "give a function of a height that returns a section")
         self.built = inputs.array(heights, "heights", (one.elements,),
                                   remedy=f"give {one.elements} heights, one for each element")
         if not low < high or (self.built < low).any() or (self.built > high).any():
@@ -98,14 +103,14 @@ class BeamStress:
         self._handle = whole_body(model, self.part, beam)
         self._last: tuple[NDArray, StressedBeam] | None = None
 
-    def hold(self, heights: NDArray) -> None:
+    def hold(self, heights: ArrayLike) -> None:
         """Hold the vibration modes of other heights from here on."""
-        self.beam.hold(heights)
+        self.beam.hold(self._checked(heights))
         self._last = None
 
-    def mass(self, heights: NDArray) -> tuple[float, NDArray]:
-        """Mass of the beam, and its derivatives."""
-        each, slopes = self.beam.elements.weights(np.asarray(heights, dtype=float))
+    def mass(self, heights: ArrayLike) -> tuple[float, NDArray]:
+        """Mass of the beam [mass], and its derivatives by the heights, (elements,)."""
+        each, slopes = self.beam.elements.weights(self._checked(heights))
         return float(each.sum()), slopes
 
     def at(self, heights: ArrayLike) -> Stresses:
@@ -113,10 +118,12 @@ class BeamStress:
 
         Raises
         ------
+        InputError
+            Another number of heights, or some that are not within the bounds.
         SimulationError
             The run fails.
         """
-        run = self._run(np.asarray(heights, dtype=float))
+        run = self._run(self._checked(heights))
         if run.slopes is None:
             with self._built(run.held):
                 run.differentiate()
@@ -124,8 +131,19 @@ class BeamStress:
         return Stresses(run.values, run.times, run.slopes)
 
     def values(self, heights: ArrayLike) -> NDArray:
-        """Stresses alone, (elements,)."""
-        return self._run(np.asarray(heights, dtype=float)).values
+        """Stresses alone, (elements,); raises what `at` raises."""
+        return self._run(self._checked(heights)).values
+
+    def _checked(self, heights: ArrayLike) -> NDArray:
+        """Heights for all elements within the bounds, which a search may overstep a little."""
+        count, (low, high) = len(self.built), self.bounds
+        found = inputs.array(heights, "heights", (count,),
+                             remedy=f"give {count} heights, one for each element")
+        little = OVERSTEPPED * (high - low)
+        if (found < low - little).any() or (found > high + little).any():
+            raise InputError(f"heights are {found.min():g} to {found.max():g}: give heights within "
+                             f"the bounds, {low:g} to {high:g}")
+        return found
 
     def _run(self, x: NDArray) -> StressedBeam:
         if self._last is None or not np.array_equal(self._last[0], x):
@@ -184,16 +202,19 @@ class Sizing:
     Attributes
     ----------
     heights, stresses, times : (elements,)
-        Heights, and the largest stress in each element with its time.
+        Heights [length], and the largest stress in each element [force/length^2] with its time.
     mass, mass_before : float
+        Of the beam with these heights, and with those that were given [mass].
     iterations, runs : int
+        Of the search, and of the model in it.
     message : str
-        How the optimization ended.
+        How the optimization ended: if it found no heights within the limit, too.
     seconds : float
+        Time that it took.
     history : tuple of float
-        Mass after each iteration.
+        Mass after each iteration [mass].
     limit : float
-        Of the stresses.
+        Of the stresses [force/length^2].
     """
 
     heights: NDArray
@@ -221,8 +242,11 @@ class Sizing:
         return draw_sizing(self, path)
 
     def __repr__(self) -> str:
+        most, ended = self.stresses.max(), ""
+        if most > CLEARLY * self.limit:
+            ended = f", above the limit {self.limit:.6g}: {self.message}"
         return (f"<Sizing: mass {self.mass:.6g} instead of {self.mass_before:.6g}, largest stress "
-                f"{self.stresses.max():.6g}, {self.iterations} iterations>")
+                f"{most:.6g}, {self.iterations} iterations{ended}>")
 
 
 def size_heights(model: Model, h: float, t_end: float, beam: str, heights: ArrayLike,
@@ -240,9 +264,15 @@ def size_heights(model: Model, h: float, t_end: float, beam: str, heights: Array
     model, h, t_end, beam, heights, section, bounds, scheme
         As of `BeamStress`.
     limit : float
-        Largest normal stress.
+        Largest normal stress [force/length^2].
     iterations : int
         At most.
+
+    Returns
+    -------
+    Sizing
+        Where no heights keep to the limit, those that the search ended with: its text says so, as
+        does `Sizing.message`.
 
     Raises
     ------

@@ -116,9 +116,10 @@ def free():
     (scenes.hinged, "base.position", {}, "'base.position' does not change: give one"),
     (scenes.hinged, "hinge.work", {}, "'hinge.work' is no function of a state: give a motion"),
     (scenes.hinged, "tip.position", {"bodies": ["bean"]}, "did you mean 'beam'"),
+    (scenes.hinged, "tip.position", {"bodies": []}, "bodies: none is given; give names"),
     (free, "a.position", {}, "no superelement: there are no modes"),
     (lambda: scenes.hinged(frame="mean"), "tip.position", {}, "frame 'mean' depends on the steps")],
-    ids=["none", "unknown", "still", "work", "body", "rigid", "frame"])
+    ids=["none", "unknown", "still", "work", "body", "no body", "rigid", "frame"])
 def test_refused(make, quantities, more, words):
     with pytest.raises(InputError) as caught:
         contributions(make(), 0.005, 0.05, quantities, **more)

@@ -140,14 +140,34 @@ def test_least_mass():
     ({"heights": [0.01] * 4}, "heights"),
     ({"heights": [0.05] * 6}, "give heights between two bounds"),
     ({"bounds": (0.03, 0.01)}, "give heights between two bounds"),
+    ({"bounds": (0.01,)}, "give the least and the largest height"),
     ({"limit": -1.0}, "limit"),
+    ({"section": 0.01}, "give a function of a height"),
+    ({"section": lambda x: x}, "return one, such as rectangle"),
     ({"section": lambda x: replace(section(x), fibres=())}, "it has no fibres"),
     ({"section": lambda x: section(x if x < 0.02 else 2 * x)}, "not smooth between the heights"),
     ({"model": slider_crank(inertia="floating_field")}, "build it with inertia='material'")],
-    ids=["name", "count", "outside", "bounds", "limit", "fibres", "jump", "inertia"])
+    ids=["name", "count", "outside", "bounds", "a bound", "limit", "no function", "no section", "fibres",
+         "jump", "inertia"])
 def test_refused(change, words):
     given = {"model": slider_crank(), "h": 5e-4, "t_end": 0.005, "beam": "rod", "heights": HEIGHTS,
              "section": section, "limit": 1e8, "bounds": BOUNDS} | change
     with pytest.raises(InputError) as caught:
         size_heights(**given)
     assert words in str(caught.value)
+
+
+@pytest.mark.parametrize("heights, words", [
+    (HEIGHTS[:4], "give 6 heights, one for each element"),
+    (HEIGHTS * np.nan, "give 6 heights, one for each element"),
+    (3 * HEIGHTS, "give heights within the bounds, 0.006 to 0.04")], ids=["count", "nan", "beyond"])
+def test_heights_are_refused(heights, words):
+    stress = BeamStress(slider_crank(), 5e-4, 0.005, "rod", HEIGHTS, section, BOUNDS)
+    for ask in (stress.at, stress.values, stress.mass, stress.hold):
+        with pytest.raises(InputError, match=words):
+            ask(heights)
+
+
+def test_a_limit_that_no_heights_keep_to_is_said():
+    found = size_heights(slider_crank(), 1e-3, 0.01, "rod", HEIGHTS, section, 1e-3, BOUNDS, 2)
+    assert found.message and repr(found).endswith(f"above the limit 0.001: {found.message}>")

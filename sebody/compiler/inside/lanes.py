@@ -14,7 +14,6 @@ from llvmlite import ir
 from numba import from_dtype, types
 from numba.extending import intrinsic, lower_builtin, lower_cast, models, overload, register_model
 
-from sebody.compiler.inside.lookups import remember_operations_on
 from sebody.compiler.inside.names import (
     AbstractTemplate,
     Conversion,
@@ -24,6 +23,7 @@ from sebody.compiler.inside.names import (
     lower_constant,
     signature,
 )
+from sebody.compiler.inside.remembered import remember_operations_on
 from sebody.contract.counts import MEMBERS
 
 NUMPY_KIND = np.dtype([("members", np.float64, (MEMBERS,))])     # of NumPy's arrays of lanes

@@ -17,8 +17,8 @@ from sebody.compiler.inside.names import (
     Signature,
     register_pass,
 )
+from sebody.compiler.inside.remembered import plain
 
-_plain_kinds = [types.Number, types.Boolean, types.RawPointer, types.Array, types.BaseTuple]
 _signatures: dict[tuple, Signature] = {}        # by operation and types of arguments
 
 
@@ -29,16 +29,6 @@ def _remembered(operation: object, arguments: tuple[types.Type, ...], find) -> S
     if signature is None and (signature := find()) is not None:
         _signatures[key] = signature
     return signature
-
-
-def _plain(arguments: tuple[types.Type, ...]) -> bool:
-    plain = tuple(_plain_kinds)
-    return all(isinstance(kind, plain) for kind in arguments)
-
-
-def remember_operations_on(*kinds: type[types.Type]) -> None:
-    """Remember operations on types of these kinds, too."""
-    _plain_kinds.extend(kinds)
 
 
 class _Remembering:
@@ -53,7 +43,7 @@ class _Remembering:
     def resolve_function_type(self, function, arguments, keywords):
         def find():
             return self._context.resolve_function_type(function, arguments, keywords)
-        if keywords or not _plain(arguments):
+        if keywords or not plain(arguments):
             return find()
         return _remembered(function, arguments, find)
 
@@ -61,7 +51,7 @@ class _Remembering:
         def find():
             return self._context.resolve_setitem(target, index, value)
         arguments = target, index, value
-        return _remembered(operator.setitem, arguments, find) if _plain(arguments) else find()
+        return _remembered(operator.setitem, arguments, find) if plain(arguments) else find()
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
@@ -70,8 +60,9 @@ class TypeInference(NopythonTypeInference):
 
     def run_pass(self, state):
         """Infer types."""
-        # Kept code may have signatures of lanes, whose operators would come while this function is
-        # compiled: what is lowered would not be what was inferred. 10 ms that most runs do not need
+        # Kept code may have signatures of lanes, and reading it imports them. Their operators must
+        # be there before: those that are lowered have to be those that were inferred. Runs that
+        # compile nothing do not need the 10 ms
         import sebody.compiler.inside.lanes  # noqa: F401
 
         context = state.typingctx
@@ -89,14 +80,14 @@ class Lowering(Lower):
     def lower_binop(self, resty, expr, op):
         """Lower an operation with two operands."""
         signature = self.fndesc.calltypes[expr]
-        if not _plain(signature.args) or expr.static_lhs is not UNDEFINED or (
+        if not plain(signature.args) or expr.static_lhs is not UNDEFINED or (
                 expr.static_rhs is not UNDEFINED):
             return super().lower_binop(resty, expr, op)
         return self._lower(op, (expr.lhs, expr.rhs), signature, resty)
 
     def lower_getitem(self, resty, expr, value, index, signature):
         """Lower the reading of an element."""
-        if not _plain(signature.args):
+        if not plain(signature.args):
             return super().lower_getitem(resty, expr, value, index, signature)
         return self._lower(operator.getitem, (value, index), signature, resty)
 
