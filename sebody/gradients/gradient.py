@@ -238,7 +238,8 @@ class _Parts:
 def _adjoint(one: _Parts) -> tuple[NDArray, float, float]:
     """One sweep back over the segments, and sums in each of them."""
     found = np.zeros((len(one.whole.value), len(one.columns)))
-    bars, sizes, seconds = None, [], 0.0
+    bars, seconds = None, 0.0
+    sizes: list[NDArray] = []
     for segment in one.segments.back():
         part = _Part(one, segment)
         began = time.perf_counter()
@@ -258,7 +259,8 @@ def _growth(sizes: NDArray) -> float:
 def _forward(one: _Parts) -> tuple[NDArray, float, float]:
     """One sweep forth over the segments, with a column for every parameter."""
     found = np.zeros((len(one.whole.value), len(one.columns)))
-    now, sizes, seconds = None, [], 0.0
+    now, seconds = None, 0.0
+    sizes: list[NDArray] = []
     for segment in one.segments.forth():
         part = _Part(one, segment)
         each = [part.slope(column) for column in one.columns]

@@ -68,21 +68,18 @@ class History(NamedTuple):
         return self.rows[self.recorded]
 
 
-def history(run: Simulation, t_end: float, met: Sequence[float] = ()) -> History:
+def history(run: Simulation, t_end: float) -> History:
     """Run a simulation that is at its start to a time, and keep every accepted step.
 
-    Variable steps end there, and at the times that are to be met; their states are all recorded.
+    Variable steps end there; their states are all recorded.
 
     Raises
     ------
     SimulationError
         A step failed; what was computed is in the error's `result`.
     """
-    last = round(t_end / run.h)
-    memory.check(8.0 * last * run.state.now.size, f"the states of {last} steps",
-                 "give an earlier t_end or longer steps")
-    meet(run, [*met, t_end])
-    return stretch(run, last)
+    meet(run, [t_end])
+    return stretch(run, round(t_end / run.h))
 
 
 def stretch(run: Simulation, last: int, most: int | None = None) -> History:
@@ -98,6 +95,8 @@ def stretch(run: Simulation, last: int, most: int | None = None) -> History:
     """
     began, control, grid = time.perf_counter(), run.state.control, int(run.state.control.grid)
     end = last if most is None else min(last, grid + most)
+    memory.check(8.0 * (end - grid) * run.state.now.size, f"the states of {end - grid} steps",
+                 "give an earlier t_end or longer steps")
     if (whole := _whole(run, grid, end)) is not None:
         return whole._replace(seconds=time.perf_counter() - began, duration=run.h * last)
     events = _Events(run, last)
@@ -133,8 +132,8 @@ def _whole(run: Simulation, first: int, last: int) -> History | None:
     """
     state, start, count = run.state, copy_of(run.state), last - first
     before, steps, cuts = float(state.clock.aux_step), state.control.steps, state.control.cuts
-    inside = (run.system.corners > (first + OFF) * run.h * (first > 0)) & (
-        run.system.corners <= (last + OFF) * run.h)
+    after = (first + OFF) * run.h if first else -np.inf
+    inside = (run.system.corners > after) & (run.system.corners <= (last + OFF) * run.h)
     if run.tolerance is not None or (run.system.jumps[inside] > 0).any():
         return None
     record, code = Record.of(state, count + 1), CHUNK
@@ -145,6 +144,7 @@ def _whole(run: Simulation, first: int, last: int) -> History | None:
         code = advance(run.system, state, record, run.scheme, last, count + 1, run.dense)
     if code == FAILED or state.control.steps - steps != count or state.control.cuts > cuts:
         put_back(state, start)
+        run.exchanges.forget()
         return None
     offsets, kinds = np.ones(count + 1), np.full(count + 1, STEP)
     kinds[0] = RESTART
@@ -226,6 +226,7 @@ class _Events:
 
     def found(self, seconds: float, duration: float) -> History:
         """All events."""
-        numbers = map(np.array, (self.kinds, self.steps, self.offsets, self.ends, self.besides))
-        return History(np.array(self.rows), *numbers, np.array(self.recorded, dtype=np.int64),
-                       seconds, duration)
+        return History(
+            np.array(self.rows), np.array(self.kinds), np.array(self.steps),
+            np.array(self.offsets), np.array(self.ends), np.array(self.besides),
+            np.array(self.recorded, dtype=np.int64), seconds, duration)

@@ -97,7 +97,8 @@ class Folded:
 
     def _folded(self, segments: Segments) -> bool:
         """Whether values go on from segment to segment, as angles beyond a turn do not."""
-        run, times, last = segments.run, [], {}
+        run, times = segments.run, []
+        last: dict[str, NDArray] = {}
         self._folds: dict[str, Fold] = {}
         for history in segments.run_through():
             run.watch.look(run.model, run.numbering, history.states)
@@ -105,8 +106,8 @@ class Folded:
             found = values_of(self.outputs, run, history)
             for name, one in self.outputs.items():
                 before, own = found[one.quantity]
-                if name in last and not np.allclose(before, last[name], SEAM, SEAM * np.abs(
-                        own).max(initial=0.0)):
+                if before is not None and not np.allclose(
+                        before, last[name], SEAM, SEAM * np.abs(own).max(initial=0.0)):
                     return False
                 last[name] = own[-1]
                 if name not in self._folds:
@@ -263,8 +264,7 @@ def _seeds(name: str, one: Output, t: NDArray, first: int, values: NDArray, valu
 def _weights(name: str, one: Output, t: NDArray, first: int, x: NDArray, value: NDArray) -> NDArray:
     """Derivatives by the quantity's components, each of its own, (states, components)."""
     if one.kind in ("final", "at"):
-        return np.tile(_at(t, t[-1] if one.kind == "final" else one.time)[
-            first:first + len(x), None], x.shape[1])
+        return np.tile(_at(t, one.time)[first:first + len(x), None], x.shape[1])
     trapezoids = np.zeros(len(t))
     trapezoids[1:] += np.diff(t) / 2
     trapezoids[:-1] += np.diff(t) / 2
@@ -280,9 +280,12 @@ def _weights(name: str, one: Output, t: NDArray, first: int, x: NDArray, value: 
     return share * np.sign(x) * (np.abs(x) / value) ** (one.power - 1)
 
 
-def _at(t: NDArray, time: float) -> NDArray:
-    """Weights of all states in the value at a time."""
+def _at(t: NDArray, time: float | None) -> NDArray:
+    """Weights of all states in the value at a time, or at the end."""
     found = np.zeros(len(t))
+    if time is None:
+        found[-1] = 1.0
+        return found
     k = int(np.searchsorted(t, time * (1 - 1e-12)))
     part = 1.0 if k == 0 or t[k] <= time else (time - t[k - 1]) / (t[k] - t[k - 1])
     found[k] = part

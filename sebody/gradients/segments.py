@@ -12,11 +12,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody import memory
 from sebody.errors import SimulationError
 from sebody.gradients.history import History, Past, copy_of, meet, put_back, stretch
 from sebody.runs.simulation import Simulation
 
-STATES = 8e6        # bytes of states that are kept at a time: a gradient takes up to six times that
+STATES = 8e6        # bytes of states that are kept at a time: a gradient takes five times that
+NUMBERS = 64.0      # bytes of an event that are kept of the whole run: its times, kind, ...
 
 
 class Begin(NamedTuple):
@@ -46,6 +48,8 @@ class Segments:
 
     def __init__(self, run: Simulation, t_end: float, met: Sequence[float] = ()):
         self.run, self.last = run, round(t_end / run.h)
+        memory.check(NUMBERS * self.last, f"times of {self.last} steps",
+                     "give an earlier t_end or longer steps")
         meet(run, [*met, t_end])
         most = max(int(STATES / run.state.now.nbytes), 2)
         self._restart(Begin(copy_of(run.state), most, 0))
@@ -121,5 +125,5 @@ class Segments:
         found = stretch(self.run, self.last, begin.most)
         if k == 0:
             return found
-        before = (np.concatenate([of[i] for of in self._numbers[:k]]) for i in range(3))
-        return found._replace(past=Past(*before, begin.recorded))
+        kinds, ends, besides = (np.concatenate(of) for of in zip(*self._numbers[:k], strict=True))
+        return found._replace(past=Past(kinds, ends, besides, begin.recorded))
