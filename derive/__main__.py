@@ -64,10 +64,10 @@ def files(kernels: Iterable[Variant | Products | str], shipped: bool = True) -> 
 
 def _with_motions(kernels: Iterable[Variant | str]) -> list[Variant | str]:
     """Kernels, and those of the motions in their frames where there are none yet."""
-    found = list(kernels)
-    named = [motion_name(k.frame, Layout.parse(k.layout).planar) for k in found
+    names = list(kernels)
+    named = [motion_name(k.frame, Layout.parse(k.layout).planar) for k in names
              if isinstance(k, Variant)]
-    return list(dict.fromkeys((*found, *(name for name in named if not find(name)))))
+    return list(dict.fromkeys((*names, *(name for name in named if not find(name)))))
 
 
 def write(directory: Path, files: dict[str, str]) -> list[str]:
@@ -123,9 +123,9 @@ def main(arguments: list[str] | None = None) -> int:
     count = sum(name.startswith((*PREFIXES, OF_PRODUCTS)) for name in texts)
     kernels, are = ("kernel", "is") if count == 1 else ("kernels", "are")
     if options.check:
-        found = differences(directory, texts, orphans=not options.kernels)
-        print("\n".join(found) if found else f"{count} {kernels} {are} up to date")
-        return 1 if found else 0
+        outdated = differences(directory, texts, orphans=not options.kernels)
+        print("\n".join(outdated) if outdated else f"{count} {kernels} {are} up to date")
+        return 1 if outdated else 0
     changed = write(directory, texts)
     print(f"{count} {kernels} derived, {len(changed)} written to {directory}")
     return 0

@@ -122,12 +122,12 @@ def checked(function: Function, operands: tuple[Any, ...]) -> tuple[Operand, ...
         names = ", ".join(name for name, _ in function.operands)
         raise TypeError(f"{function.name} takes {len(function.operands)} operands ({names}), not "
                         f"{len(operands)}")
-    found = tuple(whole(operand) if isinstance(operand, int) else operand for operand in operands)
-    for (name, use), operand in zip(function.operands, found, strict=True):
+    values = tuple(whole(operand) if isinstance(operand, int) else operand for operand in operands)
+    for (name, use), operand in zip(function.operands, values, strict=True):
         wanted = (Array | View if use.of_array else Whole if use is Use.WHOLE else sp.Expr)
         if not isinstance(operand, wanted):
             raise TypeError(f"operand {name} of {function.name} is {use.name}, not {operand!r}")
-    return found
+    return values
 
 
 def invoked(function: Function, operands: tuple[Operand, ...], outputs: tuple = (),

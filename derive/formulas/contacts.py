@@ -46,8 +46,8 @@ def _sphere(space: Space, s: sp.Matrix) -> tuple[list, sp.Expr, sp.Matrix]:
 
 def _cylinder(space: Space, s: sp.Matrix) -> tuple[list, sp.Expr, sp.Matrix]:
     e = constant(space, "e", "vector", "axis of the cylinder, in axes of body b")
-    found, gap, normal = _round(space, s - e.symbols * e.symbols.dot(s))
-    return [e, *found], gap, normal
+    across, gap, normal = _round(space, s - e.symbols * e.symbols.dot(s))
+    return [e, *across], gap, normal
 
 
 def _any(space: Space, s: sp.Matrix) -> tuple[list, sp.Expr, sp.Matrix]:
@@ -57,10 +57,10 @@ def _any(space: Space, s: sp.Matrix) -> tuple[list, sp.Expr, sp.Matrix]:
     level = constant(space, "level", "scalar", "distance of a plane from the place of body b "
                      "[length]")
     flat = constant(space, "flat", "scalar", "1 of a plane, else 0")
-    found, far, normal = _round(space, s - e.symbols * e.symbols.dot(s))
+    across, far, normal = _round(space, s - e.symbols * e.symbols.dot(s))
     near = e.symbols.dot(s) - level.symbols[0]
     which = flat.symbols[0]
-    return ([e, level, flat, *found], choose(which, near, far),
+    return ([e, level, flat, *across], choose(which, near, far),
             sp.Matrix([choose(which, *pair) if pair != (0, 0) else sp.S.Zero
                        for pair in zip(e.symbols, normal, strict=True)]))
 

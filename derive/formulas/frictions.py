@@ -34,8 +34,8 @@ LOADED = {"radius": "lever arm of the friction force; 1 along an axis [length]",
 
 def bristle_constants(space: Space) -> tuple[list[Constant], Bristle]:
     """Declare the constants of dry friction."""
-    found = [constant(space, name, "scalar", meaning) for name, meaning in BRISTLE.items()]
-    return found, Bristle(*(c.symbols[0] for c in found))
+    constants = [constant(space, name, "scalar", meaning) for name, meaning in BRISTLE.items()]
+    return constants, Bristle(*(c.symbols[0] for c in constants))
 
 
 def friction_turn(planar: bool, read: tuple[int, int]) -> Element:

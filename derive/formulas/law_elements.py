@@ -77,12 +77,12 @@ def law_element(name: str, summary: str, space: Space, measures: Measures,
                       for values in (forces.forces, forces.lost))
     power = -sum(f * w for f, w in zip(forces.lost, forces.rates, strict=True))
     none = (sp.S.Zero,) * len(reads)
-    found = Element(
+    element = Element(
         name, ("planar " if space.planar else "") + summary, space, tuple(constants),
         tuple(blocks), (), (*residual, *none), (), (),
         {} if stored == 0 else {"strain": stored}, power, (*lost, *none),
         memory=tuple(memory), reads=tuple(reads), stages=(tuple(measures.stage), *stages))
-    return _with_column(found, stages)
+    return _with_column(element, stages)
 
 
 def _conjugate(space: Space, blocks: Sequence[Block], rates: Sequence[sp.Expr],
@@ -124,10 +124,10 @@ def _with_column(found: Element, stages: Sequence[Stage]) -> Element:
 
 def _through(of: dict, moved: Rules) -> Rules:
     """Differentials of the symbols of stages where measures move."""
-    found = dict(moved)
+    differentials = dict(moved)
     for symbol, slopes in of.items():
-        found[symbol] = sum(slope * moved.get(by, 0) for by, slope in slopes.items())
-    return found
+        differentials[symbol] = sum(slope * moved.get(by, 0) for by, slope in slopes.items())
+    return differentials
 
 
 def _slopes(stages: Sequence[Stage], inputs: Sequence[sp.Symbol], used: set[sp.Symbol]

@@ -53,12 +53,12 @@ def turning(q: Quantities, frame: Frame, clock: Linearizer, of_y: tuple[Stage, .
         Rates of the local coordinates.
     """
     before = tuple(_in_time(q, stage) for stage in frame.differentials)
-    found = tuple(_in_time(q, step) for step in frame.variation)
+    steps = tuple(_in_time(q, step) for step in frame.variation)
     varied = {q.space.d(quantity).name: quantity for quantity in _varied(q, frame)}
     for stage in before:        # what the search computes beyond the frame moves as it says
         for rate, _ in (*stage.sets, *stage.adds):
             clock.rules |= along(varied[rate.name].symbols, rate.symbols)
-    return (*before, *found), tuple(clock.step(step) for step in (*found, *of_y))
+    return (*before, *steps), tuple(clock.step(step) for step in (*steps, *of_y))
 
 
 def _varied(q: Quantities, frame: Frame) -> list[Quantity]:

@@ -47,11 +47,11 @@ def pointers(reference: bool) -> tuple[Statement, ...]:
     """Places of an element's frame, nodes and unknowns; of the frame of the last step if asked."""
     index = ARGUMENTS["index"]
     frame = 9 * index[counts.first + agreed("AT_FRAME")]
-    found = [Let((counts.first,), (counts.element * counts.stride,)),
-             Point(arrays.frame, ARGUMENTS["frames"].at(frame))]
+    statements = [Let((counts.first,), (counts.element * counts.stride,)),
+                  Point(arrays.frame, ARGUMENTS["frames"].at(frame))]
     if reference:
-        found.append(Point(arrays.reference, ARGUMENTS["references"].at(frame)))
-    return (*found, Point(arrays.nodes, index.at(counts.first + agreed("HEADER"))),
+        statements.append(Point(arrays.reference, ARGUMENTS["references"].at(frame)))
+    return (*statements, Point(arrays.nodes, index.at(counts.first + agreed("HEADER"))),
             Point(arrays.unknowns, arrays.nodes.at(counts.ROTATIONS)))
 
 

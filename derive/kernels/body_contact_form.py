@@ -93,13 +93,13 @@ def _pointers(reference: bool) -> tuple[Statement, ...]:
     """
     index = ARGUMENTS["index"]
     frame = 9 * arrays.unknowns[counts.width]
-    found = [Let((counts.first,), (counts.element * counts.stride,)),
-             Point(arrays.nodes, index.at(counts.first + agreed("HEADER"))),
-             Point(arrays.unknowns, arrays.nodes.at(counts.ROTATIONS + 1)),
-             Point(arrays.frame, ARGUMENTS["frames"].at(frame))]
+    statements = [Let((counts.first,), (counts.element * counts.stride,)),
+                  Point(arrays.nodes, index.at(counts.first + agreed("HEADER"))),
+                  Point(arrays.unknowns, arrays.nodes.at(counts.ROTATIONS + 1)),
+                  Point(arrays.frame, ARGUMENTS["frames"].at(frame))]
     if reference:
-        found.append(Point(arrays.reference, ARGUMENTS["references"].at(frame)))
-    return tuple(found)
+        statements.append(Point(arrays.reference, ARGUMENTS["references"].at(frame)))
+    return tuple(statements)
 
 
 def _behind(kernel: BodyContact, planar: bool) -> Array | View:
@@ -130,24 +130,24 @@ class _Law:
 
     def loads(self) -> tuple[Set, ...]:
         """Constants, what is kept, and the state of the node that carries the surface."""
-        found: list[tuple] = [(s, LAW[k]) for k, s in enumerate(
+        pairs: list[tuple] = [(s, LAW[k]) for k, s in enumerate(
             s for one in self.law.constants for s in one.quantity.kept)]
         for row, block, turned in ((arrays.qe, self.b.state, self.rb.state),
                                    (arrays.ve, self.b.rate, self.rb.rate)):
-            found += zip(block.kept, (row[at] for at in self.place), strict=False)
+            pairs += zip(block.kept, (row[at] for at in self.place), strict=False)
             if turned.kind != "rotation":
-                found += zip(turned.kept, (row[at] for at in self.place[self.size:]), strict=True)
+                pairs += zip(turned.kept, (row[at] for at in self.place[self.size:]), strict=True)
         if self.rb.angle is None:
-            found += [(s, ARGUMENTS["R"][9 * arrays.nodes[counts.ROTATIONS] + k])
+            pairs += [(s, ARGUMENTS["R"][9 * arrays.nodes[counts.ROTATIONS] + k])
                       for k, s in enumerate(self.rb.state.kept)]
         else:
             angle = arrays.qe[self.place[-1]]
-            found += [*zip(self.rb.state.kept, (sp.cos(angle), sp.sin(angle)), strict=True),
+            pairs += [*zip(self.rb.state.kept, (sp.cos(angle), sp.sin(angle)), strict=True),
                       (self.rb.angle, angle)]
-        found += [(kept(name), ARGUMENTS["references"][_kept_at(k)])
+        pairs += [(kept(name), ARGUMENTS["references"][_kept_at(k)])
                   for k, (name, _) in enumerate(self.law.memory)]
         used = used_symbols(self.law.printed)
-        return tuple(Set((s,), (value,)) for s, value in found if s in used)
+        return tuple(Set((s,), (value,)) for s, value in pairs if s in used)
 
     def forces(self, start: int) -> tuple[tuple[Statement, ...], int]:
         """Force on the point and the surface, kept numbers; those of the losses for the energies.
@@ -168,10 +168,10 @@ class _Law:
 
     def column(self, start: int) -> tuple[tuple[Statement, ...], int]:
         """Differentials of the forces as the point and the surface's node move."""
-        law, found = self.law, []
+        law, statements = self.law, []
         for source, blocks in ((arrays.qe.d, (self.b.direction, self.rb.direction)),
                                (arrays.ve.d, (self.b.unit, self.rb.unit))):
-            found += [Set((s,), (source[at],)) for s, at in zip(
+            statements += [Set((s,), (source[at],)) for s, at in zip(
                 [s for block in blocks for s in block.kept], self.place, strict=True)]
         # directions have the factors of the matrix, and the rate of the point its whole variation
         one = {sp.Symbol(f"c_{name}"): sp.S.One for name in ("stiffness", "damping")}
@@ -182,7 +182,7 @@ class _Law:
         staged_moves, start = staged(moves, start)
         values = [sp.sympify(value).xreplace(one) for value in law.linear]
         linear, start = stored(values, self._targets(arrays.g.d, "dFp"), start)
-        return (*found, *staged_moves, *linear), start
+        return (*statements, *staged_moves, *linear), start
 
     def _targets(self, g: Array, point: str = "Fp") -> list[Target]:
         """Where the force goes: on the point in variables, on the surface's node in place."""

@@ -96,11 +96,11 @@ def _memory(k: int) -> Whole:
 
 def staged(stages: Iterable[Stage], start: int) -> tuple[list[Statement], int]:
     """Stages one after the other, and the number of the next temporary."""
-    found: list[Statement] = []
+    statements: list[Statement] = []
     for stage in stages:
         lines, start = stored([value for _, value in stage], [name for name, _ in stage], start)
-        found += lines
-    return found, start
+        statements += lines
+    return statements, start
 
 
 def stored(expressions: Iterable[sp.Expr], targets: Sequence[Target], start: int,
@@ -109,10 +109,10 @@ def stored(expressions: Iterable[sp.Expr], targets: Sequence[Target], start: int
     temporaries, reduced = sp.cse(map(whole_turns, expressions),
                                   sp.numbered_symbols("t", start=start),
                                   order="canonical")
-    found: list[Statement] = [Set((name,), (value,)) for name, value in temporaries]
-    found += [Update(target, change, value) if change else Set((target,), (value,))
-              for target, value in zip(targets, reduced, strict=True)]
-    return found, start + len(temporaries)
+    statements: list[Statement] = [Set((name,), (value,)) for name, value in temporaries]
+    statements += [Update(target, change, value) if change else Set((target,), (value,))
+                   for target, value in zip(targets, reduced, strict=True)]
+    return statements, start + len(temporaries)
 
 
 def _task(name: str, expressions: Sequence[sp.Expr], targets: Sequence[Target],
@@ -148,25 +148,25 @@ def loads(element: Element) -> list[Statement]:
     row = [s for quantity, _ in element.constants for s in quantity.kept]
     gravity = element.space.known.get("field")
     field = gravity.kept if gravity else []
-    found = [(s, CONSTANT[k]) for k, s in enumerate(row) if s in used]
-    found += [(s, ARGUMENTS["coefficients"][agreed("FIELD") + k]) for k, s in enumerate(field)
+    pairs = [(s, CONSTANT[k]) for k, s in enumerate(row) if s in used]
+    pairs += [(s, ARGUMENTS["coefficients"][agreed("FIELD") + k]) for k, s in enumerate(field)
               if s in used]
     at, matrix = 0, 0
     for block in element.blocks:
-        found += _state(block, at, matrix, used)
+        pairs += _state(block, at, matrix, used)
         for array, quantity in (("v", block.rate), ("a", block.acceleration),
                                 *[("q", block.increment)] * block.rotational):
-            found += [(s, ARGUMENTS[array][arrays.unknowns[at + k]])
+            pairs += [(s, ARGUMENTS[array][arrays.unknowns[at + k]])
                       for k, s in enumerate(quantity.kept) if s in used]
         at += len(block.direction.kept)
         matrix += block.rotational
-    found += [(s, q[arrays.unknowns[element.coordinates + k]])
+    pairs += [(s, q[arrays.unknowns[element.coordinates + k]])
               for k, s in enumerate((*element.reads, *element.multipliers))]
-    found += [(kept(name), ARGUMENTS["references"][_memory(k)])
+    pairs += [(kept(name), ARGUMENTS["references"][_memory(k)])
               for k, (name, _) in enumerate(element.memory) if kept(name) in used]
     amplitudes = 3 * ARGUMENTS["index"][counts.first + agreed("AT_PORT")]
-    found += [(s, ARGUMENTS["loads"][amplitudes + k]) for k, s in enumerate(AMPLITUDE) if s in used]
-    return [Set((s,), (value,)) for s, value in found]
+    pairs += [(s, ARGUMENTS["loads"][amplitudes + k]) for k, s in enumerate(AMPLITUDE) if s in used]
+    return [Set((s,), (value,)) for s, value in pairs]
 
 
 def _state(block: Block, at: int, matrix: int, used: set) -> list[tuple[sp.Symbol, sp.Expr]]:
@@ -227,12 +227,12 @@ def _seeds(element: Element) -> tuple[Statement, ...]:
 
 
 def _directions(element: Element, used: set) -> list[Set]:
-    found = []
+    rows = []
     for array, quantities in ((DIRECTION, [block.direction for block in element.blocks]),
                               (UNIT, [block.unit for block in element.blocks])):
         kept = [s for quantity in quantities for s in quantity.kept]
-        found += [Set((s,), (array[k],)) for k, s in enumerate(kept) if s in used]
-    return found
+        rows += [Set((s,), (array[k],)) for k, s in enumerate(kept) if s in used]
+    return rows
 
 
 def _multiplier_columns(element: Element) -> tuple[Statement, ...]:
@@ -241,6 +241,7 @@ def _multiplier_columns(element: Element) -> tuple[Statement, ...]:
                                  element.coordinates, len(element.residual))
     entries = [(i * width + coordinates + k, C_CONSTRAINT * element.on_multipliers[i, k])
                for k in range(count) for i in range(coordinates)]
-    found, _ = stored([e for _, e in entries], [MATRIX[at] for at, _ in entries], OF_MULTIPLIERS)
-    return (*found, *(Set((MATRIX[(coordinates + i) * width + coordinates + k],), (ZERO,))
-                      for i in range(count) for k in range(count)))
+    statements, _ = stored([e for _, e in entries], [MATRIX[at] for at, _ in entries],
+                           OF_MULTIPLIERS)
+    return (*statements, *(Set((MATRIX[(coordinates + i) * width + coordinates + k],), (ZERO,))
+                           for i in range(count) for k in range(count)))

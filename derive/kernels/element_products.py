@@ -60,7 +60,7 @@ def _columns(element: Element) -> list[tuple[list[sp.Expr], list[tuple[sp.Symbol
     names = [[s for block in element.blocks for s in getattr(block, of).kept]
              for of in ("direction", "unit")]
     multipliers = sp.symbols(f"dlam_1:{len(element.multipliers) + 1}")
-    found = []
+    columns = []
     for name in DERIVATIVES:
         factors = {c: sp.Integer(str(c) in (name, "c_constraint" if name == "c_stiffness" else ""))
                    for c in COEFFICIENTS}
@@ -71,25 +71,25 @@ def _columns(element: Element) -> list[tuple[list[sp.Expr], list[tuple[sp.Symbol
                 forms[i] += sum(element.on_multipliers[i, k] * m
                                 for k, m in enumerate(multipliers))
         symbols += [(m,) for m in multipliers]
-        found.append((forms, symbols))
-    return found
+        columns.append((forms, symbols))
+    return columns
 
 
 def _along(element: Element) -> list[sp.Expr]:
     """``K dq + C dv + M da``."""
     width = len(element.residual)
-    found = [sp.S.Zero] * width
+    total = [sp.S.Zero] * width
     for k, (forms, symbols) in enumerate(_columns(element), 1):
         given = {s: VECTORS[k * width + i] for i, own in enumerate(symbols) for s in own}
-        found = [one + form.xreplace(given) for one, form in zip(found, forms, strict=True)]
-    return found
+        total = [one + form.xreplace(given) for one, form in zip(total, forms, strict=True)]
+    return total
 
 
 def _transposed(element: Element) -> list[sp.Expr]:
     """``K^T w``, ``C^T w`` and ``M^T w``, one after the other."""
     weights = [VECTORS[i] for i in range(len(element.residual))]
-    found: list[sp.Expr] = []
+    rows: list[sp.Expr] = []
     for forms, symbols in _columns(element):
         bars = transposed_forms(forms, weights, [s for own in symbols for s in own])
-        found += [sp.Add(*(bars.get(s, sp.S.Zero) for s in own)) for own in symbols]
-    return found
+        rows += [sp.Add(*(bars.get(s, sp.S.Zero) for s in own)) for own in symbols]
+    return rows

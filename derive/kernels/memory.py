@@ -53,12 +53,12 @@ def chain(parts: tuple[Part, ...], planar: bool, read: dict[Array, tuple[Let, ..
         Counts that are read from a part, by its array; sizes of parts behind it know them.
     """
     place = ARGUMENTS["index"][counts.first + counts.agreed("AT_CONSTANTS")]
-    start, found = ARGUMENTS["constants"].at(place), []
+    start, statements = ARGUMENTS["constants"].at(place), []
     for part in parts:
         array = constant(part)
-        found += [Point(array, start), *read.get(array, ())]
+        statements += [Point(array, start), *read.get(array, ())]
         start = array.at(size_of(part, planar))
-    return tuple(found)
+    return tuple(statements)
 
 
 def size_of(part: Part, planar: bool) -> Whole:

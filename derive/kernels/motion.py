@@ -89,12 +89,12 @@ def motion_form(kernel: FrameMotion) -> Kernel:
 
 def _places(planar: bool) -> tuple[tuple[Point, ...], Whole]:
     """Pointers to the parts of the row that is written, and its length."""
-    start, size, found = ARGUMENTS["forces"].at(counts.element * SIZE), Number(0), []
+    start, size, statements = ARGUMENTS["forces"].at(counts.element * SIZE), Number(0), []
     for part in MOTION.parts:
         array = ROWS.get(part.name) or pointed(part.name)
-        found.append(Point(array, start))
+        statements.append(Point(array, start))
         start, size = array.at(size_of(part, planar)), size + size_of(part, planar)
-    return tuple(found), size
+    return tuple(statements), size
 
 
 def _stored(quantity: Quantity, array: Array) -> Statement:

@@ -76,7 +76,7 @@ def _products(name: str, kernel: Superelement | BodyLoad, lowering: Lowering, n:
             *_emptied(map(bar_array, DIRECTIONS), 1))
     used = uses((*common, *along, *back)).arrays
     memory = Memory.of((*STATE, *DIRECTIONS, *used))
-    keep, found, room = carried(common, (along, back), KEPT)
+    keep, bodies, room = carried(common, (along, back), KEPT)
     of_element = without_unused((
         Let((counts.n,), (n,)), Let((counts.row,), (row_size(memory.squares, margin),)),
         Point(KEPT, ARGUMENTS["work"]), *_behind(memory, room),
@@ -85,8 +85,8 @@ def _products(name: str, kernel: Superelement | BodyLoad, lowering: Lowering, n:
         Point(arrays.g, ARGUMENTS["forces"].at(counts.element * counts.n)),
         Point(VECTORS, ARGUMENTS["matrices"].at(ROWS * (counts.element * counts.n))),
         If(compared(counts.task, "==", agreed("PREPARE")), (gathered(STATE), *common, *keep)),
-        If(compared(counts.task, "==", agreed("ALONG")), (*found[0], *along)),
-        If(compared(counts.task, "==", agreed("TRANSPOSED")), (*found[1], *back))))
+        If(compared(counts.task, "==", agreed("ALONG")), (*bodies[0], *along)),
+        If(compared(counts.task, "==", agreed("TRANSPOSED")), (*bodies[1], *back))))
     field = Point(arrays.field, ARGUMENTS["coefficients"].at(agreed("FIELD")))
     body = (*([field] if arrays.field in used else ()), *read_counts(layout),
             For(counts.element, Number(0), counts.count, of_element), Return(agreed("OK")))

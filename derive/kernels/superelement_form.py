@@ -124,29 +124,29 @@ def _sums(kernel: Superelement) -> tuple[Statement, ...]:
 
     def loop(*body: Statement) -> For:
         return For(i, Number(0), counts.n, body)
-    found: list[Statement] = [
+    statements: list[Statement] = [
         Set((kinetic,), (zero,)), Set((strain,), (zero,)),
         loop(Update(kinetic, Change.ADD, half * product(*kernel.formulas.inertia.kinetic)),
              Update(strain, Change.ADD, half * product(arrays.y, arrays.s)))]
     if kernel.layout.damped:
-        found += [
+        statements += [
             Set((lost,), (zero,)),
             loop(Update(strain, Change.SUBTRACT, half * product(arrays.y, arrays.friction)),
                  Update(lost, Change.SUBTRACT, product(arrays.eta, arrays.friction))),
             Set((ARGUMENTS["energies"][port()],), (lost,))]
-    return tuple(found)
+    return tuple(statements)
 
 
 def _outputs(kernel: Superelement) -> tuple[Statement, ...]:
     """Energies and momenta added to the sums of all elements; the power of a damped body."""
     q, energies = kernel.formulas.q, ARGUMENTS["energies"]
-    found: list[Statement] = [
+    statements: list[Statement] = [
         Update(energies[place], Change.ADD, symbol) for quantity, first in _totals(q)
         for symbol, place in _places(quantity, agreed(first))]
     if kernel.options[1].traits.rates:      # a body tells whether it is damped
-        found.append(If(compared(counts.damped, ">", 0), (
+        statements.append(If(compared(counts.damped, ">", 0), (
             Set((energies[port()],), (-SQUARES[LOST],)),)))
-    return tuple(found)
+    return tuple(statements)
 
 
 def _totals(q: Quantities) -> tuple[tuple[Quantity, str], ...]:

@@ -14,8 +14,8 @@ from sebody.derive.form.whole import Count, Whole, replaced
 def folded(statements: tuple[Statement, ...], known: Mapping[Count, int]
            ) -> tuple[Statement, ...]:
     """The statements with numbers for counts; what would give these names a value is left out."""
-    found = (_folded(statement, known) for statement in statements)
-    return tuple(statement for statement in found if statement != Let((), ()))
+    parts = (_folded(statement, known) for statement in statements)
+    return tuple(statement for statement in parts if statement != Let((), ()))
 
 
 def _folded(node: Any, known: Mapping[Count, int]) -> Any:

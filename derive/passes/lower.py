@@ -75,11 +75,11 @@ class Lowering:
                    Invert: self._invert, Search: self._search, Values: self._values,
                    Shift: self._shift, Scaling: self._scaling, Damping: self._damping,
                    Call: self._call, Repeat: self._repeat}
-        found: list[Statement] = []
+        listed: list[Statement] = []
         for step in steps:
             own = lowered[type(step)](step)
-            found += [Remark(step.title), *own] if own else []
-        return tuple(found)
+            listed += [Remark(step.title), *own] if own else []
+        return tuple(listed)
 
     def _stage(self, step: Stage) -> list[Statement]:
         before = [] if step.continues else [Zero(tuple(q.kept)) for q, _ in step.adds]
@@ -102,9 +102,9 @@ class Lowering:
 
     def _named(self, entries: Iterable[Entry]) -> list[Entry]:
         """Entries with named functions, without those that add nothing."""
-        found = [e._replace(value=name_functions(sp.sympify(e.value), self.names))
+        named = [e._replace(value=name_functions(sp.sympify(e.value), self.names))
                  for e in entries]
-        return [e for e in found if not (e.adds and e.value == 0)]
+        return [e for e in named if not (e.adds and e.value == 0)]
 
     def _wrap(self, over: str, body: list[Statement], indexed: bool) -> list[Statement]:
         """A loop over what carries the values; `indexed`: its first coordinate is used."""
@@ -118,12 +118,12 @@ class Lowering:
 
     def _loads(self, over: str, used: set) -> tuple[list[Statement], bool]:
         """Local variables of what is used, and whether the first coordinate is needed."""
-        found, indexed, values = [], False, set(self.names.values())
+        loads, indexed, values = [], False, set(self.names.values())
         for quantity in sorted(self.space.known.values(), key=lambda q: q.kept[0] in values):
             if quantity.home in (over, ELEMENT) and quantity.array and used & set(quantity.kept):
-                found.append(self.load(quantity))
+                loads.append(self.load(quantity))
                 indexed |= _by_dof_block(quantity)
-        return found, indexed
+        return loads, indexed
 
     def load(self, quantity: Quantity) -> Set:
         """A quantity of an array in local variables."""
@@ -159,27 +159,27 @@ class Lowering:
     def _solve(self, step: Solve) -> list[Statement]:
         unknown = step.unknown
         parts = [sp.Symbol(f"rhs_{axis}") for axis in self._axes(unknown)]
-        found = self._cleared(step) if step.invert else []
-        found.append(Zero(tuple(parts)))
+        cleared = self._cleared(step) if step.invert else []
+        cleared.append(Zero(tuple(parts)))
         for part in step.sums:
             entries = self._matrix(step, part) if step.invert else []
             right = zip(parts, step.right_side(part, self.space), strict=True)
-            found += self._loop(part.over, [*entries, *(_sum(s, e) for s, e in right)])
+            cleared += self._loop(part.over, [*entries, *(_sum(s, e) for s, e in right)])
         if step.invert:
-            found += self._inversion(step)
+            cleared += self._inversion(step)
         constant = self.space.components("axial", step.constant)
         total = [p - c for p, c in zip(parts, constant, strict=True)]
         inverse = self.inverses[step.inverse]
         values = (inverse.T if step.transposed else inverse) * sp.Matrix(total)
-        return found + self._loop(ELEMENT, [Entry(unknown, s, False, value) for s, value in
-                                            zip(unknown.kept, values, strict=True)])
+        return cleared + self._loop(ELEMENT, [Entry(unknown, s, False, value) for s, value in
+                                              zip(unknown.kept, values, strict=True)])
 
     def _invert(self, step: Invert) -> list[Statement]:
         equation = step.equation
-        found = self._cleared(equation)
+        cleared = self._cleared(equation)
         for part in equation.sums:
-            found += self._loop(part.over, self._matrix(equation, part))
-        return found + self._inversion(equation)
+            cleared += self._loop(part.over, self._matrix(equation, part))
+        return cleared + self._inversion(equation)
 
     def _cleared(self, step: Solve) -> list[Statement]:
         """The sum of the matrix before the first summand."""
@@ -214,10 +214,10 @@ class Lowering:
         return AXES[quantity.kind, self.space.planar]
 
     def _search(self, step: Search) -> list[Statement]:
-        found: list[Statement] = [
+        lowered: list[Statement] = [
             invoked(step.function, step.operands, (STATUS,), operations=step.operations),
             If(compared(STATUS, "!=", 0), (Return(STATUS),))]
-        return found + (self._frame(step.finds) if step.finds else [])
+        return lowered + (self._frame(step.finds) if step.finds else [])
 
     def _frame(self, rotation: Quantity) -> list[Statement]:
         """Entries of the frame's rotation into local variables."""
@@ -285,5 +285,5 @@ def _sum(symbol: sp.Symbol, value: sp.Expr) -> Entry:
 
 def name_functions(expression: sp.Expr, names: Names) -> sp.Expr:
     """Replace evaluated opaque functions by the quantities that hold their values."""
-    found = {f: names[f] for f in expression.atoms(stumpff, tangent_inverse) if f in names}
-    return expression.xreplace(found)
+    replaced = {f: names[f] for f in expression.atoms(stumpff, tangent_inverse) if f in names}
+    return expression.xreplace(replaced)

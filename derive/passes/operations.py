@@ -14,9 +14,9 @@ HOMES = ELEMENT, "position", "rotation"
 
 def operations(statements: Iterable[Statement]) -> Operations:
     """Count them; loops over modes and coordinates are left out, as are gathering and sums."""
-    found: Counter[str] = Counter()
-    _count(statements, ELEMENT, found)
-    return Operations(*(found[home] for home in HOMES), found["products"])
+    counts: Counter[str] = Counter()
+    _count(statements, ELEMENT, counts)
+    return Operations(*(counts[home] for home in HOMES), counts["products"])
 
 
 def _count(statements: Iterable[Statement], home: str, found: Counter[str]) -> None:

@@ -69,7 +69,7 @@ def transposed_forms(values: Iterable[sp.Expr], bars: Iterable[sp.Expr],
     DerivationError
         A value that is not linear in the inputs.
     """
-    inputs, found = tuple(inputs), {}
+    inputs, given = tuple(inputs), {}
     for value, bar in zip(map(sp.sympify, values), bars, strict=True):
         read = [s for s in inputs if s in value.free_symbols]
         if read and _degree(value, frozenset(read)) != 1:
@@ -78,8 +78,8 @@ def transposed_forms(values: Iterable[sp.Expr], bars: Iterable[sp.Expr],
         nothing = dict.fromkeys(read, sp.S.Zero)
         for s in read:      # a linear form's slope is its value at one: far quicker than by diff
             slope = value.xreplace(nothing | {s: sp.S.One})
-            found[s] = found.get(s, sp.S.Zero) + slope * bar
-    return found
+            given[s] = given.get(s, sp.S.Zero) + slope * bar
+    return given
 
 
 @cache
@@ -160,13 +160,13 @@ class Reversal:
 
     def _stage(self, step: Stage) -> Iterator[Step]:
         entries = step.entries(self.space)
-        found = transposed_forms([e.value for e in entries],
-                                 [self.bar_of(e.symbol) for e in entries], self.varied)
-        for s in (e.symbol for e in entries if not e.adds and e.symbol in found):
-            if sp.expand(found.pop(s) - self.bar_of(s)) != 0:
+        bars = transposed_forms([e.value for e in entries],
+                                [self.bar_of(e.symbol) for e in entries], self.varied)
+        for s in (e.symbol for e in entries if not e.adds and e.symbol in bars):
+            if sp.expand(bars.pop(s) - self.bar_of(s)) != 0:
                 raise DerivationError(f"step {step.title!r} changes {s} by itself other than by "
                                       "adding to it, so it has no transpose")
-        yield from self._added(step.title, step.over, found)
+        yield from self._added(step.title, step.over, bars)
         in_place = {s for e in entries if not e.adds for s in sp.sympify(e.value).free_symbols}
         if not step.continues:
             yield from self._consumed(step, [q for q, _ in (*step.sets, *step.adds)

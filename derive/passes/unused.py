@@ -12,12 +12,12 @@ from sebody.derive.passes.uses import uses
 
 def without_unused(statements: Iterable[Statement]) -> tuple[Statement, ...]:
     """The same statements without scalars that are set, and pointers, that are never read."""
-    found = tuple(statements)
+    remaining = tuple(statements)
     while True:
-        kept = tuple(_kept(found, {*_read(found), *uses(found).arrays}))
-        if kept == found:
-            return found
-        found = kept
+        kept = tuple(_kept(remaining, {*_read(remaining), *uses(remaining).arrays}))
+        if kept == remaining:
+            return remaining
+        remaining = kept
 
 
 def _kept(statements: Iterable[Statement], read: set[sp.Symbol | Array]) -> Iterator[Statement]:

@@ -38,10 +38,10 @@ class Uses(NamedTuple):
 def uses(statements: Iterable[Statement]) -> Uses:
     """Collect what statements read, write and call."""
     kinds = Array, View, Function, Agreed, Count, str
-    found: dict[type, dict] = {kind: {} for kind in kinds}
+    used: dict[type, dict] = {kind: {} for kind in kinds}
     for part in _parts(tuple(statements)):
-        found[type(part)].setdefault(part)
-    return Uses(*(tuple(found[kind]) for kind in kinds))
+        used[type(part)].setdefault(part)
+    return Uses(*(tuple(used[kind]) for kind in kinds))
 
 
 def _parts(node: Any) -> Iterator[Any]:

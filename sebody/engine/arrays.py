@@ -107,8 +107,8 @@ def _unbox(kind, group, c):
 
 
 def _kind_of_member(view: View, name: str) -> types.Type | None:
-    found = view.place(name)
-    return found and found[1]
+    place = view.place(name)
+    return place and place[1]
 
 
 def _member(context, builder, view, pointer, name):

@@ -157,18 +157,18 @@ def read_channel(now, row, c, last):
     if row[0] == DOT:           # c0 + e . x + f . y
         return c[0] + _dot(now, row[1], c, 1) + _dot(now, row[2], c, 4)
     if row[0] == TURNED:        # e . (R v)
-        found = 0.0
+        value = 0.0
         for i in range(3):
             if c[1 + i] != 0.0:
                 for j in range(3):
-                    found += c[1 + i] * now[row[1] + 3 * i + j] * now[row[2] + j]
-        return found
+                    value += c[1 + i] * now[row[1] + 3 * i + j] * now[row[2] + j]
+        return value
     if row[0] == INTO:          # e . (R' v)
-        found = 0.0
+        value = 0.0
         for i in range(3):
             for j in range(3):
-                found += c[1 + j] * now[row[1] + 3 * i + j] * now[row[2] + i]
-        return found
+                value += c[1 + j] * now[row[1] + 3 * i + j] * now[row[2] + i]
+        return value
     if row[0] == IN_PLANE:      # the same with an angle
         cosine, sine, x, y = (np.cos(now[row[1]]), np.sin(now[row[1]]), now[row[2]],
                               now[row[2] + 1])
@@ -186,11 +186,11 @@ def read_channel(now, row, c, last):
 
 @compiled
 def _dot(now, place, c, first):
-    found = 0.0
+    total = 0.0
     for i in range(3):
         if c[first + i] != 0.0:
-            found += c[first + i] * now[place + i]
-    return found
+            total += c[first + i] * now[place + i]
+    return total
 
 
 @compiled

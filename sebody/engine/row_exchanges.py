@@ -76,8 +76,8 @@ def exchange(system, state, exchanges):
     if state.control.phase == FACTORED:
         exchanges.kind[0] = UNKNOWN
     if exchanges.kind[0] == UNKNOWN:
-        found = _factorize(system, state, exchanges)
-        if found == ROOM:
+        outcome = _factorize(system, state, exchanges)
+        if outcome == ROOM:
             exchanges.kind[1] = 2 * (exchanges.factors.values.size + exchanges.matrix.entries.size)
             exchanges.kind[0] = UNKNOWN
             return ROOM
@@ -93,15 +93,15 @@ def _factorize(system, state, exchanges):
     n = system.diagonal.size
     for i in range(n):
         exchanges.scale[i] = state.scale[i]
-    found = _scaled(system, state, exchanges, False)
-    if found == SINGULAR and state.control.regularized == 0:
+    outcome = _scaled(system, state, exchanges, False)
+    if outcome == SINGULAR and state.control.regularized == 0:
         regularize(system, state, REGULARIZATION)
         for i in range(n):
             exchanges.scale[i] = state.scale[i]
-        found = _scaled(system, state, exchanges, False)
+        outcome = _scaled(system, state, exchanges, False)
     complete = exchanges.factors.starts[n] > 0
     exchanges.kind[0] = OF_STEP if complete else FAILED     # the step fails
-    return found
+    return outcome
 
 
 @compiled
@@ -118,11 +118,11 @@ def _of_masses(system, state, exchanges):
     for i in range(n):
         scale[i] = 1.0 / np.sqrt(max(scale[i], 1e-300))
     exchanges.kind[0] = OF_MASSES
-    found = _scaled(system, state, exchanges, False)
-    if found == SINGULAR:
-        found = _scaled(system, state, exchanges, True)
+    outcome = _scaled(system, state, exchanges, False)
+    if outcome == SINGULAR:
+        outcome = _scaled(system, state, exchanges, True)
         exchanges.kind[0] = LEAST if exchanges.factors.starts[2 * n] > 0 else FAILED
-    return found
+    return outcome
 
 
 @compiled
@@ -221,8 +221,8 @@ def _solve_least(system, state, exchanges):
 @compiled
 def _refine(system, state, exchanges):
     """Solve for `demand`, refined as `sebody.runs.kkt_solver` derives it; sets what is left."""
-    n, right, found, answer, left = (system.diagonal.size, exchanges.right, exchanges.found,
-                                     exchanges.answer, exchanges.left)
+    n, right, correction, answer, left = (system.diagonal.size, exchanges.right, exchanges.found,
+                                          exchanges.answer, exchanges.left)
     largest = 0.0
     for i in range(n):
         answer[i], left[i] = 0.0, exchanges.demand[i]
@@ -230,9 +230,9 @@ def _refine(system, state, exchanges):
     for _ in range(ATTEMPTS):
         for i in range(n):
             right[2 * i], right[2 * i + 1] = left[i], 0.0
-        substitute(exchanges.factors, 2 * n, right, found)
+        substitute(exchanges.factors, 2 * n, right, correction)
         for i in range(n):
-            answer[i] += found[2 * i + 1]
+            answer[i] += correction[2 * i + 1]
             right[i] = exchanges.demand[i]
         for k in range(system.rows.size):
             i, j = system.rows[k], system.columns[k]

@@ -26,13 +26,13 @@ def variables(model: Prepared) -> list[Variable]:
     Without units of the model there are none: words such as length are no units.
     """
     named = bool(model.model.units)
-    found = [Variable("time", 0, "independent", "continuous", "", None)]
+    listed = [Variable("time", 0, "independent", "continuous", "", None)]
     for one in model.inputs:
         kind = ("parameter", "tunable") if one.kind == PARAMETER else ("input", "continuous")
-        found.append(Variable(one.name, len(found), *kind, one.unit * named, one.start))
+        listed.append(Variable(one.name, len(listed), *kind, one.unit * named, one.start))
     for name, unit in zip(model.names, model.units, strict=True):
-        found.append(Variable(name, len(found), "output", "continuous", unit * named, None))
-    return found
+        listed.append(Variable(name, len(listed), "output", "continuous", unit * named, None))
+    return listed
 
 
 def description(model: Prepared, token: str, fmi: str, t_end: float | None) -> str:

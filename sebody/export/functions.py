@@ -47,8 +47,8 @@ def codes(names: Iterable[str], processor: str) -> dict[str, Code]:
         Something could not be compiled.
     """
     target = tag(processor)
-    found = {name: place(name).kept(KIND, target) for name in names}
-    missing = [name for name, one in found.items() if one is None]
+    code_of = {name: place(name).kept(KIND, target) for name in names}
+    missing = [name for name, one in code_of.items() if one is None]
     if missing:
         if not store.writable_folder(Path(loop.__file__)):
             raise InputError("code for the library cannot be kept: "
@@ -57,10 +57,10 @@ def codes(names: Iterable[str], processor: str) -> dict[str, Code]:
               flush=True)
         tasks = [Task(name, f"{__name__}:compile_one", (name, processor)) for name in missing]
         workers.call_all(tasks, variables=environment(processor))
-        found |= {name: place(name).kept(KIND, target) for name in missing}
-    if lacking := [name for name, one in found.items() if one is None]:
+        code_of |= {name: place(name).kept(KIND, target) for name in missing}
+    if lacking := [name for name, one in code_of.items() if one is None]:
         raise SebodyError(f"{', '.join(lacking)} could not be compiled for {processor}")
-    return {name: _code(one) for name, one in found.items() if one is not None}
+    return {name: _code(one) for name, one in code_of.items() if one is not None}
 
 
 def _code(kept: bytes) -> Code:
@@ -70,9 +70,9 @@ def _code(kept: bytes) -> Code:
 
 def kernel_module(name: str) -> ModuleType:
     """The module of a kernel that a model has."""
-    found = load(name)
-    assert found is not None        # assembly refuses a model without one of its kernels
-    return found
+    module = load(name)
+    assert module is not None        # assembly refuses a model without one of its kernels
+    return module
 
 
 def compile_one(name: str, processor: str) -> None:

@@ -49,21 +49,21 @@ class Image:
     def __init__(self, groups: list[Arrays], changing: Iterable[NDArray | np.record],
                  scratch: Sequence[NDArray | np.record]):
         mutable = {_address(array) for array in changing if array.nbytes}
-        found: dict[int, NDArray | np.record] = {}
+        pieces: dict[int, NDArray | np.record] = {}
         for array in sorted((one for group in groups for one in _members(group)),
                             key=lambda one: -one.nbytes):
-            if array.nbytes and not _holding(found.values(), array):
-                found[_address(array)] = array
-        zero = {at: not any(bytes_of(array)) for at, array in found.items()}
+            if array.nbytes and not _holding(pieces.values(), array):
+                pieces[_address(array)] = array
+        zero = {at: not any(bytes_of(array)) for at, array in pieces.items()}
         last = {_address(array) for array in scratch if array.nbytes}
-        order = sorted(found, key=lambda at: (at in mutable, at in mutable and zero[at],
-                                              at in last))
+        order = sorted(pieces, key=lambda at: (at in mutable, at in mutable and zero[at],
+                                               at in last))
         self._spans: list[_Span] = []
         self.size = 0
         self.mutable = self.saved = -1
         content = bytearray()
         for at in order:
-            array = found[at]
+            array = pieces[at]
             if at in mutable and self.mutable < 0:
                 self.mutable = self.size
             if at in last and self.saved < 0:
@@ -98,16 +98,16 @@ class Image:
 
     def words(self, group: Arrays) -> list[int]:
         """The words with which compiled code is given a group; pointers as -1 - offset."""
-        found: list[int] = []
+        listed: list[int] = []
         for name in type(group).__annotations__:
             value = getattr(group, name)
             if isinstance(value, Arrays):
-                found += self.words(value)
+                listed += self.words(value)
             elif isinstance(value, np.record):
-                found.append(-1 - self.at(value))
+                listed.append(-1 - self.at(value))
             else:
-                found += [-1 - self.at(value), *value.shape]
-        return found
+                listed += [-1 - self.at(value), *value.shape]
+        return listed
 
 
 def _members(group: Arrays) -> Iterator[NDArray | np.record]:

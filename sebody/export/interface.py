@@ -116,22 +116,22 @@ def _begun(name: str, own: TimeFunction | None) -> TimeFunction:
 
 def _parameters(model: Mechanism) -> dict[str, tuple]:
     """Numbers that can be set, by name: what has them, and which of its numbers."""
-    found: dict[str, tuple] = {f"gravity.{axis}": ("gravity", k)
-                               for k, axis in enumerate("xyz"[:model.dimension])}
+    parameters: dict[str, tuple] = {f"gravity.{axis}": ("gravity", k)
+                                    for k, axis in enumerate("xyz"[:model.dimension])}
     for element in (*model.rigid_bodies.values(), *model.constraints, *model.loads):
         if element.body is None:
-            found |= {f"{element.name}.{name}": (element, name)
-                      for name, value in element.constants.items() if np.ndim(value) == 0}
+            parameters |= {f"{element.name}.{name}": (element, name)
+                           for name, value in element.constants.items() if np.ndim(value) == 0}
     for name, controller in model.controllers.items():
-        found |= {f"{name}.parameters.{k}": (name, k)
-                  for k in range(controller.parameters.size)}
-    return found
+        parameters |= {f"{name}.parameters.{k}": (name, k)
+                       for k in range(controller.parameters.size)}
+    return parameters
 
 
 def placed(asked: list[Asked], model: Mechanism, numbering: Numbering, system: System,
            state: State, image: Image) -> list[Input]:
     """Where the values of inputs are."""
-    parameters, found = _parameters(model), []
+    parameters, places = _parameters(model), []
     ports = list(numbering.memory.inputs)
     for one in asked:
         if one.kind == INPUT:
@@ -149,8 +149,8 @@ def placed(asked: list[Asked], model: Mechanism, numbering: Numbering, system: S
             array, place = _place(parameters[one.name], model, numbering, system, state)
             at, number, factor = image.at(array, place), 0, 1.0
             start = float(array[place])
-        found.append(Input(one.name, one.kind, number, at, factor, start, _unit(one)))
-    return found
+        places.append(Input(one.name, one.kind, number, at, factor, start, _unit(one)))
+    return places
 
 
 def _place(parameter: tuple, model: Mechanism, numbering: Numbering, system: System,

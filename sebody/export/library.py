@@ -35,7 +35,7 @@ def linked(model: Prepared, work: Path, platforms: list[str], processor: str,
            sources: list[str]) -> dict[str, Path]:
     """A library of the model and of sources in C for each platform."""
     (work / "model.h").write_text(model_h(model), encoding="utf-8")
-    found = {}
+    paths = {}
     for platform in platforms:
         place = work / platform
         place.mkdir()
@@ -44,9 +44,9 @@ def linked(model: Prepared, work: Path, platforms: list[str], processor: str,
             files.append(work / f"{platform}.{name}.o")
             files[-1].write_bytes(content)
         own = PLATFORMS[platform]
-        found[platform] = place / f"{own.prefix}{model.identifier}{own.suffix}"
-        toolchain.link(work, found[platform], platform, files, [*sources, "memory.c"])
-    return found
+        paths[platform] = place / f"{own.prefix}{model.identifier}{own.suffix}"
+        toolchain.link(work, paths[platform], platform, files, [*sources, "memory.c"])
+    return paths
 
 
 def _filled(model: Prepared, name: str) -> str:

@@ -83,16 +83,16 @@ class Nodal:
             local = [[Term(1.0, (own,))] for own in self._local(body, place, "accelerations")]
             _add_cross(local, spin, twice)
             _add_cross(local, turn, [[Term(1.0, (own,))] for own in r])
-        found = []
+        terms = []
         if quantity == "position":
-            found.append(Term(1.0, ((MOVED, at["origin"].start + axis),)))
+            terms.append(Term(1.0, ((MOVED, at["origin"].start + axis),)))
         else:
             for j in range(D):
                 local[j].append(Term(1.0, ((MOVED, at[quantity].start + j),)))
         for j in range(D):
-            found += [term.times((MOVED, at["rotation"].start + 3 * axis + j))
+            terms += [term.times((MOVED, at["rotation"].start + 3 * axis + j))
                       for term in local[j]]
-        return found
+        return terms
 
     def _local(self, body: str, place: int, what: str) -> list[Factor]:
         """Outputs: the place of a node in a frame that rests, or a rate of it."""
@@ -224,19 +224,19 @@ def quadratic(function: Callable[[NDArray], NDArray], size: int) -> list[Polynom
     of_size = ROUNDED * (np.abs(plus) + np.abs(minus) + np.abs(zero))
     linear[np.abs(linear) <= of_size] = 0.0
     square[np.abs(square) <= of_size] = 0.0
-    found: list[Polynomial] = [[(float(x), ())] * bool(x) for x in zero[0]]
+    polynomials: list[Polynomial] = [[(float(x), ())] * bool(x) for x in zero[0]]
     for i, m in zip(*np.nonzero(linear), strict=True):
-        found[m].append((float(linear[i, m]), (int(i),)))
+        polynomials[m].append((float(linear[i, m]), (int(i),)))
     for i, m in zip(*np.nonzero(square), strict=True):
-        found[m].append((float(square[i, m]), (int(i), int(i))))
+        polynomials[m].append((float(square[i, m]), (int(i), int(i))))
     if pairs:
         i, j = np.array(pairs).T
         mixed = both - plus[i] - plus[j] + zero
         mixed[np.abs(mixed) <= ROUNDED * (np.abs(both) + np.abs(plus[i]) + np.abs(plus[j])
-                                         + np.abs(zero))] = 0.0
+                                          + np.abs(zero))] = 0.0
         for p, m in zip(*np.nonzero(mixed), strict=True):
-            found[m].append((float(mixed[p, m]), pairs[p]))
-    return found
+            polynomials[m].append((float(mixed[p, m]), pairs[p]))
+    return polynomials
 
 
 def placed(polynomial: Polynomial, factor: Callable[[int], Factor]) -> list[Term]:

@@ -30,17 +30,17 @@ def objects(model: Prepared, platform: str, processor: str) -> dict[str, bytes]:
         LLVM has failed.
     """
     names, target = (ENGINE, *model.kernels), f"{platform}.{tag(processor)}"
-    found = {name: _place(name).kept(KIND, target) for name in names}
-    missing = [name for name, content in found.items() if content is None]
+    objects_of = {name: _place(name).kept(KIND, target) for name in names}
+    missing = [name for name, content in objects_of.items() if content is None]
     if missing:
         codes(_of(missing), processor)
         call_all([Task(name, f"{__name__}:keep_one", (name, platform, processor))
                   for name in missing])
-        found |= {name: _place(name).kept(KIND, target) for name in missing}
-    if lacking := [name for name, content in found.items() if content is None]:
+        objects_of |= {name: _place(name).kept(KIND, target) for name in missing}
+    if lacking := [name for name, content in objects_of.items() if content is None]:
         raise SebodyError(f"LLVM has made no code of {', '.join(lacking)} for {platform} and "
                           f"{processor}: leave this platform out, or give another processor")
-    made = {name: content for name, content in found.items() if content is not None}
+    made = {name: content for name, content in objects_of.items() if content is not None}
     users = model.users()
     if users:
         made["users"] = functions_object(users, platform, processor)

@@ -41,12 +41,12 @@ class Quantities:
         InputError
             A name that nothing has.
         """
-        found = []
+        listed = []
         for name in names:
             values = naming.look_up(self._terms.recording(), name)
-            found += [name + "." * bool(label) + label
-                      for label in naming.component_names(values, name)]
-        return found
+            listed += [name + "." * bool(label) + label
+                       for label in naming.component_names(values, name)]
+        return listed
 
     def made(self, names: list[str], sensors: list[Sensor]) -> Outputs:
         """Outputs of some numbers, then of what sensors measure.

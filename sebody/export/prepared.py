@@ -96,12 +96,12 @@ class Prepared:
         self.sensors = [(k, sensor) for k, sensor in enumerate(self._numbering.memory.sensors)
                         if kinds[k] == OUTSIDE]
         self.outputs: Outputs = quantities.made(self.names, [s for _, s in self.sensors])
-        found = parsed_units(made.units)
-        self.units = [unit(one, found) for one in self.names]
+        units = parsed_units(made.units)
+        self.units = [unit(one, units) for one in self.names]
         self.exchanges = Exchanges.of(self._numbering.free, self.system.rows.size)
         self.image = self._image([one.kind for one in asked])
         self.inputs: list[Input] = [
-            one._replace(unit=found.of(one.unit) if found else one.unit)
+            one._replace(unit=units.of(one.unit) if units else one.unit)
             for one in placed(asked, made, self._numbering, self.system, self.run.state,
                               self.image)]
         self._find_calls()

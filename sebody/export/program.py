@@ -144,12 +144,12 @@ class Program:
 
 def product_of(term: Term, numbers: dict[int, NDArray], values: Sequence[NDArray] = ()) -> NDArray:
     """A product in some states, (n,)."""
-    found = np.full(len(numbers[NOW]), term.weight)
+    product = np.full(len(numbers[NOW]), term.weight)
     for kind, place in term.factors:
-        found = found * (values[place] if kind == VALUE else
-                         FUNCTIONS[kind](numbers[NOW][:, place]) if kind in FUNCTIONS else
-                         numbers[kind][:, place])
-    return found
+        product = product * (values[place] if kind == VALUE else
+                             FUNCTIONS[kind](numbers[NOW][:, place]) if kind in FUNCTIONS else
+                             numbers[kind][:, place])
+    return product
 
 
 def _whole(rows: Sequence, width: int) -> NDArray:

@@ -69,19 +69,19 @@ class Terms:
     def _random_states(self) -> NDArray:
         """The start, then states of random numbers around it, (1 + STATES, numbers)."""
         random, start = np.random.default_rng(SEED), self.state.now
-        found = random.uniform(-1.0, 1.0, (1 + STATES, len(self._kinds)))
+        numbers = random.uniform(-1.0, 1.0, (1 + STATES, len(self._kinds)))
         q, R = self._parts["q"], self._parts["R"]
-        found[:, q] = start[q] + AROUND * found[:, q]
-        for row in found:
+        numbers[:, q] = start[q] + AROUND * numbers[:, q]
+        for row in numbers:
             turns = Rotation.from_rotvec(random.uniform(-AROUND, AROUND, ((R.stop - R.start) // 9,
                                                                           3))).as_matrix()
             row[R] = (start[R].reshape(-1, 3, 3) @ turns).ravel()
         for name in ("frames", "frames_old"):       # of bodies: rotations
             first = self._parts[name].start
             own = slice(first, first + 9 * len(self.model.bodies))
-            found[:, own] = start[own]
-        found[0, :start.size] = start
-        return found
+            numbers[:, own] = start[own]
+        numbers[0, :start.size] = start
+        return numbers
 
     def _numbers(self) -> dict[int, NDArray]:
         """Numbers of every kind in these states, but of motions and of other outputs."""
@@ -96,9 +96,9 @@ class Terms:
     def numbers_of(self, program: Program) -> dict[int, NDArray]:
         """The same with the motions of bodies that a program asks for."""
         rows, counts = np.ascontiguousarray(self.numbers[NOW]), record_counts(self.numbering)
-        found = [evaluated(group, rows, counts)[0].reshape(len(rows), -1)
-                 for group, _ in program.bodies.values()]
-        return self.numbers | {MOVED: np.hstack([np.zeros((len(rows), 0)), *found])}
+        motions = [evaluated(group, rows, counts)[0].reshape(len(rows), -1)
+                   for group, _ in program.bodies.values()]
+        return self.numbers | {MOVED: np.hstack([np.zeros((len(rows), 0)), *motions])}
 
     def recording(self) -> Recording:
         """The state at the start."""
@@ -122,15 +122,15 @@ class Terms:
         """Numbers that are not unique where constraints are redundant."""
         numbering, q = self.numbering, self._parts["q"].start
         powers = ENERGIES.slices(record_counts(numbering))["powers"].start
-        found = {(SUM, k) for k in range(self.state.residual.size)}
-        found |= {(NOW, q + int(k)) for k in np.flatnonzero(self.system.is_multiplier)}
+        numbers = {(SUM, k) for k in range(self.state.residual.size)}
+        numbers |= {(NOW, q + int(k)) for k in np.flatnonzero(self.system.is_multiplier)}
         starts = sorted([*numbering.forces_at.values(), self.state.g.size])
         for element in self.model.constraints:
             if element.name in numbering.port_names:
-                found.add((OF_ENERGY, powers + numbering.port_names.index(element.name)))
+                numbers.add((OF_ENERGY, powers + numbering.port_names.index(element.name)))
             first = numbering.forces_at[element]
-            found |= {(FORCE, k) for k in range(first, starts[bisect(starts, first)])}
-        return found
+            numbers |= {(FORCE, k) for k in range(first, starts[bisect(starts, first)])}
+        return numbers
 
     def found(self, name: str) -> list[Term] | None:
         """A quantity as a sum of products; None if it is none."""
@@ -153,14 +153,14 @@ class Terms:
         if quantity == "sticks":
             return [Term(1.0, ((POSITIVE, at["normal"]), (BELOW_HALF, at["slid"])))]
         port = self.numbering.port_names.index(owner)
-        found = [Term(-1.0, ((NOW, self._parts["works"].start + port),))]
+        terms = [Term(-1.0, ((NOW, self._parts["works"].start + port),))]
         bent = [part for part in memory if part.startswith("bent")]
         if bent and self.numbering.bristles:
             half = 0.5 * self.numbering.bristles[element]
             for part in bent:
-                found += [Term(-half, ((NOW, at[part]), (NOW, at[part]))),
+                terms += [Term(-half, ((NOW, at[part]), (NOW, at[part]))),
                           Term(float(half * self.state.now[at[part]]**2))]
-        return found
+        return terms
 
     def _of_motion(self, name: str) -> list[Term] | None:
         """Power of a prescribed motion."""
@@ -181,21 +181,21 @@ class Terms:
             return None
         weights = values[1:] - values[0]
         constant = values[0] - weights @ self._rest
-        found = [Term(float(weights[k]), (self._kinds[k],)) for k in np.flatnonzero(weights)]
-        return found + [Term(float(constant), ())] * bool(constant)
+        terms = [Term(float(weights[k]), (self._kinds[k],)) for k in np.flatnonzero(weights)]
+        return terms + [Term(float(constant), ())] * bool(constant)
 
     def _with_rotations(self, name: str) -> list[Term] | None:
         """The same with moments, which elements give in axes that turn with nodes."""
-        found = []
+        terms = []
         for weight, factors in self._linear(name) or ():
             turned = self._turned.get(factors[0]) if factors else None
             if turned is None:
-                found.append(Term(weight, factors))
+                terms.append(Term(weight, factors))
                 continue
             matrix, first, axis = turned
-            found += [Term(weight, ((NOW, matrix + 3 * axis + k), (factors[0][0], first + k)))
+            terms += [Term(weight, ((NOW, matrix + 3 * axis + k), (factors[0][0], first + k)))
                       for k in range(3)]
-        return found
+        return terms
 
     def _in_joint_axes(self, name: str) -> list[Term] | None:
         """Forces and moments of joints along their axes, those of drives included."""
@@ -207,15 +207,15 @@ class Terms:
         if joint is None or joint.axes is None or quantity not in LOCAL:
             return None
         sign = -1.0 if quantity == "thrust" else 1.0
-        found = []
+        terms = []
         for i, label in enumerate("xyz"[:self.model.dimension]):
             of_joint = self._with_rotations(f"{joint_name}.{LOCAL[quantity]}.{label}")
             along = self._along(joint, i, axis)
             if of_joint is None or along is None:
                 return None
-            found += [Term(sign * a.weight * b.weight, (*a.factors, *b.factors))
+            terms += [Term(sign * a.weight * b.weight, (*a.factors, *b.factors))
                       for a, b in product(along, of_joint)]
-        return found
+        return terms
 
     def _along(self, joint: Joint, i: int, axis: int) -> list[Term] | None:
         """Component i of an axis of a joint."""
@@ -256,7 +256,7 @@ class Terms:
         """Of moments in axes of nodes: where the rotation matrix and the moment begin, the axis."""
         if self.model.planar:
             return {}
-        found = {}
+        weights = {}
         numbering, model = self.numbering, self.model
         parts: list[Element | Superelement] = [
             *model.bodies.values(), *model.rigid_bodies.values(), *model.constraints, *model.loads]
@@ -266,10 +266,10 @@ class Terms:
                 block = getattr(place.node, place.kind)
                 if block in numbering.rotations:
                     for k in range(3):
-                        found[FORCE, first + k] = self._matrix(block), first, k
+                        weights[FORCE, first + k] = self._matrix(block), first, k
                 first += block.start.size
         for block in numbering.rotations:
             first = numbering.dof_blocks[block]
             for k in range(3):
-                found[SUM, first + k] = self._matrix(block), first, k
-        return found
+                weights[SUM, first + k] = self._matrix(block), first, k
+        return weights

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 from warnings import warn
@@ -14,15 +14,15 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.engine.state import Scheme
 from sebody.errors import InputError, LimitWarning
-from sebody.explore.ensembles.member import forms
 from sebody.explore.ensembles.outputs import Output
 from sebody.gradients.history import History, history
 from sebody.gradients.linear import Linear
-from sebody.gradients.objectives import Objectives, Seen, checked
+from sebody.gradients.objectives import Folded, Objectives, Seen, checked
 from sebody.gradients.parameters import Column, columns_of
+from sebody.gradients.segments import Segments
 from sebody.gradients.slopes import Slope, Slopes
 from sebody.gradients.support import refuse_model, refuse_run
-from sebody.gradients.sweeps import Course, backward, forward
+from sebody.gradients.sweeps import Adjoint, Course, backward, forward
 from sebody.gradients.tables import OfTable, port_of, weights
 from sebody.model.model import Model
 from sebody.runs.schemes import checked as checked_scheme
@@ -146,18 +146,17 @@ def fitting(scheme: Scheme | None, tolerance: Tolerance | None = None) -> Scheme
 
 
 class Differentiated:
-    """A run with its accepted steps, and what linearizes them."""
+    """A run with all its accepted steps, and what linearizes them."""
 
     def __init__(self, model: Model, h: float, t_end: float, scheme: Scheme,
-                 tolerance: Tolerance | None = None, met: Sequence[float] = ()):
+                 tolerance: Tolerance | None = None):
         self.run = Simulation(model, h, scheme, tolerance=tolerance)
         refuse_run(self.run)
-        self.history: History = history(self.run, t_end, met)
+        self.history: History = history(self.run, t_end)
         self.run.watch.look(model, self.run.numbering, self.history.states)
         self.linear = Linear(self.run)
         self.course = Course(self.run, self.linear, self.history)
         self.course.settle()
-        self.sweep_seconds = 0.0
 
 
 def differentiate(model: Model, h: float, t_end: float, outputs: Mapping[str, Output],
@@ -165,56 +164,90 @@ def differentiate(model: Model, h: float, t_end: float, outputs: Mapping[str, Ou
                   tolerance: Tolerance | None = None) -> Gradient:
     """As `gradient`, of names that are checked; `columns` may count from other values."""
     began = time.perf_counter()
-    met = [output.time for output in outputs.values() if output.time is not None]
-    one = Differentiated(model, h, t_end, scheme, tolerance, met)
-    seen = Seen(outputs, one.run, one.history, one.linear)
-    slopes = Slopes(model, one.run, one.history, seen.explicit)
-    tables = _tables(one, outputs, slopes, columns)
-    matrix, growth = (_adjoint if mode == "adjoint" else _forward)(one, seen, slopes, columns,
-                                                                   tables)
+    run = Simulation(model, h, scheme, tolerance=tolerance)
+    refuse_run(run)
+    segments = Segments(run, t_end, [one.time for one in outputs.values() if one.time is not None])
+    one = _Parts(model, segments, Folded(outputs, segments), columns)
+    matrix, growth, seconds = (_adjoint if mode == "adjoint" else _forward)(one)
     if growth > CHAOTIC:
         warn(f"a disturbance of this run grows {growth:.1g} times in its effect on the objectives: "
              "the motion is unstable or chaotic, and its derivatives hold in a range as small; "
              "shorten the run, or take objectives over a shorter time", LimitWarning, stacklevel=3)
-    return Gradient(seen.value, matrix, tuple(seen.labels), tuple(c.label for c in columns),
-                    growth, time.perf_counter() - began, one.history.seconds, one.sweep_seconds)
+    return Gradient(one.whole.value, matrix, tuple(one.whole.labels),
+                    tuple(c.label for c in columns), growth, time.perf_counter() - began,
+                    segments.seconds, seconds)
 
 
-Tables = Mapping[str, OfTable]
+class _Part:
+    """A segment of a run, and what is differentiated in it."""
 
+    def __init__(self, one: _Parts, history: History):
+        run = one.segments.run
+        self.history, self.columns = history, one.columns
+        self.course = Course(run, one.linear, history)
+        self.course.settle()
+        self.seen = Seen(one.whole, run, history, one.linear)
+        self.slopes = Slopes(one.model, run, history, self.seen.explicit)
+        self.tables: dict[str, OfTable] = {}    # and amplitudes of loads, by name
+        ports = {c.name: (c, port_of(one.model, run, c)) for c in one.columns}
+        for name, (column, port) in ports.items():
+            if port is not None and one.whole.kinematic:    # objectives look at motion alone
+                residuals, values = self.slopes.by_load(port)
+                self.tables[name] = OfTable(residuals, weights(one.model, column, history, values))
 
-def _tables(one: Differentiated, outputs: Mapping[str, Output], slopes: Slopes,
-            columns: Sequence[Column]) -> dict[str, OfTable]:
-    """Tables and amplitudes of loads by name, where objectives look at motion alone."""
-    found: dict[str, OfTable] = {}
-    if not all(form.kinematic for form in forms(one.run, outputs).values()):
+    def slope(self, column: Column) -> Slope:
+        """Derivatives by a number of a parameter."""
+        if column.name in self.tables:
+            return self.tables[column.name].slope(column.component, len(self.seen.whole.value))
+        return self.slopes.of(column)
+
+    def along(self, bars: Adjoint) -> NDArray:
+        """Sums over the events for every parameter: (16)."""
+        tables = {name: table.contracted(bars.weights) for name, table in self.tables.items()}
+        found = np.zeros((len(self.seen.whole.value), len(self.columns)))
+        for k, column in enumerate(self.columns):
+            if column.name in tables:
+                found[:, k] = tables[column.name][:, column.component]
+                continue
+            slope = self.slopes.of(column)
+            found[:, k] = (np.einsum("emn,en->m", bars.weights, slope.residuals)
+                           + bars.bars[0].T @ slope.motion + bars.bars[1].T @ slope.rates
+                           + slope.objectives)
         return found
-    for column in {column.name: column for column in columns}.values():
-        port = port_of(slopes.model, one.run, column)
-        if port is not None:
-            residuals, values = slopes.by_load(port)
-            found[column.name] = OfTable(residuals, weights(slopes.model, column, one.history,
-                                                            values))
-    return found
+
+    def adding_to(self, found: NDArray, sizes: list[NDArray]) -> Callable[[int, NDArray], None]:
+        """What adds derivatives of states to those of objectives, and sizes of the motion."""
+        linear = self.course.linear
+        extent = linear.system.magnitude[:linear.free, None]
+
+        def see(first: int, states: NDArray) -> None:
+            sizes.append(np.abs(states[:, 0] * extent).max(axis=1))
+            seeds, seeded = self.seen.of_events(first, first + len(states) - 1)
+            found[:] += np.einsum("emcn,ecnp->mp", seeds[seeded], states[seeded])
+        return see
 
 
-def _adjoint(one: Differentiated, seen: Seen, slopes: Slopes, columns: Sequence[Column],
-             tables: Tables) -> tuple[NDArray, float]:
-    """One sweep back, then a sum over the events for every parameter: (16)."""
-    began = time.perf_counter()
-    bars = backward(one.course, seen, len(seen.value))
-    one.sweep_seconds = time.perf_counter() - began
-    whole = {name: table.contracted(bars.weights) for name, table in tables.items()}
-    found = np.zeros((len(seen.value), len(columns)))
-    for k, column in enumerate(columns):
-        if column.name in whole:
-            found[:, k] = whole[column.name][:, column.component]
-            continue
-        slope = slopes.of(column)
-        found[:, k] = (np.einsum("emn,en->m", bars.weights, slope.residuals)
-                       + bars.motion.T @ slope.motion + bars.rates.T @ slope.rates
-                       + slope.objectives)
-    return found, _growth(bars.sizes)
+class _Parts:
+    """A run in segments, and what is differentiated."""
+
+    def __init__(self, model: Model, segments: Segments, whole: Folded, columns: Sequence[Column]):
+        self.model, self.segments, self.whole, self.columns = model, segments, whole, columns
+        self.linear = Linear(segments.run)
+
+
+def _adjoint(one: _Parts) -> tuple[NDArray, float, float]:
+    """One sweep back over the segments, and sums in each of them."""
+    found = np.zeros((len(one.whole.value), len(one.columns)))
+    bars, seconds = None, 0.0
+    sizes: list[NDArray] = []
+    for segment in one.segments.back():
+        part = _Part(one, segment)
+        began = time.perf_counter()
+        swept = backward(part.course, part.seen, len(found), bars)
+        seconds += time.perf_counter() - began
+        found += part.along(swept)
+        bars, sizes = swept.bars, [swept.sizes, *sizes]
+    return found, _growth(np.concatenate(sizes)), seconds
 
 
 def _growth(sizes: NDArray) -> float:
@@ -223,24 +256,19 @@ def _growth(sizes: NDArray) -> float:
     return float(seen.max() / seen[-1]) if len(seen) else 1.0
 
 
-def _forward(one: Differentiated, seen: Seen, slopes: Slopes, columns: Sequence[Column],
-             tables: Tables) -> tuple[NDArray, float]:
-    """One sweep forth with a column for every parameter."""
-    each = [tables[c.name].slope(c.component, len(seen.value)) if c.name in tables
-            else slopes.of(c) for c in columns]
-    found = np.stack([slope.objectives for slope in each], axis=1)
-
-    sizes = np.zeros((len(one.history.rows), len(columns)))
-    extent = one.linear.system.magnitude[:one.linear.free, None]
-
-    def see(first: int, states: NDArray) -> None:
-        sizes[first:first + len(states)] = np.abs(states[:, 0] * extent).max(axis=1)
-        seeds, seeded = seen.of_events(first, first + len(states) - 1)
-        found[:] += np.einsum("emcn,ecnp->mp", seeds[seeded], states[seeded])
-    given, began = stacked(each), time.perf_counter()
-    forward(one.course, *given, see)
-    one.sweep_seconds = time.perf_counter() - began
-    return found, _growth_forth(sizes)
+def _forward(one: _Parts) -> tuple[NDArray, float, float]:
+    """One sweep forth over the segments, with a column for every parameter."""
+    found = np.zeros((len(one.whole.value), len(one.columns)))
+    now, seconds = None, 0.0
+    sizes: list[NDArray] = []
+    for segment in one.segments.forth():
+        part = _Part(one, segment)
+        each = [part.slope(column) for column in one.columns]
+        given, began = stacked(each), time.perf_counter()
+        now = forward(part.course, *given, part.adding_to(found, sizes), now)
+        seconds += time.perf_counter() - began
+        found += np.stack([slope.objectives for slope in each], axis=1)
+    return found, _growth_forth(np.concatenate(sizes)), seconds
 
 
 def _growth_forth(sizes: NDArray) -> float:

@@ -2,7 +2,8 @@
 
 A run is a sequence of events: its start, steps, and restarts where accelerations jump. Each one
 leaves a state; the next begins from there. Steps have the lengths that the run has accepted,
-halved ones and parts of steps up to a jump included.
+halved ones and parts of steps up to a jump included. Long runs are divided into segments, see
+`segments.py`: the history of a segment begins with the state that the one before has left.
 """
 
 import time
@@ -29,8 +30,19 @@ OFF = 1e-6                  # of a step: a time that is that near is at its end
 ROOM = 8                    # rows that may be recorded in one step of a run
 
 
+class Past(NamedTuple):
+    """What was before a segment of a run."""
+
+    kinds: NDArray      # (events,) as of a `History`, from the start to the first of the segment
+    ends: NDArray
+    besides: NDArray
+    recorded: int       # states before the segment
+
+
 class History(NamedTuple):
-    """Events of a run, the first of which is its start."""
+    """Events of a run, the first of which is its start, or of a segment of it, the first of which
+    has left the state that the segment begins with, and belongs to the segment before.
+    """
 
     rows: NDArray       # (events, size of a row of `layout.RECORD`) states that they leave
     kinds: NDArray      # (events,) RESTART or STEP
@@ -40,6 +52,8 @@ class History(NamedTuple):
     besides: NDArray    # (events,) by how much loads are read before or after that [time]
     recorded: NDArray   # events whose states a `Result` has, ascending
     seconds: float      # of the run
+    duration: float     # of the whole run [time]
+    past: Past | None = None    # of a segment that does not begin at the start
 
     @property
     def times(self) -> NDArray:
@@ -54,38 +68,54 @@ class History(NamedTuple):
         return self.rows[self.recorded]
 
 
-def history(run: Simulation, t_end: float, met: Sequence[float] = ()) -> History:
+def history(run: Simulation, t_end: float) -> History:
     """Run a simulation that is at its start to a time, and keep every accepted step.
 
-    Variable steps end there, and at the times that are to be met; their states are all recorded.
+    Variable steps end there; their states are all recorded.
 
     Raises
     ------
     SimulationError
         A step failed; what was computed is in the error's `result`.
     """
-    last = round(t_end / run.h)
-    memory.check(8.0 * last * run.state.now.size, f"the states of {last} steps",
+    meet(run, [t_end])
+    return stretch(run, round(t_end / run.h))
+
+
+def stretch(run: Simulation, last: int, most: int | None = None) -> History:
+    """Go on with a run to step `last` of the grid, or for at least `most` events if it is given.
+
+    Returns the events from the state at hand on; `recorded` has this one if it is the start. Fixed
+    steps end on the grid.
+
+    Raises
+    ------
+    SimulationError
+        A step failed; the states from here on are in the error's `result`.
+    """
+    began, control, grid = time.perf_counter(), run.state.control, int(run.state.control.grid)
+    end = last if most is None else min(last, grid + most)
+    memory.check(8.0 * (end - grid) * run.state.now.size, f"the states of {end - grid} steps",
                  "give an earlier t_end or longer steps")
-    began = time.perf_counter()
-    if run.tolerance is not None:
-        _meet(run, [*met, t_end])
-    if (whole := _whole(run, last)) is not None:
-        return whole._replace(seconds=time.perf_counter() - began)
+    if (whole := _whole(run, grid, end)) is not None:
+        return whole._replace(seconds=time.perf_counter() - began, duration=run.h * last)
     events = _Events(run, last)
-    while run.state.control.grid < last:
-        before = run.state.control.steps, float(run.state.clock.aux_step)
+    while control.grid < last and (most is None or len(events.rows) <= most
+                                   or (run.tolerance is None and control.unit > 0)):
+        before = control.steps, float(run.state.clock.aux_step)
         if not _one_step(run, events.record, last):
             run.failure = explained(run.model, run.system, run.state, run.numbering)
             run.rows.stretches.append(np.array(events.rows)[events.recorded[1:]])
             raise SimulationError(run.failure, run.result())
-        if run.state.control.steps > before[0]:
+        if control.steps > before[0]:
             events.add(before[1])
-    return events.found(time.perf_counter() - began)
+    return events.found(time.perf_counter() - began, run.h * last)
 
 
-def _meet(run: Simulation, times: Sequence[float]) -> None:
+def meet(run: Simulation, times: Sequence[float]) -> None:
     """Let variable steps end at some times."""
+    if run.tolerance is None:
+        return
     system = run.system
     more = np.setdiff1d(np.array([t for t in times if t > 0.0]), system.corners)
     corners = np.concatenate([system.corners, more])
@@ -95,27 +125,34 @@ def _meet(run: Simulation, times: Sequence[float]) -> None:
     run.exchanges = RowExchanges(run.system, run.state)
 
 
-def _whole(run: Simulation, last: int) -> History | None:
-    """The run in one go; None, and the run at its start, if steps were rejected or loads jump."""
-    state, start = run.state, copy_of(run.state)
-    inside = run.system.corners <= (last + OFF) * run.h
+def _whole(run: Simulation, first: int, last: int) -> History | None:
+    """Steps of the grid in one go; None, and the run as before, if it is to be step by step.
+
+    That is where steps are rejected or loads jump.
+    """
+    state, start, count = run.state, copy_of(run.state), last - first
+    before, steps, cuts = float(state.clock.aux_step), state.control.steps, state.control.cuts
+    after = (first + OFF) * run.h if first else -np.inf
+    inside = (run.system.corners > after) & (run.system.corners <= (last + OFF) * run.h)
     if run.tolerance is not None or (run.system.jumps[inside] > 0).any():
         return None
-    record, code = Record.of(state, last + 1), CHUNK
+    record, code = Record.of(state, count + 1), CHUNK
     state.control.recorded = 0
     write_record(state, record)
     while code not in (DONE, FAILED):
         run.exchanges.serve()
-        code = advance(run.system, state, record, run.scheme, last, last + 1, run.dense)
-    if code == FAILED or state.control.steps != last or state.control.cuts:
+        code = advance(run.system, state, record, run.scheme, last, count + 1, run.dense)
+    if code == FAILED or state.control.steps - steps != count or state.control.cuts > cuts:
         put_back(state, start)
+        run.exchanges.forget()
         return None
-    ones = np.ones(last + 1)
-    kinds = np.full(last + 1, STEP)
+    offsets, kinds = np.ones(count + 1), np.full(count + 1, STEP)
     kinds[0] = RESTART
+    if first:
+        offsets[1] = run.h / before
     times = record.rows[:, RECORD_T].copy()
-    return History(record.rows, kinds, run.h * (kinds == STEP), ones, times, 0.0 * ones,
-                   np.arange(last + 1), 0.0)
+    return History(record.rows, kinds, run.h * (kinds == STEP), offsets, times, 0.0 * times,
+                   np.arange(first > 0, count + 1), 0.0, 0.0)
 
 
 def copy_of(state: State) -> list[NDArray]:
@@ -150,8 +187,8 @@ class _Events:
         self.run, self.varies = run, run.tolerance is not None
         self.record = Record.of(run.state, max(ROOM, last + 1) if self.varies else ROOM)
         self.kinds, self.steps, self.offsets = [RESTART], [0.0], [1.0]
-        self.ends, self.besides = [0.0], [0.0]
-        self.rows, self.recorded = [run.state.now.copy()], [0]
+        self.ends, self.besides = [float(run.state.clock.time)], [0.0]
+        self.rows, self.recorded = [run.state.now.copy()], [0] * int(run.state.control.steps == 0)
 
     def add(self, aux_step: float) -> None:
         """Add the step that was accepted last, and the restart if there was one."""
@@ -187,8 +224,9 @@ class _Events:
             1 - s.alpha_f)
         return np.where(self.run.system.is_multiplier[:len(found)] > 0, 0.0, found)
 
-    def found(self, seconds: float) -> History:
+    def found(self, seconds: float, duration: float) -> History:
         """All events."""
-        return History(np.array(self.rows), *map(np.array, (
-            self.kinds, self.steps, self.offsets, self.ends, self.besides, self.recorded)),
-            seconds)
+        return History(
+            np.array(self.rows), np.array(self.kinds), np.array(self.steps),
+            np.array(self.offsets), np.array(self.ends), np.array(self.besides),
+            np.array(self.recorded, dtype=np.int64), seconds, duration)

@@ -17,9 +17,11 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.assembly.numbering import Numbering, coordinates
 from sebody.errors import InputError
+from sebody.explore.ensembles.member import forms
 from sebody.explore.ensembles.outputs import Fold, Output, outputs_of
 from sebody.gradients.history import History
 from sebody.gradients.linear import Linear
+from sebody.gradients.segments import Segments
 from sebody.gradients.sensors import Coordinates, Evaluated, Sensor
 from sebody.gradients.sweeps import Bars
 from sebody.model.model import Model
@@ -28,6 +30,7 @@ from sebody.results.recording import Recording
 from sebody.runs.simulation import Simulation
 from sebody.small_motion.moved_states import ADDED_UP, UNMOVED
 
+SEAM = 1e-6         # of the largest value: a quantity that differs more in a state is another turn
 EXTREMES = "maximum", "minimum"
 Objectives = Mapping[str, Output] | Sequence[Output] | Output
 
@@ -64,6 +67,69 @@ def checked(given: Objectives, t_end: float) -> dict[str, Output]:
     return found
 
 
+class Folded:
+    """Values of all objectives, of a run that is run through for this.
+
+    Parameters
+    ----------
+    outputs : mapping
+    segments : Segments
+
+    Attributes
+    ----------
+    times : (states,)
+    values : list of ndarray
+        Of each objective, with the shape of its quantity.
+    labels : list of str
+        Names of all components.
+    """
+
+    def __init__(self, outputs: Mapping[str, Output], segments: Segments):
+        self.outputs, run = outputs, segments.run
+        if not self._folded(segments):
+            segments.join()
+            self._folded(segments)
+        self.values = [np.asarray(fold.value()) for fold in self._folds.values()]
+        self.value = np.concatenate([value.ravel() for value in self.values])
+        self.labels = [label for name, value in zip(outputs, self.values, strict=True)
+                       for label in _labels(name, value)]
+        self.kinematic = all(form.kinematic for form in forms(run, outputs).values())
+
+    def _folded(self, segments: Segments) -> bool:
+        """Whether values go on from segment to segment, as angles beyond a turn do not."""
+        run, times = segments.run, []
+        last: dict[str, NDArray] = {}
+        self._folds: dict[str, Fold] = {}
+        for history in segments.run_through():
+            run.watch.look(run.model, run.numbering, history.states)
+            times.append(history.times)
+            found = values_of(self.outputs, run, history)
+            for name, one in self.outputs.items():
+                before, own = found[one.quantity]
+                if before is not None and not np.allclose(
+                        before, last[name], SEAM, SEAM * np.abs(own).max(initial=0.0)):
+                    return False
+                last[name] = own[-1]
+                if name not in self._folds:
+                    self._folds[name] = Fold(one, own.shape[1:])
+                self._folds[name].add(history.times, own)
+        self.times = np.concatenate(times)
+        return True
+
+
+def values_of(outputs: Mapping[str, Output], run: Simulation, history: History
+              ) -> dict[str, tuple[NDArray | None, NDArray]]:
+    """Values of each quantity in the state before a segment, if there is one, and in its own."""
+    before = history.past is not None
+    rows = history.rows[np.concatenate([[0], history.recorded])] if before else history.states
+    recording = Recording(run.model, run.numbering, run.system, run.state, rows, 0.0)
+    found = {}
+    for quantity in {one.quantity for one in outputs.values()}:
+        values = _history(recording, quantity)
+        found[quantity] = values[0] if before else None, values[before:]
+    return found
+
+
 class Looked(NamedTuple):
     """Where an objective looks at its quantity, and the derivative of the one by the other."""
 
@@ -73,37 +139,30 @@ class Looked(NamedTuple):
 
 
 class Seen:
-    """All objectives of a run.
+    """All objectives of a run, in a segment of it.
 
     Parameters
     ----------
-    outputs : mapping
+    whole : Folded
     run : Simulation
     history : History
     linear : Linear
     """
 
-    def __init__(self, outputs: Mapping[str, Output], run: Simulation, history: History,
-                 linear: Linear):
-        self.outputs, self.history, self.free = outputs, history, linear.free
+    def __init__(self, whole: Folded, run: Simulation, history: History, linear: Linear):
+        self.whole, self.history, self.free = whole, history, linear.free
         self.place = {int(event): k for k, event in enumerate(history.recorded)}
-        recording = Recording(run.model, run.numbering, run.system, run.state, history.states, 0.0)
         self.looked: list[Looked] = []
-        self.labels: list[str] = []
-        values, sensors = [], {}
-        for name, one in outputs.items():
-            found = _history(recording, one.quantity)
-            own = _folded(one, history.times, found)
-            seeds = _seeds(name, one, history.times, found, own)
+        sensors: dict[str, Sensor] = {}
+        first, found = 0, values_of(whole.outputs, run, history)
+        for (name, one), value in zip(whole.outputs.items(), whole.values, strict=True):
+            own = found[one.quantity][1]
             if one.quantity not in sensors:
-                sensors[one.quantity] = sensor_of(run, one.quantity, found.shape[1:], linear,
-                                                  history)
-            first = len(self.labels)
-            self.labels += _labels(name, own)
+                sensors[one.quantity] = sensor_of(run, one.quantity, own.shape[1:], linear, history)
+            seeds = _seeds(name, one, whole.times, _first_state(history), own, value)
             self.looked.append(Looked(sensors[one.quantity], seeds,
-                                      slice(first, len(self.labels))))
-            values.append(own.ravel())
-        self.value = np.concatenate(values)
+                                      slice(first, first + value.size)))
+            first += value.size
         any_of = np.any([one.seeds.any(axis=(1, 2)) for one in self.looked], axis=0)
         self.acting = set(history.recorded[any_of].tolist())
 
@@ -114,14 +173,14 @@ class Seen:
         for one in self.looked if k is not None else ():
             if not one.seeds[k].any():
                 continue
-            found = found or Bars(*(np.zeros((self.free, len(self.value))) for _ in range(3)))
+            found = found or Bars(*(np.zeros((self.free, len(self.whole.value))) for _ in range(3)))
             for own, bar in zip(found, one.sensor.at(k, event), strict=True):
                 own[:, one.columns] += bar.T @ one.seeds[k]
         return found
 
     def of_events(self, first: int, last: int) -> tuple[NDArray, NDArray]:
         """The same of some events, (events, m, 3, n), and which of them have any, (events,)."""
-        found = np.zeros((last + 1 - first, len(self.value), 3, self.free))
+        found = np.zeros((last + 1 - first, len(self.whole.value), 3, self.free))
         acting = np.zeros(len(found), dtype=bool)
         for e in range(len(found)):
             bars = self.at(first + e) if first + e in self.acting else None
@@ -132,23 +191,22 @@ class Seen:
         return found, acting
 
     def explicit(self, made: Simulation, rows: NDArray) -> NDArray:
-        """Values of all objectives with other numbers in the model, the motion being that of rows.
+        """Sums of all quantities, with the weights that they have in objectives here, (m,).
+
+        Of a model with other numbers, the motion being that of rows.
         """
         recording = Recording(made.model, made.numbering, made.system, made.state, rows, 0.0)
-        return np.concatenate([_folded(one, self.history.times, _history(
-            recording, one.quantity)).ravel() for one in self.outputs.values()])
+        return np.concatenate([np.einsum("kcm,kc->m", seen.seeds, _history(
+            recording, one.quantity).reshape(len(rows), -1)) for one, seen in zip(
+                self.whole.outputs.values(), self.looked, strict=True)])
+
+
+def _first_state(history: History) -> int:
+    return history.past.recorded if history.past is not None else 0
 
 
 def _history(recording: Recording, quantity: str) -> NDArray:
     return np.asarray(look_up(recording, quantity), dtype=float)
-
-
-def _folded(output: Output, t: NDArray, values: NDArray) -> NDArray:
-    fold = Fold(output, values.shape[1:])
-    fold.add(t, values)
-    found = fold.value()
-    assert found is not None
-    return np.asarray(found)
 
 
 def _labels(name: str, value: NDArray) -> list[str]:
@@ -185,43 +243,52 @@ def _coordinates(numbering: Numbering, model: Model, quantity: str
     return rates[what], found if component is None else found[component:component + 1]
 
 
-def _seeds(name: str, one: Output, t: NDArray, values: NDArray, value: NDArray) -> NDArray:
-    """Derivatives of an objective by its quantity, (states, components, outputs)."""
-    flat = values.reshape(len(t), -1)
+def _seeds(name: str, one: Output, t: NDArray, first: int, values: NDArray, value: NDArray
+           ) -> NDArray:
+    """Derivatives of an objective by its quantity, (states, components, outputs).
+
+    In some states, the first of which is number `first` of all, whose times are t.
+    """
+    flat = values.reshape(len(values), -1)
     if one.norm:
         length = np.sqrt((flat**2).sum(axis=1))
-        own = _weights(name, one, t, length[:, None], value.reshape(1))
+        own = _weights(name, one, t, first, length[:, None], value.reshape(1))
         if (own[length == 0] != 0).any():
             raise InputError(f"objective {name!r}: the length of {one.quantity} is zero in a "
                              "state, where it has no derivative: give its components")
         return (own / np.where(length > 0, length, 1.0)[:, None])[:, None] * flat[:, :, None]
-    own = _weights(name, one, t, flat, value.ravel())
+    own = _weights(name, one, t, first, flat, value.ravel())
     return own[:, :, None] * np.eye(flat.shape[1])
 
 
-def _weights(name: str, one: Output, t: NDArray, x: NDArray, value: NDArray) -> NDArray:
+def _weights(name: str, one: Output, t: NDArray, first: int, x: NDArray, value: NDArray) -> NDArray:
     """Derivatives by the quantity's components, each of its own, (states, components)."""
-    found = np.zeros_like(x)
-    if one.kind == "final":
-        found[-1] = 1.0
-        return found
-    if one.kind == "at":
-        k = int(np.searchsorted(t, one.time * (1 - 1e-12)))
-        part = 1.0 if k == 0 or t[k] <= one.time else (one.time - t[k - 1]) / (t[k] - t[k - 1])
-        found[k] = part
-        if part < 1.0:
-            found[k - 1] = 1.0 - part
-        return found
+    if one.kind in ("final", "at"):
+        return np.tile(_at(t, one.time)[first:first + len(x), None], x.shape[1])
     trapezoids = np.zeros(len(t))
     trapezoids[1:] += np.diff(t) / 2
     trapezoids[:-1] += np.diff(t) / 2
+    own = trapezoids[first:first + len(x), None]
     if one.kind == "integral":
-        found += trapezoids[:, None]
-        return found
+        return np.tile(own, x.shape[1])
     if (value == 0).any():
         raise InputError(f"objective {name!r} is zero, where it has no derivative: give integral "
                          "or final")
-    share = trapezoids[:, None] / (t[-1] - t[0])
+    share = own / (t[-1] - t[0])
     if one.kind == "rms":
         return share * x / value
     return share * np.sign(x) * (np.abs(x) / value) ** (one.power - 1)
+
+
+def _at(t: NDArray, time: float | None) -> NDArray:
+    """Weights of all states in the value at a time, or at the end."""
+    found = np.zeros(len(t))
+    if time is None:
+        found[-1] = 1.0
+        return found
+    k = int(np.searchsorted(t, time * (1 - 1e-12)))
+    part = 1.0 if k == 0 or t[k] <= time else (time - t[k - 1]) / (t[k] - t[k - 1])
+    found[k] = part
+    if part < 1.0:
+        found[k - 1] = 1.0 - part
+    return found

@@ -39,7 +39,7 @@ class Refined:
         self.columns = steps.Columns.of(
             columns, n, places, scheme.tolerance if scheme.tolerance > FINE else ROUNDING)
         self.numbers = (scheme.alpha_m, scheme.alpha_f, scheme.beta, scheme.gamma,
-                        float(history.ends[-1]))
+                        history.duration)
         self.scales: dict[float, Scales] = {}
 
     def begin(self, motion: tuple[NDArray, ...]) -> None:

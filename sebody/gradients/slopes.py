@@ -58,6 +58,34 @@ class Value(NamedTuple):
 
 
 @compiled
+def _drive(system, state, kind, end, beside, free, load):
+    """Loads at the next event, and the prescribed coordinates: rotations from the event before."""
+    port, change = load
+    for i in range(state.loads.size):
+        state.loads_old[i] = state.loads[i]
+    set_loads_beside(system, state.frames, state.loads, end, beside)
+    if port >= 0:
+        state.loads[3 * port] += change
+    move_prescribed(system, state)
+    if kind == RESTART:
+        return
+    for r in range(system.rotation_at.size):
+        at = system.rotation_at[r]
+        if at >= free:
+            for i in range(9):
+                state.R_old[9 * r + i] = state.R[9 * r + i]
+            rotate(pointer_to(state.R_old), 9 * r, state.dq[at], state.dq[at + 1],
+                   state.dq[at + 2], pointer_to(state.R), 9 * r)
+
+
+@compiled
+def _drive_on(system, state, kinds, ends, besides, free, load):
+    """The same over all events before a segment, whose states are not looked at."""
+    for e in range(1, kinds.size):
+        _drive(system, state, kinds[e], ends[e], besides[e], free, load)
+
+
+@compiled
 def _residuals(system, state, rows, now, kinds, ends, besides, places, free, load, found):
     """Residuals of all events but the first; fixed and prescribed coordinates are the model's own.
 
@@ -65,30 +93,16 @@ def _residuals(system, state, rows, now, kinds, ends, besides, places, free, loa
     run. The load of a power port may be changed, `load` being the port and the change.
     """
     q, R, v, a, frames, frames_old = places
-    port, change = load
     for e in range(1, rows.shape[0]):
-        for i in range(state.loads.size):
-            state.loads_old[i] = state.loads[i]
         for i in range(state.frames.size):
             state.frames[i], state.frames_old[i] = rows[e, frames + i], rows[e, frames_old + i]
-        set_loads_beside(system, state.frames, state.loads, ends[e], besides[e])
-        if port >= 0:
-            state.loads[3 * port] += change
+        _drive(system, state, kinds[e], ends[e], besides[e], free, load)
         for i in range(free):
             state.q[i], state.v[i], state.a[i] = rows[e, q + i], rows[e, v + i], rows[e, a + i]
-        move_prescribed(system, state)
         for r in range(system.rotation_at.size):
-            at = system.rotation_at[r]
-            if at < free:
+            if system.rotation_at[r] < free:
                 for i in range(9):
                     state.R[9 * r + i] = rows[e, R + 9 * r + i]
-                continue
-            if kinds[e] == RESTART:
-                continue
-            for i in range(9):
-                state.R_old[9 * r + i] = state.R[9 * r + i]
-            rotate(pointer_to(state.R_old), 9 * r, state.dq[at], state.dq[at + 1],
-                   state.dq[at + 2], pointer_to(state.R), 9 * r)
         place_dependent(system.links, state.q, state.v, state.a, state.R)
         of_others = ACCELERATION if kinds[e] == RESTART else RESIDUAL
         status = assemble(RESIDUAL, of_others, system, state, state.residual)
@@ -117,7 +131,6 @@ class Slopes:
     model : Model
         Is changed for moments, and put back.
     run : Simulation
-        At its start.
     history : History
     objectives : function
         Values of all objectives, (m,), of recorded rows and a simulation of the model that is
@@ -131,7 +144,7 @@ class Slopes:
         parts = run.state.recorded_parts
         self.places = tuple(parts[name].start for name in ("q", "R", "v", "a", "frames",
                                                            "frames_old"))
-        self.start = history.rows[0]
+        self.start = history.rows[0]        # of the run, or of a segment
 
     def of(self, column: Column) -> Slope:
         """Derivatives by a number of a parameter.
@@ -223,7 +236,10 @@ class Slopes:
         return found
 
     def _evaluated(self, made: Simulation) -> Value:
-        rates, motion = fitted_rates(made), self._turned(made.state)
+        if self.history.past is None:
+            rates, motion = fitted_rates(made), self._turned(made.state)
+        else:
+            rates, motion = np.zeros(self.free), np.zeros(self.free)
         found, now = self._along(made)
         return Value(found, motion, rates, self.objectives(made, now[self.history.recorded]))
 
@@ -233,9 +249,14 @@ class Slopes:
         system, state, history = made.system, made.state, self.history
         found = np.zeros((len(history.rows), self.free))
         now = history.rows[:len(history.rows) if states else 1].copy()
-        found[0] = self._first(made, load)
-        self._hold_start(made)
-        now[0] = state.now
+        if history.past is None:
+            found[0] = self._first(made, load)
+            self._hold_start(made)
+            now[0] = state.now
+        else:
+            set_loads(system, state.frames, state.loads, 0.0)
+            _drive_on(system, state, history.past.kinds, history.past.ends, history.past.besides,
+                      self.free, load)
         status = _residuals(system, state, history.rows, now, history.kinds, history.ends,
                             history.besides, self.places, self.free, load, found)
         if status != OK:

@@ -120,7 +120,8 @@ class Course:
     def stretches(self) -> list[tuple[int, int, int]]:
         """Kind, first and last of events in a row: pieces of steps, single restarts."""
         found: list[tuple[int, int, int]] = []
-        for k, kind in enumerate(self.history.kinds.tolist()):
+        first = int(self.history.past is not None)      # if so, event 0 is of the segment before
+        for k, kind in enumerate(self.history.kinds[first:].tolist(), first):
             last = found[-1] if found else (RESTART, 0, 0)
             if kind == STEP == last[0] and k - last[1] < PIECE:
                 found[-1] = STEP, last[1], k
@@ -167,8 +168,11 @@ def _initial(parts: Parts, fixed: NDArray) -> NDArray:
     return sparse.csc_array(others @ parts.mass @ others + some @ K + others @ K @ some)
 
 
+Motion = Sequence[NDArray]      # motion, rates, second and auxiliary rates, or bars of them
+
+
 def forward(course: Course, slopes: NDArray, motion: NDArray, rates: NDArray,
-            see: Callable[[int, NDArray], None]) -> None:
+            see: Callable[[int, NDArray], None], before: Motion | None = None) -> Motion:
     """(8) to (10): derivatives of all states by parameters.
 
     Parameters
@@ -181,8 +185,11 @@ def forward(course: Course, slopes: NDArray, motion: NDArray, rates: NDArray,
     see : function
         Is given the number of the first of some events, and derivatives of their states: of motion
         with multipliers, rates and second rates, (events, 3, n, p).
+    before : sequence of (n, p)
+        What the sweep over the segment before has returned, in place of the start's.
     """
-    now = motion * course.moving, rates * course.moving, 0.0 * motion, 0.0 * motion
+    now: Motion = before or (motion * course.moving, rates * course.moving, 0.0 * motion,
+                             0.0 * motion)
     refined = course.refined(motion.shape[1], back=False)
     for kind, first, last in course.stretches():
         if kind == RESTART:
@@ -199,9 +206,7 @@ def forward(course: Course, slopes: NDArray, motion: NDArray, rates: NDArray,
                          states)
             now = refined.motion
             see(first, np.moveaxis(states, 1, -1))
-
-
-Motion = Sequence[NDArray]      # motion, rates, second and auxiliary rates, or bars of them
+    return now
 
 
 def _over_restart(course: Course, event: Event, slopes: NDArray, now: Motion) -> Motion:
@@ -240,18 +245,20 @@ class Adjoint(NamedTuple):
     """Result of a sweep back."""
 
     weights: NDArray    # (events, m, n) of the slopes of the residuals: (16)
-    motion: NDArray     # (n, m) of the motion at the start, given rates, accelerations solved for
-    rates: NDArray      # (n, m)
+    bars: Motion        # (n, m) each, by the state at the start: accelerations are solved for
     sizes: NDArray      # (events,) largest effect of a disturbance of each state on an objective
 
 
-def backward(course: Course, seeds: Seeds, count: int) -> Adjoint:
-    """(11) to (15): derivatives of objectives by the residuals of all events and by the start."""
+def backward(course: Course, seeds: Seeds, count: int, after: Motion | None = None) -> Adjoint:
+    """(11) to (15): derivatives of objectives by the residuals of all events and by the start.
+
+    `after` are the bars that the sweep over the segment after this one has ended with.
+    """
     n, events = course.linear.free, len(course.history.rows)
     extent = course.linear.system.magnitude[:n, None]       # of disturbances: of rates in the run
-    duration = course.history.ends[-1]
+    duration = course.history.duration
     weights, sizes = np.zeros((events, count, n)), np.zeros(events)
-    bars: Motion = [np.zeros((n, count)) for _ in range(4)]
+    bars: Motion = after or [np.zeros((n, count)) for _ in range(4)]
     refined = course.refined(count, back=True)
     for kind, first, last in reversed(course.stretches()):
         if kind == STEP and refined is not None:
@@ -266,7 +273,7 @@ def backward(course: Course, seeds: Seeds, count: int) -> Adjoint:
             weights[k] = w.T
             sizes[k] = max(np.abs(bars[0] * extent).max(),
                            np.abs(bars[1] * extent).max() / duration)
-    return Adjoint(weights, bars[0], bars[1], sizes)
+    return Adjoint(weights, bars, sizes)
 
 
 def _seeded(course: Course, seed: Bars | None, bars: Motion) -> Motion:

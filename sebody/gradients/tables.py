@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import sparse
 
 from sebody.gradients.history import History
 from sebody.gradients.parameters import Column
@@ -27,12 +28,12 @@ class OfTable(NamedTuple):
     """Derivatives by the values of a table, or by an amplitude as the only one."""
 
     residuals: NDArray      # (events, n) by the value of the time function
-    weights: NDArray        # (events, rows) of the table's values in that
+    weights: sparse.csr_array   # (events, rows) of the table's values in that
 
     def slope(self, row: int, objectives: int) -> Slope:
         """By the value of one row."""
         n = self.residuals.shape[1]
-        return Slope(self.weights[:, row, None] * self.residuals, np.zeros(n), np.zeros(n),
+        return Slope(self.weights[:, [row]].toarray() * self.residuals, np.zeros(n), np.zeros(n),
                      np.zeros(objectives))
 
     def contracted(self, bars: NDArray) -> NDArray:
@@ -54,24 +55,22 @@ def _load(model: Model, column: Column) -> Element | None:
         (one for one in model.loads if one.name == owner), None)
 
 
-def weights(model: Model, column: Column, history: History, values: NDArray) -> NDArray:
+def weights(model: Model, column: Column, history: History, values: NDArray) -> sparse.csr_array:
     """Weights of a parameter's numbers in the value of its load at all events, (events, numbers).
 
     `values` are those of the load, (events,).
     """
     if column.name.endswith(AMPLITUDE):
-        return values[:, None] / float(column.handle.base)
+        return sparse.csr_array(values[:, None] / float(column.handle.base))
     load = _load(model, column)
     assert load is not None and load.time_function is not None
     rows = rows_of(load.time_function.times, load.time_function.pieces)
     assert rows is not None
     t, last, events = rows[:, 0], len(rows) - 1, np.arange(len(history.ends))
     first = np.searchsorted(t, history.ends + history.besides, side="right") - 1
-    found = np.zeros((len(events), len(rows)))
     inside = (first >= 0) & (first < last)
-    outside = ~inside
-    found[events[outside], np.maximum(first[outside], 0)] = 1.0
-    e, k = events[inside], first[inside]
+    others, e, k = events[~inside], events[inside], first[inside]
     part = (history.ends[e] - t[k]) / (t[k + 1] - t[k])
-    found[e, k], found[e, k + 1] = 1.0 - part, part
-    return found
+    return sparse.csr_array((np.concatenate([np.ones(len(others)), 1.0 - part, part]), (
+        np.concatenate([others, e, e]),
+        np.concatenate([np.maximum(first[~inside], 0), k, k + 1]))), shape=(len(events), len(rows)))

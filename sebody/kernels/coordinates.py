@@ -72,7 +72,7 @@ def _in_order(builder, rows, order, to, count, end):
     """Numbers of some rows in an order, as whole vectors: what reads them next reads vectors."""
     nothing = ir.Constant(ir.DoubleType(), 0.0)
     with short_loop(builder, WORD(0), end, LANES) as first:
-        found = [no_sum()] * len(rows)
+        totals = [no_sum()] * len(rows)
         for lane in range(LANES):
             k = builder.add(first, WORD(lane))
             given = builder.icmp_signed("<", k, count)
@@ -80,8 +80,8 @@ def _in_order(builder, rows, order, to, count, end):
             at = builder.fptosi(builder.load(builder.gep(order, [asked])), WORD)
             for i, row in enumerate(rows):
                 number = builder.select(given, builder.load(builder.gep(row, [at])), nothing)
-                found[i] = builder.insert_element(found[i], number, ir.IntType(32)(lane))
-        for vector, out in zip(found, to, strict=True):
+                totals[i] = builder.insert_element(totals[i], number, ir.IntType(32)(lane))
+        for vector, out in zip(totals, to, strict=True):
             store_vector(builder, vector, out, first)
 
 

@@ -110,15 +110,15 @@ def _dot(builder, A, x, out, rows, columns, height, add):
                 for first, total in zip(firsts, sums, strict=True):
                     add_product(builder, total, load_vector(builder, A, builder.add(first, row)),
                                 factor)
-            found = [builder.load(total) for total in sums]
+            parts = [builder.load(total) for total in sums]
             if count == LANES:
-                result = sums_of_lanes(builder, found)
+                result = sums_of_lanes(builder, parts)
                 if add:
                     result = builder.fadd(load_vector(builder, out, column), result)
                 store_vector(builder, result, out, column)
             else:
                 place = builder.gep(out, [column])
-                result = added_up(builder, found[0])
+                result = added_up(builder, parts[0])
                 builder.store(builder.fadd(builder.load(place), result) if add else result, place)
         done = end
 

@@ -32,11 +32,11 @@ from sebody.kernels.ways import between, carried, turned, turning, way, way_rate
 
 @compiled
 def _dot(x, first, c, place):
-    found = 0.0
+    total = 0.0
     for i in range(3):
         if c[place + i] != 0.0:
-            found += c[place + i]*x[first + i]
-    return found
+            total += c[place + i]*x[first + i]
+    return total
 
 
 @compiled

@@ -137,12 +137,12 @@ def part_bodies(model: Mechanism, beam: Beam, section: AnySection,
     if held is None:
         return [_part(model, span, part, each, options["modes"], options["up"], times)
                 for span, part in zip(pairwise(beam.nodes), parts, strict=True)]
-    found = []
+    bodies = []
     for span, part, shapes in zip(pairwise(beam.nodes), parts, held, strict=True):
         turn, own = _line(model, span, options["up"])
         body = with_held_modes(_fe_model(model.planar, own, part, each), _ends(each), shapes)
-        found.append(_turned(damped(body, times) if times else body, turn))
-    return found
+        bodies.append(_turned(damped(body, times) if times else body, turn))
+    return bodies
 
 
 def part_shapes(model: Mechanism, beam: Beam, section: AnySection) -> list[NDArray]:

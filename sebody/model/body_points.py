@@ -55,8 +55,8 @@ def _place(recovery: Recovery, label: str) -> int | None:
         return None
     called = (recovery.labels if recovery.labels is not None else
               np.arange(len(recovery.coordinates)) if recovery.nodes is None else recovery.nodes)
-    found = np.flatnonzero(called == int(label))
-    return int(found[0]) if len(found) else None
+    places = np.flatnonzero(called == int(label))
+    return int(places[0]) if len(places) else None
 
 
 def point_constants(point: BodyPoint) -> dict[str, ArrayLike]:
@@ -68,8 +68,8 @@ def point_constants(point: BodyPoint) -> dict[str, ArrayLike]:
 def shapes(point: BodyPoint) -> NDArray:
     """Displacements of a point of unit local coordinates, (n, D)."""
     n = len(point.body.reduced.stiffness)
-    found: NDArray = _recovery(point).displacement(np.eye(n), [point.place])[:, 0]
-    return found
+    displacements: NDArray = _recovery(point).displacement(np.eye(n), [point.place])[:, 0]
+    return displacements
 
 
 def start_place(point: BodyPoint) -> NDArray:

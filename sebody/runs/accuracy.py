@@ -122,7 +122,7 @@ class _Runs:
                 warnings.simplefilter("ignore", LimitWarning)
                 one = Simulation(self.model, self.h, self.scheme, tolerance=local,
                                  start=self.start)
-                found = one.run_to(self.t_end, self.progress).result()
+                result = one.run_to(self.t_end, self.progress).result()
         except KeyboardInterrupt as stop:
             if self.finest is None:
                 raise
@@ -130,10 +130,10 @@ class _Runs:
             last.failure = (f"{stop or 'interrupted'}; the result is that of the previous run, "
                             "with larger steps, and its error may be above the tolerance")
             raise Interrupted(last.failure, last) from stop
-        self.seconds += found.seconds
-        if self.finest is None or found.steps > self.finest.steps:
-            self.finest = found
-        return found
+        self.seconds += result.seconds
+        if self.finest is None or result.steps > self.finest.steps:
+            self.finest = result
+        return result
 
 
 def _falling(change: float, coarse: Result, fine: Result, order: int) -> float:

@@ -66,7 +66,7 @@ def _slide(numbering: Numbering, state: State, places: list[DofBlock], carrier: 
 
 
 def pair(numbering: Numbering, state: State, dof_blocks: list[DofBlock], axis: NDArray,
-          vectors: list[NDArray]) -> NDArray:
+         vectors: list[NDArray]) -> NDArray:
     """A row that takes the rate of the second DOF block from that of the first."""
     row = np.zeros(numbering.total)
     for dof_block, sign, vector in zip(dof_blocks, (1.0, -1.0), vectors, strict=True):

@@ -121,12 +121,12 @@ class ConstrainedMotion:
             left = (sum(u @ f[self._moving].T for u, f in zip(amplitudes, self._pushes,
                                                               strict=True))
                     - sum(z[:, self._moving] @ X.T for z, X in zip(rows, (K, C, M),
-                                                                  strict=True)))
+                                                                   strict=True)))
             constraint_columns = self._scale[:, None] * self._constraint_columns
             columns = np.linalg.norm(constraint_columns, axis=0)
             columns[columns == 0.0] = 1.0
             forces = lstsq(constraint_columns / columns, self._scale[:, None] * left.T,
-                         cond=DEPENDENT)[0]
+                           cond=DEPENDENT)[0]
             rows[0][:, self._multipliers] = (forces / columns[:, None]).T
         return rows
 

@@ -187,6 +187,7 @@ def state_space(run: Simulation | Result, inputs: str | Iterable[str],
     names = _listed(inputs, "inputs", "name of an input")
     wanted = _listed(outputs, "outputs", "name of a quantity")
     refuse_unmoved(wanted, "linear model")
+    _refuse_powers_of_loads(run, names, wanted)
     steady = Spin.of(run, spin)
     matrices = small_motion(run, steady)
     drives = [inputs_of_motion.found(run, steady, name) for name in names]
@@ -208,6 +209,15 @@ def state_space(run: Simulation | Result, inputs: str | Iterable[str],
     return StateSpace(A[np.ix_(states, states)], B[states], Y[states].T, Y[size:].T, system.names(),
                       tuple(ACCELERATED.format(one.name) if one.moves else one.name
                             for one in drives), tuple(labels), values)
+
+
+def _refuse_powers_of_loads(run: Simulation | Result, names: list[str], wanted: list[str]) -> None:
+    """Refuse the power of a load that is an input: it is a product with the input itself."""
+    loads = {load.name for load in run.model.loads}
+    for name in names:
+        if name in loads and f"{name}.power" in wanted:
+            raise InputError(f"output {name + '.power'!r} is a product of the input {name!r} and a "
+                             "velocity: name the velocity where the load acts")
 
 
 def _listed(names: str | Iterable[str], what: str, one: str) -> list[str]:

@@ -3,7 +3,8 @@
     python tests/benchmarks/bench_gradient.py [--json] [--picture FILE] [NAME ...]
 
 cost: seconds of a run and of gradients of the hinged beam, quickest of some, in turns; by one
-parameter and by the 1000 values of a table. tolerance: error of a gradient on runs with a coarser
+parameter and by the 1000 values of a table. memory: most that gradients along 1e5 steps have
+allocated at a time, and their seconds. tolerance: error of a gradient on runs with a coarser
 tolerance. torque: the torque history of least effort, of 1000 values, that turns a flexible arm by
 a radian from rest to rest, with all its vibrations at rest at the end.
 """
@@ -11,6 +12,7 @@ a radian from rest to rest, with all its vibrations at rest at the end.
 import argparse
 import json
 import time
+import tracemalloc
 
 import numpy as np
 
@@ -19,7 +21,7 @@ from sebody.analysis import ValueAndGradient, final, gradient
 from sebody.fem import rectangle
 from sebody.scenes.hinged_beam import build
 
-NAMES = "cost", "tolerance", "torque"
+NAMES = "cost", "memory", "tolerance", "torque"
 PARTS, MOST = 2, 8          # of the angle; steps of Newton's iteration in each
 TOLERANCES = 1e-6, 1e-8, 1e-10
 SCHEME = generalized_alpha(tolerance=1e-10)
@@ -52,6 +54,27 @@ def cost(repeats=5, t_end=5.0):
             began = time.perf_counter()
             task()
             found[name] = min(found[name], time.perf_counter() - began)
+    return found
+
+
+def memory(steps=100_000, h=0.01):
+    """Largest number of MB that a gradient has allocated at a time, and seconds without counting.
+    """
+    model, found = tabled(t_end=10.0), {}     # its torque ends at 7.5
+    for name in "motor.amplitude", "motor.table", "beam.mass":
+        for mode in ("adjoint", "forward") if name != "motor.table" else ("adjoint",):
+            def run(count, name=name, mode=mode):
+                began = time.perf_counter()
+                gradient(model, h, count * h, {"tip": final("tip.position.y")}, [name], mode,
+                         scheme=generalized_alpha(tolerance=1e-8))
+                return time.perf_counter() - began
+            run(10)             # compiles
+            seconds = run(steps)
+            tracemalloc.start()
+            run(steps)
+            found[f"{mode}, {name}"] = {"MB": tracemalloc.get_traced_memory()[1] / 1e6,
+                                        "seconds": seconds}
+            tracemalloc.stop()
     return found
 
 
@@ -149,7 +172,7 @@ def main(given=None):
             if options.picture:
                 picture(options.picture, solution)
         else:
-            found[name] = {"cost": cost, "tolerance": tolerance}[name]()
+            found[name] = {"cost": cost, "memory": memory, "tolerance": tolerance}[name]()
     if options.json:
         print(json.dumps(found))
         return

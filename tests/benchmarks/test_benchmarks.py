@@ -248,7 +248,8 @@ def test_struck_frames_beside_beams(monkeypatch, capsys):
                         lambda struck, options: measure(struck, options, (1e-3,), 0.1))
     bench.main(["--json", "--random", "0", "T"])
     row = json.loads(capsys.readouterr().out)["T"]
-    assert list(row) == ["default", "on rotations", "beams"]
+    assert list(row) == ["default", "on rotations", "beams", "predicted"]
+    assert 0.0 < row["default"]["0.001"]["gain"] < 2.0 * row["predicted"]["0.001"]
     assert row["default"]["0.001"]["gain"] < 1e-2 and row["beams"]["0.001"]["gain"] < 1e-2
     assert row["default"]["0.001"]["end"] == pytest.approx(0.1)
 
@@ -269,6 +270,7 @@ def test_gradients_are_timed_and_a_torque_ends_at_rest():
     bench = imported("bench_gradient")
     found = bench.cost(repeats=1, t_end=0.5)
     assert list(found)[0] == "run" and min(found.values()) > 0.0
+    assert all(0.0 < row["MB"] < 50.0 for row in bench.memory(steps=20).values())
     found, _ = bench.torque(entries=60, t_end=0.3, angle=0.05, h=5e-3)
     assert found["misses"][-1] < 1e-8 < found["misses"][0]
 

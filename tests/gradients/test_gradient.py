@@ -6,7 +6,7 @@ import pytest
 
 from sebody import InputError, Model, SimulationError, Tolerance
 from sebody.analysis import at_time, final, gradient, integral, rms, soft_maximum
-from sebody.gradients import sweeps
+from sebody.gradients import segments, sweeps
 from sebody.gradients.gradient import Differentiated
 from sebody.model import profiles
 from sebody.runs.schemes import generalized_alpha, hht
@@ -97,6 +97,63 @@ def test_products_give_what_matrices_in_every_step_do(name, mode, monkeypatch):
     monkeypatch.setattr(sweeps.Course, "refined", lambda *_, **others: None)
     exact = gradient(build(), *run, mode, scheme=EXACT)
     assert (np.abs(found.matrix - exact.matrix) / rows(exact.matrix)).max() < 1e-11
+
+
+# runs of scenes, whose segments have few events: parameters of which forces are polynomials
+LONG = {
+    "jumps of loads": SCENES["jumps of loads"][1:],
+    "given velocities": SCENES["given velocities"][1:],
+    "moved base": (*SCENES["moved base"][1:3], {
+        "end": final("end.velocity"), "way": rms("tip.position"),
+        "far": soft_maximum("energy.kinetic")}, ["swing.amplitude", "ball.mass"])}
+
+
+def in_segments(monkeypatch, events, *run, **others):
+    """Gradients of a run as a whole, and in segments."""
+    whole = gradient(*run, **others)
+    row = Differentiated(run[0], run[1], run[1], EXACT).history.rows[0]
+    monkeypatch.setattr(segments, "STATES", events * row.nbytes)
+    return whole, gradient(*run, **others)
+
+
+@pytest.mark.filterwarnings("ignore::sebody.LimitWarning")
+@pytest.mark.parametrize("name", LONG)
+@pytest.mark.parametrize("mode", ["adjoint", "forward"])
+def test_segments_that_are_run_again_give_the_same(name, mode, monkeypatch):
+    """Segments are computed again to the last digit; sums over them are rounded otherwise."""
+    whole, parts = in_segments(monkeypatch, 7, SCENES[name][0](), *LONG[name], mode=mode,
+                               scheme=EXACT)
+    assert np.array_equal(parts.value, whole.value)
+    assert (np.abs(parts.matrix - whole.matrix) / rows(whole.matrix)).max() < 1e-12
+    assert parts.growth == pytest.approx(whole.growth, rel=1e-9)
+
+
+@pytest.mark.parametrize("mode", ["adjoint", "forward"])
+def test_segments_of_variable_steps(mode, monkeypatch):
+    whole, parts = in_segments(monkeypatch, 10, oscillator(), 0.02, 1.2, {
+        "x": final("a.position.x"), "v": rms("a.velocity.x"),
+        "a": at_time("a.acceleration.x", 0.77), "far": soft_maximum("a.position.x", 6),
+        "sum": integral("spring.force.x")}, [
+        "spring.stiffness", "spring.damping", "ball.mass", "push.amplitude"], mode=mode,
+        tolerance=Tolerance(1e-4), scheme=EXACT)
+    assert np.array_equal(parts.value, whole.value)
+    assert (np.abs(parts.matrix - whole.matrix) / rows(whole.matrix)).max() < 1e-12
+
+
+def test_angles_beyond_a_turn_are_followed_from_segment_to_segment(monkeypatch):
+    """A rotor under a constant moment: ``M t^2 / (2 J)``, which is linear in M."""
+    m, inertia = Model(), np.diag([0.2, 0.3, 0.4])
+    angle = 0.9 * 4.0**2 / 2 / (scenes.Z @ inertia @ scenes.Z)
+    assert angle > 6 * np.pi
+    a = m.node("a", (0.3, 0.0, 0.0))
+    m.rigid_body("rotor", a, 1.0, inertia)
+    m.revolute(a, axis=scenes.Z, name="bearing")
+    m.torque(a, 0.9 * scenes.Z, [(0, 1), (9, 1)], name="torque")
+    monkeypatch.setattr(segments, "STATES", 1e4)
+    found = gradient(m, 0.02, 4.0, {"angle": final("bearing.angle"), "z": final("a.rotation.z")},
+                     ["torque.amplitude"], scheme=EXACT)
+    assert found.value == pytest.approx([angle, angle * scenes.Z[2]], rel=1e-9)
+    assert found.matrix[0, 0] == pytest.approx(angle, rel=1e-9)
 
 
 @pytest.mark.parametrize("scheme", [hht(-0.1, 1e-13), generalized_alpha(0.3, 1e-13)])
@@ -295,7 +352,10 @@ def test_the_model_is_as_before():
 
 
 @pytest.mark.filterwarnings("ignore::sebody.LimitWarning")
-def test_a_run_that_fails_says_where_and_keeps_what_it_computed():
+@pytest.mark.parametrize("states", [segments.STATES, 1.0])
+def test_a_run_that_fails_says_where_and_keeps_what_it_computed(states, monkeypatch):
+    """Of segments of two steps, too."""
+    monkeypatch.setattr(segments, "STATES", states)
     m = scenes.hinged("b", modes=2)
     m.torque("base", 1e6 * scenes.Z, [(0, 0), (0.06, 0), (0.1, 1)], name="blow")
     with pytest.raises(SimulationError, match="stopped at t = 0.06") as caught:

@@ -333,6 +333,7 @@ def test_what_is_refused():
             ("motor", "tip.positon", "did you mean 'tip.position'"),
             ("motor", [], "outputs is .*: name at least one"),
             (["motor", "motor"], "tip.position", "inputs is .*: name each once"),
+            ("motor", "motor.power", "'motor.power' is a product of the input 'motor' and a vel"),
             ("motor", "motor.work", "'motor.work' has no linear model: time and work")):
         with pytest.raises(InputError, match=message):
             state_space(run, inputs, outputs)

@@ -33,14 +33,14 @@ def mean(q: Quantities) -> Frame:
                       adds=((part, alpha * inverse_tangent_times(beta, of.symbols)),)),
                 Stage("rate of the frame, (19)", "element", sets=((rate, T0 * part.symbols),)))
 
-    found = search(
+    search_step = search(
         "rotation of the frame, (15)-(16)", WEIGHTED_MEAN, ROTATIONS, arrays.nodes,
         arrays.alpha_rs, arrays.R, arrays.reference, arrays.frame, arrays.beta.at(FIRST_ROTATION),
         arrays.y.at(FIRST_ROTATION), operations=250, finds=q.R0)
     total = Stage("weighted mean of the rotation increments, (16)", "rotation",
                   adds=((q.beta0, alpha * beta),))
     return Frame(
-        locate=(found, *inverse_tangent_values(q, q.psi, (q.e0, q.e1)),
+        locate=(search_step, *inverse_tangent_values(q, q.psi, (q.e0, q.e1)),
                 *inverse_tangent_values(q, q.beta, (q.b0, q.b1)), total,
                 Values("coefficients of T(beta_0)", (q.c2, q.c3, q.c4, q.c5), STUMPFF_2345,
                        q.beta0, 60)),

@@ -99,14 +99,14 @@ def _parts(q: Quantities) -> tuple[Condition, Condition, Condition]:
     turns = AXES[2:] if q.space.planar else AXES
     columns = {"position": [(axis, i3 + c) for c, axis in enumerate(axes)],
                "rotation": [(axis, j3 + c) for c, axis in enumerate(turns)]}
-    found = []
+    parts = []
     for home, of in (("position", q.u), ("rotation", q.psi)):
         named = {axis: _column(q, home, place, axis) for axis, place in columns[home]}
         weight = sp.Matrix.hstack(*[named[axis].symbols if axis in named else sp.zeros(3, 1)
                                     for axis in AXES])
-        found.append(Condition(of, weight, tuple(named.values())))
+        parts.append(Condition(of, weight, tuple(named.values())))
     modal = _column(q, "mode", k)
-    return *found, Condition(q.ym, modal.symbols, (modal,))
+    return *parts, Condition(q.ym, modal.symbols, (modal,))
 
 
 def _column(q: Quantities, home: str, coordinate: Whole, axis: str = "") -> Quantity:

@@ -116,10 +116,10 @@ def _vector(name: str) -> sp.Matrix:
 
 
 def _inertia(name: str) -> sp.Matrix:
-    found = {}
+    products = {}
     for r, c in PAIRS:
-        found[r, c] = found[c, r] = sp.Symbol(f"{name}_{r}{c}")
-    return sp.Matrix(3, 3, lambda r, c: found[r, c])
+        products[r, c] = products[c, r] = sp.Symbol(f"{name}_{r}{c}")
+    return sp.Matrix(3, 3, lambda r, c: products[r, c])
 
 
 def _symmetric(name: str) -> sp.Matrix:

@@ -85,16 +85,16 @@ class FloatingQuantities:
         columns = {at.moment_columns: ("S1", "g", "h"), at.products: ("j", "u", "v", "w"),
                    at.more: ("jd", "ua", "wa")}
         size = {"vector": self.D, "axial": self.turns, "inertia": self.pairs}
-        found, groups = {}, {}
+        quantities, groups = {}, {}
         for array, names in columns.items():
             first, groups[array] = 0, []
             for name in names:
                 kind = kinds.get(name, "axial")
-                found[name] = self.q.space.quantity(f"row_{name}", kind, "shape", array,
-                                                    Place(i, hN, first))
-                groups[array].append(found[name])
+                quantities[name] = self.q.space.quantity(f"row_{name}", kind, "shape", array,
+                                                         Place(i, hN, first))
+                groups[array].append(quantities[name])
                 first += size[kind]
-        return field.Row(**found), groups
+        return field.Row(**quantities), groups
 
     def factors(self, out: Array, rows: list[Quantity], scale: sp.Expr = sp.S.One) -> tuple:
         """Coefficients of some rows in the force on a coordinate, one after the other."""

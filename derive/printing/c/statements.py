@@ -67,8 +67,8 @@ class Block:
                         f"++{i}) {{")
                 return self._inner(head, body, i)
             case If(holds, body, otherwise):
-                found = self._inner(f"if ({_comparison(holds)}) {{", body)
-                return found[:-1] + self._inner("} else {", otherwise) if otherwise else found
+                lines = self._inner(f"if ({_comparison(holds)}) {{", body)
+                return lines[:-1] + self._inner("} else {", otherwise) if otherwise else lines
             case Invoke():
                 return self._invoked(statement)
             case Return(status):

@@ -24,9 +24,9 @@ def import_lines(kernel: Kernel, rows: tuple[str, ...] = (), classes: tuple[str,
                                          *sorted(classes)]}
     for module, name in sorted(functions):
         modules.setdefault(module, []).append(name)
-    found = [f"from math import {', '.join(sorted(used.mathematics))}\n"] * bool(used.mathematics)
-    found += [_line(module, modules[module]) for module in sorted(modules) if modules[module]]
-    return "\n".join(found)
+    lines = [f"from math import {', '.join(sorted(used.mathematics))}\n"] * bool(used.mathematics)
+    lines += [_line(module, modules[module]) for module in sorted(modules) if modules[module]]
+    return "\n".join(lines)
 
 
 def _line(module: str, names: list[str]) -> str:

@@ -92,10 +92,10 @@ def advise(model: Model, h: float | None, t_end: float, quantities: str | Iterab
         include(lab)
         search = Search(lab, budget)
         try:
-            found, given = search.go(), lab.given()
+            outcome, given = search.go(), lab.given()
         except KeyboardInterrupt:
             return conclusion(search, search.best(), interrupted=True)
-    advice = conclusion(search, found, given)
-    if reason := refusal(search, found):
+    advice = conclusion(search, outcome, given)
+    if reason := refusal(search, outcome):
         raise Unreached(reason, advice)
     return advice

@@ -61,8 +61,8 @@ def contributions(recorded: Recorded, part: Part, form: Form) -> dict[str, float
     """Relative errors of the quantities that a form makes, by axis; zeros are left out."""
     axes = [axis for axis in AXES
             if axis.indicator is not None and (axis.name == "rigid") == form.rigid]
-    found = {axis.name: _indicated(axis, recorded, part, form) for axis in axes}
-    return {name: error for name, error in found.items() if error > 0.0}
+    errors = {axis.name: _indicated(axis, recorded, part, form) for axis in axes}
+    return {name: error for name, error in errors.items() if error > 0.0}
 
 
 def _indicated(axis: Axis, recorded: Recorded, part: Part, form: Form) -> float:

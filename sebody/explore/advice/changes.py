@@ -86,24 +86,24 @@ class Change(NamedTuple):
 
 def changes(part: Part, form: Form) -> list[Change]:
     """What makes a form of a part from the given one."""
-    given, found = part.given, []
+    given, words = part.given, []
     if part.beam is not None:
         if form.rigid:
             if given.bodies > 1:
-                found.append(Change("divide", part.name, {"bodies": 1, "modes": 0}))
+                words.append(Change("divide", part.name, {"bodies": 1, "modes": 0}))
         elif form != given:
             options = {name: getattr(form, name) for name in ("modes", "inertia", "stiffening",
                                                               "frame")
                        if getattr(form, name) != getattr(given, name)}
-            found.append(Change("divide", part.name, {
+            words.append(Change("divide", part.name, {
                 "bodies": form.bodies, "elements": part.elements, **options}))
     elif not form.rigid:
         if form.modes != given.modes:
-            found.append(Change("keep_modes", part.name, {"modes": form.modes}))
+            words.append(Change("keep_modes", part.name, {"modes": form.modes}))
         if form[3:] != given[3:]:
-            found.append(Change("with_options", part.name, {
+            words.append(Change("with_options", part.name, {
                 "inertia": form.inertia, "stiffening": form.stiffening, "frame": form.frame}))
-    return [*found, Change("rigid", part.name, {})] if form.rigid else found
+    return [*words, Change("rigid", part.name, {})] if form.rigid else words
 
 
 class Made(NamedTuple):
@@ -144,10 +144,10 @@ class Builder:
                 self._made[key] = self._of(choice)
             except InputError as reason:
                 self._made[key] = reason
-        found = self._made[key]
-        if isinstance(found, InputError):
-            raise found
-        return found
+        made = self._made[key]
+        if isinstance(made, InputError):
+            raise made
+        return made
 
     def build(self, choice: Choice) -> Model:
         """Its model alone, see `make`."""
@@ -158,18 +158,20 @@ class Builder:
         # rigid bodies last: beams are divided before their nodes are linked
         made = sorted((one for part, form in pairs for one in changes(part, form)),
                       key=lambda one: one.variant == "rigid")
-        found = Made(self.model, (), ())
+        simplified = Made(self.model, (), ())
         for change in made:
-            found = self._further(found, change)
+            simplified = self._further(simplified, change)
         if choice.dropped:
-            for body, node, what in can_be_dropped(found.model):
+            for body, node, what in can_be_dropped(simplified.model):
                 if node not in self.kept:
-                    found = self._further(found, Change("drop_triplet", body,
-                                                        {"node": node, "what": what}))
+                    simplified = self._further(simplified, Change("drop_triplet", body,
+                                                                  {"node": node, "what": what}))
         if choice.shared:
-            for name in can_be_shared(found.model):
-                found = self._further(found, Change("shared", name, {}))
-        return self._further(found, Change("planar", None, {})) if choice.planar else found
+            for name in can_be_shared(simplified.model):
+                simplified = self._further(simplified, Change("shared", name, {}))
+        if choice.planar:
+            simplified = self._further(simplified, Change("planar", None, {}))
+        return simplified
 
     def _further(self, made: Made, change: Change) -> Made:
         """A model with one more change, which others may have in common."""

@@ -12,15 +12,15 @@ MOST = 200      # combinations that are carried from part to part
 def combinations(parts: Sequence[Part], forms: Sequence[Sequence[Form]], estimates: Estimates,
                  flat: bool, groups: Sequence[Sequence[int]]) -> list[tuple[Form, ...]]:
     """Forms of all parts, cheapest first; parts of a group have the same form."""
-    found: list[tuple[float, float, tuple[Form, ...]]] = [(0.0, 0.0, ())]
+    combined: list[tuple[float, float, tuple[Form, ...]]] = [(0.0, 0.0, ())]
     for group in groups:
         own = forms[group[0]]
         squares = [sum(expected(estimates.of_form(k, form))**2 for k in group) for form in own]
         front = _front([(sum(of_form(parts[k], form, flat) for k in group), square, (form,))
                         for form, square in zip(own, squares, strict=True)])
-        found = _thinned(_front([(a + b, e + f, (*one, *other)) for a, e, one in found
-                                 for b, f, other in front]))
-    return [_spread(one, groups, len(parts)) for _, _, one in found]
+        combined = _thinned(_front([(a + b, e + f, (*one, *other)) for a, e, one in combined
+                                    for b, f, other in front]))
+    return [_spread(one, groups, len(parts)) for _, _, one in combined]
 
 
 def _spread(forms: Sequence[Form], groups: Sequence[Sequence[int]], count: int) -> tuple:

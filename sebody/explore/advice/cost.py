@@ -32,8 +32,8 @@ def operations(kernel: str) -> tuple[float, ...]:
     """Operations of a residual, as the kernel's file declares them; it is not compiled for this."""
     path = find(kernel)
     text = path.read_text(encoding="utf-8") if path else ""
-    found = re.search(r'OPERATIONS = \{"residual": (\([^)]*\))', text)
-    return ast.literal_eval(found.group(1)) if found else (0, 0, 0, 0)
+    match = re.search(r'OPERATIONS = \{"residual": (\([^)]*\))', text)
+    return ast.literal_eval(match.group(1)) if match else (0, 0, 0, 0)
 
 
 @cache

@@ -110,10 +110,10 @@ class Estimates:
     def contributions(self, choice: Choice) -> list[Contribution]:
         """All contributions to the error of a choice."""
         if choice.forms in self._combined:
-            found = [Contribution(choice.forms, self._combined[choice.forms], 1.0)]
+            listed = [Contribution(choice.forms, self._combined[choice.forms], 1.0)]
         else:
-            found = [one for k, form in enumerate(choice.forms) for one in self.of_form(k, form)]
-        return [*found, *self.of_step(choice.step)]
+            listed = [one for k, form in enumerate(choice.forms) for one in self.of_form(k, form)]
+        return [*listed, *self.of_step(choice.step)]
 
     def learn_form(self, k: int, form: Form, error: float) -> None:
         """Take the measured error of a form, tried alone; infinite if it does not run."""
@@ -127,14 +127,14 @@ class Estimates:
         What a fixed step that the reference model ran with does not explain is that of its forms
         together.
         """
-        found = self.contributions(choice)
-        step, rest = found[-1], expected(found[:-1])
+        contributions = self.contributions(choice)
+        step, rest = contributions[-1], expected(contributions[:-1])
         known = choice.step in self._steps and choice.step.local is None
         if known and error - SEEN * step.error > SURE * rest:
             self._combined[choice.forms] = error - step.error
             return
-        self._learn(found, error)
-        if step.error > expected(found) / 2:
+        self._learn(contributions, error)
+        if step.error > expected(contributions) / 2:
             self._seen.setdefault(choice.step, []).append(_rest(error, rest))
 
     def _learn(self, found: list[Contribution], error: float) -> None:

@@ -106,25 +106,25 @@ def parts_of(model: Mechanism, pinned: Iterable[str] = (),
         if _divisible(model, beam, pinned - (
                 {part.name for part in beam.parts} if asked else set())):
             owners |= {part.name: beam for part in beam.parts}
-    found: dict[str, Part] = {}
+    parts: dict[str, Part] = {}
     for name, body in model.bodies.items():
         beam = owners.get(name)
         if beam is None:
-            found[name] = _of_body(name, body, name in pinned)
-        elif beam.name not in found:
-            found[beam.name] = _of_beam(beam, beam.name in inside)
-    return list(found.values())
+            parts[name] = _of_body(name, body, name in pinned)
+        elif beam.name not in parts:
+            parts[beam.name] = _of_beam(beam, beam.name in inside)
+    return list(parts.values())
 
 
 def alike(parts: list[Part]) -> list[list[int]]:
     """Places of parts, those together that have like bodies and may take the same forms."""
-    found: dict[tuple, list[int]] = {}
+    groups: dict[tuple, list[int]] = {}
     for k, part in enumerate(parts):
         body = part.body
         key = (part.given, part.detailed, frozenset(part.forms), part.elements,
                f"{body.total_mass:.6e}", f"{np.trace(body.stiffness):.6e}")
-        found.setdefault(key, []).append(k)
-    return list(found.values())
+        groups.setdefault(key, []).append(k)
+    return list(groups.values())
 
 
 def _divisible(model: Mechanism, beam: Beam, pinned: set[str]) -> bool:
@@ -192,9 +192,9 @@ def _counts(most: int) -> list[int]:
 def _options(body: Superelement) -> list[tuple[str, bool, str]]:
     """Inertia, stiffening and frame that the part may have."""
     frame = body.frame if not FRAMES[body.frame].traits.incremental else "converged_mean"
-    found = [("material", False, frame)]
+    options = [("material", False, frame)]
     invariants = body.reduced.invariants
     if invariants is None:
-        return [*found, ("rigid_part", False, frame)]
-    found.append(("floating_field", False, frame))
-    return [*found, ("floating_field", True, frame)] if invariants.stiffens else found
+        return [*options, ("rigid_part", False, frame)]
+    options.append(("floating_field", False, frame))
+    return [*options, ("floating_field", True, frame)] if invariants.stiffens else options

@@ -67,24 +67,24 @@ def off_the_grid(run: Result, values: Values, h: float, reference: Reference,
 
 def _jumps(numbering: Numbering) -> NDArray:
     """Times at which loads and drives jump, or may."""
-    found: list[float] = []
+    times: list[float] = []
     for history in numbering.time_functions:
         if history.functions:
-            found += history.corners
+            times += history.corners
             continue
         jumps = history.jumps()
         sizes = np.max([np.abs(after) for _, _, after in jumps], axis=0) if jumps else 0.0
-        found += [t for t, before, after in jumps
+        times += [t for t, before, after in jumps
                   if (np.abs(after - before) > JUMP * np.maximum(sizes, np.abs(before))).any()]
-    return np.array(found)
+    return np.array(times)
 
 
 def _near(times: NDArray, others: NDArray, distance: float) -> NDArray:
     """Which times are near one of others."""
-    found = np.zeros(len(times), dtype=bool)
+    close = np.zeros(len(times), dtype=bool)
     for t in others:
-        found |= np.abs(times - t) <= distance
-    return found
+        close |= np.abs(times - t) <= distance
+    return close
 
 
 class Scales(NamedTuple):
@@ -110,26 +110,26 @@ class Scales(NamedTuple):
 
 def _solved(run: Result, rotational: bool) -> NDArray:
     """Coordinates of all positions, or rotations, that are solved for."""
-    found = [range(run.numbering.free)[stretch(run.numbering, dof_block)]
-             for dof_block in run.model.dof_blocks()
-             if dof_block.solved and dof_block.rotational == rotational]
-    return np.array([k for one in found for k in one], dtype=int)
+    columns = [range(run.numbering.free)[stretch(run.numbering, dof_block)]
+               for dof_block in run.model.dof_blocks()
+               if dof_block.solved and dof_block.rotational == rotational]
+    return np.array([k for one in columns for k in one], dtype=int)
 
 
 def disturbed(model: Model, scales: Scales) -> Model:
     """A model with small random velocities and forces at all nodes that are free to move."""
-    found, rng = copied(model), np.random.default_rng(29)
-    for dof_block in found.dof_blocks():
+    made, rng = copied(model), np.random.default_rng(29)
+    for dof_block in made.dof_blocks():
         if dof_block.solved:
             size = scales.spin if dof_block.rotational else scales.speed
             noise = rng.uniform(-1.0, 1.0, dof_block.rate.shape)
             dof_block.rate = dof_block.rate + SMALL * size * noise
-    free = [node for node in found.nodes.values() if node.position and node.position.solved]
+    free = [node for node in made.nodes.values() if node.position and node.position.solved]
     for node in free if scales.force > 0.0 else ():
         direction = rng.standard_normal(node.position.start.shape)
         direction *= FORCES * SMALL * scales.force / len(free)
-        found.force(node, direction, name=f"disturbance of {node.name}")
-    return found
+        made.force(node, direction, name=f"disturbance of {node.name}")
+    return made
 
 
 class Growth(NamedTuple):

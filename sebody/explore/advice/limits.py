@@ -23,16 +23,16 @@ FALL = 0.1      # of an error by omitted modes, with each doubling of their numb
 def limits(lab: Laboratory) -> list[Doubt]:
     """Of all parts, the largest first; of beams measured where the estimate casts doubt."""
     recorded = lab.estimates.recorded
-    found, doubtful = [], []
+    listed, doubtful = [], []
     for part in lab.parts:
         own = [_linear(recorded, part), _modal(recorded, part)]
         if part.beam and max(one.error for one in own) > MEASURED * lab.tolerance:
             doubtful.append(part)
         else:
-            found += own
+            listed += own
     if doubtful:
-        found.append(_divided(lab, doubtful))
-    return sorted(found, key=lambda one: -one.error)
+        listed.append(_divided(lab, doubtful))
+    return sorted(listed, key=lambda one: -one.error)
 
 
 def include(lab: Laboratory) -> None:
@@ -80,8 +80,8 @@ def _modal(recorded: Recorded, part: Part) -> Doubt:
 
 def doubts(lab: Laboratory) -> list[Doubt]:
     """Possible errors of the reference model, by theory and by its guards, the largest first."""
-    found = [*limits(lab), *lab.doubts]
-    return sorted((one for one in found if one.error > 0.0), key=lambda one: -one.error)
+    listed = [*limits(lab), *lab.doubts]
+    return sorted((one for one in listed if one.error > 0.0), key=lambda one: -one.error)
 
 
 def refusal(search: Search, found: Tried) -> str:

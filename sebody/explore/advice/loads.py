@@ -39,10 +39,10 @@ def missed(names: Iterable[str], time_functions: Iterable[TimeFunction], h: floa
     h, t_end : float
         Step and end of a run [time].
     """
-    found = [Missed(name, *_share(time_function, h, t_end))
-             for name, time_function in zip(names, time_functions, strict=True)
-             if not _is_constant(time_function)]
-    return max(found, key=lambda one: one.share, default=Missed("", 0.0, 0.0))
+    shares = [Missed(name, *_share(time_function, h, t_end))
+              for name, time_function in zip(names, time_functions, strict=True)
+              if not _is_constant(time_function)]
+    return max(shares, key=lambda one: one.share, default=Missed("", 0.0, 0.0))
 
 
 def _is_constant(time_function: TimeFunction) -> bool:

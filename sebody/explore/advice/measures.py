@@ -38,11 +38,11 @@ class Measure(NamedTuple):
         InputError
             Other words.
         """
-        found = WORDS.fullmatch(text)
-        cut = found and found["cut"] and _frequency(found["cut"], text)
-        if not found:
+        match = WORDS.fullmatch(text)
+        cut = match and match["cut"] and _frequency(match["cut"], text)
+        if not match:
             raise InputError(f"quantity {text!r} is unclear: {REMEDY}")
-        return cls(found["name"], found["kind"] or "", cut or None)
+        return cls(match["name"], match["kind"] or "", cut or None)
 
     @property
     def words(self) -> str:
@@ -82,12 +82,12 @@ class Measure(NamedTuple):
 def _frequency(text: str, what: str) -> float:
     """The frequency of a limit."""
     try:
-        found = float(text)
+        value = float(text)
     except ValueError:
-        found = 0.0
-    if found <= 0.0:
+        value = 0.0
+    if value <= 0.0:
         raise InputError(f"quantity {what!r}: frequency is {text!r}: give a number above 0")
-    return found
+    return value
 
 
 def lengths(values: NDArray) -> NDArray:
@@ -106,11 +106,11 @@ def absolute(tolerance: str, units: str) -> tuple[float, bool]:
     InputError
         No number, or a unit that is not known.
     """
-    found = TOLERANCE.fullmatch(tolerance.strip())
-    if not found:
+    match = TOLERANCE.fullmatch(tolerance.strip())
+    if not match:
         raise InputError(f"tolerance is {tolerance!r}: give a number, such as 1e-3, or one with a "
                          "unit, such as 2mm")
-    number, unit = float(found[1]), found[2]
+    number, unit = float(match[1]), match[2]
     if not unit:
         return number, False
     if unit in ANGLES:

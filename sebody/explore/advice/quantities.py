@@ -72,11 +72,11 @@ class Quantities:
     @property
     def owners(self) -> set[str]:
         """Names of nodes and bodies that the quantities name, and parts of these names."""
-        found = set()
+        names = set()
         for name in self.histories:
             parts = name.split(".")
-            found |= {*parts[:-1], *(".".join(parts[:k]) for k in range(1, len(parts)))}
-        return found
+            names |= {*parts[:-1], *(".".join(parts[:k]) for k in range(1, len(parts)))}
+        return names
 
     def check(self, model: Model, h: float) -> None:
         """Refuse quantities that a model does not have, by its state at the start.
@@ -137,11 +137,11 @@ def _history(result: Result, name: str) -> NDArray:
     if plane is None:
         return np.asarray(result[name])
     whole, components = split(result, name)
-    found = plane.to_space(whole, result[whole])
+    history = plane.to_space(whole, result[whole])
     for component in components:
-        found = component_of(whole, found, component)
+        history = component_of(whole, history, component)
         whole = f"{whole}.{component}"
-    return found
+    return history
 
 
 class Worst(NamedTuple):
@@ -162,15 +162,15 @@ def compared(one: Values, other: Values, sizes: list[float], stride: tuple[int, 
     InputError
         A history has other components.
     """
-    found = [Worst(abs(a / b - 1.0), "a frequency", size=b)
-             for a, b in zip(one.frequencies, other.frequencies, strict=True)]
+    errors = [Worst(abs(a / b - 1.0), "a frequency", size=b)
+              for a, b in zip(one.frequencies, other.frequencies, strict=True)]
     for measure, a, b, size in zip(one.measures, one.histories, other.histories, sizes,
                                    strict=True):
         if a.shape[1:] != b.shape[1:]:
             raise InputError("a quantity has other components")
         off, row = measure.difference(a[::stride[0]], b[::stride[1]])
-        found.append(Worst(off / size, measure.name, row, size, measure.words))
-    return max(found, key=lambda worst: worst.error)
+        errors.append(Worst(off / size, measure.name, row, size, measure.words))
+    return max(errors, key=lambda worst: worst.error)
 
 
 def difference(one: Values, other: Values, sizes: list[float], stride: tuple[int, int]) -> float:

@@ -20,13 +20,13 @@ WHOLE = {"planar": ("planar", "it is symmetric about the plane"),
 
 def reasons(search: Search, choice: Choice) -> list[Reason]:
     """Of the model, of every part and of the step."""
-    lab, found = search.lab, []
+    lab, sentences = search.lab, []
     for name, (chosen, why) in WHOLE.items():
         if getattr(choice, name):
-            found.append(Reason("model", chosen, why, 0.0, search.exact.get(name)))
+            sentences.append(Reason("model", chosen, why, 0.0, search.exact.get(name)))
     for k, (part, form) in enumerate(zip(lab.parts, choice.forms, strict=True)):
-        found += _of_part(lab, k, part, form, search.untried)
-    return [*found, _of_step(search, choice)]
+        sentences += _of_part(lab, k, part, form, search.untried)
+    return [*sentences, _of_step(search, choice)]
 
 
 def _of_part(lab: Laboratory, k: int, part: Part, form: Form, untried: list[str]) -> list[Reason]:
@@ -107,7 +107,7 @@ def _times(ratio: float) -> str:
 
 def neighbours(search: Search, choice: Choice) -> list[str]:
     """What would be chosen at a tolerance ten times tighter or looser."""
-    found = []
+    sentences = []
     for factor in (0.1, 10.0):
         tolerance = factor * search.tolerance
         other = search.next(tolerance, sure=True)
@@ -117,8 +117,8 @@ def neighbours(search: Search, choice: Choice) -> list[str]:
             what = "the same"
         else:
             what = _differences(search.lab, choice, other)
-        found.append(f"at a tolerance of {tolerance:g} predicted: {what}")
-    return found
+        sentences.append(f"at a tolerance of {tolerance:g} predicted: {what}")
+    return sentences
 
 
 def _differences(lab: Laboratory, choice: Choice, other: Choice) -> str:

@@ -185,8 +185,8 @@ class Laboratory:
     def missed(self, h: float) -> Missed:
         """The load or drive of which steps miss most."""
         if self._ports is None:
-            found = build(self.model)[1]
-            self._ports = found.port_names, found.time_functions
+            share = build(self.model)[1]
+            self._ports = share.port_names, share.time_functions
         return missed(*self._ports, h, self.runs.t_end)
 
     def _lengthen(self) -> None:
@@ -269,8 +269,8 @@ class Laboratory:
         return self.bases[h]
 
     def _reference(self) -> Reference:
-        found = [self.bases[h].values for h in sorted(self.bases, reverse=True)]
-        return reference(found, self.absolute is not None)
+        values = [self.bases[h].values for h in sorted(self.bases, reverse=True)]
+        return reference(values, self.absolute is not None)
 
     def run(self, choice: Choice, watched: bool = False) -> Run:
         """Run a choice.
@@ -280,13 +280,13 @@ class Laboratory:
         InputError, SimulationError
             It cannot be made, does not run, or lacks a quantity.
         """
-        found = self.runs.run(self.builder.build(choice), choice.step, watched)
+        measured = self.runs.run(self.builder.build(choice), choice.step, watched)
         self.count += 1
         if self._work == 0.0:
-            self.cost.measured(choice, found.seconds, found.iterations)
-        self._work += self.cost.work(choice, found.iterations)
-        self.cost.counted(choice.step, found.iterations)
-        return found
+            self.cost.measured(choice, measured.seconds, measured.iterations)
+        self._work += self.cost.work(choice, measured.iterations)
+        self.cost.counted(choice.step, measured.iterations)
+        return measured
 
     def given(self) -> Tried:
         """The model as it was given, with the given step: what would have been run."""
@@ -317,8 +317,8 @@ class Laboratory:
             words = f"{words}: {reason}"
         self.table.append(Trial(words, choice.step.h, error, seconds, predicted, cost, kind,
                                 choice.step.local))
-        found = Tried(choice, error, predicted, seconds)
+        tried = Tried(choice, error, predicted, seconds)
         if run:
-            found.worst, found.h = self.worst(run), run.h
-        self.tried.append(found)
-        return found, run
+            tried.worst, tried.h = self.worst(run), run.h
+        self.tried.append(tried)
+        return tried, run

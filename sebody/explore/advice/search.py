@@ -94,8 +94,8 @@ class Search:
 
     def _may_do(self, group: list[int], form: Form) -> bool:
         """Whether a form of some parts may be good enough, as far as it is known."""
-        found = [one for k in group for one in self.lab.estimates.of_form(k, form)]
-        return least(found) <= SHARE * self.tolerance
+        estimates = [one for k in group for one in self.lab.estimates.of_form(k, form)]
+        return least(estimates) <= SHARE * self.tolerance
 
     def spent(self) -> bool:
         """Whether the budget is used up."""
@@ -115,7 +115,7 @@ class Search:
                 continue
             if self.spent() or not self._applies(changed):
                 continue
-            found, run = self.lab.attempt(changed, "alone")
+            tried, run = self.lab.attempt(changed, "alone")
             if run:
                 self.exact[name] = self.lab.apart(run, changed.step.h)
             if self.exact.get(name, inf) <= EXACT * self.tolerance:
@@ -139,10 +139,10 @@ class Search:
                 activity(finest.result) > RARE):
             return
         step = Step(self.lab.runs.h, self.tolerance / LOCAL)
-        found, run = self.lab.attempt(self.base._replace(step=step), "alone")
+        tried, run = self.lab.attempt(self.base._replace(step=step), "alone")
         if run:
             self.variable = True
-            self.lab.estimates.learn_step(step, found.error)
+            self.lab.estimates.learn_step(step, tried.error)
 
     def _alone(self, group: list[int], share: float) -> bool:
         """Try forms of a part, or of several alike, the others as rich as they are.
@@ -188,15 +188,15 @@ class Search:
         if not self.lab.quantities.histories:
             return [Step(h)]
         count = round(self.lab.runs.t_end / h)
-        found = [Step(k * h) for k in reversed(LONGER)
-                 if count % k == 0 and self.lab.missed(k * h).share <= MISSED]
-        found += [Step(h / k) for k in sorted(FINER)]
-        while found[-1].h > shortest or expected(
-                self.lab.estimates.of_step(found[-1])) > SHARE * self.tolerance:
-            found.append(found[-1].finer())
+        candidates = [Step(k * h) for k in reversed(LONGER)
+                      if count % k == 0 and self.lab.missed(k * h).share <= MISSED]
+        candidates += [Step(h / k) for k in sorted(FINER)]
+        while candidates[-1].h > shortest or expected(
+                self.lab.estimates.of_step(candidates[-1])) > SHARE * self.tolerance:
+            candidates.append(candidates[-1].finer())
         if self.variable:
-            found += [Step(h, self.tolerance * LOCAL**k) for k in (2, 1, 0, -1, -2, -3)]
-        return found
+            candidates += [Step(h, self.tolerance * LOCAL**k) for k in (2, 1, 0, -1, -2, -3)]
+        return candidates
 
     def _together(self) -> Tried:
         """Try choices of all forms and steps, cheapest first; the first that is confirmed."""
@@ -204,9 +204,9 @@ class Search:
             choice = self.next(self.tolerance)
             if choice is None or self.spent():
                 break
-            found = self._tried(choice) or self._attempt(choice)
-            if found.error <= self.tolerance and self._confirmed(found):
-                return found
+            tried = self._tried(choice) or self._attempt(choice)
+            if tried.error <= self.tolerance and self._confirmed(tried):
+                return tried
             self._failed.append(choice)
         return self.best()
 
@@ -215,10 +215,10 @@ class Search:
         return next((one for one in self.lab.tried if one.choice == choice), None)
 
     def _attempt(self, choice: Choice) -> Tried:
-        found, run = self.lab.attempt(choice, "together")
+        tried, run = self.lab.attempt(choice, "together")
         if run:
-            self.lab.estimates.learn(choice, found.error)
-        return found
+            self.lab.estimates.learn(choice, tried.error)
+        return tried
 
     def best(self) -> Tried:
         """The quickest run that was good enough; the most exact one where none was."""
@@ -233,13 +233,13 @@ class Search:
         judged = expected if sure else least
         forms = [[part.detailed] if part.name in self.untried else list(part.forms)
                  for part in self.lab.parts]
-        found = [self.base._replace(forms=one, step=step)
-                 for one in combinations(self.lab.parts, forms, self.lab.estimates, self.planar,
-                                       self.groups)
-                 for step in self.steps()]
+        candidates = [self.base._replace(forms=one, step=step)
+                      for one in combinations(self.lab.parts, forms, self.lab.estimates,
+                                              self.planar, self.groups)
+                      for step in self.steps()]
         done = [] if sure else [*self._failed, *(
             one.choice for one in self.lab.tried if one.error > self.tolerance)]
-        return next((one for one in sorted(found, key=self.lab.cost.of)
+        return next((one for one in sorted(candidates, key=self.lab.cost.of)
                      if not any(self._excludes(other, one) for other in done)
                      and judged(self.lab.estimates.contributions(one)) <= tolerance), None)
 

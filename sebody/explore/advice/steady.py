@@ -65,9 +65,9 @@ def _rotation(places: NDArray, velocities: NDArray) -> tuple[NDArray | float, ND
     moving = np.broadcast_to(np.eye(d), (len(places), d, d))
     most = np.abs(velocities).max()
     for columns in (turning, np.concatenate([turning, moving], axis=2)):
-        found = np.linalg.lstsq(columns.reshape(-1, columns.shape[2]), velocities.ravel())[0]
-        spin, shift = np.split(found, [turning.shape[2]])
-        off = np.abs(columns @ found - velocities).max()
+        solution = np.linalg.lstsq(columns.reshape(-1, columns.shape[2]), velocities.ravel())[0]
+        spin, shift = np.split(solution, [turning.shape[2]])
+        off = np.abs(columns @ solution - velocities).max()
         # of a shift along the axis, a screw
         off = max(off, abs(shift @ spin) / max(np.linalg.norm(spin), 1e-300)
                   if d == 3 and len(shift) else 0.0)
@@ -99,14 +99,14 @@ def shifted(model: Mechanism, by: NDArray) -> Mechanism:
         raise InputError("the steady rotation is about an axis that misses the origin, and a "
                          "user's function may read positions: build the model so that the axis "
                          "passes through the origin")
-    found = copied(model)
-    for node in {one: one for one in (*found.nodes.values(), *found.grounds)}.values():
+    moved = copied(model)
+    for node in {one: one for one in (*moved.nodes.values(), *moved.grounds)}.values():
         node.point = node.point + by
-    positions = [one for one in found.dof_blocks() if not one.rotational]
-    positions += [one.position for one in found.grounds if one.position is not None]
+    positions = [one for one in moved.dof_blocks() if not one.rotational]
+    positions += [one.position for one in moved.grounds if one.position is not None]
     for dof_block in {one: one for one in positions}.values():
         dof_block.start = dof_block.start + by
-    for joint in found.constraints:
+    for joint in moved.constraints:
         if joint.kind in PLACED:
             joint.constants["c"] = joint.constants["c"] + by
-    return found
+    return moved

@@ -49,8 +49,8 @@ def inspect(file: BodyFile) -> Inspection:
     numbers["frequencies"] = measures.frequencies(body)
     numbers["frame"] = measures.frame(body, numbers["centre"])
     numbers["stiffening"] = measures.stiffening(file, body)
-    found = findings_of(file, body, numbers)
-    return Inspection(file, body, numbers, found, verdict(found))
+    findings = findings_of(file, body, numbers)
+    return Inspection(file, body, numbers, findings, verdict(findings))
 
 
 def to_json(inspection: Inspection) -> str:
@@ -110,13 +110,13 @@ def _motion(numbers: dict) -> list[tuple[str, str]]:
 
 
 def _vibration(numbers: dict) -> list[tuple[str, str]]:
-    found = numbers["frequencies"]
-    rows = [("rigid motion, Hz", _row(found["rigid"])),
-            ("free vibration, Hz", _row(found["flexible"]))]
-    if found["count"]:
-        rows += [("highest of all, Hz", f"{_number(found['highest'])} ({found['count']} in all)"),
-                 ("step, six a period", f"{_number(found['step_first'])} of the first, "
-                  f"{_number(found['step_highest'])} of the highest")]
+    hertz = numbers["frequencies"]
+    rows = [("rigid motion, Hz", _row(hertz["rigid"])),
+            ("free vibration, Hz", _row(hertz["flexible"]))]
+    if hertz["count"]:
+        rows += [("highest of all, Hz", f"{_number(hertz['highest'])} ({hertz['count']} in all)"),
+                 ("step, six a period", f"{_number(hertz['step_first'])} of the first, "
+                  f"{_number(hertz['step_highest'])} of the highest")]
     return rows
 
 

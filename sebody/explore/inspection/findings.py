@@ -40,11 +40,11 @@ class Finding(NamedTuple):
 
 def findings_of(file: BodyFile, body: Matrices, numbers: dict) -> list[Finding]:
     """All findings, defects first."""
-    found = [*_symmetry(body), *_mass(numbers), *_rigid(numbers), *_stiffness(body, numbers),
-             *_frame(body, numbers), *_steps(numbers), *_cautions(file)]
-    if all(one.severity != "defect" for one in found):
-        found += _refused(file)
-    return sorted(found, key=lambda one: one.severity != "defect")
+    findings = [*_symmetry(body), *_mass(numbers), *_rigid(numbers), *_stiffness(body, numbers),
+                *_frame(body, numbers), *_steps(numbers), *_cautions(file)]
+    if all(one.severity != "defect" for one in findings):
+        findings += _refused(file)
+    return sorted(findings, key=lambda one: one.severity != "defect")
 
 
 def verdict(findings: list[Finding]) -> str:
@@ -74,32 +74,32 @@ def _symmetry(body: Matrices) -> list[Finding]:
 
 
 def _mass(numbers: dict) -> list[Finding]:
-    found, lowest = [], numbers["definiteness"]["mass"]
+    listed, lowest = [], numbers["definiteness"]["mass"]
     if numbers["mass"] <= 0:
         return [Finding("defect", f"the mass is {numbers['mass']:.6g}",
                         "give the FE model a density, and check the sign of the matrix")]
     if lowest["lowest"] < -NEGATIVE_MASS_LIMIT:
-        found.append(Finding("defect", f"the mass matrix is indefinite: {lowest['lowest']:.3e} of "
-                             f"its largest eigenvalue, mostly in {lowest['worst']}",
-                             "check the order of its rows and the digits of the file"))
+        listed.append(Finding("defect", f"the mass matrix is indefinite: {lowest['lowest']:.3e} of "
+                              f"its largest eigenvalue, mostly in {lowest['worst']}",
+                              "check the order of its rows and the digits of the file"))
     elif lowest["lowest"] < _MASSLESS:
-        found.append(Finding("caution", "the mass matrix is singular, mostly in "
-                             f"{lowest['worst']}: some motion has no inertia",
-                             "give it mass, or hold it by joints; damping by a ratio and SID need "
-                             "inertia of every coordinate"))
+        listed.append(Finding("caution", "the mass matrix is singular, mostly in "
+                              f"{lowest['worst']}: some motion has no inertia",
+                              "give it mass, or hold it by joints; damping by a ratio and SID need "
+                              "inertia of every coordinate"))
     if numbers["mass_geometry_defect"] > _GEOMETRY:
-        found.append(Finding(
+        listed.append(Finding(
             "defect", "the inertia of rigid motion is not that of a body: R^T M R is off by "
             f"{numbers['mass_geometry_defect']:.3e} of the mass",
             "check coordinates, axes and the order of rows; lumped masses of one direction alone "
             "have this defect, too"))
     moments = np.asarray(numbers["principal_moments"])
     if len(moments) == 3 and moments[0] + moments[1] < moments[2] * (1 - _GEOMETRY):
-        found.append(Finding(
+        listed.append(Finding(
             "caution", f"the principal moments of inertia {moments[0]:.6g}, {moments[1]:.6g}, "
             f"{moments[2]:.6g} break the triangle inequality",
             "check coordinates and units, and negative masses in the FE model"))
-    return found
+    return listed
 
 
 def _rigid(numbers: dict) -> list[Finding]:
@@ -134,20 +134,20 @@ def _stiffness(body: Matrices, numbers: dict) -> list[Finding]:
 
 
 def _frame(body: Matrices, numbers: dict) -> list[Finding]:
-    found, frame = [], numbers["frame"]
+    listed, frame = [], numbers["frame"]
     points = body.coordinates[[keep != "rotation" for keep in body.keeps]]
     if all(keep == "translation" for keep in body.keeps) and body.dimension == 3:
         spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
         if len(points) < 3 or spread[1] < FLAT * spread[0]:
-            found.append(Finding("defect", "boundary nodes without rotations lie on a line, so "
-                                 "they do not determine the frame of the body",
-                                 "add an interface beside the line, or one with rotations"))
+            listed.append(Finding("defect", "boundary nodes without rotations lie on a line, so "
+                                  "they do not determine the frame of the body",
+                                  "add an interface beside the line, or one with rotations"))
     if frame["off_centre"] > _LUMPED * max(frame["size"], 1e-300) and len(points) > 1:
-        found.append(Finding("caution", "the origin of the mean frame is "
-                             f"{frame['off_centre']:.6g} off the centre of mass",
-                             "interfaces around the centre of mass couple translation and rotation "
-                             "least; inertia option C is not affected"))
-    return found
+        listed.append(Finding("caution", "the origin of the mean frame is "
+                              f"{frame['off_centre']:.6g} off the centre of mass",
+                              "interfaces around the centre of mass couple translation and "
+                              "rotation least; inertia option C is not affected"))
+    return listed
 
 
 def _steps(numbers: dict) -> list[Finding]:

@@ -78,7 +78,7 @@ def matrices_of(file: BodyFile) -> Matrices:
     coordinates, keeps = np.asarray(parts["coordinates"], dtype=float), tuple(parts["keeps"])
     check_layout(coordinates, keeps)
     names = coordinate_names(keeps, coordinates.shape[1], parts.get("modes", 0), file.names)
-    found, differences = {}, {}
+    matrices, differences = {}, {}
     for name in ("stiffness", "mass"):
         matrix = np.asarray(parts[name], dtype=float)
         if matrix.shape != (len(names),) * 2:
@@ -89,9 +89,9 @@ def matrices_of(file: BodyFile) -> Matrices:
             raise InputError(f"{name}[{i}, {j}] is {matrix[i, j]} ({names[i]}, {names[j]}): export "
                              "the matrix again")
         differences[name] = float(asymmetry(matrix, names, coordinates).max())
-        found[name] = (matrix + matrix.T) / 2
+        matrices[name] = (matrix + matrix.T) / 2
     rigid = rigid_motions(coordinates, keeps, len(names), coordinates.mean(axis=0))
-    return Matrices(**found, coordinates=coordinates, keeps=keeps, names=names,
+    return Matrices(**matrices, coordinates=coordinates, keeps=keeps, names=names,
                     asymmetry=differences, rigid=rigid)
 
 
@@ -136,18 +136,18 @@ def rigid_residuals(body: Matrices) -> dict:
 
 def definiteness(body: Matrices) -> dict:
     """Lowest unit-free eigenvalues over the largest of stiffness and mass, condition numbers."""
-    found = {}
+    lowest = {}
     for name in ("stiffness", "mass"):
         matrix = getattr(body, name)
         scale = unit_scale(matrix, body.names)
         values, vectors = np.linalg.eigh(matrix / np.outer(scale, scale))
         largest = np.abs(values).max() or 1.0
-        found[name] = {"lowest": float(values[0] / largest),
-                       "worst": body.names[int(np.argmax(np.abs(vectors[:, 0])))]}
+        lowest[name] = {"lowest": float(values[0] / largest),
+                        "worst": body.names[int(np.argmax(np.abs(vectors[:, 0])))]}
         flexible = values[body.rigid.shape[1]:] if name == "stiffness" else values
-        found[name]["condition"] = (float(largest / flexible[0]) if len(flexible)
-                                    and flexible[0] > 0 else np.inf)
-    return found
+        lowest[name]["condition"] = (float(largest / flexible[0]) if len(flexible)
+                                     and flexible[0] > 0 else np.inf)
+    return lowest
 
 
 def frequencies(body: Matrices) -> dict:
@@ -187,8 +187,8 @@ def free_modes(body: Matrices, most: int) -> tuple[NDArray, NDArray]:
     inverse, shapes = inverse[::-1], shapes[:, ::-1]
     there = inverse[rigid:] > 1e-14 * inverse[0]
     squares = 1 / inverse[rigid:][there] - shift
-    found = shapes[:, rigid:][:, there] / size[:, None]
-    return np.sqrt(np.maximum(squares, 0.0))[:most] / (2 * np.pi), found[:, :most]
+    modes = shapes[:, rigid:][:, there] / size[:, None]
+    return np.sqrt(np.maximum(squares, 0.0))[:most] / (2 * np.pi), modes[:, :most]
 
 
 def _massless(stiffness: NDArray, mass: NDArray) -> NDArray:

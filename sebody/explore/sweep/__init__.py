@@ -118,24 +118,24 @@ def _checked(build: Callable[..., Any], outputs: Mapping[str, Output],
     inputs.function(build, "build", "give a function that returns a Scene")
     inputs.mapping(outputs, "outputs", "give a dict of names and what maximum(...) and the like "
                    "return")
-    found = [inputs.mapping({} if one is None else one, what, "give a dict of values by name")
-             for one, what in zip(given, ("listed", "sampled", "fixed"), strict=True)]
-    for one in found:
+    checked = [inputs.mapping({} if one is None else one, what, "give a dict of values by name")
+               for one, what in zip(given, ("listed", "sampled", "fixed"), strict=True)]
+    for one in checked:
         for name in one:
             inputs.name(name, "name of a parameter")
-    for name, values in found[0].items():
-        found[0][name] = inputs.items(values, f"values of {name}", "give a list")
-        if not found[0][name]:
+    for name, values in checked[0].items():
+        checked[0][name] = inputs.items(values, f"values of {name}", "give a list")
+        if not checked[0][name]:
             raise inputs.refusal(f"values of {name}", values, "give one at least")
-        for value in found[0][name]:
+        for value in checked[0][name]:
             if not isinstance(value, Hashable):
                 raise inputs.refusal(f"a value of {name}", value, "give a number or a text")
-        if twice := first_twice(found[0][name]):
+        if twice := first_twice(checked[0][name]):
             raise InputError(f"{name} has the value {inputs.shown(twice[0])} twice: give it once")
-    for name, one in found[1].items():
+    for name, one in checked[1].items():
         inputs.instance(one, f"distribution of {name}", Distribution, "give what "
                         "sebody.explore.sweep.variations.distribution returns")
-    return found
+    return checked
 
 
 def first_twice(values: list) -> tuple | None:

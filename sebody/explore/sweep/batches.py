@@ -73,11 +73,11 @@ def _run(batch: Batch) -> Answer:
 def _ensemble(plan: Plan, structure: tuple[tuple[str, Any], ...]) -> tuple[Ensemble, float]:
     key = plan.name, structure
     with _lock:
-        found = _kept.pop(key, None) or _built(plan, structure)
-        _kept[key] = found          # the last one used is the last one given up
+        ensemble = _kept.pop(key, None) or _built(plan, structure)
+        _kept[key] = ensemble          # the last one used is the last one given up
         while len(_kept) > KEPT:
             _kept.pop(next(iter(_kept)))
-        return found
+        return ensemble
 
 
 def _built(plan: Plan, structure: tuple[tuple[str, Any], ...]) -> tuple[Ensemble, float]:

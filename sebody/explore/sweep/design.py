@@ -115,6 +115,6 @@ def _shares(dimensions: int, count: int, seed: int, sampler: str) -> NDArray:
 
 def _column(values: list[Any]) -> NDArray:
     numbers = all(isinstance(v, int | float) and not isinstance(v, bool) for v in values)
-    found = np.empty(len(values), dtype=object)
-    found[:] = values
-    return found.astype(float) if numbers and any(isinstance(v, float) for v in values) else found
+    column = np.empty(len(values), dtype=object)
+    column[:] = values
+    return column.astype(float) if numbers and any(isinstance(v, float) for v in values) else column

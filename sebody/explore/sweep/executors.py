@@ -99,9 +99,9 @@ def _check_versions(client: Any, address: str | None) -> None:
     if not client.scheduler_info(n_workers=-1)["workers"]:
         client.wait_for_workers(1, timeout=PATIENCE)
     own = _version()
-    for worker, found in client.run(_version).items():
-        if found != own:
-            raise InputError(f"worker {worker} of {address} has sebody {found}, this is {own}: "
+    for worker, version in client.run(_version).items():
+        if version != own:
+            raise InputError(f"worker {worker} of {address} has sebody {version}, this is {own}: "
                              "install one version everywhere")
 
 

@@ -53,19 +53,19 @@ def indices(table: Table, sampled: dict[str, Distribution], n: int) -> dict[str,
                          "narrow the distributions or take a smaller step")
     from scipy.stats import sobol_indices
 
-    found, d = {}, len(sampled)
+    rows, d = {}, len(sampled)
     for name, values in table.columns().items():
         if name.partition("[")[0] not in table.outputs:
             continue
         f = np.asarray(values, dtype=float)
         if np.ptp(f) <= 1e-12 * np.abs(f).max():        # depends on nothing
-            found[name] = np.zeros((2, d))
+            rows[name] = np.zeros((2, d))
             continue
         parts = {"f_A": f[None, :n], "f_B": f[None, n:2 * n],
                  "f_AB": f[2 * n:].reshape(n, d).T[:, None, :]}      # SciPy's own order
         result = sobol_indices(func=parts, n=n)
-        found[name] = np.array([result.first_order, result.total_order])
-    return found
+        rows[name] = np.array([result.first_order, result.total_order])
+    return rows
 
 
 def report(found: dict[str, NDArray], names: list[str]) -> str:

@@ -99,12 +99,12 @@ class Table:
 
     def columns(self) -> dict[str, NDArray]:
         """Everything by runs, (runs,) each: components of vectors have an index in their name."""
-        found = {"run": np.arange(self.runs), **self.parameters}
+        by_name = {"run": np.arange(self.runs), **self.parameters}
         for name, values in self.outputs.items():
             flat = values.reshape(self.runs, -1)
-            found |= ({name: flat[:, 0]} if values.ndim == 1 else
-                      {f"{name}[{k}]": flat[:, k] for k in range(flat.shape[1])})
-        return {**found, "done": self.done, "failure": self.failures}
+            by_name |= ({name: flat[:, 0]} if values.ndim == 1 else
+                        {f"{name}[{k}]": flat[:, k] for k in range(flat.shape[1])})
+        return {**by_name, "done": self.done, "failure": self.failures}
 
     def quantiles(self) -> dict[str, NDArray]:
         """5 %, median and 95 % of every column of the outputs, over the good runs."""
@@ -125,13 +125,13 @@ class Table:
         lines = [f"{int(self.done.sum())} of {self.runs} runs done, {int(failed.sum())} failed"]
         reasons = sorted(set(self.failures[failed]), key=list(self.failures[failed]).count)
         lines += [f"  {list(self.failures).count(r)} x {r}" for r in reasons[-3:][::-1]]
-        found = self.quantiles()
-        if found:
-            width = max(map(len, found))
+        quantiles = self.quantiles()
+        if quantiles:
+            width = max(map(len, quantiles))
             lines.append(f"{'output':{width}} {'5 %':>12} {'median':>12} {'95 %':>12}")
             lines += [f"{name:{width}} " + " ".join(
                 f"{q if abs(q) > self.rounding(name) else 0.0:12.6g}" for q in values)
-                      for name, values in found.items()]
+                      for name, values in quantiles.items()]
         return "\n".join(lines)
 
     def to_pandas(self) -> "pandas.DataFrame":
@@ -178,27 +178,27 @@ class Table:
                                  f"reads {VERSION}: give another --output")
             noted = json_of(reader, "checksums") if "checksums" in reader.headers else None
             table = members.Table(f"{what} {path}", remedy, _members(reader.headers))
-            found = table.read(reader, others=["checksums"])
-            if odd := changed(found, noted):
+            arrays = table.read(reader, others=["checksums"])
+            if odd := changed(arrays, noted):
                 raise table.fault(f"differs from what was saved in {', '.join(odd)}")
-            parts = {kind: {name.partition("/")[2]: values for name, values in found.items()
+            parts = {kind: {name.partition("/")[2]: values for name, values in arrays.items()
                             if name.startswith(kind + "/")} for kind in ("parameter", "output")}
-            return cls(str(found["design"]), parts["parameter"], parts["output"], found["done"],
-                       found["failure"].astype(object))
+            return cls(str(arrays["design"]), parts["parameter"], parts["output"], arrays["done"],
+                       arrays["failure"].astype(object))
 
 
 def _members(headers: Mapping[str, members.Header]) -> dict[str, members.Member]:
     """What a table with these members must have: parameters of any kind, outputs of any shape."""
     one = members.Member
-    found = {"design": one((), "U"), "version": one((), "i"), "done": one(("runs",), "b"),
+    known = {"design": one((), "U"), "version": one((), "i"), "done": one(("runs",), "b"),
              "failure": one(("runs",), "U")}
     for name, header in headers.items():
         if name.startswith("parameter/"):
             kind = header.dtype.kind
-            found[name] = one(("runs",), kind if kind in members.KINDS else "f")
+            known[name] = one(("runs",), kind if kind in members.KINDS else "f")
         elif name.startswith("output/"):
-            found[name] = one(("runs", ...), finite=False)
-    return found
+            known[name] = one(("runs", ...), finite=False)
+    return known
 
 
 def _storable(values: NDArray) -> NDArray:

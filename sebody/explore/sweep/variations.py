@@ -65,10 +65,10 @@ def values_of(text: str) -> tuple[str, list]:
         Something else.
     """
     name, values = _halves(text, "--vary NAME=VALUES, such as modes=0:8 or step=0.01,0.005")
-    found = RANGE.match(values)
-    if not found:
+    match = RANGE.match(values)
+    if not match:
         return name, [_literal(v) for v in values.split(",")]
-    low, high, step = (_literal(t) for t in (found[1], found[2], found[3] or "1"))
+    low, high, step = (_literal(t) for t in (match[1], match[2], match[3] or "1"))
     if not all(isinstance(n, int | float) for n in (low, high, step)) or not (
             step > 0 and high >= low):
         raise InputError(f"{text}: a range is LOW:HIGH or LOW:HIGH:STEP, with HIGH above LOW")
@@ -88,10 +88,10 @@ def distribution_of(text: str) -> tuple[str, Distribution]:
         An unknown distribution, or numbers it cannot have.
     """
     name, call = _halves(text, "--sample NAME=DISTRIBUTION, such as torque=normal(1e4,500)")
-    found = CALL.match(call.replace(" ", ""))
-    if not found:
+    match = CALL.match(call.replace(" ", ""))
+    if not match:
         raise InputError(f"{text}: write a distribution, such as {name}=normal(1e4,500)")
-    return name, distribution(found[1], [_literal(v) for v in found[2].split(",")], text)
+    return name, distribution(match[1], [_literal(v) for v in match[2].split(",")], text)
 
 
 def distribution(kind: str, numbers: Sequence[float], what: str) -> Distribution:

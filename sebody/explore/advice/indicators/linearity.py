@@ -29,7 +29,7 @@ def linearity(recorded: Recorded, part: Part, form: Form) -> float:
 def bent(recorded: Recorded, part: Part, bodies: int) -> float:
     """Error of linear theory in a part of so many bodies."""
     whole = recorded.deformation(recorded.nodes(part))
-    found = np.array(local_rotations(recorded, part, bodies))
-    square = (found**3).sum() / max(found.sum(), 1e-300)
+    rotations = np.array(local_rotations(recorded, part, bodies))
+    square = (rotations**3).sum() / max(rotations.sum(), 1e-300)
     return min(MISSED * square, 1.0) * propagated(recorded, part, whole.shifts, whole.turns,
                                                strain_force(recorded, part))

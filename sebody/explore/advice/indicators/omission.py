@@ -32,7 +32,7 @@ def omission(recorded: Recorded, part: Part, form: Form) -> float:
     for nodes, body in recorded.bodies(part, form.bodies):
         if form.modes >= body.modes:
             continue
-        found = recorded.deformation(nodes)
+        deformation = recorded.deformation(nodes)
         n = len(body.stiffness) - body.modes
         left = slice(n + form.modes, None)
         coupling, k, m = body.mass[:n, left], *(np.diag(A)[left] for A in (
@@ -46,7 +46,7 @@ def omission(recorded: Recorded, part: Part, form: Form) -> float:
         places = [whole.index(node) for node in nodes]
         shifts[:, places] += one
         turns[:, places] += other
-        u = flat(body, found.shifts, found.turns)
+        u = flat(body, deformation.shifts, deformation.turns)
         u = u - u.mean(axis=0)
         kept += float(np.einsum("ni,ij,nj->n", u, body.stiffness[:n, :n], u).mean())
         added += float(((y - y.mean(axis=0))**2 @ k).mean())

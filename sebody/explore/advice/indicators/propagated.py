@@ -54,14 +54,14 @@ def propagated(recorded: Recorded, part: Part, shifts: NDArray, turns: NDArray,
     """
     nodes, shifts, turns = recorded.nodes(part), np.nan_to_num(shifts), np.nan_to_num(turns)
     points = np.array([node.point for node in nodes])
-    found = 0.0
+    largest = 0.0
     for k in {0, len(nodes) - 1}:
         arms = points - points[k]
         moved = shifts - shifts[:, k, None] - cross(turns[:, k, None], arms[None])
         turned = turns - turns[:, k, None]
         for one in zip(recorded.quantities, recorded.owners, recorded.sizes, strict=True):
-            found = max(found, _error(recorded, part, moved, turned, force, *one))
-    return found
+            largest = max(largest, _error(recorded, part, moved, turned, force, *one))
+    return largest
 
 
 def _error(recorded: Recorded, part: Part, shifts: NDArray, turns: NDArray, force: Force | None,

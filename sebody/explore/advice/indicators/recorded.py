@@ -57,8 +57,8 @@ class Recorded:
     def nodes(self, part: Part) -> list[Node]:
         """Nodes of a part in the reference model; of a beam from end to end."""
         bodies = self.result.model.bodies
-        found = [node for name in part.superelements(part.detailed) for node in bodies[name].nodes]
-        return list(dict.fromkeys(found))
+        listed = [node for name in part.superelements(part.detailed) for node in bodies[name].nodes]
+        return list(dict.fromkeys(listed))
 
     def bodies(self, part: Part, count: int) -> list[tuple[list[Node], ReducedBody]]:
         """Bodies of a part divided into so many, with all modes; their nodes in the reference."""
@@ -114,12 +114,12 @@ class Recorded:
         places = x - x[:, placed].mean(axis=1)[:, None]
         axes = _nearest(sum(known) if known else np.einsum("nki,kj->nij", places, arms))
         shifts = np.einsum("nji,nkj->nki", axes, places) - arms
-        planar, found = points.shape[1] == 2, []
+        planar, parts = points.shape[1] == 2, []
         for one in R:
             local = None if one is None else np.swapaxes(axes, 1, 2) @ _matrices(one)
-            found.append(np.full((len(x), 1 if planar else 3), np.nan) if local is None else
+            parts.append(np.full((len(x), 1 if planar else 3), np.nan) if local is None else
                          _angles(local))
-        return Deformation(shifts, np.stack(found, axis=1), axes)
+        return Deformation(shifts, np.stack(parts, axis=1), axes)
 
     def read(self, node: Node, quantity: str) -> NDArray | None:
         """A history of a node at the examined states; None without this DOF block."""
@@ -145,8 +145,8 @@ class Recorded:
     @cached_property
     def travel(self) -> float:
         """Largest displacement of any node of the model."""
-        found = [self.read(node, "position") for node in self.result.model.nodes.values()]
-        return max(float(np.linalg.norm(x - x[0], axis=1).max()) for x in found if x is not None)
+        paths = [self.read(node, "position") for node in self.result.model.nodes.values()]
+        return max(float(np.linalg.norm(x - x[0], axis=1).max()) for x in paths if x is not None)
 
     @cached_property
     def owners(self) -> list[Node | None]:

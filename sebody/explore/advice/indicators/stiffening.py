@@ -35,9 +35,9 @@ def stiffening(recorded: Recorded, part: Part, form: Form) -> float:
         if body.invariants is None or not body.invariants.resultants:
             continue
         n = len(body.stiffness) - body.modes
-        found = recorded.deformation(nodes)
-        y = flat(body, found.shifts, found.turns)
-        forces, shorter = _second_order(body, y, np.nan_to_num(found.turns))
+        deformation = recorded.deformation(nodes)
+        y = flat(body, deformation.shifts, deformation.turns)
+        forces, shorter = _second_order(body, y, np.nan_to_num(deformation.turns))
         one, other = nodal(body, forces @ compliance(body) + shorter)
         places = [whole.index(node) for node in nodes]
         shifts[:, places] += one
@@ -84,8 +84,8 @@ def spin(recorded: Recorded, part: Part, form: Form) -> float:
 
 def _softened(recorded: Recorded, nodes: list[Node], body: ReducedBody) -> float:
     """Mean of ``spin^2 / frequency^2`` of the vibrations of the boundary, as large as they are."""
-    found = recorded.deformation(nodes)
-    u = flat(body, np.nan_to_num(found.shifts), np.nan_to_num(found.turns))
+    deformation = recorded.deformation(nodes)
+    u = flat(body, np.nan_to_num(deformation.shifts), np.nan_to_num(deformation.turns))
     n = u.shape[1]
     squares, shapes = eigh(body.stiffness[:n, :n], body.mass[:n, :n])
     flexible = squares > RIGID * squares[-1]

@@ -49,17 +49,17 @@ def detuned(recorded: Recorded, part: Part, change: float) -> float:
 def _vibration(recorded: Recorded) -> Vibration:
     """That of all parts of a recorded motion."""
     if recorded.vibration is None:
-        found = [_of_part(recorded, part) for part in recorded.parts]
+        parts = [_of_part(recorded, part) for part in recorded.parts]
         recorded.vibration = Vibration(
-            max(one.slope for one in found), max(one.most for one in found),
-            {name: energy for one in found for name, energy in one.energies.items()})
+            max(one.slope for one in parts), max(one.most for one in parts),
+            {name: energy for one in parts for name, energy in one.energies.items()})
     return recorded.vibration
 
 
 def _of_part(recorded: Recorded, part: Part) -> Vibration:
     """What vibrates in a part: what is left of the recorded deformation without its mean."""
-    found = recorded.deformation(recorded.nodes(part))
-    shifts, turns = (one - one.mean(axis=0) for one in found[:2])
+    deformation = recorded.deformation(recorded.nodes(part))
+    shifts, turns = (one - one.mean(axis=0) for one in deformation[:2])
     size = np.sqrt(sum((np.nan_to_num(one)**2).sum(axis=(1, 2)) for one in (shifts, turns)))
     (nodes, body), = recorded.bodies(part, 1)
     ends = recorded.deformation(nodes)
@@ -85,9 +85,9 @@ def _age(size: NDArray, interval: float) -> NDArray:
 def strain_force(recorded: Recorded, part: Part) -> Force:
     """Largest change of the elastic forces at the ends of a part, over the recorded run."""
     (nodes, body), = recorded.bodies(part, 1)
-    found = recorded.deformation(nodes)
+    deformation = recorded.deformation(nodes)
     n = len(body.stiffness) - body.modes
-    forces = flat(body, found.shifts, found.turns) @ body.stiffness[:n, :n]
+    forces = flat(body, deformation.shifts, deformation.turns) @ body.stiffness[:n, :n]
     return Force.of(body, forces - forces[0])
 
 
