@@ -1,4 +1,4 @@
-"""The linearized runs of simplified models, all of them in one sweep forth.
+"""The linearized runs of simplified models, all of them in one forward sweep.
 
 A simplified model moves by xi, v, a beside the full one, whose run is known. It follows (8) to (10)
 of the README under constraints that what it loses is zero, whose forces are ``E mu``:
