@@ -266,3 +266,18 @@ def test_long_groups_look_whether_they_are_to_stop(beam, small, monkeypatch):
     monkeypatch.setattr("sebody.explore.ensembles.lanes.MOST_STEPS", 10**6)
     assert found.in_lanes == 3
     assert_same(found, fifteenth.run(given, T_END, outputs, threads=1))
+
+
+def test_interrupted_members_keep_what_they_have(beam, small, monkeypatch):
+    """Stopped after the first four of thirty steps."""
+    from sebody.explore.ensembles.lanes import Lanes
+
+    given = parameters(3)
+    whole, run_lanes = beam.run(given, T_END, OUTPUTS, threads=1), Lanes.run
+    monkeypatch.setattr("sebody.explore.ensembles.lanes.MOST_STEPS", 4)
+    monkeypatch.setattr(Lanes, "run", lambda self, stop: run_lanes(self, lambda: True))
+    found = beam.run(given, T_END, OUTPUTS, threads=1)
+    assert found.failures == dict.fromkeys(range(3), "interrupted before its end")
+    assert found.reached == pytest.approx(4 * H) and np.isnan(found["late"]).all()
+    np.testing.assert_array_equal(found["course"][:, :5], whole["course"][:, :5])
+    assert np.isnan(found["course"][:, 5:]).all()

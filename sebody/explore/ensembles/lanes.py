@@ -43,6 +43,8 @@ class Lanes:
     ----------
     courses : list of Course
         Outputs of the members that were run last.
+    ended : bool
+        Whether these were run to their end; False if they were stopped before.
     """
 
     def __init__(self, copies: Copies, kernels: Sequence[str], outputs: Mapping[str, Output],
@@ -75,7 +77,7 @@ class Lanes:
                                    self._forms[one.quantity].columns, MEMBERS)
                        for name, one in outputs.items()
                        if one.kind != "history" and forms[one.quantity].columns is not None}
-        self.courses = []
+        self.courses, self.ended = [], False
 
     def _write_straight_code(self) -> None:
         """Straight code for the packed matrices among the constants of bodies."""
@@ -126,13 +128,13 @@ class Lanes:
         """Give a lane the numbers of the run that `copies` has begun."""
         loop.take_member(self.copies.floats, self._places, member, self._numbers)
 
-    def run(self, stop: Callable[[], bool]) -> NDArray | None:
+    def run(self, stop: Callable[[], bool]) -> NDArray:
         """Run the members that have begun to their end, and take in their outputs.
 
         Returns
         -------
-        ndarray or None
-            Which of them gave up, (members,): they are to be run alone. None if it was stopped.
+        ndarray
+            Which of them gave up, (members,): they are to be run alone.
         """
         state, count = self.state, len(self._changes)
         self._begin_records()
@@ -153,8 +155,8 @@ class Lanes:
                          reached)
             self._take_outputs(np.flatnonzero(state.control["reason"][:count] == 0.0))
             if reached < self._last and stop():
-                self._changes.clear()
-                return None
+                break
+        self.ended = reached == self._last
         self._changes.clear()
         return state.control["reason"][:count] != 0.0
 

@@ -129,13 +129,15 @@ class Work:
         taken, alone = [], []
         for run in group:
             (taken if lanes.begin(self._changes[run]) else alone).append(run)
-        gave_up = lanes.run(self._stop.is_set) if taken else None
-        if gave_up is None:         # no member, or interrupted
+        if not taken:
             return alone
+        gave_up = lanes.run(self._stop.is_set)
         for run, course, failed in zip(taken, lanes.courses, gave_up, strict=True):
             if failed:
                 alone.append(run)
             else:
+                if not lanes.ended:
+                    self.outcome.failures[run] = INTERRUPTED
                 self._keep(run, course, lanes.time)
         with self._lock:
             self.outcome.in_lanes += int(np.sum(~gave_up))
