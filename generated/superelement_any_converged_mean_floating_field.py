@@ -1628,7 +1628,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 to_free(detad, axes, order, unordered, dzdd, bound, bound_free, free, hN)
                 # differential: rates of eta, accelerations of eta
                 follow_changes(Zq, Zd, Za, dz, dzd, dzdd, free, slaved, hn)
-                # differential: motion of the frame in axes of the body, a factor of local tangents
+                # differential: motion of the frame in axes of the body, a factor of local
+                # tangents
                 turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                     turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7],
                     turn[8])

@@ -886,7 +886,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 to_free(detad, axes, order, unordered, dzdd, bound, bound_free, free, hN)
                 # differential: rates of eta, accelerations of eta
                 follow_changes(Zq, Zd, Za, dz, dzd, dzdd, free, slaved, hn)
-                # differential: motion of the frame in axes of the body, a factor of local tangents
+                # differential: motion of the frame in axes of the body, a factor of local
+                # tangents
                 turn_cos, turn_sin = turn[0], turn[1]
                 dgamma_x, dgamma_y = dgamma[0], dgamma[1]
                 t26 = da0_x - dgamma_x

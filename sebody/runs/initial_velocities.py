@@ -66,14 +66,15 @@ def strained(model: Mechanism, numbering: Numbering, state: State) -> str:
     rest = [f"{t.name} {_shown(v) if v.any() else 'at rest'}" for t, v in values
             if not _is_given(t)]
     return (f"body {first.name!r} is strained from the start: initial velocities are given to "
-            f"{_listed(given)}, not to {_listed(rest)}"
+            f"{_listed(given)}"
+            + (f", not to {_listed(rest)}" if rest else ", which is no rigid motion")
             + (f"; likewise {_listed(others)}" if others else "")
             + f": start it by rigid_velocity(..., body={first.name!r}), or give every node of it a "
             "velocity, zero where it rests")
 
 
 def _dof_blocks(model: Mechanism, numbering: Numbering,
-              state: State) -> Iterator[tuple[DofBlock, NDArray]]:
+                state: State) -> Iterator[tuple[DofBlock, NDArray]]:
     """DOF blocks of a model with the velocities a run starts with."""
     for dof_block in model.dof_blocks():
         if dof_block in numbering.dof_blocks:

@@ -248,7 +248,8 @@ def test_struck_frames_beside_beams(monkeypatch, capsys):
                         lambda struck, options: measure(struck, options, (1e-3,), 0.1))
     bench.main(["--json", "--random", "0", "T"])
     row = json.loads(capsys.readouterr().out)["T"]
-    assert list(row) == ["default", "on rotations", "beams"]
+    assert list(row) == ["default", "on rotations", "beams", "predicted"]
+    assert 0.0 < row["default"]["0.001"]["gain"] < 2.0 * row["predicted"]["0.001"]
     assert row["default"]["0.001"]["gain"] < 1e-2 and row["beams"]["0.001"]["gain"] < 1e-2
     assert row["default"]["0.001"]["end"] == pytest.approx(0.1)
 

@@ -246,5 +246,5 @@ def test_step_of_the_converged_mean_is_newtons():
         t, S = np.linalg.norm(p), np.cross(np.eye(3), p)        # skew(p)
         T = np.eye(3) - (1 - np.cos(t)) / t**2 * S + (t - np.sin(t)) / t**3 * S @ S
         B += a * np.linalg.inv(T).T
-    found = locate._mean_step(3, alpha, psi.ravel(), *x)
+    found = locate.mean_step(3, alpha, psi.ravel(), *x)
     assert np.abs(found - np.linalg.solve(B, x)).max() <= 1e-13      # B is of order one
