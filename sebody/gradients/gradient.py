@@ -55,7 +55,7 @@ class Gradient:
     seconds : float
         Of the whole, run included.
     run_seconds : float
-        Of the run alone.
+        Of the run alone, where it is run for the first time.
     sweep_seconds : float
         Of the recursion back, or forth.
     """

@@ -2,8 +2,8 @@
 
 A run whose states fit is kept as it is: it has one segment. Of longer ones the state at the begin
 of every segment is kept, and the steps from there on are computed again when they are asked for:
-the same to the last digit, as a state has all that the loop reads. Factors with row exchanges are
-no part of it: from the segment that needs them on there is no other one.
+the same to the last digit, as a state has all that the loop reads, and factors with row exchanges
+are made again from its matrix.
 """
 
 from collections.abc import Iterator, Sequence
@@ -91,16 +91,12 @@ class Segments:
     def _first(self, k: int) -> History:
         """A segment that was not run before."""
         try:
-            one = self.at(k)
+            return self.at(k)
         except SimulationError:
             if k > 0:       # once more, to keep all states that there are
                 self.join()
                 self.at(0)
             raise
-        if self.run.exchanges.exchanges is None or self.run.state.control.grid >= self.last:
-            return one
-        self.begins[k] = self.begins[k]._replace(most=None)
-        return self.at(k)
 
     def back(self) -> Iterator[History]:
         """All segments, the last one first."""

@@ -3,13 +3,16 @@
 import differentiated as scenes
 import numpy as np
 import pytest
+from helpers import multipliers_first
 
-from sebody import InputError, Model, SimulationError, Tolerance
+from sebody import InputError, Model, Simulation, SimulationError, Tolerance
 from sebody.analysis import at_time, final, gradient, integral, rms, soft_maximum
+from sebody.assembly import build as assembly
 from sebody.gradients import segments, sweeps
 from sebody.gradients.gradient import Differentiated
 from sebody.model import profiles
 from sebody.runs.schemes import generalized_alpha, hht
+from sebody.scenes import chain
 
 EXACT = generalized_alpha(tolerance=1e-13)
 # of each scene: what builds it, step and end, objectives, parameters
@@ -136,6 +139,18 @@ def test_segments_of_variable_steps(mode, monkeypatch):
         "sum": integral("spring.force.x")}, [
         "spring.stiffness", "spring.damping", "ball.mass", "push.amplitude"], mode=mode,
         tolerance=Tolerance(1e-4), scheme=EXACT)
+    assert np.array_equal(parts.value, whole.value)
+    assert (np.abs(parts.matrix - whole.matrix) / rows(whole.matrix)).max() < 1e-12
+
+
+def test_segments_of_runs_with_row_exchanges(monkeypatch):
+    """Factors, which are no part of a state, are made again."""
+    monkeypatch.setattr(assembly, "number", multipliers_first(assembly.number))
+    model = chain.build(4).model
+    tip, body = list(model.nodes)[-1], next(iter(model.bodies))
+    run = model, 1e-3, 0.02, {"tip": final(f"{tip}.position")}, [f"{body}.mass", "gravity"]
+    assert Simulation(*run[:2], EXACT).run_to(0.02).state.control.pivoted == 1
+    whole, parts = in_segments(monkeypatch, 5, *run, scheme=EXACT)
     assert np.array_equal(parts.value, whole.value)
     assert (np.abs(parts.matrix - whole.matrix) / rows(whole.matrix)).max() < 1e-12
 
