@@ -23,7 +23,8 @@ from sebody.compiler.first_run import Job, compile_apart
 from sebody.compiler.workers import Task
 from sebody.engine import evaluate, links, loop, matrix, newton, restart, step, step_control
 from sebody.engine.routines import compile_routine
-from sebody.engine.state import Record
+from sebody.engine.state import Record, State
+from sebody.engine.system import System
 from sebody.kernels import loader
 from sebody.kernels.loader import BY_HAND, element_kernel_name, find
 from sebody.model.mechanism import Mechanism
@@ -129,14 +130,19 @@ def compile_part(name: str) -> None:
     part.compile(part.function, tuple(examples()[name] for name in part.arguments.split()))
 
 
-@cache
-def examples() -> dict:
-    """Types of arguments, by the names in `PARTS`: from a model that compiles next to nothing."""
+def smallest() -> tuple[System, State]:
+    """Arrays of a model that compiles next to nothing; their types are those of every model."""
     model = Model(planar=True)
     model.node("point", (0.0, 0.0))
     model.rigid_body("mass", "point", 1.0, 1.0)
     system, numbering = build(model)
-    state = allocate(model, system, numbering, 1.0, True)
+    return system, allocate(model, system, numbering, 1.0, True)
+
+
+@cache
+def examples() -> dict:
+    """Types of arguments, by the names in `PARTS`."""
+    system, state = smallest()
     parts = {"system": system, "state": state, "record": Record.of(state, 1), "links": system.links,
              "scheme": generalized_alpha(), "vector": state.residual, "table": state.inverse,
              "movements": np.zeros((1, 1, 1)), "indices": np.zeros((1, 1), dtype=np.int64),

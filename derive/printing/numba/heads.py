@@ -17,6 +17,13 @@ from sebody.derive.printing.numba.parts import table
 
 SPACES = {False: "motion in space", True: "motion in a plane"}
 PART = "Part"
+# what kernels of loads on bodies, of any layout, declare alike
+OF_LOADS = (
+    "WIDTH = None            # any number",
+    "INERTIAL = False        # has kinetic energy",
+    "POWER = True        # does work on the system: a load, damper or drive",
+    "DRIVEN = False        # a constraint that depends on time",
+)
 
 
 def superelement_head(given: Superelement, kernel: Kernel) -> Head:
@@ -55,10 +62,7 @@ def body_load_head(given: BodyLoad, kernel: Kernel) -> Head:
         (f'FRAME = "{given.frame}"', *counts(planar, (None, None)),
          f"CONSTANTS = FRAME_CONSTANTS + {table(given.declared)}", "MULTIPLIERS = 0", "READS = 0",
          "MEMORY = ()",
-         "WIDTH = None            # any number",
-         "INERTIAL = False        # has kinetic energy",
-         "POWER = True        # does work on the system: a load, damper or drive",
-         "DRIVEN = False        # a constraint that depends on time",
+         *OF_LOADS,
          f"WORK_ROWS = {kernel.rows}", *operations(kernel)),
         ("FRAME_CONSTANTS",), (PART,))
 
@@ -75,10 +79,7 @@ def body_contact_head(given: BodyContact, kernel: Kernel) -> Head:
          "CARRIERS = 1         # nodes behind those of the body: that of the surface",
          f"CONSTANTS = FRAME_CONSTANTS + {table(parts)}", "MULTIPLIERS = 0", "READS = 0",
          *memory(name for name, _ in law.memory),
-         "WIDTH = None            # any number",
-         "INERTIAL = False        # has kinetic energy",
-         "POWER = True        # does work on the system: a load, damper or drive",
-         "DRIVEN = False        # a constraint that depends on time",
+         *OF_LOADS,
          f"WORK_ROWS = {kernel.rows}", *operations(kernel)),
         ("FRAME_CONSTANTS",), (PART,))
 

@@ -7,8 +7,6 @@ from threading import Lock
 import numpy as np
 from numba import typeof, types
 
-from sebody.assembly.allocation import allocate
-from sebody.assembly.build import build
 from sebody.compiler.choice import way
 from sebody.compiler.first_run import Job, compile_apart
 from sebody.compiler.workers import Task
@@ -17,11 +15,10 @@ from sebody.engine.lanes.arrays import Columns, Scratch, empty, in_lanes
 from sebody.engine.offsets import Offsets
 from sebody.kernels.lanes.kernel import address_in_lanes, is_compiled
 from sebody.kernels.loader import find, load
-from sebody.model.model import Model
+from sebody.runs.first_run import SECONDS_A_LETTER, smallest
 from sebody.runs.schemes import generalized_alpha
 
 LOOP_SECONDS = 7.0              # of one processor
-SECONDS_A_LETTER = 7e-5         # of a kernel's file
 
 _lock = Lock()
 
@@ -44,11 +41,7 @@ def compile_kernel(name: str) -> None:
 
 def compile_loop() -> None:
     """The same of the loop, for the types of a small model's arrays: those of every model."""
-    model = Model(planar=True)
-    model.node("point", (0.0, 0.0))
-    model.rigid_body("mass", "point", 1.0, 1.0)
-    system, numbering = build(model)
-    state = allocate(model, system, numbering, 1.0, True)
+    system, state = smallest()
     offsets = Offsets(system, state)
     buffer = empty(offsets.size)
     scratch = Scratch(*(empty(1) for _ in range(5)), dense=empty(1, 1))
