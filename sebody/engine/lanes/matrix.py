@@ -5,6 +5,7 @@ import math
 from sebody.compiler.decorators import compiled
 from sebody.compiler.inside.lanes import every, some, spread, where
 from sebody.contract.layout import C_MASS
+from sebody.engine.lanes.elimination import eliminate_large
 from sebody.engine.lanes.newton import GAVE_UP
 from sebody.engine.matrix import ROUNDING, THIN, sum_matrices
 from sebody.engine.regularization import WEAKEST
@@ -15,24 +16,31 @@ SMALL_PIVOT = 1e-9      # relative to the scaled matrix, whose diagonal is one
 
 
 @compiled
-def factorize(system, state, dense, wanted, evaluated):
-    """Sum and invert the matrices of some members; returns those that give up.
+def factorize(system, state, scratch, dense, wanted, evaluated):
+    """Sum and factorize the matrices of some members, or invert small ones (dense).
 
-    Members whose matrices would need row exchanges give up. `evaluated` are those whose element
+    Returns the members that give up, because their matrices would need row exchanges. `evaluated` are those whose element
     matrices are all new: their scales are, too.
     """
     control, clock = state.control, state.clock
     zero = spread(0.0)
+    if not dense:
+        for k in range(state.matrix.size):
+            scratch.factors[k] = state.matrix[k]
     sum_matrices(system, state, state.forces)
     if some(evaluated):
         _equilibrate(system, state, evaluated)
-    failed = wanted & ~_invert(system, state, dense, wanted)
+    if dense:
+        failed = wanted & ~_invert(system, state, scratch.dense, wanted)
+    else:
+        failed = wanted & ~eliminate_large(system, state, scratch.factors, wanted)
     clock.factor_step = clock.current_step
     clock.baseline_contraction = where(evaluated, spread(0.5), clock.baseline_contraction)
     clock.excess = where(evaluated, zero, clock.excess)
     control.age = where(evaluated, zero, control.age)
     control.wanted = where(wanted, spread(float(KEPT)), control.wanted)
     one = where(wanted, spread(1.0), zero)
+    control.secant = where(wanted, zero, control.secant)
     control.fresh += one
     control.matrices += one
     control.reason = where(failed, spread(GAVE_UP), control.reason)

@@ -1,5 +1,7 @@
 """Corrections, convergence and when to refactorize, member by member: `sebody.engine.newton`."""
 
+import math
+
 from sebody.compiler.decorators import compiled
 from sebody.compiler.inside.lanes import some, spread, where
 from sebody.engine.newton import (
@@ -12,6 +14,7 @@ from sebody.engine.newton import (
     MOST_MATRICES,
     OLDEST,
     POOR,
+    QUICK,
     REFACTORIZATION_COST,
     ROTATED_COST,
     ROUNDED,
@@ -27,16 +30,18 @@ GAVE_UP = 1.0           # reason of a member that is to be run alone
 
 
 @compiled(forceinline=True)
-def correct(system, state, scheme, active, iteration):
+def correct(system, state, scheme, active, iteration, mixed):
     """Subtract the correction of the active members; returns those that have to go on."""
     clock, control, h = state.clock, state.control, state.clock.current_step
     norm, size, accelerations = norms(system, state, system.diagonal.size)
     failed = active & ~(norm < HUGE)
+    left_norm = accelerate(system, state, active, norm) if mixed else norm
     subtract(system, state, scheme, system.diagonal.size)
     accelerations = max(scheme.beta * h * h * accelerations, clock.acceleration_norm)
     target = min(scheme.tolerance * size,
                  ACCELERATION_TOLERANCE * scheme.tolerance * accelerations) + clock.floor
     clock.acceleration_norm = where(active, accelerations, clock.acceleration_norm)
+    clock.target = target
     rate, last = clock.contraction, clock.last_norm
     if iteration == 0:
         clock.span = where(active, norm / target, clock.span)     # of which the loop has the log
@@ -46,12 +51,12 @@ def correct(system, state, scheme, active, iteration):
     count = where(active, spread(1.0), spread(0.0))
     control.iteration += count
     control.iterations += count
-    clock.last_norm = where(active, norm, last)
+    clock.last_norm = where(active, left_norm, last)
     rate = min(max(rate, spread(UNSURE if iteration == 0 else FASTEST)), spread(SLOWEST))
-    done = active & (rate / (1.0 - rate) * norm <= target)
+    done = active & (rate / (1.0 - rate) * left_norm <= target)
     if iteration > 2:       # where new matrices do not help, what is left is rounding
         hopeless = active & ~done & (control.fresh > 2.0) & (rate > 0.9)
-        rounded = norm <= ROUNDED * target
+        rounded = left_norm <= ROUNDED * target
         failed = failed | (hopeless & ~rounded)
         done = done | (hopeless & rounded)
     if some(done):
@@ -64,6 +69,30 @@ def correct(system, state, scheme, active, iteration):
             _want_matrices(system, state, left, rate, norm, target, iteration)
     control.reason = where(failed, spread(GAVE_UP), control.reason)
     return left & ~failed
+
+
+@compiled
+def accelerate(system, state, active, norm):
+    """Anderson mixing with the last correction; returns the norms of the mixed corrections."""
+    n, control, zero = system.diagonal.size, state.control, spread(0.0)
+    correction, last, change = state.correction, state.last_correction, state.last_change
+    along = square = zero
+    for i in range(n):
+        if state.control.regularized == 1 and system.is_multiplier[i] > 0.0:
+            continue
+        w = state.weight[i]
+        difference = (correction[i] - last[i]) * w
+        along += difference * correction[i] * w
+        square += difference * difference
+    mixing = active & (control.secant == 1.0) & (norm > QUICK * state.clock.last_norm) & (
+        square > 0.0) & (abs(along) < square)
+    mix = where(mixing, along / square, zero)
+    control.secant = spread(1.0)
+    for i in range(n):
+        d = correction[i]
+        change[i] = correction[i] = where(mixing, d - mix * (change[i] + d - last[i]), d)
+        last[i] = d
+    return where(mixing, math.sqrt(max(norm * norm - along * mix, zero)), norm)
 
 
 @compiled(forceinline=True)

@@ -31,7 +31,6 @@ class Fact(NamedTuple):
 
 
 FACTS = (
-    Fact("more unknowns than an inverse is kept for", lambda one: not one.dense),
     Fact("constraints that are redundant, or motions without mass",
          lambda one: bool(one.system.regularized[0] or one.system.massless[0])),
     Fact("constraints that hold for velocities, too", lambda one: one.scheme.stabilized),

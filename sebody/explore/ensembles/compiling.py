@@ -1,6 +1,7 @@
 """What the first ensemble in lanes compiles, side by side in several processes."""
 
 from collections.abc import Iterable
+from dataclasses import fields
 from pathlib import Path
 from threading import Lock
 
@@ -44,8 +45,9 @@ def compile_loop() -> None:
     system, state = smallest()
     offsets = Offsets(system, state)
     buffer = empty(offsets.size)
-    scratch = Scratch(*(empty(1) for _ in range(5)), dense=empty(1, 1))
+    scratch = Scratch(dense=empty(1, 1), **{one.name: empty(1) for one in fields(Scratch)
+                                            if one.name != "dense"})
     columns = Columns(np.zeros(1, dtype=np.int64), empty(1, 1), np.zeros(1, dtype=np.int64))
     given = (in_lanes(system, offsets, buffer), in_lanes(state, offsets, buffer), scratch, columns,
              generalized_alpha())
-    way().compile_for(loop.advance, (*map(typeof, given), types.int64))
+    way().compile_for(loop.advance, (*map(typeof, given), types.int64, types.boolean))

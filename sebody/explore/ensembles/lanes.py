@@ -61,7 +61,10 @@ class Lanes:
         self._scratch = Scratch(g=empty(one.state.g.size), frames=empty(frames),
                                 found=empty(frames), T=empty(one.state.T.size),
                                 J=empty(int(one.system.at_J[one.system.first_joint[0]])),
-                                dense=empty(n, n))
+                                dense=empty(n, n) if one.dense else empty(0, 0),
+                                factors=empty(0 if one.dense else one.state.matrix.size),
+                                moved=empty(one.state.moved.size),
+                                unmoved=empty(one.state.g.size))
         self._places = self._own_places()
         columns = _columns(forms, one.state.now.size)
         self._forms = {name: form if form.columns is None else form._replace(
@@ -101,7 +104,8 @@ class Lanes:
         image, state = self.copies.image, self.copies.image.template.state
         begun = (image.offsets.of(part) for part in (
             state.now, state.aux, state.aux_change, state.q_start, state.loads, state.loads_old,
-            state.acting, state.coefficients, state.frames_old, state.aux_old))
+            state.acting, state.coefficients, state.frames_old, state.aux_old,
+            state.last_correction, state.last_change))
         return np.unique(np.concatenate([image.lines.slots.astype(np.int64),
                                          *(np.arange(part.start, part.stop) for part in begun)]))
 
@@ -152,7 +156,7 @@ class Lanes:
                           reached + MOST_STEPS)
             state.control["recorded"] = 0
             loop.advance(self.system, state, self._scratch, self._record, self.copies.scheme,
-                         reached)
+                         reached, self.copies.dense)
             self._take_outputs(np.flatnonzero(state.control["reason"][:count] == 0.0))
             if reached < self._last and stop():
                 break
