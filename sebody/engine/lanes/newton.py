@@ -4,6 +4,7 @@ import math
 
 from sebody.compiler.decorators import compiled
 from sebody.compiler.inside.lanes import some, spread, where
+from sebody.engine.lanes.regularization import leaves_gap
 from sebody.engine.newton import (
     ACCELERATION_TOLERANCE,
     ASTRAY,
@@ -23,6 +24,7 @@ from sebody.engine.newton import (
     norms,
     subtract,
 )
+from sebody.engine.regularization import regularized_norms
 from sebody.engine.state import EVALUATED, KEPT, ROTATED
 
 HUGE = 1e300            # a norm above this is no number, or as good as none
@@ -33,10 +35,12 @@ GAVE_UP = 1.0           # reason of a member that is to be run alone
 def correct(system, state, scheme, active, iteration, mixed):
     """Subtract the correction of the active members; returns those that have to go on."""
     clock, control, h = state.clock, state.control, state.clock.current_step
-    norm, size, accelerations = norms(system, state, system.diagonal.size)
+    n, regularized = system.diagonal.size, control.regularized == 1
+    norm, size, accelerations = (regularized_norms(system, state, n) if regularized else
+                                 norms(system, state, n))
     failed = active & ~(norm < HUGE)
     left_norm = accelerate(system, state, active, norm) if mixed else norm
-    subtract(system, state, scheme, system.diagonal.size)
+    subtract(system, state, scheme, n)
     accelerations = max(scheme.beta * h * h * accelerations, clock.acceleration_norm)
     target = min(scheme.tolerance * size,
                  ACCELERATION_TOLERANCE * scheme.tolerance * accelerations) + clock.floor
@@ -61,6 +65,8 @@ def correct(system, state, scheme, active, iteration, mixed):
         done = done | (hopeless & rounded)
     if some(done):
         failed = failed | (done & _strayed(system, state, scheme))
+        if regularized:
+            failed = failed | (done & leaves_gap(system, state, norm))
     left = active & ~done & ~failed
     if some(left):
         if iteration >= MAX_ITERATIONS - 1:

@@ -31,8 +31,7 @@ class Fact(NamedTuple):
 
 
 FACTS = (
-    Fact("constraints that are redundant, or motions without mass",
-         lambda one: bool(one.system.regularized[0] or one.system.massless[0])),
+    Fact("motions without mass", lambda one: bool(one.system.massless[0])),
     Fact("constraints that hold for velocities, too", lambda one: one.scheme.stabilized),
     Fact("contacts, stops or friction",
          lambda one: one.system.guarded.size > 0 or _keeps_numbers(one)),

@@ -45,8 +45,9 @@ def compile_loop() -> None:
     system, state = smallest()
     offsets = Offsets(system, state)
     buffer = empty(offsets.size)
-    scratch = Scratch(dense=empty(1, 1), **{one.name: empty(1) for one in fields(Scratch)
-                                            if one.name != "dense"})
+    square = {"dense", "projected"}
+    scratch = Scratch(**{one.name: empty(1, 1) if one.name in square else empty(1)
+                         for one in fields(Scratch)})
     columns = Columns(np.zeros(1, dtype=np.int64), empty(1, 1), np.zeros(1, dtype=np.int64))
     given = (in_lanes(system, offsets, buffer), in_lanes(state, offsets, buffer), scratch, columns,
              generalized_alpha())

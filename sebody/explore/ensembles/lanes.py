@@ -57,11 +57,12 @@ class Lanes:
         self._write_straight_code()
         self.state = in_lanes(one.state, image.offsets, buffer)
         n = len(one.system.diagonal)
-        frames = one.state.frames.size
+        frames, redundant = one.state.frames.size, one.system.regularized[0] == 1
         self._scratch = Scratch(g=empty(one.state.g.size), frames=empty(frames),
                                 found=empty(frames), T=empty(one.state.T.size),
                                 J=empty(int(one.system.at_J[one.system.first_joint[0]])),
                                 dense=empty(n, n) if one.dense else empty(0, 0),
+                                projected=empty(n, n) if one.dense and redundant else empty(0, 0),
                                 factors=empty(0 if one.dense else one.state.matrix.size),
                                 moved=empty(one.state.moved.size),
                                 unmoved=empty(one.state.g.size))

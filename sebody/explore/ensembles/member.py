@@ -82,6 +82,8 @@ class Copies:
                 break
             self.sampling.serve()
             code = advance(system, state, self.none, self.scheme, 0, 0, self.dense)
+        if code == FAILED and system.regularized[0]:
+            return False        # where constraints contradict each other, and Python can tell which
         if code == FAILED:
             raise InputError("the initial state has no accelerations: "
                              f"{REASONS[int(state.control.reason)]}")
