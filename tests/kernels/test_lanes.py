@@ -2,12 +2,15 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from sebody.compiler.choice import way
 from sebody.compiler.decorators import compiled
 from sebody.contract.counts import LANES, MEMBERS, packed_size, whole_vectors
-from sebody.kernels.abi import pointer_to
+from sebody.fem import Section, straight_beam
+from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.dense import add_blocks_times, add_rows_times, columns_times
+from sebody.kernels.frame_search import best_fit, mean_axes, planar_fit, planar_mean_axes
 from sebody.kernels.packed import pack
 from sebody.kernels.packed_products import add_packed, packed_times
 from sebody.kernels.rotations import (
@@ -17,6 +20,8 @@ from sebody.kernels.rotations import (
     rotate,
     stumpff_23,
 )
+from sebody.reduction import craig_bampton
+from sebody.reduction.mean_rotation import mean_rotation
 
 if way().__name__.endswith("plain"):
     pytest.skip("the plain way has no lanes", allow_module_level=True)
@@ -136,3 +141,65 @@ def test_maps_of_rotations_take_series_and_closed_forms_side_by_side():
     far = np.cos(turns) < -0.98
     assert far.sum() == 1 and np.isnan(back[:, far]).all()
     np.testing.assert_allclose(back[:, ~far], -psi[:, ~far], atol=1e-12)
+
+
+@compiled
+def frames(X, alpha, Gam, q, R, found):
+    """Frames of two points and rotations, and of three points, one after the other."""
+    psi, nodes, fit = at(pointer_to(found.rows), 40), pointer_to(R.places), pointer_to(alpha.rows)
+    x, own, frame = pointer_to(q.rows), pointer_to(X.rows), pointer_to(found.rows)
+    of_mean = mean_axes(2, 2, 14, nodes, fit, own, pointer_to(Gam.rows), x, pointer_to(R.rows),
+                        frame, psi)
+    in_plane = planar_mean_axes(2, 1, 7, fit, at(own, 15), at(pointer_to(Gam.rows), 42), at(x, 23),
+                                at(frame, 9), at(psi, 6))
+    points = at(x, 14)
+    fitted = best_fit(3, at(fit, 2), at(own, 6), at(fit, 2), points, at(frame, 18))
+    flat = planar_fit(3, at(fit, 2), at(own, 6), at(fit, 2), points, at(frame, 27))
+    return of_mean, in_plane, fitted, flat
+
+
+def test_frames_of_members_are_those_of_each_alone():
+    """Bodies that are turned a little or far; where one alone has no frame it is no number."""
+    rng = np.random.default_rng(11)
+    section = Section(area=4.0, inertia_y=1.2, inertia_z=0.9, torsion=2.0, youngs_modulus=2e6,
+                      poisson_ratio=0.3, density=7e-3)
+    body = craig_bampton(straight_beam((1.0, -2.0, 0.5), (4.0, 2.0, 3.0), section, elements=3),
+                         [(0, "full"), (3, "full")], modes=2)
+    mean = mean_rotation(body).T
+    middle = body.coordinates.mean(axis=0)
+    flat = (body.coordinates - middle)[:, :2]
+    X = np.concatenate([(body.coordinates - middle).ravel(), rng.normal(size=9), flat.ravel()])
+    plane = mean[[0, 1, 3, 4, 8, 12, 13], 2]
+    alpha = np.array([0.5, 0.5, 0.3, 0.3, 0.4])
+    given = []
+    for member, angle in enumerate((0.1, 0.3, 1.3, 0.0, 2.2, 0.4, 0.7, 0.2)):
+        axis = rng.normal(size=3)
+        turn = Rotation.from_rotvec(angle * axis / np.linalg.norm(axis))
+        points = turn.apply(body.coordinates.copy()) + 0.02 * rng.normal(size=(2, 3))
+        own = turn * Rotation.from_rotvec(0.1 * rng.normal(size=(2, 3)))
+        others = turn.apply(X[6:15].reshape(3, 3)) * (member != 5) + 3.0
+        planar = flat @ Rotation.from_rotvec((0, 0, angle)).as_matrix()[:2, :2].T
+        q = np.concatenate([points.ravel(), 0.1 * rng.normal(size=8), others.ravel(),
+                            planar.ravel(), [angle + 0.05], 0.1 * rng.normal(size=2)])
+        given.append((X, alpha, np.concatenate([mean.ravel(), plane]), q,
+                      own.as_matrix().ravel(), np.concatenate([np.eye(3).ravel()] * 6)))
+    together = [np.array(one).T for one in zip(*given, strict=True)]
+    arrays, nodes = [Given.of(one) for one in together], np.arange(2)
+    arrays[4] = Columns(nodes, arrays[4].rows, nodes)
+    frames(*arrays)
+    refused = []
+    for member, numbers_of_one in enumerate(given):
+        own = [Columns(nodes, one.reshape(1, -1).copy(), nodes) for one in numbers_of_one]
+        statuses = frames(*own)
+        expected, found = own[5].rows[0], arrays[5].values[:, member]
+        refused += [(member, k) for k, status in enumerate(statuses) if status != 0]
+        for k, status in enumerate(statuses):
+            part = slice(9 * k, 9 * k + 9)
+            if status != 0:
+                assert np.isnan(found[part]).any()
+            else:       # Newton's last step leaves the square of 1e-8, and rounding
+                np.testing.assert_allclose(found[part], expected[part], atol=1e-13)
+        for k, part in enumerate((slice(40, 46), slice(46, 47))):
+            if statuses[k] == 0:
+                np.testing.assert_allclose(found[part], expected[part], atol=1e-13)
+    assert {(5, 2), (5, 3)} <= set(refused) and len(refused) < 6

@@ -17,10 +17,8 @@ from sebody.model.model import Model
 from sebody.runs.simulation import Simulation
 
 WORTH_IT = 500_000      # steps of all runs together, a second or more one by one
-# frames whose search has no version for lanes, and elements that choose by their numbers, as parts
-# of the names of kernels
-NOT_IN_LANES = ("mean_axes", "positions", "_mean_material", "_mean_small", "load_mean", "stop",
-                "friction", "play", "point_on_", "sphere_on_")
+# elements that choose by their numbers, as parts of the names of kernels
+NOT_IN_LANES = ("stop", "friction", "play", "point_on_", "sphere_on_", "contact")
 
 
 class Fact(NamedTuple):
@@ -85,8 +83,7 @@ def kernels_of(model: Model) -> list[str]:
 
 
 def _has_lanes(kernel: str) -> bool:
-    return kernel not in BY_HAND and ("_converged_mean_" in kernel
-                                      or not any(part in kernel for part in NOT_IN_LANES))
+    return kernel not in BY_HAND and not any(part in kernel for part in NOT_IN_LANES)
 
 
 def _keeps_numbers(one: Simulation) -> bool:
