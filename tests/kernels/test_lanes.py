@@ -83,19 +83,21 @@ def packed_products_of(packed, x, out, factors, total, count, height):
     add_packed(pointer_to(packed.rows), pointer_to(factors.rows), pointer_to(total.rows), height)
 
 
-@pytest.mark.parametrize("straight", [False, True])
-def test_packed_products(straight):
-    """By strips and as straight code; members differ in their entries, not in their zeros."""
+@pytest.mark.parametrize("straight, shared", [(False, 0.0), (True, 0.0), (True, 0.5)])
+def test_packed_products(straight, shared):
+    """By strips and as straight code; members differ in entries, perhaps some, not in zeros."""
     rng, shape = np.random.default_rng(3), (3, 10, 9)
     count, rows, columns = shape
     pattern = rng.uniform(size=shape) < 0.3
     pattern[:, :4, :8] = True           # a wide strip
     stacks = rng.normal(size=(MEMBERS, *shape)) * pattern
+    same = rng.uniform(size=shape) < shared
+    stacks[:, same] = stacks[0, same]
     row = np.array([pack(stack, shape) for stack in stacks]).T
     assert len(row) == packed_size(*shape)
     packed = Given.of(row)
     if straight:
-        write_address(row[:, 0].copy(), packed.values)
+        write_address(row[:, 0].copy(), np.ptp(row, axis=1) > 0.0, packed.values)
     height = whole_vectors(rows)
     x = rng.normal(size=(whole_vectors(columns) + LANES, MEMBERS))
     factors = rng.normal(size=(count, MEMBERS))

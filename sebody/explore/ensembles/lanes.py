@@ -88,9 +88,9 @@ class Lanes:
         image = self.copies.image
         bodies, system = list(image.template.model.bodies.values()), image.template.system
         constants = image.offsets.of(system.constants).start
-        floats = image.floats.copy()
-        slots = image.lines.slots           # not zero in some members
-        floats[slots] = np.where(floats[slots] == 0.0, 1.0, floats[slots])
+        floats, varied = image.floats.copy(), np.zeros(image.floats.size, dtype=bool)
+        varied[image.lines.slots] = True
+        floats[varied & (floats == 0.0)] = 1.0          # not zero in some members
         for index in _index_rows(system):
             body, first = bodies[index[AT_FRAME]], constants + index[AT_CONSTANTS]
             counts, row = counts_of(body), Row("constants", load(body.kernel).CONSTANTS)
@@ -98,7 +98,7 @@ class Lanes:
             for part in row.parts:
                 if part.packed and part.size(counts):
                     own = slice(first + places[part.name].start, first + places[part.name].stop)
-                    write_address(floats[own], self._numbers[own])
+                    write_address(floats[own], varied[own], self._numbers[own])
 
     def _own_places(self) -> NDArray:
         """Places in the buffer of what members begin with: parameters, and their state."""
