@@ -91,7 +91,7 @@ def redundant(modes: int | None = None) -> Model:
         made.rigid_body(f"bar {k}", hub, 40.0, np.diag((4e3, 5e3, 9e3)), place(x, 15.0, 0))
         made.revolute(hub, axis=axis, name=f"foot {k}")
         made.revolute(made.attach(f"head {k}", top.point, hub), axis, top, name=f"pin {k}")
-    made.force(tip, TURN @ (1, 0.3, 0), [(0, 0), (0.02, 9e4), (0.05, -6e4)], name="load")
+    made.force(tip, TURN @ (1, 0.3, 0), [(0, 0), (0.02, 4e4), (0.05, -3e4)], name="load")
     made.gravity((0.0, -400.0, 900.0))
     return made
 
@@ -123,7 +123,6 @@ def test_members_equal_single_runs(build, monkeypatch):
             handle(alone, name).set(np.asarray(values[run], dtype=float))
         result = simulate(alone, h, steps * h)
         size = np.abs(result["tip.position"]).max()
-        print(build.__name__, np.abs(found["course"][run] - result["tip.position"]).max() / size)
         assert np.abs(found["course"][run] - result["tip.position"]).max() < 1e-10 * size
         speed = np.abs(result["tip.velocity"]).max()
         assert np.abs(found["most"][run] - result["tip.velocity"].max(axis=0)).max() < 1e-8 * speed

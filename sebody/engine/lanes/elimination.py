@@ -3,7 +3,7 @@
 import math
 
 from sebody.compiler.decorators import compiled, in_lanes_of
-from sebody.compiler.inside.lanes import spread, where
+from sebody.compiler.inside.lanes import every, spread, where
 from sebody.contract.counts import LANES
 from sebody.engine import elimination
 from sebody.engine.elimination import BLOCK, SMALL_PIVOT
@@ -23,6 +23,8 @@ def eliminate_large(system, state, kept, wanted):
     good = spread(0.0) == 0.0
     for j in range(system.block_diagonal.size):
         good = good & (abs(state.matrix[BLOCK * system.block_diagonal[j]]) < math.inf)
+    if every(wanted):
+        return good
     for k in range(kept.size):
         state.matrix[k] = where(wanted, state.matrix[k], kept[k])
     return good

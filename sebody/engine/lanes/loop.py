@@ -184,13 +184,6 @@ def _write(state, record):
 
 
 @compiled(nogil=True)
-def take_member(floats, places, member, lanes):
-    """Set the numbers of one member at some places of a buffer of lanes, (size, members)."""
-    for k in range(places.size):
-        lanes[places[k], member] = floats[places[k]]
-
-
-@compiled(nogil=True)
 def rows_of(table, member, rows):
     """Recorded states of one member from those of all, (records, numbers, members)."""
     for k in range(rows.shape[0]):

@@ -29,7 +29,7 @@ def factorize(system, state, scratch, dense, wanted, evaluated):
     """
     control, clock = state.control, state.clock
     zero = spread(0.0)
-    if not dense:
+    if not dense and not every(wanted):
         for k in range(state.matrix.size):
             scratch.factors[k] = state.matrix[k]
     sum_matrices(system, state, state.forces)

@@ -11,7 +11,6 @@ from sebody.contract.layout import AT_CONSTANTS, AT_FRAME, RECORD_T, Row
 from sebody.engine.lanes import loop
 from sebody.engine.lanes.arrays import Columns, Scratch, empty, fill, in_lanes, numbers
 from sebody.engine.system import System
-from sebody.errors import InputError
 from sebody.explore.ensembles.member import Copies, Course, Form
 from sebody.explore.ensembles.outputs import Folds, Output
 from sebody.kernels.lanes.kernel import address_in_lanes
@@ -75,7 +74,8 @@ class Lanes:
         self._record = Columns(places=columns, rows=empty(*rows), every=np.array([one.every]))
         self._rows = np.empty(rows)
         self._last, self._begun = last, {}
-        self._outputs, self._changes = outputs, []
+        self._outputs = outputs
+        self._changes: NDArray          # of the members that have begun
         self._evaluated = not all(form.kinematic for form in forms.values())
         self._folds = {name: Folds(one, forms[one.quantity].shape,
                                    self._forms[one.quantity].columns, MEMBERS)
@@ -110,28 +110,19 @@ class Lanes:
         return np.unique(np.concatenate([image.lines.slots.astype(np.int64),
                                          *(np.arange(part.start, part.stop) for part in begun)]))
 
-    def begin(self, change: NDArray) -> bool:
-        """Begin a run in the next free lane; False if it is to be run alone.
+    def begin(self, changes: NDArray) -> NDArray:
+        """Begin some runs, one in a lane; returns which have begun. The others are to be run alone.
 
         Parameters
         ----------
-        change : (components,)
-            As of `Copies.begin`.
+        changes : (runs, components)
+            As of `Copies.begin`, at most as many as there are lanes.
         """
-        try:
-            begun = self.copies.begin(change)
-        except InputError:      # told where it is run alone
-            return False
-        if begun:
-            if not self._begun:
-                self._keep_begun()
-            self._take(len(self._changes))
-            self._changes.append(change)
+        begun = self.copies.begin_together(changes, self._places, self._numbers)
+        self._changes = changes[begun]
+        if not self._begun and begun.any():
+            self._keep_begun()
         return begun
-
-    def _take(self, member: int) -> None:
-        """Give a lane the numbers of the run that `copies` has begun."""
-        loop.take_member(self.copies.floats, self._places, member, self._numbers)
 
     def run(self, stop: Callable[[], bool]) -> NDArray:
         """Run the members that have begun to their end, and take in their outputs.
@@ -148,8 +139,8 @@ class Lanes:
         self.courses = [Course(self.copies, int(self._record.every[0]), self._outputs, self._forms,
                                {name: folds.members[member] for name, folds in self._folds.items()})
                         for member in range(count)]
-        for member in range(count, MEMBERS):        # lanes without a member: another one's numbers
-            self._take(member)
+        if count < MEMBERS:         # lanes without a member: another one's numbers
+            self._numbers[self._places, count:] = self._numbers[self._places, :1]
         state.control["reason"] = np.where(np.arange(MEMBERS) < count, 0.0, ALONE)
         every, reached = int(self._record.every[0]), 0
         while reached < self._last:
@@ -162,7 +153,6 @@ class Lanes:
             if reached < self._last and stop():
                 break
         self.ended = reached == self._last
-        self._changes.clear()
         return state.control["reason"][:count] != 0.0
 
     def _take_outputs(self, members: NDArray) -> None:
@@ -179,7 +169,8 @@ class Lanes:
                 self.courses[member].take(rows)
 
     def _keep_begun(self) -> None:
-        """Keep the scalars and counters of the member that has begun; failed starts have others."""
+        """Keep the scalars and counters of a member that has begun; failed starts have others."""
+        self.copies.begin(self._changes[0])
         for name in ("control", "clock", "guard"):
             record = getattr(self.state, name)
             fill(record, getattr(self.copies.state, name))

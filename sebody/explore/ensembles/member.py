@@ -90,6 +90,22 @@ class Copies:
         beginning.end(state, self._given)
         return code == DONE
 
+    def begin_together(self, changes: NDArray, places: NDArray, lanes: NDArray) -> NDArray:
+        """Begin some runs, those that have begun in lanes; returns which these are.
+
+        Parameters
+        ----------
+        changes : (runs, components)
+            As of `begin`.
+        places : (k,)
+            What members begin with in the buffer of all numbers.
+        lanes : (size, members)
+            Gets it.
+        """
+        codes = beginning.begin_together(self.system, self.state, self._given, changes, self.dense,
+                                         places, lanes)
+        return codes == DONE
+
     def _beginning(self) -> beginning.Beginning:
         """What runs begin with; scalars and flags are not in `floats`."""
         lines, state = self.image.lines, self.state

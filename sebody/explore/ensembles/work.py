@@ -126,9 +126,9 @@ class Work:
 
     def _run_together(self, group: Sequence[int], lanes: Lanes) -> Sequence[int]:
         """Make some runs at a time; returns those that are to be made alone."""
-        taken, alone = [], []
-        for run in group:
-            (taken if lanes.begin(self._changes[run]) else alone).append(run)
+        runs = np.array(group)
+        begun = lanes.begin(self._changes[runs])
+        taken, alone = runs[begun].tolist(), runs[~begun].tolist()
         if not taken:
             return alone
         gave_up = lanes.run(self._stop.is_set)
