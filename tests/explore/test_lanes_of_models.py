@@ -1,4 +1,4 @@
-"""Models of many kinds in lanes: each member equals its single run, in whatever order it is made."""
+"""Models of many kinds in lanes: each member equals its single run, in whatever order."""
 
 import numpy as np
 import pytest

@@ -28,7 +28,7 @@ if way().__name__.endswith("plain"):
 
 import sebody.engine.lanes  # noqa: E402, F401  puts functions for lanes in place
 from sebody.engine.lanes.arrays import Columns, empty, numbers  # noqa: E402
-from sebody.kernels.lanes.straight import write_address  # noqa: E402
+from sebody.kernels.lanes.straight import write_address, write_shared_address  # noqa: E402
 
 EPS = np.finfo(float).eps
 
@@ -47,6 +47,12 @@ class Given(Columns):
         return numbers(self.rows)[0]
 
 
+def numbers_of_all(values: np.ndarray) -> Columns:
+    """Numbers that all members share, as compiled code reads them."""
+    nothing = np.zeros(1, dtype=np.int64)
+    return Columns(nothing, values.reshape(1, -1).copy(), nothing)
+
+
 @compiled
 def products(A, x, B, y, set_to, added, dotted, rows, columns, of_B, height):
     columns_times(pointer_to(A.rows), pointer_to(x.rows), pointer_to(set_to.rows), rows, columns)
@@ -58,7 +64,7 @@ def products(A, x, B, y, set_to, added, dotted, rows, columns, of_B, height):
 
 @pytest.mark.parametrize("rows, columns, of_B", [(1, 1, 2), (7, 5, 3), (16, 12, 1), (13, 0, 4)])
 def test_dense_products(rows, columns, of_B):
-    """Every member has a matrix and vectors of its own; nothing is written behind the rows."""
+    """Members have matrices of their own, or share them; nothing is written behind the rows."""
     rng, height = np.random.default_rng(rows), whole_vectors(rows)
     A, B = rng.normal(size=(columns + 1, height, MEMBERS)), rng.normal(size=(of_B, height, MEMBERS))
     x, y = rng.normal(size=(columns + 1, MEMBERS)), rng.normal(size=(max(of_B, height), MEMBERS))
@@ -73,6 +79,11 @@ def test_dense_products(rows, columns, of_B):
     np.testing.assert_allclose(added[:rows], begin[:rows] + Ax + By, atol=bound, rtol=0)
     expected = begin[:columns] + np.einsum("crm,rm->cm", A[:columns, :rows], y[:rows])
     np.testing.assert_allclose(dotted[:columns], expected, atol=bound, rtol=0)
+    shared = [numbers_of_all(one[:, :, 0].reshape(-1)) for one in (A, B)]
+    given[4:] = [Given.of(begin) for _ in range(3)]
+    products(shared[0], given[1], shared[1], given[3], *given[4:], rows, columns, of_B, height)
+    Ax, By = A[:columns, :rows, 0].T @ x[:columns], B[:, :rows, 0].T @ y[:of_B]
+    np.testing.assert_allclose(given[5].values[:rows], begin[:rows] + Ax + By, atol=bound, rtol=0)
     np.testing.assert_array_equal(set_to[rows:], begin[rows:])
     np.testing.assert_array_equal(dotted[columns:], begin[columns:])
 
@@ -83,7 +94,8 @@ def packed_products_of(packed, x, out, factors, total, count, height):
     add_packed(pointer_to(packed.rows), pointer_to(factors.rows), pointer_to(total.rows), height)
 
 
-@pytest.mark.parametrize("straight, shared", [(False, 0.0), (True, 0.0), (True, 0.5)])
+@pytest.mark.parametrize("straight, shared", [(False, 0.0), (True, 0.0), (True, 0.5),
+                                              (False, 1.0), (True, 1.0)])
 def test_packed_products(straight, shared):
     """By strips and as straight code; members differ in entries, perhaps some, not in zeros."""
     rng, shape = np.random.default_rng(3), (3, 10, 9)
@@ -96,7 +108,12 @@ def test_packed_products(straight, shared):
     row = np.array([pack(stack, shape) for stack in stacks]).T
     assert len(row) == packed_size(*shape)
     packed = Given.of(row)
-    if straight:
+    if shared == 1.0:
+        packed = numbers_of_all(row[:, 0].copy())
+    if straight and shared == 1.0:
+        kept = write_shared_address(packed.rows[0])
+        assert packed.rows[0, :1].view(np.int64) == kept.ctypes.data
+    elif straight:
         write_address(row[:, 0].copy(), np.ptp(row, axis=1) > 0.0, packed.values)
     height = whole_vectors(rows)
     x = rng.normal(size=(whole_vectors(columns) + LANES, MEMBERS))

@@ -24,8 +24,8 @@ SMALL_PIVOT = 1e-9      # relative to the scaled matrix, whose diagonal is one
 def factorize(system, state, scratch, dense, wanted, evaluated):
     """Sum and factorize the matrices of some members, or invert small ones (dense).
 
-    Returns the members that give up, because their matrices would need row exchanges. `evaluated` are those whose element
-    matrices are all new: their scales are, too.
+    Returns the members that give up, because their matrices would need row exchanges. `evaluated`
+    are those whose element matrices are all new: their scales are, too.
     """
     control, clock = state.control, state.clock
     zero = spread(0.0)

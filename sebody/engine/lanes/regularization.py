@@ -10,10 +10,10 @@ from sebody.compiler.inside.lanes import spread, where
 from sebody.contract.layout import C_MASS
 from sebody.engine import elimination
 from sebody.engine.evaluate import to_body_axes
-from sebody.engine.newton import WIDEST_GAP
 from sebody.engine.matrix import ROUNDING
+from sebody.engine.newton import WIDEST_GAP
 from sebody.engine.regularization import LIGHT, PROJECTIONS, REGULARIZATION
-from sebody.kernels.abi import at, pointer_to
+from sebody.kernels.abi import at
 
 
 @compiled

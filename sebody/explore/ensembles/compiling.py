@@ -24,20 +24,27 @@ LOOP_SECONDS = 7.0              # of one processor
 _lock = Lock()
 
 
-def prepare(kernels: Iterable[str]) -> None:
-    """Compile kernels and the loop for lanes where the cache lacks them; a line says so."""
+def prepare(kernels: Iterable[tuple[str, bool]]) -> None:
+    """Compile kernels and the loop for lanes where the cache lacks them; a line says so.
+
+    Parameters
+    ----------
+    kernels : iterable of (str, bool)
+        Names, and whether constants are those of all members.
+    """
     with _lock:
-        missing = [name for name in kernels if not is_compiled(find(name))]
-        jobs = [Job(Task(f"{name} in lanes", f"{__name__}:compile_kernel", (name,)),
-                    SECONDS_A_LETTER * find(name).stat().st_size) for name in missing]
+        missing = [(name, shared) for name, shared in sorted(set(kernels))
+                   if not is_compiled(find(name), shared)]
+        jobs = [Job(Task(f"{name} in lanes", f"{__name__}:compile_kernel", (name, shared)),
+                    SECONDS_A_LETTER * find(name).stat().st_size) for name, shared in missing]
         if not way().is_compiled(loop.advance):
             jobs.append(Job(Task("loop in lanes", f"{__name__}:compile_loop"), LOOP_SECONDS))
         compile_apart(jobs, "what makes eight runs at a time", Path(loop.__file__))
 
 
-def compile_kernel(name: str) -> None:
+def compile_kernel(name: str, shared: bool) -> None:
     """Compile a kernel for lanes here, or find it in the cache."""
-    address_in_lanes(load(name))
+    address_in_lanes(load(name), shared)
 
 
 def compile_loop() -> None:

@@ -6,7 +6,7 @@ neither read nor written. Matrices are lanes as well, since members have constan
 
 from llvmlite import ir
 
-from sebody.compiler.inside.lanes import VECTOR
+from sebody.compiler.inside.lanes import VECTOR, same
 from sebody.contract.counts import LANES
 from sebody.kernels import coordinates, dense, packed_products
 from sebody.kernels.instructions import (
@@ -17,7 +17,7 @@ from sebody.kernels.instructions import (
     stack_vectors,
     whole_vectors,
 )
-from sebody.kernels.lanes.straight import AT_ADDRESS
+from sebody.kernels.lanes.straight import AT_ADDRESS, MOST_GROUPS
 
 _ROWS = 8, 4, 2, 1      # of a product at a time: their sums stay in registers
 _COLUMNS = 8, 4, 2, 1   # likewise of a product of columns with a vector
@@ -26,7 +26,14 @@ _NOTHING = ir.Constant(VECTOR, [0.0] * VECTOR.count)
 
 
 def _load(builder, pointer, place):
-    return builder.load(builder.gep(pointer, [place]))
+    """What is at a place: lanes, or a number that all members share."""
+    number = builder.load(builder.gep(pointer, [place]))
+    return number if number.type == VECTOR else same(builder, number)
+
+
+def _across(pointer):
+    """Numbers from one place to the next."""
+    return VECTOR.count if pointer.type.pointee == VECTOR else 1
 
 
 def _store(builder, value, pointer, place):
@@ -159,17 +166,43 @@ def subtract_block_times(builder, y, A, x):
 
 
 class _Words:
-    """The whole numbers of a row of packed matrices, in the bits of the first lane."""
+    """The whole numbers of a row of packed matrices, in the bits of the first lane.
+
+    Where all members share a row, its first number may point to its straight code.
+    """
 
     def __init__(self, builder, matrices):
         self._builder = builder
         self._words = builder.bitcast(matrices, WORD.as_pointer())
+        self._across = WORD(_across(matrices))
+        self._shared = _across(matrices) == 1
+
+    @property
+    def first(self):
+        """Where the number of groups stands, and behind it the address of straight code."""
+        if not self._shared:
+            return self._words
+        builder, own = self._builder, self._builder.load(self._words)
+        apart = builder.inttoptr(own, WORD.as_pointer())
+        return builder.select(self._points(own), apart, self._words)
+
+    def straight(self):
+        """Address of straight code, and whether there is some."""
+        builder, own = self._builder, self._builder.load(self._words)
+        if self._shared:
+            address = builder.load(builder.gep(self.first, [builder.select(
+                self._points(own), WORD(AT_ADDRESS), WORD(0))]))
+            return address, self._points(own)
+        address = builder.load(builder.gep(self._words, [WORD(AT_ADDRESS)]))
+        return address, builder.icmp_signed("!=", address, own)
+
+    def _points(self, own):
+        return self._builder.icmp_signed(">", own, WORD(MOST_GROUPS))
 
     def at(self, place):
         """The whole number at a place of the row."""
         builder = self._builder
-        return builder.load(builder.gep(self._words, [
-            builder.mul(place, WORD(VECTOR.count))]))
+        return builder.load(builder.gep(self._words, [builder.mul(place, self._across)]))
 
     def of_group(self, group):
         """What a group says of itself."""
@@ -201,12 +234,12 @@ def packed(builder, matrices, x, out, count):
 @in_lanes(packed_products.write_more_packed)
 def add_packed(builder, matrices, x, out):
     """Of `add_packed_times`: straight code if there is some, see `straight`."""
-    words = builder.bitcast(matrices, WORD.as_pointer())
-    groups, address = builder.load(words), builder.load(builder.gep(words, [WORD(AT_ADDRESS)]))
-    with builder.if_else(builder.icmp_signed("!=", address, groups)) as (straight, by_strips):
+    address, is_straight = _Words(builder, matrices).straight()
+    with builder.if_else(is_straight) as (straight, by_strips):
         with straight:
             kind = ir.FunctionType(ir.VoidType(), [VECTOR.as_pointer()] * 3)
-            builder.call(builder.inttoptr(address, kind.as_pointer()), (matrices, x, out))
+            own = builder.bitcast(matrices, VECTOR.as_pointer())
+            builder.call(builder.inttoptr(address, kind.as_pointer()), (own, x, out))
         with by_strips:
             _add_strips(builder, matrices, x, out)
 
@@ -214,7 +247,7 @@ def add_packed(builder, matrices, x, out):
 def _add_strips(builder, matrices, x, out):
     """The numbers of `x` stay in registers while strips follow."""
     words = _Words(builder, matrices)
-    with short_loop(builder, WORD(0), words.at(WORD(0))) as group:
+    with short_loop(builder, WORD(0), builder.load(words.first)) as group:
         first, columns, strips, heads, at = words.of_group(group)
         with packed_products.by_width(builder, columns) as widths:
             for width in widths:
@@ -234,7 +267,7 @@ def _add_strips(builder, matrices, x, out):
 def sum_packed(builder, matrices, factors, out, height):
     """Of `add_packed`."""
     words = _Words(builder, matrices)
-    with short_loop(builder, WORD(0), words.at(WORD(0))) as group:
+    with short_loop(builder, WORD(0), builder.load(words.first)) as group:
         first, columns, strips, heads, at = words.of_group(group)
         with short_loop(builder, WORD(0), strips) as strip:
             matrix, row = (words.of_strip(heads, strip, k) for k in (1, 2))
@@ -282,7 +315,7 @@ def all_to_free(builder, *args):
     words = builder.bitcast(order, ir.DoubleType().as_pointer())
     with short_loop(builder, WORD(0), free) as k:
         at = builder.fptosi(builder.load(builder.gep(words, [
-            builder.mul(k, WORD(VECTOR.count))])), WORD)
+            builder.mul(k, WORD(_across(order)))])), WORD)
         for given, out in zip(own, to, strict=True):
             _store(builder, _load(builder, given, at), out, k)
     with short_loop(builder, free, whole_vectors(builder, end)) as k:

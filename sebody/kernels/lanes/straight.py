@@ -19,6 +19,7 @@ from sebody.kernels.packed import GROUP, HEAD
 # lane of the first number of a row that has the address of its straight code, where there is some;
 # the number of groups stands in all others
 AT_ADDRESS = 1
+MOST_GROUPS = 1 << 20       # of a row; a larger number is an address
 # places of an entry, of its factor and of its sum; its value, if all members share it
 Entries = tuple[tuple[int, int, int, float | None], ...]
 
@@ -108,3 +109,17 @@ def write_address(row: NDArray, varied: NDArray, lanes: NDArray) -> None:
     """
     assert lanes.shape == (len(row), MEMBERS)
     lanes.view(np.int64)[0, AT_ADDRESS] = address_of(entries_of(row, varied))
+
+
+def write_shared_address(row: NDArray) -> NDArray:
+    """The same of a row that all members share: it points to what is returned, and to be kept.
+
+    Parameters
+    ----------
+    row : (size,)
+        As of `packed.pack`.
+    """
+    own = row.view(np.int64)
+    found = np.array([own[0], address_of(entries_of(row, np.zeros(len(row), dtype=bool)))])
+    own[0] = found.ctypes.data
+    return found
