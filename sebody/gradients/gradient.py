@@ -23,7 +23,7 @@ from sebody.gradients.segments import Segments
 from sebody.gradients.slopes import Slope, Slopes
 from sebody.gradients.support import refuse_model, refuse_run
 from sebody.gradients.sweeps import Adjoint, Course, backward, forward
-from sebody.gradients.tables import OfTable, port_of, weights
+from sebody.gradients.tables import OfTable, Part, port_of, weights
 from sebody.model.model import Model
 from sebody.runs.schemes import checked as checked_scheme
 from sebody.runs.schemes import generalized_alpha
@@ -187,18 +187,20 @@ class _Part:
         self.course = Course(run, one.linear, history)
         self.course.settle()
         self.seen = Seen(one.whole, run, history, one.linear)
-        self.slopes = Slopes(one.model, run, history, self.seen.explicit)
+        self.slopes = Slopes(one.model, run, history, self.seen.explicit, self.course.corrections)
         self.tables: dict[str, OfTable] = {}    # and amplitudes of loads, by name
         ports = {c.name: (c, port_of(one.model, run, c)) for c in one.columns}
         for name, (column, port) in ports.items():
             if port is not None and one.whole.kinematic:    # objectives look at motion alone
-                residuals, values = self.slopes.by_load(port)
-                self.tables[name] = OfTable(residuals, weights(one.model, column, history, values))
+                self.tables[name] = OfTable([
+                    Part(residuals, weights(one.model, column, history, *value))
+                    for residuals, *value in self.slopes.by_load(port)])
 
     def slope(self, column: Column) -> Slope:
         """Derivatives by a number of a parameter."""
         if column.name in self.tables:
-            return self.tables[column.name].slope(column.component, len(self.seen.whole.value))
+            return self.tables[column.name].slope(column.component, len(self.seen.whole.value),
+                                                  self.course.linear.free)
         return self.slopes.of(column)
 
     def along(self, bars: Adjoint) -> NDArray:

@@ -158,12 +158,13 @@ class Linear:
                            self.places, self.sums)
         if status != OK:
             raise InputError(f"the state at t = {row[0]:.6g} has no derivatives: {REASONS[status]}")
-        M, C, K = map(self._matrix, self.sums)
+        M, C, K = map(self.matrix, self.sums)
         if not self.followers:
             return Parts(*(self._free(A) for A in (M, C, K)))
         return Parts(*self.followers.reduced(self.state, M, C, K, self.dense))
 
-    def _matrix(self, values: NDArray) -> Matrix:
+    def matrix(self, values: NDArray) -> Matrix:
+        """All coordinates, of sums of entries as of `places`."""
         if self.dense:
             return values.reshape(self.total, self.total)
         return sparse.csc_array((values.copy(), self.indices, self.starts),

@@ -9,7 +9,7 @@ that are fixed, follow the parameter. Nothing is integrated: these are no differ
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 from warnings import catch_warnings, simplefilter
 
@@ -17,14 +17,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.compiler.decorators import compiled
-from sebody.contract.layout import ACCELERATION, OK, RESIDUAL
-from sebody.engine.evaluate import assemble, move_prescribed, set_loads, set_loads_beside
+from sebody.contract.layout import ACCELERATION, C_DAMPING, OK, RESIDUAL
+from sebody.engine.evaluate import (
+    assemble,
+    move_prescribed,
+    set_loads,
+    set_loads_beside,
+    take_rates,
+)
 from sebody.engine.links import place_dependent
+from sebody.engine.restart import SHORT
 from sebody.engine.state import REASONS
 from sebody.errors import InputError, LimitWarning
 from sebody.explore.ensembles.changes import Handle
 from sebody.gradients.history import RESTART, History
 from sebody.gradients.parameters import Column
+from sebody.gradients.stabilized import defect
 from sebody.gradients.start_rates import fitted_rates
 from sebody.kernels.abi import pointer_to
 from sebody.kernels.rotations import rotate
@@ -37,6 +45,10 @@ LARGE, SHORT = 0.25, 1e-3       # steps of differences, relative to the size of 
 POLYNOMIAL = 1e-8               # differences over one and two steps that agree like this are exact
 SMOOTH = 1e-2                   # that agree worse are no differences of a smooth function
 NOISE = 1e-8                    # of values: velocities of the start have so much
+
+
+Load = tuple[int, float, float]     # a power port, a change of its value, one in look aheads
+NO_LOAD = -1, 0.0, 0.0
 
 
 class Slope(NamedTuple):
@@ -60,7 +72,7 @@ class Value(NamedTuple):
 @compiled
 def _drive(system, state, kind, end, beside, free, load):
     """Loads at the next event, and the prescribed coordinates: rotations from the event before."""
-    port, change = load
+    port, change, _ = load
     for i in range(state.loads.size):
         state.loads_old[i] = state.loads[i]
     set_loads_beside(system, state.frames, state.loads, end, beside)
@@ -86,13 +98,15 @@ def _drive_on(system, state, kinds, ends, besides, free, load):
 
 
 @compiled
-def _residuals(system, state, rows, now, kinds, ends, besides, places, free, load, found):
+def _residuals(system, state, rows, now, kinds, ends, besides, places, free, load, second, found):
     """Residuals of all events but the first; fixed and prescribed coordinates are the model's own.
 
     `now` are states of this model, as many as are asked for: motion of the unknowns is that of the
-    run. The load of a power port may be changed, `load` being the port and the change.
+    run. The load of a power port may be changed, `load` being the port, the change, and the change
+    in look aheads. `second` are numbers of the second residuals of index 2, see `Second`.
     """
     q, R, v, a, frames, frames_old = places
+    factors, lengths, corrections, restarts = second
     for e in range(1, rows.shape[0]):
         for i in range(state.frames.size):
             state.frames[i], state.frames_old[i] = rows[e, frames + i], rows[e, frames_old + i]
@@ -108,10 +122,22 @@ def _residuals(system, state, rows, now, kinds, ends, besides, places, free, loa
         status = assemble(RESIDUAL, of_others, system, state, state.residual)
         if status != OK:
             return status
-        for i in range(free):
-            found[e, i] = state.residual[i]
         for i in range(q, now.shape[1] if e < now.shape[0] else 0):
             now[e, i] = state.now[i]
+        if factors.size > 0 and kinds[e] != RESTART:
+            state.coefficients[C_DAMPING] = factors[e]
+            status = take_rates(system, state)
+            for i in range(free):
+                found[e, free + i] = system.is_multiplier[i] * (
+                    state.constraint_residuals[i] + state.residual[i])
+        for i in range(free):
+            found[e, i] = state.residual[i]
+        if factors.size > 0 and kinds[e] == RESTART:
+            status = defect(system, state, corrections[restarts], SHORT * lengths[e], ends[e],
+                            besides[e], load, found[e, free:])
+            restarts += 1
+        if status != OK:
+            return status
     return OK
 
 
@@ -121,6 +147,15 @@ def _values(system, state, port, ends, besides, found):
     for e in range(ends.size):
         set_loads_beside(system, state.frames, state.loads, ends[e], besides[e])
         found[e] = state.loads[3 * port]
+
+
+class Second(NamedTuple):
+    """What the second residuals of events in index 2 are made with; nothing of index 3."""
+
+    factors: NDArray        # (events,) dv/dq of the steps: rates of constraints are over these
+    lengths: NDArray        # (events,) steps
+    corrections: NDArray    # (restarts, n) of the look ahead
+    first: int              # of these, that is of the first event but the start
 
 
 class Slopes:
@@ -135,16 +170,25 @@ class Slopes:
     objectives : function
         Values of all objectives, (m,), of recorded rows and a simulation of the model that is
         changed; None where they do not depend on anything but motion.
+    corrections : (restarts, n), optional
+        Of index 2, as of a `Course`.
     """
 
     def __init__(self, model: Model, run: Simulation, history: History,
-                 objectives: Callable[[Simulation, NDArray], NDArray]):
+                 objectives: Callable[[Simulation, NDArray], NDArray],
+                 corrections: NDArray | None = None):
         self.model, self.run, self.history, self.objectives = model, run, history, objectives
         self.free = run.numbering.free
         parts = run.state.recorded_parts
         self.places = tuple(parts[name].start for name in ("q", "R", "v", "a", "frames",
                                                            "frames_old"))
         self.start = history.rows[0]        # of the run, or of a segment
+        if corrections is None:
+            corrections = np.zeros((0, self.free))
+        factors = run.scheme.gamma / (run.scheme.beta * history.steps) if (
+            run.scheme.stabilized) else np.zeros(0)
+        self.second = Second(factors, history.steps, corrections, int(history.past is None))
+        self.unknowns = self.free * (2 if run.scheme.stabilized else 1)
 
     def of(self, column: Column) -> Slope:
         """Derivatives by a number of a parameter.
@@ -201,17 +245,24 @@ class Slopes:
             simplefilter("ignore", LimitWarning)
             return Simulation(self.model, self.run.h, self.run.scheme)
 
-    def by_load(self, port: int) -> tuple[NDArray, NDArray]:
-        """Derivatives of the residuals by the value of a power port, and this value, (events, n).
+    def by_load(self, port: int) -> Iterator[tuple[NDArray, NDArray, NDArray]]:
+        """Derivatives of the residuals by the value of a power port, this value, and its times.
+
+        Of index 2 by the value at the times of the events, and by that of look aheads.
         """
-        made, history = self._made(), self.history
-        values = np.zeros(len(history.rows))
-        _values(made.system, made.state, port, history.ends, history.besides, values)
-        start, size = made.state.now.copy(), max(float(np.abs(values).max()), 1.0)
-        one = self._along(made, (port, size), False)[0]
-        made.state.now[:] = start
-        other = self._along(made, (port, -size), False)[0]
-        return (one - other) / (2 * size), values
+        made, ends = self._made(), self.history.ends
+        start, values = made.state.now.copy(), np.zeros(len(ends))
+        aheads = SHORT * self.history.steps * (self.history.kinds == RESTART)
+        for ahead in (False, True) if self.unknowns > self.free else (False,):
+            times = ends + ahead * aheads
+            _values(made.system, made.state, port, times, self.history.besides, values)
+            size = max(float(np.abs(values).max()), 1.0)
+            found = []
+            for change in (size, -size):
+                made.state.now[:] = start
+                found.append(self._along(made, (port, change * (not ahead), change * ahead),
+                                         False)[0])
+            yield (found[0] - found[1]) / (2 * size), values.copy(), times
 
     def by_constants(self, place: int, rows: NDArray) -> NDArray:
         """Derivatives of the residuals by changes of a row of constants, (events, n, k).
@@ -243,14 +294,14 @@ class Slopes:
         found, now = self._along(made)
         return Value(found, motion, rates, self.objectives(made, now[self.history.recorded]))
 
-    def _along(self, made: Simulation, load: tuple[int, float] = (-1, 0.0), states: bool = True
+    def _along(self, made: Simulation, load: Load = NO_LOAD, states: bool = True
                ) -> tuple[NDArray, NDArray]:
         """Residuals of all events, and the states of this model that they are of if asked for."""
         system, state, history = made.system, made.state, self.history
-        found = np.zeros((len(history.rows), self.free))
+        found = np.zeros((len(history.rows), self.unknowns))
         now = history.rows[:len(history.rows) if states else 1].copy()
         if history.past is None:
-            found[0] = self._first(made, load)
+            self._first(made, load, found[0])
             self._hold_start(made)
             now[0] = state.now
         else:
@@ -258,12 +309,12 @@ class Slopes:
             _drive_on(system, state, history.past.kinds, history.past.ends, history.past.besides,
                       self.free, load)
         status = _residuals(system, state, history.rows, now, history.kinds, history.ends,
-                            history.besides, self.places, self.free, load, found)
+                            history.besides, self.places, self.free, load, self.second, found)
         if status != OK:
             raise InputError(f"a state cannot be evaluated: {REASONS[status]}")
         return found, now
 
-    def _first(self, made: Simulation, load: tuple[int, float]) -> NDArray:
+    def _first(self, made: Simulation, load: Load, found: NDArray) -> None:
         """Residual of the start with accelerations and multipliers of the run."""
         system, state, n = made.system, made.state, self.free
         q, _, v, a, *_ = self.places
@@ -281,7 +332,11 @@ class Slopes:
         status = assemble(RESIDUAL, ACCELERATION, system, state, state.residual)
         if status != OK:
             raise InputError(f"the start cannot be evaluated: {REASONS[status]}")
-        return state.residual[:n].copy()
+        found[:n] = state.residual[:n]
+        if self.unknowns > n and defect(
+                system, state, self.second.corrections[0], SHORT * self.history.steps[0], 0.0, 0.0,
+                load, found[n:]) != OK:
+            raise InputError("the start cannot be evaluated a short time later")
 
     def _hold_start(self, made: Simulation) -> None:
         """Put a changed model in the motion that the run starts with.

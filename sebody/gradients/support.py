@@ -61,7 +61,3 @@ def refuse_run(run: Simulation) -> None:
     if run.system.massless[0]:
         raise InputError("a motion of the model has no mass, and its accelerations at the start no "
                          "derivative: give every node mass and inertia")
-    if run.scheme.stabilized:
-        raise InputError("constraints of index 2 move positions along directions that depend on "
-                         "the iteration, so the steps have no exact derivative: use "
-                         "generalized_alpha(index=3) with a fixed step")

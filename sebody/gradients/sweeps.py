@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from sebody.engine.state import Scheme
+from sebody.gradients import stabilized
 from sebody.gradients.factors import Factors, Scales
 from sebody.gradients.history import RESTART, STEP, History
-from sebody.gradients.linear import Linear, Parts
+from sebody.gradients.linear import Linear, Matrix, Parts
 from sebody.gradients.products import Products
+from sebody.gradients.rates import Rates, rows_of
 from sebody.gradients.refined import Refined
 from sebody.gradients.second_rates import second_rates
 from sebody.gradients.turns import Turns, turns_of
@@ -70,13 +72,14 @@ class Coefficients(NamedTuple):
 
 
 class Event(NamedTuple):
-    """An event, linearized."""
+    """An event, linearized: unknowns are increments or accelerations, of index 2 shifts as well."""
 
     number: int
-    parts: Parts
-    factors: Factors
+    parts: Parts        # of the residuals of the unknowns, (N, n)
+    factors: Factors    # (N, N)
     turns: Turns | None                         # of a step
     rates: tuple[NDArray, NDArray] | None       # of second rates by motion and rates: of restarts
+    lead: float = 0.0   # of restarts: auxiliary accelerations less shifts times this
 
 
 class Course:
@@ -90,10 +93,17 @@ class Course:
         places = system.rotation_at[system.rotation_at < n]
         self.turning = places[:, None] + np.arange(3)
         self.redundant = bool(system.regularized[0])
-        self.products = Products.of(run) if linear.dense else None
+        self.rates = Rates(linear, run.model.size()) if run.scheme.stabilized else None
+        self.products = Products.of(run) if linear.dense and self.rates is None else None
+        self.corrections = np.zeros((0, n))     # of restarts in a look ahead: (29) of `stabilized`
         self._scales: dict[float, Scales] = {}
         self._q = linear.state.recorded_parts["q"].start
         self._turns: tuple[int, list[Turns]] = 0, []        # of some events, from the first one on
+
+    @property
+    def unknowns(self) -> int:
+        """Of an event."""
+        return self.linear.free * (1 if self.rates is None else 2)
 
     def settle(self) -> None:
         """Multipliers at the ends of steps before jumps: the run has kept those that follow."""
@@ -103,9 +113,13 @@ class Course:
             q = row[self._q:self._q + self.linear.free]
             q[self.fixed] = 0.0
             event = self.event(int(k))
-            forces = state.residual[:self.linear.free, None].copy()
-            forces[self.fixed] = 0.0
-            q[self.fixed] = -event.factors.solve(forces)[self.fixed, 0]
+            forces = np.zeros((self.unknowns, 1))
+            forces[:len(q), 0] = np.where(self.fixed, 0.0, state.residual[:len(q)])
+            q[self.fixed] = -event.factors.solve(forces)[:len(q)][self.fixed, 0]
+        if self.rates is not None:
+            own = [k for k in np.flatnonzero(found.kinds == RESTART) if k or found.past is None]
+            self.corrections = np.array([self._correction(int(k)) for k in own]).reshape(
+                -1, self.linear.free)
 
     def refined(self, columns: int, back: bool) -> Refined | None:
         """The recursion by products; None where matrices are quicker, or there are no products.
@@ -132,14 +146,59 @@ class Course:
     def event(self, k: int) -> Event:
         found = self.history
         row, h = found.rows[k], float(found.steps[k])
-        parts = self.linear.at(row, found.ends[k], found.besides[k])
         if found.kinds[k] != STEP:
-            rates = second_rates(self.linear, self.fixed) if k > 0 else None
-            return Event(k, parts, self._factors(_initial(parts, self.fixed), 0.0), None, rates)
-        c = Coefficients.of(self.scheme, h)
-        turns = self._turns_of(k)
-        J = c.cm * parts.mass + c.cd * parts.damping + turns.of_columns(parts.stiffness)
+            return self._restart(k)
+        parts = self.linear.at(row, found.ends[k], found.besides[k])
+        c, turns = Coefficients.of(self.scheme, h), self._turns_of(k)
+        if self.rates is not None:
+            J, parts = stabilized.step(parts, self.rates.by_motion(), c.cm, c.cd, turns, self.fixed)
+        else:
+            J = c.cm * parts.mass + c.cd * parts.damping + turns.of_columns(parts.stiffness)
         return Event(k, parts, self._factors(J, h), turns, None)
+
+    def _restart(self, k: int) -> Event:
+        found, at = self.history, self.linear.at
+        end, beside = found.ends[k], found.besides[k]
+        parts = at(found.rows[k], end, beside)
+        rates = second_rates(self.linear, self.fixed) if k > 0 else None
+        J = _initial(parts, self.fixed)
+        if self.rates is None:
+            return Event(k, parts, self._factors(J, 0.0), None, rates)
+        ahead = self._ahead(k)
+        corrected, own = found.rows[k].copy(), self.corrections[self._number(k)]
+        for name, what in (("a", ~self.fixed), ("q", self.fixed)):
+            first = self.linear.state.recorded_parts[name].start
+            corrected[first:first + len(own)] += own * what
+        lead = (self.scheme.alpha_m - self.scheme.alpha_f) * found.steps[k] / ahead.dt
+        J, parts = stabilized.restart(
+            self._equations(found.rows[k], end, beside), self._equations(corrected, end, beside),
+            self._equations(ahead.row, end + ahead.dt, beside), ahead.turns, ahead.dt, self.fixed)
+        return Event(k, parts, self._factors(J, 0.0), None, None, lead)
+
+    def _equations(self, row: NDArray, end: float, beside: float) -> stabilized.Restart:
+        """Equations of a restart in a state."""
+        parts = self.linear.at(row, end, beside)
+        by_motion, by_rates = second_rates(self.linear, self.fixed)
+        return stabilized.Restart(
+            _initial(parts, self.fixed), with_rows(parts.damping, self.fixed, by_rates),
+            with_rows(parts.stiffness, self.fixed, by_motion))
+
+    def _number(self, k: int) -> int:
+        """Of a restart among those of the history."""
+        return int(np.sum(self.history.kinds[int(self.history.past is not None):k] == RESTART))
+
+    def _ahead(self, k: int) -> stabilized.Ahead:
+        found = self.history
+        self.linear.at(found.rows[k], found.ends[k], found.besides[k])
+        return stabilized.look_ahead(self.linear, self.turning, float(found.steps[k]),
+                                     float(found.ends[k]), float(found.besides[k]))
+
+    def _correction(self, k: int) -> NDArray:
+        """Accelerations and multipliers that a restart is corrected by in its look ahead."""
+        found = self.history
+        parts = self.linear.at(found.rows[k], found.ends[k], found.besides[k])
+        factors = self._factors(_initial(parts, self.fixed), -1.0)
+        return factors.solve(self._ahead(k).forces[:, None])[:, 0]
 
     def _turns_of(self, k: int) -> Turns:
         first, found = self._turns
@@ -153,7 +212,17 @@ class Course:
     def _factors(self, J: NDArray, h: float) -> Factors:
         if h not in self._scales:
             self._scales[h] = Scales(J)
-        return Factors(J, self._scales[h], self.fixed, self.redundant)
+        fixed = np.tile(self.fixed, J.shape[0] // len(self.fixed))
+        return Factors(J, self._scales[h], fixed, self.redundant)
+
+
+def with_rows(A: Matrix, which: NDArray, rows: NDArray) -> Matrix:
+    """Some rows of a matrix replaced."""
+    put = sparse.csc_array((np.ones(len(rows)), (np.flatnonzero(which), np.arange(len(rows)))),
+                           shape=(A.shape[0], len(rows)))
+    if isinstance(A, np.ndarray):
+        return rows_of(A, ~which) + put @ rows
+    return sparse.csc_array(rows_of(A, ~which) + put @ sparse.csc_array(rows))
 
 
 def _initial(parts: Parts, fixed: NDArray) -> NDArray:
@@ -215,8 +284,14 @@ def _over_restart(course: Course, event: Event, slopes: NDArray, now: Motion) ->
     moving, y = course.moving, -slopes
     if event.number:        # the slopes of the start hold what its motion does
         y -= _of_restart(event, course.fixed, xi * moving, v)
-    y = event.factors.solve(y)
-    return xi * moving + y * (1 - moving), v, y * moving, y * moving
+    y, shift = _halves(event.factors.solve(y), moving)
+    return (xi * moving + y * (1 - moving), v, y * moving, y * moving - event.lead * shift)
+
+
+def _halves(y: NDArray, moving: NDArray) -> tuple[NDArray, NDArray]:
+    """Increments with multipliers, and shifts, which only index 2 has."""
+    n = len(moving)
+    return y[:n], moving * (y[n:] if len(y) > n else 0.0)
 
 
 def _over_step(course: Course, event: Event, slopes: NDArray, now: Motion) -> Motion:
@@ -229,15 +304,16 @@ def _over_step(course: Course, event: Event, slopes: NDArray, now: Motion) -> Mo
     vp = v + c.h * (1 - c.g) * aux + c.h * c.g * auxp
     ap = ((1 - c.am) * auxp + c.am * aux - c.af * a) / (1 - c.af)
     xip = event.turns.moved(xi) * moving
-    y = event.factors.solve(-(slopes + K @ xip + C @ vp + M @ ap))
-    xi, y = xip + event.turns.turned(y), y * moving
+    y, shift = _halves(event.factors.solve(-(slopes + K @ xip + C @ vp + M @ ap)), moving)
+    xi, y = xip + event.turns.turned(y + shift), y * moving
     return xi, vp + c.cd * y, ap + c.cm * y, auxp + c.cu * y
 
 
 def _of_restart(event: Event, fixed: NDArray, xi: NDArray, v: NDArray) -> NDArray:
     """What motion and rates change of the residual of a restart."""
     found = event.parts.stiffness @ xi + event.parts.damping @ v
-    found[fixed] = event.rates[0] @ xi + event.rates[1] @ v
+    if event.rates is not None:
+        found[fixed] = event.rates[0] @ xi + event.rates[1] @ v
     return found
 
 
@@ -257,7 +333,7 @@ def backward(course: Course, seeds: Seeds, count: int, after: Motion | None = No
     n, events = course.linear.free, len(course.history.rows)
     extent = course.linear.system.magnitude[:n, None]       # of disturbances: of rates in the run
     duration = course.history.duration
-    weights, sizes = np.zeros((events, count, n)), np.zeros(events)
+    weights, sizes = np.zeros((events, count, course.unknowns)), np.zeros(events)
     bars: Motion = after or [np.zeros((n, count)) for _ in range(4)]
     refined = course.refined(count, back=True)
     for kind, first, last in reversed(course.stretches()):
@@ -287,23 +363,31 @@ def _seeded(course: Course, seed: Bars | None, bars: Motion) -> Motion:
 def _back_over_restart(course: Course, event: Event, bars: Motion) -> tuple[NDArray, Motion]:
     """Weights, and bars before."""
     (_, C, K), moving, (X, V, A, U) = event.parts, course.moving, bars
-    w = event.factors.solve(-(A * moving + U + X * (1 - moving)), transposed=True)
+    w = event.factors.solve(-_joined(course, A * moving + U + X * (1 - moving),
+                                     -event.lead * U * moving), transposed=True)
     X = X * moving
     if event.number:
-        of_forces = w.copy()
-        of_forces[course.fixed] = 0.0
-        X = X + (K.T @ of_forces + event.rates[0].T @ w[course.fixed]) * moving
-        V = V + (C.T @ of_forces + event.rates[1].T @ w[course.fixed]) * moving
+        of_forces, rates = w.copy(), event.rates
+        if rates is not None:
+            of_forces[course.fixed] = 0.0
+            X = X + rates[0].T @ w[course.fixed] * moving
+            V = V + rates[1].T @ w[course.fixed] * moving
+        X, V = X + K.T @ of_forces * moving, V + C.T @ of_forces * moving
     return w, (X, V, np.zeros_like(A), np.zeros_like(U))
+
+
+def _joined(course: Course, y: NDArray, shift: NDArray) -> NDArray:
+    """Bars of the unknowns of an event, from its halves."""
+    return y if course.rates is None else np.concatenate([y, shift])
 
 
 def _back_over_step(course: Course, event: Event, bars: Motion) -> tuple[NDArray, Motion]:
     """(11) to (15)."""
     (M, C, K), moving, (X, V, A, U) = event.parts, course.moving, bars
     c = Coefficients.of(course.scheme, float(course.history.steps[event.number]))
-    offset = course.history.offsets[event.number]
-    w = event.factors.solve(-(event.turns.turned_back(X) + moving * (
-        c.cd * V + c.cm * A + c.cu * U)), transposed=True)
+    offset, turned = course.history.offsets[event.number], event.turns.turned_back(X)
+    w = event.factors.solve(-_joined(course, turned + moving * (c.cd * V + c.cm * A + c.cu * U),
+                                     turned * moving), transposed=True)
     X1, V1, A1 = ((X + K.T @ w) * moving, (V + C.T @ w) * moving, (A + M.T @ w) * moving)
     U1 = U + c.h * c.g * V1 + (1 - c.am) / (1 - c.af) * A1
     X, V, A = event.turns.moved_back(X1), V1 - U1 / (c.b * c.h), -c.af / (1 - c.af) * A1
