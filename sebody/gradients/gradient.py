@@ -21,8 +21,9 @@ from sebody.gradients.objectives import Folded, Objectives, Seen, checked
 from sebody.gradients.parameters import Column, columns_of
 from sebody.gradients.segments import Segments
 from sebody.gradients.slopes import Slope, Slopes
+from sebody.gradients.stabilized_course import course_of
 from sebody.gradients.support import refuse_model, refuse_run
-from sebody.gradients.sweeps import Adjoint, Course, backward, forward
+from sebody.gradients.sweeps import Adjoint, backward, forward
 from sebody.gradients.tables import OfTable, Part, port_of, weights
 from sebody.model.model import Model
 from sebody.runs.schemes import checked as checked_scheme
@@ -155,8 +156,7 @@ class Differentiated:
         self.history: History = history(self.run, t_end)
         self.run.watch.look(model, self.run.numbering, self.history.states)
         self.linear = Linear(self.run)
-        self.course = Course(self.run, self.linear, self.history)
-        self.course.settle()
+        self.course = course_of(self.run, self.linear, self.history)
 
 
 def differentiate(model: Model, h: float, t_end: float, outputs: Mapping[str, Output],
@@ -184,10 +184,9 @@ class _Part:
     def __init__(self, one: _Parts, history: History):
         run = one.segments.run
         self.history, self.columns = history, one.columns
-        self.course = Course(run, one.linear, history)
-        self.course.settle()
+        self.course = course_of(run, one.linear, history)
         self.seen = Seen(one.whole, run, history, one.linear)
-        self.slopes = Slopes(one.model, run, history, self.seen.explicit, self.course.corrections)
+        self.slopes = Slopes(one.model, run, history, self.seen.explicit, self.course.second)
         self.tables: dict[str, OfTable] = {}    # and amplitudes of loads, by name
         ports = {c.name: (c, port_of(one.model, run, c)) for c in one.columns}
         for name, (column, port) in ports.items():

@@ -55,6 +55,7 @@ class History(NamedTuple):
     seconds: float      # of the run
     duration: float     # of the whole run [time]
     past: Past | None = None    # of a segment that does not begin at the start
+    aux: NDArray | None = None  # auxiliary accelerations in the first state
 
     @property
     def times(self) -> NDArray:
@@ -96,10 +97,11 @@ def stretch(run: Simulation, last: int, most: int | None = None) -> History:
     """
     began, control, grid = time.perf_counter(), run.state.control, int(run.state.control.grid)
     end = last if most is None else min(last, grid + most)
+    aux = run.state.aux.copy()
     memory.check(8.0 * (end - grid) * run.state.now.size, f"the states of {end - grid} steps",
                  "give an earlier t_end or longer steps")
     if (whole := _whole(run, grid, end)) is not None:
-        return whole._replace(seconds=time.perf_counter() - began, duration=run.h * last)
+        return whole._replace(seconds=time.perf_counter() - began, duration=run.h * last, aux=aux)
     events = _Events(run, last)
     while control.grid < last and (most is None or len(events.rows) <= most
                                    or (run.tolerance is None and control.unit > 0)):
@@ -110,7 +112,7 @@ def stretch(run: Simulation, last: int, most: int | None = None) -> History:
             raise SimulationError(run.failure, run.result())
         if control.steps > before[0]:
             events.add(before[1])
-    return events.found(time.perf_counter() - began, run.h * last)
+    return events.found(time.perf_counter() - began, run.h * last)._replace(aux=aux)
 
 
 def meet(run: Simulation, times: Sequence[float]) -> None:
@@ -196,7 +198,7 @@ class _Events:
 
     def add(self, aux_step: float) -> None:
         """Add the step that was accepted last, and the restart if there was one."""
-        run, state, clock = self.run, self.run.state, self.run.state.clock
+        state, clock = self.run.state, self.run.state.clock
         end, beside = float(clock.end), float(clock.beside)
         # a restart leaves the coefficients of its own matrix, masses and constraints
         restarted = state.coefficients[C_STIFFNESS] == 0.0

@@ -17,22 +17,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.compiler.decorators import compiled
-from sebody.contract.layout import ACCELERATION, C_DAMPING, OK, RESIDUAL
-from sebody.engine.evaluate import (
-    assemble,
-    move_prescribed,
-    set_loads,
-    set_loads_beside,
-    take_rates,
-)
+from sebody.contract.layout import ACCELERATION, OK, RESIDUAL
+from sebody.engine.evaluate import assemble, move_prescribed, set_loads, set_loads_beside
 from sebody.engine.links import place_dependent
-from sebody.engine.restart import SHORT
 from sebody.engine.state import REASONS
 from sebody.errors import InputError, LimitWarning
 from sebody.explore.ensembles.changes import Handle
 from sebody.gradients.history import RESTART, History
 from sebody.gradients.parameters import Column
-from sebody.gradients.stabilized import defect
+from sebody.gradients.second_residuals import of_restart, of_step
+from sebody.gradients.stabilized import Second
 from sebody.gradients.start_rates import fitted_rates
 from sebody.kernels.abi import pointer_to
 from sebody.kernels.rotations import rotate
@@ -49,6 +43,7 @@ NOISE = 1e-8                    # of values: velocities of the start have so muc
 
 Load = tuple[int, float, float]     # a power port, a change of its value, one in look aheads
 NO_LOAD = -1, 0.0, 0.0
+NOTHING = Second(*(np.zeros(shape) for shape in (0, 0, (0, 0), 0, (0, 0))), 0)  # of index 3
 
 
 class Slope(NamedTuple):
@@ -103,10 +98,10 @@ def _residuals(system, state, rows, now, kinds, ends, besides, places, free, loa
 
     `now` are states of this model, as many as are asked for: motion of the unknowns is that of the
     run. The load of a power port may be changed, `load` being the port, the change, and the change
-    in look aheads. `second` are numbers of the second residuals of index 2, see `Second`.
+    in look aheads. `second` are numbers of second residuals, of index 2, or `NOTHING`.
     """
     q, R, v, a, frames, frames_old = places
-    factors, lengths, corrections, restarts = second
+    by_rates, by_seconds, shifts, aheads, corrections, restarts = second
     for e in range(1, rows.shape[0]):
         for i in range(state.frames.size):
             state.frames[i], state.frames_old[i] = rows[e, frames + i], rows[e, frames_old + i]
@@ -124,18 +119,14 @@ def _residuals(system, state, rows, now, kinds, ends, besides, places, free, loa
             return status
         for i in range(q, now.shape[1] if e < now.shape[0] else 0):
             now[e, i] = state.now[i]
-        if factors.size > 0 and kinds[e] != RESTART:
-            state.coefficients[C_DAMPING] = factors[e]
-            status = take_rates(system, state)
-            for i in range(free):
-                found[e, free + i] = system.is_multiplier[i] * (
-                    state.constraint_residuals[i] + state.residual[i])
         for i in range(free):
             found[e, i] = state.residual[i]
-        if factors.size > 0 and kinds[e] == RESTART:
-            status = defect(system, state, corrections[restarts], SHORT * lengths[e], ends[e],
-                            besides[e], load, found[e, free:])
+        if by_rates.size > 0 and kinds[e] == RESTART:
+            status = of_restart(system, state, corrections[restarts], aheads[e], ends[e],
+                                besides[e], load, found[e, free:])
             restarts += 1
+        elif by_rates.size > 0:
+            status = of_step(system, state, shifts[e], by_rates[e], by_seconds[e], found[e])
         if status != OK:
             return status
     return OK
@@ -147,15 +138,6 @@ def _values(system, state, port, ends, besides, found):
     for e in range(ends.size):
         set_loads_beside(system, state.frames, state.loads, ends[e], besides[e])
         found[e] = state.loads[3 * port]
-
-
-class Second(NamedTuple):
-    """What the second residuals of events in index 2 are made with; nothing of index 3."""
-
-    factors: NDArray        # (events,) dv/dq of the steps: rates of constraints are over these
-    lengths: NDArray        # (events,) steps
-    corrections: NDArray    # (restarts, n) of the look ahead
-    first: int              # of these, that is of the first event but the start
 
 
 class Slopes:
@@ -170,25 +152,21 @@ class Slopes:
     objectives : function
         Values of all objectives, (m,), of recorded rows and a simulation of the model that is
         changed; None where they do not depend on anything but motion.
-    corrections : (restarts, n), optional
+    second : Second, optional
         Of index 2, as of a `Course`.
     """
 
     def __init__(self, model: Model, run: Simulation, history: History,
                  objectives: Callable[[Simulation, NDArray], NDArray],
-                 corrections: NDArray | None = None):
+                 second: Second | None = None):
         self.model, self.run, self.history, self.objectives = model, run, history, objectives
         self.free = run.numbering.free
         parts = run.state.recorded_parts
         self.places = tuple(parts[name].start for name in ("q", "R", "v", "a", "frames",
                                                            "frames_old"))
         self.start = history.rows[0]        # of the run, or of a segment
-        if corrections is None:
-            corrections = np.zeros((0, self.free))
-        factors = run.scheme.gamma / (run.scheme.beta * history.steps) if (
-            run.scheme.stabilized) else np.zeros(0)
-        self.second = Second(factors, history.steps, corrections, int(history.past is None))
-        self.unknowns = self.free * (2 if run.scheme.stabilized else 1)
+        self.second = second or NOTHING
+        self.unknowns = self.free * (1 if second is None else 2)
 
     def of(self, column: Column) -> Slope:
         """Derivatives by a number of a parameter.
@@ -252,9 +230,8 @@ class Slopes:
         """
         made, ends = self._made(), self.history.ends
         start, values = made.state.now.copy(), np.zeros(len(ends))
-        aheads = SHORT * self.history.steps * (self.history.kinds == RESTART)
         for ahead in (False, True) if self.unknowns > self.free else (False,):
-            times = ends + ahead * aheads
+            times = ends + self.second.aheads * (self.history.kinds == RESTART) if ahead else ends
             _values(made.system, made.state, port, times, self.history.besides, values)
             size = max(float(np.abs(values).max()), 1.0)
             found = []
@@ -333,9 +310,9 @@ class Slopes:
         if status != OK:
             raise InputError(f"the start cannot be evaluated: {REASONS[status]}")
         found[:n] = state.residual[:n]
-        if self.unknowns > n and defect(
-                system, state, self.second.corrections[0], SHORT * self.history.steps[0], 0.0, 0.0,
-                load, found[n:]) != OK:
+        if self.unknowns > n and of_restart(
+                system, state, self.second.corrections[0], self.second.aheads[0], 0.0, 0.0, load,
+                found[n:]) != OK:
             raise InputError("the start cannot be evaluated a short time later")
 
     def _hold_start(self, made: Simulation) -> None:

@@ -1,4 +1,4 @@
-"""Steps and restarts of runs whose constraints hold for velocities, too (index 2), linearized.
+"""Equations of steps and restarts whose constraints hold for velocities, too (index 2), linearized.
 
 A step moves positions by y and by a shift s that velocities do not follow:
 
@@ -6,10 +6,13 @@ A step moves positions by y and by a shift s that velocities do not follow:
     s = B mu,   B = the moving rows of J^-1 [0; 1]
 
 so that its unknowns are two vectors. With rows r of forces, rows c of constraints, D the derivative
-of phidot by motion, and B held in the state at hand:
+of phidot by motion, and B that follows parameters, but is held as the motion changes:
 
     (28)  [ cm M + cd C + K T;  Phi + D T/cd ] y + [ K T; D T/cd ] s = -b      rows r; c over cd
-          [ 0; Phi T ] y + J s = -[ 0; b_phi ]                               multipliers in s: mu
+          [ 0; Phi T ] y + J s = -[ r_p(shifted) - r_p; b_phi ]              multipliers in s: mu
+
+The residuals r(shifted) are those in the state moved by s with rates cd s and cm s, whose
+derivatives are those of J s. (J of the run is an older matrix, which follows parameters likewise.)
 
 After a restart auxiliary accelerations are those of a later time: with F the equations of a
 restart, its look ahead by dt from x, v, with accelerations a, gives a correction c,
@@ -24,13 +27,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from sebody.compiler.decorators import compiled
 from sebody.contract.layout import ACCELERATION, OK, RESIDUAL
 from sebody.engine.evaluate import assemble
-from sebody.engine.links import place_dependent
 from sebody.engine.restart import SHORT, move_ahead
 from sebody.engine.state import REASONS
-from sebody.engine.vectors import copy
 from sebody.errors import InputError
 from sebody.gradients.linear import Linear, Matrix, Parts
 from sebody.gradients.rates import columns_of, rows_of
@@ -58,7 +58,7 @@ def step(parts: Parts, rates: Matrix, cm: float, cd: float, turns: Turns, fixed:
 
 
 class Restart(NamedTuple):
-    """Equations F of a restart, linearized in a state."""
+    """The equations F of a restart, linearized in a state."""
 
     matrix: Matrix      # by accelerations and multipliers
     damping: Matrix     # by rates
@@ -86,37 +86,15 @@ def _blocks(parts: list[list[Matrix]]) -> Matrix:
     return sparse.csc_array(sparse.block_array(parts))
 
 
-@compiled
-def defect(system, state, correction, dt, end, beside, load, found):
-    """Left less right side of (29), in the state at hand, which is as before; a status.
+class Second(NamedTuple):
+    """What the second residuals of the events of a history are made with."""
 
-    `load` is a power port, or -1, and what its value is changed by, now and in the look ahead.
-    """
-    port, _, change = load
-    n, is_multiplier = correction.size, system.is_multiplier
-    for sign in (1.0, -1.0):
-        for i in range(n):
-            if is_multiplier[i] > 0.0:
-                state.q[i] += sign * correction[i]
-            else:
-                state.a[i] += sign * correction[i]
-        place_dependent(system.links, state.q, state.v, state.a, state.R)
-        if sign < 0.0:
-            break
-        status = assemble(RESIDUAL, ACCELERATION, system, state, state.residual)
-        if status != OK:
-            return status
-        for i in range(n):
-            found[i] = state.residual[i]
-    move_ahead(system, state, dt, end, beside)
-    if port >= 0:
-        state.loads[3 * port] += change
-    status = assemble(RESIDUAL, ACCELERATION, system, state, state.residual)
-    for i in range(n):
-        found[i] -= state.residual[i]
-    copy(state.kept, state.now)
-    copy(state.loads_old, state.loads)
-    return status
+    by_rates: NDArray       # (events,) cd of the steps
+    by_seconds: NDArray     # (events,) cm
+    shifts: NDArray         # (events, n) s
+    aheads: NDArray         # (events,) dt of restarts
+    corrections: NDArray    # (restarts, n) c
+    first: int              # of these, that is not of the first event
 
 
 class Ahead(NamedTuple):

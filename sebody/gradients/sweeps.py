@@ -10,14 +10,13 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from sebody.engine.state import Scheme
-from sebody.gradients import stabilized
 from sebody.gradients.factors import Factors, Scales
 from sebody.gradients.history import RESTART, STEP, History
 from sebody.gradients.linear import Linear, Matrix, Parts
 from sebody.gradients.products import Products
-from sebody.gradients.rates import Rates, rows_of
 from sebody.gradients.refined import Refined
 from sebody.gradients.second_rates import second_rates
+from sebody.gradients.stabilized import Second
 from sebody.gradients.turns import Turns, turns_of
 from sebody.runs.simulation import Simulation
 
@@ -93,17 +92,12 @@ class Course:
         places = system.rotation_at[system.rotation_at < n]
         self.turning = places[:, None] + np.arange(3)
         self.redundant = bool(system.regularized[0])
-        self.rates = Rates(linear, run.model.size()) if run.scheme.stabilized else None
-        self.products = Products.of(run) if linear.dense and self.rates is None else None
-        self.corrections = np.zeros((0, n))     # of restarts in a look ahead: (29) of `stabilized`
+        self.unknowns = n * (2 if run.scheme.stabilized else 1)     # of an event
+        self.products = Products.of(run) if linear.dense and self.unknowns == n else None
+        self.second: Second | None = None       # what second residuals of index 2 are made with
         self._scales: dict[float, Scales] = {}
         self._q = linear.state.recorded_parts["q"].start
         self._turns: tuple[int, list[Turns]] = 0, []        # of some events, from the first one on
-
-    @property
-    def unknowns(self) -> int:
-        """Of an event."""
-        return self.linear.free * (1 if self.rates is None else 2)
 
     def settle(self) -> None:
         """Multipliers at the ends of steps before jumps: the run has kept those that follow."""
@@ -116,10 +110,6 @@ class Course:
             forces = np.zeros((self.unknowns, 1))
             forces[:len(q), 0] = np.where(self.fixed, 0.0, state.residual[:len(q)])
             q[self.fixed] = -event.factors.solve(forces)[:len(q)][self.fixed, 0]
-        if self.rates is not None:
-            own = [k for k in np.flatnonzero(found.kinds == RESTART) if k or found.past is None]
-            self.corrections = np.array([self._correction(int(k)) for k in own]).reshape(
-                -1, self.linear.free)
 
     def refined(self, columns: int, back: bool) -> Refined | None:
         """The recursion by products; None where matrices are quicker, or there are no products.
@@ -145,60 +135,22 @@ class Course:
 
     def event(self, k: int) -> Event:
         found = self.history
-        row, h = found.rows[k], float(found.steps[k])
         if found.kinds[k] != STEP:
             return self._restart(k)
-        parts = self.linear.at(row, found.ends[k], found.besides[k])
-        c, turns = Coefficients.of(self.scheme, h), self._turns_of(k)
-        if self.rates is not None:
-            J, parts = stabilized.step(parts, self.rates.by_motion(), c.cm, c.cd, turns, self.fixed)
-        else:
-            J = c.cm * parts.mass + c.cd * parts.damping + turns.of_columns(parts.stiffness)
+        h, turns = float(found.steps[k]), self._turns_of(k)
+        parts = self.linear.at(found.rows[k], found.ends[k], found.besides[k])
+        J, parts = self._step(parts, Coefficients.of(self.scheme, h), turns)
         return Event(k, parts, self._factors(J, h), turns, None)
 
+    def _step(self, parts: Parts, c: Coefficients, turns: Turns) -> tuple[Matrix, Parts]:
+        """The matrix of a step, and derivatives of its residuals."""
+        return c.cm * parts.mass + c.cd * parts.damping + turns.of_columns(parts.stiffness), parts
+
     def _restart(self, k: int) -> Event:
-        found, at = self.history, self.linear.at
-        end, beside = found.ends[k], found.besides[k]
-        parts = at(found.rows[k], end, beside)
-        rates = second_rates(self.linear, self.fixed) if k > 0 else None
-        J = _initial(parts, self.fixed)
-        if self.rates is None:
-            return Event(k, parts, self._factors(J, 0.0), None, rates)
-        ahead = self._ahead(k)
-        corrected, own = found.rows[k].copy(), self.corrections[self._number(k)]
-        for name, what in (("a", ~self.fixed), ("q", self.fixed)):
-            first = self.linear.state.recorded_parts[name].start
-            corrected[first:first + len(own)] += own * what
-        lead = (self.scheme.alpha_m - self.scheme.alpha_f) * found.steps[k] / ahead.dt
-        J, parts = stabilized.restart(
-            self._equations(found.rows[k], end, beside), self._equations(corrected, end, beside),
-            self._equations(ahead.row, end + ahead.dt, beside), ahead.turns, ahead.dt, self.fixed)
-        return Event(k, parts, self._factors(J, 0.0), None, None, lead)
-
-    def _equations(self, row: NDArray, end: float, beside: float) -> stabilized.Restart:
-        """Equations of a restart in a state."""
-        parts = self.linear.at(row, end, beside)
-        by_motion, by_rates = second_rates(self.linear, self.fixed)
-        return stabilized.Restart(
-            _initial(parts, self.fixed), with_rows(parts.damping, self.fixed, by_rates),
-            with_rows(parts.stiffness, self.fixed, by_motion))
-
-    def _number(self, k: int) -> int:
-        """Of a restart among those of the history."""
-        return int(np.sum(self.history.kinds[int(self.history.past is not None):k] == RESTART))
-
-    def _ahead(self, k: int) -> stabilized.Ahead:
-        found = self.history
-        self.linear.at(found.rows[k], found.ends[k], found.besides[k])
-        return stabilized.look_ahead(self.linear, self.turning, float(found.steps[k]),
-                                     float(found.ends[k]), float(found.besides[k]))
-
-    def _correction(self, k: int) -> NDArray:
-        """Accelerations and multipliers that a restart is corrected by in its look ahead."""
         found = self.history
         parts = self.linear.at(found.rows[k], found.ends[k], found.besides[k])
-        factors = self._factors(_initial(parts, self.fixed), -1.0)
-        return factors.solve(self._ahead(k).forces[:, None])[:, 0]
+        rates = second_rates(self.linear, self.fixed) if k > 0 else None
+        return Event(k, parts, self._factors(initial(parts, self.fixed), 0.0), None, rates)
 
     def _turns_of(self, k: int) -> Turns:
         first, found = self._turns
@@ -216,16 +168,7 @@ class Course:
         return Factors(J, self._scales[h], fixed, self.redundant)
 
 
-def with_rows(A: Matrix, which: NDArray, rows: NDArray) -> Matrix:
-    """Some rows of a matrix replaced."""
-    put = sparse.csc_array((np.ones(len(rows)), (np.flatnonzero(which), np.arange(len(rows)))),
-                           shape=(A.shape[0], len(rows)))
-    if isinstance(A, np.ndarray):
-        return rows_of(A, ~which) + put @ rows
-    return sparse.csc_array(rows_of(A, ~which) + put @ sparse.csc_array(rows))
-
-
-def _initial(parts: Parts, fixed: NDArray) -> NDArray:
+def initial(parts: Parts, fixed: NDArray) -> NDArray:
     """Masses and constraints: the matrix of a restart."""
     if isinstance(parts.mass, np.ndarray):
         J = parts.mass.copy()
@@ -378,7 +321,7 @@ def _back_over_restart(course: Course, event: Event, bars: Motion) -> tuple[NDAr
 
 def _joined(course: Course, y: NDArray, shift: NDArray) -> NDArray:
     """Bars of the unknowns of an event, from its halves."""
-    return y if course.rates is None else np.concatenate([y, shift])
+    return y if course.unknowns == len(y) else np.concatenate([y, shift])
 
 
 def _back_over_step(course: Course, event: Event, bars: Motion) -> tuple[NDArray, Motion]:
