@@ -108,10 +108,11 @@ def gradient(model: Model, h: float, t_end: float, objectives: Objectives,
         Backwards with a cost that grows with the number of objectives, or forwards with one that
         grows with that of parameters. Results are the same to rounding.
     tolerance : Tolerance, optional
-        Variable steps, of models without constraints: the sequence of accepted steps is held, and
-        objectives are those over the states at their ends, one of which is at `t_end`.
+        Variable steps: the sequence of accepted steps is held, and objectives are those over the
+        states at their ends, one of which is at `t_end`.
     scheme : Scheme, optional
-        `generalized_alpha` with rho 0.9 and a tolerance of 1e-10 by default.
+        `generalized_alpha` with rho 0.9 and a tolerance of 1e-10 by default; of index 3 with a
+        fixed step, else of index 2, whose gradients are good to the order of the scheme.
 
     Raises
     ------
