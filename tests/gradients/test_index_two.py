@@ -21,7 +21,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::sebody.LimitWarning")
 SCENES = {
     "redundant loop": (scenes.four_bar, 0.005, 0.05, {
         "c": final("c.position"), "v": integral("c.velocity.x")}, [
-        "gravity.y", "coil.rest", "rocker.mass", "torque.amplitude"], 1e-6),
+        "gravity.y", "coil.rest", "rocker.mass", "torque.amplitude"], 1e-5),
     "jumps of loads": (scenes.struck, 0.01, 0.2, {
         "b": final("b.position"), "end": final("end.velocity")}, [
         "gust.amplitude", "gust.table", "kick.table", "upper.mass", "lower.mass", "gravity"], 1e-4),
@@ -29,7 +29,7 @@ SCENES = {
         "ball": final("d.position"), "c": final("c.velocity")}, [
         "upper.mass", "ball.mass", "torque.table"], 1e-4),
     "driven rotor": (scenes.driven, 0.005, 0.05, {"slide": final("slide.velocity")}, [
-        "motor.amplitude", "rotor.mass", "spring.stiffness"], 1e-6)}
+        "motor.amplitude", "rotor.mass", "spring.stiffness"], 1e-4)}
 # where nothing is shifted, or shifts have one direction, the derivatives are exact
 EXACT = {
     "moved base": (scenes.moved, 0.005, 0.1, {"end": final("end.velocity")}, [
@@ -62,7 +62,7 @@ def test_what_differences_of_runs_tell_beside_falls_as_the_square_of_the_step(na
         expected = scenes.differences(build(), step, t_end, *run, scheme=INDEX_2)
         found.append(apart(one.matrix, expected))
     assert found[0] < most
-    assert found[0] / found[1] > 2.5 or found[1] < 3e-8      # the noise of matrices of other ages
+    assert found[0] / found[1] > 2.5
 
 
 @pytest.mark.parametrize("name", EXACT)
@@ -89,7 +89,7 @@ def end_of(model, h, t_end, tolerance, steps, quantity):
 
 
 @pytest.mark.parametrize(("name", "quantity", "most"), [
-    ("jumps of loads", "end.velocity", 2e-5), ("driven rotor", "slide.velocity", 1e-7)])
+    ("jumps of loads", "end.velocity", 2e-5), ("driven rotor", "slide.velocity", 2e-6)])
 def test_variable_steps_against_runs_that_take_the_same(name, quantity, most):
     """Tables that jump off the grid, drives, links: starts and restarts that look ahead."""
     build, h, t_end, _, names, _ = SCENES[name]
@@ -141,7 +141,7 @@ def test_measurements_are_fitted():
     result = Simulation(model, h, INDEX_2).run_to(t_end).result()
     spring.reset()
     found = calibrate(model, h, {"d.position": np.column_stack(
-        [result["t"], result["d.position"]])}, ["spring.stiffness"], scheme=INDEX_2)
+        [result["t"], result["d.position"]])}, ["spring.stiffness"], {"d.position": 1e-6}, INDEX_2)
     assert found.value == pytest.approx([44.0], rel=1e-7)
 
 
