@@ -82,7 +82,7 @@ def restart(now: Restart, corrected: Restart, ahead: Restart, turns: Turns, dt: 
 
 def _blocks(parts: list[list[Matrix]]) -> Matrix:
     if isinstance(parts[0][0], np.ndarray):
-        return np.block(parts)
+        return np.concatenate([np.concatenate(row, axis=1) for row in parts])  # quicker than block
     return sparse.csc_array(sparse.block_array(parts))
 
 

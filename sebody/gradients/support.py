@@ -66,7 +66,7 @@ def refuse_run(run: Simulation) -> None:
     if run.system.massless[0]:
         raise InputError("a motion of the model has no mass, and its accelerations at the start no "
                          "derivative: give every node mass and inertia")
-    if run.scheme.stabilized and run.system.is_multiplier[:run.numbering.free].any():
+    if run.scheme.stabilized:       # which the scheme of a run without constraints is not
         warn("constraints of index 2 (of variable steps the default) shift positions in directions "
              "that are held where motion is differentiated, so derivatives differ from those of "
              "the run by about the error of its steps: halve the step, or divide the tolerance by "
