@@ -55,7 +55,7 @@ class History(NamedTuple):
     seconds: float      # of the run
     duration: float     # of the whole run [time]
     past: Past | None = None    # of a segment that does not begin at the start
-    aux: NDArray | None = None  # auxiliary accelerations in the first state
+    aux: NDArray = np.zeros(0)  # auxiliary accelerations in the first state
 
     @property
     def times(self) -> NDArray:

@@ -4,7 +4,7 @@ Element matrices are evaluated three times, for K, C and M, turned to global axe
 all coordinates; then dependent positions are replaced by what they follow from, see `links`.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +31,7 @@ from sebody.gradients.links import Followers
 from sebody.runs.simulation import Simulation
 
 DENSE = 160         # most unknowns of full matrices: beyond, sparse ones are quicker
-Matrix = NDArray | sparse.csc_array
+Matrix: TypeAlias = NDArray | sparse.csc_array
 
 
 class Parts(NamedTuple):

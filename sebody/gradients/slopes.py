@@ -43,7 +43,8 @@ NOISE = 1e-8                    # of values: velocities of the start have so muc
 
 Load = tuple[int, float, float]     # a power port, a change of its value, one in look aheads
 NO_LOAD = -1, 0.0, 0.0
-NOTHING = Second(*(np.zeros(shape) for shape in (0, 0, (0, 0), 0, (0, 0))), 0)  # of index 3
+NONE, NO_ROWS = np.zeros(0), np.zeros((0, 0))
+NOTHING = Second(NONE, NONE, NO_ROWS, NONE, NO_ROWS, 0)     # of index 3
 
 
 class Slope(NamedTuple):

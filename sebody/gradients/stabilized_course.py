@@ -36,10 +36,10 @@ class StabilizedCourse(Course):
         """Also corrections in look aheads, and shifts."""
         n, h = self.linear.free, self.history.steps
         corrections = np.array([self._correction(k) for k in self.restarts]).reshape(-1, n)
-        c = Coefficients.of(self.scheme, h)
+        each = [Coefficients.of(self.scheme, step) for step in h.tolist()]
         self.second = stabilized.Second(
-            c.cd, c.cm, self._shifts(corrections), SHORT * h, corrections,
-            int(self.history.past is None))
+            np.array([c.cd for c in each]), np.array([c.cm for c in each]),
+            self._shifts(corrections), SHORT * h, corrections, int(self.history.past is None))
         super().settle()
 
     def _step(self, parts: Parts, c: Coefficients, turns: Turns) -> tuple[Matrix, Parts]:
@@ -47,6 +47,7 @@ class StabilizedCourse(Course):
 
     def _restart(self, k: int) -> Event:
         found, end, beside = self.history, self.history.ends[k], self.history.besides[k]
+        assert self.second is not None
         ahead = self._ahead(k)
         corrected, own = found.rows[k].copy(), self.second.corrections[self.restarts.index(k)]
         for name, what in (("a", ~self.fixed), ("q", self.fixed)):

@@ -6,12 +6,17 @@ import pytest
 
 from sebody import InputError, LimitWarning, Model, Simulation, Tolerance
 from sebody.analysis import calibrate, contributions, final, gradient, integral
+from sebody.contract.layout import ACCELERATION, OK, RESIDUAL
+from sebody.engine.evaluate import assemble
+from sebody.engine.links import place_dependent
 from sebody.engine.loop import advance
 from sebody.engine.state import FAILED, Record
 from sebody.gradients import segments
 from sebody.gradients.gradient import Differentiated
 from sebody.gradients.history import STEP, meet
+from sebody.gradients.linear import Linear
 from sebody.gradients.parameters import columns_of
+from sebody.gradients.rates import Rates
 from sebody.runs.schemes import generalized_alpha
 
 INDEX_2 = generalized_alpha(tolerance=1e-13, index=2)
@@ -63,6 +68,22 @@ def test_what_differences_of_runs_tell_beside_falls_as_the_square_of_the_step(na
         found.append(apart(one.matrix, expected))
     assert found[0] < most
     assert found[0] / found[1] > 2.5
+
+
+@pytest.mark.parametrize("build", [scenes.struck, scenes.joined, scenes.four_bar, scenes.flat])
+def test_rates_of_constraints_change_along_a_motion_as_kernels_of_second_rates_say(build):
+    """``d(phidot)/dq v`` is what second rates are without accelerations, links included."""
+    run = Simulation(build(), 0.005)
+    run.run_to(0.05)
+    linear, state, n = Linear(run), run.state, run.numbering.free
+    linear.at(state.now.copy(), 0.05, 0.0)
+    D = Rates(linear, run.model.size()).by_motion()
+    fixed, found = run.system.is_multiplier[:n] > 0, D @ state.v[:n]
+    state.a[:n] = 0.0
+    place_dependent(run.system.links, state.q, state.v, state.a, state.R)
+    assert assemble(RESIDUAL, ACCELERATION, run.system, state, state.residual) == OK
+    expected = state.residual[:n][fixed]
+    assert found[fixed] == pytest.approx(expected, abs=1e-10 * np.abs(expected).max())
 
 
 @pytest.mark.parametrize("name", EXACT)
