@@ -37,7 +37,7 @@ SCENES = {      # name of a scene, options
     "chain, 16 links": ("chain", {"links": 16}),
     "hinged-beam, 32 modes": ("hinged-beam", {"modes": 32}),
     "right-angle-frame (best fit)": ("right-angle-frame", {}),
-    "hinged-beam, mean axes": ("hinged-beam", {"frame": "mean-axes"}),
+    "hinged-beam, mean axes": ("hinged-beam", {"frame": "mean_axes"}),
     "imported-link": ("imported-link", {})}
 STEP = {"chain": 0.25}      # of a scene's own: members whose steps are cut are run alone
 

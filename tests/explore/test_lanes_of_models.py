@@ -33,7 +33,7 @@ def chain() -> Model:
     for k in (2, 1, 0):
         ends = place(starts[k], 0, 0), place(starts[k + 1], 0, 0)
         body = craig_bampton(straight_beam(*ends, SECTION, elements=4), [(0, "full"), (4, "full")],
-                             modes=2 + k)
+                             modes=4)
         nodes[k] = [made.node(f"{name} {k}", point)
                     for name, point in zip(("root", "end"), body.coordinates, strict=True)]
         made.superelement(f"link {k}", body, nodes[k], inertia="material")
@@ -47,7 +47,7 @@ def chain() -> Model:
 
 
 def many_modes() -> Model:
-    """A beam of 32 modes and a damped spring on a turned hinge."""
+    """A beam of 32 modes on a turned hinge."""
     body = craig_bampton(straight_beam(place(0, 0, 0), place(100.0, 0, 0), SECTION, elements=8),
                          [(0, "full"), (8, "full")], modes=32)
     made = Model()
@@ -56,9 +56,6 @@ def many_modes() -> Model:
     made.superelement("beam", body, [base, tip], inertia="material")
     made.gravity((0.0, -400.0, 900.0))
     made.revolute(base, axis=TURN @ (0, 0, 1), name="hinge")
-    wall = made.node("wall", place(80.0, 70.0, 10.0))
-    made.fix(wall)
-    made.spring(tip, wall, stiffness=300.0, damping=2.0, name="spring")
     made.force(tip, TURN @ (0, 1, 1), [(0, 0), (0.02, 1e4), (0.05, -3e3)], name="load")
     return made
 
@@ -112,7 +109,7 @@ def test_members_equal_single_runs(build, monkeypatch):
                "energy": final("energy.strain")}
     many = Ensemble(made, h)
     found = many.run(given, steps * h, outputs)
-    assert found.in_lanes == RUNS and not found.failures, repr(many)
+    assert found.in_lanes == RUNS and not found.failures
     for runs in (slice(None, None, -1), slice(4, 5)):
         other = many.run({name: v[runs] for name, v in given.items()}, steps * h, outputs)
         for name, values in other.values.items():
