@@ -181,5 +181,5 @@ def test_it_is_said_how_good_the_derivatives_are():
 
 
 def test_uses_that_need_index_three_say_so():
-    with pytest.raises(InputError, match="contributions by constraints of index 2.*index=3"):
+    with pytest.raises(InputError, match="contributions with constraints of index 2.*index=3"):
         contributions(scenes.hinged(), 0.01, 0.05, ["tip.position"], scheme=INDEX_2)
