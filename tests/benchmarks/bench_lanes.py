@@ -39,7 +39,7 @@ SCENES = {      # name of a scene, options
     "right-angle-frame (best fit)": ("right-angle-frame", {}),
     "hinged-beam, mean axes": ("hinged-beam", {"frame": "mean_axes"}),
     "imported-link": ("imported-link", {})}
-STEP = {"chain": 0.25}      # of a scene's own: members whose steps are cut are run alone
+STEP = {"chain": 0.25}      # of a scene's own: members with rejected steps are run alone
 
 
 def compared(name: str, runs: int, pairs: int) -> dict:
