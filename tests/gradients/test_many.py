@@ -68,7 +68,8 @@ def test_a_run_that_fails_keeps_its_reason(found):
 
 @pytest.mark.parametrize(("values", "words"), [
     ({"gravity": GRAVITY, "torque.amplitude": AMPLITUDES[:2]}, "different numbers of values"),
-    ({"beam.reduced": [differentiated.slender()]}, "values of 'beam.reduced' are whole bodies: give numbers"),
+    ({"beam.reduced": [differentiated.slender()]},
+     "values of 'beam.reduced' are whole bodies: give numbers"),
     ({}, "give a dict of names and arrays")])
 def test_refused(values, words):
     with pytest.raises(InputError, match=words):
