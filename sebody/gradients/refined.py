@@ -42,14 +42,12 @@ class Refined:
                         history.duration)
         self.scales: dict[float, Scales] = {}
         self.missing: dict[float, NDArray] = {}
+        self.next = -1          # event that follows those that were passed
 
     def begin(self, motion: tuple[NDArray, ...]) -> None:
-        """Columns (n, m) of motion, rates, second and auxiliary rates; what was before is no guide.
-        """
+        """Columns (n, m) of motion, rates, second and auxiliary rates."""
         for own, given in zip(self.columns.motion, motion, strict=True):
             own[:] = given.T
-        self.columns.counts[steps.GUESSES] = 0
-        self.columns.last[:] = self.columns.rights[:] = 0.0
 
     @property
     def motion(self) -> list[NDArray]:
@@ -64,6 +62,10 @@ class Refined:
         InputError
             A state without derivatives, or a step that cannot be solved.
         """
+        if (last if self.back else first) != self.next:     # no step before is a guide
+            self.columns.counts[steps.GUESSES] = 0
+            self.columns.last[:] = self.columns.rights[:] = 0.0
+        self.next = first - 1 if self.back else last + 1
         found, piece = self.history, slice(first, last + 1)
         of_events = [getattr(found, name)[piece] for name in ("rows", "steps", "offsets", "ends",
                                                               "besides")]

@@ -52,7 +52,8 @@ def measured(scene: AdviceScene, finer: int = 1) -> list[dict]:
     places = np.unique(np.linspace(0, len(model.bodies) - 1, MOST).round().astype(int))
     bodies = [list(model.bodies)[k] for k in places]
     found = contributions(model, h, t_end, names, bodies, scheme=SCHEME)
-    rows = []
+    rows, finer = [], simulate(model, h / 2, t_end, scheme=SCHEME)
+    by_step = {name: _largest(finer[name][::2], found.values[name]) for name in names}
     for one in found.rows:
         made = _simplified(model, one.body, one.change)
         if made is None:
@@ -66,13 +67,19 @@ def measured(scene: AdviceScene, finer: int = 1) -> list[dict]:
         for name in names:
             base = found.values[name]
             size = np.abs(base - base[0]).max()
-            true = np.abs(run[name] - base).max() / size
+            true = _largest(run[name], base)
             own = np.abs(found.history(name, one.body, one.change)).max() / size
             if true > LEAST:
                 rows.append({"scene": scene.name, "body": one.body, "change": one.change,
                              "quantity": name, "true": true, "ratio": own / true,
+                             "step": by_step[name],
                              "run": seconds, "all": found.seconds})
     return rows
+
+
+def _largest(values, base):
+    """Largest difference, relative to the largest change of the base."""
+    return float(np.abs(values - base).max() / np.abs(base - base[0]).max())
 
 
 def _simplified(model, body, change):
