@@ -253,7 +253,7 @@ class ConstantRows:
         for which, size in enumerate(np.abs(A).max() for A in self._matrices()):
             rows = np.zeros((n, n, len(base)))
             rows[i, j] = [(self._row(which, *place, STEP * size) - base) / (STEP * size)
-                          for place in zip(i, j, strict=True)]
+                          for place in zip(i.tolist(), j.tolist(), strict=True)]
             found.append(rows)
         self.rows = np.array(found)     # (2, n, n, numbers) of entries on and above the diagonal
 

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from threading import Event, Lock, Thread
-from typing import Literal
+from typing import Literal, cast
 from warnings import catch_warnings, simplefilter, warn
 
 import numpy as np
@@ -175,7 +175,7 @@ class _Member:
     """A copy of the model that a thread has for itself."""
 
     def __init__(self, model: Model, names: list[str], parameters: Sequence[Parameter]):
-        self.model = copied(model)
+        self.model = cast(Model, copied(model))
         own = columns_of(self.model, names) if names else []
         places = {(c.name, c.component) for c in own}
         others = [name for name in parameters
