@@ -5,6 +5,6 @@ kernels call for lanes.
 """
 
 from sebody.engine.lanes import load_amplitudes
-from sebody.kernels.lanes import frame_search, products, rotations
+from sebody.kernels.lanes import frame_search, packed_products, products, rotations
 
-__all__ = ["frame_search", "load_amplitudes", "products", "rotations"]
+__all__ = ["frame_search", "load_amplitudes", "packed_products", "products", "rotations"]
