@@ -103,11 +103,14 @@ class FunctionCache(NullCache):
     @staticmethod
     def _reduced(data: CompileResult) -> tuple:
         """What `_rebuilt` takes; LLVM code, which callers take in, is kept by itself."""
-        library, described = data.library, data.fndesc
+        library, names = data.library, data.fndesc
         functions = tuple(name for name in (
-            described.llvm_func_name, described.llvm_cpython_wrapper_name,
-            described.llvm_cfunc_wrapper_name) if library.get_pointer_to_function(name))
-        return (library.name, library._get_compiled_object(), functions), *data._reduce()[1:]
+            names.llvm_func_name, names.llvm_cpython_wrapper_name,
+            names.llvm_cfunc_wrapper_name) if library.get_pointer_to_function(name))
+        *described, environments = data._reduce()[1:]
+        # those without constants are asked for nothing, and their modules take long to import
+        environments = tuple(one for one in environments if one.consts)
+        return (library.name, library._get_compiled_object(), functions), *described, environments
 
     def save_overload(self, sig, data: CompileResult) -> None:
         """Keep the compiled code for a signature."""
