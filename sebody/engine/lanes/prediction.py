@@ -1,0 +1,11 @@
+"""Choices of the prediction in lanes."""
+
+from sebody.compiler.decorators import in_lanes_of
+from sebody.compiler.inside.lanes import where
+from sebody.engine import prediction
+
+
+@in_lanes_of(prediction.either)
+def either(condition, a, b):
+    """See `prediction.either`."""
+    return where(condition, a, b)
