@@ -1,36 +1,42 @@
 """How accelerations and multipliers will change in a step, from how they changed in the last ones.
 
-The error that Newton's iteration with an old matrix leaves, and the number of its corrections, go
-with the error of the prediction. The change in the next step is predicted as
+The number of corrections in Newton's iteration, and what it leaves with an old matrix, go with the
+error of the prediction. Predicted is that nothing changes; or that changes continue as a line or a
+parabola; or, from those in the last `ORDER` steps, d_1 the latest,
 
-    c_1 d_1 + c_2 d_2 + c_3 d_3 + c_4 d_4
+    c_1 d_1 + ... + c_8 d_8
 
-from those in the last `ORDER` steps, d_1 the latest, with the same coefficients for all unknowns.
-Four sets of coefficients are compared in every step: none (nothing changes), (1), (2, -1), which
-continue changes as a line and a parabola, and those that would have been best in the last steps, of
-least squares with older steps ever less (autoregression; vibrations that steps resolve follow such
-a rule exactly, four coefficients serve two of them). The next step takes the set that would have
-predicted the last change best. All this is done with the products of the d_i alone.
+with the same coefficients for all unknowns: those of least squares for the steps so far, older ones
+ever less (autoregression; four vibrations follow such a rule exactly). A step takes what would have
+been best for the step before.
+
+The fit costs as much as a part of a correction. Whether it saves as much is tried: in some periods
+of `PERIOD` steps it is made, in others not, and the mean corrections of both are compared.
 """
 
 from sebody.compiler.decorators import compiled
 from sebody.kernels.abi import at, pointer_to
 
-ORDER = 4
+ORDER = 8
+ROWS = ORDER + 1        # of changes that are kept: a ring, the latest overwrites the oldest
 FORGET = 0.8            # weight of a step in the fit, relative to the one after it
-BETTER = 0.25           # of the square of an error: what a set of more coefficients has to reach
+BETTER = 0.25           # of the square of an error: what the next prediction has to reach
 LEAST = 1e-13           # of the squares of changes: added to the equations of the fit
 TINY = 1e-300           # the same where nothing changes
+PERIOD = 64             # steps with the fit or without it
+SETTLING = 24           # first ones of a period, whose corrections do not count
+TRIED_AGAIN = 16        # periods after which what has saved less is tried again
+WORTH = 0.2             # corrections of a step that the fit has to save
 
-# State.fit, in this order: products of the last changes, equations and right side of the fit, its
-# coefficients, and those that the next step takes
-_ROWS = ORDER + 1
-_EQUATIONS = _ROWS * _ROWS
+# State.fit, in this order: products of the last changes, equations, right side and coefficients of
+# the fit, scratch memory for its elimination, and numbers by name
+_EQUATIONS = ROWS * ROWS
 _RIGHT = _EQUATIONS + ORDER * ORDER
-_FITTED = _RIGHT + ORDER
-CHOSEN = _FITTED + ORDER
-_LOWER = CHOSEN + ORDER     # scratch memory for the elimination
-FIT = _LOWER + ORDER * ORDER    # its size
+_COEFFICIENTS = _RIGHT + ORDER
+_FACTORS = _COEFFICIENTS + ORDER
+LAST, BEFORE, FITTED, _ON, _AGE, _SUM, _WITH, _WITHOUT = range(
+    _FACTORS + ORDER * ORDER, _FACTORS + ORDER * ORDER + 8)
+FIT = _WITHOUT + 1      # its size
 
 
 @compiled
@@ -40,84 +46,125 @@ def either(condition, a, b):
 
 
 @compiled
-def remember_changes(system, state, of_accelerations):
-    """Remember how the last step changed accelerations and multipliers; choose coefficients.
+def any_positive(x):
+    """Whether a number is positive; in lanes, that of any member."""
+    return x > 0.0
+
+
+@compiled
+def row(state, steps):
+    """Changes in a step, by how many steps there were before."""
+    return at(pointer_to(state.changes), state.q.size * (steps % ROWS))
+
+
+@compiled
+def look_back(system, state, of_accelerations):
+    """Remember how the last step changed accelerations and multipliers; choose what to predict.
 
     Changes are measured as those of increments: of accelerations times `of_accelerations`.
+    `State.fit` gets the shares LAST, BEFORE and FITTED of the last two changes and of
+    `State.fitted` in the prediction.
     """
-    n, total = system.diagonal.size, state.q.size
-    d1 = pointer_to(state.changes)
-    d2, d3, d4 = at(d1, total), at(d1, 2 * total), at(d1, 3 * total)
-    s0 = s1 = s2 = s3 = s4 = 0.0 * state.clock.floor        # in lanes these are lanes
-    for i in range(n):
+    fit, steps = pointer_to(state.fit), state.control.steps + ROWS
+    _compare_periods(fit, state.control.iteration, state.control.steps)
+    now, last, before = row(state, steps), row(state, steps - 1), row(state, steps - 2)
+    weighted, fitted = pointer_to(state.correction), pointer_to(state.fitted)
+    of_none = of_line = of_parabola = of_fit = 0.0 * fit[_ON]
+    for i in range(system.diagonal.size):
         constraint = system.is_multiplier[i]
-        new = (state.aux[i] - state.aux_old[i]) + constraint * (state.q[i] - state.q_old[i])
-        a, b, c, d = d1[i], d2[i], d3[i], d4[i]
         w = state.weight[i] * (constraint + (1.0 - constraint) * of_accelerations)
-        z = w * w * new
-        s0 += z * new
-        s1 += z * a
-        s2 += z * b
-        s3 += z * c
-        s4 += z * d
-        d1[i], d2[i], d3[i], d4[i] = new, a, b, c
-    fit = pointer_to(state.fit)
+        x = state.aux[i] - state.aux_old[i] + constraint * (state.q[i] - state.q_old[i])
+        line = x - last[i]
+        parabola = line - (last[i] - before[i])
+        error = x - fitted[i]
+        w *= w
+        of_none += w * x * x
+        of_line += w * line * line
+        of_parabola += w * parabola * parabola
+        of_fit += w * error * error
+        now[i], weighted[i] = x, w * x
+    zero = 0.0 * of_none        # in lanes these are lanes
+    straight = of_line < BETTER * of_none
+    least = either(straight, of_line, of_none)
+    bent = of_parabola < BETTER * least
+    least = either(bent, of_parabola, least)
+    best = either(fit[_ON] > 0.0, of_fit, least) < BETTER * least
+    fit[LAST] = either(best, zero, either(bent, zero + 2.0, either(straight, zero + 1.0, zero)))
+    fit[BEFORE] = either(best, zero, either(bent, zero - 1.0, zero))
+    fit[FITTED] = either(best, zero + 1.0, zero)
+    if any_positive(fit[_ON]):
+        _fit_anew(system, state, steps)
+
+
+@compiled
+def _compare_periods(fit, corrections, steps):
+    """Count the corrections of the last step; begin a period with the fit or without it."""
+    within = steps % PERIOD
+    if within == 0:
+        mean = fit[_SUM] / (PERIOD - SETTLING)
+        on = fit[_ON] > 0.0
+        fit[_WITH] = either(on, mean, fit[_WITH])
+        fit[_WITHOUT] = either(on, fit[_WITHOUT], mean)
+        zero = 0.0 * mean
+        better = either(fit[_WITH] + WORTH < fit[_WITHOUT], zero + 1.0, zero)
+        period = steps // PERIOD
+        if period < 2:
+            better = zero + period          # the first one without the fit, the second one with it
+        elif period % TRIED_AGAIN == 0:
+            better = 1.0 - better
+        fit[_AGE] = fit[_AGE] * better
+        fit[_ON], fit[_SUM] = better, zero
+    elif within > SETTLING:
+        fit[_SUM] += corrections
+
+
+@compiled
+def _fit_anew(system, state, steps):
+    """Products of the last changes, coefficients of least squares, and the change they predict."""
+    n, fit = system.diagonal.size, pointer_to(state.fit)
+    weighted, fitted = pointer_to(state.correction), pointer_to(state.fitted)
     for i in range(ORDER, 0, -1):
         for j in range(ORDER, 0, -1):
-            fit[_ROWS * i + j] = fit[_ROWS * (i - 1) + j - 1]
-    fit[0], fit[1], fit[2], fit[3], fit[4] = s0, s1, s2, s3, s4
-    for j in range(1, _ROWS):
-        fit[_ROWS * j] = fit[j]
-    _choose(fit)
+            fit[ROWS * i + j] = fit[ROWS * (i - 1) + j - 1]
+    for j in range(ROWS):
+        change, total = row(state, steps - j), 0.0 * fit[0]
+        for i in range(n):
+            total += weighted[i] * change[i]
+        fit[j] = fit[ROWS * j] = total
+    _solve(fit)
+    for i in range(n):
+        fitted[i] = fit[_COEFFICIENTS] * row(state, steps)[i]
+    for j in range(1, ORDER):
+        change, c = row(state, steps - j), fit[_COEFFICIENTS + j]
+        for i in range(n):
+            fitted[i] += c * change[i]
 
 
 @compiled
-def _choose(fit):
-    """Take the coefficients that would have predicted the last change best."""
-    none = fit[0]
-    zero = 0.0 * none       # a number like the others: in lanes all of them are lanes
-    line = none - 2.0 * fit[1] + fit[_ROWS + 1]
-    parabola = (none - 4.0 * fit[1] + 2.0 * fit[2] + 4.0 * fit[_ROWS + 1] - 4.0 * fit[_ROWS + 2]
-                + fit[2 * _ROWS + 2])
-    fitted = 1.0 * none
-    for i in range(ORDER):
-        product = -2.0 * fit[i + 1]
-        for j in range(ORDER):
-            product += fit[_ROWS * (i + 1) + j + 1] * fit[_FITTED + j]
-        fitted += product * fit[_FITTED + i]
-    _fit_anew(fit)
-    straight = line < BETTER * none
-    least = either(straight, line, none)
-    curved = parabola < BETTER * least
-    least = either(curved, parabola, least)
-    best = fitted < BETTER * least
-    fit[CHOSEN] = either(best, fit[_FITTED],
-                         either(curved, zero + 2.0, either(straight, zero + 1.0, zero)))
-    fit[CHOSEN + 1] = either(best, fit[_FITTED + 1], either(curved, zero - 1.0, zero))
-    fit[CHOSEN + 2] = either(best, fit[_FITTED + 2], zero)
-    fit[CHOSEN + 3] = either(best, fit[_FITTED + 3], zero)
-
-
-@compiled
-def _fit_anew(fit):
-    """Coefficients of least squares: elimination without exchanges, in place of the last ones."""
-    A, x = at(fit, _LOWER), at(fit, _FITTED)
-    size = 0.0 * fit[0]
+def _solve(fit):
+    """Coefficients of least squares: elimination of a positive matrix."""
+    A, x = at(fit, _FACTORS), at(fit, _COEFFICIENTS)
+    zero = 0.0 * fit[_AGE]
+    older = either(fit[_AGE] > 0.0, zero + FORGET, zero)
+    fit[_AGE] = fit[_AGE] + 1.0
+    counts = either(fit[_AGE] > ROWS, zero + 1.0, zero)     # before that, products are missing
+    size = zero + TINY
     for i in range(ORDER):
         for j in range(ORDER):
-            k = _EQUATIONS + ORDER * i + j
-            fit[k] = FORGET * fit[k] + fit[_ROWS * (i + 1) + j + 1]
-            A[ORDER * i + j] = fit[k]
-        fit[_RIGHT + i] = FORGET * fit[_RIGHT + i] + fit[i + 1]
+            k = ORDER * i + j
+            fit[_EQUATIONS + k] = (older * fit[_EQUATIONS + k]
+                                   + counts * fit[ROWS * (i + 1) + j + 1])
+            A[k] = fit[_EQUATIONS + k]
+        fit[_RIGHT + i] = older * fit[_RIGHT + i] + counts * fit[i + 1]
         x[i] = fit[_RIGHT + i]
-        size += A[ORDER * i + i]
+        size += LEAST * A[ORDER * i + i]
     for i in range(ORDER):
-        A[ORDER * i + i] += LEAST * size + TINY
+        A[ORDER * i + i] += size
     for k in range(ORDER):
         pivot = 1.0 / A[ORDER * k + k]
         for i in range(k + 1, ORDER):
-            factor = A[ORDER * i + k] * pivot
-            for j in range(k + 1, ORDER):
+            factor = A[ORDER * k + i] * pivot
+            for j in range(i, ORDER):
                 A[ORDER * i + j] -= factor * A[ORDER * k + j]
             x[i] -= factor * x[k]
         A[ORDER * k + k] = pivot

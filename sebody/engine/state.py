@@ -66,8 +66,8 @@ class State(Arrays):
     integrator
     ------------------------------------------------------------------------------------------------
     aux                   (N,) auxiliary accelerations of generalized-alpha
-    changes               (4 N,) how aux and multipliers changed in the last steps, latest first
-    fit                   how the next change follows from them: see `engine.prediction`
+    changes               (9 N,) how aux and multipliers changed in the last steps
+    fitted                (N,) how they will by a fit, and `fit`, its numbers: see `prediction`
     q_start               (N,) coordinates at t = 0
     q_old, v_old, a_old   (N,) coordinates, velocities, accelerations
     aux_old               (N,) auxiliary accelerations
@@ -144,6 +144,7 @@ class State(Arrays):
     frames_old: NDArray
     aux: NDArray
     changes: NDArray
+    fitted: NDArray
     fit: NDArray
     q_start: NDArray
     q_old: NDArray

@@ -17,7 +17,7 @@ from sebody.contract.layout import (
 )
 from sebody.engine.evaluate import move_prescribed, set_loads_beside, update_rotations
 from sebody.engine.newton import SLOWEST, watch_age
-from sebody.engine.prediction import CHOSEN, remember_changes
+from sebody.engine.prediction import BEFORE, FITTED, LAST, ROWS, look_back, row
 from sebody.engine.state import (
     ASKED,
     BEGIN,
@@ -43,7 +43,7 @@ def begin_step(system, state, scheme):
     # auxiliary accelerations belong to a time that is later by (alpha_m - alpha_f) h
     offset = h / state.clock.aux_step
     kept = state.control.fresh == 0 and state.control.wanted == KEPT and offset == 1.0
-    remember_changes(system, state, scheme.beta * h * h)
+    look_back(system, state, scheme.beta * h * h)
     predict(system, state, scheme, 1.0 if kept else 0.0, offset)
     state.control.iteration, state.control.secant = 0, 0
     state.clock.last_norm = 0.0
@@ -68,14 +68,13 @@ def predict(system, state, scheme, follow, offset):
     alpha_m, beta, gamma = scheme.alpha_m, scheme.beta, scheme.gamma
     to_a = 1.0 / (1.0 - scheme.alpha_f)
     state.clock.aux_step = h
-    total = state.q.size
-    d1 = pointer_to(state.changes)
-    d2, d3, d4 = at(d1, total), at(d1, 2 * total), at(d1, 3 * total)
-    c1, c2, c3, c4 = (follow * state.fit[CHOSEN], follow * state.fit[CHOSEN + 1],
-                      follow * state.fit[CHOSEN + 2], follow * state.fit[CHOSEN + 3])
+    steps, fitted = state.control.steps + ROWS, pointer_to(state.fitted)
+    last, before = row(state, steps), row(state, steps - 1)
+    of_last, of_before, of_fitted = (follow * state.fit[LAST], follow * state.fit[BEFORE],
+                                     follow * state.fit[FITTED])
     for i in range(state.dq.size):
         q, v, a, aux = state.q[i], state.v[i], state.a[i], state.aux[i]
-        change = c1 * d1[i] + c2 * d2[i] + c3 * d3[i] + c4 * d4[i]
+        change = of_last * last[i] + of_before * before[i] + of_fitted * fitted[i]
         multiplier = system.is_multiplier[i] * change
         change -= multiplier
         if offset != 1.0:

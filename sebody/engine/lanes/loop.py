@@ -16,7 +16,7 @@ from sebody.engine.lanes.growth import grows
 from sebody.engine.lanes.matrix import factorize
 from sebody.engine.lanes.newton import begin_with_matrix, correct, watch_age
 from sebody.engine.matrix import solve
-from sebody.engine.prediction import remember_changes
+from sebody.engine.prediction import look_back
 from sebody.engine.state import EVALUATED, KEPT, ROTATED
 from sebody.engine.step import (
     MEMORY,
@@ -54,7 +54,7 @@ def _begin_step(system, state, scheme):
     control, clock = state.control, state.clock
     set_end(system, state)
     offset = clock.current_step / clock.aux_step
-    remember_changes(system, state, scheme.beta * clock.current_step * clock.current_step)
+    look_back(system, state, scheme.beta * clock.current_step * clock.current_step)
     kept = (control.fresh == 0.0) & (control.wanted == float(KEPT))
     predict(system, state, scheme, where(kept, spread(1.0), spread(0.0)), offset)
     begin_with_matrix(state)
