@@ -42,7 +42,9 @@ def begin_step(system, state, scheme):
     set_end(system, state)
     # auxiliary accelerations belong to a time that is later by (alpha_m - alpha_f) h
     offset = h / state.clock.aux_step
-    kept = offset == 1.0
+    # after rejected steps and new matrices, which come where a motion is not smooth, nothing is
+    # predicted to change
+    kept = state.control.fresh == 0 and state.control.wanted == KEPT and offset == 1.0
     look_back(system, state, scheme.beta * h * h)
     predict(system, state, scheme, 1.0 if kept else 0.0, offset)
     state.control.iteration, state.control.secant = 0, 0
