@@ -42,10 +42,12 @@ def begin_step(system, state, scheme):
     set_end(system, state)
     # auxiliary accelerations belong to a time that is later by (alpha_m - alpha_f) h
     offset = h / state.clock.aux_step
-    # after rejected steps and new matrices, which come where a motion is not smooth, nothing is
-    # predicted to change
-    kept = state.control.fresh == 0 and state.control.wanted == KEPT and offset == 1.0
-    look_back(system, state, scheme.beta * h * h)
+    # after rejected steps and new matrices, and in parts of steps, which come where a motion is
+    # not smooth, nothing is predicted to change
+    kept = (state.control.fresh == 0 and state.control.wanted == KEPT and offset == 1.0
+            and state.control.level == 0)
+    if state.control.iteration > 0 and state.control.steps > 0:     # no step that is repeated
+        look_back(system, state, scheme.beta * h * h)
     predict(system, state, scheme, 1.0 if kept else 0.0, offset)
     state.control.iteration, state.control.secant = 0, 0
     state.clock.last_norm = 0.0
@@ -199,6 +201,7 @@ def back(state):
     copy(state.loads_old, state.loads)
     state.control.phase = BEGIN
     state.control.wanted = EVALUATED
+    state.control.iteration = 0
     state.clock.contraction = SLOWEST      # nothing is known of the next attempt
 
 

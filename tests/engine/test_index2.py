@@ -8,7 +8,7 @@ from sebody import InputError, Simulation, generalized_alpha, hht
 from sebody.assembly.build import DENSE_LIMIT
 from sebody.scenes import chain, four_bar, heavy_top, squeezer
 
-TOLERANCE = 1e-11       # of increments above 0.04: rounding of positions, 8 eps, is a hundredth of that
+TOLERANCE = 1e-11       # of increments above 0.04: above rounding of positions
 
 
 def top(index, h, t_end=0.5):

@@ -54,7 +54,8 @@ def _begin_step(system, state, scheme):
     control, clock = state.control, state.clock
     set_end(system, state)
     offset = clock.current_step / clock.aux_step
-    look_back(system, state, scheme.beta * clock.current_step * clock.current_step)
+    if control.steps > 0:
+        look_back(system, state, scheme.beta * clock.current_step * clock.current_step)
     kept = (control.fresh == 0.0) & (control.wanted == float(KEPT))
     predict(system, state, scheme, where(kept, spread(1.0), spread(0.0)), offset)
     begin_with_matrix(state)
