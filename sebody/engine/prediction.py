@@ -19,6 +19,7 @@ from sebody.kernels.abi import at, pointer_to
 
 ORDER = 8
 ROWS = ORDER + 1        # of changes that are kept: a ring, the latest overwrites the oldest
+REFITTED = 4            # steps after which coefficients are solved for anew
 FORGET = 0.8            # weight of a step in the fit, relative to the one after it
 BETTER = 0.25           # of the square of an error: what the next prediction has to reach
 LEAST = 1e-13           # of the squares of changes: added to the equations of the fit
@@ -131,7 +132,9 @@ def _fit_anew(system, state, steps):
         for i in range(n):
             total += weighted[i] * change[i]
         fit[j] = fit[ROWS * j] = total
-    _solve(fit)
+    _add_equations(fit)
+    if steps % REFITTED == 0:
+        _solve(fit)
     for i in range(n):
         fitted[i] = fit[_COEFFICIENTS] * row(state, steps)[i]
     for j in range(1, ORDER):
@@ -141,21 +144,27 @@ def _fit_anew(system, state, steps):
 
 
 @compiled
-def _solve(fit):
-    """Coefficients of least squares: elimination of a positive matrix."""
-    A, x = at(fit, _FACTORS), at(fit, _COEFFICIENTS)
+def _add_equations(fit):
+    """Add those of the last step to the equations of the fit, of which half is kept."""
     zero = 0.0 * fit[_AGE]
     older = either(fit[_AGE] > 0.0, zero + FORGET, zero)
     fit[_AGE] = fit[_AGE] + 1.0
     counts = either(fit[_AGE] > ROWS, zero + 1.0, zero)     # before that, products are missing
-    size = zero + TINY
     for i in range(ORDER):
-        for j in range(ORDER):
-            k = ORDER * i + j
-            fit[_EQUATIONS + k] = (older * fit[_EQUATIONS + k]
-                                   + counts * fit[ROWS * (i + 1) + j + 1])
-            A[k] = fit[_EQUATIONS + k]
+        for j in range(i, ORDER):
+            k = _EQUATIONS + ORDER * i + j
+            fit[k] = older * fit[k] + counts * fit[ROWS * (i + 1) + j + 1]
         fit[_RIGHT + i] = older * fit[_RIGHT + i] + counts * fit[i + 1]
+
+
+@compiled
+def _solve(fit):
+    """Coefficients of least squares: elimination of a positive matrix."""
+    A, x = at(fit, _FACTORS), at(fit, _COEFFICIENTS)
+    size = 0.0 * fit[0] + TINY
+    for i in range(ORDER):
+        for j in range(i, ORDER):
+            A[ORDER * i + j] = fit[_EQUATIONS + ORDER * i + j]
         x[i] = fit[_RIGHT + i]
         size += LEAST * A[ORDER * i + i]
     for i in range(ORDER):
