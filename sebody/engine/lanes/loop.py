@@ -17,12 +17,11 @@ from sebody.engine.lanes.matrix import factorize
 from sebody.engine.lanes.moved import find_moved, keep_unmoved, run_moved
 from sebody.engine.lanes.newton import begin_with_matrix, correct, watch_age
 from sebody.engine.matrix import solve
+from sebody.engine.prediction import look_back
 from sebody.engine.state import EVALUATED, KEPT, ROTATED
 from sebody.engine.step import (
     MEMORY,
     ORTHOGONAL,
-    STEADY,
-    changes,
     orthogonalize,
     predict,
 )
@@ -56,11 +55,10 @@ def _begin_step(system, state, scheme):
     control, clock = state.control, state.clock
     set_end(system, state)
     offset = clock.current_step / clock.aux_step
-    constant, bend = changes(system, state)
+    if control.steps > 0:
+        look_back(system, state, scheme.beta * clock.current_step * clock.current_step)
     kept = (control.fresh == 0.0) & (control.wanted == float(KEPT))
-    steady = kept & (bend < STEADY * STEADY * constant)
-    follow = where(steady, spread(1.0), spread(0.0))
-    predict(system, state, scheme, follow, offset)
+    predict(system, state, scheme, where(kept, spread(1.0), spread(0.0)), offset)
     begin_with_matrix(state)
     control.iteration = control.secant = spread(0.0)
     clock.last_norm = spread(0.0)

@@ -120,9 +120,9 @@ class Lanes:
         """Places in the buffer of what members begin with: parameters, and their state."""
         image, state = self.copies.image, self.copies.image.template.state
         begun = (image.offsets.of(part) for part in (
-            state.now, state.aux, state.aux_change, state.q_start, state.loads, state.loads_old,
-            state.acting, state.coefficients, state.frames_old, state.aux_old,
-            state.last_correction, state.last_change))
+            state.now, state.aux, state.changes, state.fitted, state.fit, state.q_start,
+            state.loads, state.loads_old, state.acting, state.coefficients, state.frames_old,
+            state.q_old, state.aux_old, state.last_correction, state.last_change))
         return np.unique(np.concatenate([image.lines.slots.astype(np.int64),
                                          *(np.arange(part.start, part.stop) for part in begun)]))
 
