@@ -17,7 +17,7 @@ from sebody.contract.counts import LANES
 
 FLOATS, WORD = types.CPointer(types.float64), ir.IntType(64)
 VECTOR = ir.VectorType(ir.DoubleType(), LANES)
-
+POINTER = ir.DoubleType().as_pointer()
 
 _lanes: dict[Callable, Callable] = {}       # writers of products in lanes, by those of numbers
 
@@ -57,10 +57,12 @@ def _written(write, kinds, put):
 
 def call(builder: ir.IRBuilder, write: Callable, args: Sequence[ir.Value]) -> None:
     """Call a function whose instructions are written where a module calls it first."""
+    kinds = [argument.type for argument in args]
     name = f"{write.__module__}.{write.__name__}"
+    name += "".join("n" if kind == POINTER else "l" for kind in kinds
+                    if isinstance(kind, ir.PointerType))       # of numbers, or of lanes
     function = builder.module.globals.get(name)
     if function is None:
-        kinds = [argument.type for argument in args]
         function = ir.Function(builder.module, ir.FunctionType(ir.VoidType(), kinds), name)
         function.linkage = "internal"
         function.attributes.add("noinline")

@@ -7,21 +7,26 @@ from sebody.compiler.inside.cache import FunctionCache, is_kept
 from sebody.compiler.inside.names import CFunc, normalize_signature
 from sebody.compiler.inside.pipeline import KernelPasses
 
-_KIND = "lanes"
+OWN, SHARED = "lanes", "shared"     # constants: each member its own, or all the same
 
 
-class _Cache(FunctionCache):
-    kind = _KIND
+class _CacheOfOwn(FunctionCache):
+    kind = OWN
 
 
-def kernel_in_lanes(function: Callable, signature, options: dict, made_from: str) -> CFunc:
+class _CacheOfShared(FunctionCache):
+    kind = SHARED
+
+
+def kernel_in_lanes(function: Callable, signature, options: dict, made_from: str,
+                    kind: str = OWN) -> CFunc:
     """A kernel of a signature with lanes; the attribute `address` is that of its machine code."""
     made = CFunc(function, normalize_signature(signature), {}, options, KernelPasses)
-    made._cache = _Cache(function, made_from)
+    made._cache = (_CacheOfOwn if kind == OWN else _CacheOfShared)(function, made_from)
     made.compile()
     return made
 
 
-def is_kept_in_lanes(path: Path, made_from: str) -> bool:
+def is_kept_in_lanes(path: Path, made_from: str, kind: str = OWN) -> bool:
     """Whether the kernel of a file was compiled for lanes; the file is not imported."""
-    return is_kept(path, "kernel", made_from, _KIND)
+    return is_kept(path, "kernel", made_from, kind)

@@ -6,7 +6,7 @@ neither read nor written. Matrices are lanes as well, since members have constan
 
 from llvmlite import ir
 
-from sebody.compiler.inside.lanes import VECTOR
+from sebody.compiler.inside.lanes import VECTOR, same
 from sebody.contract.counts import LANES
 from sebody.kernels import coordinates, dense, packed_products
 from sebody.kernels.instructions import (
@@ -26,7 +26,14 @@ _NOTHING = ir.Constant(VECTOR, [0.0] * VECTOR.count)
 
 
 def _load(builder, pointer, place):
-    return builder.load(builder.gep(pointer, [place]))
+    """Lanes; a number, of constants that all members share, in all of them."""
+    loaded = builder.load(builder.gep(pointer, [place]))
+    return loaded if loaded.type == VECTOR else same(builder, loaded)
+
+
+def _apart(pointer):
+    """How many floats the numbers of a pointer are apart."""
+    return VECTOR.count if pointer.type.pointee == VECTOR else 1
 
 
 def _store(builder, value, pointer, place):
@@ -162,14 +169,14 @@ class _Words:
     """The whole numbers of a row of packed matrices, in the bits of the first lane."""
 
     def __init__(self, builder, matrices):
-        self._builder = builder
+        self._builder, self._apart = builder, _apart(matrices)
         self._words = builder.bitcast(matrices, WORD.as_pointer())
 
     def at(self, place):
         """The whole number at a place of the row."""
         builder = self._builder
         return builder.load(builder.gep(self._words, [
-            builder.mul(place, WORD(VECTOR.count))]))
+            builder.mul(place, WORD(self._apart))]))
 
     def of_group(self, group):
         """What a group says of itself."""
@@ -201,6 +208,9 @@ def packed(builder, matrices, x, out, count):
 @in_lanes(packed_products.write_more_packed)
 def add_packed(builder, matrices, x, out):
     """Of `add_packed_times`: straight code if there is some, see `straight`."""
+    if _apart(matrices) == 1:
+        _add_strips(builder, matrices, x, out)
+        return
     words = builder.bitcast(matrices, WORD.as_pointer())
     groups, address = builder.load(words), builder.load(builder.gep(words, [WORD(AT_ADDRESS)]))
     with builder.if_else(builder.icmp_signed("!=", address, groups)) as (straight, by_strips):
@@ -282,7 +292,7 @@ def all_to_free(builder, *args):
     words = builder.bitcast(order, ir.DoubleType().as_pointer())
     with short_loop(builder, WORD(0), free) as k:
         at = builder.fptosi(builder.load(builder.gep(words, [
-            builder.mul(k, WORD(VECTOR.count))])), WORD)
+            builder.mul(k, WORD(_apart(order)))])), WORD)
         for given, out in zip(own, to, strict=True):
             _store(builder, _load(builder, given, at), out, k)
     with short_loop(builder, free, whole_vectors(builder, end)) as k:
