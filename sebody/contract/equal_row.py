@@ -14,5 +14,5 @@ ALIGNED = 8     # numbers of a vector, which begins at a multiple of its size
 
 def room(width: int, rotations: int, own: int) -> int:
     """Scratch memory for bodies of some unknowns and rotations, whose kernel takes `own` of it."""
-    gathered = 4 * width + 18 * rotations + 18 + FACTORS + width * width + own
+    gathered = 4 * width + 18 * rotations + 9 + FACTORS + width * width + own
     return MEMBERS * gathered + HEADER + rotations + width + 2 * ALIGNED

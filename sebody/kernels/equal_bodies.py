@@ -97,8 +97,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     Rs = at(xs, 4 * MEMBERS * width)
     Ts = at(Rs, 9 * MEMBERS * rotated)
     own_frames = at(Ts, 9 * MEMBERS * rotated)
-    own_references = at(own_frames, 9 * MEMBERS)
-    factors = at(own_references, 9 * MEMBERS)
+    factors = at(own_frames, 9 * MEMBERS)
     Js = at(factors, MEMBERS * FACTORS)
     row = _whole_numbers(at(Js, MEMBERS * squares))
     scratch = _aligned(at(Js, MEMBERS * squares + HEADER + rotations + width))
@@ -130,10 +129,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             if task == TANGENT:
                 _gather(T, 9, at(begin, HEADER + k), stride, last, at(Ts, 9 * MEMBERS * k))
         _gather(frames, 9, at(begin, AT_FRAME), stride, last, own_frames)
-        _gather(references, 9, at(begin, AT_FRAME), stride, last, own_references)
         call_kernel(in_lanes, task, 1, stride, width, Arguments(
             index=row, constants=constants, q=xs, R=Rs, v=vs, a=accelerations,
-            references=own_references, frames=own_frames, T=Ts, loads=loads, coefficients=factors,
+            references=references, frames=own_frames, T=Ts, loads=loads, coefficients=factors,
             forces=gs, matrices=Js, work=scratch, energies=energies))
         if not _are_finite(gs, width):
             break
