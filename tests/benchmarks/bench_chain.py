@@ -38,7 +38,8 @@ def measure(links: int, option: str, pairs: int, until: float = 1.0) -> dict[str
     """One row of the table."""
     spent = []
     for k in range(pairs):
-        both = {how: run(links, option, how, until) for how in ((True, False), (False, True))[k % 2]}
+        turns = (True, False) if k % 2 else (False, True)
+        both = {how: run(links, option, how, until) for how in turns}
         spent.append((both[True][0], both[False][0]))
     (_, one), (_, other) = both[True], both[False]
     return {"together": min(a for a, _ in spent), "alone": min(b for _, b in spent),
