@@ -4,7 +4,7 @@ The parts of the loop are compiled for the types of a small model's arrays, whic
 every model. Kernels are known by name. Nothing is printed or done if everything is in the cache.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from functools import cache
 from pathlib import Path
 from threading import Lock
@@ -102,14 +102,14 @@ def prepare(models: Iterable[Mechanism]) -> None:
 
 def compile_missing(kernels: Iterable[str], parts: Iterable[str] = (),
                     report: Callable[[str, float], None] | None = None,
-                    together: Iterable[str] = ()) -> None:
+                    together: Collection[str] = ()) -> None:
     """Compile kernels and parts of the loop by name, where the cache lacks them.
 
     Parameters
     ----------
     report : callable, optional
         Called with the name of everything that was compiled and the seconds it took.
-    together : iterable of str
+    together : collection of str
         Kernels that are compiled for eight bodies at a time, too.
     """
     with _lock:
@@ -117,15 +117,15 @@ def compile_missing(kernels: Iterable[str], parts: Iterable[str] = (),
         missing = {name: path for name, path in kernels.items() if not is_compiled(path)}
         lacking = [name for name in parts
                    if name not in _ready and not way().is_compiled(PARTS[name].function)]
-        of_eight = [name for name in together
-                    if _of_eight(name) not in _ready and not is_compiled_together(find(name))]
+        of_eight = {name: path for name in sorted(together) if _of_eight(name) not in _ready
+                    and (path := _file(name)) and not is_compiled_together(path)}
         _ready.update(kernels, parts, map(_of_eight, together))
         count = len(missing) + len(of_eight)
         what = ["the time loop"] * bool(lacking)
         what += [f"{count} kernel{'s' * (count > 1)}"] * bool(count)
         jobs = _jobs(missing, lacking) + [
             Job(Task(_of_eight(name), "sebody.assembly.equal_bodies:compile_together", (name,),
-                     (name,)), OF_EIGHT * _seconds(find(name))) for name in of_eight]
+                     (name,)), OF_EIGHT * _seconds(path)) for name, path in of_eight.items()]
         compile_apart(jobs, " and ".join(what), Path(loop.__file__), report)
 
 
