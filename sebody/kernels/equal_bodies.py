@@ -56,6 +56,28 @@ def _gather(numbers, size, places, step, last, to):
 
 
 @compiled(forceinline=True)
+def _gather_coordinates(q, v, a, width, unknowns, step, last, xs, vs, accelerations):
+    """Coordinates and their rates of eight bodies."""
+    for member in range(MEMBERS):
+        places = at(unknowns, step * min(member, last))
+        for k in range(width):
+            i, to = places[k], MEMBERS * k + member
+            xs[to], vs[to], accelerations[to] = q[i], v[i], a[i]
+
+
+@compiled(forceinline=True)
+def _set_row(index, rotations, width, row):
+    """The index row of gathered bodies, whose numbers follow one another."""
+    for k in range(HEADER):
+        row[k] = index[k]
+    row[AT_FRAME] = 0
+    for k in range(rotations):
+        row[HEADER + k] = k
+    for k in range(width):
+        row[HEADER + rotations + k] = k
+
+
+@compiled(forceinline=True)
 def _put(given, size, count, numbers, to_next):
     """Forces or matrices of so many bodies."""
     for member in range(count):
@@ -66,6 +88,7 @@ def _put(given, size, count, numbers, to_next):
 
 @compiled(forceinline=True)
 def _put_frames(given, count, index, stride, frames):
+    """Frames of so many bodies."""
     for member in range(count):
         own = at(frames, 9 * index[stride * member + AT_FRAME])
         for i in range(9):
@@ -101,6 +124,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     Js = at(factors, MEMBERS * FACTORS)
     row = _whole_numbers(at(Js, MEMBERS * squares))
     scratch = _aligned(at(Js, MEMBERS * squares + HEADER + rotations + width))
+    _set_row(index, rotations, width, row)
+    for k in range(FACTORS):
+        for member in range(MEMBERS):
+            factors[MEMBERS * k + member] = coefficients[k]
     done = 0
     while done < count and (task == RESIDUAL or task == TANGENT):
         left = count - done
@@ -108,22 +135,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             break
         begin = at(index, done * stride)
         last = min(left, MEMBERS) - 1
-        if done == 0:
-            for k in range(HEADER):
-                row[k] = index[k]
-            row[AT_FRAME] = 0
-            for k in range(rotations):
-                row[HEADER + k] = k
-            for k in range(width):
-                row[HEADER + rotations + k] = k
-            for k in range(FACTORS):
-                for member in range(MEMBERS):
-                    factors[MEMBERS * k + member] = coefficients[k]
-        for member in range(MEMBERS):
-            unknowns = at(begin, stride * min(member, last) + HEADER + rotations)
-            for k in range(width):
-                i, to = unknowns[k], MEMBERS * k + member
-                xs[to], vs[to], accelerations[to] = q[i], v[i], a[i]
+        _gather_coordinates(q, v, a, width, at(begin, HEADER + rotations), stride, last,
+                            xs, vs, accelerations)
         for k in range(rotated):
             _gather(R, 9, at(begin, HEADER + k), stride, last, at(Rs, 9 * MEMBERS * k))
             if task == TANGENT:
