@@ -5,6 +5,7 @@ kernels call for lanes.
 """
 
 from sebody.engine.lanes import load_amplitudes, prediction
-from sebody.kernels.lanes import frame_search, products, rotations
+from sebody.kernels.lanes import frame_search, packed_products, products, rotations
 
-__all__ = ["frame_search", "load_amplitudes", "prediction", "products", "rotations"]
+__all__ = ["frame_search", "load_amplitudes", "packed_products", "prediction", "products",
+           "rotations"]
