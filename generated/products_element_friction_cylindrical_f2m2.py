@@ -467,9 +467,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 1e-300))
             t128 = 1/speed
             t129 = slip_speed*slip_speed
-            t130 = speed**(-2)
+            t130 = 1/(speed*speed)
             t131 = (0.25)*t129*t130 + 0.75
-            t132 = t131**(-2)
+            t132 = 1/(t131*t131)
             t133 = t128*t132
             t134 = slip_speed*t128
             t135 = tanh(4*t134)
@@ -480,7 +480,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t140 = coefficient*t135 + t136*t139
             t141 = 4*coefficient*(1 - t135*t135)
             t142 = slip_speed*t130
-            t143 = t131**(-3)
+            t143 = 1/(t131*t131*t131)
             delta_trial_size = ((delta_trial_1*trial_1 +
                 delta_trial_2*trial_2)/sqrt(trial_1*trial_1 + trial_2*trial_2 + 1e-300))
             delta_drag = (delta_coefficient*(t138*(t135 - t136) if speed > 0.0 else 0) +
@@ -1206,6 +1206,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             kept[4] = 0.0
             kept[5] = bar_z_1*increment_1 + bar_z_2*increment_2
             kept[6] = 0.0
+            vectors[44] = 0.0
+            vectors[45] = 0.0
+            vectors[46] = 0.0
+            vectors[47] = 0.0
             vectors[48] = 0.0
             vectors[49] = 0.0
             vectors[50] = 0.0

@@ -246,9 +246,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 + 1e-12*speed*speed + 1e-300))
             t39 = 1/speed
             t40 = slip_speed*slip_speed
-            t41 = speed**(-2)
+            t41 = 1/(speed*speed)
             t42 = (0.25)*t40*t41 + 0.75
-            t43 = t42**(-2)
+            t43 = 1/(t42*t42)
             t44 = t39*t43
             t45 = slip_speed*t39
             t46 = tanh(4*t45)
@@ -259,7 +259,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t51 = coefficient*t46 + t47*t50
             t52 = 4*coefficient*(1 - t46*t46)
             t53 = slip_speed*t41
-            t54 = t42**(-3)
+            t54 = 1/(t42*t42*t42)
             delta_trial_size = delta_trial*trial/sqrt(trial*trial + 1e-300)
             delta_drag = (delta_coefficient*(t49*(t46 - t47) if speed > 0.0 else 0) +
                 delta_pressed*(t48*t51 if speed > 0.0 else 0) + delta_slip_speed*(-pressed*t51/t40

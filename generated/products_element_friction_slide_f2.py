@@ -255,9 +255,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 + 1e-12*speed*speed + 1e-300))
             t40 = 1/speed
             t41 = slip_speed*slip_speed
-            t42 = speed**(-2)
+            t42 = 1/(speed*speed)
             t43 = (0.25)*t41*t42 + 0.75
-            t44 = t43**(-2)
+            t44 = 1/(t43*t43)
             t45 = t40*t44
             t46 = slip_speed*t40
             t47 = tanh(4*t46)
@@ -268,7 +268,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t52 = coefficient*t47 + t48*t51
             t53 = 4*coefficient*(1 - t47*t47)
             t54 = slip_speed*t42
-            t55 = t43**(-3)
+            t55 = 1/(t43*t43*t43)
             delta_trial_size = delta_trial*trial/sqrt(trial*trial + 1e-300)
             delta_drag = (delta_coefficient*(t50*(t47 - t48) if speed > 0.0 else 0) +
                 delta_pressed*(t49*t52 if speed > 0.0 else 0) + delta_slip_speed*(-pressed*t52/t41
@@ -535,6 +535,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             kept[2] = 0.0
             kept[3] = bar_z*increment_1
             kept[4] = 0.0
+            vectors[31] = 0.0
+            vectors[32] = 0.0
             vectors[33] = 0.0
             vectors[34] = 0.0
             vectors[35] = 0.0

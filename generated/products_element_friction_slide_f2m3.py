@@ -272,9 +272,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 + 1e-12*speed*speed + 1e-300))
             t41 = 1/speed
             t42 = slip_speed*slip_speed
-            t43 = speed**(-2)
+            t43 = 1/(speed*speed)
             t44 = (0.25)*t42*t43 + 0.75
-            t45 = t44**(-2)
+            t45 = 1/(t44*t44)
             t46 = t41*t45
             t47 = slip_speed*t41
             t48 = tanh(4*t47)
@@ -285,7 +285,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t53 = coefficient*t48 + t49*t52
             t54 = 4*coefficient*(1 - t48*t48)
             t55 = slip_speed*t43
-            t56 = t44**(-3)
+            t56 = 1/(t44*t44*t44)
             delta_trial_size = delta_trial*trial/sqrt(trial*trial + 1e-300)
             delta_drag = (delta_coefficient*(t51*(t48 - t49) if speed > 0.0 else 0) +
                 delta_pressed*(t50*t53 if speed > 0.0 else 0) + delta_slip_speed*(-pressed*t53/t42
@@ -565,6 +565,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             kept[2] = 0.0
             kept[3] = bar_z*increment_1
             kept[4] = 0.0
+            vectors[37] = 0.0
+            vectors[38] = 0.0
+            vectors[39] = 0.0
+            vectors[40] = 0.0
+            vectors[41] = 0.0
             vectors[42] = 0.0
             vectors[43] = 0.0
             vectors[44] = 0.0

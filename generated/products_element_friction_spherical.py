@@ -276,9 +276,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 1e-12*speed*speed + 1e-300))
             t50 = 1/speed
             t51 = slip_speed*slip_speed
-            t52 = speed**(-2)
+            t52 = 1/(speed*speed)
             t53 = (0.25)*t51*t52 + 0.75
-            t54 = t53**(-2)
+            t54 = 1/(t53*t53)
             t55 = t50*t54
             t56 = slip_speed*t50
             t57 = tanh(4*t56)
@@ -289,7 +289,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t62 = coefficient*t57 + t58*t61
             t63 = 4*coefficient*(1 - t57*t57)
             t64 = slip_speed*t52
-            t65 = t53**(-3)
+            t65 = 1/(t53*t53*t53)
             delta_trial_size = ((delta_trial_1*trial_1 + delta_trial_2*trial_2 +
                 delta_trial_3*trial_3)/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 +
                 1e-300))

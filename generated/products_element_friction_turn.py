@@ -325,9 +325,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 + 1e-12*speed*speed + 1e-300))
             t96 = 1/speed
             t97 = slip_speed*slip_speed
-            t98 = speed**(-2)
+            t98 = 1/(speed*speed)
             t99 = (0.25)*t97*t98 + 0.75
-            t100 = t99**(-2)
+            t100 = 1/(t99*t99)
             t101 = t100*t96
             t102 = slip_speed*t96
             t103 = tanh(4*t102)
@@ -338,7 +338,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t108 = coefficient*t103 + t104*t107
             t109 = 4*coefficient*(1 - t103*t103)
             t110 = slip_speed*t98
-            t111 = t99**(-3)
+            t111 = 1/(t99*t99*t99)
             delta_trial_size = delta_trial*trial/sqrt(trial*trial + 1e-300)
             delta_drag = (delta_coefficient*(t106*(t103 - t104) if speed > 0.0 else 0) +
                 delta_pressed*(t105*t108 if speed > 0.0 else 0) +
@@ -560,7 +560,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t62 = 2*t55
             t63 = 2*t56
             t64 = -m_x*t62 - n_x*t63
-            t65 = t57**(-2)
+            t65 = 1/(t57*t57)
             t66 = t65*(angle_along_m*t56 - angle_along_n*t55)
             t67 = -angle_seen_2*n_z + angle_seen_3*n_y
             t68 = -angle_seen_2*m_z + angle_seen_3*m_y

@@ -346,9 +346,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 + 1e-12*speed*speed + 1e-300))
             t98 = 1/speed
             t99 = slip_speed*slip_speed
-            t100 = speed**(-2)
+            t100 = 1/(speed*speed)
             t101 = (0.25)*t100*t99 + 0.75
-            t102 = t101**(-2)
+            t102 = 1/(t101*t101)
             t103 = t102*t98
             t104 = slip_speed*t98
             t105 = tanh(4*t104)
@@ -359,7 +359,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t110 = coefficient*t105 + t106*t109
             t111 = 4*coefficient*(1 - t105*t105)
             t112 = slip_speed*t100
-            t113 = t101**(-3)
+            t113 = 1/(t101*t101*t101)
             delta_trial_size = delta_trial*trial/sqrt(trial*trial + 1e-300)
             delta_drag = (delta_coefficient*(t108*(t105 - t106) if speed > 0.0 else 0) +
                 delta_pressed*(t107*t110 if speed > 0.0 else 0) +
@@ -596,7 +596,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t62 = 2*t55
             t63 = 2*t56
             t64 = -m_x*t62 - n_x*t63
-            t65 = t57**(-2)
+            t65 = 1/(t57*t57)
             t66 = t65*(angle_along_m*t56 - angle_along_n*t55)
             t67 = -angle_seen_2*n_z + angle_seen_3*n_y
             t68 = -angle_seen_2*m_z + angle_seen_3*m_y
@@ -874,6 +874,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             kept[2] = 0.0
             kept[3] = bar_z*increment_1
             kept[4] = 0.0
+            vectors[26] = 0.0
+            vectors[27] = 0.0
+            vectors[28] = 0.0
+            vectors[29] = 0.0
             vectors[30] = 0.0
             vectors[31] = 0.0
             vectors[32] = 0.0

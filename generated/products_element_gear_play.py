@@ -902,7 +902,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t98 = 2*t91
             t99 = 2*t92
             t100 = -m1_x*t98 - n1_x*t99
-            t101 = t93**(-2)
+            t101 = 1/(t93*t93)
             t102 = t101*(angle_1_along_m*t92 - angle_1_along_n*t91)
             t103 = bar_speed_beyond*side
             t104 = -angle_1_seen_2*n1_z + angle_1_seen_3*n1_y

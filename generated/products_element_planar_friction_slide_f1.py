@@ -197,9 +197,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 + 1e-12*speed*speed + 1e-300))
             t30 = 1/speed
             t31 = slip_speed*slip_speed
-            t32 = speed**(-2)
+            t32 = 1/(speed*speed)
             t33 = (0.25)*t31*t32 + 0.75
-            t34 = t33**(-2)
+            t34 = 1/(t33*t33)
             t35 = t30*t34
             t36 = slip_speed*t30
             t37 = tanh(4*t36)
@@ -210,7 +210,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t42 = coefficient*t37 + t38*t41
             t43 = 4*coefficient*(1 - t37*t37)
             t44 = slip_speed*t32
-            t45 = t33**(-3)
+            t45 = 1/(t33*t33*t33)
             delta_trial_size = delta_trial*trial/sqrt(trial*trial + 1e-300)
             delta_drag = (delta_coefficient*(t40*(t37 - t38) if speed > 0.0 else 0) +
                 delta_pressed*(t39*t42 if speed > 0.0 else 0) + delta_slip_speed*(-pressed*t42/t31
@@ -342,6 +342,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             kept[2] = 0.0
             kept[3] = bar_z*increment_1
             kept[4] = 0.0
+            vectors[17] = 0.0
             vectors[18] = 0.0
             vectors[19] = 0.0
             vectors[20] = 0.0

@@ -206,9 +206,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 + 1e-12*speed*speed + 1e-300))
             t31 = 1/speed
             t32 = slip_speed*slip_speed
-            t33 = speed**(-2)
+            t33 = 1/(speed*speed)
             t34 = (0.25)*t32*t33 + 0.75
-            t35 = t34**(-2)
+            t35 = 1/(t34*t34)
             t36 = t31*t35
             t37 = slip_speed*t31
             t38 = tanh(4*t37)
@@ -219,7 +219,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t43 = coefficient*t38 + t39*t42
             t44 = 4*coefficient*(1 - t38*t38)
             t45 = slip_speed*t33
-            t46 = t34**(-3)
+            t46 = 1/(t34*t34*t34)
             delta_trial_size = delta_trial*trial/sqrt(trial*trial + 1e-300)
             delta_drag = (delta_coefficient*(t41*(t38 - t39) if speed > 0.0 else 0) +
                 delta_pressed*(t40*t43 if speed > 0.0 else 0) + delta_slip_speed*(-pressed*t43/t32
@@ -357,6 +357,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             kept[2] = 0.0
             kept[3] = bar_z*increment_1
             kept[4] = 0.0
+            vectors[19] = 0.0
+            vectors[20] = 0.0
             vectors[21] = 0.0
             vectors[22] = 0.0
             vectors[23] = 0.0

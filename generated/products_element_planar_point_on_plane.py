@@ -287,9 +287,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 1e-300))
             t60 = 1/speed
             t61 = slip_speed*slip_speed
-            t62 = speed**(-2)
+            t62 = 1/(speed*speed)
             t63 = (0.25)*t61*t62 + 0.75
-            t64 = t63**(-2)
+            t64 = 1/(t63*t63)
             t65 = t60*t64
             t66 = slip_speed*t60
             t67 = tanh(4*t66)
@@ -300,7 +300,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t72 = coefficient*t67 + t68*t71
             t73 = 4*coefficient*(1 - t67*t67)
             t74 = slip_speed*t62
-            t75 = t63**(-3)
+            t75 = 1/(t63*t63*t63)
             delta_trial_size = ((delta_trial_1*trial_1 +
                 delta_trial_2*trial_2)/sqrt(trial_1*trial_1 + trial_2*trial_2 + 1e-300))
             delta_drag = (delta_coefficient*(t70*(t67 - t68) if speed > 0.0 else 0) +

@@ -312,9 +312,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 1e-300))
             t68 = 1/speed
             t69 = slip_speed*slip_speed
-            t70 = speed**(-2)
+            t70 = 1/(speed*speed)
             t71 = (0.25)*t69*t70 + 0.75
-            t72 = t71**(-2)
+            t72 = 1/(t71*t71)
             t73 = t68*t72
             t74 = slip_speed*t68
             t75 = tanh(4*t74)
@@ -325,7 +325,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t80 = coefficient*t75 + t76*t79
             t81 = 4*coefficient*(1 - t75*t75)
             t82 = slip_speed*t70
-            t83 = t71**(-3)
+            t83 = 1/(t71*t71*t71)
             delta_trial_size = ((delta_trial_1*trial_1 +
                 delta_trial_2*trial_2)/sqrt(trial_1*trial_1 + trial_2*trial_2 + 1e-300))
             delta_drag = (delta_coefficient*(t78*(t75 - t76) if speed > 0.0 else 0) +

@@ -320,9 +320,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 1e-300))
             t77 = 1/speed
             t78 = slip_speed*slip_speed
-            t79 = speed**(-2)
+            t79 = 1/(speed*speed)
             t80 = (0.25)*t78*t79 + 0.75
-            t81 = t80**(-2)
+            t81 = 1/(t80*t80)
             t82 = t77*t81
             t83 = slip_speed*t77
             t84 = tanh(4*t83)
@@ -333,7 +333,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t89 = coefficient*t84 + t85*t88
             t90 = 4*coefficient*(1 - t84*t84)
             t91 = slip_speed*t79
-            t92 = t80**(-3)
+            t92 = 1/(t80*t80*t80)
             delta_trial_size = ((delta_trial_1*trial_1 +
                 delta_trial_2*trial_2)/sqrt(trial_1*trial_1 + trial_2*trial_2 + 1e-300))
             delta_drag = (delta_coefficient*(t87*(t84 - t85) if speed > 0.0 else 0) +

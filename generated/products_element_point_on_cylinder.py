@@ -427,9 +427,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 1e-12*speed*speed + 1e-300))
             t124 = 1/speed
             t125 = slip_speed*slip_speed
-            t126 = speed**(-2)
+            t126 = 1/(speed*speed)
             t127 = (0.25)*t125*t126 + 0.75
-            t128 = t127**(-2)
+            t128 = 1/(t127*t127)
             t129 = t124*t128
             t130 = slip_speed*t124
             t131 = tanh(4*t130)
@@ -440,7 +440,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t136 = coefficient*t131 + t132*t135
             t137 = 4*coefficient*(1 - t131*t131)
             t138 = slip_speed*t126
-            t139 = t127**(-3)
+            t139 = 1/(t127*t127*t127)
             delta_trial_size = ((delta_trial_1*trial_1 + delta_trial_2*trial_2 +
                 delta_trial_3*trial_3)/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 +
                 1e-300))

@@ -397,9 +397,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 1e-12*speed*speed + 1e-300))
             t100 = 1/speed
             t101 = slip_speed*slip_speed
-            t102 = speed**(-2)
+            t102 = 1/(speed*speed)
             t103 = (0.25)*t101*t102 + 0.75
-            t104 = t103**(-2)
+            t104 = 1/(t103*t103)
             t105 = t100*t104
             t106 = slip_speed*t100
             t107 = tanh(4*t106)
@@ -410,7 +410,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t112 = coefficient*t107 + t108*t111
             t113 = 4*coefficient*(1 - t107*t107)
             t114 = slip_speed*t102
-            t115 = t103**(-3)
+            t115 = 1/(t103*t103*t103)
             delta_trial_size = ((delta_trial_1*trial_1 + delta_trial_2*trial_2 +
                 delta_trial_3*trial_3)/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 +
                 1e-300))

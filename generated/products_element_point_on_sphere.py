@@ -405,9 +405,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 1e-12*speed*speed + 1e-300))
             t109 = 1/speed
             t110 = slip_speed*slip_speed
-            t111 = speed**(-2)
+            t111 = 1/(speed*speed)
             t112 = (0.25)*t110*t111 + 0.75
-            t113 = t112**(-2)
+            t113 = 1/(t112*t112)
             t114 = t109*t113
             t115 = slip_speed*t109
             t116 = tanh(4*t115)
@@ -418,7 +418,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t121 = coefficient*t116 + t117*t120
             t122 = 4*coefficient*(1 - t116*t116)
             t123 = slip_speed*t111
-            t124 = t112**(-3)
+            t124 = 1/(t112*t112*t112)
             delta_trial_size = ((delta_trial_1*trial_1 + delta_trial_2*trial_2 +
                 delta_trial_3*trial_3)/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 +
                 1e-300))

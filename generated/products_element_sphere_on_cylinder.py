@@ -549,9 +549,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 1e-12*speed*speed + 1e-300))
             t170 = 1/speed
             t171 = slip_speed*slip_speed
-            t172 = speed**(-2)
+            t172 = 1/(speed*speed)
             t173 = (0.25)*t171*t172 + 0.75
-            t174 = t173**(-2)
+            t174 = 1/(t173*t173)
             t175 = t170*t174
             t176 = slip_speed*t170
             t177 = tanh(4*t176)
@@ -562,7 +562,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t182 = coefficient*t177 + t178*t181
             t183 = 4*coefficient*(1 - t177*t177)
             t184 = slip_speed*t172
-            t185 = t173**(-3)
+            t185 = 1/(t173*t173*t173)
             delta_trial_size = ((delta_trial_1*trial_1 + delta_trial_2*trial_2 +
                 delta_trial_3*trial_3)/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 +
                 1e-300))

@@ -527,9 +527,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 1e-12*speed*speed + 1e-300))
             t155 = 1/speed
             t156 = slip_speed*slip_speed
-            t157 = speed**(-2)
+            t157 = 1/(speed*speed)
             t158 = (0.25)*t156*t157 + 0.75
-            t159 = t158**(-2)
+            t159 = 1/(t158*t158)
             t160 = t155*t159
             t161 = slip_speed*t155
             t162 = tanh(4*t161)
@@ -540,7 +540,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t167 = coefficient*t162 + t163*t166
             t168 = 4*coefficient*(1 - t162*t162)
             t169 = slip_speed*t157
-            t170 = t158**(-3)
+            t170 = 1/(t158*t158*t158)
             delta_trial_size = ((delta_trial_1*trial_1 + delta_trial_2*trial_2 +
                 delta_trial_3*trial_3)/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 +
                 1e-300))

@@ -187,13 +187,14 @@ class _Part:
         self.course = Course(run, one.linear, history)
         self.course.settle()
         self.seen = Seen(one.whole, run, history, one.linear)
-        self.slopes = Slopes(one.model, run, history, self.seen.explicit)
+        self.slopes = Slopes(one.model, run, history, self.seen.explicit, self.course.products)
         self.tables: dict[str, OfTable] = {}    # and amplitudes of loads, by name
         ports = {c.name: (c, port_of(one.model, run, c)) for c in one.columns}
         for name, (column, port) in ports.items():
             if port is not None and one.whole.kinematic:    # objectives look at motion alone
                 residuals, values = self.slopes.by_load(port)
-                self.tables[name] = OfTable(residuals, weights(one.model, column, history, values))
+                self.tables[name] = OfTable(residuals, weights(one.model, column, history, values),
+                                            one.linear.free)
 
     def slope(self, column: Column) -> Slope:
         """Derivatives by a number of a parameter."""
@@ -284,7 +285,7 @@ def _growth_forth(sizes: NDArray) -> float:
 
 
 def stacked(each: Sequence[Slope]) -> tuple[NDArray, NDArray, NDArray]:
-    """Slopes of residuals, motion and rates of the start by all parameters, these last."""
+    """Slopes of residuals, with what laws keep, of motion and rates of the start by all parameters, these last."""
     residuals, motion, rates = (np.stack([getattr(slope, name) for slope in each], axis=-1)
                                 for name in ("residuals", "motion", "rates"))
     return residuals, motion, rates

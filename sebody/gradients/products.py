@@ -3,6 +3,8 @@
     transposed   K^T w, C^T w and M^T w     of weights w of the residuals
     along        K xi + C v + M a           of a motion of the unknowns
 
+and the same of what laws keep from step to step, see `laws`.
+
 Kernels of products (`derive/kernels/products.py`) do this element by element: first PREPARE, once
 in a state, then as many products as are asked for. Vectors are those of all coordinates, in global
 axes. Dependent positions, at the ends of rigid links, follow the unknowns by the operators (20) of
@@ -29,12 +31,12 @@ from sebody.contract.layout import (
 from sebody.engine.arrays import Arrays
 from sebody.engine.evaluate import sum_forces
 from sebody.engine.links import pull_back
+from sebody.gradients import laws
+from sebody.gradients.laws import ROWS
 from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
 from sebody.kernels.loader import element_kernel_name, load, products_kernel_name
 from sebody.runs.first_run import compile_missing
 from sebody.runs.simulation import Simulation
-
-ROWS = 4        # vectors of an element: forces or their weights, motion, rates, second rates
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +50,11 @@ class Products(Arrays):
     work        this memory
     vectors     ROWS of each element
     forces      (coordinates,) weights, or products with motions
-    motion      (3, coordinates) motion, rates and second rates, or products with weights
+    motion      (4, coordinates) motion, rates, second rates and increments of rotations, or
+                products with weights
+    laws        (laws, 11) see `laws`
+    kept        (2, numbers) of all laws: changes or bars of what the step before has left; changes
+                or weights of what the step leaves
     ==========  ====================================================================================
     """
 
@@ -59,6 +65,8 @@ class Products(Arrays):
     vectors: NDArray
     forces: NDArray
     motion: NDArray
+    laws: NDArray
+    kept: NDArray
 
     @classmethod
     def of(cls, run: Simulation) -> "Products | None":
@@ -72,15 +80,19 @@ class Products(Arrays):
         modules, sizes = [load(name) for name in names], []
         for b, module in enumerate(modules):
             rotations = int(system.index[system.at_index[b] + AT_ROTATIONS])
-            size = module.WORK_ROWS and whole_vectors(module.KEPT) + scratch_size(
-                module.WORK_ROWS, getattr(module, "WORK_SQUARES", 0), int(system.width[b]),
-                rotations)
+            size = whole_vectors(module.KEPT)
+            if module.WORK_ROWS:
+                size += scratch_size(module.WORK_ROWS, getattr(module, "WORK_SQUARES", 0),
+                                     int(system.width[b]), rotations)
             sizes += [size] * int(system.count[b])
         ends, total = np.cumsum(sizes), run.numbering.total
+        at_work = (ends - sizes).astype(np.int64)
+        of_laws = laws.places_of(system, modules, at_work)
         return cls(np.array([module.kernel.address for module in modules]),
                    in_frames(run.model, run.numbering, system).astype(np.int64),
-                   (ends - sizes).astype(np.int64), np.zeros(max(int(ends[-1]), 1)),
-                   np.zeros(ROWS * int(system.at_g[-1])), np.zeros(total), np.zeros((3, total)))
+                   at_work, np.zeros(max(int(ends[-1]), 1)),
+                   np.zeros(ROWS * int(system.at_g[-1])), np.zeros(total), np.zeros((4, total)),
+                   of_laws, np.zeros((2, int(of_laws[:, laws.COUNT].sum()))))
 
 
 def _kernels(run: Simulation) -> list[str]:
@@ -130,34 +142,42 @@ def _run(task, system, state, products):
 def transposed(system, state, products, free):
     """From `forces` of the unknowns to `motion`: ``K^T w``, ``C^T w`` and ``M^T w``.
 
-    The state is prepared. What is behind the unknowns in `motion` has no meaning.
+    The second row of `kept` has weights, too, and its first row gets what they give. The state is prepared. What is behind the unknowns in `motion` has no meaning.
     """
     w, bars = products.forces, products.motion
     for i in range(free, w.size):
         w[i] = 0.0
     _place(system, state, w)
     _take(system, state, products, w, 0)
+    laws.give(system, products, True)
     _run(TRANSPOSED, system, state, products)
-    for r in range(3):
+    for r in range(4):
         for i in range(w.size):
             bars[r, i] = 0.0
-        _give(system, state, products, bars[r], r + 1)
+        if r < 3:
+            _give(system, state, products, bars[r], r + 1)
+    laws.take(system, products, True)
     if system.links.dependent.shape[0] > 0:
         _pull_back(system, state, w, bars)
 
 
 @compiled
 def along(system, state, products, free):
-    """From `motion` of the unknowns to `forces`: ``K xi + C v + M a``. The state is prepared."""
+    """From `motion` of the unknowns to `forces`: ``K xi + C v + M a``. The state is prepared.
+
+    The same of `kept`, from the first row to the second one, and of increments in `motion`.
+    """
     f, moves = products.forces, products.motion
-    for r in range(3):
+    for r in range(4):
         for i in range(free, f.size):
             moves[r, i] = 0.0
     if system.links.dependent.shape[0] > 0:
         _place_moved(system, state, moves)
     for r in range(3):
         _take(system, state, products, moves[r], r + 1)
+    laws.give(system, products, False)
     _run(ALONG, system, state, products)
+    laws.take(system, products, False)
     for i in range(f.size):
         f[i] = 0.0
     _give(system, state, products, f, 0)

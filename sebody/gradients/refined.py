@@ -37,15 +37,17 @@ class Refined:
         self.linear, self.products, self.history = linear, products, history
         self.back, self.redundant, n = back, redundant, linear.free
         self.columns = steps.Columns.of(
-            columns, n, places, scheme.tolerance if scheme.tolerance > FINE else ROUNDING)
+            columns, n, products.kept.shape[1], places, scheme.tolerance if scheme.tolerance > FINE else ROUNDING)
         self.numbers = (scheme.alpha_m, scheme.alpha_f, scheme.beta, scheme.gamma,
                         history.duration)
         self.scales: dict[float, Scales] = {}
 
     def begin(self, motion: tuple[NDArray, ...]) -> None:
-        """Columns (n, m) of motion, rates, second and auxiliary rates; what was before is no guide.
+        """Columns (n, m) of motion, rates, second and auxiliary rates, (k, m) of what laws keep.
+
+        What was before is no guide.
         """
-        for own, given in zip(self.columns.motion, motion, strict=True):
+        for own, given in zip((*self.columns.motion, self.columns.kept), motion, strict=True):
             own[:] = given.T
         self.columns.counts[steps.GUESSES] = 0
         self.columns.last[:] = 0.0
@@ -53,7 +55,7 @@ class Refined:
     @property
     def motion(self) -> list[NDArray]:
         """Columns as of `begin`."""
-        return [own.T.copy() for own in self.columns.motion]
+        return [own.T.copy() for own in (*self.columns.motion, self.columns.kept)]
 
     def over(self, first: int, last: int, *arrays: NDArray) -> None:
         """All steps from one event to another: (events, ...) arrays of `steps.backward`, `forward`.

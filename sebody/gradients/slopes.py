@@ -24,7 +24,9 @@ from sebody.engine.state import REASONS
 from sebody.errors import InputError, LimitWarning
 from sebody.explore.ensembles.changes import Handle
 from sebody.gradients.history import RESTART, History
+from sebody.gradients.laws import in_changed
 from sebody.gradients.parameters import Column
+from sebody.gradients.products import Products
 from sebody.gradients.start_rates import fitted_rates
 from sebody.kernels.abi import pointer_to
 from sebody.kernels.rotations import rotate
@@ -42,7 +44,8 @@ NOISE = 1e-8                    # of values: velocities of the start have so muc
 class Slope(NamedTuple):
     """Derivatives by one number."""
 
-    residuals: NDArray      # (events, n); of the start with what its motion changes
+    residuals: NDArray      # (events, n + k), and of the k numbers that laws keep; of the start
+                            # with what its motion changes
     motion: NDArray         # (n,) of the start: positions, rotations
     rates: NDArray          # (n,)
     objectives: NDArray     # (m,) with the motion held
@@ -135,10 +138,15 @@ class Slopes:
     objectives : function
         Values of all objectives, (m,), of recorded rows and a simulation of the model that is
         changed; None where they do not depend on anything but motion.
+    products : Products, optional
+        Of the run, if it has laws.
     """
 
     def __init__(self, model: Model, run: Simulation, history: History,
-                 objectives: Callable[[Simulation, NDArray], NDArray]):
+                 objectives: Callable[[Simulation, NDArray], NDArray],
+                 products: Products | None = None):
+        self.products = products
+        self.kept = 0 if products is None else products.kept.shape[1]
         self.model, self.run, self.history, self.objectives = model, run, history, objectives
         self.free = run.numbering.free
         parts = run.state.recorded_parts
@@ -247,10 +255,12 @@ class Slopes:
                ) -> tuple[NDArray, NDArray]:
         """Residuals of all events, and the states of this model that they are of if asked for."""
         system, state, history = made.system, made.state, self.history
-        found = np.zeros((len(history.rows), self.free))
+        found = np.zeros((len(history.rows), self.free + self.kept))
         now = history.rows[:len(history.rows) if states else 1].copy()
         if history.past is None:
-            found[0] = self._first(made, load)
+            found[0, :self.free] = self._first(made, load)
+            if states:
+                self._follow(made, state.now[None].copy(), found, 0, 1)
             self._hold_start(made)
             now[0] = state.now
         else:
@@ -261,7 +271,21 @@ class Slopes:
                             history.besides, self.places, self.free, load, found)
         if status != OK:
             raise InputError(f"a state cannot be evaluated: {REASONS[status]}")
+        if states:
+            self._follow(made, now[1:], found, 1, len(now))
         return found, now
+
+    def _follow(self, made: Simulation, now: NDArray, found: NDArray, first: int, last: int
+                ) -> None:
+        """Let laws stay in the branches of the run: see `laws.in_changed`."""
+        if not self.kept:
+            return
+        (system, state), history, piece = self.run.arrays_of_loop, self.history, slice(first, last)
+        status = in_changed(system, state, self.products, made.system, made.state,
+                            history.rows[piece], now, history.ends[piece], history.besides[piece],
+                            found[piece])
+        if status != OK:
+            raise InputError(f"a state cannot be evaluated: {REASONS[status]}")
 
     def _first(self, made: Simulation, load: tuple[int, float]) -> NDArray:
         """Residual of the start with accelerations and multipliers of the run."""

@@ -39,6 +39,10 @@ class Columns(Arrays):
 
     ==========  ====================================================================================
     motion      (4, m, n) motion, rates, second rates and auxiliary ones, or bars of these
+    kept        (m, k) of the k numbers that laws keep, see `laws`
+    own         (m, k) bars of these by what a step keeps, without its solution
+    increments  (m, n) the same of increments of the step
+    through     (m, k) bars by the residuals: products of the solutions
     given       (3, m, n) the same for the event at hand: with what objectives say, or predicted
     found       (3, m, n) products of the solutions
     last        (3, m, n) solutions of the events before, newest first, in axes of frames
@@ -59,6 +63,10 @@ class Columns(Arrays):
     """
 
     motion: NDArray
+    kept: NDArray
+    own: NDArray
+    increments: NDArray
+    through: NDArray
     given: NDArray
     found: NDArray
     last: NDArray
@@ -77,11 +85,11 @@ class Columns(Arrays):
     length: NDArray
 
     @classmethod
-    def of(cls, m: int, n: int, places: NDArray, tolerance: float) -> "Columns":
+    def of(cls, m: int, n: int, k: int, places: NDArray, tolerance: float) -> "Columns":
         """All zero."""
         r = len(places)
         return cls(*(np.zeros(shape) for shape in (
-            (4, m, n), (3, m, n), (3, m, n), (3, m, n), (m, n), (n, n), n, n, n, n, n)),
+            (4, m, n), (m, k), (m, k), (m, n), (m, k), (3, m, n), (3, m, n), (3, m, n), (m, n), (n, n), n, n, n, n, n)),
             np.ascontiguousarray(places, dtype=np.int64), np.zeros((r, 9)), np.zeros((r, 9)),
             np.zeros(5, dtype=np.int64), np.array([tolerance]), np.zeros(1))
 
@@ -150,6 +158,7 @@ def _multiply(system, state, products, columns, j, cm, cd, back):
     """The matrix, or its transpose, times `change`, both in axes of frames, goes to `product`."""
     n, w, bars, moved = columns.right.size, products.forces, products.motion, columns.product
     columns.counts[PRODUCTS] += 1
+    _hold(products)
     if back:
         for i in range(n):
             w[i] = columns.change[i]
@@ -159,10 +168,12 @@ def _multiply(system, state, products, columns, j, cm, cd, back):
             for c in range(3):
                 columns.found[c, j, i] = bars[c, i]
             moved[i] = bars[0, i]
+        for i in range(products.kept.shape[1]):
+            columns.through[j, i] = products.kept[0, i]
         _turn(columns, columns.T, moved, True)
         for i in range(n):
             if system.is_multiplier[i] == 0.0:
-                moved[i] += cd * bars[1, i] + cm * bars[2, i]
+                moved[i] += cd * bars[1, i] + cm * bars[2, i] + bars[3, i]
         to_body_axes(system, state.frames, moved, False)
         return
     xi = bars[0]
@@ -171,12 +182,56 @@ def _multiply(system, state, products, columns, j, cm, cd, back):
     to_body_axes(system, state.frames, xi, True)
     for i in range(n):
         free = 1.0 - system.is_multiplier[i]
-        bars[1, i], bars[2, i] = cd * free * xi[i], cm * free * xi[i]
+        bars[1, i], bars[2, i], bars[3, i] = cd * free * xi[i], cm * free * xi[i], free * xi[i]
     _turn(columns, columns.T, xi, False)
     along(system, state, products, n)
     for i in range(n):
         moved[i] = w[i]
     to_body_axes(system, state.frames, moved, False)
+
+
+@compiled(forceinline=True)
+def _hold(products):
+    """Nothing of what laws keep changes, or has weights."""
+    for i in range(products.kept.shape[1]):
+        products.kept[0, i] = products.kept[1, i] = 0.0
+
+
+@compiled
+def _weigh(system, state, products, columns, j):
+    """Bars of column j by what the step keeps, whose own ones are at hand."""
+    n, k = columns.right.size, columns.kept.shape[1]
+    if k == 0:
+        return
+    for i in range(n):
+        products.forces[i] = 0.0
+    for i in range(k):
+        products.kept[1, i] = columns.kept[j, i]
+    transposed(system, state, products, n)
+    for i in range(n):
+        for c in range(3):
+            columns.given[c, j, i] += products.motion[c, i]
+        columns.increments[j, i] = products.motion[3, i]
+    for i in range(k):
+        columns.own[j, i] = products.kept[0, i]
+
+
+@compiled
+def _keep(system, state, products, columns, j, increments, slopes):
+    """Changes of column j of what the step keeps, of which the motion is at its end."""
+    n, k = columns.right.size, columns.kept.shape[1]
+    if k == 0:
+        return
+    for i in range(n):
+        free = 1.0 - system.is_multiplier[i]
+        products.motion[0, i] = columns.motion[0, j, i]
+        products.motion[1, i], products.motion[2, i], products.motion[3, i] = (
+            free * columns.motion[1, j, i], free * columns.motion[2, j, i], free * increments[i])
+    for i in range(k):
+        products.kept[0, i] = columns.kept[j, i]
+    along(system, state, products, n)
+    for i in range(k):
+        columns.kept[j, i] = products.kept[1, i] + slopes[n + i]
 
 
 @compiled
@@ -244,7 +299,7 @@ def backward(system, state, products, columns, rows, lengths, offsets, ends, bes
     """(11) to (15) over steps from the last to the first; the event that asks for an inverse.
 
     DONE in place of it, or FAILED. `numbers` are alpha_m, alpha_f, beta, gamma and the duration of
-    the run; `seeds` (events, m, 3, n) and `weights` (events, m, n) are written or read.
+    the run; `seeds` (events, m, 3, n) and `weights` (events, m, n + k) are read or written.
     """
     n, m = columns.right.size, columns.now.shape[0]
     am, af, b, g, duration = numbers
@@ -263,13 +318,15 @@ def backward(system, state, products, columns, rows, lengths, offsets, ends, bes
                     given[c, j, i] = motion[c, j, i]
                     if seeded[e]:
                         given[c, j, i] += seeds[e, j, c, i] * (1.0 if c == 0 else free)
+            _weigh(system, state, products, columns, j)
+            for i in range(n):
                 columns.right[i] = given[0, j, i]
             _turn(columns, columns.T, columns.right, True)
             for i in range(n):
                 columns.right[i] = -columns.right[i]
                 if system.is_multiplier[i] == 0.0:
                     columns.right[i] -= (cd * given[1, j, i] + cm * given[2, j, i]
-                                         + cu * motion[3, j, i])
+                                         + cu * motion[3, j, i] + columns.increments[j, i])
             to_body_axes(system, state.frames, columns.right, False)
             code = _solve(system, state, products, columns, j, cm, cd, True)
             if code != 0:
@@ -278,6 +335,9 @@ def backward(system, state, products, columns, rows, lengths, offsets, ends, bes
         for j in range(m):
             for i in range(n):
                 weights[e, j, i] = columns.now[j, i]
+            for i in range(columns.kept.shape[1]):
+                weights[e, j, n + i] = columns.kept[j, i]
+                columns.kept[j, i] = columns.own[j, i] + columns.through[j, i]
             to_body_axes(system, state.frames, weights[e, j], True)
             for i in range(n):
                 free = 1.0 - system.is_multiplier[i]
@@ -304,8 +364,9 @@ def forward(system, state, products, columns, rows, lengths, offsets, ends, besi
             numbers, first, last, states):
     """(8) to (10) over steps from the first to the last; the event that asks for an inverse.
 
-    DONE in place of it, or FAILED. `slopes` (events, m, n) are those of the residuals by
-    parameters; `states` (events, m, 3, n), motion, rates and second rates, is written.
+    DONE in place of it, or FAILED. `slopes` (events, m, n + k) are those of the residuals, and of
+    what laws keep, by parameters; `states` (events, m, 3, n), motion, rates and second rates, is
+    written.
     """
     n, m = columns.right.size, columns.now.shape[0]
     am, af, b, g, _ = numbers
@@ -330,6 +391,9 @@ def forward(system, state, products, columns, rows, lengths, offsets, ends, besi
                 given[0, j, i] *= 1.0 - system.is_multiplier[i]
                 for c in range(3):
                     products.motion[c, i] = given[c, j, i]
+                products.motion[3, i] = 0.0
+            for i in range(products.kept.shape[1]):
+                products.kept[0, i] = columns.kept[j, i]
             along(system, state, products, n)
             for i in range(n):
                 columns.right[i] = -(slopes[e, j, i] + products.forces[i])
@@ -343,6 +407,8 @@ def forward(system, state, products, columns, rows, lengths, offsets, ends, besi
                 y[i] = columns.now[j, i]
             to_body_axes(system, state.frames, y, True)
             for i in range(n):
+                columns.change[i] = y[i]
+            for i in range(n):
                 free = 1.0 - system.is_multiplier[i]
                 _, aux_now = _predicted(motion, j, i, offsets[e], h, b)
                 motion[3, j, i] = free * (aux_now + cu * y[i])
@@ -353,6 +419,7 @@ def forward(system, state, products, columns, rows, lengths, offsets, ends, besi
                 motion[0, j, i] = given[0, j, i] + y[i]
                 for c in range(3):
                     states[e, j, c, i] = motion[c, j, i]
+            _keep(system, state, products, columns, j, columns.change, slopes[e, j])
         _conclude(system, state, columns)
     return DONE
 

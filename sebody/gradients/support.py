@@ -2,12 +2,12 @@
 
 from sebody.errors import InputError
 from sebody.generated.options import FRAMES
-from sebody.kernels.loader import element_kernel
+from sebody.gradients.laws import remembering
+from sebody.kernels.loader import element_kernel_name, products_kernel_name
 from sebody.model.model import Model
 from sebody.runs.simulation import Simulation
 
 USER_FORCE = "user_force"
-COUNTED = ("angle",)        # what torsion springs keep to count turns, no force depends on it else
 
 
 def refuse_model(model: Model) -> None:
@@ -45,11 +45,11 @@ def refuse_run(run: Simulation) -> None:
     InputError
         Friction, contacts, actuators, sensors, motions without mass, constraints of index 2.
     """
-    if remembering := [one.name for one in run.numbering.memories
-                       if element_kernel(one.kind).MEMORY != COUNTED]:
-        raise InputError(f"{remembering[0]!r} keeps numbers from step to step, as friction, "
-                         "contacts and stops do, and these are not differentiated: leave it out, "
-                         "or use an Ensemble with values on both sides")
+    for one in remembering(run):
+        if products_kernel_name(element_kernel_name(one.kind)) is None:
+            raise InputError(f"contact {one.name!r} is one of a point inside a body, which is not "
+                             "differentiated: let a node of the body touch, or use an Ensemble "
+                             "with values on both sides")
     if run.sampling.has_inputs:
         name = next(iter(run.numbering.memory.ports))
         raise InputError(f"actuator {name!r}: what is set during a run is not differentiated: give "

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from sebody.engine.state import Scheme
+from sebody.errors import InputError
 from sebody.gradients.factors import Factors, Scales
 from sebody.gradients.history import RESTART, STEP, History
 from sebody.gradients.linear import Linear, Parts
-from sebody.gradients.products import Products
+from sebody.gradients.products import Products, along, prepare, transposed
 from sebody.gradients.refined import Refined
 from sebody.gradients.second_rates import second_rates
 from sebody.gradients.turns import Turns, turns_of
@@ -91,6 +92,7 @@ class Course:
         self.turning = places[:, None] + np.arange(3)
         self.redundant = bool(system.regularized[0])
         self.products = Products.of(run) if linear.dense else None
+        self.kept = 0 if self.products is None else self.products.kept.shape[1]     # by laws
         self._scales: dict[float, Scales] = {}
         self._q = linear.state.recorded_parts["q"].start
         self._turns: tuple[int, list[Turns]] = 0, []        # of some events, from the first one on
@@ -110,12 +112,42 @@ class Course:
     def refined(self, columns: int, back: bool) -> Refined | None:
         """The recursion by products; None where matrices are quicker, or there are no products.
 
-        A matrix is worth as many products as it has columns.
+        A matrix is worth as many products as it has columns; it says nothing of what laws keep.
         """
-        if self.products is None or columns > self.linear.free:
+        if self.products is None or (columns > self.linear.free and not self.kept):
             return None
         return Refined(self.linear, self.products, self.scheme, self.history, columns, back,
                        self.turning[:, 0], self.redundant)
+
+    def kept_by_multipliers(self, event: int, changes: NDArray) -> NDArray:
+        """Changes of what laws keep at the start by those of multipliers, (k, p)."""
+        found = self._prepared(event)
+        columns = []
+        for change in changes.T:
+            found.motion[:], found.kept[:] = 0.0, 0.0
+            found.motion[0, :len(change)] = change
+            along(self.linear.system, self.linear.state, found, self.linear.free)
+            columns.append(found.kept[1].copy())
+        return np.array(columns).T
+
+    def multipliers_by_kept(self, event: int, bars: NDArray) -> NDArray:
+        """Bars of the motion, with multipliers, by those of what laws keep at the start, (n, m)."""
+        found, n = self._prepared(event), self.linear.free
+        columns = []
+        for bar in bars.T:
+            found.forces[:], found.kept[1] = 0.0, bar
+            transposed(self.linear.system, self.linear.state, found, n)
+            columns.append(found.motion[0, :n].copy())
+        return np.array(columns).T
+
+    def _prepared(self, event: int) -> Products:
+        """Products in the state of an event."""
+        assert self.products is not None
+        self.linear.at(self.history.rows[event], self.history.ends[event],
+                       self.history.besides[event])
+        if prepare(self.linear.system, self.linear.state, self.products):
+            raise InputError(f"the state at t = {self.history.ends[event]:.6g} has no derivatives")
+        return self.products
 
     def stretches(self) -> list[tuple[int, int, int]]:
         """Kind, first and last of events in a row: pieces of steps, single restarts."""
@@ -168,7 +200,8 @@ def _initial(parts: Parts, fixed: NDArray) -> NDArray:
     return sparse.csc_array(others @ parts.mass @ others + some @ K + others @ K @ some)
 
 
-Motion = Sequence[NDArray]      # motion, rates, second and auxiliary rates, or bars of them
+# motion, rates, second and auxiliary rates, and what laws keep, or bars of them
+Motion = Sequence[NDArray]
 
 
 def forward(course: Course, slopes: NDArray, motion: NDArray, rates: NDArray,
@@ -177,9 +210,9 @@ def forward(course: Course, slopes: NDArray, motion: NDArray, rates: NDArray,
 
     Parameters
     ----------
-    slopes : (events, n, p)
-        Of the residuals by parameters, in states that are held; those of the start with its motion
-        and rates.
+    slopes : (events, n + k, p)
+        Of the residuals by parameters, in states that are held, and of what laws keep; those of
+        the start with its motion and rates.
     motion, rates : (n, p)
         Of the start.
     see : function
@@ -189,7 +222,7 @@ def forward(course: Course, slopes: NDArray, motion: NDArray, rates: NDArray,
         What the sweep over the segment before has returned, in place of the start's.
     """
     now: Motion = before or (motion * course.moving, rates * course.moving, 0.0 * motion,
-                             0.0 * motion)
+                             0.0 * motion, np.zeros((course.kept, motion.shape[1])))
     refined = course.refined(motion.shape[1], back=False)
     for kind, first, last in course.stretches():
         if kind == RESTART:
@@ -211,17 +244,20 @@ def forward(course: Course, slopes: NDArray, motion: NDArray, rates: NDArray,
 
 def _over_restart(course: Course, event: Event, slopes: NDArray, now: Motion) -> Motion:
     """Accelerations and multipliers anew."""
-    xi, v, *_ = now
-    moving, y = course.moving, -slopes
+    xi, v, _, _, kept = now
+    n, moving = len(xi), course.moving
+    y = -slopes[:n]
     if event.number:        # the slopes of the start hold what its motion does
         y -= _of_restart(event, course.fixed, xi * moving, v)
     y = event.factors.solve(y)
-    return xi * moving + y * (1 - moving), v, y * moving, y * moving
+    if course.kept:
+        kept = slopes[n:] + course.kept_by_multipliers(event.number, y * (1 - moving))
+    return xi * moving + y * (1 - moving), v, y * moving, y * moving, kept
 
 
 def _over_step(course: Course, event: Event, slopes: NDArray, now: Motion) -> Motion:
     """(8) to (10)."""
-    (M, C, K), moving, (xi, v, a, aux) = event.parts, course.moving, now
+    (M, C, K), moving, (xi, v, a, aux, kept) = event.parts, course.moving, now
     c = Coefficients.of(course.scheme, float(course.history.steps[event.number]))
     offset = course.history.offsets[event.number]
     aux = (1 - offset) * a + offset * aux
@@ -231,7 +267,7 @@ def _over_step(course: Course, event: Event, slopes: NDArray, now: Motion) -> Mo
     xip = event.turns.moved(xi) * moving
     y = event.factors.solve(-(slopes + K @ xip + C @ vp + M @ ap))
     xi, y = xip + event.turns.turned(y), y * moving
-    return xi, vp + c.cd * y, ap + c.cm * y, auxp + c.cu * y
+    return xi, vp + c.cd * y, ap + c.cm * y, auxp + c.cu * y, kept
 
 
 def _of_restart(event: Event, fixed: NDArray, xi: NDArray, v: NDArray) -> NDArray:
@@ -244,7 +280,7 @@ def _of_restart(event: Event, fixed: NDArray, xi: NDArray, v: NDArray) -> NDArra
 class Adjoint(NamedTuple):
     """Result of a sweep back."""
 
-    weights: NDArray    # (events, m, n) of the slopes of the residuals: (16)
+    weights: NDArray    # (events, m, n + k) of the slopes of the residuals and of what laws keep
     bars: Motion        # (n, m) each, by the state at the start: accelerations are solved for
     sizes: NDArray      # (events,) largest effect of a disturbance of each state on an objective
 
@@ -257,8 +293,8 @@ def backward(course: Course, seeds: Seeds, count: int, after: Motion | None = No
     n, events = course.linear.free, len(course.history.rows)
     extent = course.linear.system.magnitude[:n, None]       # of disturbances: of rates in the run
     duration = course.history.duration
-    weights, sizes = np.zeros((events, count, n)), np.zeros(events)
-    bars: Motion = after or [np.zeros((n, count)) for _ in range(4)]
+    weights, sizes = np.zeros((events, count, n + course.kept)), np.zeros(events)
+    bars: Motion = after or [np.zeros((k, count)) for k in (n, n, n, n, course.kept)]
     refined = course.refined(count, back=True)
     for kind, first, last in reversed(course.stretches()):
         if kind == STEP and refined is not None:
@@ -280,13 +316,15 @@ def _seeded(course: Course, seed: Bars | None, bars: Motion) -> Motion:
     """With what objectives say of the state."""
     if seed is None:
         return bars
-    (X, V, A, U), moving = bars, course.moving
-    return X + seed.motion, V + seed.rates * moving, A + seed.seconds * moving, U
+    (X, V, A, U, Z), moving = bars, course.moving
+    return X + seed.motion, V + seed.rates * moving, A + seed.seconds * moving, U, Z
 
 
 def _back_over_restart(course: Course, event: Event, bars: Motion) -> tuple[NDArray, Motion]:
     """Weights, and bars before."""
-    (_, C, K), moving, (X, V, A, U) = event.parts, course.moving, bars
+    (_, C, K), moving, (X, V, A, U, Z) = event.parts, course.moving, bars
+    if course.kept:
+        X = X + course.multipliers_by_kept(event.number, Z) * (1 - moving)
     w = event.factors.solve(-(A * moving + U + X * (1 - moving)), transposed=True)
     X = X * moving
     if event.number:
@@ -294,12 +332,12 @@ def _back_over_restart(course: Course, event: Event, bars: Motion) -> tuple[NDAr
         of_forces[course.fixed] = 0.0
         X = X + (K.T @ of_forces + event.rates[0].T @ w[course.fixed]) * moving
         V = V + (C.T @ of_forces + event.rates[1].T @ w[course.fixed]) * moving
-    return w, (X, V, np.zeros_like(A), np.zeros_like(U))
+    return np.concatenate([w, Z]), (X, V, np.zeros_like(A), np.zeros_like(U), np.zeros_like(Z))
 
 
 def _back_over_step(course: Course, event: Event, bars: Motion) -> tuple[NDArray, Motion]:
     """(11) to (15)."""
-    (M, C, K), moving, (X, V, A, U) = event.parts, course.moving, bars
+    (M, C, K), moving, (X, V, A, U, Z) = event.parts, course.moving, bars
     c = Coefficients.of(course.scheme, float(course.history.steps[event.number]))
     offset = course.history.offsets[event.number]
     w = event.factors.solve(-(event.turns.turned_back(X) + moving * (
@@ -308,4 +346,4 @@ def _back_over_step(course: Course, event: Event, bars: Motion) -> tuple[NDArray
     U1 = U + c.h * c.g * V1 + (1 - c.am) / (1 - c.af) * A1
     X, V, A = event.turns.moved_back(X1), V1 - U1 / (c.b * c.h), -c.af / (1 - c.af) * A1
     U = c.h * (1 - c.g) * V1 + c.am / (1 - c.af) * A1 - (0.5 - c.b) / c.b * U1
-    return w, (X, V, A + (1 - offset) * U, offset * U)
+    return w, (X, V, A + (1 - offset) * U, offset * U, Z)

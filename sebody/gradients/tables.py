@@ -27,14 +27,14 @@ TABLE, AMPLITUDE = ".table", ".amplitude"
 class OfTable(NamedTuple):
     """Derivatives by the values of a table, or by an amplitude as the only one."""
 
-    residuals: NDArray      # (events, n) by the value of the time function
+    residuals: NDArray      # (events, n + k) by the value of the time function
     weights: sparse.csr_array   # (events, rows) of the table's values in that
+    free: int                   # unknowns n; behind them are the numbers that laws keep
 
     def slope(self, row: int, objectives: int) -> Slope:
         """By the value of one row."""
-        n = self.residuals.shape[1]
-        return Slope(self.weights[:, [row]].toarray() * self.residuals, np.zeros(n), np.zeros(n),
-                     np.zeros(objectives))
+        return Slope(self.weights[:, [row]].toarray() * self.residuals, np.zeros(self.free),
+                     np.zeros(self.free), np.zeros(objectives))
 
     def contracted(self, bars: NDArray) -> NDArray:
         """``sum w . r_p`` by all values, (m, rows), of the weights of a sweep back."""
