@@ -45,14 +45,14 @@ def remembering(run: Simulation) -> list[Element]:
     return [one for one in run.numbering.memories if one.law is None and keeps(one.kind)]
 
 
-def places_of(system: System, modules: list[ModuleType], at_work: NDArray) -> NDArray:
+def places_of(system: System, modules: list[ModuleType | None], at_work: NDArray) -> NDArray:
     """Rows of all laws, (laws, 11); modules of products are those of the batches."""
     found, element, first = [], 0, 0
     for b, module in enumerate(modules):
         memory = getattr(module, "MEMORY", ())
-        width, turns = int(system.width[b]), 3 * module.N_ROTATIONS if memory else 0
         for k in range(int(system.count[b])):
-            if memory not in ((), COUNTED):
+            if module is not None and memory not in ((), COUNTED):
+                width, turns = int(system.width[b]), 3 * module.N_ROTATIONS
                 index = int(system.at_index[b]) + k * int(system.stride[b])
                 force = int(system.at_g[b]) + k * width
                 numbers = Row("law", module.CONSTANTS).size({})

@@ -6,7 +6,8 @@
 and the same of what laws keep from step to step, see `laws`.
 
 Kernels of products (`derive/kernels/products.py`) do this element by element: first PREPARE, once
-in a state, then as many products as are asked for. Vectors are those of all coordinates, in global
+in a state, then as many products as are asked for. Laws of continuous controllers, whose kernel is
+written by hand, have their matrices made in its place. Vectors are those of all coordinates, in global
 axes. Dependent positions, at the ends of rigid links, follow the unknowns by the operators (20) of
 `links`, which are written out here, with their transposes.
 """
@@ -24,10 +25,16 @@ from sebody.contract.layout import (
     AT_FRAME,
     AT_POSITIONS,
     AT_ROTATIONS,
+    C_CONSTRAINT,
+    C_DAMPING,
+    C_MASS,
+    C_STIFFNESS,
     OK,
     PREPARE,
+    TANGENT,
     TRANSPOSED,
 )
+from sebody.contract.names import element_name
 from sebody.engine.arrays import Arrays
 from sebody.engine.evaluate import sum_forces
 from sebody.engine.links import pull_back
@@ -38,13 +45,16 @@ from sebody.kernels.loader import element_kernel_name, load, products_kernel_nam
 from sebody.runs.first_run import compile_missing
 from sebody.runs.simulation import Simulation
 
+CONTINUOUS = element_name("continuous")     # kernel of laws of controllers
+PARTS = "stiffness", "damping", "mass"      # matrices that are made
+
 
 @dataclass(frozen=True, eq=False)
 class Products(Arrays):
     """Kernels of products of a model, and what they work on.
 
     ==========  ====================================================================================
-    address     (batches,) of the kernel
+    address     (batches,) of the kernel; 0 where matrices are made
     turned      (batches,) 1 where vectors of elements are in axes of frames
     at_work     (elements,) where the scratch memory of each begins, which it keeps in a state
     work        this memory
@@ -73,22 +83,24 @@ class Products(Arrays):
         """Those of a model; None if it has an element without them."""
         system = run.system
         kernels = _kernels(run)
-        names = [products_kernel_name(kernel) for kernel in kernels]
-        if any(name is None for name in names):
+        names = [None if kernel == CONTINUOUS else products_kernel_name(kernel) or ""
+                 for kernel in kernels]
+        if "" in names:
             return None
-        compile_missing(names)
-        modules, sizes = [load(name) for name in names], []
+        compile_missing([name for name in names if name])
+        modules, sizes = [None if name is None else load(name) for name in names], []
         for b, module in enumerate(modules):
-            rotations = int(system.index[system.at_index[b] + AT_ROTATIONS])
-            size = whole_vectors(module.KEPT)
-            if module.WORK_ROWS:
-                size += scratch_size(module.WORK_ROWS, getattr(module, "WORK_SQUARES", 0),
-                                     int(system.width[b]), rotations)
+            rotations, width = (int(system.index[system.at_index[b] + AT_ROTATIONS]),
+                                int(system.width[b]))
+            size = len(PARTS) * width * width if module is None else whole_vectors(module.KEPT)
+            if module is not None and module.WORK_ROWS:
+                size += scratch_size(module.WORK_ROWS, getattr(module, "WORK_SQUARES", 0), width,
+                                     rotations)
             sizes += [size] * int(system.count[b])
         ends, total = np.cumsum(sizes), run.numbering.total
         at_work = (ends - sizes).astype(np.int64)
         of_laws = laws.places_of(system, modules, at_work)
-        return cls(np.array([module.kernel.address for module in modules]),
+        return cls(np.array([module.kernel.address if module else 0 for module in modules]),
                    in_frames(run.model, run.numbering, system).astype(np.int64),
                    at_work, np.zeros(max(int(ends[-1]), 1)),
                    np.zeros(ROWS * int(system.at_g[-1])), np.zeros(total), np.zeros((4, total)),
@@ -122,6 +134,14 @@ def _run(task, system, state, products):
         stride, width = system.stride[b], system.width[b]
         for k in range(system.count[b]):
             first = system.at_g[b] + k * width
+            if products.address[b] == 0:
+                status = _by_matrices(task, b, k, system, state, at(
+                    pointer_to(products.vectors), ROWS * first), at(
+                        pointer_to(products.work), products.at_work[element]))
+                if status != OK:
+                    return status
+                element += 1
+                continue
             status = call_kernel(
                 products.address[b], task, 1, stride, width,
                 Arguments(index=at(pointer_to(system.index), system.at_index[b] + k * stride),
@@ -135,6 +155,46 @@ def _run(task, system, state, products):
             if status != OK:
                 return status
             element += 1
+    return OK
+
+
+@compiled
+def _by_matrices(task, b, k, system, state, vectors, matrices):
+    """The same of an element whose matrices K, C and M are made."""
+    width, stride, c = system.width[b], system.stride[b], state.coefficients
+    size = width * width
+    if task == PREPARE:
+        for i in range(state.T.size):
+            state.T[i] = 1.0 if i % 9 % 4 == 0 else 0.0
+        for part in range(3):
+            c[C_STIFFNESS] = c[C_CONSTRAINT] = 1.0 * (part == 0)
+            c[C_DAMPING], c[C_MASS] = 1.0 * (part == 1), 1.0 * (part == 2)
+            status = call_kernel(
+                system.address[b], TANGENT, 1, stride, width,
+                Arguments(index=at(pointer_to(system.index), system.at_index[b] + k * stride),
+                          constants=system.constants, q=state.q, R=state.R, v=state.v, a=state.a,
+                          references=state.frames_old, frames=state.frames, T=state.T,
+                          loads=state.loads, coefficients=c,
+                          forces=at(pointer_to(state.g), system.at_g[b] + k * width),
+                          matrices=at(matrices, part * size), work=state.work,
+                          energies=state.energy))
+            if status != OK:
+                return status
+        return OK
+    for i in range(width):
+        if task == ALONG:
+            vectors[i] = 0.0
+        for part in range(3):
+            total, row = 0.0, (part + 1) * width
+            for j in range(width):
+                if task == ALONG:
+                    total += matrices[part * size + i * width + j] * vectors[row + j]
+                else:
+                    total += matrices[part * size + j * width + i] * vectors[j]
+            if task == ALONG:
+                vectors[i] += total
+            else:
+                vectors[row + i] = total
     return OK
 
 

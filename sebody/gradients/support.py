@@ -16,13 +16,18 @@ def refuse_model(model: Model) -> None:
     Raises
     ------
     InputError
-        Incremental frames, controllers, or forces by functions of the user.
+        Incremental frames, sampled controllers, or functions of the user without derivatives.
     """
-    if model.controllers:
-        raise InputError(f"controller {next(iter(model.controllers))!r}: gradients of models with "
-                         "controllers are not available, sampled or continuous: leave it out, "
-                         "give what it sets as a table of a force, torque or drive, or use an "
-                         "Ensemble with values on both sides")
+    for name, one in model.controllers.items():
+        if one.period:
+            raise InputError(f"controller {name!r} is sampled, which is not differentiated: leave "
+                             "out period= for a continuous law, or use an Ensemble with values on "
+                             "both sides")
+    for load in model.loads:
+        if load.law is not None and load.law.derivatives is None:
+            raise InputError(f"the law of controller {load.law.controller!r} is a function without "
+                             "derivatives: give derivatives= with it, or use an Ensemble with "
+                             "values on both sides")
     for body in model.bodies.values():
         if FRAMES[body.frame].incremental:
             exact = ", ".join(name for name, frame in FRAMES.items()
@@ -43,21 +48,24 @@ def refuse_run(run: Simulation) -> None:
     Raises
     ------
     InputError
-        Friction, contacts, actuators, sensors, motions without mass, constraints of index 2.
+        Contacts of points inside bodies, inputs that are set from outside, samples of sensors,
+        motions without mass, constraints of index 2.
     """
     for one in remembering(run):
         if products_kernel_name(element_kernel_name(one.kind)) is None:
             raise InputError(f"contact {one.name!r} is one of a point inside a body, which is not "
                              "differentiated: let a node of the body touch, or use an Ensemble "
                              "with values on both sides")
-    if run.sampling.has_inputs:
-        name = next(iter(run.numbering.memory.ports))
+    written = {name for one in run.model.controllers.values() for name in one.outputs}
+    if given := [name for name in run.numbering.memory.ports if name not in written]:
+        name = given[0]
         raise InputError(f"actuator {name!r}: what is set during a run is not differentiated: give "
                          "the history of the input as a table of a force, torque or drive")
-    if run.model.sensors:
-        name, sensor = next(iter(run.model.sensors.items()))
-        raise InputError(f"sensor {name!r}: samples are not differentiated: leave the sensor out, "
-                         f"and give {sensor.quantity!r} itself as a quantity")
+    for name, sensor in run.model.sensors.items():
+        if sensor.period:
+            raise InputError(f"sensor {name!r} has samples, which are not differentiated: leave "
+                             f"out its rate, or the sensor, and give {sensor.quantity!r} itself as "
+                             "a quantity")
     if run.system.massless[0]:
         raise InputError("a motion of the model has no mass, and its accelerations at the start no "
                          "derivative: give every node mass and inertia")
