@@ -43,11 +43,8 @@ class Refined:
         self.scales: dict[float, Scales] = {}
 
     def begin(self, motion: tuple[NDArray, ...]) -> None:
-        """Columns (n, m) of motion, rates, second and auxiliary rates, (k, m) of what laws keep.
-
-        What was before is no guide.
-        """
-        for own, given in zip((*self.columns.motion, self.columns.kept), motion, strict=True):
+        """Columns as of `sweeps.Motion`; what was before is no guide."""
+        for own, given in zip(self._carried, motion, strict=True):
             own[:] = given.T
         self.columns.counts[steps.GUESSES] = 0
         self.columns.last[:] = 0.0
@@ -55,7 +52,12 @@ class Refined:
     @property
     def motion(self) -> list[NDArray]:
         """Columns as of `begin`."""
-        return [own.T.copy() for own in (*self.columns.motion, self.columns.kept)]
+        return [own.T.copy() for own in self._carried]
+
+    @property
+    def _carried(self) -> list[NDArray]:
+        columns = self.columns
+        return [*columns.motion, columns.kept, columns.before, columns.turned]
 
     def over(self, first: int, last: int, *arrays: NDArray) -> None:
         """All steps from one event to another: (events, ...) arrays of `steps.backward`, `forward`.

@@ -40,7 +40,10 @@ class Columns(Arrays):
     ==========  ====================================================================================
     motion      (4, m, n) motion, rates, second rates and auxiliary ones, or bars of these
     kept        (m, k) of the k numbers that laws keep, see `laws`
-    own         (m, k) bars of these by what a step keeps, without its solution
+    before      (m, k) changes of these before the last step, which a restart at its end reads
+                again; or what such a restart gives to the bars of the step
+    turned      (m, n) the same of increments of the step
+    own         (m, k) bars of kept numbers by what a step keeps, without its solution
     increments  (m, n) the same of increments of the step
     through     (m, k) bars by the residuals: products of the solutions
     given       (3, m, n) the same for the event at hand: with what objectives say, or predicted
@@ -64,6 +67,8 @@ class Columns(Arrays):
 
     motion: NDArray
     kept: NDArray
+    before: NDArray
+    turned: NDArray
     own: NDArray
     increments: NDArray
     through: NDArray
@@ -89,7 +94,7 @@ class Columns(Arrays):
         """All zero."""
         r = len(places)
         return cls(*(np.zeros(shape) for shape in (
-            (4, m, n), (m, k), (m, k), (m, n), (m, k), (3, m, n), (3, m, n), (3, m, n), (m, n), (n, n), n, n, n, n, n)),
+            (4, m, n), (m, k), (m, k), (m, n), (m, k), (m, n), (m, k), (3, m, n), (3, m, n), (3, m, n), (m, n), (n, n), n, n, n, n, n)),
             np.ascontiguousarray(places, dtype=np.int64), np.zeros((r, 9)), np.zeros((r, 9)),
             np.zeros(5, dtype=np.int64), np.array([tolerance]), np.zeros(1))
 
@@ -211,14 +216,16 @@ def _weigh(system, state, products, columns, j):
     for i in range(n):
         for c in range(3):
             columns.given[c, j, i] += products.motion[c, i]
-        columns.increments[j, i] = products.motion[3, i]
+        columns.increments[j, i] = columns.turned[j, i] + products.motion[3, i]
+        columns.turned[j, i] = 0.0
     for i in range(k):
-        columns.own[j, i] = products.kept[0, i]
+        columns.own[j, i] = columns.before[j, i] + products.kept[0, i]
+        columns.before[j, i] = 0.0
 
 
 @compiled
-def _keep(system, state, products, columns, j, increments, slopes):
-    """Changes of column j of what the step keeps, of which the motion is at its end."""
+def _keep(system, state, products, columns, j, slopes):
+    """Changes of column j of what the step keeps, from the motion at its end; `turned` is known."""
     n, k = columns.right.size, columns.kept.shape[1]
     if k == 0:
         return
@@ -226,9 +233,10 @@ def _keep(system, state, products, columns, j, increments, slopes):
         free = 1.0 - system.is_multiplier[i]
         products.motion[0, i] = columns.motion[0, j, i]
         products.motion[1, i], products.motion[2, i], products.motion[3, i] = (
-            free * columns.motion[1, j, i], free * columns.motion[2, j, i], free * increments[i])
+            free * columns.motion[1, j, i], free * columns.motion[2, j, i],
+            free * columns.turned[j, i])
     for i in range(k):
-        products.kept[0, i] = columns.kept[j, i]
+        products.kept[0, i] = columns.before[j, i] = columns.kept[j, i]
     along(system, state, products, n)
     for i in range(k):
         columns.kept[j, i] = products.kept[1, i] + slopes[n + i]
@@ -407,7 +415,7 @@ def forward(system, state, products, columns, rows, lengths, offsets, ends, besi
                 y[i] = columns.now[j, i]
             to_body_axes(system, state.frames, y, True)
             for i in range(n):
-                columns.change[i] = y[i]
+                columns.turned[j, i] = y[i]
             for i in range(n):
                 free = 1.0 - system.is_multiplier[i]
                 _, aux_now = _predicted(motion, j, i, offsets[e], h, b)
@@ -419,7 +427,7 @@ def forward(system, state, products, columns, rows, lengths, offsets, ends, besi
                 motion[0, j, i] = given[0, j, i] + y[i]
                 for c in range(3):
                     states[e, j, c, i] = motion[c, j, i]
-            _keep(system, state, products, columns, j, columns.change, slopes[e, j])
+            _keep(system, state, products, columns, j, slopes[e, j])
         _conclude(system, state, columns)
     return DONE
 

@@ -3,6 +3,7 @@
 from sebody.errors import InputError
 from sebody.generated.options import FRAMES
 from sebody.gradients.laws import remembering
+from sebody.gradients.linear import DENSE
 from sebody.kernels.loader import element_kernel_name, products_kernel_name
 from sebody.model.model import Model
 from sebody.runs.simulation import Simulation
@@ -56,6 +57,10 @@ def refuse_run(run: Simulation) -> None:
             raise InputError(f"contact {one.name!r} is one of a point inside a body, which is not "
                              "differentiated: let a node of the body touch, or use an Ensemble "
                              "with values on both sides")
+    if remembering(run) and run.numbering.free > DENSE:
+        raise InputError(f"{remembering(run)[0].name!r} keeps numbers from step to step, which is "
+                         f"differentiated in models of up to {DENSE} unknowns, and this one has "
+                         f"{run.numbering.free}: use an Ensemble with values on both sides")
     written = {name for one in run.model.controllers.values() for name in one.outputs}
     if given := [name for name in run.numbering.memory.ports if name not in written]:
         name = given[0]
@@ -73,3 +78,16 @@ def refuse_run(run: Simulation) -> None:
         raise InputError("constraints of index 2 move positions along directions that depend on "
                          "the iteration, so the steps have no exact derivative: use "
                          "generalized_alpha(index=3) with a fixed step")
+
+
+def refuse_laws(run: Simulation, what: str) -> None:
+    """Refuse friction, contacts and stops where what they keep is not followed.
+
+    Raises
+    ------
+    InputError
+    """
+    if found := remembering(run):
+        raise InputError(f"{found[0].name!r} keeps numbers from step to step, as friction, "
+                         f"contacts and stops do, which {what} cannot follow: leave it out, or "
+                         "compare runs")

@@ -11,16 +11,18 @@ from scipy import sparse
 
 from sebody.engine.state import Scheme
 from sebody.errors import InputError
+from sebody.gradients import products
 from sebody.gradients.factors import Factors, Scales
 from sebody.gradients.history import RESTART, STEP, History
 from sebody.gradients.linear import Linear, Parts
-from sebody.gradients.products import Products, along, prepare, transposed
+from sebody.gradients.products import Products
 from sebody.gradients.refined import Refined
 from sebody.gradients.second_rates import second_rates
 from sebody.gradients.turns import Turns, turns_of
 from sebody.runs.simulation import Simulation
 
 PIECE = 256         # events that are prepared together
+CORRECTIONS = 6     # of multipliers before a jump, on which friction depends
 
 
 class Bars(NamedTuple):
@@ -80,6 +82,15 @@ class Event(NamedTuple):
     rates: tuple[NDArray, NDArray] | None       # of second rates by motion and rates: of restarts
 
 
+class OfKept(NamedTuple):
+    """Bars by weights of forces and of what laws keep, a column each."""
+
+    motion: NDArray
+    rates: NDArray
+    kept: NDArray       # of what was kept before
+    increments: NDArray
+
+
 class Course:
     """Linearized events of a run, forth or back."""
 
@@ -103,11 +114,13 @@ class Course:
         for k in np.flatnonzero(found.kinds[1:] != STEP):
             row = found.rows[k]
             q = row[self._q:self._q + self.linear.free]
-            q[self.fixed] = 0.0
-            event = self.event(int(k))
-            forces = state.residual[:self.linear.free, None].copy()
-            forces[self.fixed] = 0.0
-            q[self.fixed] = -event.factors.solve(forces)[self.fixed, 0]
+            if not self.kept:       # else forces depend on them in other ways, too
+                q[self.fixed] = 0.0
+            for _ in range(CORRECTIONS if self.kept else 1):
+                event = self.event(int(k))
+                forces = state.residual[:self.linear.free, None].copy()
+                forces[self.fixed] = 0.0
+                q[self.fixed] -= event.factors.solve(forces)[self.fixed, 0]
 
     def refined(self, columns: int, back: bool) -> Refined | None:
         """The recursion by products; None where matrices are quicker, or there are no products.
@@ -119,33 +132,43 @@ class Course:
         return Refined(self.linear, self.products, self.scheme, self.history, columns, back,
                        self.turning[:, 0], self.redundant)
 
-    def kept_by_multipliers(self, event: int, changes: NDArray) -> NDArray:
-        """Changes of what laws keep at the start by those of multipliers, (k, p)."""
-        found = self._prepared(event)
-        columns = []
-        for change in changes.T:
-            found.motion[:], found.kept[:] = 0.0, 0.0
-            found.motion[0, :len(change)] = change
-            along(self.linear.system, self.linear.state, found, self.linear.free)
-            columns.append(found.kept[1].copy())
-        return np.array(columns).T
+    def nothing(self, columns: int) -> list[NDArray]:
+        """Changes or bars that are zero."""
+        n, k = self.linear.free, self.kept
+        return [np.zeros((rows, columns)) for rows in (n, n, n, n, k, k, n)]
 
-    def multipliers_by_kept(self, event: int, bars: NDArray) -> NDArray:
-        """Bars of the motion, with multipliers, by those of what laws keep at the start, (n, m)."""
+    def along(self, event: int, xi: NDArray, v: NDArray, before: NDArray, increments: NDArray
+              ) -> tuple[NDArray, NDArray]:
+        """Changes of forces and of what laws keep at an event, by those of the motion there and of
+        what was kept before: columns.
+        """
         found, n = self._prepared(event), self.linear.free
-        columns = []
-        for bar in bars.T:
-            found.forces[:], found.kept[1] = 0.0, bar
-            transposed(self.linear.system, self.linear.state, found, n)
-            columns.append(found.motion[0, :n].copy())
-        return np.array(columns).T
+        forces, kept = np.zeros_like(xi), np.zeros_like(before)
+        for j in range(xi.shape[1]):
+            found.motion[:], found.kept[0] = 0.0, before[:, j]
+            found.motion[0, :n], found.motion[1, :n] = xi[:, j], v[:, j]
+            found.motion[3, :n] = increments[:, j]
+            products.along(self.linear.system, self.linear.state, found, n)
+            forces[:, j], kept[:, j] = found.forces[:n], found.kept[1]
+        return forces, kept
+
+    def transposed(self, event: int, weights: NDArray, kept: NDArray) -> OfKept:
+        """Bars at an event by weights of forces and of what laws keep: columns."""
+        found, n = self._prepared(event), self.linear.free
+        bars = OfKept(*(np.zeros_like(one) for one in (weights, weights, kept, weights)))
+        for j in range(weights.shape[1]):
+            found.forces[:n], found.kept[1] = weights[:, j], kept[:, j]
+            products.transposed(self.linear.system, self.linear.state, found, n)
+            bars.motion[:, j], bars.rates[:, j] = found.motion[0, :n], found.motion[1, :n]
+            bars.kept[:, j], bars.increments[:, j] = found.kept[0], found.motion[3, :n]
+        return bars
 
     def _prepared(self, event: int) -> Products:
         """Products in the state of an event."""
         assert self.products is not None
         self.linear.at(self.history.rows[event], self.history.ends[event],
                        self.history.besides[event])
-        if prepare(self.linear.system, self.linear.state, self.products):
+        if products.prepare(self.linear.system, self.linear.state, self.products):
             raise InputError(f"the state at t = {self.history.ends[event]:.6g} has no derivatives")
         return self.products
 
@@ -200,7 +223,8 @@ def _initial(parts: Parts, fixed: NDArray) -> NDArray:
     return sparse.csc_array(others @ parts.mass @ others + some @ K + others @ K @ some)
 
 
-# motion, rates, second and auxiliary rates, and what laws keep, or bars of them
+# motion, rates, second and auxiliary rates; what laws keep, and have kept before the last step; the
+# increments of this step: changes or bars, a column each
 Motion = Sequence[NDArray]
 
 
@@ -221,8 +245,8 @@ def forward(course: Course, slopes: NDArray, motion: NDArray, rates: NDArray,
     before : sequence of (n, p)
         What the sweep over the segment before has returned, in place of the start's.
     """
-    now: Motion = before or (motion * course.moving, rates * course.moving, 0.0 * motion,
-                             0.0 * motion, np.zeros((course.kept, motion.shape[1])))
+    now: Motion = before or (motion * course.moving, rates * course.moving,
+                             *course.nothing(motion.shape[1])[2:])
     refined = course.refined(motion.shape[1], back=False)
     for kind, first, last in course.stretches():
         if kind == RESTART:
@@ -244,20 +268,23 @@ def forward(course: Course, slopes: NDArray, motion: NDArray, rates: NDArray,
 
 def _over_restart(course: Course, event: Event, slopes: NDArray, now: Motion) -> Motion:
     """Accelerations and multipliers anew."""
-    xi, v, _, _, kept = now
+    xi, v, _, _, *kept = now
     n, moving = len(xi), course.moving
     y = -slopes[:n]
     if event.number:        # the slopes of the start hold what its motion does
-        y -= _of_restart(event, course.fixed, xi * moving, v)
+        y -= _of_restart(course, event, xi * moving, v, kept)
     y = event.factors.solve(y)
+    kept = course.nothing(xi.shape[1])[4:]
+    xi = xi * moving + y * (1 - moving)
     if course.kept:
-        kept = slopes[n:] + course.kept_by_multipliers(event.number, y * (1 - moving))
-    return xi * moving + y * (1 - moving), v, y * moving, y * moving, kept
+        own = (xi, v, *now[5:]) if event.number else (y * (1 - moving), 0.0 * v, *kept[1:])
+        kept[0] = slopes[n:] + course.along(event.number, *own)[1]
+    return xi, v, y * moving, y * moving, *kept
 
 
 def _over_step(course: Course, event: Event, slopes: NDArray, now: Motion) -> Motion:
     """(8) to (10)."""
-    (M, C, K), moving, (xi, v, a, aux, kept) = event.parts, course.moving, now
+    (M, C, K), moving, (xi, v, a, aux, *kept) = event.parts, course.moving, now
     c = Coefficients.of(course.scheme, float(course.history.steps[event.number]))
     offset = course.history.offsets[event.number]
     aux = (1 - offset) * a + offset * aux
@@ -267,13 +294,16 @@ def _over_step(course: Course, event: Event, slopes: NDArray, now: Motion) -> Mo
     xip = event.turns.moved(xi) * moving
     y = event.factors.solve(-(slopes + K @ xip + C @ vp + M @ ap))
     xi, y = xip + event.turns.turned(y), y * moving
-    return xi, vp + c.cd * y, ap + c.cm * y, auxp + c.cu * y, kept
+    return xi, vp + c.cd * y, ap + c.cm * y, auxp + c.cu * y, *kept
 
 
-def _of_restart(event: Event, fixed: NDArray, xi: NDArray, v: NDArray) -> NDArray:
-    """What motion and rates change of the residual of a restart."""
-    found = event.parts.stiffness @ xi + event.parts.damping @ v
-    found[fixed] = event.rates[0] @ xi + event.rates[1] @ v
+def _of_restart(course: Course, event: Event, xi: NDArray, v: NDArray, kept: Motion) -> NDArray:
+    """What motion and rates change of the residual of a restart, and what laws have kept before."""
+    if course.kept:
+        found = course.along(event.number, xi, v, *kept[1:])[0]
+    else:
+        found = event.parts.stiffness @ xi + event.parts.damping @ v
+    found[course.fixed] = event.rates[0] @ xi + event.rates[1] @ v
     return found
 
 
@@ -294,7 +324,7 @@ def backward(course: Course, seeds: Seeds, count: int, after: Motion | None = No
     extent = course.linear.system.magnitude[:n, None]       # of disturbances: of rates in the run
     duration = course.history.duration
     weights, sizes = np.zeros((events, count, n + course.kept)), np.zeros(events)
-    bars: Motion = after or [np.zeros((k, count)) for k in (n, n, n, n, course.kept)]
+    bars: Motion = after or course.nothing(count)
     refined = course.refined(count, back=True)
     for kind, first, last in reversed(course.stretches()):
         if kind == STEP and refined is not None:
@@ -316,28 +346,36 @@ def _seeded(course: Course, seed: Bars | None, bars: Motion) -> Motion:
     """With what objectives say of the state."""
     if seed is None:
         return bars
-    (X, V, A, U, Z), moving = bars, course.moving
-    return X + seed.motion, V + seed.rates * moving, A + seed.seconds * moving, U, Z
+    (X, V, A, U, *kept), moving = bars, course.moving
+    return X + seed.motion, V + seed.rates * moving, A + seed.seconds * moving, U, *kept
 
 
 def _back_over_restart(course: Course, event: Event, bars: Motion) -> tuple[NDArray, Motion]:
     """Weights, and bars before."""
-    (_, C, K), moving, (X, V, A, U, Z) = event.parts, course.moving, bars
-    if course.kept:
-        X = X + course.multipliers_by_kept(event.number, Z) * (1 - moving)
+    (_, C, K), moving, (X, V, A, U, Z, *_) = event.parts, course.moving, bars
+    before = course.nothing(X.shape[1])[4:]
+    of_kept = course.transposed(event.number, 0.0 * X, Z) if course.kept else None
+    if of_kept is not None:     # slopes of the start hold what its motion does
+        X = X + of_kept.motion * (1.0 if event.number else 1 - moving)
     w = event.factors.solve(-(A * moving + U + X * (1 - moving)), transposed=True)
     X = X * moving
     if event.number:
         of_forces = w.copy()
         of_forces[course.fixed] = 0.0
-        X = X + (K.T @ of_forces + event.rates[0].T @ w[course.fixed]) * moving
-        V = V + (C.T @ of_forces + event.rates[1].T @ w[course.fixed]) * moving
-    return np.concatenate([w, Z]), (X, V, np.zeros_like(A), np.zeros_like(U), np.zeros_like(Z))
+        if of_kept is not None:
+            own = course.transposed(event.number, of_forces, 0.0 * Z)
+            by_motion, by_rates = own.motion, own.rates + of_kept.rates
+            before[1:] = own.kept + of_kept.kept, own.increments + of_kept.increments
+        else:
+            by_motion, by_rates = K.T @ of_forces, C.T @ of_forces
+        X = X + (by_motion + event.rates[0].T @ w[course.fixed]) * moving
+        V = V + (by_rates + event.rates[1].T @ w[course.fixed]) * moving
+    return np.concatenate([w, Z]), (X, V, np.zeros_like(A), np.zeros_like(U), *before)
 
 
 def _back_over_step(course: Course, event: Event, bars: Motion) -> tuple[NDArray, Motion]:
     """(11) to (15)."""
-    (M, C, K), moving, (X, V, A, U, Z) = event.parts, course.moving, bars
+    (M, C, K), moving, (X, V, A, U, *kept) = event.parts, course.moving, bars
     c = Coefficients.of(course.scheme, float(course.history.steps[event.number]))
     offset = course.history.offsets[event.number]
     w = event.factors.solve(-(event.turns.turned_back(X) + moving * (
@@ -346,4 +384,4 @@ def _back_over_step(course: Course, event: Event, bars: Motion) -> tuple[NDArray
     U1 = U + c.h * c.g * V1 + (1 - c.am) / (1 - c.af) * A1
     X, V, A = event.turns.moved_back(X1), V1 - U1 / (c.b * c.h), -c.af / (1 - c.af) * A1
     U = c.h * (1 - c.g) * V1 + c.am / (1 - c.af) * A1 - (0.5 - c.b) / c.b * U1
-    return w, (X, V, A + (1 - offset) * U, offset * U, Z)
+    return w, (X, V, A + (1 - offset) * U, offset * U, *kept)

@@ -117,7 +117,10 @@ class Image:
                 handle.reset()
 
     def _numbers(self) -> NDArray | None:
-        """All numbers of the model as it is now, before its start; None if its pattern differs."""
+        """All numbers of the model as it is now, before its start; None if its pattern differs.
+
+        Infinite ones, which are limits that are not there, are zeros.
+        """
         one = self.template
         system, numbering = build(one.model)
         system.routines[:] = one.system.routines
@@ -128,6 +131,7 @@ class Image:
         same = Offsets(system, state)
         same.packed(system, found)
         same.packed(state, found)
+        found[np.isinf(found)] = 0.0
         return found
 
 
