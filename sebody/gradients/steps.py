@@ -29,6 +29,7 @@ MOST = 12               # products for a column of a step
 SLOW = 0.4              # corrections that shrink less ask for an inverse
 ROUNDED = 1e-11         # corrections as small, relative, that do not shrink: rounding
 LOOSE = 1e-7            # the same with the inverse of the step itself
+NONE = 1e-200           # corrections of this size: an open contact has a force of 1e-300
 SPARE = 3               # products of a column that are worth no new inverse
 PRODUCTS, INVERSES, SPENT, FRESH, GUESSES = range(5)    # places in `Columns.counts`
 
@@ -265,7 +266,7 @@ def _solve(system, state, products, columns, j, cm, cd, back):
             columns.change[i] = change
             size = max(size, abs(change) * columns.scale[i])
             largest = max(largest, abs(own[i]) * columns.scale[i])
-        if size <= columns.reach[0] * largest:
+        if size <= columns.reach[0] * largest or size < NONE:
             return 0
         if not size < SLOW * last or k == MOST - 1:
             if size <= ROUNDED * largest:
