@@ -16,6 +16,7 @@ from sebody.engine.state import Scheme
 from sebody.errors import InputError, LimitWarning
 from sebody.explore.ensembles.outputs import Output
 from sebody.gradients.history import History, history
+from sebody.gradients.laws import refuse_break_away
 from sebody.gradients.linear import Linear
 from sebody.gradients.objectives import Folded, Objectives, Seen, checked
 from sebody.gradients.parameters import Column, columns_of
@@ -153,6 +154,7 @@ class Differentiated:
         self.run = Simulation(model, h, scheme, tolerance=tolerance)
         refuse_run(self.run)
         self.history: History = history(self.run, t_end)
+        refuse_break_away(self.run, self.history)
         self.run.watch.look(model, self.run.numbering, self.history.states)
         self.linear = Linear(self.run)
         self.course = Course(self.run, self.linear, self.history)
@@ -183,6 +185,7 @@ class _Part:
 
     def __init__(self, one: _Parts, history: History):
         run = one.segments.run
+        refuse_break_away(run, history)
         self.history, self.columns = history, one.columns
         self.course = Course(run, one.linear, history)
         self.course.settle()

@@ -16,15 +16,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.compiler.decorators import compiled
-from sebody.contract.layout import ALONG, AT_CONSTANTS, AT_FRAME, OK, PREPARE, RESIDUAL, Row
+from sebody.contract.layout import (
+    ALONG,
+    AT_CONSTANTS,
+    AT_FRAME,
+    OK,
+    PREPARE,
+    RECORD_T,
+    RESIDUAL,
+    Row,
+)
 from sebody.engine.evaluate import run_kernels, set_loads_beside, sum_forces
 from sebody.engine.links import place_dependent
 from sebody.engine.system import System
+from sebody.errors import InputError
+from sebody.gradients.history import History
 from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
 from sebody.kernels.loader import element_kernel
 from sebody.model.parts import Element
 from sebody.runs.simulation import Simulation
 
+EQUAL = 1e-9                # of coefficients that are the same
 ROWS = 4                    # vectors of an element: forces or weights, motion, rates, second rates
 COUNTED = ("angle",)        # what torsion springs keep to count turns, no force depends on it else
 # of a law: where its scratch memory begins, and its numbers in `State.frames`; how many it keeps,
@@ -43,6 +55,33 @@ def keeps(kind: str) -> bool:
 def remembering(run: Simulation) -> list[Element]:
     """Elements of laws."""
     return [one for one in run.numbering.memories if one.law is None and keeps(one.kind)]
+
+
+def refuse_break_away(run: Simulation, history: History) -> None:
+    """Refuse runs in which friction breaks away from a static limit above that of sliding.
+
+    Its force jumps then, in a step whose number does not change with a parameter, while the time of
+    the jump does.
+
+    Raises
+    ------
+    InputError
+    """
+    rows = history.rows[2 if history.past is None else 1:]      # the first step begins from rest
+    parts = run.state.recorded_parts
+    for one in remembering(run):
+        names = element_kernel(one.kind).MEMORY
+        if "slid" not in names or one.number("speed") > 0.0 or not (
+                one.number("static") > (1.0 + EQUAL) * one.number("coefficient")):
+            continue
+        place = run.numbering.memories[one][names.index("slid")]
+        old, new = (rows[:, parts[name].start + place] for name in ("frames_old", "frames"))
+        for row in rows[(old < 0.5) & (new > 0.5)]:
+            raise InputError(
+                f"{one.name!r} breaks away at t = {row[RECORD_T]:.6g} from its static coefficient "
+                f"{one.number('static'):g} to {one.number('coefficient'):g}: the force jumps at a "
+                "time that depends on the parameters, which steps do not show: give both the same "
+                "value, or speed= for the smooth law, or use an Ensemble with values on both sides")
 
 
 def places_of(system: System, modules: list[ModuleType | None], at_work: NDArray) -> NDArray:
