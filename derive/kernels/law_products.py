@@ -151,7 +151,8 @@ def _back(changes: Changes, after: Sequence[sp.Expr], count: int) -> tuple[State
     bars = transposed_forms([*changes.forces, *changes.memory], after, [*inputs, *chain])
     back: list[Stage] = []
     for stage in reversed(changes.stages):
-        own = [(sp.Symbol("bar" + str(s).removeprefix("delta")), form, bars[s]) for s, form in stage if s in bars]
+        own = [(sp.Symbol("bar" + str(s).removeprefix("delta")), form, bars[s])
+               for s, form in stage if s in bars]
         back.append(tuple((name, bar) for name, _, bar in own))
         more = transposed_forms([form for _, form, _ in own], [name for name, _, _ in own],
                                 [*inputs, *chain])

@@ -288,7 +288,9 @@ def _growth_forth(sizes: NDArray) -> float:
 
 
 def stacked(each: Sequence[Slope]) -> tuple[NDArray, NDArray, NDArray]:
-    """Slopes of residuals, with what laws keep, of motion and rates of the start by all parameters, these last."""
+    """Slopes of residuals with what laws keep, of motion and rates of the start; by all parameters,
+    these last.
+    """
     residuals, motion, rates = (np.stack([getattr(slope, name) for slope in each], axis=-1)
                                 for name in ("residuals", "motion", "rates"))
     return residuals, motion, rates

@@ -7,9 +7,9 @@ and the same of what laws keep from step to step, see `laws`.
 
 Kernels of products (`derive/kernels/products.py`) do this element by element: first PREPARE, once
 in a state, then as many products as are asked for. Laws of continuous controllers, whose kernel is
-written by hand, have their matrices made in its place. Vectors are those of all coordinates, in global
-axes. Dependent positions, at the ends of rigid links, follow the unknowns by the operators (20) of
-`links`, which are written out here, with their transposes.
+written by hand, have their matrices made in its place. Vectors are those of all coordinates, in
+global axes. Dependent positions, at the ends of rigid links, follow the unknowns by the operators
+(20) of `links`, which are written out here, with their transposes.
 """
 
 from dataclasses import dataclass
@@ -202,7 +202,8 @@ def _by_matrices(task, b, k, system, state, vectors, matrices):
 def transposed(system, state, products, free):
     """From `forces` of the unknowns to `motion`: ``K^T w``, ``C^T w`` and ``M^T w``.
 
-    The second row of `kept` has weights, too, and its first row gets what they give. The state is prepared. What is behind the unknowns in `motion` has no meaning.
+    The second row of `kept` has weights, too, and its first row gets what they give. The state is
+    prepared. What is behind the unknowns in `motion` has no meaning.
     """
     w, bars = products.forces, products.motion
     for i in range(free, w.size):

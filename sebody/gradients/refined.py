@@ -37,7 +37,8 @@ class Refined:
         self.linear, self.products, self.history = linear, products, history
         self.back, self.redundant, n = back, redundant, linear.free
         self.columns = steps.Columns.of(
-            columns, n, products.kept.shape[1], places, scheme.tolerance if scheme.tolerance > FINE else ROUNDING)
+            columns, n, products.kept.shape[1], places,
+            scheme.tolerance if scheme.tolerance > FINE else ROUNDING)
         self.numbers = (scheme.alpha_m, scheme.alpha_f, scheme.beta, scheme.gamma,
                         history.duration)
         self.scales: dict[float, Scales] = {}

@@ -107,9 +107,9 @@ class Evaluated:
             one.model, one.numbering, self.linear.system, self.linear.state, rows, 0.0),
             self.quantity), dtype=float)
         if not np.allclose(now, moved, ROUNDING, ROUNDING * np.abs(now).max(initial=0.0)):
-            raise InputError(f"quantity {self.quantity!r} depends on what friction or contacts keep "
-                             "from step to step, and has no derivative by a state: give the motion "
-                             "that they act on, or the force of a joint")
+            raise InputError(f"quantity {self.quantity!r} depends on what friction or contacts "
+                             "keep from step to step, and has no derivative by a state: give the "
+                             "motion that they act on, or the force of a joint")
 
     def _smooth(self, one: Result, moves: list[NDArray], t: float) -> NDArray:
         """Differences over steps that are so small that smaller ones give the same."""

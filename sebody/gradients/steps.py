@@ -95,7 +95,8 @@ class Columns(Arrays):
         """All zero."""
         r = len(places)
         return cls(*(np.zeros(shape) for shape in (
-            (4, m, n), (m, k), (m, k), (m, n), (m, k), (m, n), (m, k), (3, m, n), (3, m, n), (3, m, n), (m, n), (n, n), n, n, n, n, n)),
+            (4, m, n), (m, k), (m, k), (m, n), (m, k), (m, n), (m, k), (3, m, n), (3, m, n),
+            (3, m, n), (m, n), (n, n), n, n, n, n, n)),
             np.ascontiguousarray(places, dtype=np.int64), np.zeros((r, 9)), np.zeros((r, 9)),
             np.zeros(5, dtype=np.int64), np.array([tolerance]), np.zeros(1))
 
