@@ -51,7 +51,7 @@ class Changes(NamedTuple):
 
     inputs: tuple[tuple[sp.Symbol, sp.Expr], ...]   # and where each is read, in ALONG
     bars: tuple[tuple[sp.Symbol, sp.Expr], ...]     # where bars are written, in TRANSPOSED
-    stages: tuple[Stage, ...]
+    stages: tuple[Stage, ...]       # of each symbol its change
     forces: tuple[sp.Expr, ...]
     memory: tuple[sp.Expr, ...]
 
@@ -91,11 +91,9 @@ def _changes(element: Element) -> Changes:
     inputs, bars, rules = _inputs(element)
     stages = []
     for stage in element.stages:
-        forms = tuple((sp.Symbol(f"delta_{symbol}"), form) for symbol, value in stage
+        forms = tuple((symbol, form) for symbol, value in stage
                       if (form := _form(value, rules)) != 0)
-        known = {str(name) for name, _ in forms}
-        rules |= {symbol: sp.Symbol(f"delta_{symbol}") for symbol, _ in stage
-                  if f"delta_{symbol}" in known}
+        rules |= {symbol: _delta(symbol) for symbol, _ in forms}
         stages.append(forms)
     forces = tuple(_form(value, rules) for value in element.residual)
     memory = tuple(_form(value, rules) for _, value in element.memory)
@@ -111,6 +109,11 @@ def _form(value: sp.Expr, rules: Rules) -> sp.Expr:
     return sum((value.diff(s) * rules[s] for s in moved), sp.S.Zero)
 
 
+def _delta(symbol: sp.Symbol) -> sp.Symbol:
+    """The change of a symbol."""
+    return sp.Symbol(f"delta_{symbol}")
+
+
 def _inputs(element: Element) -> tuple[list, list, Rules]:
     """Symbols of what may change, their places, and the rules of the differential."""
     rules = configuration(element.blocks, "direction")
@@ -123,7 +126,7 @@ def _inputs(element: Element) -> tuple[list, list, Rules]:
             inputs, bars = inputs + own, bars + own
         at += len(block.direction.kept)
         if block.rotational and not element.space.planar:
-            psi = [sp.Symbol(f"delta_{s}") for s in block.increment.symbols]
+            psi = [_delta(s) for s in block.increment.symbols]
             rules |= along(block.increment.symbols, sp.Matrix(psi))
             own = [(s, KEPT[2 * memory + 3 * turns + k]) for k, s in enumerate(psi)]
             inputs, bars, turns = inputs + own, bars + own, turns + 1
@@ -131,7 +134,7 @@ def _inputs(element: Element) -> tuple[list, list, Rules]:
     more += [(kept(name), KEPT[k]) for k, (name, _) in enumerate(element.memory)]
     constants = [s for quantity, _ in element.constants for s in quantity.kept]
     given = [(s, KEPT[2 * memory + 3 * turns + k]) for k, s in enumerate(constants)]
-    rules |= {s: sp.Symbol(f"delta_{s}") for s, _ in (*more, *given)}
+    rules |= {s: _delta(s) for s, _ in (*more, *given)}
     inputs += [(rules[s], place) for s, place in (*more, *given)]
     bars += [(rules[s], place) for s, place in more]
     return inputs, bars, rules
@@ -139,23 +142,23 @@ def _inputs(element: Element) -> tuple[list, list, Rules]:
 
 def _along(changes: Changes, after: Sequence[sp.Expr], count: int) -> tuple[Statement, ...]:
     """Changes along the chain."""
-    stages, count = staged(changes.stages, count)
+    stages, count = staged([[(_delta(s), form) for s, form in stage] for stage in changes.stages],
+                           count)
     results, _ = stored([*changes.forces, *changes.memory], after, count)
     return (*(Set((s,), (place,)) for s, place in changes.inputs), *stages, *results)
 
 
 def _back(changes: Changes, after: Sequence[sp.Expr], count: int) -> tuple[Statement, ...]:
     """Bars back along the chain, each complete before it is given on; no others depend on a law."""
-    inputs = [s for s, _ in changes.inputs]
-    chain = [s for stage in changes.stages for s, _ in stage]
-    bars = transposed_forms([*changes.forces, *changes.memory], after, [*inputs, *chain])
+    moved = [s for s, _ in changes.inputs]
+    moved += [_delta(s) for stage in changes.stages for s, _ in stage]
+    bars = transposed_forms([*changes.forces, *changes.memory], after, moved)
     back: list[Stage] = []
     for stage in reversed(changes.stages):
-        own = [(sp.Symbol("bar" + str(s).removeprefix("delta")), form, bars[s])
-               for s, form in stage if s in bars]
+        own = [(sp.Symbol(f"bar_{s}"), form, bars[_delta(s)]) for s, form in stage
+               if _delta(s) in bars]
         back.append(tuple((name, bar) for name, _, bar in own))
-        more = transposed_forms([form for _, form, _ in own], [name for name, _, _ in own],
-                                [*inputs, *chain])
+        more = transposed_forms([form for _, form, _ in own], [name for name, _, _ in own], moved)
         for s, bar in more.items():
             bars[s] = bars.get(s, sp.S.Zero) + bar
     stages, count = staged(back, count)
