@@ -14,10 +14,11 @@ from sebody.errors import InputError
 from sebody.gradients import products
 from sebody.gradients.factors import Factors, Scales
 from sebody.gradients.history import RESTART, STEP, History
-from sebody.gradients.linear import Linear, Parts
+from sebody.gradients.linear import Linear, Matrix, Parts
 from sebody.gradients.products import Products
 from sebody.gradients.refined import Refined
 from sebody.gradients.second_rates import second_rates
+from sebody.gradients.stabilized import Second
 from sebody.gradients.turns import Turns, turns_of
 from sebody.runs.simulation import Simulation
 
@@ -73,13 +74,14 @@ class Coefficients(NamedTuple):
 
 
 class Event(NamedTuple):
-    """An event, linearized."""
+    """An event, linearized: unknowns are increments or accelerations, of index 2 shifts as well."""
 
     number: int
-    parts: Parts
-    factors: Factors
+    parts: Parts        # of the residuals of the unknowns, (N, n)
+    factors: Factors    # (N, N)
     turns: Turns | None                         # of a step
     rates: tuple[NDArray, NDArray] | None       # of second rates by motion and rates: of restarts
+    lead: float = 0.0   # of restarts: auxiliary accelerations less shifts times this
 
 
 class OfKept(NamedTuple):
@@ -102,8 +104,10 @@ class Course:
         places = system.rotation_at[system.rotation_at < n]
         self.turning = places[:, None] + np.arange(3)
         self.redundant = bool(system.regularized[0])
-        self.products = Products.of(run) if linear.dense else None
+        self.unknowns = n * (2 if run.scheme.stabilized else 1)     # of an event
+        self.products = Products.of(run) if linear.dense and self.unknowns == n else None
         self.kept = 0 if self.products is None else self.products.kept.shape[1]     # by laws
+        self.second: Second | None = None       # what second residuals of index 2 are made with
         self._scales: dict[float, Scales] = {}
         self._q = linear.state.recorded_parts["q"].start
         self._turns: tuple[int, list[Turns]] = 0, []        # of some events, from the first one on
@@ -118,9 +122,9 @@ class Course:
                 q[self.fixed] = 0.0
             for _ in range(CORRECTIONS if self.kept else 1):
                 event = self.event(int(k))
-                forces = state.residual[:self.linear.free, None].copy()
-                forces[self.fixed] = 0.0
-                q[self.fixed] -= event.factors.solve(forces)[self.fixed, 0]
+                forces = np.zeros((self.unknowns, 1))
+                forces[:len(q), 0] = np.where(self.fixed, 0.0, state.residual[:len(q)])
+                q[self.fixed] -= event.factors.solve(forces)[:len(q)][self.fixed, 0]
 
     def refined(self, columns: int, back: bool) -> Refined | None:
         """The recursion by products; None where matrices are quicker, or there are no products.
@@ -186,15 +190,22 @@ class Course:
 
     def event(self, k: int) -> Event:
         found = self.history
-        row, h = found.rows[k], float(found.steps[k])
-        parts = self.linear.at(row, found.ends[k], found.besides[k])
         if found.kinds[k] != STEP:
-            rates = second_rates(self.linear, self.fixed) if k > 0 else None
-            return Event(k, parts, self._factors(_initial(parts, self.fixed), 0.0), None, rates)
-        c = Coefficients.of(self.scheme, h)
-        turns = self._turns_of(k)
-        J = c.cm * parts.mass + c.cd * parts.damping + turns.of_columns(parts.stiffness)
+            return self._restart(k)
+        h, turns = float(found.steps[k]), self._turns_of(k)
+        parts = self.linear.at(found.rows[k], found.ends[k], found.besides[k])
+        J, parts = self._step(parts, Coefficients.of(self.scheme, h), turns)
         return Event(k, parts, self._factors(J, h), turns, None)
+
+    def _step(self, parts: Parts, c: Coefficients, turns: Turns) -> tuple[Matrix, Parts]:
+        """The matrix of a step, and derivatives of its residuals."""
+        return c.cm * parts.mass + c.cd * parts.damping + turns.of_columns(parts.stiffness), parts
+
+    def _restart(self, k: int) -> Event:
+        found = self.history
+        parts = self.linear.at(found.rows[k], found.ends[k], found.besides[k])
+        rates = second_rates(self.linear, self.fixed) if k > 0 else None
+        return Event(k, parts, self._factors(initial(parts, self.fixed), 0.0), None, rates)
 
     def _turns_of(self, k: int) -> Turns:
         first, found = self._turns
@@ -208,10 +219,11 @@ class Course:
     def _factors(self, J: NDArray, h: float) -> Factors:
         if h not in self._scales:
             self._scales[h] = Scales(J)
-        return Factors(J, self._scales[h], self.fixed, self.redundant)
+        fixed = np.tile(self.fixed, J.shape[0] // len(self.fixed))
+        return Factors(J, self._scales[h], fixed, self.redundant)
 
 
-def _initial(parts: Parts, fixed: NDArray) -> NDArray:
+def initial(parts: Parts, fixed: NDArray) -> NDArray:
     """Masses and constraints: the matrix of a restart."""
     if isinstance(parts.mass, np.ndarray):
         J = parts.mass.copy()
@@ -270,16 +282,22 @@ def _over_restart(course: Course, event: Event, slopes: NDArray, now: Motion) ->
     """Accelerations and multipliers anew."""
     xi, v, _, _, *kept = now
     n, moving = len(xi), course.moving
-    y = -slopes[:n]
+    y = -slopes[:course.unknowns]
     if event.number:        # the slopes of the start hold what its motion does
         y -= _of_restart(course, event, xi * moving, v, kept)
-    y = event.factors.solve(y)
+    y, shift = _halves(event.factors.solve(y), moving)
     kept = course.nothing(xi.shape[1])[4:]
     xi = xi * moving + y * (1 - moving)
     if course.kept:
         own = (xi, v, *now[5:]) if event.number else (y * (1 - moving), 0.0 * v, *kept[1:])
         kept[0] = slopes[n:] + course.along(event.number, *own)[1]
-    return xi, v, y * moving, y * moving, *kept
+    return xi, v, y * moving, y * moving - event.lead * shift, *kept
+
+
+def _halves(y: NDArray, moving: NDArray) -> tuple[NDArray, NDArray]:
+    """Increments with multipliers, and shifts, which only index 2 has."""
+    n = len(moving)
+    return y[:n], moving * (y[n:] if len(y) > n else 0.0)
 
 
 def _over_step(course: Course, event: Event, slopes: NDArray, now: Motion) -> Motion:
@@ -292,8 +310,8 @@ def _over_step(course: Course, event: Event, slopes: NDArray, now: Motion) -> Mo
     vp = v + c.h * (1 - c.g) * aux + c.h * c.g * auxp
     ap = ((1 - c.am) * auxp + c.am * aux - c.af * a) / (1 - c.af)
     xip = event.turns.moved(xi) * moving
-    y = event.factors.solve(-(slopes + K @ xip + C @ vp + M @ ap))
-    xi, y = xip + event.turns.turned(y), y * moving
+    y, shift = _halves(event.factors.solve(-(slopes + K @ xip + C @ vp + M @ ap)), moving)
+    xi, y = xip + event.turns.turned(y + shift), y * moving
     return xi, vp + c.cd * y, ap + c.cm * y, auxp + c.cu * y, *kept
 
 
@@ -303,7 +321,8 @@ def _of_restart(course: Course, event: Event, xi: NDArray, v: NDArray, kept: Mot
         found = course.along(event.number, xi, v, *kept[1:])[0]
     else:
         found = event.parts.stiffness @ xi + event.parts.damping @ v
-    found[course.fixed] = event.rates[0] @ xi + event.rates[1] @ v
+    if event.rates is not None:
+        found[course.fixed] = event.rates[0] @ xi + event.rates[1] @ v
     return found
 
 
@@ -323,7 +342,7 @@ def backward(course: Course, seeds: Seeds, count: int, after: Motion | None = No
     n, events = course.linear.free, len(course.history.rows)
     extent = course.linear.system.magnitude[:n, None]       # of disturbances: of rates in the run
     duration = course.history.duration
-    weights, sizes = np.zeros((events, count, n + course.kept)), np.zeros(events)
+    weights, sizes = np.zeros((events, count, course.unknowns + course.kept)), np.zeros(events)
     bars: Motion = after or course.nothing(count)
     refined = course.refined(count, back=True)
     for kind, first, last in reversed(course.stretches()):
@@ -357,29 +376,36 @@ def _back_over_restart(course: Course, event: Event, bars: Motion) -> tuple[NDAr
     of_kept = course.transposed(event.number, 0.0 * X, Z) if course.kept else None
     if of_kept is not None:     # slopes of the start hold what its motion does
         X = X + of_kept.motion * (1.0 if event.number else 1 - moving)
-    w = event.factors.solve(-(A * moving + U + X * (1 - moving)), transposed=True)
+    w = event.factors.solve(-_joined(course, A * moving + U + X * (1 - moving),
+                                     -event.lead * U * moving), transposed=True)
     X = X * moving
     if event.number:
-        of_forces = w.copy()
-        of_forces[course.fixed] = 0.0
+        of_forces, rates = w.copy(), event.rates
+        if rates is not None:
+            of_forces[course.fixed] = 0.0
+            X = X + rates[0].T @ w[course.fixed] * moving
+            V = V + rates[1].T @ w[course.fixed] * moving
         if of_kept is not None:
             own = course.transposed(event.number, of_forces, 0.0 * Z)
-            by_motion, by_rates = own.motion, own.rates + of_kept.rates
+            X, V = X + own.motion * moving, V + (own.rates + of_kept.rates) * moving
             before[1:] = own.kept + of_kept.kept, own.increments + of_kept.increments
         else:
-            by_motion, by_rates = K.T @ of_forces, C.T @ of_forces
-        X = X + (by_motion + event.rates[0].T @ w[course.fixed]) * moving
-        V = V + (by_rates + event.rates[1].T @ w[course.fixed]) * moving
+            X, V = X + K.T @ of_forces * moving, V + C.T @ of_forces * moving
     return np.concatenate([w, Z]), (X, V, np.zeros_like(A), np.zeros_like(U), *before)
+
+
+def _joined(course: Course, y: NDArray, shift: NDArray) -> NDArray:
+    """Bars of the unknowns of an event, from its halves."""
+    return y if course.unknowns == len(y) else np.concatenate([y, shift])
 
 
 def _back_over_step(course: Course, event: Event, bars: Motion) -> tuple[NDArray, Motion]:
     """(11) to (15)."""
     (M, C, K), moving, (X, V, A, U, *kept) = event.parts, course.moving, bars
     c = Coefficients.of(course.scheme, float(course.history.steps[event.number]))
-    offset = course.history.offsets[event.number]
-    w = event.factors.solve(-(event.turns.turned_back(X) + moving * (
-        c.cd * V + c.cm * A + c.cu * U)), transposed=True)
+    offset, turned = course.history.offsets[event.number], event.turns.turned_back(X)
+    w = event.factors.solve(-_joined(course, turned + moving * (c.cd * V + c.cm * A + c.cu * U),
+                                     turned * moving), transposed=True)
     X1, V1, A1 = ((X + K.T @ w) * moving, (V + C.T @ w) * moving, (A + M.T @ w) * moving)
     U1 = U + c.h * c.g * V1 + (1 - c.am) / (1 - c.af) * A1
     X, V, A = event.turns.moved_back(X1), V1 - U1 / (c.b * c.h), -c.af / (1 - c.af) * A1
