@@ -86,7 +86,8 @@ def test_adjoint_forward_and_differences_of_runs_agree(name):
     build, *run = SCENES[name]
     found, apart = both(build(), *run)
     assert apart < 1e-11
-    expected = scenes.differences(build(), *run)
+    # velocities of the start, fitted to a drive, have noise of 1e-10
+    expected = scenes.differences(build(), *run, relative=4e-3 if "rotor" in name else 1e-3)
     assert (np.abs(found.matrix - expected) / rows(expected)).max() < 1e-7
 
 
