@@ -172,3 +172,6 @@ def test_what_jumps_or_is_kept_is_refused():
         gradient(m, 0.005, 2.0, {"x": final("a.rotation")}, ["gravity"])
     with pytest.raises(InputError, match="'dry.normal_force' depends on what friction.*keep"):
         gradient(m, 0.005, 0.02, {"f": final("dry.normal_force")}, ["gravity"])
+    with pytest.raises(InputError, match="'dry' keeps numbers.*index=3"):
+        gradient(m, 0.005, 0.02, {"x": final("a.rotation")}, ["gravity"],
+                 scheme=generalized_alpha(index=2))
