@@ -7,7 +7,7 @@ rotations of the order of one radian, elastic rotations to 0.3, moving and accel
 from collections.abc import Iterable
 
 from sebody.catalogue import kernel_files, product_files
-from sebody.contract.names import MOTION, PRODUCTS, SUPERELEMENT
+from sebody.contract.names import ELEMENT, MOTION, PRODUCTS, SUPERELEMENT
 from sebody.kernels.loader import load
 from sebody.runs.first_run import compile_missing
 from sebody.spelling import unknown
@@ -54,4 +54,4 @@ def check_kernels(names: Iterable[str] | None = None) -> list[CheckRow]:
 
 def _of_laws(name: str) -> bool:
     """Whether a kernel has products with the derivatives of a law."""
-    return name.startswith(PRODUCTS) and follows(load(name))
+    return name.startswith(PRODUCTS + ELEMENT) and follows(load(name))
