@@ -11,6 +11,8 @@ from sebody import InputError, Model, plane, simulate
 from sebody.analysis import Ensemble, calibrate, final, gradient, integral, rms
 from sebody.control import pid
 from sebody.fem import rectangle
+from sebody.gradients import segments
+from sebody.gradients.gradient import Differentiated
 from sebody.gradients.point import Point
 from sebody.runs.schemes import generalized_alpha
 
@@ -175,3 +177,14 @@ def test_what_jumps_or_is_kept_is_refused():
     with pytest.raises(InputError, match="'dry' keeps numbers.*index=3"):
         gradient(m, 0.005, 0.02, {"x": final("a.rotation")}, ["gravity"],
                  scheme=generalized_alpha(index=2))
+
+
+@pytest.mark.parametrize("mode", ["adjoint", "forward"])
+def test_what_laws_keep_goes_on_from_segment_to_segment(mode, monkeypatch):
+    m, (_, *run, _) = journal(), SCENES["bearing"]
+    whole = gradient(m, *run, mode, scheme=EXACT)
+    row = Differentiated(m, *run[:2], EXACT).history.rows[0]
+    monkeypatch.setattr(segments, "STATES", 7 * row.nbytes)
+    parts = gradient(m, *run, mode, scheme=EXACT)
+    assert np.array_equal(parts.value, whole.value)
+    assert (np.abs(parts.matrix - whole.matrix) / rows(whole.matrix)).max() < 1e-11
