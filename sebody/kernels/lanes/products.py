@@ -1,4 +1,4 @@
-"""Products whose numbers are lanes: what `dense`, `packed_products` and `coordinates` write.
+"""Products whose numbers are lanes: what `dense` and `coordinates` write.
 
 An operand is a vector of members, so there is nothing to add up across a vector, and padding is
 neither read nor written. Matrices are lanes as well, since members have constants of their own.
@@ -6,38 +6,43 @@ neither read nor written. Matrices are lanes as well, since members have constan
 
 from llvmlite import ir
 
-from sebody.compiler.inside.lanes import VECTOR
+from sebody.compiler.inside.lanes import VECTOR, same
 from sebody.contract.counts import LANES
-from sebody.kernels import coordinates, dense, packed_products
+from sebody.kernels import coordinates, dense
 from sebody.kernels.instructions import (
     WORD,
-    call,
     in_lanes,
     short_loop,
     stack_vectors,
     whole_vectors,
 )
-from sebody.kernels.lanes.straight import AT_ADDRESS
 
 _ROWS = 8, 4, 2, 1      # of a product at a time: their sums stay in registers
 _COLUMNS = 8, 4, 2, 1   # likewise of a product of columns with a vector
 _BITS = ir.IntType(VECTOR.count)
-_NOTHING = ir.Constant(VECTOR, [0.0] * VECTOR.count)
+NOTHING = ir.Constant(VECTOR, [0.0] * VECTOR.count)
 
 
-def _load(builder, pointer, place):
-    return builder.load(builder.gep(pointer, [place]))
+def read(builder, pointer, place):
+    """What is at a place: lanes, or a number that all members share."""
+    number = builder.load(builder.gep(pointer, [place]))
+    return number if number.type == VECTOR else same(builder, number)
 
 
-def _store(builder, value, pointer, place):
+def across(pointer):
+    """Numbers from one place to the next."""
+    return VECTOR.count if pointer.type.pointee == VECTOR else 1
+
+
+def write(builder, value, pointer, place):
     builder.store(value, builder.gep(pointer, [place]))
 
 
-def _fused(builder, total, a, b):
+def fused(builder, total, a, b):
     return builder.fadd(total, builder.fmul(a, b, flags=("contract",)), flags=("contract",))
 
 
-def _next(builder, index, k):
+def behind(builder, index, k):
     return builder.add(index, WORD(k)) if k else index
 
 
@@ -47,7 +52,7 @@ def _sums(builder, count):
 
 
 def _add_to(builder, total, a, b):
-    builder.store(_fused(builder, builder.load(total), a, b), total)
+    builder.store(fused(builder, builder.load(total), a, b), total)
 
 
 def _by_rows(builder, given, out, rows, height, add):
@@ -58,16 +63,16 @@ def _by_rows(builder, given, out, rows, height, add):
         with short_loop(builder, done, end, count) as row:
             sums = _sums(builder, count)
             for k, total in enumerate(sums):
-                begin = _load(builder, out, _next(builder, row, k)) if add else _NOTHING
+                begin = read(builder, out, behind(builder, row, k)) if add else NOTHING
                 builder.store(begin, total)
             for A, x, columns in given:
                 with short_loop(builder, WORD(0), columns) as column:
-                    factor = _load(builder, x, column)
+                    factor = read(builder, x, column)
                     own = builder.gep(A, [builder.add(builder.mul(column, height), row)])
                     for k, total in enumerate(sums):
-                        _add_to(builder, total, _load(builder, own, WORD(k)), factor)
+                        _add_to(builder, total, read(builder, own, WORD(k)), factor)
             for k, total in enumerate(sums):
-                _store(builder, builder.load(total), out, _next(builder, row, k))
+                write(builder, builder.load(total), out, behind(builder, row, k))
         done = end
 
 
@@ -78,17 +83,17 @@ def _by_columns(builder, A, x, out, rows, columns, height, add):
         end = builder.sub(columns, builder.srem(builder.sub(columns, done), WORD(count)))
         with short_loop(builder, done, end, count) as column:
             sums = _sums(builder, count)
-            own = [builder.gep(A, [builder.mul(_next(builder, column, k), height)])
+            own = [builder.gep(A, [builder.mul(behind(builder, column, k), height)])
                    for k in range(count)]
             for k, total in enumerate(sums):
-                begin = _load(builder, out, _next(builder, column, k)) if add else _NOTHING
+                begin = read(builder, out, behind(builder, column, k)) if add else NOTHING
                 builder.store(begin, total)
             with short_loop(builder, WORD(0), rows) as row:
-                factor = _load(builder, x, row)
+                factor = read(builder, x, row)
                 for a, total in zip(own, sums, strict=True):
-                    _add_to(builder, total, _load(builder, a, row), factor)
+                    _add_to(builder, total, read(builder, a, row), factor)
             for k, total in enumerate(sums):
-                _store(builder, builder.load(total), out, _next(builder, column, k))
+                write(builder, builder.load(total), out, behind(builder, column, k))
         done = end
 
 
@@ -136,118 +141,29 @@ def _subtracted(builder, total, a, b):
 def subtract_product(builder, C, A, B):
     """Of `subtract_product`."""
     with short_loop(builder, WORD(0), WORD(LANES * LANES), LANES) as column:
-        factors = [_load(builder, B, _next(builder, column, k)) for k in range(LANES)]
+        factors = [read(builder, B, behind(builder, column, k)) for k in range(LANES)]
         for i in range(LANES):
-            total = _load(builder, C, _next(builder, column, i))
+            total = read(builder, C, behind(builder, column, i))
             for k, factor in enumerate(factors):
-                total = _subtracted(builder, total, _load(builder, A, WORD(LANES * k + i)), factor)
-            _store(builder, total, C, _next(builder, column, i))
+                total = _subtracted(builder, total, read(builder, A, WORD(LANES * k + i)), factor)
+            write(builder, total, C, behind(builder, column, i))
 
 
 @in_lanes(dense.write_subtract_block_times)
 def subtract_block_times(builder, y, A, x):
     """Of `subtract_block_times`."""
-    factors = [_load(builder, x, WORD(k)) for k in range(LANES)]
+    factors = [read(builder, x, WORD(k)) for k in range(LANES)]
     for i in range(LANES):
-        total = _load(builder, y, WORD(i))
+        total = read(builder, y, WORD(i))
         for k, factor in enumerate(factors):
-            total = _subtracted(builder, total, _load(builder, A, WORD(LANES * k + i)), factor)
-        _store(builder, total, y, WORD(i))
-
-
-# packed matrices: the whole numbers of a row are the same in all lanes
-
-
-class _Words:
-    """The whole numbers of a row of packed matrices, in the bits of the first lane."""
-
-    def __init__(self, builder, matrices):
-        self._builder = builder
-        self._words = builder.bitcast(matrices, WORD.as_pointer())
-
-    def at(self, place):
-        """The whole number at a place of the row."""
-        builder = self._builder
-        return builder.load(builder.gep(self._words, [
-            builder.mul(place, WORD(VECTOR.count))]))
-
-    def of_group(self, group):
-        """What a group says of itself."""
-        builder = self._builder
-        place = builder.add(builder.mul(group, WORD(packed_products.GROUP)), WORD(1))
-        return [self.at(_next(builder, place, k)) for k in range(packed_products.GROUP)]
-
-    def of_strip(self, heads, strip, k):
-        """A whole number in the head of a strip."""
-        builder = self._builder
-        first = builder.add(heads, builder.mul(strip, WORD(packed_products.HEAD)))
-        return self.at(_next(builder, first, k))
+            total = _subtracted(builder, total, read(builder, A, WORD(LANES * k + i)), factor)
+        write(builder, total, y, WORD(i))
 
 
 @in_lanes(dense.write_more_columns)
 def more_columns(builder, A, x, out, rows, columns, height):
     """Of the second part of `arrow_times`."""
     _by_rows(builder, [(A, x, columns)], out, rows, height, True)
-
-
-@in_lanes(packed_products.write_packed)
-def packed(builder, matrices, x, out, count):
-    """Of `packed_times`: whole vectors are cleared, as strips have whole ones."""
-    with short_loop(builder, WORD(0), whole_vectors(builder, count)) as place:
-        _store(builder, _NOTHING, out, place)
-    call(builder, add_packed, (matrices, x, out))
-
-
-@in_lanes(packed_products.write_more_packed)
-def add_packed(builder, matrices, x, out):
-    """Of `add_packed_times`: straight code if there is some, see `straight`."""
-    words = builder.bitcast(matrices, WORD.as_pointer())
-    groups, address = builder.load(words), builder.load(builder.gep(words, [WORD(AT_ADDRESS)]))
-    with builder.if_else(builder.icmp_signed("!=", address, groups)) as (straight, by_strips):
-        with straight:
-            kind = ir.FunctionType(ir.VoidType(), [VECTOR.as_pointer()] * 3)
-            builder.call(builder.inttoptr(address, kind.as_pointer()), (matrices, x, out))
-        with by_strips:
-            _add_strips(builder, matrices, x, out)
-
-
-def _add_strips(builder, matrices, x, out):
-    """The numbers of `x` stay in registers while strips follow."""
-    words = _Words(builder, matrices)
-    with short_loop(builder, WORD(0), words.at(WORD(0))) as group:
-        first, columns, strips, heads, at = words.of_group(group)
-        with packed_products.by_width(builder, columns) as widths:
-            for width in widths:
-                factors = [_load(builder, x, _next(builder, first, k)) for k in range(width)]
-                with short_loop(builder, WORD(0), strips) as strip:
-                    place = words.of_strip(heads, strip, 0)
-                    own = packed_products.entries(builder, matrices, at, strip, width)
-                    for row in range(LANES):
-                        total = _load(builder, out, _next(builder, place, row))
-                        for k, factor in enumerate(factors):
-                            total = _fused(builder, total,
-                                           _load(builder, own, WORD(LANES * k + row)), factor)
-                        _store(builder, total, out, _next(builder, place, row))
-
-
-@in_lanes(packed_products.write_sum_packed)
-def sum_packed(builder, matrices, factors, out, height):
-    """Of `add_packed`."""
-    words = _Words(builder, matrices)
-    with short_loop(builder, WORD(0), words.at(WORD(0))) as group:
-        first, columns, strips, heads, at = words.of_group(group)
-        with short_loop(builder, WORD(0), strips) as strip:
-            matrix, row = (words.of_strip(heads, strip, k) for k in (1, 2))
-            scale = _load(builder, factors, matrix)
-            size = builder.mul(columns, WORD(LANES))
-            own = builder.gep(matrices, [builder.add(at, builder.mul(strip, size))])
-            with short_loop(builder, WORD(0), columns) as column:
-                to = builder.add(builder.mul(builder.add(first, column), height), row)
-                read = builder.mul(column, WORD(LANES))
-                for k in range(LANES):
-                    place = _next(builder, to, k)
-                    _store(builder, _fused(builder, _load(builder, out, place), _load(
-                        builder, own, _next(builder, read, k)), scale), out, place)
 
 
 # coordinates that determine the others
@@ -266,37 +182,37 @@ def all_to_free(builder, *args):
     own = [builder.gep(moved, [builder.mul(length, WORD(k))]) for k in range(len(rows))]
     with short_loop(builder, WORD(0), bound_free) as k:
         for place in own:
-            _store(builder, _NOTHING, place, k)
+            write(builder, NOTHING, place, k)
     with short_loop(builder, WORD(0), bound) as column, \
             short_loop(builder, WORD(0), bound_free) as k:
-        entry = _load(builder, axes, builder.add(builder.mul(column, height), k))
-        is_entry = builder.bitcast(builder.fcmp_unordered("!=", entry, _NOTHING), _BITS)
+        entry = read(builder, axes, builder.add(builder.mul(column, height), k))
+        is_entry = builder.bitcast(builder.fcmp_unordered("!=", entry, NOTHING), _BITS)
         with builder.if_then(builder.icmp_unsigned("!=", is_entry, _BITS(0))):
             for given, place in zip(rows, own, strict=True):
-                _store(builder, _fused(builder, _load(builder, place, k), entry,
-                                       _load(builder, given, column)), place, k)
+                write(builder, fused(builder, read(builder, place, k), entry,
+                                       read(builder, given, column)), place, k)
     for given, place in zip(rows, own, strict=True):
         with short_loop(builder, WORD(0), builder.sub(free, bound_free)) as mode:
-            _store(builder, _load(builder, given, builder.add(bound, mode)), place,
+            write(builder, read(builder, given, builder.add(bound, mode)), place,
                    builder.add(bound_free, mode))
     words = builder.bitcast(order, ir.DoubleType().as_pointer())
     with short_loop(builder, WORD(0), free) as k:
         at = builder.fptosi(builder.load(builder.gep(words, [
-            builder.mul(k, WORD(VECTOR.count))])), WORD)
+            builder.mul(k, WORD(across(order)))])), WORD)
         for given, out in zip(own, to, strict=True):
-            _store(builder, _load(builder, given, at), out, k)
+            write(builder, read(builder, given, at), out, k)
     with short_loop(builder, free, whole_vectors(builder, end)) as k:
         for out in to:
-            _store(builder, _NOTHING, out, k)
+            write(builder, NOTHING, out, k)
 
 
 def _dot(builder, pairs, count):
     """Sum of the dot products of some pairs of vectors."""
     total, = _sums(builder, 1)
-    builder.store(_NOTHING, total)
+    builder.store(NOTHING, total)
     with short_loop(builder, WORD(0), count) as k:
         for a, b in pairs:
-            _add_to(builder, total, _load(builder, a, k), _load(builder, b, k))
+            _add_to(builder, total, read(builder, a, k), read(builder, b, k))
     return builder.load(total)
 
 
@@ -307,10 +223,10 @@ def follow(builder, Zq, Zd, z, zd, zdd, free, slaved, height):
     with short_loop(builder, WORD(0), slaved) as b:
         Zq_b, Zd_b = (builder.gep(row, [builder.mul(b, height)]) for row in (Zq, Zd))
         place = builder.add(free, b)
-        _store(builder, builder.fmul(_dot(builder, [(Zq_b, z)], free), half), z, place)
+        write(builder, builder.fmul(_dot(builder, [(Zq_b, z)], free), half), z, place)
         second = _dot(builder, [(Zq_b, zdd), (Zd_b, zd)], free)
-        _store(builder, _dot(builder, [(Zq_b, zd)], free), zd, place)
-        _store(builder, second, zdd, place)
+        write(builder, _dot(builder, [(Zq_b, zd)], free), zd, place)
+        write(builder, second, zdd, place)
 
 
 @in_lanes(coordinates.write_follow_changes)
@@ -321,5 +237,5 @@ def follow_changes(builder, Zq, Zd, Za, dz, dzd, dzdd, free, slaved, height):
         place = builder.add(free, b)
         rate = _dot(builder, [(Zq_b, dzd), (Zd_b, dz)], free)
         second = _dot(builder, [(Zq_b, dzdd), (Zd_b, dzd), (Zd_b, dzd), (Za_b, dz)], free)
-        _store(builder, rate, dzd, place)
-        _store(builder, second, dzdd, place)
+        write(builder, rate, dzd, place)
+        write(builder, second, dzdd, place)

@@ -2,7 +2,8 @@
 
 Matrices of option C are mostly zeros. Where the same few bodies serve thousands of runs, code for
 the entries that are there takes a third of the instructions of strips, and no list is read. It is
-compiled for a pattern of zeros, in hundredths of a second, when an ensemble begins.
+compiled for a pattern of zeros, in hundredths of a second, when an ensemble begins. Entries that
+all members share are constants of the code: eight bytes are read in place of 64.
 """
 
 from functools import cache
@@ -11,19 +12,21 @@ import numpy as np
 from llvmlite import binding, ir
 from numpy.typing import NDArray
 
-from sebody.compiler.inside.lanes import VECTOR
+from sebody.compiler.inside.lanes import VECTOR, same
 from sebody.contract.counts import LANES, MEMBERS
 from sebody.kernels.packed import GROUP, HEAD
 
 # lane of the first number of a row that has the address of its straight code, where there is some;
 # the number of groups stands in all others
 AT_ADDRESS = 1
-Entries = tuple[tuple[int, int, int], ...]      # places of an entry, of its factor and of its sum
+MOST_GROUPS = 1 << 20       # of a row; a larger number is an address
+# places of an entry, of its factor and of its sum; its value, if all members share it
+Entries = tuple[tuple[int, int, int, float | None], ...]
 
 _engines = []       # own the code
 
 
-def entries_of(row: NDArray) -> Entries:
+def entries_of(row: NDArray, varied: NDArray) -> Entries:
     """The entries of a row of packed matrices that are not zero, by their sums."""
     row = np.ascontiguousarray(row)
     whole, found = row.view(np.int64), []
@@ -33,8 +36,10 @@ def entries_of(row: NDArray) -> Entries:
             product = int(whole[head + HEAD * strip])
             begin = at + strip * LANES * width
             for k, i in np.argwhere(row[begin:begin + LANES * width].reshape(width, LANES)):
-                found.append((begin + LANES * int(k) + int(i), first + int(k), product + int(i)))
-    return tuple(sorted(found, key=lambda entry: entry[::-1]))
+                entry = begin + LANES * int(k) + int(i)
+                found.append((entry, first + int(k), product + int(i),
+                              None if varied[entry] else float(row[entry])))
+    return tuple(sorted(found, key=lambda entry: entry[2::-1]))
 
 
 @cache
@@ -47,15 +52,34 @@ def address_of(entries: Entries) -> int:
     builder = ir.IRBuilder(function.append_basic_block())
     A, x, out = function.args
     sums: dict[int, ir.Value] = {}
-    for place, column, to in entries:
+    shared = _Shared(module, builder, entries)
+    for place, column, to, value in entries:
         total = sums.get(to) or _read(builder, out, to)
-        product = builder.fmul(_read(builder, A, place), _read(builder, x, column),
-                               flags=("contract",))
+        entry = _read(builder, A, place) if value is None else shared.next()
+        product = builder.fmul(entry, _read(builder, x, column), flags=("contract",))
         sums[to] = builder.fadd(total, product, flags=("contract",))
     for to, total in sums.items():
         builder.store(total, builder.gep(out, [ir.IntType(64)(to)]))
     builder.ret_void()
     return _compiled(module)
+
+
+class _Shared:
+    """Values that all members share, one after the other."""
+
+    def __init__(self, module: ir.Module, builder: ir.IRBuilder, entries: Entries):
+        values = [entry[3] for entry in entries if entry[3] is not None]
+        kind = ir.ArrayType(ir.DoubleType(), len(values))
+        self._values = ir.GlobalVariable(module, kind, "shared")
+        self._values.initializer = ir.Constant(kind, values)
+        self._values.linkage = "internal"       # not a constant: LLVM would write out eight of each
+        self._builder, self._next = builder, 0
+
+    def next(self) -> ir.Value:
+        """The next value, in all lanes."""
+        place = self._builder.gep(self._values, [ir.IntType(32)(0), ir.IntType(32)(self._next)])
+        self._next += 1
+        return same(self._builder, self._builder.load(place))
 
 
 def _read(builder, pointer, place):
@@ -71,15 +95,31 @@ def _compiled(module: ir.Module) -> int:
     return engine.get_function_address("straight")
 
 
-def write_address(row: NDArray, lanes: NDArray) -> None:
+def write_address(row: NDArray, varied: NDArray, lanes: NDArray) -> None:
     """Compile straight code of a row of packed matrices, and put its address into lanes.
 
     Parameters
     ----------
     row : (size,)
         As of `packed.pack`.
+    varied : (size,)
+        Whether members differ in a number.
     lanes : (size, MEMBERS)
         The same in lanes.
     """
     assert lanes.shape == (len(row), MEMBERS)
-    lanes.view(np.int64)[0, AT_ADDRESS] = address_of(entries_of(row))
+    lanes.view(np.int64)[0, AT_ADDRESS] = address_of(entries_of(row, varied))
+
+
+def write_shared_address(row: NDArray) -> NDArray:
+    """The same of a row that all members share: it points to what is returned, and to be kept.
+
+    Parameters
+    ----------
+    row : (size,)
+        As of `packed.pack`.
+    """
+    own = row.view(np.int64)
+    found = np.array([own[0], address_of(entries_of(row, np.zeros(len(row), dtype=bool)))])
+    own[0] = found.ctypes.data
+    return found
