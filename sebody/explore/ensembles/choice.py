@@ -53,10 +53,8 @@ def why_one_by_one(template: Simulation) -> str:
     template : Simulation
         Of the model as built.
     """
-    if choice.way().__name__ == "sebody.compiler.plain":
-        return "the plain way to compile"
-    if "+avx2" not in choice.way().processor()[1].split(","):
-        return "a processor without AVX2"
+    if reason := choice.why_no_lanes():
+        return reason
     for fact in FACTS:
         if fact.holds(template):
             return fact.reason
