@@ -13,6 +13,7 @@ from sebody.derive.kernels.body_load_form import body_load_form
 from sebody.derive.kernels.catalogue import ELEMENTS
 from sebody.derive.kernels.element_form import element_form
 from sebody.derive.kernels.element_products import products_element
+from sebody.derive.kernels.law_products import products_law
 from sebody.derive.kernels.layouts import Layout
 from sebody.derive.kernels.linearize import linearized
 from sebody.derive.kernels.motion import MOTIONS, frame_motion, motion_form
@@ -122,10 +123,15 @@ def _of_products(kernel: Products) -> Stages:
     """As the kernel that has the forces, up to the assembly."""
     own = stages_of(kernel.of)
     assemble = {SUPERELEMENT: products_superelement, BODY_LOAD: products_body_load,
-                ELEMENT: products_element}[own]
+                ELEMENT: _products_element}[own]
     return Stages(lambda given: own.derive(given.of), own.linearize, assemble,
                   lambda description, made: products_head(own.head(description, made), made),
                   lambda given: products_name(own.name(given.of)))
+
+
+def _products_element(element: elements.Element) -> Kernel:
+    """Of a joint, body or load; laws are made of stages."""
+    return products_law(element) if element.stages else products_element(element)
 
 
 def file_name(kernel: Variant | Products | str) -> str:

@@ -80,7 +80,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t4 = -xa_y + xb_y
         t5 = -xa_z + xb_z
         t6 = t3*t3 + t4*t4 + t5*t5
-        t7 = t6**(-2)
+        t7 = 1/(t6*t6)
         t8 = -2*va_x + 2*vb_x
         t9 = t3*t8
         t10 = -2*va_y + 2*vb_y

@@ -73,7 +73,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t3 = -xa_x + xb_x
         t4 = -xa_y + xb_y
         t5 = t3*t3 + t4*t4
-        t6 = t5**(-2)
+        t6 = 1/(t5*t5)
         t7 = -2*va_x + 2*vb_x
         t8 = t3*t7
         t9 = -2*va_y + 2*vb_y

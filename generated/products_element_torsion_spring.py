@@ -499,7 +499,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t92 = t45*t81
             t93 = -t76
             t94 = t61*t93
-            t95 = t55**(-2)
+            t95 = 1/(t55*t55)
             t96 = t95*(-t53*(2*t78 + 2*t79 + 2*t80) - t54*(2*t69 + 2*t72 + 2*t75))
             t97 = 2*t96
             t98 = t45*t53

@@ -166,7 +166,7 @@ def rotation(space: Space, name: str) -> Block:
 
 def varied(blocks: Sequence[Block]) -> Rules:
     """Rules of a variation of the configuration."""
-    rules = _moved(blocks, "direction")
+    rules = configuration(blocks, "direction")
     for block in blocks:
         if block.increment is not None:
             rules |= along(block.increment.symbols, block.unit.symbols)
@@ -175,13 +175,14 @@ def varied(blocks: Sequence[Block]) -> Rules:
 
 def in_time(blocks: Sequence[Block]) -> Rules:
     """Rules of time derivatives: of states, rates and the amplitude of a load."""
-    rules = _moved(blocks, "rate")
+    rules = configuration(blocks, "rate")
     for block in blocks:
         rules |= along(block.rate.symbols, block.acceleration.symbols)
     return rules | dict(zip(AMPLITUDE[:2], AMPLITUDE[1:], strict=True))
 
 
-def _moved(blocks: Sequence[Block], along_what: str) -> Rules:
+def configuration(blocks: Sequence[Block], along_what: str) -> Rules:
+    """Rules of states alone, along one of the quantities of their blocks."""
     rules: Rules = {}
     for block in blocks:
         by = getattr(block, along_what).symbols
@@ -293,6 +294,6 @@ def _power(blocks, lam, constraints, dissipation, load) -> sp.Expr | None:
     for block in blocks:
         power -= block.rate.symbols.dot(conjugate_to(dissipation, block.rate.symbols))
     if any(phi.has(AMPLITUDE[0]) for phi in constraints):   # a drive: what moves is not at rest
-        moved = _moved(blocks, "rate")
+        moved = configuration(blocks, "rate")
         power -= sum(f * differential(phi, moved) for f, phi in zip(lam, constraints, strict=True))
     return power if power != 0 else None

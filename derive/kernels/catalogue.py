@@ -48,11 +48,11 @@ SMOOTH = {          # joints, bodies and forces whose column is written in the u
     "planar_torsion_spring": lambda: forces.torsion_spring(True),
     "bushing": lambda: forces.bushing(False),
     "planar_bushing": lambda: forces.bushing(True),
-}
-ELEMENTS = SMOOTH | {
     **{"planar_" * planar + f"{way}_{part.__name__}": partial(part, way, planar)
        for way in actuators.WAYS for part in (actuators.motor, actuators.rotor)
        for planar in (False, True)},
+}
+LAWS = {            # laws along measures, with numbers that are kept from step to step
     # friction in joints: f and m count the multipliers it reads, forces and moments
     "friction_turn": lambda: frictions.friction_turn(False, (0, 0)),
     "friction_turn_f3m2": lambda: frictions.friction_turn(False, (3, 2)),
@@ -87,3 +87,4 @@ ELEMENTS = SMOOTH | {
     "planar_point_on_plane": lambda: contacts.contact("plane", True, False),
     "planar_point_on_sphere": lambda: contacts.contact("sphere", True, False),
 }
+ELEMENTS = SMOOTH | LAWS

@@ -49,7 +49,7 @@ def element_form(element: Element) -> Kernel:
     residual, count = stored(
         [*element.residual, *memory],
         [*(arrays.g[k] for k in range(len(element.residual))),
-         *(ARGUMENTS["frames"][_memory(k)] for k in range(len(memory)))], count)
+         *(ARGUMENTS["frames"][memory_place(k)] for k in range(len(memory)))], count)
     of_element = (
         *places(element), Point(arrays.g, ARGUMENTS["forces"].at(counts.element * counts.WIDTH)),
         *loads(element), *stages, *residual, *_tasks(element),
@@ -89,7 +89,7 @@ def counted(expressions: Iterable[sp.Expr]) -> Operations:
                           + list(reduced)), 0, 0, 0)
 
 
-def _memory(k: int) -> Whole:
+def memory_place(k: int) -> Whole:
     """Place of a number that an element keeps from step to step."""
     return ARGUMENTS["index"][counts.first + agreed("AT_FRAME")] + k
 
@@ -162,7 +162,7 @@ def loads(element: Element) -> list[Statement]:
         matrix += block.rotational
     pairs += [(s, q[arrays.unknowns[element.coordinates + k]])
               for k, s in enumerate((*element.reads, *element.multipliers))]
-    pairs += [(kept(name), ARGUMENTS["references"][_memory(k)])
+    pairs += [(kept(name), ARGUMENTS["references"][memory_place(k)])
               for k, (name, _) in enumerate(element.memory) if kept(name) in used]
     amplitudes = 3 * ARGUMENTS["index"][counts.first + agreed("AT_PORT")]
     pairs += [(s, ARGUMENTS["loads"][amplitudes + k]) for k, s in enumerate(AMPLITUDE) if s in used]

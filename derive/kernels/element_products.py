@@ -1,8 +1,8 @@
 """Products with the derivatives of the forces of joints, rigid bodies and loads.
 
 Tasks, and the vectors of each element, are those of `products`. Everything is in components, and
-nothing is kept between PREPARE, which leaves the forces, and the others. Elements of laws, which
-keep numbers from step to step, have no products: they are not differentiated along a run.
+nothing is kept between PREPARE, which leaves the forces, and the others. Elements of laws: see
+`law_products`.
 """
 
 from collections.abc import Sequence

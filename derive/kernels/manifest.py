@@ -8,7 +8,7 @@ sources add, and files multiply no further than this table; any other combinatio
 from sebody.derive.kernels.body_contact import BODY_CONTACTS
 from sebody.derive.kernels.body_load import BODY_LOADS
 from sebody.derive.kernels.catalogue import ELEMENTS as CATALOGUE
-from sebody.derive.kernels.catalogue import SMOOTH
+from sebody.derive.kernels.catalogue import LAWS, SMOOTH
 from sebody.derive.kernels.motion import MOTIONS
 from sebody.derive.kernels.options import frame_traits
 
@@ -62,9 +62,9 @@ SUPERELEMENTS = (
 ELEMENTS = (*CATALOGUE, *BODY_LOADS, *BODY_CONTACTS, *MOTIONS)
 
 # with products of their derivatives, of which gradients of runs are made: general superelements and
-# the layouts of beams, others take these; no laws, nor frames that depend on the steps before
+# the layouts of beams, others take these; no frames that depend on the steps before
 LAYOUTS = "f2", "planar-f2", "any", "anyd", "planar-any", "planar-anyd"
 PRODUCTS = (
     *(row for row in SUPERELEMENTS if _lasts(row[1])
       and (row[0] in LAYOUTS or row[2] == "frame_axes")),
-    *SMOOTH, *(name for name, (frame, _) in BODY_LOADS.items() if _lasts(frame)))
+    *SMOOTH, *LAWS, *(name for name, (frame, _) in BODY_LOADS.items() if _lasts(frame)))

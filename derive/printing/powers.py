@@ -15,6 +15,8 @@ class Powers:
         if power.is_Integer and 2 <= power <= LARGEST:
             text = self.parenthesize(base, TIGHT)
             return "*".join([text] * int(power))
+        if power.is_Integer and -LARGEST <= power <= -2:    # with a zero below, whole powers raise
+            return f"1/({self._print(1 / expr)})"
         return super()._print_Pow(expr, **kwargs)
 
     def _print_Mul(self, expr):

@@ -52,15 +52,22 @@ def _is_in_room(path: str, room: str) -> bool:
 def function_hash(function: Callable) -> str:
     """Hash of all sources that a compiled function of the runtime may depend on.
 
-    Functions in ``kernels/`` call each other; all others call ``kernels/``, ``engine/`` and their
-    own module.
+    Functions in ``kernels/`` call each other; all others call ``kernels/``, ``engine/`` and the
+    modules of their own folder that have compiled functions.
     """
     if in_room(function, KERNELS):
         return room_hash(*KERNEL_CODE)
     if in_room(function, ENGINE):
         return room_hash(*CODE)
     path = Path(function.__code__.co_filename)
-    return f"{room_hash(*CODE)} {_syntax_hash(path.stem, path)}"
+    return f"{room_hash(*CODE)} {_syntax_hash(path.stem, path, *_neighbours(path))}"
+
+
+@cache
+def _neighbours(path: Path) -> list[Path]:
+    """Other modules of a folder that have compiled functions."""
+    return [one for one in sorted(path.parent.glob("*.py"))
+            if one != path and b"@compiled" in one.read_bytes()]
 
 
 def kernel_hash(path: Path) -> str:

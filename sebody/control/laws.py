@@ -49,7 +49,7 @@ def pid(kp: float, ki: float = 0.0, kd: float = 0.0, filter: float = 100.0,
                inputs.number(reference, "pid: reference"), *_limits(limit, "pid: limit")]
     return Law("pid", _pid, (1, 2), 1, np.zeros(4),
                lambda period: np.array([period, *numbers]),
-               Flow(_pid_flow, np.zeros(2), np.array(numbers)))
+               Flow(_pid_flow, np.zeros(2), np.array(numbers), _pid_derivatives))
 
 
 def _pid(t, y, x, u, parameters):
@@ -79,6 +79,24 @@ def _pid_flow(t, y, x, rates, u, parameters):
     rates[0] = e if raw == u[0] or (raw - u[0]) * ki * e <= 0.0 else 0.0
 
 
+def _pid_derivatives(t, y, x, derivatives, parameters):
+    kp, ki, kd, N, r, least, most = parameters
+    n = y.size
+    if n == 2:
+        r = y[1]
+    e = r - y[0]
+    raw = kp * e + ki * x[0] + kd * N * (-y[0] - x[1])
+    inside = least <= raw <= most
+    if inside or (raw - min(max(raw, least), most)) * ki * e <= 0.0:
+        derivatives[0, 0] = -1.0
+    derivatives[1, 0], derivatives[1, n + 1] = -N, -N
+    if inside:
+        derivatives[2, 0], derivatives[2, n], derivatives[2, n + 1] = -kp - kd * N, ki, -kd * N
+    if n == 2:
+        derivatives[0, 1] = -derivatives[0, 0]
+        derivatives[2, 1] = kp if inside else 0.0
+
+
 def state_feedback(gain: ArrayLike, reference: ArrayLike | None = None,
                    offset: ArrayLike | None = None) -> Law:
     """``u = offset - K (y - r)``.
@@ -99,7 +117,14 @@ def state_feedback(gain: ArrayLike, reference: ArrayLike | None = None,
     u0 = np.zeros(m) if offset is None else inputs.vector(offset, "state_feedback: offset", m)
     packed = constant(K, r, u0)
     return Law("state feedback", _feedback, (n,), m, NONE, packed,
-               _without_states(_feedback, packed(0.0)))
+               _without_states(_feedback, packed(0.0), _feedback_derivatives))
+
+
+def _feedback_derivatives(t, y, x, derivatives, parameters):
+    m, n = derivatives.shape
+    for i in range(m):
+        for j in range(n):
+            derivatives[i, j] = -parameters[i * n + j]
 
 
 def _feedback(t, y, x, u, parameters):
@@ -311,11 +336,12 @@ def computed_torque(dynamics: Callable[..., None], reference: Callable[..., None
                _without_states(law, packed(0.0)))
 
 
-def _without_states(function: Callable[..., None], parameters: NDArray) -> Flow:
+def _without_states(function: Callable[..., None], parameters: NDArray,
+                    derivatives: Callable[..., None] | None = None) -> Flow:
     """The continuous form of a law without states: the same."""
     def law(t, y, x, rates, u, parameters):
         function(t, y, x, u, parameters)
-    return Flow(law, NONE, parameters)
+    return Flow(law, NONE, parameters, derivatives)
 
 
 def _limits(limit: float | tuple[float, float] | None, what: str) -> tuple[float, float]:

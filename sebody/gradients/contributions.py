@@ -20,7 +20,7 @@ from sebody.errors import InputError, LimitWarning
 from sebody.gradients.gradient import Differentiated, fitting
 from sebody.gradients.responses import Histories, linearized
 from sebody.gradients.simplifications import Amplitude, Deformation, Motion
-from sebody.gradients.support import refuse_model, refuse_scheme
+from sebody.gradients.support import refuse_laws, refuse_model, refuse_scheme
 from sebody.model.model import Model
 from sebody.model.variants import with_options
 from sebody.runs.simulation import Simulation, simulate
@@ -206,6 +206,7 @@ def contributions(model: Model, h: float, t_end: float, quantities: str | Iterab
     began, scheme = time.perf_counter(), fitting(scheme)
     refuse_scheme(scheme, "contributions")
     one = Differentiated(model, h, t_end, scheme)
+    refuse_laws(one.run, "contributions")
     each = simplifications(one.run, chosen)
     like = [j for j, simpler in enumerate(each) if simpler.options is None]
     values, found = linearized(one, [each[j].motions for j in like], names)

@@ -16,6 +16,7 @@ from sebody.engine.state import Scheme
 from sebody.errors import InputError, LimitWarning
 from sebody.explore.ensembles.outputs import Output
 from sebody.gradients.history import History, history
+from sebody.gradients.laws import refuse_break_away
 from sebody.gradients.linear import Linear
 from sebody.gradients.objectives import Folded, Objectives, Seen, checked
 from sebody.gradients.parameters import Column, columns_of
@@ -155,6 +156,7 @@ class Differentiated:
         self.run = Simulation(model, h, scheme, tolerance=tolerance)
         refuse_run(self.run)
         self.history: History = history(self.run, t_end)
+        refuse_break_away(self.run, self.history)
         self.run.watch.look(model, self.run.numbering, self.history.states)
         self.linear = Linear(self.run)
         self.course = course_of(self.run, self.linear, self.history)
@@ -184,10 +186,11 @@ class _Part:
 
     def __init__(self, one: _Parts, history: History):
         run = one.segments.run
+        refuse_break_away(run, history)
         self.history, self.columns = history, one.columns
         self.course = course_of(run, one.linear, history)
         self.seen = Seen(one.whole, run, history, one.linear)
-        self.slopes = Slopes(one.model, run, history, self.seen.explicit, self.course.second)
+        self.slopes = Slopes(one.model, run, history, self.seen.explicit, self.course)
         self.tables: dict[str, OfTable] = {}    # and amplitudes of loads, by name
         names = {c.name: c for c in one.columns}
         ports = {name: (c, port_of(one.model, run, c)) for name, c in names.items()}
@@ -287,7 +290,9 @@ def _growth_forth(sizes: NDArray) -> float:
 
 
 def stacked(each: Sequence[Slope]) -> tuple[NDArray, NDArray, NDArray]:
-    """Slopes of residuals, motion and rates of the start by all parameters, these last."""
+    """Slopes of residuals with what laws keep, of motion and rates of the start; by all parameters,
+    these last.
+    """
     residuals, motion, rates = (np.stack([getattr(slope, name) for slope in each], axis=-1)
                                 for name in ("residuals", "motion", "rates"))
     return residuals, motion, rates

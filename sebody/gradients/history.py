@@ -103,15 +103,16 @@ def stretch(run: Simulation, last: int, most: int | None = None) -> History:
     if (whole := _whole(run, grid, end)) is not None:
         return whole._replace(seconds=time.perf_counter() - began, duration=run.h * last, aux=aux)
     events = _Events(run, last)
+    before = control.steps, float(run.state.clock.aux_step)     # of the last accepted step
     while control.grid < last and (most is None or len(events.rows) <= most
                                    or (run.tolerance is None and control.unit > 0)):
-        before = control.steps, float(run.state.clock.aux_step)
         if not _one_step(run, events.record, last):
             run.failure = explained(run.model, run.system, run.state, run.numbering)
             run.rows.stretches.append(np.array(events.rows)[events.recorded[1:]])
             raise SimulationError(run.failure, run.result())
         if control.steps > before[0]:
             events.add(before[1])
+            before = control.steps, float(run.state.clock.aux_step)
     return events.found(time.perf_counter() - began, run.h * last)._replace(aux=aux)
 
 

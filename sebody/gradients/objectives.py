@@ -31,6 +31,7 @@ from sebody.runs.simulation import Simulation
 from sebody.small_motion.moved_states import ADDED_UP, UNMOVED
 
 SEAM = 1e-6         # of the largest value: a quantity that differs more in a state is another turn
+ANGLES = "rotation", "angular_velocity", "angular_acceleration"     # coordinates in a plane
 EXTREMES = "maximum", "minimum"
 Objectives = Mapping[str, Output] | Sequence[Output] | Output
 
@@ -236,8 +237,11 @@ def _coordinates(numbering: Numbering, model: Model, quantity: str
         component = AXES.index(what) if what in AXES else int(what)
         owner, _, what = owner.rpartition(".")
     node, rates = model.nodes.get(owner), {"position": "q", "velocity": "v", "acceleration": "a"}
+    turns = dict(zip(ANGLES, "qva", strict=True)) if model.planar else {}
     if node is not None and what in rates and node.position in numbering.dof_blocks:
         found = coordinates(numbering, node.position)
+    elif node is not None and what in turns and node.rotation in numbering.dof_blocks:
+        rates, found = turns, coordinates(numbering, node.rotation)
     elif owner in numbering.modes and what == "modes":
         first = numbering.modes[owner]
         rates, found = {"modes": "q"}, list(range(first, first + model.bodies[owner].reduced.modes))

@@ -3,10 +3,13 @@
     transposed   K^T w, C^T w and M^T w     of weights w of the residuals
     along        K xi + C v + M a           of a motion of the unknowns
 
+and the same of what laws keep from step to step, see `laws`.
+
 Kernels of products (`derive/kernels/products.py`) do this element by element: first PREPARE, once
-in a state, then as many products as are asked for. Vectors are those of all coordinates, in global
-axes. Dependent positions, at the ends of rigid links, follow the unknowns by the operators (20) of
-`links`, which are written out here, with their transposes.
+in a state, then as many products as are asked for. Laws of continuous controllers, whose kernel is
+written by hand, have their matrices made in its place. Vectors are those of all coordinates, in
+global axes. Dependent positions, at the ends of rigid links, follow the unknowns by the operators
+(20) of `links`, which are written out here, with their transposes.
 """
 
 from dataclasses import dataclass
@@ -22,19 +25,28 @@ from sebody.contract.layout import (
     AT_FRAME,
     AT_POSITIONS,
     AT_ROTATIONS,
+    C_CONSTRAINT,
+    C_DAMPING,
+    C_MASS,
+    C_STIFFNESS,
     OK,
     PREPARE,
+    TANGENT,
     TRANSPOSED,
 )
+from sebody.contract.names import element_name
 from sebody.engine.arrays import Arrays
 from sebody.engine.evaluate import sum_forces
 from sebody.engine.links import pull_back
+from sebody.gradients import laws
+from sebody.gradients.laws import ROWS
 from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
 from sebody.kernels.loader import element_kernel_name, load, products_kernel_name
 from sebody.runs.first_run import compile_missing
 from sebody.runs.simulation import Simulation
 
-ROWS = 4        # vectors of an element: forces or their weights, motion, rates, second rates
+CONTINUOUS = element_name("continuous")     # kernel of laws of controllers
+PARTS = "stiffness", "damping", "mass"      # matrices that are made
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,13 +54,17 @@ class Products(Arrays):
     """Kernels of products of a model, and what they work on.
 
     ==========  ====================================================================================
-    address     (batches,) of the kernel
+    address     (batches,) of the kernel; 0 where matrices are made
     turned      (batches,) 1 where vectors of elements are in axes of frames
     at_work     (elements,) where the scratch memory of each begins, which it keeps in a state
     work        this memory
     vectors     ROWS of each element
     forces      (coordinates,) weights, or products with motions
-    motion      (3, coordinates) motion, rates and second rates, or products with weights
+    motion      (4, coordinates) motion, rates, second rates and increments of rotations, or
+                products with weights
+    laws        (laws, 11) see `laws`
+    kept        (2, numbers) of all laws: changes or bars of what the step before has left; changes
+                or weights of what the step leaves
     ==========  ====================================================================================
     """
 
@@ -59,28 +75,36 @@ class Products(Arrays):
     vectors: NDArray
     forces: NDArray
     motion: NDArray
+    laws: NDArray
+    kept: NDArray
 
     @classmethod
     def of(cls, run: Simulation) -> "Products | None":
         """Those of a model; None if it has an element without them."""
         system = run.system
         kernels = _kernels(run)
-        names = [products_kernel_name(kernel) for kernel in kernels]
-        if any(name is None for name in names):
+        names = [None if kernel == CONTINUOUS else products_kernel_name(kernel) or ""
+                 for kernel in kernels]
+        if "" in names:
             return None
-        compile_missing(names)
-        modules, sizes = [load(name) for name in names], []
+        compile_missing([name for name in names if name])
+        modules, sizes = [None if name is None else load(name) for name in names], []
         for b, module in enumerate(modules):
-            rotations = int(system.index[system.at_index[b] + AT_ROTATIONS])
-            size = module.WORK_ROWS and whole_vectors(module.KEPT) + scratch_size(
-                module.WORK_ROWS, getattr(module, "WORK_SQUARES", 0), int(system.width[b]),
-                rotations)
+            rotations, width = (int(system.index[system.at_index[b] + AT_ROTATIONS]),
+                                int(system.width[b]))
+            size = len(PARTS) * width * width if module is None else whole_vectors(module.KEPT)
+            if module is not None and module.WORK_ROWS:
+                size += scratch_size(module.WORK_ROWS, getattr(module, "WORK_SQUARES", 0), width,
+                                     rotations)
             sizes += [size] * int(system.count[b])
         ends, total = np.cumsum(sizes), run.numbering.total
-        return cls(np.array([module.kernel.address for module in modules]),
+        at_work = (ends - sizes).astype(np.int64)
+        of_laws = laws.places_of(system, modules, at_work)
+        return cls(np.array([module.kernel.address if module else 0 for module in modules]),
                    in_frames(run.model, run.numbering, system).astype(np.int64),
-                   (ends - sizes).astype(np.int64), np.zeros(max(int(ends[-1]), 1)),
-                   np.zeros(ROWS * int(system.at_g[-1])), np.zeros(total), np.zeros((3, total)))
+                   at_work, np.zeros(max(int(ends[-1]), 1)),
+                   np.zeros(ROWS * int(system.at_g[-1])), np.zeros(total), np.zeros((4, total)),
+                   of_laws, np.zeros((2, int(of_laws[:, laws.COUNT].sum()))))
 
 
 def _kernels(run: Simulation) -> list[str]:
@@ -110,6 +134,14 @@ def _run(task, system, state, products):
         stride, width = system.stride[b], system.width[b]
         for k in range(system.count[b]):
             first = system.at_g[b] + k * width
+            if products.address[b] == 0:
+                status = _by_matrices(task, b, k, system, state, at(
+                    pointer_to(products.vectors), ROWS * first), at(
+                        pointer_to(products.work), products.at_work[element]))
+                if status != OK:
+                    return status
+                element += 1
+                continue
             status = call_kernel(
                 products.address[b], task, 1, stride, width,
                 Arguments(index=at(pointer_to(system.index), system.at_index[b] + k * stride),
@@ -127,37 +159,86 @@ def _run(task, system, state, products):
 
 
 @compiled
+def _by_matrices(task, b, k, system, state, vectors, matrices):
+    """The same of an element whose matrices K, C and M are made."""
+    width, stride, c = system.width[b], system.stride[b], state.coefficients
+    size = width * width
+    if task == PREPARE:
+        for i in range(state.T.size):
+            state.T[i] = 1.0 if i % 9 % 4 == 0 else 0.0
+        for part in range(3):
+            c[C_STIFFNESS] = c[C_CONSTRAINT] = 1.0 * (part == 0)
+            c[C_DAMPING], c[C_MASS] = 1.0 * (part == 1), 1.0 * (part == 2)
+            status = call_kernel(
+                system.address[b], TANGENT, 1, stride, width,
+                Arguments(index=at(pointer_to(system.index), system.at_index[b] + k * stride),
+                          constants=system.constants, q=state.q, R=state.R, v=state.v, a=state.a,
+                          references=state.frames_old, frames=state.frames, T=state.T,
+                          loads=state.loads, coefficients=c,
+                          forces=at(pointer_to(state.g), system.at_g[b] + k * width),
+                          matrices=at(matrices, part * size), work=state.work,
+                          energies=state.energy))
+            if status != OK:
+                return status
+        return OK
+    for i in range(width):
+        if task == ALONG:
+            vectors[i] = 0.0
+        for part in range(3):
+            total, row = 0.0, (part + 1) * width
+            for j in range(width):
+                if task == ALONG:
+                    total += matrices[part * size + i * width + j] * vectors[row + j]
+                else:
+                    total += matrices[part * size + j * width + i] * vectors[j]
+            if task == ALONG:
+                vectors[i] += total
+            else:
+                vectors[row + i] = total
+    return OK
+
+
+@compiled
 def transposed(system, state, products, free):
     """From `forces` of the unknowns to `motion`: ``K^T w``, ``C^T w`` and ``M^T w``.
 
-    The state is prepared. What is behind the unknowns in `motion` has no meaning.
+    The second row of `kept` has weights, too, and its first row gets what they give. The state is
+    prepared. What is behind the unknowns in `motion` has no meaning.
     """
     w, bars = products.forces, products.motion
     for i in range(free, w.size):
         w[i] = 0.0
     _place(system, state, w)
     _take(system, state, products, w, 0)
+    laws.give(system, products, True)
     _run(TRANSPOSED, system, state, products)
-    for r in range(3):
+    for r in range(4):
         for i in range(w.size):
             bars[r, i] = 0.0
-        _give(system, state, products, bars[r], r + 1)
+        if r < 3:
+            _give(system, state, products, bars[r], r + 1)
+    laws.take(system, products, True)
     if system.links.dependent.shape[0] > 0:
         _pull_back(system, state, w, bars)
 
 
 @compiled
 def along(system, state, products, free):
-    """From `motion` of the unknowns to `forces`: ``K xi + C v + M a``. The state is prepared."""
+    """From `motion` of the unknowns to `forces`: ``K xi + C v + M a``. The state is prepared.
+
+    The same of `kept`, from the first row to the second one, and of increments in `motion`.
+    """
     f, moves = products.forces, products.motion
-    for r in range(3):
+    for r in range(4):
         for i in range(free, f.size):
             moves[r, i] = 0.0
     if system.links.dependent.shape[0] > 0:
         _place_moved(system, state, moves)
     for r in range(3):
         _take(system, state, products, moves[r], r + 1)
+    laws.give(system, products, False)
     _run(ALONG, system, state, products)
+    laws.take(system, products, False)
     for i in range(f.size):
         f[i] = 0.0
     _give(system, state, products, f, 0)

@@ -37,7 +37,8 @@ class Refined:
         self.linear, self.products, self.history = linear, products, history
         self.back, self.redundant, n = back, redundant, linear.free
         self.columns = steps.Columns.of(
-            columns, n, places, scheme.tolerance if scheme.tolerance > FINE else ROUNDING)
+            columns, n, products.kept.shape[1], places,
+            scheme.tolerance if scheme.tolerance > FINE else ROUNDING)
         self.numbers = (scheme.alpha_m, scheme.alpha_f, scheme.beta, scheme.gamma,
                         history.duration)
         self.scales: dict[float, Scales] = {}
@@ -45,14 +46,19 @@ class Refined:
         self.next = -1          # event that follows those that were passed
 
     def begin(self, motion: tuple[NDArray, ...]) -> None:
-        """Columns (n, m) of motion, rates, second and auxiliary rates."""
-        for own, given in zip(self.columns.motion, motion, strict=True):
+        """Columns as of `sweeps.Motion`."""
+        for own, given in zip(self._carried, motion, strict=True):
             own[:] = given.T
 
     @property
     def motion(self) -> list[NDArray]:
         """Columns as of `begin`."""
-        return [own.T.copy() for own in self.columns.motion]
+        return [own.T.copy() for own in self._carried]
+
+    @property
+    def _carried(self) -> list[NDArray]:
+        columns = self.columns
+        return [*columns.motion, columns.kept, columns.before, columns.turned]
 
     def over(self, first: int, last: int, *arrays: NDArray) -> None:
         """All steps from one event to another: (events, ...) arrays of `steps.backward`, `forward`.

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from sebody.errors import InputError
 from sebody.gradients.history import History
+from sebody.gradients.laws import remembering
 from sebody.gradients.linear import Linear
 from sebody.kernels.rotations import inverse_tangent_coefficients
 from sebody.results.naming import AXES, NORM, look_up, rotation_vectors
@@ -19,6 +20,8 @@ from sebody.vectors import skew
 PIECE = 64          # motions that are compared at a time
 FINER = 30.0        # factor of the steps of differences from one try to the next
 SMALLEST = 1e-8     # of them, of the characteristic length: rounding is 1e-8 of a derivative then
+MOVED = 1e-3        # change of kept numbers that shows which quantities depend on them
+ROUNDING = 1e-12
 WHOLE = 1e-6        # rad: a rotation that near whole turns has a vector without derivative
 LARGE = 1.0         # rad: from here on closed forms are as exact as series
 CLOSE = 1e-5        # of the largest derivative: differences that agree like this are right
@@ -90,8 +93,27 @@ class Evaluated:
             (G.T, none, none), (V.T, G.T, none), (U.T, W.T, G.T))]
         one = Result(self.run.model, self.run.numbering, linear.system, linear.state,
                      linear.state.now[None].copy(), 0.0)
+        self._refuse_kept(one)
         found = self._smooth(one, moves, float(self.history.ends[event]))
         return Rows(*(part.T for part in np.split(found, 3)))
+
+    def _refuse_kept(self, one: Result) -> None:
+        """Refuse quantities that depend on what laws keep, such as the force of friction."""
+        places = [place for law in remembering(self.run)
+                  for place in self.run.numbering.memories[law]]
+        if not places:
+            return
+        rows = np.repeat(self.linear.state.now[None], 2, axis=0)
+        for name in ("frames", "frames_old"):
+            kept = rows[1, self.linear.state.recorded_parts[name]]
+            kept[places] = (1.0 + MOVED) * kept[places] + MOVED
+        now, moved = np.asarray(look_up(Recording(
+            one.model, one.numbering, self.linear.system, self.linear.state, rows, 0.0),
+            self.quantity), dtype=float)
+        if not np.allclose(now, moved, ROUNDING, ROUNDING * np.abs(now).max(initial=0.0)):
+            raise InputError(f"quantity {self.quantity!r} depends on what friction or contacts "
+                             "keep from step to step, and has no derivative by a state: give the "
+                             "motion that they act on, or the force of a joint")
 
     def _smooth(self, one: Result, moves: list[NDArray], t: float) -> NDArray:
         """Differences over steps that are so small that smaller ones give the same."""

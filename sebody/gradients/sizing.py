@@ -22,7 +22,7 @@ from sebody.fem.section import Section, StiffnessSection
 from sebody.gradients.beam_stresses import ConstantRows, StressedBeam
 from sebody.gradients.gradient import Differentiated, fitting
 from sebody.gradients.held_beams import Elements, Held, HeldBeam
-from sebody.gradients.support import refuse_model, refuse_scheme
+from sebody.gradients.support import refuse_laws, refuse_model, refuse_scheme
 from sebody.model.model import Model
 from sebody.model.parts import Beam, Superelement
 from sebody.runs.steps import whole_steps
@@ -151,6 +151,7 @@ class BeamStress:
             held = self.beam.at(x)
             with self._built(held) as part:
                 one = Differentiated(self.model, self.h, self.t_end, self.scheme)
+                refuse_laws(one.run, "sizing")
                 if one.run.start.changed:
                     raise InputError("velocities at the start do not fit the joints, so they would "
                                      "depend on the heights: give velocities that fit")

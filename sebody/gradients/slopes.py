@@ -24,10 +24,12 @@ from sebody.engine.state import REASONS
 from sebody.errors import InputError, LimitWarning
 from sebody.explore.ensembles.changes import Handle
 from sebody.gradients.history import RESTART, History
+from sebody.gradients.laws import in_changed
 from sebody.gradients.parameters import Column
 from sebody.gradients.second_residuals import of_restart, of_step
 from sebody.gradients.stabilized import Second
 from sebody.gradients.start_rates import fitted_rates
+from sebody.gradients.sweeps import Course
 from sebody.kernels.abi import pointer_to
 from sebody.kernels.rotations import rotate
 from sebody.model.model import Model
@@ -50,7 +52,8 @@ NOTHING = Second(NONE, NONE, NO_ROWS, NONE, NO_ROWS, 0)     # of index 3
 class Slope(NamedTuple):
     """Derivatives by one number."""
 
-    residuals: NDArray      # (events, n); of the start with what its motion changes
+    residuals: NDArray      # (events, n + k), and of the k numbers that laws keep; of the start
+                            # with what its motion changes
     motion: NDArray         # (n,) of the start: positions, rotations
     rates: NDArray          # (n,)
     objectives: NDArray     # (m,) with the motion held
@@ -153,21 +156,22 @@ class Slopes:
     objectives : function
         Values of all objectives, (m,), of recorded rows and a simulation of the model that is
         changed; None where they do not depend on anything but motion.
-    second : Second, optional
-        Of index 2, as of a `Course`.
+    course : Course, optional
+        Of the run, if it is of index 2 or has laws.
     """
 
     def __init__(self, model: Model, run: Simulation, history: History,
                  objectives: Callable[[Simulation, NDArray], NDArray],
-                 second: Second | None = None):
+                 course: Course | None = None):
         self.model, self.run, self.history, self.objectives = model, run, history, objectives
         self.free = run.numbering.free
         parts = run.state.recorded_parts
         self.places = tuple(parts[name].start for name in ("q", "R", "v", "a", "frames",
                                                            "frames_old"))
         self.start = history.rows[0]        # of the run, or of a segment
-        self.second = second or NOTHING
-        self.unknowns = self.free * (1 if second is None else 2)
+        self.second = course.second if course and course.second else NOTHING
+        self.unknowns = self.free if course is None else course.unknowns
+        self.products, self.kept = (None, 0) if course is None else (course.products, course.kept)
 
     def of(self, column: Column) -> Slope:
         """Derivatives by a number of a parameter.
@@ -276,10 +280,12 @@ class Slopes:
                ) -> tuple[NDArray, NDArray]:
         """Residuals of all events, and the states of this model that they are of if asked for."""
         system, state, history = made.system, made.state, self.history
-        found = np.zeros((len(history.rows), self.unknowns))
+        found = np.zeros((len(history.rows), self.unknowns + self.kept))
         now = history.rows[:len(history.rows) if states else 1].copy()
         if history.past is None:
             self._first(made, load, found[0])
+            if states:
+                self._follow(made, state.now[None].copy(), found, 0, 1)
             self._hold_start(made)
             now[0] = state.now
         else:
@@ -290,7 +296,21 @@ class Slopes:
                             history.besides, self.places, self.free, load, self.second, found)
         if status != OK:
             raise InputError(f"a state cannot be evaluated: {REASONS[status]}")
+        if states:
+            self._follow(made, now[1:], found, 1, len(now))
         return found, now
+
+    def _follow(self, made: Simulation, now: NDArray, found: NDArray, first: int, last: int
+                ) -> None:
+        """Let laws stay in the branches of the run: see `laws.in_changed`."""
+        if not self.kept:
+            return
+        (system, state), history, piece = self.run.arrays_of_loop, self.history, slice(first, last)
+        status = in_changed(system, state, self.products, made.system, made.state,
+                            history.rows[piece], now, history.ends[piece], history.besides[piece],
+                            found[piece])
+        if status != OK:
+            raise InputError(f"a state cannot be evaluated: {REASONS[status]}")
 
     def _first(self, made: Simulation, load: Load, found: NDArray) -> None:
         """Residual of the start with accelerations and multipliers of the run."""

@@ -30,6 +30,7 @@ MOST = 12               # products for a column of a step
 SLOW = 0.4              # corrections that shrink less ask for an inverse
 ROUNDED = 1e-11         # corrections as small, relative, that do not shrink: rounding
 LOOSE = 1e-7            # the same with the inverse of the step itself
+NONE = 1e-200           # corrections of this size: an open contact has a force of 1e-300
 CAUTION = 10.0          # what a correction leaves: times what corrections have left so far
 FORGET = 0.9            # of the pace, from step to step
 SPARE = 3               # products of a column that are worth no new inverse
@@ -42,6 +43,13 @@ class Columns(Arrays):
 
     ==========  ====================================================================================
     motion      (4, m, n) motion, rates, second rates and auxiliary ones, or bars of these
+    kept        (m, k) of the k numbers that laws keep, see `laws`
+    before      (m, k) changes of these before the last step, which a restart at its end reads
+                again; or what such a restart gives to the bars of the step
+    turned      (m, n) the same of increments of the step
+    own         (m, k) bars of kept numbers by what a step keeps, without its solution
+    increments  (m, n) the same of increments of the step
+    through     (m, k) bars by the residuals: products of the solutions
     given       (3, m, n) the same for the event at hand: with what objectives say, or predicted
     found       (3, m, n) products of the solutions
     last        (3, m, n) solutions of the events before, newest first, in axes of frames
@@ -68,6 +76,12 @@ class Columns(Arrays):
     """
 
     motion: NDArray
+    kept: NDArray
+    before: NDArray
+    turned: NDArray
+    own: NDArray
+    increments: NDArray
+    through: NDArray
     given: NDArray
     found: NDArray
     last: NDArray
@@ -92,12 +106,12 @@ class Columns(Arrays):
     length: NDArray
 
     @classmethod
-    def of(cls, m: int, n: int, places: NDArray, tolerance: float) -> "Columns":
+    def of(cls, m: int, n: int, k: int, places: NDArray, tolerance: float) -> "Columns":
         """All zero."""
         r = len(places)
         return cls(*(np.zeros(shape) for shape in (
-            (4, m, n), (3, m, n), (3, m, n), (3, m, n), (3, m, n), (m, n), (m, n), (n, n),
-            (3, n, n), (n, n), n, n, n, n, n, n)),
+            (4, m, n), (m, k), (m, k), (m, n), (m, k), (m, n), (m, k), (3, m, n), (3, m, n),
+            (3, m, n), (3, m, n), (m, n), (m, n), (n, n), (3, n, n), (n, n), n, n, n, n, n, n)),
             np.ascontiguousarray(places, dtype=np.int64), np.zeros((r, 9)), np.zeros((r, 9)),
             np.zeros(5, dtype=np.int64), np.array([tolerance]), np.ones(1), np.zeros(1))
 
@@ -175,6 +189,7 @@ def _multiply(system, state, products, columns, j, cm, cd, back):
     """
     n, w, bars, moved = columns.right.size, products.forces, products.motion, columns.product
     columns.counts[PRODUCTS] += 1
+    _hold(products)
     if back:
         for i in range(n):
             w[i] = columns.change[i]
@@ -184,10 +199,12 @@ def _multiply(system, state, products, columns, j, cm, cd, back):
             for c in range(3):
                 columns.found[c, j, i] += bars[c, i]
             moved[i] = bars[0, i]
+        for i in range(products.kept.shape[1]):
+            columns.through[j, i] += products.kept[0, i]
         _turn(columns, columns.T, moved, True)
         for i in range(n):
             if system.is_multiplier[i] == 0.0:
-                moved[i] += cd * bars[1, i] + cm * bars[2, i]
+                moved[i] += cd * bars[1, i] + cm * bars[2, i] + bars[3, i]
         to_body_axes(system, state.frames, moved, False)
         return
     xi = bars[0]
@@ -196,12 +213,59 @@ def _multiply(system, state, products, columns, j, cm, cd, back):
     to_body_axes(system, state.frames, xi, True)
     for i in range(n):
         free = 1.0 - system.is_multiplier[i]
-        bars[1, i], bars[2, i] = cd * free * xi[i], cm * free * xi[i]
+        bars[1, i], bars[2, i], bars[3, i] = cd * free * xi[i], cm * free * xi[i], free * xi[i]
     _turn(columns, columns.T, xi, False)
     along(system, state, products, n)
     for i in range(n):
         moved[i] = w[i]
     to_body_axes(system, state.frames, moved, False)
+
+
+@compiled(forceinline=True)
+def _hold(products):
+    """Nothing of what laws keep changes, or has weights."""
+    for i in range(products.kept.shape[1]):
+        products.kept[0, i] = products.kept[1, i] = 0.0
+
+
+@compiled
+def _weigh(system, state, products, columns, j):
+    """Bars of column j by what the step keeps, whose own ones are at hand."""
+    n, k = columns.right.size, columns.kept.shape[1]
+    if k == 0:
+        return
+    for i in range(n):
+        products.forces[i] = 0.0
+    for i in range(k):
+        products.kept[1, i] = columns.kept[j, i]
+    transposed(system, state, products, n)
+    for i in range(n):
+        for c in range(3):
+            columns.given[c, j, i] += products.motion[c, i]
+        columns.increments[j, i] = columns.turned[j, i] + products.motion[3, i]
+        columns.turned[j, i] = 0.0
+    for i in range(k):
+        columns.own[j, i] = columns.before[j, i] + products.kept[0, i]
+        columns.before[j, i] = 0.0
+
+
+@compiled
+def _keep(system, state, products, columns, j, slopes):
+    """Changes of column j of what the step keeps, from the motion at its end; `turned` is known."""
+    n, k = columns.right.size, columns.kept.shape[1]
+    if k == 0:
+        return
+    for i in range(n):
+        free = 1.0 - system.is_multiplier[i]
+        products.motion[0, i] = columns.motion[0, j, i]
+        products.motion[1, i], products.motion[2, i], products.motion[3, i] = (
+            free * columns.motion[1, j, i], free * columns.motion[2, j, i],
+            free * columns.turned[j, i])
+    for i in range(k):
+        products.kept[0, i] = columns.before[j, i] = columns.kept[j, i]
+    along(system, state, products, n)
+    for i in range(k):
+        columns.kept[j, i] = products.kept[1, i] + slopes[n + i]
 
 
 @compiled
@@ -214,6 +278,8 @@ def _solve(system, state, products, columns, j, cm, cd, back):
     n, counts, own = columns.right.size, columns.counts, columns.now[j]
     change, pace, last = columns.change, columns.pace, np.inf
     guess(columns, j)
+    for i in range(columns.kept.shape[1]):
+        columns.through[j, i] = 0.0
     for k in range(MOST):
         _multiply(system, state, products, columns, j, cm, cd, back)
         counts[SPENT] += k >= SPARE
@@ -226,21 +292,23 @@ def _solve(system, state, products, columns, j, cm, cd, back):
             size = max(size, abs(change[i]) * columns.scale[i])
             largest = max(largest, abs(own[i]) * columns.scale[i])
             drift = max(drift, abs(own[i] + change[i] - columns.plain[i]) * columns.scale[i])
-        slow = not size < SLOW * last
+        slow = not size < SLOW * last and size > NONE
         if slow and size > ROUNDED * largest:
             if counts[FRESH] == 0:
                 return ASKED
             if not size <= LOOSE * largest:
                 return REFUSED
             columns.reach[0] = max(columns.reach[0], size / largest)
-        elif k > 0 and not slow:
+        elif k > 0 and not slow and last > NONE:
             pace[0] = max(pace[0], size / last)
         elif k == 0:
             pace[0] = max(FORGET * pace[0], drift / largest if largest > 0.0 else 0.0)
-        if slow or min(CAUTION * pace[0], 1.0) * size <= columns.reach[0] * largest:
+        if slow or min(CAUTION * pace[0], 1.0) * size <= columns.reach[0] * largest + NONE:
             for i in range(n):
                 own[i] += change[i]
-            if back:
+            if back and columns.kept.shape[1] > 0:      # old branches may be others
+                _multiply(system, state, products, columns, j, cm, cd, back)
+            elif back:
                 add_old(system, state, products, columns, j)
             return 0
         last = size
@@ -274,7 +342,7 @@ def backward(system, state, products, columns, rows, lengths, offsets, ends, bes
     """(11) to (15) over steps from the last to the first; the event that asks for an inverse.
 
     DONE in place of it, or FAILED. `numbers` are alpha_m, alpha_f, beta, gamma and the duration of
-    the run; `seeds` (events, m, 3, n) and `weights` (events, m, n) are written or read.
+    the run; `seeds` (events, m, 3, n) and `weights` (events, m, n + k) are read or written.
     """
     n, m = columns.right.size, columns.now.shape[0]
     am, af, b, g, duration = numbers
@@ -293,13 +361,15 @@ def backward(system, state, products, columns, rows, lengths, offsets, ends, bes
                     given[c, j, i] = motion[c, j, i]
                     if seeded[e]:
                         given[c, j, i] += seeds[e, j, c, i] * (1.0 if c == 0 else free)
+            _weigh(system, state, products, columns, j)
+            for i in range(n):
                 columns.right[i] = given[0, j, i]
             _turn(columns, columns.T, columns.right, True)
             for i in range(n):
                 columns.right[i] = -columns.right[i]
                 if system.is_multiplier[i] == 0.0:
                     columns.right[i] -= (cd * given[1, j, i] + cm * given[2, j, i]
-                                         + cu * motion[3, j, i])
+                                         + cu * motion[3, j, i] + columns.increments[j, i])
             to_body_axes(system, state.frames, columns.right, False)
             code = _solve(system, state, products, columns, j, cm, cd, True)
             if code != 0:
@@ -308,6 +378,9 @@ def backward(system, state, products, columns, rows, lengths, offsets, ends, bes
         for j in range(m):
             for i in range(n):
                 weights[e, j, i] = columns.now[j, i]
+            for i in range(columns.kept.shape[1]):
+                weights[e, j, n + i] = columns.kept[j, i]
+                columns.kept[j, i] = columns.own[j, i] + columns.through[j, i]
             to_body_axes(system, state.frames, weights[e, j], True)
             for i in range(n):
                 free = 1.0 - system.is_multiplier[i]
@@ -334,8 +407,9 @@ def forward(system, state, products, columns, rows, lengths, offsets, ends, besi
             numbers, first, last, states):
     """(8) to (10) over steps from the first to the last; the event that asks for an inverse.
 
-    DONE in place of it, or FAILED. `slopes` (events, m, n) are those of the residuals by
-    parameters; `states` (events, m, 3, n), motion, rates and second rates, is written.
+    DONE in place of it, or FAILED. `slopes` (events, m, n + k) are those of the residuals, and of
+    what laws keep, by parameters; `states` (events, m, 3, n), motion, rates and second rates, is
+    written.
     """
     n, m = columns.right.size, columns.now.shape[0]
     am, af, b, g, _ = numbers
@@ -360,6 +434,9 @@ def forward(system, state, products, columns, rows, lengths, offsets, ends, besi
                 given[0, j, i] *= 1.0 - system.is_multiplier[i]
                 for c in range(3):
                     products.motion[c, i] = given[c, j, i]
+                products.motion[3, i] = 0.0
+            for i in range(products.kept.shape[1]):
+                products.kept[0, i] = columns.kept[j, i]
             along(system, state, products, n)
             for i in range(n):
                 columns.right[i] = -(slopes[e, j, i] + products.forces[i])
@@ -373,6 +450,8 @@ def forward(system, state, products, columns, rows, lengths, offsets, ends, besi
                 y[i] = columns.now[j, i]
             to_body_axes(system, state.frames, y, True)
             for i in range(n):
+                columns.turned[j, i] = y[i]
+            for i in range(n):
                 free = 1.0 - system.is_multiplier[i]
                 _, aux_now = _predicted(motion, j, i, offsets[e], h, b)
                 motion[3, j, i] = free * (aux_now + cu * y[i])
@@ -383,6 +462,7 @@ def forward(system, state, products, columns, rows, lengths, offsets, ends, besi
                 motion[0, j, i] = given[0, j, i] + y[i]
                 for c in range(3):
                     states[e, j, c, i] = motion[c, j, i]
+            _keep(system, state, products, columns, j, slopes[e, j])
         _conclude(system, state, columns)
     return DONE
 

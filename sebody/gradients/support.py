@@ -5,12 +5,13 @@ from warnings import warn
 from sebody.engine.state import Scheme
 from sebody.errors import InputError, LimitWarning
 from sebody.generated.options import FRAMES
-from sebody.kernels.loader import element_kernel
+from sebody.gradients.laws import remembering
+from sebody.gradients.linear import DENSE
+from sebody.kernels.loader import element_kernel_name, products_kernel_name
 from sebody.model.model import Model
 from sebody.runs.simulation import Simulation
 
 USER_FORCE = "user_force"
-COUNTED = ("angle",)        # what torsion springs keep to count turns, no force depends on it else
 
 
 def refuse_model(model: Model) -> None:
@@ -19,13 +20,18 @@ def refuse_model(model: Model) -> None:
     Raises
     ------
     InputError
-        Incremental frames, controllers, or forces by functions of the user.
+        Incremental frames, sampled controllers, or functions of the user without derivatives.
     """
-    if model.controllers:
-        raise InputError(f"controller {next(iter(model.controllers))!r}: gradients of models with "
-                         "controllers are not available, sampled or continuous: leave it out, "
-                         "give what it sets as a table of a force, torque or drive, or use an "
-                         "Ensemble with values on both sides")
+    for name, one in model.controllers.items():
+        if one.period:
+            raise InputError(f"controller {name!r} is sampled, which is not differentiated: leave "
+                             "out period= for a continuous law, or use an Ensemble with values on "
+                             "both sides")
+    for load in model.loads:
+        if load.law is not None and load.law.derivatives is None:
+            raise InputError(f"the law of controller {load.law.controller!r} is a function without "
+                             "derivatives: give derivatives= with it, or use an Ensemble with "
+                             "values on both sides")
     for body in model.bodies.values():
         if FRAMES[body.frame].incremental:
             exact = ", ".join(name for name, frame in FRAMES.items()
@@ -48,30 +54,54 @@ def refuse_run(run: Simulation) -> None:
     Raises
     ------
     InputError
-        Friction, contacts, actuators, sensors, motions without mass.
+        Contacts of points inside bodies, inputs that are set from outside, samples of sensors,
+        motions without mass.
     """
-    if remembering := [one.name for one in run.numbering.memories
-                       if element_kernel(one.kind).MEMORY != COUNTED]:
-        raise InputError(f"{remembering[0]!r} keeps numbers from step to step, as friction, "
-                         "contacts and stops do, and these are not differentiated: leave it out, "
-                         "or use an Ensemble with values on both sides")
-    if run.sampling.has_inputs:
-        name = next(iter(run.numbering.memory.ports))
+    for one in remembering(run):
+        if products_kernel_name(element_kernel_name(one.kind)) is None:
+            raise InputError(f"contact {one.name!r} is one of a point inside a body, which is not "
+                             "differentiated: let a node of the body touch, or use an Ensemble "
+                             "with values on both sides")
+    if remembering(run) and run.numbering.free > DENSE:
+        raise InputError(f"{remembering(run)[0].name!r} keeps numbers from step to step, which is "
+                         f"differentiated in models of up to {DENSE} unknowns, and this one has "
+                         f"{run.numbering.free}: use an Ensemble with values on both sides")
+    written = {name for one in run.model.controllers.values() for name in one.outputs}
+    if given := [name for name in run.numbering.memory.ports if name not in written]:
+        name = given[0]
         raise InputError(f"actuator {name!r}: what is set during a run is not differentiated: give "
                          "the history of the input as a table of a force, torque or drive")
-    if run.model.sensors:
-        name, sensor = next(iter(run.model.sensors.items()))
-        raise InputError(f"sensor {name!r}: samples are not differentiated: leave the sensor out, "
-                         f"and give {sensor.quantity!r} itself as a quantity")
+    for name, sensor in run.model.sensors.items():
+        if sensor.period:
+            raise InputError(f"sensor {name!r} has samples, which are not differentiated: leave "
+                             f"out its rate, or the sensor, and give {sensor.quantity!r} itself as "
+                             "a quantity")
     if run.system.massless[0]:
         raise InputError("a motion of the model has no mass, and its accelerations at the start no "
                          "derivative: give every node mass and inertia")
     if run.scheme.stabilized:       # which the scheme of a run without constraints is not
+        if kept := remembering(run):
+            raise InputError(f"{kept[0].name!r} keeps numbers from step to step, which is "
+                             "differentiated without constraints of index 2: use a fixed step with "
+                             "generalized_alpha(index=3)")
         warn("constraints of index 2 (of variable steps the default) shift positions in directions "
              "that are held where motion is differentiated, so derivatives differ from those of "
              "the run by about the error of its steps: halve the step, or divide the tolerance by "
              "eight, to see by how much; fixed steps of generalized_alpha(index=3) have exact "
              "derivatives", LimitWarning, stacklevel=4)
+
+
+def refuse_laws(run: Simulation, what: str) -> None:
+    """Refuse friction, contacts and stops where what they keep is not followed.
+
+    Raises
+    ------
+    InputError
+    """
+    if found := remembering(run):
+        raise InputError(f"{found[0].name!r} keeps numbers from step to step, as friction, "
+                         f"contacts and stops do, which {what} cannot follow: leave it out, or "
+                         "compare runs")
 
 
 def refuse_scheme(scheme: Scheme, what: str) -> None:

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from sebody.engine.state import Scheme
+from sebody.errors import InputError
+from sebody.gradients import products
 from sebody.gradients.factors import Factors, Scales
 from sebody.gradients.history import RESTART, STEP, History
 from sebody.gradients.linear import Linear, Matrix, Parts
@@ -21,6 +23,7 @@ from sebody.gradients.turns import Turns, turns_of
 from sebody.runs.simulation import Simulation
 
 PIECE = 256         # events that are prepared together
+CORRECTIONS = 6     # of multipliers before a jump, on which friction depends
 
 
 class Bars(NamedTuple):
@@ -81,6 +84,15 @@ class Event(NamedTuple):
     lead: float = 0.0   # of restarts: auxiliary accelerations less shifts times this
 
 
+class OfKept(NamedTuple):
+    """Bars by weights of forces and of what laws keep, a column each."""
+
+    motion: NDArray
+    rates: NDArray
+    kept: NDArray       # of what was kept before
+    increments: NDArray
+
+
 class Course:
     """Linearized events of a run, forth or back."""
 
@@ -94,6 +106,7 @@ class Course:
         self.redundant = bool(system.regularized[0])
         self.unknowns = n * (2 if run.scheme.stabilized else 1)     # of an event
         self.products = Products.of(run) if linear.dense and self.unknowns == n else None
+        self.kept = 0 if self.products is None else self.products.kept.shape[1]     # by laws
         self.second: Second | None = None       # what second residuals of index 2 are made with
         self._scales: dict[float, Scales] = {}
         self._q = linear.state.recorded_parts["q"].start
@@ -105,21 +118,63 @@ class Course:
         for k in np.flatnonzero(found.kinds[1:] != STEP):
             row = found.rows[k]
             q = row[self._q:self._q + self.linear.free]
-            q[self.fixed] = 0.0
-            event = self.event(int(k))
-            forces = np.zeros((self.unknowns, 1))
-            forces[:len(q), 0] = np.where(self.fixed, 0.0, state.residual[:len(q)])
-            q[self.fixed] = -event.factors.solve(forces)[:len(q)][self.fixed, 0]
+            if not self.kept:       # else forces depend on them in other ways, too
+                q[self.fixed] = 0.0
+            for _ in range(CORRECTIONS if self.kept else 1):
+                event = self.event(int(k))
+                forces = np.zeros((self.unknowns, 1))
+                forces[:len(q), 0] = np.where(self.fixed, 0.0, state.residual[:len(q)])
+                q[self.fixed] -= event.factors.solve(forces)[:len(q)][self.fixed, 0]
 
     def refined(self, columns: int, back: bool) -> Refined | None:
         """The recursion by products; None where matrices are quicker, or there are no products.
 
-        A matrix is worth as many products as it has columns.
+        A matrix is worth as many products as it has columns; it says nothing of what laws keep.
         """
-        if self.products is None or columns > self.linear.free:
+        if self.products is None or (columns > self.linear.free and not self.kept):
             return None
         return Refined(self.linear, self.products, self.scheme, self.history, columns, back,
                        self.turning[:, 0], self.redundant)
+
+    def nothing(self, columns: int) -> list[NDArray]:
+        """Changes or bars that are zero."""
+        n, k = self.linear.free, self.kept
+        return [np.zeros((rows, columns)) for rows in (n, n, n, n, k, k, n)]
+
+    def along(self, event: int, xi: NDArray, v: NDArray, before: NDArray, increments: NDArray
+              ) -> tuple[NDArray, NDArray]:
+        """Changes of forces and of what laws keep at an event, by those of the motion there and of
+        what was kept before: columns.
+        """
+        found, n = self._prepared(event), self.linear.free
+        forces, kept = np.zeros_like(xi), np.zeros_like(before)
+        for j in range(xi.shape[1]):
+            found.motion[:], found.kept[0] = 0.0, before[:, j]
+            found.motion[0, :n], found.motion[1, :n] = xi[:, j], v[:, j]
+            found.motion[3, :n] = increments[:, j]
+            products.along(self.linear.system, self.linear.state, found, n)
+            forces[:, j], kept[:, j] = found.forces[:n], found.kept[1]
+        return forces, kept
+
+    def transposed(self, event: int, weights: NDArray, kept: NDArray) -> OfKept:
+        """Bars at an event by weights of forces and of what laws keep: columns."""
+        found, n = self._prepared(event), self.linear.free
+        bars = OfKept(*(np.zeros_like(one) for one in (weights, weights, kept, weights)))
+        for j in range(weights.shape[1]):
+            found.forces[:n], found.kept[1] = weights[:, j], kept[:, j]
+            products.transposed(self.linear.system, self.linear.state, found, n)
+            bars.motion[:, j], bars.rates[:, j] = found.motion[0, :n], found.motion[1, :n]
+            bars.kept[:, j], bars.increments[:, j] = found.kept[0], found.motion[3, :n]
+        return bars
+
+    def _prepared(self, event: int) -> Products:
+        """Products in the state of an event."""
+        assert self.products is not None
+        self.linear.at(self.history.rows[event], self.history.ends[event],
+                       self.history.besides[event])
+        if products.prepare(self.linear.system, self.linear.state, self.products):
+            raise InputError(f"the state at t = {self.history.ends[event]:.6g} has no derivatives")
+        return self.products
 
     def stretches(self) -> list[tuple[int, int, int]]:
         """Kind, first and last of events in a row: pieces of steps, single restarts."""
@@ -180,7 +235,9 @@ def initial(parts: Parts, fixed: NDArray) -> NDArray:
     return sparse.csc_array(others @ parts.mass @ others + some @ K + others @ K @ some)
 
 
-Motion = Sequence[NDArray]      # motion, rates, second and auxiliary rates, or bars of them
+# motion, rates, second and auxiliary rates; what laws keep, and have kept before the last step; the
+# increments of this step: changes or bars, a column each
+Motion = Sequence[NDArray]
 
 
 def forward(course: Course, slopes: NDArray, motion: NDArray, rates: NDArray,
@@ -189,9 +246,9 @@ def forward(course: Course, slopes: NDArray, motion: NDArray, rates: NDArray,
 
     Parameters
     ----------
-    slopes : (events, n, p)
-        Of the residuals by parameters, in states that are held; those of the start with its motion
-        and rates.
+    slopes : (events, n + k, p)
+        Of the residuals by parameters, in states that are held, and of what laws keep; those of
+        the start with its motion and rates.
     motion, rates : (n, p)
         Of the start.
     see : function
@@ -200,8 +257,8 @@ def forward(course: Course, slopes: NDArray, motion: NDArray, rates: NDArray,
     before : sequence of (n, p)
         What the sweep over the segment before has returned, in place of the start's.
     """
-    now: Motion = before or (motion * course.moving, rates * course.moving, 0.0 * motion,
-                             0.0 * motion)
+    now: Motion = before or (motion * course.moving, rates * course.moving,
+                             *course.nothing(motion.shape[1])[2:])
     refined = course.refined(motion.shape[1], back=False)
     for kind, first, last in course.stretches():
         if kind == RESTART:
@@ -223,12 +280,18 @@ def forward(course: Course, slopes: NDArray, motion: NDArray, rates: NDArray,
 
 def _over_restart(course: Course, event: Event, slopes: NDArray, now: Motion) -> Motion:
     """Accelerations and multipliers anew."""
-    xi, v, *_ = now
-    moving, y = course.moving, -slopes
+    xi, v, _, _, *kept = now
+    n, moving = len(xi), course.moving
+    y = -slopes[:course.unknowns]
     if event.number:        # the slopes of the start hold what its motion does
-        y -= _of_restart(event, course.fixed, xi * moving, v)
+        y -= _of_restart(course, event, xi * moving, v, kept)
     y, shift = _halves(event.factors.solve(y), moving)
-    return (xi * moving + y * (1 - moving), v, y * moving, y * moving - event.lead * shift)
+    kept = course.nothing(xi.shape[1])[4:]
+    xi = xi * moving + y * (1 - moving)
+    if course.kept:
+        own = (xi, v, *now[5:]) if event.number else (y * (1 - moving), 0.0 * v, *kept[1:])
+        kept[0] = slopes[n:] + course.along(event.number, *own)[1]
+    return xi, v, y * moving, y * moving - event.lead * shift, *kept
 
 
 def _halves(y: NDArray, moving: NDArray) -> tuple[NDArray, NDArray]:
@@ -239,7 +302,7 @@ def _halves(y: NDArray, moving: NDArray) -> tuple[NDArray, NDArray]:
 
 def _over_step(course: Course, event: Event, slopes: NDArray, now: Motion) -> Motion:
     """(8) to (10)."""
-    (M, C, K), moving, (xi, v, a, aux) = event.parts, course.moving, now
+    (M, C, K), moving, (xi, v, a, aux, *kept) = event.parts, course.moving, now
     c = Coefficients.of(course.scheme, float(course.history.steps[event.number]))
     offset = course.history.offsets[event.number]
     aux = (1 - offset) * a + offset * aux
@@ -249,21 +312,24 @@ def _over_step(course: Course, event: Event, slopes: NDArray, now: Motion) -> Mo
     xip = event.turns.moved(xi) * moving
     y, shift = _halves(event.factors.solve(-(slopes + K @ xip + C @ vp + M @ ap)), moving)
     xi, y = xip + event.turns.turned(y + shift), y * moving
-    return xi, vp + c.cd * y, ap + c.cm * y, auxp + c.cu * y
+    return xi, vp + c.cd * y, ap + c.cm * y, auxp + c.cu * y, *kept
 
 
-def _of_restart(event: Event, fixed: NDArray, xi: NDArray, v: NDArray) -> NDArray:
-    """What motion and rates change of the residual of a restart."""
-    found = event.parts.stiffness @ xi + event.parts.damping @ v
+def _of_restart(course: Course, event: Event, xi: NDArray, v: NDArray, kept: Motion) -> NDArray:
+    """What motion and rates change of the residual of a restart, and what laws have kept before."""
+    if course.kept:
+        found = course.along(event.number, xi, v, *kept[1:])[0]
+    else:
+        found = event.parts.stiffness @ xi + event.parts.damping @ v
     if event.rates is not None:
-        found[fixed] = event.rates[0] @ xi + event.rates[1] @ v
+        found[course.fixed] = event.rates[0] @ xi + event.rates[1] @ v
     return found
 
 
 class Adjoint(NamedTuple):
     """Result of a sweep back."""
 
-    weights: NDArray    # (events, m, n) of the slopes of the residuals: (16)
+    weights: NDArray    # (events, m, n + k) of the slopes of the residuals and of what laws keep
     bars: Motion        # (n, m) each, by the state at the start: accelerations are solved for
     sizes: NDArray      # (events,) largest effect of a disturbance of each state on an objective
 
@@ -276,8 +342,8 @@ def backward(course: Course, seeds: Seeds, count: int, after: Motion | None = No
     n, events = course.linear.free, len(course.history.rows)
     extent = course.linear.system.magnitude[:n, None]       # of disturbances: of rates in the run
     duration = course.history.duration
-    weights, sizes = np.zeros((events, count, course.unknowns)), np.zeros(events)
-    bars: Motion = after or [np.zeros((n, count)) for _ in range(4)]
+    weights, sizes = np.zeros((events, count, course.unknowns + course.kept)), np.zeros(events)
+    bars: Motion = after or course.nothing(count)
     refined = course.refined(count, back=True)
     for kind, first, last in reversed(course.stretches()):
         if kind == STEP and refined is not None:
@@ -299,13 +365,17 @@ def _seeded(course: Course, seed: Bars | None, bars: Motion) -> Motion:
     """With what objectives say of the state."""
     if seed is None:
         return bars
-    (X, V, A, U), moving = bars, course.moving
-    return X + seed.motion, V + seed.rates * moving, A + seed.seconds * moving, U
+    (X, V, A, U, *kept), moving = bars, course.moving
+    return X + seed.motion, V + seed.rates * moving, A + seed.seconds * moving, U, *kept
 
 
 def _back_over_restart(course: Course, event: Event, bars: Motion) -> tuple[NDArray, Motion]:
     """Weights, and bars before."""
-    (_, C, K), moving, (X, V, A, U) = event.parts, course.moving, bars
+    (_, C, K), moving, (X, V, A, U, Z, *_) = event.parts, course.moving, bars
+    before = course.nothing(X.shape[1])[4:]
+    of_kept = course.transposed(event.number, 0.0 * X, Z) if course.kept else None
+    if of_kept is not None:     # slopes of the start hold what its motion does
+        X = X + of_kept.motion * (1.0 if event.number else 1 - moving)
     w = event.factors.solve(-_joined(course, A * moving + U + X * (1 - moving),
                                      -event.lead * U * moving), transposed=True)
     X = X * moving
@@ -315,8 +385,13 @@ def _back_over_restart(course: Course, event: Event, bars: Motion) -> tuple[NDAr
             of_forces[course.fixed] = 0.0
             X = X + rates[0].T @ w[course.fixed] * moving
             V = V + rates[1].T @ w[course.fixed] * moving
-        X, V = X + K.T @ of_forces * moving, V + C.T @ of_forces * moving
-    return w, (X, V, np.zeros_like(A), np.zeros_like(U))
+        if of_kept is not None:
+            own = course.transposed(event.number, of_forces, 0.0 * Z)
+            X, V = X + own.motion * moving, V + (own.rates + of_kept.rates) * moving
+            before[1:] = own.kept + of_kept.kept, own.increments + of_kept.increments
+        else:
+            X, V = X + K.T @ of_forces * moving, V + C.T @ of_forces * moving
+    return np.concatenate([w, Z]), (X, V, np.zeros_like(A), np.zeros_like(U), *before)
 
 
 def _joined(course: Course, y: NDArray, shift: NDArray) -> NDArray:
@@ -326,7 +401,7 @@ def _joined(course: Course, y: NDArray, shift: NDArray) -> NDArray:
 
 def _back_over_step(course: Course, event: Event, bars: Motion) -> tuple[NDArray, Motion]:
     """(11) to (15)."""
-    (M, C, K), moving, (X, V, A, U) = event.parts, course.moving, bars
+    (M, C, K), moving, (X, V, A, U, *kept) = event.parts, course.moving, bars
     c = Coefficients.of(course.scheme, float(course.history.steps[event.number]))
     offset, turned = course.history.offsets[event.number], event.turns.turned_back(X)
     w = event.factors.solve(-_joined(course, turned + moving * (c.cd * V + c.cm * A + c.cu * U),
@@ -335,4 +410,4 @@ def _back_over_step(course: Course, event: Event, bars: Motion) -> tuple[NDArray
     U1 = U + c.h * c.g * V1 + (1 - c.am) / (1 - c.af) * A1
     X, V, A = event.turns.moved_back(X1), V1 - U1 / (c.b * c.h), -c.af / (1 - c.af) * A1
     U = c.h * (1 - c.g) * V1 + c.am / (1 - c.af) * A1 - (0.5 - c.b) / c.b * U1
-    return w, (X, V, A + (1 - offset) * U, offset * U)
+    return w, (X, V, A + (1 - offset) * U, offset * U, *kept)

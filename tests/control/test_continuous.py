@@ -302,6 +302,25 @@ def test_ready_laws():
         assert_allclose(found[:, -1] / found[:, 0], exact, rtol=1e-9)
 
 
+@pytest.mark.parametrize("inputs", [1, 2])
+@pytest.mark.parametrize("y", [0.1, 2.0, -2.0])     # within limits; cut off, the integral at rest
+def test_derivatives_of_pid(inputs, y):
+    """Given in closed form, against differences, which are exact as the law is linear."""
+    law = pid(3.0, 0.7, 0.2, filter=20.0, reference=0.4, limit=2.0)
+    flow, _, parameters, derivatives = law.flow
+    point = np.array([y, 0.3, -0.2, 0.1])[[0, 2, 3] if inputs == 1 else [0, 1, 2, 3]]
+
+    def found(z):
+        rates, u = np.zeros(2), np.zeros(1)
+        flow(0.0, z[:inputs], z[inputs:], rates, u, parameters)
+        return np.r_[rates, u]
+    D = np.zeros((3, inputs + 2))
+    derivatives(0.0, point[:inputs], point[inputs:], D, parameters)
+    expected = np.array([found(point + d) - found(point - d)
+                         for d in 1e-3 * np.eye(inputs + 2)]).T / 2e-3
+    assert_allclose(D, expected, atol=1e-10)
+
+
 def test_the_integral_rests_while_the_output_is_cut_off():
     """Against DOP853 of the same law; without anti-windup the angle overshoots by half."""
     model = rotor(limit=0.6)

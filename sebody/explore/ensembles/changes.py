@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.model.contacts import SLOW
+from sebody.model.control_parts import Controller
 from sebody.model.history_rows import rows_of
 from sebody.model.impacts import LEAST, damping_of, restitution_of
 from sebody.model.model import Model
@@ -228,6 +229,23 @@ def _constants(element: Element, made: Callable[[NDArray], dict], touches: str,
     def put_back() -> None:
         element.constants = before
     return Handle(base, assign, put_back, touches, **bounds)
+
+
+def law_parameters(model: Model, controller: Controller, name: str) -> Handle:
+    """Handle of the numbers of a controller's law; infinite ones, such as limits, stay."""
+    numbers = np.array(controller.parameters, dtype=float)
+    finite = np.isfinite(numbers)
+    if not finite.any():
+        raise InputError(f"{name}: the law of {controller.name!r} has no parameters")
+
+    def assign(value: NDArray) -> None:
+        changed = numbers.copy()
+        changed[finite] = value
+        model.controllers[controller.name] = replace(controller, parameters=changed)
+
+    def put_back() -> None:
+        model.controllers[controller.name] = controller
+    return Handle(numbers[finite], assign, put_back, LOADS)
 
 
 def load_amplitude(model: Model, load: Element, name: str) -> Handle:

@@ -15,6 +15,7 @@
 ``<drive>.amplitude``       factor of a motion given by a table or profile
 ``<spring>.stiffness``      and damping, cubic, length, rest, turning_stiffness, turning_damping:
                             the value itself
+``<controller>.parameters`` numbers of its law, in their order, but for infinite limits
 ``gravity``                 acceleration of free fall, (3,), planar (2,) [length/time^2]
 ==========================  ========================================================================
 """
@@ -101,6 +102,7 @@ KINDS = (
     Kind("contact, stop or friction", _contacts, {
         **{constant: changes.contact_constant(constant) for constant in changes.OF_CONTACTS},
         "restitution": changes.restitution, "backlash": changes.backlash}),
+    Kind("controller", lambda model: model.controllers, {"parameters": changes.law_parameters}),
     Kind("load", lambda model: {e.name: e for e in model.loads if e.law is None}, {
         "amplitude": changes.load_amplitude, "table": changes.load_table}),
 )

@@ -118,7 +118,10 @@ class Image:
                 handle.reset()
 
     def _numbers(self) -> NDArray | None:
-        """All numbers of the model as it is now, before its start; None if its pattern differs."""
+        """All numbers of the model as it is now, before its start; None if its pattern differs.
+
+        Infinite ones, which are limits that are not there, are zeros.
+        """
         one = self.template
         system, numbering = build(one.model)
         system.routines[:], system.regularized[:] = one.system.routines, one.system.regularized
@@ -129,6 +132,7 @@ class Image:
         same = Offsets(system, state)
         same.packed(system, found)
         same.packed(state, found)
+        found[np.isinf(found)] = 0.0
         return found
 
 

@@ -7,13 +7,15 @@ rotations of the order of one radian, elastic rotations to 0.3, moving and accel
 from collections.abc import Iterable
 
 from sebody.catalogue import kernel_files, product_files
-from sebody.contract.names import MOTION, PRODUCTS, SUPERELEMENT
+from sebody.contract.names import ELEMENT, MOTION, PRODUCTS, SUPERELEMENT
 from sebody.kernels.loader import load
 from sebody.runs.first_run import compile_missing
 from sebody.spelling import unknown
 from sebody.verify.check.body_contacts import check_body_contact
 from sebody.verify.check.body_loads import check_body_load
 from sebody.verify.check.elements import check_element
+from sebody.verify.check.law_products import check_law_products
+from sebody.verify.check.laws import follows
 from sebody.verify.check.motions import check_motion
 from sebody.verify.check.products import check_products
 from sebody.verify.check.report import summary, table, verdict
@@ -41,9 +43,15 @@ def check_kernels(names: Iterable[str] | None = None) -> list[CheckRow]:
     for name in chosen:
         module = load(name)
         check = (check_superelement if name.startswith(SUPERELEMENT) else
+                 check_law_products if _of_laws(name) else
                  check_products if name.startswith(PRODUCTS) else
                  check_motion if name.startswith(MOTION) else
                  check_body_contact if hasattr(module, "CARRIERS") else
                  check_body_load if hasattr(module, "FRAME") else check_element)
         rows += check(name, module)
     return rows
+
+
+def _of_laws(name: str) -> bool:
+    """Whether a kernel has products with the derivatives of a law."""
+    return name.startswith(PRODUCTS + ELEMENT) and follows(load(name))
