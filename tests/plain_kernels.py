@@ -16,7 +16,7 @@ from sebody.contract.counts import LANES, packed_size, whole_vectors
 from sebody.contract.layout import OK
 from sebody.derive.symbolic.rotations import stumpff_value, tangent_inverse_value
 from sebody.kernels.abi import Arguments
-from sebody.kernels.packed import GROUP, HEAD
+from sebody.kernels.packed import COUPLED, strips
 from sebody.verify.check.states import arguments
 
 
@@ -79,31 +79,56 @@ def clear(row, count):
     row[:count] = 0.0
 
 
-def strips(row):
-    """Of packed matrices: place of the product, matrix, first row, first column and entries."""
-    whole = row.view(np.int64)
-    for g in range(whole[0]):
-        first, width, count, head, at = whole[1 + GROUP * g:1 + GROUP * (g + 1)]
-        entries = row[at:at + LANES * count * width].reshape(count, width, LANES)
-        for s, strip in enumerate(entries):
-            yield *whole[head + HEAD * s:head + HEAD * (s + 1)], first, strip.T
+def _products(matrices):
+    """Of packed matrices: vector, place of the product, its number, rows, first column, entries."""
+    for strip in strips(matrices):
+        places, columns = strip.places, strip.entries.shape[1]
+        across = len(places) == 3
+        coupled = strip.kind == COUPLED
+        for vector in range(1 + coupled) if across else (strip.vector,):
+            k = vector if coupled else 0
+            yield (vector, places[k], strip.matrices[k], strip.row, strip.first,
+                   strip.entries)
+        if across:
+            yield (int(coupled), places[2], strip.matrices[2], strip.first, strip.row,
+                   strip.entries.T)
+            assert columns == 8
 
 
 def packed_times(matrices, x, out, count):
+    couplings_times(matrices, x, x, out, count)
+
+
+def packed_times_both(matrices, x, y, of_x, of_y, count):
+    packed_times(matrices, x, of_x, count)
+    packed_times(matrices, y, of_y, count)
+
+
+def couplings_times(matrices, x, y, out, count):
     out[:count] = 0.0
-    add_packed_times(matrices, x, out)
+    _add_products(matrices, x, y, out)
 
 
 def add_packed_times(matrices, x, out):
-    for place, _, _, first, strip in strips(matrices):
-        out[place:place + LANES] += strip @ x[first:first + strip.shape[1]]
+    _add_products(matrices, x, x, out)
+
+
+def _add_products(matrices, x, y, out):
+    for vector, place, _, row, first, entries in _products(matrices):
+        rows, columns = entries.shape
+        begin = place + row
+        out[begin:begin + rows] += entries @ (x, y)[vector][first:first + columns]
 
 
 def add_packed(matrices, factors, out, height):
-    for _, k, row, first, strip in strips(matrices):
-        for c, column in enumerate(strip.T):
+    add_couplings(matrices, factors, out, out, height)
+
+
+def add_couplings(matrices, factors, of_x, of_y, height):
+    for vector, _, k, row, first, entries in _products(matrices):
+        for c, column in enumerate(entries.T):
             place = (first + c) * height + row
-            out[place:place + LANES] += factors[k] * column
+            (of_x, of_y)[vector][place:place + len(column)] += factors[k] * column
 
 
 def to_free(y, axes, order, moved, z, bound, bound_free, free, end):

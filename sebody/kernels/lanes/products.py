@@ -1,4 +1,4 @@
-"""Products whose numbers are lanes: what `dense`, `packed_products` and `coordinates` write.
+"""Products whose numbers are lanes: what `dense`, `packed_strips` and `coordinates` write.
 
 An operand is a vector of members, so there is nothing to add up across a vector, and padding is
 neither read nor written. Matrices are lanes as well, since members have constants of their own.
@@ -8,7 +8,7 @@ from llvmlite import ir
 
 from sebody.compiler.inside.lanes import VECTOR
 from sebody.contract.counts import LANES
-from sebody.kernels import coordinates, dense, packed_products
+from sebody.kernels import coordinates, dense, packed_strips
 from sebody.kernels.instructions import (
     WORD,
     call,
@@ -18,6 +18,8 @@ from sebody.kernels.instructions import (
     whole_vectors,
 )
 from sebody.kernels.lanes.straight import AT_ADDRESS
+from sebody.kernels.packed import COUPLED, MIRRORED, NARROW, PRODUCTS, WIDE, WIDTHS
+from sebody.kernels.packed_strips import Groups
 
 _ROWS = 8, 4, 2, 1      # of a product at a time: their sums stay in registers
 _COLUMNS = 8, 4, 2, 1   # likewise of a product of columns with a vector
@@ -155,99 +157,153 @@ def subtract_block_times(builder, y, A, x):
         _store(builder, total, y, WORD(i))
 
 
-# packed matrices: the whole numbers of a row are the same in all lanes
-
-
-class _Words:
-    """The whole numbers of a row of packed matrices, in the bits of the first lane."""
-
-    def __init__(self, builder, matrices):
-        self._builder = builder
-        self._words = builder.bitcast(matrices, WORD.as_pointer())
-
-    def at(self, place):
-        """The whole number at a place of the row."""
-        builder = self._builder
-        return builder.load(builder.gep(self._words, [
-            builder.mul(place, WORD(VECTOR.count))]))
-
-    def of_group(self, group):
-        """What a group says of itself."""
-        builder = self._builder
-        place = builder.add(builder.mul(group, WORD(packed_products.GROUP)), WORD(1))
-        return [self.at(_next(builder, place, k)) for k in range(packed_products.GROUP)]
-
-    def of_strip(self, heads, strip, k):
-        """A whole number in the head of a strip."""
-        builder = self._builder
-        first = builder.add(heads, builder.mul(strip, WORD(packed_products.HEAD)))
-        return self.at(_next(builder, first, k))
-
-
 @in_lanes(dense.write_more_columns)
 def more_columns(builder, A, x, out, rows, columns, height):
     """Of the second part of `arrow_times`."""
     _by_rows(builder, [(A, x, columns)], out, rows, height, True)
 
 
-@in_lanes(packed_products.write_packed)
+# packed matrices: the whole numbers of a row are the same in all lanes
+
+
+@in_lanes(packed_strips.write_times)
 def packed(builder, matrices, x, out, count):
-    """Of `packed_times`: whole vectors are cleared, as strips have whole ones."""
-    with short_loop(builder, WORD(0), whole_vectors(builder, count)) as place:
-        _store(builder, _NOTHING, out, place)
+    """Of `packed_times`."""
+    _clear(builder, out, count)
     call(builder, add_packed, (matrices, x, out))
 
 
-@in_lanes(packed_products.write_more_packed)
+@in_lanes(packed_strips.write_times_both)
+def packed_both(builder, matrices, x, y, of_x, of_y, count):
+    """Of `packed_times_both`."""
+    for vector, out in ((x, of_x), (y, of_y)):
+        call(builder, packed, (matrices, vector, out, count))
+
+
+@in_lanes(packed_strips.write_more_times)
 def add_packed(builder, matrices, x, out):
-    """Of `add_packed_times`: straight code if there is some, see `straight`."""
+    """Of `add_packed_times`."""
+    _straight_or(builder, matrices, x, x, out, lambda: _add_strips(builder, matrices, x, x, out))
+
+
+@in_lanes(packed_strips.write_couplings)
+def couplings(builder, matrices, x, y, out, count):
+    """Of `couplings_times`."""
+    _clear(builder, out, count)
+    _straight_or(builder, matrices, x, y, out, lambda: _add_strips(builder, matrices, x, y, out))
+
+
+def _clear(builder, out, count):
+    """Whole vectors, as strips have whole ones."""
+    with short_loop(builder, WORD(0), whole_vectors(builder, count)) as place:
+        _store(builder, _NOTHING, out, place)
+
+
+def _straight_or(builder, matrices, x, y, out, write):
+    """Straight code if there is some, see `straight`."""
     words = builder.bitcast(matrices, WORD.as_pointer())
     groups, address = builder.load(words), builder.load(builder.gep(words, [WORD(AT_ADDRESS)]))
     with builder.if_else(builder.icmp_signed("!=", address, groups)) as (straight, by_strips):
         with straight:
-            kind = ir.FunctionType(ir.VoidType(), [VECTOR.as_pointer()] * 3)
-            builder.call(builder.inttoptr(address, kind.as_pointer()), (matrices, x, out))
+            kind = ir.FunctionType(ir.VoidType(), [VECTOR.as_pointer()] * 4)
+            builder.call(builder.inttoptr(address, kind.as_pointer()), (matrices, x, y, out))
         with by_strips:
-            _add_strips(builder, matrices, x, out)
+            write()
 
 
-def _add_strips(builder, matrices, x, out):
-    """The numbers of `x` stay in registers while strips follow."""
-    words = _Words(builder, matrices)
-    with short_loop(builder, WORD(0), words.at(WORD(0))) as group:
-        first, columns, strips, heads, at = words.of_group(group)
-        with packed_products.by_width(builder, columns) as widths:
-            for width in widths:
-                factors = [_load(builder, x, _next(builder, first, k)) for k in range(width)]
-                with short_loop(builder, WORD(0), strips) as strip:
-                    place = words.of_strip(heads, strip, 0)
-                    own = packed_products.entries(builder, matrices, at, strip, width)
-                    for row in range(LANES):
-                        total = _load(builder, out, _next(builder, place, row))
-                        for k, factor in enumerate(factors):
-                            total = _fused(builder, total,
-                                           _load(builder, own, WORD(LANES * k + row)), factor)
-                        _store(builder, total, out, _next(builder, place, row))
+def _add_strips(builder, matrices, x, y, out):
+    """The numbers of a vector stay in registers while strips follow."""
+    def once(kind):
+        def write(groups):
+            vector = groups.chosen(x, y)
+            factors = [_load(builder, vector, _next(builder, groups.first, k))
+                       for k in range(WIDTHS[kind])]
+            with short_loop(builder, WORD(0), groups.strips) as strip:
+                place, own = groups.head(0, strip), groups.entries(strip, kind)
+                for row in range(LANES):
+                    total = _load(builder, out, _next(builder, place, row))
+                    for k, factor in enumerate(factors):
+                        total = _fused(builder, total,
+                                       _load(builder, own, WORD(LANES * k + row)), factor)
+                    _store(builder, total, out, _next(builder, place, row))
+        return write
+
+    def twice(forward):
+        return lambda groups: _add_twice(groups, forward, out)
+    Groups(builder, matrices, VECTOR.count).each({
+        NARROW: once(NARROW), WIDE: once(WIDE), MIRRORED: twice([x]), COUPLED: twice([x, y])})
 
 
-@in_lanes(packed_products.write_sum_packed)
+def _add_twice(groups, forward, out):
+    """Strips of one matrix that multiply some vectors; the transpose multiplies the last one."""
+    builder = groups.builder
+    with short_loop(builder, WORD(0), groups.strips) as strip, \
+            short_loop(builder, WORD(0), WORD(LANES)) as lane:
+        row, own = builder.add(groups.row(strip), lane), groups.entries(strip, MIRRORED)
+        entries = [_load(builder, own, builder.add(lane, WORD(LANES * k)))
+                   for k in range(WIDTHS[MIRRORED])]
+        for product, vector in enumerate(forward):
+            place = builder.add(groups.head(product), row)
+            total = _load(builder, out, place)
+            for k, entry in enumerate(entries):
+                total = _fused(builder, total, entry,
+                               _load(builder, vector, _next(builder, groups.first, k)))
+            _store(builder, total, out, place)
+        factor = _load(builder, forward[-1], row)
+        first = builder.add(groups.head(PRODUCTS - 1), groups.first)
+        for k, entry in enumerate(entries):
+            place = _next(builder, first, k)
+            _store(builder, _fused(builder, _load(builder, out, place), entry, factor), out, place)
+
+
+@in_lanes(packed_strips.write_sum)
 def sum_packed(builder, matrices, factors, out, height):
     """Of `add_packed`."""
-    words = _Words(builder, matrices)
-    with short_loop(builder, WORD(0), words.at(WORD(0))) as group:
-        first, columns, strips, heads, at = words.of_group(group)
-        with short_loop(builder, WORD(0), strips) as strip:
-            matrix, row = (words.of_strip(heads, strip, k) for k in (1, 2))
-            scale = _load(builder, factors, matrix)
-            size = builder.mul(columns, WORD(LANES))
-            own = builder.gep(matrices, [builder.add(at, builder.mul(strip, size))])
-            with short_loop(builder, WORD(0), columns) as column:
-                to = builder.add(builder.mul(builder.add(first, column), height), row)
-                read = builder.mul(column, WORD(LANES))
-                for k in range(LANES):
-                    place = _next(builder, to, k)
-                    _store(builder, _fused(builder, _load(builder, out, place), _load(
-                        builder, own, _next(builder, read, k)), scale), out, place)
+    _sum_strips(builder, matrices, factors, out, out, height)
+
+
+@in_lanes(packed_strips.write_sum_of_couplings)
+def sum_couplings(builder, matrices, factors, of_x, of_y, height):
+    """Of `add_couplings`."""
+    _sum_strips(builder, matrices, factors, of_x, of_y, height)
+
+
+def _sum_strips(builder, matrices, factors, of_x, of_y, height):
+    def once(kind):
+        def write(groups):
+            out = groups.chosen(of_x, of_y)
+            with short_loop(builder, WORD(0), groups.strips) as strip:
+                scale = _load(builder, factors, groups.head(1, strip))
+                _sum_entries(groups, kind, groups.entries(strip, kind), groups.head(2, strip),
+                             [(scale, out, False)], height)
+        return write
+
+    def twice(forward):
+        def write(groups):
+            scales = [_load(builder, factors, groups.head(PRODUCTS + k)) for k in range(PRODUCTS)]
+            given = [(scales[k], out, False) for k, out in enumerate(forward)]
+            across = scales[-1], forward[-1], True
+            with short_loop(builder, WORD(0), groups.strips) as strip:
+                _sum_entries(groups, MIRRORED, groups.entries(strip, MIRRORED), groups.row(strip),
+                             [*given, across], height)
+        return write
+    Groups(builder, matrices, VECTOR.count).each({
+        NARROW: once(NARROW), WIDE: once(WIDE), MIRRORED: twice([of_x]),
+        COUPLED: twice([of_x, of_y])})
+
+
+def _sum_entries(groups, kind, own, row, given, height):
+    """Add a strip to some matrices, times a factor, or its transpose."""
+    builder = groups.builder
+    with short_loop(builder, WORD(0), WORD(WIDTHS[kind])) as k:
+        column, read = builder.add(groups.first, k), builder.mul(k, WORD(LANES))
+        for lane in range(LANES):
+            entry, at = _load(builder, own, _next(builder, read, lane)), _next(builder, row, lane)
+            for scale, out, transposed in given:
+                i, j = (column, at) if transposed else (at, column)
+                place = builder.add(builder.mul(j, height), i)
+                _store(builder, _fused(builder, _load(builder, out, place), entry, scale), out,
+                       place)
 
 
 # coordinates that determine the others

@@ -13,43 +13,45 @@ from numpy.typing import NDArray
 
 from sebody.compiler.inside.lanes import VECTOR
 from sebody.contract.counts import LANES, MEMBERS
-from sebody.kernels.packed import GROUP, HEAD
+from sebody.kernels.packed import COUPLED, NARROW, WIDE, strips
 
 # lane of the first number of a row that has the address of its straight code, where there is some;
 # the number of groups stands in all others
 AT_ADDRESS = 1
-Entries = tuple[tuple[int, int, int], ...]      # places of an entry, of its factor and of its sum
+# place of an entry, vector and place of its factor, place of its sum
+Entries = tuple[tuple[int, int, int, int], ...]
 
 _engines = []       # own the code
 
 
 def entries_of(row: NDArray) -> Entries:
     """The entries of a row of packed matrices that are not zero, by their sums."""
-    row = np.ascontiguousarray(row)
-    whole, found = row.view(np.int64), []
-    for g in range(whole[0]):
-        first, width, strips, head, at = whole[1 + GROUP * g:1 + GROUP * (g + 1)].tolist()
-        for strip in range(strips):
-            product = int(whole[head + HEAD * strip])
-            begin = at + strip * LANES * width
-            for k, i in np.argwhere(row[begin:begin + LANES * width].reshape(width, LANES)):
-                found.append((begin + LANES * int(k) + int(i), first + int(k), product + int(i)))
+    found = []
+    for kind, vector, places, _, below, first, at, entries in strips(row):
+        for i, k in np.argwhere(entries).tolist():
+            place = at + LANES * k + i
+            if kind in (NARROW, WIDE):
+                found.append((place, vector, first + k, places[0] + i))
+                continue
+            coupled = kind == COUPLED
+            found += [(place, y, first + k, places[y] + below + i) for y in range(1 + coupled)]
+            found.append((place, int(coupled), below + i, places[-1] + first + k))
     return tuple(sorted(found, key=lambda entry: entry[::-1]))
 
 
 @cache
 def address_of(entries: Entries) -> int:
-    """Address of a function of a row, a vector and a product, to which it adds."""
-    kind = ir.FunctionType(ir.VoidType(), [VECTOR.as_pointer()] * 3)
+    """Address of a function of a row, two vectors and products, to which it adds."""
+    kind = ir.FunctionType(ir.VoidType(), [VECTOR.as_pointer()] * 4)
     module = ir.Module("straight")
     module.triple = binding.get_process_triple()
     function = ir.Function(module, kind, "straight")
     builder = ir.IRBuilder(function.append_basic_block())
-    A, x, out = function.args
+    A, *vectors, out = function.args
     sums: dict[int, ir.Value] = {}
-    for place, column, to in entries:
+    for place, vector, column, to in entries:
         total = sums.get(to) or _read(builder, out, to)
-        product = builder.fmul(_read(builder, A, place), _read(builder, x, column),
+        product = builder.fmul(_read(builder, A, place), _read(builder, vectors[vector], column),
                                flags=("contract",))
         sums[to] = builder.fadd(total, product, flags=("contract",))
     for to, total in sums.items():

@@ -1,0 +1,295 @@
+"""Instructions of products with packed matrices, and of their sums: group by group.
+
+Strips of eight columns are read as vectors of two columns.
+"""
+
+from collections.abc import Callable
+
+from llvmlite import ir
+
+from sebody.contract.counts import LANES
+from sebody.kernels.instructions import (
+    WORD,
+    add_product,
+    call,
+    load_broadcast,
+    load_vector,
+    no_sum,
+    short_loop,
+    stack_vectors,
+    store_vector,
+    sums_of_lanes,
+)
+from sebody.kernels.packed import (
+    BEGIN,
+    COUPLED,
+    GROUP,
+    HEAD,
+    MIRRORED,
+    NARROW,
+    PRODUCTS,
+    WIDE,
+    WIDTHS,
+)
+
+PAIR = ir.VectorType(ir.DoubleType(), 2 * LANES)        # of columns
+_PAIRS = WIDTHS[WIDE] // 2
+_CLEARED = 8        # vectors at a time
+
+
+class Groups:
+    """The groups of a row, whose whole numbers are `member` numbers apart."""
+
+    def __init__(self, builder: ir.IRBuilder, matrices: ir.Value, member: int = 1):
+        self.builder, self.matrices, self._member = builder, matrices, member
+        self._words = builder.bitcast(matrices, WORD.as_pointer())
+
+    def at(self, place: ir.Value) -> ir.Value:
+        """The whole number at a place of the row."""
+        builder = self.builder
+        if self._member > 1:
+            place = builder.mul(place, WORD(self._member))
+        return builder.load(builder.gep(self._words, [place]))
+
+    def each(self, writers: dict[int, Callable[["Groups"], None]]) -> None:
+        """Go through the groups; in their order, writers of instructions for each kind."""
+        builder, done = self.builder, WORD(0)
+        for kind, write in writers.items():
+            end = builder.add(done, self.at(WORD(kind)))
+            with short_loop(builder, done, end) as group:
+                place = builder.add(builder.mul(group, WORD(GROUP)), WORD(BEGIN))
+                self.first, self.vector, self.strips, self.heads, self.begin = (
+                    self.at(builder.add(place, WORD(k))) for k in range(GROUP))
+                write(self)
+            done = end
+
+    def head(self, k: int, strip: ir.Value | None = None, size: int = HEAD) -> ir.Value:
+        """A whole number of the heads, or of that of a strip."""
+        builder, place = self.builder, self.heads
+        if strip is not None:
+            place = builder.add(place, builder.mul(strip, WORD(size)))
+        return self.at(builder.add(place, WORD(k)))
+
+    def row(self, strip: ir.Value) -> ir.Value:
+        """First row of a strip of a group that is used twice."""
+        return self.head(2 * PRODUCTS, strip, 1)
+
+    def entries(self, strip: ir.Value, kind: int) -> ir.Value:
+        """Pointer to the entries of a strip."""
+        builder = self.builder
+        place = builder.add(self.begin, builder.mul(strip, WORD(LANES * WIDTHS[kind])))
+        return builder.gep(self.matrices, [place])
+
+    def chosen(self, first: ir.Value, second: ir.Value) -> ir.Value:
+        """What belongs to the group's vector."""
+        is_first = self.builder.icmp_signed("==", self.vector, WORD(0))
+        return self.builder.select(is_first, first, second)
+
+
+# products
+
+
+def write_times(builder, matrices, x, out, count):
+    _clear(builder, out, count)
+    call(builder, write_more_times, (matrices, x, out))
+
+
+def write_more_times(builder, matrices, x, out):
+    Groups(builder, matrices).each(_of_vectors([(x, out)]))
+
+
+def write_times_both(builder, matrices, x, y, of_x, of_y, count):
+    for out in (of_x, of_y):
+        _clear(builder, out, count)
+    Groups(builder, matrices).each(_of_vectors([(x, of_x), (y, of_y)]))
+
+
+def write_couplings(builder, matrices, x, y, out, count):
+    _clear(builder, out, count)
+
+    def once(kind):
+        return lambda groups: _once(groups, kind, [(groups.chosen(x, y), out)])
+    Groups(builder, matrices).each({
+        **{kind: once(kind) for kind in (NARROW, WIDE)},
+        MIRRORED: lambda groups: _twice(groups, [(0, x, out)], [(x, out)]),
+        COUPLED: lambda groups: _twice(groups, [(0, x, out), (1, y, out)], [(y, out)])})
+
+
+def _of_vectors(given):
+    """Kinds of groups that multiply every one of some vectors."""
+    forward = [(0, x, out) for x, out in given]
+    return {NARROW: lambda groups: _once(groups, NARROW, given),
+            WIDE: lambda groups: _once(groups, WIDE, given),
+            MIRRORED: lambda groups: _twice(groups, forward, given)}
+
+
+def _clear(builder, out, count):
+    """Zeros in whole vectors, some at a time."""
+    done = WORD(0)
+    for vectors in (_CLEARED, 1):
+        step = LANES * vectors
+        end = builder.sub(count, builder.srem(builder.sub(count, done), WORD(step)))
+        with short_loop(builder, done, end, step) as place:
+            for k in range(vectors):
+                store_vector(builder, no_sum(), out, builder.add(place, WORD(LANES * k)))
+        done = end
+
+
+def _once(groups, kind, given):
+    """The numbers of the vectors stay in registers while strips follow."""
+    builder = groups.builder
+    factors = [_factors(groups, x, kind) for x, _ in given]
+    with short_loop(builder, WORD(0), groups.strips) as strip:
+        place = groups.head(0, strip)
+        entries = _entries(groups, strip, kind)
+        for (_, out), numbers in zip(given, factors, strict=True):
+            _add_times(builder, out, place, entries, numbers)
+
+
+def _twice(groups, forward, across):
+    """Strips of one matrix; sums of the transposed products stay in registers.
+
+    `forward` are the products of the strips: which one, the vector, what it is added to; `across`
+    the same of the transpose, which is always the last product.
+    """
+    builder = groups.builder
+    places = [groups.head(k) for k in range(PRODUCTS)]
+    factors = [_factors(groups, x, WIDE) for _, x, _ in forward]
+    sums = [[stack_vectors(builder, 1, PAIR) for _ in range(_PAIRS)] for _ in across]
+    for total in (total for of_one in sums for total in of_one):
+        builder.store(ir.Constant(PAIR, [0.0] * PAIR.count), total)
+    with short_loop(builder, WORD(0), groups.strips) as strip:
+        row, entries = groups.row(strip), _entries(groups, strip, WIDE)
+        for (product, _, out), numbers in zip(forward, factors, strict=True):
+            _add_times(builder, out, builder.add(places[product], row), entries, numbers)
+        for (x, _), of_one in zip(across, sums, strict=True):
+            numbers = _selected(builder, load_vector(builder, x, row), [*range(LANES)] * 2)
+            for total, entry in zip(of_one, entries, strict=True):
+                add_product(builder, total, entry, numbers)
+    for (_, out), of_one in zip(across, sums, strict=True):
+        columns = [half for total in of_one for half in _halves(builder, builder.load(total))]
+        for k in range(0, WIDTHS[WIDE], LANES):
+            place = builder.add(places[-1], builder.add(groups.first, WORD(k)))
+            total = builder.fadd(load_vector(builder, out, place),
+                                 sums_of_lanes(builder, columns[k:k + LANES]))
+            store_vector(builder, total, out, place)
+
+
+def _entries(groups, strip, kind):
+    """Columns of a strip; of a wide one two at a time."""
+    builder, own = groups.builder, groups.entries(strip, kind)
+    if kind == NARROW:
+        return _columns(builder, own, kind)
+    return [_load_pair(builder, own, WORD(PAIR.count * k)) for k in range(_PAIRS)]
+
+
+def _columns(builder, entries, kind):
+    return [load_vector(builder, entries, WORD(LANES * k)) for k in range(WIDTHS[kind])]
+
+
+def _factors(groups, x, kind):
+    """What the columns of the strips of a group are multiplied with."""
+    builder = groups.builder
+    places = [builder.add(groups.first, WORD(k)) for k in range(WIDTHS[kind])]
+    if kind == NARROW:
+        return [load_broadcast(builder, x, place) for place in places]
+    whole = [load_vector(builder, x, place) for place in places[::LANES]]
+    return [_selected(builder, whole[2 * k // LANES], [2 * k % LANES] * LANES
+                      + [2 * k % LANES + 1] * LANES) for k in range(_PAIRS)]
+
+
+def _add_times(builder, out, place, entries, factors):
+    """Add the product of a strip to what is kept at a place."""
+    total = load_vector(builder, out, place)
+    if entries[0].type == PAIR:
+        both = builder.fmul(entries[0], factors[0])
+        for entry, factor in zip(entries[1:], factors[1:], strict=True):
+            both = _added(builder, both, entry, factor)
+        total = builder.fadd(total, builder.fadd(*_halves(builder, both)))
+    else:
+        for entry, factor in zip(entries, factors, strict=True):
+            total = _added(builder, total, entry, factor)
+    store_vector(builder, total, out, place)
+
+
+def _added(builder, total, a, b):
+    return builder.fadd(total, builder.fmul(a, b, flags=("contract",)), flags=("contract",))
+
+
+def _load_pair(builder, pointer, place):
+    pair = builder.load(builder.bitcast(builder.gep(pointer, [place]), PAIR.as_pointer()))
+    pair.align = 8
+    return pair
+
+
+def _halves(builder, pair):
+    return [_selected(builder, pair, range(k, k + LANES)) for k in (0, LANES)]
+
+
+def _selected(builder, vector, lanes):
+    """Some numbers of a vector."""
+    lanes = list(lanes)
+    return builder.shuffle_vector(vector, ir.Constant(vector.type, ir.Undefined),
+                                  ir.Constant(ir.VectorType(ir.IntType(32), len(lanes)), lanes))
+
+
+# sums
+
+
+def write_sum(builder, matrices, factors, out, height):
+    Groups(builder, matrices).each({
+        NARROW: lambda groups: _sum_once(groups, NARROW, factors, out, height),
+        WIDE: lambda groups: _sum_once(groups, WIDE, factors, out, height),
+        MIRRORED: lambda groups: _sum_twice(groups, factors, [(0, out)], out, height)})
+
+
+def write_sum_of_couplings(builder, matrices, factors, of_x, of_y, height):
+    def once(kind):
+        return lambda groups: _sum_once(groups, kind, factors, groups.chosen(of_x, of_y), height)
+    Groups(builder, matrices).each({
+        **{kind: once(kind) for kind in (NARROW, WIDE)},
+        MIRRORED: lambda groups: _sum_twice(groups, factors, [(0, of_x)], of_x, height),
+        COUPLED: lambda groups: _sum_twice(groups, factors, [(0, of_x), (1, of_y)], of_y, height)})
+
+
+def _sum_once(groups, kind, factors, out, height):
+    """Strip by strip."""
+    builder = groups.builder
+    with short_loop(builder, WORD(0), groups.strips) as strip:
+        scale = load_broadcast(builder, factors, groups.head(1, strip))
+        columns = _columns(builder, groups.entries(strip, kind), kind)
+        _add_columns(builder, columns, scale, out, groups.first, height, groups.head(2, strip))
+
+
+def _sum_twice(groups, factors, forward, across, height):
+    """The same of strips of one matrix, and of their transposes."""
+    builder = groups.builder
+    *scales, transposed = (load_broadcast(builder, factors, groups.head(PRODUCTS + k))
+                           for k in range(PRODUCTS))
+    with short_loop(builder, WORD(0), groups.strips) as strip:
+        row, columns = groups.row(strip), _columns(builder, groups.entries(strip, WIDE), WIDE)
+        for product, out in forward:
+            _add_columns(builder, columns, scales[product], out, groups.first, height, row)
+        for k in range(0, WIDTHS[WIDE], LANES):
+            _add_columns(builder, _transposed(builder, columns[k:k + LANES]), transposed, across,
+                         row, height, builder.add(groups.first, WORD(k)))
+
+
+def _add_columns(builder, columns, scale, out, first, height, row):
+    """Add some columns to those of a matrix, from a column and a row on."""
+    for k, column in enumerate(columns):
+        place = builder.add(builder.mul(builder.add(first, WORD(k)), height), row)
+        store_vector(builder, _added(builder, load_vector(builder, out, place), column, scale),
+                     out, place)
+
+
+def _transposed(builder, columns):
+    """Rows of a square block."""
+    def joined(a, b, lanes):
+        return builder.shuffle_vector(a, b, ir.Constant(ir.VectorType(ir.IntType(32), LANES),
+                                                        lanes))
+    a, b, c, d = columns
+    low = [joined(*two, [0, LANES, 2, LANES + 2]) for two in ((a, b), (c, d))]
+    high = [joined(*two, [1, LANES + 1, 3, LANES + 3]) for two in ((a, b), (c, d))]
+    return [joined(*two, lanes) for lanes in ([0, 1, LANES, LANES + 1], [2, 3, LANES + 2, LANES + 3])
+            for two in (low, high)]
