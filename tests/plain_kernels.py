@@ -12,7 +12,7 @@ import mpmath
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from sebody.contract.counts import LANES, packed_size, whole_vectors
+from sebody.contract.counts import packed_size, whole_vectors
 from sebody.contract.layout import OK
 from sebody.derive.symbolic.rotations import stumpff_value, tangent_inverse_value
 from sebody.kernels.abi import Arguments
@@ -80,19 +80,16 @@ def clear(row, count):
 
 
 def _products(matrices):
-    """Of packed matrices: vector, place of the product, its number, rows, first column, entries."""
+    """Of packed matrices: vector, place of the sums, matrix, first row and column, entries."""
     for strip in strips(matrices):
-        places, columns = strip.places, strip.entries.shape[1]
-        across = len(places) == 3
-        coupled = strip.kind == COUPLED
-        for vector in range(1 + coupled) if across else (strip.vector,):
-            k = vector if coupled else 0
-            yield (vector, places[k], strip.matrices[k], strip.row, strip.first,
-                   strip.entries)
-        if across:
-            yield (int(coupled), places[2], strip.matrices[2], strip.first, strip.row,
-                   strip.entries.T)
-            assert columns == 8
+        below, right, entries = strip.row, strip.first, strip.entries
+        if len(strip.places) == 1:
+            yield strip.vector, *strip.places, *strip.matrices, below, right, entries
+            continue
+        coupled = int(strip.kind == COUPLED)
+        for k in range(1 + coupled):
+            yield k, strip.places[k] + below, strip.matrices[k], below, right, entries
+        yield coupled, strip.places[-1] + right, strip.matrices[-1], right, below, entries.T
 
 
 def packed_times(matrices, x, out, count):
@@ -114,10 +111,9 @@ def add_packed_times(matrices, x, out):
 
 
 def _add_products(matrices, x, y, out):
-    for vector, place, _, row, first, entries in _products(matrices):
+    for vector, place, _, _, first, entries in _products(matrices):
         rows, columns = entries.shape
-        begin = place + row
-        out[begin:begin + rows] += entries @ (x, y)[vector][first:first + columns]
+        out[place:place + rows] += entries @ (x, y)[vector][first:first + columns]
 
 
 def add_packed(matrices, factors, out, height):

@@ -40,7 +40,7 @@ NARROW, WIDE, MIRRORED, COUPLED = KINDS = range(4)      # of groups, in the orde
 WIDTHS = 4, 8, 8, 8         # columns of a strip
 BEGIN, GROUP, HEAD = 4, 5, 3    # whole numbers of a row, of a group and of a strip
 PRODUCTS = 3            # of a group that is used twice
-MANY = 4        # strips of one matrix: with fewer, sums of transposed products cost more than reading
+MANY = 4        # strips of one matrix: with fewer, sums of transposed products cost more
 
 
 class Group(NamedTuple):

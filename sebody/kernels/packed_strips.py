@@ -199,17 +199,17 @@ def _factors(groups, x, kind):
 
 
 def _add_times(builder, out, place, entries, factors):
-    """Add the product of a strip to what is kept at a place."""
+    """Add the product of a strip to what is kept at a place.
+
+    That number is added last: strips that are added to the same place wait for each other.
+    """
+    product = builder.fmul(entries[0], factors[0])
+    for entry, factor in zip(entries[1:], factors[1:], strict=True):
+        product = _added(builder, product, entry, factor)
+    if product.type == PAIR:
+        product = builder.fadd(*_halves(builder, product))
     total = load_vector(builder, out, place)
-    if entries[0].type == PAIR:
-        both = builder.fmul(entries[0], factors[0])
-        for entry, factor in zip(entries[1:], factors[1:], strict=True):
-            both = _added(builder, both, entry, factor)
-        total = builder.fadd(total, builder.fadd(*_halves(builder, both)))
-    else:
-        for entry, factor in zip(entries, factors, strict=True):
-            total = _added(builder, total, entry, factor)
-    store_vector(builder, total, out, place)
+    store_vector(builder, builder.fadd(total, product), out, place)
 
 
 def _added(builder, total, a, b):
@@ -291,5 +291,5 @@ def _transposed(builder, columns):
     a, b, c, d = columns
     low = [joined(*two, [0, LANES, 2, LANES + 2]) for two in ((a, b), (c, d))]
     high = [joined(*two, [1, LANES + 1, 3, LANES + 3]) for two in ((a, b), (c, d))]
-    return [joined(*two, lanes) for lanes in ([0, 1, LANES, LANES + 1], [2, 3, LANES + 2, LANES + 3])
-            for two in (low, high)]
+    halves = [0, 1, LANES, LANES + 1], [2, 3, LANES + 2, LANES + 3]
+    return [joined(*two, lanes) for lanes in halves for two in (low, high)]

@@ -3,7 +3,7 @@
 import sympy as sp
 
 from sebody.derive.form.arrays import Array, Place
-from sebody.derive.form.counts import N, b, deep, free, hN, i
+from sebody.derive.form.counts import N, b, deep, free, i
 from sebody.derive.form.functions import (
     ADD_BLOCK_TIMES,
     ADD_COUPLINGS,
