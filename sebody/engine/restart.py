@@ -220,7 +220,13 @@ def _rounding(system, state):
 def _look_ahead(system, state):
     """Move the state by a short time, for one more correction."""
     clock = state.clock
-    dt = SHORT * clock.current_step
+    move_ahead(system, state, SHORT * clock.current_step, clock.time, -clock.beside)
+    state.control.restart = AHEAD
+
+
+@compiled
+def move_ahead(system, state, dt, time, beside):
+    """Move a state by a short time from a time on; `kept` and `loads_old` are as before."""
     copy(state.now, state.kept)
     copy(state.R, state.R_old)
     copy(state.frames, state.frames_old)
@@ -229,10 +235,9 @@ def _look_ahead(system, state):
         state.dq[i] = dt * (state.v[i] + 0.5 * dt * state.a[i]) * (1.0 - system.is_multiplier[i])
         state.q[i] += state.dq[i]
         state.v[i] += dt * state.a[i]
-    set_loads_beside(system, state.frames, state.loads, clock.time + dt, -clock.beside)
+    set_loads_beside(system, state.frames, state.loads, time + dt, beside)
     move_prescribed(system, state)
     update_rotations(system, state)
-    state.control.restart = AHEAD
 
 
 @compiled

@@ -180,7 +180,7 @@ class _Fit:
         def flat(made: Simulation, rows: NDArray) -> NDArray:
             return np.concatenate([values.ravel() for values in self._histories(
                 made, rows).values()])
-        slopes = Slopes(self.model, one.run, one.history, flat)
+        slopes = Slopes(self.model, one.run, one.history, flat, one.course.second)
         each = [slopes.of(column) for column in columns]
         explicit = np.stack([slope.objectives for slope in each], axis=1)
         ends = np.cumsum([values.size for values in histories.values()])[:-1]

@@ -19,7 +19,7 @@ from sebody.errors import InputError
 from sebody.gradients.gradient import Differentiated, fitting
 from sebody.gradients.responses import Histories, linearized
 from sebody.gradients.simplifications import Amplitude, Deformation, Motion
-from sebody.gradients.support import refuse_model
+from sebody.gradients.support import refuse_model, refuse_scheme
 from sebody.model.model import Model
 from sebody.model.variants import with_options
 from sebody.runs.simulation import Simulation, simulate
@@ -190,6 +190,7 @@ def contributions(model: Model, h: float, t_end: float, quantities: str | Iterab
     chosen = _bodies(model, bodies)
     refuse_model(model)
     began, scheme = time.perf_counter(), fitting(scheme)
+    refuse_scheme(scheme, "contributions")
     one = Differentiated(model, h, t_end, scheme)
     each = simplifications(one.run, chosen)
     like = [j for j, simpler in enumerate(each) if simpler.options is None]

@@ -21,9 +21,10 @@ from sebody.gradients.objectives import Folded, Objectives, Seen, checked
 from sebody.gradients.parameters import Column, columns_of
 from sebody.gradients.segments import Segments
 from sebody.gradients.slopes import Slope, Slopes
+from sebody.gradients.stabilized_course import course_of
 from sebody.gradients.support import refuse_model, refuse_run
-from sebody.gradients.sweeps import Adjoint, Course, backward, forward
-from sebody.gradients.tables import OfTable, port_of, weights
+from sebody.gradients.sweeps import Adjoint, backward, forward
+from sebody.gradients.tables import OfTable, Part, port_of, weights
 from sebody.model.model import Model
 from sebody.runs.schemes import checked as checked_scheme
 from sebody.runs.schemes import generalized_alpha
@@ -107,10 +108,11 @@ def gradient(model: Model, h: float, t_end: float, objectives: Objectives,
         Backwards with a cost that grows with the number of objectives, or forwards with one that
         grows with that of parameters. Results are the same to rounding.
     tolerance : Tolerance, optional
-        Variable steps, of models without constraints: the sequence of accepted steps is held, and
-        objectives are those over the states at their ends, one of which is at `t_end`.
+        Variable steps: the sequence of accepted steps is held, and objectives are those over the
+        states at their ends, one of which is at `t_end`.
     scheme : Scheme, optional
-        `generalized_alpha` with rho 0.9 and a tolerance of 1e-10 by default.
+        `generalized_alpha` with rho 0.9 and a tolerance of 1e-10 by default; of index 3 with a
+        fixed step, else of index 2, whose gradients are good to the order of the scheme.
 
     Raises
     ------
@@ -155,8 +157,7 @@ class Differentiated:
         self.history: History = history(self.run, t_end)
         self.run.watch.look(model, self.run.numbering, self.history.states)
         self.linear = Linear(self.run)
-        self.course = Course(self.run, self.linear, self.history)
-        self.course.settle()
+        self.course = course_of(self.run, self.linear, self.history)
 
 
 def differentiate(model: Model, h: float, t_end: float, outputs: Mapping[str, Output],
@@ -184,21 +185,22 @@ class _Part:
     def __init__(self, one: _Parts, history: History):
         run = one.segments.run
         self.history, self.columns = history, one.columns
-        self.course = Course(run, one.linear, history)
-        self.course.settle()
+        self.course = course_of(run, one.linear, history)
         self.seen = Seen(one.whole, run, history, one.linear)
-        self.slopes = Slopes(one.model, run, history, self.seen.explicit)
+        self.slopes = Slopes(one.model, run, history, self.seen.explicit, self.course.second)
         self.tables: dict[str, OfTable] = {}    # and amplitudes of loads, by name
         ports = {c.name: (c, port_of(one.model, run, c)) for c in one.columns}
         for name, (column, port) in ports.items():
             if port is not None and one.whole.kinematic:    # objectives look at motion alone
-                residuals, values = self.slopes.by_load(port)
-                self.tables[name] = OfTable(residuals, weights(one.model, column, history, values))
+                self.tables[name] = OfTable([
+                    Part(residuals, weights(one.model, column, history, *value))
+                    for residuals, *value in self.slopes.by_load(port)])
 
     def slope(self, column: Column) -> Slope:
         """Derivatives by a number of a parameter."""
         if column.name in self.tables:
-            return self.tables[column.name].slope(column.component, len(self.seen.whole.value))
+            return self.tables[column.name].slope(column.component, len(self.seen.whole.value),
+                                                  self.course.linear.free)
         return self.slopes.of(column)
 
     def along(self, bars: Adjoint) -> NDArray:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody import memory
-from sebody.contract.layout import RECORD_T
+from sebody.contract.layout import C_STIFFNESS, RECORD_T
 from sebody.engine.loop import advance
 from sebody.engine.scalars import numbers_of
 from sebody.engine.state import CHUNK, DONE, FAILED, Record, State
@@ -46,7 +46,8 @@ class History(NamedTuple):
 
     rows: NDArray       # (events, size of a row of `layout.RECORD`) states that they leave
     kinds: NDArray      # (events,) RESTART or STEP
-    steps: NDArray      # (events,) length of the step; 0 of restarts [time]
+    steps: NDArray      # (events,) length of the step; of a restart that which auxiliary
+                        # accelerations belong to after it [time]
     offsets: NDArray    # (events,) length over that of the step before: (15) of the README
     ends: NDArray       # (events,) time of the loads [time]
     besides: NDArray    # (events,) by how much loads are read before or after that [time]
@@ -54,6 +55,7 @@ class History(NamedTuple):
     seconds: float      # of the run
     duration: float     # of the whole run [time]
     past: Past | None = None    # of a segment that does not begin at the start
+    aux: NDArray = np.zeros(0)  # auxiliary accelerations in the first state
 
     @property
     def times(self) -> NDArray:
@@ -95,10 +97,11 @@ def stretch(run: Simulation, last: int, most: int | None = None) -> History:
     """
     began, control, grid = time.perf_counter(), run.state.control, int(run.state.control.grid)
     end = last if most is None else min(last, grid + most)
+    aux = run.state.aux.copy()
     memory.check(8.0 * (end - grid) * run.state.now.size, f"the states of {end - grid} steps",
                  "give an earlier t_end or longer steps")
     if (whole := _whole(run, grid, end)) is not None:
-        return whole._replace(seconds=time.perf_counter() - began, duration=run.h * last)
+        return whole._replace(seconds=time.perf_counter() - began, duration=run.h * last, aux=aux)
     events = _Events(run, last)
     while control.grid < last and (most is None or len(events.rows) <= most
                                    or (run.tolerance is None and control.unit > 0)):
@@ -109,7 +112,7 @@ def stretch(run: Simulation, last: int, most: int | None = None) -> History:
             raise SimulationError(run.failure, run.result())
         if control.steps > before[0]:
             events.add(before[1])
-    return events.found(time.perf_counter() - began, run.h * last)
+    return events.found(time.perf_counter() - began, run.h * last)._replace(aux=aux)
 
 
 def meet(run: Simulation, times: Sequence[float]) -> None:
@@ -148,10 +151,13 @@ def _whole(run: Simulation, first: int, last: int) -> History | None:
         return None
     offsets, kinds = np.ones(count + 1), np.full(count + 1, STEP)
     kinds[0] = RESTART
+    lengths = np.full(count + 1, run.h)
     if first:
         offsets[1] = run.h / before
+    else:
+        lengths[0] = before
     times = record.rows[:, RECORD_T].copy()
-    return History(record.rows, kinds, run.h * (kinds == STEP), offsets, times, 0.0 * times,
+    return History(record.rows, kinds, lengths, offsets, times, 0.0 * times,
                    np.arange(first > 0, count + 1), 0.0, 0.0)
 
 
@@ -186,23 +192,26 @@ class _Events:
     def __init__(self, run: Simulation, last: int):
         self.run, self.varies = run, run.tolerance is not None
         self.record = Record.of(run.state, max(ROOM, last + 1) if self.varies else ROOM)
-        self.kinds, self.steps, self.offsets = [RESTART], [0.0], [1.0]
+        self.kinds, self.steps, self.offsets = [RESTART], [float(run.state.clock.aux_step)], [1.0]
         self.ends, self.besides = [float(run.state.clock.time)], [0.0]
         self.rows, self.recorded = [run.state.now.copy()], [0] * int(run.state.control.steps == 0)
 
     def add(self, aux_step: float) -> None:
         """Add the step that was accepted last, and the restart if there was one."""
-        run, state, clock = self.run, self.run.state, self.run.state.clock
-        length = float(clock.aux_step if np.isfinite(clock.aux_step) else
-                       clock.time - self.ends[-1])
+        state, clock = self.run.state, self.run.state.clock
         end, beside = float(clock.end), float(clock.beside)
-        restarted = bool(run.system.corners.size) and np.array_equal(state.aux, state.a)
+        # a restart leaves the coefficients of its own matrix, masses and constraints
+        restarted = state.coefficients[C_STIFFNESS] == 0.0
+        length = float(clock.aux_step)
+        if restarted or not np.isfinite(length):
+            length = float(clock.time) - self.ends[-1]
         row = state.now.copy()
         if restarted:
             row[state.recorded_parts["a"]] = self._accelerations_before(length)
         self._event(row, STEP, length, length / aux_step, end, beside)
         if restarted:
-            self._event(state.now.copy(), RESTART, 0.0, 1.0, float(clock.time), -beside)
+            self._event(state.now.copy(), RESTART, float(clock.aux_step), 1.0, float(clock.time),
+                        -beside)
         if state.control.recorded or self.varies:
             self.recorded.append(len(self.rows) - 1)
 
@@ -215,11 +224,10 @@ class _Events:
             values.append(number)
 
     def _accelerations_before(self, h: float) -> NDArray:
-        """Accelerations at the end of the step, before they were solved for anew: (1), (3)."""
+        """Accelerations at the end of the step, before they were solved for anew: (2), (3)."""
         state: State = self.run.state
         s = self.run.scheme
-        aux = ((state.dq - h * state.v_old - h * h * (0.5 - s.beta) * state.aux_old)
-               / (s.beta * h * h))
+        aux = ((state.v - state.v_old) / h - (1 - s.gamma) * state.aux_old) / s.gamma
         found = ((1 - s.alpha_m) * aux + s.alpha_m * state.aux_old - s.alpha_f * state.a_old) / (
             1 - s.alpha_f)
         return np.where(self.run.system.is_multiplier[:len(found)] > 0, 0.0, found)

@@ -4,7 +4,7 @@ Element matrices are evaluated three times, for K, C and M, turned to global axe
 all coordinates; then dependent positions are replaced by what they follow from, see `links`.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +31,7 @@ from sebody.gradients.links import Followers
 from sebody.runs.simulation import Simulation
 
 DENSE = 160         # most unknowns of full matrices: beyond, sparse ones are quicker
-Matrix = NDArray | sparse.csc_array
+Matrix: TypeAlias = NDArray | sparse.csc_array
 
 
 class Parts(NamedTuple):
@@ -158,12 +158,13 @@ class Linear:
                            self.places, self.sums)
         if status != OK:
             raise InputError(f"the state at t = {row[0]:.6g} has no derivatives: {REASONS[status]}")
-        M, C, K = map(self._matrix, self.sums)
+        M, C, K = map(self.matrix, self.sums)
         if not self.followers:
             return Parts(*(self._free(A) for A in (M, C, K)))
         return Parts(*self.followers.reduced(self.state, M, C, K, self.dense))
 
-    def _matrix(self, values: NDArray) -> Matrix:
+    def matrix(self, values: NDArray) -> Matrix:
+        """All coordinates, of sums of entries as of `places`."""
         if self.dense:
             return values.reshape(self.total, self.total)
         return sparse.csc_array((values.copy(), self.indices, self.starts),

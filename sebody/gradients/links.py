@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from sebody.compiler.decorators import compiled
 from sebody.engine.links import Links
 from sebody.engine.state import State
-from sebody.vectors import skew
 
 
 class Motion(NamedTuple):
@@ -38,65 +38,41 @@ class Followers:
     def __init__(self, links: Links, free: int, total: int):
         self.links, self.free, self.total = links, free, total
         self.planar = links.arm_vectors.shape[1] == 2
-        self.rows, self.columns, self.turned = self._pattern()
+        d, turns, n = 2 if self.planar else 3, 1 if self.planar else 3, np.arange(free)
+        roots = np.array([(x, root) for x, root, *_ in links.dependent if root < free],
+                         dtype=np.int64).reshape(-1, 2)
+        self.arms = np.array([
+            (*links.arms[arm], arm, x) for x, _, first, last in links.dependent
+            for arm in range(first, last) if links.arms[arm, 1] < free],
+            dtype=np.int64).reshape(-1, 4)      # rotation, its coordinate, arm, position
+        own, x = self.arms[:, 1], self.arms[:, 3]
+        # entries of all operators: of unknowns and of roots, which are ones, then of arms
+        self.ones = free + d * len(roots)
+        self.rows = np.concatenate([n, _steps(roots[:, 0], d), _steps(x, d, turns, False)])
+        self.columns = np.concatenate([n, _steps(roots[:, 1], d), _steps(own, turns, d, True)])
+        self.levers = _steps(own, turns, turns, False), _steps(own, turns, turns, True)
 
     def __bool__(self) -> bool:
         return bool(self.links.dependent.shape[0])
 
-    def _pattern(self) -> tuple[NDArray, NDArray, int]:
-        """Rows and columns of the blocks of all operators: of roots, then of arms."""
-        links, d = self.links, self.links.arm_vectors.shape[1]
-        turns = 1 if self.planar else 3
-        rows, columns = [], []
-        for x, root, first, last in links.dependent:
-            if root < self.free:
-                rows.append(x + np.arange(d))
-                columns.append(root + np.arange(d))
-            for arm in range(first, last):
-                c = links.arms[arm, 1]
-                if c < self.free:
-                    rows.append(np.repeat(x + np.arange(d), turns))
-                    columns.append(np.tile(c + np.arange(turns), d))
-        none = [np.zeros(0, dtype=np.int64)]
-        return np.concatenate(rows + none), np.concatenate(columns + none), turns
-
     def motion(self, state: State, dense: bool) -> Motion:
         """The operators in a state."""
-        values: list[list[NDArray]] = [[], [], [], []]
-        links, d = self.links, self.links.arm_vectors.shape[1]
-        for _, root, first, last in links.dependent:
-            if root < self.free:
-                values[0].append(np.ones(d))
-                for other in values[1:]:
-                    other.append(np.zeros(d))
-            for arm in range(first, last):
-                if links.arms[arm, 1] < self.free:
-                    for own, block in zip(values, self._arm(state, arm), strict=True):
-                        own.append(block.ravel())
-        n = np.arange(self.free)
-        found = []
-        for k, own in enumerate(values):
-            numbers = np.concatenate([np.ones(self.free) * (k == 0), *own])
-            rows, columns = np.concatenate([n, self.rows]), np.concatenate([n, self.columns])
-            one = sparse.csc_array((numbers, (rows, columns)), shape=(self.total, self.free))
-            found.append(one.toarray() if dense else one)
+        blocks = _arms(self.arms, self.links.arm_vectors, state.q, state.R, state.v, state.a)
+        ones, found = np.ones(self.ones), []
+        for own in blocks:
+            numbers = np.concatenate([ones, own.ravel()])
+            found.append(self._matrix(numbers, self.rows, self.columns, self.total, dense))
+            ones = np.zeros(self.ones)
         return Motion(*found)
 
-    def _arm(self, state: State, arm: int) -> tuple[NDArray, NDArray, NDArray, NDArray]:
-        """Blocks of an arm in G, V, W and U."""
-        number, c = self.links.arms[arm]
-        r = self.links.arm_vectors[arm]
-        if self.planar:
-            co, si = np.cos(state.q[c]), np.sin(state.q[c])
-            p = np.array([co * r[0] - si * r[1], si * r[0] + co * r[1]])
-            t = np.array([-p[1], p[0]])
-            rate, second = state.v[c], state.a[c]
-            return t, -rate * p, -2.0 * rate * p, -second * p - rate * rate * t
-        R = state.R[9 * number:9 * number + 9].reshape(3, 3)
-        omega, second = state.v[c:c + 3], state.a[c:c + 3]
-        s = np.cross(omega, r)
-        return (-R @ skew(r), -R @ skew(s), -R @ (skew(s) + skew(omega) @ skew(r)),
-                -R @ skew(np.cross(second, r) + np.cross(omega, s)))
+    def _matrix(self, numbers: NDArray, rows: NDArray, columns: NDArray, height: int, dense: bool
+                ) -> NDArray | sparse.csc_array:
+        """Of entries that add up."""
+        shape = height, self.free
+        if dense:
+            return np.bincount(rows * self.free + columns, numbers, height * self.free).reshape(
+                shape)
+        return sparse.csc_array((numbers, (rows, columns)), shape=shape)
 
     def reduced(self, state: State, M: NDArray, C: NDArray, K: NDArray, dense: bool
                 ) -> tuple[NDArray, NDArray, NDArray]:
@@ -107,28 +83,62 @@ class Followers:
 
     def _levers(self, state: State, dense: bool) -> NDArray | sparse.csc_array:
         """Derivative of the moments of constant forces as their arms turn."""
-        links, d = self.links, self.links.arm_vectors.shape[1]
-        rows, columns, values = ([np.zeros(0)] for _ in range(3))
-        for x, _, first, last in links.dependent:
-            force = state.residual[x:x + d]
-            for arm in range(first, last):
-                number, c = links.arms[arm]
-                if c >= self.free:
-                    continue
-                r = links.arm_vectors[arm]
-                if self.planar:
-                    co, si = np.cos(state.q[c]), np.sin(state.q[c])
-                    p = np.array([co * r[0] - si * r[1], si * r[0] + co * r[1]])
-                    block = np.array([[-p @ force]])
-                else:
-                    R = state.R[9 * number:9 * number + 9].reshape(3, 3)
-                    block = skew(r) @ skew(R.T @ force)
-                own = c + np.arange(len(block))
-                row, column = np.broadcast_arrays(own[:, None], own[None])
-                for into, what in zip((rows, columns, values), (row, column, block), strict=True):
-                    into.append(np.ravel(what))
-        found = sparse.csc_array(
-            (np.concatenate(values), (np.concatenate(rows).astype(int),
-                                      np.concatenate(columns).astype(int))),
-            shape=(self.free, self.free))
-        return found.toarray() if dense else found
+        blocks = _levers(self.arms, self.links.arm_vectors, state.q, state.R, state.residual)
+        return self._matrix(blocks.ravel(), *self.levers, self.free, dense)
+
+
+def _steps(first: NDArray, count: int, others: int = 1, inner: bool = True) -> NDArray:
+    """Numbers of blocks, row by row: those of rows, or of columns, `count` of them from each first.
+    """
+    own = first[:, None] + np.arange(count)
+    return (np.tile(own, (1, others)) if inner else np.repeat(own, others, axis=1)).ravel()
+
+
+@compiled
+def _skew(x):
+    return np.array([[0.0, -x[2], x[1]], [x[2], 0.0, -x[0]], [-x[1], x[0], 0.0]])
+
+
+@compiled
+def _arms(arms, vectors, q, R, v, a):
+    """Blocks of all arms in G, V, W and U: (18) and (19)."""
+    d = vectors.shape[1]
+    turns = 1 if d == 2 else 3
+    found = np.empty((4, arms.shape[0], d, turns))
+    for k in range(arms.shape[0]):
+        c, r = arms[k, 1], vectors[arms[k, 2]]
+        if d == 2:
+            co, si, rate = np.cos(q[c]), np.sin(q[c]), v[c]
+            x, y = co * r[0] - si * r[1], si * r[0] + co * r[1]
+            for i, p, t in ((0, x, -y), (1, y, x)):
+                found[0, k, i, 0], found[1, k, i, 0] = t, -rate * p
+                found[2, k, i, 0] = -2.0 * rate * p
+                found[3, k, i, 0] = -a[c] * p - rate * rate * t
+            continue
+        turn = np.ascontiguousarray(R[9 * arms[k, 0]:9 * arms[k, 0] + 9]).reshape(3, 3)
+        arm, spin, second = _skew(r), _skew(v[c:c + 3]), _skew(a[c:c + 3])
+        s = np.dot(spin, r)
+        found[0, k] = -np.dot(turn, arm)
+        found[1, k] = -np.dot(turn, _skew(s))
+        found[2, k] = -np.dot(turn, _skew(s) + np.dot(spin, arm))
+        found[3, k] = -np.dot(turn, _skew(np.dot(second, r) + np.dot(spin, s)))
+    return found
+
+
+@compiled
+def _levers(arms, vectors, q, R, residual):
+    """Blocks of all arms: of the moment of a force by the arm's turning."""
+    d = vectors.shape[1]
+    turns = 1 if d == 2 else 3
+    found = np.empty((arms.shape[0], turns, turns))
+    for k in range(arms.shape[0]):
+        c, r = arms[k, 1], vectors[arms[k, 2]]
+        force = residual[arms[k, 3]:arms[k, 3] + d]
+        if d == 2:
+            co, si = np.cos(q[c]), np.sin(q[c])
+            found[k, 0, 0] = -((co * r[0] - si * r[1]) * force[0]
+                               + (si * r[0] + co * r[1]) * force[1])
+            continue
+        turn = np.ascontiguousarray(R[9 * arms[k, 0]:9 * arms[k, 0] + 9]).reshape(3, 3)
+        found[k] = np.dot(_skew(r), _skew(np.dot(turn.T, force)))
+    return found

@@ -22,7 +22,7 @@ from sebody.explore.ensembles.outputs import Fold, Output, outputs_of
 from sebody.gradients.history import History
 from sebody.gradients.linear import Linear
 from sebody.gradients.segments import Segments
-from sebody.gradients.sensors import Coordinates, Evaluated, Sensor
+from sebody.gradients.sensors import Coordinates, Evaluated, Sensor, rotation_vector
 from sebody.gradients.sweeps import Bars
 from sebody.model.model import Model
 from sebody.results.naming import AXES, look_up
@@ -220,6 +220,8 @@ def sensor_of(run: Simulation, quantity: str, shape: tuple[int, ...], linear: Li
                          "are not unique and have no derivative: give force or moment of the joint")
     found = _coordinates(run.numbering, run.model, quantity)
     if found is None:
+        if (vector := rotation_vector(run, quantity, linear, history)) is not None:
+            return vector
         return Evaluated(run, quantity, int(np.prod(shape, initial=1.0)), linear, history)
     return Coordinates(*found, linear, history)
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from sebody.gradients.constrained import Change, Sweep
 from sebody.gradients.gradient import Differentiated
 from sebody.gradients.objectives import sensor_of
-from sebody.gradients.sensors import Coordinates, put
+from sebody.gradients.sensors import Coordinates, RotationVector, put
 from sebody.gradients.simplifications import Motion
 from sebody.results.naming import look_up
 from sebody.results.recording import Recording
@@ -64,7 +64,7 @@ class Response:
 
     def to(self, k: int, event: int, change: Change) -> NDArray:
         """Changes in a recorded state, (..., models)."""
-        if isinstance(self.sensor, Coordinates):
+        if isinstance(self.sensor, Coordinates | RotationVector):
             rows = self.sensor.at(k, event)
             found = rows.motion @ change.motion + rows.rates @ change.rates + (
                 rows.seconds @ change.seconds)

@@ -8,13 +8,19 @@ from numpy.typing import NDArray
 from sebody.errors import InputError
 from sebody.gradients.history import History
 from sebody.gradients.linear import Linear
+from sebody.kernels.rotations import inverse_tangent_coefficients
+from sebody.results.naming import AXES, NORM, look_up, rotation_vectors
+from sebody.results.recording import Recording
 from sebody.results.result import Result
 from sebody.runs.simulation import Simulation
 from sebody.small_motion.moved_states import SMALL, Moves, differences
+from sebody.vectors import skew
 
 PIECE = 64          # motions that are compared at a time
 FINER = 30.0        # factor of the steps of differences from one try to the next
 SMALLEST = 1e-8     # of them, of the characteristic length: rounding is 1e-8 of a derivative then
+WHOLE = 1e-6        # rad: a rotation that near whole turns has a vector without derivative
+LARGE = 1.0         # rad: from here on closed forms are as exact as series
 CLOSE = 1e-5        # of the largest derivative: differences that agree like this are right
 
 
@@ -112,3 +118,74 @@ class Evaluated:
             found[piece] = differences(one, [self.quantity], along, pushed, small)[
                 self.quantity].reshape(-1, self.size)
         return found
+
+
+class RotationVector:
+    """Components of a rotation vector, or its length, where it is followed through turns.
+
+    Of a vector phi of any length, ``R = exp(phi)`` and ``dR = R skew(theta)``:
+
+        dphi = theta + phi x theta / 2 + (1 - |phi|/2 cot(|phi|/2)) phi x (phi x theta) / |phi|^2
+
+    Parameters
+    ----------
+    matrices : Evaluated
+        Of the nine entries of R.
+    rotations, vectors : (states, 3, 3), (states, 3)
+        R and phi in the recorded states.
+    component : str
+    """
+
+    def __init__(self, matrices: Evaluated, rotations: NDArray, vectors: NDArray, component: str):
+        self.matrices, self.rotations, self.vectors = matrices, rotations, vectors
+        self.component = component
+
+    def at(self, k: int, event: int) -> Rows:
+        R, phi = self.rotations[k], self.vectors[k]
+        operator = self._rate(phi)
+        return Rows(*(operator @ _axial(R.T @ rows.reshape(3, 3, -1).transpose(2, 0, 1))
+                      for rows in self.matrices.at(k, event)))
+
+    def _rate(self, phi: NDArray) -> NDArray:
+        """Derivative of the component by theta, (1, 3)."""
+        angle, across = float(np.linalg.norm(phi)), skew(phi)
+        name = f"{self.matrices.quantity}.{self.component}"
+        turns = round(angle / (2 * np.pi))
+        if turns and abs(angle - 2 * np.pi * turns) < WHOLE:
+            raise InputError(f"quantity {name!r} has no derivative where the rotation is "
+                             f"{turns} whole turn{'s' * (turns > 1)}: give the angle of a joint, "
+                             "or another time")
+        e = ((1.0 - 0.5 * angle / np.tan(0.5 * angle)) / angle**2 if angle > LARGE else
+             inverse_tangent_coefficients(angle**2)[0])
+        found = np.eye(3) + 0.5 * across + e * (across @ across)
+        if self.component != NORM:
+            return found[[AXES.index(self.component)]]
+        if angle == 0.0:
+            raise InputError(f"quantity {name!r} is zero in a state, where it has no derivative: "
+                             "give its components")
+        return (phi / angle)[None] @ found
+
+
+def rotation_vector(run: Simulation, quantity: str, linear: Linear, history: History
+                    ) -> RotationVector | None:
+    """What a component or the length of a rotation vector is looked at by; None of others."""
+    base, _, component = quantity.rpartition(".")
+    if component not in (*AXES, NORM):
+        return None
+    before = history.past is not None   # turns are counted from the state before a segment on
+    rows = history.rows[np.concatenate([[0], history.recorded])] if before else history.states
+    parts = run.model, run.numbering, run.system, run.state
+    try:
+        if look_up(Recording(*parts, rows[:1], 0.0), base).shape[1:] != (3, 3):
+            return None
+    except InputError:      # no quantity of its own
+        return None
+    matrices = look_up(Recording(*parts, rows, 0.0), base)
+    return RotationVector(Evaluated(run, base, 9, linear, history), matrices[before:],
+                          rotation_vectors(matrices)[before:], component)
+
+
+def _axial(S: NDArray) -> NDArray:
+    """Vectors (3, k) of skew matrices (k, 3, 3)."""
+    return 0.5 * np.array([S[:, 2, 1] - S[:, 1, 2], S[:, 0, 2] - S[:, 2, 0],
+                           S[:, 1, 0] - S[:, 0, 1]])

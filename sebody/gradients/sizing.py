@@ -22,7 +22,7 @@ from sebody.fem.section import Section, StiffnessSection
 from sebody.gradients.beam_stresses import StressedBeam
 from sebody.gradients.gradient import Differentiated, fitting
 from sebody.gradients.held_beams import Elements, Held, HeldBeam
-from sebody.gradients.support import refuse_model
+from sebody.gradients.support import refuse_model, refuse_scheme
 from sebody.model.model import Model
 from sebody.model.parts import Beam, Superelement
 from sebody.runs.steps import whole_steps
@@ -100,6 +100,7 @@ class BeamStress:
                 section, length / one.elements, low, high, model.planar), self.built)
         self.turn = _turn(one, model.planar)
         self.scheme, self.runs = fitting(scheme), 0
+        refuse_scheme(self.scheme, "slopes of stresses by heights")
         self._handle = whole_body(model, self.part, beam)
         self._last: tuple[NDArray, StressedBeam] | None = None
 

@@ -9,7 +9,7 @@ that are fixed, follow the parameter. Nothing is integrated: these are no differ
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 from warnings import catch_warnings, simplefilter
 
@@ -25,6 +25,8 @@ from sebody.errors import InputError, LimitWarning
 from sebody.explore.ensembles.changes import Handle
 from sebody.gradients.history import RESTART, History
 from sebody.gradients.parameters import Column
+from sebody.gradients.second_residuals import of_restart, of_step
+from sebody.gradients.stabilized import Second
 from sebody.gradients.start_rates import fitted_rates
 from sebody.kernels.abi import pointer_to
 from sebody.kernels.rotations import rotate
@@ -37,6 +39,12 @@ LARGE, SHORT = 0.25, 1e-3       # steps of differences, relative to the size of 
 POLYNOMIAL = 1e-8               # differences over one and two steps that agree like this are exact
 SMOOTH = 1e-2                   # that agree worse are no differences of a smooth function
 NOISE = 1e-8                    # of values: velocities of the start have so much
+
+
+Load = tuple[int, float, float]     # a power port, a change of its value, one in look aheads
+NO_LOAD = -1, 0.0, 0.0
+NONE, NO_ROWS = np.zeros(0), np.zeros((0, 0))
+NOTHING = Second(NONE, NONE, NO_ROWS, NONE, NO_ROWS, 0)     # of index 3
 
 
 class Slope(NamedTuple):
@@ -60,7 +68,7 @@ class Value(NamedTuple):
 @compiled
 def _drive(system, state, kind, end, beside, free, load):
     """Loads at the next event, and the prescribed coordinates: rotations from the event before."""
-    port, change = load
+    port, change, _ = load
     for i in range(state.loads.size):
         state.loads_old[i] = state.loads[i]
     set_loads_beside(system, state.frames, state.loads, end, beside)
@@ -86,13 +94,15 @@ def _drive_on(system, state, kinds, ends, besides, free, load):
 
 
 @compiled
-def _residuals(system, state, rows, now, kinds, ends, besides, places, free, load, found):
+def _residuals(system, state, rows, now, kinds, ends, besides, places, free, load, second, found):
     """Residuals of all events but the first; fixed and prescribed coordinates are the model's own.
 
     `now` are states of this model, as many as are asked for: motion of the unknowns is that of the
-    run. The load of a power port may be changed, `load` being the port and the change.
+    run. The load of a power port may be changed, `load` being the port, the change, and the change
+    in look aheads. `second` are numbers of second residuals, of index 2, or `NOTHING`.
     """
     q, R, v, a, frames, frames_old = places
+    by_rates, by_seconds, shifts, aheads, corrections, restarts = second
     for e in range(1, rows.shape[0]):
         for i in range(state.frames.size):
             state.frames[i], state.frames_old[i] = rows[e, frames + i], rows[e, frames_old + i]
@@ -108,10 +118,18 @@ def _residuals(system, state, rows, now, kinds, ends, besides, places, free, loa
         status = assemble(RESIDUAL, of_others, system, state, state.residual)
         if status != OK:
             return status
-        for i in range(free):
-            found[e, i] = state.residual[i]
         for i in range(q, now.shape[1] if e < now.shape[0] else 0):
             now[e, i] = state.now[i]
+        for i in range(free):
+            found[e, i] = state.residual[i]
+        if by_rates.size > 0 and kinds[e] == RESTART:
+            status = of_restart(system, state, corrections[restarts], aheads[e], ends[e],
+                                besides[e], load, found[e, free:])
+            restarts += 1
+        elif by_rates.size > 0:
+            status = of_step(system, state, shifts[e], by_rates[e], by_seconds[e], found[e])
+        if status != OK:
+            return status
     return OK
 
 
@@ -135,16 +153,21 @@ class Slopes:
     objectives : function
         Values of all objectives, (m,), of recorded rows and a simulation of the model that is
         changed; None where they do not depend on anything but motion.
+    second : Second, optional
+        Of index 2, as of a `Course`.
     """
 
     def __init__(self, model: Model, run: Simulation, history: History,
-                 objectives: Callable[[Simulation, NDArray], NDArray]):
+                 objectives: Callable[[Simulation, NDArray], NDArray],
+                 second: Second | None = None):
         self.model, self.run, self.history, self.objectives = model, run, history, objectives
         self.free = run.numbering.free
         parts = run.state.recorded_parts
         self.places = tuple(parts[name].start for name in ("q", "R", "v", "a", "frames",
                                                            "frames_old"))
         self.start = history.rows[0]        # of the run, or of a segment
+        self.second = second or NOTHING
+        self.unknowns = self.free * (1 if second is None else 2)
 
     def of(self, column: Column) -> Slope:
         """Derivatives by a number of a parameter.
@@ -201,17 +224,23 @@ class Slopes:
             simplefilter("ignore", LimitWarning)
             return Simulation(self.model, self.run.h, self.run.scheme)
 
-    def by_load(self, port: int) -> tuple[NDArray, NDArray]:
-        """Derivatives of the residuals by the value of a power port, and this value, (events, n).
+    def by_load(self, port: int) -> Iterator[tuple[NDArray, NDArray, NDArray]]:
+        """Derivatives of the residuals by the value of a power port, this value, and its times.
+
+        Of index 2 by the value at the times of the events, and by that of look aheads.
         """
-        made, history = self._made(), self.history
-        values = np.zeros(len(history.rows))
-        _values(made.system, made.state, port, history.ends, history.besides, values)
-        start, size = made.state.now.copy(), max(float(np.abs(values).max()), 1.0)
-        one = self._along(made, (port, size), False)[0]
-        made.state.now[:] = start
-        other = self._along(made, (port, -size), False)[0]
-        return (one - other) / (2 * size), values
+        made, ends = self._made(), self.history.ends
+        start, values = made.state.now.copy(), np.zeros(len(ends))
+        for ahead in (False, True) if self.unknowns > self.free else (False,):
+            times = ends + self.second.aheads * (self.history.kinds == RESTART) if ahead else ends
+            _values(made.system, made.state, port, times, self.history.besides, values)
+            size = max(float(np.abs(values).max()), 1.0)
+            found = []
+            for change in (size, -size):
+                made.state.now[:] = start
+                found.append(self._along(made, (port, change * (not ahead), change * ahead),
+                                         False)[0])
+            yield (found[0] - found[1]) / (2 * size), values.copy(), times
 
     def by_constants(self, place: int, rows: NDArray) -> NDArray:
         """Derivatives of the residuals by changes of a row of constants, (events, n, k).
@@ -243,14 +272,14 @@ class Slopes:
         found, now = self._along(made)
         return Value(found, motion, rates, self.objectives(made, now[self.history.recorded]))
 
-    def _along(self, made: Simulation, load: tuple[int, float] = (-1, 0.0), states: bool = True
+    def _along(self, made: Simulation, load: Load = NO_LOAD, states: bool = True
                ) -> tuple[NDArray, NDArray]:
         """Residuals of all events, and the states of this model that they are of if asked for."""
         system, state, history = made.system, made.state, self.history
-        found = np.zeros((len(history.rows), self.free))
+        found = np.zeros((len(history.rows), self.unknowns))
         now = history.rows[:len(history.rows) if states else 1].copy()
         if history.past is None:
-            found[0] = self._first(made, load)
+            self._first(made, load, found[0])
             self._hold_start(made)
             now[0] = state.now
         else:
@@ -258,12 +287,12 @@ class Slopes:
             _drive_on(system, state, history.past.kinds, history.past.ends, history.past.besides,
                       self.free, load)
         status = _residuals(system, state, history.rows, now, history.kinds, history.ends,
-                            history.besides, self.places, self.free, load, found)
+                            history.besides, self.places, self.free, load, self.second, found)
         if status != OK:
             raise InputError(f"a state cannot be evaluated: {REASONS[status]}")
         return found, now
 
-    def _first(self, made: Simulation, load: tuple[int, float]) -> NDArray:
+    def _first(self, made: Simulation, load: Load, found: NDArray) -> None:
         """Residual of the start with accelerations and multipliers of the run."""
         system, state, n = made.system, made.state, self.free
         q, _, v, a, *_ = self.places
@@ -281,7 +310,11 @@ class Slopes:
         status = assemble(RESIDUAL, ACCELERATION, system, state, state.residual)
         if status != OK:
             raise InputError(f"the start cannot be evaluated: {REASONS[status]}")
-        return state.residual[:n].copy()
+        found[:n] = state.residual[:n]
+        if self.unknowns > n and of_restart(
+                system, state, self.second.corrections[0], self.second.aheads[0], 0.0, 0.0, load,
+                found[n:]) != OK:
+            raise InputError("the start cannot be evaluated a short time later")
 
     def _hold_start(self, made: Simulation) -> None:
         """Put a changed model in the motion that the run starts with.

@@ -1,6 +1,9 @@
 """Which runs have exact gradients; all others are refused by name, with what to do instead."""
 
-from sebody.errors import InputError
+from warnings import warn
+
+from sebody.engine.state import Scheme
+from sebody.errors import InputError, LimitWarning
 from sebody.generated.options import FRAMES
 from sebody.kernels.loader import element_kernel
 from sebody.model.model import Model
@@ -40,10 +43,12 @@ def refuse_model(model: Model) -> None:
 def refuse_run(run: Simulation) -> None:
     """Refuse runs whose steps are no functions of the state before.
 
+    Warns of constraints of index 2, which are differentiated to the order of the scheme.
+
     Raises
     ------
     InputError
-        Friction, contacts, actuators, sensors, motions without mass, constraints of index 2.
+        Friction, contacts, actuators, sensors, motions without mass.
     """
     if remembering := [one.name for one in run.numbering.memories
                        if element_kernel(one.kind).MEMORY != COUNTED]:
@@ -61,7 +66,22 @@ def refuse_run(run: Simulation) -> None:
     if run.system.massless[0]:
         raise InputError("a motion of the model has no mass, and its accelerations at the start no "
                          "derivative: give every node mass and inertia")
-    if run.scheme.stabilized:
-        raise InputError("constraints of index 2 move positions along directions that depend on "
-                         "the iteration, so the steps have no exact derivative: use "
-                         "generalized_alpha(index=3) with a fixed step")
+    if run.scheme.stabilized:       # which the scheme of a run without constraints is not
+        warn("constraints of index 2 (of variable steps the default) shift positions in directions "
+             "that are held where motion is differentiated, so derivatives differ from those of "
+             "the run by about the error of its steps: halve the step, or divide the tolerance by "
+             "eight, to see by how much; fixed steps of generalized_alpha(index=3) have exact "
+             "derivatives", LimitWarning, stacklevel=4)
+
+
+def refuse_scheme(scheme: Scheme, what: str) -> None:
+    """Refuse constraints of index 2, which some uses do not linearize.
+
+    Raises
+    ------
+    InputError
+        Names the use.
+    """
+    if scheme.stabilized:
+        raise InputError(f"{what} by constraints of index 2 are not available: give "
+                         "generalized_alpha(index=3), which is the default")

@@ -12,10 +12,11 @@ from scipy import sparse
 from sebody.engine.state import Scheme
 from sebody.gradients.factors import Factors, Scales
 from sebody.gradients.history import RESTART, STEP, History
-from sebody.gradients.linear import Linear, Parts
+from sebody.gradients.linear import Linear, Matrix, Parts
 from sebody.gradients.products import Products
 from sebody.gradients.refined import Refined
 from sebody.gradients.second_rates import second_rates
+from sebody.gradients.stabilized import Second
 from sebody.gradients.turns import Turns, turns_of
 from sebody.runs.simulation import Simulation
 
@@ -70,13 +71,14 @@ class Coefficients(NamedTuple):
 
 
 class Event(NamedTuple):
-    """An event, linearized."""
+    """An event, linearized: unknowns are increments or accelerations, of index 2 shifts as well."""
 
     number: int
-    parts: Parts
-    factors: Factors
+    parts: Parts        # of the residuals of the unknowns, (N, n)
+    factors: Factors    # (N, N)
     turns: Turns | None                         # of a step
     rates: tuple[NDArray, NDArray] | None       # of second rates by motion and rates: of restarts
+    lead: float = 0.0   # of restarts: auxiliary accelerations less shifts times this
 
 
 class Course:
@@ -90,7 +92,9 @@ class Course:
         places = system.rotation_at[system.rotation_at < n]
         self.turning = places[:, None] + np.arange(3)
         self.redundant = bool(system.regularized[0])
-        self.products = Products.of(run) if linear.dense else None
+        self.unknowns = n * (2 if run.scheme.stabilized else 1)     # of an event
+        self.products = Products.of(run) if linear.dense and self.unknowns == n else None
+        self.second: Second | None = None       # what second residuals of index 2 are made with
         self._scales: dict[float, Scales] = {}
         self._q = linear.state.recorded_parts["q"].start
         self._turns: tuple[int, list[Turns]] = 0, []        # of some events, from the first one on
@@ -103,9 +107,9 @@ class Course:
             q = row[self._q:self._q + self.linear.free]
             q[self.fixed] = 0.0
             event = self.event(int(k))
-            forces = state.residual[:self.linear.free, None].copy()
-            forces[self.fixed] = 0.0
-            q[self.fixed] = -event.factors.solve(forces)[self.fixed, 0]
+            forces = np.zeros((self.unknowns, 1))
+            forces[:len(q), 0] = np.where(self.fixed, 0.0, state.residual[:len(q)])
+            q[self.fixed] = -event.factors.solve(forces)[:len(q)][self.fixed, 0]
 
     def refined(self, columns: int, back: bool) -> Refined | None:
         """The recursion by products; None where matrices are quicker, or there are no products.
@@ -131,15 +135,22 @@ class Course:
 
     def event(self, k: int) -> Event:
         found = self.history
-        row, h = found.rows[k], float(found.steps[k])
-        parts = self.linear.at(row, found.ends[k], found.besides[k])
         if found.kinds[k] != STEP:
-            rates = second_rates(self.linear, self.fixed) if k > 0 else None
-            return Event(k, parts, self._factors(_initial(parts, self.fixed), 0.0), None, rates)
-        c = Coefficients.of(self.scheme, h)
-        turns = self._turns_of(k)
-        J = c.cm * parts.mass + c.cd * parts.damping + turns.of_columns(parts.stiffness)
+            return self._restart(k)
+        h, turns = float(found.steps[k]), self._turns_of(k)
+        parts = self.linear.at(found.rows[k], found.ends[k], found.besides[k])
+        J, parts = self._step(parts, Coefficients.of(self.scheme, h), turns)
         return Event(k, parts, self._factors(J, h), turns, None)
+
+    def _step(self, parts: Parts, c: Coefficients, turns: Turns) -> tuple[Matrix, Parts]:
+        """The matrix of a step, and derivatives of its residuals."""
+        return c.cm * parts.mass + c.cd * parts.damping + turns.of_columns(parts.stiffness), parts
+
+    def _restart(self, k: int) -> Event:
+        found = self.history
+        parts = self.linear.at(found.rows[k], found.ends[k], found.besides[k])
+        rates = second_rates(self.linear, self.fixed) if k > 0 else None
+        return Event(k, parts, self._factors(initial(parts, self.fixed), 0.0), None, rates)
 
     def _turns_of(self, k: int) -> Turns:
         first, found = self._turns
@@ -153,10 +164,11 @@ class Course:
     def _factors(self, J: NDArray, h: float) -> Factors:
         if h not in self._scales:
             self._scales[h] = Scales(J)
-        return Factors(J, self._scales[h], self.fixed, self.redundant)
+        fixed = np.tile(self.fixed, J.shape[0] // len(self.fixed))
+        return Factors(J, self._scales[h], fixed, self.redundant)
 
 
-def _initial(parts: Parts, fixed: NDArray) -> NDArray:
+def initial(parts: Parts, fixed: NDArray) -> NDArray:
     """Masses and constraints: the matrix of a restart."""
     if isinstance(parts.mass, np.ndarray):
         J = parts.mass.copy()
@@ -215,8 +227,14 @@ def _over_restart(course: Course, event: Event, slopes: NDArray, now: Motion) ->
     moving, y = course.moving, -slopes
     if event.number:        # the slopes of the start hold what its motion does
         y -= _of_restart(event, course.fixed, xi * moving, v)
-    y = event.factors.solve(y)
-    return xi * moving + y * (1 - moving), v, y * moving, y * moving
+    y, shift = _halves(event.factors.solve(y), moving)
+    return (xi * moving + y * (1 - moving), v, y * moving, y * moving - event.lead * shift)
+
+
+def _halves(y: NDArray, moving: NDArray) -> tuple[NDArray, NDArray]:
+    """Increments with multipliers, and shifts, which only index 2 has."""
+    n = len(moving)
+    return y[:n], moving * (y[n:] if len(y) > n else 0.0)
 
 
 def _over_step(course: Course, event: Event, slopes: NDArray, now: Motion) -> Motion:
@@ -229,15 +247,16 @@ def _over_step(course: Course, event: Event, slopes: NDArray, now: Motion) -> Mo
     vp = v + c.h * (1 - c.g) * aux + c.h * c.g * auxp
     ap = ((1 - c.am) * auxp + c.am * aux - c.af * a) / (1 - c.af)
     xip = event.turns.moved(xi) * moving
-    y = event.factors.solve(-(slopes + K @ xip + C @ vp + M @ ap))
-    xi, y = xip + event.turns.turned(y), y * moving
+    y, shift = _halves(event.factors.solve(-(slopes + K @ xip + C @ vp + M @ ap)), moving)
+    xi, y = xip + event.turns.turned(y + shift), y * moving
     return xi, vp + c.cd * y, ap + c.cm * y, auxp + c.cu * y
 
 
 def _of_restart(event: Event, fixed: NDArray, xi: NDArray, v: NDArray) -> NDArray:
     """What motion and rates change of the residual of a restart."""
     found = event.parts.stiffness @ xi + event.parts.damping @ v
-    found[fixed] = event.rates[0] @ xi + event.rates[1] @ v
+    if event.rates is not None:
+        found[fixed] = event.rates[0] @ xi + event.rates[1] @ v
     return found
 
 
@@ -257,7 +276,7 @@ def backward(course: Course, seeds: Seeds, count: int, after: Motion | None = No
     n, events = course.linear.free, len(course.history.rows)
     extent = course.linear.system.magnitude[:n, None]       # of disturbances: of rates in the run
     duration = course.history.duration
-    weights, sizes = np.zeros((events, count, n)), np.zeros(events)
+    weights, sizes = np.zeros((events, count, course.unknowns)), np.zeros(events)
     bars: Motion = after or [np.zeros((n, count)) for _ in range(4)]
     refined = course.refined(count, back=True)
     for kind, first, last in reversed(course.stretches()):
@@ -287,23 +306,31 @@ def _seeded(course: Course, seed: Bars | None, bars: Motion) -> Motion:
 def _back_over_restart(course: Course, event: Event, bars: Motion) -> tuple[NDArray, Motion]:
     """Weights, and bars before."""
     (_, C, K), moving, (X, V, A, U) = event.parts, course.moving, bars
-    w = event.factors.solve(-(A * moving + U + X * (1 - moving)), transposed=True)
+    w = event.factors.solve(-_joined(course, A * moving + U + X * (1 - moving),
+                                     -event.lead * U * moving), transposed=True)
     X = X * moving
     if event.number:
-        of_forces = w.copy()
-        of_forces[course.fixed] = 0.0
-        X = X + (K.T @ of_forces + event.rates[0].T @ w[course.fixed]) * moving
-        V = V + (C.T @ of_forces + event.rates[1].T @ w[course.fixed]) * moving
+        of_forces, rates = w.copy(), event.rates
+        if rates is not None:
+            of_forces[course.fixed] = 0.0
+            X = X + rates[0].T @ w[course.fixed] * moving
+            V = V + rates[1].T @ w[course.fixed] * moving
+        X, V = X + K.T @ of_forces * moving, V + C.T @ of_forces * moving
     return w, (X, V, np.zeros_like(A), np.zeros_like(U))
+
+
+def _joined(course: Course, y: NDArray, shift: NDArray) -> NDArray:
+    """Bars of the unknowns of an event, from its halves."""
+    return y if course.unknowns == len(y) else np.concatenate([y, shift])
 
 
 def _back_over_step(course: Course, event: Event, bars: Motion) -> tuple[NDArray, Motion]:
     """(11) to (15)."""
     (M, C, K), moving, (X, V, A, U) = event.parts, course.moving, bars
     c = Coefficients.of(course.scheme, float(course.history.steps[event.number]))
-    offset = course.history.offsets[event.number]
-    w = event.factors.solve(-(event.turns.turned_back(X) + moving * (
-        c.cd * V + c.cm * A + c.cu * U)), transposed=True)
+    offset, turned = course.history.offsets[event.number], event.turns.turned_back(X)
+    w = event.factors.solve(-_joined(course, turned + moving * (c.cd * V + c.cm * A + c.cu * U),
+                                     turned * moving), transposed=True)
     X1, V1, A1 = ((X + K.T @ w) * moving, (V + C.T @ w) * moving, (A + M.T @ w) * moving)
     U1 = U + c.h * c.g * V1 + (1 - c.am) / (1 - c.af) * A1
     X, V, A = event.turns.moved_back(X1), V1 - U1 / (c.b * c.h), -c.af / (1 - c.af) * A1

@@ -7,6 +7,7 @@ weights of the rows at the time of an event. Of the amplitude the weight is the 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -24,21 +25,28 @@ from sebody.runs.simulation import Simulation
 TABLE, AMPLITUDE = ".table", ".amplitude"
 
 
-class OfTable(NamedTuple):
+class Part(NamedTuple):
+    """Derivatives by the value of a time function at some times."""
+
+    residuals: NDArray      # (events, n)
+    weights: sparse.csr_array   # (events, rows) of the table's values in this
+
+
+class OfTable:
     """Derivatives by the values of a table, or by an amplitude as the only one."""
 
-    residuals: NDArray      # (events, n) by the value of the time function
-    weights: sparse.csr_array   # (events, rows) of the table's values in that
+    def __init__(self, parts: Sequence[Part]):
+        self.parts = parts
 
-    def slope(self, row: int, objectives: int) -> Slope:
+    def slope(self, row: int, objectives: int, n: int) -> Slope:
         """By the value of one row."""
-        n = self.residuals.shape[1]
-        return Slope(self.weights[:, [row]].toarray() * self.residuals, np.zeros(n), np.zeros(n),
-                     np.zeros(objectives))
+        return Slope(sum(one.weights[:, [row]].toarray() * one.residuals for one in self.parts),
+                     np.zeros(n), np.zeros(n), np.zeros(objectives))
 
     def contracted(self, bars: NDArray) -> NDArray:
         """``sum w . r_p`` by all values, (m, rows), of the weights of a sweep back."""
-        return np.einsum("emn,en->me", bars, self.residuals) @ self.weights
+        return sum(np.einsum("emn,en->me", bars, one.residuals) @ one.weights
+                   for one in self.parts)
 
 
 def port_of(model: Model, run: Simulation, column: Column) -> int | None:
@@ -55,10 +63,11 @@ def _load(model: Model, column: Column) -> Element | None:
         (one for one in model.loads if one.name == owner), None)
 
 
-def weights(model: Model, column: Column, history: History, values: NDArray) -> sparse.csr_array:
+def weights(model: Model, column: Column, history: History, values: NDArray, times: NDArray
+            ) -> sparse.csr_array:
     """Weights of a parameter's numbers in the value of its load at all events, (events, numbers).
 
-    `values` are those of the load, (events,).
+    `values` are those of the load at some times, (events,), before or after jumps as of the events.
     """
     if column.name.endswith(AMPLITUDE):
         return sparse.csr_array(values[:, None] / float(column.handle.base))
@@ -66,11 +75,11 @@ def weights(model: Model, column: Column, history: History, values: NDArray) -> 
     assert load is not None and load.time_function is not None
     rows = rows_of(load.time_function.times, load.time_function.pieces)
     assert rows is not None
-    t, last, events = rows[:, 0], len(rows) - 1, np.arange(len(history.ends))
-    first = np.searchsorted(t, history.ends + history.besides, side="right") - 1
+    t, last, events = rows[:, 0], len(rows) - 1, np.arange(len(times))
+    first = np.searchsorted(t, times + history.besides, side="right") - 1
     inside = (first >= 0) & (first < last)
     others, e, k = events[~inside], events[inside], first[inside]
-    part = (history.ends[e] - t[k]) / (t[k + 1] - t[k])
+    part = (times[e] - t[k]) / (t[k + 1] - t[k])
     return sparse.csr_array((np.concatenate([np.ones(len(others)), 1.0 - part, part]), (
         np.concatenate([others, e, e]),
         np.concatenate([np.maximum(first[~inside], 0), k, k + 1]))), shape=(len(events), len(rows)))

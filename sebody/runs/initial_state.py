@@ -46,6 +46,7 @@ def begin(model: Mechanism, system: System, numbering: Numbering, state: State) 
     masses = _masses(system, state)
     if did := fault(model, 0.0):
         raise InputError(f"{WHAT} cannot be evaluated: {did}")
+    _refuse_overflow(state.residual, masses, numbering)
     residuals = state.residual[multipliers]
     _check(residuals, _lengths(model, system, numbering, state)[multipliers], "position",
            multipliers, numbering, "start from a state the joints allow")
@@ -95,6 +96,16 @@ def _check_accelerations(system: System, numbering: Numbering, state: State,
 def _masses(system: System, state: State) -> csc_matrix:
     """Matrix of masses and constraints; the forces are left in `state.residual`."""
     return matrix(system, state, WHAT, mass=1.0, damping=0.0, stiffness=0.0, constraint=1.0)
+
+
+def _refuse_overflow(residual: NDArray, masses: csc_matrix, numbering: Numbering) -> None:
+    """Refuse forces or masses that are too large for a number; eigenvalues would not converge."""
+    finite = np.isfinite(residual[:numbering.free])
+    finite[masses.indices[~np.isfinite(masses.data)]] = False
+    if not finite.all():
+        raise InputError(f"the force on {numbering.names[int(np.argmin(finite))]!r} is too large "
+                         f"for a number in {WHAT}: check loads, gravity, stiffness, masses and "
+                         "their units")
 
 
 def _lengths(model: Mechanism, system: System, numbering: Numbering, state: State) -> NDArray:

@@ -87,6 +87,14 @@ def test_empty_model():
         Simulation(Model(), 0.01)
 
 
+def test_forces_beyond_the_largest_number():
+    model = hinged()
+    model.gravity((0, -1e308, 0))
+    with pytest.raises(InputError, match="^the force on '.*' is too large for a number in the "
+                                         "initial state: check loads, gravity"):
+        Simulation(model, 0.01)
+
+
 def test_node_without_a_body():
     model = placed()
     model.node("far", (0, 9, 0))
