@@ -1,6 +1,7 @@
 """Instructions of products with packed matrices, and of their sums: group by group.
 
-Strips of eight columns are read as vectors of two columns.
+Vectors have four numbers: those of eight lower the clock of the processor, and with it the speed of
+everything else, by a twentieth.
 """
 
 from collections.abc import Callable
@@ -16,9 +17,9 @@ from sebody.kernels.instructions import (
     load_vector,
     no_sum,
     short_loop,
-    stack_vectors,
     store_vector,
     sums_of_lanes,
+    totals,
 )
 from sebody.kernels.packed import (
     BEGIN,
@@ -32,8 +33,6 @@ from sebody.kernels.packed import (
     WIDTHS,
 )
 
-PAIR = ir.VectorType(ir.DoubleType(), 2 * LANES)        # of columns
-_PAIRS = WIDTHS[WIDE] // 2
 _CLEARED = 8        # vectors at a time
 
 
@@ -140,10 +139,9 @@ def _once(groups, kind, given):
     builder = groups.builder
     factors = [_factors(groups, x, kind) for x, _ in given]
     with short_loop(builder, WORD(0), groups.strips) as strip:
-        place = groups.head(0, strip)
-        entries = _entries(groups, strip, kind)
+        place, columns = groups.head(0, strip), _columns(groups, strip, kind)
         for (_, out), numbers in zip(given, factors, strict=True):
-            _add_times(builder, out, place, entries, numbers)
+            _add_times(builder, out, place, columns, numbers)
 
 
 def _twice(groups, forward, across):
@@ -152,85 +150,57 @@ def _twice(groups, forward, across):
     `forward` are the products of the strips: which one, the vector, what it is added to; `across`
     the same of the transpose, which is always the last product.
     """
-    builder = groups.builder
+    builder, width = groups.builder, WIDTHS[MIRRORED]
     places = [groups.head(k) for k in range(PRODUCTS)]
-    factors = [_factors(groups, x, WIDE) for _, x, _ in forward]
-    sums = [[stack_vectors(builder, 1, PAIR) for _ in range(_PAIRS)] for _ in across]
+    factors = [_factors(groups, x, MIRRORED) for _, x, _ in forward]
+    sums = [totals(builder, width) for _ in across]
     for total in (total for of_one in sums for total in of_one):
-        builder.store(ir.Constant(PAIR, [0.0] * PAIR.count), total)
+        builder.store(no_sum(), total)
     with short_loop(builder, WORD(0), groups.strips) as strip:
-        row, entries = groups.row(strip), _entries(groups, strip, WIDE)
+        row, columns = groups.row(strip), _columns(groups, strip, MIRRORED)
         for (product, _, out), numbers in zip(forward, factors, strict=True):
-            _add_times(builder, out, builder.add(places[product], row), entries, numbers)
+            _add_times(builder, out, builder.add(places[product], row), columns, numbers)
         for (x, _), of_one in zip(across, sums, strict=True):
-            numbers = _selected(builder, load_vector(builder, x, row), [*range(LANES)] * 2)
-            for total, entry in zip(of_one, entries, strict=True):
-                add_product(builder, total, entry, numbers)
+            numbers = load_vector(builder, x, row)
+            for total, column in zip(of_one, columns, strict=True):
+                add_product(builder, total, column, numbers)
     for (_, out), of_one in zip(across, sums, strict=True):
-        columns = [half for total in of_one for half in _halves(builder, builder.load(total))]
-        for k in range(0, WIDTHS[WIDE], LANES):
+        found = [builder.load(total) for total in of_one]
+        for k in range(0, width, LANES):
             place = builder.add(places[-1], builder.add(groups.first, WORD(k)))
-            total = builder.fadd(load_vector(builder, out, place),
-                                 sums_of_lanes(builder, columns[k:k + LANES]))
-            store_vector(builder, total, out, place)
+            _add_to(builder, out, place, sums_of_lanes(builder, found[k:k + LANES]))
 
 
-def _entries(groups, strip, kind):
-    """Columns of a strip; of a wide one two at a time."""
-    builder, own = groups.builder, groups.entries(strip, kind)
-    if kind == NARROW:
-        return _columns(builder, own, kind)
-    return [_load_pair(builder, own, WORD(PAIR.count * k)) for k in range(_PAIRS)]
-
-
-def _columns(builder, entries, kind):
-    return [load_vector(builder, entries, WORD(LANES * k)) for k in range(WIDTHS[kind])]
+def _columns(groups, strip, kind):
+    """The columns of a strip."""
+    own = groups.entries(strip, kind)
+    return [load_vector(groups.builder, own, WORD(LANES * k)) for k in range(WIDTHS[kind])]
 
 
 def _factors(groups, x, kind):
     """What the columns of the strips of a group are multiplied with."""
     builder = groups.builder
-    places = [builder.add(groups.first, WORD(k)) for k in range(WIDTHS[kind])]
-    if kind == NARROW:
-        return [load_broadcast(builder, x, place) for place in places]
-    whole = [load_vector(builder, x, place) for place in places[::LANES]]
-    return [_selected(builder, whole[2 * k // LANES], [2 * k % LANES] * LANES
-                      + [2 * k % LANES + 1] * LANES) for k in range(_PAIRS)]
+    return [load_broadcast(builder, x, builder.add(groups.first, WORD(k)))
+            for k in range(WIDTHS[kind])]
 
 
-def _add_times(builder, out, place, entries, factors):
+def _add_times(builder, out, place, columns, factors):
     """Add the product of a strip to what is kept at a place.
 
     That number is added last: strips that are added to the same place wait for each other.
     """
-    product = builder.fmul(entries[0], factors[0])
-    for entry, factor in zip(entries[1:], factors[1:], strict=True):
-        product = _added(builder, product, entry, factor)
-    if product.type == PAIR:
-        product = builder.fadd(*_halves(builder, product))
-    total = load_vector(builder, out, place)
-    store_vector(builder, builder.fadd(total, product), out, place)
+    product = builder.fmul(columns[0], factors[0])
+    for column, factor in zip(columns[1:], factors[1:], strict=True):
+        product = _added(builder, product, column, factor)
+    _add_to(builder, out, place, product)
+
+
+def _add_to(builder, out, place, vector):
+    store_vector(builder, builder.fadd(load_vector(builder, out, place), vector), out, place)
 
 
 def _added(builder, total, a, b):
     return builder.fadd(total, builder.fmul(a, b, flags=("contract",)), flags=("contract",))
-
-
-def _load_pair(builder, pointer, place):
-    pair = builder.load(builder.bitcast(builder.gep(pointer, [place]), PAIR.as_pointer()))
-    pair.align = 8
-    return pair
-
-
-def _halves(builder, pair):
-    return [_selected(builder, pair, range(k, k + LANES)) for k in (0, LANES)]
-
-
-def _selected(builder, vector, lanes):
-    """Some numbers of a vector."""
-    lanes = list(lanes)
-    return builder.shuffle_vector(vector, ir.Constant(vector.type, ir.Undefined),
-                                  ir.Constant(ir.VectorType(ir.IntType(32), len(lanes)), lanes))
 
 
 # sums
@@ -257,7 +227,7 @@ def _sum_once(groups, kind, factors, out, height):
     builder = groups.builder
     with short_loop(builder, WORD(0), groups.strips) as strip:
         scale = load_broadcast(builder, factors, groups.head(1, strip))
-        columns = _columns(builder, groups.entries(strip, kind), kind)
+        columns = _columns(groups, strip, kind)
         _add_columns(builder, columns, scale, out, groups.first, height, groups.head(2, strip))
 
 
@@ -267,7 +237,7 @@ def _sum_twice(groups, factors, forward, across, height):
     *scales, transposed = (load_broadcast(builder, factors, groups.head(PRODUCTS + k))
                            for k in range(PRODUCTS))
     with short_loop(builder, WORD(0), groups.strips) as strip:
-        row, columns = groups.row(strip), _columns(builder, groups.entries(strip, WIDE), WIDE)
+        row, columns = groups.row(strip), _columns(groups, strip, MIRRORED)
         for product, out in forward:
             _add_columns(builder, columns, scales[product], out, groups.first, height, row)
         for k in range(0, WIDTHS[WIDE], LANES):
