@@ -6,7 +6,10 @@ from numpy.typing import NDArray
 
 def skew(vectors: NDArray) -> NDArray:
     """Matrices (..., 3, 3) of the cross products ``v x`` with vectors (..., 3)."""
-    return np.swapaxes(np.cross(vectors[..., None, :], np.eye(3)), -1, -2)
+    found = np.zeros((*vectors.shape, 3))
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        found[..., k, j], found[..., j, k] = vectors[..., i], -vectors[..., i]
+    return found
 
 
 def cross(spins: NDArray, vectors: NDArray) -> NDArray:

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from sebody.gradients.designs import Design, sections
     from sebody.gradients.functions import ValueAndGradient
     from sebody.gradients.gradient import Gradient, gradient
+    from sebody.gradients.many import Gradients, gradients
     from sebody.gradients.sizing import BeamStress, Sizing, size_heights
     from sebody.limits.watch import spin_limit
     from sebody.runs.restart import resume, save_state
@@ -52,6 +53,7 @@ __all__ = [
     "Ensemble",
     "FrequencyResponse",
     "Gradient",
+    "Gradients",
     "Linearization",
     "Modes",
     "Outcome",
@@ -71,6 +73,7 @@ __all__ = [
     "final",
     "frequency_response",
     "gradient",
+    "gradients",
     "integral",
     "linearize",
     "maximum",

@@ -19,9 +19,13 @@ def time_function_at(times, pieces, first, last, t, beside, out, at):
     speed has it at once. Pieces are chosen by the time ``t + beside``: of a jump at t a negative
     `beside` gives what is before it.
     """
-    i = first
-    while i < last and times[i + 1] <= t + beside:
-        i += 1
+    i, end = first, last
+    while i < end:
+        middle = (i + end + 1) // 2
+        if times[middle] <= t + beside:
+            i = middle
+        else:
+            end = middle - 1
     x = max(t - times[i], 0.0)
     polynomial_at(pieces, i, x, out, at)
     if pieces[i, AMPLITUDE] != 0.0:

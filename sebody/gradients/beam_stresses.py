@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.batches import superelement_constants
 from sebody.assembly.contracts import constants_row, counts_of
+from sebody.contract.layout import Row
 from sebody.gradients.gradient import Differentiated
 from sebody.gradients.held_beams import Held
 from sebody.gradients.slopes import Slopes
@@ -23,7 +24,7 @@ from sebody.results.recording import Recording
 from sebody.small_motion.moved_states import STEPS, WEIGHTS
 
 RANK = 1e-12        # of the largest: independent changes of the reduced matrices
-STEP = 0.1          # of the matrices, by which they are changed: residuals are linear
+STEP = 0.1          # of the matrices, by which they are changed: constants and residuals are linear
 TURN = 1e-4         # of differences of reduced coordinates, in radians and in lengths of the beam
 
 
@@ -38,6 +39,7 @@ class StressedBeam:
     part : Superelement
         Of the model.
     one : Differentiated
+    constants : ConstantRows
     turn : (D, D)
         From axes of the beam to those of the model.
 
@@ -50,8 +52,9 @@ class StressedBeam:
     """
 
     def __init__(self, model: Model, held: Held, part: Superelement, one: Differentiated,
-                 turn: NDArray):
+                 constants: ConstantRows, turn: NDArray):
         self.model, self.held, self.part, self.one = model, held, part, one
+        self.constants = constants
         D, n = len(turn), held.stiffness.shape[0]
         self.Q = np.eye(n)      # from axes of the beam to those of the model
         for k in range(2 if held.beam.planar else 4):
@@ -116,7 +119,7 @@ class StressedBeam:
                 (-displaced, held.by_height.stiffness, fields),
                 (-displaced, held.by_height.mass, c @ held.T.T),
                 (held.inverse(held.M @ displaced), held.by_height.stiffness, static)):
-            found += np.einsum("eas,eab,seb->se", one[dofs], change, of[:, dofs], optimize=True)
+            found += ((change.transpose(0, 2, 1) @ one[dofs]) * of.T[dofs]).sum(axis=1).T
         return found
 
     def _motion(self, events: NDArray) -> tuple[NDArray, NDArray]:
@@ -126,7 +129,10 @@ class StressedBeam:
         one, coefficients, rows = self.one, *self._directions()
         slopes = Slopes(self.model, one.run, one.history, lambda made, states: np.zeros(0))
         place = one.run.numbering.constants_at[self.part]
-        residuals = slopes.by_constants(place, STEP * rows) / STEP
+        rows *= STEP
+        for full in self.constants.full:    # no entry is skipped
+            rows[:, full] = len(self.Q) - one.run.system.constants[place + full]
+        residuals = slopes.by_constants(place, rows) / STEP
         none = np.zeros((one.linear.free, len(rows)))
         found = np.zeros((3, len(events), *none.shape))
         wanted = {int(one.history.recorded[k]): i for i, k in enumerate(events)}
@@ -148,19 +154,8 @@ class StressedBeam:
         U, s, V = np.linalg.svd(both.reshape(len(S), -1), full_matrices=False)
         rank = int((s > RANK * s[0]).sum())
         changes = V[:rank].reshape(rank, *both.shape[1:])
-        base = self._row(0.0 * held.stiffness, 0.0 * held.mass)
-        rows = [(self._row(STEP * sizes[0] * dS, STEP * sizes[1] * dM) - base) / STEP
-                for dS, dM in changes]
-        return (U[:, :rank] * s[:rank]).T, np.array(rows)
-
-    def _row(self, dS: NDArray, dM: NDArray) -> NDArray:
-        """The row of constants with changed matrices, in axes of the beam."""
-        body = self.part.reduced
-        changed = _unchecked(body, body.stiffness + self.Q @ dS @ self.Q.T,
-                             body.mass + self.Q @ dM @ self.Q.T)
-        part = replace(self.part, reduced=changed)
-        return constants_row(part.name, load(part.kernel), counts_of(part),
-                             superelement_constants(part))
+        changes *= np.reshape(sizes, (2, 1, 1))
+        return (U[:, :rank] * s[:rank]).T, self.constants.of(self.Q @ changes @ self.Q.T)
 
     def _coordinates(self, rows: NDArray) -> tuple[NDArray, NDArray]:
         """Reduced coordinates in some states, and accelerations in space, in axes of the beam."""
@@ -214,9 +209,8 @@ class StressedBeam:
         """Derivatives by all coordinates of the beam, or by their accelerations."""
         linear, planar = self.one.linear, self.held.beam.planar
         parts = self.one.run.state.recorded_parts
-        found = np.zeros((len(states), 2 * len(self.held.stiffness), linear.total))
-        blocks = [*self._blocks(), (self._modes(), None)]
-        for own, number in blocks:
+        places, moved = [], []
+        for own, number in [*self._blocks(), (self._modes(), None)]:
             for axis, c in enumerate(range(own.start, own.stop)):
                 turned = what == "q" and number is not None and not planar
                 size = 1.0 if what == "a" else TURN if number is not None else (
@@ -230,8 +224,54 @@ class StressedBeam:
                             at * size * np.eye(3)[axis])).reshape(-1, 9)
                     else:
                         rows[:, parts[what].start + c] += at * size
-                    found[..., c] += weight / size * np.hstack(self._coordinates(rows))
+                    moved.append(rows)
+                    places.append((c, weight / size))
+        both = np.hstack(self._coordinates(np.concatenate(moved)))
+        found = np.zeros((len(states), both.shape[1], linear.total))
+        for (c, weight), one in zip(places, both.reshape(len(moved), len(states), -1), strict=True):
+            found[..., c] += weight * one
         return found
+
+
+class ConstantRows:
+    """Rows of constants of a superelement as linear functions of its reduced matrices.
+
+    Those of a body with the same nodes and other matrices have the same function.
+
+    Attributes
+    ----------
+    full : sequence of int
+        Places of the number of rows that are not diagonal, which is no linear function.
+    """
+
+    def __init__(self, part: Superelement):
+        self.part, self.kernel, n = part, load(part.kernel), len(part.reduced.stiffness)
+        places = Row("constants", self.kernel.CONSTANTS).slices(counts_of(part))
+        self.full = [places["full"].start] if "full" in places else []
+        i, j = np.triu_indices(n)
+        base, found = self._row(0, 0, 0, 0.0), []
+        for which, size in enumerate(np.abs(A).max() for A in self._matrices()):
+            rows = np.zeros((n, n, len(base)))
+            rows[i, j] = [(self._row(which, *place, STEP * size) - base) / (STEP * size)
+                          for place in zip(i.tolist(), j.tolist(), strict=True)]
+            found.append(rows)
+        self.rows = np.array(found)     # (2, n, n, numbers) of entries on and above the diagonal
+
+    def of(self, changes: NDArray) -> NDArray:
+        """Changes of the row, (k, numbers), by those of stiffness and mass, (k, 2, n, n)."""
+        return np.tensordot(changes, self.rows, axes=3)
+
+    def _matrices(self) -> list[NDArray]:
+        return [self.part.reduced.stiffness.copy(), self.part.reduced.mass.copy()]
+
+    def _row(self, which: int, i: int, j: int, change: float) -> NDArray:
+        """The row with an entry of a matrix changed, and the one across the diagonal."""
+        both = self._matrices()
+        both[which][i, j] += change
+        both[which][j, i] = both[which][i, j]
+        part = replace(self.part, reduced=_unchecked(self.part.reduced, *both))
+        return constants_row(part.name, self.kernel, counts_of(part),
+                             superelement_constants(part))
 
 
 def _unchecked(body: ReducedBody, stiffness: NDArray, mass: NDArray) -> ReducedBody:

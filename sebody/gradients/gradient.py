@@ -189,7 +189,8 @@ class _Part:
         self.seen = Seen(one.whole, run, history, one.linear)
         self.slopes = Slopes(one.model, run, history, self.seen.explicit, self.course.second)
         self.tables: dict[str, OfTable] = {}    # and amplitudes of loads, by name
-        ports = {c.name: (c, port_of(one.model, run, c)) for c in one.columns}
+        names = {c.name: c for c in one.columns}
+        ports = {name: (c, port_of(one.model, run, c)) for name, c in names.items()}
         for name, (column, port) in ports.items():
             if port is not None and one.whole.kinematic:    # objectives look at motion alone
                 self.tables[name] = OfTable([

@@ -99,7 +99,8 @@ class Elements:
                                [own.mass * self.length]])
 
     def _at(self, coefficients: NDArray, heights: NDArray) -> NDArray:
-        return chebyshev.chebval((heights - self.middle) / self.half, coefficients).T
+        return chebyshev.chebvander((heights - self.middle) / self.half,
+                                    len(coefficients) - 1) @ coefficients
 
     def at(self, heights: NDArray) -> Element:
         """All elements."""

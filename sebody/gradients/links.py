@@ -18,9 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from sebody.compiler.decorators import compiled
 from sebody.engine.links import Links
 from sebody.engine.state import State
+from sebody.vectors import skew
+
+SKEW_AXES = np.array([skew(axis) for axis in np.eye(3)])
 
 
 class Motion(NamedTuple):
@@ -57,13 +59,39 @@ class Followers:
 
     def motion(self, state: State, dense: bool) -> Motion:
         """The operators in a state."""
-        blocks = _arms(self.arms, self.links.arm_vectors, state.q, state.R, state.v, state.a)
+        blocks = self._in_plane(state) if self.planar else self._in_space(state)
         ones, found = np.ones(self.ones), []
         for own in blocks:
             numbers = np.concatenate([ones, own.ravel()])
             found.append(self._matrix(numbers, self.rows, self.columns, self.total, dense))
             ones = np.zeros(self.ones)
         return Motion(*found)
+
+    def _turned(self, state: State) -> tuple[NDArray, NDArray]:
+        """In a plane arms in global axes, and the same a right angle ahead; in space rotation
+        matrices, and skew matrices of the arms.
+        """
+        r = self.links.arm_vectors[self.arms[:, 2]]
+        if not self.planar:
+            return state.R.reshape(-1, 3, 3)[self.arms[:, 0]], _skews(r)
+        co, si = np.cos(state.q[self.arms[:, 1]]), np.sin(state.q[self.arms[:, 1]])
+        x, y = co * r[:, 0] - si * r[:, 1], si * r[:, 0] + co * r[:, 1]
+        return np.stack([x, y], axis=1), np.stack([-y, x], axis=1)
+
+    def _in_plane(self, state: State) -> tuple[NDArray, ...]:
+        """Blocks of all arms in G, V, W and U."""
+        p, t = self._turned(state)
+        rate, second = (x[self.arms[:, 1:2]] for x in (state.v, state.a))
+        return t, -rate * p, -2.0 * rate * p, -second * p - rate * rate * t
+
+    def _in_space(self, state: State) -> tuple[NDArray, ...]:
+        """The same."""
+        R, skew = self._turned(state)
+        own = self.arms[:, 1:2] + np.arange(3)
+        r, omega = self.links.arm_vectors[self.arms[:, 2]], _skews(state.v[own])
+        s = _times(omega, r)
+        of_s, second = _skews(s), _times(_skews(state.a[own]), r) + _times(omega, s)
+        return -R @ skew, -R @ of_s, -R @ (of_s + omega @ skew), -R @ _skews(second)
 
     def _matrix(self, numbers: NDArray, rows: NDArray, columns: NDArray, height: int, dense: bool
                 ) -> NDArray | sparse.csc_array:
@@ -83,7 +111,12 @@ class Followers:
 
     def _levers(self, state: State, dense: bool) -> NDArray | sparse.csc_array:
         """Derivative of the moments of constant forces as their arms turn."""
-        blocks = _levers(self.arms, self.links.arm_vectors, state.q, state.R, state.residual)
+        forces = state.residual[self.arms[:, 3:] + np.arange(2 if self.planar else 3)]
+        if self.planar:
+            blocks = -(self._turned(state)[0] * forces).sum(axis=1)
+        else:
+            R, skew = self._turned(state)
+            blocks = skew @ _skews(_times(R.transpose(0, 2, 1), forces))
         return self._matrix(blocks.ravel(), *self.levers, self.free, dense)
 
 
@@ -94,51 +127,11 @@ def _steps(first: NDArray, count: int, others: int = 1, inner: bool = True) -> N
     return (np.tile(own, (1, others)) if inner else np.repeat(own, others, axis=1)).ravel()
 
 
-@compiled
-def _skew(x):
-    return np.array([[0.0, -x[2], x[1]], [x[2], 0.0, -x[0]], [-x[1], x[0], 0.0]])
+def _skews(x: NDArray) -> NDArray:
+    """Skew matrices (m, 3, 3) of vectors (m, 3)."""
+    return np.tensordot(x, SKEW_AXES, 1)
 
 
-@compiled
-def _arms(arms, vectors, q, R, v, a):
-    """Blocks of all arms in G, V, W and U: (18) and (19)."""
-    d = vectors.shape[1]
-    turns = 1 if d == 2 else 3
-    found = np.empty((4, arms.shape[0], d, turns))
-    for k in range(arms.shape[0]):
-        c, r = arms[k, 1], vectors[arms[k, 2]]
-        if d == 2:
-            co, si, rate = np.cos(q[c]), np.sin(q[c]), v[c]
-            x, y = co * r[0] - si * r[1], si * r[0] + co * r[1]
-            for i, p, t in ((0, x, -y), (1, y, x)):
-                found[0, k, i, 0], found[1, k, i, 0] = t, -rate * p
-                found[2, k, i, 0] = -2.0 * rate * p
-                found[3, k, i, 0] = -a[c] * p - rate * rate * t
-            continue
-        turn = np.ascontiguousarray(R[9 * arms[k, 0]:9 * arms[k, 0] + 9]).reshape(3, 3)
-        arm, spin, second = _skew(r), _skew(v[c:c + 3]), _skew(a[c:c + 3])
-        s = np.dot(spin, r)
-        found[0, k] = -np.dot(turn, arm)
-        found[1, k] = -np.dot(turn, _skew(s))
-        found[2, k] = -np.dot(turn, _skew(s) + np.dot(spin, arm))
-        found[3, k] = -np.dot(turn, _skew(np.dot(second, r) + np.dot(spin, s)))
-    return found
-
-
-@compiled
-def _levers(arms, vectors, q, R, residual):
-    """Blocks of all arms: of the moment of a force by the arm's turning."""
-    d = vectors.shape[1]
-    turns = 1 if d == 2 else 3
-    found = np.empty((arms.shape[0], turns, turns))
-    for k in range(arms.shape[0]):
-        c, r = arms[k, 1], vectors[arms[k, 2]]
-        force = residual[arms[k, 3]:arms[k, 3] + d]
-        if d == 2:
-            co, si = np.cos(q[c]), np.sin(q[c])
-            found[k, 0, 0] = -((co * r[0] - si * r[1]) * force[0]
-                               + (si * r[0] + co * r[1]) * force[1])
-            continue
-        turn = np.ascontiguousarray(R[9 * arms[k, 0]:9 * arms[k, 0] + 9]).reshape(3, 3)
-        found[k] = np.dot(_skew(r), _skew(np.dot(turn.T, force)))
-    return found
+def _times(A: NDArray, x: NDArray) -> NDArray:
+    """Products (m, 3) of matrices and vectors."""
+    return (A @ x[..., None])[..., 0]

@@ -92,7 +92,7 @@ class Folded:
         self.values = [np.asarray(fold.value()) for fold in self._folds.values()]
         self.value = np.concatenate([value.ravel() for value in self.values])
         self.labels = [label for name, value in zip(outputs, self.values, strict=True)
-                       for label in _labels(name, value)]
+                       for label in labels_of(name, value.shape)]
         self.kinematic = all(form.kinematic for form in forms(run, outputs).values())
 
     def _folded(self, segments: Segments) -> bool:
@@ -209,8 +209,9 @@ def _history(recording: Recording, quantity: str) -> NDArray:
     return np.asarray(look_up(recording, quantity), dtype=float)
 
 
-def _labels(name: str, value: NDArray) -> list[str]:
-    return [name + "".join(f"[{i}]" for i in place) for place in np.ndindex(value.shape)]
+def labels_of(name: str, shape: tuple[int, ...]) -> list[str]:
+    """Names of the components of an objective."""
+    return [name + "".join(f"[{i}]" for i in place) for place in np.ndindex(shape)]
 
 
 def sensor_of(run: Simulation, quantity: str, shape: tuple[int, ...], linear: Linear,

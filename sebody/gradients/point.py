@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.explore.ensembles.changes import Handle
-from sebody.gradients.parameters import Column, columns_of
+from sebody.gradients.parameters import Column, Parameter, columns_of
 from sebody.model.model import Model
 
 
@@ -33,7 +33,7 @@ class Point:
         Values in the model as built: factors count from 1.
     """
 
-    def __init__(self, model: Model, names: Sequence[str]):
+    def __init__(self, model: Model, names: Sequence[Parameter]):
         self.columns = columns_of(model, names)
         self.base = np.array([c.handle.base.reshape(-1)[c.component] for c in self.columns],
                              dtype=float)

@@ -41,14 +41,13 @@ class Refined:
         self.numbers = (scheme.alpha_m, scheme.alpha_f, scheme.beta, scheme.gamma,
                         history.duration)
         self.scales: dict[float, Scales] = {}
+        self.missing: dict[float, NDArray] = {}
+        self.next = -1          # event that follows those that were passed
 
     def begin(self, motion: tuple[NDArray, ...]) -> None:
-        """Columns (n, m) of motion, rates, second and auxiliary rates; what was before is no guide.
-        """
+        """Columns (n, m) of motion, rates, second and auxiliary rates."""
         for own, given in zip(self.columns.motion, motion, strict=True):
             own[:] = given.T
-        self.columns.counts[steps.GUESSES] = 0
-        self.columns.last[:] = 0.0
 
     @property
     def motion(self) -> list[NDArray]:
@@ -63,6 +62,10 @@ class Refined:
         InputError
             A state without derivatives, or a step that cannot be solved.
         """
+        if (last if self.back else first) != self.next:     # no step before is a guide
+            self.columns.counts[steps.GUESSES] = 0
+            self.columns.last[:] = self.columns.rights[:] = 0.0
+        self.next = first - 1 if self.back else last + 1
         found, piece = self.history, slice(first, last + 1)
         of_events = [getattr(found, name)[piece] for name in ("rows", "steps", "offsets", "ends",
                                                               "besides")]
@@ -91,21 +94,27 @@ class Refined:
         numbers = (1 - am) / ((1 - af) * b * h**2), g / (b * h), self.back
         if h not in self.scales:
             steps.matrix(*made, *numbers, columns.inverse)
-            self.scales[h] = Scales(columns.inverse)
+            self.scales[h] = scales = Scales(columns.inverse)
+            if self.redundant:
+                self.missing[h] = _missing(scales.rows[:, None] * columns.inverse * scales.columns)
         columns.rows[:], columns.scale[:] = self.scales[h].rows, 1.0 / self.scales[h].columns
-        if self.redundant:
-            steps.matrix(*made, *numbers, columns.inverse)
-            columns.inverse[:] = self._least(columns.inverse, h)
-        elif not steps.invert_now(*made, *numbers):
+        columns.added[:] = self.missing.get(h, 0.0)
+        if not steps.invert_now(*made, *numbers):
             raise InputError(f"the matrix of the step to t = {found.ends[event]:.6g} is singular, "
                              "so the run has no gradient there")
         columns.length[0] = h
         counts = columns.counts
         counts[steps.INVERSES] += 1
         counts[steps.SPENT], counts[steps.FRESH] = 0, 1
+        columns.pace[0] = 0.0
 
-    def _least(self, A: NDArray, h: float) -> NDArray:
-        """Gives least solutions where constraints are redundant."""
-        rows, columns = self.scales[h].rows, self.scales[h].columns
-        scaled = np.linalg.pinv(rows[:, None] * A * columns, rcond=REDUNDANT)
-        return columns[:, None] * scaled * rows
+
+def _missing(A: NDArray) -> NDArray:
+    """What makes the singular matrix of redundant constraints regular, and solutions nearly least.
+
+    Its null vectors times those of its transpose: solutions have no part along the former, if the
+    right side has none along the latter. They are good enough for later steps, too.
+    """
+    U, sizes, V = np.linalg.svd(A)
+    null = sizes <= REDUNDANT * sizes[0]
+    return U[:, null] @ V[null]

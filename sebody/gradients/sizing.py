@@ -19,7 +19,7 @@ from sebody.errors import InputError
 from sebody.explore.ensembles.changes import whole_body
 from sebody.fem.beam import section_axes
 from sebody.fem.section import Section, StiffnessSection
-from sebody.gradients.beam_stresses import StressedBeam
+from sebody.gradients.beam_stresses import ConstantRows, StressedBeam
 from sebody.gradients.gradient import Differentiated, fitting
 from sebody.gradients.held_beams import Elements, Held, HeldBeam
 from sebody.gradients.support import refuse_model, refuse_scheme
@@ -98,7 +98,7 @@ class BeamStress:
         self.beam = HeldBeam(
             model.planar, length, one.elements, self.part.reduced.modes, Elements(
                 section, length / one.elements, low, high, model.planar), self.built)
-        self.turn = _turn(one, model.planar)
+        self.turn, self.constants = _turn(one, model.planar), ConstantRows(self.part)
         self.scheme, self.runs = fitting(scheme), 0
         refuse_scheme(self.scheme, "slopes of stresses by heights")
         self._handle = whole_body(model, self.part, beam)
@@ -155,7 +155,8 @@ class BeamStress:
                     raise InputError("velocities at the start do not fit the joints, so they would "
                                      "depend on the heights: give velocities that fit")
                 self.runs += 1
-                self._last = x.copy(), StressedBeam(self.model, held, part, one, self.turn)
+                self._last = x.copy(), StressedBeam(self.model, held, part, one,
+                                                    self.constants, self.turn)
         return self._last[1]
 
     @contextmanager

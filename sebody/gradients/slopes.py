@@ -93,7 +93,7 @@ def _drive_on(system, state, kinds, ends, besides, free, load):
         _drive(system, state, kinds[e], ends[e], besides[e], free, load)
 
 
-@compiled
+@compiled(nogil=True)
 def _residuals(system, state, rows, now, kinds, ends, besides, places, free, load, second, found):
     """Residuals of all events but the first; fixed and prescribed coordinates are the model's own.
 
@@ -133,7 +133,7 @@ def _residuals(system, state, rows, now, kinds, ends, besides, places, free, loa
     return OK
 
 
-@compiled
+@compiled(nogil=True)
 def _values(system, state, port, ends, besides, found):
     """Value of a power port at all events."""
     for e in range(ends.size):

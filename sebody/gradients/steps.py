@@ -19,6 +19,7 @@ from sebody.engine.arrays import Arrays
 from sebody.engine.evaluate import set_loads_beside, to_body_axes
 from sebody.engine.inverse import invert
 from sebody.engine.links import place_dependent
+from sebody.gradients.guesses import add_old, guess, times
 from sebody.gradients.products import along, prepare, transposed
 from sebody.kernels.rotations import exp_map, tangent_operator
 
@@ -29,6 +30,8 @@ MOST = 12               # products for a column of a step
 SLOW = 0.4              # corrections that shrink less ask for an inverse
 ROUNDED = 1e-11         # corrections as small, relative, that do not shrink: rounding
 LOOSE = 1e-7            # the same with the inverse of the step itself
+CAUTION = 10.0          # what a correction leaves: times what corrections have left so far
+FORGET = 0.9            # of the pace, from step to step
 SPARE = 3               # products of a column that are worth no new inverse
 PRODUCTS, INVERSES, SPENT, FRESH, GUESSES = range(5)    # places in `Columns.counts`
 
@@ -42,18 +45,24 @@ class Columns(Arrays):
     given       (3, m, n) the same for the event at hand: with what objectives say, or predicted
     found       (3, m, n) products of the solutions
     last        (3, m, n) solutions of the events before, newest first, in axes of frames
+    rights      (3, m, n) their right sides
     now         (m, n) that of the event at hand
+    asked       (m, n) its right side
     inverse     (n, n) of the matrix of a step or of its transpose, in axes of frames
+    old         (3, n, n) products with unit weights in this step, in axes of frames
+    added       (n, n) what makes the equilibrated matrix regular where constraints are redundant
     rows        (n,) factors of the rows of the matrix that make its entries about one
     scale       (n,) sizes of the unknowns of the equation: of the columns likewise, inverse
     right       (n,) right side, then residual
-    change      (n,) vector that is multiplied, or correction
+    change      (n,) vector that is multiplied: the guess, then corrections
     product     (n,)
+    plain       (n,) the inverse times the right side
     places      (r,) first coordinate of every rotation that is solved for
     H, T        (r, 9) of the step
     counts      products, inverses, products spent on an old inverse; whether it is this event's;
                 solutions in `last`
     reach       (1,) size of corrections at which refinement ends
+    pace        (1,) by how much corrections shrink
     length      (1,) step that the inverse is of
     ==========  ====================================================================================
     """
@@ -62,18 +71,24 @@ class Columns(Arrays):
     given: NDArray
     found: NDArray
     last: NDArray
+    rights: NDArray
     now: NDArray
+    asked: NDArray
     inverse: NDArray
+    old: NDArray
+    added: NDArray
     rows: NDArray
     scale: NDArray
     right: NDArray
     change: NDArray
     product: NDArray
+    plain: NDArray
     places: NDArray
     H: NDArray
     T: NDArray
     counts: NDArray
     reach: NDArray
+    pace: NDArray
     length: NDArray
 
     @classmethod
@@ -81,9 +96,10 @@ class Columns(Arrays):
         """All zero."""
         r = len(places)
         return cls(*(np.zeros(shape) for shape in (
-            (4, m, n), (3, m, n), (3, m, n), (3, m, n), (m, n), (n, n), n, n, n, n, n)),
+            (4, m, n), (3, m, n), (3, m, n), (3, m, n), (3, m, n), (m, n), (m, n), (n, n),
+            (3, n, n), (n, n), n, n, n, n, n, n)),
             np.ascontiguousarray(places, dtype=np.int64), np.zeros((r, 9)), np.zeros((r, 9)),
-            np.zeros(5, dtype=np.int64), np.array([tolerance]), np.zeros(1))
+            np.zeros(5, dtype=np.int64), np.array([tolerance]), np.ones(1), np.zeros(1))
 
 
 @compiled
@@ -127,6 +143,11 @@ def matrix(system, state, products, columns, cm, cd, back, found):
         _multiply(system, state, products, columns, 0, cm, cd, back)
         for k in range(n):
             found[k, i] = columns.product[k]
+        if back:
+            for c in range(3):
+                to_body_axes(system, state.frames, products.motion[c], False)
+                for k in range(n):
+                    columns.old[c, i, k] = products.motion[c, k]
 
 
 @compiled
@@ -137,6 +158,7 @@ def invert_now(system, state, products, columns, cm, cd, back):
     for i in range(n):
         for j in range(n):
             A[i, j] *= columns.rows[i] / columns.scale[j]
+            A[i, j] += columns.added[i, j]
     if not invert(A):
         return False
     for i in range(n):
@@ -147,7 +169,10 @@ def invert_now(system, state, products, columns, cm, cd, back):
 
 @compiled
 def _multiply(system, state, products, columns, j, cm, cd, back):
-    """The matrix, or its transpose, times `change`, both in axes of frames, goes to `product`."""
+    """The matrix, or its transpose, times `change`, both in axes of frames, goes to `product`.
+
+    Products with weights are added to those of column j.
+    """
     n, w, bars, moved = columns.right.size, products.forces, products.motion, columns.product
     columns.counts[PRODUCTS] += 1
     if back:
@@ -157,7 +182,7 @@ def _multiply(system, state, products, columns, j, cm, cd, back):
         transposed(system, state, products, n)
         for i in range(n):
             for c in range(3):
-                columns.found[c, j, i] = bars[c, i]
+                columns.found[c, j, i] += bars[c, i]
             moved[i] = bars[0, i]
         _turn(columns, columns.T, moved, True)
         for i in range(n):
@@ -181,42 +206,45 @@ def _multiply(system, state, products, columns, j, cm, cd, back):
 
 @compiled
 def _solve(system, state, products, columns, j, cm, cd, back):
-    """Solve for column j with `right`, in axes of frames; 0, ASKED or REFUSED."""
-    n, counts, own, before = columns.right.size, columns.counts, columns.now[j], columns.last
-    known, last = counts[GUESSES], np.inf
-    for i in range(n):
-        one, two, three = before[0, j, i], before[1, j, i], before[2, j, i]
-        own[i] = (3.0 * (one - two) + three if known > 2 else 2.0 * one - two if known > 1 else one)
+    """Solve for column j with `right`, in axes of frames; 0, ASKED or REFUSED.
+
+    Corrections are multiplied, not the whole solution, and products add up. The last correction,
+    after which less is left than is asked if it goes on as before, is not multiplied any more.
+    """
+    n, counts, own = columns.right.size, columns.counts, columns.now[j]
+    change, pace, last = columns.change, columns.pace, np.inf
+    guess(columns, j)
     for k in range(MOST):
-        for i in range(n):
-            columns.change[i] = own[i]
         _multiply(system, state, products, columns, j, cm, cd, back)
         counts[SPENT] += k >= SPARE
         for i in range(n):
-            columns.product[i] = columns.right[i] - columns.product[i]
-        size = largest = 0.0
+            own[i] += change[i]
+            columns.right[i] -= columns.product[i]
+        times(columns.inverse, columns.right, change)
+        size = largest = drift = 0.0
         for i in range(n):
-            change = 0.0
-            for c in range(n):
-                change += columns.inverse[i, c] * columns.product[c]
-            columns.change[i] = change
-            size = max(size, abs(change) * columns.scale[i])
+            size = max(size, abs(change[i]) * columns.scale[i])
             largest = max(largest, abs(own[i]) * columns.scale[i])
-        if size <= columns.reach[0] * largest:
-            return 0
-        if not size < SLOW * last or k == MOST - 1:
-            if size <= ROUNDED * largest:
-                return 0
+            drift = max(drift, abs(own[i] + change[i] - columns.plain[i]) * columns.scale[i])
+        slow = not size < SLOW * last
+        if slow and size > ROUNDED * largest:
             if counts[FRESH] == 0:
                 return ASKED
             if not size <= LOOSE * largest:
                 return REFUSED
             columns.reach[0] = max(columns.reach[0], size / largest)
+        elif k > 0 and not slow:
+            pace[0] = max(pace[0], size / last)
+        elif k == 0:
+            pace[0] = max(FORGET * pace[0], drift / largest if largest > 0.0 else 0.0)
+        if slow or min(CAUTION * pace[0], 1.0) * size <= columns.reach[0] * largest:
+            for i in range(n):
+                own[i] += change[i]
+            if back:
+                add_old(system, state, products, columns, j)
             return 0
         last = size
-        for i in range(n):
-            own[i] += columns.change[i]
-    return REFUSED
+    return ASKED if counts[FRESH] == 0 else REFUSED
 
 
 @compiled
@@ -225,9 +253,11 @@ def _conclude(system, state, columns):
     counts = columns.counts
     for j in range(columns.now.shape[0]):
         for i in range(columns.right.size):
-            columns.last[2, j, i] = columns.last[1, j, i]
-            columns.last[1, j, i] = columns.last[0, j, i]
+            for k in range(2, 0, -1):
+                columns.last[k, j, i] = columns.last[k - 1, j, i]
+                columns.rights[k, j, i] = columns.rights[k - 1, j, i]
             columns.last[0, j, i] = columns.now[j, i]
+            columns.rights[0, j, i] = columns.asked[j, i]
     counts[FRESH], counts[GUESSES] = 0, min(counts[GUESSES] + 1, 3)
 
 
@@ -238,7 +268,7 @@ def is_old(columns, h):
     return counts[FRESH] == 0 and (h != columns.length[0] or counts[SPENT] > columns.right.size)
 
 
-@compiled
+@compiled(nogil=True)
 def backward(system, state, products, columns, rows, lengths, offsets, ends, besides, seeds, seeded,
              numbers, first, last, weights, sizes):
     """(11) to (15) over steps from the last to the first; the event that asks for an inverse.
@@ -299,7 +329,7 @@ def backward(system, state, products, columns, rows, lengths, offsets, ends, bes
     return DONE
 
 
-@compiled
+@compiled(nogil=True)
 def forward(system, state, products, columns, rows, lengths, offsets, ends, besides, slopes,
             numbers, first, last, states):
     """(8) to (10) over steps from the first to the last; the event that asks for an inverse.

@@ -83,5 +83,5 @@ def refuse_scheme(scheme: Scheme, what: str) -> None:
         Names the use.
     """
     if scheme.stabilized:
-        raise InputError(f"{what} by constraints of index 2 are not available: give "
+        raise InputError(f"{what} with constraints of index 2 are not available: give "
                          "generalized_alpha(index=3), which is the default")

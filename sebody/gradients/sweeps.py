@@ -123,15 +123,15 @@ class Course:
 
     def stretches(self) -> list[tuple[int, int, int]]:
         """Kind, first and last of events in a row: pieces of steps, single restarts."""
-        found: list[tuple[int, int, int]] = []
-        first = int(self.history.past is not None)      # if so, event 0 is of the segment before
-        for k, kind in enumerate(self.history.kinds[first:].tolist(), first):
-            last = found[-1] if found else (RESTART, 0, 0)
-            if kind == STEP == last[0] and k - last[1] < PIECE:
-                found[-1] = STEP, last[1], k
-            else:
-                found.append((kind, k, k))
-        return found
+        kinds, begin = self.history.kinds, int(self.history.past is not None)
+        # if there is one, event 0 is of the segment before
+        single = np.flatnonzero(kinds != STEP)
+        found = [(int(kinds[k]), int(k), int(k)) for k in single if k >= begin]
+        ends = [begin - 1, *single[single >= begin].tolist(), len(kinds)]
+        for before, after in zip(ends, ends[1:], strict=False):
+            found += [(STEP, k, min(k + PIECE, after) - 1)
+                      for k in range(before + 1, after, PIECE)]
+        return sorted(found, key=lambda one: one[1])
 
     def event(self, k: int) -> Event:
         found = self.history

@@ -4,7 +4,8 @@
 
 cost: seconds of a run and of gradients of the hinged beam, quickest of some, in turns; by one
 parameter and by the 1000 values of a table. memory: most that gradients along 1e5 steps have
-allocated at a time, and their seconds. tolerance: error of a gradient on runs with a coarser
+allocated at a time, and their seconds. many: seconds of gradients of many runs with one and with
+two threads, in turns. tolerance: error of a gradient on runs with a coarser
 tolerance. torque: the torque history of least effort, of 1000 values, that turns a flexible arm by
 a radian from rest to rest, with all its vibrations at rest at the end.
 """
@@ -17,11 +18,11 @@ import tracemalloc
 import numpy as np
 
 from sebody import LimitWarning, Model, generalized_alpha, simulate
-from sebody.analysis import ValueAndGradient, final, gradient
+from sebody.analysis import ValueAndGradient, final, gradient, gradients
 from sebody.fem import rectangle
 from sebody.scenes.hinged_beam import build
 
-NAMES = "cost", "memory", "tolerance", "torque"
+NAMES = "cost", "memory", "many", "tolerance", "torque"
 PARTS, MOST = 2, 8          # of the angle; steps of Newton's iteration in each
 TOLERANCES = 1e-6, 1e-8, 1e-10
 SCHEME = generalized_alpha(tolerance=1e-10)
@@ -76,6 +77,18 @@ def memory(steps=100_000, h=0.01):
                                         "seconds": seconds}
             tracemalloc.stop()
     return found
+
+
+def many(runs=32, t_end=20.0, repeats=3):
+    """Seconds of gradients of many runs, quickest of some in turns, by the number of threads."""
+    model, found = tabled(t_end=10.0), dict.fromkeys((1, 2), np.inf)
+    values = {"motor.amplitude": np.linspace(0.5, 1.5, runs)}
+    for _ in range(repeats):
+        for threads in found:
+            got = gradients(model, 0.01, t_end, {"tip": final("tip.position.y")}, ["motor.table"],
+                            values, threads=threads)
+            found[threads] = min(found[threads], got.seconds)
+    return {f"threads: {threads}": seconds for threads, seconds in found.items()}
 
 
 def tolerance(t_end=3.0):
@@ -172,7 +185,8 @@ def main(given=None):
             if options.picture:
                 picture(options.picture, solution)
         else:
-            found[name] = {"cost": cost, "memory": memory, "tolerance": tolerance}[name]()
+            found[name] = {"cost": cost, "memory": memory, "many": many,
+                           "tolerance": tolerance}[name]()
     if options.json:
         print(json.dumps(found))
         return

@@ -271,6 +271,7 @@ def test_gradients_are_timed_and_a_torque_ends_at_rest():
     found = bench.cost(repeats=1, t_end=0.5)
     assert list(found)[0] == "run" and min(found.values()) > 0.0
     assert all(0.0 < row["MB"] < 50.0 for row in bench.memory(steps=20).values())
+    assert min(bench.many(runs=2, t_end=0.1, repeats=1).values()) > 0.0
     found, _ = bench.torque(entries=60, t_end=0.3, angle=0.05, h=5e-3)
     assert found["misses"][-1] < 1e-8 < found["misses"][0]
 

@@ -72,8 +72,19 @@ def test_order_and_table():
     whole = np.abs(found.values["d.position"] - found.values["d.position"][0]).max()
     assert np.isclose(one.sizes[0], own.max() / whole) and one.times[0] == found.t[own.argmax()]
     lines = str(found).splitlines()
-    assert len(lines) == 2 + len(found.rows) and lines[2].split()[0] == one.body
+    assert len(lines) == 3 + len(found.rows) and lines[2].split()[0] == one.body
     assert {row.body for row in found.rows} == {"rod", "crank"}
+
+
+def test_changes_below_what_the_step_changes_are_marked():
+    """Whose error is of second order, so that a fourth is left with half the step."""
+    coarse, fine = (contributions(scenes.driven(), h, 0.1, "slide.position")
+                    for h in (0.004, 0.002))
+    assert 3.0 < coarse.by_step[0] / fine.by_step[0] < 5.0
+    *lines, last = str(coarse).splitlines()[2:]
+    assert last.split() == ["half", "the", "step", f"{coarse.by_step[0]:.2g}"]
+    below = [one.sizes[0] < coarse.by_step[0] for one in coarse.rows]
+    assert [line.count("below the step") == 1 for line in lines] == below and any(below)
 
 
 def test_a_rigid_start_fits_the_joints():

@@ -26,10 +26,10 @@ pytestmark = pytest.mark.filterwarnings("ignore::sebody.LimitWarning")
 SCENES = {
     "redundant loop": (scenes.four_bar, 0.005, 0.05, {
         "c": final("c.position"), "v": integral("c.velocity.x")}, [
-        "gravity.y", "coil.rest", "rocker.mass", "torque.amplitude"], 1e-5),
+        "coil.rest", "rocker.mass", "torque.amplitude"], 1e-5),
     "jumps of loads": (scenes.struck, 0.01, 0.2, {
         "b": final("b.position"), "end": final("end.velocity")}, [
-        "gust.amplitude", "gust.table", "kick.table", "upper.mass", "lower.mass", "gravity"], 1e-4),
+        "gust.amplitude", "kick.table", "lower.mass", "gravity"], 1e-4),
     "joints": (scenes.joined, 0.005, 0.1, {
         "ball": final("d.position"), "c": final("c.velocity")}, [
         "upper.mass", "ball.mass", "torque.table"], 1e-4),
@@ -181,5 +181,5 @@ def test_it_is_said_how_good_the_derivatives_are():
 
 
 def test_uses_that_need_index_three_say_so():
-    with pytest.raises(InputError, match="contributions by constraints of index 2.*index=3"):
+    with pytest.raises(InputError, match="contributions with constraints of index 2.*index=3"):
         contributions(scenes.hinged(), 0.01, 0.05, ["tip.position"], scheme=INDEX_2)

@@ -37,7 +37,7 @@ def test_a_free_body_that_tumbles_beyond_half_a_turn():
     """At 2.0, 4.0 and 5.9 rad about axes that turn, and on the way back from a turn, 4.5 rad."""
     objectives = {f"{what} at {t}": at_time(f"a.rotation.{what}", t)
                   for t in (0.3, 0.6, 0.9, 1.2) for what in ("x", "y", "z", "norm")}
-    off, unequal = apart(scenes.thrown(), 0.01, 1.2, objectives, ["a.angular_velocity", "top.mass"])
+    off, unequal = apart(scenes.thrown(), 0.02, 1.2, objectives, ["a.angular_velocity"])
     assert off < 1e-8
     assert unequal < 1e-11
 
@@ -46,7 +46,7 @@ def test_a_base_that_is_turned_beyond_half_a_turn():
     """The prescribed rotation vector, and the tip's, by the drive and by the body's mass."""
     off, unequal = apart(turned(4.5), 0.01, 0.45, {
         "base": final("base.rotation.z"), "tip": final("tip.rotation.x"),
-        "length": final("tip.rotation.norm"), "sum": integral("tip.rotation.y")}, [
+        "length": final("tip.rotation.norm"), "before": at_time("tip.rotation.y", 0.333)}, [
         "swing.amplitude", "shake.amplitude", "beam.mass"])
     assert off < 1e-6
     assert unequal < 1e-9       # residuals by a drive are large beside what is left of them

@@ -146,9 +146,10 @@ def test_least_mass():
     ({"section": lambda x: x}, "return one, such as rectangle"),
     ({"section": lambda x: replace(section(x), fibres=())}, "it has no fibres"),
     ({"section": lambda x: section(x if x < 0.02 else 2 * x)}, "not smooth between the heights"),
+    ({"scheme": generalized_alpha(index=2)}, "by heights with constraints of index 2"),
     ({"model": slider_crank(inertia="floating_field")}, "build it with inertia='material'")],
     ids=["name", "count", "outside", "bounds", "a bound", "limit", "no function", "no section",
-         "fibres", "jump", "inertia"])
+         "fibres", "jump", "index", "inertia"])
 def test_refused(change, words):
     given = {"model": slider_crank(), "h": 5e-4, "t_end": 0.005, "beam": "rod", "heights": HEIGHTS,
              "section": section, "limit": 1e8, "bounds": BOUNDS} | change
