@@ -1,7 +1,7 @@
 """Instructions of products with packed matrices, and of their sums: group by group.
 
-Vectors have four numbers: those of eight lower the clock of the processor, and with it the speed of
-everything else, by a twentieth.
+Vectors have four numbers: with those of eight everything else became a twentieth slower, probably
+since the processor lowers its clock.
 """
 
 from collections.abc import Callable
