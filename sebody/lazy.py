@@ -9,6 +9,8 @@ import sys
 from importlib import import_module
 from types import ModuleType
 
+from sebody.collector import without_collector
+
 
 class _Package(ModuleType):
     """A package whose names are loaded at first use (PEP 562).
@@ -22,7 +24,8 @@ class _Package(ModuleType):
     def __getattr__(self, name: str) -> object:
         if name not in self._offered:
             raise AttributeError(f"module {self.__name__!r} has no attribute {name!r}")
-        value = vars(self)[name] = getattr(import_module(self._offered[name]), name)
+        with without_collector():
+            value = vars(self)[name] = getattr(import_module(self._offered[name]), name)
         return value
 
     def __setattr__(self, name: str, value: object) -> None:

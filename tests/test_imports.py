@@ -12,8 +12,8 @@ ROOT = Path(__file__).parents[1]
 FOLDERS = {"sebody": "sebody", "derive": "sebody.derive", "generated": "sebody.generated",
            "examples": "sebody.scenes"}
 # every room, lowest first, and which others its files may import; those in OPEN are open to all
-OPEN = {"errors", "inputs", "memory", "files", "units", "lazy", "spelling", "tabular", "version",
-        "vectors"}
+OPEN = {"errors", "inputs", "memory", "files", "units", "lazy", "collector", "spelling", "tabular",
+        "version", "vectors"}
 COMPILED = {"contract", "compiler", "kernels", "generated"}
 ROOMS = {
     "errors": set(),
@@ -22,6 +22,7 @@ ROOMS = {
     "files": set(),
     "units": set(),
     "lazy": set(),
+    "collector": set(),
     "spelling": set(),
     "tabular": set(),
     "version": set(),

@@ -11,6 +11,7 @@ from sebody.contract.layout import COEFFICIENTS, ENERGIES, FIELD
 from sebody.engine.growth import new_guard
 from sebody.engine.newton import SLOWEST
 from sebody.engine.offsets import at_cache_lines
+from sebody.engine.prediction import FIT, ROWS
 from sebody.engine.scalars import record
 from sebody.engine.state import (
     CLOCK,
@@ -48,9 +49,9 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
     coefficients[FIELD:FIELD + model.dimension] = model.gravity_field
     state = State.of(
         counts,
-        aux=zeros(total), aux_change=zeros(total), q_start=q.copy(), q_old=q.copy(), R_old=R.copy(),
-        v_old=v.copy(), a_old=zeros(total), aux_old=zeros(total), dq=zeros(total),
-        T=_identities(len(R)),
+        aux=zeros(total), changes=zeros(ROWS * total), fitted=zeros(total), fit=zeros(FIT),
+        q_start=q.copy(), q_old=q.copy(), R_old=R.copy(), v_old=v.copy(), a_old=zeros(total),
+        aux_old=zeros(total), dq=zeros(total), T=_identities(len(R)),
         loads=zeros(3 * ports), loads_old=zeros(3 * ports), acting=zeros(acting),
         acting_old=zeros(acting), works_old=zeros(ports), powers=zeros(ports),
         powers_old=zeros(ports),

@@ -9,6 +9,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from sebody.cli import scene_files
+from sebody.collector import without_collector
 from sebody.errors import InputError
 
 if TYPE_CHECKING:
@@ -35,9 +36,10 @@ def source(scene: str) -> Source:
     if scene_files.is_file(scene):
         module = scene_files.load(scene)
         return Source(module.build, _first_line(module), module.__file__)
-    from sebody.catalogue import builder
+    with without_collector():
+        from sebody.catalogue import builder
 
-    build = builder(scene)
+        build = builder(scene)
     return Source(build, _first_line(sys.modules[build.__module__]), "")
 
 

@@ -41,7 +41,12 @@ def room_hash(*rooms: str) -> str:
 
 def in_room(function: Callable, room: str) -> bool:
     """Whether a function is written in a folder of the package."""
-    return Path(function.__code__.co_filename).is_relative_to(PACKAGE / room)
+    return _is_in_room(function.__code__.co_filename, room)
+
+
+@cache      # of the two hundred functions that a run needs many are in one module
+def _is_in_room(path: str, room: str) -> bool:
+    return Path(path).is_relative_to(PACKAGE / room)
 
 
 def function_hash(function: Callable) -> str:

@@ -40,7 +40,7 @@ def eliminate(across, starts, rows, diagonal, unknowns, matrix, column, scale):
             for t in range(diagonal[k] + 1, starts[k + 1]):
                 subtract_product(at(column, BLOCK * rows[t]), at(matrix, BLOCK * t), target)
         inverse = at(matrix, BLOCK * middle)
-        if not _invert_block(at(column, BLOCK * j), inverse, at(unknowns, LANES * j), scale):
+        if not invert_block(at(column, BLOCK * j), inverse, at(unknowns, LANES * j), scale):
             return False
         for p in range(middle + 1, end):
             target = at(matrix, BLOCK * p)
@@ -59,7 +59,7 @@ def _subtract_negative(C, A, B):
 
 
 @compiled
-def _invert_block(D, inverse, unknowns, scale):
+def invert_block(D, inverse, unknowns, scale):
     """Invert a block by Gauss-Jordan elimination without exchanges; False at a small pivot."""
     for i in range(BLOCK):
         inverse[i] = D[i]

@@ -25,14 +25,14 @@ def _call_function(typingctx, address, t):
 def run_kernels(task, first, last, system, state):
     """Evaluate batches; returns the status of the first element that fails."""
     for b in range(first, last):
-        status = _run_part(task, b, 0, system.count[b], system, state)
+        status = run_part(task, b, 0, system.count[b], system, state)
         if status != OK:
             return status
     return OK
 
 
 @compiled(forceinline=True)
-def _run_part(task, b, first, count, system, state):
+def run_part(task, b, first, count, system, state):
     """Evaluate some elements of a batch."""
     index, g, J = pointer_to(system.index), pointer_to(state.g), pointer_to(state.J)
     stride, width = system.stride[b], system.width[b]
@@ -178,7 +178,7 @@ def _run_moved(system, state):
             end = begin + 1
             while end < system.count[b] and state.moved[first + end]:
                 end += 1
-            status = _run_part(RESIDUAL, b, begin, end - begin, system, state)
+            status = run_part(RESIDUAL, b, begin, end - begin, system, state)
             if status != OK:
                 return status
             begin = end

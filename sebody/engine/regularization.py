@@ -19,6 +19,8 @@ Rounding in the factors is divided by REGULARIZATION^(k + 1) and multiplied by i
 REGULARIZATION must stay well above that rounding, which thin bodies increase by 1 / LIGHT.
 """
 
+import math
+
 import numpy as np
 
 from sebody.compiler.decorators import compiled
@@ -172,4 +174,4 @@ def regularized_norms(system, state, n):
         norm += d * d + s * s + f * f
         size += x * x + g * g
         accelerations += z * z
-    return np.sqrt(norm), np.sqrt(size), np.sqrt(accelerations)
+    return math.sqrt(norm), math.sqrt(size), math.sqrt(accelerations)

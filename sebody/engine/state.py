@@ -66,7 +66,8 @@ class State(Arrays):
     integrator
     ------------------------------------------------------------------------------------------------
     aux                   (N,) auxiliary accelerations of generalized-alpha
-    aux_change            (N,) their change in the last step
+    changes               (9 N,) how aux and multipliers changed in the last steps
+    fitted                (N,) how they will by a fit, and `fit`, its numbers: see `prediction`
     q_start               (N,) coordinates at t = 0
     q_old, v_old, a_old   (N,) coordinates, velocities, accelerations
     aux_old               (N,) auxiliary accelerations
@@ -142,7 +143,9 @@ class State(Arrays):
     frames: NDArray
     frames_old: NDArray
     aux: NDArray
-    aux_change: NDArray
+    changes: NDArray
+    fitted: NDArray
+    fit: NDArray
     q_start: NDArray
     q_old: NDArray
     R_old: NDArray

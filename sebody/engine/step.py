@@ -17,6 +17,7 @@ from sebody.contract.layout import (
 )
 from sebody.engine.evaluate import move_prescribed, set_loads_beside, update_rotations
 from sebody.engine.newton import SLOWEST, watch_age
+from sebody.engine.prediction import BEFORE, FITTED, LAST, ROWS, look_back, row
 from sebody.engine.state import (
     ASKED,
     BEGIN,
@@ -31,7 +32,6 @@ from sebody.engine.vectors import copy
 from sebody.kernels.abi import at, pointer_to
 
 ORTHOGONAL = 8          # steps after which rotation matrices are made orthogonal again
-STEADY = 0.5            # share of a change by which the next one may differ
 MEMORY = 0.99           # factor of the largest norm of accelerations, in every step
 
 
@@ -42,10 +42,13 @@ def begin_step(system, state, scheme):
     set_end(system, state)
     # auxiliary accelerations belong to a time that is later by (alpha_m - alpha_f) h
     offset = h / state.clock.aux_step
-    kept = state.control.fresh == 0 and state.control.wanted == KEPT and offset == 1.0
-    constant, bend = changes(system, state)
-    follow = 1.0 if bend < STEADY * STEADY * constant and kept else 0.0
-    predict(system, state, scheme, follow, offset)
+    # after rejected steps and new matrices, and in parts of steps, which come where a motion is
+    # not smooth, nothing is predicted to change
+    kept = (state.control.fresh == 0 and state.control.wanted == KEPT and offset == 1.0
+            and state.control.level == 0)
+    if state.control.iteration > 0 and state.control.steps > 0:     # no step that is repeated
+        look_back(system, state, scheme.beta * h * h)
+    predict(system, state, scheme, 1.0 if kept else 0.0, offset)
     state.control.iteration, state.control.secant = 0, 0
     state.clock.last_norm = 0.0
 
@@ -57,7 +60,7 @@ def predict(system, state, scheme, follow, offset):
     Parameters
     ----------
     follow : float
-        1 if auxiliary accelerations are predicted to change as they did in the last step, else 0.
+        1 if accelerations and multipliers are predicted to change as `prediction` says, else 0.
     offset : float
         Length of the step over that of the last one.
     """
@@ -69,13 +72,19 @@ def predict(system, state, scheme, follow, offset):
     alpha_m, beta, gamma = scheme.alpha_m, scheme.beta, scheme.gamma
     to_a = 1.0 / (1.0 - scheme.alpha_f)
     state.clock.aux_step = h
+    steps, fitted = state.control.steps + ROWS, pointer_to(state.fitted)
+    last, before = row(state, steps), row(state, steps - 1)
+    of_last, of_before, of_fitted = (follow * state.fit[LAST], follow * state.fit[BEFORE],
+                                     follow * state.fit[FITTED])
     for i in range(state.dq.size):
         q, v, a, aux = state.q[i], state.v[i], state.a[i], state.aux[i]
-        change = follow * state.aux_change[i]
+        change = of_last * last[i] + of_before * before[i] + of_fitted * fitted[i]
+        multiplier = system.is_multiplier[i] * change
+        change -= multiplier
         if offset != 1.0:
             aux = a + offset * (aux - a)
         state.q_old[i], state.v_old[i], state.a_old[i], state.aux_old[i] = q, v, a, aux
-        state.dq[i] = h * v + h * h * (0.5 * aux + beta * change)
+        state.dq[i] = h * v + h * h * (0.5 * aux + beta * change) + multiplier
         state.q[i] = q + state.dq[i]
         state.v[i] = v + h * (aux + gamma * change)
         state.a[i] = to_a * (aux + (1.0 - alpha_m) * change - scheme.alpha_f * a)
@@ -85,25 +94,6 @@ def predict(system, state, scheme, follow, offset):
     set_coefficients(state, scheme, h)
     move_prescribed(system, state)
     update_rotations(system, state)
-
-
-@compiled(forceinline=True)
-def changes(system, state):
-    """Squares of the last change of auxiliary accelerations, and of its own change.
-
-    If they changed in the last step as in the step before, roughly, they are predicted to go on
-    changing like that, else to stay as they are: after rejected steps and new matrices, too, which
-    come where a motion is not smooth. The error that Newton's iteration with old matrices leaves is
-    proportional to the error of the prediction.
-    """
-    constant = linear = 0.0
-    for i in range(system.diagonal.size):
-        w, change = state.weight[i], state.aux[i] - state.aux_old[i]
-        bend = change - state.aux_change[i]
-        state.aux_change[i] = change
-        constant += change * change * w * w
-        linear += bend * bend * w * w
-    return constant, linear
 
 
 @compiled(forceinline=True)
@@ -211,6 +201,7 @@ def back(state):
     copy(state.loads_old, state.loads)
     state.control.phase = BEGIN
     state.control.wanted = EVALUATED
+    state.control.iteration = 0
     state.clock.contraction = SLOWEST      # nothing is known of the next attempt
 
 

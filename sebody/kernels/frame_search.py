@@ -124,22 +124,7 @@ def best_fit(count, fit, X, alpha, x, frame):
         cy += alpha[j] * x[3 * j + 1]
         cz += alpha[j] * x[3 * j + 2]
     for _ in range(50):
-        mx = my = mz = xx = xy = xz = yy = yz = zz = 0.0
-        for j in range(count):
-            a, b, c = x[3 * j] - cx, x[3 * j + 1] - cy, x[3 * j + 2] - cz
-            r = frame[0] * a + frame[3] * b + frame[6] * c
-            s = frame[1] * a + frame[4] * b + frame[7] * c
-            t = frame[2] * a + frame[5] * b + frame[8] * c
-            w, u, v, z = fit[j], X[3 * j], X[3 * j + 1], X[3 * j + 2]
-            mx += w * (v * t - z * s)
-            my += w * (z * r - u * t)
-            mz += w * (u * s - v * r)
-            xx += w * u * r
-            yy += w * v * s
-            zz += w * z * t
-            xy += 0.5 * w * (u * s + v * r)
-            xz += 0.5 * w * (u * t + z * r)
-            yz += 0.5 * w * (v * t + z * s)
+        xx, xy, xz, yy, yz, zz, mx, my, mz = fit_moments(count, fit, X, x, cx, cy, cz, frame)
         px, py, pz, definite = _fit_step(xx, xy, xz, yy, yz, zz, mx, my, mz)
         size = px * px + py * py + pz * pz
         if not size < 16.0:
@@ -148,6 +133,28 @@ def best_fit(count, fit, X, alpha, x, frame):
         if definite and size < 1e-16:       # Newton: the error left is the square of the step
             return 0
     return NO_FRAME
+
+
+@compiled(forceinline=True)
+def fit_moments(count, fit, X, x, cx, cy, cz, frame):
+    """Sums ``S = sum w_j X_j r_j^T``, symmetric, and ``sum w_j X_j x r_j`` of turned points r_j."""
+    mx = my = mz = xx = xy = xz = yy = yz = zz = 0.0
+    for j in range(count):
+        a, b, c = x[3 * j] - cx, x[3 * j + 1] - cy, x[3 * j + 2] - cz
+        r = frame[0] * a + frame[3] * b + frame[6] * c
+        s = frame[1] * a + frame[4] * b + frame[7] * c
+        t = frame[2] * a + frame[5] * b + frame[8] * c
+        w, u, v, z = fit[j], X[3 * j], X[3 * j + 1], X[3 * j + 2]
+        mx += w * (v * t - z * s)
+        my += w * (z * r - u * t)
+        mz += w * (u * s - v * r)
+        xx += w * u * r
+        yy += w * v * s
+        zz += w * z * t
+        xy += 0.5 * w * (u * s + v * r)
+        xz += 0.5 * w * (u * t + z * r)
+        yz += 0.5 * w * (v * t + z * s)
+    return xx, xy, xz, yy, yz, zz, mx, my, mz
 
 
 @compiled
@@ -173,6 +180,19 @@ def _fit_step(xx, xy, xz, yy, yz, zz, mx, my, mz):
 @compiled
 def planar_fit(count, fit, X, alpha, x, frame):
     """The rotation of best fit in a plane, in closed form."""
+    along, across = planar_moments(count, fit, X, alpha, x)
+    size = math.hypot(along, across)
+    if not size > 0.0:
+        return NO_FRAME
+    frame[0] = frame[4] = along / size
+    frame[3] = across / size
+    frame[1] = -frame[3]
+    return 0
+
+
+@compiled(forceinline=True)
+def planar_moments(count, fit, X, alpha, x):
+    """Sums of the products of all points with their places in the body, along and across."""
     cx = cy = 0.0
     for j in range(count):
         cx += alpha[j] * x[2 * j]
@@ -182,13 +202,7 @@ def planar_fit(count, fit, X, alpha, x, frame):
         a, b, w = x[2 * j] - cx, x[2 * j + 1] - cy, fit[j]
         along += w * (X[2 * j] * a + X[2 * j + 1] * b)
         across += w * (X[2 * j] * b - X[2 * j + 1] * a)
-    size = math.hypot(along, across)
-    if not size > 0.0:
-        return NO_FRAME
-    frame[0] = frame[4] = along / size
-    frame[3] = across / size
-    frame[1] = -frame[3]
-    return 0
+    return along, across
 
 
 @compiled
@@ -205,13 +219,9 @@ def mean_axes(positions, rotations, n, nodes, alpha, X, Gam, q, R, frame, psi):
     for _ in range(60):
         if relative_rotations(rotations, nodes, R, frame, psi) != 0:
             return HALF_TURN
-        x, y, z, a, b, c, d, e, f, g, h, i = _turn_of_positions(positions, alpha, X, Gam, q, frame)
-        u, v, w, aa, bb, cc, dd, ee, ff, gg, hh, ii = _turn_of_rotations(
-            rotations, 9 * positions, Gam, psi)
-        x, y, z = x + u + mx, y + v + my, z + w + mz
-        a, b, c = a + aa, b + bb, c + cc
-        d, e, f = d + dd, e + ee, f + ff
-        g, h, i = g + gg, h + hh, i + ii
+        x, y, z, a, b, c, d, e, f, g, h, i = turn(positions, rotations, alpha, X, Gam, q, frame,
+                                                  psi)
+        x, y, z = x + mx, y + my, z + mz
         newton = a * (e * i - f * h) + b * (f * g - d * i) + c * (d * h - e * g) > 0.1
         if newton:
             a, b, c, d, e, f, g, h, i = inverse_3(a, b, c, d, e, f, g, h, i)
@@ -225,6 +235,16 @@ def mean_axes(positions, rotations, n, nodes, alpha, X, Gam, q, R, frame, psi):
         if newton and size < 1e-16:         # Newton: the error left is the square of the step
             return relative_rotations(rotations, nodes, R, frame, psi)
     return NO_FRAME
+
+
+@compiled(forceinline=True)
+def turn(positions, rotations, alpha, X, Gam, q, frame, psi):
+    """The nodes' part of the mean rotation, and its derivative by rows."""
+    x, y, z, a, b, c, d, e, f, g, h, i = _turn_of_positions(positions, alpha, X, Gam, q, frame)
+    u, v, w, aa, bb, cc, dd, ee, ff, gg, hh, ii = _turn_of_rotations(
+        rotations, 9 * positions, Gam, psi)
+    return (x + u, y + v, z + w, a + aa, b + bb, c + cc, d + dd, e + ee, f + ff, g + gg, h + hh,
+            i + ii)
 
 
 @compiled
@@ -302,7 +322,7 @@ def planar_mean_axes(positions, rotations, n, alpha, X, Gam, q, frame, psi):
             mean += Gam[2 * j] * (r - X[2 * j]) + Gam[2 * j + 1] * (s - X[2 * j + 1])
             slope += Gam[2 * j + 1] * r - Gam[2 * j] * s
         for j in range(rotations):
-            psi[j] = _wrapped(q[first + j] - angle)
+            psi[j] = wrapped(q[first + j] - angle)
             if not math.cos(psi[j]) > NEAR_PI:
                 return HALF_TURN
             mean += Gam[first + j] * psi[j]
@@ -318,7 +338,7 @@ def planar_mean_axes(positions, rotations, n, alpha, X, Gam, q, frame, psi):
             frame[3] = math.sin(angle)
             frame[1] = -frame[3]
             for j in range(rotations):
-                psi[j] = _wrapped(q[first + j] - angle)
+                psi[j] = wrapped(q[first + j] - angle)
             return 0
     return NO_FRAME
 
@@ -328,13 +348,13 @@ def planar_relative_angles(count, angles, frame, psi):
     """Angles of the nodes in a frame, between -pi and pi."""
     mean = math.atan2(frame[3], frame[0])
     for j in range(count):
-        psi[j] = _wrapped(angles[j] - mean)
+        psi[j] = wrapped(angles[j] - mean)
         if not math.cos(psi[j]) > NEAR_PI:
             return HALF_TURN
     return 0
 
 
 @compiled
-def _wrapped(angle):
+def wrapped(angle):
     """The angle less full turns, between -pi and pi."""
     return angle - 2.0 * math.pi * math.floor(angle / (2.0 * math.pi) + 0.5)

@@ -57,10 +57,11 @@ def _written(write, kinds, put):
 
 def call(builder: ir.IRBuilder, write: Callable, args: Sequence[ir.Value]) -> None:
     """Call a function whose instructions are written where a module calls it first."""
-    name = f"{write.__module__}.{write.__name__}"
+    kinds = [argument.type for argument in args]
+    floats = "".join(str(k) for k, kind in enumerate(kinds) if kind == ir.DoubleType().as_pointer())
+    name = f"{write.__module__}.{write.__name__}{floats}"    # lanes may meet numbers
     function = builder.module.globals.get(name)
     if function is None:
-        kinds = [argument.type for argument in args]
         function = ir.Function(builder.module, ir.FunctionType(ir.VoidType(), kinds), name)
         function.linkage = "internal"
         function.attributes.add("noinline")

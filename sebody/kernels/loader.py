@@ -9,7 +9,7 @@ from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
 
-from sebody.compiler.collector import without_collector
+from sebody.collector import without_collector
 from sebody.compiler.sources import TEXT, room_hash
 from sebody.contract.names import (
     ELEMENT,

@@ -50,11 +50,15 @@ class Groups:
             place = builder.mul(place, WORD(self._member))
         return builder.load(builder.gep(self._words, [place]))
 
+    def count(self, kind: int) -> ir.Value:
+        """Number of groups of a kind."""
+        return self.at(WORD(kind))
+
     def each(self, writers: dict[int, Callable[["Groups"], None]]) -> None:
         """Go through the groups; in their order, writers of instructions for each kind."""
         builder, done = self.builder, WORD(0)
         for kind, write in writers.items():
-            end = builder.add(done, self.at(WORD(kind)))
+            end = builder.add(done, self.count(kind))
             with short_loop(builder, done, end) as group:
                 place = builder.add(builder.mul(group, WORD(GROUP)), WORD(BEGIN))
                 self.first, self.vector, self.strips, self.heads, self.begin = (

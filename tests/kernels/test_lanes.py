@@ -2,12 +2,15 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from sebody.compiler.choice import way
 from sebody.compiler.decorators import compiled
 from sebody.contract.counts import LANES, MEMBERS, packed_size, whole_vectors
-from sebody.kernels.abi import pointer_to
+from sebody.fem import Section, straight_beam
+from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.dense import add_blocks_times, add_rows_times, columns_times
+from sebody.kernels.frame_search import best_fit, mean_axes, planar_fit, planar_mean_axes
 from sebody.kernels.packed import pack, pack_couplings
 from sebody.kernels.packed_products import (
     add_couplings,
@@ -22,13 +25,15 @@ from sebody.kernels.rotations import (
     rotate,
     stumpff_23,
 )
+from sebody.reduction import craig_bampton
+from sebody.reduction.mean_rotation import mean_rotation
 
 if way().__name__.endswith("plain"):
     pytest.skip("the plain way has no lanes", allow_module_level=True)
 
 import sebody.engine.lanes  # noqa: E402, F401  puts functions for lanes in place
 from sebody.engine.lanes.arrays import Columns, empty, numbers  # noqa: E402
-from sebody.kernels.lanes.straight import write_address  # noqa: E402
+from sebody.kernels.lanes.straight import write_address, write_shared_address  # noqa: E402
 
 EPS = np.finfo(float).eps
 
@@ -47,6 +52,12 @@ class Given(Columns):
         return numbers(self.rows)[0]
 
 
+def numbers_of_all(values: np.ndarray) -> Columns:
+    """Numbers that all members share, as compiled code reads them."""
+    nothing = np.zeros(1, dtype=np.int64)
+    return Columns(nothing, values.reshape(1, -1).copy(), nothing)
+
+
 @compiled
 def products(A, x, B, y, set_to, added, dotted, rows, columns, of_B, height):
     columns_times(pointer_to(A.rows), pointer_to(x.rows), pointer_to(set_to.rows), rows, columns)
@@ -58,7 +69,7 @@ def products(A, x, B, y, set_to, added, dotted, rows, columns, of_B, height):
 
 @pytest.mark.parametrize("rows, columns, of_B", [(1, 1, 2), (7, 5, 3), (16, 12, 1), (13, 0, 4)])
 def test_dense_products(rows, columns, of_B):
-    """Every member has a matrix and vectors of its own; nothing is written behind the rows."""
+    """Members have matrices of their own, or share them; nothing is written behind the rows."""
     rng, height = np.random.default_rng(rows), whole_vectors(rows)
     A, B = rng.normal(size=(columns + 1, height, MEMBERS)), rng.normal(size=(of_B, height, MEMBERS))
     x, y = rng.normal(size=(columns + 1, MEMBERS)), rng.normal(size=(max(of_B, height), MEMBERS))
@@ -73,6 +84,11 @@ def test_dense_products(rows, columns, of_B):
     np.testing.assert_allclose(added[:rows], begin[:rows] + Ax + By, atol=bound, rtol=0)
     expected = begin[:columns] + np.einsum("crm,rm->cm", A[:columns, :rows], y[:rows])
     np.testing.assert_allclose(dotted[:columns], expected, atol=bound, rtol=0)
+    shared = [numbers_of_all(one[:, :, 0].reshape(-1)) for one in (A, B)]
+    given[4:] = [Given.of(begin) for _ in range(3)]
+    products(shared[0], given[1], shared[1], given[3], *given[4:], rows, columns, of_B, height)
+    Ax, By = A[:columns, :rows, 0].T @ x[:columns], B[:, :rows, 0].T @ y[:of_B]
+    np.testing.assert_allclose(given[5].values[:rows], begin[:rows] + Ax + By, atol=bound, rtol=0)
     np.testing.assert_array_equal(set_to[rows:], begin[rows:])
     np.testing.assert_array_equal(dotted[columns:], begin[columns:])
 
@@ -83,19 +99,27 @@ def packed_products_of(packed, x, out, factors, total, count, height):
     add_packed(pointer_to(packed.rows), pointer_to(factors.rows), pointer_to(total.rows), height)
 
 
-@pytest.mark.parametrize("straight", [False, True])
-def test_packed_products(straight):
-    """By strips and as straight code; members differ in their entries, not in their zeros."""
+@pytest.mark.parametrize("straight, shared", [(False, 0.0), (True, 0.0), (True, 0.5),
+                                              (False, 1.0), (True, 1.0)])
+def test_packed_products(straight, shared):
+    """By strips and as straight code; members differ in entries, perhaps some, not in zeros."""
     rng, shape = np.random.default_rng(3), (3, 10, 9)
     count, rows, columns = shape
     pattern = rng.uniform(size=shape) < 0.3
     pattern[:, :4, :8] = True           # a wide strip
     stacks = rng.normal(size=(MEMBERS, *shape)) * pattern
+    same = rng.uniform(size=shape) < shared
+    stacks[:, same] = stacks[0, same]
     row = np.array([pack(stack, shape) for stack in stacks]).T
     assert len(row) == packed_size(*shape)
     packed = Given.of(row)
-    if straight:
-        write_address(row[:, 0].copy(), packed.values)
+    if shared == 1.0:
+        packed = numbers_of_all(row[:, 0].copy())
+    if straight and shared == 1.0:
+        kept = write_shared_address(packed.rows[0])
+        assert packed.rows[0, :1].view(np.int64) == kept.ctypes.data
+    elif straight:
+        write_address(row[:, 0].copy(), np.ptp(row, axis=1) > 0.0, packed.values)
     height = whole_vectors(rows)
     x = rng.normal(size=(whole_vectors(columns) + LANES, MEMBERS))
     factors = rng.normal(size=(count, MEMBERS))
@@ -127,7 +151,7 @@ def test_couplings(straight):
     row = np.array([pack_couplings(*both) for both in zip(S, C, strict=True)]).T
     packed, height = Given.of(row), whole_vectors(N)
     if straight:
-        write_address(row[:, 0].copy(), packed.values)
+        write_address(row[:, 0].copy(), np.ptp(row, axis=1) > 0.0, packed.values)
     x, y = rng.normal(size=(2, height + LANES, MEMBERS))
     factors = rng.normal(size=(8, MEMBERS))
     out = Given.of(np.full((8 * height, MEMBERS), np.nan))
@@ -177,3 +201,65 @@ def test_maps_of_rotations_take_series_and_closed_forms_side_by_side():
     far = np.cos(turns) < -0.98
     assert far.sum() == 1 and np.isnan(back[:, far]).all()
     np.testing.assert_allclose(back[:, ~far], -psi[:, ~far], atol=1e-12)
+
+
+@compiled
+def frames(X, alpha, Gam, q, R, found):
+    """Frames of two points and rotations, and of three points, one after the other."""
+    psi, nodes, fit = at(pointer_to(found.rows), 40), pointer_to(R.places), pointer_to(alpha.rows)
+    x, own, frame = pointer_to(q.rows), pointer_to(X.rows), pointer_to(found.rows)
+    of_mean = mean_axes(2, 2, 14, nodes, fit, own, pointer_to(Gam.rows), x, pointer_to(R.rows),
+                        frame, psi)
+    in_plane = planar_mean_axes(2, 1, 7, fit, at(own, 15), at(pointer_to(Gam.rows), 42), at(x, 23),
+                                at(frame, 9), at(psi, 6))
+    points = at(x, 14)
+    fitted = best_fit(3, at(fit, 2), at(own, 6), at(fit, 2), points, at(frame, 18))
+    flat = planar_fit(3, at(fit, 2), at(own, 6), at(fit, 2), points, at(frame, 27))
+    return of_mean, in_plane, fitted, flat
+
+
+def test_frames_of_members_are_those_of_each_alone():
+    """Bodies that are turned a little or far; where one alone has no frame it is no number."""
+    rng = np.random.default_rng(11)
+    section = Section(area=4.0, inertia_y=1.2, inertia_z=0.9, torsion=2.0, youngs_modulus=2e6,
+                      poisson_ratio=0.3, density=7e-3)
+    body = craig_bampton(straight_beam((1.0, -2.0, 0.5), (4.0, 2.0, 3.0), section, elements=3),
+                         [(0, "full"), (3, "full")], modes=2)
+    mean = mean_rotation(body).T
+    middle = body.coordinates.mean(axis=0)
+    flat = (body.coordinates - middle)[:, :2]
+    X = np.concatenate([(body.coordinates - middle).ravel(), rng.normal(size=9), flat.ravel()])
+    plane = mean[[0, 1, 3, 4, 8, 12, 13], 2]
+    alpha = np.array([0.5, 0.5, 0.3, 0.3, 0.4])
+    given = []
+    for member, angle in enumerate((0.1, 0.3, 1.3, 0.0, 2.2, 0.4, 0.7, 0.2)):
+        axis = rng.normal(size=3)
+        turn = Rotation.from_rotvec(angle * axis / np.linalg.norm(axis))
+        points = turn.apply(body.coordinates.copy()) + 0.02 * rng.normal(size=(2, 3))
+        own = turn * Rotation.from_rotvec(0.1 * rng.normal(size=(2, 3)))
+        others = turn.apply(X[6:15].reshape(3, 3)) * (member != 5) + 3.0
+        planar = flat @ Rotation.from_rotvec((0, 0, angle)).as_matrix()[:2, :2].T
+        q = np.concatenate([points.ravel(), 0.1 * rng.normal(size=8), others.ravel(),
+                            planar.ravel(), [angle + 0.05], 0.1 * rng.normal(size=2)])
+        given.append((X, alpha, np.concatenate([mean.ravel(), plane]), q,
+                      own.as_matrix().ravel(), np.concatenate([np.eye(3).ravel()] * 6)))
+    together = [np.array(one).T for one in zip(*given, strict=True)]
+    arrays, nodes = [Given.of(one) for one in together], np.arange(2)
+    arrays[4] = Columns(nodes, arrays[4].rows, nodes)
+    frames(*arrays)
+    refused = []
+    for member, numbers_of_one in enumerate(given):
+        own = [Columns(nodes, one.reshape(1, -1).copy(), nodes) for one in numbers_of_one]
+        statuses = frames(*own)
+        expected, found = own[5].rows[0], arrays[5].values[:, member]
+        refused += [(member, k) for k, status in enumerate(statuses) if status != 0]
+        for k, status in enumerate(statuses):
+            part = slice(9 * k, 9 * k + 9)
+            if status != 0:
+                assert np.isnan(found[part]).any()
+            else:       # Newton's last step leaves the square of 1e-8, and rounding
+                np.testing.assert_allclose(found[part], expected[part], atol=1e-13)
+        for k, part in enumerate((slice(40, 46), slice(46, 47))):
+            if statuses[k] == 0:
+                np.testing.assert_allclose(found[part], expected[part], atol=1e-13)
+    assert {(5, 2), (5, 3)} <= set(refused) and len(refused) < 6

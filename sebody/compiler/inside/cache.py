@@ -16,7 +16,36 @@ from pathlib import Path
 import numba
 
 from sebody.compiler import store
-from sebody.compiler.inside.names import CompileResult, NullCache, cpu_target, dumps
+from sebody.compiler.inside.names import (
+    CompileResult,
+    CPUCodegen,
+    JITCodeLibrary,
+    NullCache,
+    cpu_target,
+    dumps,
+    runtime,
+)
+
+
+class _Kept(JITCodeLibrary):
+    """Machine code that was kept. No other library takes it in: it comes without LLVM code."""
+
+    _functions: tuple[str, ...]     # that can be asked for by name
+
+    @classmethod
+    def of(cls, codegen: CPUCodegen, name: str, machine_code: bytes,
+           functions: tuple[str, ...]) -> "_Kept":
+        """Load machine code, in which some functions are called from outside."""
+        library = cls(codegen, name)
+        library._functions = functions
+        library.enable_object_caching()
+        library._set_compiled_object(machine_code)
+        library._finalize_final_module()
+        return library
+
+    def get_pointer_to_function(self, name: str) -> int:
+        """Address of a function, 0 if there is none of this name."""
+        return self._codegen._engine.get_function_address(name) if name in self._functions else 0
 
 
 class FunctionCache(NullCache):
@@ -48,14 +77,40 @@ class FunctionCache(NullCache):
 
     def load_overload(self, sig, target_context) -> CompileResult | None:
         """Compiled code for a signature, or None."""
-        target_context.refresh()
+        # refreshing the context imports all that compiling needs; code that is read needs memory
+        runtime.initialize(target_context)
         for content in store.read(self._source, self._name, self._made_from):
             kept = pickle.loads(content).get(sig)
             if kept is not None:
                 return self._rebuilt(target_context, *pickle.loads(kept))
         return None
 
-    _rebuilt = staticmethod(CompileResult._rebuild)
+    @staticmethod
+    def _rebuilt(context, code, fndesc, env, signature, objectmode, lifted, typeann, reload_init,
+                 envs) -> CompileResult:
+        for initialize in reload_init:
+            initialize()
+        library = _Kept.of(context.codegen(), *code)
+        for one in envs:
+            library.codegen.set_env(one.env_name, one)
+        return CompileResult(
+            target_context=context, typing_context=context.typing_context, library=library,
+            environment=env, entry_point=context.get_executable(library, fndesc, env),
+            fndesc=fndesc, type_annotation=typeann, signature=signature, objectmode=objectmode,
+            lifted=lifted, typing_error=None, call_helper=None, metadata=None,
+            reload_init=reload_init, referenced_envs=envs)
+
+    @staticmethod
+    def _reduced(data: CompileResult) -> tuple:
+        """What `_rebuilt` takes; LLVM code, which callers take in, is kept by itself."""
+        library, names = data.library, data.fndesc
+        functions = tuple(name for name in (
+            names.llvm_func_name, names.llvm_cpython_wrapper_name,
+            names.llvm_cfunc_wrapper_name) if library.get_pointer_to_function(name))
+        *described, environments = data._reduce()[1:]
+        # those without constants are asked for nothing, and their modules take long to import
+        environments = tuple(one for one in environments if one.consts)
+        return (library.name, library._get_compiled_object(), functions), *described, environments
 
     def save_overload(self, sig, data: CompileResult) -> None:
         """Keep the compiled code for a signature."""
@@ -63,7 +118,7 @@ class FunctionCache(NullCache):
         entries = {}
         for content in store.read(self._source, self._name, self._made_from):
             entries = pickle.loads(content) | entries
-        entries[sig] = dumps(data._reduce())
+        entries[sig] = dumps(self._reduced(data))
         if not store.write(self._source, self._name, self._made_from, dumps(entries)):
             store.say_not_kept(self._source)
 

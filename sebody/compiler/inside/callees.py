@@ -7,6 +7,7 @@ machine code as a part of what Python or the time loop calls, and nowhere else.
 """
 
 from collections.abc import Callable
+from functools import cached_property
 
 from llvmlite import binding
 from numba import types
@@ -124,6 +125,7 @@ class _CalleeCache(FunctionCache):
     """LLVM code that is kept."""
 
     kind = "callee"
+    _reduced = staticmethod(CompileResult._reduce)
 
     @staticmethod
     def _rebuilt(context, library, fndesc, env, signature, objectmode, lifted, typeann, reload_init,
@@ -154,10 +156,15 @@ class Function(CPUDispatcher):
     def __init__(self, function: Callable, options: dict, made_from: str):
         super().__init__(function, targetoptions=options, pipeline_class=_EntryPasses)
         self._cache = FunctionCache(function, made_from)
-        self.callee = Callee(function, options, made_from)
+        self._made_from = made_from
         # constants make kernels faster; elsewhere they come with the code that callers take in
         self._specialized = in_room(function, KERNELS)
         self.in_lanes: Function | None = None       # what is called with lanes in its place
+
+    @cached_property        # most runs compile nothing
+    def callee(self) -> Callee:
+        """What compiled functions take in."""
+        return Callee(self.py_func, self.targetoptions, self._made_from)
 
     def get_call_template(self, args, kws):
         """For Numba: the signature of a call in a compiled function."""

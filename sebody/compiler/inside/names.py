@@ -15,6 +15,7 @@ from numba.core.imputils import lower_constant
 from numba.core.ir import UNDEFINED, Jump
 from numba.core.lowering import Lower
 from numba.core.registry import CPUDispatcher, cpu_target
+from numba.core.runtime import rtsys as runtime
 from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 from numba.core.transforms import canonicalize_cfg
@@ -51,15 +52,16 @@ __all__ = [
     "PassManager", "PreLowerStripPhis", "ReconstructSSA", "RecordModel", "Signature",
     "TranslateByteCode", "UNDEFINED", "canonicalize_cfg", "cpu_target", "dumps",
     "get_or_insert_function", "infer_global", "lower_constant", "normalize_signature",
-    "register_pass", "signature", "take_reloads"]
+    "register_pass", "runtime", "signature", "take_reloads"]
 
 ATTRIBUTES = {
     CFunc: ("compile", "address"),
     CPUCodegen: ("magic_tuple",),
     CPUDispatcher: ("add_overload", "compile", "get_call_template", "get_overload"),
-    CompileResult: ("_rebuild", "_reduce"),
-    JITCodeLibrary: ("_ensure_finalized", "_finalize_dynamic_globals",
-                     "_get_module_for_linking", "_optimize_final_module", "finalize",
+    CompileResult: ("_reduce",),
+    JITCodeLibrary: ("_ensure_finalized", "_finalize_dynamic_globals", "_finalize_final_module",
+                     "_get_compiled_object", "_get_module_for_linking", "_optimize_final_module",
+                     "_set_compiled_object", "enable_object_caching", "finalize",
                      "get_pointer_to_function", "serialize_using_object_code"),
     Lower: ("_cast_var", "lower_binop", "lower_getitem", "lower_inst"),
     BaseContext: ("resolve_function_type", "resolve_setitem", "resolve_value_type"),

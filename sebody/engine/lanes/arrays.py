@@ -41,6 +41,10 @@ class Scratch(Arrays):
     T                   tangent operators before an evaluation
     J                   element matrices of bodies, where bodies are coupled that rotate
     dense               (n, n) matrix that is inverted
+    projected           (n, n) where constraints are redundant: its inverse without their share
+    factors             of a large matrix, where another one is factorized for other members
+    moved               (elements,) one where a member's element is evaluated, else zero
+    unmoved             forces of the elements that have not moved
     ==================  ============================================================================
     """
 
@@ -50,6 +54,10 @@ class Scratch(Arrays):
     T: NDArray
     J: NDArray
     dense: NDArray
+    projected: NDArray
+    factors: NDArray
+    moved: NDArray
+    unmoved: NDArray
 
 
 @dataclass(frozen=True, eq=False)

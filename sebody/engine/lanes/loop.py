@@ -14,14 +14,14 @@ from sebody.contract.layout import RECORD_ITERATIONS, RECORD_T, RESIDUAL, TANGEN
 from sebody.engine.evaluate import run_kernels, set_tangent_operators, sum_forces, to_body_axes
 from sebody.engine.lanes.growth import grows
 from sebody.engine.lanes.matrix import factorize
+from sebody.engine.lanes.moved import find_moved, keep_unmoved, run_moved
 from sebody.engine.lanes.newton import begin_with_matrix, correct, watch_age
 from sebody.engine.matrix import solve
+from sebody.engine.prediction import look_back
 from sebody.engine.state import EVALUATED, KEPT, ROTATED
 from sebody.engine.step import (
     MEMORY,
     ORTHOGONAL,
-    STEADY,
-    changes,
     orthogonalize,
     predict,
 )
@@ -31,7 +31,7 @@ from sebody.kernels.abi import at, pointer_to
 
 
 @compiled(nogil=True)
-def advance(system, state, scratch, record, scheme, last_grid):
+def advance(system, state, scratch, record, scheme, last_grid, dense):
     """Run until `last_grid`, or until no member is left that has not given up."""
     control = state.control
     if control.steps == 0:
@@ -43,7 +43,7 @@ def advance(system, state, scratch, record, scheme, last_grid):
         if system.corners.size > 0:
             choose_part(system, state)
         _begin_step(system, state, scheme)
-        _iterate(system, state, scratch, scheme, running)
+        _iterate(system, state, scratch, scheme, running, dense)
         add_work(system, state, state.clock.current_step)
         control.reason = where(grows(system, state, scratch) & (control.reason == 0.0), spread(1.0),
                                control.reason)
@@ -55,18 +55,17 @@ def _begin_step(system, state, scheme):
     control, clock = state.control, state.clock
     set_end(system, state)
     offset = clock.current_step / clock.aux_step
-    constant, bend = changes(system, state)
+    if control.steps > 0:
+        look_back(system, state, scheme.beta * clock.current_step * clock.current_step)
     kept = (control.fresh == 0.0) & (control.wanted == float(KEPT))
-    steady = kept & (bend < STEADY * STEADY * constant)
-    follow = where(steady, spread(1.0), spread(0.0))
-    predict(system, state, scheme, follow, offset)
+    predict(system, state, scheme, where(kept, spread(1.0), spread(0.0)), offset)
     begin_with_matrix(state)
-    control.iteration = spread(0.0)
+    control.iteration = control.secant = spread(0.0)
     clock.last_norm = spread(0.0)
 
 
 @compiled(forceinline=True)
-def _iterate(system, state, scratch, scheme, active):
+def _iterate(system, state, scratch, scheme, active, dense):
     """Newton's iteration of a step, until every member has converged or given up."""
     control = state.control
     n = system.diagonal.size
@@ -74,19 +73,22 @@ def _iterate(system, state, scratch, scheme, active):
     while some(active):
         evaluated = active & (control.wanted == float(EVALUATED))
         wanted = evaluated | (active & (control.wanted == float(ROTATED)))
-        _evaluate(system, state, scratch, active, wanted, evaluated)
+        moved = (not dense and iteration > 1 and system.links.dependent.shape[0] == 0)
+        if moved:
+            find_moved(system, state, scratch, active, wanted)
+        _evaluate(system, state, scratch, active, wanted, evaluated, moved)
         to_body_axes(system, state.frames, state.residual, False)
         if some(wanted):
-            active = active & ~factorize(system, state, scratch.dense, wanted, evaluated)
-        solve(system, state, True)
+            active = active & ~factorize(system, state, scratch, dense, wanted, evaluated)
+        solve(system, state, dense)
         for i in range(n):
             state.correction[i] = where(active, state.correction[i], spread(0.0))
-        active = correct(system, state, scheme, active, iteration)
+        active = correct(system, state, scheme, active, iteration, not dense)
         iteration += 1
 
 
 @compiled(forceinline=True)
-def _evaluate(system, state, scratch, active, wanted, evaluated):
+def _evaluate(system, state, scratch, active, wanted, evaluated, moved):
     """Evaluate forces, and the element matrices that members want.
 
     Those that want their matrix rotated keep the matrices of the bodies. Members that have
@@ -105,8 +107,10 @@ def _evaluate(system, state, scratch, active, wanted, evaluated):
                 old_J[k] = J[k]
     for k in range(frames.size):
         scratch.frames[k] = frames[k]
-    _evaluate_part(system, state, scratch, active, evaluated, 0, bodies)
-    _evaluate_part(system, state, scratch, active, wanted, bodies, batches)
+    _evaluate_part(system, state, scratch, active, evaluated, 0, bodies, moved)
+    _evaluate_part(system, state, scratch, active, wanted, bodies, batches, moved)
+    if moved:
+        keep_unmoved(system, state, scratch)
     for k in range(frames.size):
         frames[k] = where(active, frames[k], scratch.frames[k])
     if some(evaluated) and system.linked[0] == 1:
@@ -119,7 +123,7 @@ def _evaluate(system, state, scratch, active, wanted, evaluated):
 
 
 @compiled
-def _evaluate_part(system, state, scratch, active, wanted, first, last):
+def _evaluate_part(system, state, scratch, active, wanted, first, last, moved):
     """Evaluate some batches, with matrices where they are wanted.
 
     Forces beside matrices are rounded differently from forces alone, so members that want no matrix
@@ -131,7 +135,10 @@ def _evaluate_part(system, state, scratch, active, wanted, first, last):
     if every(wanted | ~active):
         return
     if not some(wanted):
-        run_kernels(RESIDUAL, first, last, system, state)
+        if moved:
+            run_moved(system, state, scratch, first, last)
+        else:
+            run_kernels(RESIDUAL, first, last, system, state)
         return
     for k in range(system.at_g[first], system.at_g[last]):
         kept[k] = g[k]
@@ -172,13 +179,6 @@ def _write(state, record):
     for k in range(record.places.size):
         record.rows[row, k] = state.now[record.places[k]]
     state.control.recorded = row + 1
-
-
-@compiled(nogil=True)
-def take_member(floats, places, member, lanes):
-    """Set the numbers of one member at some places of a buffer of lanes, (size, members)."""
-    for k in range(places.size):
-        lanes[places[k], member] = floats[places[k]]
 
 
 @compiled(nogil=True)

@@ -5,7 +5,13 @@ import math
 from sebody.compiler.decorators import compiled
 from sebody.compiler.inside.lanes import every, some, spread, where
 from sebody.contract.layout import C_MASS
+from sebody.engine.lanes.elimination import eliminate_large
 from sebody.engine.lanes.newton import GAVE_UP
+from sebody.engine.lanes.regularization import (
+    project_inverse,
+    regularize,
+    spread_multipliers,
+)
 from sebody.engine.matrix import ROUNDING, THIN, sum_matrices
 from sebody.engine.regularization import WEAKEST
 from sebody.engine.state import KEPT
@@ -15,24 +21,36 @@ SMALL_PIVOT = 1e-9      # relative to the scaled matrix, whose diagonal is one
 
 
 @compiled
-def factorize(system, state, dense, wanted, evaluated):
-    """Sum and invert the matrices of some members; returns those that give up.
+def factorize(system, state, scratch, dense, wanted, evaluated):
+    """Sum and factorize the matrices of some members, or invert small ones (dense).
 
-    Members whose matrices would need row exchanges give up. `evaluated` are those whose element
-    matrices are all new: their scales are, too.
+    Returns the members that give up, because their matrices would need row exchanges. `evaluated`
+    are those whose element matrices are all new: their scales are, too.
     """
     control, clock = state.control, state.clock
     zero = spread(0.0)
+    if not dense and not every(wanted):
+        for k in range(state.matrix.size):
+            scratch.factors[k] = state.matrix[k]
     sum_matrices(system, state, state.forces)
     if some(evaluated):
         _equilibrate(system, state, evaluated)
-    failed = wanted & ~_invert(system, state, dense, wanted)
+    control.regularized = system.regularized[0]
+    if control.regularized == 1:
+        regularize(system, state, wanted)
+    if dense:
+        failed = wanted & ~_invert(system, state, scratch, wanted, evaluated)
+    else:
+        failed = wanted & ~eliminate_large(system, state, scratch.factors, wanted)
+        if control.regularized == 1 and some(evaluated):
+            spread_multipliers(system, state, pointer_to(state.inverse), False, evaluated)
     clock.factor_step = clock.current_step
     clock.baseline_contraction = where(evaluated, spread(0.5), clock.baseline_contraction)
     clock.excess = where(evaluated, zero, clock.excess)
     control.age = where(evaluated, zero, control.age)
     control.wanted = where(wanted, spread(float(KEPT)), control.wanted)
     one = where(wanted, spread(1.0), zero)
+    control.secant = where(wanted, zero, control.secant)
     control.fresh += one
     control.matrices += one
     control.reason = where(failed, spread(GAVE_UP), control.reason)
@@ -66,14 +84,14 @@ def _equilibrate(system, state, wanted):
 
 
 @compiled
-def _invert(system, state, dense, wanted):
+def _invert(system, state, scratch, wanted, evaluated):
     """Invert the scaled matrices by Gauss-Jordan elimination without exchanges.
 
     Multipliers come after the unknowns they act on, whose part of the matrix is dominated by
     masses. Returns the members whose pivots are large enough.
     """
-    n = system.diagonal.size
-    A = pointer_to(dense)
+    n, regularized = system.diagonal.size, state.control.regularized == 1
+    A = pointer_to(scratch.dense)
     size = inverse_size = spread(0.0)
     for j in range(n):
         for i in range(n):
@@ -96,11 +114,15 @@ def _invert(system, state, dense, wanted):
                 for j in range(n):
                     row[j] = row[j] - factor * own[j]
     for j in range(n):
-        if system.is_multiplier[j] > 0.0:
+        if system.is_multiplier[j] > 0.0 and not regularized:
             good = good & ~(WEAKEST * abs(A[j * n + j]) > 1.0)
         for i in range(n):
             inverse_size += abs(A[j * n + i])
     good = good & (size * inverse_size < 1e16 * n)
+    if regularized:
+        if some(evaluated):
+            spread_multipliers(system, state, A, True, evaluated)
+        project_inverse(system, state, A, pointer_to(scratch.projected), n)
     whole, inverse = every(wanted), state.inverse
     for j in range(n):
         for i in range(n):

@@ -1,7 +1,10 @@
 """Corrections, convergence and when to refactorize, member by member: `sebody.engine.newton`."""
 
+import math
+
 from sebody.compiler.decorators import compiled
 from sebody.compiler.inside.lanes import some, spread, where
+from sebody.engine.lanes.regularization import leaves_gap
 from sebody.engine.newton import (
     ACCELERATION_TOLERANCE,
     ASTRAY,
@@ -12,6 +15,7 @@ from sebody.engine.newton import (
     MOST_MATRICES,
     OLDEST,
     POOR,
+    QUICK,
     REFACTORIZATION_COST,
     ROTATED_COST,
     ROUNDED,
@@ -20,6 +24,7 @@ from sebody.engine.newton import (
     norms,
     subtract,
 )
+from sebody.engine.regularization import regularized_norms
 from sebody.engine.state import EVALUATED, KEPT, ROTATED
 
 HUGE = 1e300            # a norm above this is no number, or as good as none
@@ -27,16 +32,20 @@ GAVE_UP = 1.0           # reason of a member that is to be run alone
 
 
 @compiled(forceinline=True)
-def correct(system, state, scheme, active, iteration):
+def correct(system, state, scheme, active, iteration, mixed):
     """Subtract the correction of the active members; returns those that have to go on."""
     clock, control, h = state.clock, state.control, state.clock.current_step
-    norm, size, accelerations = norms(system, state, system.diagonal.size)
+    n, regularized = system.diagonal.size, control.regularized == 1
+    norm, size, accelerations = (regularized_norms(system, state, n) if regularized else
+                                 norms(system, state, n))
     failed = active & ~(norm < HUGE)
-    subtract(system, state, scheme, system.diagonal.size)
+    left_norm = accelerate(system, state, active, norm) if mixed else norm
+    subtract(system, state, scheme, n)
     accelerations = max(scheme.beta * h * h * accelerations, clock.acceleration_norm)
     target = min(scheme.tolerance * size,
                  ACCELERATION_TOLERANCE * scheme.tolerance * accelerations) + clock.floor
     clock.acceleration_norm = where(active, accelerations, clock.acceleration_norm)
+    clock.target = target
     rate, last = clock.contraction, clock.last_norm
     if iteration == 0:
         clock.span = where(active, norm / target, clock.span)     # of which the loop has the log
@@ -46,16 +55,18 @@ def correct(system, state, scheme, active, iteration):
     count = where(active, spread(1.0), spread(0.0))
     control.iteration += count
     control.iterations += count
-    clock.last_norm = where(active, norm, last)
+    clock.last_norm = where(active, left_norm, last)
     rate = min(max(rate, spread(UNSURE if iteration == 0 else FASTEST)), spread(SLOWEST))
-    done = active & (rate / (1.0 - rate) * norm <= target)
+    done = active & (rate / (1.0 - rate) * left_norm <= target)
     if iteration > 2:       # where new matrices do not help, what is left is rounding
         hopeless = active & ~done & (control.fresh > 2.0) & (rate > 0.9)
-        rounded = norm <= ROUNDED * target
+        rounded = left_norm <= ROUNDED * target
         failed = failed | (hopeless & ~rounded)
         done = done | (hopeless & rounded)
     if some(done):
         failed = failed | (done & _strayed(system, state, scheme))
+        if regularized:
+            failed = failed | (done & leaves_gap(system, state, norm))
     left = active & ~done & ~failed
     if some(left):
         if iteration >= MAX_ITERATIONS - 1:
@@ -64,6 +75,30 @@ def correct(system, state, scheme, active, iteration):
             _want_matrices(system, state, left, rate, norm, target, iteration)
     control.reason = where(failed, spread(GAVE_UP), control.reason)
     return left & ~failed
+
+
+@compiled
+def accelerate(system, state, active, norm):
+    """Anderson mixing with the last correction; returns the norms of the mixed corrections."""
+    n, control, zero = system.diagonal.size, state.control, spread(0.0)
+    correction, last, change = state.correction, state.last_correction, state.last_change
+    along = square = zero
+    for i in range(n):
+        if state.control.regularized == 1 and system.is_multiplier[i] > 0.0:
+            continue
+        w = state.weight[i]
+        difference = (correction[i] - last[i]) * w
+        along += difference * correction[i] * w
+        square += difference * difference
+    mixing = active & (control.secant == 1.0) & (norm > QUICK * state.clock.last_norm) & (
+        square > 0.0) & (abs(along) < square)
+    mix = where(mixing, along / square, zero)
+    control.secant = spread(1.0)
+    for i in range(n):
+        d = correction[i]
+        change[i] = correction[i] = where(mixing, d - mix * (change[i] + d - last[i]), d)
+        last[i] = d
+    return where(mixing, math.sqrt(max(norm * norm - along * mix, zero)), norm)
 
 
 @compiled(forceinline=True)

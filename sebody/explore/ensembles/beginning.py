@@ -2,13 +2,15 @@
 
 from dataclasses import dataclass
 
+import numpy as np
 from numpy.typing import NDArray
 
 from sebody.compiler.decorators import compiled
 from sebody.engine.arrays import Arrays
+from sebody.engine.calls import call_restart
 from sebody.engine.evaluate import move_prescribed, set_loads
 from sebody.engine.links import place_dependent
-from sebody.engine.state import ASKED
+from sebody.engine.state import ASKED, DONE
 from sebody.engine.vectors import copy
 
 
@@ -77,3 +79,32 @@ def end(state, given):
         given.control[i] = given.control_built[i]
     copy(state.frames, state.frames_old)
     copy(state.aux, state.aux_old)
+
+
+@compiled(nogil=True)
+def begin_together(system, state, given, changes, dense, places, lanes):
+    """Begin runs one after the other; those that have begun are members of lanes.
+
+    Parameters
+    ----------
+    changes : (runs, components)
+        As of `begin`.
+    places : (k,)
+        What members begin with in the buffer of all numbers.
+    lanes : (size, members)
+        Gets it.
+
+    Returns
+    -------
+    (runs,) codes of `engine.restart`
+    """
+    member, codes = 0, np.empty(changes.shape[0], np.int64)
+    for run in range(changes.shape[0]):
+        begin(system, state, given, changes[run])
+        codes[run] = call_restart(system.routines[1], system, state, 0.0, dense)
+        if codes[run] == DONE:
+            end(state, given)
+            for k in range(places.size):
+                lanes[places[k], member] = given.floats[places[k]]
+            member += 1
+    return codes

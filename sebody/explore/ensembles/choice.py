@@ -17,10 +17,8 @@ from sebody.model.model import Model
 from sebody.runs.simulation import Simulation
 
 WORTH_IT = 500_000      # steps of all runs together, a second or more one by one
-# frames whose search has no version for lanes, and elements that choose by their numbers, as parts
-# of the names of kernels
-NOT_IN_LANES = ("mean_axes", "positions", "_mean_material", "_mean_small", "load_mean", "stop",
-                "friction", "play", "point_on_", "sphere_on_")
+# of elements that choose by their numbers, parts of the names of kernels
+CHOOSING = ("stop", "friction", "play", "point_on_", "sphere_on_", "contact")
 
 
 class Fact(NamedTuple):
@@ -31,19 +29,19 @@ class Fact(NamedTuple):
 
 
 FACTS = (
-    Fact("more unknowns than an inverse is kept for", lambda one: not one.dense),
-    Fact("constraints that are redundant, or motions without mass",
-         lambda one: bool(one.system.regularized[0] or one.system.massless[0])),
+    Fact("motions without mass", lambda one: bool(one.system.massless[0])),
     Fact("constraints that hold for velocities, too", lambda one: one.scheme.stabilized),
-    Fact("contacts, stops or friction",
-         lambda one: one.system.guarded.size > 0 or _keeps_numbers(one)),
     Fact("sensors, controllers or inputs", lambda one: bool(
         one.system.control.periods.size or one.system.control.inputs.size
         or (one.system.functions[:, 0] == INPUT).any())),
+    Fact("forces or laws of users", lambda one: any(
+        name in BY_HAND for name in kernels_of(one.model))),
+    Fact("contacts, stops or friction", lambda one: any(
+        part in name for part in CHOOSING for name in kernels_of(one.model))),
+    Fact("elements that keep numbers from step to step",
+         lambda one: one.state.frames.size > 9 * len(one.model.bodies)),
     Fact("loads at whose jumps accelerations are solved for anew",
          lambda one: bool(one.system.jumps.any())),
-    Fact("kernels without a version for lanes",
-         lambda one: any(not _has_lanes(name) for name in kernels_of(one.model))),
 )
 
 
@@ -84,14 +82,3 @@ def kernels_of(model: Model) -> list[str]:
     elements = (*model.rigid_bodies.values(), *model.constraints, *model.loads)
     return sorted({body.kernel for body in model.bodies.values()}
                   | {element_kernel_name(element.kind) for element in elements})
-
-
-def _has_lanes(kernel: str) -> bool:
-    return kernel not in BY_HAND and ("_converged_mean_" in kernel
-                                      or not any(part in kernel for part in NOT_IN_LANES))
-
-
-def _keeps_numbers(one: Simulation) -> bool:
-    """Whether elements keep numbers from step to step, by which they choose."""
-    return one.state.frames.size > 9 * len(one.model.bodies)
-

@@ -1,6 +1,7 @@
 """What the first ensemble in lanes compiles, side by side in several processes."""
 
 from collections.abc import Iterable
+from dataclasses import fields
 from pathlib import Path
 from threading import Lock
 
@@ -23,20 +24,27 @@ LOOP_SECONDS = 7.0              # of one processor
 _lock = Lock()
 
 
-def prepare(kernels: Iterable[str]) -> None:
-    """Compile kernels and the loop for lanes where the cache lacks them; a line says so."""
+def prepare(kernels: Iterable[tuple[str, bool]]) -> None:
+    """Compile kernels and the loop for lanes where the cache lacks them; a line says so.
+
+    Parameters
+    ----------
+    kernels : iterable of (str, bool)
+        Names, and whether constants are those of all members.
+    """
     with _lock:
-        missing = [name for name in kernels if not is_compiled(find(name))]
-        jobs = [Job(Task(f"{name} in lanes", f"{__name__}:compile_kernel", (name,)),
-                    SECONDS_A_LETTER * find(name).stat().st_size) for name in missing]
+        missing = [(name, shared) for name, shared in sorted(set(kernels))
+                   if not is_compiled(find(name), shared)]
+        jobs = [Job(Task(f"{name} in lanes", f"{__name__}:compile_kernel", (name, shared)),
+                    SECONDS_A_LETTER * find(name).stat().st_size) for name, shared in missing]
         if not way().is_compiled(loop.advance):
             jobs.append(Job(Task("loop in lanes", f"{__name__}:compile_loop"), LOOP_SECONDS))
         compile_apart(jobs, "what makes eight runs at a time", Path(loop.__file__))
 
 
-def compile_kernel(name: str) -> None:
+def compile_kernel(name: str, shared: bool) -> None:
     """Compile a kernel for lanes here, or find it in the cache."""
-    address_in_lanes(load(name))
+    address_in_lanes(load(name), shared)
 
 
 def compile_loop() -> None:
@@ -44,8 +52,10 @@ def compile_loop() -> None:
     system, state = smallest()
     offsets = Offsets(system, state)
     buffer = empty(offsets.size)
-    scratch = Scratch(*(empty(1) for _ in range(5)), dense=empty(1, 1))
+    square = {"dense", "projected"}
+    scratch = Scratch(**{one.name: empty(1, 1) if one.name in square else empty(1)
+                         for one in fields(Scratch)})
     columns = Columns(np.zeros(1, dtype=np.int64), empty(1, 1), np.zeros(1, dtype=np.int64))
     given = (in_lanes(system, offsets, buffer), in_lanes(state, offsets, buffer), scratch, columns,
              generalized_alpha())
-    way().compile_for(loop.advance, (*map(typeof, given), types.int64))
+    way().compile_for(loop.advance, (*map(typeof, given), types.int64, types.boolean))

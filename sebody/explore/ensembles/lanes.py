@@ -1,21 +1,26 @@
 """Runs of an ensemble eight at a time: the arrays of a thread, and what its members give."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.contracts import counts_of
 from sebody.contract.counts import MEMBERS
-from sebody.contract.layout import AT_CONSTANTS, AT_FRAME, RECORD_T, Row
+from sebody.contract.layout import AT_CONSTANTS, RECORD_T
 from sebody.engine.lanes import loop
 from sebody.engine.lanes.arrays import Columns, Scratch, empty, fill, in_lanes, numbers
 from sebody.engine.system import System
-from sebody.errors import InputError
 from sebody.explore.ensembles.member import Copies, Course, Form
 from sebody.explore.ensembles.outputs import Folds, Output
+from sebody.explore.ensembles.shared_constants import (
+    kernels_of_batches,
+    packed_rows,
+    shared_rows,
+    varied_numbers,
+)
+from sebody.explore.ensembles.start_values import Image
 from sebody.kernels.lanes.kernel import address_in_lanes
-from sebody.kernels.lanes.straight import write_address
+from sebody.kernels.lanes.straight import write_address, write_shared_address
 from sebody.kernels.loader import load
 
 MOST_NUMBERS = 8_000        # of recorded states at a time: they stay in the processor's cache
@@ -30,8 +35,6 @@ class Lanes:
     ----------
     copies : Copies
         Where members begin, one after the other.
-    kernels : sequence of str
-        Names of the model's kernels.
     outputs : mapping
         What is kept.
     forms : mapping
@@ -47,21 +50,27 @@ class Lanes:
         Whether these were run to their end; False if they were stopped before.
     """
 
-    def __init__(self, copies: Copies, kernels: Sequence[str], outputs: Mapping[str, Output],
-                 forms: Mapping[str, Form], last: int):
+    def __init__(self, copies: Copies, outputs: Mapping[str, Output], forms: Mapping[str, Form],
+                 last: int):
         self.copies = copies
         image, one = copies.image, copies.image.template
         buffer = empty(image.offsets.size)
         self._numbers = numbers(buffer)
-        self.system = _with_addresses(in_lanes(one.system, image.offsets, buffer), kernels)
-        self._write_straight_code()
+        self._alone = self._numbers.reshape(-1)
+        shared = shared_rows(image)
+        self.system = _with_kernels(in_lanes(one.system, image.offsets, buffer), image, shared)
+        self._pointed = self._write_constants(shared)
         self.state = in_lanes(one.state, image.offsets, buffer)
         n = len(one.system.diagonal)
-        frames = one.state.frames.size
+        frames, redundant = one.state.frames.size, one.system.regularized[0] == 1
         self._scratch = Scratch(g=empty(one.state.g.size), frames=empty(frames),
                                 found=empty(frames), T=empty(one.state.T.size),
                                 J=empty(int(one.system.at_J[one.system.first_joint[0]])),
-                                dense=empty(n, n))
+                                dense=empty(n, n) if one.dense else empty(0, 0),
+                                projected=empty(n, n) if one.dense and redundant else empty(0, 0),
+                                factors=empty(0 if one.dense else one.state.matrix.size),
+                                moved=empty(one.state.moved.size),
+                                unmoved=empty(one.state.g.size))
         self._places = self._own_places()
         columns = _columns(forms, one.state.now.size)
         self._forms = {name: form if form.columns is None else form._replace(
@@ -71,7 +80,8 @@ class Lanes:
         self._record = Columns(places=columns, rows=empty(*rows), every=np.array([one.every]))
         self._rows = np.empty(rows)
         self._last, self._begun = last, {}
-        self._outputs, self._changes = outputs, []
+        self._outputs = outputs
+        self._changes: NDArray          # of the members that have begun
         self._evaluated = not all(form.kinematic for form in forms.values())
         self._folds = {name: Folds(one, forms[one.quantity].shape,
                                    self._forms[one.quantity].columns, MEMBERS)
@@ -79,54 +89,56 @@ class Lanes:
                        if one.kind != "history" and forms[one.quantity].columns is not None}
         self.courses, self.ended = [], False
 
-    def _write_straight_code(self) -> None:
-        """Straight code for the packed matrices among the constants of bodies."""
+    def _write_constants(self, shared: Mapping[int, Mapping[int, int]]) -> list[NDArray]:
+        """Constants that members share, one behind the other, and straight code of all.
+
+        Returns
+        -------
+        list
+            Arrays that constants point to.
+        """
         image = self.copies.image
-        bodies, system = list(image.template.model.bodies.values()), image.template.system
-        constants = image.offsets.of(system.constants).start
-        floats = image.floats.copy()
-        slots = image.lines.slots           # not zero in some members
-        floats[slots] = np.where(floats[slots] == 0.0, 1.0, floats[slots])
-        for index in _index_rows(system):
-            body, first = bodies[index[AT_FRAME]], constants + index[AT_CONSTANTS]
-            counts, row = counts_of(body), Row("constants", load(body.kernel).CONSTANTS)
-            places = row.slices(counts)
-            for part in row.parts:
-                if part.packed and part.size(counts):
-                    own = slice(first + places[part.name].start, first + places[part.name].stop)
-                    write_address(floats[own], self._numbers[own])
+        first, alone = image.offsets.of(image.template.system.constants).start, self._alone
+        for rows in shared.values():
+            for start, size in rows.items():
+                own = slice(first + start, first + start + size)
+                alone[MEMBERS * own.start:][:size] = image.floats[own]
+        varied, kept = varied_numbers(image), {}
+        floats = np.where(varied & (image.floats == 0.0), 1.0, image.floats)    # zero in some alone
+        for batch, place in packed_rows(image):
+            if batch not in shared:
+                write_address(floats[place], varied[place], self._numbers[place])
+                continue
+            size, row = place.stop - place.start, max(
+                start for start in shared[batch] if first + start <= place.start)
+            begin = MEMBERS * (first + row) + place.start - first - row
+            if begin not in kept:       # bodies that are alike have one row
+                kept[begin] = write_shared_address(alone[begin:begin + size])
+        return list(kept.values())
 
     def _own_places(self) -> NDArray:
         """Places in the buffer of what members begin with: parameters, and their state."""
         image, state = self.copies.image, self.copies.image.template.state
         begun = (image.offsets.of(part) for part in (
-            state.now, state.aux, state.aux_change, state.q_start, state.loads, state.loads_old,
-            state.acting, state.coefficients, state.frames_old, state.aux_old))
+            state.now, state.aux, state.changes, state.fitted, state.fit, state.q_start,
+            state.loads, state.loads_old, state.acting, state.coefficients, state.frames_old,
+            state.q_old, state.aux_old, state.last_correction, state.last_change))
         return np.unique(np.concatenate([image.lines.slots.astype(np.int64),
                                          *(np.arange(part.start, part.stop) for part in begun)]))
 
-    def begin(self, change: NDArray) -> bool:
-        """Begin a run in the next free lane; False if it is to be run alone.
+    def begin(self, changes: NDArray) -> NDArray:
+        """Begin some runs, one in a lane; returns which have begun. The others are to be run alone.
 
         Parameters
         ----------
-        change : (components,)
-            As of `Copies.begin`.
+        changes : (runs, components)
+            As of `Copies.begin`, at most as many as there are lanes.
         """
-        try:
-            begun = self.copies.begin(change)
-        except InputError:      # told where it is run alone
-            return False
-        if begun:
-            if not self._begun:
-                self._keep_begun()
-            self._take(len(self._changes))
-            self._changes.append(change)
+        begun = self.copies.begin_together(changes, self._places, self._numbers)
+        self._changes = changes[begun]
+        if not self._begun and begun.any():
+            self._keep_begun()
         return begun
-
-    def _take(self, member: int) -> None:
-        """Give a lane the numbers of the run that `copies` has begun."""
-        loop.take_member(self.copies.floats, self._places, member, self._numbers)
 
     def run(self, stop: Callable[[], bool]) -> NDArray:
         """Run the members that have begun to their end, and take in their outputs.
@@ -143,8 +155,8 @@ class Lanes:
         self.courses = [Course(self.copies, int(self._record.every[0]), self._outputs, self._forms,
                                {name: folds.members[member] for name, folds in self._folds.items()})
                         for member in range(count)]
-        for member in range(count, MEMBERS):        # lanes without a member: another one's numbers
-            self._take(member)
+        if count < MEMBERS:         # lanes without a member: another one's numbers
+            self._numbers[self._places, count:] = self._numbers[self._places, :1]
         state.control["reason"] = np.where(np.arange(MEMBERS) < count, 0.0, ALONE)
         every, reached = int(self._record.every[0]), 0
         while reached < self._last:
@@ -152,12 +164,11 @@ class Lanes:
                           reached + MOST_STEPS)
             state.control["recorded"] = 0
             loop.advance(self.system, state, self._scratch, self._record, self.copies.scheme,
-                         reached)
+                         reached, self.copies.dense)
             self._take_outputs(np.flatnonzero(state.control["reason"][:count] == 0.0))
             if reached < self._last and stop():
                 break
         self.ended = reached == self._last
-        self._changes.clear()
         return state.control["reason"][:count] != 0.0
 
     def _take_outputs(self, members: NDArray) -> None:
@@ -174,7 +185,8 @@ class Lanes:
                 self.courses[member].take(rows)
 
     def _keep_begun(self) -> None:
-        """Keep the scalars and counters of the member that has begun; failed starts have others."""
+        """Keep the scalars and counters of a member that has begun; failed starts have others."""
+        self.copies.begin(self._changes[0])
         for name in ("control", "clock", "guard"):
             record = getattr(self.state, name)
             fill(record, getattr(self.copies.state, name))
@@ -198,17 +210,14 @@ def _columns(forms: Mapping[str, Form], count: int) -> NDArray:
     return np.unique(np.concatenate([[RECORD_T], *(form.columns for form in forms.values())]))
 
 
-def _index_rows(system: System) -> Iterator[NDArray]:
-    """The index rows of all superelements."""
-    for b in range(int(system.first_joint[0])):
-        rows = system.index[system.at_index[b]:system.at_index[b + 1]]
-        yield from rows.reshape(system.count[b], -1)
-
-
-def _with_addresses(system: System, kernels: Sequence[str]) -> System:
-    """A system that calls kernels for lanes."""
-    modules = [load(name) for name in kernels]
-    addresses = {module.kernel.address: address_in_lanes(module) for module in modules}
+def _with_kernels(system: System, image: Image, shared: Mapping[int, Mapping[int, int]]) -> System:
+    """A system that calls kernels for lanes; rows that members share lie one behind the other."""
     members = {name: getattr(system, name) for name in System.__annotations__}
-    members["address"] = np.array([addresses[a] for a in system.address.tolist()])
+    members["address"] = np.array([address_in_lanes(load(name), own)
+                                   for name, own in kernels_of_batches(image)])
+    members["index"] = system.index.copy()
+    for b in shared:
+        first, stride = int(system.at_index[b]), int(system.stride[b])
+        end = first + stride * int(system.count[b])
+        members["index"][first + AT_CONSTANTS:end:stride] *= MEMBERS
     return System(**members)

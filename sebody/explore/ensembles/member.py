@@ -82,11 +82,29 @@ class Copies:
                 break
             self.sampling.serve()
             code = advance(system, state, self.none, self.scheme, 0, 0, self.dense)
+        if code == FAILED and system.regularized[0]:
+            return False        # where constraints contradict each other, and Python can tell which
         if code == FAILED:
             raise InputError("the initial state has no accelerations: "
                              f"{REASONS[int(state.control.reason)]}")
         beginning.end(state, self._given)
         return code == DONE
+
+    def begin_together(self, changes: NDArray, places: NDArray, lanes: NDArray) -> NDArray:
+        """Begin some runs, those that have begun in lanes; returns which these are.
+
+        Parameters
+        ----------
+        changes : (runs, components)
+            As of `begin`.
+        places : (k,)
+            What members begin with in the buffer of all numbers.
+        lanes : (size, members)
+            Gets it.
+        """
+        codes = beginning.begin_together(self.system, self.state, self._given, changes, self.dense,
+                                         places, lanes)
+        return codes == DONE
 
     def _beginning(self) -> beginning.Beginning:
         """What runs begin with; scalars and flags are not in `floats`."""

@@ -65,13 +65,14 @@ class Image:
         return self.lines is not None
 
     def _can_copy(self, handles: Mapping[str, Handle]) -> bool:
-        """Whether the start needs accelerations alone: no fitted velocities, no redundancy."""
+        """Whether the start needs accelerations alone: no fitted velocities."""
         one = self.template
         constrained = bool(one.numbering.multipliers) or bool(one.system.prescribed.size)
         touched = {handle.touches for handle in handles.values()}
         return not (any(handle.whole for handle in handles.values())
                     or any(load.tuned for load in one.model.loads)      # bristles are loaded
-                    or one.scheme.stabilized or one.system.regularized[0]
+                    or one.scheme.stabilized
+                    or (one.system.regularized[0] and one.system.massless_axes.any())
                     or ((constrained or one.begun) and MOTION in touched)
                     or (one.start.changed and touched & {BODIES, MOTION}))
 
@@ -120,7 +121,7 @@ class Image:
         """All numbers of the model as it is now, before its start; None if its pattern differs."""
         one = self.template
         system, numbering = build(one.model)
-        system.routines[:] = one.system.routines
+        system.routines[:], system.regularized[:] = one.system.routines, one.system.regularized
         state = allocate(one.model, system, numbering, one.h, one.dense)
         if not (_alike(system, one.system) and _alike(state, one.state, sizes_only=True)):
             return None

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from sebody.contract.counts import MEMBERS
 from sebody.errors import InputError
-from sebody.explore.ensembles.choice import kernels_of
 from sebody.explore.ensembles.member import Copies, Course, Form
 from sebody.explore.ensembles.outcome import Outcome
 from sebody.explore.ensembles.outputs import Output
+from sebody.explore.ensembles.shared_constants import kernels_of_batches
 from sebody.explore.ensembles.start_values import Image
 from sebody.runs.simulation import Simulation
 
@@ -69,7 +69,7 @@ class Work:
         if self._in_lanes:
             from sebody.explore.ensembles.compiling import prepare
 
-            prepare(kernels_of(self.template.model))
+            prepare(kernels_of_batches(self.image))
         workers = [Thread(target=self._work, daemon=True)
                    for _ in range(threads if self.outcome.runs > 1 else 0)]
         try:
@@ -121,14 +121,13 @@ class Work:
         from sebody.explore.ensembles.lanes import Lanes  # imports the lanes themselves
 
         with self._lock:        # straight code is compiled by one thread
-            return Lanes(copies, kernels_of(self.template.model), self.outputs, self.forms,
-                         self.last)
+            return Lanes(copies, self.outputs, self.forms, self.last)
 
     def _run_together(self, group: Sequence[int], lanes: Lanes) -> Sequence[int]:
         """Make some runs at a time; returns those that are to be made alone."""
-        taken, alone = [], []
-        for run in group:
-            (taken if lanes.begin(self._changes[run]) else alone).append(run)
+        runs = np.array(group)
+        begun = lanes.begin(self._changes[runs])
+        taken, alone = runs[begun].tolist(), runs[~begun].tolist()
         if not taken:
             return alone
         gave_up = lanes.run(self._stop.is_set)

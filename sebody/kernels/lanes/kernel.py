@@ -13,16 +13,27 @@ from sebody.compiler.sources import kernel_hash
 from sebody.contract.layout import ARGUMENTS
 
 _POINTERS = {"int64": types.CPointer(types.int64), "float64": types.CPointer(lanes)}
-SIGNATURE = types.int64(*[types.int64] * 4, *[_POINTERS[kind] for _, kind, _ in ARGUMENTS])
 
 
 @cache
-def address_in_lanes(module: ModuleType) -> int:
-    """Address of a kernel for lanes; compiled, or read from the cache, where it is asked for."""
-    return kernel_in_lanes(module.kernel.__wrapped__, SIGNATURE, OF_KERNELS,
-                           kernel_hash(Path(module.__file__))).address
+def address_in_lanes(module: ModuleType, shared: bool = False) -> int:
+    """Address of a kernel for lanes; compiled, or read from the cache, where it is asked for.
+
+    Parameters
+    ----------
+    shared : bool
+        Whether constants of elements are numbers that all members share.
+    """
+    return kernel_in_lanes(module.kernel.__wrapped__, _signature(shared), OF_KERNELS,
+                           kernel_hash(Path(module.__file__)), shared).address
 
 
-def is_compiled(path: Path) -> bool:
+def is_compiled(path: Path, shared: bool = False) -> bool:
     """Whether the kernel in a file was compiled for lanes; the file is not imported."""
-    return is_kept_in_lanes(path, kernel_hash(path))
+    return is_kept_in_lanes(path, kernel_hash(path), shared)
+
+
+def _signature(shared: bool) -> types.Type:
+    given = [types.CPointer(types.float64) if shared and name == "constants" else _POINTERS[kind]
+             for name, kind, _ in ARGUMENTS]
+    return types.int64(*[types.int64] * 4, *given)

@@ -2,7 +2,8 @@
 
 Matrices of option C are mostly zeros. Where the same few bodies serve thousands of runs, code for
 the entries that are there takes a third of the instructions of strips, and no list is read. It is
-compiled for a pattern of zeros, in hundredths of a second, when an ensemble begins.
+compiled for a pattern of zeros, in hundredths of a second, when an ensemble begins. Entries that
+all members share are constants of the code: eight bytes are read in place of 64.
 """
 
 from functools import cache
@@ -11,32 +12,36 @@ import numpy as np
 from llvmlite import binding, ir
 from numpy.typing import NDArray
 
-from sebody.compiler.inside.lanes import VECTOR
+from sebody.compiler.inside.lanes import VECTOR, same
 from sebody.contract.counts import LANES, MEMBERS
 from sebody.kernels.packed import COUPLED, NARROW, WIDE, strips
 
 # lane of the first number of a row that has the address of its straight code, where there is some;
 # the number of groups stands in all others
 AT_ADDRESS = 1
-# place of an entry, vector and place of its factor, place of its sum
-Entries = tuple[tuple[int, int, int, int], ...]
+MOST_GROUPS = 1 << 20       # of a row; a larger number is an address
+# place of an entry, vector and place of its factor, place of its sum; its value, if all members
+# share it
+Entries = tuple[tuple[int, int, int, int, float | None], ...]
 
 _engines = []       # own the code
 
 
-def entries_of(row: NDArray) -> Entries:
+def entries_of(row: NDArray, varied: NDArray) -> Entries:
     """The entries of a row of packed matrices that are not zero, by their sums."""
     found = []
     for kind, vector, places, _, below, first, at, entries in strips(row):
         for i, k in np.argwhere(entries).tolist():
             place = at + LANES * k + i
+            value = None if varied[place] else float(row[place])
             if kind in (NARROW, WIDE):
-                found.append((place, vector, first + k, places[0] + i))
+                found.append((place, vector, first + k, places[0] + i, value))
                 continue
             coupled = kind == COUPLED
-            found += [(place, y, first + k, places[y] + below + i) for y in range(1 + coupled)]
-            found.append((place, int(coupled), below + i, places[-1] + first + k))
-    return tuple(sorted(found, key=lambda entry: entry[::-1]))
+            found += [(place, y, first + k, places[y] + below + i, value)
+                      for y in range(1 + coupled)]
+            found.append((place, int(coupled), below + i, places[-1] + first + k, value))
+    return tuple(sorted(found, key=lambda entry: entry[3::-1]))
 
 
 @cache
@@ -49,15 +54,34 @@ def address_of(entries: Entries) -> int:
     builder = ir.IRBuilder(function.append_basic_block())
     A, *vectors, out = function.args
     sums: dict[int, ir.Value] = {}
-    for place, vector, column, to in entries:
+    shared = _Shared(module, builder, entries)
+    for place, vector, column, to, value in entries:
         total = sums.get(to) or _read(builder, out, to)
-        product = builder.fmul(_read(builder, A, place), _read(builder, vectors[vector], column),
-                               flags=("contract",))
+        entry = _read(builder, A, place) if value is None else shared.next()
+        product = builder.fmul(entry, _read(builder, vectors[vector], column), flags=("contract",))
         sums[to] = builder.fadd(total, product, flags=("contract",))
     for to, total in sums.items():
         builder.store(total, builder.gep(out, [ir.IntType(64)(to)]))
     builder.ret_void()
     return _compiled(module)
+
+
+class _Shared:
+    """Values that all members share, one after the other."""
+
+    def __init__(self, module: ir.Module, builder: ir.IRBuilder, entries: Entries):
+        values = [entry[-1] for entry in entries if entry[-1] is not None]
+        kind = ir.ArrayType(ir.DoubleType(), len(values))
+        self._values = ir.GlobalVariable(module, kind, "shared")
+        self._values.initializer = ir.Constant(kind, values)
+        self._values.linkage = "internal"       # not a constant: LLVM would write out eight of each
+        self._builder, self._next = builder, 0
+
+    def next(self) -> ir.Value:
+        """The next value, in all lanes."""
+        place = self._builder.gep(self._values, [ir.IntType(32)(0), ir.IntType(32)(self._next)])
+        self._next += 1
+        return same(self._builder, self._builder.load(place))
 
 
 def _read(builder, pointer, place):
@@ -73,15 +97,31 @@ def _compiled(module: ir.Module) -> int:
     return engine.get_function_address("straight")
 
 
-def write_address(row: NDArray, lanes: NDArray) -> None:
+def write_address(row: NDArray, varied: NDArray, lanes: NDArray) -> None:
     """Compile straight code of a row of packed matrices, and put its address into lanes.
 
     Parameters
     ----------
     row : (size,)
         As of `packed.pack`.
+    varied : (size,)
+        Whether members differ in a number.
     lanes : (size, MEMBERS)
         The same in lanes.
     """
     assert lanes.shape == (len(row), MEMBERS)
-    lanes.view(np.int64)[0, AT_ADDRESS] = address_of(entries_of(row))
+    lanes.view(np.int64)[0, AT_ADDRESS] = address_of(entries_of(row, varied))
+
+
+def write_shared_address(row: NDArray) -> NDArray:
+    """The same of a row that all members share: it points to what is returned, and to be kept.
+
+    Parameters
+    ----------
+    row : (size,)
+        As of `packed.pack`.
+    """
+    own = row.view(np.int64)
+    found = np.array([own[0], address_of(entries_of(row, np.zeros(len(row), dtype=bool)))])
+    own[0] = found.ctypes.data
+    return found

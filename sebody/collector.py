@@ -1,4 +1,4 @@
-"""Compilation without garbage collection."""
+"""Compilation and imports without garbage collection."""
 
 import gc
 from collections.abc import Iterator
@@ -7,7 +7,11 @@ from contextlib import contextmanager
 
 @contextmanager
 def without_collector() -> Iterator[None]:
-    """Suspend garbage collection: it takes a quarter of a compilation and frees nothing."""
+    """Suspend garbage collection.
+
+    It takes a quarter of a compilation and a tenth of importing Numba, SciPy and what needs them,
+    and frees nothing.
+    """
     collecting = gc.isenabled()
     gc.disable()
     try:

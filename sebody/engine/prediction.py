@@ -1,0 +1,183 @@
+"""How accelerations and multipliers will change in a step, from how they changed in the last ones.
+
+The number of corrections in Newton's iteration, and what it leaves with an old matrix, go with the
+error of the prediction. Predicted is that nothing changes; or that changes continue as a line or a
+parabola; or, from those in the last `ORDER` steps, d_1 the latest,
+
+    c_1 d_1 + ... + c_8 d_8
+
+with the same coefficients for all unknowns: those of least squares for the steps so far, older ones
+ever less (autoregression; four vibrations follow such a rule exactly). A step takes what would have
+been best for the step before.
+
+The fit costs as much as a part of a correction. Whether it saves as much is tried: in some periods
+of `PERIOD` steps it is made, in others not, and the mean corrections of both are compared.
+"""
+
+from sebody.compiler.decorators import compiled
+from sebody.kernels.abi import at, pointer_to
+
+ORDER = 8
+ROWS = ORDER + 1        # of changes that are kept: a ring, the latest overwrites the oldest
+REFITTED = 4            # steps after which coefficients are solved for anew
+FORGET = 0.8            # weight of a step in the fit, relative to the one after it
+BETTER = 0.25           # of the square of an error: what the next prediction has to reach
+LEAST = 1e-13           # of the squares of changes: added to the equations of the fit
+TINY = 1e-300           # the same where nothing changes
+PERIOD = 64             # steps with the fit or without it
+SETTLING = 24           # first ones of a period, whose corrections do not count
+TRIED_AGAIN = 16        # periods after which what has saved less is tried again
+WORTH = 0.2             # corrections of a step that the fit has to save
+
+# State.fit, in this order: products of the last changes, equations, right side and coefficients of
+# the fit, scratch memory for its elimination, and numbers by name
+_EQUATIONS = ROWS * ROWS
+_RIGHT = _EQUATIONS + ORDER * ORDER
+_COEFFICIENTS = _RIGHT + ORDER
+_FACTORS = _COEFFICIENTS + ORDER
+LAST, BEFORE, FITTED, _ON, _AGE, _SUM, _WITH, _WITHOUT = range(
+    _FACTORS + ORDER * ORDER, _FACTORS + ORDER * ORDER + 8)
+FIT = _WITHOUT + 1      # its size
+
+
+@compiled
+def either(condition, a, b):
+    """One of two numbers."""
+    return a if condition else b
+
+
+@compiled
+def any_positive(x):
+    """Whether a number is positive; in lanes, that of any member."""
+    return x > 0.0
+
+
+@compiled
+def row(state, steps):
+    """Changes in a step, by how many steps there were before."""
+    return at(pointer_to(state.changes), state.q.size * (steps % ROWS))
+
+
+@compiled
+def look_back(system, state, of_accelerations):
+    """Remember how the last step changed accelerations and multipliers; choose what to predict.
+
+    Changes are measured as those of increments: of accelerations times `of_accelerations`.
+    `State.fit` gets the shares LAST, BEFORE and FITTED of the last two changes and of
+    `State.fitted` in the prediction.
+    """
+    fit, steps = pointer_to(state.fit), state.control.steps + ROWS
+    _compare_periods(fit, state.control.iteration, state.control.steps)
+    now, last, before = row(state, steps), row(state, steps - 1), row(state, steps - 2)
+    weighted, fitted = pointer_to(state.correction), pointer_to(state.fitted)
+    of_none = of_line = of_parabola = of_fit = 0.0 * fit[_ON]
+    for i in range(system.diagonal.size):
+        constraint = system.is_multiplier[i]
+        w = state.weight[i] * (constraint + (1.0 - constraint) * of_accelerations)
+        x = state.aux[i] - state.aux_old[i] + constraint * (state.q[i] - state.q_old[i])
+        line = x - last[i]
+        parabola = line - (last[i] - before[i])
+        error = x - fitted[i]
+        w *= w
+        of_none += w * x * x
+        of_line += w * line * line
+        of_parabola += w * parabola * parabola
+        of_fit += w * error * error
+        now[i], weighted[i] = x, w * x
+    zero = 0.0 * of_none        # in lanes these are lanes
+    straight = of_line < BETTER * of_none
+    least = either(straight, of_line, of_none)
+    bent = of_parabola < BETTER * least
+    least = either(bent, of_parabola, least)
+    best = either(fit[_ON] > 0.0, of_fit, least) < BETTER * least
+    fit[LAST] = either(best, zero, either(bent, zero + 2.0, either(straight, zero + 1.0, zero)))
+    fit[BEFORE] = either(best, zero, either(bent, zero - 1.0, zero))
+    fit[FITTED] = either(best, zero + 1.0, zero)
+    if any_positive(fit[_ON]):
+        _fit_anew(system, state, steps)
+
+
+@compiled
+def _compare_periods(fit, corrections, steps):
+    """Count the corrections of the last step; begin a period with the fit or without it."""
+    within = steps % PERIOD
+    if within == 0:
+        mean = fit[_SUM] / (PERIOD - SETTLING)
+        on = fit[_ON] > 0.0
+        fit[_WITH] = either(on, mean, fit[_WITH])
+        fit[_WITHOUT] = either(on, fit[_WITHOUT], mean)
+        zero = 0.0 * mean
+        better = either(fit[_WITH] + WORTH < fit[_WITHOUT], zero + 1.0, zero)
+        period = steps // PERIOD
+        if period < 2:
+            better = zero + period          # the first one without the fit, the second one with it
+        elif period % TRIED_AGAIN == 0:
+            better = 1.0 - better
+        fit[_AGE] = fit[_AGE] * better
+        fit[_ON], fit[_SUM] = better, zero
+    elif within > SETTLING:
+        fit[_SUM] += corrections
+
+
+@compiled
+def _fit_anew(system, state, steps):
+    """Products of the last changes, coefficients of least squares, and the change they predict."""
+    n, fit = system.diagonal.size, pointer_to(state.fit)
+    weighted, fitted = pointer_to(state.correction), pointer_to(state.fitted)
+    for i in range(ORDER, 0, -1):
+        for j in range(ORDER, 0, -1):
+            fit[ROWS * i + j] = fit[ROWS * (i - 1) + j - 1]
+    for j in range(ROWS):
+        change, total = row(state, steps - j), 0.0 * fit[0]
+        for i in range(n):
+            total += weighted[i] * change[i]
+        fit[j] = fit[ROWS * j] = total
+    _add_equations(fit)
+    if steps % REFITTED == 0:
+        _solve(fit)
+    for i in range(n):
+        fitted[i] = fit[_COEFFICIENTS] * row(state, steps)[i]
+    for j in range(1, ORDER):
+        change, c = row(state, steps - j), fit[_COEFFICIENTS + j]
+        for i in range(n):
+            fitted[i] += c * change[i]
+
+
+@compiled
+def _add_equations(fit):
+    """Add those of the last step to the equations of the fit, of which half is kept."""
+    zero = 0.0 * fit[_AGE]
+    older = either(fit[_AGE] > 0.0, zero + FORGET, zero)
+    fit[_AGE] = fit[_AGE] + 1.0
+    counts = either(fit[_AGE] > ROWS, zero + 1.0, zero)     # before that, products are missing
+    for i in range(ORDER):
+        for j in range(i, ORDER):
+            k = _EQUATIONS + ORDER * i + j
+            fit[k] = older * fit[k] + counts * fit[ROWS * (i + 1) + j + 1]
+        fit[_RIGHT + i] = older * fit[_RIGHT + i] + counts * fit[i + 1]
+
+
+@compiled
+def _solve(fit):
+    """Coefficients of least squares: elimination of a positive matrix."""
+    A, x = at(fit, _FACTORS), at(fit, _COEFFICIENTS)
+    size = 0.0 * fit[0] + TINY
+    for i in range(ORDER):
+        for j in range(i, ORDER):
+            A[ORDER * i + j] = fit[_EQUATIONS + ORDER * i + j]
+        x[i] = fit[_RIGHT + i]
+        size += LEAST * A[ORDER * i + i]
+    for i in range(ORDER):
+        A[ORDER * i + i] += size
+    for k in range(ORDER):
+        pivot = 1.0 / A[ORDER * k + k]
+        for i in range(k + 1, ORDER):
+            factor = A[ORDER * k + i] * pivot
+            for j in range(i, ORDER):
+                A[ORDER * i + j] -= factor * A[ORDER * k + j]
+            x[i] -= factor * x[k]
+        A[ORDER * k + k] = pivot
+    for k in range(ORDER - 1, -1, -1):
+        for j in range(k + 1, ORDER):
+            x[k] -= A[ORDER * k + j] * x[j]
+        x[k] *= A[ORDER * k + k]

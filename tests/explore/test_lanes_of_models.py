@@ -1,0 +1,126 @@
+"""Models of many kinds in lanes: each member equals its single run, in whatever order."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from sebody import Model, simulate
+from sebody.analysis import Ensemble, final, maximum
+from sebody.compiler.choice import way
+from sebody.explore.ensembles import ensemble
+from sebody.explore.ensembles.handles import handle
+from sebody.fem import Section, straight_beam
+from sebody.reduction import craig_bampton
+
+TURN = Rotation.from_rotvec((0.4, -0.7, 0.5)).as_matrix()
+FOOT = np.array([3.0, -2.0, 1.0])
+SECTION = Section(area=9.0, inertia_y=6.75, inertia_z=5.1, torsion=11.387, youngs_modulus=2.1e6,
+                  poisson_ratio=0.3, density=7.8e-3)
+RUNS = 9        # one group of eight, and one run
+
+pytestmark = pytest.mark.skipif(
+    way().__name__.endswith("plain"), reason="the plain way makes runs one by one")
+
+
+def place(*point: float) -> np.ndarray:
+    return FOOT + TURN @ point
+
+
+def chain() -> Model:
+    """Three unequal links on hinges about different axes, created from the tip to the root."""
+    made, lengths, nodes = Model(), (40.0, 60.0, 50.0), {}
+    starts = np.concatenate([[0.0], np.cumsum(lengths)])
+    for k in (2, 1, 0):
+        ends = place(starts[k], 0, 0), place(starts[k + 1], 0, 0)
+        body = craig_bampton(straight_beam(*ends, SECTION, elements=4), [(0, "full"), (4, "full")],
+                             modes=4)
+        nodes[k] = [made.node(f"{name} {k}", point)
+                    for name, point in zip(("root", "end"), body.coordinates, strict=True)]
+        made.superelement(f"link {k}", body, nodes[k], inertia="material")
+    for k, axis in enumerate(((0, 0, 1), (0, 0.6, 0.8))):
+        made.revolute(nodes[k][1], TURN @ axis, nodes[k + 1][0], name=f"hinge {k}")
+    made.revolute(nodes[0][0], axis=TURN @ (0, 1, 0), name="foot")
+    made.attach("tip", place(150.0, 1.0, 2.0), nodes[2][1])
+    made.force(nodes[2][1], TURN @ (0, 1, 1), [(0, 0), (0.02, 1e4), (0.05, -3e3)], name="load")
+    made.gravity((0.0, -400.0, 900.0))
+    return made
+
+
+def many_modes() -> Model:
+    """A beam of 32 modes on a turned hinge."""
+    body = craig_bampton(straight_beam(place(0, 0, 0), place(100.0, 0, 0), SECTION, elements=8),
+                         [(0, "full"), (8, "full")], modes=32)
+    made = Model()
+    base, tip = (made.node(name, point) for name, point in zip(("base", "tip"), body.coordinates,
+                                                               strict=True))
+    made.superelement("beam", body, [base, tip], inertia="material")
+    made.gravity((0.0, -400.0, 900.0))
+    made.revolute(base, axis=TURN @ (0, 0, 1), name="hinge")
+    made.force(tip, TURN @ (0, 1, 1), [(0, 0), (0.02, 1e4), (0.05, -3e3)], name="load")
+    return made
+
+
+def beam_on(made: Model, modes: int) -> list:
+    """A beam that stands on a coupler, with its nodes."""
+    body = craig_bampton(straight_beam(place(0, 30.0, 0), place(70.0, 60.0, 20.0), SECTION,
+                                       elements=6), [(0, "full"), (6, "full")], modes=modes)
+    nodes = [made.node(name, point) for name, point in zip(("left", "tip"), body.coordinates,
+                                                           strict=True)]
+    made.superelement("beam", body, nodes, inertia="material")
+    return nodes
+
+
+def redundant(modes: int | None = None) -> Model:
+    """A spatial parallelogram of rigid bodies, whose hinges are parallel, perhaps with a beam.
+
+    Three equations of the loop are too many.
+    """
+    made, axis = Model(), TURN @ (0, 0, 1)
+    if modes is None:
+        left = made.node("left", place(0, 30.0, 0))
+        tip = made.attach("tip", place(70.0, 60.0, 20.0), left)
+    else:
+        left, tip = beam_on(made, modes)
+    made.rigid_body("coupler", left, 30.0, np.diag((3e3, 6e3, 8e3)), place(50.0, 30.0, 0))
+    right = made.attach("right", place(100.0, 30.0, 0), left)
+    for k, (x, top) in enumerate(((0.0, left), (100.0, right))):
+        hub = made.node(f"hub {k}", place(x, 0, 0))
+        made.rigid_body(f"bar {k}", hub, 40.0, np.diag((4e3, 5e3, 9e3)), place(x, 15.0, 0))
+        made.revolute(hub, axis=axis, name=f"foot {k}")
+        made.revolute(made.attach(f"head {k}", top.point, hub), axis, top, name=f"pin {k}")
+    made.force(tip, TURN @ (1, 0.3, 0), [(0, 0), (0.02, 4e4), (0.05, -3e4)], name="load")
+    made.gravity((0.0, -400.0, 900.0))
+    return made
+
+
+def stiff(made: Model) -> list[str]:
+    return [f"{name}.stiffness" for name in made.bodies]
+
+
+@pytest.mark.parametrize("build", [chain, many_modes, redundant, lambda: redundant(16)])
+def test_members_equal_single_runs(build, monkeypatch):
+    """Stiffness, loads and gravity vary; alone and backwards the bits are the same."""
+    monkeypatch.setattr(ensemble, "WORTH_IT", 0)
+    rng, made, h, steps = np.random.default_rng(3), build(), 1e-3, 60
+    given = {name: rng.uniform(0.7, 1.5, RUNS) for name in stiff(made)}
+    given |= {"load.amplitude": rng.uniform(-1, 2, RUNS), "gravity": rng.uniform(-900, 900,
+                                                                               (RUNS, 3))}
+    outputs = {"course": "tip.position", "most": maximum("tip.velocity"),
+               "energy": final("energy.strain")}
+    many = Ensemble(made, h)
+    found = many.run(given, steps * h, outputs)
+    assert found.in_lanes == RUNS and not found.failures
+    for runs in (slice(None, None, -1), slice(4, 5)):
+        other = many.run({name: v[runs] for name, v in given.items()}, steps * h, outputs)
+        for name, values in other.values.items():
+            np.testing.assert_array_equal(values, found.values[name][runs])
+    for run in (0, 8):
+        alone = build()
+        for name, values in given.items():
+            handle(alone, name).set(np.asarray(values[run], dtype=float))
+        result = simulate(alone, h, steps * h)
+        size = np.abs(result["tip.position"]).max()
+        assert np.abs(found["course"][run] - result["tip.position"]).max() < 1e-10 * size
+        speed = np.abs(result["tip.velocity"]).max()
+        assert np.abs(found["most"][run] - result["tip.velocity"].max(axis=0)).max() < 1e-8 * speed
+        assert found["energy"][run] == pytest.approx(result["energy.strain"][-1], rel=1e-6)
