@@ -7,6 +7,7 @@ in the axes of their own frame, all others in global axes (-1).
 """
 
 from collections.abc import Iterable, Mapping
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,19 +63,44 @@ def rotated_blocks(shapes: Iterable[Shape],
             np.array(blocks, dtype=np.int64).reshape(-1, 5))
 
 
-def summands(shapes: Iterable[Shape], rotated: NDArray, linked: NDArray,
-             kept: NDArray) -> tuple[NDArray, NDArray]:
-    """The members `J_place` and `summands` of `System`, from the `kept` entries of `State.J`.
+def summands(shapes: Iterable[Shape], rotated: NDArray, linked: NDArray, kept: NDArray,
+             entries: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+    """The members `J_place`, `J_entry` and `summands` of `System`.
 
-    `rotated` and `linked` are `System.rotated_blocks` and `Links.elements`.
+    Parameters
+    ----------
+    rotated, linked
+        `System.rotated_blocks` and `Links.elements`.
+    kept, entries
+        Entries of `State.J` that are summed, and what entries of the matrix they belong to.
     """
     width = [s.width for s in shapes for _ in s.unknowns]
     start = starts(w * w for w in width)
-    rows = np.full((len(width), 7), -1)
+    rows = np.full((len(width), 8), -1)
     rows[:, 0], rows[:, 1] = start[:-1], width
     firsts = np.searchsorted(rotated[:, 0], start)
     rows[:, 2], rows[:, 3] = firsts[:-1], firsts[1:]
     rows[np.searchsorted(start, linked[:, 0]), 4] = np.arange(len(linked))
     ends = np.searchsorted(kept, start)
-    rows[:, 5], rows[:, 6] = ends[:-1], ends[1:]
-    return (kept - np.repeat(start[:-1], np.diff(ends))).astype(np.int32), rows
+    places = (kept - np.repeat(start[:-1], np.diff(ends))).astype(np.int32)
+    return *_shared(places, entries.astype(np.int32), ends, rows), rows
+
+
+def _shared(places: NDArray, entries: NDArray, ends: NDArray,
+            rows: NDArray) -> tuple[NDArray, NDArray]:
+    """Places and entries of elements; those that only lie elsewhere in the matrix share theirs.
+
+    The links of a chain do, whose lists would fill a processor's cache otherwise.
+    """
+    known: dict[bytes, int] = {}
+    size, pieces = 0, []
+    for row, (first, end) in zip(rows, pairwise(ends.tolist()), strict=True):
+        own, to = places[first:end], entries[first:end]
+        shift = to[0] if end > first else 0
+        key = own.tobytes() + (to - shift).tobytes()
+        if key not in known:
+            known[key] = size
+            pieces.append((own, to - shift))
+            size += end - first
+        row[5], row[6], row[7] = known[key], known[key] + end - first, shift
+    return tuple(np.concatenate([piece[k] for piece in pieces]) for k in range(2))

@@ -19,6 +19,13 @@ from sebody.assembly.contracts import (
     positions_of,
 )
 from sebody.assembly.controller_rows import ActuatorRow, law_constants, law_counts, law_row
+from sebody.assembly.equal_bodies import (
+    FEWEST,
+    behind_row,
+    evaluated_together,
+    kernel_together,
+    likeness,
+)
 from sebody.assembly.floating import floating_constants, frame_conditions
 from sebody.assembly.numbering import Numbering, coordinates
 from sebody.assembly.rigid_part_constants import rigid_part_constants
@@ -49,7 +56,10 @@ class Shape(NamedTuple):
 
 
 class Batch(NamedTuple):
-    """Elements that share a kernel, numbers of positions and rotations, and of unknowns."""
+    """Elements that share a kernel, numbers of positions and rotations, and of unknowns.
+
+    Equal bodies of large models are batches of their own.
+    """
 
     kernel: ModuleType
     width: int
@@ -123,11 +133,12 @@ def make_batches(model: Mechanism, numbering: Numbering) -> Batches:
 def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants) -> list[Batch]:
     batches: dict[tuple, Batch] = {}
     known: dict[tuple, tuple[int, int]] = {}
+    together = evaluated_together(model) if numbering.free >= FEWEST else set()
     for frame, body in enumerate(model.bodies.values()):
         kernel = load(body.kernel)
         check_superelement(body, kernel)
-        how = body.kernel, body.stiffening, tuple(body.alpha), tuple(body.alpha_r)
-        key = body.reduced, *how
+        key = likeness(body)
+        how = key[1:]
         if key not in known:
             rows = _rows.setdefault(body.reduced, {})
             if how not in rows:
@@ -142,7 +153,11 @@ def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants)
         row = index_row(body.name, kernel, unknowns, constants=at_constants, frame=frame,
                         port=numbering.ports.get(body, 0), positions=len(body.positions),
                         nodes=[numbering.rotations.get(t, 0) for t in body.rotations])
-        _append(batches, kernel, frame, row, unknowns, body, full)
+        if key in together:
+            _append(batches, kernel_together(), frame, row + behind_row(body), unknowns, body, full,
+                    at_constants)
+        else:
+            _append(batches, kernel, frame, row, unknowns, body, full)
     return list(batches.values())
 
 
@@ -206,8 +221,8 @@ def _matrices(numbering: Numbering, element: Element) -> list[int]:
 
 
 def _append(batches: dict[tuple, Batch], kernel: ModuleType, frame: int, row: list[int],
-            unknowns: list[int], owner: int, full: int) -> None:
-    key = kernel.__name__, row[AT_POSITIONS], row[AT_ROTATIONS], len(unknowns), len(row)
+            unknowns: list[int], owner: int, full: int, like: int = -1) -> None:
+    key = kernel.__name__, row[AT_POSITIONS], row[AT_ROTATIONS], len(unknowns), len(row), like
     batch = batches.setdefault(key, Batch(kernel, len(unknowns), [], [], [], [], []))
     batch.frames.append(frame)
     batch.rows.append(row)

@@ -7,6 +7,7 @@ from sebody.assembly.axes import frames
 from sebody.assembly.batches import Batches, make_batches, starts
 from sebody.assembly.contracts import check_joints
 from sebody.assembly.control import control_arrays
+from sebody.assembly.equal_bodies import room_of
 from sebody.assembly.links import Ends, link_ends
 from sebody.assembly.numbering import Numbering, number, stretch
 from sebody.assembly.ports import port_arrays
@@ -93,7 +94,7 @@ def work_size(model: Mechanism) -> int:
              for one in model.loads if one.point is not None]
     elements = max((sum(t.start.size for t in one.dof_blocks) for one in model.loads), default=0)
     rows += [_law_scratch(model, one) for one in model.loads if one.law is not None]
-    return max([*rows, 64, 4 * elements])
+    return max([*rows, 64, 4 * elements, room_of(model)])
 
 
 def _law_scratch(model: Mechanism, element: Element) -> int:

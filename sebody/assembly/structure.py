@@ -56,13 +56,13 @@ def indices(of: Structure) -> Indices:
                        sparse_layout(row, column, of.free, np.array(of.groups)))
     own_entries, linked_entries = entries[:len(own_row)], entries[len(own_row):]
     kept = np.flatnonzero(own_entries < len(matrix["rows"]))
-    places, table = summands(of.shapes, blocks, links["elements"], kept)
+    places, to, table = summands(of.shapes, blocks, links["elements"], kept, own_entries[kept])
     first_load = sum(len(s.unknowns) * s.width ** 2 for s in of.shapes[:of.first_power])
     linked = of.coupling or bool((blocks[:, 0] < first_load).any())
     arms = len(linked_entries) - len(of.ends.arms) * of.ends.rotation_size**2
     return Indices(
-        {**_batch_arrays(of.shapes), **matrix, "J_place": places,
-         "J_entry": own_entries[kept].astype(np.int32), "is_multiplier": is_multiplier,
+        {**_batch_arrays(of.shapes), **matrix, "J_place": places, "J_entry": to,
+         "is_multiplier": is_multiplier,
          "constraint_columns": _constraint_columns(matrix, is_multiplier, of.free),
          "rotated": rotated,
          "rotated_blocks": blocks, "summands": table, "linked": np.array([int(linked)]),

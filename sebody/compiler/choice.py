@@ -72,3 +72,12 @@ def _untested_fails() -> str:
     outcome = "" if done.returncode == 0 else f"a trial of sebody's own compilation failed ({said})"
     store.write(here, name, made_from, outcome.encode() or _GOOD)
     return outcome
+
+
+def why_no_lanes() -> str:
+    """Why kernels cannot be compiled for eight numbers at a time; empty where they can."""
+    if way().__name__ == "sebody.compiler.plain":
+        return "the plain way to compile"
+    if "+avx2" not in way().processor()[1].split(","):
+        return "a processor without AVX2"
+    return ""

@@ -20,7 +20,7 @@ from sebody.engine.state import EVALUATED
 from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.dense import columns_times
 
-SUMMAND = 7             # numbers of an element in System.summands
+SUMMAND = 8             # numbers of an element in System.summands
 ROUNDING = 8.0 * 2.2e-16        # left of a position by rounding, relative to its magnitude
 THIN = 1e-6             # smallest moment of inertia that scales its axis, relative to the largest
 
@@ -49,8 +49,9 @@ def clear_matrix(system, state):
 def sum_element(system, state, element):
     """Add an element matrix, its positions rotated to the axes they are solved for in."""
     summand = at(pointer_to(system.summands), SUMMAND * element)
-    start, width, first_rotated, end_rotated, linked, first, end = (
-        summand[0], summand[1], summand[2], summand[3], summand[4], summand[5], summand[6])
+    start, width, first_rotated, end_rotated, linked, first, end, shift = (
+        summand[0], summand[1], summand[2], summand[3], summand[4], summand[5], summand[6],
+        summand[7])
     own, J = at(pointer_to(state.J), start), pointer_to(state.rotated_matrix)
     if first_rotated < end_rotated or linked >= 0:
         for k in range(width * width):
@@ -62,7 +63,7 @@ def sum_element(system, state, element):
         add_expanded(system.links, linked, J, state.frames, state.q, state.R, state.T,
                      state.matrix, state.expansion)
         return
-    matrix, places, entries = (pointer_to(state.matrix), pointer_to(system.J_place),
+    matrix, places, entries = (at(pointer_to(state.matrix), shift), pointer_to(system.J_place),
                                pointer_to(system.J_entry))
     for k in range(first, end):
         matrix[entries[k]] += own[places[k]]

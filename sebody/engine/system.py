@@ -32,8 +32,9 @@ class System(Arrays):
     constants           constants of all elements
     g_unknown           coordinate of every entry of `State.g`
     J_place             entries of element matrices that are summed, from the start of each matrix:
-                        not those of fixed coordinates, nor zeros between internal modes
-    J_entry             entry of the matrix for each of them
+                        not those of fixed coordinates, nor zeros between internal modes;
+                        elements with the same pattern share them
+    J_entry             entry of the matrix for each of them, from the first of the element on
     ------------------  ----------------------------------------------------------------------------
     iteration matrix: by columns, or in the blocks of a sparse elimination
     ------------------------------------------------------------------------------------------------
@@ -63,9 +64,9 @@ class System(Arrays):
     rotated_blocks      (k, 5) positions in element matrices that are in other axes than they are
                         solved for in: start and width of the matrix, row, axes of the unknown, of
                         the matrix
-    summands            (elements, 7) start and width of the element matrix, first and last + 1 row
+    summands            (elements, 8) start and width of the element matrix, first and last + 1 row
                         of `rotated_blocks`, row of `Links.elements` or -1, first and last + 1 of
-                        `J_place`
+                        `J_place`, first entry of the matrix
     linked              (1,) 1 where bodies that rotate against each other are coupled
     ------------------  ----------------------------------------------------------------------------
     power ports

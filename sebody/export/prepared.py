@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.assembly.control import begin
+from sebody.assembly.equal_bodies import evaluate_alone
 from sebody.assembly.motions import motion_kernel
 from sebody.compiler.choice import way
 from sebody.compiler.user_functions import ControlFunction
@@ -81,6 +82,7 @@ class Prepared:
             self.identifier = f"model_{self.identifier}"
         made, asked = with_inputs(model, inputs_of)
         self.run = Simulation(made, run.h, run.scheme, 1, run.tolerance, run.start)
+        evaluate_alone(made, self.run.system)       # others need this machine's vectors
         self.model, self._numbering = made, self.run.numbering
         called_at_samples = {one.name for one in sampled(made)}
         if any(one.name.rpartition(".parameters.")[0] in called_at_samples for one in asked):

@@ -17,7 +17,7 @@ from sebody.contract.counts import LANES
 
 FLOATS, WORD = types.CPointer(types.float64), ir.IntType(64)
 VECTOR = ir.VectorType(ir.DoubleType(), LANES)
-
+POINTER = ir.DoubleType().as_pointer()
 
 _lanes: dict[Callable, Callable] = {}       # writers of products in lanes, by those of numbers
 

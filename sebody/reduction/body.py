@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from weakref import WeakKeyDictionary, WeakValueDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,6 +26,10 @@ from sebody.reduction.rigid_motions import rigid_motions, strainless_coordinates
 from sebody.reduction.summary import mode_lines, place
 from sebody.tabular import counted
 from sebody.units import parsed_units
+
+# bodies that are in use, by the rotation of what they were made of
+_rotated: WeakKeyDictionary[ReducedBody, WeakValueDictionary[bytes, ReducedBody]] = (
+    WeakKeyDictionary())
 
 
 def _read_only(array: NDArray) -> NDArray:
@@ -293,6 +298,8 @@ class ReducedBody:
     def rotated(self, rotation: ArrayLike) -> ReducedBody:
         """The same body rotated by `rotation` about the FE origin, in the old axes.
 
+        Bodies rotated alike are one object as long as it is in use.
+
         Parameters
         ----------
         rotation : (3, 3), planar (2, 2)
@@ -304,6 +311,13 @@ class ReducedBody:
             `rotation` is not a rotation of the body's dimension.
         """
         rotation = inputs.rotation(rotation, "rotation", self.coordinates.shape[1])
+        known = _rotated.setdefault(self, WeakValueDictionary())
+        body = known.get(rotation.tobytes())
+        if body is None:
+            body = known[rotation.tobytes()] = self._rotated(rotation)
+        return body
+
+    def _rotated(self, rotation: NDArray) -> ReducedBody:
         angles = len(self.rotation_nodes)
         by = block_diag(
             np.kron(np.eye(len(self.position_nodes)), rotation),

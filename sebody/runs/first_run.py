@@ -4,7 +4,7 @@ The parts of the loop are compiled for the types of a small model's arrays, whic
 every model. Kernels are known by name. Nothing is printed or done if everything is in the cache.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from functools import cache
 from pathlib import Path
 from threading import Lock
@@ -16,6 +16,7 @@ from numba import typeof
 from sebody.assembly.allocation import allocate
 from sebody.assembly.build import build
 from sebody.assembly.contracts import check_joints
+from sebody.assembly.equal_bodies import is_compiled_together, kernels_together
 from sebody.assembly.motions import motion_kernel
 from sebody.compiler.choice import way
 from sebody.compiler.decorators import is_compiled
@@ -33,6 +34,7 @@ from sebody.results import motion, postprocessing
 from sebody.runs.schemes import generalized_alpha
 
 SECONDS_A_LETTER = 7e-5         # of a kernel's file, of one processor
+OF_EIGHT = 1.5                  # times that for eight bodies at a time
 
 _lock = Lock()
 _ready: set[str] = set()        # kernels and parts of the loop this process need not ask for again
@@ -93,28 +95,42 @@ def prepare(models: Iterable[Mechanism]) -> None:
     kernels = {body.kernel for body in bodies} | {motion_kernel(body) for body in bodies}
     kernels |= {element_kernel_name(e.kind) for model in models
                 for e in (*model.rigid_bodies.values(), *model.constraints, *model.loads)}
-    if not _ready.issuperset(kernels) or not _ready.issuperset(PARTS):
-        compile_missing(kernels, PARTS)
+    together = kernels_together(models)
+    if not _ready.issuperset({*kernels, *PARTS, *map(_of_eight, together)}):
+        compile_missing(kernels, PARTS, together=together)
 
 
 def compile_missing(kernels: Iterable[str], parts: Iterable[str] = (),
-                    report: Callable[[str, float], None] | None = None) -> None:
+                    report: Callable[[str, float], None] | None = None,
+                    together: Collection[str] = ()) -> None:
     """Compile kernels and parts of the loop by name, where the cache lacks them.
 
     Parameters
     ----------
     report : callable, optional
         Called with the name of everything that was compiled and the seconds it took.
+    together : collection of str
+        Kernels that are compiled for eight bodies at a time, too.
     """
     with _lock:
         kernels = {name: path for name in sorted(set(kernels) - _ready) if (path := _file(name))}
         missing = {name: path for name, path in kernels.items() if not is_compiled(path)}
         lacking = [name for name in parts
                    if name not in _ready and not way().is_compiled(PARTS[name].function)]
-        _ready.update(kernels, parts)
+        of_eight = {name: path for name in sorted(together) if _of_eight(name) not in _ready
+                    and (path := _file(name)) and not is_compiled_together(path)}
+        _ready.update(kernels, parts, map(_of_eight, together))
+        count = len(missing) + len(of_eight)
         what = ["the time loop"] * bool(lacking)
-        what += [f"{len(missing)} kernel{'s' * (len(missing) > 1)}"] * bool(missing)
-        compile_apart(_jobs(missing, lacking), " and ".join(what), Path(loop.__file__), report)
+        what += [f"{count} kernel{'s' * (count > 1)}"] * bool(count)
+        jobs = _jobs(missing, lacking) + [
+            Job(Task(_of_eight(name), "sebody.assembly.equal_bodies:compile_together", (name,),
+                     (name,)), OF_EIGHT * _seconds(path)) for name, path in of_eight.items()]
+        compile_apart(jobs, " and ".join(what), Path(loop.__file__), report)
+
+
+def _of_eight(kernel: str) -> str:
+    return f"{kernel} for eight bodies"
 
 
 def _jobs(kernels: dict[str, Path], parts: list[str]) -> list[Job]:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sebody.assembly.equal_bodies import evaluated_together
 from sebody.compiler import choice
 from sebody.contract.layout import INPUT
 from sebody.explore.ensembles.start_values import Image
@@ -40,6 +41,8 @@ FACTS = (
         part in name for part in CHOOSING for name in kernels_of(one.model))),
     Fact("elements that keep numbers from step to step",
          lambda one: one.state.frames.size > 9 * len(one.model.bodies)),
+    Fact("equal bodies, of which each run evaluates eight at a time",
+         lambda one: bool(evaluated_together(one.model))),
     Fact("loads at whose jumps accelerations are solved for anew",
          lambda one: bool(one.system.jumps.any())),
 )
@@ -53,10 +56,8 @@ def why_one_by_one(template: Simulation) -> str:
     template : Simulation
         Of the model as built.
     """
-    if choice.way().__name__ == "sebody.compiler.plain":
-        return "the plain way to compile"
-    if "+avx2" not in choice.way().processor()[1].split(","):
-        return "a processor without AVX2"
+    if reason := choice.why_no_lanes():
+        return reason
     for fact in FACTS:
         if fact.holds(template):
             return fact.reason

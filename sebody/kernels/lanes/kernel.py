@@ -11,6 +11,10 @@ from sebody.compiler.inside.lane_kernels import is_kept_in_lanes, kernel_in_lane
 from sebody.compiler.inside.lanes import lanes
 from sebody.compiler.sources import kernel_hash
 from sebody.contract.layout import ARGUMENTS
+from sebody.kernels.lanes import frame_search, packed_products, products, rotations
+
+# imported: puts in place what kernels call
+CALLED = frame_search, packed_products, products, rotations
 
 _POINTERS = {"int64": types.CPointer(types.int64), "float64": types.CPointer(lanes)}
 

@@ -1,0 +1,73 @@
+"""Long chains: links eight at a time beside the same links one by one, pair by pair.
+
+    python tests/benchmarks/bench_chain.py [--json] [--pairs N] [--links N ...]
+
+The default body and option B, 100 steps. A time is that of the processor in the loop; printed are
+the least microseconds a step, the median ratio of pairs, and the largest deviation of a coordinate
+at the end. `sebody bench chain` has the times of all lengths beside Exudyn.
+"""
+
+import argparse
+import json
+import statistics
+import time
+import types
+import warnings
+
+import numpy as np
+
+from sebody import Simulation
+from sebody.assembly.equal_bodies import evaluate_alone
+from sebody.runs import simulation as runs
+from sebody.scenes import chain
+
+OPTIONS = {"default": {}, "B": {"inertia": "material"}}
+
+
+def run(links: int, option: str, together: bool, until: float) -> tuple[float, Simulation]:
+    """Microseconds a step, and the run."""
+    scene = chain.build(links=links, **OPTIONS[option])
+    one = Simulation(scene.model, scene.h)
+    if not together:
+        evaluate_alone(scene.model, one.system)
+    one.run_to(until)
+    return one.seconds / one.result().steps * 1e6, one
+
+
+def measure(links: int, option: str, pairs: int, until: float = 1.0) -> dict[str, float]:
+    """One row of the table."""
+    spent = []
+    for k in range(pairs):
+        turns = (True, False) if k % 2 else (False, True)
+        both = {how: run(links, option, how, until) for how in turns}
+        spent.append((both[True][0], both[False][0]))
+    (_, one), (_, other) = both[True], both[False]
+    return {"together": min(a for a, _ in spent), "alone": min(b for _, b in spent),
+            "ratio": statistics.median(b / a for a, b in spent),
+            "iterations": one.result().iterations_per_step,
+            "deviation": float(np.abs(one.state.q - other.state.q).max())}
+
+
+def main(given=None):
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--json", action="store_true", help="for programs")
+    parser.add_argument("--pairs", type=int, default=5)
+    parser.add_argument("--links", type=int, nargs="*", default=[64, 256, 1024])
+    chosen = parser.parse_args(given)
+    runs.time = types.SimpleNamespace(perf_counter=time.thread_time)
+    warnings.simplefilter("ignore")
+    rows = {f"{links}, {option}": measure(links, option, chosen.pairs)
+            for links in chosen.links for option in OPTIONS}
+    if chosen.json:
+        print(json.dumps(rows))
+        return
+    print("| links | together, us | one by one, us | ratio | iterations | deviation |\n"
+          "|---|---|---|---|---|---|")
+    for name, row in rows.items():
+        print(f"| {name} | {row['together']:.0f} | {row['alone']:.0f} | {row['ratio']:.2f} | "
+              f"{row['iterations']:.2f} | {row['deviation']:.0e} |")
+
+
+if __name__ == "__main__":
+    main()
