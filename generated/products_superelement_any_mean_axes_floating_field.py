@@ -33,16 +33,20 @@ from sebody.kernels.dense import (
     add_rows_times,
     block_times,
     clear,
+    columns_times,
     inverse_3,
     rows_times,
 )
 from sebody.kernels.frame_search import mean_axes
 from sebody.kernels.packed_products import (
+    add_couplings,
     add_packed,
     add_packed_times,
+    couplings_times,
     from_free,
     packed_room,
     packed_times,
+    packed_times_both,
     to_free,
 )
 from sebody.kernels.rotations import inverse_tangent_coefficients, inverse_tangent_second
@@ -57,11 +61,11 @@ ROTATIONS = None      # first rotation among the local coordinates
 MODES = None          # first internal mode
 DAMPED = None        # has structural damping, None where a body tells
 N_MODES = None        # their number, None where it is read at run time
-WORK_ROWS = 135
+WORK_ROWS = 137
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (1101, 276, 654, 1),
+OPERATIONS = {"residual": (1107, 276, 654, 1),
               "column": (159, 360, 2690, 4)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("Gam", ("n", "turns"), "mean rotation of y, a column for each coordinate"),
@@ -74,8 +78,8 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),
     Part("J0", ("pairs",), "moments of inertia at rest"),
     Part("moment_columns", ("N", "lines"), "S1, g_k, h_kl + h_lk", columns=True),
-    Part("of_place", ("placed", "N", "N"), "J2_kl, K_k^T", packed=True),
-    Part("of_rate", ("rated", "N", "N"), "K_k^T, K_k^T - K_k", packed=True),
+    Part("moment_rows", ("lines", "N"), "its transpose", columns=True),
+    Part("couplings", ("coupled", "N", "N"), "J2_kl, K_k^T; K_k^T and K_k of rates", packed=True),
     Part("Mz", (1, "N", "N"), "reduced mass with slaved coordinates", packed=True),
     Part("Cz", ("damped", "free", "free"), "reduced damping", packed=True),
     Part("followers", ("slaved", "free", "free"), "Q_b", packed=True),
@@ -131,52 +135,51 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         s = at(work, 24 + 30*row)
         h = at(work, 24 + 31*row)
         e2s = at(work, 24 + 32*row)
-        by_place = at(work, 24 + 33*row)
-        by_rate = at(work, 24 + 34*row)
-        ones = at(work, 24 + 35*row)
-        by_followers = at(work, 24 + 36*row)
-        of_E = at(work, 24 + 37*row)
-        of_Gy = at(work, 24 + 38*row)
-        dy = at(work, 24 + 39*row)
-        dz = at(work, 24 + 40*row)
-        dlocal = at(work, 24 + 41*row)
-        dyd = at(work, 24 + 42*row)
-        dacc = at(work, 24 + 43*row)
-        deta = at(work, 24 + 44*row)
-        detad = at(work, 24 + 45*row)
-        dgamma = at(work, 24 + 46*row)
-        dzd = at(work, 24 + 47*row)
-        dzdd = at(work, 24 + 48*row)
-        ds = at(work, 24 + 49*row)
-        dh = at(work, 24 + 50*row)
-        dg = at(work, 24 + 51*row)
-        bdqe = at(work, 24 + 52*row)
-        bdve = at(work, 24 + 53*row)
-        bdae = at(work, 24 + 54*row)
-        bdy = at(work, 24 + 55*row)
-        bdz = at(work, 24 + 56*row)
-        bdlocal = at(work, 24 + 57*row)
-        bdyd = at(work, 24 + 58*row)
-        bdacc = at(work, 24 + 59*row)
-        bdeta = at(work, 24 + 60*row)
-        bdetad = at(work, 24 + 61*row)
-        bdgamma = at(work, 24 + 62*row)
-        bdzd = at(work, 24 + 63*row)
-        bdzdd = at(work, 24 + 64*row)
-        bds = at(work, 24 + 65*row)
-        bdh = at(work, 24 + 66*row)
-        bdg = at(work, 24 + 67*row)
-        temporary = at(work, 24 + 68*row)
-        unordered = at(work, 24 + 69*row)
-        Zq = at(work, 24 + 72*row)
-        Zd = at(work, 24 + 84*row)
-        products = at(work, 24 + 96*row)
-        Za = at(work, 24 + 111*row)
-        more = at(work, 24 + 123*row)
-        Gy = at(work, 24 + 135*row)
-        Lz = at(work, 24 + (135 + n + 18)*row)
-        Lv = at(work, 24 + (135 + 2*(n + 18))*row)
-        La = at(work, 24 + (135 + 3*(n + 18))*row)
+        by_couplings = at(work, 24 + 33*row)
+        ones = at(work, 24 + 34*row)
+        by_followers = at(work, 24 + 35*row)
+        of_E = at(work, 24 + 36*row)
+        of_Gy = at(work, 24 + 37*row)
+        dy = at(work, 24 + 38*row)
+        dz = at(work, 24 + 39*row)
+        dlocal = at(work, 24 + 40*row)
+        dyd = at(work, 24 + 41*row)
+        dacc = at(work, 24 + 42*row)
+        deta = at(work, 24 + 43*row)
+        detad = at(work, 24 + 44*row)
+        dgamma = at(work, 24 + 45*row)
+        dzd = at(work, 24 + 46*row)
+        dzdd = at(work, 24 + 47*row)
+        ds = at(work, 24 + 48*row)
+        dh = at(work, 24 + 49*row)
+        dg = at(work, 24 + 50*row)
+        bdqe = at(work, 24 + 51*row)
+        bdve = at(work, 24 + 52*row)
+        bdae = at(work, 24 + 53*row)
+        bdy = at(work, 24 + 54*row)
+        bdz = at(work, 24 + 55*row)
+        bdlocal = at(work, 24 + 56*row)
+        bdyd = at(work, 24 + 57*row)
+        bdacc = at(work, 24 + 58*row)
+        bdeta = at(work, 24 + 59*row)
+        bdetad = at(work, 24 + 60*row)
+        bdgamma = at(work, 24 + 61*row)
+        bdzd = at(work, 24 + 62*row)
+        bdzdd = at(work, 24 + 63*row)
+        bds = at(work, 24 + 64*row)
+        bdh = at(work, 24 + 65*row)
+        bdg = at(work, 24 + 66*row)
+        temporary = at(work, 24 + 67*row)
+        unordered = at(work, 24 + 68*row)
+        Zq = at(work, 24 + 71*row)
+        Zd = at(work, 24 + 83*row)
+        products = at(work, 24 + 95*row)
+        Za = at(work, 24 + 110*row)
+        more = at(work, 24 + 122*row)
+        Gy = at(work, 24 + 137*row)
+        Lz = at(work, 24 + (137 + n + 18)*row)
+        Lv = at(work, 24 + (137 + 2*(n + 18))*row)
+        La = at(work, 24 + (137 + 3*(n + 18))*row)
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
@@ -205,9 +208,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         c0 = at(order, free)
         J0 = at(c0, 3)
         moment_columns = at(J0, 6)
-        of_place = at(moment_columns, 12*padded(N))
-        of_rate = at(of_place, packed_room(9, N, N))
-        Mz = at(of_rate, packed_room(6, N, N))
+        moment_rows = at(moment_columns, 12*padded(N))
+        couplings = at(moment_rows, N*padded(12))
+        Mz = at(couplings, packed_room(15, N, N))
         Cz = at(Mz, packed_room(1, N, N))
         followers = at(Cz, packed_room(damped, free, free))
         lam = at(followers, packed_room(slaved, free, free))
@@ -581,22 +584,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # coordinates that determine the others, and their rates
             all_to_free(y, eta, etad, axes, order, unordered, z, zd, zdd, bound, bound_free, free,
                         hN)
-            # Q_b z, all b
-            packed_times(followers, z, Zq, slaved*hn)
-            # Q_b zd, all b
-            packed_times(followers, zd, Zd, slaved*hn)
+            # Q_b z and Q_b zd, all b
+            packed_times_both(followers, z, zd, Zq, Zd, slaved*hn)
             # eta_b = y . Q_b y / 2, their rates and second rates
             follow(Zq, Zd, z, zd, zdd, free, slaved, hn)
-            # J2_kl z and K_k^T z
-            packed_times(of_place, z, products, 9*hN)
-            # K_k^T zdot and (K_k^T - K_k) zdot
-            packed_times(of_rate, zd, at(products, 9*hN), 6*hN)
+            # J2_kl z, K_k^T z, K_k^T zdot and K_k zdot
+            couplings_times(couplings, z, zd, products, 15*hN)
             # first moments, couplings, inertia at rest, by z
-            rows_times(moment_columns, z, line0, N, 12, hN)
+            columns_times(moment_rows, z, line0, 12, N)
             # first moments, couplings, inertia at rest, by zd
-            rows_times(moment_columns, zd, line1, N, 12, hN)
+            columns_times(moment_rows, zd, line1, 12, N)
             # first moments, couplings, inertia at rest, by zdd
-            rows_times(moment_columns, zdd, line2, N, 8, hN)
+            columns_times(moment_rows, zdd, line2, 12, N)
             # quadratic parts, by z
             rows_times(products, z, product0, N, 8, hN)
             # quadratic parts, by zd
@@ -699,12 +698,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             by_products[6] = turning_x
             by_products[7] = turning_y
             by_products[8] = turning_z
-            by_products[9] = 0.0
-            by_products[10] = 0.0
-            by_products[11] = 0.0
-            by_products[12] = spin_x
-            by_products[13] = spin_y
-            by_products[14] = spin_z
+            by_products[9] = spin_x
+            by_products[10] = spin_y
+            by_products[11] = spin_z
+            by_products[12] = -spin_x
+            by_products[13] = -spin_y
+            by_products[14] = -spin_z
             # inertia force of deformation, Mbar zddot
             packed_times(Mz, zdd, local, hN)
             # damping force, Cbar ydot
@@ -898,29 +897,27 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e2s[j] = inverse_tangent_second(psi_x*psi_x + psi_y*psi_y + psi_z*psi_z)
-            # J2_kl zdot
-            packed_times(of_place, zd, more, 9*hN)
-            # K_k^T zddot and (K_k^T - K_k) zddot
-            packed_times(of_rate, zdd, at(more, 6*hN), 6*hN)
+            # J2_kl zdot, K_k^T zddot and K_k zddot
+            couplings_times(couplings, zd, zdd, more, 15*hN)
             # factors of the local tangents
             turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             t151 = 2*c_geo*spin_x
-            by_place[0] = -c_geo*spin_x*spin_x
-            by_place[1] = -c_geo*spin_y*spin_y
-            by_place[2] = -c_geo*spin_z*spin_z
-            by_place[3] = -spin_y*t151
-            by_place[4] = -spin_z*t151
-            by_place[5] = -2*c_geo*spin_y*spin_z
-            by_place[6] = c_geo*turning_x
-            by_place[7] = c_geo*turning_y
-            by_place[8] = c_geo*turning_z
-            by_rate[0] = 0.0
-            by_rate[1] = 0.0
-            by_rate[2] = 0.0
-            by_rate[3] = spin_x
-            by_rate[4] = spin_y
-            by_rate[5] = spin_z
+            by_couplings[0] = -c_geo*spin_x*spin_x
+            by_couplings[1] = -c_geo*spin_y*spin_y
+            by_couplings[2] = -c_geo*spin_z*spin_z
+            by_couplings[3] = -spin_y*t151
+            by_couplings[4] = -spin_z*t151
+            by_couplings[5] = -2*c_geo*spin_y*spin_z
+            by_couplings[6] = c_geo*turning_x
+            by_couplings[7] = c_geo*turning_y
+            by_couplings[8] = c_geo*turning_z
+            by_couplings[9] = spin_x
+            by_couplings[10] = spin_y
+            by_couplings[11] = spin_z
+            by_couplings[12] = -spin_x
+            by_couplings[13] = -spin_y
+            by_couplings[14] = -spin_z
             ones[0] = 1
             # forces on eta as factors
             for b in range(slaved):
@@ -932,12 +929,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             clear(Lv, N*deep)
             # local tangents
             clear(La, N*deep)
-            # by z: J2_kl and K_k^T
-            add_packed(of_place, by_place, Lz, deep)
+            # by z: J2_kl and K_k^T; by zdot: K_k^T and K_k
+            add_couplings(couplings, by_couplings, Lz, Lv, deep)
             # forces on eta
             add_packed(followers, by_followers, Lz, deep)
-            # by zdot: K_k^T and K_k^T - K_k
-            add_packed(of_rate, by_rate, Lv, deep)
             # structural damping
             add_packed(Cz, ones, Lv, deep)
             # by zddot
@@ -979,8 +974,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     products[14*hN + i])
                 row_jd_xx, row_jd_yy, row_jd_zz, row_jd_xy, row_jd_xz, row_jd_yz = (more[i],
                     more[hN + i], more[2*hN + i], more[3*hN + i], more[4*hN + i], more[5*hN + i])
-                row_ua_x, row_ua_y, row_ua_z = more[6*hN + i], more[7*hN + i], more[8*hN + i]
-                row_wa_x, row_wa_y, row_wa_z = more[9*hN + i], more[10*hN + i], more[11*hN + i]
+                row_wa_x, row_wa_y, row_wa_z = more[12*hN + i], more[13*hN + i], more[14*hN + i]
                 t152 = row_S1_x*spin_z
                 t153 = row_S1_z*spin_x
                 t154 = t152 - t153
@@ -991,24 +985,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t159 = 2*spin_x
                 t160 = 2*spin_y
                 t161 = 2*spin_z
-                t162 = -row_w_z
-                t163 = row_v_z + t162
-                t164 = row_h_xx + 2*row_j_xx
-                t165 = row_h_xy + 2*row_j_xy
-                t166 = row_h_xz + 2*row_j_xz
-                t167 = -row_w_y
-                t168 = row_v_y + t167
-                t169 = row_h_yz + 2*row_j_yz
-                t170 = row_h_zz + 2*row_j_zz
-                t171 = spin_x*t166 + spin_y*t169 + spin_z*t170
-                t172 = row_h_yy + 2*row_j_yy
-                t173 = spin_x*t165 + spin_y*t172 + spin_z*t169
-                t174 = -row_w_x
-                t175 = row_v_x + t174
-                t176 = spin_x*t164 + spin_y*t165 + spin_z*t166
-                t177 = row_g_z + row_u_z
-                t178 = row_g_y + row_u_y
-                t179 = row_g_x + row_u_x
+                t162 = row_h_xx + 2*row_j_xx
+                t163 = row_h_xy + 2*row_j_xy
+                t164 = row_h_xz + 2*row_j_xz
+                t165 = row_h_yz + 2*row_j_yz
+                t166 = row_h_zz + 2*row_j_zz
+                t167 = spin_x*t164 + spin_y*t165 + spin_z*t166
+                t168 = row_h_yy + 2*row_j_yy
+                t169 = spin_x*t163 + spin_y*t168 + spin_z*t165
+                t170 = spin_x*t162 + spin_y*t163 + spin_z*t164
+                t171 = row_g_z + row_u_z
+                t172 = row_g_y + row_u_y
+                t173 = row_g_x + row_u_x
                 Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t156 -
                     spin_z*t154))
                 Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t156
@@ -1016,29 +1004,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Lz[i*deep + N + 2] = (c_geo*(-row_S1_x*turning_y + row_S1_y*turning_x +
                     spin_x*t154 - spin_y*t158))
                 Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t159 +
-                    row_jd_xy*t160 + row_jd_xz*t161 + row_ua_x - row_wa_x + spin_y*t163 +
-                    spin_y*t171 - spin_z*t168 - spin_z*t173 + t164*turning_x + t165*turning_y +
-                    t166*turning_z))
+                    row_jd_xy*t160 + row_jd_xz*t161 - row_w_y*spin_z + row_w_z*spin_y + row_wa_x +
+                    spin_y*t167 - spin_z*t169 + t162*turning_x + t163*turning_y + t164*turning_z))
                 Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t159 +
-                    row_jd_yy*t160 + row_jd_yz*t161 + row_ua_y - row_wa_y - spin_x*t163 -
-                    spin_x*t171 + spin_z*t175 + spin_z*t176 + t165*turning_x + t169*turning_z +
-                    t172*turning_y))
+                    row_jd_yy*t160 + row_jd_yz*t161 + row_w_x*spin_z - row_w_z*spin_x + row_wa_y -
+                    spin_x*t167 + spin_z*t170 + t163*turning_x + t165*turning_z + t168*turning_y))
                 Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t159 +
-                    row_jd_yz*t160 + row_jd_zz*t161 + row_ua_z - row_wa_z + spin_x*t168 +
-                    spin_x*t173 - spin_y*t175 - spin_y*t176 + t166*turning_x + t169*turning_y +
-                    t170*turning_z))
+                    row_jd_yz*t160 + row_jd_zz*t161 - row_w_x*spin_y + row_w_y*spin_x + row_wa_z +
+                    spin_x*t169 - spin_y*t170 + t164*turning_x + t165*turning_y + t166*turning_z))
                 Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t157
                 Lv[i*deep + N + 1] = 2*t152 - 2*t153
                 Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t155
-                Lv[i*deep + N + 3] = 2*row_v_x + spin_y*t177 - spin_z*t178 + t174 + t176
-                Lv[i*deep + N + 4] = 2*row_v_y - spin_x*t177 + spin_z*t179 + t167 + t173
-                Lv[i*deep + N + 5] = 2*row_v_z + spin_x*t178 - spin_y*t179 + t162 + t171
+                Lv[i*deep + N + 3] = row_v_x + row_w_x + spin_y*t171 - spin_z*t172 + t170
+                Lv[i*deep + N + 4] = row_v_y + row_w_y - spin_x*t171 + spin_z*t173 + t169
+                Lv[i*deep + N + 5] = row_v_z + row_w_z + spin_x*t172 - spin_y*t173 + t167
                 La[i*deep + N] = row_S1_x
                 La[i*deep + N + 1] = row_S1_y
                 La[i*deep + N + 2] = row_S1_z
-                La[i*deep + N + 3] = t179
-                La[i*deep + N + 4] = t178
-                La[i*deep + N + 5] = t177
+                La[i*deep + N + 3] = t173
+                La[i*deep + N + 4] = t172
+                La[i*deep + N + 5] = t171
             # local tangents: motion of the frame
             for i in range(N):
                 spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
@@ -1054,17 +1039,19 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     products[5*hN + i])
                 row_u_x, row_u_y, row_u_z = (products[6*hN + i], products[7*hN + i],
                     products[8*hN + i])
+                row_v_x, row_v_y, row_v_z = (products[9*hN + i], products[10*hN + i],
+                    products[11*hN + i])
                 row_w_x, row_w_y, row_w_z = (products[12*hN + i], products[13*hN + i],
                     products[14*hN + i])
-                t180 = row_h_xy + 2*row_j_xy
-                t181 = row_h_xz + 2*row_j_xz
-                t182 = row_h_yz + 2*row_j_yz
-                Lv[N*deep + i] = (row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t180 -
-                    spin_z*t181)
-                Lv[(N + 1)*deep + i] = (row_w_y - spin_x*t180 - spin_y*(row_h_yy + 2*row_j_yy) -
-                    spin_z*t182)
-                Lv[(N + 2)*deep + i] = (row_w_z - spin_x*t181 - spin_y*t182 - spin_z*(row_h_zz +
-                    2*row_j_zz))
+                t174 = row_h_xy + 2*row_j_xy
+                t175 = row_h_xz + 2*row_j_xz
+                t176 = row_h_yz + 2*row_j_yz
+                Lv[N*deep + i] = (row_v_x - row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t174
+                    - spin_z*t175)
+                Lv[(N + 1)*deep + i] = (row_v_y - row_w_y - spin_x*t174 - spin_y*(row_h_yy +
+                    2*row_j_yy) - spin_z*t176)
+                Lv[(N + 2)*deep + i] = (row_v_z - row_w_z - spin_x*t175 - spin_y*t176 -
+                    spin_z*(row_h_zz + 2*row_j_zz))
                 La[N*deep + i] = row_S1_x
                 La[(N + 1)*deep + i] = row_S1_y
                 La[(N + 2)*deep + i] = row_S1_z
@@ -1074,79 +1061,79 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # local tangents: force on the frame by its motion
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             mass = masses[0]
-            t183 = spin_y*sum_c_y
-            t184 = spin_z*sum_c_z
-            t185 = 2*sum_cd_z
-            t186 = spin_x*sum_c_y
-            t187 = 2*sum_cd_y
-            t188 = spin_z*sum_c_x
-            t189 = spin_y*sum_J_xz
-            t190 = spin_z*sum_J_xy
-            t191 = spin_y*sum_J_yz
-            t192 = spin_x*sum_J_xz
-            t193 = spin_z*sum_J_zz + sum_spun_z
-            t194 = spin_z*sum_J_yz
-            t195 = spin_x*sum_J_xy
-            t196 = spin_y*sum_J_yy + sum_spun_y
-            t197 = spin_x*sum_c_x
-            t198 = 2*sum_cd_x
-            t199 = spin_y*sum_c_z
-            t200 = spin_x*sum_J_yz
-            t201 = spin_z*sum_J_xz
-            t202 = spin_y*sum_J_xy
-            t203 = spin_x*sum_J_xx + sum_spun_x
-            t204 = -sum_c_y
-            t205 = -sum_c_z
-            t206 = -sum_c_x
-            Lv[N*deep + N] = t183 + t184
-            Lv[N*deep + N + 1] = spin_y*sum_c_x - t185 - 2*t186
-            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t187 + t188
-            Lv[N*deep + N + 3] = sum_Jd_xx + t189 - t190
-            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t191 - 2*t192 - t193
-            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t194 + 2*t195 + t196
-            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t185 + t186
-            Lv[(N + 1)*deep + N + 1] = t184 + t197
-            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t198 - 2*t199
-            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t191 + t192 + t193
-            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t190 - t200
-            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t201 - 2*t202 - t203
-            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t187 - 2*t188
-            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t198 + t199
-            Lv[(N + 2)*deep + N + 2] = t183 + t197
-            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t194 - t195 - t196
-            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t201 + t202 + t203
-            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t189 + t200
+            t177 = spin_y*sum_c_y
+            t178 = spin_z*sum_c_z
+            t179 = 2*sum_cd_z
+            t180 = spin_x*sum_c_y
+            t181 = 2*sum_cd_y
+            t182 = spin_z*sum_c_x
+            t183 = spin_y*sum_J_xz
+            t184 = spin_z*sum_J_xy
+            t185 = spin_y*sum_J_yz
+            t186 = spin_x*sum_J_xz
+            t187 = spin_z*sum_J_zz + sum_spun_z
+            t188 = spin_z*sum_J_yz
+            t189 = spin_x*sum_J_xy
+            t190 = spin_y*sum_J_yy + sum_spun_y
+            t191 = spin_x*sum_c_x
+            t192 = 2*sum_cd_x
+            t193 = spin_y*sum_c_z
+            t194 = spin_x*sum_J_yz
+            t195 = spin_z*sum_J_xz
+            t196 = spin_y*sum_J_xy
+            t197 = spin_x*sum_J_xx + sum_spun_x
+            t198 = -sum_c_y
+            t199 = -sum_c_z
+            t200 = -sum_c_x
+            Lv[N*deep + N] = t177 + t178
+            Lv[N*deep + N + 1] = spin_y*sum_c_x - t179 - 2*t180
+            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t181 + t182
+            Lv[N*deep + N + 3] = sum_Jd_xx + t183 - t184
+            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t185 - 2*t186 - t187
+            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t188 + 2*t189 + t190
+            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t179 + t180
+            Lv[(N + 1)*deep + N + 1] = t178 + t191
+            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t192 - 2*t193
+            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t185 + t186 + t187
+            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t184 - t194
+            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t195 - 2*t196 - t197
+            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t181 - 2*t182
+            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t192 + t193
+            Lv[(N + 2)*deep + N + 2] = t177 + t191
+            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t188 - t189 - t190
+            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t195 + t196 + t197
+            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t183 + t194
             La[N*deep + N] = mass
             La[N*deep + N + 1] = 0.0
             La[N*deep + N + 2] = 0.0
             La[N*deep + N + 3] = 0.0
             La[N*deep + N + 4] = sum_c_z
-            La[N*deep + N + 5] = t204
+            La[N*deep + N + 5] = t198
             La[(N + 1)*deep + N] = 0.0
             La[(N + 1)*deep + N + 1] = mass
             La[(N + 1)*deep + N + 2] = 0.0
-            La[(N + 1)*deep + N + 3] = t205
+            La[(N + 1)*deep + N + 3] = t199
             La[(N + 1)*deep + N + 4] = 0.0
             La[(N + 1)*deep + N + 5] = sum_c_x
             La[(N + 2)*deep + N] = 0.0
             La[(N + 2)*deep + N + 1] = 0.0
             La[(N + 2)*deep + N + 2] = mass
             La[(N + 2)*deep + N + 3] = sum_c_y
-            La[(N + 2)*deep + N + 4] = t206
+            La[(N + 2)*deep + N + 4] = t200
             La[(N + 2)*deep + N + 5] = 0.0
             La[(N + 3)*deep + N] = 0.0
-            La[(N + 3)*deep + N + 1] = t205
+            La[(N + 3)*deep + N + 1] = t199
             La[(N + 3)*deep + N + 2] = sum_c_y
             La[(N + 3)*deep + N + 3] = sum_J_xx
             La[(N + 3)*deep + N + 4] = sum_J_xy
             La[(N + 3)*deep + N + 5] = sum_J_xz
             La[(N + 4)*deep + N] = sum_c_z
             La[(N + 4)*deep + N + 1] = 0.0
-            La[(N + 4)*deep + N + 2] = t206
+            La[(N + 4)*deep + N + 2] = t200
             La[(N + 4)*deep + N + 3] = sum_J_xy
             La[(N + 4)*deep + N + 4] = sum_J_yy
             La[(N + 4)*deep + N + 5] = sum_J_yz
-            La[(N + 5)*deep + N] = t204
+            La[(N + 5)*deep + N] = t198
             La[(N + 5)*deep + N + 1] = sum_c_x
             La[(N + 5)*deep + N + 2] = 0.0
             La[(N + 5)*deep + N + 3] = sum_J_xz
@@ -1223,12 +1210,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Gam_positionz_x, Gam_positionz_y, Gam_positionz_z = (Gam[3*(i3 + 2)],
                     Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
                 dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                t207 = -dx0_x + dx_x
-                t208 = -dx0_y + dx_y
-                t209 = -dx0_z + dx_z
-                rhs_x += -Gam_positionx_x*t207 - Gam_positiony_x*t208 - Gam_positionz_x*t209
-                rhs_y += -Gam_positionx_y*t207 - Gam_positiony_y*t208 - Gam_positionz_y*t209
-                rhs_z += -Gam_positionx_z*t207 - Gam_positiony_z*t208 - Gam_positionz_z*t209
+                t201 = -dx0_x + dx_x
+                t202 = -dx0_y + dx_y
+                t203 = -dx0_z + dx_z
+                rhs_x += -Gam_positionx_x*t201 - Gam_positiony_x*t202 - Gam_positionz_x*t203
+                rhs_y += -Gam_positionx_y*t201 - Gam_positiony_y*t202 - Gam_positionz_y*t203
+                rhs_z += -Gam_positionx_z*t201 - Gam_positiony_z*t202 - Gam_positionz_z*t203
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
@@ -1240,20 +1227,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gam[3*(j3 + 2) + 1], Gam[3*(j3 + 2) + 2])
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                 e0 = e0s[j]
-                t210 = dth_y*psi_z
-                t211 = dth_x*psi_y
-                t212 = e0*(dth_y*psi_x - t211)
-                t213 = dth_x*psi_z
-                t214 = dth_z*psi_x
-                t215 = t213 - t214
-                t216 = e0*psi_z
-                t217 = dth_x + (0.5)*dth_z*psi_y + psi_y*t212 - 0.5*t210 - t215*t216
-                t218 = dth_z*psi_y - t210
-                t219 = dth_y - psi_x*t212 + (0.5)*t213 - 0.5*t214 + t216*t218
-                t220 = (0.5)*dth_y*psi_x + dth_z + e0*psi_x*t215 - e0*psi_y*t218 - 0.5*t211
-                rhs_x += -Gam_rotationx_x*t217 - Gam_rotationy_x*t219 - Gam_rotationz_x*t220
-                rhs_y += -Gam_rotationx_y*t217 - Gam_rotationy_y*t219 - Gam_rotationz_y*t220
-                rhs_z += -Gam_rotationx_z*t217 - Gam_rotationy_z*t219 - Gam_rotationz_z*t220
+                t204 = dth_y*psi_z
+                t205 = dth_x*psi_y
+                t206 = e0*(dth_y*psi_x - t205)
+                t207 = dth_x*psi_z
+                t208 = dth_z*psi_x
+                t209 = t207 - t208
+                t210 = e0*psi_z
+                t211 = dth_x + (0.5)*dth_z*psi_y + psi_y*t206 - 0.5*t204 - t209*t210
+                t212 = dth_z*psi_y - t204
+                t213 = dth_y - psi_x*t206 + (0.5)*t207 - 0.5*t208 + t210*t212
+                t214 = (0.5)*dth_y*psi_x + dth_z + e0*psi_x*t209 - e0*psi_y*t212 - 0.5*t205
+                rhs_x += -Gam_rotationx_x*t211 - Gam_rotationy_x*t213 - Gam_rotationz_x*t214
+                rhs_y += -Gam_rotationx_y*t211 - Gam_rotationy_y*t213 - Gam_rotationz_y*t214
+                rhs_z += -Gam_rotationx_z*t211 - Gam_rotationy_z*t213 - Gam_rotationz_z*t214
             for k in range(MODES, n):
                 Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
                 dqm = dqe[k]
@@ -1269,41 +1256,41 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                t221 = X_y + u_y
-                t222 = X_z + u_z
-                t223 = X_x + u_x
-                dy[i3] = -dth0_y*t222 + dth0_z*t221 - dx0_x + dx_x
-                dy[i3 + 1] = dth0_x*t222 - dth0_z*t223 - dx0_y + dx_y
-                dy[i3 + 2] = -dth0_x*t221 + dth0_y*t223 - dx0_z + dx_z
+                t215 = X_y + u_y
+                t216 = X_z + u_z
+                t217 = X_x + u_x
+                dy[i3] = -dth0_y*t216 + dth0_z*t215 - dx0_x + dx_x
+                dy[i3 + 1] = dth0_x*t216 - dth0_z*t217 - dx0_y + dx_y
+                dy[i3 + 2] = -dth0_x*t215 + dth0_y*t217 - dx0_z + dx_z
             # variation of the elastic rotations, (17)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                 e0 = e0s[j]
-                t224 = dth0_y*psi_z
-                t225 = dth_y*psi_z
-                t226 = dth0_x*psi_y
-                t227 = dth0_y*psi_x - t226
-                t228 = e0*psi_y
-                t229 = dth_x*psi_z
-                t230 = dth_z*psi_x
+                t218 = dth0_y*psi_z
+                t219 = dth_y*psi_z
+                t220 = dth0_x*psi_y
+                t221 = dth0_y*psi_x - t220
+                t222 = e0*psi_y
+                t223 = dth_x*psi_z
+                t224 = dth_z*psi_x
+                t225 = t223 - t224
+                t226 = e0*psi_z
+                t227 = dth_x*psi_y
+                t228 = dth_y*psi_x - t227
+                t229 = dth0_x*psi_z
+                t230 = dth0_z*psi_x
                 t231 = t229 - t230
-                t232 = e0*psi_z
-                t233 = dth_x*psi_y
-                t234 = dth_y*psi_x - t233
-                t235 = dth0_x*psi_z
-                t236 = dth0_z*psi_x
-                t237 = t235 - t236
-                t238 = e0*psi_x
-                t239 = dth_z*psi_y - t225
-                t240 = dth0_z*psi_y - t224
-                dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y + e0*psi_y*t234
-                    + e0*psi_z*t237 - 0.5*t224 - 0.5*t225 - t227*t228 - t231*t232)
-                dy[j3 + 1] = (-dth0_y + dth_y + t227*t238 + (0.5)*t229 - 0.5*t230 + t232*t239 -
-                    t232*t240 - t234*t238 + (0.5)*t235 - 0.5*t236)
+                t232 = e0*psi_x
+                t233 = dth_z*psi_y - t219
+                t234 = dth0_z*psi_y - t218
+                dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y + e0*psi_y*t228
+                    + e0*psi_z*t231 - 0.5*t218 - 0.5*t219 - t221*t222 - t225*t226)
+                dy[j3 + 1] = (-dth0_y + dth_y + t221*t232 + (0.5)*t223 - 0.5*t224 + t226*t233 -
+                    t226*t234 - t228*t232 + (0.5)*t229 - 0.5*t230)
                 dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                    e0*psi_x*t231 + e0*psi_y*t240 - 0.5*t226 - t228*t239 - 0.5*t233 - t237*t238)
+                    e0*psi_x*t225 + e0*psi_y*t234 - 0.5*t220 - t222*t233 - 0.5*t227 - t231*t232)
             # differential: internal modes
             for k in range(MODES, n):
                 dqm = dqe[k]
@@ -1355,12 +1342,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                t241 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
-                t242 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
-                t243 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
-                rhs_x += -Gam_positionx_x*t241 - Gam_positiony_x*t242 - Gam_positionz_x*t243
-                rhs_y += -Gam_positionx_y*t241 - Gam_positiony_y*t242 - Gam_positionz_y*t243
-                rhs_z += -Gam_positionx_z*t241 - Gam_positiony_z*t242 - Gam_positionz_z*t243
+                t235 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
+                t236 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
+                t237 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
+                rhs_x += -Gam_positionx_x*t235 - Gam_positiony_x*t236 - Gam_positionz_x*t237
+                rhs_y += -Gam_positionx_y*t235 - Gam_positiony_y*t236 - Gam_positionz_y*t237
+                rhs_z += -Gam_positionx_z*t235 - Gam_positiony_z*t236 - Gam_positionz_z*t237
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
@@ -1375,55 +1362,55 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t244 = Om0_y*dpsi_z
-                t245 = Om_y*dpsi_z
-                t246 = dOm_y*psi_z
-                t247 = -Om_x*psi_y + Om_y*psi_x
-                t248 = dpsi_y*e0
-                t249 = Om0_x*psi_z - Om0_z*psi_x
-                t250 = dpsi_z*e0
-                t251 = Om0_x*dpsi_z
-                t252 = Om0_z*dpsi_x
-                t253 = t251 - t252
-                t254 = e0*psi_z
-                t255 = -Om0_x*psi_y + Om0_y*psi_x
-                t256 = Om_x*psi_z - Om_z*psi_x
-                t257 = Om0_x*dpsi_y
-                t258 = Om0_y*dpsi_x - t257
-                t259 = e0*psi_y
-                t260 = Om_x*dpsi_y
-                t261 = dOm_x*psi_y
-                t262 = Om_y*dpsi_x + dOm_y*psi_x - t260 - t261
-                t263 = Om_x*dpsi_z
-                t264 = dOm_x*psi_z
-                t265 = Om_z*dpsi_x
-                t266 = dOm_z*psi_x
-                t267 = t263 + t264 - t265 - t266
-                t268 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                t269 = psi_y*t268
-                t270 = psi_z*t268
-                t271 = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y + dOm_x + (0.5)*dOm_z*psi_y -
-                    0.5*t244 - 0.5*t245 - 0.5*t246 + t247*t248 + t247*t269 - t248*t255 + t249*t250
-                    + t249*t270 - t250*t256 + t253*t254 - t254*t267 - t255*t269 - t256*t270 -
-                    t258*t259 + t259*t262)
-                t272 = dpsi_x*e0
-                t273 = -Om_y*psi_z + Om_z*psi_y
-                t274 = e0*psi_x
-                t275 = -Om0_y*psi_z + Om0_z*psi_y
-                t276 = Om0_z*dpsi_y - t244
-                t277 = Om_z*dpsi_y + dOm_z*psi_y - t245 - t246
-                t278 = psi_x*t268
-                t279 = (dOm_y - t247*t272 - t247*t278 + t250*t273 - t250*t275 + (0.5)*t251 -
-                    0.5*t252 - t254*t276 + t254*t277 + t255*t272 + t255*t278 + t258*t274 -
-                    t262*t274 + (0.5)*t263 + (0.5)*t264 - 0.5*t265 - 0.5*t266 + t270*t273 -
-                    t270*t275)
-                t280 = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm_y*psi_x + dOm_z -
-                    t248*t273 + t248*t275 - t249*t272 - t249*t278 - t253*t274 + t256*t272 +
-                    t256*t278 - 0.5*t257 + t259*t276 - t259*t277 - 0.5*t260 - 0.5*t261 + t267*t274
-                    - t269*t273 + t269*t275)
-                rhs_x += -Gam_rotationx_x*t271 - Gam_rotationy_x*t279 - Gam_rotationz_x*t280
-                rhs_y += -Gam_rotationx_y*t271 - Gam_rotationy_y*t279 - Gam_rotationz_y*t280
-                rhs_z += -Gam_rotationx_z*t271 - Gam_rotationy_z*t279 - Gam_rotationz_z*t280
+                t238 = Om0_y*dpsi_z
+                t239 = Om_y*dpsi_z
+                t240 = dOm_y*psi_z
+                t241 = -Om_x*psi_y + Om_y*psi_x
+                t242 = dpsi_y*e0
+                t243 = Om0_x*psi_z - Om0_z*psi_x
+                t244 = dpsi_z*e0
+                t245 = Om0_x*dpsi_z
+                t246 = Om0_z*dpsi_x
+                t247 = t245 - t246
+                t248 = e0*psi_z
+                t249 = -Om0_x*psi_y + Om0_y*psi_x
+                t250 = Om_x*psi_z - Om_z*psi_x
+                t251 = Om0_x*dpsi_y
+                t252 = Om0_y*dpsi_x - t251
+                t253 = e0*psi_y
+                t254 = Om_x*dpsi_y
+                t255 = dOm_x*psi_y
+                t256 = Om_y*dpsi_x + dOm_y*psi_x - t254 - t255
+                t257 = Om_x*dpsi_z
+                t258 = dOm_x*psi_z
+                t259 = Om_z*dpsi_x
+                t260 = dOm_z*psi_x
+                t261 = t257 + t258 - t259 - t260
+                t262 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                t263 = psi_y*t262
+                t264 = psi_z*t262
+                t265 = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y + dOm_x + (0.5)*dOm_z*psi_y -
+                    0.5*t238 - 0.5*t239 - 0.5*t240 + t241*t242 + t241*t263 - t242*t249 + t243*t244
+                    + t243*t264 - t244*t250 + t247*t248 - t248*t261 - t249*t263 - t250*t264 -
+                    t252*t253 + t253*t256)
+                t266 = dpsi_x*e0
+                t267 = -Om_y*psi_z + Om_z*psi_y
+                t268 = e0*psi_x
+                t269 = -Om0_y*psi_z + Om0_z*psi_y
+                t270 = Om0_z*dpsi_y - t238
+                t271 = Om_z*dpsi_y + dOm_z*psi_y - t239 - t240
+                t272 = psi_x*t262
+                t273 = (dOm_y - t241*t266 - t241*t272 + t244*t267 - t244*t269 + (0.5)*t245 -
+                    0.5*t246 - t248*t270 + t248*t271 + t249*t266 + t249*t272 + t252*t268 -
+                    t256*t268 + (0.5)*t257 + (0.5)*t258 - 0.5*t259 - 0.5*t260 + t264*t267 -
+                    t264*t269)
+                t274 = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm_y*psi_x + dOm_z -
+                    t242*t267 + t242*t269 - t243*t266 - t243*t272 - t247*t268 + t250*t266 +
+                    t250*t272 - 0.5*t251 + t253*t270 - t253*t271 - 0.5*t254 - 0.5*t255 + t261*t268
+                    - t263*t267 + t263*t269)
+                rhs_x += -Gam_rotationx_x*t265 - Gam_rotationy_x*t273 - Gam_rotationz_x*t274
+                rhs_y += -Gam_rotationx_y*t265 - Gam_rotationy_y*t273 - Gam_rotationz_y*t274
+                rhs_z += -Gam_rotationx_z*t265 - Gam_rotationy_z*t273 - Gam_rotationz_z*t274
             for k in range(MODES, n):
                 Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
                 dvm = dve[k]
@@ -1462,12 +1449,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                t281 = X_y + u_y
-                t282 = X_z + u_z
-                t283 = X_x + u_x
-                deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t282 + dOm0_z*t281 - dv0_x + dvs_x
-                deta[i3 + 1] = Om0_x*du_z - Om0_z*du_x + dOm0_x*t282 - dOm0_z*t283 - dv0_y + dvs_y
-                deta[i3 + 2] = -Om0_x*du_y + Om0_y*du_x - dOm0_x*t281 + dOm0_y*t283 - dv0_z + dvs_z
+                t275 = X_y + u_y
+                t276 = X_z + u_z
+                t277 = X_x + u_x
+                deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t276 + dOm0_z*t275 - dv0_x + dvs_x
+                deta[i3 + 1] = Om0_x*du_z - Om0_z*du_x + dOm0_x*t276 - dOm0_z*t277 - dv0_y + dvs_y
+                deta[i3 + 2] = -Om0_x*du_y + Om0_y*du_x - dOm0_x*t275 + dOm0_y*t277 - dv0_z + dvs_z
             # differential: rates of the elastic rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -1477,59 +1464,59 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t284 = Om0_y*dpsi_z
-                t285 = Om_y*dpsi_z
-                t286 = dOm0_y*psi_z
-                t287 = dOm_y*psi_z
-                t288 = -Om0_x*psi_y + Om0_y*psi_x
-                t289 = dpsi_y*e0
-                t290 = Om_x*psi_z - Om_z*psi_x
-                t291 = dpsi_z*e0
-                t292 = -Om_x*psi_y + Om_y*psi_x
-                t293 = Om0_x*psi_z - Om0_z*psi_x
-                t294 = Om0_x*dpsi_y
-                t295 = dOm0_x*psi_y
-                t296 = Om0_y*dpsi_x + dOm0_y*psi_x - t294 - t295
-                t297 = e0*psi_y
-                t298 = Om_x*dpsi_z
-                t299 = dOm_x*psi_z
-                t300 = Om_z*dpsi_x
-                t301 = dOm_z*psi_x
-                t302 = t298 + t299 - t300 - t301
-                t303 = e0*psi_z
-                t304 = Om_x*dpsi_y
-                t305 = dOm_x*psi_y
-                t306 = Om_y*dpsi_x + dOm_y*psi_x - t304 - t305
-                t307 = Om0_x*dpsi_z
-                t308 = dOm0_x*psi_z
-                t309 = Om0_z*dpsi_x
-                t310 = dOm0_z*psi_x
-                t311 = t307 + t308 - t309 - t310
-                t312 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t313 = e1*t312
-                t314 = psi_y*t313
-                t315 = psi_z*t313
-                t316 = dpsi_x*e0
-                t317 = -Om_y*psi_z + Om_z*psi_y
-                t318 = -Om0_y*psi_z + Om0_z*psi_y
-                t319 = e0*psi_x
-                t320 = Om_z*dpsi_y + dOm_z*psi_y - t285 - t287
-                t321 = Om0_z*dpsi_y + dOm0_z*psi_y - t284 - t286
-                t322 = psi_x*t313
+                t278 = Om0_y*dpsi_z
+                t279 = Om_y*dpsi_z
+                t280 = dOm0_y*psi_z
+                t281 = dOm_y*psi_z
+                t282 = -Om0_x*psi_y + Om0_y*psi_x
+                t283 = dpsi_y*e0
+                t284 = Om_x*psi_z - Om_z*psi_x
+                t285 = dpsi_z*e0
+                t286 = -Om_x*psi_y + Om_y*psi_x
+                t287 = Om0_x*psi_z - Om0_z*psi_x
+                t288 = Om0_x*dpsi_y
+                t289 = dOm0_x*psi_y
+                t290 = Om0_y*dpsi_x + dOm0_y*psi_x - t288 - t289
+                t291 = e0*psi_y
+                t292 = Om_x*dpsi_z
+                t293 = dOm_x*psi_z
+                t294 = Om_z*dpsi_x
+                t295 = dOm_z*psi_x
+                t296 = t292 + t293 - t294 - t295
+                t297 = e0*psi_z
+                t298 = Om_x*dpsi_y
+                t299 = dOm_x*psi_y
+                t300 = Om_y*dpsi_x + dOm_y*psi_x - t298 - t299
+                t301 = Om0_x*dpsi_z
+                t302 = dOm0_x*psi_z
+                t303 = Om0_z*dpsi_x
+                t304 = dOm0_z*psi_x
+                t305 = t301 + t302 - t303 - t304
+                t306 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t307 = e1*t306
+                t308 = psi_y*t307
+                t309 = psi_z*t307
+                t310 = dpsi_x*e0
+                t311 = -Om_y*psi_z + Om_z*psi_y
+                t312 = -Om0_y*psi_z + Om0_z*psi_y
+                t313 = e0*psi_x
+                t314 = Om_z*dpsi_y + dOm_z*psi_y - t279 - t281
+                t315 = Om0_z*dpsi_y + dOm0_z*psi_y - t278 - t280
+                t316 = psi_x*t307
                 deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x + (0.5)*dOm0_z*psi_y +
-                    dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t292 + dpsi_z*e0*t293 + e0*psi_y*t306 +
-                    e0*psi_z*t311 + e1*psi_y*t292*t312 + e1*psi_z*t293*t312 - 0.5*t284 - 0.5*t285
-                    - 0.5*t286 - 0.5*t287 - t288*t289 - t288*t314 - t290*t291 - t290*t315 -
-                    t296*t297 - t302*t303)
-                deta[j3 + 1] = (-dOm0_y + dOm_y + t288*t316 + t288*t322 + t291*t317 - t291*t318 -
-                    t292*t316 - t292*t322 + t296*t319 + (0.5)*t298 + (0.5)*t299 - 0.5*t300 -
-                    0.5*t301 + t303*t320 - t303*t321 - t306*t319 + (0.5)*t307 + (0.5)*t308 -
-                    0.5*t309 - 0.5*t310 + t315*t317 - t315*t318)
+                    dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t286 + dpsi_z*e0*t287 + e0*psi_y*t300 +
+                    e0*psi_z*t305 + e1*psi_y*t286*t306 + e1*psi_z*t287*t306 - 0.5*t278 - 0.5*t279
+                    - 0.5*t280 - 0.5*t281 - t282*t283 - t282*t308 - t284*t285 - t284*t309 -
+                    t290*t291 - t296*t297)
+                deta[j3 + 1] = (-dOm0_y + dOm_y + t282*t310 + t282*t316 + t285*t311 - t285*t312 -
+                    t286*t310 - t286*t316 + t290*t313 + (0.5)*t292 + (0.5)*t293 - 0.5*t294 -
+                    0.5*t295 + t297*t314 - t297*t315 - t300*t313 + (0.5)*t301 + (0.5)*t302 -
+                    0.5*t303 - 0.5*t304 + t309*t311 - t309*t312)
                 deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                    dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t290 + dpsi_y*e0*t318 +
-                    e0*psi_x*t302 + e0*psi_y*t321 + e1*psi_x*t290*t312 + e1*psi_y*t312*t318 -
-                    t289*t317 - t293*t316 - t293*t322 - 0.5*t294 - 0.5*t295 - t297*t320 - 0.5*t304
-                    - 0.5*t305 - t311*t319 - t314*t317)
+                    dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t284 + dpsi_y*e0*t312 +
+                    e0*psi_x*t296 + e0*psi_y*t315 + e1*psi_x*t284*t306 + e1*psi_y*t306*t312 -
+                    t283*t311 - t287*t310 - t287*t316 - 0.5*t288 - 0.5*t289 - t291*t314 - 0.5*t298
+                    - 0.5*t299 - t305*t313 - t308*t311)
             # differential: rates of the internal modes
             for k in range(MODES, n):
                 dvm = dve[k]
@@ -1565,126 +1552,126 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e0 = e0s[j]
                 e1 = e1s[j]
                 e2 = e2s[j]
-                t323 = A_y*dpsi_z
-                t324 = Om0_y*dep_z
-                t325 = Om_y*dep_z
-                t326 = dA_y*psi_z
-                t327 = dOm0_y*ep_z
-                t328 = dOm_y*ep_z
-                t329 = -Om_x*psi_y + Om_y*psi_x
-                t330 = dep_y*e0
-                t331 = Om0_x*psi_z - Om0_z*psi_x
-                t332 = dep_z*e0
-                t333 = Om0_x*ep_z - Om0_z*ep_x
-                t334 = dpsi_z*e0
-                t335 = -Om0_x*psi_y + Om0_y*psi_x
-                t336 = Om_x*psi_z - Om_z*psi_x
-                t337 = -Om0_x*ep_y + Om0_y*ep_x
-                t338 = dpsi_y*e0
-                t339 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                t340 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                t341 = e0*ep_y
-                t342 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                t343 = e0*ep_z
-                t344 = Om0_x*dep_z
-                t345 = dOm0_x*ep_z
-                t346 = Om0_z*dep_x
-                t347 = dOm0_z*ep_x
-                t348 = t344 + t345 - t346 - t347
-                t349 = e0*psi_z
-                t350 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                t351 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                t352 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                t353 = Om0_x*dep_y
-                t354 = dOm0_x*ep_y
-                t355 = Om0_y*dep_x + dOm0_y*ep_x - t353 - t354
-                t356 = e0*psi_y
-                t357 = 2*psi_x
-                t358 = 2*psi_y
-                t359 = 2*psi_z
-                t360 = ep_x*t357 + ep_y*t358 + ep_z*t359
-                t361 = e1*t360
-                t362 = dpsi_y*t361
-                t363 = dpsi_z*t361
-                t364 = dpsi_x*t357 + dpsi_y*t358 + dpsi_z*t359
-                t365 = e1*t364
-                t366 = ep_y*t365
-                t367 = ep_z*t365
-                t368 = psi_z*t365
-                t369 = psi_y*t365
-                t370 = psi_y*t361
-                t371 = psi_z*t361
-                t372 = A_x*dpsi_y
-                t373 = Om_x*dep_y
-                t374 = dA_x*psi_y
-                t375 = dOm_x*ep_y
-                t376 = A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t372 - t373 - t374 - t375
-                t377 = A_x*dpsi_z
-                t378 = Om_x*dep_z
-                t379 = dA_x*psi_z
-                t380 = dOm_x*ep_z
-                t381 = A_z*dpsi_x
-                t382 = Om_z*dep_x
-                t383 = dA_z*psi_x
-                t384 = dOm_z*ep_x
-                t385 = t377 + t378 + t379 + t380 - t381 - t382 - t383 - t384
-                t386 = (e1*(dep_x*t357 + dep_y*t358 + dep_z*t359 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
+                t317 = A_y*dpsi_z
+                t318 = Om0_y*dep_z
+                t319 = Om_y*dep_z
+                t320 = dA_y*psi_z
+                t321 = dOm0_y*ep_z
+                t322 = dOm_y*ep_z
+                t323 = -Om_x*psi_y + Om_y*psi_x
+                t324 = dep_y*e0
+                t325 = Om0_x*psi_z - Om0_z*psi_x
+                t326 = dep_z*e0
+                t327 = Om0_x*ep_z - Om0_z*ep_x
+                t328 = dpsi_z*e0
+                t329 = -Om0_x*psi_y + Om0_y*psi_x
+                t330 = Om_x*psi_z - Om_z*psi_x
+                t331 = -Om0_x*ep_y + Om0_y*ep_x
+                t332 = dpsi_y*e0
+                t333 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
+                t334 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
+                t335 = e0*ep_y
+                t336 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
+                t337 = e0*ep_z
+                t338 = Om0_x*dep_z
+                t339 = dOm0_x*ep_z
+                t340 = Om0_z*dep_x
+                t341 = dOm0_z*ep_x
+                t342 = t338 + t339 - t340 - t341
+                t343 = e0*psi_z
+                t344 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
+                t345 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
+                t346 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
+                t347 = Om0_x*dep_y
+                t348 = dOm0_x*ep_y
+                t349 = Om0_y*dep_x + dOm0_y*ep_x - t347 - t348
+                t350 = e0*psi_y
+                t351 = 2*psi_x
+                t352 = 2*psi_y
+                t353 = 2*psi_z
+                t354 = ep_x*t351 + ep_y*t352 + ep_z*t353
+                t355 = e1*t354
+                t356 = dpsi_y*t355
+                t357 = dpsi_z*t355
+                t358 = dpsi_x*t351 + dpsi_y*t352 + dpsi_z*t353
+                t359 = e1*t358
+                t360 = ep_y*t359
+                t361 = ep_z*t359
+                t362 = psi_z*t359
+                t363 = psi_y*t359
+                t364 = psi_y*t355
+                t365 = psi_z*t355
+                t366 = A_x*dpsi_y
+                t367 = Om_x*dep_y
+                t368 = dA_x*psi_y
+                t369 = dOm_x*ep_y
+                t370 = A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t366 - t367 - t368 - t369
+                t371 = A_x*dpsi_z
+                t372 = Om_x*dep_z
+                t373 = dA_x*psi_z
+                t374 = dOm_x*ep_z
+                t375 = A_z*dpsi_x
+                t376 = Om_z*dep_x
+                t377 = dA_z*psi_x
+                t378 = dOm_z*ep_x
+                t379 = t371 + t372 + t373 + t374 - t375 - t376 - t377 - t378
+                t380 = (e1*(dep_x*t351 + dep_y*t352 + dep_z*t353 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
                     2*dpsi_z*ep_z))
-                t387 = psi_y*t329
-                t388 = psi_z*t386
-                t389 = t335*t386
-                t390 = e2*t360*t364
-                t391 = psi_z*t390
-                t392 = t335*t390
-                t393 = dep_x*e0
-                t394 = -Om_y*psi_z + Om_z*psi_y
-                t395 = dpsi_x*e0
-                t396 = -Om0_y*psi_z + Om0_z*psi_y
-                t397 = -Om0_y*ep_z + Om0_z*ep_y
-                t398 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                t399 = e0*ep_x
-                t400 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                t401 = e0*psi_x
-                t402 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                t403 = Om0_z*dep_y + dOm0_z*ep_y - t324 - t327
-                t404 = dpsi_x*t361
-                t405 = ep_x*t365
-                t406 = psi_x*t365
-                t407 = psi_x*t361
-                t408 = A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t323 - t325 - t326 - t328
-                t409 = psi_x*t386
-                t410 = psi_x*t390
-                t411 = psi_y*t386
-                t412 = psi_y*t390
+                t381 = psi_y*t323
+                t382 = psi_z*t380
+                t383 = t329*t380
+                t384 = e2*t354*t358
+                t385 = psi_z*t384
+                t386 = t329*t384
+                t387 = dep_x*e0
+                t388 = -Om_y*psi_z + Om_z*psi_y
+                t389 = dpsi_x*e0
+                t390 = -Om0_y*psi_z + Om0_z*psi_y
+                t391 = -Om0_y*ep_z + Om0_z*ep_y
+                t392 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
+                t393 = e0*ep_x
+                t394 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                t395 = e0*psi_x
+                t396 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
+                t397 = Om0_z*dep_y + dOm0_z*ep_y - t318 - t321
+                t398 = dpsi_x*t355
+                t399 = ep_x*t359
+                t400 = psi_x*t359
+                t401 = psi_x*t355
+                t402 = A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t317 - t319 - t320 - t322
+                t403 = psi_x*t380
+                t404 = psi_x*t384
+                t405 = psi_y*t380
+                t406 = psi_y*t384
                 detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om_z*dep_y + dA_x +
-                    (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y + (0.5)*dOm_z*ep_y - psi_y*t389 -
-                    psi_y*t392 - 0.5*t323 - 0.5*t324 - 0.5*t325 - 0.5*t326 - 0.5*t327 - 0.5*t328 +
-                    t329*t330 + t329*t362 + t329*t366 - t330*t335 + t331*t332 + t331*t363 +
-                    t331*t367 + t331*t388 + t331*t391 - t332*t336 + t333*t334 + t333*t368 -
-                    t334*t350 - t335*t362 - t335*t366 - t336*t363 - t336*t367 - t336*t388 -
-                    t336*t391 - t337*t338 - t337*t369 + t338*t339 + t339*t369 + t340*t341 +
-                    t340*t370 - t341*t351 + t342*t343 + t342*t371 - t343*t352 + t348*t349 -
-                    t349*t385 - t350*t368 - t351*t370 - t352*t371 - t355*t356 + t356*t376 +
-                    t386*t387 + t387*t390)
-                detad[j3 + 1] = (dA_y + psi_x*t389 + psi_x*t392 - t329*t393 - t329*t404 -
-                    t329*t405 - t329*t409 - t329*t410 + t332*t394 - t332*t396 - t334*t397 +
-                    t334*t398 + t335*t393 + t335*t404 + t335*t405 + t337*t395 + t337*t406 -
-                    t339*t395 - t339*t406 - t340*t399 - t340*t407 + t343*t400 - t343*t402 +
-                    (0.5)*t344 + (0.5)*t345 - 0.5*t346 - 0.5*t347 - t349*t403 + t349*t408 +
-                    t351*t399 + t351*t407 + t355*t401 + t363*t394 - t363*t396 + t367*t394 -
-                    t367*t396 - t368*t397 + t368*t398 + t371*t400 - t371*t402 - t376*t401 +
-                    (0.5)*t377 + (0.5)*t378 + (0.5)*t379 + (0.5)*t380 - 0.5*t381 - 0.5*t382 -
-                    0.5*t383 - 0.5*t384 + t388*t394 - t388*t396 + t391*t394 - t391*t396)
+                    (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y + (0.5)*dOm_z*ep_y - psi_y*t383 -
+                    psi_y*t386 - 0.5*t317 - 0.5*t318 - 0.5*t319 - 0.5*t320 - 0.5*t321 - 0.5*t322 +
+                    t323*t324 + t323*t356 + t323*t360 - t324*t329 + t325*t326 + t325*t357 +
+                    t325*t361 + t325*t382 + t325*t385 - t326*t330 + t327*t328 + t327*t362 -
+                    t328*t344 - t329*t356 - t329*t360 - t330*t357 - t330*t361 - t330*t382 -
+                    t330*t385 - t331*t332 - t331*t363 + t332*t333 + t333*t363 + t334*t335 +
+                    t334*t364 - t335*t345 + t336*t337 + t336*t365 - t337*t346 + t342*t343 -
+                    t343*t379 - t344*t362 - t345*t364 - t346*t365 - t349*t350 + t350*t370 +
+                    t380*t381 + t381*t384)
+                detad[j3 + 1] = (dA_y + psi_x*t383 + psi_x*t386 - t323*t387 - t323*t398 -
+                    t323*t399 - t323*t403 - t323*t404 + t326*t388 - t326*t390 - t328*t391 +
+                    t328*t392 + t329*t387 + t329*t398 + t329*t399 + t331*t389 + t331*t400 -
+                    t333*t389 - t333*t400 - t334*t393 - t334*t401 + t337*t394 - t337*t396 +
+                    (0.5)*t338 + (0.5)*t339 - 0.5*t340 - 0.5*t341 - t343*t397 + t343*t402 +
+                    t345*t393 + t345*t401 + t349*t395 + t357*t388 - t357*t390 + t361*t388 -
+                    t361*t390 - t362*t391 + t362*t392 + t365*t394 - t365*t396 - t370*t395 +
+                    (0.5)*t371 + (0.5)*t372 + (0.5)*t373 + (0.5)*t374 - 0.5*t375 - 0.5*t376 -
+                    0.5*t377 - 0.5*t378 + t382*t388 - t382*t390 + t385*t388 - t385*t390)
                 detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om_y*dep_x +
-                    (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x + (0.5)*dOm_y*ep_x - t330*t394 +
-                    t330*t396 - t331*t393 - t331*t404 - t331*t405 - t331*t409 - t331*t410 -
-                    t333*t395 - t333*t406 + t336*t393 + t336*t404 + t336*t405 + t336*t409 +
-                    t336*t410 + t338*t397 - t338*t398 - t341*t400 + t341*t402 - t342*t399 -
-                    t342*t407 - t348*t401 + t350*t395 + t350*t406 + t352*t399 + t352*t407 -
-                    0.5*t353 - 0.5*t354 + t356*t403 - t356*t408 - t362*t394 + t362*t396 -
-                    t366*t394 + t366*t396 + t369*t397 - t369*t398 - t370*t400 + t370*t402 -
-                    0.5*t372 - 0.5*t373 - 0.5*t374 - 0.5*t375 + t385*t401 - t394*t411 - t394*t412
-                    + t396*t411 + t396*t412)
+                    (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x + (0.5)*dOm_y*ep_x - t324*t388 +
+                    t324*t390 - t325*t387 - t325*t398 - t325*t399 - t325*t403 - t325*t404 -
+                    t327*t389 - t327*t400 + t330*t387 + t330*t398 + t330*t399 + t330*t403 +
+                    t330*t404 + t332*t391 - t332*t392 - t335*t394 + t335*t396 - t336*t393 -
+                    t336*t401 - t342*t395 + t344*t389 + t344*t400 + t346*t393 + t346*t401 -
+                    0.5*t347 - 0.5*t348 + t350*t397 - t350*t402 - t356*t388 + t356*t390 -
+                    t360*t388 + t360*t390 + t363*t391 - t363*t392 - t364*t394 + t364*t396 -
+                    0.5*t366 - 0.5*t367 - 0.5*t368 - 0.5*t369 + t379*t395 - t388*t405 - t388*t406
+                    + t390*t405 + t390*t406)
             # differential: rate: rates of the internal modes
             for k in range(MODES, n):
                 dam = dae[k]
@@ -1726,46 +1713,46 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t413 = (0.5)*dpsi_z
-                t414 = dpsi_x*e0
-                t415 = e0*psi_x
-                t416 = 2*dpsi_x*psi_x
-                t417 = 2*dpsi_y*psi_y
-                t418 = 2*dpsi_z*psi_z
-                t419 = e1*(t416 + t417 + t418)
-                t420 = psi_x*t419
-                t421 = dpsi_y*t415 + psi_y*t414 + psi_y*t420
-                t422 = t413 - t421
-                t423 = (0.5)*dpsi_y
-                t424 = dpsi_z*t415 + psi_z*t414 + psi_z*t420
-                t425 = -t423 - t424
-                t426 = e0*t418 + psi_z*psi_z*t419
-                t427 = e0*t417 + psi_y*psi_y*t419
-                t428 = t426 + t427
-                t429 = -t413 - t421
-                t430 = (0.5)*dpsi_x
-                t431 = dpsi_y*e0*psi_z + dpsi_z*e0*psi_y + psi_y*psi_z*t419
-                t432 = t430 - t431
-                t433 = e0*t416 + psi_x*psi_x*t419
-                t434 = t426 + t433
-                t435 = t423 - t424
-                t436 = -t430 - t431
-                t437 = t427 + t433
+                t407 = (0.5)*dpsi_z
+                t408 = dpsi_x*e0
+                t409 = e0*psi_x
+                t410 = 2*dpsi_x*psi_x
+                t411 = 2*dpsi_y*psi_y
+                t412 = 2*dpsi_z*psi_z
+                t413 = e1*(t410 + t411 + t412)
+                t414 = psi_x*t413
+                t415 = dpsi_y*t409 + psi_y*t408 + psi_y*t414
+                t416 = t407 - t415
+                t417 = (0.5)*dpsi_y
+                t418 = dpsi_z*t409 + psi_z*t408 + psi_z*t414
+                t419 = -t417 - t418
+                t420 = e0*t412 + psi_z*psi_z*t413
+                t421 = e0*t411 + psi_y*psi_y*t413
+                t422 = t420 + t421
+                t423 = -t407 - t415
+                t424 = (0.5)*dpsi_x
+                t425 = dpsi_y*e0*psi_z + dpsi_z*e0*psi_y + psi_y*psi_z*t413
+                t426 = t424 - t425
+                t427 = e0*t410 + psi_x*psi_x*t413
+                t428 = t420 + t427
+                t429 = t417 - t418
+                t430 = -t424 - t425
+                t431 = t421 + t427
                 rhs_x += (-Gam_rotationx_x*depd_x - Gam_rotationy_x*depd_y -
-                    Gam_rotationz_x*depd_z - Om0d_x*(Gam_rotationx_x*t428 + Gam_rotationy_x*t422 +
-                    Gam_rotationz_x*t425) - Om0d_y*(Gam_rotationx_x*t429 + Gam_rotationy_x*t434 +
-                    Gam_rotationz_x*t432) - Om0d_z*(Gam_rotationx_x*t435 + Gam_rotationy_x*t436 +
-                    Gam_rotationz_x*t437))
+                    Gam_rotationz_x*depd_z - Om0d_x*(Gam_rotationx_x*t422 + Gam_rotationy_x*t416 +
+                    Gam_rotationz_x*t419) - Om0d_y*(Gam_rotationx_x*t423 + Gam_rotationy_x*t428 +
+                    Gam_rotationz_x*t426) - Om0d_z*(Gam_rotationx_x*t429 + Gam_rotationy_x*t430 +
+                    Gam_rotationz_x*t431))
                 rhs_y += (-Gam_rotationx_y*depd_x - Gam_rotationy_y*depd_y -
-                    Gam_rotationz_y*depd_z - Om0d_x*(Gam_rotationx_y*t428 + Gam_rotationy_y*t422 +
-                    Gam_rotationz_y*t425) - Om0d_y*(Gam_rotationx_y*t429 + Gam_rotationy_y*t434 +
-                    Gam_rotationz_y*t432) - Om0d_z*(Gam_rotationx_y*t435 + Gam_rotationy_y*t436 +
-                    Gam_rotationz_y*t437))
+                    Gam_rotationz_y*depd_z - Om0d_x*(Gam_rotationx_y*t422 + Gam_rotationy_y*t416 +
+                    Gam_rotationz_y*t419) - Om0d_y*(Gam_rotationx_y*t423 + Gam_rotationy_y*t428 +
+                    Gam_rotationz_y*t426) - Om0d_z*(Gam_rotationx_y*t429 + Gam_rotationy_y*t430 +
+                    Gam_rotationz_y*t431))
                 rhs_z += (-Gam_rotationx_z*depd_x - Gam_rotationy_z*depd_y -
-                    Gam_rotationz_z*depd_z - Om0d_x*(Gam_rotationx_z*t428 + Gam_rotationy_z*t422 +
-                    Gam_rotationz_z*t425) - Om0d_y*(Gam_rotationx_z*t429 + Gam_rotationy_z*t434 +
-                    Gam_rotationz_z*t432) - Om0d_z*(Gam_rotationx_z*t435 + Gam_rotationy_z*t436 +
-                    Gam_rotationz_z*t437))
+                    Gam_rotationz_z*depd_z - Om0d_x*(Gam_rotationx_z*t422 + Gam_rotationy_z*t416 +
+                    Gam_rotationz_z*t419) - Om0d_y*(Gam_rotationx_z*t423 + Gam_rotationy_z*t428 +
+                    Gam_rotationz_z*t426) - Om0d_z*(Gam_rotationx_z*t429 + Gam_rotationy_z*t430 +
+                    Gam_rotationz_z*t431))
             for k in range(MODES, n):
                 Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
                 demd = detad[k]
@@ -1783,43 +1770,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t438 = (0.5)*psi_z
-                t439 = e0*psi_x
-                t440 = psi_y*t439
-                t441 = (0.5)*psi_y
-                t442 = psi_z*t439
-                t443 = psi_y*psi_y
-                t444 = e0*t443
-                t445 = psi_z*psi_z
-                t446 = e0*t445 - 1
-                t447 = (0.5)*dpsi_z
-                t448 = dpsi_x*e0
-                t449 = 2*dpsi_x*psi_x
-                t450 = 2*dpsi_y*psi_y
-                t451 = 2*dpsi_z*psi_z
-                t452 = e1*(t449 + t450 + t451)
-                t453 = psi_x*t452
-                t454 = dpsi_y*t439 + psi_y*t448 + psi_y*t453
-                t455 = (0.5)*dpsi_y
-                t456 = dpsi_z*t439 + psi_z*t448 + psi_z*t453
-                t457 = e0*t451 + t445*t452
-                t458 = e0*t450 + t443*t452
-                t459 = (0.5)*psi_x
-                t460 = e0*psi_z
-                t461 = psi_y*t460
-                t462 = psi_x*psi_x
-                t463 = e0*t462
-                t464 = (0.5)*dpsi_x
-                t465 = dpsi_y*t460 + dpsi_z*e0*psi_y + psi_y*psi_z*t452
-                t466 = e0*t449 + t452*t462
-                detad[j3] = (Om0d_x*(t457 + t458) + Om0d_y*(-t447 - t454) + Om0d_z*(t455 - t456) +
-                    dOm0d_x*(t444 + t446) + dOm0d_y*(-t438 - t440) + dOm0d_z*(t441 - t442) +
+                t432 = (0.5)*psi_z
+                t433 = e0*psi_x
+                t434 = psi_y*t433
+                t435 = (0.5)*psi_y
+                t436 = psi_z*t433
+                t437 = psi_y*psi_y
+                t438 = e0*t437
+                t439 = psi_z*psi_z
+                t440 = e0*t439 - 1
+                t441 = (0.5)*dpsi_z
+                t442 = dpsi_x*e0
+                t443 = 2*dpsi_x*psi_x
+                t444 = 2*dpsi_y*psi_y
+                t445 = 2*dpsi_z*psi_z
+                t446 = e1*(t443 + t444 + t445)
+                t447 = psi_x*t446
+                t448 = dpsi_y*t433 + psi_y*t442 + psi_y*t447
+                t449 = (0.5)*dpsi_y
+                t450 = dpsi_z*t433 + psi_z*t442 + psi_z*t447
+                t451 = e0*t445 + t439*t446
+                t452 = e0*t444 + t437*t446
+                t453 = (0.5)*psi_x
+                t454 = e0*psi_z
+                t455 = psi_y*t454
+                t456 = psi_x*psi_x
+                t457 = e0*t456
+                t458 = (0.5)*dpsi_x
+                t459 = dpsi_y*t454 + dpsi_z*e0*psi_y + psi_y*psi_z*t446
+                t460 = e0*t443 + t446*t456
+                detad[j3] = (Om0d_x*(t451 + t452) + Om0d_y*(-t441 - t448) + Om0d_z*(t449 - t450) +
+                    dOm0d_x*(t438 + t440) + dOm0d_y*(-t432 - t434) + dOm0d_z*(t435 - t436) +
                     depd_x)
-                detad[j3 + 1] = (Om0d_x*(t447 - t454) + Om0d_y*(t457 + t466) + Om0d_z*(-t464 -
-                    t465) + dOm0d_x*(t438 - t440) + dOm0d_y*(t446 + t463) + dOm0d_z*(-t459 - t461)
+                detad[j3 + 1] = (Om0d_x*(t441 - t448) + Om0d_y*(t451 + t460) + Om0d_z*(-t458 -
+                    t459) + dOm0d_x*(t432 - t434) + dOm0d_y*(t440 + t457) + dOm0d_z*(-t453 - t455)
                     + depd_y)
-                detad[j3 + 2] = (Om0d_x*(-t455 - t456) + Om0d_y*(t464 - t465) + Om0d_z*(t458 +
-                    t466) + dOm0d_x*(-t441 - t442) + dOm0d_y*(t459 - t461) + dOm0d_z*(t444 + t463
+                detad[j3 + 2] = (Om0d_x*(-t449 - t450) + Om0d_y*(t458 - t459) + Om0d_z*(t452 +
+                    t460) + dOm0d_x*(-t435 - t436) + dOm0d_y*(t453 - t455) + dOm0d_z*(t438 + t457
                     - 1) + depd_z)
             # differential: rate: rates of the elastic displacements
             for i in range(N_POSITIONS):
@@ -1828,12 +1815,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 deud_x, deud_y, deud_z = detad[i3], detad[i3 + 1], detad[i3 + 2]
-                t467 = X_y + u_y
-                t468 = X_z + u_z
-                t469 = X_x + u_x
-                detad[i3] = -Om0d_y*du_z + Om0d_z*du_y - dOm0d_y*t468 + dOm0d_z*t467 + deud_x
-                detad[i3 + 1] = Om0d_x*du_z - Om0d_z*du_x + dOm0d_x*t468 - dOm0d_z*t469 + deud_y
-                detad[i3 + 2] = -Om0d_x*du_y + Om0d_y*du_x - dOm0d_x*t467 + dOm0d_y*t469 + deud_z
+                t461 = X_y + u_y
+                t462 = X_z + u_z
+                t463 = X_x + u_x
+                detad[i3] = -Om0d_y*du_z + Om0d_z*du_y - dOm0d_y*t462 + dOm0d_z*t461 + deud_x
+                detad[i3 + 1] = Om0d_x*du_z - Om0d_z*du_x + dOm0d_x*t462 - dOm0d_z*t463 + deud_y
+                detad[i3 + 2] = -Om0d_x*du_y + Om0d_y*du_x - dOm0d_x*t461 + dOm0d_y*t463 + deud_z
             # differential: gravity in frame axes
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             dgamma[0] = -dth0_y*gamma_z + dth0_z*gamma_y
@@ -1849,12 +1836,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
             dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-            t470 = da0_x - dgamma_x
-            t471 = da0_y - dgamma_y
-            t472 = da0_z - dgamma_z
-            dzdd[N] = t470*turn_xx + t471*turn_yx + t472*turn_zx
-            dzdd[N + 1] = t470*turn_xy + t471*turn_yy + t472*turn_zy
-            dzdd[N + 2] = t470*turn_xz + t471*turn_yz + t472*turn_zz
+            t464 = da0_x - dgamma_x
+            t465 = da0_y - dgamma_y
+            t466 = da0_z - dgamma_z
+            dzdd[N] = t464*turn_xx + t465*turn_yx + t466*turn_zx
+            dzdd[N + 1] = t464*turn_xy + t465*turn_yy + t466*turn_zy
+            dzdd[N + 2] = t464*turn_xz + t465*turn_yz + t466*turn_zz
             dzdd[N + 3] = dOm0d_x*turn_xx + dOm0d_y*turn_yx + dOm0d_z*turn_zx
             dzdd[N + 4] = dOm0d_x*turn_xy + dOm0d_y*turn_yy + dOm0d_z*turn_zy
             dzdd[N + 5] = dOm0d_x*turn_xz + dOm0d_y*turn_yz + dOm0d_z*turn_zz
@@ -1879,15 +1866,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                t473 = X_z + u_z
-                t474 = X_y + u_y
-                t475 = X_x + u_x
+                t467 = X_z + u_z
+                t468 = X_y + u_y
+                t469 = X_x + u_x
                 dF_x += -df_x
                 dF_y += -df_y
                 dF_z += -df_z
-                dW_x += df_y*t473 - df_z*t474 - du_y*f_z + du_z*f_y
-                dW_y += -df_x*t473 + df_z*t475 + du_x*f_z - du_z*f_x
-                dW_z += df_x*t474 - df_y*t475 - du_x*f_y + du_y*f_x
+                dW_x += df_y*t467 - df_z*t468 - du_y*f_z + du_z*f_y
+                dW_y += -df_x*t467 + df_z*t469 + du_x*f_z - du_z*f_x
+                dW_z += df_x*t468 - df_y*t469 - du_x*f_y + du_y*f_x
             # differential: inertia and weight on the frame
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
@@ -1908,25 +1895,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t476 = -m_x*psi_y + m_y*psi_x
-                t477 = m_x*psi_z - m_z*psi_x
-                t478 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                t479 = dm_x*psi_z
-                t480 = dpsi_z*m_x
-                t481 = -dm_z*psi_x - dpsi_x*m_z + t479 + t480
-                t482 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t483 = e1*t482
-                t484 = -m_y*psi_z + m_z*psi_y
-                t485 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t476 -
-                    0.5*dpsi_y*m_z + dpsi_z*e0*t477 + (0.5)*dpsi_z*m_y - e0*psi_y*t478 +
-                    e0*psi_z*t481 + e1*psi_z*t477*t482 - psi_y*t476*t483)
-                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t476 + (0.5)*dpsi_x*m_z -
-                    dpsi_z*e0*t484 + e0*psi_x*t478 - e0*psi_z*t485 + e1*psi_x*t476*t482 -
-                    psi_z*t483*t484 - 0.5*t479 - 0.5*t480)
-                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t477 -
-                    0.5*dpsi_x*m_y + dpsi_y*e0*t484 + (0.5)*dpsi_y*m_x - e0*psi_x*t481 +
-                    e0*psi_y*t485 + e1*psi_y*t482*t484 - psi_x*t477*t483)
+                t470 = -m_x*psi_y + m_y*psi_x
+                t471 = m_x*psi_z - m_z*psi_x
+                t472 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                t473 = dm_x*psi_z
+                t474 = dpsi_z*m_x
+                t475 = -dm_z*psi_x - dpsi_x*m_z + t473 + t474
+                t476 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t477 = e1*t476
+                t478 = -m_y*psi_z + m_z*psi_y
+                t479 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t470 -
+                    0.5*dpsi_y*m_z + dpsi_z*e0*t471 + (0.5)*dpsi_z*m_y - e0*psi_y*t472 +
+                    e0*psi_z*t475 + e1*psi_z*t471*t476 - psi_y*t470*t477)
+                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t470 + (0.5)*dpsi_x*m_z -
+                    dpsi_z*e0*t478 + e0*psi_x*t472 - e0*psi_z*t479 + e1*psi_x*t470*t476 -
+                    psi_z*t477*t478 - 0.5*t473 - 0.5*t474)
+                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t471 -
+                    0.5*dpsi_x*m_y + dpsi_y*e0*t478 + (0.5)*dpsi_y*m_x - e0*psi_x*t475 +
+                    e0*psi_y*t479 + e1*psi_y*t476*t478 - psi_x*t471*t477)
             # differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
             for i in range(N_POSITIONS):
@@ -1938,12 +1925,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Gam_positionz_x, Gam_positionz_y, Gam_positionz_z = (Gam[3*(i3 + 2)],
                     Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                t486 = Gam_positiony_x*wp_x + Gam_positiony_y*wp_y + Gam_positiony_z*wp_z
-                t487 = Gam_positionz_x*wp_x + Gam_positionz_y*wp_y + Gam_positionz_z*wp_z
-                t488 = Gam_positionx_x*wp_x + Gam_positionx_y*wp_y + Gam_positionx_z*wp_z
-                rhs_x += du_y*t487 - du_z*t486
-                rhs_y += -du_x*t487 + du_z*t488
-                rhs_z += du_x*t486 - du_y*t488
+                t480 = Gam_positiony_x*wp_x + Gam_positiony_y*wp_y + Gam_positiony_z*wp_z
+                t481 = Gam_positionz_x*wp_x + Gam_positionz_y*wp_y + Gam_positionz_z*wp_z
+                t482 = Gam_positionx_x*wp_x + Gam_positionx_y*wp_y + Gam_positionx_z*wp_z
+                rhs_x += du_y*t481 - du_z*t480
+                rhs_y += -du_x*t481 + du_z*t482
+                rhs_z += du_x*t480 - du_y*t482
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
@@ -1956,36 +1943,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t489 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z
-                t490 = dpsi_y*t489
-                t491 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z
-                t492 = dpsi_z*t491
-                t493 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z
-                t494 = psi_x*t491 - psi_y*t493
-                t495 = e0*t494
-                t496 = dpsi_x*t491
-                t497 = dpsi_y*t493
-                t498 = e0*(t496 - t497)
-                t499 = -psi_x*t489 + psi_z*t493
-                t500 = dpsi_x*t489
-                t501 = dpsi_z*t493 - t500
-                t502 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t503 = e1*t502
-                t504 = t494*t503
-                t505 = psi_y*t489 - psi_z*t491
-                t506 = t490 - t492
-                rhs_x += (dpsi_y*t495 - dpsi_z*e0*t499 - e0*psi_z*t501 + psi_y*t498 + psi_y*t504 -
-                    psi_z*t499*t503 + (0.5)*t490 - 0.5*t492)
-                rhs_y += (-dpsi_x*t495 + dpsi_z*e0*t505 + (0.5)*dpsi_z*t493 + e0*psi_z*t506 +
-                    e1*psi_z*t502*t505 - psi_x*t498 - psi_x*t504 - 0.5*t500)
-                rhs_z += (dpsi_x*e0*t499 - dpsi_y*e0*t505 + e0*psi_x*t501 - e0*psi_y*t506 +
-                    psi_x*t499*t503 - psi_y*t503*t505 + (0.5)*t496 - 0.5*t497)
-            t507 = dW_x + rhs_x
-            t508 = dW_y + rhs_y
-            t509 = dW_z + rhs_z
-            dwp_x = Bxx*t507 + Byx*t508 + Bzx*t509
-            dwp_y = Bxy*t507 + Byy*t508 + Bzy*t509
-            dwp_z = Bxz*t507 + Byz*t508 + Bzz*t509
+                t483 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z
+                t484 = dpsi_y*t483
+                t485 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z
+                t486 = dpsi_z*t485
+                t487 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z
+                t488 = psi_x*t485 - psi_y*t487
+                t489 = e0*t488
+                t490 = dpsi_x*t485
+                t491 = dpsi_y*t487
+                t492 = e0*(t490 - t491)
+                t493 = -psi_x*t483 + psi_z*t487
+                t494 = dpsi_x*t483
+                t495 = dpsi_z*t487 - t494
+                t496 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t497 = e1*t496
+                t498 = t488*t497
+                t499 = psi_y*t483 - psi_z*t485
+                t500 = t484 - t486
+                rhs_x += (dpsi_y*t489 - dpsi_z*e0*t493 - e0*psi_z*t495 + psi_y*t492 + psi_y*t498 -
+                    psi_z*t493*t497 + (0.5)*t484 - 0.5*t486)
+                rhs_y += (-dpsi_x*t489 + dpsi_z*e0*t499 + (0.5)*dpsi_z*t487 + e0*psi_z*t500 +
+                    e1*psi_z*t496*t499 - psi_x*t492 - psi_x*t498 - 0.5*t494)
+                rhs_z += (dpsi_x*e0*t493 - dpsi_y*e0*t499 + e0*psi_x*t495 - e0*psi_y*t500 +
+                    psi_x*t493*t497 - psi_y*t497*t499 + (0.5)*t490 - 0.5*t491)
+            t501 = dW_x + rhs_x
+            t502 = dW_y + rhs_y
+            t503 = dW_z + rhs_z
+            dwp_x = Bxx*t501 + Byx*t502 + Bzx*t503
+            dwp_y = Bxy*t501 + Byy*t502 + Bzy*t503
+            dwp_z = Bxz*t501 + Byz*t502 + Bzz*t503
             # differential: force on the origin, through the frame
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -2038,58 +2025,58 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t510 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z
-                t511 = dpsi_z*t510
-                t512 = Gam_rotationy_x*dwp_x + Gam_rotationy_y*dwp_y + Gam_rotationy_z*dwp_z
-                t513 = psi_z*t512
-                t514 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z
-                t515 = Gam_rotationz_x*dwp_x + Gam_rotationz_y*dwp_y + Gam_rotationz_z*dwp_z
-                t516 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z
-                t517 = psi_x*t510 - psi_y*t516
-                t518 = dpsi_y*e0
-                t519 = m_x*psi_z - m_z*psi_x
-                t520 = dpsi_z*e0
-                t521 = dpsi_y*t516
-                t522 = Gam_rotationx_x*dwp_x + Gam_rotationx_y*dwp_y + Gam_rotationx_z*dwp_z
-                t523 = psi_y*t522
-                t524 = dpsi_x*t510 + psi_x*t512 - t521 - t523
-                t525 = e0*psi_y
-                t526 = dm_x*psi_z
-                t527 = dpsi_z*m_x
-                t528 = -dm_z*psi_x - dpsi_x*m_z + t526 + t527
-                t529 = e0*psi_z
-                t530 = -m_x*psi_y + m_y*psi_x
-                t531 = -psi_x*t514 + psi_z*t516
-                t532 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                t533 = dpsi_x*t514
-                t534 = psi_x*t515
-                t535 = dpsi_z*t516 + psi_z*t522 - t533 - t534
-                t536 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t537 = e1*t536
-                t538 = psi_y*t537
-                t539 = psi_z*t537
-                t540 = dpsi_x*e0
-                t541 = psi_y*t514 - psi_z*t510
-                t542 = e0*psi_x
-                t543 = dpsi_y*t514 + psi_y*t515 - t511 - t513
-                t544 = -m_y*psi_z + m_z*psi_y
-                t545 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                t546 = psi_x*t537
-                dg[j3] = (dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y + dpsi_y*e0*t530 -
-                    0.5*dpsi_y*m_z + (0.5)*dpsi_y*t514 + dpsi_z*e0*t531 + (0.5)*dpsi_z*m_y +
-                    e0*psi_y*t532 + e0*psi_z*t535 + e1*psi_y*t530*t536 + e1*psi_z*t531*t536 +
-                    (0.5)*psi_y*t515 - 0.5*t511 - 0.5*t513 - t517*t518 - t517*t538 - t519*t520 -
-                    t519*t539 - t522 - t524*t525 - t528*t529)
-                dg[j3 + 1] = (dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t517 + (0.5)*dpsi_x*m_z +
-                    dpsi_z*e0*t544 + (0.5)*dpsi_z*t516 + e0*psi_x*t524 + e0*psi_z*t545 +
-                    e1*psi_x*t517*t536 + e1*psi_z*t536*t544 + (0.5)*psi_z*t522 - t512 - t520*t541
-                    - 0.5*t526 - 0.5*t527 - t529*t543 - t530*t540 - t530*t546 - t532*t542 -
-                    0.5*t533 - 0.5*t534 - t539*t541)
-                dg[j3 + 2] = ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t519 -
-                    0.5*dpsi_x*m_y + (0.5)*dpsi_x*t510 + dpsi_y*e0*t541 + (0.5)*dpsi_y*m_x +
-                    e0*psi_x*t528 + e0*psi_y*t543 + e1*psi_x*t519*t536 + e1*psi_y*t536*t541 +
-                    (0.5)*psi_x*t512 - t515 - t518*t544 - 0.5*t521 - 0.5*t523 - t525*t545 -
-                    t531*t540 - t531*t546 - t535*t542 - t538*t544)
+                t504 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z
+                t505 = dpsi_z*t504
+                t506 = Gam_rotationy_x*dwp_x + Gam_rotationy_y*dwp_y + Gam_rotationy_z*dwp_z
+                t507 = psi_z*t506
+                t508 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z
+                t509 = Gam_rotationz_x*dwp_x + Gam_rotationz_y*dwp_y + Gam_rotationz_z*dwp_z
+                t510 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z
+                t511 = psi_x*t504 - psi_y*t510
+                t512 = dpsi_y*e0
+                t513 = m_x*psi_z - m_z*psi_x
+                t514 = dpsi_z*e0
+                t515 = dpsi_y*t510
+                t516 = Gam_rotationx_x*dwp_x + Gam_rotationx_y*dwp_y + Gam_rotationx_z*dwp_z
+                t517 = psi_y*t516
+                t518 = dpsi_x*t504 + psi_x*t506 - t515 - t517
+                t519 = e0*psi_y
+                t520 = dm_x*psi_z
+                t521 = dpsi_z*m_x
+                t522 = -dm_z*psi_x - dpsi_x*m_z + t520 + t521
+                t523 = e0*psi_z
+                t524 = -m_x*psi_y + m_y*psi_x
+                t525 = -psi_x*t508 + psi_z*t510
+                t526 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                t527 = dpsi_x*t508
+                t528 = psi_x*t509
+                t529 = dpsi_z*t510 + psi_z*t516 - t527 - t528
+                t530 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t531 = e1*t530
+                t532 = psi_y*t531
+                t533 = psi_z*t531
+                t534 = dpsi_x*e0
+                t535 = psi_y*t508 - psi_z*t504
+                t536 = e0*psi_x
+                t537 = dpsi_y*t508 + psi_y*t509 - t505 - t507
+                t538 = -m_y*psi_z + m_z*psi_y
+                t539 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                t540 = psi_x*t531
+                dg[j3] = (dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y + dpsi_y*e0*t524 -
+                    0.5*dpsi_y*m_z + (0.5)*dpsi_y*t508 + dpsi_z*e0*t525 + (0.5)*dpsi_z*m_y +
+                    e0*psi_y*t526 + e0*psi_z*t529 + e1*psi_y*t524*t530 + e1*psi_z*t525*t530 +
+                    (0.5)*psi_y*t509 - 0.5*t505 - 0.5*t507 - t511*t512 - t511*t532 - t513*t514 -
+                    t513*t533 - t516 - t518*t519 - t522*t523)
+                dg[j3 + 1] = (dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t511 + (0.5)*dpsi_x*m_z +
+                    dpsi_z*e0*t538 + (0.5)*dpsi_z*t510 + e0*psi_x*t518 + e0*psi_z*t539 +
+                    e1*psi_x*t511*t530 + e1*psi_z*t530*t538 + (0.5)*psi_z*t516 - t506 - t514*t535
+                    - 0.5*t520 - 0.5*t521 - t523*t537 - t524*t534 - t524*t540 - t526*t536 -
+                    0.5*t527 - 0.5*t528 - t533*t535)
+                dg[j3 + 2] = ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t513 -
+                    0.5*dpsi_x*m_y + (0.5)*dpsi_x*t504 + dpsi_y*e0*t535 + (0.5)*dpsi_y*m_x +
+                    e0*psi_x*t522 + e0*psi_y*t537 + e1*psi_x*t513*t530 + e1*psi_y*t530*t535 +
+                    (0.5)*psi_x*t506 - t509 - t512*t538 - 0.5*t515 - 0.5*t517 - t519*t539 -
+                    t525*t534 - t525*t540 - t529*t536 - t532*t538)
             # differential: force of the internal modes
             for k in range(MODES, n):
                 Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
@@ -2204,106 +2191,106 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdgt_x, bdgt_y, bdgt_z = bdg[j3], bdg[j3 + 1], bdg[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t547 = e0*psi_y
-                t548 = m_y*t547
-                t549 = e0*psi_z
-                t550 = m_z*t549
-                t551 = m_x*psi_y
-                t552 = m_y*psi_x - t551
-                t553 = 2*e1
-                t554 = psi_x*t553
-                t555 = psi_y*t554
-                t556 = t552*t555
-                t557 = m_x*psi_z
-                t558 = m_z*psi_x
-                t559 = t557 - t558
-                t560 = psi_z*t554
-                t561 = t559*t560
-                t562 = Gam_rotationy_x*wp_x
-                t563 = Gam_rotationy_y*wp_y
-                t564 = Gam_rotationy_z*wp_z
-                t565 = t562 + t563 + t564
-                t566 = Gam_rotationz_x*wp_x
-                t567 = Gam_rotationz_y*wp_y
-                t568 = Gam_rotationz_z*wp_z
-                t569 = t566 + t567 + t568
-                t570 = -t569
-                t571 = Gam_rotationx_x*wp_x
-                t572 = Gam_rotationx_y*wp_y
-                t573 = Gam_rotationx_z*wp_z
-                t574 = t571 + t572 + t573
-                t575 = psi_x*t565 - psi_y*t574
-                t576 = t555*t575
-                t577 = -psi_x*t569 + psi_z*t574
-                t578 = t560*t577
-                t579 = psi_x*psi_x
-                t580 = t553*t579
-                t581 = m_y*psi_z
-                t582 = m_z*psi_y - t581
-                t583 = psi_y*t569 - psi_z*t565
-                t584 = e0*t552 - e0*t575 - 0.5*m_z + (0.5)*t566 + (0.5)*t567 + (0.5)*t568
-                t585 = e0*psi_x
-                t586 = e0*t559 - e0*t577 - 0.5*m_y + (0.5)*t562 + (0.5)*t563 + (0.5)*t564
-                t587 = m_x*t585
-                t588 = psi_y*psi_z*t553
-                t589 = t582*t588
-                t590 = -t574
-                t591 = t583*t588
-                t592 = psi_y*psi_y
-                t593 = t553*t592
-                t594 = e0*t582 - e0*t583 - 0.5*m_x + (0.5)*t571 + (0.5)*t572 + (0.5)*t573
-                t595 = -t565
-                t596 = psi_z*psi_z
-                t597 = t553*t596
-                t598 = (0.5)*psi_z
-                t599 = psi_x*t547
-                t600 = (0.5)*psi_y
-                t601 = psi_x*t549
-                t602 = e0*t592
-                t603 = e0*t596 - 1
-                t604 = (0.5)*psi_x
-                t605 = psi_z*t547
-                t606 = e0*t579
-                t607 = -Gam_rotationx_x*psi_y + Gam_rotationy_x*psi_x
-                t608 = Gam_rotationx_x*psi_z - Gam_rotationz_x*psi_x
-                t609 = -Gam_rotationy_x*psi_z + Gam_rotationz_x*psi_y
-                t610 = -Gam_rotationx_y*psi_y + Gam_rotationy_y*psi_x
-                t611 = Gam_rotationx_y*psi_z - Gam_rotationz_y*psi_x
-                t612 = -Gam_rotationy_y*psi_z + Gam_rotationz_y*psi_y
-                t613 = -Gam_rotationx_z*psi_y + Gam_rotationy_z*psi_x
-                t614 = Gam_rotationx_z*psi_z - Gam_rotationz_z*psi_x
-                t615 = -Gam_rotationy_z*psi_z + Gam_rotationz_z*psi_y
-                bdy[j3] += (bdgt_x*(-t547*t565 + t548 + t549*t570 + t550 + t556 - t561 - t576 +
-                    t578) + bdgt_y*(-e0*m_y*psi_x + e0*psi_x*t565 + 2*e1*psi_x*psi_z*t582 +
-                    2*e1*t575*t579 - t552*t580 - t560*t583 - t584) + bdgt_z*(-e0*t558 - t555*t582
-                    + t555*t583 + t559*t580 - t570*t585 - t577*t580 + t586))
-                bdy[j3 + 1] += (bdgt_x*(-e0*t551 - t547*t590 + t552*t593 - t559*t588 - t575*t593 +
-                    t577*t588 + t584) + bdgt_y*(-t549*t569 + t550 - t556 + t576 + t585*t590 + t587
-                    + t589 - t591) + bdgt_z*(-e0*m_z*psi_y + e0*psi_y*t569 + 2*e1*psi_x*psi_y*t559
-                    + 2*e1*t583*t592 - t555*t577 - t582*t593 - t594))
-                bdy[j3 + 2] += (bdgt_x*(e0*psi_z*t574 - e0*t557 + 2*e1*psi_y*psi_z*t552 +
-                    2*e1*t577*t596 - t559*t597 - t575*t588 - t586) + bdgt_y*(-e0*t581 - t549*t595
-                    - t552*t560 + t560*t575 + t582*t597 - t583*t597 + t594) + bdgt_z*(t547*t595 +
-                    t548 + t561 - t574*t585 - t578 + t587 - t589 + t591))
-                bds[j3] += bdgt_x*(-t602 - t603) + bdgt_y*(-t598 + t599) + bdgt_z*(t600 + t601)
-                bds[j3 + 1] += bdgt_x*(t598 + t599) + bdgt_y*(-t603 - t606) + bdgt_z*(-t604 + t605)
-                bds[j3 + 2] += (bdgt_x*(-t600 + t601) + bdgt_y*(t604 + t605) + bdgt_z*(-t602 -
-                    t606 + 1))
-                bdwp_x += (bdgt_x*(-Gam_rotationx_x - Gam_rotationy_x*t598 +
-                    (0.5)*Gam_rotationz_x*psi_y + e0*psi_z*t608 - t547*t607) +
-                    bdgt_y*((0.5)*Gam_rotationx_x*psi_z - Gam_rotationy_x - Gam_rotationz_x*t604 +
-                    e0*psi_x*t607 - t549*t609) + bdgt_z*(-Gam_rotationx_x*t600 +
-                    (0.5)*Gam_rotationy_x*psi_x - Gam_rotationz_x + e0*psi_y*t609 - t585*t608))
-                bdwp_y += (bdgt_x*(-Gam_rotationx_y - Gam_rotationy_y*t598 +
-                    (0.5)*Gam_rotationz_y*psi_y + e0*psi_z*t611 - t547*t610) +
-                    bdgt_y*((0.5)*Gam_rotationx_y*psi_z - Gam_rotationy_y - Gam_rotationz_y*t604 +
-                    e0*psi_x*t610 - t549*t612) + bdgt_z*(-Gam_rotationx_y*t600 +
-                    (0.5)*Gam_rotationy_y*psi_x - Gam_rotationz_y + e0*psi_y*t612 - t585*t611))
-                bdwp_z += (bdgt_x*(-Gam_rotationx_z - Gam_rotationy_z*t598 +
-                    (0.5)*Gam_rotationz_z*psi_y + e0*psi_z*t614 - t547*t613) +
-                    bdgt_y*((0.5)*Gam_rotationx_z*psi_z - Gam_rotationy_z - Gam_rotationz_z*t604 +
-                    e0*psi_x*t613 - t549*t615) + bdgt_z*(-Gam_rotationx_z*t600 +
-                    (0.5)*Gam_rotationy_z*psi_x - Gam_rotationz_z + e0*psi_y*t615 - t585*t614))
+                t541 = e0*psi_y
+                t542 = m_y*t541
+                t543 = e0*psi_z
+                t544 = m_z*t543
+                t545 = m_x*psi_y
+                t546 = m_y*psi_x - t545
+                t547 = 2*e1
+                t548 = psi_x*t547
+                t549 = psi_y*t548
+                t550 = t546*t549
+                t551 = m_x*psi_z
+                t552 = m_z*psi_x
+                t553 = t551 - t552
+                t554 = psi_z*t548
+                t555 = t553*t554
+                t556 = Gam_rotationy_x*wp_x
+                t557 = Gam_rotationy_y*wp_y
+                t558 = Gam_rotationy_z*wp_z
+                t559 = t556 + t557 + t558
+                t560 = Gam_rotationz_x*wp_x
+                t561 = Gam_rotationz_y*wp_y
+                t562 = Gam_rotationz_z*wp_z
+                t563 = t560 + t561 + t562
+                t564 = -t563
+                t565 = Gam_rotationx_x*wp_x
+                t566 = Gam_rotationx_y*wp_y
+                t567 = Gam_rotationx_z*wp_z
+                t568 = t565 + t566 + t567
+                t569 = psi_x*t559 - psi_y*t568
+                t570 = t549*t569
+                t571 = -psi_x*t563 + psi_z*t568
+                t572 = t554*t571
+                t573 = psi_x*psi_x
+                t574 = t547*t573
+                t575 = m_y*psi_z
+                t576 = m_z*psi_y - t575
+                t577 = psi_y*t563 - psi_z*t559
+                t578 = e0*t546 - e0*t569 - 0.5*m_z + (0.5)*t560 + (0.5)*t561 + (0.5)*t562
+                t579 = e0*psi_x
+                t580 = e0*t553 - e0*t571 - 0.5*m_y + (0.5)*t556 + (0.5)*t557 + (0.5)*t558
+                t581 = m_x*t579
+                t582 = psi_y*psi_z*t547
+                t583 = t576*t582
+                t584 = -t568
+                t585 = t577*t582
+                t586 = psi_y*psi_y
+                t587 = t547*t586
+                t588 = e0*t576 - e0*t577 - 0.5*m_x + (0.5)*t565 + (0.5)*t566 + (0.5)*t567
+                t589 = -t559
+                t590 = psi_z*psi_z
+                t591 = t547*t590
+                t592 = (0.5)*psi_z
+                t593 = psi_x*t541
+                t594 = (0.5)*psi_y
+                t595 = psi_x*t543
+                t596 = e0*t586
+                t597 = e0*t590 - 1
+                t598 = (0.5)*psi_x
+                t599 = psi_z*t541
+                t600 = e0*t573
+                t601 = -Gam_rotationx_x*psi_y + Gam_rotationy_x*psi_x
+                t602 = Gam_rotationx_x*psi_z - Gam_rotationz_x*psi_x
+                t603 = -Gam_rotationy_x*psi_z + Gam_rotationz_x*psi_y
+                t604 = -Gam_rotationx_y*psi_y + Gam_rotationy_y*psi_x
+                t605 = Gam_rotationx_y*psi_z - Gam_rotationz_y*psi_x
+                t606 = -Gam_rotationy_y*psi_z + Gam_rotationz_y*psi_y
+                t607 = -Gam_rotationx_z*psi_y + Gam_rotationy_z*psi_x
+                t608 = Gam_rotationx_z*psi_z - Gam_rotationz_z*psi_x
+                t609 = -Gam_rotationy_z*psi_z + Gam_rotationz_z*psi_y
+                bdy[j3] += (bdgt_x*(-t541*t559 + t542 + t543*t564 + t544 + t550 - t555 - t570 +
+                    t572) + bdgt_y*(-e0*m_y*psi_x + e0*psi_x*t559 + 2*e1*psi_x*psi_z*t576 +
+                    2*e1*t569*t573 - t546*t574 - t554*t577 - t578) + bdgt_z*(-e0*t552 - t549*t576
+                    + t549*t577 + t553*t574 - t564*t579 - t571*t574 + t580))
+                bdy[j3 + 1] += (bdgt_x*(-e0*t545 - t541*t584 + t546*t587 - t553*t582 - t569*t587 +
+                    t571*t582 + t578) + bdgt_y*(-t543*t563 + t544 - t550 + t570 + t579*t584 + t581
+                    + t583 - t585) + bdgt_z*(-e0*m_z*psi_y + e0*psi_y*t563 + 2*e1*psi_x*psi_y*t553
+                    + 2*e1*t577*t586 - t549*t571 - t576*t587 - t588))
+                bdy[j3 + 2] += (bdgt_x*(e0*psi_z*t568 - e0*t551 + 2*e1*psi_y*psi_z*t546 +
+                    2*e1*t571*t590 - t553*t591 - t569*t582 - t580) + bdgt_y*(-e0*t575 - t543*t589
+                    - t546*t554 + t554*t569 + t576*t591 - t577*t591 + t588) + bdgt_z*(t541*t589 +
+                    t542 + t555 - t568*t579 - t572 + t581 - t583 + t585))
+                bds[j3] += bdgt_x*(-t596 - t597) + bdgt_y*(-t592 + t593) + bdgt_z*(t594 + t595)
+                bds[j3 + 1] += bdgt_x*(t592 + t593) + bdgt_y*(-t597 - t600) + bdgt_z*(-t598 + t599)
+                bds[j3 + 2] += (bdgt_x*(-t594 + t595) + bdgt_y*(t598 + t599) + bdgt_z*(-t596 -
+                    t600 + 1))
+                bdwp_x += (bdgt_x*(-Gam_rotationx_x - Gam_rotationy_x*t592 +
+                    (0.5)*Gam_rotationz_x*psi_y + e0*psi_z*t602 - t541*t601) +
+                    bdgt_y*((0.5)*Gam_rotationx_x*psi_z - Gam_rotationy_x - Gam_rotationz_x*t598 +
+                    e0*psi_x*t601 - t543*t603) + bdgt_z*(-Gam_rotationx_x*t594 +
+                    (0.5)*Gam_rotationy_x*psi_x - Gam_rotationz_x + e0*psi_y*t603 - t579*t602))
+                bdwp_y += (bdgt_x*(-Gam_rotationx_y - Gam_rotationy_y*t592 +
+                    (0.5)*Gam_rotationz_y*psi_y + e0*psi_z*t605 - t541*t604) +
+                    bdgt_y*((0.5)*Gam_rotationx_y*psi_z - Gam_rotationy_y - Gam_rotationz_y*t598 +
+                    e0*psi_x*t604 - t543*t606) + bdgt_z*(-Gam_rotationx_y*t594 +
+                    (0.5)*Gam_rotationy_y*psi_x - Gam_rotationz_y + e0*psi_y*t606 - t579*t605))
+                bdwp_z += (bdgt_x*(-Gam_rotationx_z - Gam_rotationy_z*t592 +
+                    (0.5)*Gam_rotationz_z*psi_y + e0*psi_z*t608 - t541*t607) +
+                    bdgt_y*((0.5)*Gam_rotationx_z*psi_z - Gam_rotationy_z - Gam_rotationz_z*t598 +
+                    e0*psi_x*t607 - t543*t609) + bdgt_z*(-Gam_rotationx_z*t594 +
+                    (0.5)*Gam_rotationy_z*psi_x - Gam_rotationz_z + e0*psi_y*t609 - t579*t608))
             # transposed: differential: force on the nodes, left in frame axes
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -2349,12 +2336,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdwp_z += Gam_positionx_z*bdF_x + Gam_positiony_z*bdF_y + Gam_positionz_z*bdF_z
             # transposed: differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
-            t616 = bdwp_x + rhs_x
-            t617 = bdwp_y + rhs_y
-            t618 = bdwp_z + rhs_z
-            mdwp_x = Bxx*t616 + Bxy*t617 + Bxz*t618
-            mdwp_y = Byx*t616 + Byy*t617 + Byz*t618
-            mdwp_z = Bzx*t616 + Bzy*t617 + Bzz*t618
+            t610 = bdwp_x + rhs_x
+            t611 = bdwp_y + rhs_y
+            t612 = bdwp_z + rhs_z
+            mdwp_x = Bxx*t610 + Bxy*t611 + Bxz*t612
+            mdwp_y = Byx*t610 + Byy*t611 + Byz*t612
+            mdwp_z = Bzx*t610 + Bzy*t611 + Bzz*t612
             # transposed: differential: B^T wp = W
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -2364,12 +2351,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gam[3*(i3 + 1) + 1], Gam[3*(i3 + 1) + 2])
                 Gam_positionz_x, Gam_positionz_y, Gam_positionz_z = (Gam[3*(i3 + 2)],
                     Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
-                t619 = Gam_positionz_x*wp_x + Gam_positionz_y*wp_y + Gam_positionz_z*wp_z
-                t620 = Gam_positiony_x*wp_x + Gam_positiony_y*wp_y + Gam_positiony_z*wp_z
-                t621 = Gam_positionx_x*wp_x + Gam_positionx_y*wp_y + Gam_positionx_z*wp_z
-                bdy[i3] += -mdwp_y*t619 + mdwp_z*t620
-                bdy[i3 + 1] += mdwp_x*t619 - mdwp_z*t621
-                bdy[i3 + 2] += -mdwp_x*t620 + mdwp_y*t621
+                t613 = Gam_positionz_x*wp_x + Gam_positionz_y*wp_y + Gam_positionz_z*wp_z
+                t614 = Gam_positiony_x*wp_x + Gam_positiony_y*wp_y + Gam_positiony_z*wp_z
+                t615 = Gam_positionx_x*wp_x + Gam_positionx_y*wp_y + Gam_positionx_z*wp_z
+                bdy[i3] += -mdwp_y*t613 + mdwp_z*t614
+                bdy[i3 + 1] += mdwp_x*t613 - mdwp_z*t615
+                bdy[i3 + 2] += -mdwp_x*t614 + mdwp_y*t615
             # transposed: differential: B^T wp = W
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -2382,52 +2369,52 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gam[3*(j3 + 2) + 1], Gam[3*(j3 + 2) + 2])
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t622 = Gam_rotationy_x*wp_x
-                t623 = Gam_rotationy_y*wp_y
-                t624 = Gam_rotationy_z*wp_z
-                t625 = t622 + t623 + t624
-                t626 = e0*psi_y
-                t627 = Gam_rotationz_x*wp_x
-                t628 = Gam_rotationz_y*wp_y
-                t629 = Gam_rotationz_z*wp_z
+                t616 = Gam_rotationy_x*wp_x
+                t617 = Gam_rotationy_y*wp_y
+                t618 = Gam_rotationy_z*wp_z
+                t619 = t616 + t617 + t618
+                t620 = e0*psi_y
+                t621 = Gam_rotationz_x*wp_x
+                t622 = Gam_rotationz_y*wp_y
+                t623 = Gam_rotationz_z*wp_z
+                t624 = t621 + t622 + t623
+                t625 = -t624
+                t626 = psi_x*t619
+                t627 = Gam_rotationx_x*wp_x
+                t628 = Gam_rotationx_y*wp_y
+                t629 = Gam_rotationx_z*wp_z
                 t630 = t627 + t628 + t629
-                t631 = -t630
-                t632 = psi_x*t625
-                t633 = Gam_rotationx_x*wp_x
-                t634 = Gam_rotationx_y*wp_y
-                t635 = Gam_rotationx_z*wp_z
-                t636 = t633 + t634 + t635
-                t637 = -psi_y*t636 + t632
-                t638 = 2*e1
-                t639 = psi_x*t638
-                t640 = psi_y*t639
-                t641 = t637*t640
-                t642 = -psi_x*t630 + psi_z*t636
-                t643 = psi_z*t639
-                t644 = t642*t643
-                t645 = psi_x*psi_x*t638
-                t646 = psi_y*t630
-                t647 = -psi_z*t625 + t646
-                t648 = e0*t637 + (0.5)*t627 + (0.5)*t628 + (0.5)*t629
-                t649 = e0*t642 + (0.5)*t622 + (0.5)*t623 + (0.5)*t624
-                t650 = e0*psi_z
-                t651 = -t636
-                t652 = e0*psi_x
-                t653 = psi_y*psi_z*t638
-                t654 = -t647*t653
-                t655 = psi_y*psi_y*t638
-                t656 = e0*t647 + (0.5)*t633 + (0.5)*t634 + (0.5)*t635
-                t657 = -t625
-                t658 = psi_z*psi_z*t638
-                bdy[j3] += (-mdwp_x*(e0*psi_z*t631 - t625*t626 - t641 + t644) - mdwp_y*(e0*t632 +
-                    t637*t645 - t643*t647 + t648) - mdwp_z*(-e0*psi_x*t631 + 2*e1*psi_x*psi_y*t647
-                    - t642*t645 - t649))
-                bdy[j3 + 1] += (-mdwp_x*(2*e1*psi_y*psi_z*t642 - t626*t651 - t637*t655 - t648) -
-                    mdwp_y*(-t630*t650 + t641 + t651*t652 + t654) - mdwp_z*(e0*t646 - t640*t642 +
-                    t647*t655 + t656))
-                bdy[j3 + 2] += (-mdwp_x*(e0*psi_z*t636 - t637*t653 + t642*t658 + t649) -
-                    mdwp_y*(2*e1*psi_x*psi_z*t637 - t647*t658 - t650*t657 - t656) -
-                    mdwp_z*(e0*psi_y*t657 - t636*t652 - t644 - t654))
+                t631 = -psi_y*t630 + t626
+                t632 = 2*e1
+                t633 = psi_x*t632
+                t634 = psi_y*t633
+                t635 = t631*t634
+                t636 = -psi_x*t624 + psi_z*t630
+                t637 = psi_z*t633
+                t638 = t636*t637
+                t639 = psi_x*psi_x*t632
+                t640 = psi_y*t624
+                t641 = -psi_z*t619 + t640
+                t642 = e0*t631 + (0.5)*t621 + (0.5)*t622 + (0.5)*t623
+                t643 = e0*t636 + (0.5)*t616 + (0.5)*t617 + (0.5)*t618
+                t644 = e0*psi_z
+                t645 = -t630
+                t646 = e0*psi_x
+                t647 = psi_y*psi_z*t632
+                t648 = -t641*t647
+                t649 = psi_y*psi_y*t632
+                t650 = e0*t641 + (0.5)*t627 + (0.5)*t628 + (0.5)*t629
+                t651 = -t619
+                t652 = psi_z*psi_z*t632
+                bdy[j3] += (-mdwp_x*(e0*psi_z*t625 - t619*t620 - t635 + t638) - mdwp_y*(e0*t626 +
+                    t631*t639 - t637*t641 + t642) - mdwp_z*(-e0*psi_x*t625 + 2*e1*psi_x*psi_y*t641
+                    - t636*t639 - t643))
+                bdy[j3 + 1] += (-mdwp_x*(2*e1*psi_y*psi_z*t636 - t620*t645 - t631*t649 - t642) -
+                    mdwp_y*(-t624*t644 + t635 + t645*t646 + t648) - mdwp_z*(e0*t640 - t634*t636 +
+                    t641*t649 + t650))
+                bdy[j3 + 2] += (-mdwp_x*(e0*psi_z*t630 - t631*t647 + t636*t652 + t643) -
+                    mdwp_y*(2*e1*psi_x*psi_z*t631 - t641*t652 - t644*t651 - t650) -
+                    mdwp_z*(e0*psi_y*t651 - t630*t646 - t638 - t648))
             # transposed: differential: B^T wp = W
             bdW_x += mdwp_x
             bdW_y += mdwp_y
@@ -2439,53 +2426,53 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t659 = e0*psi_y
-                t660 = m_y*t659
-                t661 = e0*psi_z
-                t662 = m_z*t661
-                t663 = -m_x*psi_y + m_y*psi_x
-                t664 = 2*e1
-                t665 = psi_x*t664
-                t666 = psi_y*t665
-                t667 = t663*t666
-                t668 = m_x*psi_z
-                t669 = -m_z*psi_x + t668
-                t670 = psi_z*t665
-                t671 = t669*t670
-                t672 = psi_x*psi_x
-                t673 = t664*t672
-                t674 = -m_y*psi_z + m_z*psi_y
-                t675 = e0*t663 + (0.5)*m_z
-                t676 = e0*t669 + (0.5)*m_y
-                t677 = e0*m_x*psi_x
-                t678 = psi_y*psi_z*t664
-                t679 = t674*t678
-                t680 = psi_y*psi_y
-                t681 = t664*t680
-                t682 = e0*t674 + (0.5)*m_x
-                t683 = psi_z*psi_z
-                t684 = t664*t683
-                t685 = (0.5)*psi_z
-                t686 = psi_x*t659
-                t687 = (0.5)*psi_y
-                t688 = psi_x*t661
-                t689 = e0*t680
-                t690 = e0*t683 - 1
-                t691 = (0.5)*psi_x
-                t692 = psi_z*t659
-                t693 = e0*t672
-                bdy[j3] += (bdW_x*(-t660 - t662 - t667 + t671) + bdW_y*(e0*m_y*psi_x + t663*t673 -
-                    t670*t674 + t675) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t674 - t669*t673 -
-                    t676))
-                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t669 - t663*t681 - t675) +
-                    bdW_y*(-t662 + t667 - t677 - t679) + bdW_z*(e0*m_z*psi_y - t666*t669 +
-                    t674*t681 + t682))
-                bdy[j3 + 2] += (bdW_x*(e0*t668 - t663*t678 + t669*t684 + t676) +
-                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t663 - t674*t684 - t682) + bdW_z*(-t660
-                    - t671 - t677 + t679))
-                bds[j3] += bdW_x*(t689 + t690) + bdW_y*(-t685 - t686) + bdW_z*(t687 - t688)
-                bds[j3 + 1] += bdW_x*(t685 - t686) + bdW_y*(t690 + t693) + bdW_z*(-t691 - t692)
-                bds[j3 + 2] += bdW_x*(-t687 - t688) + bdW_y*(t691 - t692) + bdW_z*(t689 + t693 - 1)
+                t653 = e0*psi_y
+                t654 = m_y*t653
+                t655 = e0*psi_z
+                t656 = m_z*t655
+                t657 = -m_x*psi_y + m_y*psi_x
+                t658 = 2*e1
+                t659 = psi_x*t658
+                t660 = psi_y*t659
+                t661 = t657*t660
+                t662 = m_x*psi_z
+                t663 = -m_z*psi_x + t662
+                t664 = psi_z*t659
+                t665 = t663*t664
+                t666 = psi_x*psi_x
+                t667 = t658*t666
+                t668 = -m_y*psi_z + m_z*psi_y
+                t669 = e0*t657 + (0.5)*m_z
+                t670 = e0*t663 + (0.5)*m_y
+                t671 = e0*m_x*psi_x
+                t672 = psi_y*psi_z*t658
+                t673 = t668*t672
+                t674 = psi_y*psi_y
+                t675 = t658*t674
+                t676 = e0*t668 + (0.5)*m_x
+                t677 = psi_z*psi_z
+                t678 = t658*t677
+                t679 = (0.5)*psi_z
+                t680 = psi_x*t653
+                t681 = (0.5)*psi_y
+                t682 = psi_x*t655
+                t683 = e0*t674
+                t684 = e0*t677 - 1
+                t685 = (0.5)*psi_x
+                t686 = psi_z*t653
+                t687 = e0*t666
+                bdy[j3] += (bdW_x*(-t654 - t656 - t661 + t665) + bdW_y*(e0*m_y*psi_x + t657*t667 -
+                    t664*t668 + t669) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t668 - t663*t667 -
+                    t670))
+                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t663 - t657*t675 - t669) +
+                    bdW_y*(-t656 + t661 - t671 - t673) + bdW_z*(e0*m_z*psi_y - t660*t663 +
+                    t668*t675 + t676))
+                bdy[j3 + 2] += (bdW_x*(e0*t662 - t657*t672 + t663*t678 + t670) +
+                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t657 - t668*t678 - t676) + bdW_z*(-t654
+                    - t665 - t671 + t673))
+                bds[j3] += bdW_x*(t683 + t684) + bdW_y*(-t679 - t680) + bdW_z*(t681 - t682)
+                bds[j3 + 1] += bdW_x*(t679 - t680) + bdW_y*(t684 + t687) + bdW_z*(-t685 - t686)
+                bds[j3 + 2] += bdW_x*(-t681 - t682) + bdW_y*(t685 - t686) + bdW_z*(t683 + t687 - 1)
             # transposed: differential: inertia and weight on the frame
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
@@ -2501,12 +2488,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t694 = X_y + u_y
-                t695 = X_z + u_z
-                t696 = X_x + u_x
-                bds[i3] += -bdF_x - bdW_y*t695 + bdW_z*t694
-                bds[i3 + 1] += -bdF_y + bdW_x*t695 - bdW_z*t696
-                bds[i3 + 2] += -bdF_z - bdW_x*t694 + bdW_y*t696
+                t688 = X_y + u_y
+                t689 = X_z + u_z
+                t690 = X_x + u_x
+                bds[i3] += -bdF_x - bdW_y*t689 + bdW_z*t688
+                bds[i3 + 1] += -bdF_y + bdW_x*t689 - bdW_z*t690
+                bds[i3 + 2] += -bdF_z - bdW_x*t688 + bdW_y*t690
                 bdy[i3] += bdW_y*f_z - bdW_z*f_y
                 bdy[i3 + 1] += -bdW_x*f_z + bdW_z*f_x
                 bdy[i3 + 2] += bdW_x*f_y - bdW_y*f_x
@@ -2528,15 +2515,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             bdfelt_x, bdfelt_y, bdfelt_z = bdzdd[N], bdzdd[N + 1], bdzdd[N + 2]
             bdturning_x, bdturning_y, bdturning_z = bdzdd[N + 3], bdzdd[N + 4], bdzdd[N + 5]
             bdspin_x, bdspin_y, bdspin_z = bdzd[N], bdzd[N + 1], bdzd[N + 2]
-            t697 = bdfelt_x*turn_xx + bdfelt_y*turn_xy + bdfelt_z*turn_xz
-            t698 = bdfelt_x*turn_yx + bdfelt_y*turn_yy + bdfelt_z*turn_yz
-            t699 = bdfelt_x*turn_zx + bdfelt_y*turn_zy + bdfelt_z*turn_zz
-            bda0_x += t697
-            bda0_y += t698
-            bda0_z += t699
-            bdgamma[0] += -t697
-            bdgamma[1] += -t698
-            bdgamma[2] += -t699
+            t691 = bdfelt_x*turn_xx + bdfelt_y*turn_xy + bdfelt_z*turn_xz
+            t692 = bdfelt_x*turn_yx + bdfelt_y*turn_yy + bdfelt_z*turn_yz
+            t693 = bdfelt_x*turn_zx + bdfelt_y*turn_zy + bdfelt_z*turn_zz
+            bda0_x += t691
+            bda0_y += t692
+            bda0_z += t693
+            bdgamma[0] += -t691
+            bdgamma[1] += -t692
+            bdgamma[2] += -t693
             bdOm0d_x += bdturning_x*turn_xx + bdturning_y*turn_xy + bdturning_z*turn_xz
             bdOm0d_y += bdturning_x*turn_yx + bdturning_y*turn_yy + bdturning_z*turn_yz
             bdOm0d_z += bdturning_x*turn_zx + bdturning_y*turn_zy + bdturning_z*turn_zz
@@ -2588,15 +2575,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 bdeud_x, bdeud_y, bdeud_z = bdetad[i3], bdetad[i3 + 1], bdetad[i3 + 2]
-                t700 = X_z + u_z
-                t701 = X_y + u_y
-                t702 = X_x + u_x
+                t694 = X_z + u_z
+                t695 = X_y + u_y
+                t696 = X_x + u_x
                 bdy[i3] += Om0d_y*bdeud_z - Om0d_z*bdeud_y
                 bdy[i3 + 1] += -Om0d_x*bdeud_z + Om0d_z*bdeud_x
                 bdy[i3 + 2] += Om0d_x*bdeud_y - Om0d_y*bdeud_x
-                bdOm0d_x += bdeud_y*t700 - bdeud_z*t701
-                bdOm0d_y += -bdeud_x*t700 + bdeud_z*t702
-                bdOm0d_z += bdeud_x*t701 - bdeud_y*t702
+                bdOm0d_x += bdeud_y*t694 - bdeud_z*t695
+                bdOm0d_y += -bdeud_x*t694 + bdeud_z*t696
+                bdOm0d_z += bdeud_x*t695 - bdeud_y*t696
             # transposed: differential: rate: rates of the elastic rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -2604,63 +2591,63 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdepd_x, bdepd_y, bdepd_z = bdetad[j3], bdetad[j3 + 1], bdetad[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t703 = 2*e1
-                t704 = psi_x*t703
-                t705 = psi_y*psi_z*t704
-                t706 = -t705 - 0.5
-                t707 = e0*psi_y
-                t708 = psi_x*psi_x
-                t709 = t703*t708
-                t710 = psi_y*t709
-                t711 = -t707 - t710
-                t712 = psi_z*psi_z
-                t713 = t704*t712
-                t714 = e0*psi_x
-                t715 = psi_x*psi_x*psi_x*t703 + 2*t714
-                t716 = 0.5 - t705
-                t717 = e0*psi_z
-                t718 = psi_z*t709
-                t719 = -t717 - t718
-                t720 = psi_y*psi_y
-                t721 = t704*t720
-                t722 = -t714 - t721
-                t723 = psi_y*t703*t712
-                t724 = psi_y*psi_y*psi_y*t703 + 2*t707
-                t725 = psi_z*t703*t720
-                t726 = -t717 - t725
-                t727 = -t713 - t714
-                t728 = psi_z*psi_z*psi_z*t703 + 2*t717
-                t729 = -t707 - t723
-                t730 = (0.5)*psi_z
-                t731 = psi_x*t707
-                t732 = (0.5)*psi_y
-                t733 = psi_x*t717
-                t734 = e0*t720
-                t735 = e0*t712 - 1
-                t736 = (0.5)*psi_x
-                t737 = psi_z*t707
-                t738 = e0*t708
-                bdy[j3] += (bdepd_x*(Om0d_x*(t713 + t721) + Om0d_y*t711 + Om0d_z*t719) +
-                    bdepd_y*(Om0d_x*t711 + Om0d_y*(t713 + t715) + Om0d_z*t706) +
-                    bdepd_z*(Om0d_x*t719 + Om0d_y*t716 + Om0d_z*(t715 + t721)))
-                bdy[j3 + 1] += (bdepd_x*(Om0d_x*(t723 + t724) + Om0d_y*t722 + Om0d_z*t716) +
-                    bdepd_y*(Om0d_x*t722 + Om0d_y*(t710 + t723) + Om0d_z*t726) +
-                    bdepd_z*(Om0d_x*t706 + Om0d_y*t726 + Om0d_z*(t710 + t724)))
-                bdy[j3 + 2] += (bdepd_x*(Om0d_x*(t725 + t728) + Om0d_y*t706 + Om0d_z*t727) +
-                    bdepd_y*(Om0d_x*t716 + Om0d_y*(t718 + t728) + Om0d_z*t729) +
-                    bdepd_z*(Om0d_x*t727 + Om0d_y*t729 + Om0d_z*(t718 + t725)))
-                bdOm0d_x += bdepd_x*(t734 + t735) + bdepd_y*(t730 - t731) + bdepd_z*(-t732 - t733)
-                bdOm0d_y += bdepd_x*(-t730 - t731) + bdepd_y*(t735 + t738) + bdepd_z*(t736 - t737)
-                bdOm0d_z += (bdepd_x*(t732 - t733) + bdepd_y*(-t736 - t737) + bdepd_z*(t734 + t738
+                t697 = 2*e1
+                t698 = psi_x*t697
+                t699 = psi_y*psi_z*t698
+                t700 = -t699 - 0.5
+                t701 = e0*psi_y
+                t702 = psi_x*psi_x
+                t703 = t697*t702
+                t704 = psi_y*t703
+                t705 = -t701 - t704
+                t706 = psi_z*psi_z
+                t707 = t698*t706
+                t708 = e0*psi_x
+                t709 = psi_x*psi_x*psi_x*t697 + 2*t708
+                t710 = 0.5 - t699
+                t711 = e0*psi_z
+                t712 = psi_z*t703
+                t713 = -t711 - t712
+                t714 = psi_y*psi_y
+                t715 = t698*t714
+                t716 = -t708 - t715
+                t717 = psi_y*t697*t706
+                t718 = psi_y*psi_y*psi_y*t697 + 2*t701
+                t719 = psi_z*t697*t714
+                t720 = -t711 - t719
+                t721 = -t707 - t708
+                t722 = psi_z*psi_z*psi_z*t697 + 2*t711
+                t723 = -t701 - t717
+                t724 = (0.5)*psi_z
+                t725 = psi_x*t701
+                t726 = (0.5)*psi_y
+                t727 = psi_x*t711
+                t728 = e0*t714
+                t729 = e0*t706 - 1
+                t730 = (0.5)*psi_x
+                t731 = psi_z*t701
+                t732 = e0*t702
+                bdy[j3] += (bdepd_x*(Om0d_x*(t707 + t715) + Om0d_y*t705 + Om0d_z*t713) +
+                    bdepd_y*(Om0d_x*t705 + Om0d_y*(t707 + t709) + Om0d_z*t700) +
+                    bdepd_z*(Om0d_x*t713 + Om0d_y*t710 + Om0d_z*(t709 + t715)))
+                bdy[j3 + 1] += (bdepd_x*(Om0d_x*(t717 + t718) + Om0d_y*t716 + Om0d_z*t710) +
+                    bdepd_y*(Om0d_x*t716 + Om0d_y*(t704 + t717) + Om0d_z*t720) +
+                    bdepd_z*(Om0d_x*t700 + Om0d_y*t720 + Om0d_z*(t704 + t718)))
+                bdy[j3 + 2] += (bdepd_x*(Om0d_x*(t719 + t722) + Om0d_y*t700 + Om0d_z*t721) +
+                    bdepd_y*(Om0d_x*t710 + Om0d_y*(t712 + t722) + Om0d_z*t723) +
+                    bdepd_z*(Om0d_x*t721 + Om0d_y*t723 + Om0d_z*(t712 + t719)))
+                bdOm0d_x += bdepd_x*(t728 + t729) + bdepd_y*(t724 - t725) + bdepd_z*(-t726 - t727)
+                bdOm0d_y += bdepd_x*(-t724 - t725) + bdepd_y*(t729 + t732) + bdepd_z*(t730 - t731)
+                bdOm0d_z += (bdepd_x*(t726 - t727) + bdepd_y*(-t730 - t731) + bdepd_z*(t728 + t732
                     - 1))
             # transposed: differential: rate: mean rotation of the rates = 0
             rhs_x = rhs_y = rhs_z = 0.0
-            t739 = bdOm0d_x + rhs_x
-            t740 = bdOm0d_y + rhs_y
-            t741 = bdOm0d_z + rhs_z
-            mdOm0d_x = Bxx*t739 + Byx*t740 + Bzx*t741
-            mdOm0d_y = Bxy*t739 + Byy*t740 + Bzy*t741
-            mdOm0d_z = Bxz*t739 + Byz*t740 + Bzz*t741
+            t733 = bdOm0d_x + rhs_x
+            t734 = bdOm0d_y + rhs_y
+            t735 = bdOm0d_z + rhs_z
+            mdOm0d_x = Bxx*t733 + Byx*t734 + Bzx*t735
+            mdOm0d_y = Bxy*t733 + Byy*t734 + Bzy*t735
+            mdOm0d_z = Bxz*t733 + Byz*t734 + Bzz*t735
             # transposed: differential: rate: mean rotation of the rates = 0
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -2697,74 +2684,74 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gam[3*(j3 + 2) + 1], Gam[3*(j3 + 2) + 2])
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t742 = 2*e1
-                t743 = psi_x*t742
-                t744 = psi_y*psi_z*t743
-                t745 = 0.5 - t744
-                t746 = e0*psi_y
-                t747 = psi_x*psi_x*t742
-                t748 = psi_y*t747
-                t749 = -t746 - t748
-                t750 = psi_z*psi_z
-                t751 = t743*t750
-                t752 = e0*psi_x
-                t753 = psi_x*psi_x*psi_x*t742 + 2*t752
-                t754 = t751 + t753
-                t755 = -t744 - 0.5
-                t756 = e0*psi_z
-                t757 = psi_z*t747
-                t758 = -t756 - t757
-                t759 = psi_y*psi_y
-                t760 = t743*t759
-                t761 = t753 + t760
-                t762 = t751 + t760
-                t763 = -t752 - t760
-                t764 = psi_y*t742*t750
-                t765 = psi_y*psi_y*psi_y*t742 + 2*t746
-                t766 = t764 + t765
-                t767 = psi_z*t742*t759
-                t768 = -t756 - t767
-                t769 = t748 + t765
-                t770 = t748 + t764
-                t771 = -t751 - t752
-                t772 = psi_z*psi_z*psi_z*t742 + 2*t756
-                t773 = t767 + t772
-                t774 = -t746 - t764
-                t775 = t757 + t772
-                t776 = t757 + t767
-                bdy[j3] += (-mdOm0d_x*(Om0d_x*(Gam_rotationx_x*t762 + Gam_rotationy_x*t749 +
-                    Gam_rotationz_x*t758) + Om0d_y*(Gam_rotationx_x*t749 + Gam_rotationy_x*t754 +
-                    Gam_rotationz_x*t745) + Om0d_z*(Gam_rotationx_x*t758 + Gam_rotationy_x*t755 +
-                    Gam_rotationz_x*t761)) - mdOm0d_y*(Om0d_x*(Gam_rotationx_y*t762 +
-                    Gam_rotationy_y*t749 + Gam_rotationz_y*t758) + Om0d_y*(Gam_rotationx_y*t749 +
-                    Gam_rotationy_y*t754 + Gam_rotationz_y*t745) + Om0d_z*(Gam_rotationx_y*t758 +
-                    Gam_rotationy_y*t755 + Gam_rotationz_y*t761)) -
-                    mdOm0d_z*(Om0d_x*(Gam_rotationx_z*t762 + Gam_rotationy_z*t749 +
-                    Gam_rotationz_z*t758) + Om0d_y*(Gam_rotationx_z*t749 + Gam_rotationy_z*t754 +
-                    Gam_rotationz_z*t745) + Om0d_z*(Gam_rotationx_z*t758 + Gam_rotationy_z*t755 +
-                    Gam_rotationz_z*t761)))
-                bdy[j3 + 1] += (-mdOm0d_x*(Om0d_x*(Gam_rotationx_x*t766 + Gam_rotationy_x*t763 +
-                    Gam_rotationz_x*t755) + Om0d_y*(Gam_rotationx_x*t763 + Gam_rotationy_x*t770 +
-                    Gam_rotationz_x*t768) + Om0d_z*(Gam_rotationx_x*t745 + Gam_rotationy_x*t768 +
-                    Gam_rotationz_x*t769)) - mdOm0d_y*(Om0d_x*(Gam_rotationx_y*t766 +
-                    Gam_rotationy_y*t763 + Gam_rotationz_y*t755) + Om0d_y*(Gam_rotationx_y*t763 +
-                    Gam_rotationy_y*t770 + Gam_rotationz_y*t768) + Om0d_z*(Gam_rotationx_y*t745 +
-                    Gam_rotationy_y*t768 + Gam_rotationz_y*t769)) -
-                    mdOm0d_z*(Om0d_x*(Gam_rotationx_z*t766 + Gam_rotationy_z*t763 +
-                    Gam_rotationz_z*t755) + Om0d_y*(Gam_rotationx_z*t763 + Gam_rotationy_z*t770 +
-                    Gam_rotationz_z*t768) + Om0d_z*(Gam_rotationx_z*t745 + Gam_rotationy_z*t768 +
-                    Gam_rotationz_z*t769)))
-                bdy[j3 + 2] += (-mdOm0d_x*(Om0d_x*(Gam_rotationx_x*t773 + Gam_rotationy_x*t745 +
-                    Gam_rotationz_x*t771) + Om0d_y*(Gam_rotationx_x*t755 + Gam_rotationy_x*t775 +
-                    Gam_rotationz_x*t774) + Om0d_z*(Gam_rotationx_x*t771 + Gam_rotationy_x*t774 +
-                    Gam_rotationz_x*t776)) - mdOm0d_y*(Om0d_x*(Gam_rotationx_y*t773 +
-                    Gam_rotationy_y*t745 + Gam_rotationz_y*t771) + Om0d_y*(Gam_rotationx_y*t755 +
-                    Gam_rotationy_y*t775 + Gam_rotationz_y*t774) + Om0d_z*(Gam_rotationx_y*t771 +
-                    Gam_rotationy_y*t774 + Gam_rotationz_y*t776)) -
-                    mdOm0d_z*(Om0d_x*(Gam_rotationx_z*t773 + Gam_rotationy_z*t745 +
-                    Gam_rotationz_z*t771) + Om0d_y*(Gam_rotationx_z*t755 + Gam_rotationy_z*t775 +
-                    Gam_rotationz_z*t774) + Om0d_z*(Gam_rotationx_z*t771 + Gam_rotationy_z*t774 +
-                    Gam_rotationz_z*t776)))
+                t736 = 2*e1
+                t737 = psi_x*t736
+                t738 = psi_y*psi_z*t737
+                t739 = 0.5 - t738
+                t740 = e0*psi_y
+                t741 = psi_x*psi_x*t736
+                t742 = psi_y*t741
+                t743 = -t740 - t742
+                t744 = psi_z*psi_z
+                t745 = t737*t744
+                t746 = e0*psi_x
+                t747 = psi_x*psi_x*psi_x*t736 + 2*t746
+                t748 = t745 + t747
+                t749 = -t738 - 0.5
+                t750 = e0*psi_z
+                t751 = psi_z*t741
+                t752 = -t750 - t751
+                t753 = psi_y*psi_y
+                t754 = t737*t753
+                t755 = t747 + t754
+                t756 = t745 + t754
+                t757 = -t746 - t754
+                t758 = psi_y*t736*t744
+                t759 = psi_y*psi_y*psi_y*t736 + 2*t740
+                t760 = t758 + t759
+                t761 = psi_z*t736*t753
+                t762 = -t750 - t761
+                t763 = t742 + t759
+                t764 = t742 + t758
+                t765 = -t745 - t746
+                t766 = psi_z*psi_z*psi_z*t736 + 2*t750
+                t767 = t761 + t766
+                t768 = -t740 - t758
+                t769 = t751 + t766
+                t770 = t751 + t761
+                bdy[j3] += (-mdOm0d_x*(Om0d_x*(Gam_rotationx_x*t756 + Gam_rotationy_x*t743 +
+                    Gam_rotationz_x*t752) + Om0d_y*(Gam_rotationx_x*t743 + Gam_rotationy_x*t748 +
+                    Gam_rotationz_x*t739) + Om0d_z*(Gam_rotationx_x*t752 + Gam_rotationy_x*t749 +
+                    Gam_rotationz_x*t755)) - mdOm0d_y*(Om0d_x*(Gam_rotationx_y*t756 +
+                    Gam_rotationy_y*t743 + Gam_rotationz_y*t752) + Om0d_y*(Gam_rotationx_y*t743 +
+                    Gam_rotationy_y*t748 + Gam_rotationz_y*t739) + Om0d_z*(Gam_rotationx_y*t752 +
+                    Gam_rotationy_y*t749 + Gam_rotationz_y*t755)) -
+                    mdOm0d_z*(Om0d_x*(Gam_rotationx_z*t756 + Gam_rotationy_z*t743 +
+                    Gam_rotationz_z*t752) + Om0d_y*(Gam_rotationx_z*t743 + Gam_rotationy_z*t748 +
+                    Gam_rotationz_z*t739) + Om0d_z*(Gam_rotationx_z*t752 + Gam_rotationy_z*t749 +
+                    Gam_rotationz_z*t755)))
+                bdy[j3 + 1] += (-mdOm0d_x*(Om0d_x*(Gam_rotationx_x*t760 + Gam_rotationy_x*t757 +
+                    Gam_rotationz_x*t749) + Om0d_y*(Gam_rotationx_x*t757 + Gam_rotationy_x*t764 +
+                    Gam_rotationz_x*t762) + Om0d_z*(Gam_rotationx_x*t739 + Gam_rotationy_x*t762 +
+                    Gam_rotationz_x*t763)) - mdOm0d_y*(Om0d_x*(Gam_rotationx_y*t760 +
+                    Gam_rotationy_y*t757 + Gam_rotationz_y*t749) + Om0d_y*(Gam_rotationx_y*t757 +
+                    Gam_rotationy_y*t764 + Gam_rotationz_y*t762) + Om0d_z*(Gam_rotationx_y*t739 +
+                    Gam_rotationy_y*t762 + Gam_rotationz_y*t763)) -
+                    mdOm0d_z*(Om0d_x*(Gam_rotationx_z*t760 + Gam_rotationy_z*t757 +
+                    Gam_rotationz_z*t749) + Om0d_y*(Gam_rotationx_z*t757 + Gam_rotationy_z*t764 +
+                    Gam_rotationz_z*t762) + Om0d_z*(Gam_rotationx_z*t739 + Gam_rotationy_z*t762 +
+                    Gam_rotationz_z*t763)))
+                bdy[j3 + 2] += (-mdOm0d_x*(Om0d_x*(Gam_rotationx_x*t767 + Gam_rotationy_x*t739 +
+                    Gam_rotationz_x*t765) + Om0d_y*(Gam_rotationx_x*t749 + Gam_rotationy_x*t769 +
+                    Gam_rotationz_x*t768) + Om0d_z*(Gam_rotationx_x*t765 + Gam_rotationy_x*t768 +
+                    Gam_rotationz_x*t770)) - mdOm0d_y*(Om0d_x*(Gam_rotationx_y*t767 +
+                    Gam_rotationy_y*t739 + Gam_rotationz_y*t765) + Om0d_y*(Gam_rotationx_y*t749 +
+                    Gam_rotationy_y*t769 + Gam_rotationz_y*t768) + Om0d_z*(Gam_rotationx_y*t765 +
+                    Gam_rotationy_y*t768 + Gam_rotationz_y*t770)) -
+                    mdOm0d_z*(Om0d_x*(Gam_rotationx_z*t767 + Gam_rotationy_z*t739 +
+                    Gam_rotationz_z*t765) + Om0d_y*(Gam_rotationx_z*t749 + Gam_rotationy_z*t769 +
+                    Gam_rotationz_z*t768) + Om0d_z*(Gam_rotationx_z*t765 + Gam_rotationy_z*t768 +
+                    Gam_rotationz_z*t770)))
                 bdetad[j3] += (-Gam_rotationx_x*mdOm0d_x - Gam_rotationx_y*mdOm0d_y -
                     Gam_rotationx_z*mdOm0d_z)
                 bdetad[j3 + 1] += (-Gam_rotationy_x*mdOm0d_x - Gam_rotationy_y*mdOm0d_y -
@@ -2790,220 +2777,220 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e0 = e0s[j]
                 e1 = e1s[j]
                 e2 = e2s[j]
-                t777 = (0.5)*ep_z
-                t778 = e0*ep_x
-                t779 = e0*psi_x
-                t780 = 2*ep_x
-                t781 = psi_x*t780
-                t782 = 2*ep_y
-                t783 = psi_y*t782
-                t784 = 2*ep_z
-                t785 = psi_z*t784
-                t786 = t781 + t783 + t785
-                t787 = e1*t786
-                t788 = psi_x*t787
-                t789 = ep_y*t779 + psi_y*t778 + psi_y*t788
-                t790 = t777 + t789
-                t791 = (0.5)*ep_y
-                t792 = ep_z*t779 + psi_z*t778 + psi_z*t788
-                t793 = -t791 + t792
-                t794 = psi_z*psi_z
-                t795 = e0*t785 + t787*t794
-                t796 = psi_y*psi_y
-                t797 = e0*t783 + t787*t796
-                t798 = t795 + t797
-                t799 = -t777 + t789
-                t800 = (0.5)*ep_x
-                t801 = e0*psi_z
-                t802 = e0*psi_y
-                t803 = psi_y*t787
-                t804 = ep_y*t801 + ep_z*t802 + psi_z*t803
-                t805 = t800 + t804
-                t806 = psi_x*psi_x
-                t807 = e0*t781 + t787*t806
-                t808 = t795 + t807
-                t809 = t791 + t792
-                t810 = -t800 + t804
-                t811 = t797 + t807
-                t812 = (0.5)*psi_z
-                t813 = psi_y*t779
-                t814 = (0.5)*psi_y
-                t815 = psi_z*t779
-                t816 = e0*t796
-                t817 = e0*t794 - 1
-                t818 = (0.5)*psi_x
-                t819 = psi_y*t801
-                t820 = e0*t806
-                t821 = e1*t780
-                t822 = Om0_x*psi_y
-                t823 = Om0_y*psi_x - t822
-                t824 = psi_y*t823
-                t825 = t821*t824
-                t826 = Om_x*psi_z
-                t827 = Om_z*psi_x
-                t828 = t826 - t827
-                t829 = psi_z*t821
-                t830 = t828*t829
-                t831 = e1*psi_x
-                t832 = t782*t831
-                t833 = t823*t832
-                t834 = t784*t831
-                t835 = t828*t834
-                t836 = -Om0_x*ep_y + Om0_y*ep_x
-                t837 = 2*e1
-                t838 = psi_x*t837
-                t839 = psi_y*t838
-                t840 = t836*t839
-                t841 = A_x*psi_z
-                t842 = Om_x*ep_z
-                t843 = A_z*psi_x
-                t844 = Om_z*ep_x
-                t845 = t841 + t842 - t843 - t844
-                t846 = psi_z*t838
-                t847 = t845*t846
-                t848 = Om_x*psi_y
-                t849 = Om_y*psi_x - t848
-                t850 = psi_y*t821
-                t851 = t849*t850
-                t852 = Om0_z*psi_x
-                t853 = Om0_x*psi_z - t852
-                t854 = t829*t853
-                t855 = t832*t849
-                t856 = t834*t853
-                t857 = A_x*psi_y
-                t858 = Om_x*ep_y
-                t859 = A_y*psi_x + Om_y*ep_x - t857 - t858
-                t860 = t839*t859
-                t861 = Om0_z*ep_x
-                t862 = Om0_x*ep_z - t861
-                t863 = t846*t862
-                t864 = 2*e2*t786
-                t865 = psi_x*t864
-                t866 = t824*t865
-                t867 = psi_z*t865
-                t868 = t828*t867
-                t869 = psi_y*t865
-                t870 = t849*t869
-                t871 = t853*t867
-                t872 = e0*ep_z
-                t873 = psi_z*t787
-                t874 = A_z*t801 - Om0_z*t872 - Om0_z*t873 + Om_z*t872 + Om_z*t873
-                t875 = e0*ep_y
-                t876 = A_y*t802 - Om0_y*t803 - Om0_y*t875 + Om_y*t803 + Om_y*t875
-                t877 = (0.5)*A_z
-                t878 = e0*t836
-                t879 = ep_x*t831
-                t880 = Om0_y*psi_z
-                t881 = Om0_z*psi_y - t880
-                t882 = Om_y*psi_z
-                t883 = Om_z*psi_y - t882
-                t884 = Om0_y*ep_z
-                t885 = Om0_z*ep_y - t884
-                t886 = e0*t859
-                t887 = Om_y*psi_x
-                t888 = A_y*psi_z
-                t889 = Om_y*ep_z
-                t890 = A_z*psi_y + Om_z*ep_y - t888 - t889
-                t891 = t806*t837
-                t892 = t787*t849
-                t893 = t787*t823
-                t894 = t806*t864
-                t895 = 4*t879
-                t896 = (0.5)*A_y + e0*t845 - e0*t862 + t787*t828 - t787*t853
-                t897 = psi_z*t782
-                t898 = e1*t881
-                t899 = t897*t898
-                t900 = psi_y*t784
-                t901 = t898*t900
-                t902 = psi_z*t837
-                t903 = psi_y*t902
-                t904 = t885*t903
-                t905 = e1*t883
-                t906 = t897*t905
-                t907 = t900*t905
-                t908 = t890*t903
-                t909 = psi_z*t864
-                t910 = psi_y*t909
-                t911 = t881*t910
-                t912 = t883*t910
-                t913 = A_x*t779 - Om0_x*t778 - Om0_x*t788 + Om_x*t778 + Om_x*t788
-                t914 = 4*e1*ep_y
-                t915 = e1*t828
-                t916 = t796*t837
-                t917 = t796*t864
-                t918 = Om_z*psi_y
-                t919 = (0.5)*A_x - e0*t885 + e0*t890 - t787*t881 + t787*t883
-                t920 = t794*t837
-                t921 = t794*t864
-                t922 = 4*ep_z*psi_z
-                t923 = t839*t849
-                t924 = t846*t853
-                t925 = t824*t838
-                t926 = t828*t846
-                t927 = Om0_z*t801 - Om_z*e0*psi_z
-                t928 = Om0_y*t802 - Om_y*e0*psi_y
-                t929 = (0.5)*Om0_z + (0.5)*Om_z - e0*t823 + e0*t849
-                t930 = (0.5)*Om0_y + (0.5)*Om_y + e0*t828 - e0*t853
-                t931 = t883*t903
-                t932 = t881*t903
-                t933 = Om0_x*t779 - Om_x*e0*psi_x
-                t934 = (0.5)*Om0_x + (0.5)*Om_x - e0*t881 + e0*t883
-                bdve[j3] += -bdepd_x*t798 + bdepd_y*t790 + bdepd_z*t793
-                bdve[j3 + 1] += bdepd_x*t799 - bdepd_y*t808 + bdepd_z*t805
-                bdve[j3 + 2] += bdepd_x*t809 + bdepd_y*t810 - bdepd_z*t811
-                bdae[j3] += bdepd_x*(-t816 - t817) + bdepd_y*(t812 + t813) + bdepd_z*(-t814 + t815)
-                bdae[j3 + 1] += (bdepd_x*(-t812 + t813) + bdepd_y*(-t817 - t820) + bdepd_z*(t818 +
-                    t819))
-                bdae[j3 + 2] += (bdepd_x*(t814 + t815) + bdepd_y*(-t818 + t819) + bdepd_z*(-t816 -
-                    t820 + 1))
-                bdy[j3] += (bdepd_x*(-t825 - t830 - t833 - t835 - t840 - t847 + t851 + t854 + t855
-                    + t856 + t860 + t863 - t866 - t868 + t870 + t871 + t874 + t876) +
-                    bdepd_y*(-A_y*e0*psi_x + Om0_y*e0*ep_x + Om0_y*e1*psi_x*t786 - Om_y*e0*ep_x +
-                    4*e1*ep_x*psi_x*t823 + 2*e1*ep_x*psi_z*t883 + 2*e1*ep_z*psi_x*t883 +
-                    2*e1*psi_x*psi_z*t890 + 2*e1*t806*t836 + 2*e2*psi_x*psi_z*t786*t883 +
-                    2*e2*t786*t806*t823 - t787*t887 - t829*t881 - t834*t881 - t846*t885 -
-                    4*t849*t879 - t849*t894 - t859*t891 - t867*t881 - t877 + t878 - t886 - t892 +
-                    t893) + bdepd_z*(-e0*t843 - e0*t844 + e0*t861 - t787*t827 + t787*t852 +
-                    t828*t894 + t828*t895 + t832*t881 - t832*t883 + t839*t885 - t839*t890 +
-                    t845*t891 + t850*t881 - t850*t883 - t853*t894 - t853*t895 - t862*t891 +
-                    t869*t881 - t869*t883 + t896))
-                bdy[j3 + 1] += (bdepd_x*(Om0_x*e0*ep_y + Om0_x*e1*psi_y*t786 - e0*t857 - e0*t858 +
-                    4*e1*ep_y*psi_y*t849 + 2*e1*ep_y*psi_z*t853 + 2*e1*ep_z*psi_y*t853 +
-                    2*e1*psi_y*psi_z*t862 + 2*e1*t796*t859 + 2*e2*psi_y*psi_z*t786*t853 +
-                    2*e2*t786*t796*t849 - t787*t848 - t823*t917 - t824*t914 - t828*t910 -
-                    t836*t916 - t845*t903 + t877 - t878 + t886 + t892 - t893 - t897*t915 -
-                    t900*t915) + bdepd_y*(t825 + t833 + t840 - t851 - t855 - t860 + t866 - t870 +
-                    t874 - t899 - t901 - t904 + t906 + t907 + t908 - t911 + t912 + t913) +
-                    bdepd_z*(-A_z*e0*psi_y + Om0_z*e0*ep_y + Om0_z*e1*psi_y*t786 - Om_z*e0*ep_y +
-                    2*e1*ep_x*psi_y*t828 + 2*e1*ep_y*psi_x*t828 + 4*e1*ep_y*psi_y*t881 +
-                    2*e1*psi_x*psi_y*t845 + 2*e1*t796*t885 + 2*e2*psi_x*psi_y*t786*t828 +
-                    2*e2*t786*t796*t881 - psi_y*t883*t914 - t787*t918 - t832*t853 - t839*t862 -
-                    t850*t853 - t853*t869 - t883*t917 - t890*t916 - t919))
-                bdy[j3 + 2] += (bdepd_x*(Om0_x*e0*ep_z + Om0_x*e1*psi_z*t786 - e0*t841 - e0*t842 +
-                    2*e1*ep_y*psi_z*t849 + 2*e1*ep_z*psi_y*t849 + 4*e1*ep_z*psi_z*t853 +
-                    2*e1*psi_y*psi_z*t859 - e1*t784*t824 + 2*e1*t794*t862 - e1*t823*t897 +
-                    2*e2*psi_y*psi_z*t786*t849 + 2*e2*t786*t794*t853 - t787*t826 - t824*t909 -
-                    t828*t921 - t836*t903 - t845*t920 - t896 - t915*t922) + bdepd_y*(e0*t884 -
-                    e0*t888 - e0*t889 + t787*t880 - t787*t882 + t823*t829 + t823*t834 + t823*t867
-                    - t829*t849 - t834*t849 + t836*t846 - t846*t859 - t849*t867 - t881*t921 +
-                    t883*t921 - t885*t920 + t890*t920 - t898*t922 + t905*t922 + t919) +
-                    bdepd_z*(t830 + t835 + t847 - t854 - t856 - t863 + t868 - t871 + t876 + t899 +
-                    t901 + t904 - t906 - t907 - t908 + t911 - t912 + t913))
-                bdOm0_x += bdepd_x*t798 - bdepd_y*t799 - bdepd_z*t809
-                bdOm0_y += -bdepd_x*t790 + bdepd_y*t808 - bdepd_z*t810
-                bdOm0_z += -bdepd_x*t793 - bdepd_y*t805 + bdepd_z*t811
-                bdeta[j3] += (bdepd_x*(t923 + t924 - t925 - t926 - t927 - t928) +
-                    bdepd_y*(Om0_y*e0*psi_x - e0*t887 + 2*e1*psi_x*psi_z*t883 + 2*e1*t806*t823 -
-                    t846*t881 - t849*t891 - t929) + bdepd_z*(-e0*t827 + e0*t852 + t828*t891 +
-                    t839*t881 - t839*t883 - t853*t891 + t930))
-                bdeta[j3 + 1] += (bdepd_x*(e0*t822 - e0*t848 - t823*t916 - t828*t903 + t849*t916 +
-                    t853*t903 + t929) + bdepd_y*(-t923 + t925 - t927 + t931 - t932 - t933) +
-                    bdepd_z*(Om0_z*e0*psi_y - e0*t918 + 2*e1*psi_x*psi_y*t828 + 2*e1*t796*t881 -
-                    t839*t853 - t883*t916 - t934))
-                bdeta[j3 + 2] += (bdepd_x*(Om0_x*e0*psi_z - e0*t826 + 2*e1*psi_y*psi_z*t849 +
-                    2*e1*t794*t853 - t824*t902 - t828*t920 - t930) + bdepd_y*(e0*t880 - e0*t882 +
-                    t823*t846 - t846*t849 - t881*t920 + t883*t920 + t934) + bdepd_z*(-t924 + t926
-                    - t928 - t931 + t932 - t933))
+                t771 = (0.5)*ep_z
+                t772 = e0*ep_x
+                t773 = e0*psi_x
+                t774 = 2*ep_x
+                t775 = psi_x*t774
+                t776 = 2*ep_y
+                t777 = psi_y*t776
+                t778 = 2*ep_z
+                t779 = psi_z*t778
+                t780 = t775 + t777 + t779
+                t781 = e1*t780
+                t782 = psi_x*t781
+                t783 = ep_y*t773 + psi_y*t772 + psi_y*t782
+                t784 = t771 + t783
+                t785 = (0.5)*ep_y
+                t786 = ep_z*t773 + psi_z*t772 + psi_z*t782
+                t787 = -t785 + t786
+                t788 = psi_z*psi_z
+                t789 = e0*t779 + t781*t788
+                t790 = psi_y*psi_y
+                t791 = e0*t777 + t781*t790
+                t792 = t789 + t791
+                t793 = -t771 + t783
+                t794 = (0.5)*ep_x
+                t795 = e0*psi_z
+                t796 = e0*psi_y
+                t797 = psi_y*t781
+                t798 = ep_y*t795 + ep_z*t796 + psi_z*t797
+                t799 = t794 + t798
+                t800 = psi_x*psi_x
+                t801 = e0*t775 + t781*t800
+                t802 = t789 + t801
+                t803 = t785 + t786
+                t804 = -t794 + t798
+                t805 = t791 + t801
+                t806 = (0.5)*psi_z
+                t807 = psi_y*t773
+                t808 = (0.5)*psi_y
+                t809 = psi_z*t773
+                t810 = e0*t790
+                t811 = e0*t788 - 1
+                t812 = (0.5)*psi_x
+                t813 = psi_y*t795
+                t814 = e0*t800
+                t815 = e1*t774
+                t816 = Om0_x*psi_y
+                t817 = Om0_y*psi_x - t816
+                t818 = psi_y*t817
+                t819 = t815*t818
+                t820 = Om_x*psi_z
+                t821 = Om_z*psi_x
+                t822 = t820 - t821
+                t823 = psi_z*t815
+                t824 = t822*t823
+                t825 = e1*psi_x
+                t826 = t776*t825
+                t827 = t817*t826
+                t828 = t778*t825
+                t829 = t822*t828
+                t830 = -Om0_x*ep_y + Om0_y*ep_x
+                t831 = 2*e1
+                t832 = psi_x*t831
+                t833 = psi_y*t832
+                t834 = t830*t833
+                t835 = A_x*psi_z
+                t836 = Om_x*ep_z
+                t837 = A_z*psi_x
+                t838 = Om_z*ep_x
+                t839 = t835 + t836 - t837 - t838
+                t840 = psi_z*t832
+                t841 = t839*t840
+                t842 = Om_x*psi_y
+                t843 = Om_y*psi_x - t842
+                t844 = psi_y*t815
+                t845 = t843*t844
+                t846 = Om0_z*psi_x
+                t847 = Om0_x*psi_z - t846
+                t848 = t823*t847
+                t849 = t826*t843
+                t850 = t828*t847
+                t851 = A_x*psi_y
+                t852 = Om_x*ep_y
+                t853 = A_y*psi_x + Om_y*ep_x - t851 - t852
+                t854 = t833*t853
+                t855 = Om0_z*ep_x
+                t856 = Om0_x*ep_z - t855
+                t857 = t840*t856
+                t858 = 2*e2*t780
+                t859 = psi_x*t858
+                t860 = t818*t859
+                t861 = psi_z*t859
+                t862 = t822*t861
+                t863 = psi_y*t859
+                t864 = t843*t863
+                t865 = t847*t861
+                t866 = e0*ep_z
+                t867 = psi_z*t781
+                t868 = A_z*t795 - Om0_z*t866 - Om0_z*t867 + Om_z*t866 + Om_z*t867
+                t869 = e0*ep_y
+                t870 = A_y*t796 - Om0_y*t797 - Om0_y*t869 + Om_y*t797 + Om_y*t869
+                t871 = (0.5)*A_z
+                t872 = e0*t830
+                t873 = ep_x*t825
+                t874 = Om0_y*psi_z
+                t875 = Om0_z*psi_y - t874
+                t876 = Om_y*psi_z
+                t877 = Om_z*psi_y - t876
+                t878 = Om0_y*ep_z
+                t879 = Om0_z*ep_y - t878
+                t880 = e0*t853
+                t881 = Om_y*psi_x
+                t882 = A_y*psi_z
+                t883 = Om_y*ep_z
+                t884 = A_z*psi_y + Om_z*ep_y - t882 - t883
+                t885 = t800*t831
+                t886 = t781*t843
+                t887 = t781*t817
+                t888 = t800*t858
+                t889 = 4*t873
+                t890 = (0.5)*A_y + e0*t839 - e0*t856 + t781*t822 - t781*t847
+                t891 = psi_z*t776
+                t892 = e1*t875
+                t893 = t891*t892
+                t894 = psi_y*t778
+                t895 = t892*t894
+                t896 = psi_z*t831
+                t897 = psi_y*t896
+                t898 = t879*t897
+                t899 = e1*t877
+                t900 = t891*t899
+                t901 = t894*t899
+                t902 = t884*t897
+                t903 = psi_z*t858
+                t904 = psi_y*t903
+                t905 = t875*t904
+                t906 = t877*t904
+                t907 = A_x*t773 - Om0_x*t772 - Om0_x*t782 + Om_x*t772 + Om_x*t782
+                t908 = 4*e1*ep_y
+                t909 = e1*t822
+                t910 = t790*t831
+                t911 = t790*t858
+                t912 = Om_z*psi_y
+                t913 = (0.5)*A_x - e0*t879 + e0*t884 - t781*t875 + t781*t877
+                t914 = t788*t831
+                t915 = t788*t858
+                t916 = 4*ep_z*psi_z
+                t917 = t833*t843
+                t918 = t840*t847
+                t919 = t818*t832
+                t920 = t822*t840
+                t921 = Om0_z*t795 - Om_z*e0*psi_z
+                t922 = Om0_y*t796 - Om_y*e0*psi_y
+                t923 = (0.5)*Om0_z + (0.5)*Om_z - e0*t817 + e0*t843
+                t924 = (0.5)*Om0_y + (0.5)*Om_y + e0*t822 - e0*t847
+                t925 = t877*t897
+                t926 = t875*t897
+                t927 = Om0_x*t773 - Om_x*e0*psi_x
+                t928 = (0.5)*Om0_x + (0.5)*Om_x - e0*t875 + e0*t877
+                bdve[j3] += -bdepd_x*t792 + bdepd_y*t784 + bdepd_z*t787
+                bdve[j3 + 1] += bdepd_x*t793 - bdepd_y*t802 + bdepd_z*t799
+                bdve[j3 + 2] += bdepd_x*t803 + bdepd_y*t804 - bdepd_z*t805
+                bdae[j3] += bdepd_x*(-t810 - t811) + bdepd_y*(t806 + t807) + bdepd_z*(-t808 + t809)
+                bdae[j3 + 1] += (bdepd_x*(-t806 + t807) + bdepd_y*(-t811 - t814) + bdepd_z*(t812 +
+                    t813))
+                bdae[j3 + 2] += (bdepd_x*(t808 + t809) + bdepd_y*(-t812 + t813) + bdepd_z*(-t810 -
+                    t814 + 1))
+                bdy[j3] += (bdepd_x*(-t819 - t824 - t827 - t829 - t834 - t841 + t845 + t848 + t849
+                    + t850 + t854 + t857 - t860 - t862 + t864 + t865 + t868 + t870) +
+                    bdepd_y*(-A_y*e0*psi_x + Om0_y*e0*ep_x + Om0_y*e1*psi_x*t780 - Om_y*e0*ep_x +
+                    4*e1*ep_x*psi_x*t817 + 2*e1*ep_x*psi_z*t877 + 2*e1*ep_z*psi_x*t877 +
+                    2*e1*psi_x*psi_z*t884 + 2*e1*t800*t830 + 2*e2*psi_x*psi_z*t780*t877 +
+                    2*e2*t780*t800*t817 - t781*t881 - t823*t875 - t828*t875 - t840*t879 -
+                    4*t843*t873 - t843*t888 - t853*t885 - t861*t875 - t871 + t872 - t880 - t886 +
+                    t887) + bdepd_z*(-e0*t837 - e0*t838 + e0*t855 - t781*t821 + t781*t846 +
+                    t822*t888 + t822*t889 + t826*t875 - t826*t877 + t833*t879 - t833*t884 +
+                    t839*t885 + t844*t875 - t844*t877 - t847*t888 - t847*t889 - t856*t885 +
+                    t863*t875 - t863*t877 + t890))
+                bdy[j3 + 1] += (bdepd_x*(Om0_x*e0*ep_y + Om0_x*e1*psi_y*t780 - e0*t851 - e0*t852 +
+                    4*e1*ep_y*psi_y*t843 + 2*e1*ep_y*psi_z*t847 + 2*e1*ep_z*psi_y*t847 +
+                    2*e1*psi_y*psi_z*t856 + 2*e1*t790*t853 + 2*e2*psi_y*psi_z*t780*t847 +
+                    2*e2*t780*t790*t843 - t781*t842 - t817*t911 - t818*t908 - t822*t904 -
+                    t830*t910 - t839*t897 + t871 - t872 + t880 + t886 - t887 - t891*t909 -
+                    t894*t909) + bdepd_y*(t819 + t827 + t834 - t845 - t849 - t854 + t860 - t864 +
+                    t868 - t893 - t895 - t898 + t900 + t901 + t902 - t905 + t906 + t907) +
+                    bdepd_z*(-A_z*e0*psi_y + Om0_z*e0*ep_y + Om0_z*e1*psi_y*t780 - Om_z*e0*ep_y +
+                    2*e1*ep_x*psi_y*t822 + 2*e1*ep_y*psi_x*t822 + 4*e1*ep_y*psi_y*t875 +
+                    2*e1*psi_x*psi_y*t839 + 2*e1*t790*t879 + 2*e2*psi_x*psi_y*t780*t822 +
+                    2*e2*t780*t790*t875 - psi_y*t877*t908 - t781*t912 - t826*t847 - t833*t856 -
+                    t844*t847 - t847*t863 - t877*t911 - t884*t910 - t913))
+                bdy[j3 + 2] += (bdepd_x*(Om0_x*e0*ep_z + Om0_x*e1*psi_z*t780 - e0*t835 - e0*t836 +
+                    2*e1*ep_y*psi_z*t843 + 2*e1*ep_z*psi_y*t843 + 4*e1*ep_z*psi_z*t847 +
+                    2*e1*psi_y*psi_z*t853 - e1*t778*t818 + 2*e1*t788*t856 - e1*t817*t891 +
+                    2*e2*psi_y*psi_z*t780*t843 + 2*e2*t780*t788*t847 - t781*t820 - t818*t903 -
+                    t822*t915 - t830*t897 - t839*t914 - t890 - t909*t916) + bdepd_y*(e0*t878 -
+                    e0*t882 - e0*t883 + t781*t874 - t781*t876 + t817*t823 + t817*t828 + t817*t861
+                    - t823*t843 - t828*t843 + t830*t840 - t840*t853 - t843*t861 - t875*t915 +
+                    t877*t915 - t879*t914 + t884*t914 - t892*t916 + t899*t916 + t913) +
+                    bdepd_z*(t824 + t829 + t841 - t848 - t850 - t857 + t862 - t865 + t870 + t893 +
+                    t895 + t898 - t900 - t901 - t902 + t905 - t906 + t907))
+                bdOm0_x += bdepd_x*t792 - bdepd_y*t793 - bdepd_z*t803
+                bdOm0_y += -bdepd_x*t784 + bdepd_y*t802 - bdepd_z*t804
+                bdOm0_z += -bdepd_x*t787 - bdepd_y*t799 + bdepd_z*t805
+                bdeta[j3] += (bdepd_x*(t917 + t918 - t919 - t920 - t921 - t922) +
+                    bdepd_y*(Om0_y*e0*psi_x - e0*t881 + 2*e1*psi_x*psi_z*t877 + 2*e1*t800*t817 -
+                    t840*t875 - t843*t885 - t923) + bdepd_z*(-e0*t821 + e0*t846 + t822*t885 +
+                    t833*t875 - t833*t877 - t847*t885 + t924))
+                bdeta[j3 + 1] += (bdepd_x*(e0*t816 - e0*t842 - t817*t910 - t822*t897 + t843*t910 +
+                    t847*t897 + t923) + bdepd_y*(-t917 + t919 - t921 + t925 - t926 - t927) +
+                    bdepd_z*(Om0_z*e0*psi_y - e0*t912 + 2*e1*psi_x*psi_y*t822 + 2*e1*t790*t875 -
+                    t833*t847 - t877*t910 - t928))
+                bdeta[j3 + 2] += (bdepd_x*(Om0_x*e0*psi_z - e0*t820 + 2*e1*psi_y*psi_z*t843 +
+                    2*e1*t788*t847 - t818*t896 - t822*t914 - t924) + bdepd_y*(e0*t874 - e0*t876 +
+                    t817*t840 - t840*t843 - t875*t914 + t877*t914 + t928) + bdepd_z*(-t918 + t920
+                    - t922 - t925 + t926 - t927))
             # overwritten: differential: rate: rates of the elastic rotations, the frame held
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -3016,31 +3003,31 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
                 eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
                 bdeud_x, bdeud_y, bdeud_z = bdetad[i3], bdetad[i3 + 1], bdetad[i3 + 2]
-                t935 = Om0_y*bdeud_z - Om0_z*bdeud_y
-                t936 = Om0_x*bdeud_z - Om0_z*bdeud_x
-                t937 = -t936
-                t938 = Om0_x*bdeud_y - Om0_y*bdeud_x
-                t939 = eu_z - v0_z + vs_z
-                t940 = eu_y - v0_y + vs_y
-                t941 = eu_x - v0_x + vs_x
-                bdyd[i3] += t935
-                bdyd[i3 + 1] += t937
-                bdyd[i3 + 2] += t938
+                t929 = Om0_y*bdeud_z - Om0_z*bdeud_y
+                t930 = Om0_x*bdeud_z - Om0_z*bdeud_x
+                t931 = -t930
+                t932 = Om0_x*bdeud_y - Om0_y*bdeud_x
+                t933 = eu_z - v0_z + vs_z
+                t934 = eu_y - v0_y + vs_y
+                t935 = eu_x - v0_x + vs_x
+                bdyd[i3] += t929
+                bdyd[i3 + 1] += t931
+                bdyd[i3 + 2] += t932
                 bdacc[i3] += bdeud_x
                 bdacc[i3 + 1] += bdeud_y
                 bdacc[i3 + 2] += bdeud_z
-                bdv0_x += -t935
-                bdv0_y += t936
-                bdv0_z += -t938
-                bdOm0_x += bdeud_y*t939 - bdeud_z*t940
-                bdOm0_y += -bdeud_x*t939 + bdeud_z*t941
-                bdOm0_z += bdeud_x*t940 - bdeud_y*t941
+                bdv0_x += -t929
+                bdv0_y += t930
+                bdv0_z += -t932
+                bdOm0_x += bdeud_y*t933 - bdeud_z*t934
+                bdOm0_y += -bdeud_x*t933 + bdeud_z*t935
+                bdOm0_z += bdeud_x*t934 - bdeud_y*t935
                 bda0_x += -bdeud_x
                 bda0_y += -bdeud_y
                 bda0_z += -bdeud_z
-                bdeta[i3] += t935
-                bdeta[i3 + 1] += t937
-                bdeta[i3 + 2] += t938
+                bdeta[i3] += t929
+                bdeta[i3 + 1] += t931
+                bdeta[i3 + 2] += t932
             # overwritten: differential: rate: rates of the elastic displacements, the frame held
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -3059,89 +3046,89 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdep_x, bdep_y, bdep_z = bdeta[j3], bdeta[j3 + 1], bdeta[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t942 = (0.5)*psi_z
-                t943 = e0*psi_x
-                t944 = psi_y*t943
-                t945 = t942 + t944
-                t946 = (0.5)*psi_y
-                t947 = psi_z*t943
-                t948 = -t946 + t947
-                t949 = psi_y*psi_y
-                t950 = e0*t949
-                t951 = psi_z*psi_z
-                t952 = e0*t951 - 1
-                t953 = t950 + t952
-                t954 = -t942 + t944
-                t955 = (0.5)*psi_x
-                t956 = e0*psi_y
-                t957 = psi_z*t956
-                t958 = t955 + t957
-                t959 = psi_x*psi_x
-                t960 = e0*t959
-                t961 = t952 + t960
-                t962 = t946 + t947
-                t963 = -t955 + t957
-                t964 = t950 + t960 - 1
-                t965 = Om_x*psi_y
-                t966 = Om_y*psi_x - t965
-                t967 = 2*e1
-                t968 = psi_x*t967
-                t969 = psi_y*t968
-                t970 = t966*t969
-                t971 = Om0_z*psi_x
-                t972 = Om0_x*psi_z - t971
-                t973 = psi_z*t968
-                t974 = t972*t973
-                t975 = Om0_x*psi_y
-                t976 = Om0_y*psi_x - t975
-                t977 = t969*t976
-                t978 = Om_x*psi_z
-                t979 = Om_z*psi_x
-                t980 = t978 - t979
-                t981 = t973*t980
-                t982 = Om0_z*e0*psi_z - Om_z*e0*psi_z
-                t983 = Om0_y*t956 - Om_y*e0*psi_y
-                t984 = t959*t967
-                t985 = Om_y*psi_z
-                t986 = Om_z*psi_y - t985
-                t987 = Om0_y*psi_z
-                t988 = Om0_z*psi_y - t987
-                t989 = (0.5)*Om0_z + (0.5)*Om_z + e0*t966 - e0*t976
-                t990 = (0.5)*Om0_y + (0.5)*Om_y - e0*t972 + e0*t980
-                t991 = psi_y*psi_z*t967
-                t992 = t986*t991
-                t993 = t988*t991
-                t994 = Om0_x*t943 - Om_x*e0*psi_x
-                t995 = t949*t967
-                t996 = (0.5)*Om0_x + (0.5)*Om_x + e0*t986 - e0*t988
-                t997 = t951*t967
-                bdve[j3] += -bdep_x*t953 + bdep_y*t945 + bdep_z*t948
-                bdve[j3 + 1] += bdep_x*t954 - bdep_y*t961 + bdep_z*t958
-                bdve[j3 + 2] += bdep_x*t962 + bdep_y*t963 - bdep_z*t964
-                bdy[j3] += (bdep_x*(t970 + t974 - t977 - t981 - t982 - t983) +
-                    bdep_y*(Om0_y*e0*psi_x - Om_y*e0*psi_x + 2*e1*psi_x*psi_z*t986 +
-                    2*e1*t959*t976 - t966*t984 - t973*t988 - t989) + bdep_z*(e0*t971 - e0*t979 -
-                    t969*t986 + t969*t988 - t972*t984 + t980*t984 + t990))
-                bdy[j3 + 1] += (bdep_x*(-e0*t965 + e0*t975 + t966*t995 + t972*t991 - t976*t995 -
-                    t980*t991 + t989) + bdep_y*(-t970 + t977 - t982 + t992 - t993 - t994) +
-                    bdep_z*(Om0_z*e0*psi_y - Om_z*e0*psi_y + 2*e1*psi_x*psi_y*t980 +
-                    2*e1*t949*t988 - t969*t972 - t986*t995 - t996))
-                bdy[j3 + 2] += (bdep_x*(Om0_x*e0*psi_z - e0*t978 + 2*e1*psi_y*psi_z*t966 +
-                    2*e1*t951*t972 - t976*t991 - t980*t997 - t990) + bdep_y*(-e0*t985 + e0*t987 -
-                    t966*t973 + t973*t976 + t986*t997 - t988*t997 + t996) + bdep_z*(-t974 + t981 -
-                    t983 - t992 + t993 - t994))
-                bdOm0_x += bdep_x*t953 - bdep_y*t954 - bdep_z*t962
-                bdOm0_y += -bdep_x*t945 + bdep_y*t961 - bdep_z*t963
-                bdOm0_z += -bdep_x*t948 - bdep_y*t958 + bdep_z*t964
+                t936 = (0.5)*psi_z
+                t937 = e0*psi_x
+                t938 = psi_y*t937
+                t939 = t936 + t938
+                t940 = (0.5)*psi_y
+                t941 = psi_z*t937
+                t942 = -t940 + t941
+                t943 = psi_y*psi_y
+                t944 = e0*t943
+                t945 = psi_z*psi_z
+                t946 = e0*t945 - 1
+                t947 = t944 + t946
+                t948 = -t936 + t938
+                t949 = (0.5)*psi_x
+                t950 = e0*psi_y
+                t951 = psi_z*t950
+                t952 = t949 + t951
+                t953 = psi_x*psi_x
+                t954 = e0*t953
+                t955 = t946 + t954
+                t956 = t940 + t941
+                t957 = -t949 + t951
+                t958 = t944 + t954 - 1
+                t959 = Om_x*psi_y
+                t960 = Om_y*psi_x - t959
+                t961 = 2*e1
+                t962 = psi_x*t961
+                t963 = psi_y*t962
+                t964 = t960*t963
+                t965 = Om0_z*psi_x
+                t966 = Om0_x*psi_z - t965
+                t967 = psi_z*t962
+                t968 = t966*t967
+                t969 = Om0_x*psi_y
+                t970 = Om0_y*psi_x - t969
+                t971 = t963*t970
+                t972 = Om_x*psi_z
+                t973 = Om_z*psi_x
+                t974 = t972 - t973
+                t975 = t967*t974
+                t976 = Om0_z*e0*psi_z - Om_z*e0*psi_z
+                t977 = Om0_y*t950 - Om_y*e0*psi_y
+                t978 = t953*t961
+                t979 = Om_y*psi_z
+                t980 = Om_z*psi_y - t979
+                t981 = Om0_y*psi_z
+                t982 = Om0_z*psi_y - t981
+                t983 = (0.5)*Om0_z + (0.5)*Om_z + e0*t960 - e0*t970
+                t984 = (0.5)*Om0_y + (0.5)*Om_y - e0*t966 + e0*t974
+                t985 = psi_y*psi_z*t961
+                t986 = t980*t985
+                t987 = t982*t985
+                t988 = Om0_x*t937 - Om_x*e0*psi_x
+                t989 = t943*t961
+                t990 = (0.5)*Om0_x + (0.5)*Om_x + e0*t980 - e0*t982
+                t991 = t945*t961
+                bdve[j3] += -bdep_x*t947 + bdep_y*t939 + bdep_z*t942
+                bdve[j3 + 1] += bdep_x*t948 - bdep_y*t955 + bdep_z*t952
+                bdve[j3 + 2] += bdep_x*t956 + bdep_y*t957 - bdep_z*t958
+                bdy[j3] += (bdep_x*(t964 + t968 - t971 - t975 - t976 - t977) +
+                    bdep_y*(Om0_y*e0*psi_x - Om_y*e0*psi_x + 2*e1*psi_x*psi_z*t980 +
+                    2*e1*t953*t970 - t960*t978 - t967*t982 - t983) + bdep_z*(e0*t965 - e0*t973 -
+                    t963*t980 + t963*t982 - t966*t978 + t974*t978 + t984))
+                bdy[j3 + 1] += (bdep_x*(-e0*t959 + e0*t969 + t960*t989 + t966*t985 - t970*t989 -
+                    t974*t985 + t983) + bdep_y*(-t964 + t971 - t976 + t986 - t987 - t988) +
+                    bdep_z*(Om0_z*e0*psi_y - Om_z*e0*psi_y + 2*e1*psi_x*psi_y*t974 +
+                    2*e1*t943*t982 - t963*t966 - t980*t989 - t990))
+                bdy[j3 + 2] += (bdep_x*(Om0_x*e0*psi_z - e0*t972 + 2*e1*psi_y*psi_z*t960 +
+                    2*e1*t945*t966 - t970*t985 - t974*t991 - t984) + bdep_y*(-e0*t979 + e0*t981 -
+                    t960*t967 + t967*t970 + t980*t991 - t982*t991 + t990) + bdep_z*(-t968 + t975 -
+                    t977 - t986 + t987 - t988))
+                bdOm0_x += bdep_x*t947 - bdep_y*t948 - bdep_z*t956
+                bdOm0_y += -bdep_x*t939 + bdep_y*t955 - bdep_z*t957
+                bdOm0_z += -bdep_x*t942 - bdep_y*t952 + bdep_z*t958
             # transposed: differential: rates of the elastic displacements
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 bdeu_x, bdeu_y, bdeu_z = bdeta[i3], bdeta[i3 + 1], bdeta[i3 + 2]
-                t998 = X_z + u_z
-                t999 = X_y + u_y
-                t1000 = X_x + u_x
+                t992 = X_z + u_z
+                t993 = X_y + u_y
+                t994 = X_x + u_x
                 bdy[i3] += Om0_y*bdeu_z - Om0_z*bdeu_y
                 bdy[i3 + 1] += -Om0_x*bdeu_z + Om0_z*bdeu_x
                 bdy[i3 + 2] += Om0_x*bdeu_y - Om0_y*bdeu_x
@@ -3151,9 +3138,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdv0_x += -bdeu_x
                 bdv0_y += -bdeu_y
                 bdv0_z += -bdeu_z
-                bdOm0_x += bdeu_y*t998 - bdeu_z*t999
-                bdOm0_y += -bdeu_x*t998 + bdeu_z*t1000
-                bdOm0_z += bdeu_x*t999 - bdeu_y*t1000
+                bdOm0_x += bdeu_y*t992 - bdeu_z*t993
+                bdOm0_y += -bdeu_x*t992 + bdeu_z*t994
+                bdOm0_z += bdeu_x*t993 - bdeu_y*t994
             # transposed: differential: origin of the frame, (14)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -3181,12 +3168,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdy[k] = 0.0
             # transposed: differential: mean rotation of the rates = 0
             rhs_x = rhs_y = rhs_z = 0.0
-            t1001 = bdOm0_x + rhs_x
-            t1002 = bdOm0_y + rhs_y
-            t1003 = bdOm0_z + rhs_z
-            mdOm0_x = Bxx*t1001 + Byx*t1002 + Bzx*t1003
-            mdOm0_y = Bxy*t1001 + Byy*t1002 + Bzy*t1003
-            mdOm0_z = Bxz*t1001 + Byz*t1002 + Bzz*t1003
+            t995 = bdOm0_x + rhs_x
+            t996 = bdOm0_y + rhs_y
+            t997 = bdOm0_z + rhs_z
+            mdOm0_x = Bxx*t995 + Byx*t996 + Bzx*t997
+            mdOm0_y = Bxy*t995 + Byy*t996 + Bzy*t997
+            mdOm0_z = Bxz*t995 + Byz*t996 + Bzz*t997
             # transposed: differential: mean rotation of the rates = 0
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -3196,9 +3183,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gam[3*(i3 + 1) + 1], Gam[3*(i3 + 1) + 2])
                 Gam_positionz_x, Gam_positionz_y, Gam_positionz_z = (Gam[3*(i3 + 2)],
                     Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
-                t1004 = Gam_positionx_x*mdOm0_x + Gam_positionx_y*mdOm0_y + Gam_positionx_z*mdOm0_z
-                t1005 = Gam_positiony_x*mdOm0_x + Gam_positiony_y*mdOm0_y + Gam_positiony_z*mdOm0_z
-                t1006 = Gam_positionz_x*mdOm0_x + Gam_positionz_y*mdOm0_y + Gam_positionz_z*mdOm0_z
+                t998 = Gam_positionx_x*mdOm0_x + Gam_positionx_y*mdOm0_y + Gam_positionx_z*mdOm0_z
+                t999 = Gam_positiony_x*mdOm0_x + Gam_positiony_y*mdOm0_y + Gam_positiony_z*mdOm0_z
+                t1000 = Gam_positionz_x*mdOm0_x + Gam_positionz_y*mdOm0_y + Gam_positionz_z*mdOm0_z
                 bdy[i3] += (-mdOm0_x*(-Gam_positiony_x*Om0_z + Gam_positionz_x*Om0_y) -
                     mdOm0_y*(-Gam_positiony_y*Om0_z + Gam_positionz_y*Om0_y) -
                     mdOm0_z*(-Gam_positiony_z*Om0_z + Gam_positionz_z*Om0_y))
@@ -3208,12 +3195,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdy[i3 + 2] += (-mdOm0_x*(-Gam_positionx_x*Om0_y + Gam_positiony_x*Om0_x) -
                     mdOm0_y*(-Gam_positionx_y*Om0_y + Gam_positiony_y*Om0_x) -
                     mdOm0_z*(-Gam_positionx_z*Om0_y + Gam_positiony_z*Om0_x))
-                bdyd[i3] += -t1004
-                bdyd[i3 + 1] += -t1005
-                bdyd[i3 + 2] += -t1006
-                bdv0_x += t1004
-                bdv0_y += t1005
-                bdv0_z += t1006
+                bdyd[i3] += -t998
+                bdyd[i3 + 1] += -t999
+                bdyd[i3 + 2] += -t1000
+                bdv0_x += t998
+                bdv0_y += t999
+                bdv0_z += t1000
             # transposed: differential: mean rotation of the rates = 0
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -3227,107 +3214,107 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t1007 = (0.5)*psi_z
-                t1008 = e0*psi_x
-                t1009 = psi_y*t1008
-                t1010 = t1007 + t1009
-                t1011 = (0.5)*psi_y
-                t1012 = psi_z*t1008
-                t1013 = -t1011 + t1012
-                t1014 = psi_y*psi_y
-                t1015 = e0*t1014
-                t1016 = psi_z*psi_z
-                t1017 = e0*t1016 - 1
-                t1018 = -t1015 - t1017
-                t1019 = -t1007 + t1009
-                t1020 = (0.5)*psi_x
-                t1021 = e0*psi_y
-                t1022 = psi_z*t1021
-                t1023 = t1020 + t1022
-                t1024 = psi_x*psi_x
-                t1025 = e0*t1024
-                t1026 = -t1017 - t1025
-                t1027 = t1011 + t1012
-                t1028 = -t1020 + t1022
-                t1029 = -t1015 - t1025 + 1
-                t1030 = Om_x*psi_y
-                t1031 = Om_y*psi_x - t1030
-                t1032 = 2*e1
-                t1033 = psi_x*t1032
-                t1034 = psi_y*t1033
-                t1035 = t1031*t1034
-                t1036 = Om0_z*psi_x
-                t1037 = Om0_x*psi_z - t1036
-                t1038 = psi_z*t1033
-                t1039 = t1037*t1038
-                t1040 = Om0_x*psi_y
-                t1041 = Om0_y*psi_x - t1040
-                t1042 = t1034*t1041
-                t1043 = Om_x*psi_z
-                t1044 = Om_z*psi_x
-                t1045 = t1043 - t1044
-                t1046 = t1038*t1045
-                t1047 = Om0_z*e0*psi_z - Om_z*e0*psi_z
-                t1048 = Om0_y*t1021 - Om_y*e0*psi_y
-                t1049 = t1035 + t1039 - t1042 - t1046 - t1047 - t1048
-                t1050 = t1024*t1032
-                t1051 = Om_y*psi_z
-                t1052 = Om_z*psi_y - t1051
-                t1053 = Om0_y*psi_z
-                t1054 = Om0_z*psi_y - t1053
-                t1055 = (0.5)*Om0_z + (0.5)*Om_z + e0*t1031 - e0*t1041
-                t1056 = (Om0_y*e0*psi_x - Om_y*e0*psi_x + 2*e1*psi_x*psi_z*t1052 +
-                    2*e1*t1024*t1041 - t1031*t1050 - t1038*t1054 - t1055)
-                t1057 = (0.5)*Om0_y + (0.5)*Om_y - e0*t1037 + e0*t1045
-                t1058 = (e0*t1036 - e0*t1044 - t1034*t1052 + t1034*t1054 - t1037*t1050 +
-                    t1045*t1050 + t1057)
-                t1059 = psi_y*psi_z*t1032
-                t1060 = t1052*t1059
-                t1061 = t1054*t1059
-                t1062 = Om0_x*t1008 - Om_x*e0*psi_x
-                t1063 = -t1035 + t1042 - t1047 + t1060 - t1061 - t1062
-                t1064 = t1014*t1032
-                t1065 = (-e0*t1030 + e0*t1040 + t1031*t1064 + t1037*t1059 - t1041*t1064 -
-                    t1045*t1059 + t1055)
-                t1066 = (0.5)*Om0_x + (0.5)*Om_x + e0*t1052 - e0*t1054
-                t1067 = (Om0_z*e0*psi_y - Om_z*e0*psi_y + 2*e1*psi_x*psi_y*t1045 +
-                    2*e1*t1014*t1054 - t1034*t1037 - t1052*t1064 - t1066)
-                t1068 = -t1039 + t1046 - t1048 - t1060 + t1061 - t1062
-                t1069 = t1016*t1032
-                t1070 = (Om0_x*e0*psi_z - e0*t1043 + 2*e1*psi_y*psi_z*t1031 + 2*e1*t1016*t1037 -
-                    t1041*t1059 - t1045*t1069 - t1057)
-                t1071 = (-e0*t1051 + e0*t1053 - t1031*t1038 + t1038*t1041 + t1052*t1069 -
-                    t1054*t1069 + t1066)
-                bdve[j3] += (-mdOm0_x*(Gam_rotationx_x*t1018 + Gam_rotationy_x*t1010 +
-                    Gam_rotationz_x*t1013) - mdOm0_y*(Gam_rotationx_y*t1018 +
-                    Gam_rotationy_y*t1010 + Gam_rotationz_y*t1013) -
-                    mdOm0_z*(Gam_rotationx_z*t1018 + Gam_rotationy_z*t1010 +
-                    Gam_rotationz_z*t1013))
-                bdve[j3 + 1] += (-mdOm0_x*(Gam_rotationx_x*t1019 + Gam_rotationy_x*t1026 +
-                    Gam_rotationz_x*t1023) - mdOm0_y*(Gam_rotationx_y*t1019 +
-                    Gam_rotationy_y*t1026 + Gam_rotationz_y*t1023) -
-                    mdOm0_z*(Gam_rotationx_z*t1019 + Gam_rotationy_z*t1026 +
+                t1001 = (0.5)*psi_z
+                t1002 = e0*psi_x
+                t1003 = psi_y*t1002
+                t1004 = t1001 + t1003
+                t1005 = (0.5)*psi_y
+                t1006 = psi_z*t1002
+                t1007 = -t1005 + t1006
+                t1008 = psi_y*psi_y
+                t1009 = e0*t1008
+                t1010 = psi_z*psi_z
+                t1011 = e0*t1010 - 1
+                t1012 = -t1009 - t1011
+                t1013 = -t1001 + t1003
+                t1014 = (0.5)*psi_x
+                t1015 = e0*psi_y
+                t1016 = psi_z*t1015
+                t1017 = t1014 + t1016
+                t1018 = psi_x*psi_x
+                t1019 = e0*t1018
+                t1020 = -t1011 - t1019
+                t1021 = t1005 + t1006
+                t1022 = -t1014 + t1016
+                t1023 = -t1009 - t1019 + 1
+                t1024 = Om_x*psi_y
+                t1025 = Om_y*psi_x - t1024
+                t1026 = 2*e1
+                t1027 = psi_x*t1026
+                t1028 = psi_y*t1027
+                t1029 = t1025*t1028
+                t1030 = Om0_z*psi_x
+                t1031 = Om0_x*psi_z - t1030
+                t1032 = psi_z*t1027
+                t1033 = t1031*t1032
+                t1034 = Om0_x*psi_y
+                t1035 = Om0_y*psi_x - t1034
+                t1036 = t1028*t1035
+                t1037 = Om_x*psi_z
+                t1038 = Om_z*psi_x
+                t1039 = t1037 - t1038
+                t1040 = t1032*t1039
+                t1041 = Om0_z*e0*psi_z - Om_z*e0*psi_z
+                t1042 = Om0_y*t1015 - Om_y*e0*psi_y
+                t1043 = t1029 + t1033 - t1036 - t1040 - t1041 - t1042
+                t1044 = t1018*t1026
+                t1045 = Om_y*psi_z
+                t1046 = Om_z*psi_y - t1045
+                t1047 = Om0_y*psi_z
+                t1048 = Om0_z*psi_y - t1047
+                t1049 = (0.5)*Om0_z + (0.5)*Om_z + e0*t1025 - e0*t1035
+                t1050 = (Om0_y*e0*psi_x - Om_y*e0*psi_x + 2*e1*psi_x*psi_z*t1046 +
+                    2*e1*t1018*t1035 - t1025*t1044 - t1032*t1048 - t1049)
+                t1051 = (0.5)*Om0_y + (0.5)*Om_y - e0*t1031 + e0*t1039
+                t1052 = (e0*t1030 - e0*t1038 - t1028*t1046 + t1028*t1048 - t1031*t1044 +
+                    t1039*t1044 + t1051)
+                t1053 = psi_y*psi_z*t1026
+                t1054 = t1046*t1053
+                t1055 = t1048*t1053
+                t1056 = Om0_x*t1002 - Om_x*e0*psi_x
+                t1057 = -t1029 + t1036 - t1041 + t1054 - t1055 - t1056
+                t1058 = t1008*t1026
+                t1059 = (-e0*t1024 + e0*t1034 + t1025*t1058 + t1031*t1053 - t1035*t1058 -
+                    t1039*t1053 + t1049)
+                t1060 = (0.5)*Om0_x + (0.5)*Om_x + e0*t1046 - e0*t1048
+                t1061 = (Om0_z*e0*psi_y - Om_z*e0*psi_y + 2*e1*psi_x*psi_y*t1039 +
+                    2*e1*t1008*t1048 - t1028*t1031 - t1046*t1058 - t1060)
+                t1062 = -t1033 + t1040 - t1042 - t1054 + t1055 - t1056
+                t1063 = t1010*t1026
+                t1064 = (Om0_x*e0*psi_z - e0*t1037 + 2*e1*psi_y*psi_z*t1025 + 2*e1*t1010*t1031 -
+                    t1035*t1053 - t1039*t1063 - t1051)
+                t1065 = (-e0*t1045 + e0*t1047 - t1025*t1032 + t1032*t1035 + t1046*t1063 -
+                    t1048*t1063 + t1060)
+                bdve[j3] += (-mdOm0_x*(Gam_rotationx_x*t1012 + Gam_rotationy_x*t1004 +
+                    Gam_rotationz_x*t1007) - mdOm0_y*(Gam_rotationx_y*t1012 +
+                    Gam_rotationy_y*t1004 + Gam_rotationz_y*t1007) -
+                    mdOm0_z*(Gam_rotationx_z*t1012 + Gam_rotationy_z*t1004 +
+                    Gam_rotationz_z*t1007))
+                bdve[j3 + 1] += (-mdOm0_x*(Gam_rotationx_x*t1013 + Gam_rotationy_x*t1020 +
+                    Gam_rotationz_x*t1017) - mdOm0_y*(Gam_rotationx_y*t1013 +
+                    Gam_rotationy_y*t1020 + Gam_rotationz_y*t1017) -
+                    mdOm0_z*(Gam_rotationx_z*t1013 + Gam_rotationy_z*t1020 +
+                    Gam_rotationz_z*t1017))
+                bdve[j3 + 2] += (-mdOm0_x*(Gam_rotationx_x*t1021 + Gam_rotationy_x*t1022 +
+                    Gam_rotationz_x*t1023) - mdOm0_y*(Gam_rotationx_y*t1021 +
+                    Gam_rotationy_y*t1022 + Gam_rotationz_y*t1023) -
+                    mdOm0_z*(Gam_rotationx_z*t1021 + Gam_rotationy_z*t1022 +
                     Gam_rotationz_z*t1023))
-                bdve[j3 + 2] += (-mdOm0_x*(Gam_rotationx_x*t1027 + Gam_rotationy_x*t1028 +
-                    Gam_rotationz_x*t1029) - mdOm0_y*(Gam_rotationx_y*t1027 +
-                    Gam_rotationy_y*t1028 + Gam_rotationz_y*t1029) -
-                    mdOm0_z*(Gam_rotationx_z*t1027 + Gam_rotationy_z*t1028 +
-                    Gam_rotationz_z*t1029))
-                bdy[j3] += (-mdOm0_x*(Gam_rotationx_x*t1049 + Gam_rotationy_x*t1056 +
-                    Gam_rotationz_x*t1058) - mdOm0_y*(Gam_rotationx_y*t1049 +
-                    Gam_rotationy_y*t1056 + Gam_rotationz_y*t1058) -
-                    mdOm0_z*(Gam_rotationx_z*t1049 + Gam_rotationy_z*t1056 +
-                    Gam_rotationz_z*t1058))
-                bdy[j3 + 1] += (-mdOm0_x*(Gam_rotationx_x*t1065 + Gam_rotationy_x*t1063 +
-                    Gam_rotationz_x*t1067) - mdOm0_y*(Gam_rotationx_y*t1065 +
-                    Gam_rotationy_y*t1063 + Gam_rotationz_y*t1067) -
-                    mdOm0_z*(Gam_rotationx_z*t1065 + Gam_rotationy_z*t1063 +
-                    Gam_rotationz_z*t1067))
-                bdy[j3 + 2] += (-mdOm0_x*(Gam_rotationx_x*t1070 + Gam_rotationy_x*t1071 +
-                    Gam_rotationz_x*t1068) - mdOm0_y*(Gam_rotationx_y*t1070 +
-                    Gam_rotationy_y*t1071 + Gam_rotationz_y*t1068) -
-                    mdOm0_z*(Gam_rotationx_z*t1070 + Gam_rotationy_z*t1071 +
-                    Gam_rotationz_z*t1068))
+                bdy[j3] += (-mdOm0_x*(Gam_rotationx_x*t1043 + Gam_rotationy_x*t1050 +
+                    Gam_rotationz_x*t1052) - mdOm0_y*(Gam_rotationx_y*t1043 +
+                    Gam_rotationy_y*t1050 + Gam_rotationz_y*t1052) -
+                    mdOm0_z*(Gam_rotationx_z*t1043 + Gam_rotationy_z*t1050 +
+                    Gam_rotationz_z*t1052))
+                bdy[j3 + 1] += (-mdOm0_x*(Gam_rotationx_x*t1059 + Gam_rotationy_x*t1057 +
+                    Gam_rotationz_x*t1061) - mdOm0_y*(Gam_rotationx_y*t1059 +
+                    Gam_rotationy_y*t1057 + Gam_rotationz_y*t1061) -
+                    mdOm0_z*(Gam_rotationx_z*t1059 + Gam_rotationy_z*t1057 +
+                    Gam_rotationz_z*t1061))
+                bdy[j3 + 2] += (-mdOm0_x*(Gam_rotationx_x*t1064 + Gam_rotationy_x*t1065 +
+                    Gam_rotationz_x*t1062) - mdOm0_y*(Gam_rotationx_y*t1064 +
+                    Gam_rotationy_y*t1065 + Gam_rotationz_y*t1062) -
+                    mdOm0_z*(Gam_rotationx_z*t1064 + Gam_rotationy_z*t1065 +
+                    Gam_rotationz_z*t1062))
             # transposed: differential: mean rotation of the rates = 0
             for k in range(MODES, n):
                 Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
@@ -3393,43 +3380,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 bdpsi_x, bdpsi_y, bdpsi_z = bdy[j3], bdy[j3 + 1], bdy[j3 + 2]
                 e0 = e0s[j]
-                t1072 = (0.5)*psi_z
-                t1073 = e0*psi_x
-                t1074 = psi_y*t1073
-                t1075 = t1072 + t1074
-                t1076 = (0.5)*psi_y
-                t1077 = psi_z*t1073
-                t1078 = -t1076 + t1077
-                t1079 = e0*psi_y*psi_y
-                t1080 = e0*psi_z*psi_z - 1
-                t1081 = t1079 + t1080
-                t1082 = -t1072 + t1074
-                t1083 = (0.5)*psi_x
-                t1084 = e0*psi_y*psi_z
-                t1085 = t1083 + t1084
-                t1086 = e0*psi_x*psi_x
-                t1087 = t1080 + t1086
-                t1088 = t1076 + t1077
-                t1089 = -t1083 + t1084
-                t1090 = t1079 + t1086 - 1
-                bdqe[j3] += -bdpsi_x*t1081 + bdpsi_y*t1075 + bdpsi_z*t1078
-                bdqe[j3 + 1] += bdpsi_x*t1082 - bdpsi_y*t1087 + bdpsi_z*t1085
-                bdqe[j3 + 2] += bdpsi_x*t1088 + bdpsi_y*t1089 - bdpsi_z*t1090
-                bdth0_x += bdpsi_x*t1081 - bdpsi_y*t1082 - bdpsi_z*t1088
-                bdth0_y += -bdpsi_x*t1075 + bdpsi_y*t1087 - bdpsi_z*t1089
-                bdth0_z += -bdpsi_x*t1078 - bdpsi_y*t1085 + bdpsi_z*t1090
+                t1066 = (0.5)*psi_z
+                t1067 = e0*psi_x
+                t1068 = psi_y*t1067
+                t1069 = t1066 + t1068
+                t1070 = (0.5)*psi_y
+                t1071 = psi_z*t1067
+                t1072 = -t1070 + t1071
+                t1073 = e0*psi_y*psi_y
+                t1074 = e0*psi_z*psi_z - 1
+                t1075 = t1073 + t1074
+                t1076 = -t1066 + t1068
+                t1077 = (0.5)*psi_x
+                t1078 = e0*psi_y*psi_z
+                t1079 = t1077 + t1078
+                t1080 = e0*psi_x*psi_x
+                t1081 = t1074 + t1080
+                t1082 = t1070 + t1071
+                t1083 = -t1077 + t1078
+                t1084 = t1073 + t1080 - 1
+                bdqe[j3] += -bdpsi_x*t1075 + bdpsi_y*t1069 + bdpsi_z*t1072
+                bdqe[j3 + 1] += bdpsi_x*t1076 - bdpsi_y*t1081 + bdpsi_z*t1079
+                bdqe[j3 + 2] += bdpsi_x*t1082 + bdpsi_y*t1083 - bdpsi_z*t1084
+                bdth0_x += bdpsi_x*t1075 - bdpsi_y*t1076 - bdpsi_z*t1082
+                bdth0_y += -bdpsi_x*t1069 + bdpsi_y*t1081 - bdpsi_z*t1083
+                bdth0_z += -bdpsi_x*t1072 - bdpsi_y*t1079 + bdpsi_z*t1084
             # transposed: differential: displacement of the nodes in the frame, (11)
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 bdu_x, bdu_y, bdu_z = bdy[i3], bdy[i3 + 1], bdy[i3 + 2]
-                t1091 = X_z + u_z
-                t1092 = X_y + u_y
-                t1093 = X_x + u_x
-                bdth0_x += bdu_y*t1091 - bdu_z*t1092
-                bdth0_y += -bdu_x*t1091 + bdu_z*t1093
-                bdth0_z += bdu_x*t1092 - bdu_y*t1093
+                t1085 = X_z + u_z
+                t1086 = X_y + u_y
+                t1087 = X_x + u_x
+                bdth0_x += bdu_y*t1085 - bdu_z*t1086
+                bdth0_y += -bdu_x*t1085 + bdu_z*t1087
+                bdth0_z += bdu_x*t1086 - bdu_y*t1087
                 bdqe[i3] += bdu_x
                 bdqe[i3 + 1] += bdu_y
                 bdqe[i3 + 2] += bdu_z
@@ -3438,12 +3425,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdx0_z += -bdu_z
             # transposed: mean rotation of the rates = 0
             rhs_x = rhs_y = rhs_z = 0.0
-            t1094 = bdth0_x + rhs_x
-            t1095 = bdth0_y + rhs_y
-            t1096 = bdth0_z + rhs_z
-            mdth0_x = Bxx*t1094 + Byx*t1095 + Bzx*t1096
-            mdth0_y = Bxy*t1094 + Byy*t1095 + Bzy*t1096
-            mdth0_z = Bxz*t1094 + Byz*t1095 + Bzz*t1096
+            t1088 = bdth0_x + rhs_x
+            t1089 = bdth0_y + rhs_y
+            t1090 = bdth0_z + rhs_z
+            mdth0_x = Bxx*t1088 + Byx*t1089 + Bzx*t1090
+            mdth0_y = Bxy*t1088 + Byy*t1089 + Bzy*t1090
+            mdth0_z = Bxz*t1088 + Byz*t1089 + Bzz*t1090
             # transposed: mean rotation of the rates = 0
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -3453,15 +3440,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gam[3*(i3 + 1) + 1], Gam[3*(i3 + 1) + 2])
                 Gam_positionz_x, Gam_positionz_y, Gam_positionz_z = (Gam[3*(i3 + 2)],
                     Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
-                t1097 = Gam_positionx_x*mdth0_x + Gam_positionx_y*mdth0_y + Gam_positionx_z*mdth0_z
-                t1098 = Gam_positiony_x*mdth0_x + Gam_positiony_y*mdth0_y + Gam_positiony_z*mdth0_z
-                t1099 = Gam_positionz_x*mdth0_x + Gam_positionz_y*mdth0_y + Gam_positionz_z*mdth0_z
-                bdqe[i3] += -t1097
-                bdqe[i3 + 1] += -t1098
-                bdqe[i3 + 2] += -t1099
-                bdx0_x += t1097
-                bdx0_y += t1098
-                bdx0_z += t1099
+                t1091 = Gam_positionx_x*mdth0_x + Gam_positionx_y*mdth0_y + Gam_positionx_z*mdth0_z
+                t1092 = Gam_positiony_x*mdth0_x + Gam_positiony_y*mdth0_y + Gam_positiony_z*mdth0_z
+                t1093 = Gam_positionz_x*mdth0_x + Gam_positionz_y*mdth0_y + Gam_positionz_z*mdth0_z
+                bdqe[i3] += -t1091
+                bdqe[i3 + 1] += -t1092
+                bdqe[i3 + 2] += -t1093
+                bdx0_x += t1091
+                bdx0_y += t1092
+                bdx0_z += t1093
             # transposed: mean rotation of the rates = 0
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -3473,40 +3460,40 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Gam_rotationz_x, Gam_rotationz_y, Gam_rotationz_z = (Gam[3*(j3 + 2)],
                     Gam[3*(j3 + 2) + 1], Gam[3*(j3 + 2) + 2])
                 e0 = e0s[j]
-                t1100 = (0.5)*psi_z
-                t1101 = e0*psi_x
-                t1102 = psi_y*t1101
-                t1103 = t1100 + t1102
-                t1104 = (0.5)*psi_y
-                t1105 = psi_z*t1101
-                t1106 = -t1104 + t1105
-                t1107 = e0*psi_y*psi_y
-                t1108 = e0*psi_z*psi_z - 1
-                t1109 = -t1107 - t1108
-                t1110 = -t1100 + t1102
-                t1111 = (0.5)*psi_x
-                t1112 = e0*psi_y*psi_z
-                t1113 = t1111 + t1112
-                t1114 = e0*psi_x*psi_x
-                t1115 = -t1108 - t1114
-                t1116 = t1104 + t1105
-                t1117 = -t1111 + t1112
-                t1118 = -t1107 - t1114 + 1
-                bdqe[j3] += (-mdth0_x*(Gam_rotationx_x*t1109 + Gam_rotationy_x*t1103 +
-                    Gam_rotationz_x*t1106) - mdth0_y*(Gam_rotationx_y*t1109 +
-                    Gam_rotationy_y*t1103 + Gam_rotationz_y*t1106) -
-                    mdth0_z*(Gam_rotationx_z*t1109 + Gam_rotationy_z*t1103 +
-                    Gam_rotationz_z*t1106))
-                bdqe[j3 + 1] += (-mdth0_x*(Gam_rotationx_x*t1110 + Gam_rotationy_x*t1115 +
-                    Gam_rotationz_x*t1113) - mdth0_y*(Gam_rotationx_y*t1110 +
-                    Gam_rotationy_y*t1115 + Gam_rotationz_y*t1113) -
-                    mdth0_z*(Gam_rotationx_z*t1110 + Gam_rotationy_z*t1115 +
-                    Gam_rotationz_z*t1113))
-                bdqe[j3 + 2] += (-mdth0_x*(Gam_rotationx_x*t1116 + Gam_rotationy_x*t1117 +
-                    Gam_rotationz_x*t1118) - mdth0_y*(Gam_rotationx_y*t1116 +
-                    Gam_rotationy_y*t1117 + Gam_rotationz_y*t1118) -
-                    mdth0_z*(Gam_rotationx_z*t1116 + Gam_rotationy_z*t1117 +
-                    Gam_rotationz_z*t1118))
+                t1094 = (0.5)*psi_z
+                t1095 = e0*psi_x
+                t1096 = psi_y*t1095
+                t1097 = t1094 + t1096
+                t1098 = (0.5)*psi_y
+                t1099 = psi_z*t1095
+                t1100 = -t1098 + t1099
+                t1101 = e0*psi_y*psi_y
+                t1102 = e0*psi_z*psi_z - 1
+                t1103 = -t1101 - t1102
+                t1104 = -t1094 + t1096
+                t1105 = (0.5)*psi_x
+                t1106 = e0*psi_y*psi_z
+                t1107 = t1105 + t1106
+                t1108 = e0*psi_x*psi_x
+                t1109 = -t1102 - t1108
+                t1110 = t1098 + t1099
+                t1111 = -t1105 + t1106
+                t1112 = -t1101 - t1108 + 1
+                bdqe[j3] += (-mdth0_x*(Gam_rotationx_x*t1103 + Gam_rotationy_x*t1097 +
+                    Gam_rotationz_x*t1100) - mdth0_y*(Gam_rotationx_y*t1103 +
+                    Gam_rotationy_y*t1097 + Gam_rotationz_y*t1100) -
+                    mdth0_z*(Gam_rotationx_z*t1103 + Gam_rotationy_z*t1097 +
+                    Gam_rotationz_z*t1100))
+                bdqe[j3 + 1] += (-mdth0_x*(Gam_rotationx_x*t1104 + Gam_rotationy_x*t1109 +
+                    Gam_rotationz_x*t1107) - mdth0_y*(Gam_rotationx_y*t1104 +
+                    Gam_rotationy_y*t1109 + Gam_rotationz_y*t1107) -
+                    mdth0_z*(Gam_rotationx_z*t1104 + Gam_rotationy_z*t1109 +
+                    Gam_rotationz_z*t1107))
+                bdqe[j3 + 2] += (-mdth0_x*(Gam_rotationx_x*t1110 + Gam_rotationy_x*t1111 +
+                    Gam_rotationz_x*t1112) - mdth0_y*(Gam_rotationx_y*t1110 +
+                    Gam_rotationy_y*t1111 + Gam_rotationz_y*t1112) -
+                    mdth0_z*(Gam_rotationx_z*t1110 + Gam_rotationy_z*t1111 +
+                    Gam_rotationz_z*t1112))
             # transposed: mean rotation of the rates = 0
             for k in range(MODES, n):
                 Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]

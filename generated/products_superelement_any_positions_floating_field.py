@@ -33,16 +33,20 @@ from sebody.kernels.dense import (
     add_rows_times,
     block_times,
     clear,
+    columns_times,
     inverse_3,
     rows_times,
 )
 from sebody.kernels.frame_search import best_fit
 from sebody.kernels.packed_products import (
+    add_couplings,
     add_packed,
     add_packed_times,
+    couplings_times,
     from_free,
     packed_room,
     packed_times,
+    packed_times_both,
     to_free,
 )
 from sebody.kernels.rotations import (
@@ -61,11 +65,11 @@ ROTATIONS = None      # first rotation among the local coordinates
 MODES = None          # first internal mode
 DAMPED = None        # has structural damping, None where a body tells
 N_MODES = None        # their number, None where it is read at run time
-WORK_ROWS = 135
+WORK_ROWS = 137
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (861, 263, 440, 1),
+OPERATIONS = {"residual": (867, 263, 440, 1),
               "column": (159, 299, 1482, 4)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("sizes", (3,), "slaved coordinates, resultants of second order, damped or not"),
@@ -77,8 +81,8 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),
     Part("J0", ("pairs",), "moments of inertia at rest"),
     Part("moment_columns", ("N", "lines"), "S1, g_k, h_kl + h_lk", columns=True),
-    Part("of_place", ("placed", "N", "N"), "J2_kl, K_k^T", packed=True),
-    Part("of_rate", ("rated", "N", "N"), "K_k^T, K_k^T - K_k", packed=True),
+    Part("moment_rows", ("lines", "N"), "its transpose", columns=True),
+    Part("couplings", ("coupled", "N", "N"), "J2_kl, K_k^T; K_k^T and K_k of rates", packed=True),
     Part("Mz", (1, "N", "N"), "reduced mass with slaved coordinates", packed=True),
     Part("Cz", ("damped", "free", "free"), "reduced damping", packed=True),
     Part("followers", ("slaved", "free", "free"), "Q_b", packed=True),
@@ -134,52 +138,51 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         s = at(work, 24 + 30*row)
         h = at(work, 24 + 31*row)
         e2s = at(work, 24 + 32*row)
-        by_place = at(work, 24 + 33*row)
-        by_rate = at(work, 24 + 34*row)
-        ones = at(work, 24 + 35*row)
-        by_followers = at(work, 24 + 36*row)
-        of_E = at(work, 24 + 37*row)
-        of_Gy = at(work, 24 + 38*row)
-        dy = at(work, 24 + 39*row)
-        dz = at(work, 24 + 40*row)
-        dlocal = at(work, 24 + 41*row)
-        dyd = at(work, 24 + 42*row)
-        dacc = at(work, 24 + 43*row)
-        deta = at(work, 24 + 44*row)
-        detad = at(work, 24 + 45*row)
-        dgamma = at(work, 24 + 46*row)
-        dzd = at(work, 24 + 47*row)
-        dzdd = at(work, 24 + 48*row)
-        ds = at(work, 24 + 49*row)
-        dh = at(work, 24 + 50*row)
-        dg = at(work, 24 + 51*row)
-        bdqe = at(work, 24 + 52*row)
-        bdve = at(work, 24 + 53*row)
-        bdae = at(work, 24 + 54*row)
-        bdy = at(work, 24 + 55*row)
-        bdz = at(work, 24 + 56*row)
-        bdlocal = at(work, 24 + 57*row)
-        bdyd = at(work, 24 + 58*row)
-        bdacc = at(work, 24 + 59*row)
-        bdeta = at(work, 24 + 60*row)
-        bdetad = at(work, 24 + 61*row)
-        bdgamma = at(work, 24 + 62*row)
-        bdzd = at(work, 24 + 63*row)
-        bdzdd = at(work, 24 + 64*row)
-        bds = at(work, 24 + 65*row)
-        bdh = at(work, 24 + 66*row)
-        bdg = at(work, 24 + 67*row)
-        temporary = at(work, 24 + 68*row)
-        unordered = at(work, 24 + 69*row)
-        Zq = at(work, 24 + 72*row)
-        Zd = at(work, 24 + 84*row)
-        products = at(work, 24 + 96*row)
-        Za = at(work, 24 + 111*row)
-        more = at(work, 24 + 123*row)
-        Gy = at(work, 24 + 135*row)
-        Lz = at(work, 24 + (135 + n + 18)*row)
-        Lv = at(work, 24 + (135 + 2*(n + 18))*row)
-        La = at(work, 24 + (135 + 3*(n + 18))*row)
+        by_couplings = at(work, 24 + 33*row)
+        ones = at(work, 24 + 34*row)
+        by_followers = at(work, 24 + 35*row)
+        of_E = at(work, 24 + 36*row)
+        of_Gy = at(work, 24 + 37*row)
+        dy = at(work, 24 + 38*row)
+        dz = at(work, 24 + 39*row)
+        dlocal = at(work, 24 + 40*row)
+        dyd = at(work, 24 + 41*row)
+        dacc = at(work, 24 + 42*row)
+        deta = at(work, 24 + 43*row)
+        detad = at(work, 24 + 44*row)
+        dgamma = at(work, 24 + 45*row)
+        dzd = at(work, 24 + 46*row)
+        dzdd = at(work, 24 + 47*row)
+        ds = at(work, 24 + 48*row)
+        dh = at(work, 24 + 49*row)
+        dg = at(work, 24 + 50*row)
+        bdqe = at(work, 24 + 51*row)
+        bdve = at(work, 24 + 52*row)
+        bdae = at(work, 24 + 53*row)
+        bdy = at(work, 24 + 54*row)
+        bdz = at(work, 24 + 55*row)
+        bdlocal = at(work, 24 + 56*row)
+        bdyd = at(work, 24 + 57*row)
+        bdacc = at(work, 24 + 58*row)
+        bdeta = at(work, 24 + 59*row)
+        bdetad = at(work, 24 + 60*row)
+        bdgamma = at(work, 24 + 61*row)
+        bdzd = at(work, 24 + 62*row)
+        bdzdd = at(work, 24 + 63*row)
+        bds = at(work, 24 + 64*row)
+        bdh = at(work, 24 + 65*row)
+        bdg = at(work, 24 + 66*row)
+        temporary = at(work, 24 + 67*row)
+        unordered = at(work, 24 + 68*row)
+        Zq = at(work, 24 + 71*row)
+        Zd = at(work, 24 + 83*row)
+        products = at(work, 24 + 95*row)
+        Za = at(work, 24 + 110*row)
+        more = at(work, 24 + 122*row)
+        Gy = at(work, 24 + 137*row)
+        Lz = at(work, 24 + (137 + n + 18)*row)
+        Lv = at(work, 24 + (137 + 2*(n + 18))*row)
+        La = at(work, 24 + (137 + 3*(n + 18))*row)
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
@@ -207,9 +210,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         c0 = at(order, free)
         J0 = at(c0, 3)
         moment_columns = at(J0, 6)
-        of_place = at(moment_columns, 12*padded(N))
-        of_rate = at(of_place, packed_room(9, N, N))
-        Mz = at(of_rate, packed_room(6, N, N))
+        moment_rows = at(moment_columns, 12*padded(N))
+        couplings = at(moment_rows, N*padded(12))
+        Mz = at(couplings, packed_room(15, N, N))
         Cz = at(Mz, packed_room(1, N, N))
         followers = at(Cz, packed_room(damped, free, free))
         lam = at(followers, packed_room(slaved, free, free))
@@ -494,22 +497,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # coordinates that determine the others, and their rates
             all_to_free(y, eta, etad, axes, order, unordered, z, zd, zdd, bound, bound_free, free,
                         hN)
-            # Q_b z, all b
-            packed_times(followers, z, Zq, slaved*hn)
-            # Q_b zd, all b
-            packed_times(followers, zd, Zd, slaved*hn)
+            # Q_b z and Q_b zd, all b
+            packed_times_both(followers, z, zd, Zq, Zd, slaved*hn)
             # eta_b = y . Q_b y / 2, their rates and second rates
             follow(Zq, Zd, z, zd, zdd, free, slaved, hn)
-            # J2_kl z and K_k^T z
-            packed_times(of_place, z, products, 9*hN)
-            # K_k^T zdot and (K_k^T - K_k) zdot
-            packed_times(of_rate, zd, at(products, 9*hN), 6*hN)
+            # J2_kl z, K_k^T z, K_k^T zdot and K_k zdot
+            couplings_times(couplings, z, zd, products, 15*hN)
             # first moments, couplings, inertia at rest, by z
-            rows_times(moment_columns, z, line0, N, 12, hN)
+            columns_times(moment_rows, z, line0, 12, N)
             # first moments, couplings, inertia at rest, by zd
-            rows_times(moment_columns, zd, line1, N, 12, hN)
+            columns_times(moment_rows, zd, line1, 12, N)
             # first moments, couplings, inertia at rest, by zdd
-            rows_times(moment_columns, zdd, line2, N, 8, hN)
+            columns_times(moment_rows, zdd, line2, 12, N)
             # quadratic parts, by z
             rows_times(products, z, product0, N, 8, hN)
             # quadratic parts, by zd
@@ -612,12 +611,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             by_products[6] = turning_x
             by_products[7] = turning_y
             by_products[8] = turning_z
-            by_products[9] = 0.0
-            by_products[10] = 0.0
-            by_products[11] = 0.0
-            by_products[12] = spin_x
-            by_products[13] = spin_y
-            by_products[14] = spin_z
+            by_products[9] = spin_x
+            by_products[10] = spin_y
+            by_products[11] = spin_z
+            by_products[12] = -spin_x
+            by_products[13] = -spin_y
+            by_products[14] = -spin_z
             # inertia force of deformation, Mbar zddot
             packed_times(Mz, zdd, local, hN)
             # damping force, Cbar ydot
@@ -785,29 +784,27 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e2s[j] = inverse_tangent_second(psi_x*psi_x + psi_y*psi_y + psi_z*psi_z)
-            # J2_kl zdot
-            packed_times(of_place, zd, more, 9*hN)
-            # K_k^T zddot and (K_k^T - K_k) zddot
-            packed_times(of_rate, zdd, at(more, 6*hN), 6*hN)
+            # J2_kl zdot, K_k^T zddot and K_k zddot
+            couplings_times(couplings, zd, zdd, more, 15*hN)
             # factors of the local tangents
             turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             t118 = 2*c_geo*spin_x
-            by_place[0] = -c_geo*spin_x*spin_x
-            by_place[1] = -c_geo*spin_y*spin_y
-            by_place[2] = -c_geo*spin_z*spin_z
-            by_place[3] = -spin_y*t118
-            by_place[4] = -spin_z*t118
-            by_place[5] = -2*c_geo*spin_y*spin_z
-            by_place[6] = c_geo*turning_x
-            by_place[7] = c_geo*turning_y
-            by_place[8] = c_geo*turning_z
-            by_rate[0] = 0.0
-            by_rate[1] = 0.0
-            by_rate[2] = 0.0
-            by_rate[3] = spin_x
-            by_rate[4] = spin_y
-            by_rate[5] = spin_z
+            by_couplings[0] = -c_geo*spin_x*spin_x
+            by_couplings[1] = -c_geo*spin_y*spin_y
+            by_couplings[2] = -c_geo*spin_z*spin_z
+            by_couplings[3] = -spin_y*t118
+            by_couplings[4] = -spin_z*t118
+            by_couplings[5] = -2*c_geo*spin_y*spin_z
+            by_couplings[6] = c_geo*turning_x
+            by_couplings[7] = c_geo*turning_y
+            by_couplings[8] = c_geo*turning_z
+            by_couplings[9] = spin_x
+            by_couplings[10] = spin_y
+            by_couplings[11] = spin_z
+            by_couplings[12] = -spin_x
+            by_couplings[13] = -spin_y
+            by_couplings[14] = -spin_z
             ones[0] = 1
             # forces on eta as factors
             for b in range(slaved):
@@ -819,12 +816,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             clear(Lv, N*deep)
             # local tangents
             clear(La, N*deep)
-            # by z: J2_kl and K_k^T
-            add_packed(of_place, by_place, Lz, deep)
+            # by z: J2_kl and K_k^T; by zdot: K_k^T and K_k
+            add_couplings(couplings, by_couplings, Lz, Lv, deep)
             # forces on eta
             add_packed(followers, by_followers, Lz, deep)
-            # by zdot: K_k^T and K_k^T - K_k
-            add_packed(of_rate, by_rate, Lv, deep)
             # structural damping
             add_packed(Cz, ones, Lv, deep)
             # by zddot
@@ -866,8 +861,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     products[14*hN + i])
                 row_jd_xx, row_jd_yy, row_jd_zz, row_jd_xy, row_jd_xz, row_jd_yz = (more[i],
                     more[hN + i], more[2*hN + i], more[3*hN + i], more[4*hN + i], more[5*hN + i])
-                row_ua_x, row_ua_y, row_ua_z = more[6*hN + i], more[7*hN + i], more[8*hN + i]
-                row_wa_x, row_wa_y, row_wa_z = more[9*hN + i], more[10*hN + i], more[11*hN + i]
+                row_wa_x, row_wa_y, row_wa_z = more[12*hN + i], more[13*hN + i], more[14*hN + i]
                 t119 = row_S1_x*spin_z
                 t120 = row_S1_z*spin_x
                 t121 = t119 - t120
@@ -878,24 +872,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t126 = 2*spin_x
                 t127 = 2*spin_y
                 t128 = 2*spin_z
-                t129 = -row_w_z
-                t130 = row_v_z + t129
-                t131 = row_h_xx + 2*row_j_xx
-                t132 = row_h_xy + 2*row_j_xy
-                t133 = row_h_xz + 2*row_j_xz
-                t134 = -row_w_y
-                t135 = row_v_y + t134
-                t136 = row_h_yz + 2*row_j_yz
-                t137 = row_h_zz + 2*row_j_zz
-                t138 = spin_x*t133 + spin_y*t136 + spin_z*t137
-                t139 = row_h_yy + 2*row_j_yy
-                t140 = spin_x*t132 + spin_y*t139 + spin_z*t136
-                t141 = -row_w_x
-                t142 = row_v_x + t141
-                t143 = spin_x*t131 + spin_y*t132 + spin_z*t133
-                t144 = row_g_z + row_u_z
-                t145 = row_g_y + row_u_y
-                t146 = row_g_x + row_u_x
+                t129 = row_h_xx + 2*row_j_xx
+                t130 = row_h_xy + 2*row_j_xy
+                t131 = row_h_xz + 2*row_j_xz
+                t132 = row_h_yz + 2*row_j_yz
+                t133 = row_h_zz + 2*row_j_zz
+                t134 = spin_x*t131 + spin_y*t132 + spin_z*t133
+                t135 = row_h_yy + 2*row_j_yy
+                t136 = spin_x*t130 + spin_y*t135 + spin_z*t132
+                t137 = spin_x*t129 + spin_y*t130 + spin_z*t131
+                t138 = row_g_z + row_u_z
+                t139 = row_g_y + row_u_y
+                t140 = row_g_x + row_u_x
                 Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t123 -
                     spin_z*t121))
                 Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t123
@@ -903,29 +891,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Lz[i*deep + N + 2] = (c_geo*(-row_S1_x*turning_y + row_S1_y*turning_x +
                     spin_x*t121 - spin_y*t125))
                 Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t126 +
-                    row_jd_xy*t127 + row_jd_xz*t128 + row_ua_x - row_wa_x + spin_y*t130 +
-                    spin_y*t138 - spin_z*t135 - spin_z*t140 + t131*turning_x + t132*turning_y +
-                    t133*turning_z))
+                    row_jd_xy*t127 + row_jd_xz*t128 - row_w_y*spin_z + row_w_z*spin_y + row_wa_x +
+                    spin_y*t134 - spin_z*t136 + t129*turning_x + t130*turning_y + t131*turning_z))
                 Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t126 +
-                    row_jd_yy*t127 + row_jd_yz*t128 + row_ua_y - row_wa_y - spin_x*t130 -
-                    spin_x*t138 + spin_z*t142 + spin_z*t143 + t132*turning_x + t136*turning_z +
-                    t139*turning_y))
+                    row_jd_yy*t127 + row_jd_yz*t128 + row_w_x*spin_z - row_w_z*spin_x + row_wa_y -
+                    spin_x*t134 + spin_z*t137 + t130*turning_x + t132*turning_z + t135*turning_y))
                 Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t126 +
-                    row_jd_yz*t127 + row_jd_zz*t128 + row_ua_z - row_wa_z + spin_x*t135 +
-                    spin_x*t140 - spin_y*t142 - spin_y*t143 + t133*turning_x + t136*turning_y +
-                    t137*turning_z))
+                    row_jd_yz*t127 + row_jd_zz*t128 - row_w_x*spin_y + row_w_y*spin_x + row_wa_z +
+                    spin_x*t136 - spin_y*t137 + t131*turning_x + t132*turning_y + t133*turning_z))
                 Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t124
                 Lv[i*deep + N + 1] = 2*t119 - 2*t120
                 Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t122
-                Lv[i*deep + N + 3] = 2*row_v_x + spin_y*t144 - spin_z*t145 + t141 + t143
-                Lv[i*deep + N + 4] = 2*row_v_y - spin_x*t144 + spin_z*t146 + t134 + t140
-                Lv[i*deep + N + 5] = 2*row_v_z + spin_x*t145 - spin_y*t146 + t129 + t138
+                Lv[i*deep + N + 3] = row_v_x + row_w_x + spin_y*t138 - spin_z*t139 + t137
+                Lv[i*deep + N + 4] = row_v_y + row_w_y - spin_x*t138 + spin_z*t140 + t136
+                Lv[i*deep + N + 5] = row_v_z + row_w_z + spin_x*t139 - spin_y*t140 + t134
                 La[i*deep + N] = row_S1_x
                 La[i*deep + N + 1] = row_S1_y
                 La[i*deep + N + 2] = row_S1_z
-                La[i*deep + N + 3] = t146
-                La[i*deep + N + 4] = t145
-                La[i*deep + N + 5] = t144
+                La[i*deep + N + 3] = t140
+                La[i*deep + N + 4] = t139
+                La[i*deep + N + 5] = t138
             # local tangents: motion of the frame
             for i in range(N):
                 spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
@@ -941,17 +926,19 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     products[5*hN + i])
                 row_u_x, row_u_y, row_u_z = (products[6*hN + i], products[7*hN + i],
                     products[8*hN + i])
+                row_v_x, row_v_y, row_v_z = (products[9*hN + i], products[10*hN + i],
+                    products[11*hN + i])
                 row_w_x, row_w_y, row_w_z = (products[12*hN + i], products[13*hN + i],
                     products[14*hN + i])
-                t147 = row_h_xy + 2*row_j_xy
-                t148 = row_h_xz + 2*row_j_xz
-                t149 = row_h_yz + 2*row_j_yz
-                Lv[N*deep + i] = (row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t147 -
-                    spin_z*t148)
-                Lv[(N + 1)*deep + i] = (row_w_y - spin_x*t147 - spin_y*(row_h_yy + 2*row_j_yy) -
-                    spin_z*t149)
-                Lv[(N + 2)*deep + i] = (row_w_z - spin_x*t148 - spin_y*t149 - spin_z*(row_h_zz +
-                    2*row_j_zz))
+                t141 = row_h_xy + 2*row_j_xy
+                t142 = row_h_xz + 2*row_j_xz
+                t143 = row_h_yz + 2*row_j_yz
+                Lv[N*deep + i] = (row_v_x - row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t141
+                    - spin_z*t142)
+                Lv[(N + 1)*deep + i] = (row_v_y - row_w_y - spin_x*t141 - spin_y*(row_h_yy +
+                    2*row_j_yy) - spin_z*t143)
+                Lv[(N + 2)*deep + i] = (row_v_z - row_w_z - spin_x*t142 - spin_y*t143 -
+                    spin_z*(row_h_zz + 2*row_j_zz))
                 La[N*deep + i] = row_S1_x
                 La[(N + 1)*deep + i] = row_S1_y
                 La[(N + 2)*deep + i] = row_S1_z
@@ -961,79 +948,79 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # local tangents: force on the frame by its motion
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             mass = masses[0]
-            t150 = spin_y*sum_c_y
-            t151 = spin_z*sum_c_z
-            t152 = 2*sum_cd_z
-            t153 = spin_x*sum_c_y
-            t154 = 2*sum_cd_y
-            t155 = spin_z*sum_c_x
-            t156 = spin_y*sum_J_xz
-            t157 = spin_z*sum_J_xy
-            t158 = spin_y*sum_J_yz
-            t159 = spin_x*sum_J_xz
-            t160 = spin_z*sum_J_zz + sum_spun_z
-            t161 = spin_z*sum_J_yz
-            t162 = spin_x*sum_J_xy
-            t163 = spin_y*sum_J_yy + sum_spun_y
-            t164 = spin_x*sum_c_x
-            t165 = 2*sum_cd_x
-            t166 = spin_y*sum_c_z
-            t167 = spin_x*sum_J_yz
-            t168 = spin_z*sum_J_xz
-            t169 = spin_y*sum_J_xy
-            t170 = spin_x*sum_J_xx + sum_spun_x
-            t171 = -sum_c_y
-            t172 = -sum_c_z
-            t173 = -sum_c_x
-            Lv[N*deep + N] = t150 + t151
-            Lv[N*deep + N + 1] = spin_y*sum_c_x - t152 - 2*t153
-            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t154 + t155
-            Lv[N*deep + N + 3] = sum_Jd_xx + t156 - t157
-            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t158 - 2*t159 - t160
-            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t161 + 2*t162 + t163
-            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t152 + t153
-            Lv[(N + 1)*deep + N + 1] = t151 + t164
-            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t165 - 2*t166
-            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t158 + t159 + t160
-            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t157 - t167
-            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t168 - 2*t169 - t170
-            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t154 - 2*t155
-            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t165 + t166
-            Lv[(N + 2)*deep + N + 2] = t150 + t164
-            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t161 - t162 - t163
-            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t168 + t169 + t170
-            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t156 + t167
+            t144 = spin_y*sum_c_y
+            t145 = spin_z*sum_c_z
+            t146 = 2*sum_cd_z
+            t147 = spin_x*sum_c_y
+            t148 = 2*sum_cd_y
+            t149 = spin_z*sum_c_x
+            t150 = spin_y*sum_J_xz
+            t151 = spin_z*sum_J_xy
+            t152 = spin_y*sum_J_yz
+            t153 = spin_x*sum_J_xz
+            t154 = spin_z*sum_J_zz + sum_spun_z
+            t155 = spin_z*sum_J_yz
+            t156 = spin_x*sum_J_xy
+            t157 = spin_y*sum_J_yy + sum_spun_y
+            t158 = spin_x*sum_c_x
+            t159 = 2*sum_cd_x
+            t160 = spin_y*sum_c_z
+            t161 = spin_x*sum_J_yz
+            t162 = spin_z*sum_J_xz
+            t163 = spin_y*sum_J_xy
+            t164 = spin_x*sum_J_xx + sum_spun_x
+            t165 = -sum_c_y
+            t166 = -sum_c_z
+            t167 = -sum_c_x
+            Lv[N*deep + N] = t144 + t145
+            Lv[N*deep + N + 1] = spin_y*sum_c_x - t146 - 2*t147
+            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t148 + t149
+            Lv[N*deep + N + 3] = sum_Jd_xx + t150 - t151
+            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t152 - 2*t153 - t154
+            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t155 + 2*t156 + t157
+            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t146 + t147
+            Lv[(N + 1)*deep + N + 1] = t145 + t158
+            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t159 - 2*t160
+            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t152 + t153 + t154
+            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t151 - t161
+            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t162 - 2*t163 - t164
+            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t148 - 2*t149
+            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t159 + t160
+            Lv[(N + 2)*deep + N + 2] = t144 + t158
+            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t155 - t156 - t157
+            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t162 + t163 + t164
+            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t150 + t161
             La[N*deep + N] = mass
             La[N*deep + N + 1] = 0.0
             La[N*deep + N + 2] = 0.0
             La[N*deep + N + 3] = 0.0
             La[N*deep + N + 4] = sum_c_z
-            La[N*deep + N + 5] = t171
+            La[N*deep + N + 5] = t165
             La[(N + 1)*deep + N] = 0.0
             La[(N + 1)*deep + N + 1] = mass
             La[(N + 1)*deep + N + 2] = 0.0
-            La[(N + 1)*deep + N + 3] = t172
+            La[(N + 1)*deep + N + 3] = t166
             La[(N + 1)*deep + N + 4] = 0.0
             La[(N + 1)*deep + N + 5] = sum_c_x
             La[(N + 2)*deep + N] = 0.0
             La[(N + 2)*deep + N + 1] = 0.0
             La[(N + 2)*deep + N + 2] = mass
             La[(N + 2)*deep + N + 3] = sum_c_y
-            La[(N + 2)*deep + N + 4] = t173
+            La[(N + 2)*deep + N + 4] = t167
             La[(N + 2)*deep + N + 5] = 0.0
             La[(N + 3)*deep + N] = 0.0
-            La[(N + 3)*deep + N + 1] = t172
+            La[(N + 3)*deep + N + 1] = t166
             La[(N + 3)*deep + N + 2] = sum_c_y
             La[(N + 3)*deep + N + 3] = sum_J_xx
             La[(N + 3)*deep + N + 4] = sum_J_xy
             La[(N + 3)*deep + N + 5] = sum_J_xz
             La[(N + 4)*deep + N] = sum_c_z
             La[(N + 4)*deep + N + 1] = 0.0
-            La[(N + 4)*deep + N + 2] = t173
+            La[(N + 4)*deep + N + 2] = t167
             La[(N + 4)*deep + N + 3] = sum_J_xy
             La[(N + 4)*deep + N + 4] = sum_J_yy
             La[(N + 4)*deep + N + 5] = sum_J_yz
-            La[(N + 5)*deep + N] = t171
+            La[(N + 5)*deep + N] = t165
             La[(N + 5)*deep + N + 1] = sum_c_x
             La[(N + 5)*deep + N + 2] = 0.0
             La[(N + 5)*deep + N + 3] = sum_J_xz
@@ -1106,12 +1093,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                t174 = -dx0_z + dx_z
-                t175 = -dx0_y + dx_y
-                t176 = -dx0_x + dx_x
-                rhs_x += -fit*(X_y*t174 - X_z*t175)
-                rhs_y += -fit*(-X_x*t174 + X_z*t176)
-                rhs_z += -fit*(X_x*t175 - X_y*t176)
+                t168 = -dx0_z + dx_z
+                t169 = -dx0_y + dx_y
+                t170 = -dx0_x + dx_x
+                rhs_x += -fit*(X_y*t168 - X_z*t169)
+                rhs_y += -fit*(-X_x*t168 + X_z*t170)
+                rhs_z += -fit*(X_x*t169 - X_y*t170)
             dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1121,41 +1108,41 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                t177 = X_y + u_y
-                t178 = X_z + u_z
-                t179 = X_x + u_x
-                dy[i3] = -dth0_y*t178 + dth0_z*t177 - dx0_x + dx_x
-                dy[i3 + 1] = dth0_x*t178 - dth0_z*t179 - dx0_y + dx_y
-                dy[i3 + 2] = -dth0_x*t177 + dth0_y*t179 - dx0_z + dx_z
+                t171 = X_y + u_y
+                t172 = X_z + u_z
+                t173 = X_x + u_x
+                dy[i3] = -dth0_y*t172 + dth0_z*t171 - dx0_x + dx_x
+                dy[i3 + 1] = dth0_x*t172 - dth0_z*t173 - dx0_y + dx_y
+                dy[i3 + 2] = -dth0_x*t171 + dth0_y*t173 - dx0_z + dx_z
             # variation of the elastic rotations, (17)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                 e0 = e0s[j]
-                t180 = dth0_y*psi_z
-                t181 = dth_y*psi_z
-                t182 = dth0_x*psi_y
-                t183 = dth0_y*psi_x - t182
-                t184 = e0*psi_y
-                t185 = dth_x*psi_z
-                t186 = dth_z*psi_x
+                t174 = dth0_y*psi_z
+                t175 = dth_y*psi_z
+                t176 = dth0_x*psi_y
+                t177 = dth0_y*psi_x - t176
+                t178 = e0*psi_y
+                t179 = dth_x*psi_z
+                t180 = dth_z*psi_x
+                t181 = t179 - t180
+                t182 = e0*psi_z
+                t183 = dth_x*psi_y
+                t184 = dth_y*psi_x - t183
+                t185 = dth0_x*psi_z
+                t186 = dth0_z*psi_x
                 t187 = t185 - t186
-                t188 = e0*psi_z
-                t189 = dth_x*psi_y
-                t190 = dth_y*psi_x - t189
-                t191 = dth0_x*psi_z
-                t192 = dth0_z*psi_x
-                t193 = t191 - t192
-                t194 = e0*psi_x
-                t195 = dth_z*psi_y - t181
-                t196 = dth0_z*psi_y - t180
-                dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y + e0*psi_y*t190
-                    + e0*psi_z*t193 - 0.5*t180 - 0.5*t181 - t183*t184 - t187*t188)
-                dy[j3 + 1] = (-dth0_y + dth_y + t183*t194 + (0.5)*t185 - 0.5*t186 + t188*t195 -
-                    t188*t196 - t190*t194 + (0.5)*t191 - 0.5*t192)
+                t188 = e0*psi_x
+                t189 = dth_z*psi_y - t175
+                t190 = dth0_z*psi_y - t174
+                dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y + e0*psi_y*t184
+                    + e0*psi_z*t187 - 0.5*t174 - 0.5*t175 - t177*t178 - t181*t182)
+                dy[j3 + 1] = (-dth0_y + dth_y + t177*t188 + (0.5)*t179 - 0.5*t180 + t182*t189 -
+                    t182*t190 - t184*t188 + (0.5)*t185 - 0.5*t186)
                 dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                    e0*psi_x*t187 + e0*psi_y*t196 - 0.5*t182 - t184*t195 - 0.5*t189 - t193*t194)
+                    e0*psi_x*t181 + e0*psi_y*t190 - 0.5*t176 - t178*t189 - 0.5*t183 - t187*t188)
             # differential: internal modes
             for k in range(MODES, n):
                 dqm = dqe[k]
@@ -1203,12 +1190,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                t197 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
-                t198 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
-                t199 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
-                rhs_x += -fit*(X_y*t197 - X_z*t198)
-                rhs_y += -fit*(-X_x*t197 + X_z*t199)
-                rhs_z += -fit*(X_x*t198 - X_y*t199)
+                t191 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
+                t192 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
+                t193 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
+                rhs_x += -fit*(X_y*t191 - X_z*t192)
+                rhs_y += -fit*(-X_x*t191 + X_z*t193)
+                rhs_z += -fit*(X_x*t192 - X_y*t193)
             dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1241,12 +1228,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                t200 = X_y + u_y
-                t201 = X_z + u_z
-                t202 = X_x + u_x
-                deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t201 + dOm0_z*t200 - dv0_x + dvs_x
-                deta[i3 + 1] = Om0_x*du_z - Om0_z*du_x + dOm0_x*t201 - dOm0_z*t202 - dv0_y + dvs_y
-                deta[i3 + 2] = -Om0_x*du_y + Om0_y*du_x - dOm0_x*t200 + dOm0_y*t202 - dv0_z + dvs_z
+                t194 = X_y + u_y
+                t195 = X_z + u_z
+                t196 = X_x + u_x
+                deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t195 + dOm0_z*t194 - dv0_x + dvs_x
+                deta[i3 + 1] = Om0_x*du_z - Om0_z*du_x + dOm0_x*t195 - dOm0_z*t196 - dv0_y + dvs_y
+                deta[i3 + 2] = -Om0_x*du_y + Om0_y*du_x - dOm0_x*t194 + dOm0_y*t196 - dv0_z + dvs_z
             # differential: rates of the elastic rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -1256,59 +1243,59 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t203 = Om0_y*dpsi_z
-                t204 = Om_y*dpsi_z
-                t205 = dOm0_y*psi_z
-                t206 = dOm_y*psi_z
-                t207 = -Om0_x*psi_y + Om0_y*psi_x
-                t208 = dpsi_y*e0
-                t209 = Om_x*psi_z - Om_z*psi_x
-                t210 = dpsi_z*e0
-                t211 = -Om_x*psi_y + Om_y*psi_x
-                t212 = Om0_x*psi_z - Om0_z*psi_x
-                t213 = Om0_x*dpsi_y
-                t214 = dOm0_x*psi_y
-                t215 = Om0_y*dpsi_x + dOm0_y*psi_x - t213 - t214
-                t216 = e0*psi_y
-                t217 = Om_x*dpsi_z
-                t218 = dOm_x*psi_z
-                t219 = Om_z*dpsi_x
-                t220 = dOm_z*psi_x
-                t221 = t217 + t218 - t219 - t220
-                t222 = e0*psi_z
-                t223 = Om_x*dpsi_y
-                t224 = dOm_x*psi_y
-                t225 = Om_y*dpsi_x + dOm_y*psi_x - t223 - t224
-                t226 = Om0_x*dpsi_z
-                t227 = dOm0_x*psi_z
-                t228 = Om0_z*dpsi_x
-                t229 = dOm0_z*psi_x
-                t230 = t226 + t227 - t228 - t229
-                t231 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t232 = e1*t231
-                t233 = psi_y*t232
-                t234 = psi_z*t232
-                t235 = dpsi_x*e0
-                t236 = -Om_y*psi_z + Om_z*psi_y
-                t237 = -Om0_y*psi_z + Om0_z*psi_y
-                t238 = e0*psi_x
-                t239 = Om_z*dpsi_y + dOm_z*psi_y - t204 - t206
-                t240 = Om0_z*dpsi_y + dOm0_z*psi_y - t203 - t205
-                t241 = psi_x*t232
+                t197 = Om0_y*dpsi_z
+                t198 = Om_y*dpsi_z
+                t199 = dOm0_y*psi_z
+                t200 = dOm_y*psi_z
+                t201 = -Om0_x*psi_y + Om0_y*psi_x
+                t202 = dpsi_y*e0
+                t203 = Om_x*psi_z - Om_z*psi_x
+                t204 = dpsi_z*e0
+                t205 = -Om_x*psi_y + Om_y*psi_x
+                t206 = Om0_x*psi_z - Om0_z*psi_x
+                t207 = Om0_x*dpsi_y
+                t208 = dOm0_x*psi_y
+                t209 = Om0_y*dpsi_x + dOm0_y*psi_x - t207 - t208
+                t210 = e0*psi_y
+                t211 = Om_x*dpsi_z
+                t212 = dOm_x*psi_z
+                t213 = Om_z*dpsi_x
+                t214 = dOm_z*psi_x
+                t215 = t211 + t212 - t213 - t214
+                t216 = e0*psi_z
+                t217 = Om_x*dpsi_y
+                t218 = dOm_x*psi_y
+                t219 = Om_y*dpsi_x + dOm_y*psi_x - t217 - t218
+                t220 = Om0_x*dpsi_z
+                t221 = dOm0_x*psi_z
+                t222 = Om0_z*dpsi_x
+                t223 = dOm0_z*psi_x
+                t224 = t220 + t221 - t222 - t223
+                t225 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t226 = e1*t225
+                t227 = psi_y*t226
+                t228 = psi_z*t226
+                t229 = dpsi_x*e0
+                t230 = -Om_y*psi_z + Om_z*psi_y
+                t231 = -Om0_y*psi_z + Om0_z*psi_y
+                t232 = e0*psi_x
+                t233 = Om_z*dpsi_y + dOm_z*psi_y - t198 - t200
+                t234 = Om0_z*dpsi_y + dOm0_z*psi_y - t197 - t199
+                t235 = psi_x*t226
                 deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x + (0.5)*dOm0_z*psi_y +
-                    dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t211 + dpsi_z*e0*t212 + e0*psi_y*t225 +
-                    e0*psi_z*t230 + e1*psi_y*t211*t231 + e1*psi_z*t212*t231 - 0.5*t203 - 0.5*t204
-                    - 0.5*t205 - 0.5*t206 - t207*t208 - t207*t233 - t209*t210 - t209*t234 -
-                    t215*t216 - t221*t222)
-                deta[j3 + 1] = (-dOm0_y + dOm_y + t207*t235 + t207*t241 + t210*t236 - t210*t237 -
-                    t211*t235 - t211*t241 + t215*t238 + (0.5)*t217 + (0.5)*t218 - 0.5*t219 -
-                    0.5*t220 + t222*t239 - t222*t240 - t225*t238 + (0.5)*t226 + (0.5)*t227 -
-                    0.5*t228 - 0.5*t229 + t234*t236 - t234*t237)
+                    dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t205 + dpsi_z*e0*t206 + e0*psi_y*t219 +
+                    e0*psi_z*t224 + e1*psi_y*t205*t225 + e1*psi_z*t206*t225 - 0.5*t197 - 0.5*t198
+                    - 0.5*t199 - 0.5*t200 - t201*t202 - t201*t227 - t203*t204 - t203*t228 -
+                    t209*t210 - t215*t216)
+                deta[j3 + 1] = (-dOm0_y + dOm_y + t201*t229 + t201*t235 + t204*t230 - t204*t231 -
+                    t205*t229 - t205*t235 + t209*t232 + (0.5)*t211 + (0.5)*t212 - 0.5*t213 -
+                    0.5*t214 + t216*t233 - t216*t234 - t219*t232 + (0.5)*t220 + (0.5)*t221 -
+                    0.5*t222 - 0.5*t223 + t228*t230 - t228*t231)
                 deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                    dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t209 + dpsi_y*e0*t237 +
-                    e0*psi_x*t221 + e0*psi_y*t240 + e1*psi_x*t209*t231 + e1*psi_y*t231*t237 -
-                    t208*t236 - t212*t235 - t212*t241 - 0.5*t213 - 0.5*t214 - t216*t239 - 0.5*t223
-                    - 0.5*t224 - t230*t238 - t233*t236)
+                    dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t203 + dpsi_y*e0*t231 +
+                    e0*psi_x*t215 + e0*psi_y*t234 + e1*psi_x*t203*t225 + e1*psi_y*t225*t231 -
+                    t202*t230 - t206*t229 - t206*t235 - 0.5*t207 - 0.5*t208 - t210*t233 - 0.5*t217
+                    - 0.5*t218 - t224*t232 - t227*t230)
             # differential: rates of the internal modes
             for k in range(MODES, n):
                 dvm = dve[k]
@@ -1338,20 +1325,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 deud_x, deud_y, deud_z = detad[i3], detad[i3 + 1], detad[i3 + 2]
-                t242 = Om0d_y*fit
-                t243 = X_y*t242
-                t244 = X_z*fit
-                t245 = Om0d_z*t244
-                t246 = X_y*du_y
-                t247 = X_z*du_z
-                t248 = Om0d_x*fit
-                t249 = X_x*t248
-                t250 = X_x*du_x
-                rhs_x += (-X_y*deud_z*fit + X_z*deud_y*fit - du_x*t243 - du_x*t245 - t248*(-t246 -
-                    t247))
-                rhs_y += X_x*deud_z*fit - deud_x*t244 - du_y*t245 - du_y*t249 - t242*(-t247 - t250)
-                rhs_z += (-Om0d_z*fit*(-t246 - t250) - X_x*deud_y*fit + X_y*deud_x*fit - du_z*t243
-                    - du_z*t249)
+                t236 = Om0d_y*fit
+                t237 = X_y*t236
+                t238 = X_z*fit
+                t239 = Om0d_z*t238
+                t240 = X_y*du_y
+                t241 = X_z*du_z
+                t242 = Om0d_x*fit
+                t243 = X_x*t242
+                t244 = X_x*du_x
+                rhs_x += (-X_y*deud_z*fit + X_z*deud_y*fit - du_x*t237 - du_x*t239 - t242*(-t240 -
+                    t241))
+                rhs_y += X_x*deud_z*fit - deud_x*t238 - du_y*t239 - du_y*t243 - t236*(-t241 - t244)
+                rhs_z += (-Om0d_z*fit*(-t240 - t244) - X_x*deud_y*fit + X_y*deud_x*fit - du_z*t237
+                    - du_z*t243)
             dOm0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dOm0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dOm0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1362,12 +1349,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 deud_x, deud_y, deud_z = detad[i3], detad[i3 + 1], detad[i3 + 2]
-                t251 = X_y + u_y
-                t252 = X_z + u_z
-                t253 = X_x + u_x
-                detad[i3] = -Om0d_y*du_z + Om0d_z*du_y - dOm0d_y*t252 + dOm0d_z*t251 + deud_x
-                detad[i3 + 1] = Om0d_x*du_z - Om0d_z*du_x + dOm0d_x*t252 - dOm0d_z*t253 + deud_y
-                detad[i3 + 2] = -Om0d_x*du_y + Om0d_y*du_x - dOm0d_x*t251 + dOm0d_y*t253 + deud_z
+                t245 = X_y + u_y
+                t246 = X_z + u_z
+                t247 = X_x + u_x
+                detad[i3] = -Om0d_y*du_z + Om0d_z*du_y - dOm0d_y*t246 + dOm0d_z*t245 + deud_x
+                detad[i3 + 1] = Om0d_x*du_z - Om0d_z*du_x + dOm0d_x*t246 - dOm0d_z*t247 + deud_y
+                detad[i3 + 2] = -Om0d_x*du_y + Om0d_y*du_x - dOm0d_x*t245 + dOm0d_y*t247 + deud_z
             # differential: rate: rates of the elastic rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -1382,141 +1369,141 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e0 = e0s[j]
                 e1 = e1s[j]
                 e2 = e2s[j]
-                t254 = A_y*dpsi_z
-                t255 = Om0_y*dep_z
-                t256 = Om0d_y*dpsi_z
-                t257 = Om_y*dep_z
-                t258 = dA_y*psi_z
-                t259 = dOm0_y*ep_z
-                t260 = dOm0d_y*psi_z
-                t261 = dOm_y*ep_z
-                t262 = -Om0_x*psi_y + Om0_y*psi_x
-                t263 = dep_y*e0
-                t264 = Om_x*psi_z - Om_z*psi_x
-                t265 = dep_z*e0
-                t266 = -Om_x*psi_y + Om_y*psi_x
-                t267 = Om0_x*psi_z - Om0_z*psi_x
-                t268 = -Om0_x*ep_y + Om0_y*ep_x - Om0d_x*psi_y + Om0d_y*psi_x
-                t269 = dpsi_y*e0
-                t270 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                t271 = dpsi_z*e0
-                t272 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                t273 = e0*ep_y
-                t274 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                t275 = e0*ep_z
-                t276 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                t277 = Om0_x*ep_z - Om0_z*ep_x + Om0d_x*psi_z - Om0d_z*psi_x
-                t278 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                t279 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                t280 = 2*psi_x
-                t281 = 2*psi_y
-                t282 = 2*psi_z
-                t283 = ep_x*t280 + ep_y*t281 + ep_z*t282
-                t284 = e1*t283
-                t285 = dpsi_y*t284
-                t286 = dpsi_z*t284
-                t287 = dpsi_x*t280 + dpsi_y*t281 + dpsi_z*t282
-                t288 = e1*t287
-                t289 = ep_y*t288
-                t290 = ep_z*t288
-                t291 = psi_y*t288
-                t292 = psi_y*t284
-                t293 = psi_z*t288
-                t294 = psi_z*t284
-                t295 = Om0_x*dep_y
-                t296 = Om0d_x*dpsi_y
-                t297 = dOm0_x*ep_y
-                t298 = dOm0d_x*psi_y
-                t299 = (Om0_y*dep_x + Om0d_y*dpsi_x + dOm0_y*ep_x + dOm0d_y*psi_x - t295 - t296 -
-                    t297 - t298)
-                t300 = e0*psi_y
-                t301 = A_x*dpsi_z
-                t302 = Om_x*dep_z
-                t303 = dA_x*psi_z
-                t304 = dOm_x*ep_z
-                t305 = A_z*dpsi_x
-                t306 = Om_z*dep_x
-                t307 = dA_z*psi_x
-                t308 = dOm_z*ep_x
-                t309 = t301 + t302 + t303 + t304 - t305 - t306 - t307 - t308
-                t310 = e0*psi_z
-                t311 = A_x*dpsi_y
-                t312 = Om_x*dep_y
-                t313 = dA_x*psi_y
-                t314 = dOm_x*ep_y
-                t315 = A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t311 - t312 - t313 - t314
-                t316 = Om0_x*dep_z
-                t317 = Om0d_x*dpsi_z
-                t318 = dOm0_x*ep_z
-                t319 = dOm0d_x*psi_z
-                t320 = Om0_z*dep_x
-                t321 = Om0d_z*dpsi_x
-                t322 = dOm0_z*ep_x
-                t323 = dOm0d_z*psi_x
-                t324 = t316 + t317 + t318 + t319 - t320 - t321 - t322 - t323
-                t325 = (dep_x*t280 + dep_y*t281 + dep_z*t282 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
+                t248 = A_y*dpsi_z
+                t249 = Om0_y*dep_z
+                t250 = Om0d_y*dpsi_z
+                t251 = Om_y*dep_z
+                t252 = dA_y*psi_z
+                t253 = dOm0_y*ep_z
+                t254 = dOm0d_y*psi_z
+                t255 = dOm_y*ep_z
+                t256 = -Om0_x*psi_y + Om0_y*psi_x
+                t257 = dep_y*e0
+                t258 = Om_x*psi_z - Om_z*psi_x
+                t259 = dep_z*e0
+                t260 = -Om_x*psi_y + Om_y*psi_x
+                t261 = Om0_x*psi_z - Om0_z*psi_x
+                t262 = -Om0_x*ep_y + Om0_y*ep_x - Om0d_x*psi_y + Om0d_y*psi_x
+                t263 = dpsi_y*e0
+                t264 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
+                t265 = dpsi_z*e0
+                t266 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
+                t267 = e0*ep_y
+                t268 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
+                t269 = e0*ep_z
+                t270 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
+                t271 = Om0_x*ep_z - Om0_z*ep_x + Om0d_x*psi_z - Om0d_z*psi_x
+                t272 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
+                t273 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
+                t274 = 2*psi_x
+                t275 = 2*psi_y
+                t276 = 2*psi_z
+                t277 = ep_x*t274 + ep_y*t275 + ep_z*t276
+                t278 = e1*t277
+                t279 = dpsi_y*t278
+                t280 = dpsi_z*t278
+                t281 = dpsi_x*t274 + dpsi_y*t275 + dpsi_z*t276
+                t282 = e1*t281
+                t283 = ep_y*t282
+                t284 = ep_z*t282
+                t285 = psi_y*t282
+                t286 = psi_y*t278
+                t287 = psi_z*t282
+                t288 = psi_z*t278
+                t289 = Om0_x*dep_y
+                t290 = Om0d_x*dpsi_y
+                t291 = dOm0_x*ep_y
+                t292 = dOm0d_x*psi_y
+                t293 = (Om0_y*dep_x + Om0d_y*dpsi_x + dOm0_y*ep_x + dOm0d_y*psi_x - t289 - t290 -
+                    t291 - t292)
+                t294 = e0*psi_y
+                t295 = A_x*dpsi_z
+                t296 = Om_x*dep_z
+                t297 = dA_x*psi_z
+                t298 = dOm_x*ep_z
+                t299 = A_z*dpsi_x
+                t300 = Om_z*dep_x
+                t301 = dA_z*psi_x
+                t302 = dOm_z*ep_x
+                t303 = t295 + t296 + t297 + t298 - t299 - t300 - t301 - t302
+                t304 = e0*psi_z
+                t305 = A_x*dpsi_y
+                t306 = Om_x*dep_y
+                t307 = dA_x*psi_y
+                t308 = dOm_x*ep_y
+                t309 = A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t305 - t306 - t307 - t308
+                t310 = Om0_x*dep_z
+                t311 = Om0d_x*dpsi_z
+                t312 = dOm0_x*ep_z
+                t313 = dOm0d_x*psi_z
+                t314 = Om0_z*dep_x
+                t315 = Om0d_z*dpsi_x
+                t316 = dOm0_z*ep_x
+                t317 = dOm0d_z*psi_x
+                t318 = t310 + t311 + t312 + t313 - t314 - t315 - t316 - t317
+                t319 = (dep_x*t274 + dep_y*t275 + dep_z*t276 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
                     2*dpsi_z*ep_z)
-                t326 = e1*t325
-                t327 = t262*t326
-                t328 = psi_z*t326
-                t329 = e2*t283*t287
-                t330 = t262*t329
-                t331 = psi_z*t329
-                t332 = dep_x*e0
-                t333 = -Om_y*psi_z + Om_z*psi_y
-                t334 = -Om0_y*psi_z + Om0_z*psi_y
-                t335 = dpsi_x*e0
-                t336 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                t337 = e0*ep_x
-                t338 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                t339 = -Om0_y*ep_z + Om0_z*ep_y - Om0d_y*psi_z + Om0d_z*psi_y
-                t340 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                t341 = dpsi_x*t284
-                t342 = ep_x*t288
-                t343 = psi_x*t288
-                t344 = psi_x*t284
-                t345 = e0*psi_x
-                t346 = A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t254 - t257 - t258 - t261
-                t347 = (Om0_z*dep_y + Om0d_z*dpsi_y + dOm0_z*ep_y + dOm0d_z*psi_y - t255 - t256 -
-                    t259 - t260)
-                t348 = psi_x*t326
-                t349 = psi_x*t329
+                t320 = e1*t319
+                t321 = t256*t320
+                t322 = psi_z*t320
+                t323 = e2*t277*t281
+                t324 = t256*t323
+                t325 = psi_z*t323
+                t326 = dep_x*e0
+                t327 = -Om_y*psi_z + Om_z*psi_y
+                t328 = -Om0_y*psi_z + Om0_z*psi_y
+                t329 = dpsi_x*e0
+                t330 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
+                t331 = e0*ep_x
+                t332 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                t333 = -Om0_y*ep_z + Om0_z*ep_y - Om0d_y*psi_z + Om0d_z*psi_y
+                t334 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
+                t335 = dpsi_x*t278
+                t336 = ep_x*t282
+                t337 = psi_x*t282
+                t338 = psi_x*t278
+                t339 = e0*psi_x
+                t340 = A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t248 - t251 - t252 - t255
+                t341 = (Om0_z*dep_y + Om0d_z*dpsi_y + dOm0_z*ep_y + dOm0d_z*psi_y - t249 - t250 -
+                    t253 - t254)
+                t342 = psi_x*t320
+                t343 = psi_x*t323
                 detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om0d_z*dpsi_y +
                     (0.5)*Om_z*dep_y + dA_x + (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y - dOm0d_x +
-                    (0.5)*dOm0d_z*psi_y + (0.5)*dOm_z*ep_y + dep_y*e0*t266 + dep_z*e0*t267 +
-                    dpsi_y*e0*t276 + dpsi_y*e1*t266*t283 + dpsi_z*e0*t277 + dpsi_z*e1*t267*t283 +
-                    e0*ep_y*t278 + e0*ep_z*t279 + e0*psi_y*t315 + e0*psi_z*t324 +
-                    e1*ep_y*t266*t287 + e1*ep_z*t267*t287 + e1*psi_y*t266*t325 +
-                    e1*psi_y*t276*t287 + e1*psi_y*t278*t283 + e1*psi_z*t267*t325 +
-                    e1*psi_z*t277*t287 + e1*psi_z*t279*t283 + e2*psi_y*t266*t283*t287 +
-                    e2*psi_z*t267*t283*t287 - psi_y*t327 - psi_y*t330 - 0.5*t254 - 0.5*t255 -
-                    0.5*t256 - 0.5*t257 - 0.5*t258 - 0.5*t259 - 0.5*t260 - 0.5*t261 - t262*t263 -
-                    t262*t285 - t262*t289 - t264*t265 - t264*t286 - t264*t290 - t264*t328 -
-                    t264*t331 - t268*t269 - t268*t291 - t270*t271 - t270*t293 - t272*t273 -
-                    t272*t292 - t274*t275 - t274*t294 - t299*t300 - t309*t310)
-                detad[j3 + 1] = (dA_y - dOm0d_y + psi_x*t327 + psi_x*t330 + t262*t332 + t262*t341
-                    + t262*t342 + t265*t333 - t265*t334 - t266*t332 - t266*t341 - t266*t342 -
-                    t266*t348 - t266*t349 + t268*t335 + t268*t343 + t271*t336 - t271*t339 +
-                    t272*t337 + t272*t344 + t275*t338 - t275*t340 - t276*t335 - t276*t343 -
-                    t278*t337 - t278*t344 + t286*t333 - t286*t334 + t290*t333 - t290*t334 +
-                    t293*t336 - t293*t339 + t294*t338 - t294*t340 + t299*t345 + (0.5)*t301 +
-                    (0.5)*t302 + (0.5)*t303 + (0.5)*t304 - 0.5*t305 - 0.5*t306 - 0.5*t307 -
-                    0.5*t308 + t310*t346 - t310*t347 - t315*t345 + (0.5)*t316 + (0.5)*t317 +
-                    (0.5)*t318 + (0.5)*t319 - 0.5*t320 - 0.5*t321 - 0.5*t322 - 0.5*t323 +
-                    t328*t333 - t328*t334 + t331*t333 - t331*t334)
+                    (0.5)*dOm0d_z*psi_y + (0.5)*dOm_z*ep_y + dep_y*e0*t260 + dep_z*e0*t261 +
+                    dpsi_y*e0*t270 + dpsi_y*e1*t260*t277 + dpsi_z*e0*t271 + dpsi_z*e1*t261*t277 +
+                    e0*ep_y*t272 + e0*ep_z*t273 + e0*psi_y*t309 + e0*psi_z*t318 +
+                    e1*ep_y*t260*t281 + e1*ep_z*t261*t281 + e1*psi_y*t260*t319 +
+                    e1*psi_y*t270*t281 + e1*psi_y*t272*t277 + e1*psi_z*t261*t319 +
+                    e1*psi_z*t271*t281 + e1*psi_z*t273*t277 + e2*psi_y*t260*t277*t281 +
+                    e2*psi_z*t261*t277*t281 - psi_y*t321 - psi_y*t324 - 0.5*t248 - 0.5*t249 -
+                    0.5*t250 - 0.5*t251 - 0.5*t252 - 0.5*t253 - 0.5*t254 - 0.5*t255 - t256*t257 -
+                    t256*t279 - t256*t283 - t258*t259 - t258*t280 - t258*t284 - t258*t322 -
+                    t258*t325 - t262*t263 - t262*t285 - t264*t265 - t264*t287 - t266*t267 -
+                    t266*t286 - t268*t269 - t268*t288 - t293*t294 - t303*t304)
+                detad[j3 + 1] = (dA_y - dOm0d_y + psi_x*t321 + psi_x*t324 + t256*t326 + t256*t335
+                    + t256*t336 + t259*t327 - t259*t328 - t260*t326 - t260*t335 - t260*t336 -
+                    t260*t342 - t260*t343 + t262*t329 + t262*t337 + t265*t330 - t265*t333 +
+                    t266*t331 + t266*t338 + t269*t332 - t269*t334 - t270*t329 - t270*t337 -
+                    t272*t331 - t272*t338 + t280*t327 - t280*t328 + t284*t327 - t284*t328 +
+                    t287*t330 - t287*t333 + t288*t332 - t288*t334 + t293*t339 + (0.5)*t295 +
+                    (0.5)*t296 + (0.5)*t297 + (0.5)*t298 - 0.5*t299 - 0.5*t300 - 0.5*t301 -
+                    0.5*t302 + t304*t340 - t304*t341 - t309*t339 + (0.5)*t310 + (0.5)*t311 +
+                    (0.5)*t312 + (0.5)*t313 - 0.5*t314 - 0.5*t315 - 0.5*t316 - 0.5*t317 +
+                    t322*t327 - t322*t328 + t325*t327 - t325*t328)
                 detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om0d_y*dpsi_x +
                     (0.5)*Om_y*dep_x + (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x +
-                    (0.5)*dOm0d_y*psi_x - dOm0d_z + (0.5)*dOm_y*ep_x + dep_x*e0*t264 +
-                    dep_y*e0*t334 + dpsi_x*e0*t270 + dpsi_x*e1*t264*t283 + dpsi_y*e0*t339 +
-                    dpsi_y*e1*t283*t334 + e0*ep_x*t274 + e0*ep_y*t340 + e0*psi_x*t309 +
-                    e0*psi_y*t347 + e1*ep_x*t264*t287 + e1*ep_y*t287*t334 + e1*psi_x*t264*t325 +
-                    e1*psi_x*t270*t287 + e1*psi_x*t274*t283 + e1*psi_y*t283*t340 +
-                    e1*psi_y*t287*t339 + e1*psi_y*t325*t334 + e2*psi_x*t264*t283*t287 +
-                    e2*psi_y*t283*t287*t334 - psi_y*t326*t333 - psi_y*t329*t333 - t263*t333 -
-                    t267*t332 - t267*t341 - t267*t342 - t267*t348 - t267*t349 - t269*t336 -
-                    t273*t338 - t277*t335 - t277*t343 - t279*t337 - t279*t344 - t285*t333 -
-                    t289*t333 - t291*t336 - t292*t338 - 0.5*t295 - 0.5*t296 - 0.5*t297 - 0.5*t298
-                    - t300*t346 - 0.5*t311 - 0.5*t312 - 0.5*t313 - 0.5*t314 - t324*t345)
+                    (0.5)*dOm0d_y*psi_x - dOm0d_z + (0.5)*dOm_y*ep_x + dep_x*e0*t258 +
+                    dep_y*e0*t328 + dpsi_x*e0*t264 + dpsi_x*e1*t258*t277 + dpsi_y*e0*t333 +
+                    dpsi_y*e1*t277*t328 + e0*ep_x*t268 + e0*ep_y*t334 + e0*psi_x*t303 +
+                    e0*psi_y*t341 + e1*ep_x*t258*t281 + e1*ep_y*t281*t328 + e1*psi_x*t258*t319 +
+                    e1*psi_x*t264*t281 + e1*psi_x*t268*t277 + e1*psi_y*t277*t334 +
+                    e1*psi_y*t281*t333 + e1*psi_y*t319*t328 + e2*psi_x*t258*t277*t281 +
+                    e2*psi_y*t277*t281*t328 - psi_y*t320*t327 - psi_y*t323*t327 - t257*t327 -
+                    t261*t326 - t261*t335 - t261*t336 - t261*t342 - t261*t343 - t263*t330 -
+                    t267*t332 - t271*t329 - t271*t337 - t273*t331 - t273*t338 - t279*t327 -
+                    t283*t327 - t285*t330 - t286*t332 - 0.5*t289 - 0.5*t290 - 0.5*t291 - 0.5*t292
+                    - t294*t340 - 0.5*t305 - 0.5*t306 - 0.5*t307 - 0.5*t308 - t318*t339)
             # differential: rate: rates of the internal modes
             for k in range(MODES, n):
                 dam = dae[k]
@@ -1536,12 +1523,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
             dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-            t350 = da0_x - dgamma_x
-            t351 = da0_y - dgamma_y
-            t352 = da0_z - dgamma_z
-            dzdd[N] = t350*turn_xx + t351*turn_yx + t352*turn_zx
-            dzdd[N + 1] = t350*turn_xy + t351*turn_yy + t352*turn_zy
-            dzdd[N + 2] = t350*turn_xz + t351*turn_yz + t352*turn_zz
+            t344 = da0_x - dgamma_x
+            t345 = da0_y - dgamma_y
+            t346 = da0_z - dgamma_z
+            dzdd[N] = t344*turn_xx + t345*turn_yx + t346*turn_zx
+            dzdd[N + 1] = t344*turn_xy + t345*turn_yy + t346*turn_zy
+            dzdd[N + 2] = t344*turn_xz + t345*turn_yz + t346*turn_zz
             dzdd[N + 3] = dOm0d_x*turn_xx + dOm0d_y*turn_yx + dOm0d_z*turn_zx
             dzdd[N + 4] = dOm0d_x*turn_xy + dOm0d_y*turn_yy + dOm0d_z*turn_zy
             dzdd[N + 5] = dOm0d_x*turn_xz + dOm0d_y*turn_yz + dOm0d_z*turn_zz
@@ -1566,15 +1553,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                t353 = X_z + u_z
-                t354 = X_y + u_y
-                t355 = X_x + u_x
+                t347 = X_z + u_z
+                t348 = X_y + u_y
+                t349 = X_x + u_x
                 dF_x += -df_x
                 dF_y += -df_y
                 dF_z += -df_z
-                dW_x += df_y*t353 - df_z*t354 - du_y*f_z + du_z*f_y
-                dW_y += -df_x*t353 + df_z*t355 + du_x*f_z - du_z*f_x
-                dW_z += df_x*t354 - df_y*t355 - du_x*f_y + du_y*f_x
+                dW_x += df_y*t347 - df_z*t348 - du_y*f_z + du_z*f_y
+                dW_y += -df_x*t347 + df_z*t349 + du_x*f_z - du_z*f_x
+                dW_z += df_x*t348 - df_y*t349 - du_x*f_y + du_y*f_x
             # differential: inertia and weight on the frame
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
@@ -1595,25 +1582,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t356 = -m_x*psi_y + m_y*psi_x
-                t357 = m_x*psi_z - m_z*psi_x
-                t358 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                t359 = dm_x*psi_z
-                t360 = dpsi_z*m_x
-                t361 = -dm_z*psi_x - dpsi_x*m_z + t359 + t360
-                t362 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t363 = e1*t362
-                t364 = -m_y*psi_z + m_z*psi_y
-                t365 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t356 -
-                    0.5*dpsi_y*m_z + dpsi_z*e0*t357 + (0.5)*dpsi_z*m_y - e0*psi_y*t358 +
-                    e0*psi_z*t361 + e1*psi_z*t357*t362 - psi_y*t356*t363)
-                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t356 + (0.5)*dpsi_x*m_z -
-                    dpsi_z*e0*t364 + e0*psi_x*t358 - e0*psi_z*t365 + e1*psi_x*t356*t362 -
-                    psi_z*t363*t364 - 0.5*t359 - 0.5*t360)
-                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t357 -
-                    0.5*dpsi_x*m_y + dpsi_y*e0*t364 + (0.5)*dpsi_y*m_x - e0*psi_x*t361 +
-                    e0*psi_y*t365 + e1*psi_y*t362*t364 - psi_x*t357*t363)
+                t350 = -m_x*psi_y + m_y*psi_x
+                t351 = m_x*psi_z - m_z*psi_x
+                t352 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                t353 = dm_x*psi_z
+                t354 = dpsi_z*m_x
+                t355 = -dm_z*psi_x - dpsi_x*m_z + t353 + t354
+                t356 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t357 = e1*t356
+                t358 = -m_y*psi_z + m_z*psi_y
+                t359 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t350 -
+                    0.5*dpsi_y*m_z + dpsi_z*e0*t351 + (0.5)*dpsi_z*m_y - e0*psi_y*t352 +
+                    e0*psi_z*t355 + e1*psi_z*t351*t356 - psi_y*t350*t357)
+                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t350 + (0.5)*dpsi_x*m_z -
+                    dpsi_z*e0*t358 + e0*psi_x*t352 - e0*psi_z*t359 + e1*psi_x*t350*t356 -
+                    psi_z*t357*t358 - 0.5*t353 - 0.5*t354)
+                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t351 -
+                    0.5*dpsi_x*m_y + dpsi_y*e0*t358 + (0.5)*dpsi_y*m_x - e0*psi_x*t355 +
+                    e0*psi_y*t359 + e1*psi_y*t356*t358 - psi_x*t351*t357)
             # differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
             for i in range(N_POSITIONS):
@@ -1621,26 +1608,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                t366 = X_x*wp_y - X_y*wp_x
-                t367 = -X_x*wp_z + X_z*wp_x
-                t368 = X_y*wp_z - X_z*wp_y
-                rhs_x += -fit*(du_y*t366 - du_z*t367)
-                rhs_y += -fit*(-du_x*t366 + du_z*t368)
-                rhs_z += -fit*(du_x*t367 - du_y*t368)
-            t369 = dW_x + rhs_x
-            t370 = dW_y + rhs_y
-            t371 = dW_z + rhs_z
-            dwp_x = Bxx*t369 + Byx*t370 + Bzx*t371
-            dwp_y = Bxy*t369 + Byy*t370 + Bzy*t371
-            dwp_z = Bxz*t369 + Byz*t370 + Bzz*t371
+                t360 = X_x*wp_y - X_y*wp_x
+                t361 = -X_x*wp_z + X_z*wp_x
+                t362 = X_y*wp_z - X_z*wp_y
+                rhs_x += -fit*(du_y*t360 - du_z*t361)
+                rhs_y += -fit*(-du_x*t360 + du_z*t362)
+                rhs_z += -fit*(du_x*t361 - du_y*t362)
+            t363 = dW_x + rhs_x
+            t364 = dW_y + rhs_y
+            t365 = dW_z + rhs_z
+            dwp_x = Bxx*t363 + Byx*t364 + Bzx*t365
+            dwp_y = Bxy*t363 + Byy*t364 + Bzy*t365
+            dwp_z = Bxz*t363 + Byz*t364 + Bzz*t365
             # differential: force on the origin, through the frame
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t372 = dwp_z*fit
-                dF_x += -X_y*t372 + X_z*dwp_y*fit
-                dF_y += X_x*t372 - X_z*dwp_x*fit
+                t366 = dwp_z*fit
+                dF_x += -X_y*t366 + X_z*dwp_y*fit
+                dF_y += X_x*t366 - X_z*dwp_x*fit
                 dF_z += -X_x*dwp_y*fit + X_y*dwp_x*fit
             # differential: force on the nodes in frame axes, (30), (57)
             for i in range(N_POSITIONS):
@@ -1649,10 +1636,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 alpha = alphas[i]
                 df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                t373 = dwp_z*fit
-                t374 = X_z*fit
-                dh[i3] = X_y*t373 + alpha*dF_x + df_x - dwp_y*t374
-                dh[i3 + 1] = -X_x*t373 + alpha*dF_y + df_y + dwp_x*t374
+                t367 = dwp_z*fit
+                t368 = X_z*fit
+                dh[i3] = X_y*t367 + alpha*dF_x + df_x - dwp_y*t368
+                dh[i3 + 1] = -X_x*t367 + alpha*dF_y + df_y + dwp_x*t368
                 dh[i3 + 2] = X_x*dwp_y*fit - X_y*dwp_x*fit + alpha*dF_z + df_z
             # differential: force on the nodes, left in frame axes
             for i in range(N_POSITIONS):
@@ -1671,33 +1658,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t375 = dm_y*psi_z
-                t376 = dpsi_z*m_y
-                t377 = -m_x*psi_y + m_y*psi_x
-                t378 = e0*t377
-                t379 = m_x*psi_z - m_z*psi_x
-                t380 = dpsi_z*e0
-                t381 = dm_x*psi_y
-                t382 = dpsi_y*m_x
-                t383 = e0*(dm_y*psi_x + dpsi_x*m_y - t381 - t382)
-                t384 = dm_x*psi_z
-                t385 = dpsi_z*m_x
-                t386 = dm_z*psi_x
-                t387 = dpsi_x*m_z
-                t388 = t384 + t385 - t386 - t387
-                t389 = e0*psi_z
-                t390 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                t391 = t377*t390
-                t392 = psi_z*t390
-                t393 = -m_y*psi_z + m_z*psi_y
-                t394 = dm_z*psi_y + dpsi_y*m_z - t375 - t376
-                dg[j3] = (dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t378 + psi_y*t383 +
-                    psi_y*t391 + (0.5)*t375 + (0.5)*t376 - t379*t380 - t379*t392 - t388*t389)
-                dg[j3 + 1] = (dm_y - dpsi_x*t378 - psi_x*t383 - psi_x*t391 + t380*t393 - 0.5*t384
-                    - 0.5*t385 + (0.5)*t386 + (0.5)*t387 + t389*t394 + t392*t393)
-                dg[j3 + 2] = (-0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t379 - 0.5*dpsi_x*m_y -
-                    dpsi_y*e0*t393 + e0*psi_x*t388 - e0*psi_y*t394 + psi_x*t379*t390 -
-                    psi_y*t390*t393 + (0.5)*t381 + (0.5)*t382)
+                t369 = dm_y*psi_z
+                t370 = dpsi_z*m_y
+                t371 = -m_x*psi_y + m_y*psi_x
+                t372 = e0*t371
+                t373 = m_x*psi_z - m_z*psi_x
+                t374 = dpsi_z*e0
+                t375 = dm_x*psi_y
+                t376 = dpsi_y*m_x
+                t377 = e0*(dm_y*psi_x + dpsi_x*m_y - t375 - t376)
+                t378 = dm_x*psi_z
+                t379 = dpsi_z*m_x
+                t380 = dm_z*psi_x
+                t381 = dpsi_x*m_z
+                t382 = t378 + t379 - t380 - t381
+                t383 = e0*psi_z
+                t384 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                t385 = t371*t384
+                t386 = psi_z*t384
+                t387 = -m_y*psi_z + m_z*psi_y
+                t388 = dm_z*psi_y + dpsi_y*m_z - t369 - t370
+                dg[j3] = (dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t372 + psi_y*t377 +
+                    psi_y*t385 + (0.5)*t369 + (0.5)*t370 - t373*t374 - t373*t386 - t382*t383)
+                dg[j3 + 1] = (dm_y - dpsi_x*t372 - psi_x*t377 - psi_x*t385 + t374*t387 - 0.5*t378
+                    - 0.5*t379 + (0.5)*t380 + (0.5)*t381 + t383*t388 + t386*t387)
+                dg[j3 + 2] = (-0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t373 - 0.5*dpsi_x*m_y -
+                    dpsi_y*e0*t387 + e0*psi_x*t382 - e0*psi_y*t388 + psi_x*t373*t384 -
+                    psi_y*t384*t387 + (0.5)*t375 + (0.5)*t376)
             # differential: force of the internal modes
             for k in range(MODES, n):
                 dfm = ds[k]
@@ -1801,57 +1788,57 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdgt_x, bdgt_y, bdgt_z = bdg[j3], bdg[j3 + 1], bdg[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t395 = e0*psi_y
-                t396 = m_y*t395
-                t397 = e0*psi_z
-                t398 = m_z*t397
-                t399 = m_x*psi_y
-                t400 = m_y*psi_x - t399
-                t401 = 2*e1
-                t402 = psi_x*t401
-                t403 = psi_y*t402
-                t404 = t400*t403
-                t405 = m_x*psi_z
-                t406 = m_z*psi_x
-                t407 = t405 - t406
-                t408 = psi_z*t402
-                t409 = t407*t408
-                t410 = (0.5)*m_y
-                t411 = e0*t407
-                t412 = m_y*psi_z
-                t413 = m_z*psi_y - t412
-                t414 = psi_x*psi_x
-                t415 = (0.5)*m_z
-                t416 = e0*t400
-                t417 = e0*m_x*psi_x
-                t418 = psi_y*psi_z*t401
-                t419 = t413*t418
-                t420 = psi_y*psi_y
-                t421 = (0.5)*m_x
-                t422 = e0*t413
-                t423 = psi_z*psi_z
-                t424 = (0.5)*psi_z
-                t425 = psi_x*t395
-                t426 = (0.5)*psi_y
-                t427 = psi_x*t397
-                t428 = e0*t420
-                t429 = e0*t423 - 1
-                t430 = (0.5)*psi_x
-                t431 = psi_z*t395
-                t432 = e0*t414
-                bdy[j3] += (bdgt_x*(t396 + t398 + t404 - t409) + bdgt_y*(-e0*m_y*psi_x +
-                    2*e1*psi_x*psi_z*t413 - t400*t401*t414 + t415 - t416) + bdgt_z*(-e0*t406 +
-                    2*e1*t407*t414 - t403*t413 - t410 + t411))
-                bdy[j3 + 1] += (bdgt_x*(-e0*t399 + 2*e1*t400*t420 - t407*t418 - t415 + t416) +
-                    bdgt_y*(t398 - t404 + t417 + t419) + bdgt_z*(-e0*m_z*psi_y +
-                    2*e1*psi_x*psi_y*t407 - t401*t413*t420 + t421 - t422))
-                bdy[j3 + 2] += (bdgt_x*(-e0*t405 + 2*e1*psi_y*psi_z*t400 - t401*t407*t423 + t410 -
-                    t411) + bdgt_y*(-e0*t412 + 2*e1*t413*t423 - t400*t408 - t421 + t422) +
-                    bdgt_z*(t396 + t409 + t417 - t419))
-                bds[j3] += bdgt_x*(-t428 - t429) + bdgt_y*(-t424 + t425) + bdgt_z*(t426 + t427)
-                bds[j3 + 1] += bdgt_x*(t424 + t425) + bdgt_y*(-t429 - t432) + bdgt_z*(-t430 + t431)
-                bds[j3 + 2] += (bdgt_x*(-t426 + t427) + bdgt_y*(t430 + t431) + bdgt_z*(-t428 -
-                    t432 + 1))
+                t389 = e0*psi_y
+                t390 = m_y*t389
+                t391 = e0*psi_z
+                t392 = m_z*t391
+                t393 = m_x*psi_y
+                t394 = m_y*psi_x - t393
+                t395 = 2*e1
+                t396 = psi_x*t395
+                t397 = psi_y*t396
+                t398 = t394*t397
+                t399 = m_x*psi_z
+                t400 = m_z*psi_x
+                t401 = t399 - t400
+                t402 = psi_z*t396
+                t403 = t401*t402
+                t404 = (0.5)*m_y
+                t405 = e0*t401
+                t406 = m_y*psi_z
+                t407 = m_z*psi_y - t406
+                t408 = psi_x*psi_x
+                t409 = (0.5)*m_z
+                t410 = e0*t394
+                t411 = e0*m_x*psi_x
+                t412 = psi_y*psi_z*t395
+                t413 = t407*t412
+                t414 = psi_y*psi_y
+                t415 = (0.5)*m_x
+                t416 = e0*t407
+                t417 = psi_z*psi_z
+                t418 = (0.5)*psi_z
+                t419 = psi_x*t389
+                t420 = (0.5)*psi_y
+                t421 = psi_x*t391
+                t422 = e0*t414
+                t423 = e0*t417 - 1
+                t424 = (0.5)*psi_x
+                t425 = psi_z*t389
+                t426 = e0*t408
+                bdy[j3] += (bdgt_x*(t390 + t392 + t398 - t403) + bdgt_y*(-e0*m_y*psi_x +
+                    2*e1*psi_x*psi_z*t407 - t394*t395*t408 + t409 - t410) + bdgt_z*(-e0*t400 +
+                    2*e1*t401*t408 - t397*t407 - t404 + t405))
+                bdy[j3 + 1] += (bdgt_x*(-e0*t393 + 2*e1*t394*t414 - t401*t412 - t409 + t410) +
+                    bdgt_y*(t392 - t398 + t411 + t413) + bdgt_z*(-e0*m_z*psi_y +
+                    2*e1*psi_x*psi_y*t401 - t395*t407*t414 + t415 - t416))
+                bdy[j3 + 2] += (bdgt_x*(-e0*t399 + 2*e1*psi_y*psi_z*t394 - t395*t401*t417 + t404 -
+                    t405) + bdgt_y*(-e0*t406 + 2*e1*t407*t417 - t394*t402 - t415 + t416) +
+                    bdgt_z*(t390 + t403 + t411 - t413))
+                bds[j3] += bdgt_x*(-t422 - t423) + bdgt_y*(-t418 + t419) + bdgt_z*(t420 + t421)
+                bds[j3 + 1] += bdgt_x*(t418 + t419) + bdgt_y*(-t423 - t426) + bdgt_z*(-t424 + t425)
+                bds[j3 + 2] += (bdgt_x*(-t420 + t421) + bdgt_y*(t424 + t425) + bdgt_z*(-t422 -
+                    t426 + 1))
             # transposed: differential: force on the nodes, left in frame axes
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -1870,47 +1857,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 alpha = alphas[i]
                 bdh_x, bdh_y, bdh_z = bdh[i3], bdh[i3 + 1], bdh[i3 + 2]
-                t433 = bdh_z*fit
+                t427 = bdh_z*fit
                 bds[i3] += bdh_x
                 bds[i3 + 1] += bdh_y
                 bds[i3 + 2] += bdh_z
                 bdF_x += alpha*bdh_x
                 bdF_y += alpha*bdh_y
                 bdF_z += alpha*bdh_z
-                bdwp_x += -X_y*t433 + X_z*bdh_y*fit
-                bdwp_y += X_x*t433 - X_z*bdh_x*fit
+                bdwp_x += -X_y*t427 + X_z*bdh_y*fit
+                bdwp_y += X_x*t427 - X_z*bdh_x*fit
                 bdwp_z += -X_x*bdh_y*fit + X_y*bdh_x*fit
             # transposed: differential: force on the origin, through the frame
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t434 = bdF_z*fit
-                bdwp_x += X_y*t434 - X_z*bdF_y*fit
-                bdwp_y += -X_x*t434 + X_z*bdF_x*fit
+                t428 = bdF_z*fit
+                bdwp_x += X_y*t428 - X_z*bdF_y*fit
+                bdwp_y += -X_x*t428 + X_z*bdF_x*fit
                 bdwp_z += X_x*bdF_y*fit - X_y*bdF_x*fit
             # transposed: differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
-            t435 = bdwp_x + rhs_x
-            t436 = bdwp_y + rhs_y
-            t437 = bdwp_z + rhs_z
-            mdwp_x = Bxx*t435 + Bxy*t436 + Bxz*t437
-            mdwp_y = Byx*t435 + Byy*t436 + Byz*t437
-            mdwp_z = Bzx*t435 + Bzy*t436 + Bzz*t437
+            t429 = bdwp_x + rhs_x
+            t430 = bdwp_y + rhs_y
+            t431 = bdwp_z + rhs_z
+            mdwp_x = Bxx*t429 + Bxy*t430 + Bxz*t431
+            mdwp_y = Byx*t429 + Byy*t430 + Byz*t431
+            mdwp_z = Bzx*t429 + Bzy*t430 + Bzz*t431
             # transposed: differential: B^T wp = W
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t438 = X_x*wp_y - X_y*wp_x
-                t439 = fit*mdwp_y
-                t440 = X_x*wp_z - X_z*wp_x
-                t441 = fit*mdwp_z
-                t442 = fit*mdwp_x
-                t443 = X_y*wp_z - X_z*wp_y
-                bdy[i3] += t438*t439 + t440*t441
-                bdy[i3 + 1] += -t438*t442 + t441*t443
-                bdy[i3 + 2] += -t439*t443 - t440*t442
+                t432 = X_x*wp_y - X_y*wp_x
+                t433 = fit*mdwp_y
+                t434 = X_x*wp_z - X_z*wp_x
+                t435 = fit*mdwp_z
+                t436 = fit*mdwp_x
+                t437 = X_y*wp_z - X_z*wp_y
+                bdy[i3] += t432*t433 + t434*t435
+                bdy[i3 + 1] += -t432*t436 + t435*t437
+                bdy[i3 + 2] += -t433*t437 - t434*t436
             # transposed: differential: B^T wp = W
             bdW_x += mdwp_x
             bdW_y += mdwp_y
@@ -1922,53 +1909,53 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t444 = e0*psi_y
-                t445 = m_y*t444
-                t446 = e0*psi_z
-                t447 = m_z*t446
-                t448 = -m_x*psi_y + m_y*psi_x
-                t449 = 2*e1
-                t450 = psi_x*t449
-                t451 = psi_y*t450
-                t452 = t448*t451
-                t453 = m_x*psi_z
-                t454 = -m_z*psi_x + t453
-                t455 = psi_z*t450
-                t456 = t454*t455
-                t457 = psi_x*psi_x
-                t458 = t449*t457
-                t459 = -m_y*psi_z + m_z*psi_y
-                t460 = e0*t448 + (0.5)*m_z
-                t461 = e0*t454 + (0.5)*m_y
-                t462 = e0*m_x*psi_x
-                t463 = psi_y*psi_z*t449
-                t464 = t459*t463
-                t465 = psi_y*psi_y
-                t466 = t449*t465
-                t467 = e0*t459 + (0.5)*m_x
-                t468 = psi_z*psi_z
-                t469 = t449*t468
-                t470 = (0.5)*psi_z
-                t471 = psi_x*t444
-                t472 = (0.5)*psi_y
-                t473 = psi_x*t446
-                t474 = e0*t465
-                t475 = e0*t468 - 1
-                t476 = (0.5)*psi_x
-                t477 = psi_z*t444
-                t478 = e0*t457
-                bdy[j3] += (bdW_x*(-t445 - t447 - t452 + t456) + bdW_y*(e0*m_y*psi_x + t448*t458 -
-                    t455*t459 + t460) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t459 - t454*t458 -
-                    t461))
-                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t454 - t448*t466 - t460) +
-                    bdW_y*(-t447 + t452 - t462 - t464) + bdW_z*(e0*m_z*psi_y - t451*t454 +
-                    t459*t466 + t467))
-                bdy[j3 + 2] += (bdW_x*(e0*t453 - t448*t463 + t454*t469 + t461) +
-                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t448 - t459*t469 - t467) + bdW_z*(-t445
-                    - t456 - t462 + t464))
-                bds[j3] += bdW_x*(t474 + t475) + bdW_y*(-t470 - t471) + bdW_z*(t472 - t473)
-                bds[j3 + 1] += bdW_x*(t470 - t471) + bdW_y*(t475 + t478) + bdW_z*(-t476 - t477)
-                bds[j3 + 2] += bdW_x*(-t472 - t473) + bdW_y*(t476 - t477) + bdW_z*(t474 + t478 - 1)
+                t438 = e0*psi_y
+                t439 = m_y*t438
+                t440 = e0*psi_z
+                t441 = m_z*t440
+                t442 = -m_x*psi_y + m_y*psi_x
+                t443 = 2*e1
+                t444 = psi_x*t443
+                t445 = psi_y*t444
+                t446 = t442*t445
+                t447 = m_x*psi_z
+                t448 = -m_z*psi_x + t447
+                t449 = psi_z*t444
+                t450 = t448*t449
+                t451 = psi_x*psi_x
+                t452 = t443*t451
+                t453 = -m_y*psi_z + m_z*psi_y
+                t454 = e0*t442 + (0.5)*m_z
+                t455 = e0*t448 + (0.5)*m_y
+                t456 = e0*m_x*psi_x
+                t457 = psi_y*psi_z*t443
+                t458 = t453*t457
+                t459 = psi_y*psi_y
+                t460 = t443*t459
+                t461 = e0*t453 + (0.5)*m_x
+                t462 = psi_z*psi_z
+                t463 = t443*t462
+                t464 = (0.5)*psi_z
+                t465 = psi_x*t438
+                t466 = (0.5)*psi_y
+                t467 = psi_x*t440
+                t468 = e0*t459
+                t469 = e0*t462 - 1
+                t470 = (0.5)*psi_x
+                t471 = psi_z*t438
+                t472 = e0*t451
+                bdy[j3] += (bdW_x*(-t439 - t441 - t446 + t450) + bdW_y*(e0*m_y*psi_x + t442*t452 -
+                    t449*t453 + t454) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t453 - t448*t452 -
+                    t455))
+                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t448 - t442*t460 - t454) +
+                    bdW_y*(-t441 + t446 - t456 - t458) + bdW_z*(e0*m_z*psi_y - t445*t448 +
+                    t453*t460 + t461))
+                bdy[j3 + 2] += (bdW_x*(e0*t447 - t442*t457 + t448*t463 + t455) +
+                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t442 - t453*t463 - t461) + bdW_z*(-t439
+                    - t450 - t456 + t458))
+                bds[j3] += bdW_x*(t468 + t469) + bdW_y*(-t464 - t465) + bdW_z*(t466 - t467)
+                bds[j3 + 1] += bdW_x*(t464 - t465) + bdW_y*(t469 + t472) + bdW_z*(-t470 - t471)
+                bds[j3 + 2] += bdW_x*(-t466 - t467) + bdW_y*(t470 - t471) + bdW_z*(t468 + t472 - 1)
             # transposed: differential: inertia and weight on the frame
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
@@ -1984,12 +1971,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t479 = X_y + u_y
-                t480 = X_z + u_z
-                t481 = X_x + u_x
-                bds[i3] += -bdF_x - bdW_y*t480 + bdW_z*t479
-                bds[i3 + 1] += -bdF_y + bdW_x*t480 - bdW_z*t481
-                bds[i3 + 2] += -bdF_z - bdW_x*t479 + bdW_y*t481
+                t473 = X_y + u_y
+                t474 = X_z + u_z
+                t475 = X_x + u_x
+                bds[i3] += -bdF_x - bdW_y*t474 + bdW_z*t473
+                bds[i3 + 1] += -bdF_y + bdW_x*t474 - bdW_z*t475
+                bds[i3 + 2] += -bdF_z - bdW_x*t473 + bdW_y*t475
                 bdy[i3] += bdW_y*f_z - bdW_z*f_y
                 bdy[i3 + 1] += -bdW_x*f_z + bdW_z*f_x
                 bdy[i3 + 2] += bdW_x*f_y - bdW_y*f_x
@@ -2011,15 +1998,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             bdfelt_x, bdfelt_y, bdfelt_z = bdzdd[N], bdzdd[N + 1], bdzdd[N + 2]
             bdturning_x, bdturning_y, bdturning_z = bdzdd[N + 3], bdzdd[N + 4], bdzdd[N + 5]
             bdspin_x, bdspin_y, bdspin_z = bdzd[N], bdzd[N + 1], bdzd[N + 2]
-            t482 = bdfelt_x*turn_xx + bdfelt_y*turn_xy + bdfelt_z*turn_xz
-            t483 = bdfelt_x*turn_yx + bdfelt_y*turn_yy + bdfelt_z*turn_yz
-            t484 = bdfelt_x*turn_zx + bdfelt_y*turn_zy + bdfelt_z*turn_zz
-            bda0_x += t482
-            bda0_y += t483
-            bda0_z += t484
-            bdgamma[0] += -t482
-            bdgamma[1] += -t483
-            bdgamma[2] += -t484
+            t476 = bdfelt_x*turn_xx + bdfelt_y*turn_xy + bdfelt_z*turn_xz
+            t477 = bdfelt_x*turn_yx + bdfelt_y*turn_yy + bdfelt_z*turn_yz
+            t478 = bdfelt_x*turn_zx + bdfelt_y*turn_zy + bdfelt_z*turn_zz
+            bda0_x += t476
+            bda0_y += t477
+            bda0_z += t478
+            bdgamma[0] += -t476
+            bdgamma[1] += -t477
+            bdgamma[2] += -t478
             bdOm0d_x += bdturning_x*turn_xx + bdturning_y*turn_xy + bdturning_z*turn_xz
             bdOm0d_y += bdturning_x*turn_yx + bdturning_y*turn_yy + bdturning_z*turn_yz
             bdOm0d_z += bdturning_x*turn_zx + bdturning_y*turn_zy + bdturning_z*turn_zz
@@ -2080,309 +2067,309 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e0 = e0s[j]
                 e1 = e1s[j]
                 e2 = e2s[j]
-                t485 = (0.5)*ep_z
-                t486 = e0*ep_x
-                t487 = e0*psi_x
-                t488 = 2*ep_x
-                t489 = psi_x*t488
-                t490 = 2*ep_y
-                t491 = psi_y*t490
-                t492 = 2*ep_z
-                t493 = psi_z*t492
-                t494 = t489 + t491 + t493
-                t495 = e1*t494
-                t496 = psi_x*t495
-                t497 = ep_y*t487 + psi_y*t486 + psi_y*t496
-                t498 = t485 + t497
-                t499 = (0.5)*ep_y
-                t500 = ep_z*t487 + psi_z*t486 + psi_z*t496
-                t501 = -t499 + t500
-                t502 = psi_z*psi_z
-                t503 = e0*t493 + t495*t502
-                t504 = psi_y*psi_y
-                t505 = e0*t491 + t495*t504
-                t506 = t503 + t505
-                t507 = -t485 + t497
-                t508 = (0.5)*ep_x
-                t509 = e0*psi_z
-                t510 = e0*psi_y
-                t511 = psi_y*t495
-                t512 = ep_y*t509 + ep_z*t510 + psi_z*t511
-                t513 = t508 + t512
-                t514 = psi_x*psi_x
-                t515 = e0*t489 + t495*t514
-                t516 = t503 + t515
-                t517 = t499 + t500
-                t518 = -t508 + t512
-                t519 = t505 + t515
-                t520 = (0.5)*psi_z
-                t521 = psi_y*t487
+                t479 = (0.5)*ep_z
+                t480 = e0*ep_x
+                t481 = e0*psi_x
+                t482 = 2*ep_x
+                t483 = psi_x*t482
+                t484 = 2*ep_y
+                t485 = psi_y*t484
+                t486 = 2*ep_z
+                t487 = psi_z*t486
+                t488 = t483 + t485 + t487
+                t489 = e1*t488
+                t490 = psi_x*t489
+                t491 = ep_y*t481 + psi_y*t480 + psi_y*t490
+                t492 = t479 + t491
+                t493 = (0.5)*ep_y
+                t494 = ep_z*t481 + psi_z*t480 + psi_z*t490
+                t495 = -t493 + t494
+                t496 = psi_z*psi_z
+                t497 = e0*t487 + t489*t496
+                t498 = psi_y*psi_y
+                t499 = e0*t485 + t489*t498
+                t500 = t497 + t499
+                t501 = -t479 + t491
+                t502 = (0.5)*ep_x
+                t503 = e0*psi_z
+                t504 = e0*psi_y
+                t505 = psi_y*t489
+                t506 = ep_y*t503 + ep_z*t504 + psi_z*t505
+                t507 = t502 + t506
+                t508 = psi_x*psi_x
+                t509 = e0*t483 + t489*t508
+                t510 = t497 + t509
+                t511 = t493 + t494
+                t512 = -t502 + t506
+                t513 = t499 + t509
+                t514 = (0.5)*psi_z
+                t515 = psi_y*t481
+                t516 = t514 + t515
+                t517 = (0.5)*psi_y
+                t518 = psi_z*t481
+                t519 = -t517 + t518
+                t520 = e0*t498
+                t521 = e0*t496 - 1
                 t522 = t520 + t521
-                t523 = (0.5)*psi_y
-                t524 = psi_z*t487
-                t525 = -t523 + t524
-                t526 = e0*t504
-                t527 = e0*t502 - 1
-                t528 = t526 + t527
-                t529 = -t520 + t521
-                t530 = (0.5)*psi_x
-                t531 = psi_y*t509
-                t532 = t530 + t531
-                t533 = e0*t514
-                t534 = t527 + t533
-                t535 = t523 + t524
-                t536 = -t530 + t531
-                t537 = t526 + t533 - 1
-                t538 = e1*t488
-                t539 = Om0_x*psi_y
-                t540 = Om0_y*psi_x - t539
-                t541 = psi_y*t540
-                t542 = t538*t541
-                t543 = Om_x*psi_z
-                t544 = Om_z*psi_x
-                t545 = t543 - t544
-                t546 = psi_z*t538
-                t547 = t545*t546
-                t548 = e1*psi_x
-                t549 = t490*t548
-                t550 = t540*t549
-                t551 = t492*t548
-                t552 = t545*t551
-                t553 = Om0_x*ep_y
-                t554 = Om0d_x*psi_y
-                t555 = Om0_y*ep_x + Om0d_y*psi_x - t553 - t554
-                t556 = 2*e1
-                t557 = psi_x*t556
-                t558 = psi_y*t557
-                t559 = t555*t558
-                t560 = A_x*psi_z
-                t561 = Om_x*ep_z
-                t562 = A_z*psi_x
-                t563 = Om_z*ep_x
-                t564 = t560 + t561 - t562 - t563
-                t565 = psi_z*t557
-                t566 = t564*t565
-                t567 = Om_x*psi_y
-                t568 = Om_y*psi_x - t567
-                t569 = psi_y*t538
-                t570 = t568*t569
-                t571 = Om0_z*psi_x
-                t572 = Om0_x*psi_z - t571
-                t573 = t546*t572
-                t574 = t549*t568
-                t575 = t551*t572
-                t576 = A_x*psi_y
-                t577 = Om_x*ep_y
-                t578 = A_y*psi_x + Om_y*ep_x - t576 - t577
-                t579 = t558*t578
-                t580 = Om0_z*ep_x
-                t581 = Om0d_z*psi_x
-                t582 = Om0_x*ep_z + Om0d_x*psi_z - t580 - t581
-                t583 = t565*t582
-                t584 = 2*e2*t494
-                t585 = psi_x*t584
-                t586 = t541*t585
-                t587 = psi_z*t585
-                t588 = t545*t587
-                t589 = psi_y*t585
-                t590 = t568*t589
-                t591 = t572*t587
-                t592 = e0*ep_z
-                t593 = psi_z*t495
-                t594 = A_z*t509 - Om0_z*t592 - Om0_z*t593 - Om0d_z*t509 + Om_z*t592 + Om_z*t593
-                t595 = e0*ep_y
-                t596 = A_y*t510 - Om0_y*t511 - Om0_y*t595 - Om0d_y*t510 + Om_y*t511 + Om_y*t595
-                t597 = t514*t556
-                t598 = Om_y*psi_x
-                t599 = Om_y*psi_z
-                t600 = Om_z*psi_y - t599
-                t601 = A_y*psi_z
-                t602 = Om_y*ep_z
-                t603 = A_z*psi_y + Om_z*ep_y - t601 - t602
-                t604 = Om0_y*psi_z
-                t605 = Om0_z*psi_y - t604
-                t606 = Om0_y*ep_z
-                t607 = Om0d_y*psi_z
-                t608 = Om0_z*ep_y + Om0d_z*psi_y - t606 - t607
-                t609 = t514*t584
-                t610 = 4*t568
-                t611 = ep_x*t548
-                t612 = (0.5)*A_z + (0.5)*Om0d_z - e0*t555 + e0*t578 - t495*t540 + t495*t568
-                t613 = 4*t611
-                t614 = (0.5)*A_y + (0.5)*Om0d_y + e0*t564 - e0*t582 + t495*t545 - t495*t572
-                t615 = psi_z*t490
-                t616 = e1*t605
-                t617 = t615*t616
-                t618 = psi_y*t492
-                t619 = t616*t618
-                t620 = psi_z*t556
-                t621 = psi_y*t620
-                t622 = t608*t621
-                t623 = e1*t600
-                t624 = t615*t623
-                t625 = t618*t623
-                t626 = t603*t621
-                t627 = psi_z*t584
-                t628 = psi_y*t627
-                t629 = t605*t628
-                t630 = t600*t628
-                t631 = A_x*t487 - Om0_x*t486 - Om0_x*t496 - Om0d_x*t487 + Om_x*t486 + Om_x*t496
-                t632 = t504*t556
-                t633 = e1*ep_y
-                t634 = 4*t633
-                t635 = e1*t545
-                t636 = t504*t584
-                t637 = e1*t572
-                t638 = Om_z*psi_y
-                t639 = (0.5)*A_x + (0.5)*Om0d_x + e0*t603 - e0*t608 + t495*t600 - t495*t605
-                t640 = t502*t556
-                t641 = t502*t584
-                t642 = 4*ep_z*psi_z
-                t643 = t558*t568
-                t644 = t565*t572
-                t645 = t541*t557
-                t646 = t545*t565
-                t647 = Om0_z*t509 - Om_z*e0*psi_z
-                t648 = Om0_y*t510 - Om_y*e0*psi_y
-                t649 = (0.5)*Om0_z + (0.5)*Om_z - e0*t540 + e0*t568
-                t650 = (0.5)*Om0_y + (0.5)*Om_y + e0*t545 - e0*t572
-                t651 = t600*t621
-                t652 = t605*t621
-                t653 = Om0_x*t487 - Om_x*e0*psi_x
-                t654 = (0.5)*Om0_x + (0.5)*Om_x + e0*t600 - e0*t605
-                bdve[j3] += -bdepd_x*t506 + bdepd_y*t498 + bdepd_z*t501
-                bdve[j3 + 1] += bdepd_x*t507 - bdepd_y*t516 + bdepd_z*t513
-                bdve[j3 + 2] += bdepd_x*t517 + bdepd_y*t518 - bdepd_z*t519
-                bdae[j3] += -bdepd_x*t528 + bdepd_y*t522 + bdepd_z*t525
-                bdae[j3 + 1] += bdepd_x*t529 - bdepd_y*t534 + bdepd_z*t532
-                bdae[j3 + 2] += bdepd_x*t535 + bdepd_y*t536 - bdepd_z*t537
-                bdy[j3] += (bdepd_x*(-t542 - t547 - t550 - t552 - t559 - t566 + t570 + t573 + t574
-                    + t575 + t579 + t583 - t586 - t588 + t590 + t591 + t594 + t596) +
-                    bdepd_y*(-A_y*e0*psi_x + Om0_y*e0*ep_x + Om0_y*e1*psi_x*t494 + Om0d_y*e0*psi_x
-                    - Om_y*e0*ep_x + 4*e1*ep_x*psi_x*t540 + 2*e1*ep_x*psi_z*t600 +
-                    2*e1*ep_z*psi_x*t600 + 2*e1*psi_x*psi_z*t603 + 2*e1*t514*t555 +
-                    2*e2*psi_x*psi_z*t494*t600 + 2*e2*t494*t514*t540 - t495*t598 - t546*t605 -
-                    t551*t605 - t565*t608 - t568*t609 - t578*t597 - t587*t605 - t610*t611 - t612)
-                    + bdepd_z*(-e0*t562 - e0*t563 + e0*t580 + e0*t581 - t495*t544 + t495*t571 +
-                    t545*t609 + t545*t613 - t549*t600 + t549*t605 - t558*t603 + t558*t608 +
-                    t564*t597 - t569*t600 + t569*t605 - t572*t609 - t572*t613 - t582*t597 -
-                    t589*t600 + t589*t605 + t614))
-                bdy[j3 + 1] += (bdepd_x*(e0*t553 + e0*t554 - e0*t576 - e0*t577 + psi_y*t610*t633 +
-                    t495*t539 - t495*t567 - t540*t636 - t541*t634 - t545*t628 - t555*t632 -
-                    t564*t621 + t568*t636 + t572*t628 + t578*t632 + t582*t621 + t612 - t615*t635 +
-                    t615*t637 - t618*t635 + t618*t637) + bdepd_y*(t542 + t550 + t559 - t570 - t574
-                    - t579 + t586 - t590 + t594 - t617 - t619 - t622 + t624 + t625 + t626 - t629 +
-                    t630 + t631) + bdepd_z*(-A_z*e0*psi_y + Om0_z*e0*ep_y + Om0_z*e1*psi_y*t494 +
-                    Om0d_z*e0*psi_y - Om_z*e0*ep_y + 2*e1*ep_x*psi_y*t545 + 2*e1*ep_y*psi_x*t545 +
-                    4*e1*ep_y*psi_y*t605 + 2*e1*psi_x*psi_y*t564 + 2*e1*t504*t608 +
-                    2*e2*psi_x*psi_y*t494*t545 + 2*e2*t494*t504*t605 - psi_y*t600*t634 - t495*t638
-                    - t549*t572 - t558*t582 - t569*t572 - t572*t589 - t600*t636 - t603*t632 -
-                    t639))
-                bdy[j3 + 2] += (bdepd_x*(Om0_x*e0*ep_z + Om0_x*e1*psi_z*t494 + Om0d_x*e0*psi_z -
-                    e0*t560 - e0*t561 + 2*e1*ep_y*psi_z*t568 + 2*e1*ep_z*psi_y*t568 +
-                    4*e1*ep_z*psi_z*t572 + 2*e1*psi_y*psi_z*t578 - e1*t492*t541 + 2*e1*t502*t582 -
-                    e1*t540*t615 + 2*e2*psi_y*psi_z*t494*t568 + 2*e2*t494*t502*t572 - t495*t543 -
-                    t541*t627 - t545*t641 - t555*t621 - t564*t640 - t614 - t635*t642) +
-                    bdepd_y*(-e0*t601 - e0*t602 + e0*t606 + e0*t607 - t495*t599 + t495*t604 +
-                    t540*t546 + t540*t551 + t540*t587 - t546*t568 - t551*t568 + t555*t565 -
-                    t565*t578 - t568*t587 + t600*t641 + t603*t640 - t605*t641 - t608*t640 -
-                    t616*t642 + t623*t642 + t639) + bdepd_z*(t547 + t552 + t566 - t573 - t575 -
-                    t583 + t588 - t591 + t596 + t617 + t619 + t622 - t624 - t625 - t626 + t629 -
-                    t630 + t631))
-                bdOm0_x += bdepd_x*t506 - bdepd_y*t507 - bdepd_z*t517
-                bdOm0_y += -bdepd_x*t498 + bdepd_y*t516 - bdepd_z*t518
-                bdOm0_z += -bdepd_x*t501 - bdepd_y*t513 + bdepd_z*t519
-                bdeta[j3] += (bdepd_x*(t643 + t644 - t645 - t646 - t647 - t648) +
-                    bdepd_y*(Om0_y*e0*psi_x - e0*t598 + 2*e1*psi_x*psi_z*t600 + 2*e1*t514*t540 -
-                    t565*t605 - t568*t597 - t649) + bdepd_z*(-e0*t544 + e0*t571 + t545*t597 -
-                    t558*t600 + t558*t605 - t572*t597 + t650))
-                bdeta[j3 + 1] += (bdepd_x*(e0*t539 - e0*t567 - t540*t632 - t545*t621 + t568*t632 +
-                    t572*t621 + t649) + bdepd_y*(-t643 + t645 - t647 + t651 - t652 - t653) +
-                    bdepd_z*(Om0_z*e0*psi_y - e0*t638 + 2*e1*psi_x*psi_y*t545 + 2*e1*t504*t605 -
-                    t558*t572 - t600*t632 - t654))
-                bdeta[j3 + 2] += (bdepd_x*(Om0_x*e0*psi_z - e0*t543 + 2*e1*psi_y*psi_z*t568 +
-                    2*e1*t502*t572 - t541*t620 - t545*t640 - t650) + bdepd_y*(-e0*t599 + e0*t604 +
-                    t540*t565 - t565*t568 + t600*t640 - t605*t640 + t654) + bdepd_z*(-t644 + t646
-                    - t648 - t651 + t652 - t653))
-                bdOm0d_x += bdepd_x*t528 - bdepd_y*t529 - bdepd_z*t535
-                bdOm0d_y += -bdepd_x*t522 + bdepd_y*t534 - bdepd_z*t536
-                bdOm0d_z += -bdepd_x*t525 - bdepd_y*t532 + bdepd_z*t537
+                t523 = -t514 + t515
+                t524 = (0.5)*psi_x
+                t525 = psi_y*t503
+                t526 = t524 + t525
+                t527 = e0*t508
+                t528 = t521 + t527
+                t529 = t517 + t518
+                t530 = -t524 + t525
+                t531 = t520 + t527 - 1
+                t532 = e1*t482
+                t533 = Om0_x*psi_y
+                t534 = Om0_y*psi_x - t533
+                t535 = psi_y*t534
+                t536 = t532*t535
+                t537 = Om_x*psi_z
+                t538 = Om_z*psi_x
+                t539 = t537 - t538
+                t540 = psi_z*t532
+                t541 = t539*t540
+                t542 = e1*psi_x
+                t543 = t484*t542
+                t544 = t534*t543
+                t545 = t486*t542
+                t546 = t539*t545
+                t547 = Om0_x*ep_y
+                t548 = Om0d_x*psi_y
+                t549 = Om0_y*ep_x + Om0d_y*psi_x - t547 - t548
+                t550 = 2*e1
+                t551 = psi_x*t550
+                t552 = psi_y*t551
+                t553 = t549*t552
+                t554 = A_x*psi_z
+                t555 = Om_x*ep_z
+                t556 = A_z*psi_x
+                t557 = Om_z*ep_x
+                t558 = t554 + t555 - t556 - t557
+                t559 = psi_z*t551
+                t560 = t558*t559
+                t561 = Om_x*psi_y
+                t562 = Om_y*psi_x - t561
+                t563 = psi_y*t532
+                t564 = t562*t563
+                t565 = Om0_z*psi_x
+                t566 = Om0_x*psi_z - t565
+                t567 = t540*t566
+                t568 = t543*t562
+                t569 = t545*t566
+                t570 = A_x*psi_y
+                t571 = Om_x*ep_y
+                t572 = A_y*psi_x + Om_y*ep_x - t570 - t571
+                t573 = t552*t572
+                t574 = Om0_z*ep_x
+                t575 = Om0d_z*psi_x
+                t576 = Om0_x*ep_z + Om0d_x*psi_z - t574 - t575
+                t577 = t559*t576
+                t578 = 2*e2*t488
+                t579 = psi_x*t578
+                t580 = t535*t579
+                t581 = psi_z*t579
+                t582 = t539*t581
+                t583 = psi_y*t579
+                t584 = t562*t583
+                t585 = t566*t581
+                t586 = e0*ep_z
+                t587 = psi_z*t489
+                t588 = A_z*t503 - Om0_z*t586 - Om0_z*t587 - Om0d_z*t503 + Om_z*t586 + Om_z*t587
+                t589 = e0*ep_y
+                t590 = A_y*t504 - Om0_y*t505 - Om0_y*t589 - Om0d_y*t504 + Om_y*t505 + Om_y*t589
+                t591 = t508*t550
+                t592 = Om_y*psi_x
+                t593 = Om_y*psi_z
+                t594 = Om_z*psi_y - t593
+                t595 = A_y*psi_z
+                t596 = Om_y*ep_z
+                t597 = A_z*psi_y + Om_z*ep_y - t595 - t596
+                t598 = Om0_y*psi_z
+                t599 = Om0_z*psi_y - t598
+                t600 = Om0_y*ep_z
+                t601 = Om0d_y*psi_z
+                t602 = Om0_z*ep_y + Om0d_z*psi_y - t600 - t601
+                t603 = t508*t578
+                t604 = 4*t562
+                t605 = ep_x*t542
+                t606 = (0.5)*A_z + (0.5)*Om0d_z - e0*t549 + e0*t572 - t489*t534 + t489*t562
+                t607 = 4*t605
+                t608 = (0.5)*A_y + (0.5)*Om0d_y + e0*t558 - e0*t576 + t489*t539 - t489*t566
+                t609 = psi_z*t484
+                t610 = e1*t599
+                t611 = t609*t610
+                t612 = psi_y*t486
+                t613 = t610*t612
+                t614 = psi_z*t550
+                t615 = psi_y*t614
+                t616 = t602*t615
+                t617 = e1*t594
+                t618 = t609*t617
+                t619 = t612*t617
+                t620 = t597*t615
+                t621 = psi_z*t578
+                t622 = psi_y*t621
+                t623 = t599*t622
+                t624 = t594*t622
+                t625 = A_x*t481 - Om0_x*t480 - Om0_x*t490 - Om0d_x*t481 + Om_x*t480 + Om_x*t490
+                t626 = t498*t550
+                t627 = e1*ep_y
+                t628 = 4*t627
+                t629 = e1*t539
+                t630 = t498*t578
+                t631 = e1*t566
+                t632 = Om_z*psi_y
+                t633 = (0.5)*A_x + (0.5)*Om0d_x + e0*t597 - e0*t602 + t489*t594 - t489*t599
+                t634 = t496*t550
+                t635 = t496*t578
+                t636 = 4*ep_z*psi_z
+                t637 = t552*t562
+                t638 = t559*t566
+                t639 = t535*t551
+                t640 = t539*t559
+                t641 = Om0_z*t503 - Om_z*e0*psi_z
+                t642 = Om0_y*t504 - Om_y*e0*psi_y
+                t643 = (0.5)*Om0_z + (0.5)*Om_z - e0*t534 + e0*t562
+                t644 = (0.5)*Om0_y + (0.5)*Om_y + e0*t539 - e0*t566
+                t645 = t594*t615
+                t646 = t599*t615
+                t647 = Om0_x*t481 - Om_x*e0*psi_x
+                t648 = (0.5)*Om0_x + (0.5)*Om_x + e0*t594 - e0*t599
+                bdve[j3] += -bdepd_x*t500 + bdepd_y*t492 + bdepd_z*t495
+                bdve[j3 + 1] += bdepd_x*t501 - bdepd_y*t510 + bdepd_z*t507
+                bdve[j3 + 2] += bdepd_x*t511 + bdepd_y*t512 - bdepd_z*t513
+                bdae[j3] += -bdepd_x*t522 + bdepd_y*t516 + bdepd_z*t519
+                bdae[j3 + 1] += bdepd_x*t523 - bdepd_y*t528 + bdepd_z*t526
+                bdae[j3 + 2] += bdepd_x*t529 + bdepd_y*t530 - bdepd_z*t531
+                bdy[j3] += (bdepd_x*(-t536 - t541 - t544 - t546 - t553 - t560 + t564 + t567 + t568
+                    + t569 + t573 + t577 - t580 - t582 + t584 + t585 + t588 + t590) +
+                    bdepd_y*(-A_y*e0*psi_x + Om0_y*e0*ep_x + Om0_y*e1*psi_x*t488 + Om0d_y*e0*psi_x
+                    - Om_y*e0*ep_x + 4*e1*ep_x*psi_x*t534 + 2*e1*ep_x*psi_z*t594 +
+                    2*e1*ep_z*psi_x*t594 + 2*e1*psi_x*psi_z*t597 + 2*e1*t508*t549 +
+                    2*e2*psi_x*psi_z*t488*t594 + 2*e2*t488*t508*t534 - t489*t592 - t540*t599 -
+                    t545*t599 - t559*t602 - t562*t603 - t572*t591 - t581*t599 - t604*t605 - t606)
+                    + bdepd_z*(-e0*t556 - e0*t557 + e0*t574 + e0*t575 - t489*t538 + t489*t565 +
+                    t539*t603 + t539*t607 - t543*t594 + t543*t599 - t552*t597 + t552*t602 +
+                    t558*t591 - t563*t594 + t563*t599 - t566*t603 - t566*t607 - t576*t591 -
+                    t583*t594 + t583*t599 + t608))
+                bdy[j3 + 1] += (bdepd_x*(e0*t547 + e0*t548 - e0*t570 - e0*t571 + psi_y*t604*t627 +
+                    t489*t533 - t489*t561 - t534*t630 - t535*t628 - t539*t622 - t549*t626 -
+                    t558*t615 + t562*t630 + t566*t622 + t572*t626 + t576*t615 + t606 - t609*t629 +
+                    t609*t631 - t612*t629 + t612*t631) + bdepd_y*(t536 + t544 + t553 - t564 - t568
+                    - t573 + t580 - t584 + t588 - t611 - t613 - t616 + t618 + t619 + t620 - t623 +
+                    t624 + t625) + bdepd_z*(-A_z*e0*psi_y + Om0_z*e0*ep_y + Om0_z*e1*psi_y*t488 +
+                    Om0d_z*e0*psi_y - Om_z*e0*ep_y + 2*e1*ep_x*psi_y*t539 + 2*e1*ep_y*psi_x*t539 +
+                    4*e1*ep_y*psi_y*t599 + 2*e1*psi_x*psi_y*t558 + 2*e1*t498*t602 +
+                    2*e2*psi_x*psi_y*t488*t539 + 2*e2*t488*t498*t599 - psi_y*t594*t628 - t489*t632
+                    - t543*t566 - t552*t576 - t563*t566 - t566*t583 - t594*t630 - t597*t626 -
+                    t633))
+                bdy[j3 + 2] += (bdepd_x*(Om0_x*e0*ep_z + Om0_x*e1*psi_z*t488 + Om0d_x*e0*psi_z -
+                    e0*t554 - e0*t555 + 2*e1*ep_y*psi_z*t562 + 2*e1*ep_z*psi_y*t562 +
+                    4*e1*ep_z*psi_z*t566 + 2*e1*psi_y*psi_z*t572 - e1*t486*t535 + 2*e1*t496*t576 -
+                    e1*t534*t609 + 2*e2*psi_y*psi_z*t488*t562 + 2*e2*t488*t496*t566 - t489*t537 -
+                    t535*t621 - t539*t635 - t549*t615 - t558*t634 - t608 - t629*t636) +
+                    bdepd_y*(-e0*t595 - e0*t596 + e0*t600 + e0*t601 - t489*t593 + t489*t598 +
+                    t534*t540 + t534*t545 + t534*t581 - t540*t562 - t545*t562 + t549*t559 -
+                    t559*t572 - t562*t581 + t594*t635 + t597*t634 - t599*t635 - t602*t634 -
+                    t610*t636 + t617*t636 + t633) + bdepd_z*(t541 + t546 + t560 - t567 - t569 -
+                    t577 + t582 - t585 + t590 + t611 + t613 + t616 - t618 - t619 - t620 + t623 -
+                    t624 + t625))
+                bdOm0_x += bdepd_x*t500 - bdepd_y*t501 - bdepd_z*t511
+                bdOm0_y += -bdepd_x*t492 + bdepd_y*t510 - bdepd_z*t512
+                bdOm0_z += -bdepd_x*t495 - bdepd_y*t507 + bdepd_z*t513
+                bdeta[j3] += (bdepd_x*(t637 + t638 - t639 - t640 - t641 - t642) +
+                    bdepd_y*(Om0_y*e0*psi_x - e0*t592 + 2*e1*psi_x*psi_z*t594 + 2*e1*t508*t534 -
+                    t559*t599 - t562*t591 - t643) + bdepd_z*(-e0*t538 + e0*t565 + t539*t591 -
+                    t552*t594 + t552*t599 - t566*t591 + t644))
+                bdeta[j3 + 1] += (bdepd_x*(e0*t533 - e0*t561 - t534*t626 - t539*t615 + t562*t626 +
+                    t566*t615 + t643) + bdepd_y*(-t637 + t639 - t641 + t645 - t646 - t647) +
+                    bdepd_z*(Om0_z*e0*psi_y - e0*t632 + 2*e1*psi_x*psi_y*t539 + 2*e1*t498*t599 -
+                    t552*t566 - t594*t626 - t648))
+                bdeta[j3 + 2] += (bdepd_x*(Om0_x*e0*psi_z - e0*t537 + 2*e1*psi_y*psi_z*t562 +
+                    2*e1*t496*t566 - t535*t614 - t539*t634 - t644) + bdepd_y*(-e0*t593 + e0*t598 +
+                    t534*t559 - t559*t562 + t594*t634 - t599*t634 + t648) + bdepd_z*(-t638 + t640
+                    - t642 - t645 + t646 - t647))
+                bdOm0d_x += bdepd_x*t522 - bdepd_y*t523 - bdepd_z*t529
+                bdOm0d_y += -bdepd_x*t516 + bdepd_y*t528 - bdepd_z*t530
+                bdOm0d_z += -bdepd_x*t519 - bdepd_y*t526 + bdepd_z*t531
             # transposed: differential: rate: rates of the elastic displacements
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 bdeud_x, bdeud_y, bdeud_z = bdetad[i3], bdetad[i3 + 1], bdetad[i3 + 2]
-                t655 = X_z + u_z
-                t656 = X_y + u_y
-                t657 = X_x + u_x
+                t649 = X_z + u_z
+                t650 = X_y + u_y
+                t651 = X_x + u_x
                 bdy[i3] += Om0d_y*bdeud_z - Om0d_z*bdeud_y
                 bdy[i3 + 1] += -Om0d_x*bdeud_z + Om0d_z*bdeud_x
                 bdy[i3 + 2] += Om0d_x*bdeud_y - Om0d_y*bdeud_x
-                bdOm0d_x += bdeud_y*t655 - bdeud_z*t656
-                bdOm0d_y += -bdeud_x*t655 + bdeud_z*t657
-                bdOm0d_z += bdeud_x*t656 - bdeud_y*t657
+                bdOm0d_x += bdeud_y*t649 - bdeud_z*t650
+                bdOm0d_y += -bdeud_x*t649 + bdeud_z*t651
+                bdOm0d_z += bdeud_x*t650 - bdeud_y*t651
             # transposed: differential: rate: sum w_j X_j x (rate of r_j) = 0
             rhs_x = rhs_y = rhs_z = 0.0
-            t658 = bdOm0d_x + rhs_x
-            t659 = bdOm0d_y + rhs_y
-            t660 = bdOm0d_z + rhs_z
-            mdOm0d_x = Bxx*t658 + Byx*t659 + Bzx*t660
-            mdOm0d_y = Bxy*t658 + Byy*t659 + Bzy*t660
-            mdOm0d_z = Bxz*t658 + Byz*t659 + Bzz*t660
+            t652 = bdOm0d_x + rhs_x
+            t653 = bdOm0d_y + rhs_y
+            t654 = bdOm0d_z + rhs_z
+            mdOm0d_x = Bxx*t652 + Byx*t653 + Bzx*t654
+            mdOm0d_y = Bxy*t652 + Byy*t653 + Bzy*t654
+            mdOm0d_z = Bxz*t652 + Byz*t653 + Bzz*t654
             # transposed: differential: rate: sum w_j X_j x (rate of r_j) = 0
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t661 = X_x*fit
-                t662 = mdOm0d_y*t661
-                t663 = mdOm0d_z*t661
-                t664 = X_y*fit
-                t665 = Om0d_y*t664
-                t666 = X_z*fit
-                t667 = Om0d_z*t666
-                t668 = mdOm0d_x*t664
-                t669 = mdOm0d_z*t664
-                t670 = Om0d_x*t661
-                t671 = mdOm0d_y*t666
-                bdy[i3] += Om0d_y*t662 + Om0d_z*t663 - mdOm0d_x*(t665 + t667)
-                bdy[i3 + 1] += Om0d_x*t668 + Om0d_z*t669 - mdOm0d_y*(t667 + t670)
-                bdy[i3 + 2] += Om0d_x*mdOm0d_x*t666 + Om0d_y*t671 - mdOm0d_z*(t665 + t670)
-                bdetad[i3] += t669 - t671
-                bdetad[i3 + 1] += X_z*fit*mdOm0d_x - t663
-                bdetad[i3 + 2] += t662 - t668
+                t655 = X_x*fit
+                t656 = mdOm0d_y*t655
+                t657 = mdOm0d_z*t655
+                t658 = X_y*fit
+                t659 = Om0d_y*t658
+                t660 = X_z*fit
+                t661 = Om0d_z*t660
+                t662 = mdOm0d_x*t658
+                t663 = mdOm0d_z*t658
+                t664 = Om0d_x*t655
+                t665 = mdOm0d_y*t660
+                bdy[i3] += Om0d_y*t656 + Om0d_z*t657 - mdOm0d_x*(t659 + t661)
+                bdy[i3 + 1] += Om0d_x*t662 + Om0d_z*t663 - mdOm0d_y*(t661 + t664)
+                bdy[i3 + 2] += Om0d_x*mdOm0d_x*t660 + Om0d_y*t665 - mdOm0d_z*(t659 + t664)
+                bdetad[i3] += t663 - t665
+                bdetad[i3 + 1] += X_z*fit*mdOm0d_x - t657
+                bdetad[i3 + 2] += t656 - t662
             # transposed: differential: rate: rates of the elastic displacements, the frame held
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
                 eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
                 bdeud_x, bdeud_y, bdeud_z = bdetad[i3], bdetad[i3 + 1], bdetad[i3 + 2]
-                t672 = Om0_y*bdeud_z - Om0_z*bdeud_y
-                t673 = Om0_x*bdeud_z - Om0_z*bdeud_x
-                t674 = -t673
-                t675 = Om0_x*bdeud_y - Om0_y*bdeud_x
-                t676 = eu_z - v0_z + vs_z
-                t677 = eu_y - v0_y + vs_y
-                t678 = eu_x - v0_x + vs_x
-                bdyd[i3] += t672
-                bdyd[i3 + 1] += t674
-                bdyd[i3 + 2] += t675
+                t666 = Om0_y*bdeud_z - Om0_z*bdeud_y
+                t667 = Om0_x*bdeud_z - Om0_z*bdeud_x
+                t668 = -t667
+                t669 = Om0_x*bdeud_y - Om0_y*bdeud_x
+                t670 = eu_z - v0_z + vs_z
+                t671 = eu_y - v0_y + vs_y
+                t672 = eu_x - v0_x + vs_x
+                bdyd[i3] += t666
+                bdyd[i3 + 1] += t668
+                bdyd[i3 + 2] += t669
                 bdacc[i3] += bdeud_x
                 bdacc[i3 + 1] += bdeud_y
                 bdacc[i3 + 2] += bdeud_z
-                bdv0_x += -t672
-                bdv0_y += t673
-                bdv0_z += -t675
-                bdOm0_x += bdeud_y*t676 - bdeud_z*t677
-                bdOm0_y += -bdeud_x*t676 + bdeud_z*t678
-                bdOm0_z += bdeud_x*t677 - bdeud_y*t678
+                bdv0_x += -t666
+                bdv0_y += t667
+                bdv0_z += -t669
+                bdOm0_x += bdeud_y*t670 - bdeud_z*t671
+                bdOm0_y += -bdeud_x*t670 + bdeud_z*t672
+                bdOm0_z += bdeud_x*t671 - bdeud_y*t672
                 bda0_x += -bdeud_x
                 bda0_y += -bdeud_y
                 bda0_z += -bdeud_z
-                bdeta[i3] += t672
-                bdeta[i3 + 1] += t674
-                bdeta[i3 + 2] += t675
+                bdeta[i3] += t666
+                bdeta[i3 + 1] += t668
+                bdeta[i3 + 2] += t669
             # overwritten: differential: rate: rates of the elastic displacements, the frame held
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -2401,89 +2388,89 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdep_x, bdep_y, bdep_z = bdeta[j3], bdeta[j3 + 1], bdeta[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t679 = (0.5)*psi_z
-                t680 = e0*psi_x
-                t681 = psi_y*t680
-                t682 = t679 + t681
-                t683 = (0.5)*psi_y
-                t684 = psi_z*t680
-                t685 = -t683 + t684
-                t686 = psi_y*psi_y
-                t687 = e0*t686
-                t688 = psi_z*psi_z
-                t689 = e0*t688 - 1
-                t690 = t687 + t689
-                t691 = -t679 + t681
-                t692 = (0.5)*psi_x
-                t693 = e0*psi_y
-                t694 = psi_z*t693
-                t695 = t692 + t694
-                t696 = psi_x*psi_x
-                t697 = e0*t696
-                t698 = t689 + t697
-                t699 = t683 + t684
-                t700 = -t692 + t694
-                t701 = t687 + t697 - 1
-                t702 = Om_x*psi_y
-                t703 = Om_y*psi_x - t702
-                t704 = 2*e1
-                t705 = psi_x*t704
-                t706 = psi_y*t705
-                t707 = t703*t706
-                t708 = Om0_z*psi_x
-                t709 = Om0_x*psi_z - t708
-                t710 = psi_z*t705
-                t711 = t709*t710
-                t712 = Om0_x*psi_y
-                t713 = Om0_y*psi_x - t712
-                t714 = t706*t713
-                t715 = Om_x*psi_z
-                t716 = Om_z*psi_x
-                t717 = t715 - t716
-                t718 = t710*t717
-                t719 = Om0_z*e0*psi_z - Om_z*e0*psi_z
-                t720 = Om0_y*t693 - Om_y*e0*psi_y
-                t721 = t696*t704
-                t722 = Om_y*psi_z
-                t723 = Om_z*psi_y - t722
-                t724 = Om0_y*psi_z
-                t725 = Om0_z*psi_y - t724
-                t726 = (0.5)*Om0_z + (0.5)*Om_z + e0*t703 - e0*t713
-                t727 = (0.5)*Om0_y + (0.5)*Om_y - e0*t709 + e0*t717
-                t728 = psi_y*psi_z*t704
-                t729 = t723*t728
-                t730 = t725*t728
-                t731 = Om0_x*t680 - Om_x*e0*psi_x
-                t732 = t686*t704
-                t733 = (0.5)*Om0_x + (0.5)*Om_x + e0*t723 - e0*t725
-                t734 = t688*t704
-                bdve[j3] += -bdep_x*t690 + bdep_y*t682 + bdep_z*t685
-                bdve[j3 + 1] += bdep_x*t691 - bdep_y*t698 + bdep_z*t695
-                bdve[j3 + 2] += bdep_x*t699 + bdep_y*t700 - bdep_z*t701
-                bdy[j3] += (bdep_x*(t707 + t711 - t714 - t718 - t719 - t720) +
-                    bdep_y*(Om0_y*e0*psi_x - Om_y*e0*psi_x + 2*e1*psi_x*psi_z*t723 +
-                    2*e1*t696*t713 - t703*t721 - t710*t725 - t726) + bdep_z*(e0*t708 - e0*t716 -
-                    t706*t723 + t706*t725 - t709*t721 + t717*t721 + t727))
-                bdy[j3 + 1] += (bdep_x*(-e0*t702 + e0*t712 + t703*t732 + t709*t728 - t713*t732 -
-                    t717*t728 + t726) + bdep_y*(-t707 + t714 - t719 + t729 - t730 - t731) +
-                    bdep_z*(Om0_z*e0*psi_y - Om_z*e0*psi_y + 2*e1*psi_x*psi_y*t717 +
-                    2*e1*t686*t725 - t706*t709 - t723*t732 - t733))
-                bdy[j3 + 2] += (bdep_x*(Om0_x*e0*psi_z - e0*t715 + 2*e1*psi_y*psi_z*t703 +
-                    2*e1*t688*t709 - t713*t728 - t717*t734 - t727) + bdep_y*(-e0*t722 + e0*t724 -
-                    t703*t710 + t710*t713 + t723*t734 - t725*t734 + t733) + bdep_z*(-t711 + t718 -
-                    t720 - t729 + t730 - t731))
-                bdOm0_x += bdep_x*t690 - bdep_y*t691 - bdep_z*t699
-                bdOm0_y += -bdep_x*t682 + bdep_y*t698 - bdep_z*t700
-                bdOm0_z += -bdep_x*t685 - bdep_y*t695 + bdep_z*t701
+                t673 = (0.5)*psi_z
+                t674 = e0*psi_x
+                t675 = psi_y*t674
+                t676 = t673 + t675
+                t677 = (0.5)*psi_y
+                t678 = psi_z*t674
+                t679 = -t677 + t678
+                t680 = psi_y*psi_y
+                t681 = e0*t680
+                t682 = psi_z*psi_z
+                t683 = e0*t682 - 1
+                t684 = t681 + t683
+                t685 = -t673 + t675
+                t686 = (0.5)*psi_x
+                t687 = e0*psi_y
+                t688 = psi_z*t687
+                t689 = t686 + t688
+                t690 = psi_x*psi_x
+                t691 = e0*t690
+                t692 = t683 + t691
+                t693 = t677 + t678
+                t694 = -t686 + t688
+                t695 = t681 + t691 - 1
+                t696 = Om_x*psi_y
+                t697 = Om_y*psi_x - t696
+                t698 = 2*e1
+                t699 = psi_x*t698
+                t700 = psi_y*t699
+                t701 = t697*t700
+                t702 = Om0_z*psi_x
+                t703 = Om0_x*psi_z - t702
+                t704 = psi_z*t699
+                t705 = t703*t704
+                t706 = Om0_x*psi_y
+                t707 = Om0_y*psi_x - t706
+                t708 = t700*t707
+                t709 = Om_x*psi_z
+                t710 = Om_z*psi_x
+                t711 = t709 - t710
+                t712 = t704*t711
+                t713 = Om0_z*e0*psi_z - Om_z*e0*psi_z
+                t714 = Om0_y*t687 - Om_y*e0*psi_y
+                t715 = t690*t698
+                t716 = Om_y*psi_z
+                t717 = Om_z*psi_y - t716
+                t718 = Om0_y*psi_z
+                t719 = Om0_z*psi_y - t718
+                t720 = (0.5)*Om0_z + (0.5)*Om_z + e0*t697 - e0*t707
+                t721 = (0.5)*Om0_y + (0.5)*Om_y - e0*t703 + e0*t711
+                t722 = psi_y*psi_z*t698
+                t723 = t717*t722
+                t724 = t719*t722
+                t725 = Om0_x*t674 - Om_x*e0*psi_x
+                t726 = t680*t698
+                t727 = (0.5)*Om0_x + (0.5)*Om_x + e0*t717 - e0*t719
+                t728 = t682*t698
+                bdve[j3] += -bdep_x*t684 + bdep_y*t676 + bdep_z*t679
+                bdve[j3 + 1] += bdep_x*t685 - bdep_y*t692 + bdep_z*t689
+                bdve[j3 + 2] += bdep_x*t693 + bdep_y*t694 - bdep_z*t695
+                bdy[j3] += (bdep_x*(t701 + t705 - t708 - t712 - t713 - t714) +
+                    bdep_y*(Om0_y*e0*psi_x - Om_y*e0*psi_x + 2*e1*psi_x*psi_z*t717 +
+                    2*e1*t690*t707 - t697*t715 - t704*t719 - t720) + bdep_z*(e0*t702 - e0*t710 -
+                    t700*t717 + t700*t719 - t703*t715 + t711*t715 + t721))
+                bdy[j3 + 1] += (bdep_x*(-e0*t696 + e0*t706 + t697*t726 + t703*t722 - t707*t726 -
+                    t711*t722 + t720) + bdep_y*(-t701 + t708 - t713 + t723 - t724 - t725) +
+                    bdep_z*(Om0_z*e0*psi_y - Om_z*e0*psi_y + 2*e1*psi_x*psi_y*t711 +
+                    2*e1*t680*t719 - t700*t703 - t717*t726 - t727))
+                bdy[j3 + 2] += (bdep_x*(Om0_x*e0*psi_z - e0*t709 + 2*e1*psi_y*psi_z*t697 +
+                    2*e1*t682*t703 - t707*t722 - t711*t728 - t721) + bdep_y*(-e0*t716 + e0*t718 -
+                    t697*t704 + t704*t707 + t717*t728 - t719*t728 + t727) + bdep_z*(-t705 + t712 -
+                    t714 - t723 + t724 - t725))
+                bdOm0_x += bdep_x*t684 - bdep_y*t685 - bdep_z*t693
+                bdOm0_y += -bdep_x*t676 + bdep_y*t692 - bdep_z*t694
+                bdOm0_z += -bdep_x*t679 - bdep_y*t689 + bdep_z*t695
             # transposed: differential: rates of the elastic displacements
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 bdeu_x, bdeu_y, bdeu_z = bdeta[i3], bdeta[i3 + 1], bdeta[i3 + 2]
-                t735 = X_z + u_z
-                t736 = X_y + u_y
-                t737 = X_x + u_x
+                t729 = X_z + u_z
+                t730 = X_y + u_y
+                t731 = X_x + u_x
                 bdy[i3] += Om0_y*bdeu_z - Om0_z*bdeu_y
                 bdy[i3 + 1] += -Om0_x*bdeu_z + Om0_z*bdeu_x
                 bdy[i3 + 2] += Om0_x*bdeu_y - Om0_y*bdeu_x
@@ -2493,9 +2480,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdv0_x += -bdeu_x
                 bdv0_y += -bdeu_y
                 bdv0_z += -bdeu_z
-                bdOm0_x += bdeu_y*t735 - bdeu_z*t736
-                bdOm0_y += -bdeu_x*t735 + bdeu_z*t737
-                bdOm0_z += bdeu_x*t736 - bdeu_y*t737
+                bdOm0_x += bdeu_y*t729 - bdeu_z*t730
+                bdOm0_y += -bdeu_x*t729 + bdeu_z*t731
+                bdOm0_z += bdeu_x*t730 - bdeu_y*t731
             # transposed: differential: origin of the frame, (14)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -2523,40 +2510,40 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdy[k] = 0.0
             # transposed: differential: sum w_j X_j x (rate of r_j) = 0
             rhs_x = rhs_y = rhs_z = 0.0
-            t738 = bdOm0_x + rhs_x
-            t739 = bdOm0_y + rhs_y
-            t740 = bdOm0_z + rhs_z
-            mdOm0_x = Bxx*t738 + Byx*t739 + Bzx*t740
-            mdOm0_y = Bxy*t738 + Byy*t739 + Bzy*t740
-            mdOm0_z = Bxz*t738 + Byz*t739 + Bzz*t740
+            t732 = bdOm0_x + rhs_x
+            t733 = bdOm0_y + rhs_y
+            t734 = bdOm0_z + rhs_z
+            mdOm0_x = Bxx*t732 + Byx*t733 + Bzx*t734
+            mdOm0_y = Bxy*t732 + Byy*t733 + Bzy*t734
+            mdOm0_z = Bxz*t732 + Byz*t733 + Bzz*t734
             # transposed: differential: sum w_j X_j x (rate of r_j) = 0
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t741 = fit*mdOm0_y
-                t742 = X_x*t741
-                t743 = fit*mdOm0_z
-                t744 = X_x*t743
-                t745 = Om0_y*X_y
-                t746 = Om0_z*X_z
-                t747 = fit*mdOm0_x
-                t748 = X_y*t747
-                t749 = X_y*t743
-                t750 = Om0_x*X_x
-                t751 = X_z*t741
-                t752 = t749 - t751
-                t753 = -X_z*fit*mdOm0_x + t744
-                t754 = t742 - t748
-                bdy[i3] += Om0_y*t742 + Om0_z*t744 - t747*(t745 + t746)
-                bdy[i3 + 1] += Om0_x*t748 + Om0_z*t749 - t741*(t746 + t750)
-                bdy[i3 + 2] += Om0_x*X_z*t747 + Om0_y*t751 - t743*(t745 + t750)
-                bdyd[i3] += t752
-                bdyd[i3 + 1] += -t753
-                bdyd[i3 + 2] += t754
-                bdv0_x += -t752
-                bdv0_y += t753
-                bdv0_z += -t754
+                t735 = fit*mdOm0_y
+                t736 = X_x*t735
+                t737 = fit*mdOm0_z
+                t738 = X_x*t737
+                t739 = Om0_y*X_y
+                t740 = Om0_z*X_z
+                t741 = fit*mdOm0_x
+                t742 = X_y*t741
+                t743 = X_y*t737
+                t744 = Om0_x*X_x
+                t745 = X_z*t735
+                t746 = t743 - t745
+                t747 = -X_z*fit*mdOm0_x + t738
+                t748 = t736 - t742
+                bdy[i3] += Om0_y*t736 + Om0_z*t738 - t741*(t739 + t740)
+                bdy[i3 + 1] += Om0_x*t742 + Om0_z*t743 - t735*(t740 + t744)
+                bdy[i3 + 2] += Om0_x*X_z*t741 + Om0_y*t745 - t737*(t739 + t744)
+                bdyd[i3] += t746
+                bdyd[i3 + 1] += -t747
+                bdyd[i3 + 2] += t748
+                bdv0_x += -t746
+                bdv0_y += t747
+                bdv0_z += -t748
             # transposed: differential: origin of the frame, (14)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -2618,43 +2605,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 bdpsi_x, bdpsi_y, bdpsi_z = bdy[j3], bdy[j3 + 1], bdy[j3 + 2]
                 e0 = e0s[j]
-                t755 = (0.5)*psi_z
-                t756 = e0*psi_x
-                t757 = psi_y*t756
-                t758 = -t755 + t757
-                t759 = (0.5)*psi_y
-                t760 = psi_z*t756
-                t761 = t759 + t760
-                t762 = e0*psi_y*psi_y
-                t763 = e0*psi_z*psi_z - 1
-                t764 = t762 + t763
-                t765 = t755 + t757
-                t766 = (0.5)*psi_x
-                t767 = e0*psi_y*psi_z
-                t768 = -t766 + t767
-                t769 = e0*psi_x*psi_x
-                t770 = t763 + t769
-                t771 = -t759 + t760
-                t772 = t766 + t767
-                t773 = t762 + t769 - 1
-                bdth0_x += bdpsi_x*t764 - bdpsi_y*t758 - bdpsi_z*t761
-                bdth0_y += -bdpsi_x*t765 + bdpsi_y*t770 - bdpsi_z*t768
-                bdth0_z += -bdpsi_x*t771 - bdpsi_y*t772 + bdpsi_z*t773
-                bdqe[j3] += -bdpsi_x*t764 + bdpsi_y*t765 + bdpsi_z*t771
-                bdqe[j3 + 1] += bdpsi_x*t758 - bdpsi_y*t770 + bdpsi_z*t772
-                bdqe[j3 + 2] += bdpsi_x*t761 + bdpsi_y*t768 - bdpsi_z*t773
+                t749 = (0.5)*psi_z
+                t750 = e0*psi_x
+                t751 = psi_y*t750
+                t752 = -t749 + t751
+                t753 = (0.5)*psi_y
+                t754 = psi_z*t750
+                t755 = t753 + t754
+                t756 = e0*psi_y*psi_y
+                t757 = e0*psi_z*psi_z - 1
+                t758 = t756 + t757
+                t759 = t749 + t751
+                t760 = (0.5)*psi_x
+                t761 = e0*psi_y*psi_z
+                t762 = -t760 + t761
+                t763 = e0*psi_x*psi_x
+                t764 = t757 + t763
+                t765 = -t753 + t754
+                t766 = t760 + t761
+                t767 = t756 + t763 - 1
+                bdth0_x += bdpsi_x*t758 - bdpsi_y*t752 - bdpsi_z*t755
+                bdth0_y += -bdpsi_x*t759 + bdpsi_y*t764 - bdpsi_z*t762
+                bdth0_z += -bdpsi_x*t765 - bdpsi_y*t766 + bdpsi_z*t767
+                bdqe[j3] += -bdpsi_x*t758 + bdpsi_y*t759 + bdpsi_z*t765
+                bdqe[j3 + 1] += bdpsi_x*t752 - bdpsi_y*t764 + bdpsi_z*t766
+                bdqe[j3 + 2] += bdpsi_x*t755 + bdpsi_y*t762 - bdpsi_z*t767
             # transposed: differential: displacement of the nodes in the frame, (11)
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 bdu_x, bdu_y, bdu_z = bdy[i3], bdy[i3 + 1], bdy[i3 + 2]
-                t774 = X_z + u_z
-                t775 = X_y + u_y
-                t776 = X_x + u_x
-                bdth0_x += bdu_y*t774 - bdu_z*t775
-                bdth0_y += -bdu_x*t774 + bdu_z*t776
-                bdth0_z += bdu_x*t775 - bdu_y*t776
+                t768 = X_z + u_z
+                t769 = X_y + u_y
+                t770 = X_x + u_x
+                bdth0_x += bdu_y*t768 - bdu_z*t769
+                bdth0_y += -bdu_x*t768 + bdu_z*t770
+                bdth0_z += bdu_x*t769 - bdu_y*t770
                 bdqe[i3] += bdu_x
                 bdqe[i3 + 1] += bdu_y
                 bdqe[i3 + 2] += bdu_z
@@ -2663,27 +2650,27 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdx0_z += -bdu_z
             # transposed: sum w_j X_j x (rate of r_j) = 0
             rhs_x = rhs_y = rhs_z = 0.0
-            t777 = bdth0_x + rhs_x
-            t778 = bdth0_y + rhs_y
-            t779 = bdth0_z + rhs_z
-            mdth0_x = Bxx*t777 + Byx*t778 + Bzx*t779
-            mdth0_y = Bxy*t777 + Byy*t778 + Bzy*t779
-            mdth0_z = Bxz*t777 + Byz*t778 + Bzz*t779
+            t771 = bdth0_x + rhs_x
+            t772 = bdth0_y + rhs_y
+            t773 = bdth0_z + rhs_z
+            mdth0_x = Bxx*t771 + Byx*t772 + Bzx*t773
+            mdth0_y = Bxy*t771 + Byy*t772 + Bzy*t773
+            mdth0_z = Bxz*t771 + Byz*t772 + Bzz*t773
             # transposed: sum w_j X_j x (rate of r_j) = 0
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t780 = fit*mdth0_z
-                t781 = X_y*t780 - X_z*fit*mdth0_y
-                t782 = X_x*t780 - X_z*fit*mdth0_x
-                t783 = X_x*fit*mdth0_y - X_y*fit*mdth0_x
-                bdqe[i3] += t781
-                bdqe[i3 + 1] += -t782
-                bdqe[i3 + 2] += t783
-                bdx0_x += -t781
-                bdx0_y += t782
-                bdx0_z += -t783
+                t774 = fit*mdth0_z
+                t775 = X_y*t774 - X_z*fit*mdth0_y
+                t776 = X_x*t774 - X_z*fit*mdth0_x
+                t777 = X_x*fit*mdth0_y - X_y*fit*mdth0_x
+                bdqe[i3] += t775
+                bdqe[i3 + 1] += -t776
+                bdqe[i3 + 2] += t777
+                bdx0_x += -t775
+                bdx0_y += t776
+                bdx0_z += -t777
             # transposed: origin of the frame, (14)
             for i in range(N_POSITIONS):
                 i3 = 3*i

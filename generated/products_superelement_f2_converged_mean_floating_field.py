@@ -31,16 +31,20 @@ from sebody.kernels.dense import (
     add_rows_times,
     block_times,
     clear,
+    columns_times,
     inverse_3,
     rows_times,
 )
 from sebody.kernels.frame_search import converged_mean
 from sebody.kernels.packed_products import (
+    add_couplings,
     add_packed,
     add_packed_times,
+    couplings_times,
     from_free,
     packed_room,
     packed_times,
+    packed_times_both,
     to_free,
 )
 from sebody.kernels.rotations import inverse_tangent_coefficients, inverse_tangent_second
@@ -55,11 +59,11 @@ ROTATIONS = 6      # first rotation among the local coordinates
 MODES = 12          # first internal mode
 DAMPED = None        # has structural damping, None where a body tells
 N_MODES = None        # their number, None where it is read at run time
-WORK_ROWS = 135
+WORK_ROWS = 137
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (701, 168, 573, 1),
+OPERATIONS = {"residual": (707, 168, 573, 1),
               "column": (159, 156, 2249, 4)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("sizes", (3,), "slaved coordinates, resultants of second order, damped or not"),
@@ -71,8 +75,8 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),
     Part("J0", ("pairs",), "moments of inertia at rest"),
     Part("moment_columns", ("N", "lines"), "S1, g_k, h_kl + h_lk", columns=True),
-    Part("of_place", ("placed", "N", "N"), "J2_kl, K_k^T", packed=True),
-    Part("of_rate", ("rated", "N", "N"), "K_k^T, K_k^T - K_k", packed=True),
+    Part("moment_rows", ("lines", "N"), "its transpose", columns=True),
+    Part("couplings", ("coupled", "N", "N"), "J2_kl, K_k^T; K_k^T and K_k of rates", packed=True),
     Part("Mz", (1, "N", "N"), "reduced mass with slaved coordinates", packed=True),
     Part("Cz", ("damped", "free", "free"), "reduced damping", packed=True),
     Part("followers", ("slaved", "free", "free"), "Q_b", packed=True),
@@ -124,52 +128,51 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         s = at(work, 24 + 30*row)
         h = at(work, 24 + 31*row)
         e2s = at(work, 24 + 32*row)
-        by_place = at(work, 24 + 33*row)
-        by_rate = at(work, 24 + 34*row)
-        ones = at(work, 24 + 35*row)
-        by_followers = at(work, 24 + 36*row)
-        of_E = at(work, 24 + 37*row)
-        of_Gy = at(work, 24 + 38*row)
-        dy = at(work, 24 + 39*row)
-        dz = at(work, 24 + 40*row)
-        dlocal = at(work, 24 + 41*row)
-        dyd = at(work, 24 + 42*row)
-        dacc = at(work, 24 + 43*row)
-        deta = at(work, 24 + 44*row)
-        detad = at(work, 24 + 45*row)
-        dgamma = at(work, 24 + 46*row)
-        dzd = at(work, 24 + 47*row)
-        dzdd = at(work, 24 + 48*row)
-        ds = at(work, 24 + 49*row)
-        dh = at(work, 24 + 50*row)
-        dg = at(work, 24 + 51*row)
-        bdqe = at(work, 24 + 52*row)
-        bdve = at(work, 24 + 53*row)
-        bdae = at(work, 24 + 54*row)
-        bdy = at(work, 24 + 55*row)
-        bdz = at(work, 24 + 56*row)
-        bdlocal = at(work, 24 + 57*row)
-        bdyd = at(work, 24 + 58*row)
-        bdacc = at(work, 24 + 59*row)
-        bdeta = at(work, 24 + 60*row)
-        bdetad = at(work, 24 + 61*row)
-        bdgamma = at(work, 24 + 62*row)
-        bdzd = at(work, 24 + 63*row)
-        bdzdd = at(work, 24 + 64*row)
-        bds = at(work, 24 + 65*row)
-        bdh = at(work, 24 + 66*row)
-        bdg = at(work, 24 + 67*row)
-        temporary = at(work, 24 + 68*row)
-        unordered = at(work, 24 + 69*row)
-        Zq = at(work, 24 + 72*row)
-        Zd = at(work, 24 + 84*row)
-        products = at(work, 24 + 96*row)
-        Za = at(work, 24 + 111*row)
-        more = at(work, 24 + 123*row)
-        Gy = at(work, 24 + 135*row)
-        Lz = at(work, 24 + (135 + n + 18)*row)
-        Lv = at(work, 24 + (135 + 2*(n + 18))*row)
-        La = at(work, 24 + (135 + 3*(n + 18))*row)
+        by_couplings = at(work, 24 + 33*row)
+        ones = at(work, 24 + 34*row)
+        by_followers = at(work, 24 + 35*row)
+        of_E = at(work, 24 + 36*row)
+        of_Gy = at(work, 24 + 37*row)
+        dy = at(work, 24 + 38*row)
+        dz = at(work, 24 + 39*row)
+        dlocal = at(work, 24 + 40*row)
+        dyd = at(work, 24 + 41*row)
+        dacc = at(work, 24 + 42*row)
+        deta = at(work, 24 + 43*row)
+        detad = at(work, 24 + 44*row)
+        dgamma = at(work, 24 + 45*row)
+        dzd = at(work, 24 + 46*row)
+        dzdd = at(work, 24 + 47*row)
+        ds = at(work, 24 + 48*row)
+        dh = at(work, 24 + 49*row)
+        dg = at(work, 24 + 50*row)
+        bdqe = at(work, 24 + 51*row)
+        bdve = at(work, 24 + 52*row)
+        bdae = at(work, 24 + 53*row)
+        bdy = at(work, 24 + 54*row)
+        bdz = at(work, 24 + 55*row)
+        bdlocal = at(work, 24 + 56*row)
+        bdyd = at(work, 24 + 57*row)
+        bdacc = at(work, 24 + 58*row)
+        bdeta = at(work, 24 + 59*row)
+        bdetad = at(work, 24 + 60*row)
+        bdgamma = at(work, 24 + 61*row)
+        bdzd = at(work, 24 + 62*row)
+        bdzdd = at(work, 24 + 63*row)
+        bds = at(work, 24 + 64*row)
+        bdh = at(work, 24 + 65*row)
+        bdg = at(work, 24 + 66*row)
+        temporary = at(work, 24 + 67*row)
+        unordered = at(work, 24 + 68*row)
+        Zq = at(work, 24 + 71*row)
+        Zd = at(work, 24 + 83*row)
+        products = at(work, 24 + 95*row)
+        Za = at(work, 24 + 110*row)
+        more = at(work, 24 + 122*row)
+        Gy = at(work, 24 + 137*row)
+        Lz = at(work, 24 + (137 + n + 18)*row)
+        Lv = at(work, 24 + (137 + 2*(n + 18))*row)
+        La = at(work, 24 + (137 + 3*(n + 18))*row)
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
@@ -197,9 +200,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         c0 = at(order, free)
         J0 = at(c0, 3)
         moment_columns = at(J0, 6)
-        of_place = at(moment_columns, 12*padded(N))
-        of_rate = at(of_place, packed_room(9, N, N))
-        Mz = at(of_rate, packed_room(6, N, N))
+        moment_rows = at(moment_columns, 12*padded(N))
+        couplings = at(moment_rows, N*padded(12))
+        Mz = at(couplings, packed_room(15, N, N))
         Cz = at(Mz, packed_room(1, N, N))
         followers = at(Cz, packed_room(damped, free, free))
         lam = at(followers, packed_room(slaved, free, free))
@@ -476,22 +479,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # coordinates that determine the others, and their rates
             all_to_free(y, eta, etad, axes, order, unordered, z, zd, zdd, bound, bound_free, free,
                         hN)
-            # Q_b z, all b
-            packed_times(followers, z, Zq, slaved*hn)
-            # Q_b zd, all b
-            packed_times(followers, zd, Zd, slaved*hn)
+            # Q_b z and Q_b zd, all b
+            packed_times_both(followers, z, zd, Zq, Zd, slaved*hn)
             # eta_b = y . Q_b y / 2, their rates and second rates
             follow(Zq, Zd, z, zd, zdd, free, slaved, hn)
-            # J2_kl z and K_k^T z
-            packed_times(of_place, z, products, 9*hN)
-            # K_k^T zdot and (K_k^T - K_k) zdot
-            packed_times(of_rate, zd, at(products, 9*hN), 6*hN)
+            # J2_kl z, K_k^T z, K_k^T zdot and K_k zdot
+            couplings_times(couplings, z, zd, products, 15*hN)
             # first moments, couplings, inertia at rest, by z
-            rows_times(moment_columns, z, line0, N, 12, hN)
+            columns_times(moment_rows, z, line0, 12, N)
             # first moments, couplings, inertia at rest, by zd
-            rows_times(moment_columns, zd, line1, N, 12, hN)
+            columns_times(moment_rows, zd, line1, 12, N)
             # first moments, couplings, inertia at rest, by zdd
-            rows_times(moment_columns, zdd, line2, N, 8, hN)
+            columns_times(moment_rows, zdd, line2, 12, N)
             # quadratic parts, by z
             rows_times(products, z, product0, N, 8, hN)
             # quadratic parts, by zd
@@ -594,12 +593,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             by_products[6] = turning_x
             by_products[7] = turning_y
             by_products[8] = turning_z
-            by_products[9] = 0.0
-            by_products[10] = 0.0
-            by_products[11] = 0.0
-            by_products[12] = spin_x
-            by_products[13] = spin_y
-            by_products[14] = spin_z
+            by_products[9] = spin_x
+            by_products[10] = spin_y
+            by_products[11] = spin_z
+            by_products[12] = -spin_x
+            by_products[13] = -spin_y
+            by_products[14] = -spin_z
             # inertia force of deformation, Mbar zddot
             packed_times(Mz, zdd, local, hN)
             # damping force, Cbar ydot
@@ -768,29 +767,27 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e2s[j] = inverse_tangent_second(psi_x*psi_x + psi_y*psi_y + psi_z*psi_z)
-            # J2_kl zdot
-            packed_times(of_place, zd, more, 9*hN)
-            # K_k^T zddot and (K_k^T - K_k) zddot
-            packed_times(of_rate, zdd, at(more, 6*hN), 6*hN)
+            # J2_kl zdot, K_k^T zddot and K_k zddot
+            couplings_times(couplings, zd, zdd, more, 15*hN)
             # factors of the local tangents
             turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             t131 = 2*c_geo*spin_x
-            by_place[0] = -c_geo*spin_x*spin_x
-            by_place[1] = -c_geo*spin_y*spin_y
-            by_place[2] = -c_geo*spin_z*spin_z
-            by_place[3] = -spin_y*t131
-            by_place[4] = -spin_z*t131
-            by_place[5] = -2*c_geo*spin_y*spin_z
-            by_place[6] = c_geo*turning_x
-            by_place[7] = c_geo*turning_y
-            by_place[8] = c_geo*turning_z
-            by_rate[0] = 0.0
-            by_rate[1] = 0.0
-            by_rate[2] = 0.0
-            by_rate[3] = spin_x
-            by_rate[4] = spin_y
-            by_rate[5] = spin_z
+            by_couplings[0] = -c_geo*spin_x*spin_x
+            by_couplings[1] = -c_geo*spin_y*spin_y
+            by_couplings[2] = -c_geo*spin_z*spin_z
+            by_couplings[3] = -spin_y*t131
+            by_couplings[4] = -spin_z*t131
+            by_couplings[5] = -2*c_geo*spin_y*spin_z
+            by_couplings[6] = c_geo*turning_x
+            by_couplings[7] = c_geo*turning_y
+            by_couplings[8] = c_geo*turning_z
+            by_couplings[9] = spin_x
+            by_couplings[10] = spin_y
+            by_couplings[11] = spin_z
+            by_couplings[12] = -spin_x
+            by_couplings[13] = -spin_y
+            by_couplings[14] = -spin_z
             ones[0] = 1
             # forces on eta as factors
             for b in range(slaved):
@@ -802,12 +799,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             clear(Lv, N*deep)
             # local tangents
             clear(La, N*deep)
-            # by z: J2_kl and K_k^T
-            add_packed(of_place, by_place, Lz, deep)
+            # by z: J2_kl and K_k^T; by zdot: K_k^T and K_k
+            add_couplings(couplings, by_couplings, Lz, Lv, deep)
             # forces on eta
             add_packed(followers, by_followers, Lz, deep)
-            # by zdot: K_k^T and K_k^T - K_k
-            add_packed(of_rate, by_rate, Lv, deep)
             # structural damping
             add_packed(Cz, ones, Lv, deep)
             # by zddot
@@ -849,8 +844,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     products[14*hN + i])
                 row_jd_xx, row_jd_yy, row_jd_zz, row_jd_xy, row_jd_xz, row_jd_yz = (more[i],
                     more[hN + i], more[2*hN + i], more[3*hN + i], more[4*hN + i], more[5*hN + i])
-                row_ua_x, row_ua_y, row_ua_z = more[6*hN + i], more[7*hN + i], more[8*hN + i]
-                row_wa_x, row_wa_y, row_wa_z = more[9*hN + i], more[10*hN + i], more[11*hN + i]
+                row_wa_x, row_wa_y, row_wa_z = more[12*hN + i], more[13*hN + i], more[14*hN + i]
                 t132 = row_S1_x*spin_z
                 t133 = row_S1_z*spin_x
                 t134 = t132 - t133
@@ -861,24 +855,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t139 = 2*spin_x
                 t140 = 2*spin_y
                 t141 = 2*spin_z
-                t142 = -row_w_z
-                t143 = row_v_z + t142
-                t144 = row_h_xx + 2*row_j_xx
-                t145 = row_h_xy + 2*row_j_xy
-                t146 = row_h_xz + 2*row_j_xz
-                t147 = -row_w_y
-                t148 = row_v_y + t147
-                t149 = row_h_yz + 2*row_j_yz
-                t150 = row_h_zz + 2*row_j_zz
-                t151 = spin_x*t146 + spin_y*t149 + spin_z*t150
-                t152 = row_h_yy + 2*row_j_yy
-                t153 = spin_x*t145 + spin_y*t152 + spin_z*t149
-                t154 = -row_w_x
-                t155 = row_v_x + t154
-                t156 = spin_x*t144 + spin_y*t145 + spin_z*t146
-                t157 = row_g_z + row_u_z
-                t158 = row_g_y + row_u_y
-                t159 = row_g_x + row_u_x
+                t142 = row_h_xx + 2*row_j_xx
+                t143 = row_h_xy + 2*row_j_xy
+                t144 = row_h_xz + 2*row_j_xz
+                t145 = row_h_yz + 2*row_j_yz
+                t146 = row_h_zz + 2*row_j_zz
+                t147 = spin_x*t144 + spin_y*t145 + spin_z*t146
+                t148 = row_h_yy + 2*row_j_yy
+                t149 = spin_x*t143 + spin_y*t148 + spin_z*t145
+                t150 = spin_x*t142 + spin_y*t143 + spin_z*t144
+                t151 = row_g_z + row_u_z
+                t152 = row_g_y + row_u_y
+                t153 = row_g_x + row_u_x
                 Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t136 -
                     spin_z*t134))
                 Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t136
@@ -886,29 +874,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Lz[i*deep + N + 2] = (c_geo*(-row_S1_x*turning_y + row_S1_y*turning_x +
                     spin_x*t134 - spin_y*t138))
                 Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t139 +
-                    row_jd_xy*t140 + row_jd_xz*t141 + row_ua_x - row_wa_x + spin_y*t143 +
-                    spin_y*t151 - spin_z*t148 - spin_z*t153 + t144*turning_x + t145*turning_y +
-                    t146*turning_z))
+                    row_jd_xy*t140 + row_jd_xz*t141 - row_w_y*spin_z + row_w_z*spin_y + row_wa_x +
+                    spin_y*t147 - spin_z*t149 + t142*turning_x + t143*turning_y + t144*turning_z))
                 Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t139 +
-                    row_jd_yy*t140 + row_jd_yz*t141 + row_ua_y - row_wa_y - spin_x*t143 -
-                    spin_x*t151 + spin_z*t155 + spin_z*t156 + t145*turning_x + t149*turning_z +
-                    t152*turning_y))
+                    row_jd_yy*t140 + row_jd_yz*t141 + row_w_x*spin_z - row_w_z*spin_x + row_wa_y -
+                    spin_x*t147 + spin_z*t150 + t143*turning_x + t145*turning_z + t148*turning_y))
                 Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t139 +
-                    row_jd_yz*t140 + row_jd_zz*t141 + row_ua_z - row_wa_z + spin_x*t148 +
-                    spin_x*t153 - spin_y*t155 - spin_y*t156 + t146*turning_x + t149*turning_y +
-                    t150*turning_z))
+                    row_jd_yz*t140 + row_jd_zz*t141 - row_w_x*spin_y + row_w_y*spin_x + row_wa_z +
+                    spin_x*t149 - spin_y*t150 + t144*turning_x + t145*turning_y + t146*turning_z))
                 Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t137
                 Lv[i*deep + N + 1] = 2*t132 - 2*t133
                 Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t135
-                Lv[i*deep + N + 3] = 2*row_v_x + spin_y*t157 - spin_z*t158 + t154 + t156
-                Lv[i*deep + N + 4] = 2*row_v_y - spin_x*t157 + spin_z*t159 + t147 + t153
-                Lv[i*deep + N + 5] = 2*row_v_z + spin_x*t158 - spin_y*t159 + t142 + t151
+                Lv[i*deep + N + 3] = row_v_x + row_w_x + spin_y*t151 - spin_z*t152 + t150
+                Lv[i*deep + N + 4] = row_v_y + row_w_y - spin_x*t151 + spin_z*t153 + t149
+                Lv[i*deep + N + 5] = row_v_z + row_w_z + spin_x*t152 - spin_y*t153 + t147
                 La[i*deep + N] = row_S1_x
                 La[i*deep + N + 1] = row_S1_y
                 La[i*deep + N + 2] = row_S1_z
-                La[i*deep + N + 3] = t159
-                La[i*deep + N + 4] = t158
-                La[i*deep + N + 5] = t157
+                La[i*deep + N + 3] = t153
+                La[i*deep + N + 4] = t152
+                La[i*deep + N + 5] = t151
             # local tangents: motion of the frame
             for i in range(N):
                 spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
@@ -924,17 +909,19 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     products[5*hN + i])
                 row_u_x, row_u_y, row_u_z = (products[6*hN + i], products[7*hN + i],
                     products[8*hN + i])
+                row_v_x, row_v_y, row_v_z = (products[9*hN + i], products[10*hN + i],
+                    products[11*hN + i])
                 row_w_x, row_w_y, row_w_z = (products[12*hN + i], products[13*hN + i],
                     products[14*hN + i])
-                t160 = row_h_xy + 2*row_j_xy
-                t161 = row_h_xz + 2*row_j_xz
-                t162 = row_h_yz + 2*row_j_yz
-                Lv[N*deep + i] = (row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t160 -
-                    spin_z*t161)
-                Lv[(N + 1)*deep + i] = (row_w_y - spin_x*t160 - spin_y*(row_h_yy + 2*row_j_yy) -
-                    spin_z*t162)
-                Lv[(N + 2)*deep + i] = (row_w_z - spin_x*t161 - spin_y*t162 - spin_z*(row_h_zz +
-                    2*row_j_zz))
+                t154 = row_h_xy + 2*row_j_xy
+                t155 = row_h_xz + 2*row_j_xz
+                t156 = row_h_yz + 2*row_j_yz
+                Lv[N*deep + i] = (row_v_x - row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t154
+                    - spin_z*t155)
+                Lv[(N + 1)*deep + i] = (row_v_y - row_w_y - spin_x*t154 - spin_y*(row_h_yy +
+                    2*row_j_yy) - spin_z*t156)
+                Lv[(N + 2)*deep + i] = (row_v_z - row_w_z - spin_x*t155 - spin_y*t156 -
+                    spin_z*(row_h_zz + 2*row_j_zz))
                 La[N*deep + i] = row_S1_x
                 La[(N + 1)*deep + i] = row_S1_y
                 La[(N + 2)*deep + i] = row_S1_z
@@ -944,79 +931,79 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # local tangents: force on the frame by its motion
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             mass = masses[0]
-            t163 = spin_y*sum_c_y
-            t164 = spin_z*sum_c_z
-            t165 = 2*sum_cd_z
-            t166 = spin_x*sum_c_y
-            t167 = 2*sum_cd_y
-            t168 = spin_z*sum_c_x
-            t169 = spin_y*sum_J_xz
-            t170 = spin_z*sum_J_xy
-            t171 = spin_y*sum_J_yz
-            t172 = spin_x*sum_J_xz
-            t173 = spin_z*sum_J_zz + sum_spun_z
-            t174 = spin_z*sum_J_yz
-            t175 = spin_x*sum_J_xy
-            t176 = spin_y*sum_J_yy + sum_spun_y
-            t177 = spin_x*sum_c_x
-            t178 = 2*sum_cd_x
-            t179 = spin_y*sum_c_z
-            t180 = spin_x*sum_J_yz
-            t181 = spin_z*sum_J_xz
-            t182 = spin_y*sum_J_xy
-            t183 = spin_x*sum_J_xx + sum_spun_x
-            t184 = -sum_c_y
-            t185 = -sum_c_z
-            t186 = -sum_c_x
-            Lv[N*deep + N] = t163 + t164
-            Lv[N*deep + N + 1] = spin_y*sum_c_x - t165 - 2*t166
-            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t167 + t168
-            Lv[N*deep + N + 3] = sum_Jd_xx + t169 - t170
-            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t171 - 2*t172 - t173
-            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t174 + 2*t175 + t176
-            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t165 + t166
-            Lv[(N + 1)*deep + N + 1] = t164 + t177
-            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t178 - 2*t179
-            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t171 + t172 + t173
-            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t170 - t180
-            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t181 - 2*t182 - t183
-            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t167 - 2*t168
-            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t178 + t179
-            Lv[(N + 2)*deep + N + 2] = t163 + t177
-            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t174 - t175 - t176
-            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t181 + t182 + t183
-            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t169 + t180
+            t157 = spin_y*sum_c_y
+            t158 = spin_z*sum_c_z
+            t159 = 2*sum_cd_z
+            t160 = spin_x*sum_c_y
+            t161 = 2*sum_cd_y
+            t162 = spin_z*sum_c_x
+            t163 = spin_y*sum_J_xz
+            t164 = spin_z*sum_J_xy
+            t165 = spin_y*sum_J_yz
+            t166 = spin_x*sum_J_xz
+            t167 = spin_z*sum_J_zz + sum_spun_z
+            t168 = spin_z*sum_J_yz
+            t169 = spin_x*sum_J_xy
+            t170 = spin_y*sum_J_yy + sum_spun_y
+            t171 = spin_x*sum_c_x
+            t172 = 2*sum_cd_x
+            t173 = spin_y*sum_c_z
+            t174 = spin_x*sum_J_yz
+            t175 = spin_z*sum_J_xz
+            t176 = spin_y*sum_J_xy
+            t177 = spin_x*sum_J_xx + sum_spun_x
+            t178 = -sum_c_y
+            t179 = -sum_c_z
+            t180 = -sum_c_x
+            Lv[N*deep + N] = t157 + t158
+            Lv[N*deep + N + 1] = spin_y*sum_c_x - t159 - 2*t160
+            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t161 + t162
+            Lv[N*deep + N + 3] = sum_Jd_xx + t163 - t164
+            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t165 - 2*t166 - t167
+            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t168 + 2*t169 + t170
+            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t159 + t160
+            Lv[(N + 1)*deep + N + 1] = t158 + t171
+            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t172 - 2*t173
+            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t165 + t166 + t167
+            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t164 - t174
+            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t175 - 2*t176 - t177
+            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t161 - 2*t162
+            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t172 + t173
+            Lv[(N + 2)*deep + N + 2] = t157 + t171
+            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t168 - t169 - t170
+            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t175 + t176 + t177
+            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t163 + t174
             La[N*deep + N] = mass
             La[N*deep + N + 1] = 0.0
             La[N*deep + N + 2] = 0.0
             La[N*deep + N + 3] = 0.0
             La[N*deep + N + 4] = sum_c_z
-            La[N*deep + N + 5] = t184
+            La[N*deep + N + 5] = t178
             La[(N + 1)*deep + N] = 0.0
             La[(N + 1)*deep + N + 1] = mass
             La[(N + 1)*deep + N + 2] = 0.0
-            La[(N + 1)*deep + N + 3] = t185
+            La[(N + 1)*deep + N + 3] = t179
             La[(N + 1)*deep + N + 4] = 0.0
             La[(N + 1)*deep + N + 5] = sum_c_x
             La[(N + 2)*deep + N] = 0.0
             La[(N + 2)*deep + N + 1] = 0.0
             La[(N + 2)*deep + N + 2] = mass
             La[(N + 2)*deep + N + 3] = sum_c_y
-            La[(N + 2)*deep + N + 4] = t186
+            La[(N + 2)*deep + N + 4] = t180
             La[(N + 2)*deep + N + 5] = 0.0
             La[(N + 3)*deep + N] = 0.0
-            La[(N + 3)*deep + N + 1] = t185
+            La[(N + 3)*deep + N + 1] = t179
             La[(N + 3)*deep + N + 2] = sum_c_y
             La[(N + 3)*deep + N + 3] = sum_J_xx
             La[(N + 3)*deep + N + 4] = sum_J_xy
             La[(N + 3)*deep + N + 5] = sum_J_xz
             La[(N + 4)*deep + N] = sum_c_z
             La[(N + 4)*deep + N + 1] = 0.0
-            La[(N + 4)*deep + N + 2] = t186
+            La[(N + 4)*deep + N + 2] = t180
             La[(N + 4)*deep + N + 3] = sum_J_xy
             La[(N + 4)*deep + N + 4] = sum_J_yy
             La[(N + 4)*deep + N + 5] = sum_J_yz
-            La[(N + 5)*deep + N] = t184
+            La[(N + 5)*deep + N] = t178
             La[(N + 5)*deep + N + 1] = sum_c_x
             La[(N + 5)*deep + N + 2] = 0.0
             La[(N + 5)*deep + N + 3] = sum_J_xz
@@ -1090,16 +1077,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                 e0 = e0s[j]
-                t187 = -dth_x*psi_y + dth_y*psi_x
-                t188 = dth_x*psi_z
-                t189 = -dth_z*psi_x + t188
-                t190 = -dth_y*psi_z + dth_z*psi_y
-                rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y - e0*psi_y*t187 +
-                    e0*psi_z*t189))
-                rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t187 - e0*psi_z*t190 -
-                    0.5*t188))
-                rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t189 +
-                    e0*psi_y*t190))
+                t181 = -dth_x*psi_y + dth_y*psi_x
+                t182 = dth_x*psi_z
+                t183 = -dth_z*psi_x + t182
+                t184 = -dth_y*psi_z + dth_z*psi_y
+                rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y - e0*psi_y*t181 +
+                    e0*psi_z*t183))
+                rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t181 - e0*psi_z*t184 -
+                    0.5*t182))
+                rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t183 +
+                    e0*psi_y*t184))
             dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1109,41 +1096,41 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t191 = X_y + u_y
-                t192 = X_z + u_z
-                t193 = X_x + u_x
-                dy[i3] = -dth0_y*t192 + dth0_z*t191 - dx0_x + dx_x
-                dy[i3 + 1] = dth0_x*t192 - dth0_z*t193 - dx0_y + dx_y
-                dy[i3 + 2] = -dth0_x*t191 + dth0_y*t193 - dx0_z + dx_z
+                t185 = X_y + u_y
+                t186 = X_z + u_z
+                t187 = X_x + u_x
+                dy[i3] = -dth0_y*t186 + dth0_z*t185 - dx0_x + dx_x
+                dy[i3 + 1] = dth0_x*t186 - dth0_z*t187 - dx0_y + dx_y
+                dy[i3 + 2] = -dth0_x*t185 + dth0_y*t187 - dx0_z + dx_z
             # variation of the elastic rotations, (17)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                 e0 = e0s[j]
-                t194 = dth0_y*psi_z
-                t195 = dth_y*psi_z
-                t196 = dth0_x*psi_y
-                t197 = dth0_y*psi_x - t196
-                t198 = e0*psi_y
-                t199 = dth_x*psi_z
-                t200 = dth_z*psi_x
+                t188 = dth0_y*psi_z
+                t189 = dth_y*psi_z
+                t190 = dth0_x*psi_y
+                t191 = dth0_y*psi_x - t190
+                t192 = e0*psi_y
+                t193 = dth_x*psi_z
+                t194 = dth_z*psi_x
+                t195 = t193 - t194
+                t196 = e0*psi_z
+                t197 = dth_x*psi_y
+                t198 = dth_y*psi_x - t197
+                t199 = dth0_x*psi_z
+                t200 = dth0_z*psi_x
                 t201 = t199 - t200
-                t202 = e0*psi_z
-                t203 = dth_x*psi_y
-                t204 = dth_y*psi_x - t203
-                t205 = dth0_x*psi_z
-                t206 = dth0_z*psi_x
-                t207 = t205 - t206
-                t208 = e0*psi_x
-                t209 = dth_z*psi_y - t195
-                t210 = dth0_z*psi_y - t194
-                dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y + e0*psi_y*t204
-                    + e0*psi_z*t207 - 0.5*t194 - 0.5*t195 - t197*t198 - t201*t202)
-                dy[j3 + 1] = (-dth0_y + dth_y + t197*t208 + (0.5)*t199 - 0.5*t200 + t202*t209 -
-                    t202*t210 - t204*t208 + (0.5)*t205 - 0.5*t206)
+                t202 = e0*psi_x
+                t203 = dth_z*psi_y - t189
+                t204 = dth0_z*psi_y - t188
+                dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y + e0*psi_y*t198
+                    + e0*psi_z*t201 - 0.5*t188 - 0.5*t189 - t191*t192 - t195*t196)
+                dy[j3 + 1] = (-dth0_y + dth_y + t191*t202 + (0.5)*t193 - 0.5*t194 + t196*t203 -
+                    t196*t204 - t198*t202 + (0.5)*t199 - 0.5*t200)
                 dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                    e0*psi_x*t201 + e0*psi_y*t210 - 0.5*t196 - t198*t209 - 0.5*t203 - t207*t208)
+                    e0*psi_x*t195 + e0*psi_y*t204 - 0.5*t190 - t192*t203 - 0.5*t197 - t201*t202)
             # differential: internal modes
             for k in range(MODES, n):
                 dqm = dqe[k]
@@ -1185,47 +1172,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t211 = -Om_x*psi_y + Om_y*psi_x
-                t212 = dpsi_y*e0
-                t213 = Om0_x*psi_z - Om0_z*psi_x
-                t214 = dpsi_z*e0
-                t215 = Om0_x*dpsi_z
-                t216 = -Om0_z*dpsi_x + t215
-                t217 = e0*psi_z
-                t218 = -Om0_x*psi_y + Om0_y*psi_x
-                t219 = Om_x*psi_z - Om_z*psi_x
-                t220 = -Om0_x*dpsi_y + Om0_y*dpsi_x
-                t221 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                t222 = e0*psi_y
-                t223 = Om_x*dpsi_z
-                t224 = dOm_x*psi_z
-                t225 = -Om_z*dpsi_x - dOm_z*psi_x + t223 + t224
-                t226 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t227 = e1*t226
-                t228 = psi_y*t227
-                t229 = psi_z*t227
-                t230 = dpsi_x*e0
-                t231 = -Om_y*psi_z + Om_z*psi_y
-                t232 = e0*psi_x
-                t233 = -Om0_y*psi_z + Om0_z*psi_y
-                t234 = -Om0_y*dpsi_z + Om0_z*dpsi_y
-                t235 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                t236 = psi_x*t227
+                t205 = -Om_x*psi_y + Om_y*psi_x
+                t206 = dpsi_y*e0
+                t207 = Om0_x*psi_z - Om0_z*psi_x
+                t208 = dpsi_z*e0
+                t209 = Om0_x*dpsi_z
+                t210 = -Om0_z*dpsi_x + t209
+                t211 = e0*psi_z
+                t212 = -Om0_x*psi_y + Om0_y*psi_x
+                t213 = Om_x*psi_z - Om_z*psi_x
+                t214 = -Om0_x*dpsi_y + Om0_y*dpsi_x
+                t215 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
+                t216 = e0*psi_y
+                t217 = Om_x*dpsi_z
+                t218 = dOm_x*psi_z
+                t219 = -Om_z*dpsi_x - dOm_z*psi_x + t217 + t218
+                t220 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t221 = e1*t220
+                t222 = psi_y*t221
+                t223 = psi_z*t221
+                t224 = dpsi_x*e0
+                t225 = -Om_y*psi_z + Om_z*psi_y
+                t226 = e0*psi_x
+                t227 = -Om0_y*psi_z + Om0_z*psi_y
+                t228 = -Om0_y*dpsi_z + Om0_z*dpsi_y
+                t229 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                t230 = psi_x*t221
                 rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - 0.5*Om0_z*dpsi_y + (0.5)*Om_y*dpsi_z -
-                    0.5*Om_z*dpsi_y - dOm_x + (0.5)*dOm_y*psi_z - 0.5*dOm_z*psi_y + dpsi_y*e0*t218
-                    + dpsi_z*e0*t219 + e0*psi_y*t220 + e0*psi_z*t225 + e1*psi_y*t218*t226 +
-                    e1*psi_z*t219*t226 - t211*t212 - t211*t228 - t213*t214 - t213*t229 - t216*t217
-                    - t221*t222))
+                    0.5*Om_z*dpsi_y - dOm_x + (0.5)*dOm_y*psi_z - 0.5*dOm_z*psi_y + dpsi_y*e0*t212
+                    + dpsi_z*e0*t213 + e0*psi_y*t214 + e0*psi_z*t219 + e1*psi_y*t212*t220 +
+                    e1*psi_z*t213*t220 - t205*t206 - t205*t222 - t207*t208 - t207*t223 - t210*t211
+                    - t215*t216))
                 rhs_y += (-alpha_r*((0.5)*Om0_z*dpsi_x + (0.5)*Om_z*dpsi_x - dOm_y +
-                    (0.5)*dOm_z*psi_x + dpsi_x*e0*t211 + dpsi_z*e0*t233 + e0*psi_x*t221 +
-                    e0*psi_z*t234 + e1*psi_x*t211*t226 + e1*psi_z*t226*t233 - t214*t231 - 0.5*t215
-                    - t217*t235 - t218*t230 - t218*t236 - t220*t232 - 0.5*t223 - 0.5*t224 -
-                    t229*t231))
+                    (0.5)*dOm_z*psi_x + dpsi_x*e0*t205 + dpsi_z*e0*t227 + e0*psi_x*t215 +
+                    e0*psi_z*t228 + e1*psi_x*t205*t220 + e1*psi_z*t220*t227 - t208*t225 - 0.5*t209
+                    - t211*t229 - t212*t224 - t212*t230 - t214*t226 - 0.5*t217 - 0.5*t218 -
+                    t223*t225))
                 rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x + (0.5)*Om_x*dpsi_y -
-                    0.5*Om_y*dpsi_x + (0.5)*dOm_x*psi_y - 0.5*dOm_y*psi_x - dOm_z + dpsi_x*e0*t213
-                    + dpsi_y*e0*t231 + e0*psi_x*t216 + e0*psi_y*t235 + e1*psi_x*t213*t226 +
-                    e1*psi_y*t226*t231 - t212*t233 - t219*t230 - t219*t236 - t222*t234 - t225*t232
-                    - t228*t233))
+                    0.5*Om_y*dpsi_x + (0.5)*dOm_x*psi_y - 0.5*dOm_y*psi_x - dOm_z + dpsi_x*e0*t207
+                    + dpsi_y*e0*t225 + e0*psi_x*t210 + e0*psi_y*t229 + e1*psi_x*t207*t220 +
+                    e1*psi_y*t220*t225 - t206*t227 - t213*t224 - t213*t230 - t216*t228 - t219*t226
+                    - t222*t227))
             dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1258,12 +1245,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                t237 = X_y + u_y
-                t238 = X_z + u_z
-                t239 = X_x + u_x
-                deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t238 + dOm0_z*t237 - dv0_x + dvs_x
-                deta[i3 + 1] = Om0_x*du_z - Om0_z*du_x + dOm0_x*t238 - dOm0_z*t239 - dv0_y + dvs_y
-                deta[i3 + 2] = -Om0_x*du_y + Om0_y*du_x - dOm0_x*t237 + dOm0_y*t239 - dv0_z + dvs_z
+                t231 = X_y + u_y
+                t232 = X_z + u_z
+                t233 = X_x + u_x
+                deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t232 + dOm0_z*t231 - dv0_x + dvs_x
+                deta[i3 + 1] = Om0_x*du_z - Om0_z*du_x + dOm0_x*t232 - dOm0_z*t233 - dv0_y + dvs_y
+                deta[i3 + 2] = -Om0_x*du_y + Om0_y*du_x - dOm0_x*t231 + dOm0_y*t233 - dv0_z + dvs_z
             # differential: rates of the elastic rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -1273,59 +1260,59 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t240 = Om0_y*dpsi_z
-                t241 = Om_y*dpsi_z
-                t242 = dOm0_y*psi_z
-                t243 = dOm_y*psi_z
-                t244 = -Om0_x*psi_y + Om0_y*psi_x
-                t245 = dpsi_y*e0
-                t246 = Om_x*psi_z - Om_z*psi_x
-                t247 = dpsi_z*e0
-                t248 = -Om_x*psi_y + Om_y*psi_x
-                t249 = Om0_x*psi_z - Om0_z*psi_x
-                t250 = Om0_x*dpsi_y
-                t251 = dOm0_x*psi_y
-                t252 = Om0_y*dpsi_x + dOm0_y*psi_x - t250 - t251
-                t253 = e0*psi_y
-                t254 = Om_x*dpsi_z
-                t255 = dOm_x*psi_z
-                t256 = Om_z*dpsi_x
-                t257 = dOm_z*psi_x
-                t258 = t254 + t255 - t256 - t257
-                t259 = e0*psi_z
-                t260 = Om_x*dpsi_y
-                t261 = dOm_x*psi_y
-                t262 = Om_y*dpsi_x + dOm_y*psi_x - t260 - t261
-                t263 = Om0_x*dpsi_z
-                t264 = dOm0_x*psi_z
-                t265 = Om0_z*dpsi_x
-                t266 = dOm0_z*psi_x
-                t267 = t263 + t264 - t265 - t266
-                t268 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t269 = e1*t268
-                t270 = psi_y*t269
-                t271 = psi_z*t269
-                t272 = dpsi_x*e0
-                t273 = -Om_y*psi_z + Om_z*psi_y
-                t274 = -Om0_y*psi_z + Om0_z*psi_y
-                t275 = e0*psi_x
-                t276 = Om_z*dpsi_y + dOm_z*psi_y - t241 - t243
-                t277 = Om0_z*dpsi_y + dOm0_z*psi_y - t240 - t242
-                t278 = psi_x*t269
+                t234 = Om0_y*dpsi_z
+                t235 = Om_y*dpsi_z
+                t236 = dOm0_y*psi_z
+                t237 = dOm_y*psi_z
+                t238 = -Om0_x*psi_y + Om0_y*psi_x
+                t239 = dpsi_y*e0
+                t240 = Om_x*psi_z - Om_z*psi_x
+                t241 = dpsi_z*e0
+                t242 = -Om_x*psi_y + Om_y*psi_x
+                t243 = Om0_x*psi_z - Om0_z*psi_x
+                t244 = Om0_x*dpsi_y
+                t245 = dOm0_x*psi_y
+                t246 = Om0_y*dpsi_x + dOm0_y*psi_x - t244 - t245
+                t247 = e0*psi_y
+                t248 = Om_x*dpsi_z
+                t249 = dOm_x*psi_z
+                t250 = Om_z*dpsi_x
+                t251 = dOm_z*psi_x
+                t252 = t248 + t249 - t250 - t251
+                t253 = e0*psi_z
+                t254 = Om_x*dpsi_y
+                t255 = dOm_x*psi_y
+                t256 = Om_y*dpsi_x + dOm_y*psi_x - t254 - t255
+                t257 = Om0_x*dpsi_z
+                t258 = dOm0_x*psi_z
+                t259 = Om0_z*dpsi_x
+                t260 = dOm0_z*psi_x
+                t261 = t257 + t258 - t259 - t260
+                t262 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t263 = e1*t262
+                t264 = psi_y*t263
+                t265 = psi_z*t263
+                t266 = dpsi_x*e0
+                t267 = -Om_y*psi_z + Om_z*psi_y
+                t268 = -Om0_y*psi_z + Om0_z*psi_y
+                t269 = e0*psi_x
+                t270 = Om_z*dpsi_y + dOm_z*psi_y - t235 - t237
+                t271 = Om0_z*dpsi_y + dOm0_z*psi_y - t234 - t236
+                t272 = psi_x*t263
                 deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x + (0.5)*dOm0_z*psi_y +
-                    dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t248 + dpsi_z*e0*t249 + e0*psi_y*t262 +
-                    e0*psi_z*t267 + e1*psi_y*t248*t268 + e1*psi_z*t249*t268 - 0.5*t240 - 0.5*t241
-                    - 0.5*t242 - 0.5*t243 - t244*t245 - t244*t270 - t246*t247 - t246*t271 -
-                    t252*t253 - t258*t259)
-                deta[j3 + 1] = (-dOm0_y + dOm_y + t244*t272 + t244*t278 + t247*t273 - t247*t274 -
-                    t248*t272 - t248*t278 + t252*t275 + (0.5)*t254 + (0.5)*t255 - 0.5*t256 -
-                    0.5*t257 + t259*t276 - t259*t277 - t262*t275 + (0.5)*t263 + (0.5)*t264 -
-                    0.5*t265 - 0.5*t266 + t271*t273 - t271*t274)
+                    dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t242 + dpsi_z*e0*t243 + e0*psi_y*t256 +
+                    e0*psi_z*t261 + e1*psi_y*t242*t262 + e1*psi_z*t243*t262 - 0.5*t234 - 0.5*t235
+                    - 0.5*t236 - 0.5*t237 - t238*t239 - t238*t264 - t240*t241 - t240*t265 -
+                    t246*t247 - t252*t253)
+                deta[j3 + 1] = (-dOm0_y + dOm_y + t238*t266 + t238*t272 + t241*t267 - t241*t268 -
+                    t242*t266 - t242*t272 + t246*t269 + (0.5)*t248 + (0.5)*t249 - 0.5*t250 -
+                    0.5*t251 + t253*t270 - t253*t271 - t256*t269 + (0.5)*t257 + (0.5)*t258 -
+                    0.5*t259 - 0.5*t260 + t265*t267 - t265*t268)
                 deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                    dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t246 + dpsi_y*e0*t274 +
-                    e0*psi_x*t258 + e0*psi_y*t277 + e1*psi_x*t246*t268 + e1*psi_y*t268*t274 -
-                    t245*t273 - t249*t272 - t249*t278 - 0.5*t250 - 0.5*t251 - t253*t276 - 0.5*t260
-                    - 0.5*t261 - t267*t275 - t270*t273)
+                    dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t240 + dpsi_y*e0*t268 +
+                    e0*psi_x*t252 + e0*psi_y*t271 + e1*psi_x*t240*t262 + e1*psi_y*t262*t268 -
+                    t239*t267 - t243*t266 - t243*t272 - 0.5*t244 - 0.5*t245 - t247*t270 - 0.5*t254
+                    - 0.5*t255 - t261*t269 - t264*t267)
             # differential: rates of the internal modes
             for k in range(MODES, n):
                 dvm = dve[k]
@@ -1344,126 +1331,126 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e0 = e0s[j]
                 e1 = e1s[j]
                 e2 = e2s[j]
-                t279 = A_y*dpsi_z
-                t280 = Om0_y*dep_z
-                t281 = Om_y*dep_z
-                t282 = dA_y*psi_z
-                t283 = dOm0_y*ep_z
-                t284 = dOm_y*ep_z
-                t285 = -Om_x*psi_y + Om_y*psi_x
-                t286 = dep_y*e0
-                t287 = Om0_x*psi_z - Om0_z*psi_x
-                t288 = dep_z*e0
-                t289 = Om0_x*ep_z - Om0_z*ep_x
-                t290 = dpsi_z*e0
-                t291 = -Om0_x*psi_y + Om0_y*psi_x
-                t292 = Om_x*psi_z - Om_z*psi_x
-                t293 = -Om0_x*ep_y + Om0_y*ep_x
-                t294 = dpsi_y*e0
-                t295 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                t296 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                t297 = e0*ep_y
-                t298 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                t299 = e0*ep_z
-                t300 = Om0_x*dep_z
-                t301 = dOm0_x*ep_z
-                t302 = Om0_z*dep_x
-                t303 = dOm0_z*ep_x
-                t304 = t300 + t301 - t302 - t303
-                t305 = e0*psi_z
-                t306 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                t307 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                t308 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                t309 = Om0_x*dep_y
-                t310 = dOm0_x*ep_y
-                t311 = Om0_y*dep_x + dOm0_y*ep_x - t309 - t310
-                t312 = e0*psi_y
-                t313 = 2*psi_x
-                t314 = 2*psi_y
-                t315 = 2*psi_z
-                t316 = ep_x*t313 + ep_y*t314 + ep_z*t315
-                t317 = e1*t316
-                t318 = dpsi_y*t317
-                t319 = dpsi_z*t317
-                t320 = dpsi_x*t313 + dpsi_y*t314 + dpsi_z*t315
-                t321 = e1*t320
-                t322 = ep_y*t321
-                t323 = ep_z*t321
-                t324 = psi_z*t321
-                t325 = psi_y*t321
-                t326 = psi_y*t317
-                t327 = psi_z*t317
-                t328 = A_x*dpsi_y
-                t329 = Om_x*dep_y
-                t330 = dA_x*psi_y
-                t331 = dOm_x*ep_y
-                t332 = A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t328 - t329 - t330 - t331
-                t333 = A_x*dpsi_z
-                t334 = Om_x*dep_z
-                t335 = dA_x*psi_z
-                t336 = dOm_x*ep_z
-                t337 = A_z*dpsi_x
-                t338 = Om_z*dep_x
-                t339 = dA_z*psi_x
-                t340 = dOm_z*ep_x
-                t341 = t333 + t334 + t335 + t336 - t337 - t338 - t339 - t340
-                t342 = (e1*(dep_x*t313 + dep_y*t314 + dep_z*t315 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
+                t273 = A_y*dpsi_z
+                t274 = Om0_y*dep_z
+                t275 = Om_y*dep_z
+                t276 = dA_y*psi_z
+                t277 = dOm0_y*ep_z
+                t278 = dOm_y*ep_z
+                t279 = -Om_x*psi_y + Om_y*psi_x
+                t280 = dep_y*e0
+                t281 = Om0_x*psi_z - Om0_z*psi_x
+                t282 = dep_z*e0
+                t283 = Om0_x*ep_z - Om0_z*ep_x
+                t284 = dpsi_z*e0
+                t285 = -Om0_x*psi_y + Om0_y*psi_x
+                t286 = Om_x*psi_z - Om_z*psi_x
+                t287 = -Om0_x*ep_y + Om0_y*ep_x
+                t288 = dpsi_y*e0
+                t289 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
+                t290 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
+                t291 = e0*ep_y
+                t292 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
+                t293 = e0*ep_z
+                t294 = Om0_x*dep_z
+                t295 = dOm0_x*ep_z
+                t296 = Om0_z*dep_x
+                t297 = dOm0_z*ep_x
+                t298 = t294 + t295 - t296 - t297
+                t299 = e0*psi_z
+                t300 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
+                t301 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
+                t302 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
+                t303 = Om0_x*dep_y
+                t304 = dOm0_x*ep_y
+                t305 = Om0_y*dep_x + dOm0_y*ep_x - t303 - t304
+                t306 = e0*psi_y
+                t307 = 2*psi_x
+                t308 = 2*psi_y
+                t309 = 2*psi_z
+                t310 = ep_x*t307 + ep_y*t308 + ep_z*t309
+                t311 = e1*t310
+                t312 = dpsi_y*t311
+                t313 = dpsi_z*t311
+                t314 = dpsi_x*t307 + dpsi_y*t308 + dpsi_z*t309
+                t315 = e1*t314
+                t316 = ep_y*t315
+                t317 = ep_z*t315
+                t318 = psi_z*t315
+                t319 = psi_y*t315
+                t320 = psi_y*t311
+                t321 = psi_z*t311
+                t322 = A_x*dpsi_y
+                t323 = Om_x*dep_y
+                t324 = dA_x*psi_y
+                t325 = dOm_x*ep_y
+                t326 = A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t322 - t323 - t324 - t325
+                t327 = A_x*dpsi_z
+                t328 = Om_x*dep_z
+                t329 = dA_x*psi_z
+                t330 = dOm_x*ep_z
+                t331 = A_z*dpsi_x
+                t332 = Om_z*dep_x
+                t333 = dA_z*psi_x
+                t334 = dOm_z*ep_x
+                t335 = t327 + t328 + t329 + t330 - t331 - t332 - t333 - t334
+                t336 = (e1*(dep_x*t307 + dep_y*t308 + dep_z*t309 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
                     2*dpsi_z*ep_z))
-                t343 = psi_y*t285
-                t344 = psi_z*t342
-                t345 = t291*t342
-                t346 = e2*t316*t320
-                t347 = psi_z*t346
-                t348 = t291*t346
-                t349 = dep_x*e0
-                t350 = -Om_y*psi_z + Om_z*psi_y
-                t351 = dpsi_x*e0
-                t352 = -Om0_y*psi_z + Om0_z*psi_y
-                t353 = -Om0_y*ep_z + Om0_z*ep_y
-                t354 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                t355 = e0*ep_x
-                t356 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                t357 = e0*psi_x
-                t358 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                t359 = Om0_z*dep_y + dOm0_z*ep_y - t280 - t283
-                t360 = dpsi_x*t317
-                t361 = ep_x*t321
-                t362 = psi_x*t321
-                t363 = psi_x*t317
-                t364 = A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t279 - t281 - t282 - t284
-                t365 = psi_x*t342
-                t366 = psi_x*t346
-                t367 = psi_y*t342
-                t368 = psi_y*t346
+                t337 = psi_y*t279
+                t338 = psi_z*t336
+                t339 = t285*t336
+                t340 = e2*t310*t314
+                t341 = psi_z*t340
+                t342 = t285*t340
+                t343 = dep_x*e0
+                t344 = -Om_y*psi_z + Om_z*psi_y
+                t345 = dpsi_x*e0
+                t346 = -Om0_y*psi_z + Om0_z*psi_y
+                t347 = -Om0_y*ep_z + Om0_z*ep_y
+                t348 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
+                t349 = e0*ep_x
+                t350 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                t351 = e0*psi_x
+                t352 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
+                t353 = Om0_z*dep_y + dOm0_z*ep_y - t274 - t277
+                t354 = dpsi_x*t311
+                t355 = ep_x*t315
+                t356 = psi_x*t315
+                t357 = psi_x*t311
+                t358 = A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t273 - t275 - t276 - t278
+                t359 = psi_x*t336
+                t360 = psi_x*t340
+                t361 = psi_y*t336
+                t362 = psi_y*t340
                 detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om_z*dep_y + dA_x +
-                    (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y + (0.5)*dOm_z*ep_y - psi_y*t345 -
-                    psi_y*t348 - 0.5*t279 - 0.5*t280 - 0.5*t281 - 0.5*t282 - 0.5*t283 - 0.5*t284 +
-                    t285*t286 + t285*t318 + t285*t322 - t286*t291 + t287*t288 + t287*t319 +
-                    t287*t323 + t287*t344 + t287*t347 - t288*t292 + t289*t290 + t289*t324 -
-                    t290*t306 - t291*t318 - t291*t322 - t292*t319 - t292*t323 - t292*t344 -
-                    t292*t347 - t293*t294 - t293*t325 + t294*t295 + t295*t325 + t296*t297 +
-                    t296*t326 - t297*t307 + t298*t299 + t298*t327 - t299*t308 + t304*t305 -
-                    t305*t341 - t306*t324 - t307*t326 - t308*t327 - t311*t312 + t312*t332 +
-                    t342*t343 + t343*t346)
-                detad[j3 + 1] = (dA_y + psi_x*t345 + psi_x*t348 - t285*t349 - t285*t360 -
-                    t285*t361 - t285*t365 - t285*t366 + t288*t350 - t288*t352 - t290*t353 +
-                    t290*t354 + t291*t349 + t291*t360 + t291*t361 + t293*t351 + t293*t362 -
-                    t295*t351 - t295*t362 - t296*t355 - t296*t363 + t299*t356 - t299*t358 +
-                    (0.5)*t300 + (0.5)*t301 - 0.5*t302 - 0.5*t303 - t305*t359 + t305*t364 +
-                    t307*t355 + t307*t363 + t311*t357 + t319*t350 - t319*t352 + t323*t350 -
-                    t323*t352 - t324*t353 + t324*t354 + t327*t356 - t327*t358 - t332*t357 +
-                    (0.5)*t333 + (0.5)*t334 + (0.5)*t335 + (0.5)*t336 - 0.5*t337 - 0.5*t338 -
-                    0.5*t339 - 0.5*t340 + t344*t350 - t344*t352 + t347*t350 - t347*t352)
+                    (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y + (0.5)*dOm_z*ep_y - psi_y*t339 -
+                    psi_y*t342 - 0.5*t273 - 0.5*t274 - 0.5*t275 - 0.5*t276 - 0.5*t277 - 0.5*t278 +
+                    t279*t280 + t279*t312 + t279*t316 - t280*t285 + t281*t282 + t281*t313 +
+                    t281*t317 + t281*t338 + t281*t341 - t282*t286 + t283*t284 + t283*t318 -
+                    t284*t300 - t285*t312 - t285*t316 - t286*t313 - t286*t317 - t286*t338 -
+                    t286*t341 - t287*t288 - t287*t319 + t288*t289 + t289*t319 + t290*t291 +
+                    t290*t320 - t291*t301 + t292*t293 + t292*t321 - t293*t302 + t298*t299 -
+                    t299*t335 - t300*t318 - t301*t320 - t302*t321 - t305*t306 + t306*t326 +
+                    t336*t337 + t337*t340)
+                detad[j3 + 1] = (dA_y + psi_x*t339 + psi_x*t342 - t279*t343 - t279*t354 -
+                    t279*t355 - t279*t359 - t279*t360 + t282*t344 - t282*t346 - t284*t347 +
+                    t284*t348 + t285*t343 + t285*t354 + t285*t355 + t287*t345 + t287*t356 -
+                    t289*t345 - t289*t356 - t290*t349 - t290*t357 + t293*t350 - t293*t352 +
+                    (0.5)*t294 + (0.5)*t295 - 0.5*t296 - 0.5*t297 - t299*t353 + t299*t358 +
+                    t301*t349 + t301*t357 + t305*t351 + t313*t344 - t313*t346 + t317*t344 -
+                    t317*t346 - t318*t347 + t318*t348 + t321*t350 - t321*t352 - t326*t351 +
+                    (0.5)*t327 + (0.5)*t328 + (0.5)*t329 + (0.5)*t330 - 0.5*t331 - 0.5*t332 -
+                    0.5*t333 - 0.5*t334 + t338*t344 - t338*t346 + t341*t344 - t341*t346)
                 detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om_y*dep_x +
-                    (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x + (0.5)*dOm_y*ep_x - t286*t350 +
-                    t286*t352 - t287*t349 - t287*t360 - t287*t361 - t287*t365 - t287*t366 -
-                    t289*t351 - t289*t362 + t292*t349 + t292*t360 + t292*t361 + t292*t365 +
-                    t292*t366 + t294*t353 - t294*t354 - t297*t356 + t297*t358 - t298*t355 -
-                    t298*t363 - t304*t357 + t306*t351 + t306*t362 + t308*t355 + t308*t363 -
-                    0.5*t309 - 0.5*t310 + t312*t359 - t312*t364 - t318*t350 + t318*t352 -
-                    t322*t350 + t322*t352 + t325*t353 - t325*t354 - t326*t356 + t326*t358 -
-                    0.5*t328 - 0.5*t329 - 0.5*t330 - 0.5*t331 + t341*t357 - t350*t367 - t350*t368
-                    + t352*t367 + t352*t368)
+                    (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x + (0.5)*dOm_y*ep_x - t280*t344 +
+                    t280*t346 - t281*t343 - t281*t354 - t281*t355 - t281*t359 - t281*t360 -
+                    t283*t345 - t283*t356 + t286*t343 + t286*t354 + t286*t355 + t286*t359 +
+                    t286*t360 + t288*t347 - t288*t348 - t291*t350 + t291*t352 - t292*t349 -
+                    t292*t357 - t298*t351 + t300*t345 + t300*t356 + t302*t349 + t302*t357 -
+                    0.5*t303 - 0.5*t304 + t306*t353 - t306*t358 - t312*t344 + t312*t346 -
+                    t316*t344 + t316*t346 + t319*t347 - t319*t348 - t320*t350 + t320*t352 -
+                    0.5*t322 - 0.5*t323 - 0.5*t324 - 0.5*t325 + t335*t351 - t344*t361 - t344*t362
+                    + t346*t361 + t346*t362)
             # differential: rate: B rate = sum alpha_j T^-1(psi_j) rate_j
             rhs_x = rhs_y = rhs_z = 0.0
             for j in range(N_ROTATIONS):
@@ -1474,31 +1461,31 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t369 = (0.5)*dpsi_z
-                t370 = dpsi_x*e0
-                t371 = e0*psi_x
-                t372 = 2*dpsi_x*psi_x
-                t373 = 2*dpsi_y*psi_y
-                t374 = 2*dpsi_z*psi_z
-                t375 = e1*(t372 + t373 + t374)
-                t376 = psi_x*t375
-                t377 = dpsi_y*t371 + psi_y*t370 + psi_y*t376
-                t378 = Om0d_y*alpha_r
-                t379 = (0.5)*dpsi_y
-                t380 = dpsi_z*t371 + psi_z*t370 + psi_z*t376
-                t381 = Om0d_z*alpha_r
-                t382 = e0*t374 + psi_z*psi_z*t375
-                t383 = e0*t373 + psi_y*psi_y*t375
-                t384 = Om0d_x*alpha_r
-                t385 = (0.5)*dpsi_x
-                t386 = dpsi_y*e0*psi_z + dpsi_z*e0*psi_y + psi_y*psi_z*t375
-                t387 = e0*t372 + psi_x*psi_x*t375
-                rhs_x += (alpha_r*depd_x - t378*(t369 + t377) - t381*(-t379 + t380) - t384*(-t382
-                    - t383))
-                rhs_y += (alpha_r*depd_y - t378*(-t382 - t387) - t381*(t385 + t386) - t384*(-t369
-                    + t377))
-                rhs_z += (alpha_r*depd_z - t378*(-t385 + t386) - t381*(-t383 - t387) - t384*(t379
-                    + t380))
+                t363 = (0.5)*dpsi_z
+                t364 = dpsi_x*e0
+                t365 = e0*psi_x
+                t366 = 2*dpsi_x*psi_x
+                t367 = 2*dpsi_y*psi_y
+                t368 = 2*dpsi_z*psi_z
+                t369 = e1*(t366 + t367 + t368)
+                t370 = psi_x*t369
+                t371 = dpsi_y*t365 + psi_y*t364 + psi_y*t370
+                t372 = Om0d_y*alpha_r
+                t373 = (0.5)*dpsi_y
+                t374 = dpsi_z*t365 + psi_z*t364 + psi_z*t370
+                t375 = Om0d_z*alpha_r
+                t376 = e0*t368 + psi_z*psi_z*t369
+                t377 = e0*t367 + psi_y*psi_y*t369
+                t378 = Om0d_x*alpha_r
+                t379 = (0.5)*dpsi_x
+                t380 = dpsi_y*e0*psi_z + dpsi_z*e0*psi_y + psi_y*psi_z*t369
+                t381 = e0*t366 + psi_x*psi_x*t369
+                rhs_x += (alpha_r*depd_x - t372*(t363 + t371) - t375*(-t373 + t374) - t378*(-t376
+                    - t377))
+                rhs_y += (alpha_r*depd_y - t372*(-t376 - t381) - t375*(t379 + t380) - t378*(-t363
+                    + t371))
+                rhs_z += (alpha_r*depd_z - t372*(-t379 + t380) - t375*(-t377 - t381) - t378*(t373
+                    + t374))
             dOm0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dOm0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dOm0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1510,43 +1497,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t388 = (0.5)*psi_z
-                t389 = e0*psi_x
-                t390 = psi_y*t389
-                t391 = (0.5)*psi_y
-                t392 = psi_z*t389
-                t393 = psi_y*psi_y
-                t394 = e0*t393
-                t395 = psi_z*psi_z
-                t396 = e0*t395 - 1
-                t397 = (0.5)*dpsi_z
-                t398 = dpsi_x*e0
-                t399 = 2*dpsi_x*psi_x
-                t400 = 2*dpsi_y*psi_y
-                t401 = 2*dpsi_z*psi_z
-                t402 = e1*(t399 + t400 + t401)
-                t403 = psi_x*t402
-                t404 = dpsi_y*t389 + psi_y*t398 + psi_y*t403
-                t405 = (0.5)*dpsi_y
-                t406 = dpsi_z*t389 + psi_z*t398 + psi_z*t403
-                t407 = e0*t401 + t395*t402
-                t408 = e0*t400 + t393*t402
-                t409 = (0.5)*psi_x
-                t410 = e0*psi_z
-                t411 = psi_y*t410
-                t412 = psi_x*psi_x
-                t413 = e0*t412
-                t414 = (0.5)*dpsi_x
-                t415 = dpsi_y*t410 + dpsi_z*e0*psi_y + psi_y*psi_z*t402
-                t416 = e0*t399 + t402*t412
-                detad[j3] = (Om0d_x*(t407 + t408) + Om0d_y*(-t397 - t404) + Om0d_z*(t405 - t406) +
-                    dOm0d_x*(t394 + t396) + dOm0d_y*(-t388 - t390) + dOm0d_z*(t391 - t392) +
+                t382 = (0.5)*psi_z
+                t383 = e0*psi_x
+                t384 = psi_y*t383
+                t385 = (0.5)*psi_y
+                t386 = psi_z*t383
+                t387 = psi_y*psi_y
+                t388 = e0*t387
+                t389 = psi_z*psi_z
+                t390 = e0*t389 - 1
+                t391 = (0.5)*dpsi_z
+                t392 = dpsi_x*e0
+                t393 = 2*dpsi_x*psi_x
+                t394 = 2*dpsi_y*psi_y
+                t395 = 2*dpsi_z*psi_z
+                t396 = e1*(t393 + t394 + t395)
+                t397 = psi_x*t396
+                t398 = dpsi_y*t383 + psi_y*t392 + psi_y*t397
+                t399 = (0.5)*dpsi_y
+                t400 = dpsi_z*t383 + psi_z*t392 + psi_z*t397
+                t401 = e0*t395 + t389*t396
+                t402 = e0*t394 + t387*t396
+                t403 = (0.5)*psi_x
+                t404 = e0*psi_z
+                t405 = psi_y*t404
+                t406 = psi_x*psi_x
+                t407 = e0*t406
+                t408 = (0.5)*dpsi_x
+                t409 = dpsi_y*t404 + dpsi_z*e0*psi_y + psi_y*psi_z*t396
+                t410 = e0*t393 + t396*t406
+                detad[j3] = (Om0d_x*(t401 + t402) + Om0d_y*(-t391 - t398) + Om0d_z*(t399 - t400) +
+                    dOm0d_x*(t388 + t390) + dOm0d_y*(-t382 - t384) + dOm0d_z*(t385 - t386) +
                     depd_x)
-                detad[j3 + 1] = (Om0d_x*(t397 - t404) + Om0d_y*(t407 + t416) + Om0d_z*(-t414 -
-                    t415) + dOm0d_x*(t388 - t390) + dOm0d_y*(t396 + t413) + dOm0d_z*(-t409 - t411)
+                detad[j3 + 1] = (Om0d_x*(t391 - t398) + Om0d_y*(t401 + t410) + Om0d_z*(-t408 -
+                    t409) + dOm0d_x*(t382 - t384) + dOm0d_y*(t390 + t407) + dOm0d_z*(-t403 - t405)
                     + depd_y)
-                detad[j3 + 2] = (Om0d_x*(-t405 - t406) + Om0d_y*(t414 - t415) + Om0d_z*(t408 +
-                    t416) + dOm0d_x*(-t391 - t392) + dOm0d_y*(t409 - t411) + dOm0d_z*(t394 + t413
+                detad[j3 + 2] = (Om0d_x*(-t399 - t400) + Om0d_y*(t408 - t409) + Om0d_z*(t402 +
+                    t410) + dOm0d_x*(-t385 - t386) + dOm0d_y*(t403 - t405) + dOm0d_z*(t388 + t407
                     - 1) + depd_z)
             # differential: rate: rates of the elastic displacements
             for i in range(N_POSITIONS):
@@ -1559,21 +1546,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                 dacc_x, dacc_y, dacc_z = dacc[i3], dacc[i3 + 1], dacc[i3 + 2]
                 deu_x, deu_y, deu_z = deta[i3], deta[i3 + 1], deta[i3 + 2]
-                t417 = X_y + u_y
-                t418 = X_z + u_z
-                t419 = X_x + u_x
+                t411 = X_y + u_y
+                t412 = X_z + u_z
+                t413 = X_x + u_x
                 detad[i3] = (-Om0_y*deu_z + Om0_y*dv0_z - Om0_y*dvs_z + Om0_z*deu_y - Om0_z*dv0_y
                     + Om0_z*dvs_y - Om0d_y*du_z + Om0d_z*du_y - dOm0_y*eu_z + dOm0_y*v0_z -
-                    dOm0_y*vs_z + dOm0_z*eu_y - dOm0_z*v0_y + dOm0_z*vs_y - dOm0d_y*t418 +
-                    dOm0d_z*t417 - da0_x + dacc_x)
+                    dOm0_y*vs_z + dOm0_z*eu_y - dOm0_z*v0_y + dOm0_z*vs_y - dOm0d_y*t412 +
+                    dOm0d_z*t411 - da0_x + dacc_x)
                 detad[i3 + 1] = (Om0_x*deu_z - Om0_x*dv0_z + Om0_x*dvs_z - Om0_z*deu_x +
                     Om0_z*dv0_x - Om0_z*dvs_x + Om0d_x*du_z - Om0d_z*du_x + dOm0_x*eu_z -
                     dOm0_x*v0_z + dOm0_x*vs_z - dOm0_z*eu_x + dOm0_z*v0_x - dOm0_z*vs_x +
-                    dOm0d_x*t418 - dOm0d_z*t419 - da0_y + dacc_y)
+                    dOm0d_x*t412 - dOm0d_z*t413 - da0_y + dacc_y)
                 detad[i3 + 2] = (-Om0_x*deu_y + Om0_x*dv0_y - Om0_x*dvs_y + Om0_y*deu_x -
                     Om0_y*dv0_x + Om0_y*dvs_x - Om0d_x*du_y + Om0d_y*du_x - dOm0_x*eu_y +
                     dOm0_x*v0_y - dOm0_x*vs_y + dOm0_y*eu_x - dOm0_y*v0_x + dOm0_y*vs_x -
-                    dOm0d_x*t417 + dOm0d_y*t419 - da0_z + dacc_z)
+                    dOm0d_x*t411 + dOm0d_y*t413 - da0_z + dacc_z)
             # differential: rate: rates of the internal modes
             for k in range(MODES, n):
                 dam = dae[k]
@@ -1593,12 +1580,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
             dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-            t420 = da0_x - dgamma_x
-            t421 = da0_y - dgamma_y
-            t422 = da0_z - dgamma_z
-            dzdd[N] = t420*turn_xx + t421*turn_yx + t422*turn_zx
-            dzdd[N + 1] = t420*turn_xy + t421*turn_yy + t422*turn_zy
-            dzdd[N + 2] = t420*turn_xz + t421*turn_yz + t422*turn_zz
+            t414 = da0_x - dgamma_x
+            t415 = da0_y - dgamma_y
+            t416 = da0_z - dgamma_z
+            dzdd[N] = t414*turn_xx + t415*turn_yx + t416*turn_zx
+            dzdd[N + 1] = t414*turn_xy + t415*turn_yy + t416*turn_zy
+            dzdd[N + 2] = t414*turn_xz + t415*turn_yz + t416*turn_zz
             dzdd[N + 3] = dOm0d_x*turn_xx + dOm0d_y*turn_yx + dOm0d_z*turn_zx
             dzdd[N + 4] = dOm0d_x*turn_xy + dOm0d_y*turn_yy + dOm0d_z*turn_zy
             dzdd[N + 5] = dOm0d_x*turn_xz + dOm0d_y*turn_yz + dOm0d_z*turn_zz
@@ -1623,15 +1610,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                t423 = X_z + u_z
-                t424 = X_y + u_y
-                t425 = X_x + u_x
+                t417 = X_z + u_z
+                t418 = X_y + u_y
+                t419 = X_x + u_x
                 dF_x += -df_x
                 dF_y += -df_y
                 dF_z += -df_z
-                dW_x += df_y*t423 - df_z*t424 - du_y*f_z + du_z*f_y
-                dW_y += -df_x*t423 + df_z*t425 + du_x*f_z - du_z*f_x
-                dW_z += df_x*t424 - df_y*t425 - du_x*f_y + du_y*f_x
+                dW_x += df_y*t417 - df_z*t418 - du_y*f_z + du_z*f_y
+                dW_y += -df_x*t417 + df_z*t419 + du_x*f_z - du_z*f_x
+                dW_z += df_x*t418 - df_y*t419 - du_x*f_y + du_y*f_x
             # differential: inertia and weight on the frame
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
@@ -1652,25 +1639,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t426 = -m_x*psi_y + m_y*psi_x
-                t427 = m_x*psi_z - m_z*psi_x
-                t428 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                t429 = dm_x*psi_z
-                t430 = dpsi_z*m_x
-                t431 = -dm_z*psi_x - dpsi_x*m_z + t429 + t430
-                t432 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t433 = e1*t432
-                t434 = -m_y*psi_z + m_z*psi_y
-                t435 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t426 -
-                    0.5*dpsi_y*m_z + dpsi_z*e0*t427 + (0.5)*dpsi_z*m_y - e0*psi_y*t428 +
-                    e0*psi_z*t431 + e1*psi_z*t427*t432 - psi_y*t426*t433)
-                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t426 + (0.5)*dpsi_x*m_z -
-                    dpsi_z*e0*t434 + e0*psi_x*t428 - e0*psi_z*t435 + e1*psi_x*t426*t432 -
-                    psi_z*t433*t434 - 0.5*t429 - 0.5*t430)
-                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t427 -
-                    0.5*dpsi_x*m_y + dpsi_y*e0*t434 + (0.5)*dpsi_y*m_x - e0*psi_x*t431 +
-                    e0*psi_y*t435 + e1*psi_y*t432*t434 - psi_x*t427*t433)
+                t420 = -m_x*psi_y + m_y*psi_x
+                t421 = m_x*psi_z - m_z*psi_x
+                t422 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                t423 = dm_x*psi_z
+                t424 = dpsi_z*m_x
+                t425 = -dm_z*psi_x - dpsi_x*m_z + t423 + t424
+                t426 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t427 = e1*t426
+                t428 = -m_y*psi_z + m_z*psi_y
+                t429 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t420 -
+                    0.5*dpsi_y*m_z + dpsi_z*e0*t421 + (0.5)*dpsi_z*m_y - e0*psi_y*t422 +
+                    e0*psi_z*t425 + e1*psi_z*t421*t426 - psi_y*t420*t427)
+                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t420 + (0.5)*dpsi_x*m_z -
+                    dpsi_z*e0*t428 + e0*psi_x*t422 - e0*psi_z*t429 + e1*psi_x*t420*t426 -
+                    psi_z*t427*t428 - 0.5*t423 - 0.5*t424)
+                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t421 -
+                    0.5*dpsi_x*m_y + dpsi_y*e0*t428 + (0.5)*dpsi_y*m_x - e0*psi_x*t425 +
+                    e0*psi_y*t429 + e1*psi_y*t426*t428 - psi_x*t421*t427)
             # differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
             for j in range(N_ROTATIONS):
@@ -1680,33 +1667,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t436 = dpsi_y*wp_z
-                t437 = dpsi_z*wp_y
-                t438 = psi_x*wp_y - psi_y*wp_x
-                t439 = e0*t438
-                t440 = dpsi_x*wp_y
-                t441 = dpsi_y*wp_x
-                t442 = e0*(t440 - t441)
-                t443 = -psi_x*wp_z + psi_z*wp_x
-                t444 = dpsi_x*wp_z
-                t445 = dpsi_z*wp_x - t444
-                t446 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t447 = e1*t446
-                t448 = t438*t447
-                t449 = psi_y*wp_z - psi_z*wp_y
-                t450 = t436 - t437
-                rhs_x += (-alpha_r*(dpsi_y*t439 - dpsi_z*e0*t443 - e0*psi_z*t445 + psi_y*t442 +
-                    psi_y*t448 - psi_z*t443*t447 + (0.5)*t436 - 0.5*t437))
-                rhs_y += (-alpha_r*(-dpsi_x*t439 + dpsi_z*e0*t449 + (0.5)*dpsi_z*wp_x +
-                    e0*psi_z*t450 + e1*psi_z*t446*t449 - psi_x*t442 - psi_x*t448 - 0.5*t444))
-                rhs_z += (-alpha_r*(dpsi_x*e0*t443 - dpsi_y*e0*t449 + e0*psi_x*t445 -
-                    e0*psi_y*t450 + psi_x*t443*t447 - psi_y*t447*t449 + (0.5)*t440 - 0.5*t441))
-            t451 = dW_x + rhs_x
-            t452 = dW_y + rhs_y
-            t453 = dW_z + rhs_z
-            dwp_x = Bxx*t451 + Byx*t452 + Bzx*t453
-            dwp_y = Bxy*t451 + Byy*t452 + Bzy*t453
-            dwp_z = Bxz*t451 + Byz*t452 + Bzz*t453
+                t430 = dpsi_y*wp_z
+                t431 = dpsi_z*wp_y
+                t432 = psi_x*wp_y - psi_y*wp_x
+                t433 = e0*t432
+                t434 = dpsi_x*wp_y
+                t435 = dpsi_y*wp_x
+                t436 = e0*(t434 - t435)
+                t437 = -psi_x*wp_z + psi_z*wp_x
+                t438 = dpsi_x*wp_z
+                t439 = dpsi_z*wp_x - t438
+                t440 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t441 = e1*t440
+                t442 = t432*t441
+                t443 = psi_y*wp_z - psi_z*wp_y
+                t444 = t430 - t431
+                rhs_x += (-alpha_r*(dpsi_y*t433 - dpsi_z*e0*t437 - e0*psi_z*t439 + psi_y*t436 +
+                    psi_y*t442 - psi_z*t437*t441 + (0.5)*t430 - 0.5*t431))
+                rhs_y += (-alpha_r*(-dpsi_x*t433 + dpsi_z*e0*t443 + (0.5)*dpsi_z*wp_x +
+                    e0*psi_z*t444 + e1*psi_z*t440*t443 - psi_x*t436 - psi_x*t442 - 0.5*t438))
+                rhs_z += (-alpha_r*(dpsi_x*e0*t437 - dpsi_y*e0*t443 + e0*psi_x*t439 -
+                    e0*psi_y*t444 + psi_x*t437*t441 - psi_y*t441*t443 + (0.5)*t434 - 0.5*t435))
+            t445 = dW_x + rhs_x
+            t446 = dW_y + rhs_y
+            t447 = dW_z + rhs_z
+            dwp_x = Bxx*t445 + Byx*t446 + Bzx*t447
+            dwp_y = Bxy*t445 + Byy*t446 + Bzy*t447
+            dwp_z = Bxz*t445 + Byz*t446 + Bzz*t447
             # differential: force on the nodes in frame axes, (30), (57)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -1733,58 +1720,58 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t454 = dm_y*psi_z
-                t455 = dpsi_z*m_y
-                t456 = -m_x*psi_y + m_y*psi_x
-                t457 = dpsi_y*e0
-                t458 = m_x*psi_z - m_z*psi_x
-                t459 = dpsi_z*e0
-                t460 = dm_x*psi_y
-                t461 = dpsi_y*m_x
-                t462 = dm_y*psi_x + dpsi_x*m_y - t460 - t461
-                t463 = e0*psi_y
-                t464 = dm_x*psi_z
-                t465 = dpsi_z*m_x
-                t466 = dm_z*psi_x
-                t467 = dpsi_x*m_z
-                t468 = t464 + t465 - t466 - t467
-                t469 = e0*psi_z
-                t470 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                t471 = psi_y*t470
-                t472 = psi_z*t470
-                t473 = dpsi_y*wp_z
-                t474 = dpsi_z*wp_y
-                t475 = dwp_y*psi_z
-                t476 = dwp_z*psi_y
-                t477 = psi_x*wp_y - psi_y*wp_x
-                t478 = -psi_x*wp_z + psi_z*wp_x
-                t479 = dpsi_x*wp_y
-                t480 = dwp_y*psi_x
-                t481 = dpsi_y*wp_x
-                t482 = dwp_x*psi_y
-                t483 = t479 + t480 - t481 - t482
-                t484 = dpsi_x*wp_z
-                t485 = dwp_z*psi_x
-                t486 = dpsi_z*wp_x + dwp_x*psi_z - t484 - t485
-                t487 = -m_y*psi_z + m_z*psi_y
-                t488 = dpsi_x*e0
-                t489 = dm_z*psi_y + dpsi_y*m_z - t454 - t455
-                t490 = e0*psi_x
-                t491 = psi_x*t470
-                t492 = psi_y*wp_z - psi_z*wp_y
-                t493 = t473 - t474 - t475 + t476
-                dg[j3] = (alpha_r*(dwp_x + t457*t477 - t459*t478 + t463*t483 - t469*t486 +
-                    t471*t477 - t472*t478 - 0.5*t473 + (0.5)*t474 + (0.5)*t475 - 0.5*t476) + dm_x
-                    - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + (0.5)*t454 + (0.5)*t455 + t456*t457 +
-                    t456*t471 - t458*t459 - t458*t472 + t462*t463 - t468*t469)
-                dg[j3 + 1] = (alpha_r*(-0.5*dpsi_z*wp_x - 0.5*dwp_x*psi_z + dwp_y + t459*t492 +
-                    t469*t493 + t472*t492 - t477*t488 - t477*t491 - t483*t490 + (0.5)*t484 +
-                    (0.5)*t485) + dm_y - t456*t488 - t456*t491 + t459*t487 - t462*t490 - 0.5*t464
-                    - 0.5*t465 + (0.5)*t466 + (0.5)*t467 + t469*t489 + t472*t487)
-                dg[j3 + 2] = (alpha_r*(dwp_z - t457*t492 - t463*t493 - t471*t492 + t478*t488 +
-                    t478*t491 - 0.5*t479 - 0.5*t480 + (0.5)*t481 + (0.5)*t482 + t486*t490) -
-                    0.5*dm_y*psi_x + dm_z - 0.5*dpsi_x*m_y - t457*t487 + t458*t488 + t458*t491 +
-                    (0.5)*t460 + (0.5)*t461 - t463*t489 + t468*t490 - t471*t487)
+                t448 = dm_y*psi_z
+                t449 = dpsi_z*m_y
+                t450 = -m_x*psi_y + m_y*psi_x
+                t451 = dpsi_y*e0
+                t452 = m_x*psi_z - m_z*psi_x
+                t453 = dpsi_z*e0
+                t454 = dm_x*psi_y
+                t455 = dpsi_y*m_x
+                t456 = dm_y*psi_x + dpsi_x*m_y - t454 - t455
+                t457 = e0*psi_y
+                t458 = dm_x*psi_z
+                t459 = dpsi_z*m_x
+                t460 = dm_z*psi_x
+                t461 = dpsi_x*m_z
+                t462 = t458 + t459 - t460 - t461
+                t463 = e0*psi_z
+                t464 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                t465 = psi_y*t464
+                t466 = psi_z*t464
+                t467 = dpsi_y*wp_z
+                t468 = dpsi_z*wp_y
+                t469 = dwp_y*psi_z
+                t470 = dwp_z*psi_y
+                t471 = psi_x*wp_y - psi_y*wp_x
+                t472 = -psi_x*wp_z + psi_z*wp_x
+                t473 = dpsi_x*wp_y
+                t474 = dwp_y*psi_x
+                t475 = dpsi_y*wp_x
+                t476 = dwp_x*psi_y
+                t477 = t473 + t474 - t475 - t476
+                t478 = dpsi_x*wp_z
+                t479 = dwp_z*psi_x
+                t480 = dpsi_z*wp_x + dwp_x*psi_z - t478 - t479
+                t481 = -m_y*psi_z + m_z*psi_y
+                t482 = dpsi_x*e0
+                t483 = dm_z*psi_y + dpsi_y*m_z - t448 - t449
+                t484 = e0*psi_x
+                t485 = psi_x*t464
+                t486 = psi_y*wp_z - psi_z*wp_y
+                t487 = t467 - t468 - t469 + t470
+                dg[j3] = (alpha_r*(dwp_x + t451*t471 - t453*t472 + t457*t477 - t463*t480 +
+                    t465*t471 - t466*t472 - 0.5*t467 + (0.5)*t468 + (0.5)*t469 - 0.5*t470) + dm_x
+                    - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + (0.5)*t448 + (0.5)*t449 + t450*t451 +
+                    t450*t465 - t452*t453 - t452*t466 + t456*t457 - t462*t463)
+                dg[j3 + 1] = (alpha_r*(-0.5*dpsi_z*wp_x - 0.5*dwp_x*psi_z + dwp_y + t453*t486 +
+                    t463*t487 + t466*t486 - t471*t482 - t471*t485 - t477*t484 + (0.5)*t478 +
+                    (0.5)*t479) + dm_y - t450*t482 - t450*t485 + t453*t481 - t456*t484 - 0.5*t458
+                    - 0.5*t459 + (0.5)*t460 + (0.5)*t461 + t463*t483 + t466*t481)
+                dg[j3 + 2] = (alpha_r*(dwp_z - t451*t486 - t457*t487 - t465*t486 + t472*t482 +
+                    t472*t485 - 0.5*t473 - 0.5*t474 + (0.5)*t475 + (0.5)*t476 + t480*t484) -
+                    0.5*dm_y*psi_x + dm_z - 0.5*dpsi_x*m_y - t451*t481 + t452*t482 + t452*t485 +
+                    (0.5)*t454 + (0.5)*t455 - t457*t483 + t462*t484 - t465*t481)
             # differential: force of the internal modes
             for k in range(MODES, n):
                 dfm = ds[k]
@@ -1889,98 +1876,98 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdgt_x, bdgt_y, bdgt_z = bdg[j3], bdg[j3 + 1], bdg[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t494 = e0*psi_y
-                t495 = m_y*t494
-                t496 = e0*psi_z
-                t497 = m_z*t496
-                t498 = m_x*psi_y
-                t499 = m_y*psi_x - t498
-                t500 = 2*e1
-                t501 = psi_x*t500
-                t502 = psi_y*t501
-                t503 = t499*t502
-                t504 = m_x*psi_z
-                t505 = m_z*psi_x
-                t506 = t504 - t505
-                t507 = psi_z*t501
-                t508 = t506*t507
-                t509 = t494*wp_y
-                t510 = t496*wp_z
-                t511 = psi_x*wp_y
-                t512 = psi_y*wp_x
-                t513 = t511 - t512
-                t514 = t502*t513
-                t515 = psi_x*wp_z
-                t516 = psi_z*wp_x - t515
-                t517 = t507*t516
-                t518 = (0.5)*m_y
-                t519 = e0*t506
-                t520 = m_y*psi_z
-                t521 = m_z*psi_y - t520
-                t522 = psi_x*psi_x
-                t523 = t500*t522
-                t524 = (0.5)*wp_y
-                t525 = e0*t516
-                t526 = psi_y*wp_z
-                t527 = psi_z*wp_y
-                t528 = t526 - t527
-                t529 = (0.5)*m_z
-                t530 = e0*t499
-                t531 = (0.5)*wp_z
-                t532 = e0*t513
-                t533 = e0*psi_x
-                t534 = m_x*t533
-                t535 = psi_y*psi_z*t500
-                t536 = t521*t535
-                t537 = t533*wp_x
-                t538 = t528*t535
-                t539 = psi_y*psi_y
-                t540 = t500*t539
-                t541 = (0.5)*m_x
-                t542 = e0*t521
-                t543 = (0.5)*wp_x
-                t544 = e0*t528
-                t545 = psi_z*psi_z
-                t546 = t500*t545
-                t547 = (0.5)*psi_z
-                t548 = psi_x*t494
-                t549 = bdgt_y*(-t547 + t548)
-                t550 = (0.5)*psi_y
-                t551 = psi_x*t496
-                t552 = bdgt_z*(t550 + t551)
-                t553 = e0*t539
-                t554 = e0*t545 - 1
-                t555 = bdgt_x*(-t553 - t554)
-                t556 = bdgt_x*(t547 + t548)
-                t557 = (0.5)*psi_x
-                t558 = psi_z*t494
-                t559 = bdgt_z*(-t557 + t558)
-                t560 = e0*t522
-                t561 = bdgt_y*(-t554 - t560)
-                t562 = bdgt_x*(-t550 + t551)
-                t563 = bdgt_y*(t557 + t558)
-                t564 = bdgt_z*(-t553 - t560 + 1)
-                bdy[j3] += (bdgt_x*(alpha_r*(t509 + t510 + t514 - t517) + t495 + t497 + t503 -
-                    t508) + bdgt_y*(alpha_r*(-e0*t511 + 2*e1*psi_x*psi_z*t528 - t513*t523 + t531 -
-                    t532) - e0*m_y*psi_x - t499*t523 + t507*t521 + t529 - t530) +
-                    bdgt_z*(alpha_r*(-e0*t515 + 2*e1*t516*t522 - t502*t528 - t524 + t525) -
-                    e0*t505 - t502*t521 + t506*t523 - t518 + t519))
-                bdy[j3 + 1] += (bdgt_x*(alpha_r*(-e0*t512 + 2*e1*t513*t539 - t516*t535 - t531 +
-                    t532) - e0*t498 + t499*t540 - t506*t535 - t529 + t530) + bdgt_y*(alpha_r*(t510
-                    - t514 + t537 + t538) + t497 - t503 + t534 + t536) + bdgt_z*(alpha_r*(-e0*t526
-                    + 2*e1*psi_x*psi_y*t516 - t528*t540 + t543 - t544) - e0*m_z*psi_y + t502*t506
-                    - t521*t540 + t541 - t542))
-                bdy[j3 + 2] += (bdgt_x*(alpha_r*(-e0*psi_z*wp_x + 2*e1*psi_y*psi_z*t513 -
-                    t516*t546 + t524 - t525) - e0*t504 + t499*t535 - t506*t546 + t518 - t519) +
-                    bdgt_y*(alpha_r*(-e0*t527 + 2*e1*t528*t545 - t507*t513 - t543 + t544) -
-                    e0*t520 - t499*t507 + t521*t546 - t541 + t542) + bdgt_z*(alpha_r*(t509 + t517
-                    + t537 - t538) + t495 + t508 + t534 - t536))
-                bds[j3] += t549 + t552 + t555
-                bds[j3 + 1] += t556 + t559 + t561
-                bds[j3 + 2] += t562 + t563 + t564
-                bdwp_x += alpha_r*t549 + alpha_r*t552 + alpha_r*t555
-                bdwp_y += alpha_r*t556 + alpha_r*t559 + alpha_r*t561
-                bdwp_z += alpha_r*t562 + alpha_r*t563 + alpha_r*t564
+                t488 = e0*psi_y
+                t489 = m_y*t488
+                t490 = e0*psi_z
+                t491 = m_z*t490
+                t492 = m_x*psi_y
+                t493 = m_y*psi_x - t492
+                t494 = 2*e1
+                t495 = psi_x*t494
+                t496 = psi_y*t495
+                t497 = t493*t496
+                t498 = m_x*psi_z
+                t499 = m_z*psi_x
+                t500 = t498 - t499
+                t501 = psi_z*t495
+                t502 = t500*t501
+                t503 = t488*wp_y
+                t504 = t490*wp_z
+                t505 = psi_x*wp_y
+                t506 = psi_y*wp_x
+                t507 = t505 - t506
+                t508 = t496*t507
+                t509 = psi_x*wp_z
+                t510 = psi_z*wp_x - t509
+                t511 = t501*t510
+                t512 = (0.5)*m_y
+                t513 = e0*t500
+                t514 = m_y*psi_z
+                t515 = m_z*psi_y - t514
+                t516 = psi_x*psi_x
+                t517 = t494*t516
+                t518 = (0.5)*wp_y
+                t519 = e0*t510
+                t520 = psi_y*wp_z
+                t521 = psi_z*wp_y
+                t522 = t520 - t521
+                t523 = (0.5)*m_z
+                t524 = e0*t493
+                t525 = (0.5)*wp_z
+                t526 = e0*t507
+                t527 = e0*psi_x
+                t528 = m_x*t527
+                t529 = psi_y*psi_z*t494
+                t530 = t515*t529
+                t531 = t527*wp_x
+                t532 = t522*t529
+                t533 = psi_y*psi_y
+                t534 = t494*t533
+                t535 = (0.5)*m_x
+                t536 = e0*t515
+                t537 = (0.5)*wp_x
+                t538 = e0*t522
+                t539 = psi_z*psi_z
+                t540 = t494*t539
+                t541 = (0.5)*psi_z
+                t542 = psi_x*t488
+                t543 = bdgt_y*(-t541 + t542)
+                t544 = (0.5)*psi_y
+                t545 = psi_x*t490
+                t546 = bdgt_z*(t544 + t545)
+                t547 = e0*t533
+                t548 = e0*t539 - 1
+                t549 = bdgt_x*(-t547 - t548)
+                t550 = bdgt_x*(t541 + t542)
+                t551 = (0.5)*psi_x
+                t552 = psi_z*t488
+                t553 = bdgt_z*(-t551 + t552)
+                t554 = e0*t516
+                t555 = bdgt_y*(-t548 - t554)
+                t556 = bdgt_x*(-t544 + t545)
+                t557 = bdgt_y*(t551 + t552)
+                t558 = bdgt_z*(-t547 - t554 + 1)
+                bdy[j3] += (bdgt_x*(alpha_r*(t503 + t504 + t508 - t511) + t489 + t491 + t497 -
+                    t502) + bdgt_y*(alpha_r*(-e0*t505 + 2*e1*psi_x*psi_z*t522 - t507*t517 + t525 -
+                    t526) - e0*m_y*psi_x - t493*t517 + t501*t515 + t523 - t524) +
+                    bdgt_z*(alpha_r*(-e0*t509 + 2*e1*t510*t516 - t496*t522 - t518 + t519) -
+                    e0*t499 - t496*t515 + t500*t517 - t512 + t513))
+                bdy[j3 + 1] += (bdgt_x*(alpha_r*(-e0*t506 + 2*e1*t507*t533 - t510*t529 - t525 +
+                    t526) - e0*t492 + t493*t534 - t500*t529 - t523 + t524) + bdgt_y*(alpha_r*(t504
+                    - t508 + t531 + t532) + t491 - t497 + t528 + t530) + bdgt_z*(alpha_r*(-e0*t520
+                    + 2*e1*psi_x*psi_y*t510 - t522*t534 + t537 - t538) - e0*m_z*psi_y + t496*t500
+                    - t515*t534 + t535 - t536))
+                bdy[j3 + 2] += (bdgt_x*(alpha_r*(-e0*psi_z*wp_x + 2*e1*psi_y*psi_z*t507 -
+                    t510*t540 + t518 - t519) - e0*t498 + t493*t529 - t500*t540 + t512 - t513) +
+                    bdgt_y*(alpha_r*(-e0*t521 + 2*e1*t522*t539 - t501*t507 - t537 + t538) -
+                    e0*t514 - t493*t501 + t515*t540 - t535 + t536) + bdgt_z*(alpha_r*(t503 + t511
+                    + t531 - t532) + t489 + t502 + t528 - t530))
+                bds[j3] += t543 + t546 + t549
+                bds[j3 + 1] += t550 + t553 + t555
+                bds[j3 + 2] += t556 + t557 + t558
+                bdwp_x += alpha_r*t543 + alpha_r*t546 + alpha_r*t549
+                bdwp_y += alpha_r*t550 + alpha_r*t553 + alpha_r*t555
+                bdwp_z += alpha_r*t556 + alpha_r*t557 + alpha_r*t558
             # transposed: differential: force on the nodes, left in frame axes
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -2005,12 +1992,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdF_z += alpha*bdh_z
             # transposed: differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
-            t565 = bdwp_x + rhs_x
-            t566 = bdwp_y + rhs_y
-            t567 = bdwp_z + rhs_z
-            mdwp_x = Bxx*t565 + Bxy*t566 + Bxz*t567
-            mdwp_y = Byx*t565 + Byy*t566 + Byz*t567
-            mdwp_z = Bzx*t565 + Bzy*t566 + Bzz*t567
+            t559 = bdwp_x + rhs_x
+            t560 = bdwp_y + rhs_y
+            t561 = bdwp_z + rhs_z
+            mdwp_x = Bxx*t559 + Bxy*t560 + Bxz*t561
+            mdwp_y = Byx*t559 + Byy*t560 + Byz*t561
+            mdwp_z = Bzx*t559 + Bzy*t560 + Bzz*t561
             # transposed: differential: B^T wp = W
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -2018,41 +2005,41 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t568 = e0*psi_y*wp_y
-                t569 = e0*psi_z*wp_z
-                t570 = psi_x*wp_y
-                t571 = psi_y*wp_x
-                t572 = t570 - t571
-                t573 = 2*e1
-                t574 = psi_x*t573
-                t575 = psi_y*t574
-                t576 = t572*t575
-                t577 = psi_x*wp_z
-                t578 = psi_z*wp_x - t577
-                t579 = psi_z*t574
-                t580 = t578*t579
-                t581 = alpha_r*mdwp_x
-                t582 = psi_x*psi_x*t573
-                t583 = psi_y*wp_z
-                t584 = psi_z*wp_y
-                t585 = t583 - t584
-                t586 = e0*t578 + (0.5)*wp_y
-                t587 = alpha_r*mdwp_z
-                t588 = e0*t572 + (0.5)*wp_z
-                t589 = alpha_r*mdwp_y
-                t590 = e0*psi_x*wp_x
-                t591 = psi_y*psi_z*t573
-                t592 = t585*t591
-                t593 = psi_y*psi_y*t573
-                t594 = e0*t585 + (0.5)*wp_x
-                t595 = psi_z*psi_z*t573
-                bdy[j3] += (-t581*(t568 + t569 + t576 - t580) - t587*(-e0*t577 - t575*t585 +
-                    t578*t582 + t586) - t589*(-e0*t570 + 2*e1*psi_x*psi_z*t585 - t572*t582 - t588))
-                bdy[j3 + 1] += (-t581*(-e0*t571 + t572*t593 - t578*t591 + t588) - t587*(-e0*t583 +
-                    2*e1*psi_x*psi_y*t578 - t585*t593 - t594) - t589*(t569 - t576 + t590 + t592))
-                bdy[j3 + 2] += (-t581*(-e0*psi_z*wp_x + 2*e1*psi_y*psi_z*t572 - t578*t595 - t586)
-                    - t587*(t568 + t580 + t590 - t592) - t589*(-e0*t584 - t572*t579 + t585*t595 +
-                    t594))
+                t562 = e0*psi_y*wp_y
+                t563 = e0*psi_z*wp_z
+                t564 = psi_x*wp_y
+                t565 = psi_y*wp_x
+                t566 = t564 - t565
+                t567 = 2*e1
+                t568 = psi_x*t567
+                t569 = psi_y*t568
+                t570 = t566*t569
+                t571 = psi_x*wp_z
+                t572 = psi_z*wp_x - t571
+                t573 = psi_z*t568
+                t574 = t572*t573
+                t575 = alpha_r*mdwp_x
+                t576 = psi_x*psi_x*t567
+                t577 = psi_y*wp_z
+                t578 = psi_z*wp_y
+                t579 = t577 - t578
+                t580 = e0*t572 + (0.5)*wp_y
+                t581 = alpha_r*mdwp_z
+                t582 = e0*t566 + (0.5)*wp_z
+                t583 = alpha_r*mdwp_y
+                t584 = e0*psi_x*wp_x
+                t585 = psi_y*psi_z*t567
+                t586 = t579*t585
+                t587 = psi_y*psi_y*t567
+                t588 = e0*t579 + (0.5)*wp_x
+                t589 = psi_z*psi_z*t567
+                bdy[j3] += (-t575*(t562 + t563 + t570 - t574) - t581*(-e0*t571 - t569*t579 +
+                    t572*t576 + t580) - t583*(-e0*t564 + 2*e1*psi_x*psi_z*t579 - t566*t576 - t582))
+                bdy[j3 + 1] += (-t575*(-e0*t565 + t566*t587 - t572*t585 + t582) - t581*(-e0*t577 +
+                    2*e1*psi_x*psi_y*t572 - t579*t587 - t588) - t583*(t563 - t570 + t584 + t586))
+                bdy[j3 + 2] += (-t575*(-e0*psi_z*wp_x + 2*e1*psi_y*psi_z*t566 - t572*t589 - t580)
+                    - t581*(t562 + t574 + t584 - t586) - t583*(-e0*t578 - t566*t573 + t579*t589 +
+                    t588))
             # transposed: differential: B^T wp = W
             bdW_x += mdwp_x
             bdW_y += mdwp_y
@@ -2064,53 +2051,53 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t596 = e0*psi_y
-                t597 = m_y*t596
-                t598 = e0*psi_z
-                t599 = m_z*t598
-                t600 = -m_x*psi_y + m_y*psi_x
-                t601 = 2*e1
-                t602 = psi_x*t601
-                t603 = psi_y*t602
-                t604 = t600*t603
-                t605 = m_x*psi_z
-                t606 = -m_z*psi_x + t605
-                t607 = psi_z*t602
-                t608 = t606*t607
-                t609 = psi_x*psi_x
-                t610 = t601*t609
-                t611 = -m_y*psi_z + m_z*psi_y
-                t612 = e0*t600 + (0.5)*m_z
-                t613 = e0*t606 + (0.5)*m_y
-                t614 = e0*m_x*psi_x
-                t615 = psi_y*psi_z*t601
-                t616 = t611*t615
-                t617 = psi_y*psi_y
-                t618 = t601*t617
-                t619 = e0*t611 + (0.5)*m_x
-                t620 = psi_z*psi_z
-                t621 = t601*t620
-                t622 = (0.5)*psi_z
-                t623 = psi_x*t596
-                t624 = (0.5)*psi_y
-                t625 = psi_x*t598
-                t626 = e0*t617
-                t627 = e0*t620 - 1
-                t628 = (0.5)*psi_x
-                t629 = psi_z*t596
-                t630 = e0*t609
-                bdy[j3] += (bdW_x*(-t597 - t599 - t604 + t608) + bdW_y*(e0*m_y*psi_x + t600*t610 -
-                    t607*t611 + t612) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t611 - t606*t610 -
-                    t613))
-                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t606 - t600*t618 - t612) +
-                    bdW_y*(-t599 + t604 - t614 - t616) + bdW_z*(e0*m_z*psi_y - t603*t606 +
-                    t611*t618 + t619))
-                bdy[j3 + 2] += (bdW_x*(e0*t605 - t600*t615 + t606*t621 + t613) +
-                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t600 - t611*t621 - t619) + bdW_z*(-t597
-                    - t608 - t614 + t616))
-                bds[j3] += bdW_x*(t626 + t627) + bdW_y*(-t622 - t623) + bdW_z*(t624 - t625)
-                bds[j3 + 1] += bdW_x*(t622 - t623) + bdW_y*(t627 + t630) + bdW_z*(-t628 - t629)
-                bds[j3 + 2] += bdW_x*(-t624 - t625) + bdW_y*(t628 - t629) + bdW_z*(t626 + t630 - 1)
+                t590 = e0*psi_y
+                t591 = m_y*t590
+                t592 = e0*psi_z
+                t593 = m_z*t592
+                t594 = -m_x*psi_y + m_y*psi_x
+                t595 = 2*e1
+                t596 = psi_x*t595
+                t597 = psi_y*t596
+                t598 = t594*t597
+                t599 = m_x*psi_z
+                t600 = -m_z*psi_x + t599
+                t601 = psi_z*t596
+                t602 = t600*t601
+                t603 = psi_x*psi_x
+                t604 = t595*t603
+                t605 = -m_y*psi_z + m_z*psi_y
+                t606 = e0*t594 + (0.5)*m_z
+                t607 = e0*t600 + (0.5)*m_y
+                t608 = e0*m_x*psi_x
+                t609 = psi_y*psi_z*t595
+                t610 = t605*t609
+                t611 = psi_y*psi_y
+                t612 = t595*t611
+                t613 = e0*t605 + (0.5)*m_x
+                t614 = psi_z*psi_z
+                t615 = t595*t614
+                t616 = (0.5)*psi_z
+                t617 = psi_x*t590
+                t618 = (0.5)*psi_y
+                t619 = psi_x*t592
+                t620 = e0*t611
+                t621 = e0*t614 - 1
+                t622 = (0.5)*psi_x
+                t623 = psi_z*t590
+                t624 = e0*t603
+                bdy[j3] += (bdW_x*(-t591 - t593 - t598 + t602) + bdW_y*(e0*m_y*psi_x + t594*t604 -
+                    t601*t605 + t606) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t605 - t600*t604 -
+                    t607))
+                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t600 - t594*t612 - t606) +
+                    bdW_y*(-t593 + t598 - t608 - t610) + bdW_z*(e0*m_z*psi_y - t597*t600 +
+                    t605*t612 + t613))
+                bdy[j3 + 2] += (bdW_x*(e0*t599 - t594*t609 + t600*t615 + t607) +
+                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t594 - t605*t615 - t613) + bdW_z*(-t591
+                    - t602 - t608 + t610))
+                bds[j3] += bdW_x*(t620 + t621) + bdW_y*(-t616 - t617) + bdW_z*(t618 - t619)
+                bds[j3 + 1] += bdW_x*(t616 - t617) + bdW_y*(t621 + t624) + bdW_z*(-t622 - t623)
+                bds[j3 + 2] += bdW_x*(-t618 - t619) + bdW_y*(t622 - t623) + bdW_z*(t620 + t624 - 1)
             # transposed: differential: inertia and weight on the frame
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
@@ -2126,12 +2113,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t631 = X_y + u_y
-                t632 = X_z + u_z
-                t633 = X_x + u_x
-                bds[i3] += -bdF_x - bdW_y*t632 + bdW_z*t631
-                bds[i3 + 1] += -bdF_y + bdW_x*t632 - bdW_z*t633
-                bds[i3 + 2] += -bdF_z - bdW_x*t631 + bdW_y*t633
+                t625 = X_y + u_y
+                t626 = X_z + u_z
+                t627 = X_x + u_x
+                bds[i3] += -bdF_x - bdW_y*t626 + bdW_z*t625
+                bds[i3 + 1] += -bdF_y + bdW_x*t626 - bdW_z*t627
+                bds[i3 + 2] += -bdF_z - bdW_x*t625 + bdW_y*t627
                 bdy[i3] += bdW_y*f_z - bdW_z*f_y
                 bdy[i3 + 1] += -bdW_x*f_z + bdW_z*f_x
                 bdy[i3 + 2] += bdW_x*f_y - bdW_y*f_x
@@ -2153,15 +2140,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             bdfelt_x, bdfelt_y, bdfelt_z = bdzdd[N], bdzdd[N + 1], bdzdd[N + 2]
             bdturning_x, bdturning_y, bdturning_z = bdzdd[N + 3], bdzdd[N + 4], bdzdd[N + 5]
             bdspin_x, bdspin_y, bdspin_z = bdzd[N], bdzd[N + 1], bdzd[N + 2]
-            t634 = bdfelt_x*turn_xx + bdfelt_y*turn_xy + bdfelt_z*turn_xz
-            t635 = bdfelt_x*turn_yx + bdfelt_y*turn_yy + bdfelt_z*turn_yz
-            t636 = bdfelt_x*turn_zx + bdfelt_y*turn_zy + bdfelt_z*turn_zz
-            bda0_x += t634
-            bda0_y += t635
-            bda0_z += t636
-            bdgamma[0] += -t634
-            bdgamma[1] += -t635
-            bdgamma[2] += -t636
+            t628 = bdfelt_x*turn_xx + bdfelt_y*turn_xy + bdfelt_z*turn_xz
+            t629 = bdfelt_x*turn_yx + bdfelt_y*turn_yy + bdfelt_z*turn_yz
+            t630 = bdfelt_x*turn_zx + bdfelt_y*turn_zy + bdfelt_z*turn_zz
+            bda0_x += t628
+            bda0_y += t629
+            bda0_z += t630
+            bdgamma[0] += -t628
+            bdgamma[1] += -t629
+            bdgamma[2] += -t630
             bdOm0d_x += bdturning_x*turn_xx + bdturning_y*turn_xy + bdturning_z*turn_xz
             bdOm0d_y += bdturning_x*turn_yx + bdturning_y*turn_yy + bdturning_z*turn_yz
             bdOm0d_z += bdturning_x*turn_zx + bdturning_y*turn_zy + bdturning_z*turn_zz
@@ -2219,40 +2206,40 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 bdeud_x, bdeud_y, bdeud_z = bdetad[i3], bdetad[i3 + 1], bdetad[i3 + 2]
-                t637 = Om0_y*bdeud_z - Om0_z*bdeud_y
-                t638 = Om0_x*bdeud_z - Om0_z*bdeud_x
-                t639 = -t638
-                t640 = Om0_x*bdeud_y - Om0_y*bdeud_x
-                t641 = eu_z - v0_z + vs_z
-                t642 = eu_y - v0_y + vs_y
-                t643 = eu_x - v0_x + vs_x
-                t644 = X_z + u_z
-                t645 = X_y + u_y
-                t646 = X_x + u_x
+                t631 = Om0_y*bdeud_z - Om0_z*bdeud_y
+                t632 = Om0_x*bdeud_z - Om0_z*bdeud_x
+                t633 = -t632
+                t634 = Om0_x*bdeud_y - Om0_y*bdeud_x
+                t635 = eu_z - v0_z + vs_z
+                t636 = eu_y - v0_y + vs_y
+                t637 = eu_x - v0_x + vs_x
+                t638 = X_z + u_z
+                t639 = X_y + u_y
+                t640 = X_x + u_x
                 bdy[i3] += Om0d_y*bdeud_z - Om0d_z*bdeud_y
                 bdy[i3 + 1] += -Om0d_x*bdeud_z + Om0d_z*bdeud_x
                 bdy[i3 + 2] += Om0d_x*bdeud_y - Om0d_y*bdeud_x
-                bdyd[i3] += t637
-                bdyd[i3 + 1] += t639
-                bdyd[i3 + 2] += t640
+                bdyd[i3] += t631
+                bdyd[i3 + 1] += t633
+                bdyd[i3 + 2] += t634
                 bdacc[i3] += bdeud_x
                 bdacc[i3 + 1] += bdeud_y
                 bdacc[i3 + 2] += bdeud_z
-                bdOm0_x += bdeud_y*t641 - bdeud_z*t642
-                bdOm0_y += -bdeud_x*t641 + bdeud_z*t643
-                bdOm0_z += bdeud_x*t642 - bdeud_y*t643
-                bdv0_x += -t637
-                bdv0_y += t638
-                bdv0_z += -t640
+                bdOm0_x += bdeud_y*t635 - bdeud_z*t636
+                bdOm0_y += -bdeud_x*t635 + bdeud_z*t637
+                bdOm0_z += bdeud_x*t636 - bdeud_y*t637
+                bdv0_x += -t631
+                bdv0_y += t632
+                bdv0_z += -t634
                 bda0_x += -bdeud_x
                 bda0_y += -bdeud_y
                 bda0_z += -bdeud_z
-                bdeta[i3] += t637
-                bdeta[i3 + 1] += t639
-                bdeta[i3 + 2] += t640
-                bdOm0d_x += bdeud_y*t644 - bdeud_z*t645
-                bdOm0d_y += -bdeud_x*t644 + bdeud_z*t646
-                bdOm0d_z += bdeud_x*t645 - bdeud_y*t646
+                bdeta[i3] += t631
+                bdeta[i3 + 1] += t633
+                bdeta[i3 + 2] += t634
+                bdOm0d_x += bdeud_y*t638 - bdeud_z*t639
+                bdOm0d_y += -bdeud_x*t638 + bdeud_z*t640
+                bdOm0d_z += bdeud_x*t639 - bdeud_y*t640
             # transposed: differential: rate: rates of the elastic rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -2260,63 +2247,63 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdepd_x, bdepd_y, bdepd_z = bdetad[j3], bdetad[j3 + 1], bdetad[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t647 = 2*e1
-                t648 = psi_x*t647
-                t649 = psi_y*psi_z*t648
-                t650 = -t649 - 0.5
-                t651 = e0*psi_y
-                t652 = psi_x*psi_x
-                t653 = t647*t652
-                t654 = psi_y*t653
-                t655 = -t651 - t654
-                t656 = psi_z*psi_z
-                t657 = t648*t656
-                t658 = e0*psi_x
-                t659 = psi_x*psi_x*psi_x*t647 + 2*t658
-                t660 = 0.5 - t649
-                t661 = e0*psi_z
-                t662 = psi_z*t653
-                t663 = -t661 - t662
-                t664 = psi_y*psi_y
-                t665 = t648*t664
-                t666 = -t658 - t665
-                t667 = psi_y*t647*t656
-                t668 = psi_y*psi_y*psi_y*t647 + 2*t651
-                t669 = psi_z*t647*t664
-                t670 = -t661 - t669
-                t671 = -t657 - t658
-                t672 = psi_z*psi_z*psi_z*t647 + 2*t661
-                t673 = -t651 - t667
-                t674 = (0.5)*psi_z
-                t675 = psi_x*t651
-                t676 = (0.5)*psi_y
-                t677 = psi_x*t661
-                t678 = e0*t664
-                t679 = e0*t656 - 1
-                t680 = (0.5)*psi_x
-                t681 = psi_z*t651
-                t682 = e0*t652
-                bdy[j3] += (bdepd_x*(Om0d_x*(t657 + t665) + Om0d_y*t655 + Om0d_z*t663) +
-                    bdepd_y*(Om0d_x*t655 + Om0d_y*(t657 + t659) + Om0d_z*t650) +
-                    bdepd_z*(Om0d_x*t663 + Om0d_y*t660 + Om0d_z*(t659 + t665)))
-                bdy[j3 + 1] += (bdepd_x*(Om0d_x*(t667 + t668) + Om0d_y*t666 + Om0d_z*t660) +
-                    bdepd_y*(Om0d_x*t666 + Om0d_y*(t654 + t667) + Om0d_z*t670) +
-                    bdepd_z*(Om0d_x*t650 + Om0d_y*t670 + Om0d_z*(t654 + t668)))
-                bdy[j3 + 2] += (bdepd_x*(Om0d_x*(t669 + t672) + Om0d_y*t650 + Om0d_z*t671) +
-                    bdepd_y*(Om0d_x*t660 + Om0d_y*(t662 + t672) + Om0d_z*t673) +
-                    bdepd_z*(Om0d_x*t671 + Om0d_y*t673 + Om0d_z*(t662 + t669)))
-                bdOm0d_x += bdepd_x*(t678 + t679) + bdepd_y*(t674 - t675) + bdepd_z*(-t676 - t677)
-                bdOm0d_y += bdepd_x*(-t674 - t675) + bdepd_y*(t679 + t682) + bdepd_z*(t680 - t681)
-                bdOm0d_z += (bdepd_x*(t676 - t677) + bdepd_y*(-t680 - t681) + bdepd_z*(t678 + t682
+                t641 = 2*e1
+                t642 = psi_x*t641
+                t643 = psi_y*psi_z*t642
+                t644 = -t643 - 0.5
+                t645 = e0*psi_y
+                t646 = psi_x*psi_x
+                t647 = t641*t646
+                t648 = psi_y*t647
+                t649 = -t645 - t648
+                t650 = psi_z*psi_z
+                t651 = t642*t650
+                t652 = e0*psi_x
+                t653 = psi_x*psi_x*psi_x*t641 + 2*t652
+                t654 = 0.5 - t643
+                t655 = e0*psi_z
+                t656 = psi_z*t647
+                t657 = -t655 - t656
+                t658 = psi_y*psi_y
+                t659 = t642*t658
+                t660 = -t652 - t659
+                t661 = psi_y*t641*t650
+                t662 = psi_y*psi_y*psi_y*t641 + 2*t645
+                t663 = psi_z*t641*t658
+                t664 = -t655 - t663
+                t665 = -t651 - t652
+                t666 = psi_z*psi_z*psi_z*t641 + 2*t655
+                t667 = -t645 - t661
+                t668 = (0.5)*psi_z
+                t669 = psi_x*t645
+                t670 = (0.5)*psi_y
+                t671 = psi_x*t655
+                t672 = e0*t658
+                t673 = e0*t650 - 1
+                t674 = (0.5)*psi_x
+                t675 = psi_z*t645
+                t676 = e0*t646
+                bdy[j3] += (bdepd_x*(Om0d_x*(t651 + t659) + Om0d_y*t649 + Om0d_z*t657) +
+                    bdepd_y*(Om0d_x*t649 + Om0d_y*(t651 + t653) + Om0d_z*t644) +
+                    bdepd_z*(Om0d_x*t657 + Om0d_y*t654 + Om0d_z*(t653 + t659)))
+                bdy[j3 + 1] += (bdepd_x*(Om0d_x*(t661 + t662) + Om0d_y*t660 + Om0d_z*t654) +
+                    bdepd_y*(Om0d_x*t660 + Om0d_y*(t648 + t661) + Om0d_z*t664) +
+                    bdepd_z*(Om0d_x*t644 + Om0d_y*t664 + Om0d_z*(t648 + t662)))
+                bdy[j3 + 2] += (bdepd_x*(Om0d_x*(t663 + t666) + Om0d_y*t644 + Om0d_z*t665) +
+                    bdepd_y*(Om0d_x*t654 + Om0d_y*(t656 + t666) + Om0d_z*t667) +
+                    bdepd_z*(Om0d_x*t665 + Om0d_y*t667 + Om0d_z*(t656 + t663)))
+                bdOm0d_x += bdepd_x*(t672 + t673) + bdepd_y*(t668 - t669) + bdepd_z*(-t670 - t671)
+                bdOm0d_y += bdepd_x*(-t668 - t669) + bdepd_y*(t673 + t676) + bdepd_z*(t674 - t675)
+                bdOm0d_z += (bdepd_x*(t670 - t671) + bdepd_y*(-t674 - t675) + bdepd_z*(t672 + t676
                     - 1))
             # transposed: differential: rate: B rate = sum alpha_j T^-1(psi_j) rate_j
             rhs_x = rhs_y = rhs_z = 0.0
-            t683 = bdOm0d_x + rhs_x
-            t684 = bdOm0d_y + rhs_y
-            t685 = bdOm0d_z + rhs_z
-            mdOm0d_x = Bxx*t683 + Byx*t684 + Bzx*t685
-            mdOm0d_y = Bxy*t683 + Byy*t684 + Bzy*t685
-            mdOm0d_z = Bxz*t683 + Byz*t684 + Bzz*t685
+            t677 = bdOm0d_x + rhs_x
+            t678 = bdOm0d_y + rhs_y
+            t679 = bdOm0d_z + rhs_z
+            mdOm0d_x = Bxx*t677 + Byx*t678 + Bzx*t679
+            mdOm0d_y = Bxy*t677 + Byy*t678 + Bzy*t679
+            mdOm0d_z = Bxz*t677 + Byz*t678 + Bzz*t679
             # transposed: differential: rate: B rate = sum alpha_j T^-1(psi_j) rate_j
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -2324,44 +2311,44 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t686 = e0*psi_y
-                t687 = 2*e1
-                t688 = psi_x*psi_x*t687
-                t689 = psi_y*t688
-                t690 = t686 + t689
-                t691 = Om0d_y*alpha_r
-                t692 = e0*psi_z
-                t693 = psi_z*t688
-                t694 = t692 + t693
-                t695 = Om0d_z*alpha_r
-                t696 = psi_y*psi_y
-                t697 = psi_x*t687
-                t698 = t696*t697
-                t699 = psi_z*psi_z
-                t700 = t697*t699
-                t701 = Om0d_x*alpha_r
-                t702 = psi_y*psi_z*t697
-                t703 = t702 + 0.5
-                t704 = e0*psi_x
-                t705 = psi_x*psi_x*psi_x*t687 + 2*t704
-                t706 = t702 - 0.5
-                t707 = t698 + t704
-                t708 = psi_y*t687*t699
-                t709 = psi_y*psi_y*psi_y*t687 + 2*t686
-                t710 = psi_z*t687*t696
-                t711 = t692 + t710
-                t712 = t700 + t704
-                t713 = psi_z*psi_z*psi_z*t687 + 2*t692
-                t714 = t686 + t708
-                bdy[j3] += (-mdOm0d_x*(t690*t691 + t694*t695 + t701*(-t698 - t700)) -
-                    mdOm0d_y*(t690*t701 + t691*(-t700 - t705) + t695*t703) - mdOm0d_z*(t691*t706 +
-                    t694*t701 + t695*(-t698 - t705)))
-                bdy[j3 + 1] += (-mdOm0d_x*(t691*t707 + t695*t706 + t701*(-t708 - t709)) -
-                    mdOm0d_y*(t691*(-t689 - t708) + t695*t711 + t701*t707) - mdOm0d_z*(t691*t711 +
-                    t695*(-t689 - t709) + t701*t703))
-                bdy[j3 + 2] += (-mdOm0d_x*(t691*t703 + t695*t712 + t701*(-t710 - t713)) -
-                    mdOm0d_y*(t691*(-t693 - t713) + t695*t714 + t701*t706) - mdOm0d_z*(t691*t714 +
-                    t695*(-t693 - t710) + t701*t712))
+                t680 = e0*psi_y
+                t681 = 2*e1
+                t682 = psi_x*psi_x*t681
+                t683 = psi_y*t682
+                t684 = t680 + t683
+                t685 = Om0d_y*alpha_r
+                t686 = e0*psi_z
+                t687 = psi_z*t682
+                t688 = t686 + t687
+                t689 = Om0d_z*alpha_r
+                t690 = psi_y*psi_y
+                t691 = psi_x*t681
+                t692 = t690*t691
+                t693 = psi_z*psi_z
+                t694 = t691*t693
+                t695 = Om0d_x*alpha_r
+                t696 = psi_y*psi_z*t691
+                t697 = t696 + 0.5
+                t698 = e0*psi_x
+                t699 = psi_x*psi_x*psi_x*t681 + 2*t698
+                t700 = t696 - 0.5
+                t701 = t692 + t698
+                t702 = psi_y*t681*t693
+                t703 = psi_y*psi_y*psi_y*t681 + 2*t680
+                t704 = psi_z*t681*t690
+                t705 = t686 + t704
+                t706 = t694 + t698
+                t707 = psi_z*psi_z*psi_z*t681 + 2*t686
+                t708 = t680 + t702
+                bdy[j3] += (-mdOm0d_x*(t684*t685 + t688*t689 + t695*(-t692 - t694)) -
+                    mdOm0d_y*(t684*t695 + t685*(-t694 - t699) + t689*t697) - mdOm0d_z*(t685*t700 +
+                    t688*t695 + t689*(-t692 - t699)))
+                bdy[j3 + 1] += (-mdOm0d_x*(t685*t701 + t689*t700 + t695*(-t702 - t703)) -
+                    mdOm0d_y*(t685*(-t683 - t702) + t689*t705 + t695*t701) - mdOm0d_z*(t685*t705 +
+                    t689*(-t683 - t703) + t695*t697))
+                bdy[j3 + 2] += (-mdOm0d_x*(t685*t697 + t689*t706 + t695*(-t704 - t707)) -
+                    mdOm0d_y*(t685*(-t687 - t707) + t689*t708 + t695*t700) - mdOm0d_z*(t685*t708 +
+                    t689*(-t687 - t704) + t695*t706))
                 bdetad[j3] += alpha_r*mdOm0d_x
                 bdetad[j3 + 1] += alpha_r*mdOm0d_y
                 bdetad[j3 + 2] += alpha_r*mdOm0d_z
@@ -2376,220 +2363,220 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e0 = e0s[j]
                 e1 = e1s[j]
                 e2 = e2s[j]
-                t715 = (0.5)*ep_z
-                t716 = e0*ep_x
-                t717 = e0*psi_x
-                t718 = 2*ep_x
-                t719 = psi_x*t718
-                t720 = 2*ep_y
-                t721 = psi_y*t720
-                t722 = 2*ep_z
-                t723 = psi_z*t722
-                t724 = t719 + t721 + t723
-                t725 = e1*t724
-                t726 = psi_x*t725
-                t727 = ep_y*t717 + psi_y*t716 + psi_y*t726
-                t728 = t715 + t727
-                t729 = (0.5)*ep_y
-                t730 = ep_z*t717 + psi_z*t716 + psi_z*t726
-                t731 = -t729 + t730
-                t732 = psi_z*psi_z
-                t733 = e0*t723 + t725*t732
-                t734 = psi_y*psi_y
-                t735 = e0*t721 + t725*t734
-                t736 = t733 + t735
-                t737 = -t715 + t727
-                t738 = (0.5)*ep_x
-                t739 = e0*psi_z
-                t740 = e0*psi_y
-                t741 = psi_y*t725
-                t742 = ep_y*t739 + ep_z*t740 + psi_z*t741
-                t743 = t738 + t742
-                t744 = psi_x*psi_x
-                t745 = e0*t719 + t725*t744
-                t746 = t733 + t745
-                t747 = t729 + t730
-                t748 = -t738 + t742
-                t749 = t735 + t745
-                t750 = (0.5)*psi_z
-                t751 = psi_y*t717
-                t752 = (0.5)*psi_y
-                t753 = psi_z*t717
-                t754 = e0*t734
-                t755 = e0*t732 - 1
-                t756 = (0.5)*psi_x
-                t757 = psi_y*t739
-                t758 = e0*t744
-                t759 = e1*t718
-                t760 = Om0_x*psi_y
-                t761 = Om0_y*psi_x - t760
-                t762 = psi_y*t761
-                t763 = t759*t762
-                t764 = Om_x*psi_z
-                t765 = Om_z*psi_x
-                t766 = t764 - t765
-                t767 = psi_z*t759
-                t768 = t766*t767
-                t769 = e1*psi_x
-                t770 = t720*t769
-                t771 = t761*t770
-                t772 = t722*t769
-                t773 = t766*t772
-                t774 = -Om0_x*ep_y + Om0_y*ep_x
-                t775 = 2*e1
-                t776 = psi_x*t775
-                t777 = psi_y*t776
-                t778 = t774*t777
-                t779 = A_x*psi_z
-                t780 = Om_x*ep_z
-                t781 = A_z*psi_x
-                t782 = Om_z*ep_x
-                t783 = t779 + t780 - t781 - t782
-                t784 = psi_z*t776
-                t785 = t783*t784
-                t786 = Om_x*psi_y
-                t787 = Om_y*psi_x - t786
-                t788 = psi_y*t759
-                t789 = t787*t788
-                t790 = Om0_z*psi_x
-                t791 = Om0_x*psi_z - t790
-                t792 = t767*t791
-                t793 = t770*t787
-                t794 = t772*t791
-                t795 = A_x*psi_y
-                t796 = Om_x*ep_y
-                t797 = A_y*psi_x + Om_y*ep_x - t795 - t796
-                t798 = t777*t797
-                t799 = Om0_z*ep_x
-                t800 = Om0_x*ep_z - t799
-                t801 = t784*t800
-                t802 = 2*e2*t724
-                t803 = psi_x*t802
-                t804 = t762*t803
-                t805 = psi_z*t803
-                t806 = t766*t805
-                t807 = psi_y*t803
-                t808 = t787*t807
-                t809 = t791*t805
-                t810 = e0*ep_z
-                t811 = psi_z*t725
-                t812 = A_z*t739 - Om0_z*t810 - Om0_z*t811 + Om_z*t810 + Om_z*t811
-                t813 = e0*ep_y
-                t814 = A_y*t740 - Om0_y*t741 - Om0_y*t813 + Om_y*t741 + Om_y*t813
-                t815 = (0.5)*A_z
-                t816 = e0*t774
-                t817 = ep_x*t769
-                t818 = Om0_y*psi_z
-                t819 = Om0_z*psi_y - t818
-                t820 = Om_y*psi_z
-                t821 = Om_z*psi_y - t820
-                t822 = Om0_y*ep_z
-                t823 = Om0_z*ep_y - t822
-                t824 = e0*t797
-                t825 = Om_y*psi_x
-                t826 = A_y*psi_z
-                t827 = Om_y*ep_z
-                t828 = A_z*psi_y + Om_z*ep_y - t826 - t827
-                t829 = t744*t775
-                t830 = t725*t787
-                t831 = t725*t761
-                t832 = t744*t802
-                t833 = 4*t817
-                t834 = (0.5)*A_y + e0*t783 - e0*t800 + t725*t766 - t725*t791
-                t835 = psi_z*t720
-                t836 = e1*t819
-                t837 = t835*t836
-                t838 = psi_y*t722
-                t839 = t836*t838
-                t840 = psi_z*t775
-                t841 = psi_y*t840
-                t842 = t823*t841
-                t843 = e1*t821
-                t844 = t835*t843
-                t845 = t838*t843
-                t846 = t828*t841
-                t847 = psi_z*t802
-                t848 = psi_y*t847
-                t849 = t819*t848
-                t850 = t821*t848
-                t851 = A_x*t717 - Om0_x*t716 - Om0_x*t726 + Om_x*t716 + Om_x*t726
-                t852 = 4*e1*ep_y
-                t853 = e1*t766
-                t854 = t734*t775
-                t855 = t734*t802
-                t856 = Om_z*psi_y
-                t857 = (0.5)*A_x - e0*t823 + e0*t828 - t725*t819 + t725*t821
-                t858 = t732*t775
-                t859 = t732*t802
-                t860 = 4*ep_z*psi_z
-                t861 = t777*t787
-                t862 = t784*t791
-                t863 = t762*t776
-                t864 = t766*t784
-                t865 = Om0_z*t739 - Om_z*e0*psi_z
-                t866 = Om0_y*t740 - Om_y*e0*psi_y
-                t867 = (0.5)*Om0_z + (0.5)*Om_z - e0*t761 + e0*t787
-                t868 = (0.5)*Om0_y + (0.5)*Om_y + e0*t766 - e0*t791
-                t869 = t821*t841
-                t870 = t819*t841
-                t871 = Om0_x*t717 - Om_x*e0*psi_x
-                t872 = (0.5)*Om0_x + (0.5)*Om_x - e0*t819 + e0*t821
-                bdve[j3] += -bdepd_x*t736 + bdepd_y*t728 + bdepd_z*t731
-                bdve[j3 + 1] += bdepd_x*t737 - bdepd_y*t746 + bdepd_z*t743
-                bdve[j3 + 2] += bdepd_x*t747 + bdepd_y*t748 - bdepd_z*t749
-                bdae[j3] += bdepd_x*(-t754 - t755) + bdepd_y*(t750 + t751) + bdepd_z*(-t752 + t753)
-                bdae[j3 + 1] += (bdepd_x*(-t750 + t751) + bdepd_y*(-t755 - t758) + bdepd_z*(t756 +
-                    t757))
-                bdae[j3 + 2] += (bdepd_x*(t752 + t753) + bdepd_y*(-t756 + t757) + bdepd_z*(-t754 -
-                    t758 + 1))
-                bdy[j3] += (bdepd_x*(-t763 - t768 - t771 - t773 - t778 - t785 + t789 + t792 + t793
-                    + t794 + t798 + t801 - t804 - t806 + t808 + t809 + t812 + t814) +
-                    bdepd_y*(-A_y*e0*psi_x + Om0_y*e0*ep_x + Om0_y*e1*psi_x*t724 - Om_y*e0*ep_x +
-                    4*e1*ep_x*psi_x*t761 + 2*e1*ep_x*psi_z*t821 + 2*e1*ep_z*psi_x*t821 +
-                    2*e1*psi_x*psi_z*t828 + 2*e1*t744*t774 + 2*e2*psi_x*psi_z*t724*t821 +
-                    2*e2*t724*t744*t761 - t725*t825 - t767*t819 - t772*t819 - t784*t823 -
-                    4*t787*t817 - t787*t832 - t797*t829 - t805*t819 - t815 + t816 - t824 - t830 +
-                    t831) + bdepd_z*(-e0*t781 - e0*t782 + e0*t799 - t725*t765 + t725*t790 +
-                    t766*t832 + t766*t833 + t770*t819 - t770*t821 + t777*t823 - t777*t828 +
-                    t783*t829 + t788*t819 - t788*t821 - t791*t832 - t791*t833 - t800*t829 +
-                    t807*t819 - t807*t821 + t834))
-                bdy[j3 + 1] += (bdepd_x*(Om0_x*e0*ep_y + Om0_x*e1*psi_y*t724 - e0*t795 - e0*t796 +
-                    4*e1*ep_y*psi_y*t787 + 2*e1*ep_y*psi_z*t791 + 2*e1*ep_z*psi_y*t791 +
-                    2*e1*psi_y*psi_z*t800 + 2*e1*t734*t797 + 2*e2*psi_y*psi_z*t724*t791 +
-                    2*e2*t724*t734*t787 - t725*t786 - t761*t855 - t762*t852 - t766*t848 -
-                    t774*t854 - t783*t841 + t815 - t816 + t824 + t830 - t831 - t835*t853 -
-                    t838*t853) + bdepd_y*(t763 + t771 + t778 - t789 - t793 - t798 + t804 - t808 +
-                    t812 - t837 - t839 - t842 + t844 + t845 + t846 - t849 + t850 + t851) +
-                    bdepd_z*(-A_z*e0*psi_y + Om0_z*e0*ep_y + Om0_z*e1*psi_y*t724 - Om_z*e0*ep_y +
-                    2*e1*ep_x*psi_y*t766 + 2*e1*ep_y*psi_x*t766 + 4*e1*ep_y*psi_y*t819 +
-                    2*e1*psi_x*psi_y*t783 + 2*e1*t734*t823 + 2*e2*psi_x*psi_y*t724*t766 +
-                    2*e2*t724*t734*t819 - psi_y*t821*t852 - t725*t856 - t770*t791 - t777*t800 -
-                    t788*t791 - t791*t807 - t821*t855 - t828*t854 - t857))
-                bdy[j3 + 2] += (bdepd_x*(Om0_x*e0*ep_z + Om0_x*e1*psi_z*t724 - e0*t779 - e0*t780 +
-                    2*e1*ep_y*psi_z*t787 + 2*e1*ep_z*psi_y*t787 + 4*e1*ep_z*psi_z*t791 +
-                    2*e1*psi_y*psi_z*t797 - e1*t722*t762 + 2*e1*t732*t800 - e1*t761*t835 +
-                    2*e2*psi_y*psi_z*t724*t787 + 2*e2*t724*t732*t791 - t725*t764 - t762*t847 -
-                    t766*t859 - t774*t841 - t783*t858 - t834 - t853*t860) + bdepd_y*(e0*t822 -
-                    e0*t826 - e0*t827 + t725*t818 - t725*t820 + t761*t767 + t761*t772 + t761*t805
-                    - t767*t787 - t772*t787 + t774*t784 - t784*t797 - t787*t805 - t819*t859 +
-                    t821*t859 - t823*t858 + t828*t858 - t836*t860 + t843*t860 + t857) +
-                    bdepd_z*(t768 + t773 + t785 - t792 - t794 - t801 + t806 - t809 + t814 + t837 +
-                    t839 + t842 - t844 - t845 - t846 + t849 - t850 + t851))
-                bdOm0_x += bdepd_x*t736 - bdepd_y*t737 - bdepd_z*t747
-                bdOm0_y += -bdepd_x*t728 + bdepd_y*t746 - bdepd_z*t748
-                bdOm0_z += -bdepd_x*t731 - bdepd_y*t743 + bdepd_z*t749
-                bdeta[j3] += (bdepd_x*(t861 + t862 - t863 - t864 - t865 - t866) +
-                    bdepd_y*(Om0_y*e0*psi_x - e0*t825 + 2*e1*psi_x*psi_z*t821 + 2*e1*t744*t761 -
-                    t784*t819 - t787*t829 - t867) + bdepd_z*(-e0*t765 + e0*t790 + t766*t829 +
-                    t777*t819 - t777*t821 - t791*t829 + t868))
-                bdeta[j3 + 1] += (bdepd_x*(e0*t760 - e0*t786 - t761*t854 - t766*t841 + t787*t854 +
-                    t791*t841 + t867) + bdepd_y*(-t861 + t863 - t865 + t869 - t870 - t871) +
-                    bdepd_z*(Om0_z*e0*psi_y - e0*t856 + 2*e1*psi_x*psi_y*t766 + 2*e1*t734*t819 -
-                    t777*t791 - t821*t854 - t872))
-                bdeta[j3 + 2] += (bdepd_x*(Om0_x*e0*psi_z - e0*t764 + 2*e1*psi_y*psi_z*t787 +
-                    2*e1*t732*t791 - t762*t840 - t766*t858 - t868) + bdepd_y*(e0*t818 - e0*t820 +
-                    t761*t784 - t784*t787 - t819*t858 + t821*t858 + t872) + bdepd_z*(-t862 + t864
-                    - t866 - t869 + t870 - t871))
+                t709 = (0.5)*ep_z
+                t710 = e0*ep_x
+                t711 = e0*psi_x
+                t712 = 2*ep_x
+                t713 = psi_x*t712
+                t714 = 2*ep_y
+                t715 = psi_y*t714
+                t716 = 2*ep_z
+                t717 = psi_z*t716
+                t718 = t713 + t715 + t717
+                t719 = e1*t718
+                t720 = psi_x*t719
+                t721 = ep_y*t711 + psi_y*t710 + psi_y*t720
+                t722 = t709 + t721
+                t723 = (0.5)*ep_y
+                t724 = ep_z*t711 + psi_z*t710 + psi_z*t720
+                t725 = -t723 + t724
+                t726 = psi_z*psi_z
+                t727 = e0*t717 + t719*t726
+                t728 = psi_y*psi_y
+                t729 = e0*t715 + t719*t728
+                t730 = t727 + t729
+                t731 = -t709 + t721
+                t732 = (0.5)*ep_x
+                t733 = e0*psi_z
+                t734 = e0*psi_y
+                t735 = psi_y*t719
+                t736 = ep_y*t733 + ep_z*t734 + psi_z*t735
+                t737 = t732 + t736
+                t738 = psi_x*psi_x
+                t739 = e0*t713 + t719*t738
+                t740 = t727 + t739
+                t741 = t723 + t724
+                t742 = -t732 + t736
+                t743 = t729 + t739
+                t744 = (0.5)*psi_z
+                t745 = psi_y*t711
+                t746 = (0.5)*psi_y
+                t747 = psi_z*t711
+                t748 = e0*t728
+                t749 = e0*t726 - 1
+                t750 = (0.5)*psi_x
+                t751 = psi_y*t733
+                t752 = e0*t738
+                t753 = e1*t712
+                t754 = Om0_x*psi_y
+                t755 = Om0_y*psi_x - t754
+                t756 = psi_y*t755
+                t757 = t753*t756
+                t758 = Om_x*psi_z
+                t759 = Om_z*psi_x
+                t760 = t758 - t759
+                t761 = psi_z*t753
+                t762 = t760*t761
+                t763 = e1*psi_x
+                t764 = t714*t763
+                t765 = t755*t764
+                t766 = t716*t763
+                t767 = t760*t766
+                t768 = -Om0_x*ep_y + Om0_y*ep_x
+                t769 = 2*e1
+                t770 = psi_x*t769
+                t771 = psi_y*t770
+                t772 = t768*t771
+                t773 = A_x*psi_z
+                t774 = Om_x*ep_z
+                t775 = A_z*psi_x
+                t776 = Om_z*ep_x
+                t777 = t773 + t774 - t775 - t776
+                t778 = psi_z*t770
+                t779 = t777*t778
+                t780 = Om_x*psi_y
+                t781 = Om_y*psi_x - t780
+                t782 = psi_y*t753
+                t783 = t781*t782
+                t784 = Om0_z*psi_x
+                t785 = Om0_x*psi_z - t784
+                t786 = t761*t785
+                t787 = t764*t781
+                t788 = t766*t785
+                t789 = A_x*psi_y
+                t790 = Om_x*ep_y
+                t791 = A_y*psi_x + Om_y*ep_x - t789 - t790
+                t792 = t771*t791
+                t793 = Om0_z*ep_x
+                t794 = Om0_x*ep_z - t793
+                t795 = t778*t794
+                t796 = 2*e2*t718
+                t797 = psi_x*t796
+                t798 = t756*t797
+                t799 = psi_z*t797
+                t800 = t760*t799
+                t801 = psi_y*t797
+                t802 = t781*t801
+                t803 = t785*t799
+                t804 = e0*ep_z
+                t805 = psi_z*t719
+                t806 = A_z*t733 - Om0_z*t804 - Om0_z*t805 + Om_z*t804 + Om_z*t805
+                t807 = e0*ep_y
+                t808 = A_y*t734 - Om0_y*t735 - Om0_y*t807 + Om_y*t735 + Om_y*t807
+                t809 = (0.5)*A_z
+                t810 = e0*t768
+                t811 = ep_x*t763
+                t812 = Om0_y*psi_z
+                t813 = Om0_z*psi_y - t812
+                t814 = Om_y*psi_z
+                t815 = Om_z*psi_y - t814
+                t816 = Om0_y*ep_z
+                t817 = Om0_z*ep_y - t816
+                t818 = e0*t791
+                t819 = Om_y*psi_x
+                t820 = A_y*psi_z
+                t821 = Om_y*ep_z
+                t822 = A_z*psi_y + Om_z*ep_y - t820 - t821
+                t823 = t738*t769
+                t824 = t719*t781
+                t825 = t719*t755
+                t826 = t738*t796
+                t827 = 4*t811
+                t828 = (0.5)*A_y + e0*t777 - e0*t794 + t719*t760 - t719*t785
+                t829 = psi_z*t714
+                t830 = e1*t813
+                t831 = t829*t830
+                t832 = psi_y*t716
+                t833 = t830*t832
+                t834 = psi_z*t769
+                t835 = psi_y*t834
+                t836 = t817*t835
+                t837 = e1*t815
+                t838 = t829*t837
+                t839 = t832*t837
+                t840 = t822*t835
+                t841 = psi_z*t796
+                t842 = psi_y*t841
+                t843 = t813*t842
+                t844 = t815*t842
+                t845 = A_x*t711 - Om0_x*t710 - Om0_x*t720 + Om_x*t710 + Om_x*t720
+                t846 = 4*e1*ep_y
+                t847 = e1*t760
+                t848 = t728*t769
+                t849 = t728*t796
+                t850 = Om_z*psi_y
+                t851 = (0.5)*A_x - e0*t817 + e0*t822 - t719*t813 + t719*t815
+                t852 = t726*t769
+                t853 = t726*t796
+                t854 = 4*ep_z*psi_z
+                t855 = t771*t781
+                t856 = t778*t785
+                t857 = t756*t770
+                t858 = t760*t778
+                t859 = Om0_z*t733 - Om_z*e0*psi_z
+                t860 = Om0_y*t734 - Om_y*e0*psi_y
+                t861 = (0.5)*Om0_z + (0.5)*Om_z - e0*t755 + e0*t781
+                t862 = (0.5)*Om0_y + (0.5)*Om_y + e0*t760 - e0*t785
+                t863 = t815*t835
+                t864 = t813*t835
+                t865 = Om0_x*t711 - Om_x*e0*psi_x
+                t866 = (0.5)*Om0_x + (0.5)*Om_x - e0*t813 + e0*t815
+                bdve[j3] += -bdepd_x*t730 + bdepd_y*t722 + bdepd_z*t725
+                bdve[j3 + 1] += bdepd_x*t731 - bdepd_y*t740 + bdepd_z*t737
+                bdve[j3 + 2] += bdepd_x*t741 + bdepd_y*t742 - bdepd_z*t743
+                bdae[j3] += bdepd_x*(-t748 - t749) + bdepd_y*(t744 + t745) + bdepd_z*(-t746 + t747)
+                bdae[j3 + 1] += (bdepd_x*(-t744 + t745) + bdepd_y*(-t749 - t752) + bdepd_z*(t750 +
+                    t751))
+                bdae[j3 + 2] += (bdepd_x*(t746 + t747) + bdepd_y*(-t750 + t751) + bdepd_z*(-t748 -
+                    t752 + 1))
+                bdy[j3] += (bdepd_x*(-t757 - t762 - t765 - t767 - t772 - t779 + t783 + t786 + t787
+                    + t788 + t792 + t795 - t798 - t800 + t802 + t803 + t806 + t808) +
+                    bdepd_y*(-A_y*e0*psi_x + Om0_y*e0*ep_x + Om0_y*e1*psi_x*t718 - Om_y*e0*ep_x +
+                    4*e1*ep_x*psi_x*t755 + 2*e1*ep_x*psi_z*t815 + 2*e1*ep_z*psi_x*t815 +
+                    2*e1*psi_x*psi_z*t822 + 2*e1*t738*t768 + 2*e2*psi_x*psi_z*t718*t815 +
+                    2*e2*t718*t738*t755 - t719*t819 - t761*t813 - t766*t813 - t778*t817 -
+                    4*t781*t811 - t781*t826 - t791*t823 - t799*t813 - t809 + t810 - t818 - t824 +
+                    t825) + bdepd_z*(-e0*t775 - e0*t776 + e0*t793 - t719*t759 + t719*t784 +
+                    t760*t826 + t760*t827 + t764*t813 - t764*t815 + t771*t817 - t771*t822 +
+                    t777*t823 + t782*t813 - t782*t815 - t785*t826 - t785*t827 - t794*t823 +
+                    t801*t813 - t801*t815 + t828))
+                bdy[j3 + 1] += (bdepd_x*(Om0_x*e0*ep_y + Om0_x*e1*psi_y*t718 - e0*t789 - e0*t790 +
+                    4*e1*ep_y*psi_y*t781 + 2*e1*ep_y*psi_z*t785 + 2*e1*ep_z*psi_y*t785 +
+                    2*e1*psi_y*psi_z*t794 + 2*e1*t728*t791 + 2*e2*psi_y*psi_z*t718*t785 +
+                    2*e2*t718*t728*t781 - t719*t780 - t755*t849 - t756*t846 - t760*t842 -
+                    t768*t848 - t777*t835 + t809 - t810 + t818 + t824 - t825 - t829*t847 -
+                    t832*t847) + bdepd_y*(t757 + t765 + t772 - t783 - t787 - t792 + t798 - t802 +
+                    t806 - t831 - t833 - t836 + t838 + t839 + t840 - t843 + t844 + t845) +
+                    bdepd_z*(-A_z*e0*psi_y + Om0_z*e0*ep_y + Om0_z*e1*psi_y*t718 - Om_z*e0*ep_y +
+                    2*e1*ep_x*psi_y*t760 + 2*e1*ep_y*psi_x*t760 + 4*e1*ep_y*psi_y*t813 +
+                    2*e1*psi_x*psi_y*t777 + 2*e1*t728*t817 + 2*e2*psi_x*psi_y*t718*t760 +
+                    2*e2*t718*t728*t813 - psi_y*t815*t846 - t719*t850 - t764*t785 - t771*t794 -
+                    t782*t785 - t785*t801 - t815*t849 - t822*t848 - t851))
+                bdy[j3 + 2] += (bdepd_x*(Om0_x*e0*ep_z + Om0_x*e1*psi_z*t718 - e0*t773 - e0*t774 +
+                    2*e1*ep_y*psi_z*t781 + 2*e1*ep_z*psi_y*t781 + 4*e1*ep_z*psi_z*t785 +
+                    2*e1*psi_y*psi_z*t791 - e1*t716*t756 + 2*e1*t726*t794 - e1*t755*t829 +
+                    2*e2*psi_y*psi_z*t718*t781 + 2*e2*t718*t726*t785 - t719*t758 - t756*t841 -
+                    t760*t853 - t768*t835 - t777*t852 - t828 - t847*t854) + bdepd_y*(e0*t816 -
+                    e0*t820 - e0*t821 + t719*t812 - t719*t814 + t755*t761 + t755*t766 + t755*t799
+                    - t761*t781 - t766*t781 + t768*t778 - t778*t791 - t781*t799 - t813*t853 +
+                    t815*t853 - t817*t852 + t822*t852 - t830*t854 + t837*t854 + t851) +
+                    bdepd_z*(t762 + t767 + t779 - t786 - t788 - t795 + t800 - t803 + t808 + t831 +
+                    t833 + t836 - t838 - t839 - t840 + t843 - t844 + t845))
+                bdOm0_x += bdepd_x*t730 - bdepd_y*t731 - bdepd_z*t741
+                bdOm0_y += -bdepd_x*t722 + bdepd_y*t740 - bdepd_z*t742
+                bdOm0_z += -bdepd_x*t725 - bdepd_y*t737 + bdepd_z*t743
+                bdeta[j3] += (bdepd_x*(t855 + t856 - t857 - t858 - t859 - t860) +
+                    bdepd_y*(Om0_y*e0*psi_x - e0*t819 + 2*e1*psi_x*psi_z*t815 + 2*e1*t738*t755 -
+                    t778*t813 - t781*t823 - t861) + bdepd_z*(-e0*t759 + e0*t784 + t760*t823 +
+                    t771*t813 - t771*t815 - t785*t823 + t862))
+                bdeta[j3 + 1] += (bdepd_x*(e0*t754 - e0*t780 - t755*t848 - t760*t835 + t781*t848 +
+                    t785*t835 + t861) + bdepd_y*(-t855 + t857 - t859 + t863 - t864 - t865) +
+                    bdepd_z*(Om0_z*e0*psi_y - e0*t850 + 2*e1*psi_x*psi_y*t760 + 2*e1*t728*t813 -
+                    t771*t785 - t815*t848 - t866))
+                bdeta[j3 + 2] += (bdepd_x*(Om0_x*e0*psi_z - e0*t758 + 2*e1*psi_y*psi_z*t781 +
+                    2*e1*t726*t785 - t756*t834 - t760*t852 - t862) + bdepd_y*(e0*t812 - e0*t814 +
+                    t755*t778 - t778*t781 - t813*t852 + t815*t852 + t866) + bdepd_z*(-t856 + t858
+                    - t860 - t863 + t864 - t865))
             # overwritten: differential: rate: rates of the elastic rotations, the frame held
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -2608,98 +2595,98 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdep_x, bdep_y, bdep_z = bdeta[j3], bdeta[j3 + 1], bdeta[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t873 = (0.5)*psi_z
-                t874 = e0*psi_x
-                t875 = psi_y*t874
-                t876 = t873 + t875
-                t877 = (0.5)*psi_y
-                t878 = psi_z*t874
-                t879 = -t877 + t878
-                t880 = psi_y*psi_y
-                t881 = e0*t880
-                t882 = psi_z*psi_z
-                t883 = e0*t882 - 1
-                t884 = t881 + t883
-                t885 = -t873 + t875
-                t886 = (0.5)*psi_x
-                t887 = e0*psi_y
-                t888 = psi_z*t887
-                t889 = t886 + t888
-                t890 = psi_x*psi_x
-                t891 = e0*t890
-                t892 = t883 + t891
-                t893 = t877 + t878
-                t894 = -t886 + t888
-                t895 = t881 + t891 - 1
-                t896 = Om_x*psi_y
-                t897 = Om_y*psi_x - t896
-                t898 = 2*e1
-                t899 = psi_x*t898
-                t900 = psi_y*t899
-                t901 = t897*t900
-                t902 = Om0_z*psi_x
-                t903 = Om0_x*psi_z - t902
-                t904 = psi_z*t899
-                t905 = t903*t904
-                t906 = Om0_x*psi_y
-                t907 = Om0_y*psi_x - t906
-                t908 = t900*t907
-                t909 = Om_x*psi_z
-                t910 = Om_z*psi_x
-                t911 = t909 - t910
-                t912 = t904*t911
-                t913 = Om0_z*e0*psi_z - Om_z*e0*psi_z
-                t914 = Om0_y*t887 - Om_y*e0*psi_y
-                t915 = t890*t898
-                t916 = Om_y*psi_z
-                t917 = Om_z*psi_y - t916
-                t918 = Om0_y*psi_z
-                t919 = Om0_z*psi_y - t918
-                t920 = (0.5)*Om0_z + (0.5)*Om_z + e0*t897 - e0*t907
-                t921 = (0.5)*Om0_y + (0.5)*Om_y - e0*t903 + e0*t911
-                t922 = psi_y*psi_z*t898
-                t923 = t917*t922
-                t924 = t919*t922
-                t925 = Om0_x*t874 - Om_x*e0*psi_x
-                t926 = t880*t898
-                t927 = (0.5)*Om0_x + (0.5)*Om_x + e0*t917 - e0*t919
-                t928 = t882*t898
-                bdve[j3] += -bdep_x*t884 + bdep_y*t876 + bdep_z*t879
-                bdve[j3 + 1] += bdep_x*t885 - bdep_y*t892 + bdep_z*t889
-                bdve[j3 + 2] += bdep_x*t893 + bdep_y*t894 - bdep_z*t895
-                bdy[j3] += (bdep_x*(t901 + t905 - t908 - t912 - t913 - t914) +
-                    bdep_y*(Om0_y*e0*psi_x - Om_y*e0*psi_x + 2*e1*psi_x*psi_z*t917 +
-                    2*e1*t890*t907 - t897*t915 - t904*t919 - t920) + bdep_z*(e0*t902 - e0*t910 -
-                    t900*t917 + t900*t919 - t903*t915 + t911*t915 + t921))
-                bdy[j3 + 1] += (bdep_x*(-e0*t896 + e0*t906 + t897*t926 + t903*t922 - t907*t926 -
-                    t911*t922 + t920) + bdep_y*(-t901 + t908 - t913 + t923 - t924 - t925) +
-                    bdep_z*(Om0_z*e0*psi_y - Om_z*e0*psi_y + 2*e1*psi_x*psi_y*t911 +
-                    2*e1*t880*t919 - t900*t903 - t917*t926 - t927))
-                bdy[j3 + 2] += (bdep_x*(Om0_x*e0*psi_z - e0*t909 + 2*e1*psi_y*psi_z*t897 +
-                    2*e1*t882*t903 - t907*t922 - t911*t928 - t921) + bdep_y*(-e0*t916 + e0*t918 -
-                    t897*t904 + t904*t907 + t917*t928 - t919*t928 + t927) + bdep_z*(-t905 + t912 -
-                    t914 - t923 + t924 - t925))
-                bdOm0_x += bdep_x*t884 - bdep_y*t885 - bdep_z*t893
-                bdOm0_y += -bdep_x*t876 + bdep_y*t892 - bdep_z*t894
-                bdOm0_z += -bdep_x*t879 - bdep_y*t889 + bdep_z*t895
+                t867 = (0.5)*psi_z
+                t868 = e0*psi_x
+                t869 = psi_y*t868
+                t870 = t867 + t869
+                t871 = (0.5)*psi_y
+                t872 = psi_z*t868
+                t873 = -t871 + t872
+                t874 = psi_y*psi_y
+                t875 = e0*t874
+                t876 = psi_z*psi_z
+                t877 = e0*t876 - 1
+                t878 = t875 + t877
+                t879 = -t867 + t869
+                t880 = (0.5)*psi_x
+                t881 = e0*psi_y
+                t882 = psi_z*t881
+                t883 = t880 + t882
+                t884 = psi_x*psi_x
+                t885 = e0*t884
+                t886 = t877 + t885
+                t887 = t871 + t872
+                t888 = -t880 + t882
+                t889 = t875 + t885 - 1
+                t890 = Om_x*psi_y
+                t891 = Om_y*psi_x - t890
+                t892 = 2*e1
+                t893 = psi_x*t892
+                t894 = psi_y*t893
+                t895 = t891*t894
+                t896 = Om0_z*psi_x
+                t897 = Om0_x*psi_z - t896
+                t898 = psi_z*t893
+                t899 = t897*t898
+                t900 = Om0_x*psi_y
+                t901 = Om0_y*psi_x - t900
+                t902 = t894*t901
+                t903 = Om_x*psi_z
+                t904 = Om_z*psi_x
+                t905 = t903 - t904
+                t906 = t898*t905
+                t907 = Om0_z*e0*psi_z - Om_z*e0*psi_z
+                t908 = Om0_y*t881 - Om_y*e0*psi_y
+                t909 = t884*t892
+                t910 = Om_y*psi_z
+                t911 = Om_z*psi_y - t910
+                t912 = Om0_y*psi_z
+                t913 = Om0_z*psi_y - t912
+                t914 = (0.5)*Om0_z + (0.5)*Om_z + e0*t891 - e0*t901
+                t915 = (0.5)*Om0_y + (0.5)*Om_y - e0*t897 + e0*t905
+                t916 = psi_y*psi_z*t892
+                t917 = t911*t916
+                t918 = t913*t916
+                t919 = Om0_x*t868 - Om_x*e0*psi_x
+                t920 = t874*t892
+                t921 = (0.5)*Om0_x + (0.5)*Om_x + e0*t911 - e0*t913
+                t922 = t876*t892
+                bdve[j3] += -bdep_x*t878 + bdep_y*t870 + bdep_z*t873
+                bdve[j3 + 1] += bdep_x*t879 - bdep_y*t886 + bdep_z*t883
+                bdve[j3 + 2] += bdep_x*t887 + bdep_y*t888 - bdep_z*t889
+                bdy[j3] += (bdep_x*(t895 + t899 - t902 - t906 - t907 - t908) +
+                    bdep_y*(Om0_y*e0*psi_x - Om_y*e0*psi_x + 2*e1*psi_x*psi_z*t911 +
+                    2*e1*t884*t901 - t891*t909 - t898*t913 - t914) + bdep_z*(e0*t896 - e0*t904 -
+                    t894*t911 + t894*t913 - t897*t909 + t905*t909 + t915))
+                bdy[j3 + 1] += (bdep_x*(-e0*t890 + e0*t900 + t891*t920 + t897*t916 - t901*t920 -
+                    t905*t916 + t914) + bdep_y*(-t895 + t902 - t907 + t917 - t918 - t919) +
+                    bdep_z*(Om0_z*e0*psi_y - Om_z*e0*psi_y + 2*e1*psi_x*psi_y*t905 +
+                    2*e1*t874*t913 - t894*t897 - t911*t920 - t921))
+                bdy[j3 + 2] += (bdep_x*(Om0_x*e0*psi_z - e0*t903 + 2*e1*psi_y*psi_z*t891 +
+                    2*e1*t876*t897 - t901*t916 - t905*t922 - t915) + bdep_y*(-e0*t910 + e0*t912 -
+                    t891*t898 + t898*t901 + t911*t922 - t913*t922 + t921) + bdep_z*(-t899 + t906 -
+                    t908 - t917 + t918 - t919))
+                bdOm0_x += bdep_x*t878 - bdep_y*t879 - bdep_z*t887
+                bdOm0_y += -bdep_x*t870 + bdep_y*t886 - bdep_z*t888
+                bdOm0_z += -bdep_x*t873 - bdep_y*t883 + bdep_z*t889
             # transposed: differential: rates of the elastic displacements
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 bdeu_x, bdeu_y, bdeu_z = bdeta[i3], bdeta[i3 + 1], bdeta[i3 + 2]
-                t929 = X_z + u_z
-                t930 = X_y + u_y
-                t931 = X_x + u_x
+                t923 = X_z + u_z
+                t924 = X_y + u_y
+                t925 = X_x + u_x
                 bdy[i3] += Om0_y*bdeu_z - Om0_z*bdeu_y
                 bdy[i3 + 1] += -Om0_x*bdeu_z + Om0_z*bdeu_x
                 bdy[i3 + 2] += Om0_x*bdeu_y - Om0_y*bdeu_x
                 bdyd[i3] += bdeu_x
                 bdyd[i3 + 1] += bdeu_y
                 bdyd[i3 + 2] += bdeu_z
-                bdOm0_x += bdeu_y*t929 - bdeu_z*t930
-                bdOm0_y += -bdeu_x*t929 + bdeu_z*t931
-                bdOm0_z += bdeu_x*t930 - bdeu_y*t931
+                bdOm0_x += bdeu_y*t923 - bdeu_z*t924
+                bdOm0_y += -bdeu_x*t923 + bdeu_z*t925
+                bdOm0_z += bdeu_x*t924 - bdeu_y*t925
                 bdv0_x += -bdeu_x
                 bdv0_y += -bdeu_y
                 bdv0_z += -bdeu_z
@@ -2726,12 +2713,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdy[k] = 0.0
             # transposed: differential: B rate = sum alpha_j T^-1(psi_j) rate_j
             rhs_x = rhs_y = rhs_z = 0.0
-            t932 = bdOm0_x + rhs_x
-            t933 = bdOm0_y + rhs_y
-            t934 = bdOm0_z + rhs_z
-            mdOm0_x = Bxx*t932 + Byx*t933 + Bzx*t934
-            mdOm0_y = Bxy*t932 + Byy*t933 + Bzy*t934
-            mdOm0_z = Bxz*t932 + Byz*t933 + Bzz*t934
+            t926 = bdOm0_x + rhs_x
+            t927 = bdOm0_y + rhs_y
+            t928 = bdOm0_z + rhs_z
+            mdOm0_x = Bxx*t926 + Byx*t927 + Bzx*t928
+            mdOm0_y = Bxy*t926 + Byy*t927 + Bzy*t928
+            mdOm0_z = Bxz*t926 + Byz*t927 + Bzz*t928
             # transposed: differential: B rate = sum alpha_j T^-1(psi_j) rate_j
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -2740,70 +2727,70 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t935 = (0.5)*psi_z
-                t936 = e0*psi_x
-                t937 = psi_y*t936
-                t938 = alpha_r*mdOm0_y
-                t939 = (0.5)*psi_y
-                t940 = psi_z*t936
-                t941 = alpha_r*mdOm0_z
-                t942 = psi_y*psi_y
-                t943 = e0*t942
-                t944 = psi_z*psi_z
-                t945 = e0*t944 - 1
-                t946 = alpha_r*mdOm0_x
-                t947 = (0.5)*psi_x
-                t948 = e0*psi_y
-                t949 = psi_z*t948
-                t950 = psi_x*psi_x
-                t951 = e0*t950
-                t952 = -Om_x*psi_y + Om_y*psi_x
-                t953 = 2*e1
-                t954 = psi_x*t953
-                t955 = psi_y*t954
-                t956 = t952*t955
-                t957 = Om0_x*psi_z
-                t958 = Om0_z*psi_x
-                t959 = t957 - t958
-                t960 = psi_z*t954
-                t961 = t959*t960
-                t962 = Om0_x*psi_y
-                t963 = Om0_y*psi_x - t962
-                t964 = t955*t963
-                t965 = Om_x*psi_z
-                t966 = -Om_z*psi_x + t965
-                t967 = t960*t966
-                t968 = e0*psi_z
-                t969 = Om0_z*t968 - Om_z*t968
-                t970 = Om0_y*t948 - Om_y*t948
-                t971 = t950*t953
-                t972 = -Om_y*psi_z + Om_z*psi_y
-                t973 = Om0_y*psi_z
-                t974 = Om0_z*psi_y - t973
-                t975 = (0.5)*Om0_z + (0.5)*Om_z + e0*t952 - e0*t963
-                t976 = (0.5)*Om0_y + (0.5)*Om_y - e0*t959 + e0*t966
-                t977 = psi_y*psi_z*t953
-                t978 = t972*t977
-                t979 = t974*t977
-                t980 = Om0_x*t936 - Om_x*t936
-                t981 = t942*t953
-                t982 = (0.5)*Om0_x + (0.5)*Om_x + e0*t972 - e0*t974
-                t983 = t944*t953
-                bdve[j3] += -t938*(-t935 - t937) - t941*(t939 - t940) - t946*(t943 + t945)
-                bdve[j3 + 1] += -t938*(t945 + t951) - t941*(-t947 - t949) - t946*(t935 - t937)
-                bdve[j3 + 2] += -t938*(t947 - t949) - t941*(t943 + t951 - 1) - t946*(-t939 - t940)
-                bdy[j3] += (-t938*(-Om0_y*e0*psi_x + Om_y*e0*psi_x + t952*t971 - t960*t972 +
-                    t960*t974 - t963*t971 + t975) - t941*(Om_z*e0*psi_x - e0*t958 +
-                    2*e1*psi_x*psi_y*t972 + 2*e1*t950*t959 - t955*t974 - t966*t971 - t976) -
-                    t946*(-t956 - t961 + t964 + t967 + t969 + t970))
-                bdy[j3 + 1] += (-t938*(t956 - t964 + t969 - t978 + t979 + t980) -
-                    t941*(-Om0_z*e0*psi_y + Om_z*e0*psi_y + t955*t959 - t955*t966 + t972*t981 -
-                    t974*t981 + t982) - t946*(Om_x*e0*psi_y - e0*t962 + 2*e1*psi_y*psi_z*t966 +
-                    2*e1*t942*t963 - t952*t981 - t959*t977 - t975))
-                bdy[j3 + 2] += (-t938*(Om_y*e0*psi_z - e0*t973 + 2*e1*psi_x*psi_z*t952 +
-                    2*e1*t944*t974 - t960*t963 - t972*t983 - t982) - t941*(t961 - t967 + t970 +
-                    t978 - t979 + t980) - t946*(-e0*t957 + e0*t965 - t952*t977 - t959*t983 +
-                    t963*t977 + t966*t983 + t976))
+                t929 = (0.5)*psi_z
+                t930 = e0*psi_x
+                t931 = psi_y*t930
+                t932 = alpha_r*mdOm0_y
+                t933 = (0.5)*psi_y
+                t934 = psi_z*t930
+                t935 = alpha_r*mdOm0_z
+                t936 = psi_y*psi_y
+                t937 = e0*t936
+                t938 = psi_z*psi_z
+                t939 = e0*t938 - 1
+                t940 = alpha_r*mdOm0_x
+                t941 = (0.5)*psi_x
+                t942 = e0*psi_y
+                t943 = psi_z*t942
+                t944 = psi_x*psi_x
+                t945 = e0*t944
+                t946 = -Om_x*psi_y + Om_y*psi_x
+                t947 = 2*e1
+                t948 = psi_x*t947
+                t949 = psi_y*t948
+                t950 = t946*t949
+                t951 = Om0_x*psi_z
+                t952 = Om0_z*psi_x
+                t953 = t951 - t952
+                t954 = psi_z*t948
+                t955 = t953*t954
+                t956 = Om0_x*psi_y
+                t957 = Om0_y*psi_x - t956
+                t958 = t949*t957
+                t959 = Om_x*psi_z
+                t960 = -Om_z*psi_x + t959
+                t961 = t954*t960
+                t962 = e0*psi_z
+                t963 = Om0_z*t962 - Om_z*t962
+                t964 = Om0_y*t942 - Om_y*t942
+                t965 = t944*t947
+                t966 = -Om_y*psi_z + Om_z*psi_y
+                t967 = Om0_y*psi_z
+                t968 = Om0_z*psi_y - t967
+                t969 = (0.5)*Om0_z + (0.5)*Om_z + e0*t946 - e0*t957
+                t970 = (0.5)*Om0_y + (0.5)*Om_y - e0*t953 + e0*t960
+                t971 = psi_y*psi_z*t947
+                t972 = t966*t971
+                t973 = t968*t971
+                t974 = Om0_x*t930 - Om_x*t930
+                t975 = t936*t947
+                t976 = (0.5)*Om0_x + (0.5)*Om_x + e0*t966 - e0*t968
+                t977 = t938*t947
+                bdve[j3] += -t932*(-t929 - t931) - t935*(t933 - t934) - t940*(t937 + t939)
+                bdve[j3 + 1] += -t932*(t939 + t945) - t935*(-t941 - t943) - t940*(t929 - t931)
+                bdve[j3 + 2] += -t932*(t941 - t943) - t935*(t937 + t945 - 1) - t940*(-t933 - t934)
+                bdy[j3] += (-t932*(-Om0_y*e0*psi_x + Om_y*e0*psi_x + t946*t965 - t954*t966 +
+                    t954*t968 - t957*t965 + t969) - t935*(Om_z*e0*psi_x - e0*t952 +
+                    2*e1*psi_x*psi_y*t966 + 2*e1*t944*t953 - t949*t968 - t960*t965 - t970) -
+                    t940*(-t950 - t955 + t958 + t961 + t963 + t964))
+                bdy[j3 + 1] += (-t932*(t950 - t958 + t963 - t972 + t973 + t974) -
+                    t935*(-Om0_z*e0*psi_y + Om_z*e0*psi_y + t949*t953 - t949*t960 + t966*t975 -
+                    t968*t975 + t976) - t940*(Om_x*e0*psi_y - e0*t956 + 2*e1*psi_y*psi_z*t960 +
+                    2*e1*t936*t957 - t946*t975 - t953*t971 - t969))
+                bdy[j3 + 2] += (-t932*(Om_y*e0*psi_z - e0*t967 + 2*e1*psi_x*psi_z*t946 +
+                    2*e1*t938*t968 - t954*t957 - t966*t977 - t976) - t935*(t955 - t961 + t964 +
+                    t972 - t973 + t974) - t940*(-e0*t951 + e0*t959 - t946*t971 - t953*t977 +
+                    t957*t971 + t960*t977 + t970))
             # transposed: differential: velocity and acceleration of the nodes in frame axes, (33)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -2854,43 +2841,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 bdpsi_x, bdpsi_y, bdpsi_z = bdy[j3], bdy[j3 + 1], bdy[j3 + 2]
                 e0 = e0s[j]
-                t984 = (0.5)*psi_z
-                t985 = e0*psi_x
-                t986 = psi_y*t985
-                t987 = t984 + t986
-                t988 = (0.5)*psi_y
-                t989 = psi_z*t985
-                t990 = -t988 + t989
-                t991 = e0*psi_y*psi_y
-                t992 = e0*psi_z*psi_z - 1
-                t993 = t991 + t992
-                t994 = -t984 + t986
-                t995 = (0.5)*psi_x
-                t996 = e0*psi_y*psi_z
-                t997 = t995 + t996
-                t998 = e0*psi_x*psi_x
-                t999 = t992 + t998
-                t1000 = t988 + t989
-                t1001 = -t995 + t996
-                t1002 = t991 + t998 - 1
-                bdqe[j3] += -bdpsi_x*t993 + bdpsi_y*t987 + bdpsi_z*t990
-                bdqe[j3 + 1] += bdpsi_x*t994 - bdpsi_y*t999 + bdpsi_z*t997
-                bdqe[j3 + 2] += bdpsi_x*t1000 + bdpsi_y*t1001 - bdpsi_z*t1002
-                bdth0_x += bdpsi_x*t993 - bdpsi_y*t994 - bdpsi_z*t1000
-                bdth0_y += -bdpsi_x*t987 + bdpsi_y*t999 - bdpsi_z*t1001
-                bdth0_z += -bdpsi_x*t990 - bdpsi_y*t997 + bdpsi_z*t1002
+                t978 = (0.5)*psi_z
+                t979 = e0*psi_x
+                t980 = psi_y*t979
+                t981 = t978 + t980
+                t982 = (0.5)*psi_y
+                t983 = psi_z*t979
+                t984 = -t982 + t983
+                t985 = e0*psi_y*psi_y
+                t986 = e0*psi_z*psi_z - 1
+                t987 = t985 + t986
+                t988 = -t978 + t980
+                t989 = (0.5)*psi_x
+                t990 = e0*psi_y*psi_z
+                t991 = t989 + t990
+                t992 = e0*psi_x*psi_x
+                t993 = t986 + t992
+                t994 = t982 + t983
+                t995 = -t989 + t990
+                t996 = t985 + t992 - 1
+                bdqe[j3] += -bdpsi_x*t987 + bdpsi_y*t981 + bdpsi_z*t984
+                bdqe[j3 + 1] += bdpsi_x*t988 - bdpsi_y*t993 + bdpsi_z*t991
+                bdqe[j3 + 2] += bdpsi_x*t994 + bdpsi_y*t995 - bdpsi_z*t996
+                bdth0_x += bdpsi_x*t987 - bdpsi_y*t988 - bdpsi_z*t994
+                bdth0_y += -bdpsi_x*t981 + bdpsi_y*t993 - bdpsi_z*t995
+                bdth0_z += -bdpsi_x*t984 - bdpsi_y*t991 + bdpsi_z*t996
             # transposed: differential: displacement of the nodes in the frame, (11)
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 bdu_x, bdu_y, bdu_z = bdy[i3], bdy[i3 + 1], bdy[i3 + 2]
-                t1003 = X_z + u_z
-                t1004 = X_y + u_y
-                t1005 = X_x + u_x
-                bdth0_x += bdu_y*t1003 - bdu_z*t1004
-                bdth0_y += -bdu_x*t1003 + bdu_z*t1005
-                bdth0_z += bdu_x*t1004 - bdu_y*t1005
+                t997 = X_z + u_z
+                t998 = X_y + u_y
+                t999 = X_x + u_x
+                bdth0_x += bdu_y*t997 - bdu_z*t998
+                bdth0_y += -bdu_x*t997 + bdu_z*t999
+                bdth0_z += bdu_x*t998 - bdu_y*t999
                 bdqe[i3] += bdu_x
                 bdqe[i3 + 1] += bdu_y
                 bdqe[i3 + 2] += bdu_z
@@ -2899,36 +2886,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdx0_z += -bdu_z
             # transposed: B rate = sum alpha_j T^-1(psi_j) rate_j
             rhs_x = rhs_y = rhs_z = 0.0
-            t1006 = bdth0_x + rhs_x
-            t1007 = bdth0_y + rhs_y
-            t1008 = bdth0_z + rhs_z
-            mdth0_x = Bxx*t1006 + Byx*t1007 + Bzx*t1008
-            mdth0_y = Bxy*t1006 + Byy*t1007 + Bzy*t1008
-            mdth0_z = Bxz*t1006 + Byz*t1007 + Bzz*t1008
+            t1000 = bdth0_x + rhs_x
+            t1001 = bdth0_y + rhs_y
+            t1002 = bdth0_z + rhs_z
+            mdth0_x = Bxx*t1000 + Byx*t1001 + Bzx*t1002
+            mdth0_y = Bxy*t1000 + Byy*t1001 + Bzy*t1002
+            mdth0_z = Bxz*t1000 + Byz*t1001 + Bzz*t1002
             # transposed: B rate = sum alpha_j T^-1(psi_j) rate_j
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 alpha_r = alpha_rs[j]
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e0 = e0s[j]
-                t1009 = (0.5)*psi_z
-                t1010 = e0*psi_x
-                t1011 = psi_y*t1010
-                t1012 = alpha_r*mdth0_y
-                t1013 = (0.5)*psi_y
-                t1014 = psi_z*t1010
-                t1015 = alpha_r*mdth0_z
-                t1016 = e0*psi_y*psi_y
-                t1017 = e0*psi_z*psi_z - 1
-                t1018 = alpha_r*mdth0_x
-                t1019 = (0.5)*psi_x
-                t1020 = e0*psi_y*psi_z
-                t1021 = e0*psi_x*psi_x
-                bdqe[j3] += -t1012*(-t1009 - t1011) - t1015*(t1013 - t1014) - t1018*(t1016 + t1017)
-                bdqe[j3 + 1] += (-t1012*(t1017 + t1021) - t1015*(-t1019 - t1020) - t1018*(t1009 -
-                    t1011))
-                bdqe[j3 + 2] += (-t1012*(t1019 - t1020) - t1015*(t1016 + t1021 - 1) -
-                    t1018*(-t1013 - t1014))
+                t1003 = (0.5)*psi_z
+                t1004 = e0*psi_x
+                t1005 = psi_y*t1004
+                t1006 = alpha_r*mdth0_y
+                t1007 = (0.5)*psi_y
+                t1008 = psi_z*t1004
+                t1009 = alpha_r*mdth0_z
+                t1010 = e0*psi_y*psi_y
+                t1011 = e0*psi_z*psi_z - 1
+                t1012 = alpha_r*mdth0_x
+                t1013 = (0.5)*psi_x
+                t1014 = e0*psi_y*psi_z
+                t1015 = e0*psi_x*psi_x
+                bdqe[j3] += -t1006*(-t1003 - t1005) - t1009*(t1007 - t1008) - t1012*(t1010 + t1011)
+                bdqe[j3 + 1] += (-t1006*(t1011 + t1015) - t1009*(-t1013 - t1014) - t1012*(t1003 -
+                    t1005))
+                bdqe[j3 + 2] += (-t1006*(t1013 - t1014) - t1009*(t1010 + t1015 - 1) -
+                    t1012*(-t1007 - t1008))
             # transposed: origin of the frame, (14)
             for i in range(N_POSITIONS):
                 i3 = 3*i

@@ -33,15 +33,19 @@ from sebody.kernels.dense import (
     add_rows_times,
     block_times,
     clear,
+    columns_times,
     rows_times,
 )
 from sebody.kernels.frame_search import planar_fit, planar_relative_angles
 from sebody.kernels.packed_products import (
+    add_couplings,
     add_packed,
     add_packed_times,
+    couplings_times,
     from_free,
     packed_room,
     packed_times,
+    packed_times_both,
     to_free,
 )
 
@@ -55,11 +59,11 @@ ROTATIONS = None      # first rotation among the local coordinates
 MODES = None          # first internal mode
 DAMPED = None        # has structural damping, None where a body tells
 N_MODES = None        # their number, None where it is read at run time
-WORK_ROWS = 132
+WORK_ROWS = 134
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (437, 106, 3, 1),
+OPERATIONS = {"residual": (439, 106, 3, 1),
               "column": (25, 103, 4, 4)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("sizes", (3,), "slaved coordinates, resultants of second order, damped or not"),
@@ -71,8 +75,8 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),
     Part("J0", ("pairs",), "moments of inertia at rest"),
     Part("moment_columns", ("N", "lines"), "S1, g_k, h_kl + h_lk", columns=True),
-    Part("of_place", ("placed", "N", "N"), "J2_kl, K_k^T", packed=True),
-    Part("of_rate", ("rated", "N", "N"), "K_k^T, K_k^T - K_k", packed=True),
+    Part("moment_rows", ("lines", "N"), "its transpose", columns=True),
+    Part("couplings", ("coupled", "N", "N"), "J2_kl, K_k^T; K_k^T and K_k of rates", packed=True),
     Part("Mz", (1, "N", "N"), "reduced mass with slaved coordinates", packed=True),
     Part("Cz", ("damped", "free", "free"), "reduced damping", packed=True),
     Part("followers", ("slaved", "free", "free"), "Q_b", packed=True),
@@ -125,52 +129,51 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         by_Gy = at(work, 8 + 27*row)
         s = at(work, 8 + 28*row)
         h = at(work, 8 + 29*row)
-        by_place = at(work, 8 + 30*row)
-        by_rate = at(work, 8 + 31*row)
-        ones = at(work, 8 + 32*row)
-        by_followers = at(work, 8 + 33*row)
-        of_E = at(work, 8 + 34*row)
-        of_Gy = at(work, 8 + 35*row)
-        dy = at(work, 8 + 36*row)
-        dz = at(work, 8 + 37*row)
-        dlocal = at(work, 8 + 38*row)
-        dyd = at(work, 8 + 39*row)
-        dacc = at(work, 8 + 40*row)
-        deta = at(work, 8 + 41*row)
-        detad = at(work, 8 + 42*row)
-        dgamma = at(work, 8 + 43*row)
-        dzd = at(work, 8 + 44*row)
-        dzdd = at(work, 8 + 45*row)
-        ds = at(work, 8 + 46*row)
-        dh = at(work, 8 + 47*row)
-        dg = at(work, 8 + 48*row)
-        bdqe = at(work, 8 + 49*row)
-        bdve = at(work, 8 + 50*row)
-        bdae = at(work, 8 + 51*row)
-        bdy = at(work, 8 + 52*row)
-        bdz = at(work, 8 + 53*row)
-        bdlocal = at(work, 8 + 54*row)
-        bdyd = at(work, 8 + 55*row)
-        bdacc = at(work, 8 + 56*row)
-        bdeta = at(work, 8 + 57*row)
-        bdetad = at(work, 8 + 58*row)
-        bdgamma = at(work, 8 + 59*row)
-        bdzd = at(work, 8 + 60*row)
-        bdzdd = at(work, 8 + 61*row)
-        bds = at(work, 8 + 62*row)
-        bdh = at(work, 8 + 63*row)
-        bdg = at(work, 8 + 64*row)
-        temporary = at(work, 8 + 65*row)
-        unordered = at(work, 8 + 66*row)
-        Zq = at(work, 8 + 69*row)
-        Zd = at(work, 8 + 81*row)
-        products = at(work, 8 + 93*row)
-        Za = at(work, 8 + 108*row)
-        more = at(work, 8 + 120*row)
-        Gy = at(work, 8 + 132*row)
-        Lz = at(work, 8 + (132 + n + 18)*row)
-        Lv = at(work, 8 + (132 + 2*(n + 18))*row)
-        La = at(work, 8 + (132 + 3*(n + 18))*row)
+        by_couplings = at(work, 8 + 30*row)
+        ones = at(work, 8 + 31*row)
+        by_followers = at(work, 8 + 32*row)
+        of_E = at(work, 8 + 33*row)
+        of_Gy = at(work, 8 + 34*row)
+        dy = at(work, 8 + 35*row)
+        dz = at(work, 8 + 36*row)
+        dlocal = at(work, 8 + 37*row)
+        dyd = at(work, 8 + 38*row)
+        dacc = at(work, 8 + 39*row)
+        deta = at(work, 8 + 40*row)
+        detad = at(work, 8 + 41*row)
+        dgamma = at(work, 8 + 42*row)
+        dzd = at(work, 8 + 43*row)
+        dzdd = at(work, 8 + 44*row)
+        ds = at(work, 8 + 45*row)
+        dh = at(work, 8 + 46*row)
+        dg = at(work, 8 + 47*row)
+        bdqe = at(work, 8 + 48*row)
+        bdve = at(work, 8 + 49*row)
+        bdae = at(work, 8 + 50*row)
+        bdy = at(work, 8 + 51*row)
+        bdz = at(work, 8 + 52*row)
+        bdlocal = at(work, 8 + 53*row)
+        bdyd = at(work, 8 + 54*row)
+        bdacc = at(work, 8 + 55*row)
+        bdeta = at(work, 8 + 56*row)
+        bdetad = at(work, 8 + 57*row)
+        bdgamma = at(work, 8 + 58*row)
+        bdzd = at(work, 8 + 59*row)
+        bdzdd = at(work, 8 + 60*row)
+        bds = at(work, 8 + 61*row)
+        bdh = at(work, 8 + 62*row)
+        bdg = at(work, 8 + 63*row)
+        temporary = at(work, 8 + 64*row)
+        unordered = at(work, 8 + 65*row)
+        Zq = at(work, 8 + 68*row)
+        Zd = at(work, 8 + 80*row)
+        products = at(work, 8 + 92*row)
+        Za = at(work, 8 + 107*row)
+        more = at(work, 8 + 119*row)
+        Gy = at(work, 8 + 134*row)
+        Lz = at(work, 8 + (134 + n + 18)*row)
+        Lv = at(work, 8 + (134 + 2*(n + 18))*row)
+        La = at(work, 8 + (134 + 3*(n + 18))*row)
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
@@ -198,9 +201,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         c0 = at(order, free)
         J0 = at(c0, 2)
         moment_columns = at(J0, 1)
-        of_place = at(moment_columns, 4*padded(N))
-        of_rate = at(of_place, packed_room(2, N, N))
-        Mz = at(of_rate, packed_room(2, N, N))
+        moment_rows = at(moment_columns, 4*padded(N))
+        couplings = at(moment_rows, N*padded(4))
+        Mz = at(couplings, packed_room(4, N, N))
         Cz = at(Mz, packed_room(1, N, N))
         followers = at(Cz, packed_room(damped, free, free))
         lam = at(followers, packed_room(slaved, free, free))
@@ -348,22 +351,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # coordinates that determine the others, and their rates
             all_to_free(y, eta, etad, axes, order, unordered, z, zd, zdd, bound, bound_free, free,
                         hN)
-            # Q_b z, all b
-            packed_times(followers, z, Zq, slaved*hn)
-            # Q_b zd, all b
-            packed_times(followers, zd, Zd, slaved*hn)
+            # Q_b z and Q_b zd, all b
+            packed_times_both(followers, z, zd, Zq, Zd, slaved*hn)
             # eta_b = y . Q_b y / 2, their rates and second rates
             follow(Zq, Zd, z, zd, zdd, free, slaved, hn)
-            # J2_kl z and K_k^T z
-            packed_times(of_place, z, products, 2*hN)
-            # K_k^T zdot and (K_k^T - K_k) zdot
-            packed_times(of_rate, zd, at(products, 2*hN), 2*hN)
+            # J2_kl z, K_k^T z, K_k^T zdot and K_k zdot
+            couplings_times(couplings, z, zd, products, 4*hN)
             # first moments, couplings, inertia at rest, by z
-            rows_times(moment_columns, z, line0, N, 4, hN)
+            columns_times(moment_rows, z, line0, 4, N)
             # first moments, couplings, inertia at rest, by zd
-            rows_times(moment_columns, zd, line1, N, 4, hN)
+            columns_times(moment_rows, zd, line1, 4, N)
             # first moments, couplings, inertia at rest, by zdd
-            rows_times(moment_columns, zdd, line2, N, 4, hN)
+            columns_times(moment_rows, zdd, line2, 4, N)
             # quadratic parts, by z
             rows_times(products, z, product0, N, 4, hN)
             # quadratic parts, by zd
@@ -413,8 +412,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             by_moment_columns[3] = -0.5*t4
             by_products[0] = -t4
             by_products[1] = turning_z
-            by_products[2] = 0.0
-            by_products[3] = spin_z
+            by_products[2] = spin_z
+            by_products[3] = -spin_z
             # inertia force of deformation, Mbar zddot
             packed_times(Mz, zdd, local, hN)
             # damping force, Cbar ydot
@@ -518,17 +517,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             c_geo = 1.0
             # Q_b zdd, all b
             packed_times(followers, zdd, Za, slaved*hn)
-            # J2_kl zdot
-            packed_times(of_place, zd, more, 2*hN)
-            # K_k^T zddot and (K_k^T - K_k) zddot
-            packed_times(of_rate, zdd, at(more, hN), 2*hN)
+            # J2_kl zdot, K_k^T zddot and K_k zddot
+            couplings_times(couplings, zd, zdd, more, 4*hN)
             # factors of the local tangents
             turning_z = zdd[N + 2]
             spin_z = zd[N]
-            by_place[0] = -c_geo*spin_z*spin_z
-            by_place[1] = c_geo*turning_z
-            by_rate[0] = 0.0
-            by_rate[1] = spin_z
+            by_couplings[0] = -c_geo*spin_z*spin_z
+            by_couplings[1] = c_geo*turning_z
+            by_couplings[2] = spin_z
+            by_couplings[3] = -spin_z
             ones[0] = 1
             # forces on eta as factors
             for b in range(slaved):
@@ -540,12 +537,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             clear(Lv, N*deep)
             # local tangents
             clear(La, N*deep)
-            # by z: J2_kl and K_k^T
-            add_packed(of_place, by_place, Lz, deep)
+            # by z: J2_kl and K_k^T; by zdot: K_k^T and K_k
+            add_couplings(couplings, by_couplings, Lz, Lv, deep)
             # forces on eta
             add_packed(followers, by_followers, Lz, deep)
-            # by zdot: K_k^T and K_k^T - K_k
-            add_packed(of_rate, by_rate, Lv, deep)
             # structural damping
             add_packed(Cz, ones, Lv, deep)
             # by zddot
@@ -577,18 +572,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 row_v_z = products[2*hN + i]
                 row_w_z = products[3*hN + i]
                 row_jd_zz = more[i]
-                row_ua_z = more[hN + i]
-                row_wa_z = more[2*hN + i]
+                row_wa_z = more[3*hN + i]
                 t11 = spin_z*spin_z
                 t12 = 2*spin_z
                 t13 = row_h_zz + 2*row_j_zz
                 Lz[i*deep + N] = c_geo*(-row_S1_x*t11 - row_S1_y*turning_z)
                 Lz[i*deep + N + 1] = c_geo*(row_S1_x*turning_z - row_S1_y*t11)
                 Lz[i*deep + N + 2] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_zz*t12 +
-                    row_ua_z - row_wa_z + t13*turning_z))
+                    row_wa_z + t13*turning_z))
                 Lv[i*deep + N] = -row_S1_y*t12
                 Lv[i*deep + N + 1] = row_S1_x*t12
-                Lv[i*deep + N + 2] = 2*row_v_z - row_w_z + spin_z*t13
+                Lv[i*deep + N + 2] = row_v_z + row_w_z + spin_z*t13
                 La[i*deep + N] = row_S1_x
                 La[i*deep + N + 1] = row_S1_y
                 La[i*deep + N + 2] = row_g_z + row_u_z
@@ -600,8 +594,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 row_h_zz = moment_columns[3*hN + i]
                 row_j_zz = products[i]
                 row_u_z = products[hN + i]
+                row_v_z = products[2*hN + i]
                 row_w_z = products[3*hN + i]
-                Lv[N*deep + i] = row_w_z - spin_z*(row_h_zz + 2*row_j_zz)
+                Lv[N*deep + i] = row_v_z - row_w_z - spin_z*(row_h_zz + 2*row_j_zz)
                 La[N*deep + i] = row_S1_x
                 La[(N + 1)*deep + i] = row_S1_y
                 La[(N + 2)*deep + i] = row_g_z + row_u_z

@@ -41,16 +41,20 @@ from sebody.kernels.dense import (
     add_blocks_times,
     block_times,
     clear,
+    columns_times,
     inverse_3,
     rows_times,
 )
 from sebody.kernels.frame_search import converged_mean
 from sebody.kernels.packed_products import (
+    add_couplings,
     add_packed,
     add_packed_times,
+    couplings_times,
     from_free,
     packed_room,
     packed_times,
+    packed_times_both,
     to_free,
 )
 from sebody.kernels.rotations import inverse_tangent_coefficients, inverse_tangent_second
@@ -65,11 +69,11 @@ ROTATIONS = None      # first rotation among the local coordinates
 MODES = None          # first internal mode
 DAMPED = None        # has structural damping, None where a body tells
 N_MODES = None        # their number, None where it is read at run time
-WORK_ROWS = 120
+WORK_ROWS = 122
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (583, 168, 543, 1),
+OPERATIONS = {"residual": (586, 168, 543, 1),
               "column": (150, 228, 1751, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("sizes", (3,), "slaved coordinates, resultants of second order, damped or not"),
@@ -81,8 +85,8 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),
     Part("J0", ("pairs",), "moments of inertia at rest"),
     Part("moment_columns", ("N", "lines"), "S1, g_k, h_kl + h_lk", columns=True),
-    Part("of_place", ("placed", "N", "N"), "J2_kl, K_k^T", packed=True),
-    Part("of_rate", ("rated", "N", "N"), "K_k^T, K_k^T - K_k", packed=True),
+    Part("moment_rows", ("lines", "N"), "its transpose", columns=True),
+    Part("couplings", ("coupled", "N", "N"), "J2_kl, K_k^T; K_k^T and K_k of rates", packed=True),
     Part("Mz", (1, "N", "N"), "reduced mass with slaved coordinates", packed=True),
     Part("Cz", ("damped", "free", "free"), "reduced damping", packed=True),
     Part("followers", ("slaved", "free", "free"), "Q_b", packed=True),
@@ -134,11 +138,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         h = at(work, 28*row)
         moved = at(work, 29*row)
         squares = at(work, 30*row)
-        unordered = at(work, 54*row)
-        Zq = at(work, 57*row)
-        Zd = at(work, 69*row)
-        products = at(work, 81*row)
-        Gy = at(work, 120*row)
+        unordered = at(work, 53*row)
+        Zq = at(work, 56*row)
+        Zd = at(work, 68*row)
+        products = at(work, 80*row)
+        Gy = at(work, 122*row)
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
@@ -166,9 +170,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         c0 = at(order, free)
         J0 = at(c0, 3)
         moment_columns = at(J0, 6)
-        of_place = at(moment_columns, 12*padded(N))
-        of_rate = at(of_place, packed_room(9, N, N))
-        Mz = at(of_rate, packed_room(6, N, N))
+        moment_rows = at(moment_columns, 12*padded(N))
+        couplings = at(moment_rows, N*padded(12))
+        Mz = at(couplings, packed_room(15, N, N))
         Cz = at(Mz, packed_room(1, N, N))
         followers = at(Cz, packed_room(damped, free, free))
         lam = at(followers, packed_room(slaved, free, free))
@@ -440,22 +444,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         gamma[2] = R0_xz*field_x + R0_yz*field_y + R0_zz*field_z
         # coordinates that determine the others, and their rates
         all_to_free(y, eta, etad, axes, order, unordered, z, zd, zdd, bound, bound_free, free, hN)
-        # Q_b z, all b
-        packed_times(followers, z, Zq, slaved*hn)
-        # Q_b zd, all b
-        packed_times(followers, zd, Zd, slaved*hn)
+        # Q_b z and Q_b zd, all b
+        packed_times_both(followers, z, zd, Zq, Zd, slaved*hn)
         # eta_b = y . Q_b y / 2, their rates and second rates
         follow(Zq, Zd, z, zd, zdd, free, slaved, hn)
-        # J2_kl z and K_k^T z
-        packed_times(of_place, z, products, 9*hN)
-        # K_k^T zdot and (K_k^T - K_k) zdot
-        packed_times(of_rate, zd, at(products, 9*hN), 6*hN)
+        # J2_kl z, K_k^T z, K_k^T zdot and K_k zdot
+        couplings_times(couplings, z, zd, products, 15*hN)
         # first moments, couplings, inertia at rest, by z
-        rows_times(moment_columns, z, line0, N, 12, hN)
+        columns_times(moment_rows, z, line0, 12, N)
         # first moments, couplings, inertia at rest, by zd
-        rows_times(moment_columns, zd, line1, N, 12, hN)
+        columns_times(moment_rows, zd, line1, 12, N)
         # first moments, couplings, inertia at rest, by zdd
-        rows_times(moment_columns, zdd, line2, N, 8, hN)
+        columns_times(moment_rows, zdd, line2, 12, N)
         # quadratic parts, by z
         rows_times(products, z, product0, N, 8, hN)
         # quadratic parts, by zd
@@ -558,12 +558,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         by_products[6] = turning_x
         by_products[7] = turning_y
         by_products[8] = turning_z
-        by_products[9] = 0.0
-        by_products[10] = 0.0
-        by_products[11] = 0.0
-        by_products[12] = spin_x
-        by_products[13] = spin_y
-        by_products[14] = spin_z
+        by_products[9] = spin_x
+        by_products[10] = spin_y
+        by_products[11] = spin_z
+        by_products[12] = -spin_x
+        by_products[13] = -spin_y
+        by_products[14] = -spin_z
         # inertia force of deformation, Mbar zddot
         packed_times(Mz, zdd, local, hN)
         # damping force, Cbar ydot
@@ -806,30 +806,29 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dve = at(work, 32*row)
             dae = at(work, 33*row)
             e2s = at(work, 34*row)
-            by_place = at(work, 35*row)
-            by_rate = at(work, 36*row)
-            ones = at(work, 37*row)
-            by_followers = at(work, 38*row)
-            of_E = at(work, 39*row)
-            of_Gy = at(work, 40*row)
-            dy = at(work, 41*row)
-            dz = at(work, 42*row)
-            dlocal = at(work, 43*row)
-            dyd = at(work, 44*row)
-            dacc = at(work, 45*row)
-            deta = at(work, 46*row)
-            detad = at(work, 47*row)
-            dgamma = at(work, 48*row)
-            dzd = at(work, 49*row)
-            dzdd = at(work, 50*row)
-            ds = at(work, 51*row)
-            dh = at(work, 52*row)
-            dg = at(work, 53*row)
-            Za = at(work, 96*row)
-            more = at(work, 108*row)
-            Lz = at(work, (120 + n + 18)*row)
-            Lv = at(work, (120 + 2*(n + 18))*row)
-            La = at(work, (120 + 3*(n + 18))*row)
+            by_couplings = at(work, 35*row)
+            ones = at(work, 36*row)
+            by_followers = at(work, 37*row)
+            of_E = at(work, 38*row)
+            of_Gy = at(work, 39*row)
+            dy = at(work, 40*row)
+            dz = at(work, 41*row)
+            dlocal = at(work, 42*row)
+            dyd = at(work, 43*row)
+            dacc = at(work, 44*row)
+            deta = at(work, 45*row)
+            detad = at(work, 46*row)
+            dgamma = at(work, 47*row)
+            dzd = at(work, 48*row)
+            dzdd = at(work, 49*row)
+            ds = at(work, 50*row)
+            dh = at(work, 51*row)
+            dg = at(work, 52*row)
+            Za = at(work, 95*row)
+            more = at(work, 107*row)
+            Lz = at(work, (122 + n + 18)*row)
+            Lv = at(work, (122 + 2*(n + 18))*row)
+            La = at(work, (122 + 3*(n + 18))*row)
             # Q_b zdd, all b
             packed_times(followers, zdd, Za, slaved*hn)
             # second derivative of the coefficients of T^-1
@@ -837,29 +836,27 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e2s[j] = inverse_tangent_second(psi_x*psi_x + psi_y*psi_y + psi_z*psi_z)
-            # J2_kl zdot
-            packed_times(of_place, zd, more, 9*hN)
-            # K_k^T zddot and (K_k^T - K_k) zddot
-            packed_times(of_rate, zdd, at(more, 6*hN), 6*hN)
+            # J2_kl zdot, K_k^T zddot and K_k zddot
+            couplings_times(couplings, zd, zdd, more, 15*hN)
             # factors of the local tangents
             turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             t158 = 2*c_geo*spin_x
-            by_place[0] = -c_geo*spin_x*spin_x
-            by_place[1] = -c_geo*spin_y*spin_y
-            by_place[2] = -c_geo*spin_z*spin_z
-            by_place[3] = -spin_y*t158
-            by_place[4] = -spin_z*t158
-            by_place[5] = -2*c_geo*spin_y*spin_z
-            by_place[6] = c_geo*turning_x
-            by_place[7] = c_geo*turning_y
-            by_place[8] = c_geo*turning_z
-            by_rate[0] = 0.0
-            by_rate[1] = 0.0
-            by_rate[2] = 0.0
-            by_rate[3] = spin_x
-            by_rate[4] = spin_y
-            by_rate[5] = spin_z
+            by_couplings[0] = -c_geo*spin_x*spin_x
+            by_couplings[1] = -c_geo*spin_y*spin_y
+            by_couplings[2] = -c_geo*spin_z*spin_z
+            by_couplings[3] = -spin_y*t158
+            by_couplings[4] = -spin_z*t158
+            by_couplings[5] = -2*c_geo*spin_y*spin_z
+            by_couplings[6] = c_geo*turning_x
+            by_couplings[7] = c_geo*turning_y
+            by_couplings[8] = c_geo*turning_z
+            by_couplings[9] = spin_x
+            by_couplings[10] = spin_y
+            by_couplings[11] = spin_z
+            by_couplings[12] = -spin_x
+            by_couplings[13] = -spin_y
+            by_couplings[14] = -spin_z
             ones[0] = 1
             # forces on eta as factors
             for b in range(slaved):
@@ -871,12 +868,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             clear(Lv, N*deep)
             # local tangents
             clear(La, N*deep)
-            # by z: J2_kl and K_k^T
-            add_packed(of_place, by_place, Lz, deep)
+            # by z: J2_kl and K_k^T; by zdot: K_k^T and K_k
+            add_couplings(couplings, by_couplings, Lz, Lv, deep)
             # forces on eta
             add_packed(followers, by_followers, Lz, deep)
-            # by zdot: K_k^T and K_k^T - K_k
-            add_packed(of_rate, by_rate, Lv, deep)
             # structural damping
             add_packed(Cz, ones, Lv, deep)
             # by zddot
@@ -918,8 +913,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     products[14*hN + i])
                 row_jd_xx, row_jd_yy, row_jd_zz, row_jd_xy, row_jd_xz, row_jd_yz = (more[i],
                     more[hN + i], more[2*hN + i], more[3*hN + i], more[4*hN + i], more[5*hN + i])
-                row_ua_x, row_ua_y, row_ua_z = more[6*hN + i], more[7*hN + i], more[8*hN + i]
-                row_wa_x, row_wa_y, row_wa_z = more[9*hN + i], more[10*hN + i], more[11*hN + i]
+                row_wa_x, row_wa_y, row_wa_z = more[12*hN + i], more[13*hN + i], more[14*hN + i]
                 t159 = row_S1_x*spin_z
                 t160 = row_S1_z*spin_x
                 t161 = t159 - t160
@@ -930,24 +924,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t166 = 2*spin_x
                 t167 = 2*spin_y
                 t168 = 2*spin_z
-                t169 = -row_w_z
-                t170 = row_v_z + t169
-                t171 = row_h_xx + 2*row_j_xx
-                t172 = row_h_xy + 2*row_j_xy
-                t173 = row_h_xz + 2*row_j_xz
-                t174 = -row_w_y
-                t175 = row_v_y + t174
-                t176 = row_h_yz + 2*row_j_yz
-                t177 = row_h_zz + 2*row_j_zz
-                t178 = spin_x*t173 + spin_y*t176 + spin_z*t177
-                t179 = row_h_yy + 2*row_j_yy
-                t180 = spin_x*t172 + spin_y*t179 + spin_z*t176
-                t181 = -row_w_x
-                t182 = row_v_x + t181
-                t183 = spin_x*t171 + spin_y*t172 + spin_z*t173
-                t184 = row_g_z + row_u_z
-                t185 = row_g_y + row_u_y
-                t186 = row_g_x + row_u_x
+                t169 = row_h_xx + 2*row_j_xx
+                t170 = row_h_xy + 2*row_j_xy
+                t171 = row_h_xz + 2*row_j_xz
+                t172 = row_h_yz + 2*row_j_yz
+                t173 = row_h_zz + 2*row_j_zz
+                t174 = spin_x*t171 + spin_y*t172 + spin_z*t173
+                t175 = row_h_yy + 2*row_j_yy
+                t176 = spin_x*t170 + spin_y*t175 + spin_z*t172
+                t177 = spin_x*t169 + spin_y*t170 + spin_z*t171
+                t178 = row_g_z + row_u_z
+                t179 = row_g_y + row_u_y
+                t180 = row_g_x + row_u_x
                 Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t163 -
                     spin_z*t161))
                 Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t163
@@ -955,29 +943,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Lz[i*deep + N + 2] = (c_geo*(-row_S1_x*turning_y + row_S1_y*turning_x +
                     spin_x*t161 - spin_y*t165))
                 Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t166 +
-                    row_jd_xy*t167 + row_jd_xz*t168 + row_ua_x - row_wa_x + spin_y*t170 +
-                    spin_y*t178 - spin_z*t175 - spin_z*t180 + t171*turning_x + t172*turning_y +
-                    t173*turning_z))
+                    row_jd_xy*t167 + row_jd_xz*t168 - row_w_y*spin_z + row_w_z*spin_y + row_wa_x +
+                    spin_y*t174 - spin_z*t176 + t169*turning_x + t170*turning_y + t171*turning_z))
                 Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t166 +
-                    row_jd_yy*t167 + row_jd_yz*t168 + row_ua_y - row_wa_y - spin_x*t170 -
-                    spin_x*t178 + spin_z*t182 + spin_z*t183 + t172*turning_x + t176*turning_z +
-                    t179*turning_y))
+                    row_jd_yy*t167 + row_jd_yz*t168 + row_w_x*spin_z - row_w_z*spin_x + row_wa_y -
+                    spin_x*t174 + spin_z*t177 + t170*turning_x + t172*turning_z + t175*turning_y))
                 Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t166 +
-                    row_jd_yz*t167 + row_jd_zz*t168 + row_ua_z - row_wa_z + spin_x*t175 +
-                    spin_x*t180 - spin_y*t182 - spin_y*t183 + t173*turning_x + t176*turning_y +
-                    t177*turning_z))
+                    row_jd_yz*t167 + row_jd_zz*t168 - row_w_x*spin_y + row_w_y*spin_x + row_wa_z +
+                    spin_x*t176 - spin_y*t177 + t171*turning_x + t172*turning_y + t173*turning_z))
                 Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t164
                 Lv[i*deep + N + 1] = 2*t159 - 2*t160
                 Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t162
-                Lv[i*deep + N + 3] = 2*row_v_x + spin_y*t184 - spin_z*t185 + t181 + t183
-                Lv[i*deep + N + 4] = 2*row_v_y - spin_x*t184 + spin_z*t186 + t174 + t180
-                Lv[i*deep + N + 5] = 2*row_v_z + spin_x*t185 - spin_y*t186 + t169 + t178
+                Lv[i*deep + N + 3] = row_v_x + row_w_x + spin_y*t178 - spin_z*t179 + t177
+                Lv[i*deep + N + 4] = row_v_y + row_w_y - spin_x*t178 + spin_z*t180 + t176
+                Lv[i*deep + N + 5] = row_v_z + row_w_z + spin_x*t179 - spin_y*t180 + t174
                 La[i*deep + N] = row_S1_x
                 La[i*deep + N + 1] = row_S1_y
                 La[i*deep + N + 2] = row_S1_z
-                La[i*deep + N + 3] = t186
-                La[i*deep + N + 4] = t185
-                La[i*deep + N + 5] = t184
+                La[i*deep + N + 3] = t180
+                La[i*deep + N + 4] = t179
+                La[i*deep + N + 5] = t178
             # local tangents: motion of the frame
             for i in range(N):
                 spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
@@ -993,17 +978,19 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     products[5*hN + i])
                 row_u_x, row_u_y, row_u_z = (products[6*hN + i], products[7*hN + i],
                     products[8*hN + i])
+                row_v_x, row_v_y, row_v_z = (products[9*hN + i], products[10*hN + i],
+                    products[11*hN + i])
                 row_w_x, row_w_y, row_w_z = (products[12*hN + i], products[13*hN + i],
                     products[14*hN + i])
-                t187 = row_h_xy + 2*row_j_xy
-                t188 = row_h_xz + 2*row_j_xz
-                t189 = row_h_yz + 2*row_j_yz
-                Lv[N*deep + i] = (row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t187 -
-                    spin_z*t188)
-                Lv[(N + 1)*deep + i] = (row_w_y - spin_x*t187 - spin_y*(row_h_yy + 2*row_j_yy) -
-                    spin_z*t189)
-                Lv[(N + 2)*deep + i] = (row_w_z - spin_x*t188 - spin_y*t189 - spin_z*(row_h_zz +
-                    2*row_j_zz))
+                t181 = row_h_xy + 2*row_j_xy
+                t182 = row_h_xz + 2*row_j_xz
+                t183 = row_h_yz + 2*row_j_yz
+                Lv[N*deep + i] = (row_v_x - row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t181
+                    - spin_z*t182)
+                Lv[(N + 1)*deep + i] = (row_v_y - row_w_y - spin_x*t181 - spin_y*(row_h_yy +
+                    2*row_j_yy) - spin_z*t183)
+                Lv[(N + 2)*deep + i] = (row_v_z - row_w_z - spin_x*t182 - spin_y*t183 -
+                    spin_z*(row_h_zz + 2*row_j_zz))
                 La[N*deep + i] = row_S1_x
                 La[(N + 1)*deep + i] = row_S1_y
                 La[(N + 2)*deep + i] = row_S1_z
@@ -1013,79 +1000,79 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # local tangents: force on the frame by its motion
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             mass = masses[0]
-            t190 = spin_y*sum_c_y
-            t191 = spin_z*sum_c_z
-            t192 = 2*sum_cd_z
-            t193 = spin_x*sum_c_y
-            t194 = 2*sum_cd_y
-            t195 = spin_z*sum_c_x
-            t196 = spin_y*sum_J_xz
-            t197 = spin_z*sum_J_xy
-            t198 = spin_y*sum_J_yz
-            t199 = spin_x*sum_J_xz
-            t200 = spin_z*sum_J_zz + sum_spun_z
-            t201 = spin_z*sum_J_yz
-            t202 = spin_x*sum_J_xy
-            t203 = spin_y*sum_J_yy + sum_spun_y
-            t204 = spin_x*sum_c_x
-            t205 = 2*sum_cd_x
-            t206 = spin_y*sum_c_z
-            t207 = spin_x*sum_J_yz
-            t208 = spin_z*sum_J_xz
-            t209 = spin_y*sum_J_xy
-            t210 = spin_x*sum_J_xx + sum_spun_x
-            t211 = -sum_c_y
-            t212 = -sum_c_z
-            t213 = -sum_c_x
-            Lv[N*deep + N] = t190 + t191
-            Lv[N*deep + N + 1] = spin_y*sum_c_x - t192 - 2*t193
-            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t194 + t195
-            Lv[N*deep + N + 3] = sum_Jd_xx + t196 - t197
-            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t198 - 2*t199 - t200
-            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t201 + 2*t202 + t203
-            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t192 + t193
-            Lv[(N + 1)*deep + N + 1] = t191 + t204
-            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t205 - 2*t206
-            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t198 + t199 + t200
-            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t197 - t207
-            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t208 - 2*t209 - t210
-            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t194 - 2*t195
-            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t205 + t206
-            Lv[(N + 2)*deep + N + 2] = t190 + t204
-            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t201 - t202 - t203
-            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t208 + t209 + t210
-            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t196 + t207
+            t184 = spin_y*sum_c_y
+            t185 = spin_z*sum_c_z
+            t186 = 2*sum_cd_z
+            t187 = spin_x*sum_c_y
+            t188 = 2*sum_cd_y
+            t189 = spin_z*sum_c_x
+            t190 = spin_y*sum_J_xz
+            t191 = spin_z*sum_J_xy
+            t192 = spin_y*sum_J_yz
+            t193 = spin_x*sum_J_xz
+            t194 = spin_z*sum_J_zz + sum_spun_z
+            t195 = spin_z*sum_J_yz
+            t196 = spin_x*sum_J_xy
+            t197 = spin_y*sum_J_yy + sum_spun_y
+            t198 = spin_x*sum_c_x
+            t199 = 2*sum_cd_x
+            t200 = spin_y*sum_c_z
+            t201 = spin_x*sum_J_yz
+            t202 = spin_z*sum_J_xz
+            t203 = spin_y*sum_J_xy
+            t204 = spin_x*sum_J_xx + sum_spun_x
+            t205 = -sum_c_y
+            t206 = -sum_c_z
+            t207 = -sum_c_x
+            Lv[N*deep + N] = t184 + t185
+            Lv[N*deep + N + 1] = spin_y*sum_c_x - t186 - 2*t187
+            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t188 + t189
+            Lv[N*deep + N + 3] = sum_Jd_xx + t190 - t191
+            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t192 - 2*t193 - t194
+            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t195 + 2*t196 + t197
+            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t186 + t187
+            Lv[(N + 1)*deep + N + 1] = t185 + t198
+            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t199 - 2*t200
+            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t192 + t193 + t194
+            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t191 - t201
+            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t202 - 2*t203 - t204
+            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t188 - 2*t189
+            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t199 + t200
+            Lv[(N + 2)*deep + N + 2] = t184 + t198
+            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t195 - t196 - t197
+            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t202 + t203 + t204
+            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t190 + t201
             La[N*deep + N] = mass
             La[N*deep + N + 1] = 0.0
             La[N*deep + N + 2] = 0.0
             La[N*deep + N + 3] = 0.0
             La[N*deep + N + 4] = sum_c_z
-            La[N*deep + N + 5] = t211
+            La[N*deep + N + 5] = t205
             La[(N + 1)*deep + N] = 0.0
             La[(N + 1)*deep + N + 1] = mass
             La[(N + 1)*deep + N + 2] = 0.0
-            La[(N + 1)*deep + N + 3] = t212
+            La[(N + 1)*deep + N + 3] = t206
             La[(N + 1)*deep + N + 4] = 0.0
             La[(N + 1)*deep + N + 5] = sum_c_x
             La[(N + 2)*deep + N] = 0.0
             La[(N + 2)*deep + N + 1] = 0.0
             La[(N + 2)*deep + N + 2] = mass
             La[(N + 2)*deep + N + 3] = sum_c_y
-            La[(N + 2)*deep + N + 4] = t213
+            La[(N + 2)*deep + N + 4] = t207
             La[(N + 2)*deep + N + 5] = 0.0
             La[(N + 3)*deep + N] = 0.0
-            La[(N + 3)*deep + N + 1] = t212
+            La[(N + 3)*deep + N + 1] = t206
             La[(N + 3)*deep + N + 2] = sum_c_y
             La[(N + 3)*deep + N + 3] = sum_J_xx
             La[(N + 3)*deep + N + 4] = sum_J_xy
             La[(N + 3)*deep + N + 5] = sum_J_xz
             La[(N + 4)*deep + N] = sum_c_z
             La[(N + 4)*deep + N + 1] = 0.0
-            La[(N + 4)*deep + N + 2] = t213
+            La[(N + 4)*deep + N + 2] = t207
             La[(N + 4)*deep + N + 3] = sum_J_xy
             La[(N + 4)*deep + N + 4] = sum_J_yy
             La[(N + 4)*deep + N + 5] = sum_J_yz
-            La[(N + 5)*deep + N] = t211
+            La[(N + 5)*deep + N] = t205
             La[(N + 5)*deep + N + 1] = sum_c_x
             La[(N + 5)*deep + N + 2] = 0.0
             La[(N + 5)*deep + N + 3] = sum_J_xz
@@ -1123,16 +1110,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t214 = -dth_x*psi_y + dth_y*psi_x
-                    t215 = dth_x*psi_z
-                    t216 = -dth_z*psi_x + t215
-                    t217 = -dth_y*psi_z + dth_z*psi_y
+                    t208 = -dth_x*psi_y + dth_y*psi_x
+                    t209 = dth_x*psi_z
+                    t210 = -dth_z*psi_x + t209
+                    t211 = -dth_y*psi_z + dth_z*psi_y
                     rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y -
-                        e0*psi_y*t214 + e0*psi_z*t216))
-                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t214 - e0*psi_z*t217
-                        - 0.5*t215))
+                        e0*psi_y*t208 + e0*psi_z*t210))
+                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t208 - e0*psi_z*t211
+                        - 0.5*t209))
                     rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z -
-                        e0*psi_x*t216 + e0*psi_y*t217))
+                        e0*psi_x*t210 + e0*psi_y*t211))
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1142,43 +1129,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    t218 = X_y + u_y
-                    t219 = X_z + u_z
-                    t220 = X_x + u_x
-                    dy[i3] = -dth0_y*t219 + dth0_z*t218 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t219 - dth0_z*t220 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t218 + dth0_y*t220 - dx0_z + dx_z
+                    t212 = X_y + u_y
+                    t213 = X_z + u_z
+                    t214 = X_x + u_x
+                    dy[i3] = -dth0_y*t213 + dth0_z*t212 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t213 - dth0_z*t214 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t212 + dth0_y*t214 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t221 = dth0_y*psi_z
-                    t222 = dth_y*psi_z
-                    t223 = dth0_x*psi_y
-                    t224 = dth0_y*psi_x - t223
-                    t225 = e0*psi_y
-                    t226 = dth_x*psi_z
-                    t227 = dth_z*psi_x
+                    t215 = dth0_y*psi_z
+                    t216 = dth_y*psi_z
+                    t217 = dth0_x*psi_y
+                    t218 = dth0_y*psi_x - t217
+                    t219 = e0*psi_y
+                    t220 = dth_x*psi_z
+                    t221 = dth_z*psi_x
+                    t222 = t220 - t221
+                    t223 = e0*psi_z
+                    t224 = dth_x*psi_y
+                    t225 = dth_y*psi_x - t224
+                    t226 = dth0_x*psi_z
+                    t227 = dth0_z*psi_x
                     t228 = t226 - t227
-                    t229 = e0*psi_z
-                    t230 = dth_x*psi_y
-                    t231 = dth_y*psi_x - t230
-                    t232 = dth0_x*psi_z
-                    t233 = dth0_z*psi_x
-                    t234 = t232 - t233
-                    t235 = e0*psi_x
-                    t236 = dth_z*psi_y - t222
-                    t237 = dth0_z*psi_y - t221
+                    t229 = e0*psi_x
+                    t230 = dth_z*psi_y - t216
+                    t231 = dth0_z*psi_y - t215
                     dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t231 + e0*psi_z*t234 - 0.5*t221 - 0.5*t222 - t224*t225 -
-                        t228*t229)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t224*t235 + (0.5)*t226 - 0.5*t227 + t229*t236
-                        - t229*t237 - t231*t235 + (0.5)*t232 - 0.5*t233)
+                        e0*psi_y*t225 + e0*psi_z*t228 - 0.5*t215 - 0.5*t216 - t218*t219 -
+                        t222*t223)
+                    dy[j3 + 1] = (-dth0_y + dth_y + t218*t229 + (0.5)*t220 - 0.5*t221 + t223*t230
+                        - t223*t231 - t225*t229 + (0.5)*t226 - 0.5*t227)
                     dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t228 + e0*psi_y*t237 - 0.5*t223 - t225*t236 - 0.5*t230 -
-                        t234*t235)
+                        e0*psi_x*t222 + e0*psi_y*t231 - 0.5*t217 - t219*t230 - 0.5*t224 -
+                        t228*t229)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
@@ -1220,47 +1207,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t238 = -Om_x*psi_y + Om_y*psi_x
-                    t239 = dpsi_y*e0
-                    t240 = Om0_x*psi_z - Om0_z*psi_x
-                    t241 = dpsi_z*e0
-                    t242 = Om0_x*dpsi_z
-                    t243 = -Om0_z*dpsi_x + t242
-                    t244 = e0*psi_z
-                    t245 = -Om0_x*psi_y + Om0_y*psi_x
-                    t246 = Om_x*psi_z - Om_z*psi_x
-                    t247 = -Om0_x*dpsi_y + Om0_y*dpsi_x
-                    t248 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t249 = e0*psi_y
-                    t250 = Om_x*dpsi_z
-                    t251 = dOm_x*psi_z
-                    t252 = -Om_z*dpsi_x - dOm_z*psi_x + t250 + t251
-                    t253 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t254 = e1*t253
-                    t255 = psi_y*t254
-                    t256 = psi_z*t254
-                    t257 = dpsi_x*e0
-                    t258 = -Om_y*psi_z + Om_z*psi_y
-                    t259 = e0*psi_x
-                    t260 = -Om0_y*psi_z + Om0_z*psi_y
-                    t261 = -Om0_y*dpsi_z + Om0_z*dpsi_y
-                    t262 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t263 = psi_x*t254
+                    t232 = -Om_x*psi_y + Om_y*psi_x
+                    t233 = dpsi_y*e0
+                    t234 = Om0_x*psi_z - Om0_z*psi_x
+                    t235 = dpsi_z*e0
+                    t236 = Om0_x*dpsi_z
+                    t237 = -Om0_z*dpsi_x + t236
+                    t238 = e0*psi_z
+                    t239 = -Om0_x*psi_y + Om0_y*psi_x
+                    t240 = Om_x*psi_z - Om_z*psi_x
+                    t241 = -Om0_x*dpsi_y + Om0_y*dpsi_x
+                    t242 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
+                    t243 = e0*psi_y
+                    t244 = Om_x*dpsi_z
+                    t245 = dOm_x*psi_z
+                    t246 = -Om_z*dpsi_x - dOm_z*psi_x + t244 + t245
+                    t247 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t248 = e1*t247
+                    t249 = psi_y*t248
+                    t250 = psi_z*t248
+                    t251 = dpsi_x*e0
+                    t252 = -Om_y*psi_z + Om_z*psi_y
+                    t253 = e0*psi_x
+                    t254 = -Om0_y*psi_z + Om0_z*psi_y
+                    t255 = -Om0_y*dpsi_z + Om0_z*dpsi_y
+                    t256 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                    t257 = psi_x*t248
                     rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - 0.5*Om0_z*dpsi_y + (0.5)*Om_y*dpsi_z
                         - 0.5*Om_z*dpsi_y - dOm_x + (0.5)*dOm_y*psi_z - 0.5*dOm_z*psi_y +
-                        dpsi_y*e0*t245 + dpsi_z*e0*t246 + e0*psi_y*t247 + e0*psi_z*t252 +
-                        e1*psi_y*t245*t253 + e1*psi_z*t246*t253 - t238*t239 - t238*t255 -
-                        t240*t241 - t240*t256 - t243*t244 - t248*t249))
+                        dpsi_y*e0*t239 + dpsi_z*e0*t240 + e0*psi_y*t241 + e0*psi_z*t246 +
+                        e1*psi_y*t239*t247 + e1*psi_z*t240*t247 - t232*t233 - t232*t249 -
+                        t234*t235 - t234*t250 - t237*t238 - t242*t243))
                     rhs_y += (-alpha_r*((0.5)*Om0_z*dpsi_x + (0.5)*Om_z*dpsi_x - dOm_y +
-                        (0.5)*dOm_z*psi_x + dpsi_x*e0*t238 + dpsi_z*e0*t260 + e0*psi_x*t248 +
-                        e0*psi_z*t261 + e1*psi_x*t238*t253 + e1*psi_z*t253*t260 - t241*t258 -
-                        0.5*t242 - t244*t262 - t245*t257 - t245*t263 - t247*t259 - 0.5*t250 -
-                        0.5*t251 - t256*t258))
+                        (0.5)*dOm_z*psi_x + dpsi_x*e0*t232 + dpsi_z*e0*t254 + e0*psi_x*t242 +
+                        e0*psi_z*t255 + e1*psi_x*t232*t247 + e1*psi_z*t247*t254 - t235*t252 -
+                        0.5*t236 - t238*t256 - t239*t251 - t239*t257 - t241*t253 - 0.5*t244 -
+                        0.5*t245 - t250*t252))
                     rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x + (0.5)*Om_x*dpsi_y
                         - 0.5*Om_y*dpsi_x + (0.5)*dOm_x*psi_y - 0.5*dOm_y*psi_x - dOm_z +
-                        dpsi_x*e0*t240 + dpsi_y*e0*t258 + e0*psi_x*t243 + e0*psi_y*t262 +
-                        e1*psi_x*t240*t253 + e1*psi_y*t253*t258 - t239*t260 - t246*t257 -
-                        t246*t263 - t249*t261 - t252*t259 - t255*t260))
+                        dpsi_x*e0*t234 + dpsi_y*e0*t252 + e0*psi_x*t237 + e0*psi_y*t256 +
+                        e1*psi_x*t234*t247 + e1*psi_y*t247*t252 - t233*t254 - t240*t251 -
+                        t240*t257 - t243*t255 - t246*t253 - t249*t254))
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1293,13 +1280,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t264 = X_y + u_y
-                    t265 = X_z + u_z
-                    t266 = X_x + u_x
-                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t265 + dOm0_z*t264 - dv0_x + dvs_x
-                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t265 - dOm0_z*t266 - dv0_y +
+                    t258 = X_y + u_y
+                    t259 = X_z + u_z
+                    t260 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t259 + dOm0_z*t258 - dv0_x + dvs_x
+                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t259 - dOm0_z*t260 - dv0_y +
                         dvs_y)
-                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t264 + dOm0_y*t266 - dv0_z +
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t258 + dOm0_y*t260 - dv0_z +
                         dvs_z)
                 # differential: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -1310,59 +1297,59 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t267 = Om0_y*dpsi_z
-                    t268 = Om_y*dpsi_z
-                    t269 = dOm0_y*psi_z
-                    t270 = dOm_y*psi_z
-                    t271 = -Om0_x*psi_y + Om0_y*psi_x
-                    t272 = dpsi_y*e0
-                    t273 = Om_x*psi_z - Om_z*psi_x
-                    t274 = dpsi_z*e0
-                    t275 = -Om_x*psi_y + Om_y*psi_x
-                    t276 = Om0_x*psi_z - Om0_z*psi_x
-                    t277 = Om0_x*dpsi_y
-                    t278 = dOm0_x*psi_y
-                    t279 = Om0_y*dpsi_x + dOm0_y*psi_x - t277 - t278
-                    t280 = e0*psi_y
-                    t281 = Om_x*dpsi_z
-                    t282 = dOm_x*psi_z
-                    t283 = Om_z*dpsi_x
-                    t284 = dOm_z*psi_x
-                    t285 = t281 + t282 - t283 - t284
-                    t286 = e0*psi_z
-                    t287 = Om_x*dpsi_y
-                    t288 = dOm_x*psi_y
-                    t289 = Om_y*dpsi_x + dOm_y*psi_x - t287 - t288
-                    t290 = Om0_x*dpsi_z
-                    t291 = dOm0_x*psi_z
-                    t292 = Om0_z*dpsi_x
-                    t293 = dOm0_z*psi_x
-                    t294 = t290 + t291 - t292 - t293
-                    t295 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t296 = e1*t295
-                    t297 = psi_y*t296
-                    t298 = psi_z*t296
-                    t299 = dpsi_x*e0
-                    t300 = -Om_y*psi_z + Om_z*psi_y
-                    t301 = -Om0_y*psi_z + Om0_z*psi_y
-                    t302 = e0*psi_x
-                    t303 = Om_z*dpsi_y + dOm_z*psi_y - t268 - t270
-                    t304 = Om0_z*dpsi_y + dOm0_z*psi_y - t267 - t269
-                    t305 = psi_x*t296
+                    t261 = Om0_y*dpsi_z
+                    t262 = Om_y*dpsi_z
+                    t263 = dOm0_y*psi_z
+                    t264 = dOm_y*psi_z
+                    t265 = -Om0_x*psi_y + Om0_y*psi_x
+                    t266 = dpsi_y*e0
+                    t267 = Om_x*psi_z - Om_z*psi_x
+                    t268 = dpsi_z*e0
+                    t269 = -Om_x*psi_y + Om_y*psi_x
+                    t270 = Om0_x*psi_z - Om0_z*psi_x
+                    t271 = Om0_x*dpsi_y
+                    t272 = dOm0_x*psi_y
+                    t273 = Om0_y*dpsi_x + dOm0_y*psi_x - t271 - t272
+                    t274 = e0*psi_y
+                    t275 = Om_x*dpsi_z
+                    t276 = dOm_x*psi_z
+                    t277 = Om_z*dpsi_x
+                    t278 = dOm_z*psi_x
+                    t279 = t275 + t276 - t277 - t278
+                    t280 = e0*psi_z
+                    t281 = Om_x*dpsi_y
+                    t282 = dOm_x*psi_y
+                    t283 = Om_y*dpsi_x + dOm_y*psi_x - t281 - t282
+                    t284 = Om0_x*dpsi_z
+                    t285 = dOm0_x*psi_z
+                    t286 = Om0_z*dpsi_x
+                    t287 = dOm0_z*psi_x
+                    t288 = t284 + t285 - t286 - t287
+                    t289 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t290 = e1*t289
+                    t291 = psi_y*t290
+                    t292 = psi_z*t290
+                    t293 = dpsi_x*e0
+                    t294 = -Om_y*psi_z + Om_z*psi_y
+                    t295 = -Om0_y*psi_z + Om0_z*psi_y
+                    t296 = e0*psi_x
+                    t297 = Om_z*dpsi_y + dOm_z*psi_y - t262 - t264
+                    t298 = Om0_z*dpsi_y + dOm0_z*psi_y - t261 - t263
+                    t299 = psi_x*t290
                     deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x +
-                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t275 +
-                        dpsi_z*e0*t276 + e0*psi_y*t289 + e0*psi_z*t294 + e1*psi_y*t275*t295 +
-                        e1*psi_z*t276*t295 - 0.5*t267 - 0.5*t268 - 0.5*t269 - 0.5*t270 - t271*t272
-                        - t271*t297 - t273*t274 - t273*t298 - t279*t280 - t285*t286)
-                    deta[j3 + 1] = (-dOm0_y + dOm_y + t271*t299 + t271*t305 + t274*t300 -
-                        t274*t301 - t275*t299 - t275*t305 + t279*t302 + (0.5)*t281 + (0.5)*t282 -
-                        0.5*t283 - 0.5*t284 + t286*t303 - t286*t304 - t289*t302 + (0.5)*t290 +
-                        (0.5)*t291 - 0.5*t292 - 0.5*t293 + t298*t300 - t298*t301)
+                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t269 +
+                        dpsi_z*e0*t270 + e0*psi_y*t283 + e0*psi_z*t288 + e1*psi_y*t269*t289 +
+                        e1*psi_z*t270*t289 - 0.5*t261 - 0.5*t262 - 0.5*t263 - 0.5*t264 - t265*t266
+                        - t265*t291 - t267*t268 - t267*t292 - t273*t274 - t279*t280)
+                    deta[j3 + 1] = (-dOm0_y + dOm_y + t265*t293 + t265*t299 + t268*t294 -
+                        t268*t295 - t269*t293 - t269*t299 + t273*t296 + (0.5)*t275 + (0.5)*t276 -
+                        0.5*t277 - 0.5*t278 + t280*t297 - t280*t298 - t283*t296 + (0.5)*t284 +
+                        (0.5)*t285 - 0.5*t286 - 0.5*t287 + t292*t294 - t292*t295)
                     deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t273 + dpsi_y*e0*t301 +
-                        e0*psi_x*t285 + e0*psi_y*t304 + e1*psi_x*t273*t295 + e1*psi_y*t295*t301 -
-                        t272*t300 - t276*t299 - t276*t305 - 0.5*t277 - 0.5*t278 - t280*t303 -
-                        0.5*t287 - 0.5*t288 - t294*t302 - t297*t300)
+                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t267 + dpsi_y*e0*t295 +
+                        e0*psi_x*t279 + e0*psi_y*t298 + e1*psi_x*t267*t289 + e1*psi_y*t289*t295 -
+                        t266*t294 - t270*t293 - t270*t299 - 0.5*t271 - 0.5*t272 - t274*t297 -
+                        0.5*t281 - 0.5*t282 - t288*t296 - t291*t294)
                 # differential: rates of the internal modes
                 for k in range(MODES, n):
                     dvm = dve[k]
@@ -1381,128 +1368,128 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     e0 = e0s[j]
                     e1 = e1s[j]
                     e2 = e2s[j]
-                    t306 = A_y*dpsi_z
-                    t307 = Om0_y*dep_z
-                    t308 = Om_y*dep_z
-                    t309 = dA_y*psi_z
-                    t310 = dOm0_y*ep_z
-                    t311 = dOm_y*ep_z
-                    t312 = -Om_x*psi_y + Om_y*psi_x
-                    t313 = dep_y*e0
-                    t314 = Om0_x*psi_z - Om0_z*psi_x
-                    t315 = dep_z*e0
-                    t316 = Om0_x*ep_z - Om0_z*ep_x
-                    t317 = dpsi_z*e0
-                    t318 = -Om0_x*psi_y + Om0_y*psi_x
-                    t319 = Om_x*psi_z - Om_z*psi_x
-                    t320 = -Om0_x*ep_y + Om0_y*ep_x
-                    t321 = dpsi_y*e0
-                    t322 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                    t323 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t324 = e0*ep_y
-                    t325 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                    t326 = e0*ep_z
-                    t327 = Om0_x*dep_z
-                    t328 = dOm0_x*ep_z
-                    t329 = Om0_z*dep_x
-                    t330 = dOm0_z*ep_x
-                    t331 = t327 + t328 - t329 - t330
-                    t332 = e0*psi_z
-                    t333 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                    t334 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                    t335 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                    t336 = Om0_x*dep_y
-                    t337 = dOm0_x*ep_y
-                    t338 = Om0_y*dep_x + dOm0_y*ep_x - t336 - t337
-                    t339 = e0*psi_y
-                    t340 = 2*psi_x
-                    t341 = 2*psi_y
-                    t342 = 2*psi_z
-                    t343 = ep_x*t340 + ep_y*t341 + ep_z*t342
-                    t344 = e1*t343
-                    t345 = dpsi_y*t344
-                    t346 = dpsi_z*t344
-                    t347 = dpsi_x*t340 + dpsi_y*t341 + dpsi_z*t342
-                    t348 = e1*t347
-                    t349 = ep_y*t348
-                    t350 = ep_z*t348
-                    t351 = psi_z*t348
-                    t352 = psi_y*t348
-                    t353 = psi_y*t344
-                    t354 = psi_z*t344
-                    t355 = A_x*dpsi_y
-                    t356 = Om_x*dep_y
-                    t357 = dA_x*psi_y
-                    t358 = dOm_x*ep_y
-                    t359 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t355 - t356 - t357
-                        - t358)
-                    t360 = A_x*dpsi_z
-                    t361 = Om_x*dep_z
-                    t362 = dA_x*psi_z
-                    t363 = dOm_x*ep_z
-                    t364 = A_z*dpsi_x
-                    t365 = Om_z*dep_x
-                    t366 = dA_z*psi_x
-                    t367 = dOm_z*ep_x
-                    t368 = t360 + t361 + t362 + t363 - t364 - t365 - t366 - t367
-                    t369 = (e1*(dep_x*t340 + dep_y*t341 + dep_z*t342 + 2*dpsi_x*ep_x +
+                    t300 = A_y*dpsi_z
+                    t301 = Om0_y*dep_z
+                    t302 = Om_y*dep_z
+                    t303 = dA_y*psi_z
+                    t304 = dOm0_y*ep_z
+                    t305 = dOm_y*ep_z
+                    t306 = -Om_x*psi_y + Om_y*psi_x
+                    t307 = dep_y*e0
+                    t308 = Om0_x*psi_z - Om0_z*psi_x
+                    t309 = dep_z*e0
+                    t310 = Om0_x*ep_z - Om0_z*ep_x
+                    t311 = dpsi_z*e0
+                    t312 = -Om0_x*psi_y + Om0_y*psi_x
+                    t313 = Om_x*psi_z - Om_z*psi_x
+                    t314 = -Om0_x*ep_y + Om0_y*ep_x
+                    t315 = dpsi_y*e0
+                    t316 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
+                    t317 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
+                    t318 = e0*ep_y
+                    t319 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
+                    t320 = e0*ep_z
+                    t321 = Om0_x*dep_z
+                    t322 = dOm0_x*ep_z
+                    t323 = Om0_z*dep_x
+                    t324 = dOm0_z*ep_x
+                    t325 = t321 + t322 - t323 - t324
+                    t326 = e0*psi_z
+                    t327 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
+                    t328 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
+                    t329 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
+                    t330 = Om0_x*dep_y
+                    t331 = dOm0_x*ep_y
+                    t332 = Om0_y*dep_x + dOm0_y*ep_x - t330 - t331
+                    t333 = e0*psi_y
+                    t334 = 2*psi_x
+                    t335 = 2*psi_y
+                    t336 = 2*psi_z
+                    t337 = ep_x*t334 + ep_y*t335 + ep_z*t336
+                    t338 = e1*t337
+                    t339 = dpsi_y*t338
+                    t340 = dpsi_z*t338
+                    t341 = dpsi_x*t334 + dpsi_y*t335 + dpsi_z*t336
+                    t342 = e1*t341
+                    t343 = ep_y*t342
+                    t344 = ep_z*t342
+                    t345 = psi_z*t342
+                    t346 = psi_y*t342
+                    t347 = psi_y*t338
+                    t348 = psi_z*t338
+                    t349 = A_x*dpsi_y
+                    t350 = Om_x*dep_y
+                    t351 = dA_x*psi_y
+                    t352 = dOm_x*ep_y
+                    t353 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t349 - t350 - t351
+                        - t352)
+                    t354 = A_x*dpsi_z
+                    t355 = Om_x*dep_z
+                    t356 = dA_x*psi_z
+                    t357 = dOm_x*ep_z
+                    t358 = A_z*dpsi_x
+                    t359 = Om_z*dep_x
+                    t360 = dA_z*psi_x
+                    t361 = dOm_z*ep_x
+                    t362 = t354 + t355 + t356 + t357 - t358 - t359 - t360 - t361
+                    t363 = (e1*(dep_x*t334 + dep_y*t335 + dep_z*t336 + 2*dpsi_x*ep_x +
                         2*dpsi_y*ep_y + 2*dpsi_z*ep_z))
-                    t370 = psi_y*t312
-                    t371 = psi_z*t369
-                    t372 = t318*t369
-                    t373 = e2*t343*t347
-                    t374 = psi_z*t373
-                    t375 = t318*t373
-                    t376 = dep_x*e0
-                    t377 = -Om_y*psi_z + Om_z*psi_y
-                    t378 = dpsi_x*e0
-                    t379 = -Om0_y*psi_z + Om0_z*psi_y
-                    t380 = -Om0_y*ep_z + Om0_z*ep_y
-                    t381 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                    t382 = e0*ep_x
-                    t383 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t384 = e0*psi_x
-                    t385 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                    t386 = Om0_z*dep_y + dOm0_z*ep_y - t307 - t310
-                    t387 = dpsi_x*t344
-                    t388 = ep_x*t348
-                    t389 = psi_x*t348
-                    t390 = psi_x*t344
-                    t391 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t306 - t308 - t309
-                        - t311)
-                    t392 = psi_x*t369
-                    t393 = psi_x*t373
-                    t394 = psi_y*t369
-                    t395 = psi_y*t373
+                    t364 = psi_y*t306
+                    t365 = psi_z*t363
+                    t366 = t312*t363
+                    t367 = e2*t337*t341
+                    t368 = psi_z*t367
+                    t369 = t312*t367
+                    t370 = dep_x*e0
+                    t371 = -Om_y*psi_z + Om_z*psi_y
+                    t372 = dpsi_x*e0
+                    t373 = -Om0_y*psi_z + Om0_z*psi_y
+                    t374 = -Om0_y*ep_z + Om0_z*ep_y
+                    t375 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
+                    t376 = e0*ep_x
+                    t377 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                    t378 = e0*psi_x
+                    t379 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
+                    t380 = Om0_z*dep_y + dOm0_z*ep_y - t301 - t304
+                    t381 = dpsi_x*t338
+                    t382 = ep_x*t342
+                    t383 = psi_x*t342
+                    t384 = psi_x*t338
+                    t385 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t300 - t302 - t303
+                        - t305)
+                    t386 = psi_x*t363
+                    t387 = psi_x*t367
+                    t388 = psi_y*t363
+                    t389 = psi_y*t367
                     detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om_z*dep_y + dA_x +
-                        (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y + (0.5)*dOm_z*ep_y - psi_y*t372 -
-                        psi_y*t375 - 0.5*t306 - 0.5*t307 - 0.5*t308 - 0.5*t309 - 0.5*t310 -
-                        0.5*t311 + t312*t313 + t312*t345 + t312*t349 - t313*t318 + t314*t315 +
-                        t314*t346 + t314*t350 + t314*t371 + t314*t374 - t315*t319 + t316*t317 +
-                        t316*t351 - t317*t333 - t318*t345 - t318*t349 - t319*t346 - t319*t350 -
-                        t319*t371 - t319*t374 - t320*t321 - t320*t352 + t321*t322 + t322*t352 +
-                        t323*t324 + t323*t353 - t324*t334 + t325*t326 + t325*t354 - t326*t335 +
-                        t331*t332 - t332*t368 - t333*t351 - t334*t353 - t335*t354 - t338*t339 +
-                        t339*t359 + t369*t370 + t370*t373)
-                    detad[j3 + 1] = (dA_y + psi_x*t372 + psi_x*t375 - t312*t376 - t312*t387 -
-                        t312*t388 - t312*t392 - t312*t393 + t315*t377 - t315*t379 - t317*t380 +
-                        t317*t381 + t318*t376 + t318*t387 + t318*t388 + t320*t378 + t320*t389 -
-                        t322*t378 - t322*t389 - t323*t382 - t323*t390 + t326*t383 - t326*t385 +
-                        (0.5)*t327 + (0.5)*t328 - 0.5*t329 - 0.5*t330 - t332*t386 + t332*t391 +
-                        t334*t382 + t334*t390 + t338*t384 + t346*t377 - t346*t379 + t350*t377 -
-                        t350*t379 - t351*t380 + t351*t381 + t354*t383 - t354*t385 - t359*t384 +
-                        (0.5)*t360 + (0.5)*t361 + (0.5)*t362 + (0.5)*t363 - 0.5*t364 - 0.5*t365 -
-                        0.5*t366 - 0.5*t367 + t371*t377 - t371*t379 + t374*t377 - t374*t379)
+                        (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y + (0.5)*dOm_z*ep_y - psi_y*t366 -
+                        psi_y*t369 - 0.5*t300 - 0.5*t301 - 0.5*t302 - 0.5*t303 - 0.5*t304 -
+                        0.5*t305 + t306*t307 + t306*t339 + t306*t343 - t307*t312 + t308*t309 +
+                        t308*t340 + t308*t344 + t308*t365 + t308*t368 - t309*t313 + t310*t311 +
+                        t310*t345 - t311*t327 - t312*t339 - t312*t343 - t313*t340 - t313*t344 -
+                        t313*t365 - t313*t368 - t314*t315 - t314*t346 + t315*t316 + t316*t346 +
+                        t317*t318 + t317*t347 - t318*t328 + t319*t320 + t319*t348 - t320*t329 +
+                        t325*t326 - t326*t362 - t327*t345 - t328*t347 - t329*t348 - t332*t333 +
+                        t333*t353 + t363*t364 + t364*t367)
+                    detad[j3 + 1] = (dA_y + psi_x*t366 + psi_x*t369 - t306*t370 - t306*t381 -
+                        t306*t382 - t306*t386 - t306*t387 + t309*t371 - t309*t373 - t311*t374 +
+                        t311*t375 + t312*t370 + t312*t381 + t312*t382 + t314*t372 + t314*t383 -
+                        t316*t372 - t316*t383 - t317*t376 - t317*t384 + t320*t377 - t320*t379 +
+                        (0.5)*t321 + (0.5)*t322 - 0.5*t323 - 0.5*t324 - t326*t380 + t326*t385 +
+                        t328*t376 + t328*t384 + t332*t378 + t340*t371 - t340*t373 + t344*t371 -
+                        t344*t373 - t345*t374 + t345*t375 + t348*t377 - t348*t379 - t353*t378 +
+                        (0.5)*t354 + (0.5)*t355 + (0.5)*t356 + (0.5)*t357 - 0.5*t358 - 0.5*t359 -
+                        0.5*t360 - 0.5*t361 + t365*t371 - t365*t373 + t368*t371 - t368*t373)
                     detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om_y*dep_x +
-                        (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x + (0.5)*dOm_y*ep_x - t313*t377
-                        + t313*t379 - t314*t376 - t314*t387 - t314*t388 - t314*t392 - t314*t393 -
-                        t316*t378 - t316*t389 + t319*t376 + t319*t387 + t319*t388 + t319*t392 +
-                        t319*t393 + t321*t380 - t321*t381 - t324*t383 + t324*t385 - t325*t382 -
-                        t325*t390 - t331*t384 + t333*t378 + t333*t389 + t335*t382 + t335*t390 -
-                        0.5*t336 - 0.5*t337 + t339*t386 - t339*t391 - t345*t377 + t345*t379 -
-                        t349*t377 + t349*t379 + t352*t380 - t352*t381 - t353*t383 + t353*t385 -
-                        0.5*t355 - 0.5*t356 - 0.5*t357 - 0.5*t358 + t368*t384 - t377*t394 -
-                        t377*t395 + t379*t394 + t379*t395)
+                        (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x + (0.5)*dOm_y*ep_x - t307*t371
+                        + t307*t373 - t308*t370 - t308*t381 - t308*t382 - t308*t386 - t308*t387 -
+                        t310*t372 - t310*t383 + t313*t370 + t313*t381 + t313*t382 + t313*t386 +
+                        t313*t387 + t315*t374 - t315*t375 - t318*t377 + t318*t379 - t319*t376 -
+                        t319*t384 - t325*t378 + t327*t372 + t327*t383 + t329*t376 + t329*t384 -
+                        0.5*t330 - 0.5*t331 + t333*t380 - t333*t385 - t339*t371 + t339*t373 -
+                        t343*t371 + t343*t373 + t346*t374 - t346*t375 - t347*t377 + t347*t379 -
+                        0.5*t349 - 0.5*t350 - 0.5*t351 - 0.5*t352 + t362*t378 - t371*t388 -
+                        t371*t389 + t373*t388 + t373*t389)
                 # differential: rate: B rate = sum alpha_j T^-1(psi_j) rate_j
                 rhs_x = rhs_y = rhs_z = 0.0
                 for j in range(N_ROTATIONS):
@@ -1513,31 +1500,31 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t396 = (0.5)*dpsi_z
-                    t397 = dpsi_x*e0
-                    t398 = e0*psi_x
-                    t399 = 2*dpsi_x*psi_x
-                    t400 = 2*dpsi_y*psi_y
-                    t401 = 2*dpsi_z*psi_z
-                    t402 = e1*(t399 + t400 + t401)
-                    t403 = psi_x*t402
-                    t404 = dpsi_y*t398 + psi_y*t397 + psi_y*t403
-                    t405 = Om0d_y*alpha_r
-                    t406 = (0.5)*dpsi_y
-                    t407 = dpsi_z*t398 + psi_z*t397 + psi_z*t403
-                    t408 = Om0d_z*alpha_r
-                    t409 = e0*t401 + psi_z*psi_z*t402
-                    t410 = e0*t400 + psi_y*psi_y*t402
-                    t411 = Om0d_x*alpha_r
-                    t412 = (0.5)*dpsi_x
-                    t413 = dpsi_y*e0*psi_z + dpsi_z*e0*psi_y + psi_y*psi_z*t402
-                    t414 = e0*t399 + psi_x*psi_x*t402
-                    rhs_x += (alpha_r*depd_x - t405*(t396 + t404) - t408*(-t406 + t407) -
-                        t411*(-t409 - t410))
-                    rhs_y += (alpha_r*depd_y - t405*(-t409 - t414) - t408*(t412 + t413) -
-                        t411*(-t396 + t404))
-                    rhs_z += (alpha_r*depd_z - t405*(-t412 + t413) - t408*(-t410 - t414) -
-                        t411*(t406 + t407))
+                    t390 = (0.5)*dpsi_z
+                    t391 = dpsi_x*e0
+                    t392 = e0*psi_x
+                    t393 = 2*dpsi_x*psi_x
+                    t394 = 2*dpsi_y*psi_y
+                    t395 = 2*dpsi_z*psi_z
+                    t396 = e1*(t393 + t394 + t395)
+                    t397 = psi_x*t396
+                    t398 = dpsi_y*t392 + psi_y*t391 + psi_y*t397
+                    t399 = Om0d_y*alpha_r
+                    t400 = (0.5)*dpsi_y
+                    t401 = dpsi_z*t392 + psi_z*t391 + psi_z*t397
+                    t402 = Om0d_z*alpha_r
+                    t403 = e0*t395 + psi_z*psi_z*t396
+                    t404 = e0*t394 + psi_y*psi_y*t396
+                    t405 = Om0d_x*alpha_r
+                    t406 = (0.5)*dpsi_x
+                    t407 = dpsi_y*e0*psi_z + dpsi_z*e0*psi_y + psi_y*psi_z*t396
+                    t408 = e0*t393 + psi_x*psi_x*t396
+                    rhs_x += (alpha_r*depd_x - t399*(t390 + t398) - t402*(-t400 + t401) -
+                        t405*(-t403 - t404))
+                    rhs_y += (alpha_r*depd_y - t399*(-t403 - t408) - t402*(t406 + t407) -
+                        t405*(-t390 + t398))
+                    rhs_z += (alpha_r*depd_z - t399*(-t406 + t407) - t402*(-t404 - t408) -
+                        t405*(t400 + t401))
                 dOm0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1549,44 +1536,44 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t415 = (0.5)*psi_z
-                    t416 = e0*psi_x
-                    t417 = psi_y*t416
-                    t418 = (0.5)*psi_y
-                    t419 = psi_z*t416
-                    t420 = psi_y*psi_y
-                    t421 = e0*t420
-                    t422 = psi_z*psi_z
-                    t423 = e0*t422 - 1
-                    t424 = (0.5)*dpsi_z
-                    t425 = dpsi_x*e0
-                    t426 = 2*dpsi_x*psi_x
-                    t427 = 2*dpsi_y*psi_y
-                    t428 = 2*dpsi_z*psi_z
-                    t429 = e1*(t426 + t427 + t428)
-                    t430 = psi_x*t429
-                    t431 = dpsi_y*t416 + psi_y*t425 + psi_y*t430
-                    t432 = (0.5)*dpsi_y
-                    t433 = dpsi_z*t416 + psi_z*t425 + psi_z*t430
-                    t434 = e0*t428 + t422*t429
-                    t435 = e0*t427 + t420*t429
-                    t436 = (0.5)*psi_x
-                    t437 = e0*psi_z
-                    t438 = psi_y*t437
-                    t439 = psi_x*psi_x
-                    t440 = e0*t439
-                    t441 = (0.5)*dpsi_x
-                    t442 = dpsi_y*t437 + dpsi_z*e0*psi_y + psi_y*psi_z*t429
-                    t443 = e0*t426 + t429*t439
-                    detad[j3] = (Om0d_x*(t434 + t435) + Om0d_y*(-t424 - t431) + Om0d_z*(t432 -
-                        t433) + dOm0d_x*(t421 + t423) + dOm0d_y*(-t415 - t417) + dOm0d_z*(t418 -
-                        t419) + depd_x)
-                    detad[j3 + 1] = (Om0d_x*(t424 - t431) + Om0d_y*(t434 + t443) + Om0d_z*(-t441 -
-                        t442) + dOm0d_x*(t415 - t417) + dOm0d_y*(t423 + t440) + dOm0d_z*(-t436 -
-                        t438) + depd_y)
-                    detad[j3 + 2] = (Om0d_x*(-t432 - t433) + Om0d_y*(t441 - t442) + Om0d_z*(t435 +
-                        t443) + dOm0d_x*(-t418 - t419) + dOm0d_y*(t436 - t438) + dOm0d_z*(t421 +
-                        t440 - 1) + depd_z)
+                    t409 = (0.5)*psi_z
+                    t410 = e0*psi_x
+                    t411 = psi_y*t410
+                    t412 = (0.5)*psi_y
+                    t413 = psi_z*t410
+                    t414 = psi_y*psi_y
+                    t415 = e0*t414
+                    t416 = psi_z*psi_z
+                    t417 = e0*t416 - 1
+                    t418 = (0.5)*dpsi_z
+                    t419 = dpsi_x*e0
+                    t420 = 2*dpsi_x*psi_x
+                    t421 = 2*dpsi_y*psi_y
+                    t422 = 2*dpsi_z*psi_z
+                    t423 = e1*(t420 + t421 + t422)
+                    t424 = psi_x*t423
+                    t425 = dpsi_y*t410 + psi_y*t419 + psi_y*t424
+                    t426 = (0.5)*dpsi_y
+                    t427 = dpsi_z*t410 + psi_z*t419 + psi_z*t424
+                    t428 = e0*t422 + t416*t423
+                    t429 = e0*t421 + t414*t423
+                    t430 = (0.5)*psi_x
+                    t431 = e0*psi_z
+                    t432 = psi_y*t431
+                    t433 = psi_x*psi_x
+                    t434 = e0*t433
+                    t435 = (0.5)*dpsi_x
+                    t436 = dpsi_y*t431 + dpsi_z*e0*psi_y + psi_y*psi_z*t423
+                    t437 = e0*t420 + t423*t433
+                    detad[j3] = (Om0d_x*(t428 + t429) + Om0d_y*(-t418 - t425) + Om0d_z*(t426 -
+                        t427) + dOm0d_x*(t415 + t417) + dOm0d_y*(-t409 - t411) + dOm0d_z*(t412 -
+                        t413) + depd_x)
+                    detad[j3 + 1] = (Om0d_x*(t418 - t425) + Om0d_y*(t428 + t437) + Om0d_z*(-t435 -
+                        t436) + dOm0d_x*(t409 - t411) + dOm0d_y*(t417 + t434) + dOm0d_z*(-t430 -
+                        t432) + depd_y)
+                    detad[j3 + 2] = (Om0d_x*(-t426 - t427) + Om0d_y*(t435 - t436) + Om0d_z*(t429 +
+                        t437) + dOm0d_x*(-t412 - t413) + dOm0d_y*(t430 - t432) + dOm0d_z*(t415 +
+                        t434 - 1) + depd_z)
                 # differential: rate: rates of the elastic displacements
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -1598,21 +1585,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                     dacc_x, dacc_y, dacc_z = dacc[i3], dacc[i3 + 1], dacc[i3 + 2]
                     deu_x, deu_y, deu_z = deta[i3], deta[i3 + 1], deta[i3 + 2]
-                    t444 = X_y + u_y
-                    t445 = X_z + u_z
-                    t446 = X_x + u_x
+                    t438 = X_y + u_y
+                    t439 = X_z + u_z
+                    t440 = X_x + u_x
                     detad[i3] = (-Om0_y*deu_z + Om0_y*dv0_z - Om0_y*dvs_z + Om0_z*deu_y -
                         Om0_z*dv0_y + Om0_z*dvs_y - Om0d_y*du_z + Om0d_z*du_y - dOm0_y*eu_z +
                         dOm0_y*v0_z - dOm0_y*vs_z + dOm0_z*eu_y - dOm0_z*v0_y + dOm0_z*vs_y -
-                        dOm0d_y*t445 + dOm0d_z*t444 - da0_x + dacc_x)
+                        dOm0d_y*t439 + dOm0d_z*t438 - da0_x + dacc_x)
                     detad[i3 + 1] = (Om0_x*deu_z - Om0_x*dv0_z + Om0_x*dvs_z - Om0_z*deu_x +
                         Om0_z*dv0_x - Om0_z*dvs_x + Om0d_x*du_z - Om0d_z*du_x + dOm0_x*eu_z -
                         dOm0_x*v0_z + dOm0_x*vs_z - dOm0_z*eu_x + dOm0_z*v0_x - dOm0_z*vs_x +
-                        dOm0d_x*t445 - dOm0d_z*t446 - da0_y + dacc_y)
+                        dOm0d_x*t439 - dOm0d_z*t440 - da0_y + dacc_y)
                     detad[i3 + 2] = (-Om0_x*deu_y + Om0_x*dv0_y - Om0_x*dvs_y + Om0_y*deu_x -
                         Om0_y*dv0_x + Om0_y*dvs_x - Om0d_x*du_y + Om0d_y*du_x - dOm0_x*eu_y +
                         dOm0_x*v0_y - dOm0_x*vs_y + dOm0_y*eu_x - dOm0_y*v0_x + dOm0_y*vs_x -
-                        dOm0d_x*t444 + dOm0d_y*t446 - da0_z + dacc_z)
+                        dOm0d_x*t438 + dOm0d_y*t440 - da0_z + dacc_z)
                 # differential: rate: rates of the internal modes
                 for k in range(MODES, n):
                     dam = dae[k]
@@ -1634,12 +1621,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7],
                     turn[8])
                 dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-                t447 = da0_x - dgamma_x
-                t448 = da0_y - dgamma_y
-                t449 = da0_z - dgamma_z
-                dzdd[N] = t447*turn_xx + t448*turn_yx + t449*turn_zx
-                dzdd[N + 1] = t447*turn_xy + t448*turn_yy + t449*turn_zy
-                dzdd[N + 2] = t447*turn_xz + t448*turn_yz + t449*turn_zz
+                t441 = da0_x - dgamma_x
+                t442 = da0_y - dgamma_y
+                t443 = da0_z - dgamma_z
+                dzdd[N] = t441*turn_xx + t442*turn_yx + t443*turn_zx
+                dzdd[N + 1] = t441*turn_xy + t442*turn_yy + t443*turn_zy
+                dzdd[N + 2] = t441*turn_xz + t442*turn_yz + t443*turn_zz
                 dzdd[N + 3] = dOm0d_x*turn_xx + dOm0d_y*turn_yx + dOm0d_z*turn_zx
                 dzdd[N + 4] = dOm0d_x*turn_xy + dOm0d_y*turn_yy + dOm0d_z*turn_zy
                 dzdd[N + 5] = dOm0d_x*turn_xz + dOm0d_y*turn_yz + dOm0d_z*turn_zz
@@ -1664,15 +1651,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t450 = X_z + u_z
-                    t451 = X_y + u_y
-                    t452 = X_x + u_x
+                    t444 = X_z + u_z
+                    t445 = X_y + u_y
+                    t446 = X_x + u_x
                     dF_x += -df_x
                     dF_y += -df_y
                     dF_z += -df_z
-                    dW_x += df_y*t450 - df_z*t451 - du_y*f_z + du_z*f_y
-                    dW_y += -df_x*t450 + df_z*t452 + du_x*f_z - du_z*f_x
-                    dW_z += df_x*t451 - df_y*t452 - du_x*f_y + du_y*f_x
+                    dW_x += df_y*t444 - df_z*t445 - du_y*f_z + du_z*f_y
+                    dW_y += -df_x*t444 + df_z*t446 + du_x*f_z - du_z*f_x
+                    dW_z += df_x*t445 - df_y*t446 - du_x*f_y + du_y*f_x
                 # differential: inertia and weight on the frame
                 turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                     turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7],
@@ -1694,25 +1681,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t453 = -m_x*psi_y + m_y*psi_x
-                    t454 = m_x*psi_z - m_z*psi_x
-                    t455 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t456 = dm_x*psi_z
-                    t457 = dpsi_z*m_x
-                    t458 = -dm_z*psi_x - dpsi_x*m_z + t456 + t457
-                    t459 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t460 = e1*t459
-                    t461 = -m_y*psi_z + m_z*psi_y
-                    t462 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t453 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t454 + (0.5)*dpsi_z*m_y - e0*psi_y*t455 +
-                        e0*psi_z*t458 + e1*psi_z*t454*t459 - psi_y*t453*t460)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t453 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t461 + e0*psi_x*t455 - e0*psi_z*t462 + e1*psi_x*t453*t459 -
-                        psi_z*t460*t461 - 0.5*t456 - 0.5*t457)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t454 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t461 + (0.5)*dpsi_y*m_x - e0*psi_x*t458 +
-                        e0*psi_y*t462 + e1*psi_y*t459*t461 - psi_x*t454*t460)
+                    t447 = -m_x*psi_y + m_y*psi_x
+                    t448 = m_x*psi_z - m_z*psi_x
+                    t449 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t450 = dm_x*psi_z
+                    t451 = dpsi_z*m_x
+                    t452 = -dm_z*psi_x - dpsi_x*m_z + t450 + t451
+                    t453 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t454 = e1*t453
+                    t455 = -m_y*psi_z + m_z*psi_y
+                    t456 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t447 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t448 + (0.5)*dpsi_z*m_y - e0*psi_y*t449 +
+                        e0*psi_z*t452 + e1*psi_z*t448*t453 - psi_y*t447*t454)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t447 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t455 + e0*psi_x*t449 - e0*psi_z*t456 + e1*psi_x*t447*t453 -
+                        psi_z*t454*t455 - 0.5*t450 - 0.5*t451)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t448 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t455 + (0.5)*dpsi_y*m_x - e0*psi_x*t452 +
+                        e0*psi_y*t456 + e1*psi_y*t453*t455 - psi_x*t448*t454)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for j in range(N_ROTATIONS):
@@ -1722,33 +1709,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t463 = dpsi_y*wp_z
-                    t464 = dpsi_z*wp_y
-                    t465 = psi_x*wp_y - psi_y*wp_x
-                    t466 = e0*t465
-                    t467 = dpsi_x*wp_y
-                    t468 = dpsi_y*wp_x
-                    t469 = e0*(t467 - t468)
-                    t470 = -psi_x*wp_z + psi_z*wp_x
-                    t471 = dpsi_x*wp_z
-                    t472 = dpsi_z*wp_x - t471
-                    t473 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t474 = e1*t473
-                    t475 = t465*t474
-                    t476 = psi_y*wp_z - psi_z*wp_y
-                    t477 = t463 - t464
-                    rhs_x += (-alpha_r*(dpsi_y*t466 - dpsi_z*e0*t470 - e0*psi_z*t472 + psi_y*t469
-                        + psi_y*t475 - psi_z*t470*t474 + (0.5)*t463 - 0.5*t464))
-                    rhs_y += (-alpha_r*(-dpsi_x*t466 + dpsi_z*e0*t476 + (0.5)*dpsi_z*wp_x +
-                        e0*psi_z*t477 + e1*psi_z*t473*t476 - psi_x*t469 - psi_x*t475 - 0.5*t471))
-                    rhs_z += (-alpha_r*(dpsi_x*e0*t470 - dpsi_y*e0*t476 + e0*psi_x*t472 -
-                        e0*psi_y*t477 + psi_x*t470*t474 - psi_y*t474*t476 + (0.5)*t467 - 0.5*t468))
-                t478 = dW_x + rhs_x
-                t479 = dW_y + rhs_y
-                t480 = dW_z + rhs_z
-                dwp_x = Bxx*t478 + Byx*t479 + Bzx*t480
-                dwp_y = Bxy*t478 + Byy*t479 + Bzy*t480
-                dwp_z = Bxz*t478 + Byz*t479 + Bzz*t480
+                    t457 = dpsi_y*wp_z
+                    t458 = dpsi_z*wp_y
+                    t459 = psi_x*wp_y - psi_y*wp_x
+                    t460 = e0*t459
+                    t461 = dpsi_x*wp_y
+                    t462 = dpsi_y*wp_x
+                    t463 = e0*(t461 - t462)
+                    t464 = -psi_x*wp_z + psi_z*wp_x
+                    t465 = dpsi_x*wp_z
+                    t466 = dpsi_z*wp_x - t465
+                    t467 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t468 = e1*t467
+                    t469 = t459*t468
+                    t470 = psi_y*wp_z - psi_z*wp_y
+                    t471 = t457 - t458
+                    rhs_x += (-alpha_r*(dpsi_y*t460 - dpsi_z*e0*t464 - e0*psi_z*t466 + psi_y*t463
+                        + psi_y*t469 - psi_z*t464*t468 + (0.5)*t457 - 0.5*t458))
+                    rhs_y += (-alpha_r*(-dpsi_x*t460 + dpsi_z*e0*t470 + (0.5)*dpsi_z*wp_x +
+                        e0*psi_z*t471 + e1*psi_z*t467*t470 - psi_x*t463 - psi_x*t469 - 0.5*t465))
+                    rhs_z += (-alpha_r*(dpsi_x*e0*t464 - dpsi_y*e0*t470 + e0*psi_x*t466 -
+                        e0*psi_y*t471 + psi_x*t464*t468 - psi_y*t468*t470 + (0.5)*t461 - 0.5*t462))
+                t472 = dW_x + rhs_x
+                t473 = dW_y + rhs_y
+                t474 = dW_z + rhs_z
+                dwp_x = Bxx*t472 + Byx*t473 + Bzx*t474
+                dwp_y = Bxy*t472 + Byy*t473 + Bzy*t474
+                dwp_z = Bxz*t472 + Byz*t473 + Bzz*t474
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -1775,58 +1762,58 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t481 = dm_y*psi_z
-                    t482 = dpsi_z*m_y
-                    t483 = -m_x*psi_y + m_y*psi_x
-                    t484 = dpsi_y*e0
-                    t485 = m_x*psi_z - m_z*psi_x
-                    t486 = dpsi_z*e0
-                    t487 = dm_x*psi_y
-                    t488 = dpsi_y*m_x
-                    t489 = dm_y*psi_x + dpsi_x*m_y - t487 - t488
-                    t490 = e0*psi_y
-                    t491 = dm_x*psi_z
-                    t492 = dpsi_z*m_x
-                    t493 = dm_z*psi_x
-                    t494 = dpsi_x*m_z
-                    t495 = t491 + t492 - t493 - t494
-                    t496 = e0*psi_z
-                    t497 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t498 = psi_y*t497
-                    t499 = psi_z*t497
-                    t500 = dpsi_y*wp_z
-                    t501 = dpsi_z*wp_y
-                    t502 = dwp_y*psi_z
-                    t503 = dwp_z*psi_y
-                    t504 = psi_x*wp_y - psi_y*wp_x
-                    t505 = -psi_x*wp_z + psi_z*wp_x
-                    t506 = dpsi_x*wp_y
-                    t507 = dwp_y*psi_x
-                    t508 = dpsi_y*wp_x
-                    t509 = dwp_x*psi_y
-                    t510 = t506 + t507 - t508 - t509
-                    t511 = dpsi_x*wp_z
-                    t512 = dwp_z*psi_x
-                    t513 = dpsi_z*wp_x + dwp_x*psi_z - t511 - t512
-                    t514 = -m_y*psi_z + m_z*psi_y
-                    t515 = dpsi_x*e0
-                    t516 = dm_z*psi_y + dpsi_y*m_z - t481 - t482
-                    t517 = e0*psi_x
-                    t518 = psi_x*t497
-                    t519 = psi_y*wp_z - psi_z*wp_y
-                    t520 = t500 - t501 - t502 + t503
-                    dg[j3] = (alpha_r*(dwp_x + t484*t504 - t486*t505 + t490*t510 - t496*t513 +
-                        t498*t504 - t499*t505 - 0.5*t500 + (0.5)*t501 + (0.5)*t502 - 0.5*t503) +
-                        dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + (0.5)*t481 + (0.5)*t482 +
-                        t483*t484 + t483*t498 - t485*t486 - t485*t499 + t489*t490 - t495*t496)
-                    dg[j3 + 1] = (alpha_r*(-0.5*dpsi_z*wp_x - 0.5*dwp_x*psi_z + dwp_y + t486*t519
-                        + t496*t520 + t499*t519 - t504*t515 - t504*t518 - t510*t517 + (0.5)*t511 +
-                        (0.5)*t512) + dm_y - t483*t515 - t483*t518 + t486*t514 - t489*t517 -
-                        0.5*t491 - 0.5*t492 + (0.5)*t493 + (0.5)*t494 + t496*t516 + t499*t514)
-                    dg[j3 + 2] = (alpha_r*(dwp_z - t484*t519 - t490*t520 - t498*t519 + t505*t515 +
-                        t505*t518 - 0.5*t506 - 0.5*t507 + (0.5)*t508 + (0.5)*t509 + t513*t517) -
-                        0.5*dm_y*psi_x + dm_z - 0.5*dpsi_x*m_y - t484*t514 + t485*t515 + t485*t518
-                        + (0.5)*t487 + (0.5)*t488 - t490*t516 + t495*t517 - t498*t514)
+                    t475 = dm_y*psi_z
+                    t476 = dpsi_z*m_y
+                    t477 = -m_x*psi_y + m_y*psi_x
+                    t478 = dpsi_y*e0
+                    t479 = m_x*psi_z - m_z*psi_x
+                    t480 = dpsi_z*e0
+                    t481 = dm_x*psi_y
+                    t482 = dpsi_y*m_x
+                    t483 = dm_y*psi_x + dpsi_x*m_y - t481 - t482
+                    t484 = e0*psi_y
+                    t485 = dm_x*psi_z
+                    t486 = dpsi_z*m_x
+                    t487 = dm_z*psi_x
+                    t488 = dpsi_x*m_z
+                    t489 = t485 + t486 - t487 - t488
+                    t490 = e0*psi_z
+                    t491 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t492 = psi_y*t491
+                    t493 = psi_z*t491
+                    t494 = dpsi_y*wp_z
+                    t495 = dpsi_z*wp_y
+                    t496 = dwp_y*psi_z
+                    t497 = dwp_z*psi_y
+                    t498 = psi_x*wp_y - psi_y*wp_x
+                    t499 = -psi_x*wp_z + psi_z*wp_x
+                    t500 = dpsi_x*wp_y
+                    t501 = dwp_y*psi_x
+                    t502 = dpsi_y*wp_x
+                    t503 = dwp_x*psi_y
+                    t504 = t500 + t501 - t502 - t503
+                    t505 = dpsi_x*wp_z
+                    t506 = dwp_z*psi_x
+                    t507 = dpsi_z*wp_x + dwp_x*psi_z - t505 - t506
+                    t508 = -m_y*psi_z + m_z*psi_y
+                    t509 = dpsi_x*e0
+                    t510 = dm_z*psi_y + dpsi_y*m_z - t475 - t476
+                    t511 = e0*psi_x
+                    t512 = psi_x*t491
+                    t513 = psi_y*wp_z - psi_z*wp_y
+                    t514 = t494 - t495 - t496 + t497
+                    dg[j3] = (alpha_r*(dwp_x + t478*t498 - t480*t499 + t484*t504 - t490*t507 +
+                        t492*t498 - t493*t499 - 0.5*t494 + (0.5)*t495 + (0.5)*t496 - 0.5*t497) +
+                        dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + (0.5)*t475 + (0.5)*t476 +
+                        t477*t478 + t477*t492 - t479*t480 - t479*t493 + t483*t484 - t489*t490)
+                    dg[j3 + 1] = (alpha_r*(-0.5*dpsi_z*wp_x - 0.5*dwp_x*psi_z + dwp_y + t480*t513
+                        + t490*t514 + t493*t513 - t498*t509 - t498*t512 - t504*t511 + (0.5)*t505 +
+                        (0.5)*t506) + dm_y - t477*t509 - t477*t512 + t480*t508 - t483*t511 -
+                        0.5*t485 - 0.5*t486 + (0.5)*t487 + (0.5)*t488 + t490*t510 + t493*t508)
+                    dg[j3 + 2] = (alpha_r*(dwp_z - t478*t513 - t484*t514 - t492*t513 + t499*t509 +
+                        t499*t512 - 0.5*t500 - 0.5*t501 + (0.5)*t502 + (0.5)*t503 + t507*t511) -
+                        0.5*dm_y*psi_x + dm_z - 0.5*dpsi_x*m_y - t478*t508 + t479*t509 + t479*t512
+                        + (0.5)*t481 + (0.5)*t482 - t484*t510 + t489*t511 - t492*t508)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

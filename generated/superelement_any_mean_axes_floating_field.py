@@ -41,16 +41,20 @@ from sebody.kernels.dense import (
     add_blocks_times,
     block_times,
     clear,
+    columns_times,
     inverse_3,
     rows_times,
 )
 from sebody.kernels.frame_search import mean_axes
 from sebody.kernels.packed_products import (
+    add_couplings,
     add_packed,
     add_packed_times,
+    couplings_times,
     from_free,
     packed_room,
     packed_times,
+    packed_times_both,
     to_free,
 )
 from sebody.kernels.rotations import inverse_tangent_coefficients, inverse_tangent_second
@@ -65,11 +69,11 @@ ROTATIONS = None      # first rotation among the local coordinates
 MODES = None          # first internal mode
 DAMPED = None        # has structural damping, None where a body tells
 N_MODES = None        # their number, None where it is read at run time
-WORK_ROWS = 120
+WORK_ROWS = 122
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (983, 276, 624, 1),
+OPERATIONS = {"residual": (986, 276, 624, 1),
               "column": (150, 405, 1864, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("Gam", ("n", "turns"), "mean rotation of y, a column for each coordinate"),
@@ -82,8 +86,8 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),
     Part("J0", ("pairs",), "moments of inertia at rest"),
     Part("moment_columns", ("N", "lines"), "S1, g_k, h_kl + h_lk", columns=True),
-    Part("of_place", ("placed", "N", "N"), "J2_kl, K_k^T", packed=True),
-    Part("of_rate", ("rated", "N", "N"), "K_k^T, K_k^T - K_k", packed=True),
+    Part("moment_rows", ("lines", "N"), "its transpose", columns=True),
+    Part("couplings", ("coupled", "N", "N"), "J2_kl, K_k^T; K_k^T and K_k of rates", packed=True),
     Part("Mz", (1, "N", "N"), "reduced mass with slaved coordinates", packed=True),
     Part("Cz", ("damped", "free", "free"), "reduced damping", packed=True),
     Part("followers", ("slaved", "free", "free"), "Q_b", packed=True),
@@ -135,11 +139,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         h = at(work, 28*row)
         moved = at(work, 29*row)
         squares = at(work, 30*row)
-        unordered = at(work, 54*row)
-        Zq = at(work, 57*row)
-        Zd = at(work, 69*row)
-        products = at(work, 81*row)
-        Gy = at(work, 120*row)
+        unordered = at(work, 53*row)
+        Zq = at(work, 56*row)
+        Zd = at(work, 68*row)
+        products = at(work, 80*row)
+        Gy = at(work, 122*row)
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
@@ -168,9 +172,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         c0 = at(order, free)
         J0 = at(c0, 3)
         moment_columns = at(J0, 6)
-        of_place = at(moment_columns, 12*padded(N))
-        of_rate = at(of_place, packed_room(9, N, N))
-        Mz = at(of_rate, packed_room(6, N, N))
+        moment_rows = at(moment_columns, 12*padded(N))
+        couplings = at(moment_rows, N*padded(12))
+        Mz = at(couplings, packed_room(15, N, N))
         Cz = at(Mz, packed_room(1, N, N))
         followers = at(Cz, packed_room(damped, free, free))
         lam = at(followers, packed_room(slaved, free, free))
@@ -539,22 +543,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         gamma[2] = R0_xz*field_x + R0_yz*field_y + R0_zz*field_z
         # coordinates that determine the others, and their rates
         all_to_free(y, eta, etad, axes, order, unordered, z, zd, zdd, bound, bound_free, free, hN)
-        # Q_b z, all b
-        packed_times(followers, z, Zq, slaved*hn)
-        # Q_b zd, all b
-        packed_times(followers, zd, Zd, slaved*hn)
+        # Q_b z and Q_b zd, all b
+        packed_times_both(followers, z, zd, Zq, Zd, slaved*hn)
         # eta_b = y . Q_b y / 2, their rates and second rates
         follow(Zq, Zd, z, zd, zdd, free, slaved, hn)
-        # J2_kl z and K_k^T z
-        packed_times(of_place, z, products, 9*hN)
-        # K_k^T zdot and (K_k^T - K_k) zdot
-        packed_times(of_rate, zd, at(products, 9*hN), 6*hN)
+        # J2_kl z, K_k^T z, K_k^T zdot and K_k zdot
+        couplings_times(couplings, z, zd, products, 15*hN)
         # first moments, couplings, inertia at rest, by z
-        rows_times(moment_columns, z, line0, N, 12, hN)
+        columns_times(moment_rows, z, line0, 12, N)
         # first moments, couplings, inertia at rest, by zd
-        rows_times(moment_columns, zd, line1, N, 12, hN)
+        columns_times(moment_rows, zd, line1, 12, N)
         # first moments, couplings, inertia at rest, by zdd
-        rows_times(moment_columns, zdd, line2, N, 8, hN)
+        columns_times(moment_rows, zdd, line2, 12, N)
         # quadratic parts, by z
         rows_times(products, z, product0, N, 8, hN)
         # quadratic parts, by zd
@@ -657,12 +657,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         by_products[6] = turning_x
         by_products[7] = turning_y
         by_products[8] = turning_z
-        by_products[9] = 0.0
-        by_products[10] = 0.0
-        by_products[11] = 0.0
-        by_products[12] = spin_x
-        by_products[13] = spin_y
-        by_products[14] = spin_z
+        by_products[9] = spin_x
+        by_products[10] = spin_y
+        by_products[11] = spin_z
+        by_products[12] = -spin_x
+        by_products[13] = -spin_y
+        by_products[14] = -spin_z
         # inertia force of deformation, Mbar zddot
         packed_times(Mz, zdd, local, hN)
         # damping force, Cbar ydot
@@ -930,30 +930,29 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dve = at(work, 32*row)
             dae = at(work, 33*row)
             e2s = at(work, 34*row)
-            by_place = at(work, 35*row)
-            by_rate = at(work, 36*row)
-            ones = at(work, 37*row)
-            by_followers = at(work, 38*row)
-            of_E = at(work, 39*row)
-            of_Gy = at(work, 40*row)
-            dy = at(work, 41*row)
-            dz = at(work, 42*row)
-            dlocal = at(work, 43*row)
-            dyd = at(work, 44*row)
-            dacc = at(work, 45*row)
-            deta = at(work, 46*row)
-            detad = at(work, 47*row)
-            dgamma = at(work, 48*row)
-            dzd = at(work, 49*row)
-            dzdd = at(work, 50*row)
-            ds = at(work, 51*row)
-            dh = at(work, 52*row)
-            dg = at(work, 53*row)
-            Za = at(work, 96*row)
-            more = at(work, 108*row)
-            Lz = at(work, (120 + n + 18)*row)
-            Lv = at(work, (120 + 2*(n + 18))*row)
-            La = at(work, (120 + 3*(n + 18))*row)
+            by_couplings = at(work, 35*row)
+            ones = at(work, 36*row)
+            by_followers = at(work, 37*row)
+            of_E = at(work, 38*row)
+            of_Gy = at(work, 39*row)
+            dy = at(work, 40*row)
+            dz = at(work, 41*row)
+            dlocal = at(work, 42*row)
+            dyd = at(work, 43*row)
+            dacc = at(work, 44*row)
+            deta = at(work, 45*row)
+            detad = at(work, 46*row)
+            dgamma = at(work, 47*row)
+            dzd = at(work, 48*row)
+            dzdd = at(work, 49*row)
+            ds = at(work, 50*row)
+            dh = at(work, 51*row)
+            dg = at(work, 52*row)
+            Za = at(work, 95*row)
+            more = at(work, 107*row)
+            Lz = at(work, (122 + n + 18)*row)
+            Lv = at(work, (122 + 2*(n + 18))*row)
+            La = at(work, (122 + 3*(n + 18))*row)
             # Q_b zdd, all b
             packed_times(followers, zdd, Za, slaved*hn)
             # second derivative of the coefficients of T^-1
@@ -961,29 +960,27 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e2s[j] = inverse_tangent_second(psi_x*psi_x + psi_y*psi_y + psi_z*psi_z)
-            # J2_kl zdot
-            packed_times(of_place, zd, more, 9*hN)
-            # K_k^T zddot and (K_k^T - K_k) zddot
-            packed_times(of_rate, zdd, at(more, 6*hN), 6*hN)
+            # J2_kl zdot, K_k^T zddot and K_k zddot
+            couplings_times(couplings, zd, zdd, more, 15*hN)
             # factors of the local tangents
             turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             t178 = 2*c_geo*spin_x
-            by_place[0] = -c_geo*spin_x*spin_x
-            by_place[1] = -c_geo*spin_y*spin_y
-            by_place[2] = -c_geo*spin_z*spin_z
-            by_place[3] = -spin_y*t178
-            by_place[4] = -spin_z*t178
-            by_place[5] = -2*c_geo*spin_y*spin_z
-            by_place[6] = c_geo*turning_x
-            by_place[7] = c_geo*turning_y
-            by_place[8] = c_geo*turning_z
-            by_rate[0] = 0.0
-            by_rate[1] = 0.0
-            by_rate[2] = 0.0
-            by_rate[3] = spin_x
-            by_rate[4] = spin_y
-            by_rate[5] = spin_z
+            by_couplings[0] = -c_geo*spin_x*spin_x
+            by_couplings[1] = -c_geo*spin_y*spin_y
+            by_couplings[2] = -c_geo*spin_z*spin_z
+            by_couplings[3] = -spin_y*t178
+            by_couplings[4] = -spin_z*t178
+            by_couplings[5] = -2*c_geo*spin_y*spin_z
+            by_couplings[6] = c_geo*turning_x
+            by_couplings[7] = c_geo*turning_y
+            by_couplings[8] = c_geo*turning_z
+            by_couplings[9] = spin_x
+            by_couplings[10] = spin_y
+            by_couplings[11] = spin_z
+            by_couplings[12] = -spin_x
+            by_couplings[13] = -spin_y
+            by_couplings[14] = -spin_z
             ones[0] = 1
             # forces on eta as factors
             for b in range(slaved):
@@ -995,12 +992,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             clear(Lv, N*deep)
             # local tangents
             clear(La, N*deep)
-            # by z: J2_kl and K_k^T
-            add_packed(of_place, by_place, Lz, deep)
+            # by z: J2_kl and K_k^T; by zdot: K_k^T and K_k
+            add_couplings(couplings, by_couplings, Lz, Lv, deep)
             # forces on eta
             add_packed(followers, by_followers, Lz, deep)
-            # by zdot: K_k^T and K_k^T - K_k
-            add_packed(of_rate, by_rate, Lv, deep)
             # structural damping
             add_packed(Cz, ones, Lv, deep)
             # by zddot
@@ -1042,8 +1037,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     products[14*hN + i])
                 row_jd_xx, row_jd_yy, row_jd_zz, row_jd_xy, row_jd_xz, row_jd_yz = (more[i],
                     more[hN + i], more[2*hN + i], more[3*hN + i], more[4*hN + i], more[5*hN + i])
-                row_ua_x, row_ua_y, row_ua_z = more[6*hN + i], more[7*hN + i], more[8*hN + i]
-                row_wa_x, row_wa_y, row_wa_z = more[9*hN + i], more[10*hN + i], more[11*hN + i]
+                row_wa_x, row_wa_y, row_wa_z = more[12*hN + i], more[13*hN + i], more[14*hN + i]
                 t179 = row_S1_x*spin_z
                 t180 = row_S1_z*spin_x
                 t181 = t179 - t180
@@ -1054,24 +1048,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t186 = 2*spin_x
                 t187 = 2*spin_y
                 t188 = 2*spin_z
-                t189 = -row_w_z
-                t190 = row_v_z + t189
-                t191 = row_h_xx + 2*row_j_xx
-                t192 = row_h_xy + 2*row_j_xy
-                t193 = row_h_xz + 2*row_j_xz
-                t194 = -row_w_y
-                t195 = row_v_y + t194
-                t196 = row_h_yz + 2*row_j_yz
-                t197 = row_h_zz + 2*row_j_zz
-                t198 = spin_x*t193 + spin_y*t196 + spin_z*t197
-                t199 = row_h_yy + 2*row_j_yy
-                t200 = spin_x*t192 + spin_y*t199 + spin_z*t196
-                t201 = -row_w_x
-                t202 = row_v_x + t201
-                t203 = spin_x*t191 + spin_y*t192 + spin_z*t193
-                t204 = row_g_z + row_u_z
-                t205 = row_g_y + row_u_y
-                t206 = row_g_x + row_u_x
+                t189 = row_h_xx + 2*row_j_xx
+                t190 = row_h_xy + 2*row_j_xy
+                t191 = row_h_xz + 2*row_j_xz
+                t192 = row_h_yz + 2*row_j_yz
+                t193 = row_h_zz + 2*row_j_zz
+                t194 = spin_x*t191 + spin_y*t192 + spin_z*t193
+                t195 = row_h_yy + 2*row_j_yy
+                t196 = spin_x*t190 + spin_y*t195 + spin_z*t192
+                t197 = spin_x*t189 + spin_y*t190 + spin_z*t191
+                t198 = row_g_z + row_u_z
+                t199 = row_g_y + row_u_y
+                t200 = row_g_x + row_u_x
                 Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t183 -
                     spin_z*t181))
                 Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t183
@@ -1079,29 +1067,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Lz[i*deep + N + 2] = (c_geo*(-row_S1_x*turning_y + row_S1_y*turning_x +
                     spin_x*t181 - spin_y*t185))
                 Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t186 +
-                    row_jd_xy*t187 + row_jd_xz*t188 + row_ua_x - row_wa_x + spin_y*t190 +
-                    spin_y*t198 - spin_z*t195 - spin_z*t200 + t191*turning_x + t192*turning_y +
-                    t193*turning_z))
+                    row_jd_xy*t187 + row_jd_xz*t188 - row_w_y*spin_z + row_w_z*spin_y + row_wa_x +
+                    spin_y*t194 - spin_z*t196 + t189*turning_x + t190*turning_y + t191*turning_z))
                 Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t186 +
-                    row_jd_yy*t187 + row_jd_yz*t188 + row_ua_y - row_wa_y - spin_x*t190 -
-                    spin_x*t198 + spin_z*t202 + spin_z*t203 + t192*turning_x + t196*turning_z +
-                    t199*turning_y))
+                    row_jd_yy*t187 + row_jd_yz*t188 + row_w_x*spin_z - row_w_z*spin_x + row_wa_y -
+                    spin_x*t194 + spin_z*t197 + t190*turning_x + t192*turning_z + t195*turning_y))
                 Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t186 +
-                    row_jd_yz*t187 + row_jd_zz*t188 + row_ua_z - row_wa_z + spin_x*t195 +
-                    spin_x*t200 - spin_y*t202 - spin_y*t203 + t193*turning_x + t196*turning_y +
-                    t197*turning_z))
+                    row_jd_yz*t187 + row_jd_zz*t188 - row_w_x*spin_y + row_w_y*spin_x + row_wa_z +
+                    spin_x*t196 - spin_y*t197 + t191*turning_x + t192*turning_y + t193*turning_z))
                 Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t184
                 Lv[i*deep + N + 1] = 2*t179 - 2*t180
                 Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t182
-                Lv[i*deep + N + 3] = 2*row_v_x + spin_y*t204 - spin_z*t205 + t201 + t203
-                Lv[i*deep + N + 4] = 2*row_v_y - spin_x*t204 + spin_z*t206 + t194 + t200
-                Lv[i*deep + N + 5] = 2*row_v_z + spin_x*t205 - spin_y*t206 + t189 + t198
+                Lv[i*deep + N + 3] = row_v_x + row_w_x + spin_y*t198 - spin_z*t199 + t197
+                Lv[i*deep + N + 4] = row_v_y + row_w_y - spin_x*t198 + spin_z*t200 + t196
+                Lv[i*deep + N + 5] = row_v_z + row_w_z + spin_x*t199 - spin_y*t200 + t194
                 La[i*deep + N] = row_S1_x
                 La[i*deep + N + 1] = row_S1_y
                 La[i*deep + N + 2] = row_S1_z
-                La[i*deep + N + 3] = t206
-                La[i*deep + N + 4] = t205
-                La[i*deep + N + 5] = t204
+                La[i*deep + N + 3] = t200
+                La[i*deep + N + 4] = t199
+                La[i*deep + N + 5] = t198
             # local tangents: motion of the frame
             for i in range(N):
                 spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
@@ -1117,17 +1102,19 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     products[5*hN + i])
                 row_u_x, row_u_y, row_u_z = (products[6*hN + i], products[7*hN + i],
                     products[8*hN + i])
+                row_v_x, row_v_y, row_v_z = (products[9*hN + i], products[10*hN + i],
+                    products[11*hN + i])
                 row_w_x, row_w_y, row_w_z = (products[12*hN + i], products[13*hN + i],
                     products[14*hN + i])
-                t207 = row_h_xy + 2*row_j_xy
-                t208 = row_h_xz + 2*row_j_xz
-                t209 = row_h_yz + 2*row_j_yz
-                Lv[N*deep + i] = (row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t207 -
-                    spin_z*t208)
-                Lv[(N + 1)*deep + i] = (row_w_y - spin_x*t207 - spin_y*(row_h_yy + 2*row_j_yy) -
-                    spin_z*t209)
-                Lv[(N + 2)*deep + i] = (row_w_z - spin_x*t208 - spin_y*t209 - spin_z*(row_h_zz +
-                    2*row_j_zz))
+                t201 = row_h_xy + 2*row_j_xy
+                t202 = row_h_xz + 2*row_j_xz
+                t203 = row_h_yz + 2*row_j_yz
+                Lv[N*deep + i] = (row_v_x - row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t201
+                    - spin_z*t202)
+                Lv[(N + 1)*deep + i] = (row_v_y - row_w_y - spin_x*t201 - spin_y*(row_h_yy +
+                    2*row_j_yy) - spin_z*t203)
+                Lv[(N + 2)*deep + i] = (row_v_z - row_w_z - spin_x*t202 - spin_y*t203 -
+                    spin_z*(row_h_zz + 2*row_j_zz))
                 La[N*deep + i] = row_S1_x
                 La[(N + 1)*deep + i] = row_S1_y
                 La[(N + 2)*deep + i] = row_S1_z
@@ -1137,79 +1124,79 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # local tangents: force on the frame by its motion
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             mass = masses[0]
-            t210 = spin_y*sum_c_y
-            t211 = spin_z*sum_c_z
-            t212 = 2*sum_cd_z
-            t213 = spin_x*sum_c_y
-            t214 = 2*sum_cd_y
-            t215 = spin_z*sum_c_x
-            t216 = spin_y*sum_J_xz
-            t217 = spin_z*sum_J_xy
-            t218 = spin_y*sum_J_yz
-            t219 = spin_x*sum_J_xz
-            t220 = spin_z*sum_J_zz + sum_spun_z
-            t221 = spin_z*sum_J_yz
-            t222 = spin_x*sum_J_xy
-            t223 = spin_y*sum_J_yy + sum_spun_y
-            t224 = spin_x*sum_c_x
-            t225 = 2*sum_cd_x
-            t226 = spin_y*sum_c_z
-            t227 = spin_x*sum_J_yz
-            t228 = spin_z*sum_J_xz
-            t229 = spin_y*sum_J_xy
-            t230 = spin_x*sum_J_xx + sum_spun_x
-            t231 = -sum_c_y
-            t232 = -sum_c_z
-            t233 = -sum_c_x
-            Lv[N*deep + N] = t210 + t211
-            Lv[N*deep + N + 1] = spin_y*sum_c_x - t212 - 2*t213
-            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t214 + t215
-            Lv[N*deep + N + 3] = sum_Jd_xx + t216 - t217
-            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t218 - 2*t219 - t220
-            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t221 + 2*t222 + t223
-            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t212 + t213
-            Lv[(N + 1)*deep + N + 1] = t211 + t224
-            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t225 - 2*t226
-            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t218 + t219 + t220
-            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t217 - t227
-            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t228 - 2*t229 - t230
-            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t214 - 2*t215
-            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t225 + t226
-            Lv[(N + 2)*deep + N + 2] = t210 + t224
-            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t221 - t222 - t223
-            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t228 + t229 + t230
-            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t216 + t227
+            t204 = spin_y*sum_c_y
+            t205 = spin_z*sum_c_z
+            t206 = 2*sum_cd_z
+            t207 = spin_x*sum_c_y
+            t208 = 2*sum_cd_y
+            t209 = spin_z*sum_c_x
+            t210 = spin_y*sum_J_xz
+            t211 = spin_z*sum_J_xy
+            t212 = spin_y*sum_J_yz
+            t213 = spin_x*sum_J_xz
+            t214 = spin_z*sum_J_zz + sum_spun_z
+            t215 = spin_z*sum_J_yz
+            t216 = spin_x*sum_J_xy
+            t217 = spin_y*sum_J_yy + sum_spun_y
+            t218 = spin_x*sum_c_x
+            t219 = 2*sum_cd_x
+            t220 = spin_y*sum_c_z
+            t221 = spin_x*sum_J_yz
+            t222 = spin_z*sum_J_xz
+            t223 = spin_y*sum_J_xy
+            t224 = spin_x*sum_J_xx + sum_spun_x
+            t225 = -sum_c_y
+            t226 = -sum_c_z
+            t227 = -sum_c_x
+            Lv[N*deep + N] = t204 + t205
+            Lv[N*deep + N + 1] = spin_y*sum_c_x - t206 - 2*t207
+            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t208 + t209
+            Lv[N*deep + N + 3] = sum_Jd_xx + t210 - t211
+            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t212 - 2*t213 - t214
+            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t215 + 2*t216 + t217
+            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t206 + t207
+            Lv[(N + 1)*deep + N + 1] = t205 + t218
+            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t219 - 2*t220
+            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t212 + t213 + t214
+            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t211 - t221
+            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t222 - 2*t223 - t224
+            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t208 - 2*t209
+            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t219 + t220
+            Lv[(N + 2)*deep + N + 2] = t204 + t218
+            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t215 - t216 - t217
+            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t222 + t223 + t224
+            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t210 + t221
             La[N*deep + N] = mass
             La[N*deep + N + 1] = 0.0
             La[N*deep + N + 2] = 0.0
             La[N*deep + N + 3] = 0.0
             La[N*deep + N + 4] = sum_c_z
-            La[N*deep + N + 5] = t231
+            La[N*deep + N + 5] = t225
             La[(N + 1)*deep + N] = 0.0
             La[(N + 1)*deep + N + 1] = mass
             La[(N + 1)*deep + N + 2] = 0.0
-            La[(N + 1)*deep + N + 3] = t232
+            La[(N + 1)*deep + N + 3] = t226
             La[(N + 1)*deep + N + 4] = 0.0
             La[(N + 1)*deep + N + 5] = sum_c_x
             La[(N + 2)*deep + N] = 0.0
             La[(N + 2)*deep + N + 1] = 0.0
             La[(N + 2)*deep + N + 2] = mass
             La[(N + 2)*deep + N + 3] = sum_c_y
-            La[(N + 2)*deep + N + 4] = t233
+            La[(N + 2)*deep + N + 4] = t227
             La[(N + 2)*deep + N + 5] = 0.0
             La[(N + 3)*deep + N] = 0.0
-            La[(N + 3)*deep + N + 1] = t232
+            La[(N + 3)*deep + N + 1] = t226
             La[(N + 3)*deep + N + 2] = sum_c_y
             La[(N + 3)*deep + N + 3] = sum_J_xx
             La[(N + 3)*deep + N + 4] = sum_J_xy
             La[(N + 3)*deep + N + 5] = sum_J_xz
             La[(N + 4)*deep + N] = sum_c_z
             La[(N + 4)*deep + N + 1] = 0.0
-            La[(N + 4)*deep + N + 2] = t233
+            La[(N + 4)*deep + N + 2] = t227
             La[(N + 4)*deep + N + 3] = sum_J_xy
             La[(N + 4)*deep + N + 4] = sum_J_yy
             La[(N + 4)*deep + N + 5] = sum_J_yz
-            La[(N + 5)*deep + N] = t231
+            La[(N + 5)*deep + N] = t225
             La[(N + 5)*deep + N + 1] = sum_c_x
             La[(N + 5)*deep + N + 2] = 0.0
             La[(N + 5)*deep + N + 3] = sum_J_xz
@@ -1250,12 +1237,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gam_positionz_x, Gam_positionz_y, Gam_positionz_z = (Gam[3*(i3 + 2)],
                         Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t234 = -dx0_x + dx_x
-                    t235 = -dx0_y + dx_y
-                    t236 = -dx0_z + dx_z
-                    rhs_x += -Gam_positionx_x*t234 - Gam_positiony_x*t235 - Gam_positionz_x*t236
-                    rhs_y += -Gam_positionx_y*t234 - Gam_positiony_y*t235 - Gam_positionz_y*t236
-                    rhs_z += -Gam_positionx_z*t234 - Gam_positiony_z*t235 - Gam_positionz_z*t236
+                    t228 = -dx0_x + dx_x
+                    t229 = -dx0_y + dx_y
+                    t230 = -dx0_z + dx_z
+                    rhs_x += -Gam_positionx_x*t228 - Gam_positiony_x*t229 - Gam_positionz_x*t230
+                    rhs_y += -Gam_positionx_y*t228 - Gam_positiony_y*t229 - Gam_positionz_y*t230
+                    rhs_z += -Gam_positionx_z*t228 - Gam_positiony_z*t229 - Gam_positionz_z*t230
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
@@ -1267,20 +1254,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         Gam[3*(j3 + 2) + 1], Gam[3*(j3 + 2) + 2])
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t237 = dth_y*psi_z
-                    t238 = dth_x*psi_y
-                    t239 = e0*(dth_y*psi_x - t238)
-                    t240 = dth_x*psi_z
-                    t241 = dth_z*psi_x
-                    t242 = t240 - t241
-                    t243 = e0*psi_z
-                    t244 = dth_x + (0.5)*dth_z*psi_y + psi_y*t239 - 0.5*t237 - t242*t243
-                    t245 = dth_z*psi_y - t237
-                    t246 = dth_y - psi_x*t239 + (0.5)*t240 - 0.5*t241 + t243*t245
-                    t247 = (0.5)*dth_y*psi_x + dth_z + e0*psi_x*t242 - e0*psi_y*t245 - 0.5*t238
-                    rhs_x += -Gam_rotationx_x*t244 - Gam_rotationy_x*t246 - Gam_rotationz_x*t247
-                    rhs_y += -Gam_rotationx_y*t244 - Gam_rotationy_y*t246 - Gam_rotationz_y*t247
-                    rhs_z += -Gam_rotationx_z*t244 - Gam_rotationy_z*t246 - Gam_rotationz_z*t247
+                    t231 = dth_y*psi_z
+                    t232 = dth_x*psi_y
+                    t233 = e0*(dth_y*psi_x - t232)
+                    t234 = dth_x*psi_z
+                    t235 = dth_z*psi_x
+                    t236 = t234 - t235
+                    t237 = e0*psi_z
+                    t238 = dth_x + (0.5)*dth_z*psi_y + psi_y*t233 - 0.5*t231 - t236*t237
+                    t239 = dth_z*psi_y - t231
+                    t240 = dth_y - psi_x*t233 + (0.5)*t234 - 0.5*t235 + t237*t239
+                    t241 = (0.5)*dth_y*psi_x + dth_z + e0*psi_x*t236 - e0*psi_y*t239 - 0.5*t232
+                    rhs_x += -Gam_rotationx_x*t238 - Gam_rotationy_x*t240 - Gam_rotationz_x*t241
+                    rhs_y += -Gam_rotationx_y*t238 - Gam_rotationy_y*t240 - Gam_rotationz_y*t241
+                    rhs_z += -Gam_rotationx_z*t238 - Gam_rotationy_z*t240 - Gam_rotationz_z*t241
                 for k in range(MODES, n):
                     Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
                     dqm = dqe[k]
@@ -1296,43 +1283,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t248 = X_y + u_y
-                    t249 = X_z + u_z
-                    t250 = X_x + u_x
-                    dy[i3] = -dth0_y*t249 + dth0_z*t248 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t249 - dth0_z*t250 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t248 + dth0_y*t250 - dx0_z + dx_z
+                    t242 = X_y + u_y
+                    t243 = X_z + u_z
+                    t244 = X_x + u_x
+                    dy[i3] = -dth0_y*t243 + dth0_z*t242 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t243 - dth0_z*t244 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t242 + dth0_y*t244 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t251 = dth0_y*psi_z
-                    t252 = dth_y*psi_z
-                    t253 = dth0_x*psi_y
-                    t254 = dth0_y*psi_x - t253
-                    t255 = e0*psi_y
-                    t256 = dth_x*psi_z
-                    t257 = dth_z*psi_x
+                    t245 = dth0_y*psi_z
+                    t246 = dth_y*psi_z
+                    t247 = dth0_x*psi_y
+                    t248 = dth0_y*psi_x - t247
+                    t249 = e0*psi_y
+                    t250 = dth_x*psi_z
+                    t251 = dth_z*psi_x
+                    t252 = t250 - t251
+                    t253 = e0*psi_z
+                    t254 = dth_x*psi_y
+                    t255 = dth_y*psi_x - t254
+                    t256 = dth0_x*psi_z
+                    t257 = dth0_z*psi_x
                     t258 = t256 - t257
-                    t259 = e0*psi_z
-                    t260 = dth_x*psi_y
-                    t261 = dth_y*psi_x - t260
-                    t262 = dth0_x*psi_z
-                    t263 = dth0_z*psi_x
-                    t264 = t262 - t263
-                    t265 = e0*psi_x
-                    t266 = dth_z*psi_y - t252
-                    t267 = dth0_z*psi_y - t251
+                    t259 = e0*psi_x
+                    t260 = dth_z*psi_y - t246
+                    t261 = dth0_z*psi_y - t245
                     dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t261 + e0*psi_z*t264 - 0.5*t251 - 0.5*t252 - t254*t255 -
-                        t258*t259)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t254*t265 + (0.5)*t256 - 0.5*t257 + t259*t266
-                        - t259*t267 - t261*t265 + (0.5)*t262 - 0.5*t263)
+                        e0*psi_y*t255 + e0*psi_z*t258 - 0.5*t245 - 0.5*t246 - t248*t249 -
+                        t252*t253)
+                    dy[j3 + 1] = (-dth0_y + dth_y + t248*t259 + (0.5)*t250 - 0.5*t251 + t253*t260
+                        - t253*t261 - t255*t259 + (0.5)*t256 - 0.5*t257)
                     dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t258 + e0*psi_y*t267 - 0.5*t253 - t255*t266 - 0.5*t260 -
-                        t264*t265)
+                        e0*psi_x*t252 + e0*psi_y*t261 - 0.5*t247 - t249*t260 - 0.5*t254 -
+                        t258*t259)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
@@ -1384,12 +1371,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t268 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
-                    t269 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
-                    t270 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
-                    rhs_x += -Gam_positionx_x*t268 - Gam_positiony_x*t269 - Gam_positionz_x*t270
-                    rhs_y += -Gam_positionx_y*t268 - Gam_positiony_y*t269 - Gam_positionz_y*t270
-                    rhs_z += -Gam_positionx_z*t268 - Gam_positiony_z*t269 - Gam_positionz_z*t270
+                    t262 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
+                    t263 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
+                    t264 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
+                    rhs_x += -Gam_positionx_x*t262 - Gam_positiony_x*t263 - Gam_positionz_x*t264
+                    rhs_y += -Gam_positionx_y*t262 - Gam_positiony_y*t263 - Gam_positionz_y*t264
+                    rhs_z += -Gam_positionx_z*t262 - Gam_positiony_z*t263 - Gam_positionz_z*t264
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
@@ -1404,55 +1391,55 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t271 = Om0_y*dpsi_z
-                    t272 = Om_y*dpsi_z
-                    t273 = dOm_y*psi_z
-                    t274 = -Om_x*psi_y + Om_y*psi_x
-                    t275 = dpsi_y*e0
-                    t276 = Om0_x*psi_z - Om0_z*psi_x
-                    t277 = dpsi_z*e0
-                    t278 = Om0_x*dpsi_z
-                    t279 = Om0_z*dpsi_x
-                    t280 = t278 - t279
-                    t281 = e0*psi_z
-                    t282 = -Om0_x*psi_y + Om0_y*psi_x
-                    t283 = Om_x*psi_z - Om_z*psi_x
-                    t284 = Om0_x*dpsi_y
-                    t285 = Om0_y*dpsi_x - t284
-                    t286 = e0*psi_y
-                    t287 = Om_x*dpsi_y
-                    t288 = dOm_x*psi_y
-                    t289 = Om_y*dpsi_x + dOm_y*psi_x - t287 - t288
-                    t290 = Om_x*dpsi_z
-                    t291 = dOm_x*psi_z
-                    t292 = Om_z*dpsi_x
-                    t293 = dOm_z*psi_x
-                    t294 = t290 + t291 - t292 - t293
-                    t295 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t296 = psi_y*t295
-                    t297 = psi_z*t295
-                    t298 = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y + dOm_x + (0.5)*dOm_z*psi_y -
-                        0.5*t271 - 0.5*t272 - 0.5*t273 + t274*t275 + t274*t296 - t275*t282 +
-                        t276*t277 + t276*t297 - t277*t283 + t280*t281 - t281*t294 - t282*t296 -
-                        t283*t297 - t285*t286 + t286*t289)
-                    t299 = dpsi_x*e0
-                    t300 = -Om_y*psi_z + Om_z*psi_y
-                    t301 = e0*psi_x
-                    t302 = -Om0_y*psi_z + Om0_z*psi_y
-                    t303 = Om0_z*dpsi_y - t271
-                    t304 = Om_z*dpsi_y + dOm_z*psi_y - t272 - t273
-                    t305 = psi_x*t295
-                    t306 = (dOm_y - t274*t299 - t274*t305 + t277*t300 - t277*t302 + (0.5)*t278 -
-                        0.5*t279 - t281*t303 + t281*t304 + t282*t299 + t282*t305 + t285*t301 -
-                        t289*t301 + (0.5)*t290 + (0.5)*t291 - 0.5*t292 - 0.5*t293 + t297*t300 -
-                        t297*t302)
-                    t307 = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm_y*psi_x + dOm_z -
-                        t275*t300 + t275*t302 - t276*t299 - t276*t305 - t280*t301 + t283*t299 +
-                        t283*t305 - 0.5*t284 + t286*t303 - t286*t304 - 0.5*t287 - 0.5*t288 +
-                        t294*t301 - t296*t300 + t296*t302)
-                    rhs_x += -Gam_rotationx_x*t298 - Gam_rotationy_x*t306 - Gam_rotationz_x*t307
-                    rhs_y += -Gam_rotationx_y*t298 - Gam_rotationy_y*t306 - Gam_rotationz_y*t307
-                    rhs_z += -Gam_rotationx_z*t298 - Gam_rotationy_z*t306 - Gam_rotationz_z*t307
+                    t265 = Om0_y*dpsi_z
+                    t266 = Om_y*dpsi_z
+                    t267 = dOm_y*psi_z
+                    t268 = -Om_x*psi_y + Om_y*psi_x
+                    t269 = dpsi_y*e0
+                    t270 = Om0_x*psi_z - Om0_z*psi_x
+                    t271 = dpsi_z*e0
+                    t272 = Om0_x*dpsi_z
+                    t273 = Om0_z*dpsi_x
+                    t274 = t272 - t273
+                    t275 = e0*psi_z
+                    t276 = -Om0_x*psi_y + Om0_y*psi_x
+                    t277 = Om_x*psi_z - Om_z*psi_x
+                    t278 = Om0_x*dpsi_y
+                    t279 = Om0_y*dpsi_x - t278
+                    t280 = e0*psi_y
+                    t281 = Om_x*dpsi_y
+                    t282 = dOm_x*psi_y
+                    t283 = Om_y*dpsi_x + dOm_y*psi_x - t281 - t282
+                    t284 = Om_x*dpsi_z
+                    t285 = dOm_x*psi_z
+                    t286 = Om_z*dpsi_x
+                    t287 = dOm_z*psi_x
+                    t288 = t284 + t285 - t286 - t287
+                    t289 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t290 = psi_y*t289
+                    t291 = psi_z*t289
+                    t292 = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y + dOm_x + (0.5)*dOm_z*psi_y -
+                        0.5*t265 - 0.5*t266 - 0.5*t267 + t268*t269 + t268*t290 - t269*t276 +
+                        t270*t271 + t270*t291 - t271*t277 + t274*t275 - t275*t288 - t276*t290 -
+                        t277*t291 - t279*t280 + t280*t283)
+                    t293 = dpsi_x*e0
+                    t294 = -Om_y*psi_z + Om_z*psi_y
+                    t295 = e0*psi_x
+                    t296 = -Om0_y*psi_z + Om0_z*psi_y
+                    t297 = Om0_z*dpsi_y - t265
+                    t298 = Om_z*dpsi_y + dOm_z*psi_y - t266 - t267
+                    t299 = psi_x*t289
+                    t300 = (dOm_y - t268*t293 - t268*t299 + t271*t294 - t271*t296 + (0.5)*t272 -
+                        0.5*t273 - t275*t297 + t275*t298 + t276*t293 + t276*t299 + t279*t295 -
+                        t283*t295 + (0.5)*t284 + (0.5)*t285 - 0.5*t286 - 0.5*t287 + t291*t294 -
+                        t291*t296)
+                    t301 = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm_y*psi_x + dOm_z -
+                        t269*t294 + t269*t296 - t270*t293 - t270*t299 - t274*t295 + t277*t293 +
+                        t277*t299 - 0.5*t278 + t280*t297 - t280*t298 - 0.5*t281 - 0.5*t282 +
+                        t288*t295 - t290*t294 + t290*t296)
+                    rhs_x += -Gam_rotationx_x*t292 - Gam_rotationy_x*t300 - Gam_rotationz_x*t301
+                    rhs_y += -Gam_rotationx_y*t292 - Gam_rotationy_y*t300 - Gam_rotationz_y*t301
+                    rhs_z += -Gam_rotationx_z*t292 - Gam_rotationy_z*t300 - Gam_rotationz_z*t301
                 for k in range(MODES, n):
                     Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
                     dvm = dve[k]
@@ -1491,13 +1478,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t308 = X_y + u_y
-                    t309 = X_z + u_z
-                    t310 = X_x + u_x
-                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t309 + dOm0_z*t308 - dv0_x + dvs_x
-                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t309 - dOm0_z*t310 - dv0_y +
+                    t302 = X_y + u_y
+                    t303 = X_z + u_z
+                    t304 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t303 + dOm0_z*t302 - dv0_x + dvs_x
+                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t303 - dOm0_z*t304 - dv0_y +
                         dvs_y)
-                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t308 + dOm0_y*t310 - dv0_z +
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t302 + dOm0_y*t304 - dv0_z +
                         dvs_z)
                 # differential: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -1508,59 +1495,59 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t311 = Om0_y*dpsi_z
-                    t312 = Om_y*dpsi_z
-                    t313 = dOm0_y*psi_z
-                    t314 = dOm_y*psi_z
-                    t315 = -Om0_x*psi_y + Om0_y*psi_x
-                    t316 = dpsi_y*e0
-                    t317 = Om_x*psi_z - Om_z*psi_x
-                    t318 = dpsi_z*e0
-                    t319 = -Om_x*psi_y + Om_y*psi_x
-                    t320 = Om0_x*psi_z - Om0_z*psi_x
-                    t321 = Om0_x*dpsi_y
-                    t322 = dOm0_x*psi_y
-                    t323 = Om0_y*dpsi_x + dOm0_y*psi_x - t321 - t322
-                    t324 = e0*psi_y
-                    t325 = Om_x*dpsi_z
-                    t326 = dOm_x*psi_z
-                    t327 = Om_z*dpsi_x
-                    t328 = dOm_z*psi_x
-                    t329 = t325 + t326 - t327 - t328
-                    t330 = e0*psi_z
-                    t331 = Om_x*dpsi_y
-                    t332 = dOm_x*psi_y
-                    t333 = Om_y*dpsi_x + dOm_y*psi_x - t331 - t332
-                    t334 = Om0_x*dpsi_z
-                    t335 = dOm0_x*psi_z
-                    t336 = Om0_z*dpsi_x
-                    t337 = dOm0_z*psi_x
-                    t338 = t334 + t335 - t336 - t337
-                    t339 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t340 = e1*t339
-                    t341 = psi_y*t340
-                    t342 = psi_z*t340
-                    t343 = dpsi_x*e0
-                    t344 = -Om_y*psi_z + Om_z*psi_y
-                    t345 = -Om0_y*psi_z + Om0_z*psi_y
-                    t346 = e0*psi_x
-                    t347 = Om_z*dpsi_y + dOm_z*psi_y - t312 - t314
-                    t348 = Om0_z*dpsi_y + dOm0_z*psi_y - t311 - t313
-                    t349 = psi_x*t340
+                    t305 = Om0_y*dpsi_z
+                    t306 = Om_y*dpsi_z
+                    t307 = dOm0_y*psi_z
+                    t308 = dOm_y*psi_z
+                    t309 = -Om0_x*psi_y + Om0_y*psi_x
+                    t310 = dpsi_y*e0
+                    t311 = Om_x*psi_z - Om_z*psi_x
+                    t312 = dpsi_z*e0
+                    t313 = -Om_x*psi_y + Om_y*psi_x
+                    t314 = Om0_x*psi_z - Om0_z*psi_x
+                    t315 = Om0_x*dpsi_y
+                    t316 = dOm0_x*psi_y
+                    t317 = Om0_y*dpsi_x + dOm0_y*psi_x - t315 - t316
+                    t318 = e0*psi_y
+                    t319 = Om_x*dpsi_z
+                    t320 = dOm_x*psi_z
+                    t321 = Om_z*dpsi_x
+                    t322 = dOm_z*psi_x
+                    t323 = t319 + t320 - t321 - t322
+                    t324 = e0*psi_z
+                    t325 = Om_x*dpsi_y
+                    t326 = dOm_x*psi_y
+                    t327 = Om_y*dpsi_x + dOm_y*psi_x - t325 - t326
+                    t328 = Om0_x*dpsi_z
+                    t329 = dOm0_x*psi_z
+                    t330 = Om0_z*dpsi_x
+                    t331 = dOm0_z*psi_x
+                    t332 = t328 + t329 - t330 - t331
+                    t333 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t334 = e1*t333
+                    t335 = psi_y*t334
+                    t336 = psi_z*t334
+                    t337 = dpsi_x*e0
+                    t338 = -Om_y*psi_z + Om_z*psi_y
+                    t339 = -Om0_y*psi_z + Om0_z*psi_y
+                    t340 = e0*psi_x
+                    t341 = Om_z*dpsi_y + dOm_z*psi_y - t306 - t308
+                    t342 = Om0_z*dpsi_y + dOm0_z*psi_y - t305 - t307
+                    t343 = psi_x*t334
                     deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x +
-                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t319 +
-                        dpsi_z*e0*t320 + e0*psi_y*t333 + e0*psi_z*t338 + e1*psi_y*t319*t339 +
-                        e1*psi_z*t320*t339 - 0.5*t311 - 0.5*t312 - 0.5*t313 - 0.5*t314 - t315*t316
-                        - t315*t341 - t317*t318 - t317*t342 - t323*t324 - t329*t330)
-                    deta[j3 + 1] = (-dOm0_y + dOm_y + t315*t343 + t315*t349 + t318*t344 -
-                        t318*t345 - t319*t343 - t319*t349 + t323*t346 + (0.5)*t325 + (0.5)*t326 -
-                        0.5*t327 - 0.5*t328 + t330*t347 - t330*t348 - t333*t346 + (0.5)*t334 +
-                        (0.5)*t335 - 0.5*t336 - 0.5*t337 + t342*t344 - t342*t345)
+                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t313 +
+                        dpsi_z*e0*t314 + e0*psi_y*t327 + e0*psi_z*t332 + e1*psi_y*t313*t333 +
+                        e1*psi_z*t314*t333 - 0.5*t305 - 0.5*t306 - 0.5*t307 - 0.5*t308 - t309*t310
+                        - t309*t335 - t311*t312 - t311*t336 - t317*t318 - t323*t324)
+                    deta[j3 + 1] = (-dOm0_y + dOm_y + t309*t337 + t309*t343 + t312*t338 -
+                        t312*t339 - t313*t337 - t313*t343 + t317*t340 + (0.5)*t319 + (0.5)*t320 -
+                        0.5*t321 - 0.5*t322 + t324*t341 - t324*t342 - t327*t340 + (0.5)*t328 +
+                        (0.5)*t329 - 0.5*t330 - 0.5*t331 + t336*t338 - t336*t339)
                     deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t317 + dpsi_y*e0*t345 +
-                        e0*psi_x*t329 + e0*psi_y*t348 + e1*psi_x*t317*t339 + e1*psi_y*t339*t345 -
-                        t316*t344 - t320*t343 - t320*t349 - 0.5*t321 - 0.5*t322 - t324*t347 -
-                        0.5*t331 - 0.5*t332 - t338*t346 - t341*t344)
+                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t311 + dpsi_y*e0*t339 +
+                        e0*psi_x*t323 + e0*psi_y*t342 + e1*psi_x*t311*t333 + e1*psi_y*t333*t339 -
+                        t310*t338 - t314*t337 - t314*t343 - 0.5*t315 - 0.5*t316 - t318*t341 -
+                        0.5*t325 - 0.5*t326 - t332*t340 - t335*t338)
                 # differential: rates of the internal modes
                 for k in range(MODES, n):
                     dvm = dve[k]
@@ -1596,128 +1583,128 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     e0 = e0s[j]
                     e1 = e1s[j]
                     e2 = e2s[j]
-                    t350 = A_y*dpsi_z
-                    t351 = Om0_y*dep_z
-                    t352 = Om_y*dep_z
-                    t353 = dA_y*psi_z
-                    t354 = dOm0_y*ep_z
-                    t355 = dOm_y*ep_z
-                    t356 = -Om_x*psi_y + Om_y*psi_x
-                    t357 = dep_y*e0
-                    t358 = Om0_x*psi_z - Om0_z*psi_x
-                    t359 = dep_z*e0
-                    t360 = Om0_x*ep_z - Om0_z*ep_x
-                    t361 = dpsi_z*e0
-                    t362 = -Om0_x*psi_y + Om0_y*psi_x
-                    t363 = Om_x*psi_z - Om_z*psi_x
-                    t364 = -Om0_x*ep_y + Om0_y*ep_x
-                    t365 = dpsi_y*e0
-                    t366 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                    t367 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t368 = e0*ep_y
-                    t369 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                    t370 = e0*ep_z
-                    t371 = Om0_x*dep_z
-                    t372 = dOm0_x*ep_z
-                    t373 = Om0_z*dep_x
-                    t374 = dOm0_z*ep_x
-                    t375 = t371 + t372 - t373 - t374
-                    t376 = e0*psi_z
-                    t377 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                    t378 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                    t379 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                    t380 = Om0_x*dep_y
-                    t381 = dOm0_x*ep_y
-                    t382 = Om0_y*dep_x + dOm0_y*ep_x - t380 - t381
-                    t383 = e0*psi_y
-                    t384 = 2*psi_x
-                    t385 = 2*psi_y
-                    t386 = 2*psi_z
-                    t387 = ep_x*t384 + ep_y*t385 + ep_z*t386
-                    t388 = e1*t387
-                    t389 = dpsi_y*t388
-                    t390 = dpsi_z*t388
-                    t391 = dpsi_x*t384 + dpsi_y*t385 + dpsi_z*t386
-                    t392 = e1*t391
-                    t393 = ep_y*t392
-                    t394 = ep_z*t392
-                    t395 = psi_z*t392
-                    t396 = psi_y*t392
-                    t397 = psi_y*t388
-                    t398 = psi_z*t388
-                    t399 = A_x*dpsi_y
-                    t400 = Om_x*dep_y
-                    t401 = dA_x*psi_y
-                    t402 = dOm_x*ep_y
-                    t403 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t399 - t400 - t401
-                        - t402)
-                    t404 = A_x*dpsi_z
-                    t405 = Om_x*dep_z
-                    t406 = dA_x*psi_z
-                    t407 = dOm_x*ep_z
-                    t408 = A_z*dpsi_x
-                    t409 = Om_z*dep_x
-                    t410 = dA_z*psi_x
-                    t411 = dOm_z*ep_x
-                    t412 = t404 + t405 + t406 + t407 - t408 - t409 - t410 - t411
-                    t413 = (e1*(dep_x*t384 + dep_y*t385 + dep_z*t386 + 2*dpsi_x*ep_x +
+                    t344 = A_y*dpsi_z
+                    t345 = Om0_y*dep_z
+                    t346 = Om_y*dep_z
+                    t347 = dA_y*psi_z
+                    t348 = dOm0_y*ep_z
+                    t349 = dOm_y*ep_z
+                    t350 = -Om_x*psi_y + Om_y*psi_x
+                    t351 = dep_y*e0
+                    t352 = Om0_x*psi_z - Om0_z*psi_x
+                    t353 = dep_z*e0
+                    t354 = Om0_x*ep_z - Om0_z*ep_x
+                    t355 = dpsi_z*e0
+                    t356 = -Om0_x*psi_y + Om0_y*psi_x
+                    t357 = Om_x*psi_z - Om_z*psi_x
+                    t358 = -Om0_x*ep_y + Om0_y*ep_x
+                    t359 = dpsi_y*e0
+                    t360 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
+                    t361 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
+                    t362 = e0*ep_y
+                    t363 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
+                    t364 = e0*ep_z
+                    t365 = Om0_x*dep_z
+                    t366 = dOm0_x*ep_z
+                    t367 = Om0_z*dep_x
+                    t368 = dOm0_z*ep_x
+                    t369 = t365 + t366 - t367 - t368
+                    t370 = e0*psi_z
+                    t371 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
+                    t372 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
+                    t373 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
+                    t374 = Om0_x*dep_y
+                    t375 = dOm0_x*ep_y
+                    t376 = Om0_y*dep_x + dOm0_y*ep_x - t374 - t375
+                    t377 = e0*psi_y
+                    t378 = 2*psi_x
+                    t379 = 2*psi_y
+                    t380 = 2*psi_z
+                    t381 = ep_x*t378 + ep_y*t379 + ep_z*t380
+                    t382 = e1*t381
+                    t383 = dpsi_y*t382
+                    t384 = dpsi_z*t382
+                    t385 = dpsi_x*t378 + dpsi_y*t379 + dpsi_z*t380
+                    t386 = e1*t385
+                    t387 = ep_y*t386
+                    t388 = ep_z*t386
+                    t389 = psi_z*t386
+                    t390 = psi_y*t386
+                    t391 = psi_y*t382
+                    t392 = psi_z*t382
+                    t393 = A_x*dpsi_y
+                    t394 = Om_x*dep_y
+                    t395 = dA_x*psi_y
+                    t396 = dOm_x*ep_y
+                    t397 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t393 - t394 - t395
+                        - t396)
+                    t398 = A_x*dpsi_z
+                    t399 = Om_x*dep_z
+                    t400 = dA_x*psi_z
+                    t401 = dOm_x*ep_z
+                    t402 = A_z*dpsi_x
+                    t403 = Om_z*dep_x
+                    t404 = dA_z*psi_x
+                    t405 = dOm_z*ep_x
+                    t406 = t398 + t399 + t400 + t401 - t402 - t403 - t404 - t405
+                    t407 = (e1*(dep_x*t378 + dep_y*t379 + dep_z*t380 + 2*dpsi_x*ep_x +
                         2*dpsi_y*ep_y + 2*dpsi_z*ep_z))
-                    t414 = psi_y*t356
-                    t415 = psi_z*t413
-                    t416 = t362*t413
-                    t417 = e2*t387*t391
-                    t418 = psi_z*t417
-                    t419 = t362*t417
-                    t420 = dep_x*e0
-                    t421 = -Om_y*psi_z + Om_z*psi_y
-                    t422 = dpsi_x*e0
-                    t423 = -Om0_y*psi_z + Om0_z*psi_y
-                    t424 = -Om0_y*ep_z + Om0_z*ep_y
-                    t425 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                    t426 = e0*ep_x
-                    t427 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t428 = e0*psi_x
-                    t429 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                    t430 = Om0_z*dep_y + dOm0_z*ep_y - t351 - t354
-                    t431 = dpsi_x*t388
-                    t432 = ep_x*t392
-                    t433 = psi_x*t392
-                    t434 = psi_x*t388
-                    t435 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t350 - t352 - t353
-                        - t355)
-                    t436 = psi_x*t413
-                    t437 = psi_x*t417
-                    t438 = psi_y*t413
-                    t439 = psi_y*t417
+                    t408 = psi_y*t350
+                    t409 = psi_z*t407
+                    t410 = t356*t407
+                    t411 = e2*t381*t385
+                    t412 = psi_z*t411
+                    t413 = t356*t411
+                    t414 = dep_x*e0
+                    t415 = -Om_y*psi_z + Om_z*psi_y
+                    t416 = dpsi_x*e0
+                    t417 = -Om0_y*psi_z + Om0_z*psi_y
+                    t418 = -Om0_y*ep_z + Om0_z*ep_y
+                    t419 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
+                    t420 = e0*ep_x
+                    t421 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                    t422 = e0*psi_x
+                    t423 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
+                    t424 = Om0_z*dep_y + dOm0_z*ep_y - t345 - t348
+                    t425 = dpsi_x*t382
+                    t426 = ep_x*t386
+                    t427 = psi_x*t386
+                    t428 = psi_x*t382
+                    t429 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t344 - t346 - t347
+                        - t349)
+                    t430 = psi_x*t407
+                    t431 = psi_x*t411
+                    t432 = psi_y*t407
+                    t433 = psi_y*t411
                     detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om_z*dep_y + dA_x +
-                        (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y + (0.5)*dOm_z*ep_y - psi_y*t416 -
-                        psi_y*t419 - 0.5*t350 - 0.5*t351 - 0.5*t352 - 0.5*t353 - 0.5*t354 -
-                        0.5*t355 + t356*t357 + t356*t389 + t356*t393 - t357*t362 + t358*t359 +
-                        t358*t390 + t358*t394 + t358*t415 + t358*t418 - t359*t363 + t360*t361 +
-                        t360*t395 - t361*t377 - t362*t389 - t362*t393 - t363*t390 - t363*t394 -
-                        t363*t415 - t363*t418 - t364*t365 - t364*t396 + t365*t366 + t366*t396 +
-                        t367*t368 + t367*t397 - t368*t378 + t369*t370 + t369*t398 - t370*t379 +
-                        t375*t376 - t376*t412 - t377*t395 - t378*t397 - t379*t398 - t382*t383 +
-                        t383*t403 + t413*t414 + t414*t417)
-                    detad[j3 + 1] = (dA_y + psi_x*t416 + psi_x*t419 - t356*t420 - t356*t431 -
-                        t356*t432 - t356*t436 - t356*t437 + t359*t421 - t359*t423 - t361*t424 +
-                        t361*t425 + t362*t420 + t362*t431 + t362*t432 + t364*t422 + t364*t433 -
-                        t366*t422 - t366*t433 - t367*t426 - t367*t434 + t370*t427 - t370*t429 +
-                        (0.5)*t371 + (0.5)*t372 - 0.5*t373 - 0.5*t374 - t376*t430 + t376*t435 +
-                        t378*t426 + t378*t434 + t382*t428 + t390*t421 - t390*t423 + t394*t421 -
-                        t394*t423 - t395*t424 + t395*t425 + t398*t427 - t398*t429 - t403*t428 +
-                        (0.5)*t404 + (0.5)*t405 + (0.5)*t406 + (0.5)*t407 - 0.5*t408 - 0.5*t409 -
-                        0.5*t410 - 0.5*t411 + t415*t421 - t415*t423 + t418*t421 - t418*t423)
+                        (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y + (0.5)*dOm_z*ep_y - psi_y*t410 -
+                        psi_y*t413 - 0.5*t344 - 0.5*t345 - 0.5*t346 - 0.5*t347 - 0.5*t348 -
+                        0.5*t349 + t350*t351 + t350*t383 + t350*t387 - t351*t356 + t352*t353 +
+                        t352*t384 + t352*t388 + t352*t409 + t352*t412 - t353*t357 + t354*t355 +
+                        t354*t389 - t355*t371 - t356*t383 - t356*t387 - t357*t384 - t357*t388 -
+                        t357*t409 - t357*t412 - t358*t359 - t358*t390 + t359*t360 + t360*t390 +
+                        t361*t362 + t361*t391 - t362*t372 + t363*t364 + t363*t392 - t364*t373 +
+                        t369*t370 - t370*t406 - t371*t389 - t372*t391 - t373*t392 - t376*t377 +
+                        t377*t397 + t407*t408 + t408*t411)
+                    detad[j3 + 1] = (dA_y + psi_x*t410 + psi_x*t413 - t350*t414 - t350*t425 -
+                        t350*t426 - t350*t430 - t350*t431 + t353*t415 - t353*t417 - t355*t418 +
+                        t355*t419 + t356*t414 + t356*t425 + t356*t426 + t358*t416 + t358*t427 -
+                        t360*t416 - t360*t427 - t361*t420 - t361*t428 + t364*t421 - t364*t423 +
+                        (0.5)*t365 + (0.5)*t366 - 0.5*t367 - 0.5*t368 - t370*t424 + t370*t429 +
+                        t372*t420 + t372*t428 + t376*t422 + t384*t415 - t384*t417 + t388*t415 -
+                        t388*t417 - t389*t418 + t389*t419 + t392*t421 - t392*t423 - t397*t422 +
+                        (0.5)*t398 + (0.5)*t399 + (0.5)*t400 + (0.5)*t401 - 0.5*t402 - 0.5*t403 -
+                        0.5*t404 - 0.5*t405 + t409*t415 - t409*t417 + t412*t415 - t412*t417)
                     detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om_y*dep_x +
-                        (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x + (0.5)*dOm_y*ep_x - t357*t421
-                        + t357*t423 - t358*t420 - t358*t431 - t358*t432 - t358*t436 - t358*t437 -
-                        t360*t422 - t360*t433 + t363*t420 + t363*t431 + t363*t432 + t363*t436 +
-                        t363*t437 + t365*t424 - t365*t425 - t368*t427 + t368*t429 - t369*t426 -
-                        t369*t434 - t375*t428 + t377*t422 + t377*t433 + t379*t426 + t379*t434 -
-                        0.5*t380 - 0.5*t381 + t383*t430 - t383*t435 - t389*t421 + t389*t423 -
-                        t393*t421 + t393*t423 + t396*t424 - t396*t425 - t397*t427 + t397*t429 -
-                        0.5*t399 - 0.5*t400 - 0.5*t401 - 0.5*t402 + t412*t428 - t421*t438 -
-                        t421*t439 + t423*t438 + t423*t439)
+                        (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x + (0.5)*dOm_y*ep_x - t351*t415
+                        + t351*t417 - t352*t414 - t352*t425 - t352*t426 - t352*t430 - t352*t431 -
+                        t354*t416 - t354*t427 + t357*t414 + t357*t425 + t357*t426 + t357*t430 +
+                        t357*t431 + t359*t418 - t359*t419 - t362*t421 + t362*t423 - t363*t420 -
+                        t363*t428 - t369*t422 + t371*t416 + t371*t427 + t373*t420 + t373*t428 -
+                        0.5*t374 - 0.5*t375 + t377*t424 - t377*t429 - t383*t415 + t383*t417 -
+                        t387*t415 + t387*t417 + t390*t418 - t390*t419 - t391*t421 + t391*t423 -
+                        0.5*t393 - 0.5*t394 - 0.5*t395 - 0.5*t396 + t406*t422 - t415*t432 -
+                        t415*t433 + t417*t432 + t417*t433)
                 # differential: rate: rates of the internal modes
                 for k in range(MODES, n):
                     dam = dae[k]
@@ -1762,49 +1749,49 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t440 = (0.5)*dpsi_z
-                    t441 = dpsi_x*e0
-                    t442 = e0*psi_x
-                    t443 = 2*dpsi_x*psi_x
-                    t444 = 2*dpsi_y*psi_y
-                    t445 = 2*dpsi_z*psi_z
-                    t446 = e1*(t443 + t444 + t445)
-                    t447 = psi_x*t446
-                    t448 = dpsi_y*t442 + psi_y*t441 + psi_y*t447
-                    t449 = t440 - t448
-                    t450 = (0.5)*dpsi_y
-                    t451 = dpsi_z*t442 + psi_z*t441 + psi_z*t447
-                    t452 = -t450 - t451
-                    t453 = e0*t445 + psi_z*psi_z*t446
-                    t454 = e0*t444 + psi_y*psi_y*t446
-                    t455 = t453 + t454
-                    t456 = -t440 - t448
-                    t457 = (0.5)*dpsi_x
-                    t458 = dpsi_y*e0*psi_z + dpsi_z*e0*psi_y + psi_y*psi_z*t446
-                    t459 = t457 - t458
-                    t460 = e0*t443 + psi_x*psi_x*t446
-                    t461 = t453 + t460
-                    t462 = t450 - t451
-                    t463 = -t457 - t458
-                    t464 = t454 + t460
+                    t434 = (0.5)*dpsi_z
+                    t435 = dpsi_x*e0
+                    t436 = e0*psi_x
+                    t437 = 2*dpsi_x*psi_x
+                    t438 = 2*dpsi_y*psi_y
+                    t439 = 2*dpsi_z*psi_z
+                    t440 = e1*(t437 + t438 + t439)
+                    t441 = psi_x*t440
+                    t442 = dpsi_y*t436 + psi_y*t435 + psi_y*t441
+                    t443 = t434 - t442
+                    t444 = (0.5)*dpsi_y
+                    t445 = dpsi_z*t436 + psi_z*t435 + psi_z*t441
+                    t446 = -t444 - t445
+                    t447 = e0*t439 + psi_z*psi_z*t440
+                    t448 = e0*t438 + psi_y*psi_y*t440
+                    t449 = t447 + t448
+                    t450 = -t434 - t442
+                    t451 = (0.5)*dpsi_x
+                    t452 = dpsi_y*e0*psi_z + dpsi_z*e0*psi_y + psi_y*psi_z*t440
+                    t453 = t451 - t452
+                    t454 = e0*t437 + psi_x*psi_x*t440
+                    t455 = t447 + t454
+                    t456 = t444 - t445
+                    t457 = -t451 - t452
+                    t458 = t448 + t454
                     rhs_x += (-Gam_rotationx_x*depd_x - Gam_rotationy_x*depd_y -
-                        Gam_rotationz_x*depd_z - Om0d_x*(Gam_rotationx_x*t455 +
-                        Gam_rotationy_x*t449 + Gam_rotationz_x*t452) -
-                        Om0d_y*(Gam_rotationx_x*t456 + Gam_rotationy_x*t461 +
-                        Gam_rotationz_x*t459) - Om0d_z*(Gam_rotationx_x*t462 +
-                        Gam_rotationy_x*t463 + Gam_rotationz_x*t464))
+                        Gam_rotationz_x*depd_z - Om0d_x*(Gam_rotationx_x*t449 +
+                        Gam_rotationy_x*t443 + Gam_rotationz_x*t446) -
+                        Om0d_y*(Gam_rotationx_x*t450 + Gam_rotationy_x*t455 +
+                        Gam_rotationz_x*t453) - Om0d_z*(Gam_rotationx_x*t456 +
+                        Gam_rotationy_x*t457 + Gam_rotationz_x*t458))
                     rhs_y += (-Gam_rotationx_y*depd_x - Gam_rotationy_y*depd_y -
-                        Gam_rotationz_y*depd_z - Om0d_x*(Gam_rotationx_y*t455 +
-                        Gam_rotationy_y*t449 + Gam_rotationz_y*t452) -
-                        Om0d_y*(Gam_rotationx_y*t456 + Gam_rotationy_y*t461 +
-                        Gam_rotationz_y*t459) - Om0d_z*(Gam_rotationx_y*t462 +
-                        Gam_rotationy_y*t463 + Gam_rotationz_y*t464))
+                        Gam_rotationz_y*depd_z - Om0d_x*(Gam_rotationx_y*t449 +
+                        Gam_rotationy_y*t443 + Gam_rotationz_y*t446) -
+                        Om0d_y*(Gam_rotationx_y*t450 + Gam_rotationy_y*t455 +
+                        Gam_rotationz_y*t453) - Om0d_z*(Gam_rotationx_y*t456 +
+                        Gam_rotationy_y*t457 + Gam_rotationz_y*t458))
                     rhs_z += (-Gam_rotationx_z*depd_x - Gam_rotationy_z*depd_y -
-                        Gam_rotationz_z*depd_z - Om0d_x*(Gam_rotationx_z*t455 +
-                        Gam_rotationy_z*t449 + Gam_rotationz_z*t452) -
-                        Om0d_y*(Gam_rotationx_z*t456 + Gam_rotationy_z*t461 +
-                        Gam_rotationz_z*t459) - Om0d_z*(Gam_rotationx_z*t462 +
-                        Gam_rotationy_z*t463 + Gam_rotationz_z*t464))
+                        Gam_rotationz_z*depd_z - Om0d_x*(Gam_rotationx_z*t449 +
+                        Gam_rotationy_z*t443 + Gam_rotationz_z*t446) -
+                        Om0d_y*(Gam_rotationx_z*t450 + Gam_rotationy_z*t455 +
+                        Gam_rotationz_z*t453) - Om0d_z*(Gam_rotationx_z*t456 +
+                        Gam_rotationy_z*t457 + Gam_rotationz_z*t458))
                 for k in range(MODES, n):
                     Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
                     demd = detad[k]
@@ -1822,44 +1809,44 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t465 = (0.5)*psi_z
-                    t466 = e0*psi_x
-                    t467 = psi_y*t466
-                    t468 = (0.5)*psi_y
-                    t469 = psi_z*t466
-                    t470 = psi_y*psi_y
-                    t471 = e0*t470
-                    t472 = psi_z*psi_z
-                    t473 = e0*t472 - 1
-                    t474 = (0.5)*dpsi_z
-                    t475 = dpsi_x*e0
-                    t476 = 2*dpsi_x*psi_x
-                    t477 = 2*dpsi_y*psi_y
-                    t478 = 2*dpsi_z*psi_z
-                    t479 = e1*(t476 + t477 + t478)
-                    t480 = psi_x*t479
-                    t481 = dpsi_y*t466 + psi_y*t475 + psi_y*t480
-                    t482 = (0.5)*dpsi_y
-                    t483 = dpsi_z*t466 + psi_z*t475 + psi_z*t480
-                    t484 = e0*t478 + t472*t479
-                    t485 = e0*t477 + t470*t479
-                    t486 = (0.5)*psi_x
-                    t487 = e0*psi_z
-                    t488 = psi_y*t487
-                    t489 = psi_x*psi_x
-                    t490 = e0*t489
-                    t491 = (0.5)*dpsi_x
-                    t492 = dpsi_y*t487 + dpsi_z*e0*psi_y + psi_y*psi_z*t479
-                    t493 = e0*t476 + t479*t489
-                    detad[j3] = (Om0d_x*(t484 + t485) + Om0d_y*(-t474 - t481) + Om0d_z*(t482 -
-                        t483) + dOm0d_x*(t471 + t473) + dOm0d_y*(-t465 - t467) + dOm0d_z*(t468 -
-                        t469) + depd_x)
-                    detad[j3 + 1] = (Om0d_x*(t474 - t481) + Om0d_y*(t484 + t493) + Om0d_z*(-t491 -
-                        t492) + dOm0d_x*(t465 - t467) + dOm0d_y*(t473 + t490) + dOm0d_z*(-t486 -
-                        t488) + depd_y)
-                    detad[j3 + 2] = (Om0d_x*(-t482 - t483) + Om0d_y*(t491 - t492) + Om0d_z*(t485 +
-                        t493) + dOm0d_x*(-t468 - t469) + dOm0d_y*(t486 - t488) + dOm0d_z*(t471 +
-                        t490 - 1) + depd_z)
+                    t459 = (0.5)*psi_z
+                    t460 = e0*psi_x
+                    t461 = psi_y*t460
+                    t462 = (0.5)*psi_y
+                    t463 = psi_z*t460
+                    t464 = psi_y*psi_y
+                    t465 = e0*t464
+                    t466 = psi_z*psi_z
+                    t467 = e0*t466 - 1
+                    t468 = (0.5)*dpsi_z
+                    t469 = dpsi_x*e0
+                    t470 = 2*dpsi_x*psi_x
+                    t471 = 2*dpsi_y*psi_y
+                    t472 = 2*dpsi_z*psi_z
+                    t473 = e1*(t470 + t471 + t472)
+                    t474 = psi_x*t473
+                    t475 = dpsi_y*t460 + psi_y*t469 + psi_y*t474
+                    t476 = (0.5)*dpsi_y
+                    t477 = dpsi_z*t460 + psi_z*t469 + psi_z*t474
+                    t478 = e0*t472 + t466*t473
+                    t479 = e0*t471 + t464*t473
+                    t480 = (0.5)*psi_x
+                    t481 = e0*psi_z
+                    t482 = psi_y*t481
+                    t483 = psi_x*psi_x
+                    t484 = e0*t483
+                    t485 = (0.5)*dpsi_x
+                    t486 = dpsi_y*t481 + dpsi_z*e0*psi_y + psi_y*psi_z*t473
+                    t487 = e0*t470 + t473*t483
+                    detad[j3] = (Om0d_x*(t478 + t479) + Om0d_y*(-t468 - t475) + Om0d_z*(t476 -
+                        t477) + dOm0d_x*(t465 + t467) + dOm0d_y*(-t459 - t461) + dOm0d_z*(t462 -
+                        t463) + depd_x)
+                    detad[j3 + 1] = (Om0d_x*(t468 - t475) + Om0d_y*(t478 + t487) + Om0d_z*(-t485 -
+                        t486) + dOm0d_x*(t459 - t461) + dOm0d_y*(t467 + t484) + dOm0d_z*(-t480 -
+                        t482) + depd_y)
+                    detad[j3 + 2] = (Om0d_x*(-t476 - t477) + Om0d_y*(t485 - t486) + Om0d_z*(t479 +
+                        t487) + dOm0d_x*(-t462 - t463) + dOm0d_y*(t480 - t482) + dOm0d_z*(t465 +
+                        t484 - 1) + depd_z)
                 # differential: rate: rates of the elastic displacements
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -1867,12 +1854,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     deud_x, deud_y, deud_z = detad[i3], detad[i3 + 1], detad[i3 + 2]
-                    t494 = X_y + u_y
-                    t495 = X_z + u_z
-                    t496 = X_x + u_x
-                    detad[i3] = -Om0d_y*du_z + Om0d_z*du_y - dOm0d_y*t495 + dOm0d_z*t494 + deud_x
-                    detad[i3 + 1] = Om0d_x*du_z - Om0d_z*du_x + dOm0d_x*t495 - dOm0d_z*t496 + deud_y
-                    detad[i3 + 2] = (-Om0d_x*du_y + Om0d_y*du_x - dOm0d_x*t494 + dOm0d_y*t496 +
+                    t488 = X_y + u_y
+                    t489 = X_z + u_z
+                    t490 = X_x + u_x
+                    detad[i3] = -Om0d_y*du_z + Om0d_z*du_y - dOm0d_y*t489 + dOm0d_z*t488 + deud_x
+                    detad[i3 + 1] = Om0d_x*du_z - Om0d_z*du_x + dOm0d_x*t489 - dOm0d_z*t490 + deud_y
+                    detad[i3 + 2] = (-Om0d_x*du_y + Om0d_y*du_x - dOm0d_x*t488 + dOm0d_y*t490 +
                         deud_z)
                 # differential: gravity in frame axes
                 gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
@@ -1891,12 +1878,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7],
                     turn[8])
                 dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-                t497 = da0_x - dgamma_x
-                t498 = da0_y - dgamma_y
-                t499 = da0_z - dgamma_z
-                dzdd[N] = t497*turn_xx + t498*turn_yx + t499*turn_zx
-                dzdd[N + 1] = t497*turn_xy + t498*turn_yy + t499*turn_zy
-                dzdd[N + 2] = t497*turn_xz + t498*turn_yz + t499*turn_zz
+                t491 = da0_x - dgamma_x
+                t492 = da0_y - dgamma_y
+                t493 = da0_z - dgamma_z
+                dzdd[N] = t491*turn_xx + t492*turn_yx + t493*turn_zx
+                dzdd[N + 1] = t491*turn_xy + t492*turn_yy + t493*turn_zy
+                dzdd[N + 2] = t491*turn_xz + t492*turn_yz + t493*turn_zz
                 dzdd[N + 3] = dOm0d_x*turn_xx + dOm0d_y*turn_yx + dOm0d_z*turn_zx
                 dzdd[N + 4] = dOm0d_x*turn_xy + dOm0d_y*turn_yy + dOm0d_z*turn_zy
                 dzdd[N + 5] = dOm0d_x*turn_xz + dOm0d_y*turn_yz + dOm0d_z*turn_zz
@@ -1921,15 +1908,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t500 = X_z + u_z
-                    t501 = X_y + u_y
-                    t502 = X_x + u_x
+                    t494 = X_z + u_z
+                    t495 = X_y + u_y
+                    t496 = X_x + u_x
                     dF_x += -df_x
                     dF_y += -df_y
                     dF_z += -df_z
-                    dW_x += df_y*t500 - df_z*t501 - du_y*f_z + du_z*f_y
-                    dW_y += -df_x*t500 + df_z*t502 + du_x*f_z - du_z*f_x
-                    dW_z += df_x*t501 - df_y*t502 - du_x*f_y + du_y*f_x
+                    dW_x += df_y*t494 - df_z*t495 - du_y*f_z + du_z*f_y
+                    dW_y += -df_x*t494 + df_z*t496 + du_x*f_z - du_z*f_x
+                    dW_z += df_x*t495 - df_y*t496 - du_x*f_y + du_y*f_x
                 # differential: inertia and weight on the frame
                 turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                     turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7],
@@ -1951,25 +1938,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t503 = -m_x*psi_y + m_y*psi_x
-                    t504 = m_x*psi_z - m_z*psi_x
-                    t505 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t506 = dm_x*psi_z
-                    t507 = dpsi_z*m_x
-                    t508 = -dm_z*psi_x - dpsi_x*m_z + t506 + t507
-                    t509 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t510 = e1*t509
-                    t511 = -m_y*psi_z + m_z*psi_y
-                    t512 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t503 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t504 + (0.5)*dpsi_z*m_y - e0*psi_y*t505 +
-                        e0*psi_z*t508 + e1*psi_z*t504*t509 - psi_y*t503*t510)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t503 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t511 + e0*psi_x*t505 - e0*psi_z*t512 + e1*psi_x*t503*t509 -
-                        psi_z*t510*t511 - 0.5*t506 - 0.5*t507)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t504 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t511 + (0.5)*dpsi_y*m_x - e0*psi_x*t508 +
-                        e0*psi_y*t512 + e1*psi_y*t509*t511 - psi_x*t504*t510)
+                    t497 = -m_x*psi_y + m_y*psi_x
+                    t498 = m_x*psi_z - m_z*psi_x
+                    t499 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t500 = dm_x*psi_z
+                    t501 = dpsi_z*m_x
+                    t502 = -dm_z*psi_x - dpsi_x*m_z + t500 + t501
+                    t503 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t504 = e1*t503
+                    t505 = -m_y*psi_z + m_z*psi_y
+                    t506 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t497 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t498 + (0.5)*dpsi_z*m_y - e0*psi_y*t499 +
+                        e0*psi_z*t502 + e1*psi_z*t498*t503 - psi_y*t497*t504)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t497 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t505 + e0*psi_x*t499 - e0*psi_z*t506 + e1*psi_x*t497*t503 -
+                        psi_z*t504*t505 - 0.5*t500 - 0.5*t501)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t498 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t505 + (0.5)*dpsi_y*m_x - e0*psi_x*t502 +
+                        e0*psi_y*t506 + e1*psi_y*t503*t505 - psi_x*t498*t504)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for i in range(N_POSITIONS):
@@ -1981,12 +1968,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gam_positionz_x, Gam_positionz_y, Gam_positionz_z = (Gam[3*(i3 + 2)],
                         Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    t513 = Gam_positiony_x*wp_x + Gam_positiony_y*wp_y + Gam_positiony_z*wp_z
-                    t514 = Gam_positionz_x*wp_x + Gam_positionz_y*wp_y + Gam_positionz_z*wp_z
-                    t515 = Gam_positionx_x*wp_x + Gam_positionx_y*wp_y + Gam_positionx_z*wp_z
-                    rhs_x += du_y*t514 - du_z*t513
-                    rhs_y += -du_x*t514 + du_z*t515
-                    rhs_z += du_x*t513 - du_y*t515
+                    t507 = Gam_positiony_x*wp_x + Gam_positiony_y*wp_y + Gam_positiony_z*wp_z
+                    t508 = Gam_positionz_x*wp_x + Gam_positionz_y*wp_y + Gam_positionz_z*wp_z
+                    t509 = Gam_positionx_x*wp_x + Gam_positionx_y*wp_y + Gam_positionx_z*wp_z
+                    rhs_x += du_y*t508 - du_z*t507
+                    rhs_y += -du_x*t508 + du_z*t509
+                    rhs_z += du_x*t507 - du_y*t509
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
@@ -1999,36 +1986,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t516 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z
-                    t517 = dpsi_y*t516
-                    t518 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z
-                    t519 = dpsi_z*t518
-                    t520 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z
-                    t521 = psi_x*t518 - psi_y*t520
-                    t522 = e0*t521
-                    t523 = dpsi_x*t518
-                    t524 = dpsi_y*t520
-                    t525 = e0*(t523 - t524)
-                    t526 = -psi_x*t516 + psi_z*t520
-                    t527 = dpsi_x*t516
-                    t528 = dpsi_z*t520 - t527
-                    t529 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t530 = e1*t529
-                    t531 = t521*t530
-                    t532 = psi_y*t516 - psi_z*t518
-                    t533 = t517 - t519
-                    rhs_x += (dpsi_y*t522 - dpsi_z*e0*t526 - e0*psi_z*t528 + psi_y*t525 +
-                        psi_y*t531 - psi_z*t526*t530 + (0.5)*t517 - 0.5*t519)
-                    rhs_y += (-dpsi_x*t522 + dpsi_z*e0*t532 + (0.5)*dpsi_z*t520 + e0*psi_z*t533 +
-                        e1*psi_z*t529*t532 - psi_x*t525 - psi_x*t531 - 0.5*t527)
-                    rhs_z += (dpsi_x*e0*t526 - dpsi_y*e0*t532 + e0*psi_x*t528 - e0*psi_y*t533 +
-                        psi_x*t526*t530 - psi_y*t530*t532 + (0.5)*t523 - 0.5*t524)
-                t534 = dW_x + rhs_x
-                t535 = dW_y + rhs_y
-                t536 = dW_z + rhs_z
-                dwp_x = Bxx*t534 + Byx*t535 + Bzx*t536
-                dwp_y = Bxy*t534 + Byy*t535 + Bzy*t536
-                dwp_z = Bxz*t534 + Byz*t535 + Bzz*t536
+                    t510 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z
+                    t511 = dpsi_y*t510
+                    t512 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z
+                    t513 = dpsi_z*t512
+                    t514 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z
+                    t515 = psi_x*t512 - psi_y*t514
+                    t516 = e0*t515
+                    t517 = dpsi_x*t512
+                    t518 = dpsi_y*t514
+                    t519 = e0*(t517 - t518)
+                    t520 = -psi_x*t510 + psi_z*t514
+                    t521 = dpsi_x*t510
+                    t522 = dpsi_z*t514 - t521
+                    t523 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t524 = e1*t523
+                    t525 = t515*t524
+                    t526 = psi_y*t510 - psi_z*t512
+                    t527 = t511 - t513
+                    rhs_x += (dpsi_y*t516 - dpsi_z*e0*t520 - e0*psi_z*t522 + psi_y*t519 +
+                        psi_y*t525 - psi_z*t520*t524 + (0.5)*t511 - 0.5*t513)
+                    rhs_y += (-dpsi_x*t516 + dpsi_z*e0*t526 + (0.5)*dpsi_z*t514 + e0*psi_z*t527 +
+                        e1*psi_z*t523*t526 - psi_x*t519 - psi_x*t525 - 0.5*t521)
+                    rhs_z += (dpsi_x*e0*t520 - dpsi_y*e0*t526 + e0*psi_x*t522 - e0*psi_y*t527 +
+                        psi_x*t520*t524 - psi_y*t524*t526 + (0.5)*t517 - 0.5*t518)
+                t528 = dW_x + rhs_x
+                t529 = dW_y + rhs_y
+                t530 = dW_z + rhs_z
+                dwp_x = Bxx*t528 + Byx*t529 + Bzx*t530
+                dwp_y = Bxy*t528 + Byy*t529 + Bzy*t530
+                dwp_z = Bxz*t528 + Byz*t529 + Bzz*t530
                 # differential: force on the origin, through the frame
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -2081,58 +2068,58 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t537 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z
-                    t538 = dpsi_z*t537
-                    t539 = Gam_rotationy_x*dwp_x + Gam_rotationy_y*dwp_y + Gam_rotationy_z*dwp_z
-                    t540 = psi_z*t539
-                    t541 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z
-                    t542 = Gam_rotationz_x*dwp_x + Gam_rotationz_y*dwp_y + Gam_rotationz_z*dwp_z
-                    t543 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z
-                    t544 = psi_x*t537 - psi_y*t543
-                    t545 = dpsi_y*e0
-                    t546 = m_x*psi_z - m_z*psi_x
-                    t547 = dpsi_z*e0
-                    t548 = dpsi_y*t543
-                    t549 = Gam_rotationx_x*dwp_x + Gam_rotationx_y*dwp_y + Gam_rotationx_z*dwp_z
-                    t550 = psi_y*t549
-                    t551 = dpsi_x*t537 + psi_x*t539 - t548 - t550
-                    t552 = e0*psi_y
-                    t553 = dm_x*psi_z
-                    t554 = dpsi_z*m_x
-                    t555 = -dm_z*psi_x - dpsi_x*m_z + t553 + t554
-                    t556 = e0*psi_z
-                    t557 = -m_x*psi_y + m_y*psi_x
-                    t558 = -psi_x*t541 + psi_z*t543
-                    t559 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t560 = dpsi_x*t541
-                    t561 = psi_x*t542
-                    t562 = dpsi_z*t543 + psi_z*t549 - t560 - t561
-                    t563 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t564 = e1*t563
-                    t565 = psi_y*t564
-                    t566 = psi_z*t564
-                    t567 = dpsi_x*e0
-                    t568 = psi_y*t541 - psi_z*t537
-                    t569 = e0*psi_x
-                    t570 = dpsi_y*t541 + psi_y*t542 - t538 - t540
-                    t571 = -m_y*psi_z + m_z*psi_y
-                    t572 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    t573 = psi_x*t564
-                    dg[j3] = (dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y + dpsi_y*e0*t557 -
-                        0.5*dpsi_y*m_z + (0.5)*dpsi_y*t541 + dpsi_z*e0*t558 + (0.5)*dpsi_z*m_y +
-                        e0*psi_y*t559 + e0*psi_z*t562 + e1*psi_y*t557*t563 + e1*psi_z*t558*t563 +
-                        (0.5)*psi_y*t542 - 0.5*t538 - 0.5*t540 - t544*t545 - t544*t565 - t546*t547
-                        - t546*t566 - t549 - t551*t552 - t555*t556)
-                    dg[j3 + 1] = (dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t544 + (0.5)*dpsi_x*m_z +
-                        dpsi_z*e0*t571 + (0.5)*dpsi_z*t543 + e0*psi_x*t551 + e0*psi_z*t572 +
-                        e1*psi_x*t544*t563 + e1*psi_z*t563*t571 + (0.5)*psi_z*t549 - t539 -
-                        t547*t568 - 0.5*t553 - 0.5*t554 - t556*t570 - t557*t567 - t557*t573 -
-                        t559*t569 - 0.5*t560 - 0.5*t561 - t566*t568)
-                    dg[j3 + 2] = ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t546 -
-                        0.5*dpsi_x*m_y + (0.5)*dpsi_x*t537 + dpsi_y*e0*t568 + (0.5)*dpsi_y*m_x +
-                        e0*psi_x*t555 + e0*psi_y*t570 + e1*psi_x*t546*t563 + e1*psi_y*t563*t568 +
-                        (0.5)*psi_x*t539 - t542 - t545*t571 - 0.5*t548 - 0.5*t550 - t552*t572 -
-                        t558*t567 - t558*t573 - t562*t569 - t565*t571)
+                    t531 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z
+                    t532 = dpsi_z*t531
+                    t533 = Gam_rotationy_x*dwp_x + Gam_rotationy_y*dwp_y + Gam_rotationy_z*dwp_z
+                    t534 = psi_z*t533
+                    t535 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z
+                    t536 = Gam_rotationz_x*dwp_x + Gam_rotationz_y*dwp_y + Gam_rotationz_z*dwp_z
+                    t537 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z
+                    t538 = psi_x*t531 - psi_y*t537
+                    t539 = dpsi_y*e0
+                    t540 = m_x*psi_z - m_z*psi_x
+                    t541 = dpsi_z*e0
+                    t542 = dpsi_y*t537
+                    t543 = Gam_rotationx_x*dwp_x + Gam_rotationx_y*dwp_y + Gam_rotationx_z*dwp_z
+                    t544 = psi_y*t543
+                    t545 = dpsi_x*t531 + psi_x*t533 - t542 - t544
+                    t546 = e0*psi_y
+                    t547 = dm_x*psi_z
+                    t548 = dpsi_z*m_x
+                    t549 = -dm_z*psi_x - dpsi_x*m_z + t547 + t548
+                    t550 = e0*psi_z
+                    t551 = -m_x*psi_y + m_y*psi_x
+                    t552 = -psi_x*t535 + psi_z*t537
+                    t553 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t554 = dpsi_x*t535
+                    t555 = psi_x*t536
+                    t556 = dpsi_z*t537 + psi_z*t543 - t554 - t555
+                    t557 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t558 = e1*t557
+                    t559 = psi_y*t558
+                    t560 = psi_z*t558
+                    t561 = dpsi_x*e0
+                    t562 = psi_y*t535 - psi_z*t531
+                    t563 = e0*psi_x
+                    t564 = dpsi_y*t535 + psi_y*t536 - t532 - t534
+                    t565 = -m_y*psi_z + m_z*psi_y
+                    t566 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    t567 = psi_x*t558
+                    dg[j3] = (dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y + dpsi_y*e0*t551 -
+                        0.5*dpsi_y*m_z + (0.5)*dpsi_y*t535 + dpsi_z*e0*t552 + (0.5)*dpsi_z*m_y +
+                        e0*psi_y*t553 + e0*psi_z*t556 + e1*psi_y*t551*t557 + e1*psi_z*t552*t557 +
+                        (0.5)*psi_y*t536 - 0.5*t532 - 0.5*t534 - t538*t539 - t538*t559 - t540*t541
+                        - t540*t560 - t543 - t545*t546 - t549*t550)
+                    dg[j3 + 1] = (dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t538 + (0.5)*dpsi_x*m_z +
+                        dpsi_z*e0*t565 + (0.5)*dpsi_z*t537 + e0*psi_x*t545 + e0*psi_z*t566 +
+                        e1*psi_x*t538*t557 + e1*psi_z*t557*t565 + (0.5)*psi_z*t543 - t533 -
+                        t541*t562 - 0.5*t547 - 0.5*t548 - t550*t564 - t551*t561 - t551*t567 -
+                        t553*t563 - 0.5*t554 - 0.5*t555 - t560*t562)
+                    dg[j3 + 2] = ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t540 -
+                        0.5*dpsi_x*m_y + (0.5)*dpsi_x*t531 + dpsi_y*e0*t562 + (0.5)*dpsi_y*m_x +
+                        e0*psi_x*t549 + e0*psi_y*t564 + e1*psi_x*t540*t557 + e1*psi_y*t557*t562 +
+                        (0.5)*psi_x*t533 - t536 - t539*t565 - 0.5*t542 - 0.5*t544 - t546*t566 -
+                        t552*t561 - t552*t567 - t556*t563 - t559*t565)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]

@@ -41,16 +41,20 @@ from sebody.kernels.dense import (
     add_blocks_times,
     block_times,
     clear,
+    columns_times,
     inverse_3,
     rows_times,
 )
 from sebody.kernels.frame_search import best_fit
 from sebody.kernels.packed_products import (
+    add_couplings,
     add_packed,
     add_packed_times,
+    couplings_times,
     from_free,
     packed_room,
     packed_times,
+    packed_times_both,
     to_free,
 )
 from sebody.kernels.rotations import (
@@ -69,11 +73,11 @@ ROTATIONS = None      # first rotation among the local coordinates
 MODES = None          # first internal mode
 DAMPED = None        # has structural damping, None where a body tells
 N_MODES = None        # their number, None where it is read at run time
-WORK_ROWS = 120
+WORK_ROWS = 122
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (743, 263, 410, 1),
+OPERATIONS = {"residual": (746, 263, 410, 1),
               "column": (150, 381, 1229, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("sizes", (3,), "slaved coordinates, resultants of second order, damped or not"),
@@ -85,8 +89,8 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),
     Part("J0", ("pairs",), "moments of inertia at rest"),
     Part("moment_columns", ("N", "lines"), "S1, g_k, h_kl + h_lk", columns=True),
-    Part("of_place", ("placed", "N", "N"), "J2_kl, K_k^T", packed=True),
-    Part("of_rate", ("rated", "N", "N"), "K_k^T, K_k^T - K_k", packed=True),
+    Part("moment_rows", ("lines", "N"), "its transpose", columns=True),
+    Part("couplings", ("coupled", "N", "N"), "J2_kl, K_k^T; K_k^T and K_k of rates", packed=True),
     Part("Mz", (1, "N", "N"), "reduced mass with slaved coordinates", packed=True),
     Part("Cz", ("damped", "free", "free"), "reduced damping", packed=True),
     Part("followers", ("slaved", "free", "free"), "Q_b", packed=True),
@@ -138,11 +142,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         h = at(work, 28*row)
         moved = at(work, 29*row)
         squares = at(work, 30*row)
-        unordered = at(work, 54*row)
-        Zq = at(work, 57*row)
-        Zd = at(work, 69*row)
-        products = at(work, 81*row)
-        Gy = at(work, 120*row)
+        unordered = at(work, 53*row)
+        Zq = at(work, 56*row)
+        Zd = at(work, 68*row)
+        products = at(work, 80*row)
+        Gy = at(work, 122*row)
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
@@ -170,9 +174,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         c0 = at(order, free)
         J0 = at(c0, 3)
         moment_columns = at(J0, 6)
-        of_place = at(moment_columns, 12*padded(N))
-        of_rate = at(of_place, packed_room(9, N, N))
-        Mz = at(of_rate, packed_room(6, N, N))
+        moment_rows = at(moment_columns, 12*padded(N))
+        couplings = at(moment_rows, N*padded(12))
+        Mz = at(couplings, packed_room(15, N, N))
         Cz = at(Mz, packed_room(1, N, N))
         followers = at(Cz, packed_room(damped, free, free))
         lam = at(followers, packed_room(slaved, free, free))
@@ -452,22 +456,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         gamma[2] = R0_xz*field_x + R0_yz*field_y + R0_zz*field_z
         # coordinates that determine the others, and their rates
         all_to_free(y, eta, etad, axes, order, unordered, z, zd, zdd, bound, bound_free, free, hN)
-        # Q_b z, all b
-        packed_times(followers, z, Zq, slaved*hn)
-        # Q_b zd, all b
-        packed_times(followers, zd, Zd, slaved*hn)
+        # Q_b z and Q_b zd, all b
+        packed_times_both(followers, z, zd, Zq, Zd, slaved*hn)
         # eta_b = y . Q_b y / 2, their rates and second rates
         follow(Zq, Zd, z, zd, zdd, free, slaved, hn)
-        # J2_kl z and K_k^T z
-        packed_times(of_place, z, products, 9*hN)
-        # K_k^T zdot and (K_k^T - K_k) zdot
-        packed_times(of_rate, zd, at(products, 9*hN), 6*hN)
+        # J2_kl z, K_k^T z, K_k^T zdot and K_k zdot
+        couplings_times(couplings, z, zd, products, 15*hN)
         # first moments, couplings, inertia at rest, by z
-        rows_times(moment_columns, z, line0, N, 12, hN)
+        columns_times(moment_rows, z, line0, 12, N)
         # first moments, couplings, inertia at rest, by zd
-        rows_times(moment_columns, zd, line1, N, 12, hN)
+        columns_times(moment_rows, zd, line1, 12, N)
         # first moments, couplings, inertia at rest, by zdd
-        rows_times(moment_columns, zdd, line2, N, 8, hN)
+        columns_times(moment_rows, zdd, line2, 12, N)
         # quadratic parts, by z
         rows_times(products, z, product0, N, 8, hN)
         # quadratic parts, by zd
@@ -570,12 +570,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         by_products[6] = turning_x
         by_products[7] = turning_y
         by_products[8] = turning_z
-        by_products[9] = 0.0
-        by_products[10] = 0.0
-        by_products[11] = 0.0
-        by_products[12] = spin_x
-        by_products[13] = spin_y
-        by_products[14] = spin_z
+        by_products[9] = spin_x
+        by_products[10] = spin_y
+        by_products[11] = spin_z
+        by_products[12] = -spin_x
+        by_products[13] = -spin_y
+        by_products[14] = -spin_z
         # inertia force of deformation, Mbar zddot
         packed_times(Mz, zdd, local, hN)
         # damping force, Cbar ydot
@@ -817,30 +817,29 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dve = at(work, 32*row)
             dae = at(work, 33*row)
             e2s = at(work, 34*row)
-            by_place = at(work, 35*row)
-            by_rate = at(work, 36*row)
-            ones = at(work, 37*row)
-            by_followers = at(work, 38*row)
-            of_E = at(work, 39*row)
-            of_Gy = at(work, 40*row)
-            dy = at(work, 41*row)
-            dz = at(work, 42*row)
-            dlocal = at(work, 43*row)
-            dyd = at(work, 44*row)
-            dacc = at(work, 45*row)
-            deta = at(work, 46*row)
-            detad = at(work, 47*row)
-            dgamma = at(work, 48*row)
-            dzd = at(work, 49*row)
-            dzdd = at(work, 50*row)
-            ds = at(work, 51*row)
-            dh = at(work, 52*row)
-            dg = at(work, 53*row)
-            Za = at(work, 96*row)
-            more = at(work, 108*row)
-            Lz = at(work, (120 + n + 18)*row)
-            Lv = at(work, (120 + 2*(n + 18))*row)
-            La = at(work, (120 + 3*(n + 18))*row)
+            by_couplings = at(work, 35*row)
+            ones = at(work, 36*row)
+            by_followers = at(work, 37*row)
+            of_E = at(work, 38*row)
+            of_Gy = at(work, 39*row)
+            dy = at(work, 40*row)
+            dz = at(work, 41*row)
+            dlocal = at(work, 42*row)
+            dyd = at(work, 43*row)
+            dacc = at(work, 44*row)
+            deta = at(work, 45*row)
+            detad = at(work, 46*row)
+            dgamma = at(work, 47*row)
+            dzd = at(work, 48*row)
+            dzdd = at(work, 49*row)
+            ds = at(work, 50*row)
+            dh = at(work, 51*row)
+            dg = at(work, 52*row)
+            Za = at(work, 95*row)
+            more = at(work, 107*row)
+            Lz = at(work, (122 + n + 18)*row)
+            Lv = at(work, (122 + 2*(n + 18))*row)
+            La = at(work, (122 + 3*(n + 18))*row)
             # Q_b zdd, all b
             packed_times(followers, zdd, Za, slaved*hn)
             # second derivative of the coefficients of T^-1
@@ -848,29 +847,27 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e2s[j] = inverse_tangent_second(psi_x*psi_x + psi_y*psi_y + psi_z*psi_z)
-            # J2_kl zdot
-            packed_times(of_place, zd, more, 9*hN)
-            # K_k^T zddot and (K_k^T - K_k) zddot
-            packed_times(of_rate, zdd, at(more, 6*hN), 6*hN)
+            # J2_kl zdot, K_k^T zddot and K_k zddot
+            couplings_times(couplings, zd, zdd, more, 15*hN)
             # factors of the local tangents
             turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             t145 = 2*c_geo*spin_x
-            by_place[0] = -c_geo*spin_x*spin_x
-            by_place[1] = -c_geo*spin_y*spin_y
-            by_place[2] = -c_geo*spin_z*spin_z
-            by_place[3] = -spin_y*t145
-            by_place[4] = -spin_z*t145
-            by_place[5] = -2*c_geo*spin_y*spin_z
-            by_place[6] = c_geo*turning_x
-            by_place[7] = c_geo*turning_y
-            by_place[8] = c_geo*turning_z
-            by_rate[0] = 0.0
-            by_rate[1] = 0.0
-            by_rate[2] = 0.0
-            by_rate[3] = spin_x
-            by_rate[4] = spin_y
-            by_rate[5] = spin_z
+            by_couplings[0] = -c_geo*spin_x*spin_x
+            by_couplings[1] = -c_geo*spin_y*spin_y
+            by_couplings[2] = -c_geo*spin_z*spin_z
+            by_couplings[3] = -spin_y*t145
+            by_couplings[4] = -spin_z*t145
+            by_couplings[5] = -2*c_geo*spin_y*spin_z
+            by_couplings[6] = c_geo*turning_x
+            by_couplings[7] = c_geo*turning_y
+            by_couplings[8] = c_geo*turning_z
+            by_couplings[9] = spin_x
+            by_couplings[10] = spin_y
+            by_couplings[11] = spin_z
+            by_couplings[12] = -spin_x
+            by_couplings[13] = -spin_y
+            by_couplings[14] = -spin_z
             ones[0] = 1
             # forces on eta as factors
             for b in range(slaved):
@@ -882,12 +879,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             clear(Lv, N*deep)
             # local tangents
             clear(La, N*deep)
-            # by z: J2_kl and K_k^T
-            add_packed(of_place, by_place, Lz, deep)
+            # by z: J2_kl and K_k^T; by zdot: K_k^T and K_k
+            add_couplings(couplings, by_couplings, Lz, Lv, deep)
             # forces on eta
             add_packed(followers, by_followers, Lz, deep)
-            # by zdot: K_k^T and K_k^T - K_k
-            add_packed(of_rate, by_rate, Lv, deep)
             # structural damping
             add_packed(Cz, ones, Lv, deep)
             # by zddot
@@ -929,8 +924,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     products[14*hN + i])
                 row_jd_xx, row_jd_yy, row_jd_zz, row_jd_xy, row_jd_xz, row_jd_yz = (more[i],
                     more[hN + i], more[2*hN + i], more[3*hN + i], more[4*hN + i], more[5*hN + i])
-                row_ua_x, row_ua_y, row_ua_z = more[6*hN + i], more[7*hN + i], more[8*hN + i]
-                row_wa_x, row_wa_y, row_wa_z = more[9*hN + i], more[10*hN + i], more[11*hN + i]
+                row_wa_x, row_wa_y, row_wa_z = more[12*hN + i], more[13*hN + i], more[14*hN + i]
                 t146 = row_S1_x*spin_z
                 t147 = row_S1_z*spin_x
                 t148 = t146 - t147
@@ -941,24 +935,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t153 = 2*spin_x
                 t154 = 2*spin_y
                 t155 = 2*spin_z
-                t156 = -row_w_z
-                t157 = row_v_z + t156
-                t158 = row_h_xx + 2*row_j_xx
-                t159 = row_h_xy + 2*row_j_xy
-                t160 = row_h_xz + 2*row_j_xz
-                t161 = -row_w_y
-                t162 = row_v_y + t161
-                t163 = row_h_yz + 2*row_j_yz
-                t164 = row_h_zz + 2*row_j_zz
-                t165 = spin_x*t160 + spin_y*t163 + spin_z*t164
-                t166 = row_h_yy + 2*row_j_yy
-                t167 = spin_x*t159 + spin_y*t166 + spin_z*t163
-                t168 = -row_w_x
-                t169 = row_v_x + t168
-                t170 = spin_x*t158 + spin_y*t159 + spin_z*t160
-                t171 = row_g_z + row_u_z
-                t172 = row_g_y + row_u_y
-                t173 = row_g_x + row_u_x
+                t156 = row_h_xx + 2*row_j_xx
+                t157 = row_h_xy + 2*row_j_xy
+                t158 = row_h_xz + 2*row_j_xz
+                t159 = row_h_yz + 2*row_j_yz
+                t160 = row_h_zz + 2*row_j_zz
+                t161 = spin_x*t158 + spin_y*t159 + spin_z*t160
+                t162 = row_h_yy + 2*row_j_yy
+                t163 = spin_x*t157 + spin_y*t162 + spin_z*t159
+                t164 = spin_x*t156 + spin_y*t157 + spin_z*t158
+                t165 = row_g_z + row_u_z
+                t166 = row_g_y + row_u_y
+                t167 = row_g_x + row_u_x
                 Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t150 -
                     spin_z*t148))
                 Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t150
@@ -966,29 +954,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Lz[i*deep + N + 2] = (c_geo*(-row_S1_x*turning_y + row_S1_y*turning_x +
                     spin_x*t148 - spin_y*t152))
                 Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t153 +
-                    row_jd_xy*t154 + row_jd_xz*t155 + row_ua_x - row_wa_x + spin_y*t157 +
-                    spin_y*t165 - spin_z*t162 - spin_z*t167 + t158*turning_x + t159*turning_y +
-                    t160*turning_z))
+                    row_jd_xy*t154 + row_jd_xz*t155 - row_w_y*spin_z + row_w_z*spin_y + row_wa_x +
+                    spin_y*t161 - spin_z*t163 + t156*turning_x + t157*turning_y + t158*turning_z))
                 Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t153 +
-                    row_jd_yy*t154 + row_jd_yz*t155 + row_ua_y - row_wa_y - spin_x*t157 -
-                    spin_x*t165 + spin_z*t169 + spin_z*t170 + t159*turning_x + t163*turning_z +
-                    t166*turning_y))
+                    row_jd_yy*t154 + row_jd_yz*t155 + row_w_x*spin_z - row_w_z*spin_x + row_wa_y -
+                    spin_x*t161 + spin_z*t164 + t157*turning_x + t159*turning_z + t162*turning_y))
                 Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t153 +
-                    row_jd_yz*t154 + row_jd_zz*t155 + row_ua_z - row_wa_z + spin_x*t162 +
-                    spin_x*t167 - spin_y*t169 - spin_y*t170 + t160*turning_x + t163*turning_y +
-                    t164*turning_z))
+                    row_jd_yz*t154 + row_jd_zz*t155 - row_w_x*spin_y + row_w_y*spin_x + row_wa_z +
+                    spin_x*t163 - spin_y*t164 + t158*turning_x + t159*turning_y + t160*turning_z))
                 Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t151
                 Lv[i*deep + N + 1] = 2*t146 - 2*t147
                 Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t149
-                Lv[i*deep + N + 3] = 2*row_v_x + spin_y*t171 - spin_z*t172 + t168 + t170
-                Lv[i*deep + N + 4] = 2*row_v_y - spin_x*t171 + spin_z*t173 + t161 + t167
-                Lv[i*deep + N + 5] = 2*row_v_z + spin_x*t172 - spin_y*t173 + t156 + t165
+                Lv[i*deep + N + 3] = row_v_x + row_w_x + spin_y*t165 - spin_z*t166 + t164
+                Lv[i*deep + N + 4] = row_v_y + row_w_y - spin_x*t165 + spin_z*t167 + t163
+                Lv[i*deep + N + 5] = row_v_z + row_w_z + spin_x*t166 - spin_y*t167 + t161
                 La[i*deep + N] = row_S1_x
                 La[i*deep + N + 1] = row_S1_y
                 La[i*deep + N + 2] = row_S1_z
-                La[i*deep + N + 3] = t173
-                La[i*deep + N + 4] = t172
-                La[i*deep + N + 5] = t171
+                La[i*deep + N + 3] = t167
+                La[i*deep + N + 4] = t166
+                La[i*deep + N + 5] = t165
             # local tangents: motion of the frame
             for i in range(N):
                 spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
@@ -1004,17 +989,19 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     products[5*hN + i])
                 row_u_x, row_u_y, row_u_z = (products[6*hN + i], products[7*hN + i],
                     products[8*hN + i])
+                row_v_x, row_v_y, row_v_z = (products[9*hN + i], products[10*hN + i],
+                    products[11*hN + i])
                 row_w_x, row_w_y, row_w_z = (products[12*hN + i], products[13*hN + i],
                     products[14*hN + i])
-                t174 = row_h_xy + 2*row_j_xy
-                t175 = row_h_xz + 2*row_j_xz
-                t176 = row_h_yz + 2*row_j_yz
-                Lv[N*deep + i] = (row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t174 -
-                    spin_z*t175)
-                Lv[(N + 1)*deep + i] = (row_w_y - spin_x*t174 - spin_y*(row_h_yy + 2*row_j_yy) -
-                    spin_z*t176)
-                Lv[(N + 2)*deep + i] = (row_w_z - spin_x*t175 - spin_y*t176 - spin_z*(row_h_zz +
-                    2*row_j_zz))
+                t168 = row_h_xy + 2*row_j_xy
+                t169 = row_h_xz + 2*row_j_xz
+                t170 = row_h_yz + 2*row_j_yz
+                Lv[N*deep + i] = (row_v_x - row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t168
+                    - spin_z*t169)
+                Lv[(N + 1)*deep + i] = (row_v_y - row_w_y - spin_x*t168 - spin_y*(row_h_yy +
+                    2*row_j_yy) - spin_z*t170)
+                Lv[(N + 2)*deep + i] = (row_v_z - row_w_z - spin_x*t169 - spin_y*t170 -
+                    spin_z*(row_h_zz + 2*row_j_zz))
                 La[N*deep + i] = row_S1_x
                 La[(N + 1)*deep + i] = row_S1_y
                 La[(N + 2)*deep + i] = row_S1_z
@@ -1024,79 +1011,79 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # local tangents: force on the frame by its motion
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             mass = masses[0]
-            t177 = spin_y*sum_c_y
-            t178 = spin_z*sum_c_z
-            t179 = 2*sum_cd_z
-            t180 = spin_x*sum_c_y
-            t181 = 2*sum_cd_y
-            t182 = spin_z*sum_c_x
-            t183 = spin_y*sum_J_xz
-            t184 = spin_z*sum_J_xy
-            t185 = spin_y*sum_J_yz
-            t186 = spin_x*sum_J_xz
-            t187 = spin_z*sum_J_zz + sum_spun_z
-            t188 = spin_z*sum_J_yz
-            t189 = spin_x*sum_J_xy
-            t190 = spin_y*sum_J_yy + sum_spun_y
-            t191 = spin_x*sum_c_x
-            t192 = 2*sum_cd_x
-            t193 = spin_y*sum_c_z
-            t194 = spin_x*sum_J_yz
-            t195 = spin_z*sum_J_xz
-            t196 = spin_y*sum_J_xy
-            t197 = spin_x*sum_J_xx + sum_spun_x
-            t198 = -sum_c_y
-            t199 = -sum_c_z
-            t200 = -sum_c_x
-            Lv[N*deep + N] = t177 + t178
-            Lv[N*deep + N + 1] = spin_y*sum_c_x - t179 - 2*t180
-            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t181 + t182
-            Lv[N*deep + N + 3] = sum_Jd_xx + t183 - t184
-            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t185 - 2*t186 - t187
-            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t188 + 2*t189 + t190
-            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t179 + t180
-            Lv[(N + 1)*deep + N + 1] = t178 + t191
-            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t192 - 2*t193
-            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t185 + t186 + t187
-            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t184 - t194
-            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t195 - 2*t196 - t197
-            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t181 - 2*t182
-            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t192 + t193
-            Lv[(N + 2)*deep + N + 2] = t177 + t191
-            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t188 - t189 - t190
-            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t195 + t196 + t197
-            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t183 + t194
+            t171 = spin_y*sum_c_y
+            t172 = spin_z*sum_c_z
+            t173 = 2*sum_cd_z
+            t174 = spin_x*sum_c_y
+            t175 = 2*sum_cd_y
+            t176 = spin_z*sum_c_x
+            t177 = spin_y*sum_J_xz
+            t178 = spin_z*sum_J_xy
+            t179 = spin_y*sum_J_yz
+            t180 = spin_x*sum_J_xz
+            t181 = spin_z*sum_J_zz + sum_spun_z
+            t182 = spin_z*sum_J_yz
+            t183 = spin_x*sum_J_xy
+            t184 = spin_y*sum_J_yy + sum_spun_y
+            t185 = spin_x*sum_c_x
+            t186 = 2*sum_cd_x
+            t187 = spin_y*sum_c_z
+            t188 = spin_x*sum_J_yz
+            t189 = spin_z*sum_J_xz
+            t190 = spin_y*sum_J_xy
+            t191 = spin_x*sum_J_xx + sum_spun_x
+            t192 = -sum_c_y
+            t193 = -sum_c_z
+            t194 = -sum_c_x
+            Lv[N*deep + N] = t171 + t172
+            Lv[N*deep + N + 1] = spin_y*sum_c_x - t173 - 2*t174
+            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t175 + t176
+            Lv[N*deep + N + 3] = sum_Jd_xx + t177 - t178
+            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t179 - 2*t180 - t181
+            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t182 + 2*t183 + t184
+            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t173 + t174
+            Lv[(N + 1)*deep + N + 1] = t172 + t185
+            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t186 - 2*t187
+            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t179 + t180 + t181
+            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t178 - t188
+            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t189 - 2*t190 - t191
+            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t175 - 2*t176
+            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t186 + t187
+            Lv[(N + 2)*deep + N + 2] = t171 + t185
+            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t182 - t183 - t184
+            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t189 + t190 + t191
+            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t177 + t188
             La[N*deep + N] = mass
             La[N*deep + N + 1] = 0.0
             La[N*deep + N + 2] = 0.0
             La[N*deep + N + 3] = 0.0
             La[N*deep + N + 4] = sum_c_z
-            La[N*deep + N + 5] = t198
+            La[N*deep + N + 5] = t192
             La[(N + 1)*deep + N] = 0.0
             La[(N + 1)*deep + N + 1] = mass
             La[(N + 1)*deep + N + 2] = 0.0
-            La[(N + 1)*deep + N + 3] = t199
+            La[(N + 1)*deep + N + 3] = t193
             La[(N + 1)*deep + N + 4] = 0.0
             La[(N + 1)*deep + N + 5] = sum_c_x
             La[(N + 2)*deep + N] = 0.0
             La[(N + 2)*deep + N + 1] = 0.0
             La[(N + 2)*deep + N + 2] = mass
             La[(N + 2)*deep + N + 3] = sum_c_y
-            La[(N + 2)*deep + N + 4] = t200
+            La[(N + 2)*deep + N + 4] = t194
             La[(N + 2)*deep + N + 5] = 0.0
             La[(N + 3)*deep + N] = 0.0
-            La[(N + 3)*deep + N + 1] = t199
+            La[(N + 3)*deep + N + 1] = t193
             La[(N + 3)*deep + N + 2] = sum_c_y
             La[(N + 3)*deep + N + 3] = sum_J_xx
             La[(N + 3)*deep + N + 4] = sum_J_xy
             La[(N + 3)*deep + N + 5] = sum_J_xz
             La[(N + 4)*deep + N] = sum_c_z
             La[(N + 4)*deep + N + 1] = 0.0
-            La[(N + 4)*deep + N + 2] = t200
+            La[(N + 4)*deep + N + 2] = t194
             La[(N + 4)*deep + N + 3] = sum_J_xy
             La[(N + 4)*deep + N + 4] = sum_J_yy
             La[(N + 4)*deep + N + 5] = sum_J_yz
-            La[(N + 5)*deep + N] = t198
+            La[(N + 5)*deep + N] = t192
             La[(N + 5)*deep + N + 1] = sum_c_x
             La[(N + 5)*deep + N + 2] = 0.0
             La[(N + 5)*deep + N + 3] = sum_J_xz
@@ -1133,12 +1120,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t201 = -dx0_z + dx_z
-                    t202 = -dx0_y + dx_y
-                    t203 = -dx0_x + dx_x
-                    rhs_x += -fit*(X_y*t201 - X_z*t202)
-                    rhs_y += -fit*(-X_x*t201 + X_z*t203)
-                    rhs_z += -fit*(X_x*t202 - X_y*t203)
+                    t195 = -dx0_z + dx_z
+                    t196 = -dx0_y + dx_y
+                    t197 = -dx0_x + dx_x
+                    rhs_x += -fit*(X_y*t195 - X_z*t196)
+                    rhs_y += -fit*(-X_x*t195 + X_z*t197)
+                    rhs_z += -fit*(X_x*t196 - X_y*t197)
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1148,43 +1135,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t204 = X_y + u_y
-                    t205 = X_z + u_z
-                    t206 = X_x + u_x
-                    dy[i3] = -dth0_y*t205 + dth0_z*t204 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t205 - dth0_z*t206 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t204 + dth0_y*t206 - dx0_z + dx_z
+                    t198 = X_y + u_y
+                    t199 = X_z + u_z
+                    t200 = X_x + u_x
+                    dy[i3] = -dth0_y*t199 + dth0_z*t198 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t199 - dth0_z*t200 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t198 + dth0_y*t200 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t207 = dth0_y*psi_z
-                    t208 = dth_y*psi_z
-                    t209 = dth0_x*psi_y
-                    t210 = dth0_y*psi_x - t209
-                    t211 = e0*psi_y
-                    t212 = dth_x*psi_z
-                    t213 = dth_z*psi_x
+                    t201 = dth0_y*psi_z
+                    t202 = dth_y*psi_z
+                    t203 = dth0_x*psi_y
+                    t204 = dth0_y*psi_x - t203
+                    t205 = e0*psi_y
+                    t206 = dth_x*psi_z
+                    t207 = dth_z*psi_x
+                    t208 = t206 - t207
+                    t209 = e0*psi_z
+                    t210 = dth_x*psi_y
+                    t211 = dth_y*psi_x - t210
+                    t212 = dth0_x*psi_z
+                    t213 = dth0_z*psi_x
                     t214 = t212 - t213
-                    t215 = e0*psi_z
-                    t216 = dth_x*psi_y
-                    t217 = dth_y*psi_x - t216
-                    t218 = dth0_x*psi_z
-                    t219 = dth0_z*psi_x
-                    t220 = t218 - t219
-                    t221 = e0*psi_x
-                    t222 = dth_z*psi_y - t208
-                    t223 = dth0_z*psi_y - t207
+                    t215 = e0*psi_x
+                    t216 = dth_z*psi_y - t202
+                    t217 = dth0_z*psi_y - t201
                     dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t217 + e0*psi_z*t220 - 0.5*t207 - 0.5*t208 - t210*t211 -
-                        t214*t215)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t210*t221 + (0.5)*t212 - 0.5*t213 + t215*t222
-                        - t215*t223 - t217*t221 + (0.5)*t218 - 0.5*t219)
+                        e0*psi_y*t211 + e0*psi_z*t214 - 0.5*t201 - 0.5*t202 - t204*t205 -
+                        t208*t209)
+                    dy[j3 + 1] = (-dth0_y + dth_y + t204*t215 + (0.5)*t206 - 0.5*t207 + t209*t216
+                        - t209*t217 - t211*t215 + (0.5)*t212 - 0.5*t213)
                     dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t214 + e0*psi_y*t223 - 0.5*t209 - t211*t222 - 0.5*t216 -
-                        t220*t221)
+                        e0*psi_x*t208 + e0*psi_y*t217 - 0.5*t203 - t205*t216 - 0.5*t210 -
+                        t214*t215)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
@@ -1232,12 +1219,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t224 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
-                    t225 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
-                    t226 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
-                    rhs_x += -fit*(X_y*t224 - X_z*t225)
-                    rhs_y += -fit*(-X_x*t224 + X_z*t226)
-                    rhs_z += -fit*(X_x*t225 - X_y*t226)
+                    t218 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
+                    t219 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
+                    t220 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
+                    rhs_x += -fit*(X_y*t218 - X_z*t219)
+                    rhs_y += -fit*(-X_x*t218 + X_z*t220)
+                    rhs_z += -fit*(X_x*t219 - X_y*t220)
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1270,13 +1257,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t227 = X_y + u_y
-                    t228 = X_z + u_z
-                    t229 = X_x + u_x
-                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t228 + dOm0_z*t227 - dv0_x + dvs_x
-                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t228 - dOm0_z*t229 - dv0_y +
+                    t221 = X_y + u_y
+                    t222 = X_z + u_z
+                    t223 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t222 + dOm0_z*t221 - dv0_x + dvs_x
+                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t222 - dOm0_z*t223 - dv0_y +
                         dvs_y)
-                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t227 + dOm0_y*t229 - dv0_z +
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t221 + dOm0_y*t223 - dv0_z +
                         dvs_z)
                 # differential: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -1287,59 +1274,59 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t230 = Om0_y*dpsi_z
-                    t231 = Om_y*dpsi_z
-                    t232 = dOm0_y*psi_z
-                    t233 = dOm_y*psi_z
-                    t234 = -Om0_x*psi_y + Om0_y*psi_x
-                    t235 = dpsi_y*e0
-                    t236 = Om_x*psi_z - Om_z*psi_x
-                    t237 = dpsi_z*e0
-                    t238 = -Om_x*psi_y + Om_y*psi_x
-                    t239 = Om0_x*psi_z - Om0_z*psi_x
-                    t240 = Om0_x*dpsi_y
-                    t241 = dOm0_x*psi_y
-                    t242 = Om0_y*dpsi_x + dOm0_y*psi_x - t240 - t241
-                    t243 = e0*psi_y
-                    t244 = Om_x*dpsi_z
-                    t245 = dOm_x*psi_z
-                    t246 = Om_z*dpsi_x
-                    t247 = dOm_z*psi_x
-                    t248 = t244 + t245 - t246 - t247
-                    t249 = e0*psi_z
-                    t250 = Om_x*dpsi_y
-                    t251 = dOm_x*psi_y
-                    t252 = Om_y*dpsi_x + dOm_y*psi_x - t250 - t251
-                    t253 = Om0_x*dpsi_z
-                    t254 = dOm0_x*psi_z
-                    t255 = Om0_z*dpsi_x
-                    t256 = dOm0_z*psi_x
-                    t257 = t253 + t254 - t255 - t256
-                    t258 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t259 = e1*t258
-                    t260 = psi_y*t259
-                    t261 = psi_z*t259
-                    t262 = dpsi_x*e0
-                    t263 = -Om_y*psi_z + Om_z*psi_y
-                    t264 = -Om0_y*psi_z + Om0_z*psi_y
-                    t265 = e0*psi_x
-                    t266 = Om_z*dpsi_y + dOm_z*psi_y - t231 - t233
-                    t267 = Om0_z*dpsi_y + dOm0_z*psi_y - t230 - t232
-                    t268 = psi_x*t259
+                    t224 = Om0_y*dpsi_z
+                    t225 = Om_y*dpsi_z
+                    t226 = dOm0_y*psi_z
+                    t227 = dOm_y*psi_z
+                    t228 = -Om0_x*psi_y + Om0_y*psi_x
+                    t229 = dpsi_y*e0
+                    t230 = Om_x*psi_z - Om_z*psi_x
+                    t231 = dpsi_z*e0
+                    t232 = -Om_x*psi_y + Om_y*psi_x
+                    t233 = Om0_x*psi_z - Om0_z*psi_x
+                    t234 = Om0_x*dpsi_y
+                    t235 = dOm0_x*psi_y
+                    t236 = Om0_y*dpsi_x + dOm0_y*psi_x - t234 - t235
+                    t237 = e0*psi_y
+                    t238 = Om_x*dpsi_z
+                    t239 = dOm_x*psi_z
+                    t240 = Om_z*dpsi_x
+                    t241 = dOm_z*psi_x
+                    t242 = t238 + t239 - t240 - t241
+                    t243 = e0*psi_z
+                    t244 = Om_x*dpsi_y
+                    t245 = dOm_x*psi_y
+                    t246 = Om_y*dpsi_x + dOm_y*psi_x - t244 - t245
+                    t247 = Om0_x*dpsi_z
+                    t248 = dOm0_x*psi_z
+                    t249 = Om0_z*dpsi_x
+                    t250 = dOm0_z*psi_x
+                    t251 = t247 + t248 - t249 - t250
+                    t252 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t253 = e1*t252
+                    t254 = psi_y*t253
+                    t255 = psi_z*t253
+                    t256 = dpsi_x*e0
+                    t257 = -Om_y*psi_z + Om_z*psi_y
+                    t258 = -Om0_y*psi_z + Om0_z*psi_y
+                    t259 = e0*psi_x
+                    t260 = Om_z*dpsi_y + dOm_z*psi_y - t225 - t227
+                    t261 = Om0_z*dpsi_y + dOm0_z*psi_y - t224 - t226
+                    t262 = psi_x*t253
                     deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x +
-                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t238 +
-                        dpsi_z*e0*t239 + e0*psi_y*t252 + e0*psi_z*t257 + e1*psi_y*t238*t258 +
-                        e1*psi_z*t239*t258 - 0.5*t230 - 0.5*t231 - 0.5*t232 - 0.5*t233 - t234*t235
-                        - t234*t260 - t236*t237 - t236*t261 - t242*t243 - t248*t249)
-                    deta[j3 + 1] = (-dOm0_y + dOm_y + t234*t262 + t234*t268 + t237*t263 -
-                        t237*t264 - t238*t262 - t238*t268 + t242*t265 + (0.5)*t244 + (0.5)*t245 -
-                        0.5*t246 - 0.5*t247 + t249*t266 - t249*t267 - t252*t265 + (0.5)*t253 +
-                        (0.5)*t254 - 0.5*t255 - 0.5*t256 + t261*t263 - t261*t264)
+                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t232 +
+                        dpsi_z*e0*t233 + e0*psi_y*t246 + e0*psi_z*t251 + e1*psi_y*t232*t252 +
+                        e1*psi_z*t233*t252 - 0.5*t224 - 0.5*t225 - 0.5*t226 - 0.5*t227 - t228*t229
+                        - t228*t254 - t230*t231 - t230*t255 - t236*t237 - t242*t243)
+                    deta[j3 + 1] = (-dOm0_y + dOm_y + t228*t256 + t228*t262 + t231*t257 -
+                        t231*t258 - t232*t256 - t232*t262 + t236*t259 + (0.5)*t238 + (0.5)*t239 -
+                        0.5*t240 - 0.5*t241 + t243*t260 - t243*t261 - t246*t259 + (0.5)*t247 +
+                        (0.5)*t248 - 0.5*t249 - 0.5*t250 + t255*t257 - t255*t258)
                     deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t236 + dpsi_y*e0*t264 +
-                        e0*psi_x*t248 + e0*psi_y*t267 + e1*psi_x*t236*t258 + e1*psi_y*t258*t264 -
-                        t235*t263 - t239*t262 - t239*t268 - 0.5*t240 - 0.5*t241 - t243*t266 -
-                        0.5*t250 - 0.5*t251 - t257*t265 - t260*t263)
+                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t230 + dpsi_y*e0*t258 +
+                        e0*psi_x*t242 + e0*psi_y*t261 + e1*psi_x*t230*t252 + e1*psi_y*t252*t258 -
+                        t229*t257 - t233*t256 - t233*t262 - 0.5*t234 - 0.5*t235 - t237*t260 -
+                        0.5*t244 - 0.5*t245 - t251*t259 - t254*t257)
                 # differential: rates of the internal modes
                 for k in range(MODES, n):
                     dvm = dve[k]
@@ -1369,21 +1356,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     deud_x, deud_y, deud_z = detad[i3], detad[i3 + 1], detad[i3 + 2]
-                    t269 = Om0d_y*fit
-                    t270 = X_y*t269
-                    t271 = X_z*fit
-                    t272 = Om0d_z*t271
-                    t273 = X_y*du_y
-                    t274 = X_z*du_z
-                    t275 = Om0d_x*fit
-                    t276 = X_x*t275
-                    t277 = X_x*du_x
-                    rhs_x += (-X_y*deud_z*fit + X_z*deud_y*fit - du_x*t270 - du_x*t272 -
-                        t275*(-t273 - t274))
-                    rhs_y += (X_x*deud_z*fit - deud_x*t271 - du_y*t272 - du_y*t276 - t269*(-t274 -
-                        t277))
-                    rhs_z += (-Om0d_z*fit*(-t273 - t277) - X_x*deud_y*fit + X_y*deud_x*fit -
-                        du_z*t270 - du_z*t276)
+                    t263 = Om0d_y*fit
+                    t264 = X_y*t263
+                    t265 = X_z*fit
+                    t266 = Om0d_z*t265
+                    t267 = X_y*du_y
+                    t268 = X_z*du_z
+                    t269 = Om0d_x*fit
+                    t270 = X_x*t269
+                    t271 = X_x*du_x
+                    rhs_x += (-X_y*deud_z*fit + X_z*deud_y*fit - du_x*t264 - du_x*t266 -
+                        t269*(-t267 - t268))
+                    rhs_y += (X_x*deud_z*fit - deud_x*t265 - du_y*t266 - du_y*t270 - t263*(-t268 -
+                        t271))
+                    rhs_z += (-Om0d_z*fit*(-t267 - t271) - X_x*deud_y*fit + X_y*deud_x*fit -
+                        du_z*t264 - du_z*t270)
                 dOm0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1394,12 +1381,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     deud_x, deud_y, deud_z = detad[i3], detad[i3 + 1], detad[i3 + 2]
-                    t278 = X_y + u_y
-                    t279 = X_z + u_z
-                    t280 = X_x + u_x
-                    detad[i3] = -Om0d_y*du_z + Om0d_z*du_y - dOm0d_y*t279 + dOm0d_z*t278 + deud_x
-                    detad[i3 + 1] = Om0d_x*du_z - Om0d_z*du_x + dOm0d_x*t279 - dOm0d_z*t280 + deud_y
-                    detad[i3 + 2] = (-Om0d_x*du_y + Om0d_y*du_x - dOm0d_x*t278 + dOm0d_y*t280 +
+                    t272 = X_y + u_y
+                    t273 = X_z + u_z
+                    t274 = X_x + u_x
+                    detad[i3] = -Om0d_y*du_z + Om0d_z*du_y - dOm0d_y*t273 + dOm0d_z*t272 + deud_x
+                    detad[i3 + 1] = Om0d_x*du_z - Om0d_z*du_x + dOm0d_x*t273 - dOm0d_z*t274 + deud_y
+                    detad[i3 + 2] = (-Om0d_x*du_y + Om0d_y*du_x - dOm0d_x*t272 + dOm0d_y*t274 +
                         deud_z)
                 # differential: rate: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -1415,144 +1402,144 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     e0 = e0s[j]
                     e1 = e1s[j]
                     e2 = e2s[j]
-                    t281 = A_y*dpsi_z
-                    t282 = Om0_y*dep_z
-                    t283 = Om0d_y*dpsi_z
-                    t284 = Om_y*dep_z
-                    t285 = dA_y*psi_z
-                    t286 = dOm0_y*ep_z
-                    t287 = dOm0d_y*psi_z
-                    t288 = dOm_y*ep_z
-                    t289 = -Om0_x*psi_y + Om0_y*psi_x
-                    t290 = dep_y*e0
-                    t291 = Om_x*psi_z - Om_z*psi_x
-                    t292 = dep_z*e0
-                    t293 = -Om_x*psi_y + Om_y*psi_x
-                    t294 = Om0_x*psi_z - Om0_z*psi_x
-                    t295 = -Om0_x*ep_y + Om0_y*ep_x - Om0d_x*psi_y + Om0d_y*psi_x
-                    t296 = dpsi_y*e0
-                    t297 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                    t298 = dpsi_z*e0
-                    t299 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                    t300 = e0*ep_y
-                    t301 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                    t302 = e0*ep_z
-                    t303 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                    t304 = Om0_x*ep_z - Om0_z*ep_x + Om0d_x*psi_z - Om0d_z*psi_x
-                    t305 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t306 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                    t307 = 2*psi_x
-                    t308 = 2*psi_y
-                    t309 = 2*psi_z
-                    t310 = ep_x*t307 + ep_y*t308 + ep_z*t309
-                    t311 = e1*t310
-                    t312 = dpsi_y*t311
-                    t313 = dpsi_z*t311
-                    t314 = dpsi_x*t307 + dpsi_y*t308 + dpsi_z*t309
-                    t315 = e1*t314
-                    t316 = ep_y*t315
-                    t317 = ep_z*t315
-                    t318 = psi_y*t315
-                    t319 = psi_y*t311
-                    t320 = psi_z*t315
-                    t321 = psi_z*t311
-                    t322 = Om0_x*dep_y
-                    t323 = Om0d_x*dpsi_y
-                    t324 = dOm0_x*ep_y
-                    t325 = dOm0d_x*psi_y
-                    t326 = (Om0_y*dep_x + Om0d_y*dpsi_x + dOm0_y*ep_x + dOm0d_y*psi_x - t322 -
-                        t323 - t324 - t325)
-                    t327 = e0*psi_y
-                    t328 = A_x*dpsi_z
-                    t329 = Om_x*dep_z
-                    t330 = dA_x*psi_z
-                    t331 = dOm_x*ep_z
-                    t332 = A_z*dpsi_x
-                    t333 = Om_z*dep_x
-                    t334 = dA_z*psi_x
-                    t335 = dOm_z*ep_x
-                    t336 = t328 + t329 + t330 + t331 - t332 - t333 - t334 - t335
-                    t337 = e0*psi_z
-                    t338 = A_x*dpsi_y
-                    t339 = Om_x*dep_y
-                    t340 = dA_x*psi_y
-                    t341 = dOm_x*ep_y
-                    t342 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t338 - t339 - t340
-                        - t341)
-                    t343 = Om0_x*dep_z
-                    t344 = Om0d_x*dpsi_z
-                    t345 = dOm0_x*ep_z
-                    t346 = dOm0d_x*psi_z
-                    t347 = Om0_z*dep_x
-                    t348 = Om0d_z*dpsi_x
-                    t349 = dOm0_z*ep_x
-                    t350 = dOm0d_z*psi_x
-                    t351 = t343 + t344 + t345 + t346 - t347 - t348 - t349 - t350
-                    t352 = (dep_x*t307 + dep_y*t308 + dep_z*t309 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
+                    t275 = A_y*dpsi_z
+                    t276 = Om0_y*dep_z
+                    t277 = Om0d_y*dpsi_z
+                    t278 = Om_y*dep_z
+                    t279 = dA_y*psi_z
+                    t280 = dOm0_y*ep_z
+                    t281 = dOm0d_y*psi_z
+                    t282 = dOm_y*ep_z
+                    t283 = -Om0_x*psi_y + Om0_y*psi_x
+                    t284 = dep_y*e0
+                    t285 = Om_x*psi_z - Om_z*psi_x
+                    t286 = dep_z*e0
+                    t287 = -Om_x*psi_y + Om_y*psi_x
+                    t288 = Om0_x*psi_z - Om0_z*psi_x
+                    t289 = -Om0_x*ep_y + Om0_y*ep_x - Om0d_x*psi_y + Om0d_y*psi_x
+                    t290 = dpsi_y*e0
+                    t291 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
+                    t292 = dpsi_z*e0
+                    t293 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
+                    t294 = e0*ep_y
+                    t295 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
+                    t296 = e0*ep_z
+                    t297 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
+                    t298 = Om0_x*ep_z - Om0_z*ep_x + Om0d_x*psi_z - Om0d_z*psi_x
+                    t299 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
+                    t300 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
+                    t301 = 2*psi_x
+                    t302 = 2*psi_y
+                    t303 = 2*psi_z
+                    t304 = ep_x*t301 + ep_y*t302 + ep_z*t303
+                    t305 = e1*t304
+                    t306 = dpsi_y*t305
+                    t307 = dpsi_z*t305
+                    t308 = dpsi_x*t301 + dpsi_y*t302 + dpsi_z*t303
+                    t309 = e1*t308
+                    t310 = ep_y*t309
+                    t311 = ep_z*t309
+                    t312 = psi_y*t309
+                    t313 = psi_y*t305
+                    t314 = psi_z*t309
+                    t315 = psi_z*t305
+                    t316 = Om0_x*dep_y
+                    t317 = Om0d_x*dpsi_y
+                    t318 = dOm0_x*ep_y
+                    t319 = dOm0d_x*psi_y
+                    t320 = (Om0_y*dep_x + Om0d_y*dpsi_x + dOm0_y*ep_x + dOm0d_y*psi_x - t316 -
+                        t317 - t318 - t319)
+                    t321 = e0*psi_y
+                    t322 = A_x*dpsi_z
+                    t323 = Om_x*dep_z
+                    t324 = dA_x*psi_z
+                    t325 = dOm_x*ep_z
+                    t326 = A_z*dpsi_x
+                    t327 = Om_z*dep_x
+                    t328 = dA_z*psi_x
+                    t329 = dOm_z*ep_x
+                    t330 = t322 + t323 + t324 + t325 - t326 - t327 - t328 - t329
+                    t331 = e0*psi_z
+                    t332 = A_x*dpsi_y
+                    t333 = Om_x*dep_y
+                    t334 = dA_x*psi_y
+                    t335 = dOm_x*ep_y
+                    t336 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t332 - t333 - t334
+                        - t335)
+                    t337 = Om0_x*dep_z
+                    t338 = Om0d_x*dpsi_z
+                    t339 = dOm0_x*ep_z
+                    t340 = dOm0d_x*psi_z
+                    t341 = Om0_z*dep_x
+                    t342 = Om0d_z*dpsi_x
+                    t343 = dOm0_z*ep_x
+                    t344 = dOm0d_z*psi_x
+                    t345 = t337 + t338 + t339 + t340 - t341 - t342 - t343 - t344
+                    t346 = (dep_x*t301 + dep_y*t302 + dep_z*t303 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
                         2*dpsi_z*ep_z)
-                    t353 = e1*t352
-                    t354 = t289*t353
-                    t355 = psi_z*t353
-                    t356 = e2*t310*t314
-                    t357 = t289*t356
-                    t358 = psi_z*t356
-                    t359 = dep_x*e0
-                    t360 = -Om_y*psi_z + Om_z*psi_y
-                    t361 = -Om0_y*psi_z + Om0_z*psi_y
-                    t362 = dpsi_x*e0
-                    t363 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                    t364 = e0*ep_x
-                    t365 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t366 = -Om0_y*ep_z + Om0_z*ep_y - Om0d_y*psi_z + Om0d_z*psi_y
-                    t367 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                    t368 = dpsi_x*t311
-                    t369 = ep_x*t315
-                    t370 = psi_x*t315
-                    t371 = psi_x*t311
-                    t372 = e0*psi_x
-                    t373 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t281 - t284 - t285
-                        - t288)
-                    t374 = (Om0_z*dep_y + Om0d_z*dpsi_y + dOm0_z*ep_y + dOm0d_z*psi_y - t282 -
-                        t283 - t286 - t287)
-                    t375 = psi_x*t353
-                    t376 = psi_x*t356
+                    t347 = e1*t346
+                    t348 = t283*t347
+                    t349 = psi_z*t347
+                    t350 = e2*t304*t308
+                    t351 = t283*t350
+                    t352 = psi_z*t350
+                    t353 = dep_x*e0
+                    t354 = -Om_y*psi_z + Om_z*psi_y
+                    t355 = -Om0_y*psi_z + Om0_z*psi_y
+                    t356 = dpsi_x*e0
+                    t357 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
+                    t358 = e0*ep_x
+                    t359 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
+                    t360 = -Om0_y*ep_z + Om0_z*ep_y - Om0d_y*psi_z + Om0d_z*psi_y
+                    t361 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
+                    t362 = dpsi_x*t305
+                    t363 = ep_x*t309
+                    t364 = psi_x*t309
+                    t365 = psi_x*t305
+                    t366 = e0*psi_x
+                    t367 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t275 - t278 - t279
+                        - t282)
+                    t368 = (Om0_z*dep_y + Om0d_z*dpsi_y + dOm0_z*ep_y + dOm0d_z*psi_y - t276 -
+                        t277 - t280 - t281)
+                    t369 = psi_x*t347
+                    t370 = psi_x*t350
                     detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om0d_z*dpsi_y +
                         (0.5)*Om_z*dep_y + dA_x + (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y - dOm0d_x +
-                        (0.5)*dOm0d_z*psi_y + (0.5)*dOm_z*ep_y + dep_y*e0*t293 + dep_z*e0*t294 +
-                        dpsi_y*e0*t303 + dpsi_y*e1*t293*t310 + dpsi_z*e0*t304 +
-                        dpsi_z*e1*t294*t310 + e0*ep_y*t305 + e0*ep_z*t306 + e0*psi_y*t342 +
-                        e0*psi_z*t351 + e1*ep_y*t293*t314 + e1*ep_z*t294*t314 + e1*psi_y*t293*t352
-                        + e1*psi_y*t303*t314 + e1*psi_y*t305*t310 + e1*psi_z*t294*t352 +
-                        e1*psi_z*t304*t314 + e1*psi_z*t306*t310 + e2*psi_y*t293*t310*t314 +
-                        e2*psi_z*t294*t310*t314 - psi_y*t354 - psi_y*t357 - 0.5*t281 - 0.5*t282 -
-                        0.5*t283 - 0.5*t284 - 0.5*t285 - 0.5*t286 - 0.5*t287 - 0.5*t288 -
-                        t289*t290 - t289*t312 - t289*t316 - t291*t292 - t291*t313 - t291*t317 -
-                        t291*t355 - t291*t358 - t295*t296 - t295*t318 - t297*t298 - t297*t320 -
-                        t299*t300 - t299*t319 - t301*t302 - t301*t321 - t326*t327 - t336*t337)
-                    detad[j3 + 1] = (dA_y - dOm0d_y + psi_x*t354 + psi_x*t357 + t289*t359 +
-                        t289*t368 + t289*t369 + t292*t360 - t292*t361 - t293*t359 - t293*t368 -
-                        t293*t369 - t293*t375 - t293*t376 + t295*t362 + t295*t370 + t298*t363 -
-                        t298*t366 + t299*t364 + t299*t371 + t302*t365 - t302*t367 - t303*t362 -
-                        t303*t370 - t305*t364 - t305*t371 + t313*t360 - t313*t361 + t317*t360 -
-                        t317*t361 + t320*t363 - t320*t366 + t321*t365 - t321*t367 + t326*t372 +
-                        (0.5)*t328 + (0.5)*t329 + (0.5)*t330 + (0.5)*t331 - 0.5*t332 - 0.5*t333 -
-                        0.5*t334 - 0.5*t335 + t337*t373 - t337*t374 - t342*t372 + (0.5)*t343 +
-                        (0.5)*t344 + (0.5)*t345 + (0.5)*t346 - 0.5*t347 - 0.5*t348 - 0.5*t349 -
-                        0.5*t350 + t355*t360 - t355*t361 + t358*t360 - t358*t361)
+                        (0.5)*dOm0d_z*psi_y + (0.5)*dOm_z*ep_y + dep_y*e0*t287 + dep_z*e0*t288 +
+                        dpsi_y*e0*t297 + dpsi_y*e1*t287*t304 + dpsi_z*e0*t298 +
+                        dpsi_z*e1*t288*t304 + e0*ep_y*t299 + e0*ep_z*t300 + e0*psi_y*t336 +
+                        e0*psi_z*t345 + e1*ep_y*t287*t308 + e1*ep_z*t288*t308 + e1*psi_y*t287*t346
+                        + e1*psi_y*t297*t308 + e1*psi_y*t299*t304 + e1*psi_z*t288*t346 +
+                        e1*psi_z*t298*t308 + e1*psi_z*t300*t304 + e2*psi_y*t287*t304*t308 +
+                        e2*psi_z*t288*t304*t308 - psi_y*t348 - psi_y*t351 - 0.5*t275 - 0.5*t276 -
+                        0.5*t277 - 0.5*t278 - 0.5*t279 - 0.5*t280 - 0.5*t281 - 0.5*t282 -
+                        t283*t284 - t283*t306 - t283*t310 - t285*t286 - t285*t307 - t285*t311 -
+                        t285*t349 - t285*t352 - t289*t290 - t289*t312 - t291*t292 - t291*t314 -
+                        t293*t294 - t293*t313 - t295*t296 - t295*t315 - t320*t321 - t330*t331)
+                    detad[j3 + 1] = (dA_y - dOm0d_y + psi_x*t348 + psi_x*t351 + t283*t353 +
+                        t283*t362 + t283*t363 + t286*t354 - t286*t355 - t287*t353 - t287*t362 -
+                        t287*t363 - t287*t369 - t287*t370 + t289*t356 + t289*t364 + t292*t357 -
+                        t292*t360 + t293*t358 + t293*t365 + t296*t359 - t296*t361 - t297*t356 -
+                        t297*t364 - t299*t358 - t299*t365 + t307*t354 - t307*t355 + t311*t354 -
+                        t311*t355 + t314*t357 - t314*t360 + t315*t359 - t315*t361 + t320*t366 +
+                        (0.5)*t322 + (0.5)*t323 + (0.5)*t324 + (0.5)*t325 - 0.5*t326 - 0.5*t327 -
+                        0.5*t328 - 0.5*t329 + t331*t367 - t331*t368 - t336*t366 + (0.5)*t337 +
+                        (0.5)*t338 + (0.5)*t339 + (0.5)*t340 - 0.5*t341 - 0.5*t342 - 0.5*t343 -
+                        0.5*t344 + t349*t354 - t349*t355 + t352*t354 - t352*t355)
                     detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om0d_y*dpsi_x +
                         (0.5)*Om_y*dep_x + (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x +
-                        (0.5)*dOm0d_y*psi_x - dOm0d_z + (0.5)*dOm_y*ep_x + dep_x*e0*t291 +
-                        dep_y*e0*t361 + dpsi_x*e0*t297 + dpsi_x*e1*t291*t310 + dpsi_y*e0*t366 +
-                        dpsi_y*e1*t310*t361 + e0*ep_x*t301 + e0*ep_y*t367 + e0*psi_x*t336 +
-                        e0*psi_y*t374 + e1*ep_x*t291*t314 + e1*ep_y*t314*t361 + e1*psi_x*t291*t352
-                        + e1*psi_x*t297*t314 + e1*psi_x*t301*t310 + e1*psi_y*t310*t367 +
-                        e1*psi_y*t314*t366 + e1*psi_y*t352*t361 + e2*psi_x*t291*t310*t314 +
-                        e2*psi_y*t310*t314*t361 - psi_y*t353*t360 - psi_y*t356*t360 - t290*t360 -
-                        t294*t359 - t294*t368 - t294*t369 - t294*t375 - t294*t376 - t296*t363 -
-                        t300*t365 - t304*t362 - t304*t370 - t306*t364 - t306*t371 - t312*t360 -
-                        t316*t360 - t318*t363 - t319*t365 - 0.5*t322 - 0.5*t323 - 0.5*t324 -
-                        0.5*t325 - t327*t373 - 0.5*t338 - 0.5*t339 - 0.5*t340 - 0.5*t341 -
-                        t351*t372)
+                        (0.5)*dOm0d_y*psi_x - dOm0d_z + (0.5)*dOm_y*ep_x + dep_x*e0*t285 +
+                        dep_y*e0*t355 + dpsi_x*e0*t291 + dpsi_x*e1*t285*t304 + dpsi_y*e0*t360 +
+                        dpsi_y*e1*t304*t355 + e0*ep_x*t295 + e0*ep_y*t361 + e0*psi_x*t330 +
+                        e0*psi_y*t368 + e1*ep_x*t285*t308 + e1*ep_y*t308*t355 + e1*psi_x*t285*t346
+                        + e1*psi_x*t291*t308 + e1*psi_x*t295*t304 + e1*psi_y*t304*t361 +
+                        e1*psi_y*t308*t360 + e1*psi_y*t346*t355 + e2*psi_x*t285*t304*t308 +
+                        e2*psi_y*t304*t308*t355 - psi_y*t347*t354 - psi_y*t350*t354 - t284*t354 -
+                        t288*t353 - t288*t362 - t288*t363 - t288*t369 - t288*t370 - t290*t357 -
+                        t294*t359 - t298*t356 - t298*t364 - t300*t358 - t300*t365 - t306*t354 -
+                        t310*t354 - t312*t357 - t313*t359 - 0.5*t316 - 0.5*t317 - 0.5*t318 -
+                        0.5*t319 - t321*t367 - 0.5*t332 - 0.5*t333 - 0.5*t334 - 0.5*t335 -
+                        t345*t366)
                 # differential: rate: rates of the internal modes
                 for k in range(MODES, n):
                     dam = dae[k]
@@ -1574,12 +1561,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7],
                     turn[8])
                 dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-                t377 = da0_x - dgamma_x
-                t378 = da0_y - dgamma_y
-                t379 = da0_z - dgamma_z
-                dzdd[N] = t377*turn_xx + t378*turn_yx + t379*turn_zx
-                dzdd[N + 1] = t377*turn_xy + t378*turn_yy + t379*turn_zy
-                dzdd[N + 2] = t377*turn_xz + t378*turn_yz + t379*turn_zz
+                t371 = da0_x - dgamma_x
+                t372 = da0_y - dgamma_y
+                t373 = da0_z - dgamma_z
+                dzdd[N] = t371*turn_xx + t372*turn_yx + t373*turn_zx
+                dzdd[N + 1] = t371*turn_xy + t372*turn_yy + t373*turn_zy
+                dzdd[N + 2] = t371*turn_xz + t372*turn_yz + t373*turn_zz
                 dzdd[N + 3] = dOm0d_x*turn_xx + dOm0d_y*turn_yx + dOm0d_z*turn_zx
                 dzdd[N + 4] = dOm0d_x*turn_xy + dOm0d_y*turn_yy + dOm0d_z*turn_zy
                 dzdd[N + 5] = dOm0d_x*turn_xz + dOm0d_y*turn_yz + dOm0d_z*turn_zz
@@ -1604,15 +1591,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t380 = X_z + u_z
-                    t381 = X_y + u_y
-                    t382 = X_x + u_x
+                    t374 = X_z + u_z
+                    t375 = X_y + u_y
+                    t376 = X_x + u_x
                     dF_x += -df_x
                     dF_y += -df_y
                     dF_z += -df_z
-                    dW_x += df_y*t380 - df_z*t381 - du_y*f_z + du_z*f_y
-                    dW_y += -df_x*t380 + df_z*t382 + du_x*f_z - du_z*f_x
-                    dW_z += df_x*t381 - df_y*t382 - du_x*f_y + du_y*f_x
+                    dW_x += df_y*t374 - df_z*t375 - du_y*f_z + du_z*f_y
+                    dW_y += -df_x*t374 + df_z*t376 + du_x*f_z - du_z*f_x
+                    dW_z += df_x*t375 - df_y*t376 - du_x*f_y + du_y*f_x
                 # differential: inertia and weight on the frame
                 turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                     turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7],
@@ -1634,25 +1621,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t383 = -m_x*psi_y + m_y*psi_x
-                    t384 = m_x*psi_z - m_z*psi_x
-                    t385 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t386 = dm_x*psi_z
-                    t387 = dpsi_z*m_x
-                    t388 = -dm_z*psi_x - dpsi_x*m_z + t386 + t387
-                    t389 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t390 = e1*t389
-                    t391 = -m_y*psi_z + m_z*psi_y
-                    t392 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t383 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t384 + (0.5)*dpsi_z*m_y - e0*psi_y*t385 +
-                        e0*psi_z*t388 + e1*psi_z*t384*t389 - psi_y*t383*t390)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t383 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t391 + e0*psi_x*t385 - e0*psi_z*t392 + e1*psi_x*t383*t389 -
-                        psi_z*t390*t391 - 0.5*t386 - 0.5*t387)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t384 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t391 + (0.5)*dpsi_y*m_x - e0*psi_x*t388 +
-                        e0*psi_y*t392 + e1*psi_y*t389*t391 - psi_x*t384*t390)
+                    t377 = -m_x*psi_y + m_y*psi_x
+                    t378 = m_x*psi_z - m_z*psi_x
+                    t379 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t380 = dm_x*psi_z
+                    t381 = dpsi_z*m_x
+                    t382 = -dm_z*psi_x - dpsi_x*m_z + t380 + t381
+                    t383 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t384 = e1*t383
+                    t385 = -m_y*psi_z + m_z*psi_y
+                    t386 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t377 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t378 + (0.5)*dpsi_z*m_y - e0*psi_y*t379 +
+                        e0*psi_z*t382 + e1*psi_z*t378*t383 - psi_y*t377*t384)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t377 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t385 + e0*psi_x*t379 - e0*psi_z*t386 + e1*psi_x*t377*t383 -
+                        psi_z*t384*t385 - 0.5*t380 - 0.5*t381)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t378 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t385 + (0.5)*dpsi_y*m_x - e0*psi_x*t382 +
+                        e0*psi_y*t386 + e1*psi_y*t383*t385 - psi_x*t378*t384)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for i in range(N_POSITIONS):
@@ -1660,26 +1647,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    t393 = X_x*wp_y - X_y*wp_x
-                    t394 = -X_x*wp_z + X_z*wp_x
-                    t395 = X_y*wp_z - X_z*wp_y
-                    rhs_x += -fit*(du_y*t393 - du_z*t394)
-                    rhs_y += -fit*(-du_x*t393 + du_z*t395)
-                    rhs_z += -fit*(du_x*t394 - du_y*t395)
-                t396 = dW_x + rhs_x
-                t397 = dW_y + rhs_y
-                t398 = dW_z + rhs_z
-                dwp_x = Bxx*t396 + Byx*t397 + Bzx*t398
-                dwp_y = Bxy*t396 + Byy*t397 + Bzy*t398
-                dwp_z = Bxz*t396 + Byz*t397 + Bzz*t398
+                    t387 = X_x*wp_y - X_y*wp_x
+                    t388 = -X_x*wp_z + X_z*wp_x
+                    t389 = X_y*wp_z - X_z*wp_y
+                    rhs_x += -fit*(du_y*t387 - du_z*t388)
+                    rhs_y += -fit*(-du_x*t387 + du_z*t389)
+                    rhs_z += -fit*(du_x*t388 - du_y*t389)
+                t390 = dW_x + rhs_x
+                t391 = dW_y + rhs_y
+                t392 = dW_z + rhs_z
+                dwp_x = Bxx*t390 + Byx*t391 + Bzx*t392
+                dwp_y = Bxy*t390 + Byy*t391 + Bzy*t392
+                dwp_z = Bxz*t390 + Byz*t391 + Bzz*t392
                 # differential: force on the origin, through the frame
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    t399 = dwp_z*fit
-                    dF_x += -X_y*t399 + X_z*dwp_y*fit
-                    dF_y += X_x*t399 - X_z*dwp_x*fit
+                    t393 = dwp_z*fit
+                    dF_x += -X_y*t393 + X_z*dwp_y*fit
+                    dF_y += X_x*t393 - X_z*dwp_x*fit
                     dF_z += -X_x*dwp_y*fit + X_y*dwp_x*fit
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
@@ -1688,10 +1675,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     alpha = alphas[i]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t400 = dwp_z*fit
-                    t401 = X_z*fit
-                    dh[i3] = X_y*t400 + alpha*dF_x + df_x - dwp_y*t401
-                    dh[i3 + 1] = -X_x*t400 + alpha*dF_y + df_y + dwp_x*t401
+                    t394 = dwp_z*fit
+                    t395 = X_z*fit
+                    dh[i3] = X_y*t394 + alpha*dF_x + df_x - dwp_y*t395
+                    dh[i3 + 1] = -X_x*t394 + alpha*dF_y + df_y + dwp_x*t395
                     dh[i3 + 2] = X_x*dwp_y*fit - X_y*dwp_x*fit + alpha*dF_z + df_z
                 # differential: force on the nodes, left in frame axes
                 for i in range(N_POSITIONS):
@@ -1710,33 +1697,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t402 = dm_y*psi_z
-                    t403 = dpsi_z*m_y
-                    t404 = -m_x*psi_y + m_y*psi_x
-                    t405 = e0*t404
-                    t406 = m_x*psi_z - m_z*psi_x
-                    t407 = dpsi_z*e0
-                    t408 = dm_x*psi_y
-                    t409 = dpsi_y*m_x
-                    t410 = e0*(dm_y*psi_x + dpsi_x*m_y - t408 - t409)
-                    t411 = dm_x*psi_z
-                    t412 = dpsi_z*m_x
-                    t413 = dm_z*psi_x
-                    t414 = dpsi_x*m_z
-                    t415 = t411 + t412 - t413 - t414
-                    t416 = e0*psi_z
-                    t417 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t418 = t404*t417
-                    t419 = psi_z*t417
-                    t420 = -m_y*psi_z + m_z*psi_y
-                    t421 = dm_z*psi_y + dpsi_y*m_z - t402 - t403
-                    dg[j3] = (dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t405 + psi_y*t410 +
-                        psi_y*t418 + (0.5)*t402 + (0.5)*t403 - t406*t407 - t406*t419 - t415*t416)
-                    dg[j3 + 1] = (dm_y - dpsi_x*t405 - psi_x*t410 - psi_x*t418 + t407*t420 -
-                        0.5*t411 - 0.5*t412 + (0.5)*t413 + (0.5)*t414 + t416*t421 + t419*t420)
-                    dg[j3 + 2] = (-0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t406 - 0.5*dpsi_x*m_y -
-                        dpsi_y*e0*t420 + e0*psi_x*t415 - e0*psi_y*t421 + psi_x*t406*t417 -
-                        psi_y*t417*t420 + (0.5)*t408 + (0.5)*t409)
+                    t396 = dm_y*psi_z
+                    t397 = dpsi_z*m_y
+                    t398 = -m_x*psi_y + m_y*psi_x
+                    t399 = e0*t398
+                    t400 = m_x*psi_z - m_z*psi_x
+                    t401 = dpsi_z*e0
+                    t402 = dm_x*psi_y
+                    t403 = dpsi_y*m_x
+                    t404 = e0*(dm_y*psi_x + dpsi_x*m_y - t402 - t403)
+                    t405 = dm_x*psi_z
+                    t406 = dpsi_z*m_x
+                    t407 = dm_z*psi_x
+                    t408 = dpsi_x*m_z
+                    t409 = t405 + t406 - t407 - t408
+                    t410 = e0*psi_z
+                    t411 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t412 = t398*t411
+                    t413 = psi_z*t411
+                    t414 = -m_y*psi_z + m_z*psi_y
+                    t415 = dm_z*psi_y + dpsi_y*m_z - t396 - t397
+                    dg[j3] = (dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t399 + psi_y*t404 +
+                        psi_y*t412 + (0.5)*t396 + (0.5)*t397 - t400*t401 - t400*t413 - t409*t410)
+                    dg[j3 + 1] = (dm_y - dpsi_x*t399 - psi_x*t404 - psi_x*t412 + t401*t414 -
+                        0.5*t405 - 0.5*t406 + (0.5)*t407 + (0.5)*t408 + t410*t415 + t413*t414)
+                    dg[j3 + 2] = (-0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t400 - 0.5*dpsi_x*m_y -
+                        dpsi_y*e0*t414 + e0*psi_x*t409 - e0*psi_y*t415 + psi_x*t400*t411 -
+                        psi_y*t411*t414 + (0.5)*t402 + (0.5)*t403)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

@@ -36,14 +36,24 @@ from sebody.contract.layout import (
 )
 from sebody.kernels.abi import at, opaque, padded
 from sebody.kernels.coordinates import all_to_free, follow, follow_changes
-from sebody.kernels.dense import add_block_times, add_blocks_times, block_times, clear, rows_times
+from sebody.kernels.dense import (
+    add_block_times,
+    add_blocks_times,
+    block_times,
+    clear,
+    columns_times,
+    rows_times,
+)
 from sebody.kernels.frame_search import planar_mean
 from sebody.kernels.packed_products import (
+    add_couplings,
     add_packed,
     add_packed_times,
+    couplings_times,
     from_free,
     packed_room,
     packed_times,
+    packed_times_both,
     to_free,
 )
 
@@ -57,11 +67,11 @@ ROTATIONS = None      # first rotation among the local coordinates
 MODES = None          # first internal mode
 DAMPED = None        # has structural damping, None where a body tells
 N_MODES = None        # their number, None where it is read at run time
-WORK_ROWS = 117
+WORK_ROWS = 119
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (260, 76, 7, 1),
+OPERATIONS = {"residual": (261, 76, 7, 1),
               "column": (18, 93, 9, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("sizes", (3,), "slaved coordinates, resultants of second order, damped or not"),
@@ -73,8 +83,8 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),
     Part("J0", ("pairs",), "moments of inertia at rest"),
     Part("moment_columns", ("N", "lines"), "S1, g_k, h_kl + h_lk", columns=True),
-    Part("of_place", ("placed", "N", "N"), "J2_kl, K_k^T", packed=True),
-    Part("of_rate", ("rated", "N", "N"), "K_k^T, K_k^T - K_k", packed=True),
+    Part("moment_rows", ("lines", "N"), "its transpose", columns=True),
+    Part("couplings", ("coupled", "N", "N"), "J2_kl, K_k^T; K_k^T and K_k of rates", packed=True),
     Part("Mz", (1, "N", "N"), "reduced mass with slaved coordinates", packed=True),
     Part("Cz", ("damped", "free", "free"), "reduced damping", packed=True),
     Part("followers", ("slaved", "free", "free"), "Q_b", packed=True),
@@ -124,11 +134,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         h = at(work, 26*row)
         moved = at(work, 27*row)
         squares = at(work, 28*row)
-        unordered = at(work, 51*row)
-        Zq = at(work, 54*row)
-        Zd = at(work, 66*row)
-        products = at(work, 78*row)
-        Gy = at(work, 117*row)
+        unordered = at(work, 50*row)
+        Zq = at(work, 53*row)
+        Zd = at(work, 65*row)
+        products = at(work, 77*row)
+        Gy = at(work, 119*row)
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
@@ -156,9 +166,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         c0 = at(order, free)
         J0 = at(c0, 2)
         moment_columns = at(J0, 1)
-        of_place = at(moment_columns, 4*padded(N))
-        of_rate = at(of_place, packed_room(2, N, N))
-        Mz = at(of_rate, packed_room(2, N, N))
+        moment_rows = at(moment_columns, 4*padded(N))
+        couplings = at(moment_rows, N*padded(4))
+        Mz = at(couplings, packed_room(4, N, N))
         Cz = at(Mz, packed_room(1, N, N))
         followers = at(Cz, packed_room(damped, free, free))
         lam = at(followers, packed_room(slaved, free, free))
@@ -284,22 +294,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         gamma[1] = R0_cos*field_y - R0_sin*field_x
         # coordinates that determine the others, and their rates
         all_to_free(y, eta, etad, axes, order, unordered, z, zd, zdd, bound, bound_free, free, hN)
-        # Q_b z, all b
-        packed_times(followers, z, Zq, slaved*hn)
-        # Q_b zd, all b
-        packed_times(followers, zd, Zd, slaved*hn)
+        # Q_b z and Q_b zd, all b
+        packed_times_both(followers, z, zd, Zq, Zd, slaved*hn)
         # eta_b = y . Q_b y / 2, their rates and second rates
         follow(Zq, Zd, z, zd, zdd, free, slaved, hn)
-        # J2_kl z and K_k^T z
-        packed_times(of_place, z, products, 2*hN)
-        # K_k^T zdot and (K_k^T - K_k) zdot
-        packed_times(of_rate, zd, at(products, 2*hN), 2*hN)
+        # J2_kl z, K_k^T z, K_k^T zdot and K_k zdot
+        couplings_times(couplings, z, zd, products, 4*hN)
         # first moments, couplings, inertia at rest, by z
-        rows_times(moment_columns, z, line0, N, 4, hN)
+        columns_times(moment_rows, z, line0, 4, N)
         # first moments, couplings, inertia at rest, by zd
-        rows_times(moment_columns, zd, line1, N, 4, hN)
+        columns_times(moment_rows, zd, line1, 4, N)
         # first moments, couplings, inertia at rest, by zdd
-        rows_times(moment_columns, zdd, line2, N, 4, hN)
+        columns_times(moment_rows, zdd, line2, 4, N)
         # quadratic parts, by z
         rows_times(products, z, product0, N, 4, hN)
         # quadratic parts, by zd
@@ -352,8 +358,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         by_moment_columns[3] = -0.5*t4
         by_products[0] = -t4
         by_products[1] = turning_z
-        by_products[2] = 0.0
-        by_products[3] = spin_z
+        by_products[2] = spin_z
+        by_products[3] = -spin_z
         # inertia force of deformation, Mbar zddot
         packed_times(Mz, zdd, local, hN)
         # damping force, Cbar ydot
@@ -500,43 +506,40 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dqe = at(work, 29*row)
             dve = at(work, 30*row)
             dae = at(work, 31*row)
-            by_place = at(work, 32*row)
-            by_rate = at(work, 33*row)
-            ones = at(work, 34*row)
-            by_followers = at(work, 35*row)
-            of_E = at(work, 36*row)
-            of_Gy = at(work, 37*row)
-            dy = at(work, 38*row)
-            dz = at(work, 39*row)
-            dlocal = at(work, 40*row)
-            dyd = at(work, 41*row)
-            dacc = at(work, 42*row)
-            deta = at(work, 43*row)
-            detad = at(work, 44*row)
-            dgamma = at(work, 45*row)
-            dzd = at(work, 46*row)
-            dzdd = at(work, 47*row)
-            ds = at(work, 48*row)
-            dh = at(work, 49*row)
-            dg = at(work, 50*row)
-            Za = at(work, 93*row)
-            more = at(work, 105*row)
-            Lz = at(work, (117 + n + 18)*row)
-            Lv = at(work, (117 + 2*(n + 18))*row)
-            La = at(work, (117 + 3*(n + 18))*row)
+            by_couplings = at(work, 32*row)
+            ones = at(work, 33*row)
+            by_followers = at(work, 34*row)
+            of_E = at(work, 35*row)
+            of_Gy = at(work, 36*row)
+            dy = at(work, 37*row)
+            dz = at(work, 38*row)
+            dlocal = at(work, 39*row)
+            dyd = at(work, 40*row)
+            dacc = at(work, 41*row)
+            deta = at(work, 42*row)
+            detad = at(work, 43*row)
+            dgamma = at(work, 44*row)
+            dzd = at(work, 45*row)
+            dzdd = at(work, 46*row)
+            ds = at(work, 47*row)
+            dh = at(work, 48*row)
+            dg = at(work, 49*row)
+            Za = at(work, 92*row)
+            more = at(work, 104*row)
+            Lz = at(work, (119 + n + 18)*row)
+            Lv = at(work, (119 + 2*(n + 18))*row)
+            La = at(work, (119 + 3*(n + 18))*row)
             # Q_b zdd, all b
             packed_times(followers, zdd, Za, slaved*hn)
-            # J2_kl zdot
-            packed_times(of_place, zd, more, 2*hN)
-            # K_k^T zddot and (K_k^T - K_k) zddot
-            packed_times(of_rate, zdd, at(more, hN), 2*hN)
+            # J2_kl zdot, K_k^T zddot and K_k zddot
+            couplings_times(couplings, zd, zdd, more, 4*hN)
             # factors of the local tangents
             turning_z = zdd[N + 2]
             spin_z = zd[N]
-            by_place[0] = -c_geo*spin_z*spin_z
-            by_place[1] = c_geo*turning_z
-            by_rate[0] = 0.0
-            by_rate[1] = spin_z
+            by_couplings[0] = -c_geo*spin_z*spin_z
+            by_couplings[1] = c_geo*turning_z
+            by_couplings[2] = spin_z
+            by_couplings[3] = -spin_z
             ones[0] = 1
             # forces on eta as factors
             for b in range(slaved):
@@ -548,12 +551,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             clear(Lv, N*deep)
             # local tangents
             clear(La, N*deep)
-            # by z: J2_kl and K_k^T
-            add_packed(of_place, by_place, Lz, deep)
+            # by z: J2_kl and K_k^T; by zdot: K_k^T and K_k
+            add_couplings(couplings, by_couplings, Lz, Lv, deep)
             # forces on eta
             add_packed(followers, by_followers, Lz, deep)
-            # by zdot: K_k^T and K_k^T - K_k
-            add_packed(of_rate, by_rate, Lv, deep)
             # structural damping
             add_packed(Cz, ones, Lv, deep)
             # by zddot
@@ -585,18 +586,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 row_v_z = products[2*hN + i]
                 row_w_z = products[3*hN + i]
                 row_jd_zz = more[i]
-                row_ua_z = more[hN + i]
-                row_wa_z = more[2*hN + i]
+                row_wa_z = more[3*hN + i]
                 t21 = spin_z*spin_z
                 t22 = 2*spin_z
                 t23 = row_h_zz + 2*row_j_zz
                 Lz[i*deep + N] = c_geo*(-row_S1_x*t21 - row_S1_y*turning_z)
                 Lz[i*deep + N + 1] = c_geo*(row_S1_x*turning_z - row_S1_y*t21)
                 Lz[i*deep + N + 2] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_zz*t22 +
-                    row_ua_z - row_wa_z + t23*turning_z))
+                    row_wa_z + t23*turning_z))
                 Lv[i*deep + N] = -row_S1_y*t22
                 Lv[i*deep + N + 1] = row_S1_x*t22
-                Lv[i*deep + N + 2] = 2*row_v_z - row_w_z + spin_z*t23
+                Lv[i*deep + N + 2] = row_v_z + row_w_z + spin_z*t23
                 La[i*deep + N] = row_S1_x
                 La[i*deep + N + 1] = row_S1_y
                 La[i*deep + N + 2] = row_g_z + row_u_z
@@ -608,8 +608,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 row_h_zz = moment_columns[3*hN + i]
                 row_j_zz = products[i]
                 row_u_z = products[hN + i]
+                row_v_z = products[2*hN + i]
                 row_w_z = products[3*hN + i]
-                Lv[N*deep + i] = row_w_z - spin_z*(row_h_zz + 2*row_j_zz)
+                Lv[N*deep + i] = row_v_z - row_w_z - spin_z*(row_h_zz + 2*row_j_zz)
                 La[N*deep + i] = row_S1_x
                 La[(N + 1)*deep + i] = row_S1_y
                 La[(N + 2)*deep + i] = row_g_z + row_u_z

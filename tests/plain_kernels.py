@@ -12,11 +12,11 @@ import mpmath
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from sebody.contract.counts import LANES, packed_size, whole_vectors
+from sebody.contract.counts import packed_size, whole_vectors
 from sebody.contract.layout import OK
 from sebody.derive.symbolic.rotations import stumpff_value, tangent_inverse_value
 from sebody.kernels.abi import Arguments
-from sebody.kernels.packed import GROUP, HEAD
+from sebody.kernels.packed import COUPLED, strips
 from sebody.verify.check.states import arguments
 
 
@@ -79,31 +79,52 @@ def clear(row, count):
     row[:count] = 0.0
 
 
-def strips(row):
-    """Of packed matrices: place of the product, matrix, first row, first column and entries."""
-    whole = row.view(np.int64)
-    for g in range(whole[0]):
-        first, width, count, head, at = whole[1 + GROUP * g:1 + GROUP * (g + 1)]
-        entries = row[at:at + LANES * count * width].reshape(count, width, LANES)
-        for s, strip in enumerate(entries):
-            yield *whole[head + HEAD * s:head + HEAD * (s + 1)], first, strip.T
+def _products(matrices):
+    """Of packed matrices: vector, place of the sums, matrix, first row and column, entries."""
+    for strip in strips(matrices):
+        below, right, entries = strip.row, strip.first, strip.entries
+        if len(strip.places) == 1:
+            yield strip.vector, *strip.places, *strip.matrices, below, right, entries
+            continue
+        coupled = int(strip.kind == COUPLED)
+        for k in range(1 + coupled):
+            yield k, strip.places[k] + below, strip.matrices[k], below, right, entries
+        yield coupled, strip.places[-1] + right, strip.matrices[-1], right, below, entries.T
 
 
 def packed_times(matrices, x, out, count):
+    couplings_times(matrices, x, x, out, count)
+
+
+def packed_times_both(matrices, x, y, of_x, of_y, count):
+    packed_times(matrices, x, of_x, count)
+    packed_times(matrices, y, of_y, count)
+
+
+def couplings_times(matrices, x, y, out, count):
     out[:count] = 0.0
-    add_packed_times(matrices, x, out)
+    _add_products(matrices, x, y, out)
 
 
 def add_packed_times(matrices, x, out):
-    for place, _, _, first, strip in strips(matrices):
-        out[place:place + LANES] += strip @ x[first:first + strip.shape[1]]
+    _add_products(matrices, x, x, out)
+
+
+def _add_products(matrices, x, y, out):
+    for vector, place, _, _, first, entries in _products(matrices):
+        rows, columns = entries.shape
+        out[place:place + rows] += entries @ (x, y)[vector][first:first + columns]
 
 
 def add_packed(matrices, factors, out, height):
-    for _, k, row, first, strip in strips(matrices):
-        for c, column in enumerate(strip.T):
+    add_couplings(matrices, factors, out, out, height)
+
+
+def add_couplings(matrices, factors, of_x, of_y, height):
+    for vector, _, k, row, first, entries in _products(matrices):
+        for c, column in enumerate(entries.T):
             place = (first + c) * height + row
-            out[place:place + LANES] += factors[k] * column
+            (of_x, of_y)[vector][place:place + len(column)] += factors[k] * column
 
 
 def to_free(y, axes, order, moved, z, bound, bound_free, free, end):

@@ -70,8 +70,14 @@ INVERSE_3 = _function("dense", "inverse_3", Gives.REALS, **dict.fromkeys("abcdef
 PACKED_TIMES = _function("packed_products", "packed_times", matrices=READ, x=READ, out=WRITE,
                          count=WHOLE)
 ADD_PACKED_TIMES = _function("packed_products", "add_packed_times", matrices=READ, x=READ, out=ADD)
+PACKED_TIMES_BOTH = _function("packed_products", "packed_times_both", matrices=READ, x=READ,
+                              y=READ, of_x=WRITE, of_y=WRITE, count=WHOLE)
+COUPLINGS_TIMES = _function("packed_products", "couplings_times", matrices=READ, x=READ, y=READ,
+                            out=WRITE, count=WHOLE)
 ADD_PACKED = _function("packed_products", "add_packed", matrices=READ, factors=READ, out=ADD,
                        height=WHOLE)
+ADD_COUPLINGS = _function("packed_products", "add_couplings", matrices=READ, factors=READ,
+                          of_x=ADD, of_y=ADD, height=WHOLE)
 
 # coordinates that determine the others, and those that follow them
 TO_FREE = _function("packed_products", "to_free", y=READ, axes=READ, order=READ, moved=SCRATCH,

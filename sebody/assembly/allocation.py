@@ -10,6 +10,7 @@ from sebody.contract.counts import LANES, whole_vectors
 from sebody.contract.layout import COEFFICIENTS, ENERGIES, FIELD
 from sebody.engine.growth import new_guard
 from sebody.engine.newton import SLOWEST
+from sebody.engine.offsets import at_cache_lines
 from sebody.engine.prediction import FIT, ROWS
 from sebody.engine.scalars import record
 from sebody.engine.state import (
@@ -67,7 +68,7 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
         regularization=zeros(total), constraint_columns=zeros(system.constraint_columns.size),
         projected=zeros(total),
         pulled=zeros(total),
-        column=zeros(LANES * system.slot_unknowns.size), work=zeros(work_size(model)),
+        column=zeros(LANES * system.slot_unknowns.size), work=at_cache_lines(work_size(model)),
         energy=zeros(ENERGIES.size(counts)), memory=zeros(int(system.control.memory[0])),
         guard=new_guard(len(model.bodies)),
         clock=clock, control=control)

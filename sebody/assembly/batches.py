@@ -29,8 +29,9 @@ from sebody.assembly.equal_bodies import (
 from sebody.assembly.floating import floating_constants, frame_conditions
 from sebody.assembly.numbering import Numbering, coordinates
 from sebody.assembly.rigid_part_constants import rigid_part_constants
-from sebody.contract.counts import whole_vectors
+from sebody.contract.counts import CACHE_LINE, whole_vectors
 from sebody.contract.layout import AT_POSITIONS, AT_ROTATIONS
+from sebody.engine.offsets import at_cache_lines
 from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.loader import element_kernel, load
 from sebody.model.body_points import point_constants
@@ -85,17 +86,25 @@ class Batches(NamedTuple):
 
 
 class _Constants:
-    """Rows of constants, one after the other."""
+    """Rows of constants, one after the other, each from a whole cache line on."""
 
     def __init__(self) -> None:
-        self.rows: list[NDArray] = []
-        self.size = 0
+        self._rows: list[tuple[int, NDArray]] = []
+        self._size = 0
 
     def add(self, row: NDArray) -> int:
         """Append a row; returns where it begins."""
-        self.rows.append(row)
-        self.size += len(row)
-        return self.size - len(row)
+        first = self._size
+        self._rows.append((first, row))
+        self._size += -(-len(row) // CACHE_LINE) * CACHE_LINE
+        return first
+
+    def numbers(self) -> NDArray:
+        """All of them."""
+        whole = at_cache_lines(self._size)
+        for first, row in self._rows:
+            whole[first:first + len(row)] = row
+        return whole
 
 
 def make_batches(model: Mechanism, numbering: Numbering) -> Batches:
@@ -118,7 +127,7 @@ def make_batches(model: Mechanism, numbering: Numbering) -> Batches:
     laws = _law_batches(model, numbering, constants, [e for e in working if e.law is not None],
                         loads)
     return Batches(bodies + joints + laws + loads, len(bodies), len(bodies) + len(joints),
-                   np.concatenate(constants.rows))
+                   constants.numbers())
 
 
 def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants) -> list[Batch]:

@@ -25,6 +25,7 @@ from sebody.contract.names import IN_PLANE, element_name
 from sebody.errors import InputError
 from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.loader import find
+from sebody.kernels.packed import move_to_cache_lines
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Superelement
 
@@ -120,9 +121,16 @@ def constants_row(name: str, kernel: ModuleType, counts: Counts,
         Names or shapes are not those of the kernel.
     """
     try:
-        return Row("constants", kernel.CONSTANTS).pack(counts, values)
+        form = Row("constants", kernel.CONSTANTS)
+        row = form.pack(counts, values)
     except ContractError as error:
         raise _misfit(name, kernel, [str(error)]) from error
+    places = form.slices(counts)
+    for part in form.parts:
+        if part.packed and part.size(counts):
+            place = places[part.name]
+            move_to_cache_lines(row[place], place.start)
+    return row
 
 
 def index_row(name: str, kernel: ModuleType, unknowns: list[int], nodes: list[int],

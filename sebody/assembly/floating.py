@@ -17,7 +17,7 @@ from sebody.assembly.body_axes import (
 from sebody.contract.counts import Counts, first_rotation
 from sebody.errors import InputError
 from sebody.generated.options import CONDITIONS
-from sebody.kernels.packed import pack
+from sebody.kernels.packed import pack, pack_couplings
 from sebody.reduction.invariants import InertiaInvariants
 
 
@@ -81,17 +81,17 @@ def packed(invariants: InertiaInvariants, stiffness: NDArray, coordinates: Free,
     moments = np.vstack([i.S1, i.g, *(i.h[r, c] + i.h[c, r] for r, c in pairs)])
     across = i.K.transpose(0, 2, 1)
 
-    def rows(matrices, size):
-        return pack(matrices, (len(matrices), size, size))
+    def rows(matrices, size, symmetric=False):
+        return pack(matrices, (len(matrices), size, size), symmetric)
     return {"sizes": [i.slaved, i.resultants, int(damping is not None)],
             "turn": coordinates.turn[:, 0] if planar else coordinates.turn.ravel(),
             "axes": coordinates.axes, "axes_back": coordinates.axes.T, "order": coordinates.order,
             "c0": i.c0, "J0": [i.J0[pair] for pair in pairs], "moment_columns": moments.T,
-            "of_place": rows([*(i.J2[pair] for pair in pairs), *across], N),
-            "of_rate": rows([*across, *(across - i.K)], N), "Mz": rows([i.Mbar], N),
-            "Cz": rows([] if damping is None else [damping], free),
-            "followers": rows(i.Q, free), "lam": i.lam, "E": i.E,
-            "stretched": rows([*i.Ghat, stiffness], free)}
+            "moment_rows": moments,
+            "couplings": pack_couplings(np.array([i.J2[pair] for pair in pairs]), across),
+            "Mz": rows([i.Mbar], N), "Cz": rows([] if damping is None else [damping], free),
+            "followers": rows(i.Q, free, symmetric=True), "lam": i.lam, "E": i.E,
+            "stretched": rows([*i.Ghat, stiffness], free, symmetric=True)}
 
 
 def frame_conditions(frame: str, counts: Counts, values: Mapping[str, ArrayLike]) -> NDArray:

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping
 
 LANES = 4           # columns of a body's matrices are padded to whole vectors of so many
+CACHE_LINE = 8      # numbers: the memory of kernels begins at whole lines
 MEMBERS = 8         # of an ensemble that are evaluated at a time, see `sebody.engine.lanes`
 MOST_SLAVED = 12        # coordinates that may follow the unknowns: load modes of three
 # translations, three rotations and six products of angular velocities
@@ -21,20 +22,20 @@ def whole_vectors(n: int) -> int:
 def packed_size(count: int, rows: int, columns: int) -> int:
     """Length of the row of some packed matrices, see `sebody.kernels.packed`."""
     height, width = whole_vectors(rows), whole_vectors(columns)
-    return count * height * (width + width // 4) + 2 * width + 1
+    return count * height * (width + width // 4) + 5 * width + 40
 
 
 def axes_of(planar: bool) -> dict[str, int]:
     """The counts that follow from the space: of a position, a rotation, a symmetric matrix.
 
     ``lines`` are a first moment, a rotation and an inertia for each coordinate, ``motions`` those
-    of the frame, ``entries`` of its rotation: cosine and sine in a plane. ``placed`` and ``rated``
-    are matrices that multiply coordinates, and their rates.
+    of the frame, ``entries`` of its rotation: cosine and sine in a plane. ``coupled`` are
+    products of matrices with coordinates, and with their rates.
     """
     D, turns, pairs = (2, 1, 1) if planar else (3, 3, 6)
     return {"D": D, "turns": turns, "pairs": pairs, "lines": D + turns + pairs,
-            "motions": D + turns, "entries": 2 if planar else 9, "placed": pairs + turns,
-            "rated": 2 * turns}
+            "motions": D + turns, "entries": 2 if planar else 9,
+            "coupled": pairs + 3 * turns}
 
 
 def superelement_counts(positions: int, rotations: int, planar: bool, unknowns: int

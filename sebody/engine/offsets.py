@@ -7,9 +7,8 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.contract.counts import CACHE_LINE
 from sebody.engine.arrays import Arrays
-
-ALIGNED = 8     # numbers of a cache line: arrays begin at whole ones
 
 Group = TypeVar("Group", bound=Arrays)
 
@@ -31,7 +30,7 @@ class Offsets:
             if array.size and self._within(array) is None:
                 self._first[array.ctypes.data] = self.size
                 self._sizes[array.ctypes.data] = array.size
-                self.size += -(-array.size // ALIGNED) * ALIGNED
+                self.size += -(-array.size // CACHE_LINE) * CACHE_LINE
 
     def of(self, array: NDArray) -> slice:
         """The part of the buffer that an array of the groups has."""
@@ -66,6 +65,13 @@ class Offsets:
             if start <= address < start + 8 * self._sizes[start]:
                 return first + (address - start) // 8
         return None
+
+
+def at_cache_lines(size: int) -> NDArray:
+    """Zeros that begin at a whole cache line: vectors of eight numbers are in one line each."""
+    room = np.zeros(size + CACHE_LINE)
+    first = -room.ctypes.data // room.itemsize % CACHE_LINE
+    return room[first:first + size]
 
 
 def arrays_of(group: Arrays) -> Iterator[NDArray]:

@@ -71,18 +71,28 @@ def write_all_to_free(builder, *args):
 def _in_order(builder, rows, order, to, count, end):
     """Numbers of some rows in an order, as whole vectors: what reads them next reads vectors."""
     nothing = ir.Constant(ir.DoubleType(), 0.0)
-    with short_loop(builder, WORD(0), end, LANES) as first:
-        totals = [no_sum()] * len(rows)
-        for lane in range(LANES):
-            k = builder.add(first, WORD(lane))
-            given = builder.icmp_signed("<", k, count)
-            asked = builder.select(given, k, WORD(0))
-            at = builder.fptosi(builder.load(builder.gep(order, [asked])), WORD)
-            for i, row in enumerate(rows):
-                number = builder.select(given, builder.load(builder.gep(row, [at])), nothing)
-                totals[i] = builder.insert_element(totals[i], number, ir.IntType(32)(lane))
-        for vector, out in zip(totals, to, strict=True):
-            store_vector(builder, vector, out, first)
+    whole = builder.and_(count, WORD(-LANES))
+
+    def vectors(first, end, number):
+        with short_loop(builder, first, end, LANES) as begin:
+            totals = [no_sum()] * len(rows)
+            for lane in range(LANES):
+                k = builder.add(begin, WORD(lane))
+                for i, entry in enumerate(number(k)):
+                    totals[i] = builder.insert_element(totals[i], entry, ir.IntType(32)(lane))
+            for vector, out in zip(totals, to, strict=True):
+                store_vector(builder, vector, out, begin)
+
+    def ordered(k):
+        at = builder.fptosi(builder.load(builder.gep(order, [k])), WORD)
+        return [builder.load(builder.gep(row, [at])) for row in rows]
+
+    def ordered_or_zero(k):
+        given = builder.icmp_signed("<", k, count)
+        return [builder.select(given, number, nothing)
+                for number in ordered(builder.select(given, k, WORD(0)))]
+    vectors(WORD(0), whole, ordered)
+    vectors(whole, end, ordered_or_zero)
 
 
 def _copy(builder, given, at, out, to):

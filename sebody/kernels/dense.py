@@ -138,22 +138,34 @@ def _wide(builder, given, out, rows, height, add):
     """
     last, done = whole_vectors(builder, rows), WORD(0)
     for count in (8, 4, 3, 2, 1):
-        sums = totals(builder, count)
         rest = builder.srem(builder.sub(last, done), WORD(count * LANES))
         end = builder.sub(last, rest)
         with short_loop(builder, done, end, count * LANES) as row:
             places = [builder.add(row, WORD(k * LANES)) for k in range(count)]
+            sums = _sums_of_rows(builder, given, out, places, height, add)
             for place, total in zip(places, sums, strict=True):
-                builder.store(load_vector(builder, out, place) if add else no_sum(), total)
-            for A, x, columns in given:
-                with short_loop(builder, WORD(0), columns) as column:
-                    factor = load_broadcast(builder, x, column)
-                    own = builder.gep(A, [builder.mul(column, height)])
-                    for place, total in zip(places, sums, strict=True):
-                        add_product(builder, total, load_vector(builder, own, place), factor)
-            for place, total in zip(places, sums, strict=True):
-                store_vector(builder, builder.load(total), out, place)
+                store_vector(builder, total, out, place)
         done = end
+
+
+def _sums_of_rows(builder, given, out, places, height, add):
+    """The sums of some vectors of rows; every matrix has its own if they are few.
+
+    A sum of many products waits for each of them.
+    """
+    own = len(places) <= 4
+    sums = [totals(builder, len(places)) for _ in (given if own else given[:1])]
+    for kept in sums:
+        for place, total in zip(places, kept, strict=True):
+            begin = add and kept is sums[0]
+            builder.store(load_vector(builder, out, place) if begin else no_sum(), total)
+    for k, (A, x, columns) in enumerate(given):
+        with short_loop(builder, WORD(0), columns) as column:
+            factor = load_broadcast(builder, x, column)
+            begin = builder.gep(A, [builder.mul(column, height)])
+            for place, total in zip(places, sums[k * own], strict=True):
+                add_product(builder, total, load_vector(builder, begin, place), factor)
+    return [_added(builder, parts) for parts in zip(*sums, strict=True)]
 
 
 def write_block(builder, A, x, out, rows, columns, height):
@@ -211,10 +223,15 @@ def _multiply_rows(builder, A, x, out, row, vectors, columns, height, add):
     with short_loop(builder, paired, columns) as column:
         add_column(sums[0], column)
     for place, parts in zip(places, zip(*sums, strict=True), strict=True):
-        result = builder.load(parts[0])
-        for total in parts[1:]:
-            result = builder.fadd(result, builder.load(total))
-        store_vector(builder, result, out, place)
+        store_vector(builder, _added(builder, parts), out, place)
+
+
+def _added(builder, parts):
+    """Sum of the vectors at some places."""
+    result = builder.load(parts[0])
+    for total in parts[1:]:
+        result = builder.fadd(result, builder.load(total))
+    return result
 
 
 @intrinsic

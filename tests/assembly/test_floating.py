@@ -136,7 +136,7 @@ def test_constants_of_a_beam_have_the_same_zeros_in_any_place_and_unit(modes):
         body = model.bodies["beam"]
         values, i, free = superelement_constants(body), body.invariants, 6 + modes
         N = free + i.slaved
-        shapes = {"of_place": (9, N, N), "of_rate": (6, N, N), "Mz": (1, N, N),
+        shapes = {"couplings": (15, N, N), "Mz": (1, N, N),
                   "followers": (2, free, free), "stretched": (2, free, free)}
         matrices = [unpack(values[name], shape) for name, shape in shapes.items()]
         matrices[-1] = matrices[-1][:1]      # that of the tension, not the elastic one

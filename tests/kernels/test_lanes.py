@@ -11,8 +11,13 @@ from sebody.fem import Section, straight_beam
 from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.dense import add_blocks_times, add_rows_times, columns_times
 from sebody.kernels.frame_search import best_fit, mean_axes, planar_fit, planar_mean_axes
-from sebody.kernels.packed import pack
-from sebody.kernels.packed_products import add_packed, packed_times
+from sebody.kernels.packed import pack, pack_couplings
+from sebody.kernels.packed_products import (
+    add_couplings,
+    add_packed,
+    couplings_times,
+    packed_times,
+)
 from sebody.kernels.rotations import (
     inverse_tangent_coefficients,
     inverse_tangent_second,
@@ -125,6 +130,42 @@ def test_packed_products(straight, shared):
     np.testing.assert_allclose(found, np.einsum("mkrc,cm->krm", stacks, x[:columns]), atol=1e-13)
     found = total.values.reshape(-1, height, MEMBERS)[:columns, :rows]
     np.testing.assert_allclose(found, np.einsum("mkrc,km->crm", stacks, factors), atol=1e-13)
+
+
+@compiled
+def couplings_of(packed, x, y, out, factors, of_x, of_y, count, height):
+    couplings_times(pointer_to(packed.rows), pointer_to(x.rows), pointer_to(y.rows),
+                    pointer_to(out.rows), count)
+    add_couplings(pointer_to(packed.rows), pointer_to(factors.rows), pointer_to(of_x.rows),
+                  pointer_to(of_y.rows), height)
+
+
+@pytest.mark.parametrize("straight", [False, True])
+def test_couplings(straight):
+    """Symmetric matrices and others, large enough to be used twice."""
+    rng, N = np.random.default_rng(4), 33
+    S, C = rng.normal(size=(MEMBERS, 2, N, N)), rng.normal(size=(MEMBERS, 2, N, N))
+    S[:, 1, 12:], C[:, 1, :, 5:] = 0.0, 0.0
+    S += S.swapaxes(2, 3)
+    every = np.concatenate([S, C, C, C.swapaxes(2, 3)], axis=1)
+    row = np.array([pack_couplings(*both) for both in zip(S, C, strict=True)]).T
+    packed, height = Given.of(row), whole_vectors(N)
+    if straight:
+        write_address(row[:, 0].copy(), np.ptp(row, axis=1) > 0.0, packed.values)
+    x, y = rng.normal(size=(2, height + LANES, MEMBERS))
+    factors = rng.normal(size=(8, MEMBERS))
+    out = Given.of(np.full((8 * height, MEMBERS), np.nan))
+    of_x, of_y = (Given.of(np.zeros((height * height, MEMBERS))) for _ in range(2))
+    couplings_of(packed, Given.of(x), Given.of(y), out, Given.of(factors), of_x, of_y,
+                 8 * height, height)
+    found = out.values.reshape(8, height, MEMBERS)[:, :N]
+    expected = [*np.einsum("mkrc,cm->krm", every[:, :4], x[:N]),
+                *np.einsum("mkrc,cm->krm", every[:, 4:], y[:N])]
+    np.testing.assert_allclose(found, expected, atol=1e-12)
+    for total, of in ((of_x, slice(0, 4)), (of_y, slice(4, 8))):
+        found = total.values.reshape(-1, height, MEMBERS)[:N, :N]
+        np.testing.assert_allclose(
+            found, np.einsum("mkrc,km->crm", every[:, of], factors[of]), atol=1e-12)
 
 
 @compiled

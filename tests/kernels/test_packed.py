@@ -6,13 +6,16 @@ import pytest
 from sebody.compiler.decorators import compiled
 from sebody.contract.counts import packed_size, whole_vectors
 from sebody.kernels.abi import pointer_to
-from sebody.kernels.packed import pack, unpack
+from sebody.kernels.packed import COUPLED, MIRRORED, pack, pack_couplings, strips, unpack
 from sebody.kernels.packed_products import (
+    add_couplings,
     add_packed,
     add_packed_times,
+    couplings_times,
     from_free,
     packed_room,
     packed_times,
+    packed_times_both,
     to_free,
 )
 
@@ -28,6 +31,15 @@ def times(row, x, out, count, add):
 @compiled
 def summed(row, factors, out, height):
     add_packed(pointer_to(row), pointer_to(factors), pointer_to(out), height)
+
+
+@compiled
+def of_two(row, couplings, x, y, of_x, of_y, out, count, size, factors, sum_x, sum_y, height):
+    packed_times_both(pointer_to(row), pointer_to(x), pointer_to(y), pointer_to(of_x),
+                      pointer_to(of_y), count)
+    couplings_times(pointer_to(couplings), pointer_to(x), pointer_to(y), pointer_to(out), size)
+    add_couplings(pointer_to(couplings), pointer_to(factors), pointer_to(sum_x),
+                  pointer_to(sum_y), height)
 
 
 @compiled
@@ -90,6 +102,35 @@ def test_products_and_sums(shape, filled):
     expected = np.einsum("k,kij->ij", factors, matrices)
     assert np.abs(sums[:columns, :rows].T - expected).max() < 1e-13
     assert not sums[:, height:].any()
+
+
+@pytest.mark.parametrize("N, filled", [(5, 1.0), (18, 0.3), (42, 0.05), (61, 0.9)])
+def test_symmetric_matrices_and_couplings(N, filled):
+    """Of large matrices strips are used twice; of small ones, and where few have entries, once."""
+    random = np.random.default_rng(N)
+    S, C = stack((3, N, N), filled, 3), stack((2, N, N), filled, 4)
+    S += S.transpose(0, 2, 1)
+    row, couplings = pack(S, S.shape, symmetric=True), pack_couplings(S, C)
+    every = np.concatenate([S, C, C, C.transpose(0, 2, 1)])
+    for packed, stored in ((row, S), (couplings, every)):
+        assert len(packed) == packed_size(*stored.shape)
+        assert np.array_equal(unpack(packed, stored.shape), stored)
+    kinds = {strip.kind for strip in strips(couplings)}
+    assert ({MIRRORED, COUPLED} <= kinds) == (N > 20)
+    height, width = whole_vectors(N), whole_vectors(N) + 4
+    x, y = random.normal(size=(2, width))
+    of_x, of_y, out = np.full((3, len(every), height), np.nan)
+    factors, sums = random.normal(size=len(every)), np.zeros((2, width, height))
+    of_two(row, couplings, x, y, of_x.ravel(), of_y.ravel(), out.ravel(), len(S) * height,
+           len(every) * height, factors, sums[0].ravel(), sums[1].ravel(), height)
+    first, bound = len(S) + len(C), 1e-13 * N   # sums of N products of numbers of size one
+    expected = [*every[:first] @ x[:N], *every[first:] @ y[:N]]
+    np.testing.assert_allclose(of_x[:3, :N], S @ x[:N], atol=bound, rtol=0)
+    np.testing.assert_allclose(of_y[:3, :N], S @ y[:N], atol=bound, rtol=0)
+    np.testing.assert_allclose(out[:, :N], expected, atol=bound, rtol=0)
+    for found, of in zip(sums, (slice(None, first), slice(first, None)), strict=True):
+        expected = np.einsum("k,kij->ji", factors[of], every[of])
+        np.testing.assert_allclose(found[:N, :N], expected, atol=bound, rtol=0)
 
 
 def test_coordinates_that_determine_the_others():

@@ -18,6 +18,7 @@ from sebody.contract.layout import (
     TRANSPOSED,
     VELOCITY,
 )
+from sebody.kernels import packed
 from sebody.kernels.loader import load
 from sebody.verify import check
 from sebody.verify.check import definitions, elements, products, states, superelements
@@ -67,6 +68,15 @@ def test_check_notices_wrong_products(criterion, monkeypatch):
     monkeypatch.setattr(products, "called", wrong)
     error = products.CRITERIA[criterion](case, load(name), np.random.default_rng(0))
     assert error > products.LIMIT
+
+
+@pytest.mark.parametrize("name", ["superelement_f2_converged_mean_floating_field",
+                                  "products_superelement_f2_converged_mean_floating_field"])
+def test_entries_that_are_used_twice(name, monkeypatch):
+    """As those of large bodies are: as they stand, and transposed."""
+    monkeypatch.setattr(packed, "MANY", 1)
+    rows = check.check_kernels([name])
+    assert all(row.passed for row in rows), check.summary(rows)
 
 
 def test_small_increments_differ_to_second_order():

@@ -18,8 +18,8 @@ PARTS = (
     Part("c0", ("D",), "first moment of mass at rest, about the origin of the frame"),
     Part("J0", ("pairs",), "moments of inertia at rest"),
     Part("moment_columns", ("N", "lines"), "S1, g_k, h_kl + h_lk", columns=True),
-    Part("of_place", ("placed", "N", "N"), "J2_kl, K_k^T", packed=True),
-    Part("of_rate", ("rated", "N", "N"), "K_k^T, K_k^T - K_k", packed=True),
+    Part("moment_rows", ("lines", "N"), "its transpose", columns=True),
+    Part("couplings", ("coupled", "N", "N"), "J2_kl, K_k^T; K_k^T and K_k of rates", packed=True),
     Part("Mz", (1, "N", "N"), "reduced mass with slaved coordinates", packed=True),
     Part("Cz", ("damped", "free", "free"), "reduced damping", packed=True),
     Part("followers", ("slaved", "free", "free"), "Q_b", packed=True),
@@ -27,14 +27,14 @@ PARTS = (
     Part("E", ("free", "resultants"), "their eigenvectors", columns=True),
     Part("stretched", ("stretching", "free", "free"), "Ghat_e, reduced stiffness",
          packed=True))
-(sizes, turn, axes, axes_back, order, c0, J0, moment_columns, of_place, of_rate, Mz, Cz, followers,
- lam, E, stretched) = map(constant, PARTS)
+(sizes, turn, axes, axes_back, order, c0, J0, moment_columns, moment_rows, couplings, Mz, Cz,
+ followers, lam, E, stretched) = map(constant, PARTS)
 TRANSPOSES = (axes, axes_back), (axes_back, axes)
 
 z, zd, zdd = map(scratch, ("z", "zd", "zdd"))       # that determine the others, and followers
 unordered = scratch("unordered", 3)                 # the same before they are put in order
 Zq, Zd, Za = (scratch(name, MOST_SLAVED) for name in ("Zq", "Zd", "Za"))    # Q_b times z, zd, zdd
-products, more = scratch("products", 15), scratch("more", 12)       # quadratic constants times z
+products, more = scratch("products", 15), scratch("more", 15)       # quadratic constants times z
 lines = tuple(map(scratch, ("line0", "line1", "line2")))            # integrals: linear parts
 quadratic = tuple(map(scratch, ("product0", "product1", "product2")))   # and quadratic ones
 by_moment_columns, by_products = map(scratch, ("by_moment_columns", "by_products"))
@@ -47,8 +47,7 @@ along, twice, by_E, by_Gy, of_E, of_Gy = map(scratch, (
 
 # local tangents, and the factors they are made with
 Lz, Lv, La = (scratch(name, counts.n + MARGIN) for name in ("Lz", "Lv", "La"))
-ones, by_place, by_rate, by_followers = map(scratch, (
-    "ones", "by_place", "by_rate", "by_followers"))
+ones, by_couplings, by_followers = map(scratch, ("ones", "by_couplings", "by_followers"))
 
 
 def counts_of_body(planar: bool) -> dict[Array, tuple[Let, ...]]:

@@ -54,10 +54,10 @@ class Row(NamedTuple):
     j: sp.Matrix            # (J2_kl z)_i, symmetric
     u: sp.Matrix            # (K_k^T z)_i
     v: sp.Matrix            # (K_k^T zdot)_i
-    w: sp.Matrix            # ((K_k^T - K_k) zdot)_i
+    w: sp.Matrix            # (K_k zdot)_i
     jd: sp.Matrix           # (J2_kl zdot)_i
     ua: sp.Matrix           # (K_k^T zddot)_i
-    wa: sp.Matrix           # ((K_k^T - K_k) zddot)_i
+    wa: sp.Matrix           # (K_k zddot)_i
 
 
 def kinetic_energy(m: Motion, s: Sums, squared: sp.Expr) -> sp.Expr:
@@ -90,7 +90,7 @@ def on_frame(m: Motion, s: Sums) -> sp.Matrix:
 def on_coordinate(m: Motion, r: Row) -> sp.Expr:
     """Force conjugate to ``delta z_i``, without ``(Mbar zddot)_i``."""
     w = m.spin
-    return (r.S1.dot(m.felt) + (r.g + r.u).dot(m.turning) + w.dot(r.w)
+    return (r.S1.dot(m.felt) + (r.g + r.u).dot(m.turning) + w.dot(r.v - r.w)
             - w.dot((r.h + 2 * r.j) * w) / 2)
 
 
@@ -98,8 +98,8 @@ def gradients(r: Row) -> tuple[Sums, Sums, Sums]:
     """Derivatives of the sums by z_i, by zdot_i and by zddot_i."""
     none, still = sp.zeros(3, 1), sp.zeros(3, 3)
     inertia, coupling = r.h + 2 * r.j, r.g + r.u
-    return (Sums(r.S1, none, none, inertia, 2 * r.jd, r.v - r.w, r.ua - r.wa, none),
-            Sums(none, r.S1, none, still, inertia, coupling, none, 2 * r.v - r.w),
+    return (Sums(r.S1, none, none, inertia, 2 * r.jd, r.w, r.wa, none),
+            Sums(none, r.S1, none, still, inertia, coupling, none, r.v + r.w),
             Sums(none, none, r.S1, still, still, none, coupling, none))
 
 
@@ -155,13 +155,14 @@ class _Body:
     def row(self, i: int) -> Row:
         z, zd, zdd = self.z, self.zd, self.zdd
 
-        def coupled(x, sign):
-            return sp.Matrix([((self.K[k].T - sign * self.K[k]) * x)[i] for k in range(3)])
+        def coupled(x, transposed):
+            return sp.Matrix([((K.T if transposed else K) * x)[i] for K in self.K])
 
         def squares(x):
             return sp.Matrix(3, 3, lambda r, c: (self.J2[r, c] * x)[i])
-        return Row(self.S1[:, i], self.g[:, i], self.h[i], squares(z), coupled(z, 0),
-                   coupled(zd, 0), coupled(zd, 1), squares(zd), coupled(zdd, 0), coupled(zdd, 1))
+        return Row(self.S1[:, i], self.g[:, i], self.h[i], squares(z), coupled(z, True),
+                   coupled(zd, True), coupled(zd, False), squares(zd), coupled(zdd, True),
+                   coupled(zdd, False))
 
 
 @cache

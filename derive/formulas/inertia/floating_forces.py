@@ -11,6 +11,8 @@ from sebody.derive.form.functions import (
     ADD_BLOCKS_TIMES,
     ADD_PACKED_TIMES,
     ALL_TO_FREE,
+    COLUMNS_TIMES,
+    COUPLINGS_TIMES,
     FROM_FREE,
     PACKED_TIMES,
     ROWS_TIMES,
@@ -59,19 +61,18 @@ def _contractions(f: FloatingQuantities) -> tuple[Call, ...]:
     """Products of the constants with z and its rates, and of those with them again."""
     pairs, turns, lines = f.pairs, f.turns, f.lines
 
-    def dots(title: str, vectors: Array | View, row: Array, out: Array, columns: int) -> Call:
+    def linear(row: Array, out: Array) -> Call:
+        return call(f"first moments, couplings, inertia at rest, by {row.name}", COLUMNS_TIMES,
+                    at.moment_rows, row, out, lines, N)
+
+    def dots(first: Whole, row: Array, out: Array, columns: int) -> Call:
         """Some columns more than asked: vectors of `LANES` are added up together."""
-        return call(f"{title}, by {row.name}", ROWS_TIMES, vectors, row, out, N,
-                    whole_vectors(columns), hN)
-    moments, quadratic = "first moments, couplings, inertia at rest", "quadratic parts"
-    of_frame = f.D + turns
+        return call(f"quadratic parts, by {row.name}", ROWS_TIMES, at.products.at(first * hN), row,
+                    out, N, whole_vectors(columns), hN)
     return (
-        stacked("J2_kl z and K_k^T z", at.of_place, at.z, at.products, pairs + turns),
-        stacked("K_k^T zdot and (K_k^T - K_k) zdot", at.of_rate, at.zd,
-                at.products.at((pairs + turns) * hN), 2 * turns),
-        *(dots(moments, at.moment_columns, row, out, count) for row, out, count in zip(
-            (at.z, at.zd, at.zdd), at.lines, (lines, lines, of_frame), strict=True)),
-        *(dots(quadratic, at.products.at(first * hN), row, out, count)
+        coupled(f, "J2_kl z, K_k^T z, K_k^T zdot and K_k zdot", at.z, at.zd, at.products),
+        *map(linear, (at.z, at.zd, at.zdd), at.lines),
+        *(dots(first, row, out, count)
           for first, row, out, count in zip(
               (0, 0, pairs), (at.z, at.zd, at.zdd), at.quadratic,
               (pairs, pairs + 2 * turns, turns), strict=True)))
@@ -101,6 +102,11 @@ def energy(f: FloatingQuantities) -> tuple[Step, ...]:
 def stacked(title: str, matrices: Array, row: Array, out: Array | View, count: int) -> Call:
     """Products of packed matrices with a row, one after the other."""
     return call(title, PACKED_TIMES, matrices, row, out, count * hN)
+
+
+def coupled(f: FloatingQuantities, title: str, row: Array, rate: Array, out: Array) -> Call:
+    """Products of the quadratic constants with a row and its rate."""
+    return call(title, COUPLINGS_TIMES, at.couplings, row, rate, out, (f.pairs + 3 * f.turns) * hN)
 
 
 def added(title: str, matrix: Array, row: Array) -> Call:

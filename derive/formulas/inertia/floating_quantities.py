@@ -83,23 +83,28 @@ class FloatingQuantities:
         """Quantities that belong to a coordinate: columns of constants and of products."""
         kinds = {"S1": "vector", "h": "inertia", "j": "inertia", "jd": "inertia"}
         columns = {at.moment_columns: ("S1", "g", "h"), at.products: ("j", "u", "v", "w"),
-                   at.more: ("jd", "ua", "wa")}
+                   at.more: ("jd", None, "ua", "wa")}     # v again, where nothing is named
         size = {"vector": self.D, "axial": self.turns, "inertia": self.pairs}
         quantities, groups = {}, {}
         for array, names in columns.items():
             first, groups[array] = 0, []
             for name in names:
                 kind = kinds.get(name, "axial")
-                quantities[name] = self.q.space.quantity(f"row_{name}", kind, "shape", array,
-                                                         Place(i, hN, first))
-                groups[array].append(quantities[name])
+                if name is not None:
+                    quantities[name] = self.q.space.quantity(f"row_{name}", kind, "shape", array,
+                                                             Place(i, hN, first))
+                    groups[array].append(quantities[name])
                 first += size[kind]
         return field.Row(**quantities), groups
 
-    def factors(self, out: Array, rows: list[Quantity], scale: sp.Expr = sp.S.One) -> tuple:
-        """Coefficients of some rows in the force on a coordinate, one after the other."""
+    def factors(self, out: Array, rows: list[Quantity], moved: int = 0) -> tuple:
+        """Coefficients of some rows in the force on a coordinate, one after the other.
+
+        The first `moved` of them are those of a change of place.
+        """
         pairs, first = [], 0
-        for quantity in rows:
+        for k, quantity in enumerate(rows):
+            scale = GEOMETRY if k < moved else sp.S.One
             factor = self.of_element(f"{out.name}_{quantity.name}", quantity.kind, out,
                                      Place(first))
             derivative = quantity.symbols.applyfunc(

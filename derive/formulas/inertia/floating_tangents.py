@@ -3,9 +3,10 @@
 import sympy as sp
 
 from sebody.derive.form.arrays import Array, Place
-from sebody.derive.form.counts import N, b, deep, free, hN, i
+from sebody.derive.form.counts import N, b, deep, free, i
 from sebody.derive.form.functions import (
     ADD_BLOCK_TIMES,
+    ADD_COUPLINGS,
     ADD_PACKED,
     BLOCK_TIMES,
     CLEAR,
@@ -17,7 +18,7 @@ from sebody.derive.formulas import arrays
 from sebody.derive.formulas.inertia import floating_arrays as at
 from sebody.derive.formulas.inertia import floating_field as field
 from sebody.derive.formulas.inertia import slaved
-from sebody.derive.formulas.inertia.floating_forces import ROWS, conjugate, stacked, to_free
+from sebody.derive.formulas.inertia.floating_forces import ROWS, conjugate, coupled, to_free
 from sebody.derive.formulas.inertia.floating_quantities import (
     GEOMETRY,
     PLACE,
@@ -31,25 +32,23 @@ from sebody.derive.passes.linearize import Linearizer
 
 def prepared(f: FloatingQuantities) -> tuple[Step, ...]:
     """Local tangents, once for all columns."""
-    q, row, pairs, turns = f.q, f.quantities, f.pairs, f.turns
+    q, row = f.q, f.quantities
     one = f.of_element("one", "scalar", at.ones)
     followed = q.space.quantity("followed", "scalar", "slaved", at.by_followers)
     on_eta = q.space.quantity("on_eta", "scalar", "slaved", at.local, Place(free + b))
     return (
-        slaved.stacked(at.zdd, at.Za), *second_derivatives(q),
-        stacked("J2_kl zdot", at.of_place, at.zd, at.more, pairs + turns),
-        stacked("K_k^T zddot and (K_k^T - K_k) zddot", at.of_rate, at.zdd,
-                at.more.at(pairs * hN), 2 * turns),
+        slaved.accelerated(), *second_derivatives(q),
+        coupled(f, "J2_kl zdot, K_k^T zddot and K_k zddot", at.zd, at.zdd, at.more),
         Stage("factors of the local tangents", "element",
-              sets=(*f.factors(at.by_place, [row.j, row.u], GEOMETRY),
-                    *f.factors(at.by_rate, [row.v, row.w]), (one, sp.ones(1, 1)))),
+              sets=(*f.factors(at.by_couplings, [row.j, row.u, row.v, row.w], moved=2),
+                    (one, sp.ones(1, 1)))),
         Stage("forces on eta as factors", "slaved", sets=((followed, GEOMETRY * on_eta.symbols),)),
         *(call("local tangents", CLEAR, out, N * deep) for out in (PLACE, RATE, SECOND)),
+        call("by z: J2_kl and K_k^T; by zdot: K_k^T and K_k", ADD_COUPLINGS, at.couplings,
+             at.by_couplings, PLACE, RATE, deep),
         *(call(title, ADD_PACKED, matrices, factors, out, deep)
           for title, matrices, factors, out in (
-              ("by z: J2_kl and K_k^T", at.of_place, at.by_place, PLACE),
               ("forces on eta", at.followers, at.by_followers, PLACE),
-              ("by zdot: K_k^T and K_k^T - K_k", at.of_rate, at.by_rate, RATE),
               ("structural damping", at.Cz, at.ones, RATE),
               ("by zddot", at.Mz, at.ones, SECOND))),
         *f.stress.stiffness, *_borders(f))

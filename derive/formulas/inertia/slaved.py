@@ -13,6 +13,7 @@ from sebody.derive.form.functions import (
     FOLLOW,
     FOLLOW_CHANGES,
     PACKED_TIMES,
+    PACKED_TIMES_BOTH,
     ROWS_TIMES,
 )
 from sebody.derive.form.steps import Call, call
@@ -22,18 +23,19 @@ from sebody.derive.symbolic.variation import along, check_same, differential
 _BY_Y = free, slaved, hn    # products of the vectors Q_b y with vectors like y
 
 
-def stacked(vector: Array, out: Array) -> Call:
-    """``Q_b x`` of all b, one after the other."""
-    return call(f"Q_b {vector.name}, all b", PACKED_TIMES, at.followers, vector, out, slaved * hn)
-
-
 def slaving() -> tuple[Call, ...]:
     """Values and rates behind the coordinates y and theirs."""
     _prove()
     return (
-        stacked(at.z, at.Zq), stacked(at.zd, at.Zd),
+        call("Q_b z and Q_b zd, all b", PACKED_TIMES_BOTH, at.followers, at.z, at.zd, at.Zq, at.Zd,
+             slaved * hn),
         call("eta_b = y . Q_b y / 2, their rates and second rates", FOLLOW,
              at.Zq, at.Zd, at.z, at.zd, at.zdd, *_BY_Y))
+
+
+def accelerated() -> Call:
+    """What the differentials of the accelerations need beyond that."""
+    return call("Q_b zdd, all b", PACKED_TIMES, at.followers, at.zdd, at.Za, slaved * hn)
 
 
 def varied() -> tuple[Call, ...]:

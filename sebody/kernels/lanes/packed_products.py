@@ -1,4 +1,4 @@
-"""Products with packed matrices in lanes: what `packed_products` writes.
+"""Products with packed matrices in lanes: what `packed_strips` writes.
 
 The whole numbers of a row are the same in all lanes.
 """
@@ -7,119 +7,185 @@ from llvmlite import ir
 
 from sebody.compiler.inside.lanes import VECTOR
 from sebody.contract.counts import LANES
-from sebody.kernels import packed_products
+from sebody.kernels import packed_strips
 from sebody.kernels.instructions import WORD, call, in_lanes, short_loop, whole_vectors
 from sebody.kernels.lanes.products import NOTHING, across, behind, fused, read, write
 from sebody.kernels.lanes.straight import AT_ADDRESS, MOST_GROUPS
+from sebody.kernels.packed import COUPLED, MIRRORED, NARROW, PRODUCTS, WIDE, WIDTHS
+from sebody.kernels.packed_strips import Groups
 
 
-class _Words:
-    """The whole numbers of a row of packed matrices, in the bits of the first lane.
+class _Groups(Groups):
+    """The groups of a row, in the bits of the first lane.
 
     Where all members share a row, its first number may point to its straight code.
     """
 
     def __init__(self, builder, matrices):
-        self._builder = builder
-        self._words = builder.bitcast(matrices, WORD.as_pointer())
-        self._apart = WORD(across(matrices))
+        super().__init__(builder, matrices, across(matrices))
         self._shared = across(matrices) == 1
 
+    def count(self, kind):
+        """Number of groups of a kind; the first one stands apart where there is straight code."""
+        if kind > 0 or not self._shared:
+            return super().count(kind)
+        return self.builder.load(self._apart)
+
     @property
-    def first(self):
-        """Where the number of groups stands, and behind it the address of straight code."""
-        if not self._shared:
-            return self._words
-        builder, own = self._builder, self._builder.load(self._words)
+    def _apart(self):
+        builder, own = self.builder, self.builder.load(self._words)
         apart = builder.inttoptr(own, WORD.as_pointer())
         return builder.select(self._points(own), apart, self._words)
 
     def straight(self):
         """Address of straight code, and whether there is some."""
-        builder, own = self._builder, self._builder.load(self._words)
+        builder, own = self.builder, self.builder.load(self._words)
         if self._shared:
-            address = builder.load(builder.gep(self.first, [builder.select(
+            address = builder.load(builder.gep(self._apart, [builder.select(
                 self._points(own), WORD(AT_ADDRESS), WORD(0))]))
             return address, self._points(own)
         address = builder.load(builder.gep(self._words, [WORD(AT_ADDRESS)]))
         return address, builder.icmp_signed("!=", address, own)
 
     def _points(self, own):
-        return self._builder.icmp_signed(">", own, WORD(MOST_GROUPS))
-
-    def at(self, place):
-        """The whole number at a place of the row."""
-        builder = self._builder
-        return builder.load(builder.gep(self._words, [builder.mul(place, self._apart)]))
-
-    def of_group(self, group):
-        """What a group says of itself."""
-        builder = self._builder
-        place = builder.add(builder.mul(group, WORD(packed_products.GROUP)), WORD(1))
-        return [self.at(behind(builder, place, k)) for k in range(packed_products.GROUP)]
-
-    def of_strip(self, heads, strip, k):
-        """A whole number in the head of a strip."""
-        builder = self._builder
-        first = builder.add(heads, builder.mul(strip, WORD(packed_products.HEAD)))
-        return self.at(behind(builder, first, k))
+        return self.builder.icmp_signed(">", own, WORD(MOST_GROUPS))
 
 
-@in_lanes(packed_products.write_packed)
+@in_lanes(packed_strips.write_times)
 def packed(builder, matrices, x, out, count):
-    """Of `packed_times`: whole vectors are cleared, as strips have whole ones."""
-    with short_loop(builder, WORD(0), whole_vectors(builder, count)) as place:
-        write(builder, NOTHING, out, place)
+    """Of `packed_times`."""
+    _clear(builder, out, count)
     call(builder, add_packed, (matrices, x, out))
 
 
-@in_lanes(packed_products.write_more_packed)
+@in_lanes(packed_strips.write_times_both)
+def packed_both(builder, matrices, x, y, of_x, of_y, count):
+    """Of `packed_times_both`."""
+    for vector, out in ((x, of_x), (y, of_y)):
+        call(builder, packed, (matrices, vector, out, count))
+
+
+@in_lanes(packed_strips.write_more_times)
 def add_packed(builder, matrices, x, out):
-    """Of `add_packed_times`: straight code if there is some, see `straight`."""
-    address, is_straight = _Words(builder, matrices).straight()
-    with builder.if_else(is_straight) as (straight, by_strips):
+    """Of `add_packed_times`."""
+    _straight_or(builder, matrices, x, x, out, lambda: _add_strips(builder, matrices, x, x, out))
+
+
+@in_lanes(packed_strips.write_couplings)
+def couplings(builder, matrices, x, y, out, count):
+    """Of `couplings_times`."""
+    _clear(builder, out, count)
+    _straight_or(builder, matrices, x, y, out, lambda: _add_strips(builder, matrices, x, y, out))
+
+
+def _clear(builder, out, count):
+    """Whole vectors, as strips have whole ones."""
+    with short_loop(builder, WORD(0), whole_vectors(builder, count)) as place:
+        write(builder, NOTHING, out, place)
+
+
+def _straight_or(builder, matrices, x, y, out, by_strips):
+    """Straight code if there is some, see `straight`."""
+    address, is_straight = _Groups(builder, matrices).straight()
+    with builder.if_else(is_straight) as (straight, others):
         with straight:
-            kind = ir.FunctionType(ir.VoidType(), [VECTOR.as_pointer()] * 3)
+            kind = ir.FunctionType(ir.VoidType(), [VECTOR.as_pointer()] * 4)
             own = builder.bitcast(matrices, VECTOR.as_pointer())
-            builder.call(builder.inttoptr(address, kind.as_pointer()), (own, x, out))
-        with by_strips:
-            _add_strips(builder, matrices, x, out)
+            builder.call(builder.inttoptr(address, kind.as_pointer()), (own, x, y, out))
+        with others:
+            by_strips()
 
 
-def _add_strips(builder, matrices, x, out):
-    """The numbers of `x` stay in registers while strips follow."""
-    words = _Words(builder, matrices)
-    with short_loop(builder, WORD(0), builder.load(words.first)) as group:
-        first, columns, strips, heads, at = words.of_group(group)
-        with packed_products.by_width(builder, columns) as widths:
-            for width in widths:
-                factors = [read(builder, x, behind(builder, first, k)) for k in range(width)]
-                with short_loop(builder, WORD(0), strips) as strip:
-                    place = words.of_strip(heads, strip, 0)
-                    own = packed_products.entries(builder, matrices, at, strip, width)
-                    for row in range(LANES):
-                        total = read(builder, out, behind(builder, place, row))
-                        for k, factor in enumerate(factors):
-                            total = fused(builder, total,
-                                          read(builder, own, WORD(LANES * k + row)), factor)
-                        write(builder, total, out, behind(builder, place, row))
+def _add_strips(builder, matrices, x, y, out):
+    """The numbers of a vector stay in registers while strips follow."""
+    def once(kind):
+        def add(groups):
+            vector = groups.chosen(x, y)
+            factors = [read(builder, vector, behind(builder, groups.first, k))
+                       for k in range(WIDTHS[kind])]
+            with short_loop(builder, WORD(0), groups.strips) as strip:
+                place, own = groups.head(0, strip), groups.entries(strip, kind)
+                for row in range(LANES):
+                    total = read(builder, out, behind(builder, place, row))
+                    for k, factor in enumerate(factors):
+                        total = fused(builder, total,
+                                       read(builder, own, WORD(LANES * k + row)), factor)
+                    write(builder, total, out, behind(builder, place, row))
+        return add
+
+    def twice(forward):
+        return lambda groups: _add_twice(groups, forward, out)
+    _Groups(builder, matrices).each({
+        NARROW: once(NARROW), WIDE: once(WIDE), MIRRORED: twice([x]), COUPLED: twice([x, y])})
 
 
-@in_lanes(packed_products.write_sum_packed)
+def _add_twice(groups, forward, out):
+    """Strips of one matrix that multiply some vectors; the transpose multiplies the last one."""
+    builder = groups.builder
+    with short_loop(builder, WORD(0), groups.strips) as strip, \
+            short_loop(builder, WORD(0), WORD(LANES)) as lane:
+        row, own = builder.add(groups.row(strip), lane), groups.entries(strip, MIRRORED)
+        entries = [read(builder, own, builder.add(lane, WORD(LANES * k)))
+                   for k in range(WIDTHS[MIRRORED])]
+        for product, vector in enumerate(forward):
+            place = builder.add(groups.head(product), row)
+            total = read(builder, out, place)
+            for k, entry in enumerate(entries):
+                total = fused(builder, total, entry,
+                               read(builder, vector, behind(builder, groups.first, k)))
+            write(builder, total, out, place)
+        factor = read(builder, forward[-1], row)
+        first = builder.add(groups.head(PRODUCTS - 1), groups.first)
+        for k, entry in enumerate(entries):
+            place = behind(builder, first, k)
+            write(builder, fused(builder, read(builder, out, place), entry, factor), out, place)
+
+
+@in_lanes(packed_strips.write_sum)
 def sum_packed(builder, matrices, factors, out, height):
     """Of `add_packed`."""
-    words = _Words(builder, matrices)
-    with short_loop(builder, WORD(0), builder.load(words.first)) as group:
-        first, columns, strips, heads, at = words.of_group(group)
-        with short_loop(builder, WORD(0), strips) as strip:
-            matrix, row = (words.of_strip(heads, strip, k) for k in (1, 2))
-            scale = read(builder, factors, matrix)
-            size = builder.mul(columns, WORD(LANES))
-            own = builder.gep(matrices, [builder.add(at, builder.mul(strip, size))])
-            with short_loop(builder, WORD(0), columns) as column:
-                to = builder.add(builder.mul(builder.add(first, column), height), row)
-                from_column = builder.mul(column, WORD(LANES))
-                for k in range(LANES):
-                    place = behind(builder, to, k)
-                    write(builder, fused(builder, read(builder, out, place), read(
-                        builder, own, behind(builder, from_column, k)), scale), out, place)
+    _sum_strips(builder, matrices, factors, out, out, height)
+
+
+@in_lanes(packed_strips.write_sum_of_couplings)
+def sum_couplings(builder, matrices, factors, of_x, of_y, height):
+    """Of `add_couplings`."""
+    _sum_strips(builder, matrices, factors, of_x, of_y, height)
+
+
+def _sum_strips(builder, matrices, factors, of_x, of_y, height):
+    def once(kind):
+        def add(groups):
+            out = groups.chosen(of_x, of_y)
+            with short_loop(builder, WORD(0), groups.strips) as strip:
+                scale = read(builder, factors, groups.head(1, strip))
+                _sum_entries(groups, kind, groups.entries(strip, kind), groups.head(2, strip),
+                             [(scale, out, False)], height)
+        return add
+
+    def twice(forward):
+        def add(groups):
+            scales = [read(builder, factors, groups.head(PRODUCTS + k)) for k in range(PRODUCTS)]
+            given = [(scales[k], out, False) for k, out in enumerate(forward)]
+            across = scales[-1], forward[-1], True
+            with short_loop(builder, WORD(0), groups.strips) as strip:
+                _sum_entries(groups, MIRRORED, groups.entries(strip, MIRRORED), groups.row(strip),
+                             [*given, across], height)
+        return add
+    _Groups(builder, matrices).each({
+        NARROW: once(NARROW), WIDE: once(WIDE), MIRRORED: twice([of_x]),
+        COUPLED: twice([of_x, of_y])})
+
+
+def _sum_entries(groups, kind, own, row, given, height):
+    """Add a strip to some matrices, times a factor, or its transpose."""
+    builder = groups.builder
+    with short_loop(builder, WORD(0), WORD(WIDTHS[kind])) as k:
+        column, begin = builder.add(groups.first, k), builder.mul(k, WORD(LANES))
+        for lane in range(LANES):
+            entry, at = read(builder, own, behind(builder, begin, lane)), behind(builder, row, lane)
+            for scale, out, transposed in given:
+                i, j = (column, at) if transposed else (at, column)
+                place = builder.add(builder.mul(j, height), i)
+                write(builder, fused(builder, read(builder, out, place), entry, scale), out,
+                       place)

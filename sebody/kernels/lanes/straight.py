@@ -14,49 +14,51 @@ from numpy.typing import NDArray
 
 from sebody.compiler.inside.lanes import VECTOR, same
 from sebody.contract.counts import LANES, MEMBERS
-from sebody.kernels.packed import GROUP, HEAD
+from sebody.kernels.packed import COUPLED, NARROW, WIDE, strips
 
 # lane of the first number of a row that has the address of its straight code, where there is some;
 # the number of groups stands in all others
 AT_ADDRESS = 1
 MOST_GROUPS = 1 << 20       # of a row; a larger number is an address
-# places of an entry, of its factor and of its sum; its value, if all members share it
-Entries = tuple[tuple[int, int, int, float | None], ...]
+# place of an entry, vector and place of its factor, place of its sum; its value, if all members
+# share it
+Entries = tuple[tuple[int, int, int, int, float | None], ...]
 
 _engines = []       # own the code
 
 
 def entries_of(row: NDArray, varied: NDArray) -> Entries:
     """The entries of a row of packed matrices that are not zero, by their sums."""
-    row = np.ascontiguousarray(row)
-    whole, found = row.view(np.int64), []
-    for g in range(whole[0]):
-        first, width, strips, head, at = whole[1 + GROUP * g:1 + GROUP * (g + 1)].tolist()
-        for strip in range(strips):
-            product = int(whole[head + HEAD * strip])
-            begin = at + strip * LANES * width
-            for k, i in np.argwhere(row[begin:begin + LANES * width].reshape(width, LANES)):
-                entry = begin + LANES * int(k) + int(i)
-                found.append((entry, first + int(k), product + int(i),
-                              None if varied[entry] else float(row[entry])))
-    return tuple(sorted(found, key=lambda entry: entry[2::-1]))
+    found = []
+    for kind, vector, places, _, below, first, at, entries in strips(row):
+        for i, k in np.argwhere(entries).tolist():
+            place = at + LANES * k + i
+            value = None if varied[place] else float(row[place])
+            if kind in (NARROW, WIDE):
+                found.append((place, vector, first + k, places[0] + i, value))
+                continue
+            coupled = kind == COUPLED
+            found += [(place, y, first + k, places[y] + below + i, value)
+                      for y in range(1 + coupled)]
+            found.append((place, int(coupled), below + i, places[-1] + first + k, value))
+    return tuple(sorted(found, key=lambda entry: entry[3::-1]))
 
 
 @cache
 def address_of(entries: Entries) -> int:
-    """Address of a function of a row, a vector and a product, to which it adds."""
-    kind = ir.FunctionType(ir.VoidType(), [VECTOR.as_pointer()] * 3)
+    """Address of a function of a row, two vectors and products, to which it adds."""
+    kind = ir.FunctionType(ir.VoidType(), [VECTOR.as_pointer()] * 4)
     module = ir.Module("straight")
     module.triple = binding.get_process_triple()
     function = ir.Function(module, kind, "straight")
     builder = ir.IRBuilder(function.append_basic_block())
-    A, x, out = function.args
+    A, *vectors, out = function.args
     sums: dict[int, ir.Value] = {}
     shared = _Shared(module, builder, entries)
-    for place, column, to, value in entries:
+    for place, vector, column, to, value in entries:
         total = sums.get(to) or _read(builder, out, to)
         entry = _read(builder, A, place) if value is None else shared.next()
-        product = builder.fmul(entry, _read(builder, x, column), flags=("contract",))
+        product = builder.fmul(entry, _read(builder, vectors[vector], column), flags=("contract",))
         sums[to] = builder.fadd(total, product, flags=("contract",))
     for to, total in sums.items():
         builder.store(total, builder.gep(out, [ir.IntType(64)(to)]))
@@ -68,7 +70,7 @@ class _Shared:
     """Values that all members share, one after the other."""
 
     def __init__(self, module: ir.Module, builder: ir.IRBuilder, entries: Entries):
-        values = [entry[3] for entry in entries if entry[3] is not None]
+        values = [entry[-1] for entry in entries if entry[-1] is not None]
         kind = ir.ArrayType(ir.DoubleType(), len(values))
         self._values = ir.GlobalVariable(module, kind, "shared")
         self._values.initializer = ir.Constant(kind, values)

@@ -142,7 +142,7 @@ def _whole(case: Case, y: NDArray) -> NDArray:
 def _inertia(case: Case, z: NDArray) -> NDArray:
     constants, pairs = constants_of(case), axes_of(case.planar)["pairs"]
     packed = (constants["J0"] + constants["moment_columns"][:, -pairs:].T @ z
-              + np.einsum("i,bij,j->b", z, matrices(case, "of_place")[:pairs], z))
+              + np.einsum("i,bij,j->b", z, matrices(case, "couplings")[:pairs], z))
     if case.planar:
         return packed.reshape(1, 1)
     xx, yy, zz, xy, xz, yz = packed
@@ -152,5 +152,6 @@ def _inertia(case: Case, z: NDArray) -> NDArray:
 def _coupling(case: Case, z: NDArray) -> NDArray:
     constants, axes = constants_of(case), axes_of(case.planar)
     D, turns = axes["D"], axes["turns"]
-    couplings = matrices(case, "of_place")[axes["pairs"]:]
+    first = axes["pairs"]
+    couplings = matrices(case, "couplings")[first:first + turns]
     return constants["moment_columns"][:, D:D + turns].T + couplings @ z

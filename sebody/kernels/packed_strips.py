@@ -1,0 +1,269 @@
+"""Instructions of products with packed matrices, and of their sums: group by group.
+
+Vectors have four numbers: with those of eight everything else became a twentieth slower, probably
+since the processor lowers its clock.
+"""
+
+from collections.abc import Callable
+
+from llvmlite import ir
+
+from sebody.contract.counts import LANES
+from sebody.kernels.instructions import (
+    WORD,
+    add_product,
+    call,
+    load_broadcast,
+    load_vector,
+    no_sum,
+    short_loop,
+    store_vector,
+    sums_of_lanes,
+    totals,
+)
+from sebody.kernels.packed import (
+    BEGIN,
+    COUPLED,
+    GROUP,
+    HEAD,
+    MIRRORED,
+    NARROW,
+    PRODUCTS,
+    WIDE,
+    WIDTHS,
+)
+
+_CLEARED = 8        # vectors at a time
+
+
+class Groups:
+    """The groups of a row, whose whole numbers are `member` numbers apart."""
+
+    def __init__(self, builder: ir.IRBuilder, matrices: ir.Value, member: int = 1):
+        self.builder, self.matrices, self._member = builder, matrices, member
+        self._words = builder.bitcast(matrices, WORD.as_pointer())
+
+    def at(self, place: ir.Value) -> ir.Value:
+        """The whole number at a place of the row."""
+        builder = self.builder
+        if self._member > 1:
+            place = builder.mul(place, WORD(self._member))
+        return builder.load(builder.gep(self._words, [place]))
+
+    def count(self, kind: int) -> ir.Value:
+        """Number of groups of a kind."""
+        return self.at(WORD(kind))
+
+    def each(self, writers: dict[int, Callable[["Groups"], None]]) -> None:
+        """Go through the groups; in their order, writers of instructions for each kind."""
+        builder, done = self.builder, WORD(0)
+        for kind, write in writers.items():
+            end = builder.add(done, self.count(kind))
+            with short_loop(builder, done, end) as group:
+                place = builder.add(builder.mul(group, WORD(GROUP)), WORD(BEGIN))
+                self.first, self.vector, self.strips, self.heads, self.begin = (
+                    self.at(builder.add(place, WORD(k))) for k in range(GROUP))
+                write(self)
+            done = end
+
+    def head(self, k: int, strip: ir.Value | None = None, size: int = HEAD) -> ir.Value:
+        """A whole number of the heads, or of that of a strip."""
+        builder, place = self.builder, self.heads
+        if strip is not None:
+            place = builder.add(place, builder.mul(strip, WORD(size)))
+        return self.at(builder.add(place, WORD(k)))
+
+    def row(self, strip: ir.Value) -> ir.Value:
+        """First row of a strip of a group that is used twice."""
+        return self.head(2 * PRODUCTS, strip, 1)
+
+    def entries(self, strip: ir.Value, kind: int) -> ir.Value:
+        """Pointer to the entries of a strip."""
+        builder = self.builder
+        place = builder.add(self.begin, builder.mul(strip, WORD(LANES * WIDTHS[kind])))
+        return builder.gep(self.matrices, [place])
+
+    def chosen(self, first: ir.Value, second: ir.Value) -> ir.Value:
+        """What belongs to the group's vector."""
+        is_first = self.builder.icmp_signed("==", self.vector, WORD(0))
+        return self.builder.select(is_first, first, second)
+
+
+# products
+
+
+def write_times(builder, matrices, x, out, count):
+    _clear(builder, out, count)
+    call(builder, write_more_times, (matrices, x, out))
+
+
+def write_more_times(builder, matrices, x, out):
+    Groups(builder, matrices).each(_of_vectors([(x, out)]))
+
+
+def write_times_both(builder, matrices, x, y, of_x, of_y, count):
+    for out in (of_x, of_y):
+        _clear(builder, out, count)
+    Groups(builder, matrices).each(_of_vectors([(x, of_x), (y, of_y)]))
+
+
+def write_couplings(builder, matrices, x, y, out, count):
+    _clear(builder, out, count)
+
+    def once(kind):
+        return lambda groups: _once(groups, kind, [(groups.chosen(x, y), out)])
+    Groups(builder, matrices).each({
+        **{kind: once(kind) for kind in (NARROW, WIDE)},
+        MIRRORED: lambda groups: _twice(groups, [(0, x, out)], [(x, out)]),
+        COUPLED: lambda groups: _twice(groups, [(0, x, out), (1, y, out)], [(y, out)])})
+
+
+def _of_vectors(given):
+    """Kinds of groups that multiply every one of some vectors."""
+    forward = [(0, x, out) for x, out in given]
+    return {NARROW: lambda groups: _once(groups, NARROW, given),
+            WIDE: lambda groups: _once(groups, WIDE, given),
+            MIRRORED: lambda groups: _twice(groups, forward, given)}
+
+
+def _clear(builder, out, count):
+    """Zeros in whole vectors, some at a time."""
+    done = WORD(0)
+    for vectors in (_CLEARED, 1):
+        step = LANES * vectors
+        end = builder.sub(count, builder.srem(builder.sub(count, done), WORD(step)))
+        with short_loop(builder, done, end, step) as place:
+            for k in range(vectors):
+                store_vector(builder, no_sum(), out, builder.add(place, WORD(LANES * k)))
+        done = end
+
+
+def _once(groups, kind, given):
+    """The numbers of the vectors stay in registers while strips follow."""
+    builder = groups.builder
+    factors = [_factors(groups, x, kind) for x, _ in given]
+    with short_loop(builder, WORD(0), groups.strips) as strip:
+        place, columns = groups.head(0, strip), _columns(groups, strip, kind)
+        for (_, out), numbers in zip(given, factors, strict=True):
+            _add_times(builder, out, place, columns, numbers)
+
+
+def _twice(groups, forward, across):
+    """Strips of one matrix; sums of the transposed products stay in registers.
+
+    `forward` are the products of the strips: which one, the vector, what it is added to; `across`
+    the same of the transpose, which is always the last product.
+    """
+    builder, width = groups.builder, WIDTHS[MIRRORED]
+    places = [groups.head(k) for k in range(PRODUCTS)]
+    factors = [_factors(groups, x, MIRRORED) for _, x, _ in forward]
+    sums = [totals(builder, width) for _ in across]
+    for total in (total for of_one in sums for total in of_one):
+        builder.store(no_sum(), total)
+    with short_loop(builder, WORD(0), groups.strips) as strip:
+        row, columns = groups.row(strip), _columns(groups, strip, MIRRORED)
+        for (product, _, out), numbers in zip(forward, factors, strict=True):
+            _add_times(builder, out, builder.add(places[product], row), columns, numbers)
+        for (x, _), of_one in zip(across, sums, strict=True):
+            numbers = load_vector(builder, x, row)
+            for total, column in zip(of_one, columns, strict=True):
+                add_product(builder, total, column, numbers)
+    for (_, out), of_one in zip(across, sums, strict=True):
+        found = [builder.load(total) for total in of_one]
+        for k in range(0, width, LANES):
+            place = builder.add(places[-1], builder.add(groups.first, WORD(k)))
+            _add_to(builder, out, place, sums_of_lanes(builder, found[k:k + LANES]))
+
+
+def _columns(groups, strip, kind):
+    """The columns of a strip."""
+    own = groups.entries(strip, kind)
+    return [load_vector(groups.builder, own, WORD(LANES * k)) for k in range(WIDTHS[kind])]
+
+
+def _factors(groups, x, kind):
+    """What the columns of the strips of a group are multiplied with."""
+    builder = groups.builder
+    return [load_broadcast(builder, x, builder.add(groups.first, WORD(k)))
+            for k in range(WIDTHS[kind])]
+
+
+def _add_times(builder, out, place, columns, factors):
+    """Add the product of a strip to what is kept at a place.
+
+    That number is added last: strips that are added to the same place wait for each other.
+    """
+    product = builder.fmul(columns[0], factors[0])
+    for column, factor in zip(columns[1:], factors[1:], strict=True):
+        product = _added(builder, product, column, factor)
+    _add_to(builder, out, place, product)
+
+
+def _add_to(builder, out, place, vector):
+    store_vector(builder, builder.fadd(load_vector(builder, out, place), vector), out, place)
+
+
+def _added(builder, total, a, b):
+    return builder.fadd(total, builder.fmul(a, b, flags=("contract",)), flags=("contract",))
+
+
+# sums
+
+
+def write_sum(builder, matrices, factors, out, height):
+    Groups(builder, matrices).each({
+        NARROW: lambda groups: _sum_once(groups, NARROW, factors, out, height),
+        WIDE: lambda groups: _sum_once(groups, WIDE, factors, out, height),
+        MIRRORED: lambda groups: _sum_twice(groups, factors, [(0, out)], out, height)})
+
+
+def write_sum_of_couplings(builder, matrices, factors, of_x, of_y, height):
+    def once(kind):
+        return lambda groups: _sum_once(groups, kind, factors, groups.chosen(of_x, of_y), height)
+    Groups(builder, matrices).each({
+        **{kind: once(kind) for kind in (NARROW, WIDE)},
+        MIRRORED: lambda groups: _sum_twice(groups, factors, [(0, of_x)], of_x, height),
+        COUPLED: lambda groups: _sum_twice(groups, factors, [(0, of_x), (1, of_y)], of_y, height)})
+
+
+def _sum_once(groups, kind, factors, out, height):
+    """Strip by strip."""
+    builder = groups.builder
+    with short_loop(builder, WORD(0), groups.strips) as strip:
+        scale = load_broadcast(builder, factors, groups.head(1, strip))
+        columns = _columns(groups, strip, kind)
+        _add_columns(builder, columns, scale, out, groups.first, height, groups.head(2, strip))
+
+
+def _sum_twice(groups, factors, forward, across, height):
+    """The same of strips of one matrix, and of their transposes."""
+    builder = groups.builder
+    *scales, transposed = (load_broadcast(builder, factors, groups.head(PRODUCTS + k))
+                           for k in range(PRODUCTS))
+    with short_loop(builder, WORD(0), groups.strips) as strip:
+        row, columns = groups.row(strip), _columns(groups, strip, MIRRORED)
+        for product, out in forward:
+            _add_columns(builder, columns, scales[product], out, groups.first, height, row)
+        for k in range(0, WIDTHS[WIDE], LANES):
+            _add_columns(builder, _transposed(builder, columns[k:k + LANES]), transposed, across,
+                         row, height, builder.add(groups.first, WORD(k)))
+
+
+def _add_columns(builder, columns, scale, out, first, height, row):
+    """Add some columns to those of a matrix, from a column and a row on."""
+    for k, column in enumerate(columns):
+        place = builder.add(builder.mul(builder.add(first, WORD(k)), height), row)
+        store_vector(builder, _added(builder, load_vector(builder, out, place), column, scale),
+                     out, place)
+
+
+def _transposed(builder, columns):
+    """Rows of a square block."""
+    def joined(a, b, lanes):
+        return builder.shuffle_vector(a, b, ir.Constant(ir.VectorType(ir.IntType(32), LANES),
+                                                        lanes))
+    a, b, c, d = columns
+    low = [joined(*two, [0, LANES, 2, LANES + 2]) for two in ((a, b), (c, d))]
+    high = [joined(*two, [1, LANES + 1, 3, LANES + 3]) for two in ((a, b), (c, d))]
+    halves = [0, 1, LANES, LANES + 1], [2, 3, LANES + 2, LANES + 3]
+    return [joined(*two, lanes) for lanes in halves for two in (low, high)]
