@@ -7,8 +7,7 @@ from numpy.typing import NDArray
 
 from sebody.compiler.decorators import compiled
 from sebody.engine.arrays import Arrays
-from sebody.engine.evaluate import set_loads_beside
-from sebody.engine.links import place_dependent
+from sebody.gradients.held_states import put_state
 from sebody.gradients.products import prepare
 from sebody.kernels.rotations import exp_map, tangent_operator
 
@@ -97,10 +96,7 @@ class Columns(Arrays):
 @compiled
 def put(system, state, products, columns, row, end, beside):
     """The state of an event, with its H and T, ready for products; a status."""
-    for i in range(state.now.size):
-        state.now[i] = row[i]
-    set_loads_beside(system, state.frames, state.loads, end, beside)
-    place_dependent(system.links, state.q, state.v, state.a, state.R)
+    put_state(system, state, row, end, beside)
     for r in range(columns.places.size):
         first = columns.places[r]
         x, y, z = state.q[first], state.q[first + 1], state.q[first + 2]

@@ -6,9 +6,8 @@
 and the same of what laws keep from step to step, see `laws`.
 
 Kernels of products (`derive/kernels/products.py`) do this element by element: first PREPARE, once
-in a state, then as many products as are asked for. Laws of continuous controllers, whose kernel is
-written by hand, have their matrices made in its place. Vectors are those of all coordinates, in
-global axes. Dependent positions, at the ends of rigid links, follow the unknowns: `link_products`.
+in a state, then as many products as are asked for. Vectors are those of all coordinates, in global
+axes. Dependent positions, at the ends of rigid links, follow the unknowns: see `link_products`.
 """
 
 from dataclasses import dataclass
@@ -24,13 +23,8 @@ from sebody.contract.layout import (
     AT_FRAME,
     AT_POSITIONS,
     AT_ROTATIONS,
-    C_CONSTRAINT,
-    C_DAMPING,
-    C_MASS,
-    C_STIFFNESS,
     OK,
     PREPARE,
-    TANGENT,
     TRANSPOSED,
 )
 from sebody.contract.names import element_name
@@ -38,15 +32,14 @@ from sebody.engine.arrays import Arrays
 from sebody.engine.evaluate import sum_forces
 from sebody.engine.links import pull_back
 from sebody.gradients import laws
-from sebody.gradients.laws import ROWS
+from sebody.gradients.element_products import PARTS, ROWS, run_element
 from sebody.gradients.link_products import add_levers, place_motion, place_weights, pull_back_bars
-from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
+from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.loader import element_kernel_name, load, products_kernel_name
 from sebody.runs.first_run import compile_missing
 from sebody.runs.simulation import Simulation
 
 CONTINUOUS = element_name("continuous")     # kernel of laws of controllers
-PARTS = "stiffness", "damping", "mass"      # matrices that are made
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +85,7 @@ class Products(Arrays):
         for b, module in enumerate(modules):
             rotations, width = (int(system.index[system.at_index[b] + AT_ROTATIONS]),
                                 int(system.width[b]))
-            size = len(PARTS) * width * width if module is None else whole_vectors(module.KEPT)
+            size = PARTS * width * width if module is None else whole_vectors(module.KEPT)
             if module is not None and module.WORK_ROWS:
                 size += scratch_size(module.WORK_ROWS, getattr(module, "WORK_SQUARES", 0), width,
                                      rotations)
@@ -131,70 +124,11 @@ def _run(task, system, state, products):
     """All elements, one after the other; the status of the first that fails."""
     element = 0
     for b in range(system.address.size):
-        stride, width = system.stride[b], system.width[b]
         for k in range(system.count[b]):
-            first = system.at_g[b] + k * width
-            if products.address[b] == 0:
-                status = _by_matrices(task, b, k, system, state, at(
-                    pointer_to(products.vectors), ROWS * first), at(
-                        pointer_to(products.work), products.at_work[element]))
-                if status != OK:
-                    return status
-                element += 1
-                continue
-            status = call_kernel(
-                products.address[b], task, 1, stride, width,
-                Arguments(index=at(pointer_to(system.index), system.at_index[b] + k * stride),
-                          constants=system.constants, q=state.q, R=state.R, v=state.v, a=state.a,
-                          references=state.frames_old, frames=state.frames, T=state.T,
-                          loads=state.loads, coefficients=state.coefficients,
-                          forces=at(pointer_to(state.g), first),
-                          matrices=at(pointer_to(products.vectors), ROWS * first),
-                          work=at(pointer_to(products.work), products.at_work[element]),
-                          energies=state.energy))
+            status = run_element(task, b, k, products.at_work[element], system, state, products)
             if status != OK:
                 return status
             element += 1
-    return OK
-
-
-@compiled
-def _by_matrices(task, b, k, system, state, vectors, matrices):
-    """The same of an element whose matrices K, C and M are made."""
-    width, stride, c = system.width[b], system.stride[b], state.coefficients
-    size = width * width
-    if task == PREPARE:
-        for i in range(state.T.size):
-            state.T[i] = 1.0 if i % 9 % 4 == 0 else 0.0
-        for part in range(3):
-            c[C_STIFFNESS] = c[C_CONSTRAINT] = 1.0 * (part == 0)
-            c[C_DAMPING], c[C_MASS] = 1.0 * (part == 1), 1.0 * (part == 2)
-            status = call_kernel(
-                system.address[b], TANGENT, 1, stride, width,
-                Arguments(index=at(pointer_to(system.index), system.at_index[b] + k * stride),
-                          constants=system.constants, q=state.q, R=state.R, v=state.v, a=state.a,
-                          references=state.frames_old, frames=state.frames, T=state.T,
-                          loads=state.loads, coefficients=c,
-                          forces=at(pointer_to(state.g), system.at_g[b] + k * width),
-                          matrices=at(matrices, part * size), work=state.work,
-                          energies=state.energy))
-            if status != OK:
-                return status
-        return OK
-    for i in range(width):
-        if task == ALONG:
-            vectors[i] = 0.0
-        for part in range(3):
-            total, row = 0.0, (part + 1) * width
-            for j in range(width):
-                if task == ALONG:
-                    total += matrices[part * size + i * width + j] * vectors[row + j]
-                else:
-                    total += matrices[part * size + j * width + i] * vectors[j]
-            if task == ALONG:
-                vectors[i] += total
-            else:
-                vectors[row + i] = total
     return OK
 
 
