@@ -1,7 +1,8 @@
-"""What an old inverse says of the solution of a step, without products: see `steps`."""
+"""What an old inverse says of the solution of a step, without products: see `step_equation`."""
 
 from sebody.compiler.decorators import compiled
 from sebody.engine.evaluate import to_body_axes
+from sebody.gradients.columns import GUESSES
 
 
 @compiled
@@ -28,7 +29,7 @@ def guess(columns, j):
 def _ahead(columns, before, j, i):
     """An entry of vectors of the steps before, extrapolated by as many as there are."""
     one, two, three = before[0, j, i], before[1, j, i], before[2, j, i]
-    known = columns.counts[-1]
+    known = columns.counts[GUESSES]
     return 3.0 * (one - two) + three if known > 2 else 2.0 * one - two if known > 1 else one
 
 

@@ -26,18 +26,18 @@ from sebody.contract.layout import (
     RESIDUAL,
     Row,
 )
-from sebody.engine.evaluate import run_kernels, set_loads_beside, sum_forces
-from sebody.engine.links import place_dependent
+from sebody.engine.evaluate import run_kernels, sum_forces
 from sebody.engine.system import System
 from sebody.errors import InputError
+from sebody.gradients.element_products import ROWS, run_element
+from sebody.gradients.held_states import put_state
 from sebody.gradients.history import History
-from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
+from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.loader import element_kernel
 from sebody.model.parts import Element
 from sebody.runs.simulation import Simulation
 
 EQUAL = 1e-9                # of coefficients that are the same
-ROWS = 4                    # vectors of an element: forces or weights, motion, rates, second rates
 COUNTED = ("angle",)        # what torsion springs keep to count turns, no force depends on it else
 # of a law: where its scratch memory begins, and its numbers in `State.frames`; how many it keeps,
 # and which of all laws' numbers is its first; increments of rotations it reads, and where the first
@@ -139,17 +139,9 @@ def take(system, products, back):
 def _run(task, j, system, state, products):
     """One law."""
     laws = products.laws
-    b, width = laws[j, BATCH], laws[j, WIDTH]
-    stride, first = system.stride[b], laws[j, FORCE]
-    return call_kernel(
-        products.address[b], task, 1, stride, width,
-        Arguments(index=at(pointer_to(system.index), system.at_index[b]
-                           + (first - system.at_g[b]) // width * stride),
-                  constants=system.constants, q=state.q, R=state.R, v=state.v, a=state.a,
-                  references=state.frames_old, frames=state.frames, T=state.T, loads=state.loads,
-                  coefficients=state.coefficients, forces=at(pointer_to(state.g), first),
-                  matrices=at(pointer_to(products.vectors), ROWS * first),
-                  work=at(pointer_to(products.work), laws[j, WORK]), energies=state.energy))
+    b = laws[j, BATCH]
+    k = (laws[j, FORCE] - system.at_g[b]) // laws[j, WIDTH]
+    return run_element(task, b, k, laws[j, WORK], system, state, products)
 
 
 @compiled
@@ -196,9 +188,8 @@ def in_changed(system, state, products, made, other, rows, now, ends, besides, f
     free = found.shape[1] - products.kept.shape[1]
     for e in range(rows.shape[0]):
         for i in range(state.now.size):
-            state.now[i], other.now[i] = rows[e, i], now[e, i]
-        set_loads_beside(system, state.frames, state.loads, ends[e], besides[e])
-        place_dependent(system.links, state.q, state.v, state.a, state.R)
+            other.now[i] = now[e, i]
+        put_state(system, state, rows[e], ends[e], besides[e])
         before = -1
         for j in range(laws.shape[0]):
             if laws[j, BATCH] != before:

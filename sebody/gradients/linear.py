@@ -23,10 +23,10 @@ from sebody.contract.layout import (
     OK,
     TANGENT,
 )
-from sebody.engine.evaluate import run_kernels, set_loads_beside, sum_forces
-from sebody.engine.links import place_dependent
+from sebody.engine.evaluate import run_kernels, sum_forces
 from sebody.engine.state import REASONS
 from sebody.errors import InputError
+from sebody.gradients.held_states import put_state
 from sebody.gradients.links import Followers
 from sebody.runs.simulation import Simulation
 
@@ -45,10 +45,7 @@ class Parts(NamedTuple):
 @compiled
 def _evaluate(system, state, row, end, beside, turned, places, sums):
     """Sums of the element matrices M, C and K in the state of a row; the kernels' status."""
-    for i in range(state.now.size):
-        state.now[i] = row[i]
-    set_loads_beside(system, state.frames, state.loads, end, beside)
-    place_dependent(system.links, state.q, state.v, state.a, state.R)
+    put_state(system, state, row, end, beside)
     for i in range(state.T.size):
         state.T[i] = 1.0 if i % 9 % 4 == 0 else 0.0
     c = state.coefficients

@@ -6,10 +6,8 @@
 and the same of what laws keep from step to step, see `laws`.
 
 Kernels of products (`derive/kernels/products.py`) do this element by element: first PREPARE, once
-in a state, then as many products as are asked for. Laws of continuous controllers, whose kernel is
-written by hand, have their matrices made in its place. Vectors are those of all coordinates, in
-global axes. Dependent positions, at the ends of rigid links, follow the unknowns by the operators
-(20) of `links`, which are written out here, with their transposes.
+in a state, then as many products as are asked for. Vectors are those of all coordinates, in global
+axes. Dependent positions, at the ends of rigid links, follow the unknowns: see `link_products`.
 """
 
 from dataclasses import dataclass
@@ -25,13 +23,8 @@ from sebody.contract.layout import (
     AT_FRAME,
     AT_POSITIONS,
     AT_ROTATIONS,
-    C_CONSTRAINT,
-    C_DAMPING,
-    C_MASS,
-    C_STIFFNESS,
     OK,
     PREPARE,
-    TANGENT,
     TRANSPOSED,
 )
 from sebody.contract.names import element_name
@@ -39,14 +32,14 @@ from sebody.engine.arrays import Arrays
 from sebody.engine.evaluate import sum_forces
 from sebody.engine.links import pull_back
 from sebody.gradients import laws
-from sebody.gradients.laws import ROWS
-from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
+from sebody.gradients.element_products import PARTS, ROWS, run_element
+from sebody.gradients.link_products import add_levers, place_motion, place_weights, pull_back_bars
+from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.loader import element_kernel_name, load, products_kernel_name
 from sebody.runs.first_run import compile_missing
 from sebody.runs.simulation import Simulation
 
 CONTINUOUS = element_name("continuous")     # kernel of laws of controllers
-PARTS = "stiffness", "damping", "mass"      # matrices that are made
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +85,7 @@ class Products(Arrays):
         for b, module in enumerate(modules):
             rotations, width = (int(system.index[system.at_index[b] + AT_ROTATIONS]),
                                 int(system.width[b]))
-            size = len(PARTS) * width * width if module is None else whole_vectors(module.KEPT)
+            size = PARTS * width * width if module is None else whole_vectors(module.KEPT)
             if module is not None and module.WORK_ROWS:
                 size += scratch_size(module.WORK_ROWS, getattr(module, "WORK_SQUARES", 0), width,
                                      rotations)
@@ -131,70 +124,11 @@ def _run(task, system, state, products):
     """All elements, one after the other; the status of the first that fails."""
     element = 0
     for b in range(system.address.size):
-        stride, width = system.stride[b], system.width[b]
         for k in range(system.count[b]):
-            first = system.at_g[b] + k * width
-            if products.address[b] == 0:
-                status = _by_matrices(task, b, k, system, state, at(
-                    pointer_to(products.vectors), ROWS * first), at(
-                        pointer_to(products.work), products.at_work[element]))
-                if status != OK:
-                    return status
-                element += 1
-                continue
-            status = call_kernel(
-                products.address[b], task, 1, stride, width,
-                Arguments(index=at(pointer_to(system.index), system.at_index[b] + k * stride),
-                          constants=system.constants, q=state.q, R=state.R, v=state.v, a=state.a,
-                          references=state.frames_old, frames=state.frames, T=state.T,
-                          loads=state.loads, coefficients=state.coefficients,
-                          forces=at(pointer_to(state.g), first),
-                          matrices=at(pointer_to(products.vectors), ROWS * first),
-                          work=at(pointer_to(products.work), products.at_work[element]),
-                          energies=state.energy))
+            status = run_element(task, b, k, products.at_work[element], system, state, products)
             if status != OK:
                 return status
             element += 1
-    return OK
-
-
-@compiled
-def _by_matrices(task, b, k, system, state, vectors, matrices):
-    """The same of an element whose matrices K, C and M are made."""
-    width, stride, c = system.width[b], system.stride[b], state.coefficients
-    size = width * width
-    if task == PREPARE:
-        for i in range(state.T.size):
-            state.T[i] = 1.0 if i % 9 % 4 == 0 else 0.0
-        for part in range(3):
-            c[C_STIFFNESS] = c[C_CONSTRAINT] = 1.0 * (part == 0)
-            c[C_DAMPING], c[C_MASS] = 1.0 * (part == 1), 1.0 * (part == 2)
-            status = call_kernel(
-                system.address[b], TANGENT, 1, stride, width,
-                Arguments(index=at(pointer_to(system.index), system.at_index[b] + k * stride),
-                          constants=system.constants, q=state.q, R=state.R, v=state.v, a=state.a,
-                          references=state.frames_old, frames=state.frames, T=state.T,
-                          loads=state.loads, coefficients=c,
-                          forces=at(pointer_to(state.g), system.at_g[b] + k * width),
-                          matrices=at(matrices, part * size), work=state.work,
-                          energies=state.energy))
-            if status != OK:
-                return status
-        return OK
-    for i in range(width):
-        if task == ALONG:
-            vectors[i] = 0.0
-        for part in range(3):
-            total, row = 0.0, (part + 1) * width
-            for j in range(width):
-                if task == ALONG:
-                    total += matrices[part * size + i * width + j] * vectors[row + j]
-                else:
-                    total += matrices[part * size + j * width + i] * vectors[j]
-            if task == ALONG:
-                vectors[i] += total
-            else:
-                vectors[row + i] = total
     return OK
 
 
@@ -208,7 +142,7 @@ def transposed(system, state, products, free):
     w, bars = products.forces, products.motion
     for i in range(free, w.size):
         w[i] = 0.0
-    _place(system, state, w)
+    place_weights(system, state, w)
     _take(system, state, products, w, 0)
     laws.give(system, products, True)
     _run(TRANSPOSED, system, state, products)
@@ -219,7 +153,7 @@ def transposed(system, state, products, free):
             _give(system, state, products, bars[r], r + 1)
     laws.take(system, products, True)
     if system.links.dependent.shape[0] > 0:
-        _pull_back(system, state, w, bars)
+        pull_back_bars(system, state, w, bars)
 
 
 @compiled
@@ -233,7 +167,7 @@ def along(system, state, products, free):
         for i in range(free, f.size):
             moves[r, i] = 0.0
     if system.links.dependent.shape[0] > 0:
-        _place_moved(system, state, moves)
+        place_motion(system, state, moves)
     for r in range(3):
         _take(system, state, products, moves[r], r + 1)
     laws.give(system, products, False)
@@ -244,7 +178,7 @@ def along(system, state, products, free):
     _give(system, state, products, f, 0)
     if system.links.dependent.shape[0] > 0:
         pull_back(system.links, state.q, state.R, f)
-        _add_levers(system, state, moves[0], f, False)
+        add_levers(system, state, moves[0], f, False)
 
 
 @compiled
@@ -293,157 +227,3 @@ def _turn(system, state, vectors, first, at_index, back):
         for i in range(3):
             p[3 * k + i] = (R[3 * i] * x + R[3 * i + 1] * y + R[3 * i + 2] * z if back else
                             R[i] * x + R[3 + i] * y + R[6 + i] * z)
-
-
-@compiled(forceinline=True)
-def _cross(a, b):
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-
-
-@compiled(forceinline=True)
-def _out(R, x):
-    """``R x``."""
-    return (R[0] * x[0] + R[1] * x[1] + R[2] * x[2], R[3] * x[0] + R[4] * x[1] + R[5] * x[2],
-            R[6] * x[0] + R[7] * x[1] + R[8] * x[2])
-
-
-@compiled(forceinline=True)
-def _into(R, x):
-    """``R^T x``."""
-    return (R[0] * x[0] + R[3] * x[1] + R[6] * x[2], R[1] * x[0] + R[4] * x[1] + R[7] * x[2],
-            R[2] * x[0] + R[5] * x[1] + R[8] * x[2])
-
-
-@compiled(forceinline=True)
-def _three(x, first):
-    return x[first], x[first + 1], x[first + 2]
-
-
-@compiled(forceinline=True)
-def _arm_in_plane(state, c, r):
-    """An arm in global axes, and the same a right angle ahead."""
-    co, si = np.cos(state.q[c]), np.sin(state.q[c])
-    x, y = co * r[0] - si * r[1], si * r[0] + co * r[1]
-    return x, y, -y, x
-
-
-@compiled
-def _place(system, state, w):
-    """Weights of dependent positions: ``G w``, those of the virtual motion of the unknowns."""
-    links, d = system.links, system.dimension[0]
-    for k in range(links.dependent.shape[0]):
-        x, root = links.dependent[k, 0], links.dependent[k, 1]
-        for i in range(d):
-            w[x + i] = w[root + i]
-        for m in range(links.dependent[k, 2], links.dependent[k, 3]):
-            c, r = links.arms[m, 1], links.arm_vectors[m]
-            if d == 2:
-                _, _, s, t = _arm_in_plane(state, c, r)
-                w[x] += w[c] * s
-                w[x + 1] += w[c] * t
-                continue
-            R = at(pointer_to(state.R), 9 * links.arms[m, 0])
-            turned = _out(R, _cross(_three(w, c), r))
-            for i in range(3):
-                w[x + i] += turned[i]
-
-
-@compiled
-def _place_moved(system, state, moves):
-    """Motion, rates and second rates of dependent positions: (18) and (19) of `links`."""
-    links, d = system.links, system.dimension[0]
-    xi, v, a = moves[0], moves[1], moves[2]
-    for k in range(links.dependent.shape[0]):
-        x, root = links.dependent[k, 0], links.dependent[k, 1]
-        for i in range(d):
-            xi[x + i], v[x + i], a[x + i] = xi[root + i], v[root + i], a[root + i]
-        for m in range(links.dependent[k, 2], links.dependent[k, 3]):
-            c, r = links.arms[m, 1], links.arm_vectors[m]
-            if d == 2:
-                px, py, tx, ty = _arm_in_plane(state, c, r)
-                rate, second = state.v[c], state.a[c]
-                xi[x] += tx * xi[c]
-                xi[x + 1] += ty * xi[c]
-                v[x] += tx * v[c] - rate * px * xi[c]
-                v[x + 1] += ty * v[c] - rate * py * xi[c]
-                a[x] += (tx * a[c] - 2.0 * rate * px * v[c]
-                         - (second * px + rate * rate * tx) * xi[c])
-                a[x + 1] += (ty * a[c] - 2.0 * rate * py * v[c]
-                             - (second * py + rate * rate * ty) * xi[c])
-                continue
-            R = at(pointer_to(state.R), 9 * links.arms[m, 0])
-            spin, theta = _three(state.v, c), _three(xi, c)
-            s = _cross(spin, r)
-            u, dspin = _cross(_three(state.a, c), r), _three(v, c)
-            z, ds = _cross(spin, s), _cross(dspin, r)
-            of_turn, of_spin = _cross(theta, s), _cross(dspin, s)
-            moved = _cross(theta, (u[0] + z[0], u[1] + z[1], u[2] + z[2]))
-            again, last = _cross(spin, ds), _cross(_three(a, c), r)
-            dx = _out(R, _cross(theta, r))
-            dv = _out(R, (ds[0] + of_turn[0], ds[1] + of_turn[1], ds[2] + of_turn[2]))
-            da = _out(R, (last[0] + of_spin[0] + again[0] + moved[0],
-                          last[1] + of_spin[1] + again[1] + moved[1],
-                          last[2] + of_spin[2] + again[2] + moved[2]))
-            for i in range(3):
-                xi[x + i] += dx[i]
-                v[x + i] += dv[i]
-                a[x + i] += da[i]
-
-
-@compiled
-def _pull_back(system, state, w, bars):
-    """Bars of dependent positions, their rates and second rates, given to those of the unknowns."""
-    links, d = system.links, system.dimension[0]
-    q, v, a = bars[0], bars[1], bars[2]
-    for k in range(links.dependent.shape[0]):
-        x, root = links.dependent[k, 0], links.dependent[k, 1]
-        for i in range(d):
-            q[root + i] += q[x + i]
-            v[root + i] += v[x + i]
-            a[root + i] += a[x + i]
-        for m in range(links.dependent[k, 2], links.dependent[k, 3]):
-            c, r = links.arms[m, 1], links.arm_vectors[m]
-            if d == 2:
-                px, py, tx, ty = _arm_in_plane(state, c, r)
-                rate, second = state.v[c], state.a[c]
-                ahead = tx * a[x] + ty * a[x + 1]
-                out = px * a[x] + py * a[x + 1]
-                q[c] += (tx * q[x] + ty * q[x + 1] - rate * (px * v[x] + py * v[x + 1])
-                         - second * out - rate * rate * ahead)
-                v[c] += tx * v[x] + ty * v[x + 1] - 2.0 * rate * out
-                a[c] += ahead
-                continue
-            R = at(pointer_to(state.R), 9 * links.arms[m, 0])
-            f, g, e = _into(R, _three(q, x)), _into(R, _three(v, x)), _into(R, _three(a, x))
-            spin = _three(state.v, c)
-            s, u = _cross(spin, r), _cross(_three(state.a, c), r)
-            z = _cross(spin, s)
-            of_x, of_v = _cross(r, f), _cross(s, g)
-            of_a = _cross((u[0] + z[0], u[1] + z[1], u[2] + z[2]), e)
-            rate, one = _cross(r, g), _cross(s, e)
-            other, last = _cross(r, _cross(spin, e)), _cross(r, e)
-            for i in range(3):
-                q[c + i] += of_x[i] + of_v[i] + of_a[i]
-                v[c + i] += rate[i] + one[i] - other[i]
-                a[c + i] += last[i]
-    _add_levers(system, state, w, q, True)
-
-
-@compiled
-def _add_levers(system, state, x, out, back):
-    """Derivative of the moments of constant forces as their arms turn, or its transpose."""
-    links, d = system.links, system.dimension[0]
-    for k in range(links.dependent.shape[0]):
-        at_x = links.dependent[k, 0]
-        for m in range(links.dependent[k, 2], links.dependent[k, 3]):
-            c, r = links.arms[m, 1], links.arm_vectors[m]
-            if d == 2:
-                px, py, _, _ = _arm_in_plane(state, c, r)
-                out[c] -= (px * state.residual[at_x] + py * state.residual[at_x + 1]) * x[c]
-                continue
-            R = at(pointer_to(state.R), 9 * links.arms[m, 0])
-            f = _into(R, _three(state.residual, at_x))
-            own = _three(x, c)
-            turned = _cross(f, _cross(r, own)) if back else _cross(r, _cross(f, own))
-            for i in range(3):
-                out[c + i] += turned[i]

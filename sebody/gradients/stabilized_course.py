@@ -6,11 +6,12 @@ from scipy import sparse
 
 from sebody.engine.restart import SHORT
 from sebody.gradients import stabilized
+from sebody.gradients.coefficients import Coefficients
+from sebody.gradients.course import Course, Event, initial
 from sebody.gradients.history import RESTART, STEP, History
 from sebody.gradients.linear import Linear, Matrix, Parts
 from sebody.gradients.rates import Rates, rows_of
 from sebody.gradients.second_rates import second_rates
-from sebody.gradients.sweeps import Coefficients, Course, Event, initial
 from sebody.gradients.turns import Turns
 from sebody.runs.simulation import Simulation
 

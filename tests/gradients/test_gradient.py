@@ -8,7 +8,7 @@ from helpers import multipliers_first
 from sebody import InputError, Model, Simulation, SimulationError, Tolerance
 from sebody.analysis import at_time, final, gradient, integral, rms, soft_maximum
 from sebody.assembly import build as assembly
-from sebody.gradients import segments, sweeps
+from sebody.gradients import course, segments
 from sebody.gradients.gradient import Differentiated
 from sebody.model import profiles
 from sebody.runs.schemes import generalized_alpha, hht
@@ -98,7 +98,7 @@ def test_products_give_what_matrices_in_every_step_do(name, mode, monkeypatch):
     """Old inverses and refinement, against a factorized exact matrix in every step."""
     build, *run = SCENES[name]
     found = gradient(build(), *run, mode, scheme=EXACT)
-    monkeypatch.setattr(sweeps.Course, "refined", lambda *_, **others: None)
+    monkeypatch.setattr(course.Course, "refined", lambda *_, **others: None)
     exact = gradient(build(), *run, mode, scheme=EXACT)
     assert (np.abs(found.matrix - exact.matrix) / rows(exact.matrix)).max() < 1e-11
 
