@@ -198,7 +198,7 @@ def in_changed(system, state, products, made, other, rows, now, ends, besides, f
         for i in range(state.now.size):
             state.now[i], other.now[i] = rows[e, i], now[e, i]
         set_loads_beside(system, state.frames, state.loads, ends[e], besides[e])
-        place_dependent(system.links, state.q, state.v, state.a, state.R)
+        place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
         before = -1
         for j in range(laws.shape[0]):
             if laws[j, BATCH] != before:

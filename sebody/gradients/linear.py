@@ -48,7 +48,7 @@ def _evaluate(system, state, row, end, beside, turned, places, sums):
     for i in range(state.now.size):
         state.now[i] = row[i]
     set_loads_beside(system, state.frames, state.loads, end, beside)
-    place_dependent(system.links, state.q, state.v, state.a, state.R)
+    place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
     for i in range(state.T.size):
         state.T[i] = 1.0 if i % 9 % 4 == 0 else 0.0
     c = state.coefficients

@@ -122,7 +122,7 @@ def put(system, state, products, columns, row, end, beside):
     for i in range(state.now.size):
         state.now[i] = row[i]
     set_loads_beside(system, state.frames, state.loads, end, beside)
-    place_dependent(system.links, state.q, state.v, state.a, state.R)
+    place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
     for r in range(columns.places.size):
         first = columns.places[r]
         x, y, z = state.q[first], state.q[first + 1], state.q[first + 2]
