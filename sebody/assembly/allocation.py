@@ -52,6 +52,7 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
         aux=zeros(total), changes=zeros(ROWS * total), fitted=zeros(total), fit=zeros(FIT),
         q_start=q.copy(), q_old=q.copy(), R_old=R.copy(), v_old=v.copy(), a_old=zeros(total),
         aux_old=zeros(total), dq=zeros(total), T=_identities(len(R)),
+        turns=_turns(system, total),
         loads=zeros(3 * ports), loads_old=zeros(3 * ports), acting=zeros(acting),
         acting_old=zeros(acting), works_old=zeros(ports), powers=zeros(ports),
         powers_old=zeros(ports),
@@ -102,6 +103,12 @@ def _rotations(model: Mechanism, numbering: Numbering) -> NDArray:
             at = 9 * numbering.rotations[dof_block]
             rotate(rotations, at, *dof_block.start, rotations, at)
     return rotations
+
+
+def _turns(system: System, total: int) -> NDArray:
+    """Angle, cosine and sine of all coordinates, of no rotation; none where no links need them."""
+    planar = system.dimension[0] == 2 and len(system.links.arms) > 0
+    return np.tile([0.0, 1.0, 0.0], total if planar else 0)
 
 
 def _identities(size: int) -> NDArray:

@@ -104,7 +104,7 @@ def update_rotations(system, state):
         q[first], q[first + 1], q[first + 2] = x, y, z
         rotate(pointer_to(state.R_old), 9 * r, x, y, z, pointer_to(state.R), 9 * r)
     if system.links.dependent.shape[0] > 0:
-        place_dependent(system.links, state.q, state.v, state.a, state.R)
+        place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
 
 
 @compiled
@@ -145,7 +145,7 @@ def sum_forces(system, state, residual):
     for k in range(system.g_unknown.size):
         sums[unknowns[k]] += state.g[k]
     if system.links.dependent.shape[0] > 0:
-        pull_back(system.links, state.q, state.R, residual)
+        pull_back(system.links, state.q, state.R, state.turns, residual)
 
 
 @compiled

@@ -53,7 +53,7 @@ class Links(Arrays):
 
 
 @compiled
-def place_dependent(links, q, v, a, R):
+def place_dependent(links, q, v, a, R, turns):
     """Set positions, velocities and accelerations of the dependent positions."""
     spatial = links.arm_vectors.shape[1] == 3
     for k in range(links.dependent.shape[0]):
@@ -65,7 +65,7 @@ def place_dependent(links, q, v, a, R):
             if spatial:
                 _place_in_space(at(pointer_to(R), 9 * links.arms[m, 0]), r, c, x, q, v, a)
             else:
-                s, t = _rotated(q[c], r)
+                s, t = _rotated(turns, c, q[c], r)
                 q[x] += s
                 q[x + 1] += t
                 v[x] -= v[c] * t
@@ -92,13 +92,25 @@ def _cross(a, b, c, x, y, z):
 
 
 @compiled(forceinline=True)
-def _rotated(angle, r):
-    c, s = math.cos(angle), math.sin(angle)
+def _rotated(turns, k, angle, r):
+    """An arm rotated by an angle in the plane, coordinate k."""
+    remember(turns, 3 * k, angle)
+    c, s = turns[3 * k + 1], turns[3 * k + 2]
     return c * r[0] - s * r[1], s * r[0] + c * r[1]
 
 
+@compiled(forceinline=True)
+def remember(turns, first, angle):
+    """Set cosine and sine of an angle unless those of this angle are there.
+
+    Each iterate needs them for every arm that rotates with a node, and again for the forces on it.
+    """
+    if turns[first] != angle:
+        turns[first], turns[first + 1], turns[first + 2] = angle, math.cos(angle), math.sin(angle)
+
+
 @compiled
-def pull_back(links, q, R, residual):
+def pull_back(links, q, R, turns, residual):
     """Add the forces on dependent positions to those on their roots and rotations."""
     spatial = links.arm_vectors.shape[1] == 3
     for k in range(links.dependent.shape[0]):
@@ -113,7 +125,7 @@ def pull_back(links, q, R, residual):
                 for i in range(3):
                     residual[c + i] += moment[i]
             else:
-                s, t = _rotated(q[c], r)
+                s, t = _rotated(turns, c, q[c], r)
                 residual[c] += s * residual[x + 1] - t * residual[x]
 
 
@@ -125,7 +137,7 @@ def _in_body(R, f, x):
 
 
 @compiled
-def add_expanded(links, k, J, frames, q, R, T, matrix, expansion):
+def add_expanded(links, k, J, frames, q, R, T, turns, matrix, expansion):
     """Add the matrix J of an element, rows and columns of dependent positions replaced."""
     w, wide = links.elements[k, 1], links.elements[k, 2]
     maps, entry = links.elements[k, 3], links.elements[k, 4]
@@ -138,26 +150,26 @@ def add_expanded(links, k, J, frames, q, R, T, matrix, expansion):
         for row in range(w if to >= 0 else 0):
             half[row * wide + to] += J[row * w + i]
     for b in range(links.elements[k, 5], links.elements[k, 6]):
-        _add_part(links, b, J, w, half, wide, True, frames, q, R, T, G)
+        _add_part(links, b, J, w, half, wide, True, frames, q, R, T, turns, G)
     for i in range(w):
         to = links.maps[maps + i]
         for j in range(wide if to >= 0 else 0):
             whole[to * wide + j] += half[i * wide + j]
     for b in range(links.elements[k, 5], links.elements[k, 6]):
-        _add_part(links, b, half, w, whole, wide, False, frames, q, R, T, G)
+        _add_part(links, b, half, w, whole, wide, False, frames, q, R, T, turns, G)
     for i in range(wide * wide):
         matrix[links.entries[entry + i]] += whole[i]
 
 
 @compiled
-def _add_part(links, b, source, w, target, wide, column, frames, q, R, T, G):
+def _add_part(links, b, source, w, target, wide, column, frames, q, R, T, turns, G):
     """Add the columns, or the rows, of a dependent position to those of root and rotations."""
     d = links.arm_vectors.shape[1]
     first, dependent, maps = (links.blocks[b, 0], links.blocks[b, 1],
                          links.blocks[b, 2])
     arms = links.dependent[dependent, 3] - links.dependent[dependent, 2]
     for part in range(arms + 1):
-        count = _replacement(links, b, part, column, frames, q, R, T, G)
+        count = _replacement(links, b, part, column, frames, q, R, T, turns, G)
         to = links.maps[maps + part]
         for i in range(d):
             for j in range(count):
@@ -171,7 +183,7 @@ def _add_part(links, b, source, w, target, wide, column, frames, q, R, T, G):
 
 
 @compiled
-def _replacement(links, b, part, column, frames, q, rotations, operators, G):
+def _replacement(links, b, part, column, frames, q, rotations, operators, turns, G):
     """Derivative of a dependent position by its root (part 0) or the rotation of an arm.
 
     The derivative goes to G, three numbers a row; returns its number of columns.
@@ -185,7 +197,8 @@ def _replacement(links, b, part, column, frames, q, rotations, operators, G):
     m = links.dependent[dependent, 2] + part - 1
     r = links.arm_vectors[m]
     if d == 2:
-        s, t = _rotated(q[links.arms[m, 1]], r)
+        c = links.arms[m, 1]
+        s, t = _rotated(turns, c, q[c], r)
         G[0], G[3] = -t, s
         return 1
     R, T = (at(pointer_to(rotations), 9 * links.arms[m, 0]),
@@ -201,7 +214,7 @@ def _replacement(links, b, part, column, frames, q, rotations, operators, G):
 
 
 @compiled
-def add_second_order(links, place, q, rotations, operators, forces, matrix):
+def add_second_order(links, place, q, rotations, operators, turns, forces, matrix):
     """Add the derivative of the pull-back: moments of constant forces as the arms rotate."""
     d = links.arm_vectors.shape[1]
     for k in range(links.dependent.shape[0]):
@@ -209,7 +222,8 @@ def add_second_order(links, place, q, rotations, operators, forces, matrix):
         for m in range(links.dependent[k, 2], links.dependent[k, 3]):
             r = links.arm_vectors[m]
             if d == 2:
-                s, t = _rotated(q[links.arms[m, 1]], r)
+                c = links.arms[m, 1]
+                s, t = _rotated(turns, c, q[c], r)
                 matrix[links.arm_entries[m]] -= place * (s * forces[x] + t * forces[x + 1])
                 continue
             R, T = (at(pointer_to(rotations), 9 * links.arms[m, 0]),

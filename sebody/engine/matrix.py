@@ -33,7 +33,7 @@ def sum_matrices(system, state, forces):
         sum_element(system, state, element)
     if system.links.elements.shape[0] > 0:
         add_second_order(system.links, state.coefficients[C_STIFFNESS], state.q, state.R, state.T,
-                         forces, state.matrix)
+                         state.turns, forces, state.matrix)
 
 
 @compiled
@@ -61,7 +61,7 @@ def sum_element(system, state, element):
         own = J
     if linked >= 0:
         add_expanded(system.links, linked, J, state.frames, state.q, state.R, state.T,
-                     state.matrix, state.expansion)
+                     state.turns, state.matrix, state.expansion)
         return
     matrix, places, entries = (at(pointer_to(state.matrix), shift), pointer_to(system.J_place),
                                pointer_to(system.J_entry))

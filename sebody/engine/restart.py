@@ -138,7 +138,7 @@ def _begin(system, state):
     for k in range(system.prescribed.shape[0]):
         state.a[system.prescribed[k, 0]] += (system.prescribed_factor[k]
                                              * state.loads[3 * system.prescribed[k, 1] + 2])
-    place_dependent(system.links, state.q, state.v, state.a, state.R)
+    place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
     c[C_MASS], c[C_DAMPING], c[C_STIFFNESS], c[C_GEO], c[C_CONSTRAINT] = 1.0, 0.0, 0.0, 1.0, 1.0
     for i in range(state.T.size):       # the unknowns are accelerations, not increments
         state.T[i] = 1.0 if i % 9 % 4 == 0 else 0.0
@@ -179,7 +179,7 @@ def _correct(system, state):
             state.q[i] -= state.correction[i]
         else:
             state.a[i] -= state.correction[i]
-    place_dependent(system.links, state.q, state.v, state.a, state.R)
+    place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
     size = max(np.sqrt(size), norm)
     rate = norm / clock.last_norm if control.iteration > 0 else 0.0
     clock.last_norm = norm

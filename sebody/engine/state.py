@@ -74,6 +74,8 @@ class State(Arrays):
     R_old                 (9 r,) rotation matrices
     dq                    (N,) increments of the coordinates in the step
     T                     (9 r,) tangent operators of the rotation increments
+    turns                 (3 N,) of coordinates in the plane that rotate arms of rigid links: an
+                          angle, its cosine and sine, see `links.remember`
     error_weights         (N,) one over the error that is allowed of an unknown in a step
     --------------------  --------------------------------------------------------------------------
     power ports
@@ -154,6 +156,7 @@ class State(Arrays):
     aux_old: NDArray
     dq: NDArray
     T: NDArray
+    turns: NDArray
     loads: NDArray
     loads_old: NDArray
     acting: NDArray

@@ -206,7 +206,7 @@ def _write_row(system, state, row, at, t, s, h):
         q[i + 2] = _cubic(s, 0.0, h * state.v_old[i + 2], z, h * p)
         rotate(pointer_to(state.R_old), 9 * r, q[i], q[i + 1], q[i + 2], pointer_to(R), 9 * r)
     if system.links.dependent.shape[0] > 0:
-        place_dependent(system.links, q, v, a, R)
+        place_dependent(system.links, q, v, a, R, state.turns)
 
 
 @compiled

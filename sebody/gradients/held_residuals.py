@@ -76,7 +76,7 @@ def _residuals(system, state, rows, now, kinds, ends, besides, places, free, loa
             if system.rotation_at[r] < free:
                 for i in range(9):
                     state.R[9 * r + i] = rows[e, R + 9 * r + i]
-        place_dependent(system.links, state.q, state.v, state.a, state.R)
+        place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
         of_others = ACCELERATION if kinds[e] == RESTART else RESIDUAL
         status = assemble(RESIDUAL, of_others, system, state, state.residual)
         if status != OK:
@@ -175,7 +175,7 @@ class HeldResiduals:
         kept = state.R.copy()
         move_prescribed(system, state)
         state.R[:] = kept
-        place_dependent(system.links, state.q, state.v, state.a, state.R)
+        place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
         status = assemble(RESIDUAL, ACCELERATION, system, state, state.residual)
         if status != OK:
             raise InputError(f"the start cannot be evaluated: {REASONS[status]}")
@@ -197,7 +197,7 @@ class HeldResiduals:
         state.R[free] = self.start[R:R + len(state.R)][free]
         state.frames[:] = self.start[frames:frames + len(state.frames)]
         state.frames_old[:] = self.start[frames_old:frames_old + len(state.frames_old)]
-        place_dependent(system.links, state.q, state.v, state.a, state.R)
+        place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
         status = assemble(RESIDUAL, ACCELERATION, system, state, state.residual)
         if status != OK:
             raise InputError(f"the start cannot be evaluated: {REASONS[status]}")

@@ -11,4 +11,4 @@ def put_state(system, state, row, end, beside):
     for i in range(state.now.size):
         state.now[i] = row[i]
     set_loads_beside(system, state.frames, state.loads, end, beside)
-    place_dependent(system.links, state.q, state.v, state.a, state.R)
+    place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)

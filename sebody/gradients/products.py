@@ -177,7 +177,7 @@ def along(system, state, products, free):
         f[i] = 0.0
     _give(system, state, products, f, 0)
     if system.links.dependent.shape[0] > 0:
-        pull_back(system.links, state.q, state.R, f)
+        pull_back(system.links, state.q, state.R, state.turns, f)
         add_levers(system, state, moves[0], f, False)
 
 

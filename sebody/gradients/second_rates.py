@@ -49,7 +49,7 @@ def second_rates(linear: Linear, fixed: NDArray) -> tuple[NDArray, NDArray]:
 
 def _evaluated(linear: Linear) -> NDArray:
     system, state = linear.system, linear.state
-    place_dependent(system.links, state.q, state.v, state.a, state.R)
+    place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
     state.g[:] = 0.0
     status = run_kernels(ACCELERATION, int(system.first_joint[0]), system.address.size, system,
                          state)

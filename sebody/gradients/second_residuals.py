@@ -47,7 +47,7 @@ def _move(system, state, shift, cd, cm):
             _turn(state, r, x + shift[i], y + shift[i + 1], z + shift[i + 2])
     for i in range(shift.size):
         state.q[i] += shift[i]
-    place_dependent(system.links, state.q, state.v, state.a, state.R)
+    place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
 
 
 @compiled
@@ -72,7 +72,7 @@ def of_restart(system, state, correction, dt, end, beside, load, found):
                 state.q[i] += sign * correction[i]
             else:
                 state.a[i] += sign * correction[i]
-        place_dependent(system.links, state.q, state.v, state.a, state.R)
+        place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
         if sign < 0.0:
             break
         status = assemble(RESIDUAL, ACCELERATION, system, state, state.residual)

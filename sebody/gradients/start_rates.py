@@ -33,7 +33,7 @@ def fitted_rates(made: Simulation) -> NDArray:
     state = allocate(model, system, made.numbering, made.h, made.dense)
     set_loads(system, state.frames, state.loads, 0.0)
     move_prescribed(system, state)
-    place_dependent(system.links, state.q, state.v, state.a, state.R)
+    place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
     evaluate(system, state, RESIDUAL, VELOCITY, WHAT)
     demand = np.where(fixed, -state.residual[:n], 0.0)
     A = matrix(system, state, WHAT, mass=1.0, damping=0.0, stiffness=0.0, constraint=1.0).toarray()

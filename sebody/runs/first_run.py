@@ -78,7 +78,7 @@ PARTS = {name: part for name, part in LOOP.items() if part.function} | {
                       ("forces in the loop",)),
     "loads": Part(evaluate.set_loads, "system vector vector number", 0.3),
     "motions": Part(evaluate.move_prescribed, "system state", 0.2),
-    "links": Part(links.place_dependent, "links vector vector vector vector", 0.3),
+    "links": Part(links.place_dependent, "links vector vector vector vector vector", 0.3),
     "axes": Part(evaluate.to_body_axes, "system vector vector flag", 0.2),
     "movements": Part(motion._evaluate, "whole whole whole indices vector table places vector "
                       "vector movements", 0.3),

@@ -41,7 +41,7 @@ def begin(model: Mechanism, system: System, numbering: Numbering, state: State) 
     set_loads(system, state.frames, state.loads, 0.0)
     state.loads_old[:] = state.loads
     move_prescribed(system, state)
-    place_dependent(system.links, state.q, state.v, state.a, state.R)
+    place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
     multipliers = np.flatnonzero(system.is_multiplier)
     masses = _masses(system, state)
     if did := fault(model, 0.0):
@@ -87,7 +87,7 @@ def _check_accelerations(system: System, numbering: Numbering, state: State,
     moving = system.is_multiplier[:numbering.total] == 0
     solved = np.arange(numbering.total) < numbering.free
     state.a[solved & moving], state.q[~moving] = 0.0, 0.0
-    place_dependent(system.links, state.q, state.v, state.a, state.R)
+    place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
     evaluate(system, state, RESIDUAL, ACCELERATION, WHAT)
     to_body_axes(system, state.frames, state.residual, False)
     solver.check(state.residual[:numbering.free].copy())
@@ -156,7 +156,7 @@ def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, stat
     answer[multipliers] = 0.0
     to_body_axes(system, state.frames, answer, True)
     state.v[:] += answer
-    place_dependent(system.links, state.q, state.v, state.a, state.R)
+    place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
     size = max(size, np.abs(state.v).max())     # everything may have been at rest before
     for dof_block in given:
         change = np.abs(answer[coordinates(numbering, dof_block)]).max()

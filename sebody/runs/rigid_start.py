@@ -77,7 +77,7 @@ def follow_drives(model: Mechanism, system: System, numbering: Numbering, state:
         answer[multipliers] = demand[multipliers] = 0.0
         to_body_axes(system, state.frames, answer, True)
         state.v[:] += answer
-        place_dependent(system.links, state.q, state.v, state.a, state.R)
+        place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
     changes = {t.name: float(np.abs((state.v - before)[coordinates(numbering, t)]).max())
                for t in dof_blocks}
     return {name: change for name, change in changes.items()

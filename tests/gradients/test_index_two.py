@@ -80,7 +80,7 @@ def test_rates_of_constraints_change_along_a_motion_as_kernels_of_second_rates_s
     D = Rates(linear, run.model.size()).by_motion()
     fixed, found = run.system.is_multiplier[:n] > 0, D @ state.v[:n]
     state.a[:n] = 0.0
-    place_dependent(run.system.links, state.q, state.v, state.a, state.R)
+    place_dependent(run.system.links, state.q, state.v, state.a, state.R, state.turns)
     assert assemble(RESIDUAL, ACCELERATION, run.system, state, state.residual) == OK
     expected = state.residual[:n][fixed]
     assert found[fixed] == pytest.approx(expected, abs=1e-10 * np.abs(expected).max())

@@ -4,8 +4,8 @@ Of the fast way to compile alone. Importing this room puts in place what the loo
 kernels call for lanes.
 """
 
-from sebody.engine.lanes import load_amplitudes, prediction
+from sebody.engine.lanes import links, load_amplitudes, prediction
 from sebody.kernels.lanes import frame_search, packed_products, products, rotations
 
-__all__ = ["frame_search", "load_amplitudes", "packed_products", "prediction", "products",
+__all__ = ["frame_search", "links", "load_amplitudes", "packed_products", "prediction", "products",
            "rotations"]

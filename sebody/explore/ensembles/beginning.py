@@ -68,7 +68,7 @@ def begin(system, state, given, change):
     set_loads(system, state.frames, state.loads, 0.0)
     copy(state.loads, state.loads_old)
     move_prescribed(system, state)
-    place_dependent(system.links, state.q, state.v, state.a, state.R)
+    place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
     state.control.restart = ASKED
 
 
