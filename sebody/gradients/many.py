@@ -140,7 +140,7 @@ def gradients(model: Model, h: float, t_end: float, objectives: Objectives,
     scheme = fitting(scheme, given_tolerance(tolerance))
     began = time.perf_counter()
     template = Simulation(model, h, scheme, tolerance=tolerance)
-    refuse_run(template)
+    refuse_run(template, level=3)
     Products.of(template)       # compiles what is missing, before threads do
     read = forms(template, outputs)
     labels = [label for name, one in outputs.items() for label in labels_of(

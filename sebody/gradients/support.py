@@ -46,10 +46,11 @@ def refuse_model(model: Model) -> None:
                              "or an Ensemble with values on both sides")
 
 
-def refuse_run(run: Simulation) -> None:
+def refuse_run(run: Simulation, level: int = 4) -> None:
     """Refuse runs whose steps are no functions of the state before.
 
-    Warns of constraints of index 2, which are differentiated to the order of the scheme.
+    Warns of constraints of index 2, which are differentiated to the order of the scheme; `level`
+    leads to the caller that is shown.
 
     Raises
     ------
@@ -82,13 +83,13 @@ def refuse_run(run: Simulation) -> None:
     if run.scheme.stabilized:       # which the scheme of a run without constraints is not
         if kept := remembering(run):
             raise InputError(f"{kept[0].name!r} keeps numbers from step to step, which is "
-                             "differentiated without constraints of index 2: use a fixed step with "
-                             "generalized_alpha(index=3)")
+                             "differentiated only without constraints of index 2: use a fixed step "
+                             "with generalized_alpha(index=3)")
         warn("constraints of index 2 (of variable steps the default) shift positions in directions "
              "that are held where motion is differentiated, so derivatives differ from those of "
              "the run by about the error of its steps: halve the step, or divide the tolerance by "
              "eight, to see by how much; fixed steps of generalized_alpha(index=3) have exact "
-             "derivatives", LimitWarning, stacklevel=4)
+             "derivatives", LimitWarning, stacklevel=level)
 
 
 def refuse_laws(run: Simulation, what: str) -> None:

@@ -4,8 +4,9 @@ import differentiated
 import numpy as np
 import pytest
 
-from sebody import InputError, Model
+from sebody import InputError, LimitWarning, Model
 from sebody.analysis import final, gradient, gradients, rms
+from sebody.runs.schemes import generalized_alpha
 
 H, T_END = 0.01, 0.2
 OBJECTIVES = {"tip": final("tip.position"), "shake": rms("tip.velocity.y")}
@@ -70,7 +71,22 @@ def test_a_run_that_fails_keeps_its_reason(found):
     ({"gravity": GRAVITY, "torque.amplitude": AMPLITUDES[:2]}, "different numbers of values"),
     ({"beam.reduced": [differentiated.slender()]},
      "values of 'beam.reduced' are whole bodies: give numbers"),
-    ({}, "give a dict of names and arrays")])
+    ({}, "give a dict of names and arrays"),
+    ({"gravity": np.empty((0, 3))}, "'gravity' has no values: give one for each run")])
 def test_refused(values, words):
     with pytest.raises(InputError, match=words):
         gradients(differentiated.hinged(), H, T_END, OBJECTIVES, PARAMETERS, values)
+
+
+def test_index_2_is_differentiated_with_one_warning_that_names_the_line_of_the_caller():
+    scheme = generalized_alpha(tolerance=1e-10, index=2)
+    with pytest.warns(LimitWarning, match="index 2") as said:
+        many = gradients(differentiated.hinged(), H, 0.05, OBJECTIVES, PARAMETERS,
+                         {name: values[:2] for name, values in VALUES.items()}, scheme=scheme,
+                         threads=2)
+    assert [one.filename for one in said] == [__file__]
+    with pytest.warns(LimitWarning):
+        alone = gradient(built(GRAVITY[1], AMPLITUDES[1]), H, 0.05, OBJECTIVES, PARAMETERS,
+                         scheme=scheme)
+    off = np.abs(many.matrix[1] - alone.matrix).max(axis=1)
+    assert (off < 1e-7 * np.abs(alone.matrix).max(axis=1)).all()

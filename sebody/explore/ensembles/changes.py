@@ -80,7 +80,7 @@ class Handle:
         remedy = "give " + (f"an array (runs, {', '.join(map(str, self.base.shape))})"
                             if self.base.shape else "one number for each run")
         found = inputs.array(values, name, (None, *self.base.shape), remedy=remedy)
-        rows = found.reshape(len(found), -1)
+        rows = found.reshape(len(found), self.base.size)
         lowest, highest = rows.min(axis=1, initial=np.inf), rows.max(axis=1, initial=-np.inf)
         for values_of, bound, wrong, wanted in (
                 (lowest, self.least, np.less, "at least"),

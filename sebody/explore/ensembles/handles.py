@@ -125,6 +125,9 @@ def given(model: Model, parameters: Mapping[str, Any]) -> tuple[dict[str, Handle
     if len(set(lengths.values())) > 1:
         raise InputError("parameters have different numbers of values: " + ", ".join(
             f"{name} {count}" for name, count in lengths.items()) + "; give one for each run")
+    runs = next(iter(lengths.values()))
+    if not runs:
+        raise InputError(f"{next(iter(lengths))!r} has no values: give one for each run")
     # whole bodies first: factors are those of the body that is there
     found = dict(sorted(found.items(), key=lambda item: not item[1].whole))
-    return found, next(iter(lengths.values()))
+    return found, runs
