@@ -9,7 +9,7 @@ import sebody
 from sebody.cli.entry import COMMANDS
 
 LIBRARIES = {"numpy", "scipy", "numba", "sympy", "matplotlib", "pandas", "h5py"}
-COMMAND_LINE = {"sebody", "sebody.lazy", "sebody.errors", "sebody.cli"}
+COMMAND_LINE = {"sebody", "sebody.collector", "sebody.lazy", "sebody.errors", "sebody.cli"}
 MODEL_AND_RUN = {"sebody.files", "sebody.inputs", "sebody.contract", "sebody.compiler",
                  "sebody.kernels", "sebody.generated",
                  "sebody.engine", "sebody.fem", "sebody.reduction", "sebody.io", "sebody.control",
@@ -47,7 +47,7 @@ def command(*arguments: str) -> str:
 
 
 def test_import_of_the_package_loads_nothing():
-    assert loaded("import sebody") == {"sebody", "sebody.lazy"}
+    assert loaded("import sebody") == {"sebody", "sebody.collector", "sebody.lazy"}
 
 
 @pytest.mark.parametrize("arguments", [["--help"], ["run", "--help"], ["sweep", "--help"]])

@@ -10,7 +10,9 @@ damping only lowers the balance. It may rise above its lowest value so far by
 where turn is the largest rotation of a body's frame in the step: the trapezoidal rule keeps the
 energy of a rotating rigid body to the square of it. All three are the same in every frame of
 reference but for the energy of a translation. A step that exceeds this is rejected and halved, and
-steps stay halved until they have kept to it for a while.
+steps stay halved until they have kept to it for a while. A step that multiplies the energy has
+ended at another root of its equations: it is halved as where Newton's iteration does not converge,
+and does not count as energy that the model gains.
 
 Energies cost as much as forces, so they are looked at in every step only where the balance rises,
 elsewhere ever more rarely.
@@ -37,6 +39,7 @@ RAREST = 64.0           # steps between two looks, at most
 DEEPEST = 6.0           # times that steps are halved, at most
 PATIENCE = 64.0         # steps before longer ones are tried; doubled by every rejection
 LONGEST_PATIENCE = 4096.0
+ELSEWHERE = 10.0        # times all energy so far, which a step gains at a root of another motion
 ENOUGH = 64.0           # shortest steps with a rise, after which the run goes on without a guard
 
 # fields of State.guard
@@ -77,7 +80,8 @@ def grows(system, state):
 def _judge(system, state):
     """Look at the energies; whether the step is to be rejected."""
     guard = state.guard
-    before = guard.most_strain + guard.most_kinetic
+    strain, kinetic = guard.most_strain, guard.most_kinetic
+    before = strain + kinetic
     balance = take_balance(system, state)
     more = guard.most_strain + guard.most_kinetic - before
     driven = more > DRIVEN * before and guard.supplied > DRIVEN * more
@@ -88,7 +92,10 @@ def _judge(system, state):
     allowed = SHARE * guard.most_strain + (KEPT + TURNED * turned) * guard.most_kinetic
     allowed += ROUNDED * state.clock.floor * state.clock.floor
     if rise > allowed:
-        return _reject(state, balance)
+        elsewhere = before > 0.0 and rise > ELSEWHERE * before
+        if elsewhere:
+            guard.most_strain, guard.most_kinetic = strain, kinetic
+        return _reject(state, balance, elsewhere)
     guard.calm += guard.stride
     if guard.halved > 0.0 and guard.calm > guard.patient:
         guard.halved -= 1.0
@@ -130,7 +137,7 @@ def turn_of_frames(system, state):
 
 
 @compiled
-def _reject(state, balance):
+def _reject(state, balance, elsewhere):
     """Ask for a shorter step; give up where the shortest ones do not help either."""
     guard, control = state.guard, state.control
     halved = max(guard.halved, float(control.level)) + 1.0
@@ -144,13 +151,14 @@ def _reject(state, balance):
         if guard.in_vain > ENOUGH:
             guard.off, guard.halved = 1.0, 0.0
         return False
-    if guard.rejections == 0.0:
-        guard.first = state.clock.end
-    guard.last = state.clock.end
-    guard.rejections += 1.0
     guard.patient = min(2.0 * guard.patient, LONGEST_PATIENCE)
     guard.halved, guard.calm = halved, 0.0
-    guard.most_halved = max(guard.most_halved, halved)
+    if not elsewhere:
+        if guard.rejections == 0.0:
+            guard.first = state.clock.end
+        guard.last = state.clock.end
+        guard.rejections += 1.0
+        guard.most_halved = max(guard.most_halved, halved)
     if control.adaptive == 1:
         state.clock.largest_error = AIM        # as after an error: longer ones not soon
     return True

@@ -204,9 +204,11 @@ def modes(run: Simulation | Result, spin: ArrayLike | None = None) -> Modes:
     """
     M, C, K, free = linearize(run, spin)[:4]
     roots = eigenvalues(M, C, K)
-    # on integrals of controllers' states nothing depends: each has the value 0, which is no mode
-    order = np.sort(np.argsort(np.abs(roots.values), kind="stable")[
-        len(hidden_states(run.model, run.numbering)):])
+    # on integrals of controllers' states nothing depends: each has the value 0, which is no mode;
+    # rounding may make a conjugate pair of two of these, of which one value is here
+    nearest = np.argsort(np.abs(roots.values), kind="stable")
+    counts = np.cumsum(np.where(roots.values[nearest].imag > 0.0, 2, 1))
+    order = np.sort(nearest[counts > len(hidden_states(run.model, run.numbering))])
     shapes = free @ roots.shapes[:, order]
     return Modes(roots.values[order], shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300),
                  Shapes(run), roots.rounding[order])

@@ -7,7 +7,15 @@ from scipy.integrate import solve_ivp
 from scipy.signal import butter, freqs
 from scipy.spatial.transform import Rotation
 
-from sebody import InputError, Model, Simulation, SimulationError, Tolerance, simulate
+from sebody import (
+    InputError,
+    Model,
+    Simulation,
+    SimulationError,
+    Tolerance,
+    generalized_alpha,
+    simulate,
+)
 from sebody.analysis import Ensemble, equilibrium, modes, resume, save_state, state_space
 from sebody.control import discrete, linear, low_pass, pid, state_feedback
 from sebody.fem import StiffnessSection, straight_beam
@@ -209,12 +217,12 @@ def test_a_law_equals_springs_and_dampers():
                              parameters=[4.0, 0.3],
                              derivatives=derivatives if case == 2 else None)
         model.gravity((0.0, -9.81, 0.0))
-        found.append(simulate(model, 2e-3, 0.6))
+        found.append(simulate(model, 2e-3, 0.6, generalized_alpha(tolerance=1e-9)))
     for name in ("end.position", "tip.velocity", "elbow.moment"):
         for own in found[1:]:
-            # the tolerance of the iteration, 1e-6 of the increments, over 300 steps
+            # the tolerance of the iteration, 1e-9 of the increments, over 300 steps
             assert_allclose(own[name], found[0][name], rtol=0,
-                            atol=1e-5 * np.abs(found[0][name]).max())
+                            atol=1e-7 * np.abs(found[0][name]).max())
     assert abs(found[1].iterations_per_step - found[0].iterations_per_step) < 0.3
     work = found[1]["elbow motor.work"][-1]
     assert work == pytest.approx(-np.trapezoid(
