@@ -88,7 +88,7 @@ def test_constraints_hold_in_place_and_rate():
         model.point_mass("bob", model.node("bob", (-1.0, 0.0), keeps="translation"), 1.0)
         model.distance("hinge", "bob")
         result = simulate(model, h, 2.0, FINE)
-        # the last corrections of two coordinates are within the tolerance of the increment of a step
+        # the last corrections of both coordinates are within the tolerance of the increment
         increment = h * np.abs(result["bob.velocity"]).max()
         assert result["constraints.position"].max() < np.sqrt(2) * 1e-11 * increment
         found.append(result["constraints.velocity"][result.t > 0.1].max())
