@@ -41,13 +41,13 @@ class Gradients:
 
     Attributes
     ----------
-    value : (runs, m)
-        Of the objectives, as of `Gradient`; NaN of runs that failed.
-    matrix : (runs, m, p)
+    value : (r, m)
+        Of the objectives in r runs, as of `Gradient`; NaN of runs that failed.
+    matrix : (r, m, p)
         Derivatives by the numbers of the parameters, about the values that each run has.
     rows, columns : tuple of str
         What these are of.
-    growth : (runs,)
+    growth : (r,)
         As of `Gradient`.
     failures : dict
         Reason by number of the run, of those that failed.
