@@ -18,8 +18,7 @@ from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Superelement
 
 FEWEST = 64     # equal bodies from which on a kernel for eight is worth compiling
-# part of the names of kernels whose frame is found in lanes, too
-IN_LANES = "_converged_mean_"
+FRAME = "converged_mean"    # of bodies that gain by it as measured; others are taken one by one
 
 
 def likeness(body: Superelement) -> tuple:
@@ -31,7 +30,7 @@ def many_alike(model: Mechanism) -> set[tuple]:
     """The likenesses of bodies that are as many as a kernel for eight is worth compiling for."""
     if len(model.bodies) < FEWEST:
         return set()
-    counts = Counter(likeness(body) for body in model.bodies.values() if IN_LANES in body.kernel)
+    counts = Counter(likeness(body) for body in model.bodies.values() if body.frame == FRAME)
     return {like for like, count in counts.items() if count >= FEWEST}
 
 

@@ -134,8 +134,7 @@ def _sums(run: Simulation | Result, elements: NDArray, rows: NDArray) -> NDArray
     for row, forces, sums in zip(rows, elements, totals, strict=True):
         np.add.at(sums, system.g_unknown, forces)
         if system.links.dependent.shape[0]:
-            pull_back(system.links, row[parts["q"]], row[parts["R"]],
-                      run.state.turns, sums)
+            pull_back(system.links, row[parts["q"]], row[parts["R"]], run.state.turns, sums)
     return totals
 
 
