@@ -3,7 +3,8 @@
 DOF blocks that bodies share, or that joints and springs couple, are the items of a graph; those of
 one body alone are left out. The elimination of an item couples all its neighbours; the next one is
 always an item with the fewest unknowns around it (Tinney and Walker, Proc. IEEE 55: 1801-1809,
-1967). The bodies it belongs to come next in the order, for an item is eliminated with the last of
+1967). Of several such items one comes first whose surroundings have not changed for longest: a chain
+is eliminated from both ends to its middle, in two parts that do not wait for each other. The bodies it belongs to come next in the order, for an item is eliminated with the last of
 its bodies.
 """
 
@@ -55,15 +56,15 @@ def _order(bodies: tuple, couplings: tuple) -> tuple[int, ...]:
     graph = _Graph(len(bodies))
     _fill(graph, [dict(body) for body in bodies], [Coupling(*one) for one in couplings])
     current = [graph.degree(item) for item in graph.choices]
-    queue = [(degree, item) for item, degree in enumerate(current)]
+    queue = [(degree, 0, item) for item, degree in enumerate(current)]
     heapify(queue)
     while queue:
-        degree, item = heappop(queue)
+        degree, _, item = heappop(queue)
         if current[item] == degree and graph.owners[item]:
             for other in graph.eliminate(item):
                 if other < len(current):
                     current[other] = graph.degree(other)
-                    heappush(queue, (current[other], other))
+                    heappush(queue, (current[other], len(graph.steps), other))
     return tuple(graph.postorder())
 
 

@@ -27,6 +27,7 @@ from sebody.runs import user_faults
 from sebody.runs.failures import explained
 from sebody.runs.first_run import prepare
 from sebody.runs.given_start import take
+from sebody.runs.helpers import checked_threads, helping
 from sebody.runs.initial_state import begin, hold
 from sebody.runs.initial_velocities import refuse_contradicted
 from sebody.runs.progress import showing
@@ -62,6 +63,9 @@ class Simulation:
         Allowed error of a step. With a tolerance, step lengths are chosen, steps end at corners of
         load tables, and `h` is only the output grid, on which the state is interpolated. Errors of
         many steps add up: see `simulate_within` for the error of the whole run.
+    threads : int
+        Threads that share a step of a large model, no more than the processor has cores. Results
+        are the same for any number, bit for bit.
     start : Result, optional
         State to start from in place of the model as built: of an `equilibrium`, at which nothing
         rings, or the end of a run. Initial velocities that the model gives stay.
@@ -83,7 +87,7 @@ class Simulation:
 
     def __init__(self, model: Model, h: float, scheme: Scheme | None = None,
                  output_every: int = 1, tolerance: Tolerance | None = None,
-                 start: Result | None = None):
+                 start: Result | None = None, threads: int = 1):
         self.model = inputs.instance(model, "model", Model, "give a sebody.Model")
         self.h = inputs.number(h, "the time step", above=0)
         self.every = inputs.integer(output_every, "output_every", least=1, most=int(MOST_STEPS),
@@ -91,9 +95,10 @@ class Simulation:
         if scheme is not None:
             checked(scheme)
         tolerance = given(tolerance)
+        threads = checked_threads(threads)
         user_faults.refuse_changed(model)
         prepare([model])
-        self.system, self.numbering = build(model)
+        self.system, self.numbering = build(model, threads)
         self.scheme = self._fitting(scheme, tolerance is not None)
         self.dense = not self.system.slot_unknowns.size     # no elimination by blocks
         self.state = allocate(model, self.system, self.numbering, self.h, self.dense)
@@ -176,7 +181,7 @@ class Simulation:
         self.sampling.stop_at(t_end)
         code = CHUNK
         try:
-            with showing(progress, t_end) as show:
+            with showing(progress, t_end) as show, helping(self.system, self.state):
                 code = self._advance(record, last, t_end, show)
         except KeyboardInterrupt:
             pass                        # the rows come first
@@ -334,7 +339,8 @@ def _default(index: int) -> Scheme:
 
 def simulate(model: Model, h: float, t_end: float, scheme: Scheme | None = None,
              output_every: int = 1, progress: Callable[[float], None] | bool | None = None,
-             tolerance: Tolerance | None = None, start: Result | None = None) -> Result:
+             tolerance: Tolerance | None = None, start: Result | None = None,
+             threads: int = 1) -> Result:
     """Run a model from 0 to `t_end`; see `Simulation` for the arguments and exceptions."""
-    run = Simulation(model, h, scheme, output_every, tolerance, start)
+    run = Simulation(model, h, scheme, output_every, tolerance, start, threads)
     return run.run_to(t_end, progress).result()

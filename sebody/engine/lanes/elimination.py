@@ -16,10 +16,8 @@ def eliminate_large(system, state, kept, wanted):
 
     Returns the members whose pivots are large enough.
     """
-    elimination.eliminate(system.block_diagonal.size, pointer_to(system.block_starts),
-                          pointer_to(system.block_rows), pointer_to(system.block_diagonal),
-                          pointer_to(system.slot_unknowns), pointer_to(state.matrix),
-                          pointer_to(state.column), pointer_to(state.scale))
+    elimination.eliminate_columns(0, system.block_diagonal.size, system, state,
+                                  pointer_to(state.column))
     good = spread(0.0) == 0.0
     for j in range(system.block_diagonal.size):
         good = good & (abs(state.matrix[BLOCK * system.block_diagonal[j]]) < math.inf)
