@@ -8,6 +8,7 @@ from sebody.assembly.batches import Batches, make_batches, starts
 from sebody.assembly.contracts import check_joints
 from sebody.assembly.control import control_arrays
 from sebody.assembly.equal_bodies import room_of
+from sebody.assembly.independent_parts import FEWEST
 from sebody.assembly.links import Ends, link_ends
 from sebody.assembly.numbering import Numbering, number, stretch
 from sebody.assembly.ports import port_arrays
@@ -28,7 +29,7 @@ DENSE_LIMIT = 24        # unknowns above which elimination by blocks is faster t
 
 
 def build(model: Mechanism, threads: int = 1) -> tuple[System, Numbering]:
-    """Flat arrays of a model, and room for some threads.
+    """Flat arrays of a model; of a large one also what some threads need to share its steps.
 
     Raises
     ------
@@ -50,7 +51,7 @@ def build(model: Mechanism, threads: int = 1) -> tuple[System, Numbering]:
                         numbering.memory.inputs)
     slots = own.system["slot_unknowns"].size
     system = System(
-        shared=Shared.of(threads, work_size(model), LANES * slots,
+        shared=Shared.of(threads if numbering.free >= FEWEST else 1, work_size(model), LANES * slots,
                          int(own.system["width"].max()) ** 2),
         **own.system, **ports, links=Links(arm_vectors=vectors, **own.links),
         control=control_arrays(model, numbering, ports["table_at"]),

@@ -5,7 +5,7 @@ several of them are coupled to, the rest, is eliminated last. A chain that is el
 ends to its middle has two parts and a rest of one body.
 """
 
-from heapq import heapify, heapreplace, heappush
+from heapq import heapify, heappush, heapreplace
 from typing import NamedTuple
 
 import numpy as np

@@ -7,11 +7,14 @@ from contextlib import contextmanager
 from ctypes import CFUNCTYPE, c_int64, c_void_p
 
 from sebody import inputs
+from sebody.assembly.independent_parts import FEWEST
 from sebody.engine.mailbox import ENDED
 from sebody.engine.state import SERVE, State
 from sebody.engine.system import System
 
 MOST = 64               # threads
+TOO_SMALL = ("threads = {} is not used: threads share the steps of models with "
+             f"{FEWEST} unknowns or more, this one has {{}}")
 REST = 1e-4             # seconds after which a helper that found no work looks again
 _SHARE = CFUNCTYPE(c_int64, c_void_p, c_void_p, c_int64, c_int64)   # without the lock of Python
 

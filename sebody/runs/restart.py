@@ -73,8 +73,10 @@ def save_state(run: Simulation, path: str | Path) -> Path:
     return path
 
 
-def resume(model: Model, path: str | Path) -> Simulation:
+def resume(model: Model, path: str | Path, threads: int = 1) -> Simulation:
     """The simulation of a file, to be continued with `run_to`; `model` is built as it was.
+
+    The run may continue with another number of `threads`.
 
     Raises
     ------
@@ -84,7 +86,7 @@ def resume(model: Model, path: str | Path) -> Simulation:
     file = f"{TARGET[0]} {path}"
     with opened(path, TARGET[0], REMEDY, TARGET[1]) as reader:
         settings = _settings(file, json_of(reader, "settings"), reader.headers)
-        run = _begun(file, model, settings)
+        run = _begun(file, model, settings, threads)
         table = Table(file, REPEAT, _members(run), {"width": run.rows.stretches[0].shape[1]})
         try:
             arrays = table.read(reader, others=["settings"])
@@ -119,7 +121,7 @@ def _settings(file: str, settings: Any, headers: Mapping[str, Header]) -> dict:
     return settings
 
 
-def _begun(file: str, model: Model, settings: dict) -> Simulation:
+def _begun(file: str, model: Model, settings: dict, threads: int) -> Simulation:
     """A simulation with the settings of a file, at its start."""
     inputs.instance(model, "model", Model, "give a sebody.Model")
     for name, kind in (("scheme", list), ("model", str), ("tolerance", list | None)):
@@ -129,7 +131,7 @@ def _begun(file: str, model: Model, settings: dict) -> Simulation:
     try:
         tolerance = settings["tolerance"] and Tolerance(*settings["tolerance"])
         run = Simulation(model, settings["h"], Scheme(*settings["scheme"]), settings["every"],
-                         tolerance)
+                         tolerance, threads=threads)
     except TypeError as error:      # too many numbers of the scheme or the tolerance, or too few
         raise InputError(f"{file} has an unknown scheme {settings['scheme']} or tolerance "
                          f"{settings['tolerance']}: {REPEAT}") from error

@@ -27,7 +27,7 @@ from sebody.runs import user_faults
 from sebody.runs.failures import explained
 from sebody.runs.first_run import prepare
 from sebody.runs.given_start import take
-from sebody.runs.helpers import checked_threads, helping
+from sebody.runs.helpers import TOO_SMALL, checked_threads, helping
 from sebody.runs.initial_state import begin, hold
 from sebody.runs.initial_velocities import refuse_contradicted
 from sebody.runs.progress import showing
@@ -63,12 +63,13 @@ class Simulation:
         Allowed error of a step. With a tolerance, step lengths are chosen, steps end at corners of
         load tables, and `h` is only the output grid, on which the state is interpolated. Errors of
         many steps add up: see `simulate_within` for the error of the whole run.
-    threads : int
-        Threads that share a step of a large model, no more than the processor has cores. Results
-        are the same for any number, bit for bit.
     start : Result, optional
         State to start from in place of the model as built: of an `equilibrium`, at which nothing
         rings, or the end of a run. Initial velocities that the model gives stay.
+    threads : int
+        Threads that share the steps of a large model, at most as many as there are free cores.
+        Results are the same for any number of them, bit for bit. Models with less than 1000
+        unknowns are too small to share: a warning says so.
 
     Attributes
     ----------
@@ -105,6 +106,8 @@ class Simulation:
         self.rows = RecordedRows(self.state, self.every)
         self.watch = Watch()
         self.watch.start(model.bodies, self.scheme, bool(self.numbering.multipliers))
+        if threads > 1 and not self.system.shared.mail.size:
+            self.watch.say("threads", TOO_SMALL.format(threads, self.numbering.free))
         self.seconds = 0.0
         self.failure = ""
         self.exchanges = RowExchanges(self.system, self.state)
