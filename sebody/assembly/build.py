@@ -51,8 +51,8 @@ def build(model: Mechanism, threads: int = 1) -> tuple[System, Numbering]:
                         numbering.memory.inputs)
     slots = own.system["slot_unknowns"].size
     system = System(
-        shared=Shared.of(threads if numbering.free >= FEWEST else 1, work_size(model), LANES * slots,
-                         int(own.system["width"].max()) ** 2),
+        shared=Shared.of(threads if numbering.free >= FEWEST else 1, work_size(model),
+                         LANES * slots, int(own.system["width"].max()) ** 2),
         **own.system, **ports, links=Links(arm_vectors=vectors, **own.links),
         control=control_arrays(model, numbering, ports["table_at"]),
         address=np.array([batch.kernel.kernel.address for batch in batches.all]),
