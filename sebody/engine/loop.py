@@ -40,13 +40,13 @@ from sebody.engine.state import (
     ITERATE,
     KEPT,
     LEAVES_GAP,
-    MOVED,
     NEW_MATRIX,
     NO_REASON,
     NOT_FINITE,
     PROJECT,
     PROJECTED,
     READY,
+    SHARE_MOVED,
     SLOW,
     SOLVE,
     SOLVED,
@@ -149,7 +149,8 @@ def _evaluate(system, state, scheme, wanted, mixed):
                 and system.links.dependent.shape[0] == 0
                 and system.control.flowing.size == 0)       # which push what has not moved
     if system.routines[3] != 0:
-        status = call_share(system.routines[3], system, state, MOVED if of_moved else wanted, 0)
+        status = call_share(system.routines[3], system, state,
+                            SHARE_MOVED if of_moved else wanted, 0)
     elif of_moved:
         status = run_moved(system, state)
     else:

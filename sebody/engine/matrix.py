@@ -19,7 +19,7 @@ from sebody.engine.regularization import (
     regularize,
     spread,
 )
-from sebody.engine.state import ELIMINATE, EVALUATED, SOLVE, SUM
+from sebody.engine.state import EVALUATED, SHARE_FACTORS, SHARE_SOLUTION, SHARE_SUM
 from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.dense import columns_times
 
@@ -32,7 +32,7 @@ THIN = 1e-6             # smallest moment of inertia that scales its axis, relat
 def sum_matrices(system, state, forces):
     """Sum the element matrices, which are not changed; links need the forces, too."""
     if system.routines[3] != 0:
-        call_share(system.routines[3], system, state, SUM, 0)
+        call_share(system.routines[3], system, state, SHARE_SUM, 0)
     else:
         clear_matrix(system, state)
         for k in range(system.summands.shape[0]):
@@ -206,7 +206,7 @@ def refactorize(system, state, wanted, dense):
     if regularized:
         regularize(system, state, REGULARIZATION)
     if system.routines[3] != 0:
-        done = call_share(system.routines[3], system, state, ELIMINATE, 0) == OK
+        done = call_share(system.routines[3], system, state, SHARE_FACTORS, 0) == OK
     else:
         done = elimination.eliminate_columns(0, system.block_diagonal.size, system, state,
                                              pointer_to(state.column))
@@ -229,7 +229,7 @@ def solve(system, state, dense):
                       pointer_to(state.correction), n, n)
     else:
         if system.routines[3] != 0:
-            call_share(system.routines[3], system, state, SOLVE, 0)
+            call_share(system.routines[3], system, state, SHARE_SOLUTION, 0)
         else:
             elimination.solve(system, state, state.residual, state.correction)
         if state.control.regularized == 1:

@@ -22,14 +22,14 @@ from sebody.engine.mailbox import (
 )
 from sebody.engine.matrix import sum_columns
 from sebody.engine.state import (
-    ELIMINATE,
     EVALUATED,
+    HELP,
     KEPT,
-    MOVED,
-    SERVE,
-    SOLVE,
-    SOLVE_BACK,
-    SUM,
+    SHARE_BACK,
+    SHARE_FACTORS,
+    SHARE_MOVED,
+    SHARE_SOLUTION,
+    SHARE_SUM,
 )
 from sebody.kernels.abi import at, pointer_to
 
@@ -40,22 +40,22 @@ LAST_TRIES = 20000      # looks for work before a helper leaves
 def share(system, state, task, thread):
     """Do a task together with the helpers, or help: thread 0 is that of the loop.
 
-    Returns the status of kernels; of ELIMINATE not OK at a small pivot; of SERVE, the task of
+    Returns the status of kernels; of SHARE_FACTORS not OK at a small pivot; of HELP, the task of
     helpers, whether the run has ended. A helper returns if there was no work for long.
     """
-    if task == SERVE:
+    if task == HELP:
         return _serve(system, state, thread)
     status = _do_together(system, state, task)
     rest, across = system.part_blocks[system.part_blocks.size - 1], system.block_diagonal.size
-    if task == SUM:
+    if task == SHARE_SUM:
         sum_columns(system, state, rest, across, system.part_blocks.size - 1,
                     pointer_to(state.rotated_matrix))
-    elif task == ELIMINATE and status == OK:
+    elif task == SHARE_FACTORS and status == OK:
         return 0 if elimination.eliminate_columns(rest, across, system, state,
                                                   pointer_to(state.column)) else 1
-    elif task == SOLVE:
+    elif task == SHARE_SOLUTION:
         elimination.solve_rest(system, state)
-        _do_together(system, state, SOLVE_BACK)
+        _do_together(system, state, SHARE_BACK)
     return status
 
 
@@ -64,7 +64,7 @@ def _do_together(system, state, task):
     """Post the pieces of a task, do as many as are left, and wait for the others."""
     mail = pointer_to(system.shared.mail)
     count = system.part_blocks.size - 1
-    if task <= MOVED:
+    if task <= SHARE_MOVED:
         count = 0
         for b in range(system.address.size):
             count += (system.count[b] + SHARE - 1) // SHARE
@@ -95,18 +95,18 @@ def _serve(system, state, thread):
 @compiled
 def _do(system, state, task, piece, thread):
     """One piece of a task; returns its status."""
-    if task <= MOVED:
+    if task <= SHARE_MOVED:
         return _evaluate(system, state, task, piece, thread)
     first, end = system.part_blocks[piece], system.part_blocks[piece + 1]
-    if task == SUM:
+    if task == SHARE_SUM:
         sum_columns(system, state, first, end, piece, at(
             pointer_to(system.shared.rotated), thread * system.shared.rotated.shape[1]))
-    elif task == ELIMINATE:
+    elif task == SHARE_FACTORS:
         column = at(pointer_to(system.shared.columns),
                     thread * system.shared.columns.shape[1])
         if not elimination.eliminate_columns(first, end, system, state, column):
             return 1
-    elif task == SOLVE:
+    elif task == SHARE_SOLUTION:
         elimination.begin_part(system, state, first, end)
     else:
         elimination.end_part(system, state, first, end)
@@ -126,7 +126,7 @@ def _evaluate(system, state, task, piece, thread):
     first = SHARE * piece
     count = min(SHARE, system.count[b] - first)
     work = at(pointer_to(system.shared.work), thread * system.shared.work.shape[1])
-    if task == MOVED:
+    if task == SHARE_MOVED:
         return run_moved_share(system, state, b, first, count, before, limit_of_moved(state), work)
     matrices = task == EVALUATED or (task != KEPT and b >= system.first_joint[0])
     return run_part(TANGENT if matrices else RESIDUAL, b, first, count, system, state, work)

@@ -17,7 +17,8 @@ BEGIN, ITERATE, FACTORED, PROJECT, PROJECTED, READY, SOLVED = range(7)
 # element matrices are rotated with them and all others are new; or of new element matrices only
 KEPT, ROTATED, EVALUATED = range(3)
 # tasks of threads, see `engine.sharing`: forces, of KEPT to EVALUATED or of elements that moved
-MOVED, SUM, ELIMINATE, SOLVE, SOLVE_BACK, SERVE = range(EVALUATED + 1, EVALUATED + 7)
+SHARE_MOVED, SHARE_SUM, SHARE_FACTORS, SHARE_SOLUTION, SHARE_BACK, HELP = range(
+    EVALUATED + 1, EVALUATED + 7)
 CONVERGED, GO_ON, NEW_MATRIX, GIVE_UP, LEAVES_GAP = range(5)    # verdicts after a correction
 # why a step failed: answers of kernels keep their numbers, further reasons follow
 NO_REASON = OK

@@ -9,7 +9,7 @@ from ctypes import CFUNCTYPE, c_int64, c_void_p
 from sebody import inputs
 from sebody.assembly.independent_parts import FEWEST
 from sebody.engine.mailbox import ENDED
-from sebody.engine.state import SERVE, State
+from sebody.engine.state import HELP, State
 from sebody.engine.system import System
 
 MOST = 64               # threads
@@ -49,5 +49,5 @@ def helping(system: System, state: State) -> Iterator[None]:
 def _help(system: System, state: State, thread: int) -> None:
     """Do pieces of the loop's work until it ends; sleep while there are none."""
     share = _SHARE(int(system.routines[3]))
-    while not share(system._address, state._address, SERVE, thread):
+    while not share(system._address, state._address, HELP, thread):
         time.sleep(REST)
