@@ -5,6 +5,8 @@ pointers: Numba's rewriting and inlining passes have nothing to do, every variab
 single static assignment is left to LLVM, and types of operations on floats are looked up only once.
 """
 
+from llvmlite import ir
+
 from sebody.compiler.inside.lookups import Lowering, TypeInference
 from sebody.compiler.inside.names import (
     BaseNativeLowering,
@@ -28,6 +30,27 @@ class _ShortLoops(Lowering):
         super().lower_inst(inst)
         if isinstance(inst, Jump) and self.blkmap[inst.target].is_terminated:     # a jump back
             mark_short(self.module, self.builder.block.terminator)
+
+    def create_cfunc_wrapper(self):
+        """Make the kernel a C function, which Numba would let call it.
+
+        That copies the arguments, in vectors of those that were just written one by one: a copy
+        waits for them longer than some kernels take. Kernels raise no exceptions.
+        """
+        context, names = self.context, self.fndesc
+        convention = context.call_conv
+        module = self.library.create_ir_module("c_function")
+        body = ir.Function(module, convention.get_function_type(names.restype, names.argtypes),
+                           names.llvm_func_name)
+        kinds = [context.get_value_type(kind) for kind in (names.restype, *names.argtypes)]
+        function = ir.Function(module, ir.FunctionType(kinds[0], kinds[1:]),
+                               names.llvm_cfunc_wrapper_name)
+        builder = ir.IRBuilder(function.append_basic_block())
+        _, result = convention.call_function(builder, body, names.restype, names.argtypes,
+                                             function.args, attrs=("alwaysinline",))
+        builder.ret(result)
+        self.library.add_ir_module(module)
+        self.library._final_module.get_function(names.llvm_func_name).linkage = "linkonce_odr"
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
