@@ -138,7 +138,7 @@ def tangent_operator(x, y, z):
             c2 * y + c3 * x * z, c3 * y * z - c2 * x, 1 - c3 * (x * x + y * y))
 
 
-@compiled
+@compiled(forceinline=True)
 def exp_map(x, y, z):
     """Rotation matrix of a rotation vector, row by row."""
     s = x * x + y * y + z * z
@@ -149,7 +149,7 @@ def exp_map(x, y, z):
             c2 * x * z - c1 * y, c2 * y * z + c1 * x, 1 - c2 * (x * x + y * y))
 
 
-@compiled
+@compiled(forceinline=True)
 def log_map(xx, xy, xz, yx, yy, yz, zx, zy, zz):
     """Rotation vector of a rotation matrix less than `NEAR_PI` from half a turn, and its cosine."""
     x, y, z = 0.5 * (zy - yz), 0.5 * (xz - zx), 0.5 * (yx - xy)
@@ -179,7 +179,7 @@ def angle_by_sine_large(s2, cosine):
     return math.atan2(sine, cosine) / sine
 
 
-@compiled
+@compiled(forceinline=True)
 def rotated(R, first, x, y, z):
     """``R exp(psi)`` of the rotation that begins at `first` of R, row by row."""
     a, b, c, d, e, f, g, h, i = exp_map(x, y, z)
@@ -198,7 +198,7 @@ def rotate(R, first, x, y, z, out, to):
      out[to + 7], out[to + 8]) = rotated(R, first, x, y, z)
 
 
-@compiled
+@compiled(forceinline=True)
 def relative_log(A, first, B, second):
     """Rotation vector and cosine of ``A^T B`` of two stored rotations."""
     a0, a1, a2, a3, a4, a5, a6, a7, a8 = (
