@@ -31,6 +31,10 @@ class _ShortLoops(Lowering):
         if isinstance(inst, Jump) and self.blkmap[inst.target].is_terminated:     # a jump back
             mark_short(self.module, self.builder.block.terminator)
 
+
+class _CFunctions(_ShortLoops):
+    """The same, where a kernel is called through its address alone."""
+
     def create_cfunc_wrapper(self):
         """Make the kernel a C function, which Numba would let call it.
 
@@ -63,6 +67,15 @@ class _Lowering(BaseNativeLowering):
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
+class _LoweringToC(_Lowering):
+    _name = "kernel_lowering_to_c"
+
+    @property
+    def lowering_class(self):
+        return _CFunctions
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
 class _OneJumpBack(FunctionPass):
     """Gives every loop one jump back; nothing in a kernel has a lifetime that matters."""
 
@@ -77,14 +90,22 @@ class _OneJumpBack(FunctionPass):
         return True
 
 
-class KernelPasses(CompilerBase):
-    """Numba's pipeline for kernels: bytecode, types, machine code."""
+class PartPasses(CompilerBase):
+    """Numba's pipeline for kernels that other LLVM code takes in: bytecode, types, LLVM code."""
+
+    lowering = _Lowering
 
     def define_pipelines(self) -> list[PassManager]:
         """The one pipeline."""
         manager = PassManager("kernel")
-        for one in (TranslateByteCode, FixupArgs, _OneJumpBack, TypeInference, _Lowering,
+        for one in (TranslateByteCode, FixupArgs, _OneJumpBack, TypeInference, self.lowering,
                     NoPythonBackend):
             manager.add_pass(one, one.__name__)
         manager.finalize()
         return [manager]
+
+
+class KernelPasses(PartPasses):
+    """The same for kernels that are called through their address."""
+
+    lowering = _LoweringToC
