@@ -20,6 +20,7 @@ from sebody.reduction.invariants import InertiaInvariants
 ROUNDING = 1e-9
 STIFF = 1e-13           # the same of a stiffness: strains are small differences of large forces
 CLEAR = 0.43            # of a unit vector: its largest component is more; no usual sine or cosine
+SUMMED = 8 * 2.2e-16    # of what a sum would be if all its terms had one sign
 COUPLED = 1e-6          # less than this part of what they can be leaves coordinates apart
 
 
@@ -131,9 +132,18 @@ def without_rounding(values: InertiaInvariants, of_stresses: float) -> InertiaIn
         Ghat=np.array(Ghat).reshape(i.Ghat.shape))
 
 
-def stiff_without_rounding(stiffness: NDArray) -> NDArray:
-    """The same of a stiffness or damping."""
-    return _cleared(stiffness, STIFF)
+def stiff_of(stiffness: NDArray, basis: NDArray) -> NDArray:
+    """A stiffness or damping on other coordinates, with zeros where sums leave but rounding.
+
+    Parameters
+    ----------
+    stiffness : (n, n)
+    basis : (n, m)
+        What the other coordinates move.
+    """
+    made, size = basis.T @ stiffness @ basis, np.abs(basis)
+    rounding = SUMMED * (size.T @ np.abs(stiffness) @ size)
+    return _cleared(np.where(np.abs(made) > rounding, made, 0.0), STIFF)
 
 
 def _cleared(matrix: NDArray, limit: float) -> NDArray:
