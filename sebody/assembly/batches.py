@@ -20,17 +20,16 @@ from sebody.assembly.contracts import (
 )
 from sebody.assembly.controller_rows import ActuatorRow, law_constants, law_counts, law_row
 from sebody.assembly.equal_bodies import (
-    FEWEST,
     behind_row,
     constants_key,
     kernel_together,
+    lanes_exist,
     many_alike,
     turn_row,
 )
 from sebody.assembly.floating import floating_constants, frame_conditions
 from sebody.assembly.numbering import Numbering, coordinates
 from sebody.assembly.rigid_part_constants import rigid_part_constants
-from sebody.compiler.choice import why_no_lanes
 from sebody.contract.counts import CACHE_LINE, whole_vectors
 from sebody.contract.equal_row import NOT_TURNED
 from sebody.contract.layout import AT_POSITIONS, AT_ROTATIONS
@@ -137,8 +136,7 @@ def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants)
     batches: dict[tuple, Batch] = {}
     known: dict[tuple, tuple[int, int]] = {}
     turns: dict[int, int] = {}      # by places of constants
-    many = many_alike(model) if numbering.free >= FEWEST else {}
-    none = why_no_lanes()
+    many, eight = many_alike(model), lanes_exist()
     for frame, body in enumerate(model.bodies.values()):
         kernel = load(body.kernel)
         check_superelement(body, kernel)
@@ -156,7 +154,7 @@ def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants)
             if at_constants not in turns:
                 turns[at_constants] = constants.add(turn_row(body))
             turn = turns[at_constants]
-        if body.name in many and not none:
+        if body.name in many and eight:
             _append(batches, kernel_together(), frame, row + behind_row(body, common, turn),
                     unknowns, body, full, common)
         else:

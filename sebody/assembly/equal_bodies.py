@@ -17,11 +17,14 @@ from sebody.compiler.choice import why_no_lanes
 from sebody.contract.counts import scratch_size
 from sebody.contract.equal_row import BEHIND, OWN, TURN, room
 from sebody.engine.system import System
+from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.loader import load
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Superelement
 
-FEWEST = 64     # equal bodies from which on a kernel for eight is worth compiling
+FEWEST = 8      # equal bodies from which on eight at a time take less time than one by one
+# squares of their coordinates, summed: kernels take seconds to compile, and short ones gain less
+WORTH_IT, WORTH_SHORT = 2_000, 8_000
 DIGITS = 12     # of frame weights, which rotations change by rounding
 
 
@@ -53,8 +56,9 @@ def many_alike(model: Mechanism) -> dict[str, Group]:
         alike.setdefault(likeness(body), []).append(body)
     groups: dict[str, Group] = {}
     for bodies in alike.values():
-        if len(bodies) >= FEWEST:
-            first = bodies[0]
+        first = bodies[0]
+        worth_it = WORTH_IT if INERTIA_OPTIONS[first.inertia].rates else WORTH_SHORT
+        if len(bodies) >= FEWEST and len(bodies) * len(first.reduced.mass) ** 2 >= worth_it:
             turned = any(body.reduced is not first.reduced for body in bodies)
             common = replace(first, reduced=first.reduced.unrotated[0]) if turned else first
             groups |= dict.fromkeys((body.name for body in bodies),
@@ -62,9 +66,14 @@ def many_alike(model: Mechanism) -> dict[str, Group]:
     return groups
 
 
+def lanes_exist() -> bool:
+    """Whether bodies can be evaluated eight at a time at all."""
+    return not why_no_lanes()
+
+
 def evaluated_together(model: Mechanism) -> dict[str, Group]:
     """The groups of bodies that are evaluated eight at a time, by the names of bodies."""
-    return {} if why_no_lanes() else many_alike(model)
+    return many_alike(model) if lanes_exist() else {}
 
 
 def kernels_together(models: Iterable[Mechanism]) -> set[str]:

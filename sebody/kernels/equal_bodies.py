@@ -169,7 +169,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     own, in_lanes = index[stride - OWN], index[stride - IN_LANES]
     positions, rotations, squares = index[AT_POSITIONS], index[AT_ROTATIONS], width * width
     dimension = index[stride - DIMENSION]
-    rotated = rotations if dimension == 3 else 0        # matrices; in a plane angles are coordinates
+    rotated = rotations if dimension == 3 else 0        # in a plane angles are coordinates
     turned, tangent = index[stride - TURNED] != NOT_TURNED, task == TANGENT
     # numbers of eight bodies, their index row, scratch memory
     xs = _aligned(work)
@@ -206,9 +206,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         _gather(references, 9, 9, at(begin, AT_FRAME), stride, last, reference)
         if turned:
             _gather(constants, ANGLE + 1, 1, at(begin, stride - TURNED), stride, last, turn)
-            _turn(as_lanes(turn), dimension * positions, rotations, rotated, tangent, as_lanes(xs), as_lanes(vs),
-                  as_lanes(accelerations), as_lanes(Rs), as_lanes(Ts), as_lanes(frame),
-                  as_lanes(reference))
+            _turn(as_lanes(turn), dimension * positions, rotations, rotated, tangent,
+                  as_lanes(xs), as_lanes(vs), as_lanes(accelerations), as_lanes(Rs), as_lanes(Ts),
+                  as_lanes(frame), as_lanes(reference))
         call_kernel(in_lanes, task, 1, stride, width, Arguments(
             index=row, constants=constants, q=xs, R=Rs, v=vs, a=accelerations,
             references=reference, frames=frame, T=Ts, loads=loads, coefficients=factors,

@@ -3,7 +3,8 @@
 Let a body be the one whose constants are known, rotated by Q. It moves as that one does on nodes
 rotated by Q before: their rotations are R Q, and what is in the axes of a node, such as angular
 velocities and moments, has the components Q^T w there. Positions, forces on them and internal modes
-stay what they are, but for the matrix, whose positions are in the axes of the frame. In a plane the angles of the nodes are larger by that of Q.
+stay what they are, but for the matrix, whose positions are in the axes of the frame. In a plane the
+angles of the nodes are larger by that of Q.
 """
 
 from sebody.compiler.decorators import compiled
