@@ -69,12 +69,25 @@ def stumpff_2345(s):
 def stumpff_1_to_7(s):
     """``c_1`` to ``c_7``: the last two from series, the others by ``c_k = 1/k! - s c_k+2``."""
     if s < SMALL:
-        c6 = 1 / 720 - s * (1 / 40320 - s * (1 / 3628800 - s * (1 / 479001600 - s * (
-            1 / 87178291200 - s * (1 / 20922789888000)))))
-        c7 = 1 / 5040 - s * (1 / 362880 - s * (1 / 39916800 - s * (1 / 6227020800 - s * (
-            1 / 1307674368000 - s * (1 / 355687428096000)))))
+        c6, c7 = stumpff_67_small(s)
     else:
         c6, c7 = stumpff(6, s), stumpff(7, s)
+    return stumpff_before_67(s, c6, c7)
+
+
+@compiled
+def stumpff_67_small(s):
+    """``c_6, c_7`` by nested series."""
+    c6 = 1 / 720 - s * (1 / 40320 - s * (1 / 3628800 - s * (1 / 479001600 - s * (
+        1 / 87178291200 - s * (1 / 20922789888000)))))
+    c7 = 1 / 5040 - s * (1 / 362880 - s * (1 / 39916800 - s * (1 / 6227020800 - s * (
+        1 / 1307674368000 - s * (1 / 355687428096000)))))
+    return c6, c7
+
+
+@compiled
+def stumpff_before_67(s, c6, c7):
+    """All of `stumpff_1_to_7`, of the last two."""
     c4, c5 = 1 / 24 - s * c6, 1 / 120 - s * c7
     c2, c3 = 1 / 2 - s * c4, 1 / 6 - s * c5
     return 1 - s * c3, c2, c3, c4, c5, c6, c7
