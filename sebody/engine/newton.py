@@ -140,7 +140,7 @@ def _verdict(system, state, norm, left_norm, target):
     clock, control = state.clock, state.control
     iteration, last, rate = control.iteration, clock.last_norm, clock.contraction
     if iteration == 0:
-        clock.span = np.log(norm / target)
+        clock.span = norm / target
     if iteration > 0 and last > 0.0:
         rate = norm / last
         clock.contraction = rate
@@ -256,7 +256,9 @@ def watch_age(state):
         clock.baseline_contraction = min(clock.baseline_contraction,
                                           max(clock.contraction, FASTEST))
         return
-    needed = 1.0 + max(clock.span, 0.0) / -np.log(clock.baseline_contraction)
-    clock.excess += max(control.iteration - np.ceil(needed), 0.0)
+    needed, left = 1, clock.span        # one, and one for every factor that is left
+    while needed < control.iteration and left > 1.0:
+        needed, left = needed + 1, left * clock.baseline_contraction
+    clock.excess += control.iteration - needed
     if clock.excess > REFACTORIZATION_COST:
         control.wanted = EVALUATED

@@ -132,12 +132,20 @@ def angular_velocity(model: Model, node: Node, name: str) -> Handle:
 
 def joint_position(model: Model, joint: Joint, name: str) -> Handle:
     """Where a joint with the ground holds its node."""
-    fixed = joint.to.position
+    fixed, own = joint.to.position, joint.node.position
     if joint.to not in model.grounds or fixed is None:
         raise InputError(f"{name}: joint {joint.name!r} is not to the ground, so its position "
                          "follows from its bodies: vary positions of nodes, or build the model "
                          "anew")
-    return _attribute(fixed, "start", MOTION)
+    if any(fixed in one.dof_blocks for one in joint.constraints):
+        return _attribute(fixed, "start", MOTION)
+    for one in joint.constraints:
+        if one.kind.endswith("coincident_ground"):
+            return _constants(one, lambda place: {"c": place}, MOTION,
+                              np.array(one.constants["c"], dtype=float))
+    if joint.kind == "drive" or own is None or not own.fixed:
+        raise InputError(f"{name}: {joint.name!r} holds no position: vary that of its node")
+    return _attribute(own, "start", MOTION)     # the joint has no equations for it
 
 
 def _dof_block(node: Node, kind: str, name: str) -> DofBlock:

@@ -13,6 +13,7 @@ from sebody.compiler.first_run import Job, compile_apart
 from sebody.compiler.workers import Task
 from sebody.engine.lanes import loop
 from sebody.engine.lanes.arrays import Columns, Scratch, empty, in_lanes
+from sebody.engine.lanes.matrix import Alone
 from sebody.engine.offsets import Offsets
 from sebody.kernels.lanes.kernel import address_in_lanes, is_compiled
 from sebody.kernels.loader import find, load
@@ -52,10 +53,10 @@ def compile_loop() -> None:
     system, state = smallest()
     offsets = Offsets(system, state)
     buffer = empty(offsets.size)
-    square = {"dense", "projected"}
-    scratch = Scratch(**{one.name: empty(1, 1) if one.name in square else empty(1)
-                         for one in fields(Scratch)})
-    columns = Columns(np.zeros(1, dtype=np.int64), empty(1, 1), np.zeros(1, dtype=np.int64))
-    given = (in_lanes(system, offsets, buffer), in_lanes(state, offsets, buffer), scratch, columns,
-             generalized_alpha())
+    scratch = Scratch(**{one.name: empty(1) for one in fields(Scratch)})
+    room, places = np.zeros((1, 1)), np.zeros(1, dtype=np.int64)
+    alone = Alone(system, state, room[0], room, places, places, room)
+    columns = Columns(places, empty(1, 1), places)
+    given = (in_lanes(system, offsets, buffer), in_lanes(state, offsets, buffer), scratch, alone,
+             columns, generalized_alpha())
     way().compile_for(loop.advance, (*map(typeof, given), types.int64, types.boolean))

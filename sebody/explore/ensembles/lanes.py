@@ -9,6 +9,7 @@ from sebody.contract.counts import MEMBERS
 from sebody.contract.layout import AT_CONSTANTS, RECORD_T
 from sebody.engine.lanes import loop
 from sebody.engine.lanes.arrays import Columns, Scratch, empty, fill, in_lanes, numbers
+from sebody.engine.lanes.matrix import Alone
 from sebody.engine.system import System
 from sebody.explore.ensembles.member import Copies, Course, Form
 from sebody.explore.ensembles.outputs import Folds, Output
@@ -56,21 +57,15 @@ class Lanes:
         image, one = copies.image, copies.image.template
         buffer = empty(image.offsets.size)
         self._numbers = numbers(buffer)
-        self._alone = self._numbers.reshape(-1)
+        self._flat = self._numbers.reshape(-1)
         shared = shared_rows(image)
         self.system = _with_kernels(in_lanes(one.system, image.offsets, buffer), image, shared)
         self._pointed = self._write_constants(shared)
         self.state = in_lanes(one.state, image.offsets, buffer)
-        n = len(one.system.diagonal)
-        frames, redundant = one.state.frames.size, one.system.regularized[0] == 1
-        self._scratch = Scratch(g=empty(one.state.g.size), frames=empty(frames),
-                                found=empty(frames), T=empty(one.state.T.size),
-                                J=empty(int(one.system.at_J[one.system.first_joint[0]])),
-                                dense=empty(n, n) if one.dense else empty(0, 0),
-                                projected=empty(n, n) if one.dense and redundant else empty(0, 0),
-                                factors=empty(0 if one.dense else one.state.matrix.size),
+        self._scratch = Scratch(frames=empty(one.state.frames.size),
                                 moved=empty(one.state.moved.size),
                                 unmoved=empty(one.state.g.size))
+        self._alone = self._matrices_alone()
         self._places = self._own_places()
         columns = _columns(forms, one.state.now.size)
         self._forms = {name: form if form.columns is None else form._replace(
@@ -98,11 +93,11 @@ class Lanes:
             Arrays that constants point to.
         """
         image = self.copies.image
-        first, alone = image.offsets.of(image.template.system.constants).start, self._alone
+        first, flat = image.offsets.of(image.template.system.constants).start, self._flat
         for rows in shared.values():
             for start, size in rows.items():
                 own = slice(first + start, first + start + size)
-                alone[MEMBERS * own.start:][:size] = image.floats[own]
+                flat[MEMBERS * own.start:][:size] = image.floats[own]
         varied, kept = varied_numbers(image), {}
         floats = np.where(varied & (image.floats == 0.0), 1.0, image.floats)    # zero in some alone
         for batch, place in packed_rows(image):
@@ -113,18 +108,30 @@ class Lanes:
                 start for start in shared[batch] if first + start <= place.start)
             begin = MEMBERS * (first + row) + place.start - first - row
             if begin not in kept:       # bodies that are alike have one row
-                kept[begin] = write_shared_address(alone[begin:begin + size])
+                kept[begin] = write_shared_address(flat[begin:begin + size])
         return list(kept.values())
 
     def _own_places(self) -> NDArray:
         """Places in the buffer of what members begin with: parameters, and their state."""
         image, state = self.copies.image, self.copies.image.template.state
-        begun = (image.offsets.of(part) for part in (
-            state.now, state.aux, state.changes, state.fitted, state.fit, state.q_start,
-            state.loads, state.loads_old, state.acting, state.coefficients, state.frames_old,
-            state.q_old, state.aux_old, state.last_correction, state.last_change))
-        return np.unique(np.concatenate([image.lines.slots.astype(np.int64),
-                                         *(np.arange(part.start, part.stop) for part in begun)]))
+        return _places(image, state.now, state.aux, state.changes, state.fitted, state.fit,
+                       state.q_start, state.loads, state.loads_old, state.acting,
+                       state.coefficients, state.frames_old, state.q_old, state.aux_old,
+                       state.last_correction, state.last_change)
+
+    def _matrices_alone(self) -> Alone:
+        """The single run of the thread, and what it shares with a member for a matrix."""
+        image, system, state = (self.copies.image, self.copies.image.template.system,
+                                self.copies.image.template.state)
+        made = (state.scale, state.weight, state.T, state.regularization, state.constraint_columns,
+                state.q, state.dq)
+        taken = (*made, state.v, state.a, state.R, state.R_old, state.frames, state.frames_old,
+                 state.turns, state.loads, state.coefficients, state.forces)
+        factors = state.inverse if self.copies.dense else state.matrix
+        bodies = int(system.at_J[system.first_joint[0]]) if system.linked[0] == 1 else 0
+        return Alone(self.copies.system, self.copies.state, self.copies.floats, self._numbers,
+                     taken=_places(image, *taken), returned=_places(image, *made, factors, of_parameters=False),
+                     J=np.zeros((MEMBERS, bodies)))
 
     def begin(self, changes: NDArray) -> NDArray:
         """Begin some runs, one in a lane; returns which have begun. The others are to be run alone.
@@ -163,8 +170,8 @@ class Lanes:
             reached = min(self._last, (reached // every + self._stretch) * every,
                           reached + MOST_STEPS)
             state.control["recorded"] = 0
-            loop.advance(self.system, state, self._scratch, self._record, self.copies.scheme,
-                         reached, self.copies.dense)
+            loop.advance(self.system, state, self._scratch, self._alone, self._record,
+                         self.copies.scheme, reached, self.copies.dense)
             self._take_outputs(np.flatnonzero(state.control["reason"][:count] == 0.0))
             if reached < self._last and stop():
                 break
@@ -201,6 +208,14 @@ class Lanes:
     def time(self) -> float:
         """Time reached."""
         return float(self.state.clock["time"])
+
+
+def _places(image: Image, *parts: NDArray, of_parameters: bool = True) -> NDArray:
+    """Places of some arrays in the buffer of all numbers, and of all that parameters change."""
+    slices = map(image.offsets.of, parts)
+    return np.unique(np.concatenate([image.lines.slots.astype(np.int64) if of_parameters else [],
+                                     *(np.arange(own.start, own.stop) for own in slices)])
+                     ).astype(np.int64)
 
 
 def _columns(forms: Mapping[str, Form], count: int) -> NDArray:
