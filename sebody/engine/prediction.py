@@ -89,7 +89,8 @@ def look_back(system, state, of_accelerations):
     least = either(straight, of_line, of_none)
     bent = of_parabola < BETTER * least
     least = either(bent, of_parabola, least)
-    best = either(fit[_ON] > 0.0, of_fit, least) < BETTER * least
+    begun = either(fit[_AGE] > 0.0, of_fit, least)
+    best = either(fit[_ON] > 0.0, begun, least) < BETTER * least
     fit[LAST] = either(best, zero, either(bent, zero + 2.0, either(straight, zero + 1.0, zero)))
     fit[BEFORE] = either(best, zero, either(bent, zero - 1.0, zero))
     fit[FITTED] = either(best, zero + 1.0, zero)
@@ -113,7 +114,8 @@ def _compare_periods(fit, corrections, steps):
             better = zero + period          # the first one without the fit, the second one with it
         elif period % TRIED_AGAIN == 0:
             better = 1.0 - better
-        fit[_AGE] = fit[_AGE] * better
+        # a fit begins with nothing: in lanes it went on without being used, if others had one
+        fit[_AGE] = either(on, fit[_AGE] * better, zero)
         fit[_ON], fit[_SUM] = better, zero
     elif within > SETTLING:
         fit[_SUM] += corrections
@@ -132,6 +134,9 @@ def _fit_anew(system, state, steps):
         for i in range(n):
             total += weighted[i] * change[i]
         fit[j] = fit[ROWS * j] = total
+    zero = 0.0 * fit[_AGE]
+    for j in range(ORDER):
+        fit[_COEFFICIENTS + j] = either(fit[_AGE] > 0.0, fit[_COEFFICIENTS + j], zero)
     _add_equations(fit)
     if steps % REFITTED == 0:
         _solve(fit)
