@@ -110,8 +110,8 @@ def _compare_periods(fit, corrections, steps):
         zero = 0.0 * mean
         better = either(fit[_WITH] + WORTH < fit[_WITHOUT], zero + 1.0, zero)
         period = steps // PERIOD
-        if period < 2:
-            better = zero + period          # the first one without the fit, the second one with it
+        if period < 3:      # the second one without the fit, the third one with it: the first steps
+            better = zero + period // 2     # of a motion are no measure
         elif period % TRIED_AGAIN == 0:
             better = 1.0 - better
         fit[_AGE] = fit[_AGE] * better
