@@ -90,7 +90,8 @@ def look_back(system, state, of_accelerations):
     least = either(straight, of_line, of_none)
     bent = of_parabola < BETTER * least
     least = either(bent, of_parabola, least)
-    best = either(fit[_ON] > 0.0, of_fit, least) < BETTER * least
+    begun = either(fit[_AGE] > 0.0, of_fit, least)
+    best = either(fit[_ON] > 0.0, begun, least) < BETTER * least
     fit[LAST] = either(best, zero, either(bent, zero + 2.0, either(straight, zero + 1.0, zero)))
     fit[BEFORE] = either(best, zero, either(bent, zero - 1.0, zero))
     fit[FITTED] = either(best, zero + 1.0, zero)
