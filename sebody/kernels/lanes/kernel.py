@@ -1,4 +1,8 @@
-"""Kernels compiled for lanes, from the text they have without what is done for matrices."""
+"""Kernels compiled for lanes, from the text they have.
+
+Matrices of the members of an ensemble are made one by one, so their kernels are compiled without
+what is done for matrices. Equal bodies of one model have theirs made eight at a time.
+"""
 
 from functools import cache
 from pathlib import Path
@@ -18,14 +22,14 @@ from sebody.kernels.lanes.text import kernel_text
 CALLED = frame_search, packed_products, products, rotations
 
 _POINTERS = {"int64": types.CPointer(types.int64), "float64": types.CPointer(lanes)}
-
+_EQUAL = "equal"        # kind of kernels of equal bodies
 
 Own = tuple[str, ...] | None     # parts of the constants in lanes; None: all of them
 
 
 @cache
 def address_in_lanes(module: ModuleType, own: Own = None) -> int:
-    """Address of a kernel for lanes; compiled, or read from the cache, where it is asked for.
+    """Address of a kernel for members; compiled, or read from the cache, where it is asked for.
 
     Parameters
     ----------
@@ -37,9 +41,21 @@ def address_in_lanes(module: ModuleType, own: Own = None) -> int:
                            kernel_hash(Path(module.__file__)), _kind(own)).address
 
 
+@cache
+def address_for_equal(module: ModuleType) -> int:
+    """Address of a kernel for eight equal bodies, which have one row of constants in common."""
+    return kernel_in_lanes(module.kernel.__wrapped__, _signature(True), OF_KERNELS,
+                           kernel_hash(Path(module.__file__)), _EQUAL).address
+
+
 def is_compiled(path: Path, own: Own = None) -> bool:
-    """Whether the kernel in a file was compiled for lanes; the file is not imported."""
+    """Whether the kernel in a file was compiled for members; the file is not imported."""
     return is_kept_in_lanes(path, kernel_hash(path), _kind(own))
+
+
+def is_compiled_for_equal(path: Path) -> bool:
+    """Whether the kernel in a file was compiled for equal bodies; the file is not imported."""
+    return is_kept_in_lanes(path, kernel_hash(path), _EQUAL)
 
 
 def _kind(own: Own) -> str:

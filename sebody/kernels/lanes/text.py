@@ -1,4 +1,4 @@
-"""Texts of kernels as they are compiled for lanes: forces and energies alone.
+"""Texts of kernels as they are compiled for the members of an ensemble: forces and energies alone.
 
 Matrices of members are made one by one, so what a kernel does for them is left out: most of it.
 """
