@@ -23,7 +23,7 @@ from sebody.engine.offsets import at_cache_lines
 from sebody.kernels.abi import at
 
 # words of the mailbox; what threads write to often is in lines of its own
-OPEN, DONE, FAILED, ENDED, TASK, COUNT, YIELD = 0, 16, 32, 48, 64, 65, 66
+OPEN, DONE, FAILED, ENDED, TASK, COUNT, OWNER, YIELD = 0, 16, 32, 48, 64, 65, 66, 67
 WORDS = 80
 _TAKEN = 32             # bits of OPEN that count the pieces taken, below the number of the work
 _NONE = (1 << _TAKEN) - 1           # where no work is open
@@ -140,24 +140,32 @@ def wait_a_little(mail, tries):
         _call(mail[YIELD])
 
 
+@intrinsic
+def address_of(typingctx, pointer):
+    """A pointer as a number."""
+    def codegen(context, builder, sig, args):
+        return builder.ptrtoint(args[0], ir.IntType(64))
+    return types.int64(pointer), codegen
+
+
 @compiled
-def post(mail, task, count):
-    """Open a work of so many pieces; the last one is over."""
+def post(mail, owner, task, count):
+    """Open a work of so many pieces, on the arrays of an owner; the last one is over."""
     number = load(at(mail, OPEN)) >> _TAKEN
     # no piece is taken while the words below are written: the work of this number has none
     store(at(mail, OPEN), ((number + 1) << _TAKEN) + _NONE)
-    mail[TASK], mail[COUNT], mail[FAILED] = task, count, NO_FAILURE
+    mail[OWNER], mail[TASK], mail[COUNT], mail[FAILED] = owner, task, count, NO_FAILURE
     store(at(mail, DONE), 0)
     store(at(mail, OPEN), (number + 2) << _TAKEN)
 
 
 @compiled
-def take(mail):
-    """Take the next piece of the open work; its number, or -1."""
+def take(mail, owner):
+    """Take the next piece of the open work, if it is on the arrays of this owner; or -1."""
     while True:
         word = load(at(mail, OPEN))
         piece = word & _NONE
-        if piece >= load(at(mail, COUNT)):
+        if piece >= load(at(mail, COUNT)) or load(at(mail, OWNER)) != owner:
             return -1
         if _exchange(at(mail, OPEN), word, word + 1):
             return piece

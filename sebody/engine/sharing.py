@@ -13,6 +13,7 @@ from sebody.engine.evaluate import SHARE, limit_of_moved, run_moved_share, run_p
 from sebody.engine.mailbox import (
     ENDED,
     TASK,
+    address_of,
     finish,
     load,
     post,
@@ -68,21 +69,22 @@ def _do_together(system, state, task):
         count = 0
         for b in range(system.address.size):
             count += (system.count[b] + SHARE - 1) // SHARE
-    post(mail, task, count)
-    piece = take(mail)
+    owner = address_of(pointer_to(state.matrix))
+    post(mail, owner, task, count)
+    piece = take(mail, owner)
     while piece >= 0:
         finish(mail, piece, _do(system, state, task, piece, 0))
-        piece = take(mail)
+        piece = take(mail, owner)
     return wait_for_all(mail)
 
 
 @compiled
 def _serve(system, state, thread):
-    """Do pieces of what the loop posts."""
-    mail = pointer_to(system.shared.mail)
+    """Do pieces of what the loop posts; others may post work on another state meanwhile."""
+    mail, owner = pointer_to(system.shared.mail), address_of(pointer_to(state.matrix))
     tries = 0
     while tries < LAST_TRIES and load(at(mail, ENDED)) == 0:
-        piece = take(mail)
+        piece = take(mail, owner)
         if piece >= 0:
             finish(mail, piece, _do(system, state, mail[TASK], piece, thread))
             tries = 0

@@ -12,6 +12,7 @@ from scipy.sparse.linalg import spsolve
 
 from sebody import InputError, Interrupted, Model, Simulation, SimulationError
 from sebody.analysis import resume, save_state
+from sebody.assembly.allocation import allocate
 from sebody.engine.mailbox import ENDED
 from sebody.engine.matrix import refactorize, solve, sum_matrices
 from sebody.engine.state import ROTATED
@@ -152,6 +153,23 @@ def test_more_threads_than_processors_finish():
 def test_helpers_that_never_come_are_not_waited_for(monkeypatch):
     monkeypatch.setattr(helpers, "_help", lambda *arguments: None)
     assert np.array_equal(rows(MODELS["chain"](), 2)[0], rows(MODELS["chain"](), 1)[0])
+
+
+def test_helpers_leave_other_states_alone():
+    """What is evaluated in another state during a run is not theirs, nor do they forget their own.
+    """
+    model = MODELS["chain"]()
+    (whole, alone), run = rows(model, 1), Simulation(model, 0.01, threads=2)
+    other = allocate(model, run.system, run.numbering, 0.01, False)
+    other.J[:] = np.sin(np.arange(other.J.size))
+    expected = allocate(model, alone.system, alone.numbering, 0.01, False)
+    expected.J[:] = other.J
+    sum_matrices(alone.system, expected, expected.forces)
+
+    def look(share):
+        sum_matrices(run.system, other, other.forces)
+        assert np.array_equal(other.matrix, expected.matrix)
+    assert np.array_equal(run.run_to(0.1, look).rows.all(), whole)
 
 
 def test_a_run_continues_with_other_threads(tmp_path):
