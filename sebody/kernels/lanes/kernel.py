@@ -1,4 +1,4 @@
-"""Kernels compiled for lanes, from the text they have without what is done for matrices."""
+"""Kernels compiled for lanes, from the text they have, for ensembles without matrices."""
 
 from functools import cache
 from pathlib import Path
@@ -24,7 +24,7 @@ Own = tuple[str, ...] | None     # parts of the constants in lanes; None: all of
 
 
 @cache
-def address_in_lanes(module: ModuleType, own: Own = None) -> int:
+def address_in_lanes(module: ModuleType, own: Own = None, matrices: bool = False) -> int:
     """Address of a kernel for lanes; compiled, or read from the cache, where it is asked for.
 
     Parameters
@@ -32,18 +32,22 @@ def address_in_lanes(module: ModuleType, own: Own = None) -> int:
     own : tuple of str or None
         The parts of the constants that are lanes; all others are numbers that members share.
         None: all constants are lanes.
+    matrices : bool
+        Whether it has matrices, too: those of an ensemble's members are made one by one.
     """
-    return kernel_in_lanes(kernel_text(module, own or ()), _signature(own is not None), OF_KERNELS,
-                           kernel_hash(Path(module.__file__)), _kind(own)).address
+    return kernel_in_lanes(kernel_text(module, own or (), matrices), _signature(own is not None),
+                           OF_KERNELS, kernel_hash(Path(module.__file__)),
+                           _kind(own, matrices)).address
 
 
-def is_compiled(path: Path, own: Own = None) -> bool:
+def is_compiled(path: Path, own: Own = None, matrices: bool = False) -> bool:
     """Whether the kernel in a file was compiled for lanes; the file is not imported."""
-    return is_kept_in_lanes(path, kernel_hash(path), _kind(own))
+    return is_kept_in_lanes(path, kernel_hash(path), _kind(own, matrices))
 
 
-def _kind(own: Own) -> str:
-    return "lanes" if own is None else "-".join(("shared", *own))
+def _kind(own: Own, matrices: bool) -> str:
+    return "-".join(filter(None, ("lanes" if own is None else "shared", *(own or ()),
+                                  "matrices" * matrices)))
 
 
 def _signature(shared: bool) -> types.Type:
