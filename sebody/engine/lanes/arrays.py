@@ -45,6 +45,8 @@ class Scratch(Arrays):
     factors             of a large matrix, where another one is factorized for other members
     moved               (elements,) one where a member's element is evaluated, else zero
     unmoved             forces of the elements that have not moved
+    table               of elements that are evaluated member by member: see `member_row`
+    kept                (B,) numbers that an element of each batch keeps, if it is one of them
     ==================  ============================================================================
     """
 
@@ -58,6 +60,8 @@ class Scratch(Arrays):
     factors: NDArray
     moved: NDArray
     unmoved: NDArray
+    table: NDArray
+    kept: NDArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,7 +1,8 @@
 """The guard against growing energy, member by member: see `sebody.engine.growth`."""
 
 from sebody.compiler.decorators import compiled
-from sebody.compiler.inside.lanes import some, spread, where
+from sebody.compiler.inside.lanes import bits_of, some, spread, where
+from sebody.contract.member_row import RUNNING
 from sebody.engine.growth import (
     ATTENTIVE,
     DRIVEN,
@@ -35,6 +36,7 @@ def _judge(system, state, scratch, due):
         scratch.frames[k] = frames[k]
     strain, kinetic = guard.most_strain, guard.most_kinetic
     before = strain + kinetic
+    scratch.table[RUNNING] = bits_of(due)
     balance = take_balance(system, state)
     most_strain, most_kinetic = guard.most_strain, guard.most_kinetic
     guard.most_strain = where(due, most_strain, strain)

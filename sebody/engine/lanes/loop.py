@@ -9,10 +9,12 @@ others go on. A member that the loop would have to cut the step for, or to ask P
 
 
 from sebody.compiler.decorators import compiled
-from sebody.compiler.inside.lanes import every, some, spread, where
+from sebody.compiler.inside.lanes import bits_of, every, some, spread, where
 from sebody.contract.layout import RECORD_ITERATIONS, RECORD_T, RESIDUAL, TANGENT
+from sebody.contract.member_row import RUNNING
 from sebody.engine.evaluate import run_kernels, set_tangent_operators, sum_forces, to_body_axes
 from sebody.engine.lanes.growth import grows
+from sebody.engine.lanes.guard import contact_too_fast
 from sebody.engine.lanes.matrix import factorize
 from sebody.engine.lanes.moved import find_moved, keep_unmoved, run_moved
 from sebody.engine.lanes.newton import begin_with_matrix, correct, watch_age
@@ -44,6 +46,10 @@ def advance(system, state, scratch, record, scheme, last_grid, dense):
             choose_part(system, state)
         _begin_step(system, state, scheme)
         _iterate(system, state, scratch, scheme, running, dense)
+        if system.guarded.size > 0:
+            control.reason = where(contact_too_fast(system, state) & (control.reason == 0.0),
+                                   spread(1.0), control.reason)
+        scratch.table[RUNNING] = bits_of(control.reason == 0.0)
         add_work(system, state, state.clock.current_step)
         control.reason = where(grows(system, state, scratch) & (control.reason == 0.0), spread(1.0),
                                control.reason)
@@ -131,9 +137,11 @@ def _evaluate_part(system, state, scratch, active, wanted, first, last, moved):
     """
     frames, begun, g, kept = state.frames, scratch.frames, state.g, scratch.g
     if some(wanted):
+        scratch.table[RUNNING] = bits_of(wanted)
         run_kernels(TANGENT, first, last, system, state)
     if every(wanted | ~active):
         return
+    scratch.table[RUNNING] = bits_of(active & ~wanted)
     if not some(wanted):
         if moved:
             run_moved(system, state, scratch, first, last)

@@ -14,8 +14,7 @@ from sebody.compiler.workers import Task
 from sebody.engine.lanes import loop
 from sebody.engine.lanes.arrays import Columns, Scratch, empty, in_lanes
 from sebody.engine.offsets import Offsets
-from sebody.kernels.lanes.kernel import address_in_lanes, is_compiled
-from sebody.kernels.loader import find, load
+from sebody.kernels.lanes.kernel import address_in_lanes, is_compiled, module_in_lanes
 from sebody.runs.first_run import SECONDS_A_LETTER, smallest
 from sebody.runs.schemes import generalized_alpha
 
@@ -33,10 +32,11 @@ def prepare(kernels: Iterable[tuple[str, bool]]) -> None:
         Names, and whether constants are those of all members.
     """
     with _lock:
-        missing = [(name, shared) for name, shared in sorted(set(kernels))
-                   if not is_compiled(find(name), shared)]
+        asked = {(Path(module_in_lanes(name).__file__), shared): name
+                 for name, shared in sorted(set(kernels))}
         jobs = [Job(Task(f"{name} in lanes", f"{__name__}:compile_kernel", (name, shared)),
-                    SECONDS_A_LETTER * find(name).stat().st_size) for name, shared in missing]
+                    SECONDS_A_LETTER * path.stat().st_size)
+                for (path, shared), name in asked.items() if not is_compiled(path, shared)]
         if not way().is_compiled(loop.advance):
             jobs.append(Job(Task("loop in lanes", f"{__name__}:compile_loop"), LOOP_SECONDS))
         compile_apart(jobs, "what makes eight runs at a time", Path(loop.__file__))
@@ -44,7 +44,7 @@ def prepare(kernels: Iterable[tuple[str, bool]]) -> None:
 
 def compile_kernel(name: str, shared: bool) -> None:
     """Compile a kernel for lanes here, or find it in the cache."""
-    address_in_lanes(load(name), shared)
+    address_in_lanes(module_in_lanes(name), shared)
 
 
 def compile_loop() -> None:
@@ -53,7 +53,9 @@ def compile_loop() -> None:
     offsets = Offsets(system, state)
     buffer = empty(offsets.size)
     square = {"dense", "projected"}
-    scratch = Scratch(**{one.name: empty(1, 1) if one.name in square else empty(1)
+    whole = {"table", "kept"}
+    scratch = Scratch(**{one.name: np.zeros(1, dtype=np.int64) if one.name in whole else
+                         empty(1, 1) if one.name in square else empty(1)
                          for one in fields(Scratch)})
     columns = Columns(np.zeros(1, dtype=np.int64), empty(1, 1), np.zeros(1, dtype=np.int64))
     given = (in_lanes(system, offsets, buffer), in_lanes(state, offsets, buffer), scratch, columns,

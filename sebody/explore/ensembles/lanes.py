@@ -11,6 +11,7 @@ from sebody.engine.lanes import loop
 from sebody.engine.lanes.arrays import Columns, Scratch, empty, fill, in_lanes, numbers
 from sebody.engine.system import System
 from sebody.explore.ensembles.member import Copies, Course, Form
+from sebody.explore.ensembles.member_rows import Rows, new_table, with_places
 from sebody.explore.ensembles.outputs import Folds, Output
 from sebody.explore.ensembles.shared_constants import (
     kernels_of_batches,
@@ -19,9 +20,8 @@ from sebody.explore.ensembles.shared_constants import (
     varied_numbers,
 )
 from sebody.explore.ensembles.start_values import Image
-from sebody.kernels.lanes.kernel import address_in_lanes
+from sebody.kernels.lanes.kernel import address_in_lanes, module_in_lanes
 from sebody.kernels.lanes.straight import write_address, write_shared_address
-from sebody.kernels.loader import load
 
 MOST_NUMBERS = 8_000        # of recorded states at a time: they stay in the processor's cache
 MOST_STEPS = 20_000         # until a thread looks whether it is to stop: tenths of a second
@@ -58,7 +58,10 @@ class Lanes:
         self._numbers = numbers(buffer)
         self._alone = self._numbers.reshape(-1)
         shared = shared_rows(image)
-        self.system = _with_kernels(in_lanes(one.system, image.offsets, buffer), image, shared)
+        table = new_table(buffer, copies.floats, one.state.energy.size)
+        rows = with_places(image, table)
+        self.system = _with_kernels(in_lanes(one.system, image.offsets, buffer), image, shared,
+                                    rows)
         self._pointed = self._write_constants(shared)
         self.state = in_lanes(one.state, image.offsets, buffer)
         n = len(one.system.diagonal)
@@ -70,7 +73,7 @@ class Lanes:
                                 projected=empty(n, n) if one.dense and redundant else empty(0, 0),
                                 factors=empty(0 if one.dense else one.state.matrix.size),
                                 moved=empty(one.state.moved.size),
-                                unmoved=empty(one.state.g.size))
+                                unmoved=empty(one.state.g.size), table=table, kept=rows.kept)
         self._places = self._own_places()
         columns = _columns(forms, one.state.now.size)
         self._forms = {name: form if form.columns is None else form._replace(
@@ -210,14 +213,15 @@ def _columns(forms: Mapping[str, Form], count: int) -> NDArray:
     return np.unique(np.concatenate([[RECORD_T], *(form.columns for form in forms.values())]))
 
 
-def _with_kernels(system: System, image: Image, shared: Mapping[int, Mapping[int, int]]) -> System:
+def _with_kernels(system: System, image: Image, shared: Mapping[int, Mapping[int, int]],
+                  rows: Rows) -> System:
     """A system that calls kernels for lanes; rows that members share lie one behind the other."""
     members = {name: getattr(system, name) for name in System.__annotations__}
-    members["address"] = np.array([address_in_lanes(load(name), own)
+    members["address"] = np.array([address_in_lanes(module_in_lanes(name), own)
                                    for name, own in kernels_of_batches(image)])
-    members["index"] = system.index.copy()
+    members |= {"index": rows.index, "at_index": rows.at_index, "stride": rows.stride}
     for b in shared:
-        first, stride = int(system.at_index[b]), int(system.stride[b])
+        first, stride = int(rows.at_index[b]), int(rows.stride[b])
         end = first + stride * int(system.count[b])
         members["index"][first + AT_CONSTANTS:end:stride] *= MEMBERS
     return System(**members)

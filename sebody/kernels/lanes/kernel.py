@@ -1,6 +1,7 @@
 """Kernels compiled for lanes, from the text they have."""
 
 from functools import cache
+from inspect import unwrap
 from pathlib import Path
 from types import ModuleType
 
@@ -11,12 +12,32 @@ from sebody.compiler.inside.lane_kernels import is_kept_in_lanes, kernel_in_lane
 from sebody.compiler.inside.lanes import lanes
 from sebody.compiler.sources import kernel_hash
 from sebody.contract.layout import ARGUMENTS
-from sebody.kernels.lanes import frame_search, packed_products, products, rotations
+from sebody.kernels.lanes import (
+    frame_search,
+    member_by_member,
+    packed_products,
+    products,
+    rotations,
+)
+from sebody.kernels.loader import BY_HAND, load
 
 # imported: puts in place what kernels call
 CALLED = frame_search, packed_products, products, rotations
 
 _POINTERS = {"int64": types.CPointer(types.int64), "float64": types.CPointer(lanes)}
+
+
+def takes_one_member(name: str) -> bool:
+    """Whether a kernel is evaluated member by member: one that keeps numbers, or is by hand.
+
+    Those that choose by their numbers all keep some.
+    """
+    return name in BY_HAND or bool(getattr(load(name), "MEMORY", ()))
+
+
+def module_in_lanes(name: str) -> ModuleType:
+    """The kernel that lanes call in the place of one of some name."""
+    return member_by_member if takes_one_member(name) else load(name)
 
 
 @cache
@@ -28,7 +49,7 @@ def address_in_lanes(module: ModuleType, shared: bool = False) -> int:
     shared : bool
         Whether constants of elements are numbers that all members share.
     """
-    return kernel_in_lanes(module.kernel.__wrapped__, _signature(shared), OF_KERNELS,
+    return kernel_in_lanes(unwrap(module.kernel), _signature(shared), OF_KERNELS,
                            kernel_hash(Path(module.__file__)), shared).address
 
 
