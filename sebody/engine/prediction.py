@@ -30,14 +30,15 @@ TRIED_AGAIN = 16        # periods after which what has saved less is tried again
 WORTH = 0.2             # corrections of a step that the fit has to save
 
 # State.fit, in this order: products of the last changes, equations, right side and coefficients of
-# the fit, scratch memory for its elimination, and numbers by name
-_EQUATIONS = ROWS * ROWS
-_RIGHT = _EQUATIONS + ORDER * ORDER
-_COEFFICIENTS = _RIGHT + ORDER
-_FACTORS = _COEFFICIENTS + ORDER
-LAST, BEFORE, FITTED, _ON, _AGE, _SUM, _WITH, _WITHOUT = range(
-    _FACTORS + ORDER * ORDER, _FACTORS + ORDER * ORDER + 8)
-FIT = _WITHOUT + 1      # its size
+# the fit, scratch memory for its elimination, numbers by name, and a solution of lanes
+EQUATIONS = ROWS * ROWS
+RIGHT = EQUATIONS + ORDER * ORDER
+COEFFICIENTS = RIGHT + ORDER
+FACTORS = COEFFICIENTS + ORDER
+LAST, BEFORE, FITTED, ON, AGE, SUM, WITH, WITHOUT = range(
+    FACTORS + ORDER * ORDER, FACTORS + ORDER * ORDER + 8)
+SOLVED = WITHOUT + 1
+FIT = SOLVED + ORDER    # its size
 
 
 @compiled
@@ -67,10 +68,10 @@ def look_back(system, state, of_accelerations):
     `State.fitted` in the prediction.
     """
     fit, steps = pointer_to(state.fit), state.control.steps + ROWS
-    _compare_periods(fit, state.control.iteration, state.control.steps)
+    compare_periods(fit, state.control.iteration, state.control.steps)
     now, last, before = row(state, steps), row(state, steps - 1), row(state, steps - 2)
     weighted, fitted = pointer_to(state.correction), pointer_to(state.fitted)
-    of_none = of_line = of_parabola = of_fit = 0.0 * fit[_ON]
+    of_none = of_line = of_parabola = of_fit = 0.0 * fit[ON]
     for i in range(system.diagonal.size):
         constraint = system.is_multiplier[i]
         w = state.weight[i] * (constraint + (1.0 - constraint) * of_accelerations)
@@ -89,38 +90,38 @@ def look_back(system, state, of_accelerations):
     least = either(straight, of_line, of_none)
     bent = of_parabola < BETTER * least
     least = either(bent, of_parabola, least)
-    best = either(fit[_ON] > 0.0, of_fit, least) < BETTER * least
+    best = either(fit[ON] > 0.0, of_fit, least) < BETTER * least
     fit[LAST] = either(best, zero, either(bent, zero + 2.0, either(straight, zero + 1.0, zero)))
     fit[BEFORE] = either(best, zero, either(bent, zero - 1.0, zero))
     fit[FITTED] = either(best, zero + 1.0, zero)
-    if any_positive(fit[_ON]):
-        _fit_anew(system, state, steps)
+    if any_positive(fit[ON]):
+        fit_anew(system, state, steps)
 
 
 @compiled
-def _compare_periods(fit, corrections, steps):
+def compare_periods(fit, corrections, steps):
     """Count the corrections of the last step; begin a period with the fit or without it."""
     within = steps % PERIOD
     if within == 0:
-        mean = fit[_SUM] / (PERIOD - SETTLING)
-        on = fit[_ON] > 0.0
-        fit[_WITH] = either(on, mean, fit[_WITH])
-        fit[_WITHOUT] = either(on, fit[_WITHOUT], mean)
+        mean = fit[SUM] / (PERIOD - SETTLING)
+        on = fit[ON] > 0.0
+        fit[WITH] = either(on, mean, fit[WITH])
+        fit[WITHOUT] = either(on, fit[WITHOUT], mean)
         zero = 0.0 * mean
-        better = either(fit[_WITH] + WORTH < fit[_WITHOUT], zero + 1.0, zero)
+        better = either(fit[WITH] + WORTH < fit[WITHOUT], zero + 1.0, zero)
         period = steps // PERIOD
         if period < 2:
             better = zero + period          # the first one without the fit, the second one with it
         elif period % TRIED_AGAIN == 0:
             better = 1.0 - better
-        fit[_AGE] = fit[_AGE] * better
-        fit[_ON], fit[_SUM] = better, zero
+        fit[AGE] = fit[AGE] * better
+        fit[ON], fit[SUM] = better, zero
     elif within > SETTLING:
-        fit[_SUM] += corrections
+        fit[SUM] += corrections
 
 
 @compiled
-def _fit_anew(system, state, steps):
+def fit_anew(system, state, steps):
     """Products of the last changes, coefficients of least squares, and the change they predict."""
     n, fit = system.diagonal.size, pointer_to(state.fit)
     weighted, fitted = pointer_to(state.correction), pointer_to(state.fitted)
@@ -132,40 +133,40 @@ def _fit_anew(system, state, steps):
         for i in range(n):
             total += weighted[i] * change[i]
         fit[j] = fit[ROWS * j] = total
-    _add_equations(fit)
+    add_equations(fit)
     if steps % REFITTED == 0:
-        _solve(fit)
+        solve(fit, at(fit, COEFFICIENTS))
     for i in range(n):
-        fitted[i] = fit[_COEFFICIENTS] * row(state, steps)[i]
+        fitted[i] = fit[COEFFICIENTS] * row(state, steps)[i]
     for j in range(1, ORDER):
-        change, c = row(state, steps - j), fit[_COEFFICIENTS + j]
+        change, c = row(state, steps - j), fit[COEFFICIENTS + j]
         for i in range(n):
             fitted[i] += c * change[i]
 
 
 @compiled
-def _add_equations(fit):
+def add_equations(fit):
     """Add those of the last step to the equations of the fit, of which half is kept."""
-    zero = 0.0 * fit[_AGE]
-    older = either(fit[_AGE] > 0.0, zero + FORGET, zero)
-    fit[_AGE] = fit[_AGE] + 1.0
-    counts = either(fit[_AGE] > ROWS, zero + 1.0, zero)     # before that, products are missing
+    zero = 0.0 * fit[AGE]
+    older = either(fit[AGE] > 0.0, zero + FORGET, zero)
+    fit[AGE] = fit[AGE] + 1.0
+    counts = either(fit[AGE] > ROWS, zero + 1.0, zero)     # before that, products are missing
     for i in range(ORDER):
         for j in range(i, ORDER):
-            k = _EQUATIONS + ORDER * i + j
+            k = EQUATIONS + ORDER * i + j
             fit[k] = older * fit[k] + counts * fit[ROWS * (i + 1) + j + 1]
-        fit[_RIGHT + i] = older * fit[_RIGHT + i] + counts * fit[i + 1]
+        fit[RIGHT + i] = older * fit[RIGHT + i] + counts * fit[i + 1]
 
 
 @compiled
-def _solve(fit):
-    """Coefficients of least squares: elimination of a positive matrix."""
-    A, x = at(fit, _FACTORS), at(fit, _COEFFICIENTS)
+def solve(fit, x):
+    """Set coefficients x of least squares: elimination of a positive matrix."""
+    A = at(fit, FACTORS)
     size = 0.0 * fit[0] + TINY
     for i in range(ORDER):
         for j in range(i, ORDER):
-            A[ORDER * i + j] = fit[_EQUATIONS + ORDER * i + j]
-        x[i] = fit[_RIGHT + i]
+            A[ORDER * i + j] = fit[EQUATIONS + ORDER * i + j]
+        x[i] = fit[RIGHT + i]
         size += LEAST * A[ORDER * i + i]
     for i in range(ORDER):
         A[ORDER * i + i] += size

@@ -18,19 +18,20 @@ from sebody.engine.growth import (
 
 
 @compiled
-def grows(system, state, scratch):
-    """Which members would have their step rejected, because energy grows in it."""
+def grows(system, state, scratch, running):
+    """For which members energy seems to grow in the step: they are judged alone."""
     guard, none = state.guard, spread(0.0) > 1.0
     for k in range(state.works.size):
         guard.supplied += abs(state.works[k] - state.works_old[k])
     guard.wait -= 1.0
-    due = (guard.off == 0.0) & (guard.wait <= 0.0)
+    due = running & (guard.off == 0.0) & (guard.wait <= 0.0)
     return _judge(system, state, scratch, due) if some(due) else none
 
 
 @compiled
 def _judge(system, state, scratch, due):
-    """Look at the energies of some members; of the others nothing changes."""
+    """Look at the energies of some members; of the others, and of those that grow, nothing changes.
+    """
     guard, frames = state.guard, state.frames
     for k in range(frames.size):
         scratch.frames[k] = frames[k]
@@ -39,8 +40,6 @@ def _judge(system, state, scratch, due):
     scratch.table[RUNNING] = bits_of(due)
     balance = take_balance(system, state)
     most_strain, most_kinetic = guard.most_strain, guard.most_kinetic
-    guard.most_strain = where(due, most_strain, strain)
-    guard.most_kinetic = where(due, most_kinetic, kinetic)
     more = most_strain + most_kinetic - before
     driven = (more > DRIVEN * before) & (guard.supplied > DRIVEN * more)
     lowest = where(driven | (before == 0.0), balance, guard.lowest + WORKED * guard.supplied)
@@ -50,11 +49,16 @@ def _judge(system, state, scratch, due):
         frames[k] = where(due, frames[k], scratch.frames[k])
     allowed = SHARE * most_strain + (KEPT + TURNED * turned) * most_kinetic
     allowed += ROUNDED * state.clock.floor * state.clock.floor
+    grown = due & (rise > allowed)
+    good = due & ~grown
     stride = where(rise > ATTENTIVE * allowed, spread(1.0),
                    min(2.0 * max(guard.stride, spread(1.0)), spread(RAREST)))
-    guard.balance = where(due, balance, guard.balance)
-    guard.lowest = where(due, min(lowest, balance), guard.lowest)
-    guard.supplied = where(due, spread(0.0), guard.supplied)
-    guard.stride = where(due, stride, guard.stride)
-    guard.wait = where(due, stride, guard.wait)
-    return due & (rise > allowed)
+    guard.most_strain = where(good, most_strain, strain)
+    guard.most_kinetic = where(good, most_kinetic, kinetic)
+    guard.calm = where(good, guard.calm + guard.stride, guard.calm)
+    guard.balance = where(good, balance, guard.balance)
+    guard.lowest = where(good, min(lowest, balance), guard.lowest)
+    guard.supplied = where(good, spread(0.0), guard.supplied)
+    guard.stride = where(good, stride, guard.stride)
+    guard.wait = where(good, stride, guard.wait)
+    return grown

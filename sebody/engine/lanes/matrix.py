@@ -5,8 +5,8 @@ import math
 from sebody.compiler.decorators import compiled
 from sebody.compiler.inside.lanes import every, some, spread, where
 from sebody.contract.layout import C_MASS
+from sebody.engine.lanes.apart import AGAIN
 from sebody.engine.lanes.elimination import eliminate_large
-from sebody.engine.lanes.newton import GAVE_UP
 from sebody.engine.lanes.regularization import (
     project_inverse,
     regularize,
@@ -24,7 +24,7 @@ SMALL_PIVOT = 1e-9      # relative to the scaled matrix, whose diagonal is one
 def factorize(system, state, scratch, dense, wanted, evaluated):
     """Sum and factorize the matrices of some members, or invert small ones (dense).
 
-    Returns the members that give up, because their matrices would need row exchanges. `evaluated`
+    Returns the members that go on alone, because their matrices may need row exchanges. `evaluated`
     are those whose element matrices are all new: their scales are, too.
     """
     control, clock = state.control, state.clock
@@ -53,7 +53,7 @@ def factorize(system, state, scratch, dense, wanted, evaluated):
     control.secant = where(wanted, zero, control.secant)
     control.fresh += one
     control.matrices += one
-    control.reason = where(failed, spread(GAVE_UP), control.reason)
+    control.reason = where(failed, spread(AGAIN), control.reason)
     return failed
 
 

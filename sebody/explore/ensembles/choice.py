@@ -33,13 +33,10 @@ FACTS = (
     Fact("sensors, controllers or inputs", lambda one: bool(
         one.system.control.periods.size or one.system.control.inputs.size
         or (one.system.functions[:, 0] == INPUT).any())),
-    Fact("contacts or stops", lambda one: bool(one.system.guarded.size)),
     Fact("friction whose bristles a start loads",
          lambda one: any(load.tuned for load in one.model.loads)),
     Fact("equal bodies, of which each run evaluates eight at a time",
          lambda one: bool(evaluated_together(one.model))),
-    Fact("loads at whose jumps accelerations are solved for anew",
-         lambda one: bool(one.system.jumps.any())),
 )
 
 

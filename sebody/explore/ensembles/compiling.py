@@ -12,8 +12,9 @@ from sebody.compiler.choice import way
 from sebody.compiler.first_run import Job, compile_apart
 from sebody.compiler.workers import Task
 from sebody.engine.lanes import loop
-from sebody.engine.lanes.arrays import Columns, Scratch, empty, in_lanes
+from sebody.engine.lanes.arrays import Columns, Scratch, empty, in_lanes, numbers
 from sebody.engine.offsets import Offsets
+from sebody.explore.ensembles.apart import new_apart
 from sebody.kernels.lanes.kernel import address_in_lanes, is_compiled, module_in_lanes
 from sebody.runs.first_run import SECONDS_A_LETTER, smallest
 from sebody.runs.schemes import generalized_alpha
@@ -58,6 +59,8 @@ def compile_loop() -> None:
                          empty(1, 1) if one.name in square else empty(1)
                          for one in fields(Scratch)})
     columns = Columns(np.zeros(1, dtype=np.int64), empty(1, 1), np.zeros(1, dtype=np.int64))
-    given = (in_lanes(system, offsets, buffer), in_lanes(state, offsets, buffer), scratch, columns,
+    of_members = in_lanes(state, offsets, buffer)
+    apart, _ = new_apart((system, state), offsets, np.zeros(0), numbers(buffer), of_members, 0)
+    given = (in_lanes(system, offsets, buffer), of_members, scratch, apart, columns,
              generalized_alpha())
     way().compile_for(loop.advance, (*map(typeof, given), types.int64, types.boolean))

@@ -8,8 +8,10 @@ from numpy.typing import NDArray
 from sebody.contract.counts import MEMBERS
 from sebody.contract.layout import AT_CONSTANTS, RECORD_T
 from sebody.engine.lanes import loop
+from sebody.engine.lanes.apart import GAVE_UP, RUNS
 from sebody.engine.lanes.arrays import Columns, Scratch, empty, fill, in_lanes, numbers
 from sebody.engine.system import System
+from sebody.explore.ensembles.apart import address_of_loop, new_apart
 from sebody.explore.ensembles.member import Copies, Course, Form
 from sebody.explore.ensembles.member_rows import Rows, new_table, with_places
 from sebody.explore.ensembles.outputs import Folds, Output
@@ -25,7 +27,6 @@ from sebody.kernels.lanes.straight import write_address, write_shared_address
 
 MOST_NUMBERS = 8_000        # of recorded states at a time: they stay in the processor's cache
 MOST_STEPS = 20_000         # until a thread looks whether it is to stop: tenths of a second
-ALONE = 1.0         # reason of a lane without a member
 
 
 class Lanes:
@@ -74,6 +75,9 @@ class Lanes:
                                 factors=empty(0 if one.dense else one.state.matrix.size),
                                 moved=empty(one.state.moved.size),
                                 unmoved=empty(one.state.g.size), table=table, kept=rows.kept)
+        self._apart, self._runs_apart = new_apart(
+            (one.system, one.state), image.offsets, image.lines.slots, self._numbers, self.state,
+            address_of_loop(one.system, one.state, copies.scheme))
         self._places = self._own_places()
         columns = _columns(forms, one.state.now.size)
         self._forms = {name: form if form.columns is None else form._replace(
@@ -160,19 +164,19 @@ class Lanes:
                         for member in range(count)]
         if count < MEMBERS:         # lanes without a member: another one's numbers
             self._numbers[self._places, count:] = self._numbers[self._places, :1]
-        state.control["reason"] = np.where(np.arange(MEMBERS) < count, 0.0, ALONE)
+        state.control["reason"] = np.where(np.arange(MEMBERS) < count, RUNS, GAVE_UP)
         every, reached = int(self._record.every[0]), 0
         while reached < self._last:
             reached = min(self._last, (reached // every + self._stretch) * every,
                           reached + MOST_STEPS)
             state.control["recorded"] = 0
-            loop.advance(self.system, state, self._scratch, self._record, self.copies.scheme,
-                         reached, self.copies.dense)
-            self._take_outputs(np.flatnonzero(state.control["reason"][:count] == 0.0))
+            loop.advance(self.system, state, self._scratch, self._apart, self._record,
+                         self.copies.scheme, reached, self.copies.dense)
+            self._take_outputs(np.flatnonzero(state.control["reason"][:count] != GAVE_UP))
             if reached < self._last and stop():
                 break
         self.ended = reached == self._last
-        return state.control["reason"][:count] != 0.0
+        return state.control["reason"][:count] == GAVE_UP
 
     def _take_outputs(self, members: NDArray) -> None:
         """Take in recorded states: folds of all members together, all else of each."""

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from sebody.contract.layout import RECORD_T
 from sebody.engine.loop import advance
+from sebody.engine.offsets import Offsets
 from sebody.engine.scalars import numbers_of, record
 from sebody.engine.state import (
     DONE,
@@ -42,9 +43,8 @@ class Copies:
         one = image.template
         self.image, self.dense = image, one.dense
         self.floats = image.floats.copy()
-        self.system: System = image.offsets.packed(one.system, self.floats)
-        state = image.offsets.packed(one.state, self.floats)
-        self.state: State = _with_own_integers(state)
+        self.system, self.state = arrays_of_run(one.system, one.state, image.offsets,
+                                                self.floats)
         self._given = self._beginning()
         self.exchanges = RowExchanges(self.system, self.state)
         self.sampling = Sampling(one.model, one.numbering, self.system, self.state)
@@ -116,6 +116,12 @@ class Copies:
             ends=lines.slopes.indptr.astype(np.int64),
             components=lines.slopes.indices.astype(np.int64), slopes=lines.slopes.data,
             **whole, **{f"{name}_built": own.copy() for name, own in whole.items()})
+
+
+def arrays_of_run(system: System, state: State, offsets: Offsets, floats: NDArray
+                  ) -> tuple[System, State]:
+    """System and state of a run, with its numbers in a buffer that gets those given."""
+    return (offsets.packed(system, floats), _with_own_integers(offsets.packed(state, floats)))
 
 
 def _with_own_integers(state: State) -> State:
