@@ -33,8 +33,9 @@ FACTS = (
     Fact("sensors, controllers or inputs", lambda one: bool(
         one.system.control.periods.size or one.system.control.inputs.size
         or (one.system.functions[:, 0] == INPUT).any())),
-    Fact("friction whose bristles a start loads",
-         lambda one: any(load.tuned for load in one.model.loads)),
+    Fact("friction that holds something at the start", lambda one: one.held),
+    Fact("gears whose teeth are as stiff as the step allows",
+         lambda one: any("teeth" in load.tuned for load in one.model.loads)),
     Fact("equal bodies, of which each run evaluates eight at a time",
          lambda one: bool(evaluated_together(one.model))),
 )

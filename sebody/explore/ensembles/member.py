@@ -45,10 +45,10 @@ class Copies:
         self.floats = image.floats.copy()
         self.system, self.state = arrays_of_run(one.system, one.state, image.offsets,
                                                 self.floats)
-        self._given = self._beginning()
         self.exchanges = RowExchanges(self.system, self.state)
         self.sampling = Sampling(one.model, one.numbering, self.system, self.state)
         self.model, self.numbering, self.scheme = one.model, one.numbering, one.scheme
+        self._given = self._beginning()
         self._record: Record | None = None
         self.none = Record.of(self.state, 0)
 
@@ -106,6 +106,12 @@ class Copies:
                                          places, lanes)
         return codes == DONE
 
+    def _kept_places(self) -> NDArray:
+        """Places of what elements keep in `State.frames_old`, in the buffer of all numbers."""
+        places = [k for own in self.numbering.memories.values() for k in own]
+        first = self.image.offsets.of(self.image.template.state.frames_old).start
+        return first + np.array(places, dtype=np.int64)
+
     def _beginning(self) -> beginning.Beginning:
         """What runs begin with; scalars and flags are not in `floats`."""
         lines, state = self.image.lines, self.state
@@ -115,6 +121,7 @@ class Copies:
             model=self.image.floats, floats=self.floats, slots=lines.slots.astype(np.int64),
             ends=lines.slopes.indptr.astype(np.int64),
             components=lines.slopes.indices.astype(np.int64), slopes=lines.slopes.data,
+            kept=self._kept_places(),
             **whole, **{f"{name}_built": own.copy() for name, own in whole.items()})
 
 
