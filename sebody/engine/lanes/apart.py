@@ -78,8 +78,8 @@ def take_apart(state, apart):
                 _give_floats(apart.guard_words, apart.guard[member], apart.guard_in_lanes, member)
                 control.reason = with_number(control.reason, member, RUNS)
                 continue
-            take_back_work(own)
         if reason != JUMPS:
+            take_back_work(own)
             back(own)
         if reason == CUT or reason == JUDGED:
             cut_step(own)

@@ -20,10 +20,11 @@ from sebody.engine.growth import (
 @compiled
 def grows(system, state, scratch, running):
     """For which members energy seems to grow in the step: they are judged alone."""
-    guard, none = state.guard, spread(0.0) > 1.0
+    guard, none, more = state.guard, spread(0.0) > 1.0, spread(0.0)
     for k in range(state.works.size):
-        guard.supplied += abs(state.works[k] - state.works_old[k])
-    guard.wait -= 1.0
+        more += abs(state.works[k] - state.works_old[k])
+    guard.supplied = where(running, guard.supplied + more, guard.supplied)
+    guard.wait = where(running, guard.wait - 1.0, guard.wait)
     due = running & (guard.off == 0.0) & (guard.wait <= 0.0)
     return _judge(system, state, scratch, due) if some(due) else none
 

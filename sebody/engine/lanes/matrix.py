@@ -5,7 +5,7 @@ import math
 from sebody.compiler.decorators import compiled
 from sebody.compiler.inside.lanes import every, some, spread, where
 from sebody.contract.layout import C_MASS
-from sebody.engine.lanes.apart import AGAIN
+from sebody.engine.lanes.apart import CUT, GAVE_UP
 from sebody.engine.lanes.elimination import eliminate_large
 from sebody.engine.lanes.regularization import (
     project_inverse,
@@ -24,7 +24,8 @@ SMALL_PIVOT = 1e-9      # relative to the scaled matrix, whose diagonal is one
 def factorize(system, state, scratch, dense, wanted, evaluated):
     """Sum and factorize the matrices of some members, or invert small ones (dense).
 
-    Returns the members that go on alone, because their matrices may need row exchanges. `evaluated`
+    Returns the members that leave: their matrices need row exchanges, so they are run alone from
+    their start, or are no numbers, so their step is cut. `evaluated`
     are those whose element matrices are all new: their scales are, too.
     """
     control, clock = state.control, state.clock
@@ -53,7 +54,12 @@ def factorize(system, state, scratch, dense, wanted, evaluated):
     control.secant = where(wanted, zero, control.secant)
     control.fresh += one
     control.matrices += one
-    control.reason = where(failed, spread(AGAIN), control.reason)
+    if some(failed):        # forces that are no numbers: the step is too long
+        left = spread(0.0)
+        for i in range(system.diagonal.size):
+            left += 0.0 * state.residual[i]
+        control.reason = where(failed, where(left == 0.0, spread(GAVE_UP), spread(CUT)),
+                               control.reason)
     return failed
 
 
