@@ -34,6 +34,8 @@ FACTS = (
         one.system.control.periods.size or one.system.control.inputs.size
         or (one.system.functions[:, 0] == INPUT).any())),
     Fact("friction that holds something at the start", lambda one: one.held),
+    Fact("elements that keep numbers, as contacts and friction, among rigid bodies alone",
+         lambda one: not one.model.bodies and bool(one.numbering.memories)),
     Fact("gears whose teeth are as stiff as the step allows",
          lambda one: any("teeth" in load.tuned for load in one.model.loads)),
     Fact("equal bodies, of which each run evaluates eight at a time",

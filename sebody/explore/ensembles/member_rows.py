@@ -9,8 +9,7 @@ from sebody.contract.layout import AT_CONSTANTS, AT_FRAME, AT_PORT, AT_ROTATIONS
 from sebody.contract.member_row import ENERGIES, RUNNING
 from sebody.explore.ensembles.shared_constants import kernels_of_batches, rows_of
 from sebody.explore.ensembles.start_values import Image
-from sebody.kernels.lanes.kernel import takes_one_member
-from sebody.kernels.loader import load
+from sebody.kernels.loader import load, takes_one_member
 
 
 class Rows(NamedTuple):

@@ -19,20 +19,12 @@ from sebody.kernels.lanes import (
     products,
     rotations,
 )
-from sebody.kernels.loader import BY_HAND, load
+from sebody.kernels.loader import load, takes_one_member
 
 # imported: puts in place what kernels call
 CALLED = frame_search, packed_products, products, rotations
 
 _POINTERS = {"int64": types.CPointer(types.int64), "float64": types.CPointer(lanes)}
-
-
-def takes_one_member(name: str) -> bool:
-    """Whether a kernel is evaluated member by member: one that keeps numbers, or is by hand.
-
-    Those that choose by their numbers all keep some.
-    """
-    return name in BY_HAND or bool(getattr(load(name), "MEMORY", ()))
 
 
 def module_in_lanes(name: str) -> ModuleType:
