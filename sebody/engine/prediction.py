@@ -29,16 +29,16 @@ SETTLING = 24           # first ones of a period, whose corrections do not count
 TRIED_AGAIN = 16        # periods after which what has saved less is tried again
 WORTH = 0.2             # corrections of a step that the fit has to save
 
-# State.fit, in this order: products of the last changes, equations, right side and coefficients of
-# the fit, scratch memory for its elimination, numbers by name, and a solution of lanes
-EQUATIONS = ROWS * ROWS
-RIGHT = EQUATIONS + ORDER * ORDER
-COEFFICIENTS = RIGHT + ORDER
-FACTORS = COEFFICIENTS + ORDER
+# State.fit, in this order: products of the changes that are kept, equations, right side and
+# coefficients of the fit, scratch memory for its elimination, and numbers by name
+_EQUATIONS = ROWS * ROWS
+_RIGHT = _EQUATIONS + ORDER * ORDER
+_COEFFICIENTS = _RIGHT + ORDER
+_FACTORS = _COEFFICIENTS + ORDER
+_SOLUTION = _FACTORS + ORDER * ORDER
 LAST, BEFORE, FITTED, ON, AGE, SUM, WITH, WITHOUT = range(
-    FACTORS + ORDER * ORDER, FACTORS + ORDER * ORDER + 8)
-SOLVED = WITHOUT + 1
-FIT = SOLVED + ORDER    # its size
+    _SOLUTION + ORDER, _SOLUTION + ORDER + 8)
+FIT = WITHOUT + 1      # its size
 
 
 @compiled
@@ -51,6 +51,18 @@ def either(condition, a, b):
 def any_positive(x):
     """Whether a number is positive; in lanes, that of any member."""
     return x > 0.0
+
+
+@compiled
+def ring_place(steps, grid):
+    """Where changes of the step under way are in the ring; in lanes by those of the grid."""
+    return steps + ROWS
+
+
+@compiled
+def refitted(on, steps):
+    """`on` if coefficients are solved for anew after so many steps, else zero."""
+    return on if steps % REFITTED == 0 else 0.0
 
 
 @compiled
@@ -67,7 +79,8 @@ def look_back(system, state, of_accelerations):
     `State.fit` gets the shares LAST, BEFORE and FITTED of the last two changes and of
     `State.fitted` in the prediction.
     """
-    fit, steps = pointer_to(state.fit), state.control.steps + ROWS
+    fit = pointer_to(state.fit)
+    steps = ring_place(state.control.steps, state.control.grid)
     compare_periods(fit, state.control.iteration, state.control.steps)
     now, last, before = row(state, steps), row(state, steps - 1), row(state, steps - 2)
     weighted, fitted = pointer_to(state.correction), pointer_to(state.fitted)
@@ -90,12 +103,13 @@ def look_back(system, state, of_accelerations):
     least = either(straight, of_line, of_none)
     bent = of_parabola < BETTER * least
     least = either(bent, of_parabola, least)
-    best = either(fit[ON] > 0.0, of_fit, least) < BETTER * least
+    begun = either(fit[AGE] > 0.0, of_fit, least)
+    best = either(fit[ON] > 0.0, begun, least) < BETTER * least
     fit[LAST] = either(best, zero, either(bent, zero + 2.0, either(straight, zero + 1.0, zero)))
     fit[BEFORE] = either(best, zero, either(bent, zero - 1.0, zero))
     fit[FITTED] = either(best, zero + 1.0, zero)
     if any_positive(fit[ON]):
-        fit_anew(system, state, steps)
+        _fit_anew(system, state, steps)
 
 
 @compiled
@@ -110,8 +124,8 @@ def compare_periods(fit, corrections, steps):
         zero = 0.0 * mean
         better = either(fit[WITH] + WORTH < fit[WITHOUT], zero + 1.0, zero)
         period = steps // PERIOD
-        if period < 2:
-            better = zero + period          # the first one without the fit, the second one with it
+        if period < 3:      # the second one without the fit, the third one with it: the first steps
+            better = zero + period // 2     # of a motion are no measure
         elif period % TRIED_AGAIN == 0:
             better = 1.0 - better
         fit[AGE] = fit[AGE] * better
@@ -121,52 +135,73 @@ def compare_periods(fit, corrections, steps):
 
 
 @compiled
-def fit_anew(system, state, steps):
-    """Products of the last changes, coefficients of least squares, and the change they predict."""
-    n, fit = system.diagonal.size, pointer_to(state.fit)
+def _fit_anew(system, state, steps):
+    """Products of the last changes, coefficients of least squares, and the change they predict.
+
+    In lanes nothing of this changes for members without the fit.
+    """
+    n, fit, on = system.diagonal.size, pointer_to(state.fit), state.fit[ON] > 0.0
     weighted, fitted = pointer_to(state.correction), pointer_to(state.fitted)
-    for i in range(ORDER, 0, -1):
-        for j in range(ORDER, 0, -1):
-            fit[ROWS * i + j] = fit[ROWS * (i - 1) + j - 1]
-    for j in range(ROWS):
-        change, total = row(state, steps - j), 0.0 * fit[0]
+    now = steps % ROWS
+    for j in range(0, ROWS, 3):         # three at a time: the weighted change is read once for them
+        a, b, c = row(state, steps - j), row(state, steps - j - 1), row(state, steps - j - 2)
+        of_a = of_b = of_c = 0.0 * fit[0]
         for i in range(n):
-            total += weighted[i] * change[i]
-        fit[j] = fit[ROWS * j] = total
-    add_equations(fit)
-    if steps % REFITTED == 0:
-        solve(fit, at(fit, COEFFICIENTS))
+            w = weighted[i]
+            of_a += w * a[i]
+            of_b += w * b[i]
+            of_c += w * c[i]
+        _put_product(fit, now, (steps - j) % ROWS, of_a)
+        _put_product(fit, now, (steps - j - 1) % ROWS, of_b)
+        _put_product(fit, now, (steps - j - 2) % ROWS, of_c)
+    _add_equations(fit, steps)
+    due = refitted(fit[ON], state.control.steps)
+    if any_positive(due):
+        _solve(fit, due)
+    c0, c1, c2, c3 = (fit[_COEFFICIENTS], fit[_COEFFICIENTS + 1], fit[_COEFFICIENTS + 2],
+                      fit[_COEFFICIENTS + 3])
+    c4, c5, c6, c7 = (fit[_COEFFICIENTS + 4], fit[_COEFFICIENTS + 5], fit[_COEFFICIENTS + 6],
+                      fit[_COEFFICIENTS + 7])
+    d0, d1, d2, d3 = (row(state, steps), row(state, steps - 1), row(state, steps - 2),
+                      row(state, steps - 3))
+    d4, d5, d6, d7 = (row(state, steps - 4), row(state, steps - 5), row(state, steps - 6),
+                      row(state, steps - 7))
     for i in range(n):
-        fitted[i] = fit[COEFFICIENTS] * row(state, steps)[i]
-    for j in range(1, ORDER):
-        change, c = row(state, steps - j), fit[COEFFICIENTS + j]
-        for i in range(n):
-            fitted[i] += c * change[i]
+        total = c0 * d0[i] + c1 * d1[i] + c2 * d2[i] + c3 * d3[i]
+        total = total + c4 * d4[i] + c5 * d5[i] + c6 * d6[i] + c7 * d7[i]
+        fitted[i] = either(on, total, fitted[i])
 
 
 @compiled
-def add_equations(fit):
-    """Add those of the last step to the equations of the fit, of which half is kept."""
+def _put_product(fit, i, j, product):
+    """Keep the product of two changes, by their rows."""
+    fit[ROWS * i + j] = fit[ROWS * j + i] = product
+
+
+@compiled
+def _add_equations(fit, steps):
+    """Add those of the last step to the equations of the fit, of which a part is kept."""
     zero = 0.0 * fit[AGE]
     older = either(fit[AGE] > 0.0, zero + FORGET, zero)
-    fit[AGE] = fit[AGE] + 1.0
+    fit[AGE] = fit[AGE] + fit[ON]
     counts = either(fit[AGE] > ROWS, zero + 1.0, zero)     # before that, products are missing
     for i in range(ORDER):
+        own = at(fit, ROWS * ((steps - i - 1) % ROWS))
         for j in range(i, ORDER):
-            k = EQUATIONS + ORDER * i + j
-            fit[k] = older * fit[k] + counts * fit[ROWS * (i + 1) + j + 1]
-        fit[RIGHT + i] = older * fit[RIGHT + i] + counts * fit[i + 1]
+            k = _EQUATIONS + ORDER * i + j
+            fit[k] = older * fit[k] + counts * own[(steps - j - 1) % ROWS]
+        fit[_RIGHT + i] = older * fit[_RIGHT + i] + counts * own[steps % ROWS]
 
 
 @compiled
-def solve(fit, x):
-    """Set coefficients x of least squares: elimination of a positive matrix."""
-    A = at(fit, FACTORS)
+def _solve(fit, due):
+    """Coefficients of least squares: elimination of a positive matrix."""
+    A, x = at(fit, _FACTORS), at(fit, _SOLUTION)
     size = 0.0 * fit[0] + TINY
     for i in range(ORDER):
         for j in range(i, ORDER):
-            A[ORDER * i + j] = fit[EQUATIONS + ORDER * i + j]
-        x[i] = fit[RIGHT + i]
+            A[ORDER * i + j] = fit[_EQUATIONS + ORDER * i + j]
+        x[i] = fit[_RIGHT + i]
         size += LEAST * A[ORDER * i + i]
     for i in range(ORDER):
         A[ORDER * i + i] += size
@@ -182,3 +217,4 @@ def solve(fit, x):
         for j in range(k + 1, ORDER):
             x[k] -= A[ORDER * k + j] * x[j]
         x[k] *= A[ORDER * k + k]
+        fit[_COEFFICIENTS + k] = either(due > 0.0, x[k], fit[_COEFFICIENTS + k])

@@ -24,7 +24,7 @@ from sebody.engine.work import take_back_work
 # of `control.reason` in lanes: what a member does. It runs in lanes; has given up, and is run alone
 # from its start; is alone; and why it leaves: its step is to be shorter, or to be made again with
 # new matrices, or its energy may have grown, or its loads jump
-RUNS, GAVE_UP, ALONE, CUT, AGAIN, JUDGED, JUMPS = map(float, range(7))
+RUNS, GAVE_UP, APART, CUT, AGAIN, JUDGED, JUMPS = map(float, range(7))
 _ANY = 2**62        # steps in one call
 
 
@@ -60,19 +60,22 @@ def jump_is_ahead(system, state):
 
 
 @compiled
-def take_apart(state, apart):
+def take_apart(state, apart, J):
     """Copy the members that leave to arrays of their own, at the begin of their step.
 
-    One whose energy is found not to grow after all stays.
+    `J` are their element matrices of bodies, where these are rotated later. One whose energy is
+    found not to grow after all stays.
     """
     control = state.control
     for member in range(MEMBERS):
         reason = number_of(control.reason, member)
-        if reason <= ALONE:
+        if reason <= APART:
             continue
         system, own = (_group_at(apart.system, apart.addresses[member, 0]),
                        _group_at(apart.state, apart.addresses[member, 1]))
         _copy_to(state, apart, member)
+        for k in range(J.shape[1]):
+            own.J[k] = J[member, k]
         if reason == JUDGED:
             if not judge(system, own):
                 _give_floats(apart.guard_words, apart.guard[member], apart.guard_in_lanes, member)
@@ -83,15 +86,15 @@ def take_apart(state, apart):
             back(own)
         if reason == CUT or reason == JUDGED:
             cut_step(own)
-        control.reason = with_number(control.reason, member, ALONE)
+        control.reason = with_number(control.reason, member, APART)
 
 
 @compiled
-def run_apart(state, apart, scheme, dense):
+def run_apart(state, apart, J, scheme, dense):
     """Run the members that are alone to the time of the others; those that can come back."""
     control = state.control
     for member in range(MEMBERS):
-        if number_of(control.reason, member) != ALONE:
+        if number_of(control.reason, member) != APART:
             continue
         system, own = (_group_at(apart.system, apart.addresses[member, 0]),
                        _group_at(apart.state, apart.addresses[member, 1]))
@@ -99,8 +102,12 @@ def run_apart(state, apart, scheme, dense):
                              _ANY, dense)
         if code != DONE:
             control.reason = with_number(control.reason, member, GAVE_UP)
+        elif own.control.regularized != control.regularized:
+            control.reason = with_number(control.reason, member, GAVE_UP)
         elif own.control.level == 0 and own.control.inside == 0 and own.guard.halved == 0.0:
             _come_back(state, apart, own, member)
+            for k in range(J.shape[1]):
+                J[member, k] = own.J[k]
             control.reason = with_number(control.reason, member, RUNS)
 
 
@@ -109,7 +116,7 @@ def show(state, apart, places):
     """Put numbers that are recorded of members that are alone into their lanes."""
     control, first = state.control, apart.now[0]
     for member in range(MEMBERS):
-        if number_of(control.reason, member) == ALONE:
+        if number_of(control.reason, member) == APART:
             own = _group_at(apart.state, apart.addresses[member, 1])
             for k in places:
                 apart.lanes[first + k, member] = own.now[k]
@@ -173,13 +180,22 @@ def _give_floats(words, own, in_lanes, member):
 
 @compiled
 def _turn_ring(state, apart, own, member, taken):
-    """Copy the last changes, whose rows are counted by steps: in lanes by those of the grid."""
-    numbers, lanes, first, size = apart.numbers, apart.lanes, apart.changes[0], own.q.size
+    """Copy the last changes and their products, by rows: in lanes they are counted by the grid."""
+    first, size, fit = apart.changes[0], own.q.size, apart.changes[1]
+    grid, steps = state.control.grid, own.control.steps
     for row in range(ROWS):
-        there = first + size * ((state.control.grid + row) % ROWS)
-        here = first + size * ((own.control.steps + row) % ROWS)
+        there, here = (grid + row) % ROWS, (steps + row) % ROWS
         for i in range(size):
-            if taken:
-                numbers[member, here + i] = lanes[there + i, member]
-            else:
-                lanes[there + i, member] = numbers[member, here + i]
+            _copy(apart, member, first + size * here + i, first + size * there + i, taken)
+        for other in range(ROWS):
+            _copy(apart, member, fit + ROWS * here + (steps + other) % ROWS,
+                  fit + ROWS * there + (grid + other) % ROWS, taken)
+
+
+@compiled(forceinline=True)
+def _copy(apart, member, here, there, taken):
+    """Copy a number from a lane, or back."""
+    if taken:
+        apart.numbers[member, here] = apart.lanes[there, member]
+    else:
+        apart.lanes[there, member] = apart.numbers[member, here]

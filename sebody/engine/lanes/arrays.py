@@ -36,13 +36,7 @@ class Scratch(Arrays):
     """What an iteration keeps of members that need not be evaluated again.
 
     ==================  ============================================================================
-    g                   forces of an evaluation, where another one follows for other members
-    frames, found       frames before an evaluation, and those it found
-    T                   tangent operators before an evaluation
-    J                   element matrices of bodies, where bodies are coupled that rotate
-    dense               (n, n) matrix that is inverted
-    projected           (n, n) where constraints are redundant: its inverse without their share
-    factors             of a large matrix, where another one is factorized for other members
+    frames              frames before an evaluation
     moved               (elements,) one where a member's element is evaluated, else zero
     unmoved             forces of the elements that have not moved
     table               of elements that are evaluated member by member: see `member_row`
@@ -50,14 +44,7 @@ class Scratch(Arrays):
     ==================  ============================================================================
     """
 
-    g: NDArray
     frames: NDArray
-    found: NDArray
-    T: NDArray
-    J: NDArray
-    dense: NDArray
-    projected: NDArray
-    factors: NDArray
     moved: NDArray
     unmoved: NDArray
     table: NDArray
@@ -72,7 +59,8 @@ class Apart(Arrays):
     places                   numbers that members take with them, in the buffer of all numbers
     lanes                    (size, members) that buffer in lanes
     numbers                  (members, size) the same of every member alone
-    now, changes             (1,) where `State.now` and `State.changes` begin in it
+    now                      (1,) where `State.now` begins in it
+    changes                  (2,) the same of `State.changes` and `State.fit`
     control, clock, guard    (members, scalars) the records of every member
     ..._words                (scalars, 2) place of each in the record in lanes; 1 if each member has
                              its own there, else 0

@@ -50,7 +50,7 @@ def new_apart(of: tuple[System, State], offsets: Offsets, slots: NDArray, lanes:
     return Apart(
         places=_places(one, offsets, slots), lanes=lanes, numbers=numbers,
         now=np.array([offsets.of(one.now).start]),
-        changes=np.array([offsets.of(one.changes).start]), **scalars,
+        changes=np.array([offsets.of(one.changes).start, offsets.of(one.fit).start]), **scalars,
         **{f"{name}_words": _words(getattr(in_lanes, name)) for name in RECORDS},
         **{f"{name}_in_lanes": _memory(getattr(in_lanes, name), np.float64) for name in RECORDS},
         whole_in_lanes=_memory(in_lanes.control, np.int64),
@@ -67,7 +67,7 @@ def _with(state: State, others: dict[str, np.record]) -> State:
 
 def _places(state: State, offsets: Offsets, slots: NDArray) -> NDArray:
     """Places of what a member takes with it: parameters, and its state without scratch memory."""
-    left = {"changes", "kept", "work", "expansion", "rotated_matrix", "column"} | SHARED
+    left = {"J", "g", "changes", "kept", "work", "expansion", "rotated_matrix", "column"} | SHARED
     parts = [offsets.of(value) for one in fields(State) if one.name not in left
              and isinstance(value := getattr(state, one.name), np.ndarray)
              and value.dtype == np.float64 and value.size]

@@ -1,7 +1,10 @@
-"""Kernels compiled for lanes, from the text they have."""
+"""Kernels compiled for lanes, from the text they have.
+
+Matrices of the members of an ensemble are made one by one, so their kernels are compiled without
+what is done for matrices. Equal bodies of one model have theirs made eight at a time.
+"""
 
 from functools import cache
-from inspect import unwrap
 from pathlib import Path
 from types import ModuleType
 
@@ -19,12 +22,16 @@ from sebody.kernels.lanes import (
     products,
     rotations,
 )
+from sebody.kernels.lanes.text import kernel_text
 from sebody.kernels.loader import load, takes_one_member
 
 # imported: puts in place what kernels call
 CALLED = frame_search, packed_products, products, rotations
 
 _POINTERS = {"int64": types.CPointer(types.int64), "float64": types.CPointer(lanes)}
+_EQUAL = "equal"        # kind of kernels of equal bodies
+
+Own = tuple[str, ...] | None     # parts of the constants in lanes; None: all of them
 
 
 def module_in_lanes(name: str) -> ModuleType:
@@ -33,21 +40,39 @@ def module_in_lanes(name: str) -> ModuleType:
 
 
 @cache
-def address_in_lanes(module: ModuleType, shared: bool = False) -> int:
-    """Address of a kernel for lanes; compiled, or read from the cache, where it is asked for.
+def address_in_lanes(module: ModuleType, own: Own = None) -> int:
+    """Address of a kernel for members; compiled, or read from the cache, where it is asked for.
 
     Parameters
     ----------
-    shared : bool
-        Whether constants of elements are numbers that all members share.
+    own : tuple of str or None
+        The parts of the constants that are lanes; all others are numbers that members share.
+        None: all constants are lanes.
     """
-    return kernel_in_lanes(unwrap(module.kernel), _signature(shared), OF_KERNELS,
-                           kernel_hash(Path(module.__file__)), shared).address
+    text = module.kernel if module is member_by_member else kernel_text(module, own or ())
+    return kernel_in_lanes(text, _signature(own is not None), OF_KERNELS,
+                           kernel_hash(Path(module.__file__)), _kind(own)).address
 
 
-def is_compiled(path: Path, shared: bool = False) -> bool:
-    """Whether the kernel in a file was compiled for lanes; the file is not imported."""
-    return is_kept_in_lanes(path, kernel_hash(path), shared)
+@cache
+def address_for_equal(module: ModuleType) -> int:
+    """Address of a kernel for eight equal bodies, which have one row of constants in common."""
+    return kernel_in_lanes(module.kernel.__wrapped__, _signature(True), OF_KERNELS,
+                           kernel_hash(Path(module.__file__)), _EQUAL).address
+
+
+def is_compiled(path: Path, own: Own = None) -> bool:
+    """Whether the kernel in a file was compiled for members; the file is not imported."""
+    return is_kept_in_lanes(path, kernel_hash(path), _kind(own))
+
+
+def is_compiled_for_equal(path: Path) -> bool:
+    """Whether the kernel in a file was compiled for equal bodies; the file is not imported."""
+    return is_kept_in_lanes(path, kernel_hash(path), _EQUAL)
+
+
+def _kind(own: Own) -> str:
+    return "lanes" if own is None else "-".join(("shared", *own))
 
 
 def _signature(shared: bool) -> types.Type:

@@ -2,7 +2,7 @@
 
 It is called as kernels for lanes are. The numbers of a member that an element reads, whose places
 are behind its index row, are copied to the same places of a buffer of a single run, where the
-element's own kernel finds them. Its forces, matrices and kept numbers are put back. Members that
+element's own kernel finds them. Its forces and kept numbers are put back. Members that
 are not running keep theirs: what they have does not depend on others. Of a member that the kernel
 refuses forces become no numbers.
 """
@@ -13,9 +13,8 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
-from sebody.compiler.inside.lanes import bits_of_lanes
 from sebody.contract.counts import MEMBERS
-from sebody.contract.layout import ENERGY, OK, TANGENT
+from sebody.contract.layout import ENERGY, OK
 from sebody.contract.member_row import (
     ALONE,
     BEHIND,
@@ -49,6 +48,14 @@ def _floats_at(typingctx, address):
 
 
 @intrinsic
+def _numbers_of(typingctx, pointer):
+    """A pointer to lanes as one to their numbers, one after the other."""
+    def codegen(context, builder, sig, args):
+        return builder.bitcast(args[0], ir.DoubleType().as_pointer())
+    return types.CPointer(types.float64)(pointer), codegen
+
+
+@intrinsic
 def _same_place(typingctx, pointer, table):
     """A pointer into the buffer of lanes as one to the same number of a single run."""
     def codegen(context, builder, sig, args):
@@ -66,7 +73,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     places_of_row, kept, sums = index[stride - PLACES], index[stride - KEPT], table[ENERGIES]
     first_place = stride - BEHIND - places_of_row
     every, one = _floats_at(table[IN_LANES]), _floats_at(table[ALONE])
-    g, J, energy = bits_of_lanes(forces), bits_of_lanes(matrices), bits_of_lanes(energies)
+    g, energy = _numbers_of(forces), _numbers_of(energies)
     given = Arguments(
         index=index, constants=_same_place(constants, table), q=_same_place(q, table),
         R=_same_place(R, table), v=_same_place(v, table), a=_same_place(a, table),
@@ -88,9 +95,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         good = call_kernel(index[stride - KERNEL], task, count, stride, width, given) == OK
         for k in range(count*width):
             g[MEMBERS*k + member] = given.forces[k] if good else math.nan
-        if task == TANGENT:
-            for k in range(count*width*width):
-                J[MEMBERS*k + member] = given.matrices[k]
         if task == ENERGY:
             for k in range(sums):
                 energy[MEMBERS*k + member] = given.energies[k]
