@@ -88,17 +88,17 @@ def kernel_together() -> ModuleType:
 
 def compile_together(name: str) -> None:
     """Compile what eight bodies at a time need of a kernel, or find it in the cache."""
-    from sebody.kernels.lanes.kernel import address_for_equal
+    from sebody.kernels.lanes.kernel import address_in_lanes
 
     kernel_together()
-    address_for_equal(load(name))
+    address_in_lanes(load(name), (), matrices=True)
 
 
 def is_compiled_together(path: Path) -> bool:
     """Whether the kernel of a file was compiled for eight bodies; the file is not imported."""
-    from sebody.kernels.lanes.kernel import is_compiled_for_equal
+    from sebody.kernels.lanes.kernel import is_compiled
 
-    return is_compiled_for_equal(path)
+    return is_compiled(path, (), matrices=True)
 
 
 def behind_row(body: Superelement, common: int, turn: int) -> list[int]:
@@ -109,10 +109,10 @@ def behind_row(body: Superelement, common: int, turn: int) -> list[int]:
     common, turn : int
         Where the constants that they have in common begin, and the row TURN of this one.
     """
-    from sebody.kernels.lanes.kernel import address_for_equal  # only where lanes are used
+    from sebody.kernels.lanes.kernel import address_in_lanes  # only where lanes are used
 
     kernel = load(body.kernel)
-    return [kernel.kernel.address, address_for_equal(kernel),
+    return [kernel.kernel.address, address_in_lanes(kernel, (), matrices=True),
             2 if kernel.PLANAR else 3, common, turn]
 
 

@@ -1,8 +1,4 @@
-"""Kernels compiled for lanes, from the text they have.
-
-Matrices of the members of an ensemble are made one by one, so their kernels are compiled without
-what is done for matrices. Equal bodies of one model have theirs made eight at a time.
-"""
+"""Kernels compiled for lanes, from the text they have, for ensembles without matrices."""
 
 from functools import cache
 from pathlib import Path
@@ -29,7 +25,7 @@ from sebody.kernels.loader import load, takes_one_member
 CALLED = frame_search, packed_products, products, rotations
 
 _POINTERS = {"int64": types.CPointer(types.int64), "float64": types.CPointer(lanes)}
-_EQUAL = "equal"        # kind of kernels of equal bodies
+
 
 Own = tuple[str, ...] | None     # parts of the constants in lanes; None: all of them
 
@@ -40,39 +36,30 @@ def module_in_lanes(name: str) -> ModuleType:
 
 
 @cache
-def address_in_lanes(module: ModuleType, own: Own = None) -> int:
-    """Address of a kernel for members; compiled, or read from the cache, where it is asked for.
+def address_in_lanes(module: ModuleType, own: Own = None, matrices: bool = False) -> int:
+    """Address of a kernel for lanes; compiled, or read from the cache, where it is asked for.
 
     Parameters
     ----------
     own : tuple of str or None
         The parts of the constants that are lanes; all others are numbers that members share.
         None: all constants are lanes.
+    matrices : bool
+        Whether it has matrices, too: those of an ensemble's members are made one by one.
     """
-    text = module.kernel if module is member_by_member else kernel_text(module, own or ())
+    text = module.kernel if module is member_by_member else kernel_text(module, own or (), matrices)
     return kernel_in_lanes(text, _signature(own is not None), OF_KERNELS,
-                           kernel_hash(Path(module.__file__)), _kind(own)).address
+                           kernel_hash(Path(module.__file__)), _kind(own, matrices)).address
 
 
-@cache
-def address_for_equal(module: ModuleType) -> int:
-    """Address of a kernel for eight equal bodies, which have one row of constants in common."""
-    return kernel_in_lanes(module.kernel.__wrapped__, _signature(True), OF_KERNELS,
-                           kernel_hash(Path(module.__file__)), _EQUAL).address
+def is_compiled(path: Path, own: Own = None, matrices: bool = False) -> bool:
+    """Whether the kernel in a file was compiled for lanes; the file is not imported."""
+    return is_kept_in_lanes(path, kernel_hash(path), _kind(own, matrices))
 
 
-def is_compiled(path: Path, own: Own = None) -> bool:
-    """Whether the kernel in a file was compiled for members; the file is not imported."""
-    return is_kept_in_lanes(path, kernel_hash(path), _kind(own))
-
-
-def is_compiled_for_equal(path: Path) -> bool:
-    """Whether the kernel in a file was compiled for equal bodies; the file is not imported."""
-    return is_kept_in_lanes(path, kernel_hash(path), _EQUAL)
-
-
-def _kind(own: Own) -> str:
-    return "lanes" if own is None else "-".join(("shared", *own))
+def _kind(own: Own, matrices: bool) -> str:
+    return "-".join(filter(None, ("lanes" if own is None else "shared", *(own or ()),
+                                  "matrices" * matrices)))
 
 
 def _signature(shared: bool) -> types.Type:

@@ -1,6 +1,7 @@
-"""Texts of kernels as they are compiled for the members of an ensemble: forces and energies alone.
+"""Texts of kernels as they are compiled for lanes.
 
-Matrices of members are made one by one, so what a kernel does for them is left out: most of it.
+Matrices of an ensemble's members are made one by one, so what a kernel does for them is left out:
+most of it.
 """
 
 import ast
@@ -14,20 +15,22 @@ from sebody.compiler.inside.lanes import lanes_at
 _IN_LANES = "{}_in_lanes"
 
 
-def kernel_text(module: ModuleType, own: tuple[str, ...]) -> Callable:
-    """The kernel of a module without matrices.
+def kernel_text(module: ModuleType, own: tuple[str, ...], matrices: bool) -> Callable:
+    """The kernel of a module.
 
     Parameters
     ----------
     own : tuple of str
         Parts of its constants whose first number is the address of lanes, which are read in place
         of the part.
+    matrices : bool
+        Whether the kernel keeps what it does for matrices.
     """
     path = Path(module.__file__)
     found = next(one for one in _parsed(path).body
                  if isinstance(one, ast.FunctionDef) and one.name == "kernel")
     found.decorator_list = []
-    text = ast.Module([_InLanes(found, own, _parts(module)).visit(found)], [])
+    text = ast.Module([_InLanes(found, own, matrices, _parts(module)).visit(found)], [])
     names = {**vars(module), lanes_at.__name__: lanes_at}
     exec(compile(ast.fix_missing_locations(text), str(path), "exec"), names)
     return names["kernel"]
@@ -62,14 +65,15 @@ def _followed(text: ast.AST, parts: set[str]) -> Iterator[ast.Name]:
 
 
 class _InLanes(ast.NodeTransformer):
-    """Leaves out what is done for matrices, and reads some parts of the constants from lanes."""
+    """Leaves out what is done for matrices, if asked; reads some of the constants from lanes."""
 
-    def __init__(self, text: ast.AST, own: tuple[str, ...], parts: set[str]):
-        self._own, self._followed = own, {id(name) for name in _followed(text, parts)}
+    def __init__(self, text: ast.AST, own: tuple[str, ...], matrices: bool, parts: set[str]):
+        self._own, self._matrices = own, matrices
+        self._followed = {id(name) for name in _followed(text, parts)}
 
     def visit_If(self, branch: ast.If) -> ast.AST | None:  # noqa: N802  of Python
         """Leave out ``if task == TANGENT``."""
-        if ast.unparse(branch.test) == "task == TANGENT":
+        if not self._matrices and ast.unparse(branch.test) == "task == TANGENT":
             assert not branch.orelse, "what is left out has no other branch"
             return None
         return self.generic_visit(branch)
