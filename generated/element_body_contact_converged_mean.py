@@ -66,8 +66,8 @@ INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 17
-OPERATIONS = {"residual": (348, 144, 359, 0),
-              "column": (830, 237, 1054, 0)}
+OPERATIONS = {"residual": (348, 144, 273, 0),
+              "column": (830, 237, 828, 0)}
 
 
 @kernel_function
@@ -209,30 +209,35 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             e0 = e0s[j]
             t3 = e0*psi_y*psi_y
             t4 = e0*psi_z*psi_z - 1
-            t5 = (0.5)*psi_z
-            t6 = e0*psi_x
-            t7 = psi_y*t6
-            t8 = (0.5)*psi_y
-            t9 = psi_z*t6
-            t10 = e0*psi_x*psi_x
-            t11 = (0.5)*psi_x
-            t12 = e0*psi_z
-            t13 = psi_y*t12
-            t14 = -Om_x*psi_y + Om_y*psi_x
-            t15 = Om_x*psi_z - Om_z*psi_x
-            t16 = -Om_y*psi_z + Om_z*psi_y
-            B_00 += alpha_r*(-t3 - t4)
-            B_01 += alpha_r*(t5 + t7)
-            B_02 += alpha_r*(-t8 + t9)
-            B_10 += alpha_r*(-t5 + t7)
-            B_11 += alpha_r*(-t10 - t4)
-            B_12 += alpha_r*(t11 + t13)
-            B_20 += alpha_r*(t8 + t9)
-            B_21 += alpha_r*(-t11 + t13)
-            B_22 += alpha_r*(-t10 - t3 + 1)
-            rhs_x += -alpha_r*(-Om_x + (0.5)*Om_y*psi_z - Om_z*t8 - e0*psi_y*t14 + e0*psi_z*t15)
-            rhs_y += -alpha_r*(-Om_x*t5 - Om_y + (0.5)*Om_z*psi_x + e0*psi_x*t14 - t12*t16)
-            rhs_z += -alpha_r*((0.5)*Om_x*psi_y - Om_y*t11 - Om_z + e0*psi_y*t16 - t15*t6)
+            t5 = -t3 - t4
+            t6 = (0.5)*psi_z
+            t7 = e0*psi_x
+            t8 = psi_y*t7
+            t9 = t6 + t8
+            t10 = (0.5)*psi_y
+            t11 = psi_z*t7
+            t12 = -t10 + t11
+            t13 = -t6 + t8
+            t14 = e0*psi_x*psi_x
+            t15 = -t14 - t4
+            t16 = (0.5)*psi_x
+            t17 = e0*psi_y*psi_z
+            t18 = t16 + t17
+            t19 = t10 + t11
+            t20 = -t16 + t17
+            t21 = -t14 - t3 + 1
+            B_00 += alpha_r*t5
+            B_01 += alpha_r*t9
+            B_02 += alpha_r*t12
+            B_10 += alpha_r*t13
+            B_11 += alpha_r*t15
+            B_12 += alpha_r*t18
+            B_20 += alpha_r*t19
+            B_21 += alpha_r*t20
+            B_22 += alpha_r*t21
+            rhs_x += -alpha_r*(-Om_x*t5 - Om_y*t13 - Om_z*t19)
+            rhs_y += -alpha_r*(-Om_x*t9 - Om_y*t15 - Om_z*t20)
+            rhs_z += -alpha_r*(-Om_x*t12 - Om_y*t18 - Om_z*t21)
         Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
             B_12, B_20, B_21, B_22)
         Om0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
@@ -253,41 +258,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
-            t17 = X_y + u_y
-            t18 = X_z + u_z
-            t19 = X_x + u_x
-            eta[i3] = -Om0_y*t18 + Om0_z*t17 - v0_x + vs_x
-            eta[i3 + 1] = Om0_x*t18 - Om0_z*t19 - v0_y + vs_y
-            eta[i3 + 2] = -Om0_x*t17 + Om0_y*t19 - v0_z + vs_z
+            t22 = X_y + u_y
+            t23 = X_z + u_z
+            t24 = X_x + u_x
+            eta[i3] = -Om0_y*t23 + Om0_z*t22 - v0_x + vs_x
+            eta[i3 + 1] = Om0_x*t23 - Om0_z*t24 - v0_y + vs_y
+            eta[i3 + 2] = -Om0_x*t22 + Om0_y*t24 - v0_z + vs_z
         # rates of the elastic rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
             e0 = e0s[j]
-            t20 = Om0_y*psi_z
-            t21 = Om_y*psi_z
-            t22 = Om0_x*psi_y
-            t23 = Om0_y*psi_x - t22
-            t24 = e0*psi_y
-            t25 = Om_x*psi_z
-            t26 = Om_z*psi_x
-            t27 = t25 - t26
-            t28 = e0*psi_z
-            t29 = Om_x*psi_y
-            t30 = Om_y*psi_x - t29
-            t31 = Om0_x*psi_z
-            t32 = Om0_z*psi_x
-            t33 = t31 - t32
-            t34 = e0*psi_x
-            t35 = Om_z*psi_y - t21
-            t36 = Om0_z*psi_y - t20
-            eta[j3] = (-Om0_x + (0.5)*Om0_z*psi_y + Om_x + (0.5)*Om_z*psi_y + e0*psi_y*t30 +
-                e0*psi_z*t33 - 0.5*t20 - 0.5*t21 - t23*t24 - t27*t28)
-            eta[j3 + 1] = (-Om0_y + Om_y + t23*t34 + (0.5)*t25 - 0.5*t26 + t28*t35 - t28*t36 -
-                t30*t34 + (0.5)*t31 - 0.5*t32)
-            eta[j3 + 2] = ((0.5)*Om0_y*psi_x - Om0_z + (0.5)*Om_y*psi_x + Om_z + e0*psi_x*t27 +
-                e0*psi_y*t36 - 0.5*t22 - t24*t35 - 0.5*t29 - t33*t34)
+            t25 = (0.5)*Om0_z + (0.5)*Om_z
+            t26 = Om0_y + Om_y
+            t27 = (0.5)*psi_z
+            t28 = -Om0_y + Om_y
+            t29 = -Om0_x + Om_x
+            t30 = psi_x*t28 - psi_y*t29
+            t31 = -Om0_z + Om_z
+            t32 = -psi_x*t31 + psi_z*t29
+            t33 = Om0_x + Om_x
+            t34 = psi_y*t31 - psi_z*t28
+            eta[j3] = -Om0_x + Om_x + e0*(psi_y*t30 - psi_z*t32) + psi_y*t25 - t26*t27
+            eta[j3 + 1] = -Om0_y + Om_y + e0*(-psi_x*t30 + psi_z*t34) - psi_x*t25 + t27*t33
+            eta[j3 + 2] = (-Om0_z + Om_z + e0*(psi_x*t32 - psi_y*t34) + (0.5)*psi_x*t26 -
+                0.5*psi_y*t33)
         # rates of the internal modes
         for k in range(MODES, n):
             vm = ve[k]
@@ -327,12 +323,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             upd_y += Phi_mode_y*em
             upd_z += Phi_mode_z*em
         # velocity of the point
-        t37 = Om0_y*rp_z - Om0_z*rp_y + upd_x + v0_x
-        t38 = -Om0_x*rp_z + Om0_z*rp_x + upd_y + v0_y
-        t39 = Om0_x*rp_y - Om0_y*rp_x + upd_z + v0_z
-        va_x = R0_xx*t37 + R0_xy*t38 + R0_xz*t39
-        va_y = R0_yx*t37 + R0_yy*t38 + R0_yz*t39
-        va_z = R0_zx*t37 + R0_zy*t38 + R0_zz*t39
+        t35 = Om0_y*rp_z - Om0_z*rp_y + upd_x + v0_x
+        t36 = -Om0_x*rp_z + Om0_z*rp_x + upd_y + v0_y
+        t37 = Om0_x*rp_y - Om0_y*rp_x + upd_z + v0_z
+        va_x = R0_xx*t35 + R0_xy*t36 + R0_xz*t37
+        va_y = R0_yx*t35 + R0_yy*t36 + R0_yz*t37
+        va_z = R0_zx*t35 + R0_zy*t36 + R0_zz*t37
         stiffness = law[0]
         exponent = law[1]
         damping = law[2]
@@ -378,62 +374,62 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         kept_bent_3 = references[index[first + AT_FRAME] + 8]
         kept_slid = references[index[first + AT_FRAME] + 9]
         kept_begun = references[index[first + AT_FRAME] + 10]
-        t50 = xa_x - xb_x
-        t51 = xa_y - xb_y
-        t52 = xa_z - xb_z
-        t53 = Rb_xx*t50 + Rb_yx*t51 + Rb_zx*t52
-        t54 = Rb_xy*t50 + Rb_yy*t51 + Rb_zy*t52
-        t55 = Rb_xz*t50 + Rb_yz*t51 + Rb_zz*t52
-        t56 = va_x - vb_x
-        t57 = va_y - vb_y
-        t58 = va_z - vb_z
-        place_1 = t53
-        place_2 = t54
-        place_3 = t55
-        rate_1 = -Omb_y*t55 + Omb_z*t54 + Rb_xx*t56 + Rb_yx*t57 + Rb_zx*t58
-        rate_2 = Omb_x*t55 - Omb_z*t53 + Rb_xy*t56 + Rb_yy*t57 + Rb_zy*t58
-        rate_3 = -Omb_x*t54 + Omb_y*t53 + Rb_xz*t56 + Rb_yz*t57 + Rb_zz*t58
-        t59 = e_x*place_1 + e_y*place_2 + e_z*place_3
-        t60 = -e_x*t59 + place_1
-        t61 = -e_y*t59 + place_2
-        t62 = -e_z*t59 + place_3
-        t63 = sqrt(1.0000000000000001e-20*size*size + t60*t60 + t61*t61 + t62*t62)
-        t64 = side/t63
-        normal_1 = e_x if flat > 0.0 else t60*t64
-        normal_2 = e_y if flat > 0.0 else t61*t64
-        normal_3 = e_z if flat > 0.0 else t62*t64
-        gap_closed = radius - (-level + t59 if flat > 0.0 else side*(-size + t63))
-        t65 = normal_1*rate_1
-        t66 = normal_2*rate_2
-        t67 = normal_3*rate_3
-        t68 = 1 - normal_1*normal_1
-        t69 = 1 - normal_2*normal_2
-        t70 = 1 - normal_3*normal_3
-        t71 = -kept_place_2 + place_2
-        t72 = normal_1*normal_2
-        t73 = -kept_place_3 + place_3
-        t74 = normal_3*t73
-        t75 = -kept_place_1 + place_1
-        closing = -t65 - t66 - t67
-        slip_1 = -normal_1*t66 - normal_1*t67 + rate_1*t68
-        slip_2 = -normal_2*t65 - normal_2*t67 + rate_2*t69
-        slip_3 = -normal_3*t65 - normal_3*t66 + rate_3*t70
-        increment_1 = -normal_1*t74 + t68*t75 - t71*t72
-        increment_2 = -normal_2*t74 + t69*t71 - t72*t75
-        increment_3 = -normal_1*normal_3*t75 - normal_2*normal_3*t71 + t70*t73
+        t48 = xa_x - xb_x
+        t49 = xa_y - xb_y
+        t50 = xa_z - xb_z
+        t51 = Rb_xx*t48 + Rb_yx*t49 + Rb_zx*t50
+        t52 = Rb_xy*t48 + Rb_yy*t49 + Rb_zy*t50
+        t53 = Rb_xz*t48 + Rb_yz*t49 + Rb_zz*t50
+        t54 = va_x - vb_x
+        t55 = va_y - vb_y
+        t56 = va_z - vb_z
+        place_1 = t51
+        place_2 = t52
+        place_3 = t53
+        rate_1 = -Omb_y*t53 + Omb_z*t52 + Rb_xx*t54 + Rb_yx*t55 + Rb_zx*t56
+        rate_2 = Omb_x*t53 - Omb_z*t51 + Rb_xy*t54 + Rb_yy*t55 + Rb_zy*t56
+        rate_3 = -Omb_x*t52 + Omb_y*t51 + Rb_xz*t54 + Rb_yz*t55 + Rb_zz*t56
+        t57 = e_x*place_1 + e_y*place_2 + e_z*place_3
+        t58 = -e_x*t57 + place_1
+        t59 = -e_y*t57 + place_2
+        t60 = -e_z*t57 + place_3
+        t61 = sqrt(1.0000000000000001e-20*size*size + t58*t58 + t59*t59 + t60*t60)
+        t62 = side/t61
+        normal_1 = e_x if flat > 0.0 else t58*t62
+        normal_2 = e_y if flat > 0.0 else t59*t62
+        normal_3 = e_z if flat > 0.0 else t60*t62
+        gap_closed = radius - (-level + t57 if flat > 0.0 else side*(-size + t61))
+        t63 = normal_1*rate_1
+        t64 = normal_2*rate_2
+        t65 = normal_3*rate_3
+        t66 = 1 - normal_1*normal_1
+        t67 = 1 - normal_2*normal_2
+        t68 = 1 - normal_3*normal_3
+        t69 = -kept_place_2 + place_2
+        t70 = normal_1*normal_2
+        t71 = -kept_place_3 + place_3
+        t72 = normal_3*t71
+        t73 = -kept_place_1 + place_1
+        closing = -t63 - t64 - t65
+        slip_1 = -normal_1*t64 - normal_1*t65 + rate_1*t66
+        slip_2 = -normal_2*t63 - normal_2*t65 + rate_2*t67
+        slip_3 = -normal_3*t63 - normal_3*t64 + rate_3*t68
+        increment_1 = -normal_1*t72 + t66*t73 - t69*t70
+        increment_2 = -normal_2*t72 + t67*t69 - t70*t73
+        increment_3 = -normal_1*normal_3*t73 - normal_2*normal_3*t69 + t68*t71
         touches = 1.0 if gap_closed > 0.0 else 0.0
         depth = gap_closed if gap_closed > 0.0 else 1e-300
         elastic = depth**exponent*stiffness
         factor = closing*damping + 1
         push = elastic*factor if factor > 0.0 else 0.0
-        t76 = increment_2*kept_begun + kept_bent_2
-        t77 = normal_1*normal_2
-        t78 = increment_3*kept_begun + kept_bent_3
-        t79 = normal_3*t78
-        t80 = increment_1*kept_begun + kept_bent_1
-        z_1 = -normal_1*t79 - t76*t77 + t80*(1 - normal_1*normal_1)
-        z_2 = -normal_2*t79 + t76*(1 - normal_2*normal_2) - t77*t80
-        z_3 = -normal_1*normal_3*t80 - normal_2*normal_3*t76 + t78*(1 - normal_3*normal_3)
+        t74 = increment_2*kept_begun + kept_bent_2
+        t75 = normal_1*normal_2
+        t76 = increment_3*kept_begun + kept_bent_3
+        t77 = normal_3*t76
+        t78 = increment_1*kept_begun + kept_bent_1
+        z_1 = -normal_1*t77 - t74*t75 + t78*(1 - normal_1*normal_1)
+        z_2 = -normal_2*t77 + t74*(1 - normal_2*normal_2) - t75*t78
+        z_3 = -normal_1*normal_3*t78 - normal_2*normal_3*t74 + t76*(1 - normal_3*normal_3)
         dynamic_limit = coefficient*push
         static_limit = push*(coefficient if kept_slid - 0.5 > 0.0 else static)
         trial_1 = bristle*z_1 + bristle_damping*slip_1
@@ -442,110 +438,110 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         bent_size = sqrt(z_1*z_1 + z_2*z_2 + z_3*z_3 + 1e-300)
         slip_speed = (sqrt(slip_1*slip_1 + slip_2*slip_2 + slip_3*slip_3 + 1e-12*speed*speed +
             1e-300))
-        t81 = slip_speed/speed
+        t79 = slip_speed/speed
         trial_size = sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
-        drag = (push*(coefficient*tanh(4*t81) + (t81*(-coefficient +
+        drag = (push*(coefficient*tanh(4*t79) + (t79*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
             0.0 else 0.0)
         slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
-        t82 = -static_limit + trial_size
-        t83 = dynamic_limit/trial_size
-        friction_1 = drag*slip_1 if speed > 0.0 else (t83*trial_1 if t82 > 0.0 else trial_1)
-        friction_2 = drag*slip_2 if speed > 0.0 else (t83*trial_2 if t82 > 0.0 else trial_2)
-        friction_3 = drag*slip_3 if speed > 0.0 else (t83*trial_3 if t82 > 0.0 else trial_3)
-        t84 = normal_1*normal_2
-        t85 = friction_3*normal_3
-        t86 = friction_1*(1 - normal_1*normal_1) - friction_2*t84 - normal_1*push - normal_1*t85
-        t87 = -friction_1*t84 + friction_2*(1 - normal_2*normal_2) - normal_2*push - normal_2*t85
-        t88 = (-friction_1*normal_1*normal_3 - friction_2*normal_2*normal_3 + friction_3*(1 -
+        t80 = -static_limit + trial_size
+        t81 = dynamic_limit/trial_size
+        friction_1 = drag*slip_1 if speed > 0.0 else (t81*trial_1 if t80 > 0.0 else trial_1)
+        friction_2 = drag*slip_2 if speed > 0.0 else (t81*trial_2 if t80 > 0.0 else trial_2)
+        friction_3 = drag*slip_3 if speed > 0.0 else (t81*trial_3 if t80 > 0.0 else trial_3)
+        t82 = normal_1*normal_2
+        t83 = friction_3*normal_3
+        t84 = friction_1*(1 - normal_1*normal_1) - friction_2*t82 - normal_1*push - normal_1*t83
+        t85 = -friction_1*t82 + friction_2*(1 - normal_2*normal_2) - normal_2*push - normal_2*t83
+        t86 = (-friction_1*normal_1*normal_3 - friction_2*normal_2*normal_3 + friction_3*(1 -
             normal_3*normal_3) - normal_3*push)
-        t89 = Rb_xx*t86 + Rb_xy*t87 + Rb_xz*t88
-        t90 = Rb_yx*t86 + Rb_yy*t87 + Rb_yz*t88
-        t91 = Rb_zx*t86 + Rb_zy*t87 + Rb_zz*t88
-        t92 = xa_x - xb_x
-        t93 = xa_y - xb_y
-        t94 = xa_z - xb_z
-        t95 = Rb_xz*t92 + Rb_yz*t93 + Rb_zz*t94
-        t96 = Rb_xy*t92 + Rb_yy*t93 + Rb_zy*t94
-        t97 = Rb_xx*t92 + Rb_yx*t93 + Rb_zx*t94
-        t98 = closing if closing > 0.0 else -closing
-        t99 = kept_rate if kept_rate > 0.0 else -kept_rate
-        t100 = t98 if t98 - t99 > 0.0 else t99
-        t101 = t100 if -kept_impact + t100 > 0.0 else kept_impact
-        t102 = (0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+        t87 = Rb_xx*t84 + Rb_xy*t85 + Rb_xz*t86
+        t88 = Rb_yx*t84 + Rb_yy*t85 + Rb_yz*t86
+        t89 = Rb_zx*t84 + Rb_zy*t85 + Rb_zz*t86
+        t90 = xa_x - xb_x
+        t91 = xa_y - xb_y
+        t92 = xa_z - xb_z
+        t93 = Rb_xz*t90 + Rb_yz*t91 + Rb_zz*t92
+        t94 = Rb_xy*t90 + Rb_yy*t91 + Rb_zy*t92
+        t95 = Rb_xx*t90 + Rb_yx*t91 + Rb_zx*t92
+        t96 = closing if closing > 0.0 else -closing
+        t97 = kept_rate if kept_rate > 0.0 else -kept_rate
+        t98 = t96 if t96 - t97 > 0.0 else t97
+        t99 = t98 if -kept_impact + t98 > 0.0 else kept_impact
+        t100 = (0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
             dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0))
-        Fp_x = t89
-        Fp_y = t90
-        Fp_z = t91
-        g[n] = -t89
-        g[n + 1] = -t90
-        g[n + 2] = -t91
-        g[n + 3] = t87*t95 - t88*t96
-        g[n + 4] = -t86*t95 + t88*t97
-        g[n + 5] = t86*t96 - t87*t97
+        Fp_x = t87
+        Fp_y = t88
+        Fp_z = t89
+        g[n] = -t87
+        g[n + 1] = -t88
+        g[n + 2] = -t89
+        g[n + 3] = t85*t93 - t86*t94
+        g[n + 4] = -t84*t93 + t86*t95
+        g[n + 5] = t84*t94 - t85*t95
         frames[index[first + AT_FRAME]] = place_1
         frames[index[first + AT_FRAME] + 1] = place_2
         frames[index[first + AT_FRAME] + 2] = place_3
         frames[index[first + AT_FRAME] + 3] = closing
-        frames[index[first + AT_FRAME] + 4] = ((t101 if -slow + t101 > 0.0 else 0.0) if touches -
+        frames[index[first + AT_FRAME] + 4] = ((t99 if -slow + t99 > 0.0 else 0.0) if touches -
             0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 5] = gap_closed
-        frames[index[first + AT_FRAME] + 6] = t102*z_1
-        frames[index[first + AT_FRAME] + 7] = t102*z_2
-        frames[index[first + AT_FRAME] + 8] = t102*z_3
+        frames[index[first + AT_FRAME] + 6] = t100*z_1
+        frames[index[first + AT_FRAME] + 7] = t100*z_2
+        frames[index[first + AT_FRAME] + 8] = t100*z_3
         frames[index[first + AT_FRAME] + 9] = slips
         frames[index[first + AT_FRAME] + 10] = 1.0
         frames[index[first + AT_FRAME] + 11] = push
         if task == ENERGY:
-            t103 = exponent + 1
-            energies[STRAIN] += depth**t103*stiffness/t103
-            t104 = normal_1*normal_2
-            t105 = friction_3*normal_3
-            t106 = elastic - push
-            t107 = va_x - vb_x
-            t108 = va_y - vb_y
-            t109 = va_z - vb_z
-            t110 = xa_x - xb_x
-            t111 = xa_y - xb_y
-            t112 = xa_z - xb_z
-            t113 = Rb_xy*t110 + Rb_yy*t111 + Rb_zy*t112
-            t114 = Rb_xz*t110 + Rb_yz*t111 + Rb_zz*t112
-            t115 = Rb_xx*t110 + Rb_yx*t111 + Rb_zx*t112
-            energies[POWERS + index[first + AT_PORT]] = (-(-friction_1*t104 + friction_2*(1 -
-                normal_2*normal_2) - normal_2*t105 + normal_2*t106)*(Omb_x*t114 - Omb_z*t115 +
-                Rb_xy*t107 + Rb_yy*t108 + Rb_zy*t109) - (friction_1*(1 - normal_1*normal_1) -
-                friction_2*t104 - normal_1*t105 + normal_1*t106)*(-Omb_y*t114 + Omb_z*t113 +
-                Rb_xx*t107 + Rb_yx*t108 + Rb_zx*t109) - (-friction_1*normal_1*normal_3 -
+            t101 = exponent + 1
+            energies[STRAIN] += depth**t101*stiffness/t101
+            t102 = normal_1*normal_2
+            t103 = friction_3*normal_3
+            t104 = elastic - push
+            t105 = va_x - vb_x
+            t106 = va_y - vb_y
+            t107 = va_z - vb_z
+            t108 = xa_x - xb_x
+            t109 = xa_y - xb_y
+            t110 = xa_z - xb_z
+            t111 = Rb_xy*t108 + Rb_yy*t109 + Rb_zy*t110
+            t112 = Rb_xz*t108 + Rb_yz*t109 + Rb_zz*t110
+            t113 = Rb_xx*t108 + Rb_yx*t109 + Rb_zx*t110
+            energies[POWERS + index[first + AT_PORT]] = (-(-friction_1*t102 + friction_2*(1 -
+                normal_2*normal_2) - normal_2*t103 + normal_2*t104)*(Omb_x*t112 - Omb_z*t113 +
+                Rb_xy*t105 + Rb_yy*t106 + Rb_zy*t107) - (friction_1*(1 - normal_1*normal_1) -
+                friction_2*t102 - normal_1*t103 + normal_1*t104)*(-Omb_y*t112 + Omb_z*t111 +
+                Rb_xx*t105 + Rb_yx*t106 + Rb_zx*t107) - (-friction_1*normal_1*normal_3 -
                 friction_2*normal_2*normal_3 + friction_3*(1 - normal_3*normal_3) +
-                normal_3*t106)*(-Omb_x*t113 + Omb_y*t115 + Rb_xz*t107 + Rb_yz*t108 + Rb_zz*t109))
-            t116 = normal_1*normal_2
-            t117 = friction_3*normal_3
-            t118 = elastic - push
-            t119 = (friction_1*(1 - normal_1*normal_1) - friction_2*t116 - normal_1*t117 +
-                normal_1*t118)
-            t120 = (-friction_1*t116 + friction_2*(1 - normal_2*normal_2) - normal_2*t117 +
-                normal_2*t118)
-            t121 = (-friction_1*normal_1*normal_3 - friction_2*normal_2*normal_3 + friction_3*(1 -
-                normal_3*normal_3) + normal_3*t118)
-            t122 = Rb_xx*t119 + Rb_xy*t120 + Rb_xz*t121
-            t123 = Rb_yx*t119 + Rb_yy*t120 + Rb_yz*t121
-            t124 = Rb_zx*t119 + Rb_zy*t120 + Rb_zz*t121
-            t125 = xa_x - xb_x
-            t126 = xa_y - xb_y
-            t127 = xa_z - xb_z
-            t128 = Rb_xz*t125 + Rb_yz*t126 + Rb_zz*t127
-            t129 = Rb_xy*t125 + Rb_yy*t126 + Rb_zy*t127
-            t130 = Rb_xx*t125 + Rb_yx*t126 + Rb_zx*t127
-            Fp_x = t122
-            Fp_y = t123
-            Fp_z = t124
-            g[n] = -t122
-            g[n + 1] = -t123
-            g[n + 2] = -t124
-            g[n + 3] = t120*t128 - t121*t129
-            g[n + 4] = -t119*t128 + t121*t130
-            g[n + 5] = t119*t129 - t120*t130
+                normal_3*t104)*(-Omb_x*t111 + Omb_y*t113 + Rb_xz*t105 + Rb_yz*t106 + Rb_zz*t107))
+            t114 = normal_1*normal_2
+            t115 = friction_3*normal_3
+            t116 = elastic - push
+            t117 = (friction_1*(1 - normal_1*normal_1) - friction_2*t114 - normal_1*t115 +
+                normal_1*t116)
+            t118 = (-friction_1*t114 + friction_2*(1 - normal_2*normal_2) - normal_2*t115 +
+                normal_2*t116)
+            t119 = (-friction_1*normal_1*normal_3 - friction_2*normal_2*normal_3 + friction_3*(1 -
+                normal_3*normal_3) + normal_3*t116)
+            t120 = Rb_xx*t117 + Rb_xy*t118 + Rb_xz*t119
+            t121 = Rb_yx*t117 + Rb_yy*t118 + Rb_yz*t119
+            t122 = Rb_zx*t117 + Rb_zy*t118 + Rb_zz*t119
+            t123 = xa_x - xb_x
+            t124 = xa_y - xb_y
+            t125 = xa_z - xb_z
+            t126 = Rb_xz*t123 + Rb_yz*t124 + Rb_zz*t125
+            t127 = Rb_xy*t123 + Rb_yy*t124 + Rb_zy*t125
+            t128 = Rb_xx*t123 + Rb_yx*t124 + Rb_zx*t125
+            Fp_x = t120
+            Fp_y = t121
+            Fp_z = t122
+            g[n] = -t120
+            g[n + 1] = -t121
+            g[n + 2] = -t122
+            g[n + 3] = t118*t126 - t119*t127
+            g[n + 4] = -t117*t126 + t119*t128
+            g[n + 5] = t117*t127 - t118*t128
         # force on the point in frame axes
         fp_x = Fp_x*R0_xx + Fp_y*R0_yx + Fp_z*R0_zx
         fp_y = Fp_x*R0_xy + Fp_y*R0_yy + Fp_z*R0_zy
@@ -587,15 +583,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             alpha = alphas[i]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t250 = X_z + u_z
-            t251 = X_y + u_y
-            t252 = X_x + u_x
+            t248 = X_z + u_z
+            t249 = X_y + u_y
+            t250 = X_x + u_x
             F_x += alpha*fp_x - f_x
             F_y += alpha*fp_y - f_y
             F_z += alpha*fp_z - f_z
-            W_x += f_y*t250 - f_z*t251
-            W_y += -f_x*t250 + f_z*t252
-            W_z += f_x*t251 - f_y*t252
+            W_x += f_y*t248 - f_z*t249
+            W_y += -f_x*t248 + f_z*t250
+            W_z += f_x*t249 - f_y*t250
         # moment of the force on the frame
         W_x += -fp_y*rp_z + fp_z*rp_y
         W_y += fp_x*rp_z - fp_z*rp_x
@@ -606,21 +602,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t253 = -m_x*psi_y + m_y*psi_x
-            t254 = m_x*psi_z
-            t255 = -m_z*psi_x + t254
-            t256 = -m_y*psi_z + m_z*psi_y
-            W_x += -e0*psi_y*t253 + e0*psi_z*t255 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-            W_y += e0*psi_x*t253 - e0*psi_z*t256 - m_y + (0.5)*m_z*psi_x - 0.5*t254
-            W_z += -e0*psi_x*t255 + e0*psi_y*t256 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+            t251 = -m_x*psi_y + m_y*psi_x
+            t252 = m_x*psi_z
+            t253 = -m_z*psi_x + t252
+            t254 = -m_y*psi_z + m_z*psi_y
+            W_x += -e0*psi_y*t251 + e0*psi_z*t253 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+            W_y += e0*psi_x*t251 - e0*psi_z*t254 - m_y + (0.5)*m_z*psi_x - 0.5*t252
+            W_z += -e0*psi_x*t253 + e0*psi_y*t254 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
         # B^T wp = W
         rhs_x = rhs_y = rhs_z = 0.0
-        t257 = W_x + rhs_x
-        t258 = W_y + rhs_y
-        t259 = W_z + rhs_z
-        wp_x = Bxx*t257 + Byx*t258 + Bzx*t259
-        wp_y = Bxy*t257 + Byy*t258 + Bzy*t259
-        wp_z = Bxz*t257 + Byz*t258 + Bzz*t259
+        t255 = W_x + rhs_x
+        t256 = W_y + rhs_y
+        t257 = W_z + rhs_z
+        wp_x = Bxx*t255 + Byx*t256 + Bzx*t257
+        wp_y = Bxy*t255 + Byy*t256 + Bzy*t257
+        wp_z = Bxz*t255 + Byz*t256 + Bzz*t257
         # force on the nodes in frame axes, (30), (57)
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -643,30 +639,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t260 = m_y*psi_z
-            t261 = m_x*psi_y
-            t262 = m_y*psi_x - t261
-            t263 = e0*psi_y
-            t264 = m_x*psi_z
-            t265 = m_z*psi_x
-            t266 = t264 - t265
-            t267 = e0*psi_z
-            t268 = psi_y*wp_z
-            t269 = psi_z*wp_y
-            t270 = psi_x*wp_y
-            t271 = psi_y*wp_x
-            t272 = t270 - t271
-            t273 = psi_x*wp_z
-            t274 = psi_z*wp_x - t273
-            t275 = m_z*psi_y - t260
-            t276 = e0*psi_x
-            t277 = t268 - t269
-            g[j3] = (alpha_r*(t263*t272 - t267*t274 - 0.5*t268 + (0.5)*t269 + wp_x) + m_x -
-                0.5*m_z*psi_y + (0.5)*t260 + t262*t263 - t266*t267)
-            g[j3 + 1] = (alpha_r*(-0.5*psi_z*wp_x + t267*t277 - t272*t276 + (0.5)*t273 + wp_y) +
-                m_y - t262*t276 - 0.5*t264 + (0.5)*t265 + t267*t275)
-            g[j3 + 2] = (alpha_r*(-t263*t277 - 0.5*t270 + (0.5)*t271 + t274*t276 + wp_z) -
-                0.5*m_y*psi_x + m_z + (0.5)*t261 - t263*t275 + t266*t276)
+            t258 = alpha_r*wp_y + m_y
+            t259 = psi_z*t258
+            t260 = alpha_r*wp_z + m_z
+            t261 = psi_y*t260
+            t262 = psi_x*t258
+            t263 = alpha_r*wp_x + m_x
+            t264 = psi_y*t263
+            t265 = e0*(t262 - t264)
+            t266 = psi_x*t260
+            t267 = psi_z*t263 - t266
+            t268 = e0*psi_z
+            t269 = -t259 + t261
+            g[j3] = psi_y*t265 + (0.5)*t259 - 0.5*t261 + t263 - t267*t268
+            g[j3 + 1] = -psi_x*t265 - 0.5*psi_z*t263 + t258 + (0.5)*t266 + t268*t269
+            g[j3 + 2] = e0*psi_x*t267 - e0*psi_y*t269 + t260 - 0.5*t262 + (0.5)*t264
         # force of the internal modes
         for k in range(MODES, n):
             fm = s[k]
@@ -681,223 +668,223 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 alpha_r = alpha_rs[j]
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e0 = e0s[j]
-                t40 = e0*psi_y*psi_y
-                t41 = e0*psi_z*psi_z - 1
-                t42 = (0.5)*psi_z
-                t43 = e0*psi_x
-                t44 = psi_y*t43
-                t45 = (0.5)*psi_y
-                t46 = psi_z*t43
-                t47 = e0*psi_x*psi_x
-                t48 = (0.5)*psi_x
-                t49 = e0*psi_y*psi_z
-                B_00 += alpha_r*(-t40 - t41)
-                B_01 += alpha_r*(t42 + t44)
-                B_02 += alpha_r*(-t45 + t46)
-                B_10 += alpha_r*(-t42 + t44)
-                B_11 += alpha_r*(-t41 - t47)
-                B_12 += alpha_r*(t48 + t49)
-                B_20 += alpha_r*(t45 + t46)
-                B_21 += alpha_r*(-t48 + t49)
-                B_22 += alpha_r*(-t40 - t47 + 1)
+                t38 = e0*psi_y*psi_y
+                t39 = e0*psi_z*psi_z - 1
+                t40 = (0.5)*psi_z
+                t41 = e0*psi_x
+                t42 = psi_y*t41
+                t43 = (0.5)*psi_y
+                t44 = psi_z*t41
+                t45 = e0*psi_x*psi_x
+                t46 = (0.5)*psi_x
+                t47 = e0*psi_y*psi_z
+                B_00 += alpha_r*(-t38 - t39)
+                B_01 += alpha_r*(t40 + t42)
+                B_02 += alpha_r*(-t43 + t44)
+                B_10 += alpha_r*(-t40 + t42)
+                B_11 += alpha_r*(-t39 - t45)
+                B_12 += alpha_r*(t46 + t47)
+                B_20 += alpha_r*(t43 + t44)
+                B_21 += alpha_r*(-t46 + t47)
+                B_22 += alpha_r*(-t38 - t45 + 1)
             Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
                 B_12, B_20, B_21, B_22)
-            t131 = e_x*e_x
-            t132 = e_x*place_1 + e_y*place_2 + e_z*place_3
-            t133 = -e_x*t132 + place_1
-            t134 = -e_y*t132 + place_2
-            t135 = -e_z*t132 + place_3
-            t136 = 1.0000000000000001e-20*size*size + t133*t133 + t134*t134 + t135*t135
-            t137 = side/sqrt(t136)
-            t138 = e_x*e_y
-            t139 = e_z*t135
-            t140 = e_x*t139 - 0.5*t133*(2 - 2*t131) + t134*t138
-            t141 = t136**(-1.5)
-            t142 = side*t141
-            t143 = t137*t138
-            t144 = e_y*e_y
-            t145 = e_y*t139 + t133*t138 - 0.5*t134*(2 - 2*t144)
-            t146 = e_x*e_z
-            t147 = t137*t146
-            t148 = e_y*e_z
-            t149 = e_z*e_z
-            t150 = t133*t146 + t134*t148 - 0.5*t135*(2 - 2*t149)
-            t151 = t137*t148
-            dnormal_1_by_place_1 = 0 if flat > 0.0 else t133*t140*t142 + t137*(1 - t131)
-            dnormal_1_by_place_2 = 0 if flat > 0.0 else side*t133*t141*t145 - t143
-            dnormal_1_by_place_3 = 0 if flat > 0.0 else side*t133*t141*t150 - t147
-            dnormal_2_by_place_1 = 0 if flat > 0.0 else side*t134*t140*t141 - t143
-            dnormal_2_by_place_2 = 0 if flat > 0.0 else t134*t142*t145 + t137*(1 - t144)
-            dnormal_2_by_place_3 = 0 if flat > 0.0 else side*t134*t141*t150 - t151
-            dnormal_3_by_place_1 = 0 if flat > 0.0 else side*t135*t140*t141 - t147
-            dnormal_3_by_place_2 = 0 if flat > 0.0 else side*t135*t141*t145 - t151
-            dnormal_3_by_place_3 = 0 if flat > 0.0 else t135*t142*t150 + t137*(1 - t149)
-            dgap_closed_by_place_1 = -(e_x if flat > 0.0 else -t137*t140)
-            dgap_closed_by_place_2 = -(e_y if flat > 0.0 else -t137*t145)
-            dgap_closed_by_place_3 = -(e_z if flat > 0.0 else -t137*t150)
-            t152 = dnormal_1_by_place_1*rate_1
-            t153 = dnormal_2_by_place_1*rate_2
-            t154 = dnormal_3_by_place_1*rate_3
-            t155 = dnormal_1_by_place_2*rate_1
-            t156 = dnormal_2_by_place_2*rate_2
-            t157 = dnormal_3_by_place_2*rate_3
-            t158 = dnormal_1_by_place_3*rate_1
-            t159 = dnormal_2_by_place_3*rate_2
-            t160 = dnormal_3_by_place_3*rate_3
-            t161 = normal_2*rate_2
-            t162 = normal_3*rate_3
-            t163 = normal_1*rate_1
-            t164 = -t161 - t162 - 2*t163
-            t165 = normal_1*normal_1 - 1
-            t166 = normal_1*normal_2
+            t129 = e_x*e_x
+            t130 = e_x*place_1 + e_y*place_2 + e_z*place_3
+            t131 = -e_x*t130 + place_1
+            t132 = -e_y*t130 + place_2
+            t133 = -e_z*t130 + place_3
+            t134 = 1.0000000000000001e-20*size*size + t131*t131 + t132*t132 + t133*t133
+            t135 = side/sqrt(t134)
+            t136 = e_x*e_y
+            t137 = e_z*t133
+            t138 = e_x*t137 - 0.5*t131*(2 - 2*t129) + t132*t136
+            t139 = t134**(-1.5)
+            t140 = side*t139
+            t141 = t135*t136
+            t142 = e_y*e_y
+            t143 = e_y*t137 + t131*t136 - 0.5*t132*(2 - 2*t142)
+            t144 = e_x*e_z
+            t145 = t135*t144
+            t146 = e_y*e_z
+            t147 = e_z*e_z
+            t148 = t131*t144 + t132*t146 - 0.5*t133*(2 - 2*t147)
+            t149 = t135*t146
+            dnormal_1_by_place_1 = 0 if flat > 0.0 else t131*t138*t140 + t135*(1 - t129)
+            dnormal_1_by_place_2 = 0 if flat > 0.0 else side*t131*t139*t143 - t141
+            dnormal_1_by_place_3 = 0 if flat > 0.0 else side*t131*t139*t148 - t145
+            dnormal_2_by_place_1 = 0 if flat > 0.0 else side*t132*t138*t139 - t141
+            dnormal_2_by_place_2 = 0 if flat > 0.0 else t132*t140*t143 + t135*(1 - t142)
+            dnormal_2_by_place_3 = 0 if flat > 0.0 else side*t132*t139*t148 - t149
+            dnormal_3_by_place_1 = 0 if flat > 0.0 else side*t133*t138*t139 - t145
+            dnormal_3_by_place_2 = 0 if flat > 0.0 else side*t133*t139*t143 - t149
+            dnormal_3_by_place_3 = 0 if flat > 0.0 else t133*t140*t148 + t135*(1 - t147)
+            dgap_closed_by_place_1 = -(e_x if flat > 0.0 else -t135*t138)
+            dgap_closed_by_place_2 = -(e_y if flat > 0.0 else -t135*t143)
+            dgap_closed_by_place_3 = -(e_z if flat > 0.0 else -t135*t148)
+            t150 = dnormal_1_by_place_1*rate_1
+            t151 = dnormal_2_by_place_1*rate_2
+            t152 = dnormal_3_by_place_1*rate_3
+            t153 = dnormal_1_by_place_2*rate_1
+            t154 = dnormal_2_by_place_2*rate_2
+            t155 = dnormal_3_by_place_2*rate_3
+            t156 = dnormal_1_by_place_3*rate_1
+            t157 = dnormal_2_by_place_3*rate_2
+            t158 = dnormal_3_by_place_3*rate_3
+            t159 = normal_2*rate_2
+            t160 = normal_3*rate_3
+            t161 = normal_1*rate_1
+            t162 = -t159 - t160 - 2*t161
+            t163 = normal_1*normal_1 - 1
+            t164 = normal_1*normal_2
+            t165 = -t164
+            t166 = normal_1*normal_3
             t167 = -t166
-            t168 = normal_1*normal_3
-            t169 = -t168
-            t170 = -2*t161 - t162 - t163
-            t171 = normal_2*normal_2 - 1
-            t172 = normal_2*normal_3
-            t173 = -t172
-            t174 = -t161 - 2*t162 - t163
-            t175 = normal_3*normal_3 - 1
-            t176 = -kept_place_2 + place_2
-            t177 = normal_2*t176
-            t178 = -kept_place_3 + place_3
-            t179 = normal_3*t178
-            t180 = -kept_place_1 + place_1
-            t181 = normal_1*t180
-            t182 = -t177 - t179 - 2*t181
-            t183 = normal_1*t176
-            t184 = normal_1*t178
-            t185 = normal_2*t180
-            t186 = normal_2*t178
-            t187 = -2*t177 - t179 - t181
-            t188 = normal_3*t180
-            t189 = normal_3*t176
-            t190 = -t177 - 2*t179 - t181
-            dclosing_by_place_1 = -t152 - t153 - t154
-            dclosing_by_place_2 = -t155 - t156 - t157
-            dclosing_by_place_3 = -t158 - t159 - t160
+            t168 = -2*t159 - t160 - t161
+            t169 = normal_2*normal_2 - 1
+            t170 = normal_2*normal_3
+            t171 = -t170
+            t172 = -t159 - 2*t160 - t161
+            t173 = normal_3*normal_3 - 1
+            t174 = -kept_place_2 + place_2
+            t175 = normal_2*t174
+            t176 = -kept_place_3 + place_3
+            t177 = normal_3*t176
+            t178 = -kept_place_1 + place_1
+            t179 = normal_1*t178
+            t180 = -t175 - t177 - 2*t179
+            t181 = normal_1*t174
+            t182 = normal_1*t176
+            t183 = normal_2*t178
+            t184 = normal_2*t176
+            t185 = -2*t175 - t177 - t179
+            t186 = normal_3*t178
+            t187 = normal_3*t174
+            t188 = -t175 - 2*t177 - t179
+            dclosing_by_place_1 = -t150 - t151 - t152
+            dclosing_by_place_2 = -t153 - t154 - t155
+            dclosing_by_place_3 = -t156 - t157 - t158
             dclosing_by_rate_1 = -normal_1
             dclosing_by_rate_2 = -normal_2
             dclosing_by_rate_3 = -normal_3
-            dslip_1_by_place_1 = dnormal_1_by_place_1*t164 - normal_1*t153 - normal_1*t154
-            dslip_1_by_place_2 = dnormal_1_by_place_2*t164 - normal_1*t156 - normal_1*t157
-            dslip_1_by_place_3 = dnormal_1_by_place_3*t164 - normal_1*t159 - normal_1*t160
-            dslip_1_by_rate_1 = -t165
-            dslip_1_by_rate_2 = t167
-            dslip_1_by_rate_3 = t169
-            dslip_2_by_place_1 = dnormal_2_by_place_1*t170 - normal_2*t152 - normal_2*t154
-            dslip_2_by_place_2 = dnormal_2_by_place_2*t170 - normal_2*t155 - normal_2*t157
-            dslip_2_by_place_3 = dnormal_2_by_place_3*t170 - normal_2*t158 - normal_2*t160
-            dslip_2_by_rate_1 = t167
-            dslip_2_by_rate_2 = -t171
-            dslip_2_by_rate_3 = t173
-            dslip_3_by_place_1 = dnormal_3_by_place_1*t174 - normal_3*t152 - normal_3*t153
-            dslip_3_by_place_2 = dnormal_3_by_place_2*t174 - normal_3*t155 - normal_3*t156
-            dslip_3_by_place_3 = dnormal_3_by_place_3*t174 - normal_3*t158 - normal_3*t159
-            dslip_3_by_rate_1 = t169
-            dslip_3_by_rate_2 = t173
-            dslip_3_by_rate_3 = -t175
-            dincrement_1_by_place_1 = (dnormal_1_by_place_1*t182 - dnormal_2_by_place_1*t183 -
-                dnormal_3_by_place_1*t184 - t165)
-            dincrement_1_by_place_2 = (dnormal_1_by_place_2*t182 - dnormal_2_by_place_2*t183 -
-                dnormal_3_by_place_2*t184 - t166)
-            dincrement_1_by_place_3 = (dnormal_1_by_place_3*t182 - dnormal_2_by_place_3*t183 -
-                dnormal_3_by_place_3*t184 - t168)
-            dincrement_2_by_place_1 = (-dnormal_1_by_place_1*t185 + dnormal_2_by_place_1*t187 -
-                dnormal_3_by_place_1*t186 - t166)
-            dincrement_2_by_place_2 = (-dnormal_1_by_place_2*t185 + dnormal_2_by_place_2*t187 -
-                dnormal_3_by_place_2*t186 - t171)
-            dincrement_2_by_place_3 = (-dnormal_1_by_place_3*t185 + dnormal_2_by_place_3*t187 -
-                dnormal_3_by_place_3*t186 - t172)
-            dincrement_3_by_place_1 = (-dnormal_1_by_place_1*t188 - dnormal_2_by_place_1*t189 +
-                dnormal_3_by_place_1*t190 - t168)
-            dincrement_3_by_place_2 = (-dnormal_1_by_place_2*t188 - dnormal_2_by_place_2*t189 +
-                dnormal_3_by_place_2*t190 - t172)
-            dincrement_3_by_place_3 = (-dnormal_1_by_place_3*t188 - dnormal_2_by_place_3*t189 +
-                dnormal_3_by_place_3*t190 - t175)
-            t191 = 1 if gap_closed > 0.0 else 0
-            ddepth_by_place_1 = dgap_closed_by_place_1*t191
-            ddepth_by_place_2 = dgap_closed_by_place_2*t191
-            ddepth_by_place_3 = dgap_closed_by_place_3*t191
-            t192 = depth**exponent*exponent*stiffness/depth
-            delastic_by_place_1 = ddepth_by_place_1*t192
-            delastic_by_place_2 = ddepth_by_place_2*t192
-            delastic_by_place_3 = ddepth_by_place_3*t192
+            dslip_1_by_place_1 = dnormal_1_by_place_1*t162 - normal_1*t151 - normal_1*t152
+            dslip_1_by_place_2 = dnormal_1_by_place_2*t162 - normal_1*t154 - normal_1*t155
+            dslip_1_by_place_3 = dnormal_1_by_place_3*t162 - normal_1*t157 - normal_1*t158
+            dslip_1_by_rate_1 = -t163
+            dslip_1_by_rate_2 = t165
+            dslip_1_by_rate_3 = t167
+            dslip_2_by_place_1 = dnormal_2_by_place_1*t168 - normal_2*t150 - normal_2*t152
+            dslip_2_by_place_2 = dnormal_2_by_place_2*t168 - normal_2*t153 - normal_2*t155
+            dslip_2_by_place_3 = dnormal_2_by_place_3*t168 - normal_2*t156 - normal_2*t158
+            dslip_2_by_rate_1 = t165
+            dslip_2_by_rate_2 = -t169
+            dslip_2_by_rate_3 = t171
+            dslip_3_by_place_1 = dnormal_3_by_place_1*t172 - normal_3*t150 - normal_3*t151
+            dslip_3_by_place_2 = dnormal_3_by_place_2*t172 - normal_3*t153 - normal_3*t154
+            dslip_3_by_place_3 = dnormal_3_by_place_3*t172 - normal_3*t156 - normal_3*t157
+            dslip_3_by_rate_1 = t167
+            dslip_3_by_rate_2 = t171
+            dslip_3_by_rate_3 = -t173
+            dincrement_1_by_place_1 = (dnormal_1_by_place_1*t180 - dnormal_2_by_place_1*t181 -
+                dnormal_3_by_place_1*t182 - t163)
+            dincrement_1_by_place_2 = (dnormal_1_by_place_2*t180 - dnormal_2_by_place_2*t181 -
+                dnormal_3_by_place_2*t182 - t164)
+            dincrement_1_by_place_3 = (dnormal_1_by_place_3*t180 - dnormal_2_by_place_3*t181 -
+                dnormal_3_by_place_3*t182 - t166)
+            dincrement_2_by_place_1 = (-dnormal_1_by_place_1*t183 + dnormal_2_by_place_1*t185 -
+                dnormal_3_by_place_1*t184 - t164)
+            dincrement_2_by_place_2 = (-dnormal_1_by_place_2*t183 + dnormal_2_by_place_2*t185 -
+                dnormal_3_by_place_2*t184 - t169)
+            dincrement_2_by_place_3 = (-dnormal_1_by_place_3*t183 + dnormal_2_by_place_3*t185 -
+                dnormal_3_by_place_3*t184 - t170)
+            dincrement_3_by_place_1 = (-dnormal_1_by_place_1*t186 - dnormal_2_by_place_1*t187 +
+                dnormal_3_by_place_1*t188 - t166)
+            dincrement_3_by_place_2 = (-dnormal_1_by_place_2*t186 - dnormal_2_by_place_2*t187 +
+                dnormal_3_by_place_2*t188 - t170)
+            dincrement_3_by_place_3 = (-dnormal_1_by_place_3*t186 - dnormal_2_by_place_3*t187 +
+                dnormal_3_by_place_3*t188 - t173)
+            t189 = 1 if gap_closed > 0.0 else 0
+            ddepth_by_place_1 = dgap_closed_by_place_1*t189
+            ddepth_by_place_2 = dgap_closed_by_place_2*t189
+            ddepth_by_place_3 = dgap_closed_by_place_3*t189
+            t190 = depth**exponent*exponent*stiffness/depth
+            delastic_by_place_1 = ddepth_by_place_1*t190
+            delastic_by_place_2 = ddepth_by_place_2*t190
+            delastic_by_place_3 = ddepth_by_place_3*t190
             dfactor_by_place_1 = damping*dclosing_by_place_1
             dfactor_by_place_2 = damping*dclosing_by_place_2
             dfactor_by_place_3 = damping*dclosing_by_place_3
             dfactor_by_rate_1 = damping*dclosing_by_rate_1
             dfactor_by_rate_2 = damping*dclosing_by_rate_2
             dfactor_by_rate_3 = damping*dclosing_by_rate_3
-            t193 = factor if factor > 0.0 else 0
-            t194 = elastic if factor > 0.0 else 0
-            dpush_by_place_1 = delastic_by_place_1*t193 + dfactor_by_place_1*t194
-            dpush_by_place_2 = delastic_by_place_2*t193 + dfactor_by_place_2*t194
-            dpush_by_place_3 = delastic_by_place_3*t193 + dfactor_by_place_3*t194
-            dpush_by_rate_1 = dfactor_by_rate_1*t194
-            dpush_by_rate_2 = dfactor_by_rate_2*t194
-            dpush_by_rate_3 = dfactor_by_rate_3*t194
-            t195 = kept_begun*normal_1
-            t196 = normal_2*t195
-            t197 = normal_3*t195
-            t198 = increment_2*kept_begun + kept_bent_2
+            t191 = factor if factor > 0.0 else 0
+            t192 = elastic if factor > 0.0 else 0
+            dpush_by_place_1 = delastic_by_place_1*t191 + dfactor_by_place_1*t192
+            dpush_by_place_2 = delastic_by_place_2*t191 + dfactor_by_place_2*t192
+            dpush_by_place_3 = delastic_by_place_3*t191 + dfactor_by_place_3*t192
+            dpush_by_rate_1 = dfactor_by_rate_1*t192
+            dpush_by_rate_2 = dfactor_by_rate_2*t192
+            dpush_by_rate_3 = dfactor_by_rate_3*t192
+            t193 = kept_begun*normal_1
+            t194 = normal_2*t193
+            t195 = normal_3*t193
+            t196 = increment_2*kept_begun + kept_bent_2
+            t197 = normal_1*t196
+            t198 = increment_3*kept_begun + kept_bent_3
             t199 = normal_1*t198
-            t200 = increment_3*kept_begun + kept_bent_3
-            t201 = normal_1*t200
-            t202 = 1 - normal_1*normal_1
-            t203 = normal_2*t198
-            t204 = normal_3*t200
-            t205 = increment_1*kept_begun + kept_bent_1
-            t206 = normal_1*t205
-            t207 = -t203 - t204 - 2*t206
-            t208 = kept_begun*normal_2*normal_3
-            t209 = normal_2*t205
-            t210 = normal_2*t200
-            t211 = 1 - normal_2*normal_2
-            t212 = -2*t203 - t204 - t206
-            t213 = normal_3*t205
-            t214 = normal_3*t198
-            t215 = 1 - normal_3*normal_3
-            t216 = -t203 - 2*t204 - t206
-            dz_1_by_place_1 = (dincrement_1_by_place_1*kept_begun*t202 -
-                dincrement_2_by_place_1*t196 - dincrement_3_by_place_1*t197 +
-                dnormal_1_by_place_1*t207 - dnormal_2_by_place_1*t199 - dnormal_3_by_place_1*t201)
-            dz_1_by_place_2 = (dincrement_1_by_place_2*kept_begun*t202 -
-                dincrement_2_by_place_2*t196 - dincrement_3_by_place_2*t197 +
-                dnormal_1_by_place_2*t207 - dnormal_2_by_place_2*t199 - dnormal_3_by_place_2*t201)
-            dz_1_by_place_3 = (dincrement_1_by_place_3*kept_begun*t202 -
-                dincrement_2_by_place_3*t196 - dincrement_3_by_place_3*t197 +
-                dnormal_1_by_place_3*t207 - dnormal_2_by_place_3*t199 - dnormal_3_by_place_3*t201)
-            dz_2_by_place_1 = (-dincrement_1_by_place_1*t196 +
-                dincrement_2_by_place_1*kept_begun*t211 - dincrement_3_by_place_1*t208 -
-                dnormal_1_by_place_1*t209 + dnormal_2_by_place_1*t212 - dnormal_3_by_place_1*t210)
-            dz_2_by_place_2 = (-dincrement_1_by_place_2*t196 +
-                dincrement_2_by_place_2*kept_begun*t211 - dincrement_3_by_place_2*t208 -
-                dnormal_1_by_place_2*t209 + dnormal_2_by_place_2*t212 - dnormal_3_by_place_2*t210)
-            dz_2_by_place_3 = (-dincrement_1_by_place_3*t196 +
-                dincrement_2_by_place_3*kept_begun*t211 - dincrement_3_by_place_3*t208 -
-                dnormal_1_by_place_3*t209 + dnormal_2_by_place_3*t212 - dnormal_3_by_place_3*t210)
-            dz_3_by_place_1 = (-dincrement_1_by_place_1*t197 - dincrement_2_by_place_1*t208 +
-                dincrement_3_by_place_1*kept_begun*t215 - dnormal_1_by_place_1*t213 -
-                dnormal_2_by_place_1*t214 + dnormal_3_by_place_1*t216)
-            dz_3_by_place_2 = (-dincrement_1_by_place_2*t197 - dincrement_2_by_place_2*t208 +
-                dincrement_3_by_place_2*kept_begun*t215 - dnormal_1_by_place_2*t213 -
-                dnormal_2_by_place_2*t214 + dnormal_3_by_place_2*t216)
-            dz_3_by_place_3 = (-dincrement_1_by_place_3*t197 - dincrement_2_by_place_3*t208 +
-                dincrement_3_by_place_3*kept_begun*t215 - dnormal_1_by_place_3*t213 -
-                dnormal_2_by_place_3*t214 + dnormal_3_by_place_3*t216)
+            t200 = 1 - normal_1*normal_1
+            t201 = normal_2*t196
+            t202 = normal_3*t198
+            t203 = increment_1*kept_begun + kept_bent_1
+            t204 = normal_1*t203
+            t205 = -t201 - t202 - 2*t204
+            t206 = kept_begun*normal_2*normal_3
+            t207 = normal_2*t203
+            t208 = normal_2*t198
+            t209 = 1 - normal_2*normal_2
+            t210 = -2*t201 - t202 - t204
+            t211 = normal_3*t203
+            t212 = normal_3*t196
+            t213 = 1 - normal_3*normal_3
+            t214 = -t201 - 2*t202 - t204
+            dz_1_by_place_1 = (dincrement_1_by_place_1*kept_begun*t200 -
+                dincrement_2_by_place_1*t194 - dincrement_3_by_place_1*t195 +
+                dnormal_1_by_place_1*t205 - dnormal_2_by_place_1*t197 - dnormal_3_by_place_1*t199)
+            dz_1_by_place_2 = (dincrement_1_by_place_2*kept_begun*t200 -
+                dincrement_2_by_place_2*t194 - dincrement_3_by_place_2*t195 +
+                dnormal_1_by_place_2*t205 - dnormal_2_by_place_2*t197 - dnormal_3_by_place_2*t199)
+            dz_1_by_place_3 = (dincrement_1_by_place_3*kept_begun*t200 -
+                dincrement_2_by_place_3*t194 - dincrement_3_by_place_3*t195 +
+                dnormal_1_by_place_3*t205 - dnormal_2_by_place_3*t197 - dnormal_3_by_place_3*t199)
+            dz_2_by_place_1 = (-dincrement_1_by_place_1*t194 +
+                dincrement_2_by_place_1*kept_begun*t209 - dincrement_3_by_place_1*t206 -
+                dnormal_1_by_place_1*t207 + dnormal_2_by_place_1*t210 - dnormal_3_by_place_1*t208)
+            dz_2_by_place_2 = (-dincrement_1_by_place_2*t194 +
+                dincrement_2_by_place_2*kept_begun*t209 - dincrement_3_by_place_2*t206 -
+                dnormal_1_by_place_2*t207 + dnormal_2_by_place_2*t210 - dnormal_3_by_place_2*t208)
+            dz_2_by_place_3 = (-dincrement_1_by_place_3*t194 +
+                dincrement_2_by_place_3*kept_begun*t209 - dincrement_3_by_place_3*t206 -
+                dnormal_1_by_place_3*t207 + dnormal_2_by_place_3*t210 - dnormal_3_by_place_3*t208)
+            dz_3_by_place_1 = (-dincrement_1_by_place_1*t195 - dincrement_2_by_place_1*t206 +
+                dincrement_3_by_place_1*kept_begun*t213 - dnormal_1_by_place_1*t211 -
+                dnormal_2_by_place_1*t212 + dnormal_3_by_place_1*t214)
+            dz_3_by_place_2 = (-dincrement_1_by_place_2*t195 - dincrement_2_by_place_2*t206 +
+                dincrement_3_by_place_2*kept_begun*t213 - dnormal_1_by_place_2*t211 -
+                dnormal_2_by_place_2*t212 + dnormal_3_by_place_2*t214)
+            dz_3_by_place_3 = (-dincrement_1_by_place_3*t195 - dincrement_2_by_place_3*t206 +
+                dincrement_3_by_place_3*kept_begun*t213 - dnormal_1_by_place_3*t211 -
+                dnormal_2_by_place_3*t212 + dnormal_3_by_place_3*t214)
             ddynamic_limit_by_place_1 = coefficient*dpush_by_place_1
             ddynamic_limit_by_place_2 = coefficient*dpush_by_place_2
             ddynamic_limit_by_place_3 = coefficient*dpush_by_place_3
             ddynamic_limit_by_rate_1 = coefficient*dpush_by_rate_1
             ddynamic_limit_by_rate_2 = coefficient*dpush_by_rate_2
             ddynamic_limit_by_rate_3 = coefficient*dpush_by_rate_3
-            t217 = (1/sqrt(slip_1*slip_1 + slip_2*slip_2 + slip_3*slip_3 + 1e-12*speed*speed +
+            t215 = (1/sqrt(slip_1*slip_1 + slip_2*slip_2 + slip_3*slip_3 + 1e-12*speed*speed +
                 1e-300))
-            t218 = slip_1*t217
-            t219 = slip_2*t217
-            t220 = slip_3*t217
+            t216 = slip_1*t215
+            t217 = slip_2*t215
+            t218 = slip_3*t215
             dtrial_1_by_place_1 = bristle*dz_1_by_place_1 + bristle_damping*dslip_1_by_place_1
             dtrial_1_by_place_2 = bristle*dz_1_by_place_2 + bristle_damping*dslip_1_by_place_2
             dtrial_1_by_place_3 = bristle*dz_1_by_place_3 + bristle_damping*dslip_1_by_place_3
@@ -916,103 +903,103 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dtrial_3_by_rate_1 = bristle_damping*dslip_3_by_rate_1
             dtrial_3_by_rate_2 = bristle_damping*dslip_3_by_rate_2
             dtrial_3_by_rate_3 = bristle_damping*dslip_3_by_rate_3
-            dslip_speed_by_place_1 = (dslip_1_by_place_1*t218 + dslip_2_by_place_1*t219 +
-                dslip_3_by_place_1*t220)
-            dslip_speed_by_place_2 = (dslip_1_by_place_2*t218 + dslip_2_by_place_2*t219 +
-                dslip_3_by_place_2*t220)
-            dslip_speed_by_place_3 = (dslip_1_by_place_3*t218 + dslip_2_by_place_3*t219 +
-                dslip_3_by_place_3*t220)
-            dslip_speed_by_rate_1 = (dslip_1_by_rate_1*t218 + dslip_2_by_rate_1*t219 +
-                dslip_3_by_rate_1*t220)
-            dslip_speed_by_rate_2 = (dslip_1_by_rate_2*t218 + dslip_2_by_rate_2*t219 +
-                dslip_3_by_rate_2*t220)
-            dslip_speed_by_rate_3 = (dslip_1_by_rate_3*t218 + dslip_2_by_rate_3*t219 +
-                dslip_3_by_rate_3*t220)
-            t221 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
-            t222 = t221*trial_1
-            t223 = t221*trial_2
-            t224 = t221*trial_3
-            t225 = 1/slip_speed
-            t226 = 1/speed
-            t227 = slip_speed*t226
-            t228 = tanh(4*t227)
-            t229 = slip_speed*slip_speed
-            t230 = 0.75 + ((0.25)*t229)/(speed*speed)
-            t231 = -coefficient + static
-            t232 = t231/(t230*t230)
-            t233 = coefficient*t228 + t227*t232
-            t234 = t225*t233 if speed > 0.0 else 0
-            t235 = (push*t225*(4*coefficient*t226*(1 - t228*t228) + t226*t232 +
-                (-t229*t231)/(speed*speed*speed*t230*t230*t230)) - push*t233/t229 if speed > 0.0
+            dslip_speed_by_place_1 = (dslip_1_by_place_1*t216 + dslip_2_by_place_1*t217 +
+                dslip_3_by_place_1*t218)
+            dslip_speed_by_place_2 = (dslip_1_by_place_2*t216 + dslip_2_by_place_2*t217 +
+                dslip_3_by_place_2*t218)
+            dslip_speed_by_place_3 = (dslip_1_by_place_3*t216 + dslip_2_by_place_3*t217 +
+                dslip_3_by_place_3*t218)
+            dslip_speed_by_rate_1 = (dslip_1_by_rate_1*t216 + dslip_2_by_rate_1*t217 +
+                dslip_3_by_rate_1*t218)
+            dslip_speed_by_rate_2 = (dslip_1_by_rate_2*t216 + dslip_2_by_rate_2*t217 +
+                dslip_3_by_rate_2*t218)
+            dslip_speed_by_rate_3 = (dslip_1_by_rate_3*t216 + dslip_2_by_rate_3*t217 +
+                dslip_3_by_rate_3*t218)
+            t219 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
+            t220 = t219*trial_1
+            t221 = t219*trial_2
+            t222 = t219*trial_3
+            t223 = 1/slip_speed
+            t224 = 1/speed
+            t225 = slip_speed*t224
+            t226 = tanh(4*t225)
+            t227 = slip_speed*slip_speed
+            t228 = 0.75 + ((0.25)*t227)/(speed*speed)
+            t229 = -coefficient + static
+            t230 = t229/(t228*t228)
+            t231 = coefficient*t226 + t225*t230
+            t232 = t223*t231 if speed > 0.0 else 0
+            t233 = (push*t223*(4*coefficient*t224*(1 - t226*t226) + t224*t230 +
+                (-t227*t229)/(speed*speed*speed*t228*t228*t228)) - push*t231/t227 if speed > 0.0
                 else 0)
-            dtrial_size_by_place_1 = (dtrial_1_by_place_1*t222 + dtrial_2_by_place_1*t223 +
-                dtrial_3_by_place_1*t224)
-            dtrial_size_by_place_2 = (dtrial_1_by_place_2*t222 + dtrial_2_by_place_2*t223 +
-                dtrial_3_by_place_2*t224)
-            dtrial_size_by_place_3 = (dtrial_1_by_place_3*t222 + dtrial_2_by_place_3*t223 +
-                dtrial_3_by_place_3*t224)
-            dtrial_size_by_rate_1 = (dtrial_1_by_rate_1*t222 + dtrial_2_by_rate_1*t223 +
-                dtrial_3_by_rate_1*t224)
-            dtrial_size_by_rate_2 = (dtrial_1_by_rate_2*t222 + dtrial_2_by_rate_2*t223 +
-                dtrial_3_by_rate_2*t224)
-            dtrial_size_by_rate_3 = (dtrial_1_by_rate_3*t222 + dtrial_2_by_rate_3*t223 +
-                dtrial_3_by_rate_3*t224)
-            ddrag_by_place_1 = dpush_by_place_1*t234 + dslip_speed_by_place_1*t235
-            ddrag_by_place_2 = dpush_by_place_2*t234 + dslip_speed_by_place_2*t235
-            ddrag_by_place_3 = dpush_by_place_3*t234 + dslip_speed_by_place_3*t235
-            ddrag_by_rate_1 = dpush_by_rate_1*t234 + dslip_speed_by_rate_1*t235
-            ddrag_by_rate_2 = dpush_by_rate_2*t234 + dslip_speed_by_rate_2*t235
-            ddrag_by_rate_3 = dpush_by_rate_3*t234 + dslip_speed_by_rate_3*t235
-            t236 = slip_1 if speed > 0.0 else 0
-            t237 = drag if speed > 0.0 else 0
-            t238 = -static_limit + trial_size
-            t239 = 1/trial_size
-            t240 = 0 if speed > 0.0 else (t239*trial_1 if t238 > 0.0 else 0)
-            t241 = 0 if speed > 0.0 else (dynamic_limit*t239 if t238 > 0.0 else 1)
-            t242 = dynamic_limit/(trial_size*trial_size)
-            t243 = 0 if speed > 0.0 else (-t242*trial_1 if t238 > 0.0 else 0)
-            t244 = slip_2 if speed > 0.0 else 0
-            t245 = 0 if speed > 0.0 else (t239*trial_2 if t238 > 0.0 else 0)
-            t246 = 0 if speed > 0.0 else (-t242*trial_2 if t238 > 0.0 else 0)
-            t247 = slip_3 if speed > 0.0 else 0
-            t248 = 0 if speed > 0.0 else (t239*trial_3 if t238 > 0.0 else 0)
-            t249 = 0 if speed > 0.0 else (-t242*trial_3 if t238 > 0.0 else 0)
-            dfriction_1_by_place_1 = (ddrag_by_place_1*t236 + ddynamic_limit_by_place_1*t240 +
-                dslip_1_by_place_1*t237 + dtrial_1_by_place_1*t241 + dtrial_size_by_place_1*t243)
-            dfriction_1_by_place_2 = (ddrag_by_place_2*t236 + ddynamic_limit_by_place_2*t240 +
-                dslip_1_by_place_2*t237 + dtrial_1_by_place_2*t241 + dtrial_size_by_place_2*t243)
-            dfriction_1_by_place_3 = (ddrag_by_place_3*t236 + ddynamic_limit_by_place_3*t240 +
-                dslip_1_by_place_3*t237 + dtrial_1_by_place_3*t241 + dtrial_size_by_place_3*t243)
-            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t236 + ddynamic_limit_by_rate_1*t240 +
-                dslip_1_by_rate_1*t237 + dtrial_1_by_rate_1*t241 + dtrial_size_by_rate_1*t243)
-            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t236 + ddynamic_limit_by_rate_2*t240 +
-                dslip_1_by_rate_2*t237 + dtrial_1_by_rate_2*t241 + dtrial_size_by_rate_2*t243)
-            dfriction_1_by_rate_3 = (ddrag_by_rate_3*t236 + ddynamic_limit_by_rate_3*t240 +
-                dslip_1_by_rate_3*t237 + dtrial_1_by_rate_3*t241 + dtrial_size_by_rate_3*t243)
-            dfriction_2_by_place_1 = (ddrag_by_place_1*t244 + ddynamic_limit_by_place_1*t245 +
-                dslip_2_by_place_1*t237 + dtrial_2_by_place_1*t241 + dtrial_size_by_place_1*t246)
-            dfriction_2_by_place_2 = (ddrag_by_place_2*t244 + ddynamic_limit_by_place_2*t245 +
-                dslip_2_by_place_2*t237 + dtrial_2_by_place_2*t241 + dtrial_size_by_place_2*t246)
-            dfriction_2_by_place_3 = (ddrag_by_place_3*t244 + ddynamic_limit_by_place_3*t245 +
-                dslip_2_by_place_3*t237 + dtrial_2_by_place_3*t241 + dtrial_size_by_place_3*t246)
-            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t244 + ddynamic_limit_by_rate_1*t245 +
-                dslip_2_by_rate_1*t237 + dtrial_2_by_rate_1*t241 + dtrial_size_by_rate_1*t246)
-            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t244 + ddynamic_limit_by_rate_2*t245 +
-                dslip_2_by_rate_2*t237 + dtrial_2_by_rate_2*t241 + dtrial_size_by_rate_2*t246)
-            dfriction_2_by_rate_3 = (ddrag_by_rate_3*t244 + ddynamic_limit_by_rate_3*t245 +
-                dslip_2_by_rate_3*t237 + dtrial_2_by_rate_3*t241 + dtrial_size_by_rate_3*t246)
-            dfriction_3_by_place_1 = (ddrag_by_place_1*t247 + ddynamic_limit_by_place_1*t248 +
-                dslip_3_by_place_1*t237 + dtrial_3_by_place_1*t241 + dtrial_size_by_place_1*t249)
-            dfriction_3_by_place_2 = (ddrag_by_place_2*t247 + ddynamic_limit_by_place_2*t248 +
-                dslip_3_by_place_2*t237 + dtrial_3_by_place_2*t241 + dtrial_size_by_place_2*t249)
-            dfriction_3_by_place_3 = (ddrag_by_place_3*t247 + ddynamic_limit_by_place_3*t248 +
-                dslip_3_by_place_3*t237 + dtrial_3_by_place_3*t241 + dtrial_size_by_place_3*t249)
-            dfriction_3_by_rate_1 = (ddrag_by_rate_1*t247 + ddynamic_limit_by_rate_1*t248 +
-                dslip_3_by_rate_1*t237 + dtrial_3_by_rate_1*t241 + dtrial_size_by_rate_1*t249)
-            dfriction_3_by_rate_2 = (ddrag_by_rate_2*t247 + ddynamic_limit_by_rate_2*t248 +
-                dslip_3_by_rate_2*t237 + dtrial_3_by_rate_2*t241 + dtrial_size_by_rate_2*t249)
-            dfriction_3_by_rate_3 = (ddrag_by_rate_3*t247 + ddynamic_limit_by_rate_3*t248 +
-                dslip_3_by_rate_3*t237 + dtrial_3_by_rate_3*t241 + dtrial_size_by_rate_3*t249)
+            dtrial_size_by_place_1 = (dtrial_1_by_place_1*t220 + dtrial_2_by_place_1*t221 +
+                dtrial_3_by_place_1*t222)
+            dtrial_size_by_place_2 = (dtrial_1_by_place_2*t220 + dtrial_2_by_place_2*t221 +
+                dtrial_3_by_place_2*t222)
+            dtrial_size_by_place_3 = (dtrial_1_by_place_3*t220 + dtrial_2_by_place_3*t221 +
+                dtrial_3_by_place_3*t222)
+            dtrial_size_by_rate_1 = (dtrial_1_by_rate_1*t220 + dtrial_2_by_rate_1*t221 +
+                dtrial_3_by_rate_1*t222)
+            dtrial_size_by_rate_2 = (dtrial_1_by_rate_2*t220 + dtrial_2_by_rate_2*t221 +
+                dtrial_3_by_rate_2*t222)
+            dtrial_size_by_rate_3 = (dtrial_1_by_rate_3*t220 + dtrial_2_by_rate_3*t221 +
+                dtrial_3_by_rate_3*t222)
+            ddrag_by_place_1 = dpush_by_place_1*t232 + dslip_speed_by_place_1*t233
+            ddrag_by_place_2 = dpush_by_place_2*t232 + dslip_speed_by_place_2*t233
+            ddrag_by_place_3 = dpush_by_place_3*t232 + dslip_speed_by_place_3*t233
+            ddrag_by_rate_1 = dpush_by_rate_1*t232 + dslip_speed_by_rate_1*t233
+            ddrag_by_rate_2 = dpush_by_rate_2*t232 + dslip_speed_by_rate_2*t233
+            ddrag_by_rate_3 = dpush_by_rate_3*t232 + dslip_speed_by_rate_3*t233
+            t234 = slip_1 if speed > 0.0 else 0
+            t235 = drag if speed > 0.0 else 0
+            t236 = -static_limit + trial_size
+            t237 = 1/trial_size
+            t238 = 0 if speed > 0.0 else (t237*trial_1 if t236 > 0.0 else 0)
+            t239 = 0 if speed > 0.0 else (dynamic_limit*t237 if t236 > 0.0 else 1)
+            t240 = dynamic_limit/(trial_size*trial_size)
+            t241 = 0 if speed > 0.0 else (-t240*trial_1 if t236 > 0.0 else 0)
+            t242 = slip_2 if speed > 0.0 else 0
+            t243 = 0 if speed > 0.0 else (t237*trial_2 if t236 > 0.0 else 0)
+            t244 = 0 if speed > 0.0 else (-t240*trial_2 if t236 > 0.0 else 0)
+            t245 = slip_3 if speed > 0.0 else 0
+            t246 = 0 if speed > 0.0 else (t237*trial_3 if t236 > 0.0 else 0)
+            t247 = 0 if speed > 0.0 else (-t240*trial_3 if t236 > 0.0 else 0)
+            dfriction_1_by_place_1 = (ddrag_by_place_1*t234 + ddynamic_limit_by_place_1*t238 +
+                dslip_1_by_place_1*t235 + dtrial_1_by_place_1*t239 + dtrial_size_by_place_1*t241)
+            dfriction_1_by_place_2 = (ddrag_by_place_2*t234 + ddynamic_limit_by_place_2*t238 +
+                dslip_1_by_place_2*t235 + dtrial_1_by_place_2*t239 + dtrial_size_by_place_2*t241)
+            dfriction_1_by_place_3 = (ddrag_by_place_3*t234 + ddynamic_limit_by_place_3*t238 +
+                dslip_1_by_place_3*t235 + dtrial_1_by_place_3*t239 + dtrial_size_by_place_3*t241)
+            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t234 + ddynamic_limit_by_rate_1*t238 +
+                dslip_1_by_rate_1*t235 + dtrial_1_by_rate_1*t239 + dtrial_size_by_rate_1*t241)
+            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t234 + ddynamic_limit_by_rate_2*t238 +
+                dslip_1_by_rate_2*t235 + dtrial_1_by_rate_2*t239 + dtrial_size_by_rate_2*t241)
+            dfriction_1_by_rate_3 = (ddrag_by_rate_3*t234 + ddynamic_limit_by_rate_3*t238 +
+                dslip_1_by_rate_3*t235 + dtrial_1_by_rate_3*t239 + dtrial_size_by_rate_3*t241)
+            dfriction_2_by_place_1 = (ddrag_by_place_1*t242 + ddynamic_limit_by_place_1*t243 +
+                dslip_2_by_place_1*t235 + dtrial_2_by_place_1*t239 + dtrial_size_by_place_1*t244)
+            dfriction_2_by_place_2 = (ddrag_by_place_2*t242 + ddynamic_limit_by_place_2*t243 +
+                dslip_2_by_place_2*t235 + dtrial_2_by_place_2*t239 + dtrial_size_by_place_2*t244)
+            dfriction_2_by_place_3 = (ddrag_by_place_3*t242 + ddynamic_limit_by_place_3*t243 +
+                dslip_2_by_place_3*t235 + dtrial_2_by_place_3*t239 + dtrial_size_by_place_3*t244)
+            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t242 + ddynamic_limit_by_rate_1*t243 +
+                dslip_2_by_rate_1*t235 + dtrial_2_by_rate_1*t239 + dtrial_size_by_rate_1*t244)
+            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t242 + ddynamic_limit_by_rate_2*t243 +
+                dslip_2_by_rate_2*t235 + dtrial_2_by_rate_2*t239 + dtrial_size_by_rate_2*t244)
+            dfriction_2_by_rate_3 = (ddrag_by_rate_3*t242 + ddynamic_limit_by_rate_3*t243 +
+                dslip_2_by_rate_3*t235 + dtrial_2_by_rate_3*t239 + dtrial_size_by_rate_3*t244)
+            dfriction_3_by_place_1 = (ddrag_by_place_1*t245 + ddynamic_limit_by_place_1*t246 +
+                dslip_3_by_place_1*t235 + dtrial_3_by_place_1*t239 + dtrial_size_by_place_1*t247)
+            dfriction_3_by_place_2 = (ddrag_by_place_2*t245 + ddynamic_limit_by_place_2*t246 +
+                dslip_3_by_place_2*t235 + dtrial_3_by_place_2*t239 + dtrial_size_by_place_2*t247)
+            dfriction_3_by_place_3 = (ddrag_by_place_3*t245 + ddynamic_limit_by_place_3*t246 +
+                dslip_3_by_place_3*t235 + dtrial_3_by_place_3*t239 + dtrial_size_by_place_3*t247)
+            dfriction_3_by_rate_1 = (ddrag_by_rate_1*t245 + ddynamic_limit_by_rate_1*t246 +
+                dslip_3_by_rate_1*t235 + dtrial_3_by_rate_1*t239 + dtrial_size_by_rate_1*t247)
+            dfriction_3_by_rate_2 = (ddrag_by_rate_2*t245 + ddynamic_limit_by_rate_2*t246 +
+                dslip_3_by_rate_2*t235 + dtrial_3_by_rate_2*t239 + dtrial_size_by_rate_2*t247)
+            dfriction_3_by_rate_3 = (ddrag_by_rate_3*t245 + ddynamic_limit_by_rate_3*t246 +
+                dslip_3_by_rate_3*t235 + dtrial_3_by_rate_3*t239 + dtrial_size_by_rate_3*t247)
             for column in range(width):
                 for i in range(width):
                     dqe[i] = 0.0
@@ -1057,16 +1044,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t278 = -dth_x*psi_y + dth_y*psi_x
-                    t279 = dth_x*psi_z
-                    t280 = -dth_z*psi_x + t279
-                    t281 = -dth_y*psi_z + dth_z*psi_y
+                    t270 = -dth_x*psi_y + dth_y*psi_x
+                    t271 = dth_x*psi_z
+                    t272 = -dth_z*psi_x + t271
+                    t273 = -dth_y*psi_z + dth_z*psi_y
                     rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y -
-                        e0*psi_y*t278 + e0*psi_z*t280))
-                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t278 - e0*psi_z*t281
-                        - 0.5*t279))
+                        e0*psi_y*t270 + e0*psi_z*t272))
+                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t270 - e0*psi_z*t273
+                        - 0.5*t271))
                     rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z -
-                        e0*psi_x*t280 + e0*psi_y*t281))
+                        e0*psi_x*t272 + e0*psi_y*t273))
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1076,43 +1063,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t282 = X_y + u_y
-                    t283 = X_z + u_z
-                    t284 = X_x + u_x
-                    dy[i3] = -dth0_y*t283 + dth0_z*t282 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t283 - dth0_z*t284 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t282 + dth0_y*t284 - dx0_z + dx_z
+                    t274 = X_y + u_y
+                    t275 = X_z + u_z
+                    t276 = X_x + u_x
+                    dy[i3] = -dth0_y*t275 + dth0_z*t274 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t275 - dth0_z*t276 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t274 + dth0_y*t276 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t285 = dth0_y*psi_z
-                    t286 = dth_y*psi_z
-                    t287 = dth0_x*psi_y
-                    t288 = dth0_y*psi_x - t287
-                    t289 = e0*psi_y
-                    t290 = dth_x*psi_z
-                    t291 = dth_z*psi_x
-                    t292 = t290 - t291
-                    t293 = e0*psi_z
-                    t294 = dth_x*psi_y
-                    t295 = dth_y*psi_x - t294
-                    t296 = dth0_x*psi_z
-                    t297 = dth0_z*psi_x
-                    t298 = t296 - t297
-                    t299 = e0*psi_x
-                    t300 = dth_z*psi_y - t286
-                    t301 = dth0_z*psi_y - t285
-                    dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t295 + e0*psi_z*t298 - 0.5*t285 - 0.5*t286 - t288*t289 -
-                        t292*t293)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t288*t299 + (0.5)*t290 - 0.5*t291 + t293*t300
-                        - t293*t301 - t295*t299 + (0.5)*t296 - 0.5*t297)
-                    dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t292 + e0*psi_y*t301 - 0.5*t287 - t289*t300 - 0.5*t294 -
-                        t298*t299)
+                    t277 = (0.5)*dth0_z + (0.5)*dth_z
+                    t278 = dth0_y + dth_y
+                    t279 = (0.5)*psi_z
+                    t280 = -dth0_y + dth_y
+                    t281 = -dth0_x + dth_x
+                    t282 = psi_x*t280 - psi_y*t281
+                    t283 = -dth0_z + dth_z
+                    t284 = -psi_x*t283 + psi_z*t281
+                    t285 = dth0_x + dth_x
+                    t286 = psi_y*t283 - psi_z*t280
+                    dy[j3] = -dth0_x + dth_x + e0*(psi_y*t282 - psi_z*t284) + psi_y*t277 - t278*t279
+                    dy[j3 + 1] = (-dth0_y + dth_y + e0*(-psi_x*t282 + psi_z*t286) - psi_x*t277 +
+                        t279*t285)
+                    dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t284 - psi_y*t286) +
+                        (0.5)*psi_x*t278 - 0.5*psi_y*t285)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
@@ -1187,47 +1164,57 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t302 = -Om_x*psi_y + Om_y*psi_x
-                    t303 = dpsi_y*e0
-                    t304 = Om0_x*psi_z - Om0_z*psi_x
-                    t305 = dpsi_z*e0
-                    t306 = Om0_x*dpsi_z
-                    t307 = -Om0_z*dpsi_x + t306
-                    t308 = e0*psi_z
-                    t309 = -Om0_x*psi_y + Om0_y*psi_x
-                    t310 = Om_x*psi_z - Om_z*psi_x
-                    t311 = -Om0_x*dpsi_y + Om0_y*dpsi_x
-                    t312 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t313 = e0*psi_y
-                    t314 = Om_x*dpsi_z
-                    t315 = dOm_x*psi_z
-                    t316 = -Om_z*dpsi_x - dOm_z*psi_x + t314 + t315
-                    t317 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t318 = e1*t317
-                    t319 = psi_y*t318
-                    t320 = psi_z*t318
-                    t321 = dpsi_x*e0
-                    t322 = -Om_y*psi_z + Om_z*psi_y
-                    t323 = e0*psi_x
-                    t324 = -Om0_y*psi_z + Om0_z*psi_y
-                    t325 = -Om0_y*dpsi_z + Om0_z*dpsi_y
-                    t326 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t327 = psi_x*t318
-                    rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - 0.5*Om0_z*dpsi_y + (0.5)*Om_y*dpsi_z
-                        - 0.5*Om_z*dpsi_y - dOm_x + (0.5)*dOm_y*psi_z - 0.5*dOm_z*psi_y +
-                        dpsi_y*e0*t309 + dpsi_z*e0*t310 + e0*psi_y*t311 + e0*psi_z*t316 +
-                        e1*psi_y*t309*t317 + e1*psi_z*t310*t317 - t302*t303 - t302*t319 -
-                        t304*t305 - t304*t320 - t307*t308 - t312*t313))
-                    rhs_y += (-alpha_r*((0.5)*Om0_z*dpsi_x + (0.5)*Om_z*dpsi_x - dOm_y +
-                        (0.5)*dOm_z*psi_x + dpsi_x*e0*t302 + dpsi_z*e0*t324 + e0*psi_x*t312 +
-                        e0*psi_z*t325 + e1*psi_x*t302*t317 + e1*psi_z*t317*t324 - t305*t322 -
-                        0.5*t306 - t308*t326 - t309*t321 - t309*t327 - t311*t323 - 0.5*t314 -
-                        0.5*t315 - t320*t322))
-                    rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x + (0.5)*Om_x*dpsi_y
-                        - 0.5*Om_y*dpsi_x + (0.5)*dOm_x*psi_y - 0.5*dOm_y*psi_x - dOm_z +
-                        dpsi_x*e0*t304 + dpsi_y*e0*t322 + e0*psi_x*t307 + e0*psi_y*t326 +
-                        e1*psi_x*t304*t317 + e1*psi_y*t317*t322 - t303*t324 - t310*t321 -
-                        t310*t327 - t313*t325 - t316*t323 - t319*t324))
+                    t287 = (0.5)*dpsi_y
+                    t288 = (0.5)*psi_z
+                    t289 = e0*psi_x
+                    t290 = psi_y*t289
+                    t291 = (0.5)*psi_y
+                    t292 = psi_z*t289
+                    t293 = Om0_x*psi_z - Om0_z*psi_x
+                    t294 = Om0_x*dpsi_z - Om0_z*dpsi_x
+                    t295 = -Om0_x*psi_y + Om0_y*psi_x
+                    t296 = -Om0_x*dpsi_y + Om0_y*dpsi_x
+                    t297 = psi_y*psi_y
+                    t298 = e0*t297
+                    t299 = psi_z*psi_z
+                    t300 = e0*t299 - 1
+                    t301 = 2*dpsi_x*psi_x
+                    t302 = 2*dpsi_y*psi_y
+                    t303 = 2*dpsi_z*psi_z
+                    t304 = t301 + t302 + t303
+                    t305 = e1*t304
+                    t306 = (0.5)*dpsi_z
+                    t307 = dpsi_x*e0
+                    t308 = psi_x*t305
+                    t309 = dpsi_y*t289 + psi_y*t307 + psi_y*t308
+                    t310 = dpsi_z*t289 + psi_z*t307 + psi_z*t308
+                    t311 = e0*t303 + t299*t305
+                    t312 = e0*t302 + t297*t305
+                    t313 = (0.5)*psi_x
+                    t314 = e0*psi_y
+                    t315 = psi_z*t314
+                    t316 = -Om0_y*psi_z + Om0_z*psi_y
+                    t317 = -Om0_y*dpsi_z + Om0_z*dpsi_y
+                    t318 = psi_x*psi_x
+                    t319 = e0*t318
+                    t320 = (0.5)*dpsi_x
+                    t321 = dpsi_y*e0
+                    t322 = psi_y*t305
+                    t323 = dpsi_z*t314 + psi_z*t321 + psi_z*t322
+                    t324 = e0*t301 + t305*t318
+                    rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - Om0_z*t287 - Om_x*(-t311 - t312) -
+                        Om_y*(-t306 + t309) - Om_z*(t287 + t310) - dOm_x*(-t298 - t300) -
+                        dOm_y*(-t288 + t290) - dOm_z*(t291 + t292) + dpsi_y*e0*t295 -
+                        dpsi_z*e0*t293 + e0*psi_y*t296 - e0*psi_z*t294 + e1*psi_y*t295*t304 -
+                        psi_z*t293*t305))
+                    rhs_y += (-alpha_r*(-Om0_x*t306 + (0.5)*Om0_z*dpsi_x - Om_x*(t306 + t309) -
+                        Om_y*(-t311 - t324) - Om_z*(-t320 + t323) - dOm_x*(t288 + t290) -
+                        dOm_y*(-t300 - t319) - dOm_z*(-t313 + t315) + dpsi_z*e0*t316 +
+                        e0*psi_z*t317 + e1*psi_z*t304*t316 - t289*t296 - t295*t307 - t295*t308))
+                    rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x - Om_x*(-t287 +
+                        t310) - Om_y*(t320 + t323) - Om_z*(-t312 - t324) - dOm_x*(-t291 + t292) -
+                        dOm_y*(t313 + t315) - dOm_z*(-t298 - t319 + 1) + dpsi_x*e0*t293 +
+                        e0*psi_x*t294 + e1*psi_x*t293*t304 - t314*t317 - t316*t321 - t316*t322))
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1247,13 +1234,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t328 = X_y + u_y
-                    t329 = X_z + u_z
-                    t330 = X_x + u_x
-                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t329 + dOm0_z*t328 - dv0_x + dvs_x
-                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t329 - dOm0_z*t330 - dv0_y +
+                    t325 = X_y + u_y
+                    t326 = X_z + u_z
+                    t327 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t326 + dOm0_z*t325 - dv0_x + dvs_x
+                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t326 - dOm0_z*t327 - dv0_y +
                         dvs_y)
-                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t328 + dOm0_y*t330 - dv0_z +
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t325 + dOm0_y*t327 - dv0_z +
                         dvs_z)
                 # differential: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -1264,59 +1251,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t331 = Om0_y*dpsi_z
-                    t332 = Om_y*dpsi_z
-                    t333 = dOm0_y*psi_z
-                    t334 = dOm_y*psi_z
-                    t335 = -Om0_x*psi_y + Om0_y*psi_x
-                    t336 = dpsi_y*e0
-                    t337 = Om_x*psi_z - Om_z*psi_x
-                    t338 = dpsi_z*e0
-                    t339 = -Om_x*psi_y + Om_y*psi_x
-                    t340 = Om0_x*psi_z - Om0_z*psi_x
-                    t341 = Om0_x*dpsi_y
-                    t342 = dOm0_x*psi_y
-                    t343 = Om0_y*dpsi_x + dOm0_y*psi_x - t341 - t342
-                    t344 = e0*psi_y
-                    t345 = Om_x*dpsi_z
-                    t346 = dOm_x*psi_z
-                    t347 = Om_z*dpsi_x
-                    t348 = dOm_z*psi_x
-                    t349 = t345 + t346 - t347 - t348
-                    t350 = e0*psi_z
-                    t351 = Om_x*dpsi_y
-                    t352 = dOm_x*psi_y
-                    t353 = Om_y*dpsi_x + dOm_y*psi_x - t351 - t352
-                    t354 = Om0_x*dpsi_z
-                    t355 = dOm0_x*psi_z
-                    t356 = Om0_z*dpsi_x
-                    t357 = dOm0_z*psi_x
-                    t358 = t354 + t355 - t356 - t357
-                    t359 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t360 = e1*t359
-                    t361 = psi_y*t360
-                    t362 = psi_z*t360
-                    t363 = dpsi_x*e0
-                    t364 = -Om_y*psi_z + Om_z*psi_y
-                    t365 = -Om0_y*psi_z + Om0_z*psi_y
-                    t366 = e0*psi_x
-                    t367 = Om_z*dpsi_y + dOm_z*psi_y - t332 - t334
-                    t368 = Om0_z*dpsi_y + dOm0_z*psi_y - t331 - t333
-                    t369 = psi_x*t360
-                    deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x +
-                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t339 +
-                        dpsi_z*e0*t340 + e0*psi_y*t353 + e0*psi_z*t358 + e1*psi_y*t339*t359 +
-                        e1*psi_z*t340*t359 - 0.5*t331 - 0.5*t332 - 0.5*t333 - 0.5*t334 - t335*t336
-                        - t335*t361 - t337*t338 - t337*t362 - t343*t344 - t349*t350)
-                    deta[j3 + 1] = (-dOm0_y + dOm_y + t335*t363 + t335*t369 + t338*t364 -
-                        t338*t365 - t339*t363 - t339*t369 + t343*t366 + (0.5)*t345 + (0.5)*t346 -
-                        0.5*t347 - 0.5*t348 + t350*t367 - t350*t368 - t353*t366 + (0.5)*t354 +
-                        (0.5)*t355 - 0.5*t356 - 0.5*t357 + t362*t364 - t362*t365)
-                    deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t337 + dpsi_y*e0*t365 +
-                        e0*psi_x*t349 + e0*psi_y*t368 + e1*psi_x*t337*t359 + e1*psi_y*t359*t365 -
-                        t336*t364 - t340*t363 - t340*t369 - 0.5*t341 - 0.5*t342 - t344*t367 -
-                        0.5*t351 - 0.5*t352 - t358*t366 - t361*t364)
+                    t328 = (0.5)*Om0_z + (0.5)*Om_z
+                    t329 = Om0_y + Om_y
+                    t330 = (0.5)*dpsi_z
+                    t331 = (0.5)*dOm0_z + (0.5)*dOm_z
+                    t332 = dOm0_y + dOm_y
+                    t333 = (0.5)*psi_z
+                    t334 = -Om0_y + Om_y
+                    t335 = -Om0_x + Om_x
+                    t336 = psi_x*t334 - psi_y*t335
+                    t337 = -Om0_z + Om_z
+                    t338 = -psi_x*t337 + psi_z*t335
+                    t339 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t340 = -dOm0_y + dOm_y
+                    t341 = -dOm0_x + dOm_x
+                    t342 = dpsi_x*t334 - dpsi_y*t335 + psi_x*t340 - psi_y*t341
+                    t343 = -dOm0_z + dOm_z
+                    t344 = -dpsi_x*t337 + dpsi_z*t335 - psi_x*t343 + psi_z*t341
+                    t345 = Om0_x + Om_x
+                    t346 = dOm0_x + dOm_x
+                    t347 = psi_y*t337 - psi_z*t334
+                    t348 = dpsi_y*t337 - dpsi_z*t334 + psi_y*t343 - psi_z*t340
+                    deta[j3] = (-dOm0_x + dOm_x + dpsi_y*t328 + e0*(dpsi_y*t336 - dpsi_z*t338 +
+                        psi_y*t342 - psi_z*t344) + psi_y*t331 - t329*t330 - t332*t333 +
+                        t339*(psi_y*t336 - psi_z*t338))
+                    deta[j3 + 1] = (-dOm0_y + dOm_y - dpsi_x*t328 + e0*(-dpsi_x*t336 + dpsi_z*t347
+                        - psi_x*t342 + psi_z*t348) - psi_x*t331 + t330*t345 + t333*t346 +
+                        t339*(-psi_x*t336 + psi_z*t347))
+                    deta[j3 + 2] = (-dOm0_z + dOm_z + (0.5)*dpsi_x*t329 - 0.5*dpsi_y*t345 +
+                        e0*(dpsi_x*t338 - dpsi_y*t347 + psi_x*t344 - psi_y*t348) +
+                        (0.5)*psi_x*t332 - 0.5*psi_y*t346 + t339*(psi_x*t338 - psi_y*t347))
                 # differential: rates of the internal modes
                 for k in range(MODES, n):
                     dvm = dve[k]
@@ -1356,18 +1320,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dupd_y += Phi_mode_y*dem
                     dupd_z += Phi_mode_z*dem
                 # differential: velocity of the point
-                t370 = Om0_y*drp_z - Om0_z*drp_y + dOm0_y*rp_z - dOm0_z*rp_y + dupd_x + dv0_x
-                t371 = -Om0_x*drp_z + Om0_z*drp_x - dOm0_x*rp_z + dOm0_z*rp_x + dupd_y + dv0_y
-                t372 = Om0_x*drp_y - Om0_y*drp_x + dOm0_x*rp_y - dOm0_y*rp_x + dupd_z + dv0_z
-                t373 = Om0_x*rp_y - Om0_y*rp_x + upd_z + v0_z
-                t374 = -Om0_x*rp_z + Om0_z*rp_x + upd_y + v0_y
-                t375 = Om0_y*rp_z - Om0_z*rp_y + upd_x + v0_x
-                dva_x = (R0_xx*t370 + R0_xy*t371 + R0_xz*t372 + t373*(R0_xx*dth0_y - R0_xy*dth0_x)
-                    + t374*(-R0_xx*dth0_z + R0_xz*dth0_x) + t375*(R0_xy*dth0_z - R0_xz*dth0_y))
-                dva_y = (R0_yx*t370 + R0_yy*t371 + R0_yz*t372 + t373*(R0_yx*dth0_y - R0_yy*dth0_x)
-                    + t374*(-R0_yx*dth0_z + R0_yz*dth0_x) + t375*(R0_yy*dth0_z - R0_yz*dth0_y))
-                dva_z = (R0_zx*t370 + R0_zy*t371 + R0_zz*t372 + t373*(R0_zx*dth0_y - R0_zy*dth0_x)
-                    + t374*(-R0_zx*dth0_z + R0_zz*dth0_x) + t375*(R0_zy*dth0_z - R0_zz*dth0_y))
+                t349 = Om0_y*drp_z - Om0_z*drp_y + dOm0_y*rp_z - dOm0_z*rp_y + dupd_x + dv0_x
+                t350 = -Om0_x*drp_z + Om0_z*drp_x - dOm0_x*rp_z + dOm0_z*rp_x + dupd_y + dv0_y
+                t351 = Om0_x*drp_y - Om0_y*drp_x + dOm0_x*rp_y - dOm0_y*rp_x + dupd_z + dv0_z
+                t352 = Om0_x*rp_y - Om0_y*rp_x + upd_z + v0_z
+                t353 = -Om0_x*rp_z + Om0_z*rp_x + upd_y + v0_y
+                t354 = Om0_y*rp_z - Om0_z*rp_y + upd_x + v0_x
+                dva_x = (R0_xx*t349 + R0_xy*t350 + R0_xz*t351 + t352*(R0_xx*dth0_y - R0_xy*dth0_x)
+                    + t353*(-R0_xx*dth0_z + R0_xz*dth0_x) + t354*(R0_xy*dth0_z - R0_xz*dth0_y))
+                dva_y = (R0_yx*t349 + R0_yy*t350 + R0_yz*t351 + t352*(R0_yx*dth0_y - R0_yy*dth0_x)
+                    + t353*(-R0_yx*dth0_z + R0_yz*dth0_x) + t354*(R0_yy*dth0_z - R0_yz*dth0_y))
+                dva_z = (R0_zx*t349 + R0_zy*t350 + R0_zz*t351 + t352*(R0_zx*dth0_y - R0_zy*dth0_x)
+                    + t353*(-R0_zx*dth0_z + R0_zz*dth0_x) + t354*(R0_zy*dth0_z - R0_zz*dth0_y))
                 dxb_x = dqe[n]
                 dxb_y = dqe[n + 1]
                 dxb_z = dqe[n + 2]
@@ -1380,139 +1344,139 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = dve[n + 3]
                 uthb_y = dve[n + 4]
                 uthb_z = dve[n + 5]
-                t376 = dxa_x - dxb_x
-                t377 = dxa_y - dxb_y
-                t378 = dxa_z - dxb_z
-                t379 = xa_x - xb_x
-                t380 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t381 = xa_y - xb_y
-                t382 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t383 = xa_z - xb_z
-                t384 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t385 = Rb_xx*t376 + Rb_yx*t377 + Rb_zx*t378 + t379*t380 + t381*t382 + t383*t384
-                t386 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t387 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t388 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t389 = Rb_xy*t376 + Rb_yy*t377 + Rb_zy*t378 + t379*t386 + t381*t387 + t383*t388
-                t390 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t391 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t392 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t393 = Rb_xz*t376 + Rb_yz*t377 + Rb_zz*t378 + t379*t390 + t381*t391 + t383*t392
-                t394 = va_x - vb_x
-                t395 = va_y - vb_y
-                t396 = va_z - vb_z
-                t397 = dva_x - uxb_x
-                t398 = dva_y - uxb_y
-                t399 = dva_z - uxb_z
-                t400 = Rb_xy*t379 + Rb_yy*t381 + Rb_zy*t383
-                t401 = Rb_xz*t379 + Rb_yz*t381 + Rb_zz*t383
-                t402 = Rb_xx*t379 + Rb_yx*t381 + Rb_zx*t383
-                dplace_1 = t385
-                dplace_2 = t389
-                dplace_3 = t393
-                drate_1 = -Omb_y*t393 + Omb_z*t389 + t380*t394 + t382*t395 + t384*t396
-                urate_1 = Rb_xx*t397 + Rb_yx*t398 + Rb_zx*t399 + t400*uthb_z - t401*uthb_y
-                drate_2 = Omb_x*t393 - Omb_z*t385 + t386*t394 + t387*t395 + t388*t396
-                urate_2 = Rb_xy*t397 + Rb_yy*t398 + Rb_zy*t399 + t401*uthb_x - t402*uthb_z
-                drate_3 = -Omb_x*t389 + Omb_y*t385 + t390*t394 + t391*t395 + t392*t396
-                urate_3 = Rb_xz*t397 + Rb_yz*t398 + Rb_zz*t399 - t400*uthb_x + t402*uthb_y
-                t403 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t404 = normal_1*normal_3
-                t405 = normal_2*normal_3
-                t406 = 1 - normal_3*normal_3
-                t407 = -friction_1*t404 - friction_2*t405 + friction_3*t406 - normal_3*push
-                t408 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t409 = normal_1*normal_2
-                t410 = friction_3*normal_3
-                t411 = 1 - normal_2*normal_2
-                t412 = -friction_1*t409 + friction_2*t411 - normal_2*push - normal_2*t410
-                t413 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t414 = 1 - normal_1*normal_1
-                t415 = friction_1*t414 - friction_2*t409 - friction_3*t404 - normal_1*push
-                t416 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2 + dpush_by_rate_3*urate_3
-                t417 = (dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2 +
+                t355 = dxa_x - dxb_x
+                t356 = dxa_y - dxb_y
+                t357 = dxa_z - dxb_z
+                t358 = xa_x - xb_x
+                t359 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t360 = xa_y - xb_y
+                t361 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t362 = xa_z - xb_z
+                t363 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t364 = Rb_xx*t355 + Rb_yx*t356 + Rb_zx*t357 + t358*t359 + t360*t361 + t362*t363
+                t365 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t366 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t367 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t368 = Rb_xy*t355 + Rb_yy*t356 + Rb_zy*t357 + t358*t365 + t360*t366 + t362*t367
+                t369 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t370 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t371 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t372 = Rb_xz*t355 + Rb_yz*t356 + Rb_zz*t357 + t358*t369 + t360*t370 + t362*t371
+                t373 = va_x - vb_x
+                t374 = va_y - vb_y
+                t375 = va_z - vb_z
+                t376 = dva_x - uxb_x
+                t377 = dva_y - uxb_y
+                t378 = dva_z - uxb_z
+                t379 = Rb_xy*t358 + Rb_yy*t360 + Rb_zy*t362
+                t380 = Rb_xz*t358 + Rb_yz*t360 + Rb_zz*t362
+                t381 = Rb_xx*t358 + Rb_yx*t360 + Rb_zx*t362
+                dplace_1 = t364
+                dplace_2 = t368
+                dplace_3 = t372
+                drate_1 = -Omb_y*t372 + Omb_z*t368 + t359*t373 + t361*t374 + t363*t375
+                urate_1 = Rb_xx*t376 + Rb_yx*t377 + Rb_zx*t378 + t379*uthb_z - t380*uthb_y
+                drate_2 = Omb_x*t372 - Omb_z*t364 + t365*t373 + t366*t374 + t367*t375
+                urate_2 = Rb_xy*t376 + Rb_yy*t377 + Rb_zy*t378 + t380*uthb_x - t381*uthb_z
+                drate_3 = -Omb_x*t368 + Omb_y*t364 + t369*t373 + t370*t374 + t371*t375
+                urate_3 = Rb_xz*t376 + Rb_yz*t377 + Rb_zz*t378 - t379*uthb_x + t381*uthb_y
+                t382 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t383 = normal_1*normal_3
+                t384 = normal_2*normal_3
+                t385 = 1 - normal_3*normal_3
+                t386 = -friction_1*t383 - friction_2*t384 + friction_3*t385 - normal_3*push
+                t387 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t388 = normal_1*normal_2
+                t389 = friction_3*normal_3
+                t390 = 1 - normal_2*normal_2
+                t391 = -friction_1*t388 + friction_2*t390 - normal_2*push - normal_2*t389
+                t392 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t393 = 1 - normal_1*normal_1
+                t394 = friction_1*t393 - friction_2*t388 - friction_3*t383 - normal_1*push
+                t395 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2 + dpush_by_rate_3*urate_3
+                t396 = (dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2 +
                     dfriction_2_by_rate_3*urate_3)
-                t418 = (dfriction_3_by_rate_1*urate_1 + dfriction_3_by_rate_2*urate_2 +
+                t397 = (dfriction_3_by_rate_1*urate_1 + dfriction_3_by_rate_2*urate_2 +
                     dfriction_3_by_rate_3*urate_3)
-                t419 = (dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2 +
+                t398 = (dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2 +
                     dfriction_1_by_rate_3*urate_3)
-                t420 = -normal_1*t416 - t404*t418 - t409*t417 + t414*t419
-                t421 = -normal_2*t416 - t405*t418 - t409*t419 + t411*t417
-                t422 = -normal_3*t416 - t404*t419 - t405*t417 + t406*t418
-                t423 = dnormal_1_by_place_1*dplace_1
-                t424 = dnormal_1_by_place_2*dplace_2
-                t425 = dnormal_1_by_place_3*dplace_3
-                t426 = t423 + t424 + t425
-                t427 = dnormal_2_by_place_1*dplace_1
-                t428 = dnormal_2_by_place_2*dplace_2
-                t429 = dnormal_2_by_place_3*dplace_3
-                t430 = t427 + t428 + t429
-                t431 = friction_2*t430
-                t432 = normal_2*t426
-                t433 = dnormal_3_by_place_1*dplace_1
-                t434 = dnormal_3_by_place_2*dplace_2
-                t435 = dnormal_3_by_place_3*dplace_3
-                t436 = t433 + t434 + t435
-                t437 = friction_3*t436
-                t438 = friction_1*normal_1
-                t439 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
+                t399 = -normal_1*t395 - t383*t397 - t388*t396 + t393*t398
+                t400 = -normal_2*t395 - t384*t397 - t388*t398 + t390*t396
+                t401 = -normal_3*t395 - t383*t398 - t384*t396 + t385*t397
+                t402 = dnormal_1_by_place_1*dplace_1
+                t403 = dnormal_1_by_place_2*dplace_2
+                t404 = dnormal_1_by_place_3*dplace_3
+                t405 = t402 + t403 + t404
+                t406 = dnormal_2_by_place_1*dplace_1
+                t407 = dnormal_2_by_place_2*dplace_2
+                t408 = dnormal_2_by_place_3*dplace_3
+                t409 = t406 + t407 + t408
+                t410 = friction_2*t409
+                t411 = normal_2*t405
+                t412 = dnormal_3_by_place_1*dplace_1
+                t413 = dnormal_3_by_place_2*dplace_2
+                t414 = dnormal_3_by_place_3*dplace_3
+                t415 = t412 + t413 + t414
+                t416 = friction_3*t415
+                t417 = friction_1*normal_1
+                t418 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
                     dplace_3*dpush_by_place_3 + dpush_by_rate_1*drate_1 + dpush_by_rate_2*drate_2
                     + dpush_by_rate_3*drate_3)
-                t440 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
+                t419 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
                     dfriction_2_by_place_3*dplace_3 + dfriction_2_by_rate_1*drate_1 +
                     dfriction_2_by_rate_2*drate_2 + dfriction_2_by_rate_3*drate_3)
-                t441 = (dfriction_3_by_place_1*dplace_1 + dfriction_3_by_place_2*dplace_2 +
+                t420 = (dfriction_3_by_place_1*dplace_1 + dfriction_3_by_place_2*dplace_2 +
                     dfriction_3_by_place_3*dplace_3 + dfriction_3_by_rate_1*drate_1 +
                     dfriction_3_by_rate_2*drate_2 + dfriction_3_by_rate_3*drate_3)
-                t442 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
+                t421 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
                     dfriction_1_by_place_3*dplace_3 + dfriction_1_by_rate_1*drate_1 +
                     dfriction_1_by_rate_2*drate_2 + dfriction_1_by_rate_3*drate_3)
-                t443 = (-friction_2*t432 - normal_1*t431 - normal_1*t437 - normal_1*t439 -
-                    push*t426 - t404*t441 - t409*t440 - t410*t426 + t414*t442 - t438*(2*t423 +
-                    2*t424 + 2*t425))
-                t444 = friction_2*normal_2
-                t445 = (-friction_1*t432 - normal_2*t437 - normal_2*t439 - push*t430 - t405*t441 -
-                    t409*t442 - t410*t430 + t411*t440 - t430*t438 - t444*(2*t427 + 2*t428 +
-                    2*t429))
-                t446 = (-friction_1*normal_3*t426 - normal_3*t431 - normal_3*t439 - push*t436 -
-                    t404*t442 - t405*t440 + t406*t441 - t410*(2*t433 + 2*t434 + 2*t435) -
-                    t436*t438 - t436*t444)
-                t447 = (Rb_xx*t420 + Rb_xx*t443 + Rb_xy*t421 + Rb_xy*t445 + Rb_xz*t422 +
-                    Rb_xz*t446 + t403*t407 + t408*t412 + t413*t415)
-                t448 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t449 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t450 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t451 = (Rb_yx*t420 + Rb_yx*t443 + Rb_yy*t421 + Rb_yy*t445 + Rb_yz*t422 +
-                    Rb_yz*t446 + t407*t448 + t412*t449 + t415*t450)
-                t452 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t453 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t454 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t455 = (Rb_zx*t420 + Rb_zx*t443 + Rb_zy*t421 + Rb_zy*t445 + Rb_zz*t422 +
-                    Rb_zz*t446 + t407*t452 + t412*t453 + t415*t454)
-                t456 = xa_x - xb_x
-                t457 = xa_y - xb_y
-                t458 = xa_z - xb_z
-                t459 = Rb_xz*t456 + Rb_yz*t457 + Rb_zz*t458
-                t460 = Rb_xy*t456 + Rb_yy*t457 + Rb_zy*t458
-                t461 = -t460
-                t462 = dxa_x - dxb_x
-                t463 = dxa_y - dxb_y
-                t464 = dxa_z - dxb_z
-                t465 = Rb_xz*t462 + Rb_yz*t463 + Rb_zz*t464 + t403*t456 + t448*t457 + t452*t458
-                t466 = Rb_xy*t462 + Rb_yy*t463 + Rb_zy*t464 + t408*t456 + t449*t457 + t453*t458
-                t467 = Rb_xx*t456 + Rb_yx*t457 + Rb_zx*t458
-                t468 = -t459
-                t469 = Rb_xx*t462 + Rb_yx*t463 + Rb_zx*t464 + t413*t456 + t450*t457 + t454*t458
-                t470 = -t467
-                dFp_x = t447
-                dFp_y = t451
-                dFp_z = t455
-                dg[n] = -t447
-                dg[n + 1] = -t451
-                dg[n + 2] = -t455
-                dg[n + 3] = -t407*t466 + t412*t465 + t421*t459 + t422*t461 + t445*t459 + t446*t461
-                dg[n + 4] = t407*t469 - t415*t465 + t420*t468 + t422*t467 + t443*t468 + t446*t467
-                dg[n + 5] = -t412*t469 + t415*t466 + t420*t460 + t421*t470 + t443*t460 + t445*t470
+                t422 = (-friction_2*t411 - normal_1*t410 - normal_1*t416 - normal_1*t418 -
+                    push*t405 - t383*t420 - t388*t419 - t389*t405 + t393*t421 - t417*(2*t402 +
+                    2*t403 + 2*t404))
+                t423 = friction_2*normal_2
+                t424 = (-friction_1*t411 - normal_2*t416 - normal_2*t418 - push*t409 - t384*t420 -
+                    t388*t421 - t389*t409 + t390*t419 - t409*t417 - t423*(2*t406 + 2*t407 +
+                    2*t408))
+                t425 = (-friction_1*normal_3*t405 - normal_3*t410 - normal_3*t418 - push*t415 -
+                    t383*t421 - t384*t419 + t385*t420 - t389*(2*t412 + 2*t413 + 2*t414) -
+                    t415*t417 - t415*t423)
+                t426 = (Rb_xx*t399 + Rb_xx*t422 + Rb_xy*t400 + Rb_xy*t424 + Rb_xz*t401 +
+                    Rb_xz*t425 + t382*t386 + t387*t391 + t392*t394)
+                t427 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t428 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t429 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t430 = (Rb_yx*t399 + Rb_yx*t422 + Rb_yy*t400 + Rb_yy*t424 + Rb_yz*t401 +
+                    Rb_yz*t425 + t386*t427 + t391*t428 + t394*t429)
+                t431 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t432 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t433 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t434 = (Rb_zx*t399 + Rb_zx*t422 + Rb_zy*t400 + Rb_zy*t424 + Rb_zz*t401 +
+                    Rb_zz*t425 + t386*t431 + t391*t432 + t394*t433)
+                t435 = xa_x - xb_x
+                t436 = xa_y - xb_y
+                t437 = xa_z - xb_z
+                t438 = Rb_xz*t435 + Rb_yz*t436 + Rb_zz*t437
+                t439 = Rb_xy*t435 + Rb_yy*t436 + Rb_zy*t437
+                t440 = -t439
+                t441 = dxa_x - dxb_x
+                t442 = dxa_y - dxb_y
+                t443 = dxa_z - dxb_z
+                t444 = Rb_xz*t441 + Rb_yz*t442 + Rb_zz*t443 + t382*t435 + t427*t436 + t431*t437
+                t445 = Rb_xy*t441 + Rb_yy*t442 + Rb_zy*t443 + t387*t435 + t428*t436 + t432*t437
+                t446 = Rb_xx*t435 + Rb_yx*t436 + Rb_zx*t437
+                t447 = -t438
+                t448 = Rb_xx*t441 + Rb_yx*t442 + Rb_zx*t443 + t392*t435 + t429*t436 + t433*t437
+                t449 = -t446
+                dFp_x = t426
+                dFp_y = t430
+                dFp_z = t434
+                dg[n] = -t426
+                dg[n + 1] = -t430
+                dg[n + 2] = -t434
+                dg[n + 3] = -t386*t445 + t391*t444 + t400*t438 + t401*t440 + t424*t438 + t425*t440
+                dg[n + 4] = t386*t448 - t394*t444 + t399*t447 + t401*t446 + t422*t447 + t425*t446
+                dg[n + 5] = -t391*t448 + t394*t445 + t399*t439 + t400*t449 + t422*t439 + t424*t449
                 # differential: force on the point in frame axes
                 dfp_x = (Fp_x*(R0_xy*dth0_z - R0_xz*dth0_y) + Fp_y*(R0_yy*dth0_z - R0_yz*dth0_y) +
                     Fp_z*(R0_zy*dth0_z - R0_zz*dth0_y) + R0_xx*dFp_x + R0_yx*dFp_y + R0_zx*dFp_z)
@@ -1564,15 +1528,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t471 = X_z + u_z
-                    t472 = X_y + u_y
-                    t473 = X_x + u_x
+                    t450 = X_z + u_z
+                    t451 = X_y + u_y
+                    t452 = X_x + u_x
                     dF_x += alpha*dfp_x - df_x
                     dF_y += alpha*dfp_y - df_y
                     dF_z += alpha*dfp_z - df_z
-                    dW_x += df_y*t471 - df_z*t472 - du_y*f_z + du_z*f_y
-                    dW_y += -df_x*t471 + df_z*t473 + du_x*f_z - du_z*f_x
-                    dW_z += df_x*t472 - df_y*t473 - du_x*f_y + du_y*f_x
+                    dW_x += df_y*t450 - df_z*t451 - du_y*f_z + du_z*f_y
+                    dW_y += -df_x*t450 + df_z*t452 + du_x*f_z - du_z*f_x
+                    dW_z += df_x*t451 - df_y*t452 - du_x*f_y + du_y*f_x
                 # differential: moment of the force on the frame
                 dW_x += -dfp_y*rp_z + dfp_z*rp_y + drp_y*fp_z - drp_z*fp_y
                 dW_y += dfp_x*rp_z - dfp_z*rp_x - drp_x*fp_z + drp_z*fp_x
@@ -1586,25 +1550,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t474 = -m_x*psi_y + m_y*psi_x
-                    t475 = m_x*psi_z - m_z*psi_x
-                    t476 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t477 = dm_x*psi_z
-                    t478 = dpsi_z*m_x
-                    t479 = -dm_z*psi_x - dpsi_x*m_z + t477 + t478
-                    t480 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t481 = e1*t480
-                    t482 = -m_y*psi_z + m_z*psi_y
-                    t483 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t474 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t475 + (0.5)*dpsi_z*m_y - e0*psi_y*t476 +
-                        e0*psi_z*t479 + e1*psi_z*t475*t480 - psi_y*t474*t481)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t474 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t482 + e0*psi_x*t476 - e0*psi_z*t483 + e1*psi_x*t474*t480 -
-                        psi_z*t481*t482 - 0.5*t477 - 0.5*t478)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t475 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t482 + (0.5)*dpsi_y*m_x - e0*psi_x*t479 +
-                        e0*psi_y*t483 + e1*psi_y*t480*t482 - psi_x*t475*t481)
+                    t453 = -m_x*psi_y + m_y*psi_x
+                    t454 = m_x*psi_z - m_z*psi_x
+                    t455 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t456 = dm_x*psi_z
+                    t457 = dpsi_z*m_x
+                    t458 = -dm_z*psi_x - dpsi_x*m_z + t456 + t457
+                    t459 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t460 = e1*t459
+                    t461 = -m_y*psi_z + m_z*psi_y
+                    t462 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t453 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t454 + (0.5)*dpsi_z*m_y - e0*psi_y*t455 +
+                        e0*psi_z*t458 + e1*psi_z*t454*t459 - psi_y*t453*t460)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t453 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t461 + e0*psi_x*t455 - e0*psi_z*t462 + e1*psi_x*t453*t459 -
+                        psi_z*t460*t461 - 0.5*t456 - 0.5*t457)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t454 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t461 + (0.5)*dpsi_y*m_x - e0*psi_x*t458 +
+                        e0*psi_y*t462 + e1*psi_y*t459*t461 - psi_x*t454*t460)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for j in range(N_ROTATIONS):
@@ -1614,33 +1578,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t484 = dpsi_y*wp_z
-                    t485 = dpsi_z*wp_y
-                    t486 = psi_x*wp_y - psi_y*wp_x
-                    t487 = e0*t486
-                    t488 = dpsi_x*wp_y
-                    t489 = dpsi_y*wp_x
-                    t490 = e0*(t488 - t489)
-                    t491 = -psi_x*wp_z + psi_z*wp_x
-                    t492 = dpsi_x*wp_z
-                    t493 = dpsi_z*wp_x - t492
-                    t494 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t495 = e1*t494
-                    t496 = t486*t495
-                    t497 = psi_y*wp_z - psi_z*wp_y
-                    t498 = t484 - t485
-                    rhs_x += (-alpha_r*(dpsi_y*t487 - dpsi_z*e0*t491 - e0*psi_z*t493 + psi_y*t490
-                        + psi_y*t496 - psi_z*t491*t495 + (0.5)*t484 - 0.5*t485))
-                    rhs_y += (-alpha_r*(-dpsi_x*t487 + dpsi_z*e0*t497 + (0.5)*dpsi_z*wp_x +
-                        e0*psi_z*t498 + e1*psi_z*t494*t497 - psi_x*t490 - psi_x*t496 - 0.5*t492))
-                    rhs_z += (-alpha_r*(dpsi_x*e0*t491 - dpsi_y*e0*t497 + e0*psi_x*t493 -
-                        e0*psi_y*t498 + psi_x*t491*t495 - psi_y*t495*t497 + (0.5)*t488 - 0.5*t489))
-                t499 = dW_x + rhs_x
-                t500 = dW_y + rhs_y
-                t501 = dW_z + rhs_z
-                dwp_x = Bxx*t499 + Byx*t500 + Bzx*t501
-                dwp_y = Bxy*t499 + Byy*t500 + Bzy*t501
-                dwp_z = Bxz*t499 + Byz*t500 + Bzz*t501
+                    t463 = dpsi_y*wp_z
+                    t464 = dpsi_z*wp_y
+                    t465 = psi_x*wp_y - psi_y*wp_x
+                    t466 = e0*t465
+                    t467 = dpsi_x*wp_y
+                    t468 = dpsi_y*wp_x
+                    t469 = e0*(t467 - t468)
+                    t470 = -psi_x*wp_z + psi_z*wp_x
+                    t471 = dpsi_x*wp_z
+                    t472 = dpsi_z*wp_x - t471
+                    t473 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t474 = e1*t473
+                    t475 = t465*t474
+                    t476 = psi_y*wp_z - psi_z*wp_y
+                    t477 = t463 - t464
+                    rhs_x += (-alpha_r*(dpsi_y*t466 - dpsi_z*e0*t470 - e0*psi_z*t472 + psi_y*t469
+                        + psi_y*t475 - psi_z*t470*t474 + (0.5)*t463 - 0.5*t464))
+                    rhs_y += (-alpha_r*(-dpsi_x*t466 + dpsi_z*e0*t476 + (0.5)*dpsi_z*wp_x +
+                        e0*psi_z*t477 + e1*psi_z*t473*t476 - psi_x*t469 - psi_x*t475 - 0.5*t471))
+                    rhs_z += (-alpha_r*(dpsi_x*e0*t470 - dpsi_y*e0*t476 + e0*psi_x*t472 -
+                        e0*psi_y*t477 + psi_x*t470*t474 - psi_y*t474*t476 + (0.5)*t467 - 0.5*t468))
+                t478 = dW_x + rhs_x
+                t479 = dW_y + rhs_y
+                t480 = dW_z + rhs_z
+                dwp_x = Bxx*t478 + Byx*t479 + Bzx*t480
+                dwp_y = Bxy*t478 + Byy*t479 + Bzy*t480
+                dwp_z = Bxz*t478 + Byz*t479 + Bzz*t480
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -1673,58 +1637,42 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t502 = dm_y*psi_z
-                    t503 = dpsi_z*m_y
-                    t504 = -m_x*psi_y + m_y*psi_x
-                    t505 = dpsi_y*e0
-                    t506 = m_x*psi_z - m_z*psi_x
-                    t507 = dpsi_z*e0
-                    t508 = dm_x*psi_y
-                    t509 = dpsi_y*m_x
-                    t510 = dm_y*psi_x + dpsi_x*m_y - t508 - t509
-                    t511 = e0*psi_y
-                    t512 = dm_x*psi_z
-                    t513 = dpsi_z*m_x
-                    t514 = dm_z*psi_x
-                    t515 = dpsi_x*m_z
-                    t516 = t512 + t513 - t514 - t515
-                    t517 = e0*psi_z
-                    t518 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t519 = psi_y*t518
-                    t520 = psi_z*t518
-                    t521 = dpsi_y*wp_z
-                    t522 = dpsi_z*wp_y
-                    t523 = dwp_y*psi_z
-                    t524 = dwp_z*psi_y
-                    t525 = psi_x*wp_y - psi_y*wp_x
-                    t526 = -psi_x*wp_z + psi_z*wp_x
-                    t527 = dpsi_x*wp_y
-                    t528 = dwp_y*psi_x
-                    t529 = dpsi_y*wp_x
-                    t530 = dwp_x*psi_y
-                    t531 = t527 + t528 - t529 - t530
-                    t532 = dpsi_x*wp_z
-                    t533 = dwp_z*psi_x
-                    t534 = dpsi_z*wp_x + dwp_x*psi_z - t532 - t533
-                    t535 = -m_y*psi_z + m_z*psi_y
-                    t536 = dpsi_x*e0
-                    t537 = dm_z*psi_y + dpsi_y*m_z - t502 - t503
-                    t538 = e0*psi_x
-                    t539 = psi_x*t518
-                    t540 = psi_y*wp_z - psi_z*wp_y
-                    t541 = t521 - t522 - t523 + t524
-                    dg[j3] = (alpha_r*(dwp_x + t505*t525 - t507*t526 + t511*t531 - t517*t534 +
-                        t519*t525 - t520*t526 - 0.5*t521 + (0.5)*t522 + (0.5)*t523 - 0.5*t524) +
-                        dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + (0.5)*t502 + (0.5)*t503 +
-                        t504*t505 + t504*t519 - t506*t507 - t506*t520 + t510*t511 - t516*t517)
-                    dg[j3 + 1] = (alpha_r*(-0.5*dpsi_z*wp_x - 0.5*dwp_x*psi_z + dwp_y + t507*t540
-                        + t517*t541 + t520*t540 - t525*t536 - t525*t539 - t531*t538 + (0.5)*t532 +
-                        (0.5)*t533) + dm_y - t504*t536 - t504*t539 + t507*t535 - t510*t538 -
-                        0.5*t512 - 0.5*t513 + (0.5)*t514 + (0.5)*t515 + t517*t537 + t520*t535)
-                    dg[j3 + 2] = (alpha_r*(dwp_z - t505*t540 - t511*t541 - t519*t540 + t526*t536 +
-                        t526*t539 - 0.5*t527 - 0.5*t528 + (0.5)*t529 + (0.5)*t530 + t534*t538) -
-                        0.5*dm_y*psi_x + dm_z - 0.5*dpsi_x*m_y - t505*t535 + t506*t536 + t506*t539
-                        + (0.5)*t508 + (0.5)*t509 - t511*t537 + t516*t538 - t519*t535)
+                    t481 = alpha_r*wp_y + m_y
+                    t482 = dpsi_z*t481
+                    t483 = alpha_r*dwp_y + dm_y
+                    t484 = psi_z*t483
+                    t485 = alpha_r*wp_z + m_z
+                    t486 = dpsi_y*t485
+                    t487 = alpha_r*dwp_z + dm_z
+                    t488 = psi_y*t487
+                    t489 = alpha_r*wp_x + m_x
+                    t490 = psi_x*t481 - psi_y*t489
+                    t491 = e0*t490
+                    t492 = dpsi_x*t481
+                    t493 = psi_x*t483
+                    t494 = dpsi_y*t489
+                    t495 = alpha_r*dwp_x + dm_x
+                    t496 = psi_y*t495
+                    t497 = e0*(t492 + t493 - t494 - t496)
+                    t498 = -psi_x*t485 + psi_z*t489
+                    t499 = dpsi_z*e0
+                    t500 = dpsi_x*t485
+                    t501 = psi_x*t487
+                    t502 = dpsi_z*t489 + psi_z*t495 - t500 - t501
+                    t503 = e0*psi_z
+                    t504 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t505 = t490*t504
+                    t506 = psi_z*t504
+                    t507 = psi_y*t485 - psi_z*t481
+                    t508 = -t482 - t484 + t486 + t488
+                    dg[j3] = (dpsi_y*t491 + psi_y*t497 + psi_y*t505 + (0.5)*t482 + (0.5)*t484 -
+                        0.5*t486 - 0.5*t488 + t495 - t498*t499 - t498*t506 - t502*t503)
+                    dg[j3 + 1] = (-dpsi_x*t491 - 0.5*dpsi_z*t489 - psi_x*t497 - psi_x*t505 -
+                        0.5*psi_z*t495 + t483 + t499*t507 + (0.5)*t500 + (0.5)*t501 + t503*t508 +
+                        t506*t507)
+                    dg[j3 + 2] = (dpsi_x*e0*t498 - dpsi_y*e0*t507 + e0*psi_x*t502 - e0*psi_y*t508
+                        + psi_x*t498*t504 - psi_y*t504*t507 + t487 - 0.5*t492 - 0.5*t493 +
+                        (0.5)*t494 + (0.5)*t496)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

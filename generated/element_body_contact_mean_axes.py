@@ -67,8 +67,8 @@ INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 17
-OPERATIONS = {"residual": (748, 234, 425, 0),
-              "column": (830, 351, 1110, 0)}
+OPERATIONS = {"residual": (748, 234, 358, 0),
+              "column": (830, 351, 881, 0)}
 
 
 @kernel_function
@@ -333,29 +333,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
             e0 = e0s[j]
-            t42 = Om0_y*psi_z
-            t43 = Om_y*psi_z
-            t44 = Om0_x*psi_y
-            t45 = Om0_y*psi_x - t44
-            t46 = e0*psi_y
-            t47 = Om_x*psi_z
-            t48 = Om_z*psi_x
-            t49 = t47 - t48
-            t50 = e0*psi_z
-            t51 = Om_x*psi_y
-            t52 = Om_y*psi_x - t51
-            t53 = Om0_x*psi_z
-            t54 = Om0_z*psi_x
-            t55 = t53 - t54
-            t56 = e0*psi_x
-            t57 = Om_z*psi_y - t43
-            t58 = Om0_z*psi_y - t42
-            eta[j3] = (-Om0_x + (0.5)*Om0_z*psi_y + Om_x + (0.5)*Om_z*psi_y + e0*psi_y*t52 +
-                e0*psi_z*t55 - 0.5*t42 - 0.5*t43 - t45*t46 - t49*t50)
-            eta[j3 + 1] = (-Om0_y + Om_y + t45*t56 + (0.5)*t47 - 0.5*t48 + t50*t57 - t50*t58 -
-                t52*t56 + (0.5)*t53 - 0.5*t54)
-            eta[j3 + 2] = ((0.5)*Om0_y*psi_x - Om0_z + (0.5)*Om_y*psi_x + Om_z + e0*psi_x*t49 +
-                e0*psi_y*t58 - 0.5*t44 - t46*t57 - 0.5*t51 - t55*t56)
+            t42 = (0.5)*Om0_z + (0.5)*Om_z
+            t43 = Om0_y + Om_y
+            t44 = (0.5)*psi_z
+            t45 = -Om0_y + Om_y
+            t46 = -Om0_x + Om_x
+            t47 = psi_x*t45 - psi_y*t46
+            t48 = -Om0_z + Om_z
+            t49 = -psi_x*t48 + psi_z*t46
+            t50 = Om0_x + Om_x
+            t51 = psi_y*t48 - psi_z*t45
+            eta[j3] = -Om0_x + Om_x + e0*(psi_y*t47 - psi_z*t49) + psi_y*t42 - t43*t44
+            eta[j3 + 1] = -Om0_y + Om_y + e0*(-psi_x*t47 + psi_z*t51) - psi_x*t42 + t44*t50
+            eta[j3 + 2] = (-Om0_z + Om_z + e0*(psi_x*t49 - psi_y*t51) + (0.5)*psi_x*t43 -
+                0.5*psi_y*t50)
         # rates of the internal modes
         for k in range(MODES, n):
             vm = ve[k]
@@ -395,12 +386,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             upd_y += Phi_mode_y*em
             upd_z += Phi_mode_z*em
         # velocity of the point
-        t59 = Om0_y*rp_z - Om0_z*rp_y + upd_x + v0_x
-        t60 = -Om0_x*rp_z + Om0_z*rp_x + upd_y + v0_y
-        t61 = Om0_x*rp_y - Om0_y*rp_x + upd_z + v0_z
-        va_x = R0_xx*t59 + R0_xy*t60 + R0_xz*t61
-        va_y = R0_yx*t59 + R0_yy*t60 + R0_yz*t61
-        va_z = R0_zx*t59 + R0_zy*t60 + R0_zz*t61
+        t52 = Om0_y*rp_z - Om0_z*rp_y + upd_x + v0_x
+        t53 = -Om0_x*rp_z + Om0_z*rp_x + upd_y + v0_y
+        t54 = Om0_x*rp_y - Om0_y*rp_x + upd_z + v0_z
+        va_x = R0_xx*t52 + R0_xy*t53 + R0_xz*t54
+        va_y = R0_yx*t52 + R0_yy*t53 + R0_yz*t54
+        va_z = R0_zx*t52 + R0_zy*t53 + R0_zz*t54
         stiffness = law[0]
         exponent = law[1]
         damping = law[2]
@@ -446,62 +437,62 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         kept_bent_3 = references[index[first + AT_FRAME] + 8]
         kept_slid = references[index[first + AT_FRAME] + 9]
         kept_begun = references[index[first + AT_FRAME] + 10]
-        t87 = xa_x - xb_x
-        t88 = xa_y - xb_y
-        t89 = xa_z - xb_z
-        t90 = Rb_xx*t87 + Rb_yx*t88 + Rb_zx*t89
-        t91 = Rb_xy*t87 + Rb_yy*t88 + Rb_zy*t89
-        t92 = Rb_xz*t87 + Rb_yz*t88 + Rb_zz*t89
-        t93 = va_x - vb_x
-        t94 = va_y - vb_y
-        t95 = va_z - vb_z
-        place_1 = t90
-        place_2 = t91
-        place_3 = t92
-        rate_1 = -Omb_y*t92 + Omb_z*t91 + Rb_xx*t93 + Rb_yx*t94 + Rb_zx*t95
-        rate_2 = Omb_x*t92 - Omb_z*t90 + Rb_xy*t93 + Rb_yy*t94 + Rb_zy*t95
-        rate_3 = -Omb_x*t91 + Omb_y*t90 + Rb_xz*t93 + Rb_yz*t94 + Rb_zz*t95
-        t96 = e_x*place_1 + e_y*place_2 + e_z*place_3
-        t97 = -e_x*t96 + place_1
-        t98 = -e_y*t96 + place_2
-        t99 = -e_z*t96 + place_3
-        t100 = sqrt(1.0000000000000001e-20*size*size + t97*t97 + t98*t98 + t99*t99)
-        t101 = side/t100
-        normal_1 = e_x if flat > 0.0 else t101*t97
-        normal_2 = e_y if flat > 0.0 else t101*t98
-        normal_3 = e_z if flat > 0.0 else t101*t99
-        gap_closed = radius - (-level + t96 if flat > 0.0 else side*(-size + t100))
-        t102 = normal_1*rate_1
-        t103 = normal_2*rate_2
-        t104 = normal_3*rate_3
-        t105 = 1 - normal_1*normal_1
-        t106 = 1 - normal_2*normal_2
-        t107 = 1 - normal_3*normal_3
-        t108 = -kept_place_2 + place_2
-        t109 = normal_1*normal_2
-        t110 = -kept_place_3 + place_3
-        t111 = normal_3*t110
-        t112 = -kept_place_1 + place_1
-        closing = -t102 - t103 - t104
-        slip_1 = -normal_1*t103 - normal_1*t104 + rate_1*t105
-        slip_2 = -normal_2*t102 - normal_2*t104 + rate_2*t106
-        slip_3 = -normal_3*t102 - normal_3*t103 + rate_3*t107
-        increment_1 = -normal_1*t111 + t105*t112 - t108*t109
-        increment_2 = -normal_2*t111 + t106*t108 - t109*t112
-        increment_3 = -normal_1*normal_3*t112 - normal_2*normal_3*t108 + t107*t110
+        t80 = xa_x - xb_x
+        t81 = xa_y - xb_y
+        t82 = xa_z - xb_z
+        t83 = Rb_xx*t80 + Rb_yx*t81 + Rb_zx*t82
+        t84 = Rb_xy*t80 + Rb_yy*t81 + Rb_zy*t82
+        t85 = Rb_xz*t80 + Rb_yz*t81 + Rb_zz*t82
+        t86 = va_x - vb_x
+        t87 = va_y - vb_y
+        t88 = va_z - vb_z
+        place_1 = t83
+        place_2 = t84
+        place_3 = t85
+        rate_1 = -Omb_y*t85 + Omb_z*t84 + Rb_xx*t86 + Rb_yx*t87 + Rb_zx*t88
+        rate_2 = Omb_x*t85 - Omb_z*t83 + Rb_xy*t86 + Rb_yy*t87 + Rb_zy*t88
+        rate_3 = -Omb_x*t84 + Omb_y*t83 + Rb_xz*t86 + Rb_yz*t87 + Rb_zz*t88
+        t89 = e_x*place_1 + e_y*place_2 + e_z*place_3
+        t90 = -e_x*t89 + place_1
+        t91 = -e_y*t89 + place_2
+        t92 = -e_z*t89 + place_3
+        t93 = sqrt(1.0000000000000001e-20*size*size + t90*t90 + t91*t91 + t92*t92)
+        t94 = side/t93
+        normal_1 = e_x if flat > 0.0 else t90*t94
+        normal_2 = e_y if flat > 0.0 else t91*t94
+        normal_3 = e_z if flat > 0.0 else t92*t94
+        gap_closed = radius - (-level + t89 if flat > 0.0 else side*(-size + t93))
+        t95 = normal_1*rate_1
+        t96 = normal_2*rate_2
+        t97 = normal_3*rate_3
+        t98 = 1 - normal_1*normal_1
+        t99 = 1 - normal_2*normal_2
+        t100 = 1 - normal_3*normal_3
+        t101 = -kept_place_2 + place_2
+        t102 = normal_1*normal_2
+        t103 = -kept_place_3 + place_3
+        t104 = normal_3*t103
+        t105 = -kept_place_1 + place_1
+        closing = -t95 - t96 - t97
+        slip_1 = -normal_1*t96 - normal_1*t97 + rate_1*t98
+        slip_2 = -normal_2*t95 - normal_2*t97 + rate_2*t99
+        slip_3 = -normal_3*t95 - normal_3*t96 + rate_3*t100
+        increment_1 = -normal_1*t104 - t101*t102 + t105*t98
+        increment_2 = -normal_2*t104 + t101*t99 - t102*t105
+        increment_3 = -normal_1*normal_3*t105 - normal_2*normal_3*t101 + t100*t103
         touches = 1.0 if gap_closed > 0.0 else 0.0
         depth = gap_closed if gap_closed > 0.0 else 1e-300
         elastic = depth**exponent*stiffness
         factor = closing*damping + 1
         push = elastic*factor if factor > 0.0 else 0.0
-        t113 = increment_2*kept_begun + kept_bent_2
-        t114 = normal_1*normal_2
-        t115 = increment_3*kept_begun + kept_bent_3
-        t116 = normal_3*t115
-        t117 = increment_1*kept_begun + kept_bent_1
-        z_1 = -normal_1*t116 - t113*t114 + t117*(1 - normal_1*normal_1)
-        z_2 = -normal_2*t116 + t113*(1 - normal_2*normal_2) - t114*t117
-        z_3 = -normal_1*normal_3*t117 - normal_2*normal_3*t113 + t115*(1 - normal_3*normal_3)
+        t106 = increment_2*kept_begun + kept_bent_2
+        t107 = normal_1*normal_2
+        t108 = increment_3*kept_begun + kept_bent_3
+        t109 = normal_3*t108
+        t110 = increment_1*kept_begun + kept_bent_1
+        z_1 = -normal_1*t109 - t106*t107 + t110*(1 - normal_1*normal_1)
+        z_2 = -normal_2*t109 + t106*(1 - normal_2*normal_2) - t107*t110
+        z_3 = -normal_1*normal_3*t110 - normal_2*normal_3*t106 + t108*(1 - normal_3*normal_3)
         dynamic_limit = coefficient*push
         static_limit = push*(coefficient if kept_slid - 0.5 > 0.0 else static)
         trial_1 = bristle*z_1 + bristle_damping*slip_1
@@ -510,110 +501,110 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         bent_size = sqrt(z_1*z_1 + z_2*z_2 + z_3*z_3 + 1e-300)
         slip_speed = (sqrt(slip_1*slip_1 + slip_2*slip_2 + slip_3*slip_3 + 1e-12*speed*speed +
             1e-300))
-        t118 = slip_speed/speed
+        t111 = slip_speed/speed
         trial_size = sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
-        drag = (push*(coefficient*tanh(4*t118) + (t118*(-coefficient +
+        drag = (push*(coefficient*tanh(4*t111) + (t111*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
             0.0 else 0.0)
         slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
-        t119 = -static_limit + trial_size
-        t120 = dynamic_limit/trial_size
-        friction_1 = drag*slip_1 if speed > 0.0 else (t120*trial_1 if t119 > 0.0 else trial_1)
-        friction_2 = drag*slip_2 if speed > 0.0 else (t120*trial_2 if t119 > 0.0 else trial_2)
-        friction_3 = drag*slip_3 if speed > 0.0 else (t120*trial_3 if t119 > 0.0 else trial_3)
-        t121 = normal_1*normal_2
-        t122 = friction_3*normal_3
-        t123 = friction_1*(1 - normal_1*normal_1) - friction_2*t121 - normal_1*push - normal_1*t122
-        t124 = -friction_1*t121 + friction_2*(1 - normal_2*normal_2) - normal_2*push - normal_2*t122
-        t125 = (-friction_1*normal_1*normal_3 - friction_2*normal_2*normal_3 + friction_3*(1 -
+        t112 = -static_limit + trial_size
+        t113 = dynamic_limit/trial_size
+        friction_1 = drag*slip_1 if speed > 0.0 else (t113*trial_1 if t112 > 0.0 else trial_1)
+        friction_2 = drag*slip_2 if speed > 0.0 else (t113*trial_2 if t112 > 0.0 else trial_2)
+        friction_3 = drag*slip_3 if speed > 0.0 else (t113*trial_3 if t112 > 0.0 else trial_3)
+        t114 = normal_1*normal_2
+        t115 = friction_3*normal_3
+        t116 = friction_1*(1 - normal_1*normal_1) - friction_2*t114 - normal_1*push - normal_1*t115
+        t117 = -friction_1*t114 + friction_2*(1 - normal_2*normal_2) - normal_2*push - normal_2*t115
+        t118 = (-friction_1*normal_1*normal_3 - friction_2*normal_2*normal_3 + friction_3*(1 -
             normal_3*normal_3) - normal_3*push)
-        t126 = Rb_xx*t123 + Rb_xy*t124 + Rb_xz*t125
-        t127 = Rb_yx*t123 + Rb_yy*t124 + Rb_yz*t125
-        t128 = Rb_zx*t123 + Rb_zy*t124 + Rb_zz*t125
-        t129 = xa_x - xb_x
-        t130 = xa_y - xb_y
-        t131 = xa_z - xb_z
-        t132 = Rb_xz*t129 + Rb_yz*t130 + Rb_zz*t131
-        t133 = Rb_xy*t129 + Rb_yy*t130 + Rb_zy*t131
-        t134 = Rb_xx*t129 + Rb_yx*t130 + Rb_zx*t131
-        t135 = closing if closing > 0.0 else -closing
-        t136 = kept_rate if kept_rate > 0.0 else -kept_rate
-        t137 = t135 if t135 - t136 > 0.0 else t136
-        t138 = t137 if -kept_impact + t137 > 0.0 else kept_impact
-        t139 = (0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+        t119 = Rb_xx*t116 + Rb_xy*t117 + Rb_xz*t118
+        t120 = Rb_yx*t116 + Rb_yy*t117 + Rb_yz*t118
+        t121 = Rb_zx*t116 + Rb_zy*t117 + Rb_zz*t118
+        t122 = xa_x - xb_x
+        t123 = xa_y - xb_y
+        t124 = xa_z - xb_z
+        t125 = Rb_xz*t122 + Rb_yz*t123 + Rb_zz*t124
+        t126 = Rb_xy*t122 + Rb_yy*t123 + Rb_zy*t124
+        t127 = Rb_xx*t122 + Rb_yx*t123 + Rb_zx*t124
+        t128 = closing if closing > 0.0 else -closing
+        t129 = kept_rate if kept_rate > 0.0 else -kept_rate
+        t130 = t128 if t128 - t129 > 0.0 else t129
+        t131 = t130 if -kept_impact + t130 > 0.0 else kept_impact
+        t132 = (0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
             dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0))
-        Fp_x = t126
-        Fp_y = t127
-        Fp_z = t128
-        g[n] = -t126
-        g[n + 1] = -t127
-        g[n + 2] = -t128
-        g[n + 3] = t124*t132 - t125*t133
-        g[n + 4] = -t123*t132 + t125*t134
-        g[n + 5] = t123*t133 - t124*t134
+        Fp_x = t119
+        Fp_y = t120
+        Fp_z = t121
+        g[n] = -t119
+        g[n + 1] = -t120
+        g[n + 2] = -t121
+        g[n + 3] = t117*t125 - t118*t126
+        g[n + 4] = -t116*t125 + t118*t127
+        g[n + 5] = t116*t126 - t117*t127
         frames[index[first + AT_FRAME]] = place_1
         frames[index[first + AT_FRAME] + 1] = place_2
         frames[index[first + AT_FRAME] + 2] = place_3
         frames[index[first + AT_FRAME] + 3] = closing
-        frames[index[first + AT_FRAME] + 4] = ((t138 if -slow + t138 > 0.0 else 0.0) if touches -
+        frames[index[first + AT_FRAME] + 4] = ((t131 if -slow + t131 > 0.0 else 0.0) if touches -
             0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 5] = gap_closed
-        frames[index[first + AT_FRAME] + 6] = t139*z_1
-        frames[index[first + AT_FRAME] + 7] = t139*z_2
-        frames[index[first + AT_FRAME] + 8] = t139*z_3
+        frames[index[first + AT_FRAME] + 6] = t132*z_1
+        frames[index[first + AT_FRAME] + 7] = t132*z_2
+        frames[index[first + AT_FRAME] + 8] = t132*z_3
         frames[index[first + AT_FRAME] + 9] = slips
         frames[index[first + AT_FRAME] + 10] = 1.0
         frames[index[first + AT_FRAME] + 11] = push
         if task == ENERGY:
-            t140 = exponent + 1
-            energies[STRAIN] += depth**t140*stiffness/t140
-            t141 = normal_1*normal_2
-            t142 = friction_3*normal_3
-            t143 = elastic - push
-            t144 = va_x - vb_x
-            t145 = va_y - vb_y
-            t146 = va_z - vb_z
-            t147 = xa_x - xb_x
-            t148 = xa_y - xb_y
-            t149 = xa_z - xb_z
-            t150 = Rb_xy*t147 + Rb_yy*t148 + Rb_zy*t149
-            t151 = Rb_xz*t147 + Rb_yz*t148 + Rb_zz*t149
-            t152 = Rb_xx*t147 + Rb_yx*t148 + Rb_zx*t149
-            energies[POWERS + index[first + AT_PORT]] = (-(-friction_1*t141 + friction_2*(1 -
-                normal_2*normal_2) - normal_2*t142 + normal_2*t143)*(Omb_x*t151 - Omb_z*t152 +
-                Rb_xy*t144 + Rb_yy*t145 + Rb_zy*t146) - (friction_1*(1 - normal_1*normal_1) -
-                friction_2*t141 - normal_1*t142 + normal_1*t143)*(-Omb_y*t151 + Omb_z*t150 +
-                Rb_xx*t144 + Rb_yx*t145 + Rb_zx*t146) - (-friction_1*normal_1*normal_3 -
+            t133 = exponent + 1
+            energies[STRAIN] += depth**t133*stiffness/t133
+            t134 = normal_1*normal_2
+            t135 = friction_3*normal_3
+            t136 = elastic - push
+            t137 = va_x - vb_x
+            t138 = va_y - vb_y
+            t139 = va_z - vb_z
+            t140 = xa_x - xb_x
+            t141 = xa_y - xb_y
+            t142 = xa_z - xb_z
+            t143 = Rb_xy*t140 + Rb_yy*t141 + Rb_zy*t142
+            t144 = Rb_xz*t140 + Rb_yz*t141 + Rb_zz*t142
+            t145 = Rb_xx*t140 + Rb_yx*t141 + Rb_zx*t142
+            energies[POWERS + index[first + AT_PORT]] = (-(-friction_1*t134 + friction_2*(1 -
+                normal_2*normal_2) - normal_2*t135 + normal_2*t136)*(Omb_x*t144 - Omb_z*t145 +
+                Rb_xy*t137 + Rb_yy*t138 + Rb_zy*t139) - (friction_1*(1 - normal_1*normal_1) -
+                friction_2*t134 - normal_1*t135 + normal_1*t136)*(-Omb_y*t144 + Omb_z*t143 +
+                Rb_xx*t137 + Rb_yx*t138 + Rb_zx*t139) - (-friction_1*normal_1*normal_3 -
                 friction_2*normal_2*normal_3 + friction_3*(1 - normal_3*normal_3) +
-                normal_3*t143)*(-Omb_x*t150 + Omb_y*t152 + Rb_xz*t144 + Rb_yz*t145 + Rb_zz*t146))
-            t153 = normal_1*normal_2
-            t154 = friction_3*normal_3
-            t155 = elastic - push
-            t156 = (friction_1*(1 - normal_1*normal_1) - friction_2*t153 - normal_1*t154 +
-                normal_1*t155)
-            t157 = (-friction_1*t153 + friction_2*(1 - normal_2*normal_2) - normal_2*t154 +
-                normal_2*t155)
-            t158 = (-friction_1*normal_1*normal_3 - friction_2*normal_2*normal_3 + friction_3*(1 -
-                normal_3*normal_3) + normal_3*t155)
-            t159 = Rb_xx*t156 + Rb_xy*t157 + Rb_xz*t158
-            t160 = Rb_yx*t156 + Rb_yy*t157 + Rb_yz*t158
-            t161 = Rb_zx*t156 + Rb_zy*t157 + Rb_zz*t158
-            t162 = xa_x - xb_x
-            t163 = xa_y - xb_y
-            t164 = xa_z - xb_z
-            t165 = Rb_xz*t162 + Rb_yz*t163 + Rb_zz*t164
-            t166 = Rb_xy*t162 + Rb_yy*t163 + Rb_zy*t164
-            t167 = Rb_xx*t162 + Rb_yx*t163 + Rb_zx*t164
-            Fp_x = t159
-            Fp_y = t160
-            Fp_z = t161
-            g[n] = -t159
-            g[n + 1] = -t160
-            g[n + 2] = -t161
-            g[n + 3] = t157*t165 - t158*t166
-            g[n + 4] = -t156*t165 + t158*t167
-            g[n + 5] = t156*t166 - t157*t167
+                normal_3*t136)*(-Omb_x*t143 + Omb_y*t145 + Rb_xz*t137 + Rb_yz*t138 + Rb_zz*t139))
+            t146 = normal_1*normal_2
+            t147 = friction_3*normal_3
+            t148 = elastic - push
+            t149 = (friction_1*(1 - normal_1*normal_1) - friction_2*t146 - normal_1*t147 +
+                normal_1*t148)
+            t150 = (-friction_1*t146 + friction_2*(1 - normal_2*normal_2) - normal_2*t147 +
+                normal_2*t148)
+            t151 = (-friction_1*normal_1*normal_3 - friction_2*normal_2*normal_3 + friction_3*(1 -
+                normal_3*normal_3) + normal_3*t148)
+            t152 = Rb_xx*t149 + Rb_xy*t150 + Rb_xz*t151
+            t153 = Rb_yx*t149 + Rb_yy*t150 + Rb_yz*t151
+            t154 = Rb_zx*t149 + Rb_zy*t150 + Rb_zz*t151
+            t155 = xa_x - xb_x
+            t156 = xa_y - xb_y
+            t157 = xa_z - xb_z
+            t158 = Rb_xz*t155 + Rb_yz*t156 + Rb_zz*t157
+            t159 = Rb_xy*t155 + Rb_yy*t156 + Rb_zy*t157
+            t160 = Rb_xx*t155 + Rb_yx*t156 + Rb_zx*t157
+            Fp_x = t152
+            Fp_y = t153
+            Fp_z = t154
+            g[n] = -t152
+            g[n + 1] = -t153
+            g[n + 2] = -t154
+            g[n + 3] = t150*t158 - t151*t159
+            g[n + 4] = -t149*t158 + t151*t160
+            g[n + 5] = t149*t159 - t150*t160
         # force on the point in frame axes
         fp_x = Fp_x*R0_xx + Fp_y*R0_yx + Fp_z*R0_zx
         fp_y = Fp_x*R0_xy + Fp_y*R0_yy + Fp_z*R0_zy
@@ -655,15 +646,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             alpha = alphas[i]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t287 = X_z + u_z
-            t288 = X_y + u_y
-            t289 = X_x + u_x
+            t280 = X_z + u_z
+            t281 = X_y + u_y
+            t282 = X_x + u_x
             F_x += alpha*fp_x - f_x
             F_y += alpha*fp_y - f_y
             F_z += alpha*fp_z - f_z
-            W_x += f_y*t287 - f_z*t288
-            W_y += -f_x*t287 + f_z*t289
-            W_z += f_x*t288 - f_y*t289
+            W_x += f_y*t280 - f_z*t281
+            W_y += -f_x*t280 + f_z*t282
+            W_z += f_x*t281 - f_y*t282
         # moment of the force on the frame
         W_x += -fp_y*rp_z + fp_z*rp_y
         W_y += fp_x*rp_z - fp_z*rp_x
@@ -674,21 +665,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t290 = -m_x*psi_y + m_y*psi_x
-            t291 = m_x*psi_z
-            t292 = -m_z*psi_x + t291
-            t293 = -m_y*psi_z + m_z*psi_y
-            W_x += -e0*psi_y*t290 + e0*psi_z*t292 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-            W_y += e0*psi_x*t290 - e0*psi_z*t293 - m_y + (0.5)*m_z*psi_x - 0.5*t291
-            W_z += -e0*psi_x*t292 + e0*psi_y*t293 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+            t283 = -m_x*psi_y + m_y*psi_x
+            t284 = m_x*psi_z
+            t285 = -m_z*psi_x + t284
+            t286 = -m_y*psi_z + m_z*psi_y
+            W_x += -e0*psi_y*t283 + e0*psi_z*t285 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+            W_y += e0*psi_x*t283 - e0*psi_z*t286 - m_y + (0.5)*m_z*psi_x - 0.5*t284
+            W_z += -e0*psi_x*t285 + e0*psi_y*t286 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
         # B^T wp = W
         rhs_x = rhs_y = rhs_z = 0.0
-        t294 = W_x + rhs_x
-        t295 = W_y + rhs_y
-        t296 = W_z + rhs_z
-        wp_x = Bxx*t294 + Byx*t295 + Bzx*t296
-        wp_y = Bxy*t294 + Byy*t295 + Bzy*t296
-        wp_z = Bxz*t294 + Byz*t295 + Bzz*t296
+        t287 = W_x + rhs_x
+        t288 = W_y + rhs_y
+        t289 = W_z + rhs_z
+        wp_x = Bxx*t287 + Byx*t288 + Bzx*t289
+        wp_y = Bxy*t287 + Byy*t288 + Bzy*t289
+        wp_z = Bxz*t287 + Byz*t288 + Bzz*t289
         # force on the origin, through the frame
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -737,28 +728,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Gam[3*(j3 + 2) + 1], Gam[3*(j3 + 2) + 2])
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t297 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z
-            t298 = psi_z*t297
-            t299 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z
-            t300 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z
-            t301 = psi_y*t300
-            t302 = psi_x*t297 - t301
-            t303 = e0*psi_y
-            t304 = m_x*psi_z
-            t305 = -m_z*psi_x + t304
-            t306 = e0*psi_z
-            t307 = -m_x*psi_y + m_y*psi_x
-            t308 = psi_x*t299
-            t309 = psi_z*t300 - t308
-            t310 = e0*psi_x
-            t311 = psi_y*t299 - t298
-            t312 = -m_y*psi_z + m_z*psi_y
-            g[j3] = (e0*psi_y*t307 + e0*psi_z*t309 + m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y +
-                (0.5)*psi_y*t299 - 0.5*t298 - t300 - t302*t303 - t305*t306)
-            g[j3 + 1] = (e0*psi_x*t302 + e0*psi_z*t312 + m_y + (0.5)*m_z*psi_x + (0.5)*psi_z*t300
-                - t297 - 0.5*t304 - t306*t311 - t307*t310 - 0.5*t308)
-            g[j3 + 2] = (e0*psi_x*t305 + e0*psi_y*t311 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x + m_z +
-                (0.5)*psi_x*t297 - t299 - 0.5*t301 - t303*t312 - t309*t310)
+            t290 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z - m_z
+            t291 = -t290
+            t292 = psi_y*t291
+            t293 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z - m_y
+            t294 = -t293
+            t295 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z - m_x
+            t296 = -t295
+            t297 = -psi_x*t291 + psi_z*t296
+            t298 = psi_x*t294
+            t299 = -psi_y*t296 + t298
+            t300 = -psi_z*t294 + t292
+            g[j3] = e0*psi_y*t299 - e0*psi_z*t297 + (0.5)*psi_z*t294 - 0.5*t292 - t295
+            g[j3 + 1] = -e0*psi_x*t299 + e0*psi_z*t300 + (0.5)*psi_x*t291 - 0.5*psi_z*t296 - t293
+            g[j3 + 2] = e0*psi_x*t297 - e0*psi_y*t300 + (0.5)*psi_y*t296 - t290 - 0.5*t298
         # force of the internal modes
         for k in range(MODES, n):
             Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
@@ -779,21 +762,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Gam_positionz_x, Gam_positionz_y, Gam_positionz_z = (Gam[3*(i3 + 2)],
                     Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t62 = X_z + u_z
-                t63 = X_y + u_y
-                t64 = -t63
-                t65 = X_x + u_x
-                t66 = -t62
-                t67 = -t65
-                B_00 += Gam_positiony_x*t62 + Gam_positionz_x*t64
-                B_01 += Gam_positionx_x*t66 + Gam_positionz_x*t65
-                B_02 += Gam_positionx_x*t63 + Gam_positiony_x*t67
-                B_10 += Gam_positiony_y*t62 + Gam_positionz_y*t64
-                B_11 += Gam_positionx_y*t66 + Gam_positionz_y*t65
-                B_12 += Gam_positionx_y*t63 + Gam_positiony_y*t67
-                B_20 += Gam_positiony_z*t62 + Gam_positionz_z*t64
-                B_21 += Gam_positionx_z*t66 + Gam_positionz_z*t65
-                B_22 += Gam_positionx_z*t63 + Gam_positiony_z*t67
+                t55 = X_z + u_z
+                t56 = X_y + u_y
+                t57 = -t56
+                t58 = X_x + u_x
+                t59 = -t55
+                t60 = -t58
+                B_00 += Gam_positiony_x*t55 + Gam_positionz_x*t57
+                B_01 += Gam_positionx_x*t59 + Gam_positionz_x*t58
+                B_02 += Gam_positionx_x*t56 + Gam_positiony_x*t60
+                B_10 += Gam_positiony_y*t55 + Gam_positionz_y*t57
+                B_11 += Gam_positionx_y*t59 + Gam_positionz_y*t58
+                B_12 += Gam_positionx_y*t56 + Gam_positiony_y*t60
+                B_20 += Gam_positiony_z*t55 + Gam_positionz_z*t57
+                B_21 += Gam_positionx_z*t59 + Gam_positionz_z*t58
+                B_22 += Gam_positionx_z*t56 + Gam_positiony_z*t60
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
@@ -804,232 +787,232 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Gam_rotationz_x, Gam_rotationz_y, Gam_rotationz_z = (Gam[3*(j3 + 2)],
                     Gam[3*(j3 + 2) + 1], Gam[3*(j3 + 2) + 2])
                 e0 = e0s[j]
-                t68 = (0.5)*psi_z
-                t69 = e0*psi_x
-                t70 = psi_y*t69
-                t71 = t68 - t70
-                t72 = (0.5)*psi_y
-                t73 = psi_z*t69
-                t74 = -t72 - t73
-                t75 = e0*psi_y*psi_y
-                t76 = e0*psi_z*psi_z - 1
-                t77 = t75 + t76
-                t78 = -t68 - t70
-                t79 = (0.5)*psi_x
-                t80 = e0*psi_y*psi_z
-                t81 = t79 - t80
-                t82 = e0*psi_x*psi_x
-                t83 = t76 + t82
-                t84 = t72 - t73
-                t85 = -t79 - t80
-                t86 = t75 + t82 - 1
-                B_00 += Gam_rotationx_x*t77 + Gam_rotationy_x*t71 + Gam_rotationz_x*t74
-                B_01 += Gam_rotationx_x*t78 + Gam_rotationy_x*t83 + Gam_rotationz_x*t81
-                B_02 += Gam_rotationx_x*t84 + Gam_rotationy_x*t85 + Gam_rotationz_x*t86
-                B_10 += Gam_rotationx_y*t77 + Gam_rotationy_y*t71 + Gam_rotationz_y*t74
-                B_11 += Gam_rotationx_y*t78 + Gam_rotationy_y*t83 + Gam_rotationz_y*t81
-                B_12 += Gam_rotationx_y*t84 + Gam_rotationy_y*t85 + Gam_rotationz_y*t86
-                B_20 += Gam_rotationx_z*t77 + Gam_rotationy_z*t71 + Gam_rotationz_z*t74
-                B_21 += Gam_rotationx_z*t78 + Gam_rotationy_z*t83 + Gam_rotationz_z*t81
-                B_22 += Gam_rotationx_z*t84 + Gam_rotationy_z*t85 + Gam_rotationz_z*t86
+                t61 = (0.5)*psi_z
+                t62 = e0*psi_x
+                t63 = psi_y*t62
+                t64 = t61 - t63
+                t65 = (0.5)*psi_y
+                t66 = psi_z*t62
+                t67 = -t65 - t66
+                t68 = e0*psi_y*psi_y
+                t69 = e0*psi_z*psi_z - 1
+                t70 = t68 + t69
+                t71 = -t61 - t63
+                t72 = (0.5)*psi_x
+                t73 = e0*psi_y*psi_z
+                t74 = t72 - t73
+                t75 = e0*psi_x*psi_x
+                t76 = t69 + t75
+                t77 = t65 - t66
+                t78 = -t72 - t73
+                t79 = t68 + t75 - 1
+                B_00 += Gam_rotationx_x*t70 + Gam_rotationy_x*t64 + Gam_rotationz_x*t67
+                B_01 += Gam_rotationx_x*t71 + Gam_rotationy_x*t76 + Gam_rotationz_x*t74
+                B_02 += Gam_rotationx_x*t77 + Gam_rotationy_x*t78 + Gam_rotationz_x*t79
+                B_10 += Gam_rotationx_y*t70 + Gam_rotationy_y*t64 + Gam_rotationz_y*t67
+                B_11 += Gam_rotationx_y*t71 + Gam_rotationy_y*t76 + Gam_rotationz_y*t74
+                B_12 += Gam_rotationx_y*t77 + Gam_rotationy_y*t78 + Gam_rotationz_y*t79
+                B_20 += Gam_rotationx_z*t70 + Gam_rotationy_z*t64 + Gam_rotationz_z*t67
+                B_21 += Gam_rotationx_z*t71 + Gam_rotationy_z*t76 + Gam_rotationz_z*t74
+                B_22 += Gam_rotationx_z*t77 + Gam_rotationy_z*t78 + Gam_rotationz_z*t79
             Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
                 B_12, B_20, B_21, B_22)
-            t168 = e_x*e_x
-            t169 = e_x*place_1 + e_y*place_2 + e_z*place_3
-            t170 = -e_x*t169 + place_1
-            t171 = -e_y*t169 + place_2
-            t172 = -e_z*t169 + place_3
-            t173 = 1.0000000000000001e-20*size*size + t170*t170 + t171*t171 + t172*t172
-            t174 = side/sqrt(t173)
-            t175 = e_x*e_y
-            t176 = e_z*t172
-            t177 = e_x*t176 - 0.5*t170*(2 - 2*t168) + t171*t175
-            t178 = t173**(-1.5)
-            t179 = side*t178
-            t180 = t174*t175
-            t181 = e_y*e_y
-            t182 = e_y*t176 + t170*t175 - 0.5*t171*(2 - 2*t181)
-            t183 = e_x*e_z
-            t184 = t174*t183
-            t185 = e_y*e_z
-            t186 = e_z*e_z
-            t187 = t170*t183 + t171*t185 - 0.5*t172*(2 - 2*t186)
-            t188 = t174*t185
-            dnormal_1_by_place_1 = 0 if flat > 0.0 else t170*t177*t179 + t174*(1 - t168)
-            dnormal_1_by_place_2 = 0 if flat > 0.0 else side*t170*t178*t182 - t180
-            dnormal_1_by_place_3 = 0 if flat > 0.0 else side*t170*t178*t187 - t184
-            dnormal_2_by_place_1 = 0 if flat > 0.0 else side*t171*t177*t178 - t180
-            dnormal_2_by_place_2 = 0 if flat > 0.0 else t171*t179*t182 + t174*(1 - t181)
-            dnormal_2_by_place_3 = 0 if flat > 0.0 else side*t171*t178*t187 - t188
-            dnormal_3_by_place_1 = 0 if flat > 0.0 else side*t172*t177*t178 - t184
-            dnormal_3_by_place_2 = 0 if flat > 0.0 else side*t172*t178*t182 - t188
-            dnormal_3_by_place_3 = 0 if flat > 0.0 else t172*t179*t187 + t174*(1 - t186)
-            dgap_closed_by_place_1 = -(e_x if flat > 0.0 else -t174*t177)
-            dgap_closed_by_place_2 = -(e_y if flat > 0.0 else -t174*t182)
-            dgap_closed_by_place_3 = -(e_z if flat > 0.0 else -t174*t187)
-            t189 = dnormal_1_by_place_1*rate_1
-            t190 = dnormal_2_by_place_1*rate_2
-            t191 = dnormal_3_by_place_1*rate_3
-            t192 = dnormal_1_by_place_2*rate_1
-            t193 = dnormal_2_by_place_2*rate_2
-            t194 = dnormal_3_by_place_2*rate_3
-            t195 = dnormal_1_by_place_3*rate_1
-            t196 = dnormal_2_by_place_3*rate_2
-            t197 = dnormal_3_by_place_3*rate_3
-            t198 = normal_2*rate_2
-            t199 = normal_3*rate_3
-            t200 = normal_1*rate_1
-            t201 = -t198 - t199 - 2*t200
-            t202 = normal_1*normal_1 - 1
-            t203 = normal_1*normal_2
-            t204 = -t203
-            t205 = normal_1*normal_3
-            t206 = -t205
-            t207 = -2*t198 - t199 - t200
-            t208 = normal_2*normal_2 - 1
-            t209 = normal_2*normal_3
-            t210 = -t209
-            t211 = -t198 - 2*t199 - t200
-            t212 = normal_3*normal_3 - 1
-            t213 = -kept_place_2 + place_2
-            t214 = normal_2*t213
-            t215 = -kept_place_3 + place_3
-            t216 = normal_3*t215
-            t217 = -kept_place_1 + place_1
-            t218 = normal_1*t217
-            t219 = -t214 - t216 - 2*t218
-            t220 = normal_1*t213
-            t221 = normal_1*t215
-            t222 = normal_2*t217
-            t223 = normal_2*t215
-            t224 = -2*t214 - t216 - t218
-            t225 = normal_3*t217
-            t226 = normal_3*t213
-            t227 = -t214 - 2*t216 - t218
-            dclosing_by_place_1 = -t189 - t190 - t191
-            dclosing_by_place_2 = -t192 - t193 - t194
-            dclosing_by_place_3 = -t195 - t196 - t197
+            t161 = e_x*e_x
+            t162 = e_x*place_1 + e_y*place_2 + e_z*place_3
+            t163 = -e_x*t162 + place_1
+            t164 = -e_y*t162 + place_2
+            t165 = -e_z*t162 + place_3
+            t166 = 1.0000000000000001e-20*size*size + t163*t163 + t164*t164 + t165*t165
+            t167 = side/sqrt(t166)
+            t168 = e_x*e_y
+            t169 = e_z*t165
+            t170 = e_x*t169 - 0.5*t163*(2 - 2*t161) + t164*t168
+            t171 = t166**(-1.5)
+            t172 = side*t171
+            t173 = t167*t168
+            t174 = e_y*e_y
+            t175 = e_y*t169 + t163*t168 - 0.5*t164*(2 - 2*t174)
+            t176 = e_x*e_z
+            t177 = t167*t176
+            t178 = e_y*e_z
+            t179 = e_z*e_z
+            t180 = t163*t176 + t164*t178 - 0.5*t165*(2 - 2*t179)
+            t181 = t167*t178
+            dnormal_1_by_place_1 = 0 if flat > 0.0 else t163*t170*t172 + t167*(1 - t161)
+            dnormal_1_by_place_2 = 0 if flat > 0.0 else side*t163*t171*t175 - t173
+            dnormal_1_by_place_3 = 0 if flat > 0.0 else side*t163*t171*t180 - t177
+            dnormal_2_by_place_1 = 0 if flat > 0.0 else side*t164*t170*t171 - t173
+            dnormal_2_by_place_2 = 0 if flat > 0.0 else t164*t172*t175 + t167*(1 - t174)
+            dnormal_2_by_place_3 = 0 if flat > 0.0 else side*t164*t171*t180 - t181
+            dnormal_3_by_place_1 = 0 if flat > 0.0 else side*t165*t170*t171 - t177
+            dnormal_3_by_place_2 = 0 if flat > 0.0 else side*t165*t171*t175 - t181
+            dnormal_3_by_place_3 = 0 if flat > 0.0 else t165*t172*t180 + t167*(1 - t179)
+            dgap_closed_by_place_1 = -(e_x if flat > 0.0 else -t167*t170)
+            dgap_closed_by_place_2 = -(e_y if flat > 0.0 else -t167*t175)
+            dgap_closed_by_place_3 = -(e_z if flat > 0.0 else -t167*t180)
+            t182 = dnormal_1_by_place_1*rate_1
+            t183 = dnormal_2_by_place_1*rate_2
+            t184 = dnormal_3_by_place_1*rate_3
+            t185 = dnormal_1_by_place_2*rate_1
+            t186 = dnormal_2_by_place_2*rate_2
+            t187 = dnormal_3_by_place_2*rate_3
+            t188 = dnormal_1_by_place_3*rate_1
+            t189 = dnormal_2_by_place_3*rate_2
+            t190 = dnormal_3_by_place_3*rate_3
+            t191 = normal_2*rate_2
+            t192 = normal_3*rate_3
+            t193 = normal_1*rate_1
+            t194 = -t191 - t192 - 2*t193
+            t195 = normal_1*normal_1 - 1
+            t196 = normal_1*normal_2
+            t197 = -t196
+            t198 = normal_1*normal_3
+            t199 = -t198
+            t200 = -2*t191 - t192 - t193
+            t201 = normal_2*normal_2 - 1
+            t202 = normal_2*normal_3
+            t203 = -t202
+            t204 = -t191 - 2*t192 - t193
+            t205 = normal_3*normal_3 - 1
+            t206 = -kept_place_2 + place_2
+            t207 = normal_2*t206
+            t208 = -kept_place_3 + place_3
+            t209 = normal_3*t208
+            t210 = -kept_place_1 + place_1
+            t211 = normal_1*t210
+            t212 = -t207 - t209 - 2*t211
+            t213 = normal_1*t206
+            t214 = normal_1*t208
+            t215 = normal_2*t210
+            t216 = normal_2*t208
+            t217 = -2*t207 - t209 - t211
+            t218 = normal_3*t210
+            t219 = normal_3*t206
+            t220 = -t207 - 2*t209 - t211
+            dclosing_by_place_1 = -t182 - t183 - t184
+            dclosing_by_place_2 = -t185 - t186 - t187
+            dclosing_by_place_3 = -t188 - t189 - t190
             dclosing_by_rate_1 = -normal_1
             dclosing_by_rate_2 = -normal_2
             dclosing_by_rate_3 = -normal_3
-            dslip_1_by_place_1 = dnormal_1_by_place_1*t201 - normal_1*t190 - normal_1*t191
-            dslip_1_by_place_2 = dnormal_1_by_place_2*t201 - normal_1*t193 - normal_1*t194
-            dslip_1_by_place_3 = dnormal_1_by_place_3*t201 - normal_1*t196 - normal_1*t197
-            dslip_1_by_rate_1 = -t202
-            dslip_1_by_rate_2 = t204
-            dslip_1_by_rate_3 = t206
-            dslip_2_by_place_1 = dnormal_2_by_place_1*t207 - normal_2*t189 - normal_2*t191
-            dslip_2_by_place_2 = dnormal_2_by_place_2*t207 - normal_2*t192 - normal_2*t194
-            dslip_2_by_place_3 = dnormal_2_by_place_3*t207 - normal_2*t195 - normal_2*t197
-            dslip_2_by_rate_1 = t204
-            dslip_2_by_rate_2 = -t208
-            dslip_2_by_rate_3 = t210
-            dslip_3_by_place_1 = dnormal_3_by_place_1*t211 - normal_3*t189 - normal_3*t190
-            dslip_3_by_place_2 = dnormal_3_by_place_2*t211 - normal_3*t192 - normal_3*t193
-            dslip_3_by_place_3 = dnormal_3_by_place_3*t211 - normal_3*t195 - normal_3*t196
-            dslip_3_by_rate_1 = t206
-            dslip_3_by_rate_2 = t210
-            dslip_3_by_rate_3 = -t212
-            dincrement_1_by_place_1 = (dnormal_1_by_place_1*t219 - dnormal_2_by_place_1*t220 -
-                dnormal_3_by_place_1*t221 - t202)
-            dincrement_1_by_place_2 = (dnormal_1_by_place_2*t219 - dnormal_2_by_place_2*t220 -
-                dnormal_3_by_place_2*t221 - t203)
-            dincrement_1_by_place_3 = (dnormal_1_by_place_3*t219 - dnormal_2_by_place_3*t220 -
-                dnormal_3_by_place_3*t221 - t205)
-            dincrement_2_by_place_1 = (-dnormal_1_by_place_1*t222 + dnormal_2_by_place_1*t224 -
-                dnormal_3_by_place_1*t223 - t203)
-            dincrement_2_by_place_2 = (-dnormal_1_by_place_2*t222 + dnormal_2_by_place_2*t224 -
-                dnormal_3_by_place_2*t223 - t208)
-            dincrement_2_by_place_3 = (-dnormal_1_by_place_3*t222 + dnormal_2_by_place_3*t224 -
-                dnormal_3_by_place_3*t223 - t209)
-            dincrement_3_by_place_1 = (-dnormal_1_by_place_1*t225 - dnormal_2_by_place_1*t226 +
-                dnormal_3_by_place_1*t227 - t205)
-            dincrement_3_by_place_2 = (-dnormal_1_by_place_2*t225 - dnormal_2_by_place_2*t226 +
-                dnormal_3_by_place_2*t227 - t209)
-            dincrement_3_by_place_3 = (-dnormal_1_by_place_3*t225 - dnormal_2_by_place_3*t226 +
-                dnormal_3_by_place_3*t227 - t212)
-            t228 = 1 if gap_closed > 0.0 else 0
-            ddepth_by_place_1 = dgap_closed_by_place_1*t228
-            ddepth_by_place_2 = dgap_closed_by_place_2*t228
-            ddepth_by_place_3 = dgap_closed_by_place_3*t228
-            t229 = depth**exponent*exponent*stiffness/depth
-            delastic_by_place_1 = ddepth_by_place_1*t229
-            delastic_by_place_2 = ddepth_by_place_2*t229
-            delastic_by_place_3 = ddepth_by_place_3*t229
+            dslip_1_by_place_1 = dnormal_1_by_place_1*t194 - normal_1*t183 - normal_1*t184
+            dslip_1_by_place_2 = dnormal_1_by_place_2*t194 - normal_1*t186 - normal_1*t187
+            dslip_1_by_place_3 = dnormal_1_by_place_3*t194 - normal_1*t189 - normal_1*t190
+            dslip_1_by_rate_1 = -t195
+            dslip_1_by_rate_2 = t197
+            dslip_1_by_rate_3 = t199
+            dslip_2_by_place_1 = dnormal_2_by_place_1*t200 - normal_2*t182 - normal_2*t184
+            dslip_2_by_place_2 = dnormal_2_by_place_2*t200 - normal_2*t185 - normal_2*t187
+            dslip_2_by_place_3 = dnormal_2_by_place_3*t200 - normal_2*t188 - normal_2*t190
+            dslip_2_by_rate_1 = t197
+            dslip_2_by_rate_2 = -t201
+            dslip_2_by_rate_3 = t203
+            dslip_3_by_place_1 = dnormal_3_by_place_1*t204 - normal_3*t182 - normal_3*t183
+            dslip_3_by_place_2 = dnormal_3_by_place_2*t204 - normal_3*t185 - normal_3*t186
+            dslip_3_by_place_3 = dnormal_3_by_place_3*t204 - normal_3*t188 - normal_3*t189
+            dslip_3_by_rate_1 = t199
+            dslip_3_by_rate_2 = t203
+            dslip_3_by_rate_3 = -t205
+            dincrement_1_by_place_1 = (dnormal_1_by_place_1*t212 - dnormal_2_by_place_1*t213 -
+                dnormal_3_by_place_1*t214 - t195)
+            dincrement_1_by_place_2 = (dnormal_1_by_place_2*t212 - dnormal_2_by_place_2*t213 -
+                dnormal_3_by_place_2*t214 - t196)
+            dincrement_1_by_place_3 = (dnormal_1_by_place_3*t212 - dnormal_2_by_place_3*t213 -
+                dnormal_3_by_place_3*t214 - t198)
+            dincrement_2_by_place_1 = (-dnormal_1_by_place_1*t215 + dnormal_2_by_place_1*t217 -
+                dnormal_3_by_place_1*t216 - t196)
+            dincrement_2_by_place_2 = (-dnormal_1_by_place_2*t215 + dnormal_2_by_place_2*t217 -
+                dnormal_3_by_place_2*t216 - t201)
+            dincrement_2_by_place_3 = (-dnormal_1_by_place_3*t215 + dnormal_2_by_place_3*t217 -
+                dnormal_3_by_place_3*t216 - t202)
+            dincrement_3_by_place_1 = (-dnormal_1_by_place_1*t218 - dnormal_2_by_place_1*t219 +
+                dnormal_3_by_place_1*t220 - t198)
+            dincrement_3_by_place_2 = (-dnormal_1_by_place_2*t218 - dnormal_2_by_place_2*t219 +
+                dnormal_3_by_place_2*t220 - t202)
+            dincrement_3_by_place_3 = (-dnormal_1_by_place_3*t218 - dnormal_2_by_place_3*t219 +
+                dnormal_3_by_place_3*t220 - t205)
+            t221 = 1 if gap_closed > 0.0 else 0
+            ddepth_by_place_1 = dgap_closed_by_place_1*t221
+            ddepth_by_place_2 = dgap_closed_by_place_2*t221
+            ddepth_by_place_3 = dgap_closed_by_place_3*t221
+            t222 = depth**exponent*exponent*stiffness/depth
+            delastic_by_place_1 = ddepth_by_place_1*t222
+            delastic_by_place_2 = ddepth_by_place_2*t222
+            delastic_by_place_3 = ddepth_by_place_3*t222
             dfactor_by_place_1 = damping*dclosing_by_place_1
             dfactor_by_place_2 = damping*dclosing_by_place_2
             dfactor_by_place_3 = damping*dclosing_by_place_3
             dfactor_by_rate_1 = damping*dclosing_by_rate_1
             dfactor_by_rate_2 = damping*dclosing_by_rate_2
             dfactor_by_rate_3 = damping*dclosing_by_rate_3
-            t230 = factor if factor > 0.0 else 0
-            t231 = elastic if factor > 0.0 else 0
-            dpush_by_place_1 = delastic_by_place_1*t230 + dfactor_by_place_1*t231
-            dpush_by_place_2 = delastic_by_place_2*t230 + dfactor_by_place_2*t231
-            dpush_by_place_3 = delastic_by_place_3*t230 + dfactor_by_place_3*t231
-            dpush_by_rate_1 = dfactor_by_rate_1*t231
-            dpush_by_rate_2 = dfactor_by_rate_2*t231
-            dpush_by_rate_3 = dfactor_by_rate_3*t231
-            t232 = kept_begun*normal_1
-            t233 = normal_2*t232
-            t234 = normal_3*t232
-            t235 = increment_2*kept_begun + kept_bent_2
+            t223 = factor if factor > 0.0 else 0
+            t224 = elastic if factor > 0.0 else 0
+            dpush_by_place_1 = delastic_by_place_1*t223 + dfactor_by_place_1*t224
+            dpush_by_place_2 = delastic_by_place_2*t223 + dfactor_by_place_2*t224
+            dpush_by_place_3 = delastic_by_place_3*t223 + dfactor_by_place_3*t224
+            dpush_by_rate_1 = dfactor_by_rate_1*t224
+            dpush_by_rate_2 = dfactor_by_rate_2*t224
+            dpush_by_rate_3 = dfactor_by_rate_3*t224
+            t225 = kept_begun*normal_1
+            t226 = normal_2*t225
+            t227 = normal_3*t225
+            t228 = increment_2*kept_begun + kept_bent_2
+            t229 = normal_1*t228
+            t230 = increment_3*kept_begun + kept_bent_3
+            t231 = normal_1*t230
+            t232 = 1 - normal_1*normal_1
+            t233 = normal_2*t228
+            t234 = normal_3*t230
+            t235 = increment_1*kept_begun + kept_bent_1
             t236 = normal_1*t235
-            t237 = increment_3*kept_begun + kept_bent_3
-            t238 = normal_1*t237
-            t239 = 1 - normal_1*normal_1
-            t240 = normal_2*t235
-            t241 = normal_3*t237
-            t242 = increment_1*kept_begun + kept_bent_1
-            t243 = normal_1*t242
-            t244 = -t240 - t241 - 2*t243
-            t245 = kept_begun*normal_2*normal_3
-            t246 = normal_2*t242
-            t247 = normal_2*t237
-            t248 = 1 - normal_2*normal_2
-            t249 = -2*t240 - t241 - t243
-            t250 = normal_3*t242
-            t251 = normal_3*t235
-            t252 = 1 - normal_3*normal_3
-            t253 = -t240 - 2*t241 - t243
-            dz_1_by_place_1 = (dincrement_1_by_place_1*kept_begun*t239 -
-                dincrement_2_by_place_1*t233 - dincrement_3_by_place_1*t234 +
-                dnormal_1_by_place_1*t244 - dnormal_2_by_place_1*t236 - dnormal_3_by_place_1*t238)
-            dz_1_by_place_2 = (dincrement_1_by_place_2*kept_begun*t239 -
-                dincrement_2_by_place_2*t233 - dincrement_3_by_place_2*t234 +
-                dnormal_1_by_place_2*t244 - dnormal_2_by_place_2*t236 - dnormal_3_by_place_2*t238)
-            dz_1_by_place_3 = (dincrement_1_by_place_3*kept_begun*t239 -
-                dincrement_2_by_place_3*t233 - dincrement_3_by_place_3*t234 +
-                dnormal_1_by_place_3*t244 - dnormal_2_by_place_3*t236 - dnormal_3_by_place_3*t238)
-            dz_2_by_place_1 = (-dincrement_1_by_place_1*t233 +
-                dincrement_2_by_place_1*kept_begun*t248 - dincrement_3_by_place_1*t245 -
-                dnormal_1_by_place_1*t246 + dnormal_2_by_place_1*t249 - dnormal_3_by_place_1*t247)
-            dz_2_by_place_2 = (-dincrement_1_by_place_2*t233 +
-                dincrement_2_by_place_2*kept_begun*t248 - dincrement_3_by_place_2*t245 -
-                dnormal_1_by_place_2*t246 + dnormal_2_by_place_2*t249 - dnormal_3_by_place_2*t247)
-            dz_2_by_place_3 = (-dincrement_1_by_place_3*t233 +
-                dincrement_2_by_place_3*kept_begun*t248 - dincrement_3_by_place_3*t245 -
-                dnormal_1_by_place_3*t246 + dnormal_2_by_place_3*t249 - dnormal_3_by_place_3*t247)
-            dz_3_by_place_1 = (-dincrement_1_by_place_1*t234 - dincrement_2_by_place_1*t245 +
-                dincrement_3_by_place_1*kept_begun*t252 - dnormal_1_by_place_1*t250 -
-                dnormal_2_by_place_1*t251 + dnormal_3_by_place_1*t253)
-            dz_3_by_place_2 = (-dincrement_1_by_place_2*t234 - dincrement_2_by_place_2*t245 +
-                dincrement_3_by_place_2*kept_begun*t252 - dnormal_1_by_place_2*t250 -
-                dnormal_2_by_place_2*t251 + dnormal_3_by_place_2*t253)
-            dz_3_by_place_3 = (-dincrement_1_by_place_3*t234 - dincrement_2_by_place_3*t245 +
-                dincrement_3_by_place_3*kept_begun*t252 - dnormal_1_by_place_3*t250 -
-                dnormal_2_by_place_3*t251 + dnormal_3_by_place_3*t253)
+            t237 = -t233 - t234 - 2*t236
+            t238 = kept_begun*normal_2*normal_3
+            t239 = normal_2*t235
+            t240 = normal_2*t230
+            t241 = 1 - normal_2*normal_2
+            t242 = -2*t233 - t234 - t236
+            t243 = normal_3*t235
+            t244 = normal_3*t228
+            t245 = 1 - normal_3*normal_3
+            t246 = -t233 - 2*t234 - t236
+            dz_1_by_place_1 = (dincrement_1_by_place_1*kept_begun*t232 -
+                dincrement_2_by_place_1*t226 - dincrement_3_by_place_1*t227 +
+                dnormal_1_by_place_1*t237 - dnormal_2_by_place_1*t229 - dnormal_3_by_place_1*t231)
+            dz_1_by_place_2 = (dincrement_1_by_place_2*kept_begun*t232 -
+                dincrement_2_by_place_2*t226 - dincrement_3_by_place_2*t227 +
+                dnormal_1_by_place_2*t237 - dnormal_2_by_place_2*t229 - dnormal_3_by_place_2*t231)
+            dz_1_by_place_3 = (dincrement_1_by_place_3*kept_begun*t232 -
+                dincrement_2_by_place_3*t226 - dincrement_3_by_place_3*t227 +
+                dnormal_1_by_place_3*t237 - dnormal_2_by_place_3*t229 - dnormal_3_by_place_3*t231)
+            dz_2_by_place_1 = (-dincrement_1_by_place_1*t226 +
+                dincrement_2_by_place_1*kept_begun*t241 - dincrement_3_by_place_1*t238 -
+                dnormal_1_by_place_1*t239 + dnormal_2_by_place_1*t242 - dnormal_3_by_place_1*t240)
+            dz_2_by_place_2 = (-dincrement_1_by_place_2*t226 +
+                dincrement_2_by_place_2*kept_begun*t241 - dincrement_3_by_place_2*t238 -
+                dnormal_1_by_place_2*t239 + dnormal_2_by_place_2*t242 - dnormal_3_by_place_2*t240)
+            dz_2_by_place_3 = (-dincrement_1_by_place_3*t226 +
+                dincrement_2_by_place_3*kept_begun*t241 - dincrement_3_by_place_3*t238 -
+                dnormal_1_by_place_3*t239 + dnormal_2_by_place_3*t242 - dnormal_3_by_place_3*t240)
+            dz_3_by_place_1 = (-dincrement_1_by_place_1*t227 - dincrement_2_by_place_1*t238 +
+                dincrement_3_by_place_1*kept_begun*t245 - dnormal_1_by_place_1*t243 -
+                dnormal_2_by_place_1*t244 + dnormal_3_by_place_1*t246)
+            dz_3_by_place_2 = (-dincrement_1_by_place_2*t227 - dincrement_2_by_place_2*t238 +
+                dincrement_3_by_place_2*kept_begun*t245 - dnormal_1_by_place_2*t243 -
+                dnormal_2_by_place_2*t244 + dnormal_3_by_place_2*t246)
+            dz_3_by_place_3 = (-dincrement_1_by_place_3*t227 - dincrement_2_by_place_3*t238 +
+                dincrement_3_by_place_3*kept_begun*t245 - dnormal_1_by_place_3*t243 -
+                dnormal_2_by_place_3*t244 + dnormal_3_by_place_3*t246)
             ddynamic_limit_by_place_1 = coefficient*dpush_by_place_1
             ddynamic_limit_by_place_2 = coefficient*dpush_by_place_2
             ddynamic_limit_by_place_3 = coefficient*dpush_by_place_3
             ddynamic_limit_by_rate_1 = coefficient*dpush_by_rate_1
             ddynamic_limit_by_rate_2 = coefficient*dpush_by_rate_2
             ddynamic_limit_by_rate_3 = coefficient*dpush_by_rate_3
-            t254 = (1/sqrt(slip_1*slip_1 + slip_2*slip_2 + slip_3*slip_3 + 1e-12*speed*speed +
+            t247 = (1/sqrt(slip_1*slip_1 + slip_2*slip_2 + slip_3*slip_3 + 1e-12*speed*speed +
                 1e-300))
-            t255 = slip_1*t254
-            t256 = slip_2*t254
-            t257 = slip_3*t254
+            t248 = slip_1*t247
+            t249 = slip_2*t247
+            t250 = slip_3*t247
             dtrial_1_by_place_1 = bristle*dz_1_by_place_1 + bristle_damping*dslip_1_by_place_1
             dtrial_1_by_place_2 = bristle*dz_1_by_place_2 + bristle_damping*dslip_1_by_place_2
             dtrial_1_by_place_3 = bristle*dz_1_by_place_3 + bristle_damping*dslip_1_by_place_3
@@ -1048,103 +1031,103 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dtrial_3_by_rate_1 = bristle_damping*dslip_3_by_rate_1
             dtrial_3_by_rate_2 = bristle_damping*dslip_3_by_rate_2
             dtrial_3_by_rate_3 = bristle_damping*dslip_3_by_rate_3
-            dslip_speed_by_place_1 = (dslip_1_by_place_1*t255 + dslip_2_by_place_1*t256 +
-                dslip_3_by_place_1*t257)
-            dslip_speed_by_place_2 = (dslip_1_by_place_2*t255 + dslip_2_by_place_2*t256 +
-                dslip_3_by_place_2*t257)
-            dslip_speed_by_place_3 = (dslip_1_by_place_3*t255 + dslip_2_by_place_3*t256 +
-                dslip_3_by_place_3*t257)
-            dslip_speed_by_rate_1 = (dslip_1_by_rate_1*t255 + dslip_2_by_rate_1*t256 +
-                dslip_3_by_rate_1*t257)
-            dslip_speed_by_rate_2 = (dslip_1_by_rate_2*t255 + dslip_2_by_rate_2*t256 +
-                dslip_3_by_rate_2*t257)
-            dslip_speed_by_rate_3 = (dslip_1_by_rate_3*t255 + dslip_2_by_rate_3*t256 +
-                dslip_3_by_rate_3*t257)
-            t258 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
-            t259 = t258*trial_1
-            t260 = t258*trial_2
-            t261 = t258*trial_3
-            t262 = 1/slip_speed
-            t263 = 1/speed
-            t264 = slip_speed*t263
-            t265 = tanh(4*t264)
-            t266 = slip_speed*slip_speed
-            t267 = 0.75 + ((0.25)*t266)/(speed*speed)
-            t268 = -coefficient + static
-            t269 = t268/(t267*t267)
-            t270 = coefficient*t265 + t264*t269
-            t271 = t262*t270 if speed > 0.0 else 0
-            t272 = (push*t262*(4*coefficient*t263*(1 - t265*t265) + t263*t269 +
-                (-t266*t268)/(speed*speed*speed*t267*t267*t267)) - push*t270/t266 if speed > 0.0
+            dslip_speed_by_place_1 = (dslip_1_by_place_1*t248 + dslip_2_by_place_1*t249 +
+                dslip_3_by_place_1*t250)
+            dslip_speed_by_place_2 = (dslip_1_by_place_2*t248 + dslip_2_by_place_2*t249 +
+                dslip_3_by_place_2*t250)
+            dslip_speed_by_place_3 = (dslip_1_by_place_3*t248 + dslip_2_by_place_3*t249 +
+                dslip_3_by_place_3*t250)
+            dslip_speed_by_rate_1 = (dslip_1_by_rate_1*t248 + dslip_2_by_rate_1*t249 +
+                dslip_3_by_rate_1*t250)
+            dslip_speed_by_rate_2 = (dslip_1_by_rate_2*t248 + dslip_2_by_rate_2*t249 +
+                dslip_3_by_rate_2*t250)
+            dslip_speed_by_rate_3 = (dslip_1_by_rate_3*t248 + dslip_2_by_rate_3*t249 +
+                dslip_3_by_rate_3*t250)
+            t251 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
+            t252 = t251*trial_1
+            t253 = t251*trial_2
+            t254 = t251*trial_3
+            t255 = 1/slip_speed
+            t256 = 1/speed
+            t257 = slip_speed*t256
+            t258 = tanh(4*t257)
+            t259 = slip_speed*slip_speed
+            t260 = 0.75 + ((0.25)*t259)/(speed*speed)
+            t261 = -coefficient + static
+            t262 = t261/(t260*t260)
+            t263 = coefficient*t258 + t257*t262
+            t264 = t255*t263 if speed > 0.0 else 0
+            t265 = (push*t255*(4*coefficient*t256*(1 - t258*t258) + t256*t262 +
+                (-t259*t261)/(speed*speed*speed*t260*t260*t260)) - push*t263/t259 if speed > 0.0
                 else 0)
-            dtrial_size_by_place_1 = (dtrial_1_by_place_1*t259 + dtrial_2_by_place_1*t260 +
-                dtrial_3_by_place_1*t261)
-            dtrial_size_by_place_2 = (dtrial_1_by_place_2*t259 + dtrial_2_by_place_2*t260 +
-                dtrial_3_by_place_2*t261)
-            dtrial_size_by_place_3 = (dtrial_1_by_place_3*t259 + dtrial_2_by_place_3*t260 +
-                dtrial_3_by_place_3*t261)
-            dtrial_size_by_rate_1 = (dtrial_1_by_rate_1*t259 + dtrial_2_by_rate_1*t260 +
-                dtrial_3_by_rate_1*t261)
-            dtrial_size_by_rate_2 = (dtrial_1_by_rate_2*t259 + dtrial_2_by_rate_2*t260 +
-                dtrial_3_by_rate_2*t261)
-            dtrial_size_by_rate_3 = (dtrial_1_by_rate_3*t259 + dtrial_2_by_rate_3*t260 +
-                dtrial_3_by_rate_3*t261)
-            ddrag_by_place_1 = dpush_by_place_1*t271 + dslip_speed_by_place_1*t272
-            ddrag_by_place_2 = dpush_by_place_2*t271 + dslip_speed_by_place_2*t272
-            ddrag_by_place_3 = dpush_by_place_3*t271 + dslip_speed_by_place_3*t272
-            ddrag_by_rate_1 = dpush_by_rate_1*t271 + dslip_speed_by_rate_1*t272
-            ddrag_by_rate_2 = dpush_by_rate_2*t271 + dslip_speed_by_rate_2*t272
-            ddrag_by_rate_3 = dpush_by_rate_3*t271 + dslip_speed_by_rate_3*t272
-            t273 = slip_1 if speed > 0.0 else 0
-            t274 = drag if speed > 0.0 else 0
-            t275 = -static_limit + trial_size
-            t276 = 1/trial_size
-            t277 = 0 if speed > 0.0 else (t276*trial_1 if t275 > 0.0 else 0)
-            t278 = 0 if speed > 0.0 else (dynamic_limit*t276 if t275 > 0.0 else 1)
-            t279 = dynamic_limit/(trial_size*trial_size)
-            t280 = 0 if speed > 0.0 else (-t279*trial_1 if t275 > 0.0 else 0)
-            t281 = slip_2 if speed > 0.0 else 0
-            t282 = 0 if speed > 0.0 else (t276*trial_2 if t275 > 0.0 else 0)
-            t283 = 0 if speed > 0.0 else (-t279*trial_2 if t275 > 0.0 else 0)
-            t284 = slip_3 if speed > 0.0 else 0
-            t285 = 0 if speed > 0.0 else (t276*trial_3 if t275 > 0.0 else 0)
-            t286 = 0 if speed > 0.0 else (-t279*trial_3 if t275 > 0.0 else 0)
-            dfriction_1_by_place_1 = (ddrag_by_place_1*t273 + ddynamic_limit_by_place_1*t277 +
-                dslip_1_by_place_1*t274 + dtrial_1_by_place_1*t278 + dtrial_size_by_place_1*t280)
-            dfriction_1_by_place_2 = (ddrag_by_place_2*t273 + ddynamic_limit_by_place_2*t277 +
-                dslip_1_by_place_2*t274 + dtrial_1_by_place_2*t278 + dtrial_size_by_place_2*t280)
-            dfriction_1_by_place_3 = (ddrag_by_place_3*t273 + ddynamic_limit_by_place_3*t277 +
-                dslip_1_by_place_3*t274 + dtrial_1_by_place_3*t278 + dtrial_size_by_place_3*t280)
-            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t273 + ddynamic_limit_by_rate_1*t277 +
-                dslip_1_by_rate_1*t274 + dtrial_1_by_rate_1*t278 + dtrial_size_by_rate_1*t280)
-            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t273 + ddynamic_limit_by_rate_2*t277 +
-                dslip_1_by_rate_2*t274 + dtrial_1_by_rate_2*t278 + dtrial_size_by_rate_2*t280)
-            dfriction_1_by_rate_3 = (ddrag_by_rate_3*t273 + ddynamic_limit_by_rate_3*t277 +
-                dslip_1_by_rate_3*t274 + dtrial_1_by_rate_3*t278 + dtrial_size_by_rate_3*t280)
-            dfriction_2_by_place_1 = (ddrag_by_place_1*t281 + ddynamic_limit_by_place_1*t282 +
-                dslip_2_by_place_1*t274 + dtrial_2_by_place_1*t278 + dtrial_size_by_place_1*t283)
-            dfriction_2_by_place_2 = (ddrag_by_place_2*t281 + ddynamic_limit_by_place_2*t282 +
-                dslip_2_by_place_2*t274 + dtrial_2_by_place_2*t278 + dtrial_size_by_place_2*t283)
-            dfriction_2_by_place_3 = (ddrag_by_place_3*t281 + ddynamic_limit_by_place_3*t282 +
-                dslip_2_by_place_3*t274 + dtrial_2_by_place_3*t278 + dtrial_size_by_place_3*t283)
-            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t281 + ddynamic_limit_by_rate_1*t282 +
-                dslip_2_by_rate_1*t274 + dtrial_2_by_rate_1*t278 + dtrial_size_by_rate_1*t283)
-            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t281 + ddynamic_limit_by_rate_2*t282 +
-                dslip_2_by_rate_2*t274 + dtrial_2_by_rate_2*t278 + dtrial_size_by_rate_2*t283)
-            dfriction_2_by_rate_3 = (ddrag_by_rate_3*t281 + ddynamic_limit_by_rate_3*t282 +
-                dslip_2_by_rate_3*t274 + dtrial_2_by_rate_3*t278 + dtrial_size_by_rate_3*t283)
-            dfriction_3_by_place_1 = (ddrag_by_place_1*t284 + ddynamic_limit_by_place_1*t285 +
-                dslip_3_by_place_1*t274 + dtrial_3_by_place_1*t278 + dtrial_size_by_place_1*t286)
-            dfriction_3_by_place_2 = (ddrag_by_place_2*t284 + ddynamic_limit_by_place_2*t285 +
-                dslip_3_by_place_2*t274 + dtrial_3_by_place_2*t278 + dtrial_size_by_place_2*t286)
-            dfriction_3_by_place_3 = (ddrag_by_place_3*t284 + ddynamic_limit_by_place_3*t285 +
-                dslip_3_by_place_3*t274 + dtrial_3_by_place_3*t278 + dtrial_size_by_place_3*t286)
-            dfriction_3_by_rate_1 = (ddrag_by_rate_1*t284 + ddynamic_limit_by_rate_1*t285 +
-                dslip_3_by_rate_1*t274 + dtrial_3_by_rate_1*t278 + dtrial_size_by_rate_1*t286)
-            dfriction_3_by_rate_2 = (ddrag_by_rate_2*t284 + ddynamic_limit_by_rate_2*t285 +
-                dslip_3_by_rate_2*t274 + dtrial_3_by_rate_2*t278 + dtrial_size_by_rate_2*t286)
-            dfriction_3_by_rate_3 = (ddrag_by_rate_3*t284 + ddynamic_limit_by_rate_3*t285 +
-                dslip_3_by_rate_3*t274 + dtrial_3_by_rate_3*t278 + dtrial_size_by_rate_3*t286)
+            dtrial_size_by_place_1 = (dtrial_1_by_place_1*t252 + dtrial_2_by_place_1*t253 +
+                dtrial_3_by_place_1*t254)
+            dtrial_size_by_place_2 = (dtrial_1_by_place_2*t252 + dtrial_2_by_place_2*t253 +
+                dtrial_3_by_place_2*t254)
+            dtrial_size_by_place_3 = (dtrial_1_by_place_3*t252 + dtrial_2_by_place_3*t253 +
+                dtrial_3_by_place_3*t254)
+            dtrial_size_by_rate_1 = (dtrial_1_by_rate_1*t252 + dtrial_2_by_rate_1*t253 +
+                dtrial_3_by_rate_1*t254)
+            dtrial_size_by_rate_2 = (dtrial_1_by_rate_2*t252 + dtrial_2_by_rate_2*t253 +
+                dtrial_3_by_rate_2*t254)
+            dtrial_size_by_rate_3 = (dtrial_1_by_rate_3*t252 + dtrial_2_by_rate_3*t253 +
+                dtrial_3_by_rate_3*t254)
+            ddrag_by_place_1 = dpush_by_place_1*t264 + dslip_speed_by_place_1*t265
+            ddrag_by_place_2 = dpush_by_place_2*t264 + dslip_speed_by_place_2*t265
+            ddrag_by_place_3 = dpush_by_place_3*t264 + dslip_speed_by_place_3*t265
+            ddrag_by_rate_1 = dpush_by_rate_1*t264 + dslip_speed_by_rate_1*t265
+            ddrag_by_rate_2 = dpush_by_rate_2*t264 + dslip_speed_by_rate_2*t265
+            ddrag_by_rate_3 = dpush_by_rate_3*t264 + dslip_speed_by_rate_3*t265
+            t266 = slip_1 if speed > 0.0 else 0
+            t267 = drag if speed > 0.0 else 0
+            t268 = -static_limit + trial_size
+            t269 = 1/trial_size
+            t270 = 0 if speed > 0.0 else (t269*trial_1 if t268 > 0.0 else 0)
+            t271 = 0 if speed > 0.0 else (dynamic_limit*t269 if t268 > 0.0 else 1)
+            t272 = dynamic_limit/(trial_size*trial_size)
+            t273 = 0 if speed > 0.0 else (-t272*trial_1 if t268 > 0.0 else 0)
+            t274 = slip_2 if speed > 0.0 else 0
+            t275 = 0 if speed > 0.0 else (t269*trial_2 if t268 > 0.0 else 0)
+            t276 = 0 if speed > 0.0 else (-t272*trial_2 if t268 > 0.0 else 0)
+            t277 = slip_3 if speed > 0.0 else 0
+            t278 = 0 if speed > 0.0 else (t269*trial_3 if t268 > 0.0 else 0)
+            t279 = 0 if speed > 0.0 else (-t272*trial_3 if t268 > 0.0 else 0)
+            dfriction_1_by_place_1 = (ddrag_by_place_1*t266 + ddynamic_limit_by_place_1*t270 +
+                dslip_1_by_place_1*t267 + dtrial_1_by_place_1*t271 + dtrial_size_by_place_1*t273)
+            dfriction_1_by_place_2 = (ddrag_by_place_2*t266 + ddynamic_limit_by_place_2*t270 +
+                dslip_1_by_place_2*t267 + dtrial_1_by_place_2*t271 + dtrial_size_by_place_2*t273)
+            dfriction_1_by_place_3 = (ddrag_by_place_3*t266 + ddynamic_limit_by_place_3*t270 +
+                dslip_1_by_place_3*t267 + dtrial_1_by_place_3*t271 + dtrial_size_by_place_3*t273)
+            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t266 + ddynamic_limit_by_rate_1*t270 +
+                dslip_1_by_rate_1*t267 + dtrial_1_by_rate_1*t271 + dtrial_size_by_rate_1*t273)
+            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t266 + ddynamic_limit_by_rate_2*t270 +
+                dslip_1_by_rate_2*t267 + dtrial_1_by_rate_2*t271 + dtrial_size_by_rate_2*t273)
+            dfriction_1_by_rate_3 = (ddrag_by_rate_3*t266 + ddynamic_limit_by_rate_3*t270 +
+                dslip_1_by_rate_3*t267 + dtrial_1_by_rate_3*t271 + dtrial_size_by_rate_3*t273)
+            dfriction_2_by_place_1 = (ddrag_by_place_1*t274 + ddynamic_limit_by_place_1*t275 +
+                dslip_2_by_place_1*t267 + dtrial_2_by_place_1*t271 + dtrial_size_by_place_1*t276)
+            dfriction_2_by_place_2 = (ddrag_by_place_2*t274 + ddynamic_limit_by_place_2*t275 +
+                dslip_2_by_place_2*t267 + dtrial_2_by_place_2*t271 + dtrial_size_by_place_2*t276)
+            dfriction_2_by_place_3 = (ddrag_by_place_3*t274 + ddynamic_limit_by_place_3*t275 +
+                dslip_2_by_place_3*t267 + dtrial_2_by_place_3*t271 + dtrial_size_by_place_3*t276)
+            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t274 + ddynamic_limit_by_rate_1*t275 +
+                dslip_2_by_rate_1*t267 + dtrial_2_by_rate_1*t271 + dtrial_size_by_rate_1*t276)
+            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t274 + ddynamic_limit_by_rate_2*t275 +
+                dslip_2_by_rate_2*t267 + dtrial_2_by_rate_2*t271 + dtrial_size_by_rate_2*t276)
+            dfriction_2_by_rate_3 = (ddrag_by_rate_3*t274 + ddynamic_limit_by_rate_3*t275 +
+                dslip_2_by_rate_3*t267 + dtrial_2_by_rate_3*t271 + dtrial_size_by_rate_3*t276)
+            dfriction_3_by_place_1 = (ddrag_by_place_1*t277 + ddynamic_limit_by_place_1*t278 +
+                dslip_3_by_place_1*t267 + dtrial_3_by_place_1*t271 + dtrial_size_by_place_1*t279)
+            dfriction_3_by_place_2 = (ddrag_by_place_2*t277 + ddynamic_limit_by_place_2*t278 +
+                dslip_3_by_place_2*t267 + dtrial_3_by_place_2*t271 + dtrial_size_by_place_2*t279)
+            dfriction_3_by_place_3 = (ddrag_by_place_3*t277 + ddynamic_limit_by_place_3*t278 +
+                dslip_3_by_place_3*t267 + dtrial_3_by_place_3*t271 + dtrial_size_by_place_3*t279)
+            dfriction_3_by_rate_1 = (ddrag_by_rate_1*t277 + ddynamic_limit_by_rate_1*t278 +
+                dslip_3_by_rate_1*t267 + dtrial_3_by_rate_1*t271 + dtrial_size_by_rate_1*t279)
+            dfriction_3_by_rate_2 = (ddrag_by_rate_2*t277 + ddynamic_limit_by_rate_2*t278 +
+                dslip_3_by_rate_2*t267 + dtrial_3_by_rate_2*t271 + dtrial_size_by_rate_2*t279)
+            dfriction_3_by_rate_3 = (ddrag_by_rate_3*t277 + ddynamic_limit_by_rate_3*t278 +
+                dslip_3_by_rate_3*t267 + dtrial_3_by_rate_3*t271 + dtrial_size_by_rate_3*t279)
             for column in range(width):
                 for i in range(width):
                     dqe[i] = 0.0
@@ -1192,12 +1175,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gam_positionz_x, Gam_positionz_y, Gam_positionz_z = (Gam[3*(i3 + 2)],
                         Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t313 = -dx0_x + dx_x
-                    t314 = -dx0_y + dx_y
-                    t315 = -dx0_z + dx_z
-                    rhs_x += -Gam_positionx_x*t313 - Gam_positiony_x*t314 - Gam_positionz_x*t315
-                    rhs_y += -Gam_positionx_y*t313 - Gam_positiony_y*t314 - Gam_positionz_y*t315
-                    rhs_z += -Gam_positionx_z*t313 - Gam_positiony_z*t314 - Gam_positionz_z*t315
+                    t301 = -dx0_x + dx_x
+                    t302 = -dx0_y + dx_y
+                    t303 = -dx0_z + dx_z
+                    rhs_x += -Gam_positionx_x*t301 - Gam_positiony_x*t302 - Gam_positionz_x*t303
+                    rhs_y += -Gam_positionx_y*t301 - Gam_positiony_y*t302 - Gam_positionz_y*t303
+                    rhs_z += -Gam_positionx_z*t301 - Gam_positiony_z*t302 - Gam_positionz_z*t303
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
@@ -1209,20 +1192,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         Gam[3*(j3 + 2) + 1], Gam[3*(j3 + 2) + 2])
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t316 = dth_y*psi_z
-                    t317 = dth_x*psi_y
-                    t318 = e0*(dth_y*psi_x - t317)
-                    t319 = dth_x*psi_z
-                    t320 = dth_z*psi_x
-                    t321 = t319 - t320
-                    t322 = e0*psi_z
-                    t323 = dth_x + (0.5)*dth_z*psi_y + psi_y*t318 - 0.5*t316 - t321*t322
-                    t324 = dth_z*psi_y - t316
-                    t325 = dth_y - psi_x*t318 + (0.5)*t319 - 0.5*t320 + t322*t324
-                    t326 = (0.5)*dth_y*psi_x + dth_z + e0*psi_x*t321 - e0*psi_y*t324 - 0.5*t317
-                    rhs_x += -Gam_rotationx_x*t323 - Gam_rotationy_x*t325 - Gam_rotationz_x*t326
-                    rhs_y += -Gam_rotationx_y*t323 - Gam_rotationy_y*t325 - Gam_rotationz_y*t326
-                    rhs_z += -Gam_rotationx_z*t323 - Gam_rotationy_z*t325 - Gam_rotationz_z*t326
+                    t304 = dth_y*psi_z
+                    t305 = dth_x*psi_y
+                    t306 = e0*(dth_y*psi_x - t305)
+                    t307 = dth_x*psi_z
+                    t308 = dth_z*psi_x
+                    t309 = t307 - t308
+                    t310 = e0*psi_z
+                    t311 = dth_x + (0.5)*dth_z*psi_y + psi_y*t306 - 0.5*t304 - t309*t310
+                    t312 = dth_z*psi_y - t304
+                    t313 = dth_y - psi_x*t306 + (0.5)*t307 - 0.5*t308 + t310*t312
+                    t314 = (0.5)*dth_y*psi_x + dth_z + e0*psi_x*t309 - e0*psi_y*t312 - 0.5*t305
+                    rhs_x += -Gam_rotationx_x*t311 - Gam_rotationy_x*t313 - Gam_rotationz_x*t314
+                    rhs_y += -Gam_rotationx_y*t311 - Gam_rotationy_y*t313 - Gam_rotationz_y*t314
+                    rhs_z += -Gam_rotationx_z*t311 - Gam_rotationy_z*t313 - Gam_rotationz_z*t314
                 for k in range(MODES, n):
                     Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
                     dqm = dqe[k]
@@ -1238,43 +1221,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t327 = X_y + u_y
-                    t328 = X_z + u_z
-                    t329 = X_x + u_x
-                    dy[i3] = -dth0_y*t328 + dth0_z*t327 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t328 - dth0_z*t329 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t327 + dth0_y*t329 - dx0_z + dx_z
+                    t315 = X_y + u_y
+                    t316 = X_z + u_z
+                    t317 = X_x + u_x
+                    dy[i3] = -dth0_y*t316 + dth0_z*t315 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t316 - dth0_z*t317 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t315 + dth0_y*t317 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t330 = dth0_y*psi_z
-                    t331 = dth_y*psi_z
-                    t332 = dth0_x*psi_y
-                    t333 = dth0_y*psi_x - t332
-                    t334 = e0*psi_y
-                    t335 = dth_x*psi_z
-                    t336 = dth_z*psi_x
-                    t337 = t335 - t336
-                    t338 = e0*psi_z
-                    t339 = dth_x*psi_y
-                    t340 = dth_y*psi_x - t339
-                    t341 = dth0_x*psi_z
-                    t342 = dth0_z*psi_x
-                    t343 = t341 - t342
-                    t344 = e0*psi_x
-                    t345 = dth_z*psi_y - t331
-                    t346 = dth0_z*psi_y - t330
-                    dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t340 + e0*psi_z*t343 - 0.5*t330 - 0.5*t331 - t333*t334 -
-                        t337*t338)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t333*t344 + (0.5)*t335 - 0.5*t336 + t338*t345
-                        - t338*t346 - t340*t344 + (0.5)*t341 - 0.5*t342)
-                    dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t337 + e0*psi_y*t346 - 0.5*t332 - t334*t345 - 0.5*t339 -
-                        t343*t344)
+                    t318 = (0.5)*dth0_z + (0.5)*dth_z
+                    t319 = dth0_y + dth_y
+                    t320 = (0.5)*psi_z
+                    t321 = -dth0_y + dth_y
+                    t322 = -dth0_x + dth_x
+                    t323 = psi_x*t321 - psi_y*t322
+                    t324 = -dth0_z + dth_z
+                    t325 = -psi_x*t324 + psi_z*t322
+                    t326 = dth0_x + dth_x
+                    t327 = psi_y*t324 - psi_z*t321
+                    dy[j3] = -dth0_x + dth_x + e0*(psi_y*t323 - psi_z*t325) + psi_y*t318 - t319*t320
+                    dy[j3 + 1] = (-dth0_y + dth_y + e0*(-psi_x*t323 + psi_z*t327) - psi_x*t318 +
+                        t320*t326)
+                    dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t325 - psi_y*t327) +
+                        (0.5)*psi_x*t319 - 0.5*psi_y*t326)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
@@ -1359,12 +1332,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t347 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
-                    t348 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
-                    t349 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
-                    rhs_x += -Gam_positionx_x*t347 - Gam_positiony_x*t348 - Gam_positionz_x*t349
-                    rhs_y += -Gam_positionx_y*t347 - Gam_positiony_y*t348 - Gam_positionz_y*t349
-                    rhs_z += -Gam_positionx_z*t347 - Gam_positiony_z*t348 - Gam_positionz_z*t349
+                    t328 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
+                    t329 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
+                    t330 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
+                    rhs_x += -Gam_positionx_x*t328 - Gam_positiony_x*t329 - Gam_positionz_x*t330
+                    rhs_y += -Gam_positionx_y*t328 - Gam_positiony_y*t329 - Gam_positionz_y*t330
+                    rhs_z += -Gam_positionx_z*t328 - Gam_positiony_z*t329 - Gam_positionz_z*t330
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
@@ -1379,55 +1352,55 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t350 = Om0_y*dpsi_z
-                    t351 = Om_y*dpsi_z
-                    t352 = dOm_y*psi_z
-                    t353 = -Om_x*psi_y + Om_y*psi_x
-                    t354 = dpsi_y*e0
-                    t355 = Om0_x*psi_z - Om0_z*psi_x
-                    t356 = dpsi_z*e0
-                    t357 = Om0_x*dpsi_z
-                    t358 = Om0_z*dpsi_x
-                    t359 = t357 - t358
-                    t360 = e0*psi_z
-                    t361 = -Om0_x*psi_y + Om0_y*psi_x
-                    t362 = Om_x*psi_z - Om_z*psi_x
-                    t363 = Om0_x*dpsi_y
-                    t364 = Om0_y*dpsi_x - t363
-                    t365 = e0*psi_y
-                    t366 = Om_x*dpsi_y
-                    t367 = dOm_x*psi_y
-                    t368 = Om_y*dpsi_x + dOm_y*psi_x - t366 - t367
-                    t369 = Om_x*dpsi_z
-                    t370 = dOm_x*psi_z
-                    t371 = Om_z*dpsi_x
-                    t372 = dOm_z*psi_x
-                    t373 = t369 + t370 - t371 - t372
-                    t374 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t375 = psi_y*t374
-                    t376 = psi_z*t374
-                    t377 = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y + dOm_x + (0.5)*dOm_z*psi_y -
-                        0.5*t350 - 0.5*t351 - 0.5*t352 + t353*t354 + t353*t375 - t354*t361 +
-                        t355*t356 + t355*t376 - t356*t362 + t359*t360 - t360*t373 - t361*t375 -
-                        t362*t376 - t364*t365 + t365*t368)
-                    t378 = dpsi_x*e0
-                    t379 = -Om_y*psi_z + Om_z*psi_y
-                    t380 = e0*psi_x
-                    t381 = -Om0_y*psi_z + Om0_z*psi_y
-                    t382 = Om0_z*dpsi_y - t350
-                    t383 = Om_z*dpsi_y + dOm_z*psi_y - t351 - t352
-                    t384 = psi_x*t374
-                    t385 = (dOm_y - t353*t378 - t353*t384 + t356*t379 - t356*t381 + (0.5)*t357 -
-                        0.5*t358 - t360*t382 + t360*t383 + t361*t378 + t361*t384 + t364*t380 -
-                        t368*t380 + (0.5)*t369 + (0.5)*t370 - 0.5*t371 - 0.5*t372 + t376*t379 -
-                        t376*t381)
-                    t386 = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm_y*psi_x + dOm_z -
-                        t354*t379 + t354*t381 - t355*t378 - t355*t384 - t359*t380 + t362*t378 +
-                        t362*t384 - 0.5*t363 + t365*t382 - t365*t383 - 0.5*t366 - 0.5*t367 +
-                        t373*t380 - t375*t379 + t375*t381)
-                    rhs_x += -Gam_rotationx_x*t377 - Gam_rotationy_x*t385 - Gam_rotationz_x*t386
-                    rhs_y += -Gam_rotationx_y*t377 - Gam_rotationy_y*t385 - Gam_rotationz_y*t386
-                    rhs_z += -Gam_rotationx_z*t377 - Gam_rotationy_z*t385 - Gam_rotationz_z*t386
+                    t331 = Om0_y*dpsi_z
+                    t332 = Om_y*dpsi_z
+                    t333 = dOm_y*psi_z
+                    t334 = -Om_x*psi_y + Om_y*psi_x
+                    t335 = dpsi_y*e0
+                    t336 = Om0_x*psi_z - Om0_z*psi_x
+                    t337 = dpsi_z*e0
+                    t338 = Om0_x*dpsi_z
+                    t339 = Om0_z*dpsi_x
+                    t340 = t338 - t339
+                    t341 = e0*psi_z
+                    t342 = -Om0_x*psi_y + Om0_y*psi_x
+                    t343 = Om_x*psi_z - Om_z*psi_x
+                    t344 = Om0_x*dpsi_y
+                    t345 = Om0_y*dpsi_x - t344
+                    t346 = e0*psi_y
+                    t347 = Om_x*dpsi_y
+                    t348 = dOm_x*psi_y
+                    t349 = Om_y*dpsi_x + dOm_y*psi_x - t347 - t348
+                    t350 = Om_x*dpsi_z
+                    t351 = dOm_x*psi_z
+                    t352 = Om_z*dpsi_x
+                    t353 = dOm_z*psi_x
+                    t354 = t350 + t351 - t352 - t353
+                    t355 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t356 = psi_y*t355
+                    t357 = psi_z*t355
+                    t358 = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y + dOm_x + (0.5)*dOm_z*psi_y -
+                        0.5*t331 - 0.5*t332 - 0.5*t333 + t334*t335 + t334*t356 - t335*t342 +
+                        t336*t337 + t336*t357 - t337*t343 + t340*t341 - t341*t354 - t342*t356 -
+                        t343*t357 - t345*t346 + t346*t349)
+                    t359 = dpsi_x*e0
+                    t360 = -Om_y*psi_z + Om_z*psi_y
+                    t361 = e0*psi_x
+                    t362 = -Om0_y*psi_z + Om0_z*psi_y
+                    t363 = Om0_z*dpsi_y - t331
+                    t364 = Om_z*dpsi_y + dOm_z*psi_y - t332 - t333
+                    t365 = psi_x*t355
+                    t366 = (dOm_y - t334*t359 - t334*t365 + t337*t360 - t337*t362 + (0.5)*t338 -
+                        0.5*t339 - t341*t363 + t341*t364 + t342*t359 + t342*t365 + t345*t361 -
+                        t349*t361 + (0.5)*t350 + (0.5)*t351 - 0.5*t352 - 0.5*t353 + t357*t360 -
+                        t357*t362)
+                    t367 = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm_y*psi_x + dOm_z -
+                        t335*t360 + t335*t362 - t336*t359 - t336*t365 - t340*t361 + t343*t359 +
+                        t343*t365 - 0.5*t344 + t346*t363 - t346*t364 - 0.5*t347 - 0.5*t348 +
+                        t354*t361 - t356*t360 + t356*t362)
+                    rhs_x += -Gam_rotationx_x*t358 - Gam_rotationy_x*t366 - Gam_rotationz_x*t367
+                    rhs_y += -Gam_rotationx_y*t358 - Gam_rotationy_y*t366 - Gam_rotationz_y*t367
+                    rhs_z += -Gam_rotationx_z*t358 - Gam_rotationy_z*t366 - Gam_rotationz_z*t367
                 for k in range(MODES, n):
                     Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
                     dvm = dve[k]
@@ -1453,13 +1426,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t387 = X_y + u_y
-                    t388 = X_z + u_z
-                    t389 = X_x + u_x
-                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t388 + dOm0_z*t387 - dv0_x + dvs_x
-                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t388 - dOm0_z*t389 - dv0_y +
+                    t368 = X_y + u_y
+                    t369 = X_z + u_z
+                    t370 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t369 + dOm0_z*t368 - dv0_x + dvs_x
+                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t369 - dOm0_z*t370 - dv0_y +
                         dvs_y)
-                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t387 + dOm0_y*t389 - dv0_z +
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t368 + dOm0_y*t370 - dv0_z +
                         dvs_z)
                 # differential: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -1470,59 +1443,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t390 = Om0_y*dpsi_z
-                    t391 = Om_y*dpsi_z
-                    t392 = dOm0_y*psi_z
-                    t393 = dOm_y*psi_z
-                    t394 = -Om0_x*psi_y + Om0_y*psi_x
-                    t395 = dpsi_y*e0
-                    t396 = Om_x*psi_z - Om_z*psi_x
-                    t397 = dpsi_z*e0
-                    t398 = -Om_x*psi_y + Om_y*psi_x
-                    t399 = Om0_x*psi_z - Om0_z*psi_x
-                    t400 = Om0_x*dpsi_y
-                    t401 = dOm0_x*psi_y
-                    t402 = Om0_y*dpsi_x + dOm0_y*psi_x - t400 - t401
-                    t403 = e0*psi_y
-                    t404 = Om_x*dpsi_z
-                    t405 = dOm_x*psi_z
-                    t406 = Om_z*dpsi_x
-                    t407 = dOm_z*psi_x
-                    t408 = t404 + t405 - t406 - t407
-                    t409 = e0*psi_z
-                    t410 = Om_x*dpsi_y
-                    t411 = dOm_x*psi_y
-                    t412 = Om_y*dpsi_x + dOm_y*psi_x - t410 - t411
-                    t413 = Om0_x*dpsi_z
-                    t414 = dOm0_x*psi_z
-                    t415 = Om0_z*dpsi_x
-                    t416 = dOm0_z*psi_x
-                    t417 = t413 + t414 - t415 - t416
-                    t418 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t419 = e1*t418
-                    t420 = psi_y*t419
-                    t421 = psi_z*t419
-                    t422 = dpsi_x*e0
-                    t423 = -Om_y*psi_z + Om_z*psi_y
-                    t424 = -Om0_y*psi_z + Om0_z*psi_y
-                    t425 = e0*psi_x
-                    t426 = Om_z*dpsi_y + dOm_z*psi_y - t391 - t393
-                    t427 = Om0_z*dpsi_y + dOm0_z*psi_y - t390 - t392
-                    t428 = psi_x*t419
-                    deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x +
-                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t398 +
-                        dpsi_z*e0*t399 + e0*psi_y*t412 + e0*psi_z*t417 + e1*psi_y*t398*t418 +
-                        e1*psi_z*t399*t418 - 0.5*t390 - 0.5*t391 - 0.5*t392 - 0.5*t393 - t394*t395
-                        - t394*t420 - t396*t397 - t396*t421 - t402*t403 - t408*t409)
-                    deta[j3 + 1] = (-dOm0_y + dOm_y + t394*t422 + t394*t428 + t397*t423 -
-                        t397*t424 - t398*t422 - t398*t428 + t402*t425 + (0.5)*t404 + (0.5)*t405 -
-                        0.5*t406 - 0.5*t407 + t409*t426 - t409*t427 - t412*t425 + (0.5)*t413 +
-                        (0.5)*t414 - 0.5*t415 - 0.5*t416 + t421*t423 - t421*t424)
-                    deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t396 + dpsi_y*e0*t424 +
-                        e0*psi_x*t408 + e0*psi_y*t427 + e1*psi_x*t396*t418 + e1*psi_y*t418*t424 -
-                        t395*t423 - t399*t422 - t399*t428 - 0.5*t400 - 0.5*t401 - t403*t426 -
-                        0.5*t410 - 0.5*t411 - t417*t425 - t420*t423)
+                    t371 = (0.5)*Om0_z + (0.5)*Om_z
+                    t372 = Om0_y + Om_y
+                    t373 = (0.5)*dpsi_z
+                    t374 = (0.5)*dOm0_z + (0.5)*dOm_z
+                    t375 = dOm0_y + dOm_y
+                    t376 = (0.5)*psi_z
+                    t377 = -Om0_y + Om_y
+                    t378 = -Om0_x + Om_x
+                    t379 = psi_x*t377 - psi_y*t378
+                    t380 = -Om0_z + Om_z
+                    t381 = -psi_x*t380 + psi_z*t378
+                    t382 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t383 = -dOm0_y + dOm_y
+                    t384 = -dOm0_x + dOm_x
+                    t385 = dpsi_x*t377 - dpsi_y*t378 + psi_x*t383 - psi_y*t384
+                    t386 = -dOm0_z + dOm_z
+                    t387 = -dpsi_x*t380 + dpsi_z*t378 - psi_x*t386 + psi_z*t384
+                    t388 = Om0_x + Om_x
+                    t389 = dOm0_x + dOm_x
+                    t390 = psi_y*t380 - psi_z*t377
+                    t391 = dpsi_y*t380 - dpsi_z*t377 + psi_y*t386 - psi_z*t383
+                    deta[j3] = (-dOm0_x + dOm_x + dpsi_y*t371 + e0*(dpsi_y*t379 - dpsi_z*t381 +
+                        psi_y*t385 - psi_z*t387) + psi_y*t374 - t372*t373 - t375*t376 +
+                        t382*(psi_y*t379 - psi_z*t381))
+                    deta[j3 + 1] = (-dOm0_y + dOm_y - dpsi_x*t371 + e0*(-dpsi_x*t379 + dpsi_z*t390
+                        - psi_x*t385 + psi_z*t391) - psi_x*t374 + t373*t388 + t376*t389 +
+                        t382*(-psi_x*t379 + psi_z*t390))
+                    deta[j3 + 2] = (-dOm0_z + dOm_z + (0.5)*dpsi_x*t372 - 0.5*dpsi_y*t388 +
+                        e0*(dpsi_x*t381 - dpsi_y*t390 + psi_x*t387 - psi_y*t391) +
+                        (0.5)*psi_x*t375 - 0.5*psi_y*t389 + t382*(psi_x*t381 - psi_y*t390))
                 # differential: rates of the internal modes
                 for k in range(MODES, n):
                     dvm = dve[k]
@@ -1562,18 +1512,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dupd_y += Phi_mode_y*dem
                     dupd_z += Phi_mode_z*dem
                 # differential: velocity of the point
-                t429 = Om0_y*drp_z - Om0_z*drp_y + dOm0_y*rp_z - dOm0_z*rp_y + dupd_x + dv0_x
-                t430 = -Om0_x*drp_z + Om0_z*drp_x - dOm0_x*rp_z + dOm0_z*rp_x + dupd_y + dv0_y
-                t431 = Om0_x*drp_y - Om0_y*drp_x + dOm0_x*rp_y - dOm0_y*rp_x + dupd_z + dv0_z
-                t432 = Om0_x*rp_y - Om0_y*rp_x + upd_z + v0_z
-                t433 = -Om0_x*rp_z + Om0_z*rp_x + upd_y + v0_y
-                t434 = Om0_y*rp_z - Om0_z*rp_y + upd_x + v0_x
-                dva_x = (R0_xx*t429 + R0_xy*t430 + R0_xz*t431 + t432*(R0_xx*dth0_y - R0_xy*dth0_x)
-                    + t433*(-R0_xx*dth0_z + R0_xz*dth0_x) + t434*(R0_xy*dth0_z - R0_xz*dth0_y))
-                dva_y = (R0_yx*t429 + R0_yy*t430 + R0_yz*t431 + t432*(R0_yx*dth0_y - R0_yy*dth0_x)
-                    + t433*(-R0_yx*dth0_z + R0_yz*dth0_x) + t434*(R0_yy*dth0_z - R0_yz*dth0_y))
-                dva_z = (R0_zx*t429 + R0_zy*t430 + R0_zz*t431 + t432*(R0_zx*dth0_y - R0_zy*dth0_x)
-                    + t433*(-R0_zx*dth0_z + R0_zz*dth0_x) + t434*(R0_zy*dth0_z - R0_zz*dth0_y))
+                t392 = Om0_y*drp_z - Om0_z*drp_y + dOm0_y*rp_z - dOm0_z*rp_y + dupd_x + dv0_x
+                t393 = -Om0_x*drp_z + Om0_z*drp_x - dOm0_x*rp_z + dOm0_z*rp_x + dupd_y + dv0_y
+                t394 = Om0_x*drp_y - Om0_y*drp_x + dOm0_x*rp_y - dOm0_y*rp_x + dupd_z + dv0_z
+                t395 = Om0_x*rp_y - Om0_y*rp_x + upd_z + v0_z
+                t396 = -Om0_x*rp_z + Om0_z*rp_x + upd_y + v0_y
+                t397 = Om0_y*rp_z - Om0_z*rp_y + upd_x + v0_x
+                dva_x = (R0_xx*t392 + R0_xy*t393 + R0_xz*t394 + t395*(R0_xx*dth0_y - R0_xy*dth0_x)
+                    + t396*(-R0_xx*dth0_z + R0_xz*dth0_x) + t397*(R0_xy*dth0_z - R0_xz*dth0_y))
+                dva_y = (R0_yx*t392 + R0_yy*t393 + R0_yz*t394 + t395*(R0_yx*dth0_y - R0_yy*dth0_x)
+                    + t396*(-R0_yx*dth0_z + R0_yz*dth0_x) + t397*(R0_yy*dth0_z - R0_yz*dth0_y))
+                dva_z = (R0_zx*t392 + R0_zy*t393 + R0_zz*t394 + t395*(R0_zx*dth0_y - R0_zy*dth0_x)
+                    + t396*(-R0_zx*dth0_z + R0_zz*dth0_x) + t397*(R0_zy*dth0_z - R0_zz*dth0_y))
                 dxb_x = dqe[n]
                 dxb_y = dqe[n + 1]
                 dxb_z = dqe[n + 2]
@@ -1586,139 +1536,139 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = dve[n + 3]
                 uthb_y = dve[n + 4]
                 uthb_z = dve[n + 5]
-                t435 = dxa_x - dxb_x
-                t436 = dxa_y - dxb_y
-                t437 = dxa_z - dxb_z
-                t438 = xa_x - xb_x
-                t439 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t440 = xa_y - xb_y
-                t441 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t442 = xa_z - xb_z
-                t443 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t444 = Rb_xx*t435 + Rb_yx*t436 + Rb_zx*t437 + t438*t439 + t440*t441 + t442*t443
-                t445 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t446 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t447 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t448 = Rb_xy*t435 + Rb_yy*t436 + Rb_zy*t437 + t438*t445 + t440*t446 + t442*t447
-                t449 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t450 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t451 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t452 = Rb_xz*t435 + Rb_yz*t436 + Rb_zz*t437 + t438*t449 + t440*t450 + t442*t451
-                t453 = va_x - vb_x
-                t454 = va_y - vb_y
-                t455 = va_z - vb_z
-                t456 = dva_x - uxb_x
-                t457 = dva_y - uxb_y
-                t458 = dva_z - uxb_z
-                t459 = Rb_xy*t438 + Rb_yy*t440 + Rb_zy*t442
-                t460 = Rb_xz*t438 + Rb_yz*t440 + Rb_zz*t442
-                t461 = Rb_xx*t438 + Rb_yx*t440 + Rb_zx*t442
-                dplace_1 = t444
-                dplace_2 = t448
-                dplace_3 = t452
-                drate_1 = -Omb_y*t452 + Omb_z*t448 + t439*t453 + t441*t454 + t443*t455
-                urate_1 = Rb_xx*t456 + Rb_yx*t457 + Rb_zx*t458 + t459*uthb_z - t460*uthb_y
-                drate_2 = Omb_x*t452 - Omb_z*t444 + t445*t453 + t446*t454 + t447*t455
-                urate_2 = Rb_xy*t456 + Rb_yy*t457 + Rb_zy*t458 + t460*uthb_x - t461*uthb_z
-                drate_3 = -Omb_x*t448 + Omb_y*t444 + t449*t453 + t450*t454 + t451*t455
-                urate_3 = Rb_xz*t456 + Rb_yz*t457 + Rb_zz*t458 - t459*uthb_x + t461*uthb_y
-                t462 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t463 = normal_1*normal_3
-                t464 = normal_2*normal_3
-                t465 = 1 - normal_3*normal_3
-                t466 = -friction_1*t463 - friction_2*t464 + friction_3*t465 - normal_3*push
-                t467 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t468 = normal_1*normal_2
-                t469 = friction_3*normal_3
-                t470 = 1 - normal_2*normal_2
-                t471 = -friction_1*t468 + friction_2*t470 - normal_2*push - normal_2*t469
-                t472 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t473 = 1 - normal_1*normal_1
-                t474 = friction_1*t473 - friction_2*t468 - friction_3*t463 - normal_1*push
-                t475 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2 + dpush_by_rate_3*urate_3
-                t476 = (dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2 +
+                t398 = dxa_x - dxb_x
+                t399 = dxa_y - dxb_y
+                t400 = dxa_z - dxb_z
+                t401 = xa_x - xb_x
+                t402 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t403 = xa_y - xb_y
+                t404 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t405 = xa_z - xb_z
+                t406 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t407 = Rb_xx*t398 + Rb_yx*t399 + Rb_zx*t400 + t401*t402 + t403*t404 + t405*t406
+                t408 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t409 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t410 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t411 = Rb_xy*t398 + Rb_yy*t399 + Rb_zy*t400 + t401*t408 + t403*t409 + t405*t410
+                t412 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t413 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t414 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t415 = Rb_xz*t398 + Rb_yz*t399 + Rb_zz*t400 + t401*t412 + t403*t413 + t405*t414
+                t416 = va_x - vb_x
+                t417 = va_y - vb_y
+                t418 = va_z - vb_z
+                t419 = dva_x - uxb_x
+                t420 = dva_y - uxb_y
+                t421 = dva_z - uxb_z
+                t422 = Rb_xy*t401 + Rb_yy*t403 + Rb_zy*t405
+                t423 = Rb_xz*t401 + Rb_yz*t403 + Rb_zz*t405
+                t424 = Rb_xx*t401 + Rb_yx*t403 + Rb_zx*t405
+                dplace_1 = t407
+                dplace_2 = t411
+                dplace_3 = t415
+                drate_1 = -Omb_y*t415 + Omb_z*t411 + t402*t416 + t404*t417 + t406*t418
+                urate_1 = Rb_xx*t419 + Rb_yx*t420 + Rb_zx*t421 + t422*uthb_z - t423*uthb_y
+                drate_2 = Omb_x*t415 - Omb_z*t407 + t408*t416 + t409*t417 + t410*t418
+                urate_2 = Rb_xy*t419 + Rb_yy*t420 + Rb_zy*t421 + t423*uthb_x - t424*uthb_z
+                drate_3 = -Omb_x*t411 + Omb_y*t407 + t412*t416 + t413*t417 + t414*t418
+                urate_3 = Rb_xz*t419 + Rb_yz*t420 + Rb_zz*t421 - t422*uthb_x + t424*uthb_y
+                t425 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t426 = normal_1*normal_3
+                t427 = normal_2*normal_3
+                t428 = 1 - normal_3*normal_3
+                t429 = -friction_1*t426 - friction_2*t427 + friction_3*t428 - normal_3*push
+                t430 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t431 = normal_1*normal_2
+                t432 = friction_3*normal_3
+                t433 = 1 - normal_2*normal_2
+                t434 = -friction_1*t431 + friction_2*t433 - normal_2*push - normal_2*t432
+                t435 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t436 = 1 - normal_1*normal_1
+                t437 = friction_1*t436 - friction_2*t431 - friction_3*t426 - normal_1*push
+                t438 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2 + dpush_by_rate_3*urate_3
+                t439 = (dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2 +
                     dfriction_2_by_rate_3*urate_3)
-                t477 = (dfriction_3_by_rate_1*urate_1 + dfriction_3_by_rate_2*urate_2 +
+                t440 = (dfriction_3_by_rate_1*urate_1 + dfriction_3_by_rate_2*urate_2 +
                     dfriction_3_by_rate_3*urate_3)
-                t478 = (dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2 +
+                t441 = (dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2 +
                     dfriction_1_by_rate_3*urate_3)
-                t479 = -normal_1*t475 - t463*t477 - t468*t476 + t473*t478
-                t480 = -normal_2*t475 - t464*t477 - t468*t478 + t470*t476
-                t481 = -normal_3*t475 - t463*t478 - t464*t476 + t465*t477
-                t482 = dnormal_1_by_place_1*dplace_1
-                t483 = dnormal_1_by_place_2*dplace_2
-                t484 = dnormal_1_by_place_3*dplace_3
-                t485 = t482 + t483 + t484
-                t486 = dnormal_2_by_place_1*dplace_1
-                t487 = dnormal_2_by_place_2*dplace_2
-                t488 = dnormal_2_by_place_3*dplace_3
-                t489 = t486 + t487 + t488
-                t490 = friction_2*t489
-                t491 = normal_2*t485
-                t492 = dnormal_3_by_place_1*dplace_1
-                t493 = dnormal_3_by_place_2*dplace_2
-                t494 = dnormal_3_by_place_3*dplace_3
-                t495 = t492 + t493 + t494
-                t496 = friction_3*t495
-                t497 = friction_1*normal_1
-                t498 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
+                t442 = -normal_1*t438 - t426*t440 - t431*t439 + t436*t441
+                t443 = -normal_2*t438 - t427*t440 - t431*t441 + t433*t439
+                t444 = -normal_3*t438 - t426*t441 - t427*t439 + t428*t440
+                t445 = dnormal_1_by_place_1*dplace_1
+                t446 = dnormal_1_by_place_2*dplace_2
+                t447 = dnormal_1_by_place_3*dplace_3
+                t448 = t445 + t446 + t447
+                t449 = dnormal_2_by_place_1*dplace_1
+                t450 = dnormal_2_by_place_2*dplace_2
+                t451 = dnormal_2_by_place_3*dplace_3
+                t452 = t449 + t450 + t451
+                t453 = friction_2*t452
+                t454 = normal_2*t448
+                t455 = dnormal_3_by_place_1*dplace_1
+                t456 = dnormal_3_by_place_2*dplace_2
+                t457 = dnormal_3_by_place_3*dplace_3
+                t458 = t455 + t456 + t457
+                t459 = friction_3*t458
+                t460 = friction_1*normal_1
+                t461 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
                     dplace_3*dpush_by_place_3 + dpush_by_rate_1*drate_1 + dpush_by_rate_2*drate_2
                     + dpush_by_rate_3*drate_3)
-                t499 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
+                t462 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
                     dfriction_2_by_place_3*dplace_3 + dfriction_2_by_rate_1*drate_1 +
                     dfriction_2_by_rate_2*drate_2 + dfriction_2_by_rate_3*drate_3)
-                t500 = (dfriction_3_by_place_1*dplace_1 + dfriction_3_by_place_2*dplace_2 +
+                t463 = (dfriction_3_by_place_1*dplace_1 + dfriction_3_by_place_2*dplace_2 +
                     dfriction_3_by_place_3*dplace_3 + dfriction_3_by_rate_1*drate_1 +
                     dfriction_3_by_rate_2*drate_2 + dfriction_3_by_rate_3*drate_3)
-                t501 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
+                t464 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
                     dfriction_1_by_place_3*dplace_3 + dfriction_1_by_rate_1*drate_1 +
                     dfriction_1_by_rate_2*drate_2 + dfriction_1_by_rate_3*drate_3)
-                t502 = (-friction_2*t491 - normal_1*t490 - normal_1*t496 - normal_1*t498 -
-                    push*t485 - t463*t500 - t468*t499 - t469*t485 + t473*t501 - t497*(2*t482 +
-                    2*t483 + 2*t484))
-                t503 = friction_2*normal_2
-                t504 = (-friction_1*t491 - normal_2*t496 - normal_2*t498 - push*t489 - t464*t500 -
-                    t468*t501 - t469*t489 + t470*t499 - t489*t497 - t503*(2*t486 + 2*t487 +
-                    2*t488))
-                t505 = (-friction_1*normal_3*t485 - normal_3*t490 - normal_3*t498 - push*t495 -
-                    t463*t501 - t464*t499 + t465*t500 - t469*(2*t492 + 2*t493 + 2*t494) -
-                    t495*t497 - t495*t503)
-                t506 = (Rb_xx*t479 + Rb_xx*t502 + Rb_xy*t480 + Rb_xy*t504 + Rb_xz*t481 +
-                    Rb_xz*t505 + t462*t466 + t467*t471 + t472*t474)
-                t507 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t508 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t509 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t510 = (Rb_yx*t479 + Rb_yx*t502 + Rb_yy*t480 + Rb_yy*t504 + Rb_yz*t481 +
-                    Rb_yz*t505 + t466*t507 + t471*t508 + t474*t509)
-                t511 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t512 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t513 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t514 = (Rb_zx*t479 + Rb_zx*t502 + Rb_zy*t480 + Rb_zy*t504 + Rb_zz*t481 +
-                    Rb_zz*t505 + t466*t511 + t471*t512 + t474*t513)
-                t515 = xa_x - xb_x
-                t516 = xa_y - xb_y
-                t517 = xa_z - xb_z
-                t518 = Rb_xz*t515 + Rb_yz*t516 + Rb_zz*t517
-                t519 = Rb_xy*t515 + Rb_yy*t516 + Rb_zy*t517
-                t520 = -t519
-                t521 = dxa_x - dxb_x
-                t522 = dxa_y - dxb_y
-                t523 = dxa_z - dxb_z
-                t524 = Rb_xz*t521 + Rb_yz*t522 + Rb_zz*t523 + t462*t515 + t507*t516 + t511*t517
-                t525 = Rb_xy*t521 + Rb_yy*t522 + Rb_zy*t523 + t467*t515 + t508*t516 + t512*t517
-                t526 = Rb_xx*t515 + Rb_yx*t516 + Rb_zx*t517
-                t527 = -t518
-                t528 = Rb_xx*t521 + Rb_yx*t522 + Rb_zx*t523 + t472*t515 + t509*t516 + t513*t517
-                t529 = -t526
-                dFp_x = t506
-                dFp_y = t510
-                dFp_z = t514
-                dg[n] = -t506
-                dg[n + 1] = -t510
-                dg[n + 2] = -t514
-                dg[n + 3] = -t466*t525 + t471*t524 + t480*t518 + t481*t520 + t504*t518 + t505*t520
-                dg[n + 4] = t466*t528 - t474*t524 + t479*t527 + t481*t526 + t502*t527 + t505*t526
-                dg[n + 5] = -t471*t528 + t474*t525 + t479*t519 + t480*t529 + t502*t519 + t504*t529
+                t465 = (-friction_2*t454 - normal_1*t453 - normal_1*t459 - normal_1*t461 -
+                    push*t448 - t426*t463 - t431*t462 - t432*t448 + t436*t464 - t460*(2*t445 +
+                    2*t446 + 2*t447))
+                t466 = friction_2*normal_2
+                t467 = (-friction_1*t454 - normal_2*t459 - normal_2*t461 - push*t452 - t427*t463 -
+                    t431*t464 - t432*t452 + t433*t462 - t452*t460 - t466*(2*t449 + 2*t450 +
+                    2*t451))
+                t468 = (-friction_1*normal_3*t448 - normal_3*t453 - normal_3*t461 - push*t458 -
+                    t426*t464 - t427*t462 + t428*t463 - t432*(2*t455 + 2*t456 + 2*t457) -
+                    t458*t460 - t458*t466)
+                t469 = (Rb_xx*t442 + Rb_xx*t465 + Rb_xy*t443 + Rb_xy*t467 + Rb_xz*t444 +
+                    Rb_xz*t468 + t425*t429 + t430*t434 + t435*t437)
+                t470 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t471 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t472 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t473 = (Rb_yx*t442 + Rb_yx*t465 + Rb_yy*t443 + Rb_yy*t467 + Rb_yz*t444 +
+                    Rb_yz*t468 + t429*t470 + t434*t471 + t437*t472)
+                t474 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t475 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t476 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t477 = (Rb_zx*t442 + Rb_zx*t465 + Rb_zy*t443 + Rb_zy*t467 + Rb_zz*t444 +
+                    Rb_zz*t468 + t429*t474 + t434*t475 + t437*t476)
+                t478 = xa_x - xb_x
+                t479 = xa_y - xb_y
+                t480 = xa_z - xb_z
+                t481 = Rb_xz*t478 + Rb_yz*t479 + Rb_zz*t480
+                t482 = Rb_xy*t478 + Rb_yy*t479 + Rb_zy*t480
+                t483 = -t482
+                t484 = dxa_x - dxb_x
+                t485 = dxa_y - dxb_y
+                t486 = dxa_z - dxb_z
+                t487 = Rb_xz*t484 + Rb_yz*t485 + Rb_zz*t486 + t425*t478 + t470*t479 + t474*t480
+                t488 = Rb_xy*t484 + Rb_yy*t485 + Rb_zy*t486 + t430*t478 + t471*t479 + t475*t480
+                t489 = Rb_xx*t478 + Rb_yx*t479 + Rb_zx*t480
+                t490 = -t481
+                t491 = Rb_xx*t484 + Rb_yx*t485 + Rb_zx*t486 + t435*t478 + t472*t479 + t476*t480
+                t492 = -t489
+                dFp_x = t469
+                dFp_y = t473
+                dFp_z = t477
+                dg[n] = -t469
+                dg[n + 1] = -t473
+                dg[n + 2] = -t477
+                dg[n + 3] = -t429*t488 + t434*t487 + t443*t481 + t444*t483 + t467*t481 + t468*t483
+                dg[n + 4] = t429*t491 - t437*t487 + t442*t490 + t444*t489 + t465*t490 + t468*t489
+                dg[n + 5] = -t434*t491 + t437*t488 + t442*t482 + t443*t492 + t465*t482 + t467*t492
                 # differential: force on the point in frame axes
                 dfp_x = (Fp_x*(R0_xy*dth0_z - R0_xz*dth0_y) + Fp_y*(R0_yy*dth0_z - R0_yz*dth0_y) +
                     Fp_z*(R0_zy*dth0_z - R0_zz*dth0_y) + R0_xx*dFp_x + R0_yx*dFp_y + R0_zx*dFp_z)
@@ -1770,15 +1720,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t530 = X_z + u_z
-                    t531 = X_y + u_y
-                    t532 = X_x + u_x
+                    t493 = X_z + u_z
+                    t494 = X_y + u_y
+                    t495 = X_x + u_x
                     dF_x += alpha*dfp_x - df_x
                     dF_y += alpha*dfp_y - df_y
                     dF_z += alpha*dfp_z - df_z
-                    dW_x += df_y*t530 - df_z*t531 - du_y*f_z + du_z*f_y
-                    dW_y += -df_x*t530 + df_z*t532 + du_x*f_z - du_z*f_x
-                    dW_z += df_x*t531 - df_y*t532 - du_x*f_y + du_y*f_x
+                    dW_x += df_y*t493 - df_z*t494 - du_y*f_z + du_z*f_y
+                    dW_y += -df_x*t493 + df_z*t495 + du_x*f_z - du_z*f_x
+                    dW_z += df_x*t494 - df_y*t495 - du_x*f_y + du_y*f_x
                 # differential: moment of the force on the frame
                 dW_x += -dfp_y*rp_z + dfp_z*rp_y + drp_y*fp_z - drp_z*fp_y
                 dW_y += dfp_x*rp_z - dfp_z*rp_x - drp_x*fp_z + drp_z*fp_x
@@ -1792,25 +1742,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t533 = -m_x*psi_y + m_y*psi_x
-                    t534 = m_x*psi_z - m_z*psi_x
-                    t535 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t536 = dm_x*psi_z
-                    t537 = dpsi_z*m_x
-                    t538 = -dm_z*psi_x - dpsi_x*m_z + t536 + t537
-                    t539 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t540 = e1*t539
-                    t541 = -m_y*psi_z + m_z*psi_y
-                    t542 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t533 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t534 + (0.5)*dpsi_z*m_y - e0*psi_y*t535 +
-                        e0*psi_z*t538 + e1*psi_z*t534*t539 - psi_y*t533*t540)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t533 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t541 + e0*psi_x*t535 - e0*psi_z*t542 + e1*psi_x*t533*t539 -
-                        psi_z*t540*t541 - 0.5*t536 - 0.5*t537)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t534 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t541 + (0.5)*dpsi_y*m_x - e0*psi_x*t538 +
-                        e0*psi_y*t542 + e1*psi_y*t539*t541 - psi_x*t534*t540)
+                    t496 = -m_x*psi_y + m_y*psi_x
+                    t497 = m_x*psi_z - m_z*psi_x
+                    t498 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t499 = dm_x*psi_z
+                    t500 = dpsi_z*m_x
+                    t501 = -dm_z*psi_x - dpsi_x*m_z + t499 + t500
+                    t502 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t503 = e1*t502
+                    t504 = -m_y*psi_z + m_z*psi_y
+                    t505 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t496 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t497 + (0.5)*dpsi_z*m_y - e0*psi_y*t498 +
+                        e0*psi_z*t501 + e1*psi_z*t497*t502 - psi_y*t496*t503)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t496 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t504 + e0*psi_x*t498 - e0*psi_z*t505 + e1*psi_x*t496*t502 -
+                        psi_z*t503*t504 - 0.5*t499 - 0.5*t500)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t497 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t504 + (0.5)*dpsi_y*m_x - e0*psi_x*t501 +
+                        e0*psi_y*t505 + e1*psi_y*t502*t504 - psi_x*t497*t503)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for i in range(N_POSITIONS):
@@ -1822,12 +1772,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gam_positionz_x, Gam_positionz_y, Gam_positionz_z = (Gam[3*(i3 + 2)],
                         Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    t543 = Gam_positiony_x*wp_x + Gam_positiony_y*wp_y + Gam_positiony_z*wp_z
-                    t544 = Gam_positionz_x*wp_x + Gam_positionz_y*wp_y + Gam_positionz_z*wp_z
-                    t545 = Gam_positionx_x*wp_x + Gam_positionx_y*wp_y + Gam_positionx_z*wp_z
-                    rhs_x += du_y*t544 - du_z*t543
-                    rhs_y += -du_x*t544 + du_z*t545
-                    rhs_z += du_x*t543 - du_y*t545
+                    t506 = Gam_positiony_x*wp_x + Gam_positiony_y*wp_y + Gam_positiony_z*wp_z
+                    t507 = Gam_positionz_x*wp_x + Gam_positionz_y*wp_y + Gam_positionz_z*wp_z
+                    t508 = Gam_positionx_x*wp_x + Gam_positionx_y*wp_y + Gam_positionx_z*wp_z
+                    rhs_x += du_y*t507 - du_z*t506
+                    rhs_y += -du_x*t507 + du_z*t508
+                    rhs_z += du_x*t506 - du_y*t508
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
@@ -1840,36 +1790,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t546 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z
-                    t547 = dpsi_y*t546
-                    t548 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z
-                    t549 = dpsi_z*t548
-                    t550 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z
-                    t551 = psi_x*t548 - psi_y*t550
-                    t552 = e0*t551
-                    t553 = dpsi_x*t548
-                    t554 = dpsi_y*t550
-                    t555 = e0*(t553 - t554)
-                    t556 = -psi_x*t546 + psi_z*t550
-                    t557 = dpsi_x*t546
-                    t558 = dpsi_z*t550 - t557
-                    t559 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t560 = e1*t559
-                    t561 = t551*t560
-                    t562 = psi_y*t546 - psi_z*t548
-                    t563 = t547 - t549
-                    rhs_x += (dpsi_y*t552 - dpsi_z*e0*t556 - e0*psi_z*t558 + psi_y*t555 +
-                        psi_y*t561 - psi_z*t556*t560 + (0.5)*t547 - 0.5*t549)
-                    rhs_y += (-dpsi_x*t552 + dpsi_z*e0*t562 + (0.5)*dpsi_z*t550 + e0*psi_z*t563 +
-                        e1*psi_z*t559*t562 - psi_x*t555 - psi_x*t561 - 0.5*t557)
-                    rhs_z += (dpsi_x*e0*t556 - dpsi_y*e0*t562 + e0*psi_x*t558 - e0*psi_y*t563 +
-                        psi_x*t556*t560 - psi_y*t560*t562 + (0.5)*t553 - 0.5*t554)
-                t564 = dW_x + rhs_x
-                t565 = dW_y + rhs_y
-                t566 = dW_z + rhs_z
-                dwp_x = Bxx*t564 + Byx*t565 + Bzx*t566
-                dwp_y = Bxy*t564 + Byy*t565 + Bzy*t566
-                dwp_z = Bxz*t564 + Byz*t565 + Bzz*t566
+                    t509 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z
+                    t510 = dpsi_y*t509
+                    t511 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z
+                    t512 = dpsi_z*t511
+                    t513 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z
+                    t514 = psi_x*t511 - psi_y*t513
+                    t515 = e0*t514
+                    t516 = dpsi_x*t511
+                    t517 = dpsi_y*t513
+                    t518 = e0*(t516 - t517)
+                    t519 = -psi_x*t509 + psi_z*t513
+                    t520 = dpsi_x*t509
+                    t521 = dpsi_z*t513 - t520
+                    t522 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t523 = e1*t522
+                    t524 = t514*t523
+                    t525 = psi_y*t509 - psi_z*t511
+                    t526 = t510 - t512
+                    rhs_x += (dpsi_y*t515 - dpsi_z*e0*t519 - e0*psi_z*t521 + psi_y*t518 +
+                        psi_y*t524 - psi_z*t519*t523 + (0.5)*t510 - 0.5*t512)
+                    rhs_y += (-dpsi_x*t515 + dpsi_z*e0*t525 + (0.5)*dpsi_z*t513 + e0*psi_z*t526 +
+                        e1*psi_z*t522*t525 - psi_x*t518 - psi_x*t524 - 0.5*t520)
+                    rhs_z += (dpsi_x*e0*t519 - dpsi_y*e0*t525 + e0*psi_x*t521 - e0*psi_y*t526 +
+                        psi_x*t519*t523 - psi_y*t523*t525 + (0.5)*t516 - 0.5*t517)
+                t527 = dW_x + rhs_x
+                t528 = dW_y + rhs_y
+                t529 = dW_z + rhs_z
+                dwp_x = Bxx*t527 + Byx*t528 + Bzx*t529
+                dwp_y = Bxy*t527 + Byy*t528 + Bzy*t529
+                dwp_z = Bxz*t527 + Byz*t528 + Bzz*t529
                 # differential: force on the origin, through the frame
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -1928,58 +1878,39 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t567 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z
-                    t568 = dpsi_z*t567
-                    t569 = Gam_rotationy_x*dwp_x + Gam_rotationy_y*dwp_y + Gam_rotationy_z*dwp_z
-                    t570 = psi_z*t569
-                    t571 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z
-                    t572 = Gam_rotationz_x*dwp_x + Gam_rotationz_y*dwp_y + Gam_rotationz_z*dwp_z
-                    t573 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z
-                    t574 = psi_x*t567 - psi_y*t573
-                    t575 = dpsi_y*e0
-                    t576 = m_x*psi_z - m_z*psi_x
-                    t577 = dpsi_z*e0
-                    t578 = dpsi_y*t573
-                    t579 = Gam_rotationx_x*dwp_x + Gam_rotationx_y*dwp_y + Gam_rotationx_z*dwp_z
-                    t580 = psi_y*t579
-                    t581 = dpsi_x*t567 + psi_x*t569 - t578 - t580
-                    t582 = e0*psi_y
-                    t583 = dm_x*psi_z
-                    t584 = dpsi_z*m_x
-                    t585 = -dm_z*psi_x - dpsi_x*m_z + t583 + t584
-                    t586 = e0*psi_z
-                    t587 = -m_x*psi_y + m_y*psi_x
-                    t588 = -psi_x*t571 + psi_z*t573
-                    t589 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t590 = dpsi_x*t571
-                    t591 = psi_x*t572
-                    t592 = dpsi_z*t573 + psi_z*t579 - t590 - t591
-                    t593 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t594 = e1*t593
-                    t595 = psi_y*t594
-                    t596 = psi_z*t594
-                    t597 = dpsi_x*e0
-                    t598 = psi_y*t571 - psi_z*t567
-                    t599 = e0*psi_x
-                    t600 = dpsi_y*t571 + psi_y*t572 - t568 - t570
-                    t601 = -m_y*psi_z + m_z*psi_y
-                    t602 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    t603 = psi_x*t594
-                    dg[j3] = (dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y + dpsi_y*e0*t587 -
-                        0.5*dpsi_y*m_z + (0.5)*dpsi_y*t571 + dpsi_z*e0*t588 + (0.5)*dpsi_z*m_y +
-                        e0*psi_y*t589 + e0*psi_z*t592 + e1*psi_y*t587*t593 + e1*psi_z*t588*t593 +
-                        (0.5)*psi_y*t572 - 0.5*t568 - 0.5*t570 - t574*t575 - t574*t595 - t576*t577
-                        - t576*t596 - t579 - t581*t582 - t585*t586)
-                    dg[j3 + 1] = (dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t574 + (0.5)*dpsi_x*m_z +
-                        dpsi_z*e0*t601 + (0.5)*dpsi_z*t573 + e0*psi_x*t581 + e0*psi_z*t602 +
-                        e1*psi_x*t574*t593 + e1*psi_z*t593*t601 + (0.5)*psi_z*t579 - t569 -
-                        t577*t598 - 0.5*t583 - 0.5*t584 - t586*t600 - t587*t597 - t587*t603 -
-                        t589*t599 - 0.5*t590 - 0.5*t591 - t596*t598)
-                    dg[j3 + 2] = ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t576 -
-                        0.5*dpsi_x*m_y + (0.5)*dpsi_x*t567 + dpsi_y*e0*t598 + (0.5)*dpsi_y*m_x +
-                        e0*psi_x*t585 + e0*psi_y*t600 + e1*psi_x*t576*t593 + e1*psi_y*t593*t598 +
-                        (0.5)*psi_x*t569 - t572 - t575*t601 - 0.5*t578 - 0.5*t580 - t582*t602 -
-                        t588*t597 - t588*t603 - t592*t599 - t595*t601)
+                    t530 = -Gam_rotationz_x*wp_x - Gam_rotationz_y*wp_y - Gam_rotationz_z*wp_z + m_z
+                    t531 = dpsi_y*t530
+                    t532 = (Gam_rotationz_x*dwp_x + Gam_rotationz_y*dwp_y + Gam_rotationz_z*dwp_z
+                        - dm_z)
+                    t533 = -t532
+                    t534 = psi_y*t533
+                    t535 = -Gam_rotationy_x*wp_x - Gam_rotationy_y*wp_y - Gam_rotationy_z*wp_z + m_y
+                    t536 = (Gam_rotationy_x*dwp_x + Gam_rotationy_y*dwp_y + Gam_rotationy_z*dwp_z
+                        - dm_y)
+                    t537 = -t536
+                    t538 = -Gam_rotationx_x*wp_x - Gam_rotationx_y*wp_y - Gam_rotationx_z*wp_z + m_x
+                    t539 = -psi_x*t530 + psi_z*t538
+                    t540 = (Gam_rotationx_x*dwp_x + Gam_rotationx_y*dwp_y + Gam_rotationx_z*dwp_z
+                        - dm_x)
+                    t541 = -t540
+                    t542 = -dpsi_x*t530 + dpsi_z*t538 - psi_x*t533 + psi_z*t541
+                    t543 = psi_x*t535 - psi_y*t538
+                    t544 = dpsi_x*t535
+                    t545 = psi_x*t537
+                    t546 = -dpsi_y*t538 - psi_y*t541 + t544 + t545
+                    t547 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t548 = e1*t547
+                    t549 = psi_y*t530 - psi_z*t535
+                    t550 = -dpsi_z*t535 - psi_z*t537 + t531 + t534
+                    dg[j3] = (dpsi_y*e0*t543 - dpsi_z*e0*t539 + (0.5)*dpsi_z*t535 + e0*psi_y*t546
+                        - e0*psi_z*t542 + e1*psi_y*t543*t547 + (0.5)*psi_z*t537 - psi_z*t539*t548
+                        - 0.5*t531 - 0.5*t534 - t540)
+                    dg[j3 + 1] = (-dpsi_x*e0*t543 + (0.5)*dpsi_x*t530 + dpsi_z*e0*t549 -
+                        0.5*dpsi_z*t538 - e0*psi_x*t546 + e0*psi_z*t550 + e1*psi_z*t547*t549 +
+                        (0.5)*psi_x*t533 - psi_x*t543*t548 - 0.5*psi_z*t541 - t536)
+                    dg[j3 + 2] = (dpsi_x*e0*t539 - dpsi_y*e0*t549 + (0.5)*dpsi_y*t538 +
+                        e0*psi_x*t542 - e0*psi_y*t550 + e1*psi_x*t539*t547 + (0.5)*psi_y*t541 -
+                        psi_y*t548*t549 - t532 - 0.5*t544 - 0.5*t545)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]

@@ -66,8 +66,8 @@ INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 17
-OPERATIONS = {"residual": (508, 225, 238, 0),
-              "column": (830, 342, 595, 0)}
+OPERATIONS = {"residual": (508, 225, 208, 0),
+              "column": (830, 342, 470, 0)}
 
 
 @kernel_function
@@ -276,29 +276,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
             e0 = e0s[j]
-            t18 = Om0_y*psi_z
-            t19 = Om_y*psi_z
-            t20 = Om0_x*psi_y
-            t21 = Om0_y*psi_x - t20
-            t22 = e0*psi_y
-            t23 = Om_x*psi_z
-            t24 = Om_z*psi_x
-            t25 = t23 - t24
-            t26 = e0*psi_z
-            t27 = Om_x*psi_y
-            t28 = Om_y*psi_x - t27
-            t29 = Om0_x*psi_z
-            t30 = Om0_z*psi_x
-            t31 = t29 - t30
-            t32 = e0*psi_x
-            t33 = Om_z*psi_y - t19
-            t34 = Om0_z*psi_y - t18
-            eta[j3] = (-Om0_x + (0.5)*Om0_z*psi_y + Om_x + (0.5)*Om_z*psi_y + e0*psi_y*t28 +
-                e0*psi_z*t31 - 0.5*t18 - 0.5*t19 - t21*t22 - t25*t26)
-            eta[j3 + 1] = (-Om0_y + Om_y + t21*t32 + (0.5)*t23 - 0.5*t24 + t26*t33 - t26*t34 -
-                t28*t32 + (0.5)*t29 - 0.5*t30)
-            eta[j3 + 2] = ((0.5)*Om0_y*psi_x - Om0_z + (0.5)*Om_y*psi_x + Om_z + e0*psi_x*t25 +
-                e0*psi_y*t34 - 0.5*t20 - t22*t33 - 0.5*t27 - t31*t32)
+            t18 = (0.5)*Om0_z + (0.5)*Om_z
+            t19 = Om0_y + Om_y
+            t20 = (0.5)*psi_z
+            t21 = -Om0_y + Om_y
+            t22 = -Om0_x + Om_x
+            t23 = psi_x*t21 - psi_y*t22
+            t24 = -Om0_z + Om_z
+            t25 = -psi_x*t24 + psi_z*t22
+            t26 = Om0_x + Om_x
+            t27 = psi_y*t24 - psi_z*t21
+            eta[j3] = -Om0_x + Om_x + e0*(psi_y*t23 - psi_z*t25) + psi_y*t18 - t19*t20
+            eta[j3 + 1] = -Om0_y + Om_y + e0*(-psi_x*t23 + psi_z*t27) - psi_x*t18 + t20*t26
+            eta[j3 + 2] = (-Om0_z + Om_z + e0*(psi_x*t25 - psi_y*t27) + (0.5)*psi_x*t19 -
+                0.5*psi_y*t26)
         # rates of the internal modes
         for k in range(MODES, n):
             vm = ve[k]
@@ -338,12 +329,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             upd_y += Phi_mode_y*em
             upd_z += Phi_mode_z*em
         # velocity of the point
-        t35 = Om0_y*rp_z - Om0_z*rp_y + upd_x + v0_x
-        t36 = -Om0_x*rp_z + Om0_z*rp_x + upd_y + v0_y
-        t37 = Om0_x*rp_y - Om0_y*rp_x + upd_z + v0_z
-        va_x = R0_xx*t35 + R0_xy*t36 + R0_xz*t37
-        va_y = R0_yx*t35 + R0_yy*t36 + R0_yz*t37
-        va_z = R0_zx*t35 + R0_zy*t36 + R0_zz*t37
+        t28 = Om0_y*rp_z - Om0_z*rp_y + upd_x + v0_x
+        t29 = -Om0_x*rp_z + Om0_z*rp_x + upd_y + v0_y
+        t30 = Om0_x*rp_y - Om0_y*rp_x + upd_z + v0_z
+        va_x = R0_xx*t28 + R0_xy*t29 + R0_xz*t30
+        va_y = R0_yx*t28 + R0_yy*t29 + R0_yz*t30
+        va_z = R0_zx*t28 + R0_zy*t29 + R0_zz*t30
         stiffness = law[0]
         exponent = law[1]
         damping = law[2]
@@ -389,62 +380,62 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         kept_bent_3 = references[index[first + AT_FRAME] + 8]
         kept_slid = references[index[first + AT_FRAME] + 9]
         kept_begun = references[index[first + AT_FRAME] + 10]
-        t47 = xa_x - xb_x
-        t48 = xa_y - xb_y
-        t49 = xa_z - xb_z
-        t50 = Rb_xx*t47 + Rb_yx*t48 + Rb_zx*t49
-        t51 = Rb_xy*t47 + Rb_yy*t48 + Rb_zy*t49
-        t52 = Rb_xz*t47 + Rb_yz*t48 + Rb_zz*t49
-        t53 = va_x - vb_x
-        t54 = va_y - vb_y
-        t55 = va_z - vb_z
-        place_1 = t50
-        place_2 = t51
-        place_3 = t52
-        rate_1 = -Omb_y*t52 + Omb_z*t51 + Rb_xx*t53 + Rb_yx*t54 + Rb_zx*t55
-        rate_2 = Omb_x*t52 - Omb_z*t50 + Rb_xy*t53 + Rb_yy*t54 + Rb_zy*t55
-        rate_3 = -Omb_x*t51 + Omb_y*t50 + Rb_xz*t53 + Rb_yz*t54 + Rb_zz*t55
-        t56 = e_x*place_1 + e_y*place_2 + e_z*place_3
-        t57 = -e_x*t56 + place_1
-        t58 = -e_y*t56 + place_2
-        t59 = -e_z*t56 + place_3
-        t60 = sqrt(1.0000000000000001e-20*size*size + t57*t57 + t58*t58 + t59*t59)
-        t61 = side/t60
-        normal_1 = e_x if flat > 0.0 else t57*t61
-        normal_2 = e_y if flat > 0.0 else t58*t61
-        normal_3 = e_z if flat > 0.0 else t59*t61
-        gap_closed = radius - (-level + t56 if flat > 0.0 else side*(-size + t60))
-        t62 = normal_1*rate_1
-        t63 = normal_2*rate_2
-        t64 = normal_3*rate_3
-        t65 = 1 - normal_1*normal_1
-        t66 = 1 - normal_2*normal_2
-        t67 = 1 - normal_3*normal_3
-        t68 = -kept_place_2 + place_2
-        t69 = normal_1*normal_2
-        t70 = -kept_place_3 + place_3
-        t71 = normal_3*t70
-        t72 = -kept_place_1 + place_1
-        closing = -t62 - t63 - t64
-        slip_1 = -normal_1*t63 - normal_1*t64 + rate_1*t65
-        slip_2 = -normal_2*t62 - normal_2*t64 + rate_2*t66
-        slip_3 = -normal_3*t62 - normal_3*t63 + rate_3*t67
-        increment_1 = -normal_1*t71 + t65*t72 - t68*t69
-        increment_2 = -normal_2*t71 + t66*t68 - t69*t72
-        increment_3 = -normal_1*normal_3*t72 - normal_2*normal_3*t68 + t67*t70
+        t40 = xa_x - xb_x
+        t41 = xa_y - xb_y
+        t42 = xa_z - xb_z
+        t43 = Rb_xx*t40 + Rb_yx*t41 + Rb_zx*t42
+        t44 = Rb_xy*t40 + Rb_yy*t41 + Rb_zy*t42
+        t45 = Rb_xz*t40 + Rb_yz*t41 + Rb_zz*t42
+        t46 = va_x - vb_x
+        t47 = va_y - vb_y
+        t48 = va_z - vb_z
+        place_1 = t43
+        place_2 = t44
+        place_3 = t45
+        rate_1 = -Omb_y*t45 + Omb_z*t44 + Rb_xx*t46 + Rb_yx*t47 + Rb_zx*t48
+        rate_2 = Omb_x*t45 - Omb_z*t43 + Rb_xy*t46 + Rb_yy*t47 + Rb_zy*t48
+        rate_3 = -Omb_x*t44 + Omb_y*t43 + Rb_xz*t46 + Rb_yz*t47 + Rb_zz*t48
+        t49 = e_x*place_1 + e_y*place_2 + e_z*place_3
+        t50 = -e_x*t49 + place_1
+        t51 = -e_y*t49 + place_2
+        t52 = -e_z*t49 + place_3
+        t53 = sqrt(1.0000000000000001e-20*size*size + t50*t50 + t51*t51 + t52*t52)
+        t54 = side/t53
+        normal_1 = e_x if flat > 0.0 else t50*t54
+        normal_2 = e_y if flat > 0.0 else t51*t54
+        normal_3 = e_z if flat > 0.0 else t52*t54
+        gap_closed = radius - (-level + t49 if flat > 0.0 else side*(-size + t53))
+        t55 = normal_1*rate_1
+        t56 = normal_2*rate_2
+        t57 = normal_3*rate_3
+        t58 = 1 - normal_1*normal_1
+        t59 = 1 - normal_2*normal_2
+        t60 = 1 - normal_3*normal_3
+        t61 = -kept_place_2 + place_2
+        t62 = normal_1*normal_2
+        t63 = -kept_place_3 + place_3
+        t64 = normal_3*t63
+        t65 = -kept_place_1 + place_1
+        closing = -t55 - t56 - t57
+        slip_1 = -normal_1*t56 - normal_1*t57 + rate_1*t58
+        slip_2 = -normal_2*t55 - normal_2*t57 + rate_2*t59
+        slip_3 = -normal_3*t55 - normal_3*t56 + rate_3*t60
+        increment_1 = -normal_1*t64 + t58*t65 - t61*t62
+        increment_2 = -normal_2*t64 + t59*t61 - t62*t65
+        increment_3 = -normal_1*normal_3*t65 - normal_2*normal_3*t61 + t60*t63
         touches = 1.0 if gap_closed > 0.0 else 0.0
         depth = gap_closed if gap_closed > 0.0 else 1e-300
         elastic = depth**exponent*stiffness
         factor = closing*damping + 1
         push = elastic*factor if factor > 0.0 else 0.0
-        t73 = increment_2*kept_begun + kept_bent_2
-        t74 = normal_1*normal_2
-        t75 = increment_3*kept_begun + kept_bent_3
-        t76 = normal_3*t75
-        t77 = increment_1*kept_begun + kept_bent_1
-        z_1 = -normal_1*t76 - t73*t74 + t77*(1 - normal_1*normal_1)
-        z_2 = -normal_2*t76 + t73*(1 - normal_2*normal_2) - t74*t77
-        z_3 = -normal_1*normal_3*t77 - normal_2*normal_3*t73 + t75*(1 - normal_3*normal_3)
+        t66 = increment_2*kept_begun + kept_bent_2
+        t67 = normal_1*normal_2
+        t68 = increment_3*kept_begun + kept_bent_3
+        t69 = normal_3*t68
+        t70 = increment_1*kept_begun + kept_bent_1
+        z_1 = -normal_1*t69 - t66*t67 + t70*(1 - normal_1*normal_1)
+        z_2 = -normal_2*t69 + t66*(1 - normal_2*normal_2) - t67*t70
+        z_3 = -normal_1*normal_3*t70 - normal_2*normal_3*t66 + t68*(1 - normal_3*normal_3)
         dynamic_limit = coefficient*push
         static_limit = push*(coefficient if kept_slid - 0.5 > 0.0 else static)
         trial_1 = bristle*z_1 + bristle_damping*slip_1
@@ -453,110 +444,110 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         bent_size = sqrt(z_1*z_1 + z_2*z_2 + z_3*z_3 + 1e-300)
         slip_speed = (sqrt(slip_1*slip_1 + slip_2*slip_2 + slip_3*slip_3 + 1e-12*speed*speed +
             1e-300))
-        t78 = slip_speed/speed
+        t71 = slip_speed/speed
         trial_size = sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
-        drag = (push*(coefficient*tanh(4*t78) + (t78*(-coefficient +
+        drag = (push*(coefficient*tanh(4*t71) + (t71*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
             0.0 else 0.0)
         slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
-        t79 = -static_limit + trial_size
-        t80 = dynamic_limit/trial_size
-        friction_1 = drag*slip_1 if speed > 0.0 else (t80*trial_1 if t79 > 0.0 else trial_1)
-        friction_2 = drag*slip_2 if speed > 0.0 else (t80*trial_2 if t79 > 0.0 else trial_2)
-        friction_3 = drag*slip_3 if speed > 0.0 else (t80*trial_3 if t79 > 0.0 else trial_3)
-        t81 = normal_1*normal_2
-        t82 = friction_3*normal_3
-        t83 = friction_1*(1 - normal_1*normal_1) - friction_2*t81 - normal_1*push - normal_1*t82
-        t84 = -friction_1*t81 + friction_2*(1 - normal_2*normal_2) - normal_2*push - normal_2*t82
-        t85 = (-friction_1*normal_1*normal_3 - friction_2*normal_2*normal_3 + friction_3*(1 -
+        t72 = -static_limit + trial_size
+        t73 = dynamic_limit/trial_size
+        friction_1 = drag*slip_1 if speed > 0.0 else (t73*trial_1 if t72 > 0.0 else trial_1)
+        friction_2 = drag*slip_2 if speed > 0.0 else (t73*trial_2 if t72 > 0.0 else trial_2)
+        friction_3 = drag*slip_3 if speed > 0.0 else (t73*trial_3 if t72 > 0.0 else trial_3)
+        t74 = normal_1*normal_2
+        t75 = friction_3*normal_3
+        t76 = friction_1*(1 - normal_1*normal_1) - friction_2*t74 - normal_1*push - normal_1*t75
+        t77 = -friction_1*t74 + friction_2*(1 - normal_2*normal_2) - normal_2*push - normal_2*t75
+        t78 = (-friction_1*normal_1*normal_3 - friction_2*normal_2*normal_3 + friction_3*(1 -
             normal_3*normal_3) - normal_3*push)
-        t86 = Rb_xx*t83 + Rb_xy*t84 + Rb_xz*t85
-        t87 = Rb_yx*t83 + Rb_yy*t84 + Rb_yz*t85
-        t88 = Rb_zx*t83 + Rb_zy*t84 + Rb_zz*t85
-        t89 = xa_x - xb_x
-        t90 = xa_y - xb_y
-        t91 = xa_z - xb_z
-        t92 = Rb_xz*t89 + Rb_yz*t90 + Rb_zz*t91
-        t93 = Rb_xy*t89 + Rb_yy*t90 + Rb_zy*t91
-        t94 = Rb_xx*t89 + Rb_yx*t90 + Rb_zx*t91
-        t95 = closing if closing > 0.0 else -closing
-        t96 = kept_rate if kept_rate > 0.0 else -kept_rate
-        t97 = t95 if t95 - t96 > 0.0 else t96
-        t98 = t97 if -kept_impact + t97 > 0.0 else kept_impact
-        t99 = (0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
+        t79 = Rb_xx*t76 + Rb_xy*t77 + Rb_xz*t78
+        t80 = Rb_yx*t76 + Rb_yy*t77 + Rb_yz*t78
+        t81 = Rb_zx*t76 + Rb_zy*t77 + Rb_zz*t78
+        t82 = xa_x - xb_x
+        t83 = xa_y - xb_y
+        t84 = xa_z - xb_z
+        t85 = Rb_xz*t82 + Rb_yz*t83 + Rb_zz*t84
+        t86 = Rb_xy*t82 + Rb_yy*t83 + Rb_zy*t84
+        t87 = Rb_xx*t82 + Rb_yx*t83 + Rb_zx*t84
+        t88 = closing if closing > 0.0 else -closing
+        t89 = kept_rate if kept_rate > 0.0 else -kept_rate
+        t90 = t88 if t88 - t89 > 0.0 else t89
+        t91 = t90 if -kept_impact + t90 > 0.0 else kept_impact
+        t92 = (0.0 if speed > 0.0 else ((dynamic_limit/(bent_size*bristle) if bent_size*bristle -
             dynamic_limit > 0.0 else 1.0) if slips - 0.5 > 0.0 else 1.0))
-        Fp_x = t86
-        Fp_y = t87
-        Fp_z = t88
-        g[n] = -t86
-        g[n + 1] = -t87
-        g[n + 2] = -t88
-        g[n + 3] = t84*t92 - t85*t93
-        g[n + 4] = -t83*t92 + t85*t94
-        g[n + 5] = t83*t93 - t84*t94
+        Fp_x = t79
+        Fp_y = t80
+        Fp_z = t81
+        g[n] = -t79
+        g[n + 1] = -t80
+        g[n + 2] = -t81
+        g[n + 3] = t77*t85 - t78*t86
+        g[n + 4] = -t76*t85 + t78*t87
+        g[n + 5] = t76*t86 - t77*t87
         frames[index[first + AT_FRAME]] = place_1
         frames[index[first + AT_FRAME] + 1] = place_2
         frames[index[first + AT_FRAME] + 2] = place_3
         frames[index[first + AT_FRAME] + 3] = closing
-        frames[index[first + AT_FRAME] + 4] = ((t98 if -slow + t98 > 0.0 else 0.0) if touches -
+        frames[index[first + AT_FRAME] + 4] = ((t91 if -slow + t91 > 0.0 else 0.0) if touches -
             0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 5] = gap_closed
-        frames[index[first + AT_FRAME] + 6] = t99*z_1
-        frames[index[first + AT_FRAME] + 7] = t99*z_2
-        frames[index[first + AT_FRAME] + 8] = t99*z_3
+        frames[index[first + AT_FRAME] + 6] = t92*z_1
+        frames[index[first + AT_FRAME] + 7] = t92*z_2
+        frames[index[first + AT_FRAME] + 8] = t92*z_3
         frames[index[first + AT_FRAME] + 9] = slips
         frames[index[first + AT_FRAME] + 10] = 1.0
         frames[index[first + AT_FRAME] + 11] = push
         if task == ENERGY:
-            t100 = exponent + 1
-            energies[STRAIN] += depth**t100*stiffness/t100
-            t101 = normal_1*normal_2
-            t102 = friction_3*normal_3
-            t103 = elastic - push
-            t104 = va_x - vb_x
-            t105 = va_y - vb_y
-            t106 = va_z - vb_z
-            t107 = xa_x - xb_x
-            t108 = xa_y - xb_y
-            t109 = xa_z - xb_z
-            t110 = Rb_xy*t107 + Rb_yy*t108 + Rb_zy*t109
-            t111 = Rb_xz*t107 + Rb_yz*t108 + Rb_zz*t109
-            t112 = Rb_xx*t107 + Rb_yx*t108 + Rb_zx*t109
-            energies[POWERS + index[first + AT_PORT]] = (-(-friction_1*t101 + friction_2*(1 -
-                normal_2*normal_2) - normal_2*t102 + normal_2*t103)*(Omb_x*t111 - Omb_z*t112 +
-                Rb_xy*t104 + Rb_yy*t105 + Rb_zy*t106) - (friction_1*(1 - normal_1*normal_1) -
-                friction_2*t101 - normal_1*t102 + normal_1*t103)*(-Omb_y*t111 + Omb_z*t110 +
-                Rb_xx*t104 + Rb_yx*t105 + Rb_zx*t106) - (-friction_1*normal_1*normal_3 -
+            t93 = exponent + 1
+            energies[STRAIN] += depth**t93*stiffness/t93
+            t94 = normal_1*normal_2
+            t95 = friction_3*normal_3
+            t96 = elastic - push
+            t97 = va_x - vb_x
+            t98 = va_y - vb_y
+            t99 = va_z - vb_z
+            t100 = xa_x - xb_x
+            t101 = xa_y - xb_y
+            t102 = xa_z - xb_z
+            t103 = Rb_xy*t100 + Rb_yy*t101 + Rb_zy*t102
+            t104 = Rb_xz*t100 + Rb_yz*t101 + Rb_zz*t102
+            t105 = Rb_xx*t100 + Rb_yx*t101 + Rb_zx*t102
+            energies[POWERS + index[first + AT_PORT]] = (-(-friction_1*t94 + friction_2*(1 -
+                normal_2*normal_2) - normal_2*t95 + normal_2*t96)*(Omb_x*t104 - Omb_z*t105 +
+                Rb_xy*t97 + Rb_yy*t98 + Rb_zy*t99) - (friction_1*(1 - normal_1*normal_1) -
+                friction_2*t94 - normal_1*t95 + normal_1*t96)*(-Omb_y*t104 + Omb_z*t103 +
+                Rb_xx*t97 + Rb_yx*t98 + Rb_zx*t99) - (-friction_1*normal_1*normal_3 -
                 friction_2*normal_2*normal_3 + friction_3*(1 - normal_3*normal_3) +
-                normal_3*t103)*(-Omb_x*t110 + Omb_y*t112 + Rb_xz*t104 + Rb_yz*t105 + Rb_zz*t106))
-            t113 = normal_1*normal_2
-            t114 = friction_3*normal_3
-            t115 = elastic - push
-            t116 = (friction_1*(1 - normal_1*normal_1) - friction_2*t113 - normal_1*t114 +
-                normal_1*t115)
-            t117 = (-friction_1*t113 + friction_2*(1 - normal_2*normal_2) - normal_2*t114 +
-                normal_2*t115)
-            t118 = (-friction_1*normal_1*normal_3 - friction_2*normal_2*normal_3 + friction_3*(1 -
-                normal_3*normal_3) + normal_3*t115)
-            t119 = Rb_xx*t116 + Rb_xy*t117 + Rb_xz*t118
-            t120 = Rb_yx*t116 + Rb_yy*t117 + Rb_yz*t118
-            t121 = Rb_zx*t116 + Rb_zy*t117 + Rb_zz*t118
-            t122 = xa_x - xb_x
-            t123 = xa_y - xb_y
-            t124 = xa_z - xb_z
-            t125 = Rb_xz*t122 + Rb_yz*t123 + Rb_zz*t124
-            t126 = Rb_xy*t122 + Rb_yy*t123 + Rb_zy*t124
-            t127 = Rb_xx*t122 + Rb_yx*t123 + Rb_zx*t124
-            Fp_x = t119
-            Fp_y = t120
-            Fp_z = t121
-            g[n] = -t119
-            g[n + 1] = -t120
-            g[n + 2] = -t121
-            g[n + 3] = t117*t125 - t118*t126
-            g[n + 4] = -t116*t125 + t118*t127
-            g[n + 5] = t116*t126 - t117*t127
+                normal_3*t96)*(-Omb_x*t103 + Omb_y*t105 + Rb_xz*t97 + Rb_yz*t98 + Rb_zz*t99))
+            t106 = normal_1*normal_2
+            t107 = friction_3*normal_3
+            t108 = elastic - push
+            t109 = (friction_1*(1 - normal_1*normal_1) - friction_2*t106 - normal_1*t107 +
+                normal_1*t108)
+            t110 = (-friction_1*t106 + friction_2*(1 - normal_2*normal_2) - normal_2*t107 +
+                normal_2*t108)
+            t111 = (-friction_1*normal_1*normal_3 - friction_2*normal_2*normal_3 + friction_3*(1 -
+                normal_3*normal_3) + normal_3*t108)
+            t112 = Rb_xx*t109 + Rb_xy*t110 + Rb_xz*t111
+            t113 = Rb_yx*t109 + Rb_yy*t110 + Rb_yz*t111
+            t114 = Rb_zx*t109 + Rb_zy*t110 + Rb_zz*t111
+            t115 = xa_x - xb_x
+            t116 = xa_y - xb_y
+            t117 = xa_z - xb_z
+            t118 = Rb_xz*t115 + Rb_yz*t116 + Rb_zz*t117
+            t119 = Rb_xy*t115 + Rb_yy*t116 + Rb_zy*t117
+            t120 = Rb_xx*t115 + Rb_yx*t116 + Rb_zx*t117
+            Fp_x = t112
+            Fp_y = t113
+            Fp_z = t114
+            g[n] = -t112
+            g[n + 1] = -t113
+            g[n + 2] = -t114
+            g[n + 3] = t110*t118 - t111*t119
+            g[n + 4] = -t109*t118 + t111*t120
+            g[n + 5] = t109*t119 - t110*t120
         # force on the point in frame axes
         fp_x = Fp_x*R0_xx + Fp_y*R0_yx + Fp_z*R0_zx
         fp_y = Fp_x*R0_xy + Fp_y*R0_yy + Fp_z*R0_zy
@@ -598,15 +589,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             alpha = alphas[i]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t247 = X_z + u_z
-            t248 = X_y + u_y
-            t249 = X_x + u_x
+            t240 = X_z + u_z
+            t241 = X_y + u_y
+            t242 = X_x + u_x
             F_x += alpha*fp_x - f_x
             F_y += alpha*fp_y - f_y
             F_z += alpha*fp_z - f_z
-            W_x += f_y*t247 - f_z*t248
-            W_y += -f_x*t247 + f_z*t249
-            W_z += f_x*t248 - f_y*t249
+            W_x += f_y*t240 - f_z*t241
+            W_y += -f_x*t240 + f_z*t242
+            W_z += f_x*t241 - f_y*t242
         # moment of the force on the frame
         W_x += -fp_y*rp_z + fp_z*rp_y
         W_y += fp_x*rp_z - fp_z*rp_x
@@ -617,29 +608,29 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t250 = -m_x*psi_y + m_y*psi_x
-            t251 = m_x*psi_z
-            t252 = -m_z*psi_x + t251
-            t253 = -m_y*psi_z + m_z*psi_y
-            W_x += -e0*psi_y*t250 + e0*psi_z*t252 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-            W_y += e0*psi_x*t250 - e0*psi_z*t253 - m_y + (0.5)*m_z*psi_x - 0.5*t251
-            W_z += -e0*psi_x*t252 + e0*psi_y*t253 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+            t243 = -m_x*psi_y + m_y*psi_x
+            t244 = m_x*psi_z
+            t245 = -m_z*psi_x + t244
+            t246 = -m_y*psi_z + m_z*psi_y
+            W_x += -e0*psi_y*t243 + e0*psi_z*t245 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+            W_y += e0*psi_x*t243 - e0*psi_z*t246 - m_y + (0.5)*m_z*psi_x - 0.5*t244
+            W_z += -e0*psi_x*t245 + e0*psi_y*t246 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
         # B^T wp = W
         rhs_x = rhs_y = rhs_z = 0.0
-        t254 = W_x + rhs_x
-        t255 = W_y + rhs_y
-        t256 = W_z + rhs_z
-        wp_x = Bxx*t254 + Byx*t255 + Bzx*t256
-        wp_y = Bxy*t254 + Byy*t255 + Bzy*t256
-        wp_z = Bxz*t254 + Byz*t255 + Bzz*t256
+        t247 = W_x + rhs_x
+        t248 = W_y + rhs_y
+        t249 = W_z + rhs_z
+        wp_x = Bxx*t247 + Byx*t248 + Bzx*t249
+        wp_y = Bxy*t247 + Byy*t248 + Bzy*t249
+        wp_z = Bxz*t247 + Byz*t248 + Bzz*t249
         # force on the origin, through the frame
         for i in range(N_POSITIONS):
             i3 = 3*i
             fit = fits[i]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-            t257 = fit*wp_z
-            F_x += -X_y*t257 + X_z*fit*wp_y
-            F_y += X_x*t257 - X_z*fit*wp_x
+            t250 = fit*wp_z
+            F_x += -X_y*t250 + X_z*fit*wp_y
+            F_y += X_x*t250 - X_z*fit*wp_x
             F_z += -X_x*fit*wp_y + X_y*fit*wp_x
         # force on the nodes in frame axes, (30), (57)
         for i in range(N_POSITIONS):
@@ -648,10 +639,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             alpha = alphas[i]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t258 = fit*wp_z
-            t259 = X_z*fit
-            h[i3] = F_x*alpha + X_y*t258 + f_x - t259*wp_y
-            h[i3 + 1] = F_y*alpha - X_x*t258 + f_y + t259*wp_x
+            t251 = fit*wp_z
+            t252 = X_z*fit
+            h[i3] = F_x*alpha + X_y*t251 + f_x - t252*wp_y
+            h[i3 + 1] = F_y*alpha - X_x*t251 + f_y + t252*wp_x
             h[i3 + 2] = F_z*alpha + X_x*fit*wp_y - X_y*fit*wp_x + f_z
         # force on the nodes
         for i in range(N_POSITIONS):
@@ -666,17 +657,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t260 = m_y*psi_z
-            t261 = m_x*psi_y
-            t262 = e0*(m_y*psi_x - t261)
-            t263 = m_x*psi_z
-            t264 = m_z*psi_x
-            t265 = t263 - t264
-            t266 = e0*psi_z
-            t267 = m_z*psi_y - t260
-            g[j3] = m_x - 0.5*m_z*psi_y + psi_y*t262 + (0.5)*t260 - t265*t266
-            g[j3 + 1] = m_y - psi_x*t262 - 0.5*t263 + (0.5)*t264 + t266*t267
-            g[j3 + 2] = e0*psi_x*t265 - e0*psi_y*t267 - 0.5*m_y*psi_x + m_z + (0.5)*t261
+            t253 = m_y*psi_z
+            t254 = m_x*psi_y
+            t255 = e0*(m_y*psi_x - t254)
+            t256 = m_x*psi_z
+            t257 = m_z*psi_x
+            t258 = t256 - t257
+            t259 = e0*psi_z
+            t260 = m_z*psi_y - t253
+            g[j3] = m_x - 0.5*m_z*psi_y + psi_y*t255 + (0.5)*t253 - t258*t259
+            g[j3 + 1] = m_y - psi_x*t255 - 0.5*t256 + (0.5)*t257 + t259*t260
+            g[j3 + 2] = e0*psi_x*t258 - e0*psi_y*t260 - 0.5*m_y*psi_x + m_z + (0.5)*t254
         # force of the internal modes
         for k in range(MODES, n):
             fm = s[k]
@@ -691,222 +682,222 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-                t38 = X_z + u_z
-                t39 = X_y + u_y
-                t40 = -t39
-                t41 = X_x + u_x
-                t42 = X_y*fit
-                t43 = -t41
-                t44 = X_z*fit
-                t45 = X_x*fit
-                t46 = -t38
-                B_00 += fit*(X_y*t40 - X_z*t38)
-                B_01 += t41*t42
-                B_02 += -t43*t44
-                B_10 += -t40*t45
-                B_11 += fit*(-X_x*t41 + X_z*t46)
-                B_12 += t39*t44
-                B_20 += t38*t45
-                B_21 += -t42*t46
-                B_22 += fit*(X_x*t43 - X_y*t39)
+                t31 = X_z + u_z
+                t32 = X_y + u_y
+                t33 = -t32
+                t34 = X_x + u_x
+                t35 = X_y*fit
+                t36 = -t34
+                t37 = X_z*fit
+                t38 = X_x*fit
+                t39 = -t31
+                B_00 += fit*(X_y*t33 - X_z*t31)
+                B_01 += t34*t35
+                B_02 += -t36*t37
+                B_10 += -t33*t38
+                B_11 += fit*(-X_x*t34 + X_z*t39)
+                B_12 += t32*t37
+                B_20 += t31*t38
+                B_21 += -t35*t39
+                B_22 += fit*(X_x*t36 - X_y*t32)
             Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
                 B_12, B_20, B_21, B_22)
-            t128 = e_x*e_x
-            t129 = e_x*place_1 + e_y*place_2 + e_z*place_3
-            t130 = -e_x*t129 + place_1
-            t131 = -e_y*t129 + place_2
-            t132 = -e_z*t129 + place_3
-            t133 = 1.0000000000000001e-20*size*size + t130*t130 + t131*t131 + t132*t132
-            t134 = side/sqrt(t133)
-            t135 = e_x*e_y
-            t136 = e_z*t132
-            t137 = e_x*t136 - 0.5*t130*(2 - 2*t128) + t131*t135
-            t138 = t133**(-1.5)
-            t139 = side*t138
-            t140 = t134*t135
-            t141 = e_y*e_y
-            t142 = e_y*t136 + t130*t135 - 0.5*t131*(2 - 2*t141)
-            t143 = e_x*e_z
-            t144 = t134*t143
-            t145 = e_y*e_z
-            t146 = e_z*e_z
-            t147 = t130*t143 + t131*t145 - 0.5*t132*(2 - 2*t146)
-            t148 = t134*t145
-            dnormal_1_by_place_1 = 0 if flat > 0.0 else t130*t137*t139 + t134*(1 - t128)
-            dnormal_1_by_place_2 = 0 if flat > 0.0 else side*t130*t138*t142 - t140
-            dnormal_1_by_place_3 = 0 if flat > 0.0 else side*t130*t138*t147 - t144
-            dnormal_2_by_place_1 = 0 if flat > 0.0 else side*t131*t137*t138 - t140
-            dnormal_2_by_place_2 = 0 if flat > 0.0 else t131*t139*t142 + t134*(1 - t141)
-            dnormal_2_by_place_3 = 0 if flat > 0.0 else side*t131*t138*t147 - t148
-            dnormal_3_by_place_1 = 0 if flat > 0.0 else side*t132*t137*t138 - t144
-            dnormal_3_by_place_2 = 0 if flat > 0.0 else side*t132*t138*t142 - t148
-            dnormal_3_by_place_3 = 0 if flat > 0.0 else t132*t139*t147 + t134*(1 - t146)
-            dgap_closed_by_place_1 = -(e_x if flat > 0.0 else -t134*t137)
-            dgap_closed_by_place_2 = -(e_y if flat > 0.0 else -t134*t142)
-            dgap_closed_by_place_3 = -(e_z if flat > 0.0 else -t134*t147)
-            t149 = dnormal_1_by_place_1*rate_1
-            t150 = dnormal_2_by_place_1*rate_2
-            t151 = dnormal_3_by_place_1*rate_3
-            t152 = dnormal_1_by_place_2*rate_1
-            t153 = dnormal_2_by_place_2*rate_2
-            t154 = dnormal_3_by_place_2*rate_3
-            t155 = dnormal_1_by_place_3*rate_1
-            t156 = dnormal_2_by_place_3*rate_2
-            t157 = dnormal_3_by_place_3*rate_3
-            t158 = normal_2*rate_2
-            t159 = normal_3*rate_3
-            t160 = normal_1*rate_1
-            t161 = -t158 - t159 - 2*t160
-            t162 = normal_1*normal_1 - 1
-            t163 = normal_1*normal_2
-            t164 = -t163
-            t165 = normal_1*normal_3
-            t166 = -t165
-            t167 = -2*t158 - t159 - t160
-            t168 = normal_2*normal_2 - 1
-            t169 = normal_2*normal_3
-            t170 = -t169
-            t171 = -t158 - 2*t159 - t160
-            t172 = normal_3*normal_3 - 1
-            t173 = -kept_place_2 + place_2
-            t174 = normal_2*t173
-            t175 = -kept_place_3 + place_3
-            t176 = normal_3*t175
-            t177 = -kept_place_1 + place_1
-            t178 = normal_1*t177
-            t179 = -t174 - t176 - 2*t178
-            t180 = normal_1*t173
-            t181 = normal_1*t175
-            t182 = normal_2*t177
-            t183 = normal_2*t175
-            t184 = -2*t174 - t176 - t178
-            t185 = normal_3*t177
-            t186 = normal_3*t173
-            t187 = -t174 - 2*t176 - t178
-            dclosing_by_place_1 = -t149 - t150 - t151
-            dclosing_by_place_2 = -t152 - t153 - t154
-            dclosing_by_place_3 = -t155 - t156 - t157
+            t121 = e_x*e_x
+            t122 = e_x*place_1 + e_y*place_2 + e_z*place_3
+            t123 = -e_x*t122 + place_1
+            t124 = -e_y*t122 + place_2
+            t125 = -e_z*t122 + place_3
+            t126 = 1.0000000000000001e-20*size*size + t123*t123 + t124*t124 + t125*t125
+            t127 = side/sqrt(t126)
+            t128 = e_x*e_y
+            t129 = e_z*t125
+            t130 = e_x*t129 - 0.5*t123*(2 - 2*t121) + t124*t128
+            t131 = t126**(-1.5)
+            t132 = side*t131
+            t133 = t127*t128
+            t134 = e_y*e_y
+            t135 = e_y*t129 + t123*t128 - 0.5*t124*(2 - 2*t134)
+            t136 = e_x*e_z
+            t137 = t127*t136
+            t138 = e_y*e_z
+            t139 = e_z*e_z
+            t140 = t123*t136 + t124*t138 - 0.5*t125*(2 - 2*t139)
+            t141 = t127*t138
+            dnormal_1_by_place_1 = 0 if flat > 0.0 else t123*t130*t132 + t127*(1 - t121)
+            dnormal_1_by_place_2 = 0 if flat > 0.0 else side*t123*t131*t135 - t133
+            dnormal_1_by_place_3 = 0 if flat > 0.0 else side*t123*t131*t140 - t137
+            dnormal_2_by_place_1 = 0 if flat > 0.0 else side*t124*t130*t131 - t133
+            dnormal_2_by_place_2 = 0 if flat > 0.0 else t124*t132*t135 + t127*(1 - t134)
+            dnormal_2_by_place_3 = 0 if flat > 0.0 else side*t124*t131*t140 - t141
+            dnormal_3_by_place_1 = 0 if flat > 0.0 else side*t125*t130*t131 - t137
+            dnormal_3_by_place_2 = 0 if flat > 0.0 else side*t125*t131*t135 - t141
+            dnormal_3_by_place_3 = 0 if flat > 0.0 else t125*t132*t140 + t127*(1 - t139)
+            dgap_closed_by_place_1 = -(e_x if flat > 0.0 else -t127*t130)
+            dgap_closed_by_place_2 = -(e_y if flat > 0.0 else -t127*t135)
+            dgap_closed_by_place_3 = -(e_z if flat > 0.0 else -t127*t140)
+            t142 = dnormal_1_by_place_1*rate_1
+            t143 = dnormal_2_by_place_1*rate_2
+            t144 = dnormal_3_by_place_1*rate_3
+            t145 = dnormal_1_by_place_2*rate_1
+            t146 = dnormal_2_by_place_2*rate_2
+            t147 = dnormal_3_by_place_2*rate_3
+            t148 = dnormal_1_by_place_3*rate_1
+            t149 = dnormal_2_by_place_3*rate_2
+            t150 = dnormal_3_by_place_3*rate_3
+            t151 = normal_2*rate_2
+            t152 = normal_3*rate_3
+            t153 = normal_1*rate_1
+            t154 = -t151 - t152 - 2*t153
+            t155 = normal_1*normal_1 - 1
+            t156 = normal_1*normal_2
+            t157 = -t156
+            t158 = normal_1*normal_3
+            t159 = -t158
+            t160 = -2*t151 - t152 - t153
+            t161 = normal_2*normal_2 - 1
+            t162 = normal_2*normal_3
+            t163 = -t162
+            t164 = -t151 - 2*t152 - t153
+            t165 = normal_3*normal_3 - 1
+            t166 = -kept_place_2 + place_2
+            t167 = normal_2*t166
+            t168 = -kept_place_3 + place_3
+            t169 = normal_3*t168
+            t170 = -kept_place_1 + place_1
+            t171 = normal_1*t170
+            t172 = -t167 - t169 - 2*t171
+            t173 = normal_1*t166
+            t174 = normal_1*t168
+            t175 = normal_2*t170
+            t176 = normal_2*t168
+            t177 = -2*t167 - t169 - t171
+            t178 = normal_3*t170
+            t179 = normal_3*t166
+            t180 = -t167 - 2*t169 - t171
+            dclosing_by_place_1 = -t142 - t143 - t144
+            dclosing_by_place_2 = -t145 - t146 - t147
+            dclosing_by_place_3 = -t148 - t149 - t150
             dclosing_by_rate_1 = -normal_1
             dclosing_by_rate_2 = -normal_2
             dclosing_by_rate_3 = -normal_3
-            dslip_1_by_place_1 = dnormal_1_by_place_1*t161 - normal_1*t150 - normal_1*t151
-            dslip_1_by_place_2 = dnormal_1_by_place_2*t161 - normal_1*t153 - normal_1*t154
-            dslip_1_by_place_3 = dnormal_1_by_place_3*t161 - normal_1*t156 - normal_1*t157
-            dslip_1_by_rate_1 = -t162
-            dslip_1_by_rate_2 = t164
-            dslip_1_by_rate_3 = t166
-            dslip_2_by_place_1 = dnormal_2_by_place_1*t167 - normal_2*t149 - normal_2*t151
-            dslip_2_by_place_2 = dnormal_2_by_place_2*t167 - normal_2*t152 - normal_2*t154
-            dslip_2_by_place_3 = dnormal_2_by_place_3*t167 - normal_2*t155 - normal_2*t157
-            dslip_2_by_rate_1 = t164
-            dslip_2_by_rate_2 = -t168
-            dslip_2_by_rate_3 = t170
-            dslip_3_by_place_1 = dnormal_3_by_place_1*t171 - normal_3*t149 - normal_3*t150
-            dslip_3_by_place_2 = dnormal_3_by_place_2*t171 - normal_3*t152 - normal_3*t153
-            dslip_3_by_place_3 = dnormal_3_by_place_3*t171 - normal_3*t155 - normal_3*t156
-            dslip_3_by_rate_1 = t166
-            dslip_3_by_rate_2 = t170
-            dslip_3_by_rate_3 = -t172
-            dincrement_1_by_place_1 = (dnormal_1_by_place_1*t179 - dnormal_2_by_place_1*t180 -
-                dnormal_3_by_place_1*t181 - t162)
-            dincrement_1_by_place_2 = (dnormal_1_by_place_2*t179 - dnormal_2_by_place_2*t180 -
-                dnormal_3_by_place_2*t181 - t163)
-            dincrement_1_by_place_3 = (dnormal_1_by_place_3*t179 - dnormal_2_by_place_3*t180 -
-                dnormal_3_by_place_3*t181 - t165)
-            dincrement_2_by_place_1 = (-dnormal_1_by_place_1*t182 + dnormal_2_by_place_1*t184 -
-                dnormal_3_by_place_1*t183 - t163)
-            dincrement_2_by_place_2 = (-dnormal_1_by_place_2*t182 + dnormal_2_by_place_2*t184 -
-                dnormal_3_by_place_2*t183 - t168)
-            dincrement_2_by_place_3 = (-dnormal_1_by_place_3*t182 + dnormal_2_by_place_3*t184 -
-                dnormal_3_by_place_3*t183 - t169)
-            dincrement_3_by_place_1 = (-dnormal_1_by_place_1*t185 - dnormal_2_by_place_1*t186 +
-                dnormal_3_by_place_1*t187 - t165)
-            dincrement_3_by_place_2 = (-dnormal_1_by_place_2*t185 - dnormal_2_by_place_2*t186 +
-                dnormal_3_by_place_2*t187 - t169)
-            dincrement_3_by_place_3 = (-dnormal_1_by_place_3*t185 - dnormal_2_by_place_3*t186 +
-                dnormal_3_by_place_3*t187 - t172)
-            t188 = 1 if gap_closed > 0.0 else 0
-            ddepth_by_place_1 = dgap_closed_by_place_1*t188
-            ddepth_by_place_2 = dgap_closed_by_place_2*t188
-            ddepth_by_place_3 = dgap_closed_by_place_3*t188
-            t189 = depth**exponent*exponent*stiffness/depth
-            delastic_by_place_1 = ddepth_by_place_1*t189
-            delastic_by_place_2 = ddepth_by_place_2*t189
-            delastic_by_place_3 = ddepth_by_place_3*t189
+            dslip_1_by_place_1 = dnormal_1_by_place_1*t154 - normal_1*t143 - normal_1*t144
+            dslip_1_by_place_2 = dnormal_1_by_place_2*t154 - normal_1*t146 - normal_1*t147
+            dslip_1_by_place_3 = dnormal_1_by_place_3*t154 - normal_1*t149 - normal_1*t150
+            dslip_1_by_rate_1 = -t155
+            dslip_1_by_rate_2 = t157
+            dslip_1_by_rate_3 = t159
+            dslip_2_by_place_1 = dnormal_2_by_place_1*t160 - normal_2*t142 - normal_2*t144
+            dslip_2_by_place_2 = dnormal_2_by_place_2*t160 - normal_2*t145 - normal_2*t147
+            dslip_2_by_place_3 = dnormal_2_by_place_3*t160 - normal_2*t148 - normal_2*t150
+            dslip_2_by_rate_1 = t157
+            dslip_2_by_rate_2 = -t161
+            dslip_2_by_rate_3 = t163
+            dslip_3_by_place_1 = dnormal_3_by_place_1*t164 - normal_3*t142 - normal_3*t143
+            dslip_3_by_place_2 = dnormal_3_by_place_2*t164 - normal_3*t145 - normal_3*t146
+            dslip_3_by_place_3 = dnormal_3_by_place_3*t164 - normal_3*t148 - normal_3*t149
+            dslip_3_by_rate_1 = t159
+            dslip_3_by_rate_2 = t163
+            dslip_3_by_rate_3 = -t165
+            dincrement_1_by_place_1 = (dnormal_1_by_place_1*t172 - dnormal_2_by_place_1*t173 -
+                dnormal_3_by_place_1*t174 - t155)
+            dincrement_1_by_place_2 = (dnormal_1_by_place_2*t172 - dnormal_2_by_place_2*t173 -
+                dnormal_3_by_place_2*t174 - t156)
+            dincrement_1_by_place_3 = (dnormal_1_by_place_3*t172 - dnormal_2_by_place_3*t173 -
+                dnormal_3_by_place_3*t174 - t158)
+            dincrement_2_by_place_1 = (-dnormal_1_by_place_1*t175 + dnormal_2_by_place_1*t177 -
+                dnormal_3_by_place_1*t176 - t156)
+            dincrement_2_by_place_2 = (-dnormal_1_by_place_2*t175 + dnormal_2_by_place_2*t177 -
+                dnormal_3_by_place_2*t176 - t161)
+            dincrement_2_by_place_3 = (-dnormal_1_by_place_3*t175 + dnormal_2_by_place_3*t177 -
+                dnormal_3_by_place_3*t176 - t162)
+            dincrement_3_by_place_1 = (-dnormal_1_by_place_1*t178 - dnormal_2_by_place_1*t179 +
+                dnormal_3_by_place_1*t180 - t158)
+            dincrement_3_by_place_2 = (-dnormal_1_by_place_2*t178 - dnormal_2_by_place_2*t179 +
+                dnormal_3_by_place_2*t180 - t162)
+            dincrement_3_by_place_3 = (-dnormal_1_by_place_3*t178 - dnormal_2_by_place_3*t179 +
+                dnormal_3_by_place_3*t180 - t165)
+            t181 = 1 if gap_closed > 0.0 else 0
+            ddepth_by_place_1 = dgap_closed_by_place_1*t181
+            ddepth_by_place_2 = dgap_closed_by_place_2*t181
+            ddepth_by_place_3 = dgap_closed_by_place_3*t181
+            t182 = depth**exponent*exponent*stiffness/depth
+            delastic_by_place_1 = ddepth_by_place_1*t182
+            delastic_by_place_2 = ddepth_by_place_2*t182
+            delastic_by_place_3 = ddepth_by_place_3*t182
             dfactor_by_place_1 = damping*dclosing_by_place_1
             dfactor_by_place_2 = damping*dclosing_by_place_2
             dfactor_by_place_3 = damping*dclosing_by_place_3
             dfactor_by_rate_1 = damping*dclosing_by_rate_1
             dfactor_by_rate_2 = damping*dclosing_by_rate_2
             dfactor_by_rate_3 = damping*dclosing_by_rate_3
-            t190 = factor if factor > 0.0 else 0
-            t191 = elastic if factor > 0.0 else 0
-            dpush_by_place_1 = delastic_by_place_1*t190 + dfactor_by_place_1*t191
-            dpush_by_place_2 = delastic_by_place_2*t190 + dfactor_by_place_2*t191
-            dpush_by_place_3 = delastic_by_place_3*t190 + dfactor_by_place_3*t191
-            dpush_by_rate_1 = dfactor_by_rate_1*t191
-            dpush_by_rate_2 = dfactor_by_rate_2*t191
-            dpush_by_rate_3 = dfactor_by_rate_3*t191
-            t192 = kept_begun*normal_1
-            t193 = normal_2*t192
-            t194 = normal_3*t192
-            t195 = increment_2*kept_begun + kept_bent_2
+            t183 = factor if factor > 0.0 else 0
+            t184 = elastic if factor > 0.0 else 0
+            dpush_by_place_1 = delastic_by_place_1*t183 + dfactor_by_place_1*t184
+            dpush_by_place_2 = delastic_by_place_2*t183 + dfactor_by_place_2*t184
+            dpush_by_place_3 = delastic_by_place_3*t183 + dfactor_by_place_3*t184
+            dpush_by_rate_1 = dfactor_by_rate_1*t184
+            dpush_by_rate_2 = dfactor_by_rate_2*t184
+            dpush_by_rate_3 = dfactor_by_rate_3*t184
+            t185 = kept_begun*normal_1
+            t186 = normal_2*t185
+            t187 = normal_3*t185
+            t188 = increment_2*kept_begun + kept_bent_2
+            t189 = normal_1*t188
+            t190 = increment_3*kept_begun + kept_bent_3
+            t191 = normal_1*t190
+            t192 = 1 - normal_1*normal_1
+            t193 = normal_2*t188
+            t194 = normal_3*t190
+            t195 = increment_1*kept_begun + kept_bent_1
             t196 = normal_1*t195
-            t197 = increment_3*kept_begun + kept_bent_3
-            t198 = normal_1*t197
-            t199 = 1 - normal_1*normal_1
-            t200 = normal_2*t195
-            t201 = normal_3*t197
-            t202 = increment_1*kept_begun + kept_bent_1
-            t203 = normal_1*t202
-            t204 = -t200 - t201 - 2*t203
-            t205 = kept_begun*normal_2*normal_3
-            t206 = normal_2*t202
-            t207 = normal_2*t197
-            t208 = 1 - normal_2*normal_2
-            t209 = -2*t200 - t201 - t203
-            t210 = normal_3*t202
-            t211 = normal_3*t195
-            t212 = 1 - normal_3*normal_3
-            t213 = -t200 - 2*t201 - t203
-            dz_1_by_place_1 = (dincrement_1_by_place_1*kept_begun*t199 -
-                dincrement_2_by_place_1*t193 - dincrement_3_by_place_1*t194 +
-                dnormal_1_by_place_1*t204 - dnormal_2_by_place_1*t196 - dnormal_3_by_place_1*t198)
-            dz_1_by_place_2 = (dincrement_1_by_place_2*kept_begun*t199 -
-                dincrement_2_by_place_2*t193 - dincrement_3_by_place_2*t194 +
-                dnormal_1_by_place_2*t204 - dnormal_2_by_place_2*t196 - dnormal_3_by_place_2*t198)
-            dz_1_by_place_3 = (dincrement_1_by_place_3*kept_begun*t199 -
-                dincrement_2_by_place_3*t193 - dincrement_3_by_place_3*t194 +
-                dnormal_1_by_place_3*t204 - dnormal_2_by_place_3*t196 - dnormal_3_by_place_3*t198)
-            dz_2_by_place_1 = (-dincrement_1_by_place_1*t193 +
-                dincrement_2_by_place_1*kept_begun*t208 - dincrement_3_by_place_1*t205 -
-                dnormal_1_by_place_1*t206 + dnormal_2_by_place_1*t209 - dnormal_3_by_place_1*t207)
-            dz_2_by_place_2 = (-dincrement_1_by_place_2*t193 +
-                dincrement_2_by_place_2*kept_begun*t208 - dincrement_3_by_place_2*t205 -
-                dnormal_1_by_place_2*t206 + dnormal_2_by_place_2*t209 - dnormal_3_by_place_2*t207)
-            dz_2_by_place_3 = (-dincrement_1_by_place_3*t193 +
-                dincrement_2_by_place_3*kept_begun*t208 - dincrement_3_by_place_3*t205 -
-                dnormal_1_by_place_3*t206 + dnormal_2_by_place_3*t209 - dnormal_3_by_place_3*t207)
-            dz_3_by_place_1 = (-dincrement_1_by_place_1*t194 - dincrement_2_by_place_1*t205 +
-                dincrement_3_by_place_1*kept_begun*t212 - dnormal_1_by_place_1*t210 -
-                dnormal_2_by_place_1*t211 + dnormal_3_by_place_1*t213)
-            dz_3_by_place_2 = (-dincrement_1_by_place_2*t194 - dincrement_2_by_place_2*t205 +
-                dincrement_3_by_place_2*kept_begun*t212 - dnormal_1_by_place_2*t210 -
-                dnormal_2_by_place_2*t211 + dnormal_3_by_place_2*t213)
-            dz_3_by_place_3 = (-dincrement_1_by_place_3*t194 - dincrement_2_by_place_3*t205 +
-                dincrement_3_by_place_3*kept_begun*t212 - dnormal_1_by_place_3*t210 -
-                dnormal_2_by_place_3*t211 + dnormal_3_by_place_3*t213)
+            t197 = -t193 - t194 - 2*t196
+            t198 = kept_begun*normal_2*normal_3
+            t199 = normal_2*t195
+            t200 = normal_2*t190
+            t201 = 1 - normal_2*normal_2
+            t202 = -2*t193 - t194 - t196
+            t203 = normal_3*t195
+            t204 = normal_3*t188
+            t205 = 1 - normal_3*normal_3
+            t206 = -t193 - 2*t194 - t196
+            dz_1_by_place_1 = (dincrement_1_by_place_1*kept_begun*t192 -
+                dincrement_2_by_place_1*t186 - dincrement_3_by_place_1*t187 +
+                dnormal_1_by_place_1*t197 - dnormal_2_by_place_1*t189 - dnormal_3_by_place_1*t191)
+            dz_1_by_place_2 = (dincrement_1_by_place_2*kept_begun*t192 -
+                dincrement_2_by_place_2*t186 - dincrement_3_by_place_2*t187 +
+                dnormal_1_by_place_2*t197 - dnormal_2_by_place_2*t189 - dnormal_3_by_place_2*t191)
+            dz_1_by_place_3 = (dincrement_1_by_place_3*kept_begun*t192 -
+                dincrement_2_by_place_3*t186 - dincrement_3_by_place_3*t187 +
+                dnormal_1_by_place_3*t197 - dnormal_2_by_place_3*t189 - dnormal_3_by_place_3*t191)
+            dz_2_by_place_1 = (-dincrement_1_by_place_1*t186 +
+                dincrement_2_by_place_1*kept_begun*t201 - dincrement_3_by_place_1*t198 -
+                dnormal_1_by_place_1*t199 + dnormal_2_by_place_1*t202 - dnormal_3_by_place_1*t200)
+            dz_2_by_place_2 = (-dincrement_1_by_place_2*t186 +
+                dincrement_2_by_place_2*kept_begun*t201 - dincrement_3_by_place_2*t198 -
+                dnormal_1_by_place_2*t199 + dnormal_2_by_place_2*t202 - dnormal_3_by_place_2*t200)
+            dz_2_by_place_3 = (-dincrement_1_by_place_3*t186 +
+                dincrement_2_by_place_3*kept_begun*t201 - dincrement_3_by_place_3*t198 -
+                dnormal_1_by_place_3*t199 + dnormal_2_by_place_3*t202 - dnormal_3_by_place_3*t200)
+            dz_3_by_place_1 = (-dincrement_1_by_place_1*t187 - dincrement_2_by_place_1*t198 +
+                dincrement_3_by_place_1*kept_begun*t205 - dnormal_1_by_place_1*t203 -
+                dnormal_2_by_place_1*t204 + dnormal_3_by_place_1*t206)
+            dz_3_by_place_2 = (-dincrement_1_by_place_2*t187 - dincrement_2_by_place_2*t198 +
+                dincrement_3_by_place_2*kept_begun*t205 - dnormal_1_by_place_2*t203 -
+                dnormal_2_by_place_2*t204 + dnormal_3_by_place_2*t206)
+            dz_3_by_place_3 = (-dincrement_1_by_place_3*t187 - dincrement_2_by_place_3*t198 +
+                dincrement_3_by_place_3*kept_begun*t205 - dnormal_1_by_place_3*t203 -
+                dnormal_2_by_place_3*t204 + dnormal_3_by_place_3*t206)
             ddynamic_limit_by_place_1 = coefficient*dpush_by_place_1
             ddynamic_limit_by_place_2 = coefficient*dpush_by_place_2
             ddynamic_limit_by_place_3 = coefficient*dpush_by_place_3
             ddynamic_limit_by_rate_1 = coefficient*dpush_by_rate_1
             ddynamic_limit_by_rate_2 = coefficient*dpush_by_rate_2
             ddynamic_limit_by_rate_3 = coefficient*dpush_by_rate_3
-            t214 = (1/sqrt(slip_1*slip_1 + slip_2*slip_2 + slip_3*slip_3 + 1e-12*speed*speed +
+            t207 = (1/sqrt(slip_1*slip_1 + slip_2*slip_2 + slip_3*slip_3 + 1e-12*speed*speed +
                 1e-300))
-            t215 = slip_1*t214
-            t216 = slip_2*t214
-            t217 = slip_3*t214
+            t208 = slip_1*t207
+            t209 = slip_2*t207
+            t210 = slip_3*t207
             dtrial_1_by_place_1 = bristle*dz_1_by_place_1 + bristle_damping*dslip_1_by_place_1
             dtrial_1_by_place_2 = bristle*dz_1_by_place_2 + bristle_damping*dslip_1_by_place_2
             dtrial_1_by_place_3 = bristle*dz_1_by_place_3 + bristle_damping*dslip_1_by_place_3
@@ -925,103 +916,103 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dtrial_3_by_rate_1 = bristle_damping*dslip_3_by_rate_1
             dtrial_3_by_rate_2 = bristle_damping*dslip_3_by_rate_2
             dtrial_3_by_rate_3 = bristle_damping*dslip_3_by_rate_3
-            dslip_speed_by_place_1 = (dslip_1_by_place_1*t215 + dslip_2_by_place_1*t216 +
-                dslip_3_by_place_1*t217)
-            dslip_speed_by_place_2 = (dslip_1_by_place_2*t215 + dslip_2_by_place_2*t216 +
-                dslip_3_by_place_2*t217)
-            dslip_speed_by_place_3 = (dslip_1_by_place_3*t215 + dslip_2_by_place_3*t216 +
-                dslip_3_by_place_3*t217)
-            dslip_speed_by_rate_1 = (dslip_1_by_rate_1*t215 + dslip_2_by_rate_1*t216 +
-                dslip_3_by_rate_1*t217)
-            dslip_speed_by_rate_2 = (dslip_1_by_rate_2*t215 + dslip_2_by_rate_2*t216 +
-                dslip_3_by_rate_2*t217)
-            dslip_speed_by_rate_3 = (dslip_1_by_rate_3*t215 + dslip_2_by_rate_3*t216 +
-                dslip_3_by_rate_3*t217)
-            t218 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
-            t219 = t218*trial_1
-            t220 = t218*trial_2
-            t221 = t218*trial_3
-            t222 = 1/slip_speed
-            t223 = 1/speed
-            t224 = slip_speed*t223
-            t225 = tanh(4*t224)
-            t226 = slip_speed*slip_speed
-            t227 = 0.75 + ((0.25)*t226)/(speed*speed)
-            t228 = -coefficient + static
-            t229 = t228/(t227*t227)
-            t230 = coefficient*t225 + t224*t229
-            t231 = t222*t230 if speed > 0.0 else 0
-            t232 = (push*t222*(4*coefficient*t223*(1 - t225*t225) + t223*t229 +
-                (-t226*t228)/(speed*speed*speed*t227*t227*t227)) - push*t230/t226 if speed > 0.0
+            dslip_speed_by_place_1 = (dslip_1_by_place_1*t208 + dslip_2_by_place_1*t209 +
+                dslip_3_by_place_1*t210)
+            dslip_speed_by_place_2 = (dslip_1_by_place_2*t208 + dslip_2_by_place_2*t209 +
+                dslip_3_by_place_2*t210)
+            dslip_speed_by_place_3 = (dslip_1_by_place_3*t208 + dslip_2_by_place_3*t209 +
+                dslip_3_by_place_3*t210)
+            dslip_speed_by_rate_1 = (dslip_1_by_rate_1*t208 + dslip_2_by_rate_1*t209 +
+                dslip_3_by_rate_1*t210)
+            dslip_speed_by_rate_2 = (dslip_1_by_rate_2*t208 + dslip_2_by_rate_2*t209 +
+                dslip_3_by_rate_2*t210)
+            dslip_speed_by_rate_3 = (dslip_1_by_rate_3*t208 + dslip_2_by_rate_3*t209 +
+                dslip_3_by_rate_3*t210)
+            t211 = 1/sqrt(trial_1*trial_1 + trial_2*trial_2 + trial_3*trial_3 + 1e-300)
+            t212 = t211*trial_1
+            t213 = t211*trial_2
+            t214 = t211*trial_3
+            t215 = 1/slip_speed
+            t216 = 1/speed
+            t217 = slip_speed*t216
+            t218 = tanh(4*t217)
+            t219 = slip_speed*slip_speed
+            t220 = 0.75 + ((0.25)*t219)/(speed*speed)
+            t221 = -coefficient + static
+            t222 = t221/(t220*t220)
+            t223 = coefficient*t218 + t217*t222
+            t224 = t215*t223 if speed > 0.0 else 0
+            t225 = (push*t215*(4*coefficient*t216*(1 - t218*t218) + t216*t222 +
+                (-t219*t221)/(speed*speed*speed*t220*t220*t220)) - push*t223/t219 if speed > 0.0
                 else 0)
-            dtrial_size_by_place_1 = (dtrial_1_by_place_1*t219 + dtrial_2_by_place_1*t220 +
-                dtrial_3_by_place_1*t221)
-            dtrial_size_by_place_2 = (dtrial_1_by_place_2*t219 + dtrial_2_by_place_2*t220 +
-                dtrial_3_by_place_2*t221)
-            dtrial_size_by_place_3 = (dtrial_1_by_place_3*t219 + dtrial_2_by_place_3*t220 +
-                dtrial_3_by_place_3*t221)
-            dtrial_size_by_rate_1 = (dtrial_1_by_rate_1*t219 + dtrial_2_by_rate_1*t220 +
-                dtrial_3_by_rate_1*t221)
-            dtrial_size_by_rate_2 = (dtrial_1_by_rate_2*t219 + dtrial_2_by_rate_2*t220 +
-                dtrial_3_by_rate_2*t221)
-            dtrial_size_by_rate_3 = (dtrial_1_by_rate_3*t219 + dtrial_2_by_rate_3*t220 +
-                dtrial_3_by_rate_3*t221)
-            ddrag_by_place_1 = dpush_by_place_1*t231 + dslip_speed_by_place_1*t232
-            ddrag_by_place_2 = dpush_by_place_2*t231 + dslip_speed_by_place_2*t232
-            ddrag_by_place_3 = dpush_by_place_3*t231 + dslip_speed_by_place_3*t232
-            ddrag_by_rate_1 = dpush_by_rate_1*t231 + dslip_speed_by_rate_1*t232
-            ddrag_by_rate_2 = dpush_by_rate_2*t231 + dslip_speed_by_rate_2*t232
-            ddrag_by_rate_3 = dpush_by_rate_3*t231 + dslip_speed_by_rate_3*t232
-            t233 = slip_1 if speed > 0.0 else 0
-            t234 = drag if speed > 0.0 else 0
-            t235 = -static_limit + trial_size
-            t236 = 1/trial_size
-            t237 = 0 if speed > 0.0 else (t236*trial_1 if t235 > 0.0 else 0)
-            t238 = 0 if speed > 0.0 else (dynamic_limit*t236 if t235 > 0.0 else 1)
-            t239 = dynamic_limit/(trial_size*trial_size)
-            t240 = 0 if speed > 0.0 else (-t239*trial_1 if t235 > 0.0 else 0)
-            t241 = slip_2 if speed > 0.0 else 0
-            t242 = 0 if speed > 0.0 else (t236*trial_2 if t235 > 0.0 else 0)
-            t243 = 0 if speed > 0.0 else (-t239*trial_2 if t235 > 0.0 else 0)
-            t244 = slip_3 if speed > 0.0 else 0
-            t245 = 0 if speed > 0.0 else (t236*trial_3 if t235 > 0.0 else 0)
-            t246 = 0 if speed > 0.0 else (-t239*trial_3 if t235 > 0.0 else 0)
-            dfriction_1_by_place_1 = (ddrag_by_place_1*t233 + ddynamic_limit_by_place_1*t237 +
-                dslip_1_by_place_1*t234 + dtrial_1_by_place_1*t238 + dtrial_size_by_place_1*t240)
-            dfriction_1_by_place_2 = (ddrag_by_place_2*t233 + ddynamic_limit_by_place_2*t237 +
-                dslip_1_by_place_2*t234 + dtrial_1_by_place_2*t238 + dtrial_size_by_place_2*t240)
-            dfriction_1_by_place_3 = (ddrag_by_place_3*t233 + ddynamic_limit_by_place_3*t237 +
-                dslip_1_by_place_3*t234 + dtrial_1_by_place_3*t238 + dtrial_size_by_place_3*t240)
-            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t233 + ddynamic_limit_by_rate_1*t237 +
-                dslip_1_by_rate_1*t234 + dtrial_1_by_rate_1*t238 + dtrial_size_by_rate_1*t240)
-            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t233 + ddynamic_limit_by_rate_2*t237 +
-                dslip_1_by_rate_2*t234 + dtrial_1_by_rate_2*t238 + dtrial_size_by_rate_2*t240)
-            dfriction_1_by_rate_3 = (ddrag_by_rate_3*t233 + ddynamic_limit_by_rate_3*t237 +
-                dslip_1_by_rate_3*t234 + dtrial_1_by_rate_3*t238 + dtrial_size_by_rate_3*t240)
-            dfriction_2_by_place_1 = (ddrag_by_place_1*t241 + ddynamic_limit_by_place_1*t242 +
-                dslip_2_by_place_1*t234 + dtrial_2_by_place_1*t238 + dtrial_size_by_place_1*t243)
-            dfriction_2_by_place_2 = (ddrag_by_place_2*t241 + ddynamic_limit_by_place_2*t242 +
-                dslip_2_by_place_2*t234 + dtrial_2_by_place_2*t238 + dtrial_size_by_place_2*t243)
-            dfriction_2_by_place_3 = (ddrag_by_place_3*t241 + ddynamic_limit_by_place_3*t242 +
-                dslip_2_by_place_3*t234 + dtrial_2_by_place_3*t238 + dtrial_size_by_place_3*t243)
-            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t241 + ddynamic_limit_by_rate_1*t242 +
-                dslip_2_by_rate_1*t234 + dtrial_2_by_rate_1*t238 + dtrial_size_by_rate_1*t243)
-            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t241 + ddynamic_limit_by_rate_2*t242 +
-                dslip_2_by_rate_2*t234 + dtrial_2_by_rate_2*t238 + dtrial_size_by_rate_2*t243)
-            dfriction_2_by_rate_3 = (ddrag_by_rate_3*t241 + ddynamic_limit_by_rate_3*t242 +
-                dslip_2_by_rate_3*t234 + dtrial_2_by_rate_3*t238 + dtrial_size_by_rate_3*t243)
-            dfriction_3_by_place_1 = (ddrag_by_place_1*t244 + ddynamic_limit_by_place_1*t245 +
-                dslip_3_by_place_1*t234 + dtrial_3_by_place_1*t238 + dtrial_size_by_place_1*t246)
-            dfriction_3_by_place_2 = (ddrag_by_place_2*t244 + ddynamic_limit_by_place_2*t245 +
-                dslip_3_by_place_2*t234 + dtrial_3_by_place_2*t238 + dtrial_size_by_place_2*t246)
-            dfriction_3_by_place_3 = (ddrag_by_place_3*t244 + ddynamic_limit_by_place_3*t245 +
-                dslip_3_by_place_3*t234 + dtrial_3_by_place_3*t238 + dtrial_size_by_place_3*t246)
-            dfriction_3_by_rate_1 = (ddrag_by_rate_1*t244 + ddynamic_limit_by_rate_1*t245 +
-                dslip_3_by_rate_1*t234 + dtrial_3_by_rate_1*t238 + dtrial_size_by_rate_1*t246)
-            dfriction_3_by_rate_2 = (ddrag_by_rate_2*t244 + ddynamic_limit_by_rate_2*t245 +
-                dslip_3_by_rate_2*t234 + dtrial_3_by_rate_2*t238 + dtrial_size_by_rate_2*t246)
-            dfriction_3_by_rate_3 = (ddrag_by_rate_3*t244 + ddynamic_limit_by_rate_3*t245 +
-                dslip_3_by_rate_3*t234 + dtrial_3_by_rate_3*t238 + dtrial_size_by_rate_3*t246)
+            dtrial_size_by_place_1 = (dtrial_1_by_place_1*t212 + dtrial_2_by_place_1*t213 +
+                dtrial_3_by_place_1*t214)
+            dtrial_size_by_place_2 = (dtrial_1_by_place_2*t212 + dtrial_2_by_place_2*t213 +
+                dtrial_3_by_place_2*t214)
+            dtrial_size_by_place_3 = (dtrial_1_by_place_3*t212 + dtrial_2_by_place_3*t213 +
+                dtrial_3_by_place_3*t214)
+            dtrial_size_by_rate_1 = (dtrial_1_by_rate_1*t212 + dtrial_2_by_rate_1*t213 +
+                dtrial_3_by_rate_1*t214)
+            dtrial_size_by_rate_2 = (dtrial_1_by_rate_2*t212 + dtrial_2_by_rate_2*t213 +
+                dtrial_3_by_rate_2*t214)
+            dtrial_size_by_rate_3 = (dtrial_1_by_rate_3*t212 + dtrial_2_by_rate_3*t213 +
+                dtrial_3_by_rate_3*t214)
+            ddrag_by_place_1 = dpush_by_place_1*t224 + dslip_speed_by_place_1*t225
+            ddrag_by_place_2 = dpush_by_place_2*t224 + dslip_speed_by_place_2*t225
+            ddrag_by_place_3 = dpush_by_place_3*t224 + dslip_speed_by_place_3*t225
+            ddrag_by_rate_1 = dpush_by_rate_1*t224 + dslip_speed_by_rate_1*t225
+            ddrag_by_rate_2 = dpush_by_rate_2*t224 + dslip_speed_by_rate_2*t225
+            ddrag_by_rate_3 = dpush_by_rate_3*t224 + dslip_speed_by_rate_3*t225
+            t226 = slip_1 if speed > 0.0 else 0
+            t227 = drag if speed > 0.0 else 0
+            t228 = -static_limit + trial_size
+            t229 = 1/trial_size
+            t230 = 0 if speed > 0.0 else (t229*trial_1 if t228 > 0.0 else 0)
+            t231 = 0 if speed > 0.0 else (dynamic_limit*t229 if t228 > 0.0 else 1)
+            t232 = dynamic_limit/(trial_size*trial_size)
+            t233 = 0 if speed > 0.0 else (-t232*trial_1 if t228 > 0.0 else 0)
+            t234 = slip_2 if speed > 0.0 else 0
+            t235 = 0 if speed > 0.0 else (t229*trial_2 if t228 > 0.0 else 0)
+            t236 = 0 if speed > 0.0 else (-t232*trial_2 if t228 > 0.0 else 0)
+            t237 = slip_3 if speed > 0.0 else 0
+            t238 = 0 if speed > 0.0 else (t229*trial_3 if t228 > 0.0 else 0)
+            t239 = 0 if speed > 0.0 else (-t232*trial_3 if t228 > 0.0 else 0)
+            dfriction_1_by_place_1 = (ddrag_by_place_1*t226 + ddynamic_limit_by_place_1*t230 +
+                dslip_1_by_place_1*t227 + dtrial_1_by_place_1*t231 + dtrial_size_by_place_1*t233)
+            dfriction_1_by_place_2 = (ddrag_by_place_2*t226 + ddynamic_limit_by_place_2*t230 +
+                dslip_1_by_place_2*t227 + dtrial_1_by_place_2*t231 + dtrial_size_by_place_2*t233)
+            dfriction_1_by_place_3 = (ddrag_by_place_3*t226 + ddynamic_limit_by_place_3*t230 +
+                dslip_1_by_place_3*t227 + dtrial_1_by_place_3*t231 + dtrial_size_by_place_3*t233)
+            dfriction_1_by_rate_1 = (ddrag_by_rate_1*t226 + ddynamic_limit_by_rate_1*t230 +
+                dslip_1_by_rate_1*t227 + dtrial_1_by_rate_1*t231 + dtrial_size_by_rate_1*t233)
+            dfriction_1_by_rate_2 = (ddrag_by_rate_2*t226 + ddynamic_limit_by_rate_2*t230 +
+                dslip_1_by_rate_2*t227 + dtrial_1_by_rate_2*t231 + dtrial_size_by_rate_2*t233)
+            dfriction_1_by_rate_3 = (ddrag_by_rate_3*t226 + ddynamic_limit_by_rate_3*t230 +
+                dslip_1_by_rate_3*t227 + dtrial_1_by_rate_3*t231 + dtrial_size_by_rate_3*t233)
+            dfriction_2_by_place_1 = (ddrag_by_place_1*t234 + ddynamic_limit_by_place_1*t235 +
+                dslip_2_by_place_1*t227 + dtrial_2_by_place_1*t231 + dtrial_size_by_place_1*t236)
+            dfriction_2_by_place_2 = (ddrag_by_place_2*t234 + ddynamic_limit_by_place_2*t235 +
+                dslip_2_by_place_2*t227 + dtrial_2_by_place_2*t231 + dtrial_size_by_place_2*t236)
+            dfriction_2_by_place_3 = (ddrag_by_place_3*t234 + ddynamic_limit_by_place_3*t235 +
+                dslip_2_by_place_3*t227 + dtrial_2_by_place_3*t231 + dtrial_size_by_place_3*t236)
+            dfriction_2_by_rate_1 = (ddrag_by_rate_1*t234 + ddynamic_limit_by_rate_1*t235 +
+                dslip_2_by_rate_1*t227 + dtrial_2_by_rate_1*t231 + dtrial_size_by_rate_1*t236)
+            dfriction_2_by_rate_2 = (ddrag_by_rate_2*t234 + ddynamic_limit_by_rate_2*t235 +
+                dslip_2_by_rate_2*t227 + dtrial_2_by_rate_2*t231 + dtrial_size_by_rate_2*t236)
+            dfriction_2_by_rate_3 = (ddrag_by_rate_3*t234 + ddynamic_limit_by_rate_3*t235 +
+                dslip_2_by_rate_3*t227 + dtrial_2_by_rate_3*t231 + dtrial_size_by_rate_3*t236)
+            dfriction_3_by_place_1 = (ddrag_by_place_1*t237 + ddynamic_limit_by_place_1*t238 +
+                dslip_3_by_place_1*t227 + dtrial_3_by_place_1*t231 + dtrial_size_by_place_1*t239)
+            dfriction_3_by_place_2 = (ddrag_by_place_2*t237 + ddynamic_limit_by_place_2*t238 +
+                dslip_3_by_place_2*t227 + dtrial_3_by_place_2*t231 + dtrial_size_by_place_2*t239)
+            dfriction_3_by_place_3 = (ddrag_by_place_3*t237 + ddynamic_limit_by_place_3*t238 +
+                dslip_3_by_place_3*t227 + dtrial_3_by_place_3*t231 + dtrial_size_by_place_3*t239)
+            dfriction_3_by_rate_1 = (ddrag_by_rate_1*t237 + ddynamic_limit_by_rate_1*t238 +
+                dslip_3_by_rate_1*t227 + dtrial_3_by_rate_1*t231 + dtrial_size_by_rate_1*t239)
+            dfriction_3_by_rate_2 = (ddrag_by_rate_2*t237 + ddynamic_limit_by_rate_2*t238 +
+                dslip_3_by_rate_2*t227 + dtrial_3_by_rate_2*t231 + dtrial_size_by_rate_2*t239)
+            dfriction_3_by_rate_3 = (ddrag_by_rate_3*t237 + ddynamic_limit_by_rate_3*t238 +
+                dslip_3_by_rate_3*t227 + dtrial_3_by_rate_3*t231 + dtrial_size_by_rate_3*t239)
             for column in range(width):
                 for i in range(width):
                     dqe[i] = 0.0
@@ -1065,12 +1056,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t268 = -dx0_z + dx_z
-                    t269 = -dx0_y + dx_y
-                    t270 = -dx0_x + dx_x
-                    rhs_x += -fit*(X_y*t268 - X_z*t269)
-                    rhs_y += -fit*(-X_x*t268 + X_z*t270)
-                    rhs_z += -fit*(X_x*t269 - X_y*t270)
+                    t261 = -dx0_z + dx_z
+                    t262 = -dx0_y + dx_y
+                    t263 = -dx0_x + dx_x
+                    rhs_x += -fit*(X_y*t261 - X_z*t262)
+                    rhs_y += -fit*(-X_x*t261 + X_z*t263)
+                    rhs_z += -fit*(X_x*t262 - X_y*t263)
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1080,43 +1071,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t271 = X_y + u_y
-                    t272 = X_z + u_z
-                    t273 = X_x + u_x
-                    dy[i3] = -dth0_y*t272 + dth0_z*t271 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t272 - dth0_z*t273 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t271 + dth0_y*t273 - dx0_z + dx_z
+                    t264 = X_y + u_y
+                    t265 = X_z + u_z
+                    t266 = X_x + u_x
+                    dy[i3] = -dth0_y*t265 + dth0_z*t264 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t265 - dth0_z*t266 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t264 + dth0_y*t266 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t274 = dth0_y*psi_z
-                    t275 = dth_y*psi_z
-                    t276 = dth0_x*psi_y
-                    t277 = dth0_y*psi_x - t276
-                    t278 = e0*psi_y
-                    t279 = dth_x*psi_z
-                    t280 = dth_z*psi_x
-                    t281 = t279 - t280
-                    t282 = e0*psi_z
-                    t283 = dth_x*psi_y
-                    t284 = dth_y*psi_x - t283
-                    t285 = dth0_x*psi_z
-                    t286 = dth0_z*psi_x
-                    t287 = t285 - t286
-                    t288 = e0*psi_x
-                    t289 = dth_z*psi_y - t275
-                    t290 = dth0_z*psi_y - t274
-                    dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t284 + e0*psi_z*t287 - 0.5*t274 - 0.5*t275 - t277*t278 -
-                        t281*t282)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t277*t288 + (0.5)*t279 - 0.5*t280 + t282*t289
-                        - t282*t290 - t284*t288 + (0.5)*t285 - 0.5*t286)
-                    dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t281 + e0*psi_y*t290 - 0.5*t276 - t278*t289 - 0.5*t283 -
-                        t287*t288)
+                    t267 = (0.5)*dth0_z + (0.5)*dth_z
+                    t268 = dth0_y + dth_y
+                    t269 = (0.5)*psi_z
+                    t270 = -dth0_y + dth_y
+                    t271 = -dth0_x + dth_x
+                    t272 = psi_x*t270 - psi_y*t271
+                    t273 = -dth0_z + dth_z
+                    t274 = -psi_x*t273 + psi_z*t271
+                    t275 = dth0_x + dth_x
+                    t276 = psi_y*t273 - psi_z*t270
+                    dy[j3] = -dth0_x + dth_x + e0*(psi_y*t272 - psi_z*t274) + psi_y*t267 - t268*t269
+                    dy[j3 + 1] = (-dth0_y + dth_y + e0*(-psi_x*t272 + psi_z*t276) - psi_x*t267 +
+                        t269*t275)
+                    dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t274 - psi_y*t276) +
+                        (0.5)*psi_x*t268 - 0.5*psi_y*t275)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
@@ -1197,12 +1178,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t291 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
-                    t292 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
-                    t293 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
-                    rhs_x += -fit*(X_y*t291 - X_z*t292)
-                    rhs_y += -fit*(-X_x*t291 + X_z*t293)
-                    rhs_z += -fit*(X_x*t292 - X_y*t293)
+                    t277 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
+                    t278 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
+                    t279 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
+                    rhs_x += -fit*(X_y*t277 - X_z*t278)
+                    rhs_y += -fit*(-X_x*t277 + X_z*t279)
+                    rhs_z += -fit*(X_x*t278 - X_y*t279)
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1222,13 +1203,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t294 = X_y + u_y
-                    t295 = X_z + u_z
-                    t296 = X_x + u_x
-                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t295 + dOm0_z*t294 - dv0_x + dvs_x
-                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t295 - dOm0_z*t296 - dv0_y +
+                    t280 = X_y + u_y
+                    t281 = X_z + u_z
+                    t282 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t281 + dOm0_z*t280 - dv0_x + dvs_x
+                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t281 - dOm0_z*t282 - dv0_y +
                         dvs_y)
-                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t294 + dOm0_y*t296 - dv0_z +
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t280 + dOm0_y*t282 - dv0_z +
                         dvs_z)
                 # differential: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -1239,59 +1220,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t297 = Om0_y*dpsi_z
-                    t298 = Om_y*dpsi_z
-                    t299 = dOm0_y*psi_z
-                    t300 = dOm_y*psi_z
-                    t301 = -Om0_x*psi_y + Om0_y*psi_x
-                    t302 = dpsi_y*e0
-                    t303 = Om_x*psi_z - Om_z*psi_x
-                    t304 = dpsi_z*e0
-                    t305 = -Om_x*psi_y + Om_y*psi_x
-                    t306 = Om0_x*psi_z - Om0_z*psi_x
-                    t307 = Om0_x*dpsi_y
-                    t308 = dOm0_x*psi_y
-                    t309 = Om0_y*dpsi_x + dOm0_y*psi_x - t307 - t308
-                    t310 = e0*psi_y
-                    t311 = Om_x*dpsi_z
-                    t312 = dOm_x*psi_z
-                    t313 = Om_z*dpsi_x
-                    t314 = dOm_z*psi_x
-                    t315 = t311 + t312 - t313 - t314
-                    t316 = e0*psi_z
-                    t317 = Om_x*dpsi_y
-                    t318 = dOm_x*psi_y
-                    t319 = Om_y*dpsi_x + dOm_y*psi_x - t317 - t318
-                    t320 = Om0_x*dpsi_z
-                    t321 = dOm0_x*psi_z
-                    t322 = Om0_z*dpsi_x
-                    t323 = dOm0_z*psi_x
-                    t324 = t320 + t321 - t322 - t323
-                    t325 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t326 = e1*t325
-                    t327 = psi_y*t326
-                    t328 = psi_z*t326
-                    t329 = dpsi_x*e0
-                    t330 = -Om_y*psi_z + Om_z*psi_y
-                    t331 = -Om0_y*psi_z + Om0_z*psi_y
-                    t332 = e0*psi_x
-                    t333 = Om_z*dpsi_y + dOm_z*psi_y - t298 - t300
-                    t334 = Om0_z*dpsi_y + dOm0_z*psi_y - t297 - t299
-                    t335 = psi_x*t326
-                    deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x +
-                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t305 +
-                        dpsi_z*e0*t306 + e0*psi_y*t319 + e0*psi_z*t324 + e1*psi_y*t305*t325 +
-                        e1*psi_z*t306*t325 - 0.5*t297 - 0.5*t298 - 0.5*t299 - 0.5*t300 - t301*t302
-                        - t301*t327 - t303*t304 - t303*t328 - t309*t310 - t315*t316)
-                    deta[j3 + 1] = (-dOm0_y + dOm_y + t301*t329 + t301*t335 + t304*t330 -
-                        t304*t331 - t305*t329 - t305*t335 + t309*t332 + (0.5)*t311 + (0.5)*t312 -
-                        0.5*t313 - 0.5*t314 + t316*t333 - t316*t334 - t319*t332 + (0.5)*t320 +
-                        (0.5)*t321 - 0.5*t322 - 0.5*t323 + t328*t330 - t328*t331)
-                    deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t303 + dpsi_y*e0*t331 +
-                        e0*psi_x*t315 + e0*psi_y*t334 + e1*psi_x*t303*t325 + e1*psi_y*t325*t331 -
-                        t302*t330 - t306*t329 - t306*t335 - 0.5*t307 - 0.5*t308 - t310*t333 -
-                        0.5*t317 - 0.5*t318 - t324*t332 - t327*t330)
+                    t283 = (0.5)*Om0_z + (0.5)*Om_z
+                    t284 = Om0_y + Om_y
+                    t285 = (0.5)*dpsi_z
+                    t286 = (0.5)*dOm0_z + (0.5)*dOm_z
+                    t287 = dOm0_y + dOm_y
+                    t288 = (0.5)*psi_z
+                    t289 = -Om0_y + Om_y
+                    t290 = -Om0_x + Om_x
+                    t291 = psi_x*t289 - psi_y*t290
+                    t292 = -Om0_z + Om_z
+                    t293 = -psi_x*t292 + psi_z*t290
+                    t294 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t295 = -dOm0_y + dOm_y
+                    t296 = -dOm0_x + dOm_x
+                    t297 = dpsi_x*t289 - dpsi_y*t290 + psi_x*t295 - psi_y*t296
+                    t298 = -dOm0_z + dOm_z
+                    t299 = -dpsi_x*t292 + dpsi_z*t290 - psi_x*t298 + psi_z*t296
+                    t300 = Om0_x + Om_x
+                    t301 = dOm0_x + dOm_x
+                    t302 = psi_y*t292 - psi_z*t289
+                    t303 = dpsi_y*t292 - dpsi_z*t289 + psi_y*t298 - psi_z*t295
+                    deta[j3] = (-dOm0_x + dOm_x + dpsi_y*t283 + e0*(dpsi_y*t291 - dpsi_z*t293 +
+                        psi_y*t297 - psi_z*t299) + psi_y*t286 - t284*t285 - t287*t288 +
+                        t294*(psi_y*t291 - psi_z*t293))
+                    deta[j3 + 1] = (-dOm0_y + dOm_y - dpsi_x*t283 + e0*(-dpsi_x*t291 + dpsi_z*t302
+                        - psi_x*t297 + psi_z*t303) - psi_x*t286 + t285*t300 + t288*t301 +
+                        t294*(-psi_x*t291 + psi_z*t302))
+                    deta[j3 + 2] = (-dOm0_z + dOm_z + (0.5)*dpsi_x*t284 - 0.5*dpsi_y*t300 +
+                        e0*(dpsi_x*t293 - dpsi_y*t302 + psi_x*t299 - psi_y*t303) +
+                        (0.5)*psi_x*t287 - 0.5*psi_y*t301 + t294*(psi_x*t293 - psi_y*t302))
                 # differential: rates of the internal modes
                 for k in range(MODES, n):
                     dvm = dve[k]
@@ -1331,18 +1289,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dupd_y += Phi_mode_y*dem
                     dupd_z += Phi_mode_z*dem
                 # differential: velocity of the point
-                t336 = Om0_y*drp_z - Om0_z*drp_y + dOm0_y*rp_z - dOm0_z*rp_y + dupd_x + dv0_x
-                t337 = -Om0_x*drp_z + Om0_z*drp_x - dOm0_x*rp_z + dOm0_z*rp_x + dupd_y + dv0_y
-                t338 = Om0_x*drp_y - Om0_y*drp_x + dOm0_x*rp_y - dOm0_y*rp_x + dupd_z + dv0_z
-                t339 = Om0_x*rp_y - Om0_y*rp_x + upd_z + v0_z
-                t340 = -Om0_x*rp_z + Om0_z*rp_x + upd_y + v0_y
-                t341 = Om0_y*rp_z - Om0_z*rp_y + upd_x + v0_x
-                dva_x = (R0_xx*t336 + R0_xy*t337 + R0_xz*t338 + t339*(R0_xx*dth0_y - R0_xy*dth0_x)
-                    + t340*(-R0_xx*dth0_z + R0_xz*dth0_x) + t341*(R0_xy*dth0_z - R0_xz*dth0_y))
-                dva_y = (R0_yx*t336 + R0_yy*t337 + R0_yz*t338 + t339*(R0_yx*dth0_y - R0_yy*dth0_x)
-                    + t340*(-R0_yx*dth0_z + R0_yz*dth0_x) + t341*(R0_yy*dth0_z - R0_yz*dth0_y))
-                dva_z = (R0_zx*t336 + R0_zy*t337 + R0_zz*t338 + t339*(R0_zx*dth0_y - R0_zy*dth0_x)
-                    + t340*(-R0_zx*dth0_z + R0_zz*dth0_x) + t341*(R0_zy*dth0_z - R0_zz*dth0_y))
+                t304 = Om0_y*drp_z - Om0_z*drp_y + dOm0_y*rp_z - dOm0_z*rp_y + dupd_x + dv0_x
+                t305 = -Om0_x*drp_z + Om0_z*drp_x - dOm0_x*rp_z + dOm0_z*rp_x + dupd_y + dv0_y
+                t306 = Om0_x*drp_y - Om0_y*drp_x + dOm0_x*rp_y - dOm0_y*rp_x + dupd_z + dv0_z
+                t307 = Om0_x*rp_y - Om0_y*rp_x + upd_z + v0_z
+                t308 = -Om0_x*rp_z + Om0_z*rp_x + upd_y + v0_y
+                t309 = Om0_y*rp_z - Om0_z*rp_y + upd_x + v0_x
+                dva_x = (R0_xx*t304 + R0_xy*t305 + R0_xz*t306 + t307*(R0_xx*dth0_y - R0_xy*dth0_x)
+                    + t308*(-R0_xx*dth0_z + R0_xz*dth0_x) + t309*(R0_xy*dth0_z - R0_xz*dth0_y))
+                dva_y = (R0_yx*t304 + R0_yy*t305 + R0_yz*t306 + t307*(R0_yx*dth0_y - R0_yy*dth0_x)
+                    + t308*(-R0_yx*dth0_z + R0_yz*dth0_x) + t309*(R0_yy*dth0_z - R0_yz*dth0_y))
+                dva_z = (R0_zx*t304 + R0_zy*t305 + R0_zz*t306 + t307*(R0_zx*dth0_y - R0_zy*dth0_x)
+                    + t308*(-R0_zx*dth0_z + R0_zz*dth0_x) + t309*(R0_zy*dth0_z - R0_zz*dth0_y))
                 dxb_x = dqe[n]
                 dxb_y = dqe[n + 1]
                 dxb_z = dqe[n + 2]
@@ -1355,139 +1313,139 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = dve[n + 3]
                 uthb_y = dve[n + 4]
                 uthb_z = dve[n + 5]
-                t342 = dxa_x - dxb_x
-                t343 = dxa_y - dxb_y
-                t344 = dxa_z - dxb_z
-                t345 = xa_x - xb_x
-                t346 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t347 = xa_y - xb_y
-                t348 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t349 = xa_z - xb_z
-                t350 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t351 = Rb_xx*t342 + Rb_yx*t343 + Rb_zx*t344 + t345*t346 + t347*t348 + t349*t350
-                t352 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t353 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t354 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t355 = Rb_xy*t342 + Rb_yy*t343 + Rb_zy*t344 + t345*t352 + t347*t353 + t349*t354
-                t356 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t357 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t358 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t359 = Rb_xz*t342 + Rb_yz*t343 + Rb_zz*t344 + t345*t356 + t347*t357 + t349*t358
-                t360 = va_x - vb_x
-                t361 = va_y - vb_y
-                t362 = va_z - vb_z
-                t363 = dva_x - uxb_x
-                t364 = dva_y - uxb_y
-                t365 = dva_z - uxb_z
-                t366 = Rb_xy*t345 + Rb_yy*t347 + Rb_zy*t349
-                t367 = Rb_xz*t345 + Rb_yz*t347 + Rb_zz*t349
-                t368 = Rb_xx*t345 + Rb_yx*t347 + Rb_zx*t349
-                dplace_1 = t351
-                dplace_2 = t355
-                dplace_3 = t359
-                drate_1 = -Omb_y*t359 + Omb_z*t355 + t346*t360 + t348*t361 + t350*t362
-                urate_1 = Rb_xx*t363 + Rb_yx*t364 + Rb_zx*t365 + t366*uthb_z - t367*uthb_y
-                drate_2 = Omb_x*t359 - Omb_z*t351 + t352*t360 + t353*t361 + t354*t362
-                urate_2 = Rb_xy*t363 + Rb_yy*t364 + Rb_zy*t365 + t367*uthb_x - t368*uthb_z
-                drate_3 = -Omb_x*t355 + Omb_y*t351 + t356*t360 + t357*t361 + t358*t362
-                urate_3 = Rb_xz*t363 + Rb_yz*t364 + Rb_zz*t365 - t366*uthb_x + t368*uthb_y
-                t369 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t370 = normal_1*normal_3
-                t371 = normal_2*normal_3
-                t372 = 1 - normal_3*normal_3
-                t373 = -friction_1*t370 - friction_2*t371 + friction_3*t372 - normal_3*push
-                t374 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t375 = normal_1*normal_2
-                t376 = friction_3*normal_3
-                t377 = 1 - normal_2*normal_2
-                t378 = -friction_1*t375 + friction_2*t377 - normal_2*push - normal_2*t376
-                t379 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t380 = 1 - normal_1*normal_1
-                t381 = friction_1*t380 - friction_2*t375 - friction_3*t370 - normal_1*push
-                t382 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2 + dpush_by_rate_3*urate_3
-                t383 = (dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2 +
+                t310 = dxa_x - dxb_x
+                t311 = dxa_y - dxb_y
+                t312 = dxa_z - dxb_z
+                t313 = xa_x - xb_x
+                t314 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t315 = xa_y - xb_y
+                t316 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t317 = xa_z - xb_z
+                t318 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t319 = Rb_xx*t310 + Rb_yx*t311 + Rb_zx*t312 + t313*t314 + t315*t316 + t317*t318
+                t320 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t321 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t322 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t323 = Rb_xy*t310 + Rb_yy*t311 + Rb_zy*t312 + t313*t320 + t315*t321 + t317*t322
+                t324 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t325 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t326 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t327 = Rb_xz*t310 + Rb_yz*t311 + Rb_zz*t312 + t313*t324 + t315*t325 + t317*t326
+                t328 = va_x - vb_x
+                t329 = va_y - vb_y
+                t330 = va_z - vb_z
+                t331 = dva_x - uxb_x
+                t332 = dva_y - uxb_y
+                t333 = dva_z - uxb_z
+                t334 = Rb_xy*t313 + Rb_yy*t315 + Rb_zy*t317
+                t335 = Rb_xz*t313 + Rb_yz*t315 + Rb_zz*t317
+                t336 = Rb_xx*t313 + Rb_yx*t315 + Rb_zx*t317
+                dplace_1 = t319
+                dplace_2 = t323
+                dplace_3 = t327
+                drate_1 = -Omb_y*t327 + Omb_z*t323 + t314*t328 + t316*t329 + t318*t330
+                urate_1 = Rb_xx*t331 + Rb_yx*t332 + Rb_zx*t333 + t334*uthb_z - t335*uthb_y
+                drate_2 = Omb_x*t327 - Omb_z*t319 + t320*t328 + t321*t329 + t322*t330
+                urate_2 = Rb_xy*t331 + Rb_yy*t332 + Rb_zy*t333 + t335*uthb_x - t336*uthb_z
+                drate_3 = -Omb_x*t323 + Omb_y*t319 + t324*t328 + t325*t329 + t326*t330
+                urate_3 = Rb_xz*t331 + Rb_yz*t332 + Rb_zz*t333 - t334*uthb_x + t336*uthb_y
+                t337 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t338 = normal_1*normal_3
+                t339 = normal_2*normal_3
+                t340 = 1 - normal_3*normal_3
+                t341 = -friction_1*t338 - friction_2*t339 + friction_3*t340 - normal_3*push
+                t342 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t343 = normal_1*normal_2
+                t344 = friction_3*normal_3
+                t345 = 1 - normal_2*normal_2
+                t346 = -friction_1*t343 + friction_2*t345 - normal_2*push - normal_2*t344
+                t347 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t348 = 1 - normal_1*normal_1
+                t349 = friction_1*t348 - friction_2*t343 - friction_3*t338 - normal_1*push
+                t350 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2 + dpush_by_rate_3*urate_3
+                t351 = (dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2 +
                     dfriction_2_by_rate_3*urate_3)
-                t384 = (dfriction_3_by_rate_1*urate_1 + dfriction_3_by_rate_2*urate_2 +
+                t352 = (dfriction_3_by_rate_1*urate_1 + dfriction_3_by_rate_2*urate_2 +
                     dfriction_3_by_rate_3*urate_3)
-                t385 = (dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2 +
+                t353 = (dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2 +
                     dfriction_1_by_rate_3*urate_3)
-                t386 = -normal_1*t382 - t370*t384 - t375*t383 + t380*t385
-                t387 = -normal_2*t382 - t371*t384 - t375*t385 + t377*t383
-                t388 = -normal_3*t382 - t370*t385 - t371*t383 + t372*t384
-                t389 = dnormal_1_by_place_1*dplace_1
-                t390 = dnormal_1_by_place_2*dplace_2
-                t391 = dnormal_1_by_place_3*dplace_3
-                t392 = t389 + t390 + t391
-                t393 = dnormal_2_by_place_1*dplace_1
-                t394 = dnormal_2_by_place_2*dplace_2
-                t395 = dnormal_2_by_place_3*dplace_3
-                t396 = t393 + t394 + t395
-                t397 = friction_2*t396
-                t398 = normal_2*t392
-                t399 = dnormal_3_by_place_1*dplace_1
-                t400 = dnormal_3_by_place_2*dplace_2
-                t401 = dnormal_3_by_place_3*dplace_3
-                t402 = t399 + t400 + t401
-                t403 = friction_3*t402
-                t404 = friction_1*normal_1
-                t405 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
+                t354 = -normal_1*t350 - t338*t352 - t343*t351 + t348*t353
+                t355 = -normal_2*t350 - t339*t352 - t343*t353 + t345*t351
+                t356 = -normal_3*t350 - t338*t353 - t339*t351 + t340*t352
+                t357 = dnormal_1_by_place_1*dplace_1
+                t358 = dnormal_1_by_place_2*dplace_2
+                t359 = dnormal_1_by_place_3*dplace_3
+                t360 = t357 + t358 + t359
+                t361 = dnormal_2_by_place_1*dplace_1
+                t362 = dnormal_2_by_place_2*dplace_2
+                t363 = dnormal_2_by_place_3*dplace_3
+                t364 = t361 + t362 + t363
+                t365 = friction_2*t364
+                t366 = normal_2*t360
+                t367 = dnormal_3_by_place_1*dplace_1
+                t368 = dnormal_3_by_place_2*dplace_2
+                t369 = dnormal_3_by_place_3*dplace_3
+                t370 = t367 + t368 + t369
+                t371 = friction_3*t370
+                t372 = friction_1*normal_1
+                t373 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
                     dplace_3*dpush_by_place_3 + dpush_by_rate_1*drate_1 + dpush_by_rate_2*drate_2
                     + dpush_by_rate_3*drate_3)
-                t406 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
+                t374 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
                     dfriction_2_by_place_3*dplace_3 + dfriction_2_by_rate_1*drate_1 +
                     dfriction_2_by_rate_2*drate_2 + dfriction_2_by_rate_3*drate_3)
-                t407 = (dfriction_3_by_place_1*dplace_1 + dfriction_3_by_place_2*dplace_2 +
+                t375 = (dfriction_3_by_place_1*dplace_1 + dfriction_3_by_place_2*dplace_2 +
                     dfriction_3_by_place_3*dplace_3 + dfriction_3_by_rate_1*drate_1 +
                     dfriction_3_by_rate_2*drate_2 + dfriction_3_by_rate_3*drate_3)
-                t408 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
+                t376 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
                     dfriction_1_by_place_3*dplace_3 + dfriction_1_by_rate_1*drate_1 +
                     dfriction_1_by_rate_2*drate_2 + dfriction_1_by_rate_3*drate_3)
-                t409 = (-friction_2*t398 - normal_1*t397 - normal_1*t403 - normal_1*t405 -
-                    push*t392 - t370*t407 - t375*t406 - t376*t392 + t380*t408 - t404*(2*t389 +
-                    2*t390 + 2*t391))
-                t410 = friction_2*normal_2
-                t411 = (-friction_1*t398 - normal_2*t403 - normal_2*t405 - push*t396 - t371*t407 -
-                    t375*t408 - t376*t396 + t377*t406 - t396*t404 - t410*(2*t393 + 2*t394 +
-                    2*t395))
-                t412 = (-friction_1*normal_3*t392 - normal_3*t397 - normal_3*t405 - push*t402 -
-                    t370*t408 - t371*t406 + t372*t407 - t376*(2*t399 + 2*t400 + 2*t401) -
-                    t402*t404 - t402*t410)
-                t413 = (Rb_xx*t386 + Rb_xx*t409 + Rb_xy*t387 + Rb_xy*t411 + Rb_xz*t388 +
-                    Rb_xz*t412 + t369*t373 + t374*t378 + t379*t381)
-                t414 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t415 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t416 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t417 = (Rb_yx*t386 + Rb_yx*t409 + Rb_yy*t387 + Rb_yy*t411 + Rb_yz*t388 +
-                    Rb_yz*t412 + t373*t414 + t378*t415 + t381*t416)
-                t418 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t419 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t420 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t421 = (Rb_zx*t386 + Rb_zx*t409 + Rb_zy*t387 + Rb_zy*t411 + Rb_zz*t388 +
-                    Rb_zz*t412 + t373*t418 + t378*t419 + t381*t420)
-                t422 = xa_x - xb_x
-                t423 = xa_y - xb_y
-                t424 = xa_z - xb_z
-                t425 = Rb_xz*t422 + Rb_yz*t423 + Rb_zz*t424
-                t426 = Rb_xy*t422 + Rb_yy*t423 + Rb_zy*t424
-                t427 = -t426
-                t428 = dxa_x - dxb_x
-                t429 = dxa_y - dxb_y
-                t430 = dxa_z - dxb_z
-                t431 = Rb_xz*t428 + Rb_yz*t429 + Rb_zz*t430 + t369*t422 + t414*t423 + t418*t424
-                t432 = Rb_xy*t428 + Rb_yy*t429 + Rb_zy*t430 + t374*t422 + t415*t423 + t419*t424
-                t433 = Rb_xx*t422 + Rb_yx*t423 + Rb_zx*t424
-                t434 = -t425
-                t435 = Rb_xx*t428 + Rb_yx*t429 + Rb_zx*t430 + t379*t422 + t416*t423 + t420*t424
-                t436 = -t433
-                dFp_x = t413
-                dFp_y = t417
-                dFp_z = t421
-                dg[n] = -t413
-                dg[n + 1] = -t417
-                dg[n + 2] = -t421
-                dg[n + 3] = -t373*t432 + t378*t431 + t387*t425 + t388*t427 + t411*t425 + t412*t427
-                dg[n + 4] = t373*t435 - t381*t431 + t386*t434 + t388*t433 + t409*t434 + t412*t433
-                dg[n + 5] = -t378*t435 + t381*t432 + t386*t426 + t387*t436 + t409*t426 + t411*t436
+                t377 = (-friction_2*t366 - normal_1*t365 - normal_1*t371 - normal_1*t373 -
+                    push*t360 - t338*t375 - t343*t374 - t344*t360 + t348*t376 - t372*(2*t357 +
+                    2*t358 + 2*t359))
+                t378 = friction_2*normal_2
+                t379 = (-friction_1*t366 - normal_2*t371 - normal_2*t373 - push*t364 - t339*t375 -
+                    t343*t376 - t344*t364 + t345*t374 - t364*t372 - t378*(2*t361 + 2*t362 +
+                    2*t363))
+                t380 = (-friction_1*normal_3*t360 - normal_3*t365 - normal_3*t373 - push*t370 -
+                    t338*t376 - t339*t374 + t340*t375 - t344*(2*t367 + 2*t368 + 2*t369) -
+                    t370*t372 - t370*t378)
+                t381 = (Rb_xx*t354 + Rb_xx*t377 + Rb_xy*t355 + Rb_xy*t379 + Rb_xz*t356 +
+                    Rb_xz*t380 + t337*t341 + t342*t346 + t347*t349)
+                t382 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t383 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t384 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t385 = (Rb_yx*t354 + Rb_yx*t377 + Rb_yy*t355 + Rb_yy*t379 + Rb_yz*t356 +
+                    Rb_yz*t380 + t341*t382 + t346*t383 + t349*t384)
+                t386 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t387 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t388 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t389 = (Rb_zx*t354 + Rb_zx*t377 + Rb_zy*t355 + Rb_zy*t379 + Rb_zz*t356 +
+                    Rb_zz*t380 + t341*t386 + t346*t387 + t349*t388)
+                t390 = xa_x - xb_x
+                t391 = xa_y - xb_y
+                t392 = xa_z - xb_z
+                t393 = Rb_xz*t390 + Rb_yz*t391 + Rb_zz*t392
+                t394 = Rb_xy*t390 + Rb_yy*t391 + Rb_zy*t392
+                t395 = -t394
+                t396 = dxa_x - dxb_x
+                t397 = dxa_y - dxb_y
+                t398 = dxa_z - dxb_z
+                t399 = Rb_xz*t396 + Rb_yz*t397 + Rb_zz*t398 + t337*t390 + t382*t391 + t386*t392
+                t400 = Rb_xy*t396 + Rb_yy*t397 + Rb_zy*t398 + t342*t390 + t383*t391 + t387*t392
+                t401 = Rb_xx*t390 + Rb_yx*t391 + Rb_zx*t392
+                t402 = -t393
+                t403 = Rb_xx*t396 + Rb_yx*t397 + Rb_zx*t398 + t347*t390 + t384*t391 + t388*t392
+                t404 = -t401
+                dFp_x = t381
+                dFp_y = t385
+                dFp_z = t389
+                dg[n] = -t381
+                dg[n + 1] = -t385
+                dg[n + 2] = -t389
+                dg[n + 3] = -t341*t400 + t346*t399 + t355*t393 + t356*t395 + t379*t393 + t380*t395
+                dg[n + 4] = t341*t403 - t349*t399 + t354*t402 + t356*t401 + t377*t402 + t380*t401
+                dg[n + 5] = -t346*t403 + t349*t400 + t354*t394 + t355*t404 + t377*t394 + t379*t404
                 # differential: force on the point in frame axes
                 dfp_x = (Fp_x*(R0_xy*dth0_z - R0_xz*dth0_y) + Fp_y*(R0_yy*dth0_z - R0_yz*dth0_y) +
                     Fp_z*(R0_zy*dth0_z - R0_zz*dth0_y) + R0_xx*dFp_x + R0_yx*dFp_y + R0_zx*dFp_z)
@@ -1539,15 +1497,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t437 = X_z + u_z
-                    t438 = X_y + u_y
-                    t439 = X_x + u_x
+                    t405 = X_z + u_z
+                    t406 = X_y + u_y
+                    t407 = X_x + u_x
                     dF_x += alpha*dfp_x - df_x
                     dF_y += alpha*dfp_y - df_y
                     dF_z += alpha*dfp_z - df_z
-                    dW_x += df_y*t437 - df_z*t438 - du_y*f_z + du_z*f_y
-                    dW_y += -df_x*t437 + df_z*t439 + du_x*f_z - du_z*f_x
-                    dW_z += df_x*t438 - df_y*t439 - du_x*f_y + du_y*f_x
+                    dW_x += df_y*t405 - df_z*t406 - du_y*f_z + du_z*f_y
+                    dW_y += -df_x*t405 + df_z*t407 + du_x*f_z - du_z*f_x
+                    dW_z += df_x*t406 - df_y*t407 - du_x*f_y + du_y*f_x
                 # differential: moment of the force on the frame
                 dW_x += -dfp_y*rp_z + dfp_z*rp_y + drp_y*fp_z - drp_z*fp_y
                 dW_y += dfp_x*rp_z - dfp_z*rp_x - drp_x*fp_z + drp_z*fp_x
@@ -1561,25 +1519,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t440 = -m_x*psi_y + m_y*psi_x
-                    t441 = m_x*psi_z - m_z*psi_x
-                    t442 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t443 = dm_x*psi_z
-                    t444 = dpsi_z*m_x
-                    t445 = -dm_z*psi_x - dpsi_x*m_z + t443 + t444
-                    t446 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t447 = e1*t446
-                    t448 = -m_y*psi_z + m_z*psi_y
-                    t449 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t440 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t441 + (0.5)*dpsi_z*m_y - e0*psi_y*t442 +
-                        e0*psi_z*t445 + e1*psi_z*t441*t446 - psi_y*t440*t447)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t440 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t448 + e0*psi_x*t442 - e0*psi_z*t449 + e1*psi_x*t440*t446 -
-                        psi_z*t447*t448 - 0.5*t443 - 0.5*t444)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t441 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t448 + (0.5)*dpsi_y*m_x - e0*psi_x*t445 +
-                        e0*psi_y*t449 + e1*psi_y*t446*t448 - psi_x*t441*t447)
+                    t408 = -m_x*psi_y + m_y*psi_x
+                    t409 = m_x*psi_z - m_z*psi_x
+                    t410 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t411 = dm_x*psi_z
+                    t412 = dpsi_z*m_x
+                    t413 = -dm_z*psi_x - dpsi_x*m_z + t411 + t412
+                    t414 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t415 = e1*t414
+                    t416 = -m_y*psi_z + m_z*psi_y
+                    t417 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t408 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t409 + (0.5)*dpsi_z*m_y - e0*psi_y*t410 +
+                        e0*psi_z*t413 + e1*psi_z*t409*t414 - psi_y*t408*t415)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t408 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t416 + e0*psi_x*t410 - e0*psi_z*t417 + e1*psi_x*t408*t414 -
+                        psi_z*t415*t416 - 0.5*t411 - 0.5*t412)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t409 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t416 + (0.5)*dpsi_y*m_x - e0*psi_x*t413 +
+                        e0*psi_y*t417 + e1*psi_y*t414*t416 - psi_x*t409*t415)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for i in range(N_POSITIONS):
@@ -1587,26 +1545,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    t450 = X_x*wp_y - X_y*wp_x
-                    t451 = -X_x*wp_z + X_z*wp_x
-                    t452 = X_y*wp_z - X_z*wp_y
-                    rhs_x += -fit*(du_y*t450 - du_z*t451)
-                    rhs_y += -fit*(-du_x*t450 + du_z*t452)
-                    rhs_z += -fit*(du_x*t451 - du_y*t452)
-                t453 = dW_x + rhs_x
-                t454 = dW_y + rhs_y
-                t455 = dW_z + rhs_z
-                dwp_x = Bxx*t453 + Byx*t454 + Bzx*t455
-                dwp_y = Bxy*t453 + Byy*t454 + Bzy*t455
-                dwp_z = Bxz*t453 + Byz*t454 + Bzz*t455
+                    t418 = X_x*wp_y - X_y*wp_x
+                    t419 = -X_x*wp_z + X_z*wp_x
+                    t420 = X_y*wp_z - X_z*wp_y
+                    rhs_x += -fit*(du_y*t418 - du_z*t419)
+                    rhs_y += -fit*(-du_x*t418 + du_z*t420)
+                    rhs_z += -fit*(du_x*t419 - du_y*t420)
+                t421 = dW_x + rhs_x
+                t422 = dW_y + rhs_y
+                t423 = dW_z + rhs_z
+                dwp_x = Bxx*t421 + Byx*t422 + Bzx*t423
+                dwp_y = Bxy*t421 + Byy*t422 + Bzy*t423
+                dwp_z = Bxz*t421 + Byz*t422 + Bzz*t423
                 # differential: force on the origin, through the frame
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    t456 = dwp_z*fit
-                    dF_x += -X_y*t456 + X_z*dwp_y*fit
-                    dF_y += X_x*t456 - X_z*dwp_x*fit
+                    t424 = dwp_z*fit
+                    dF_x += -X_y*t424 + X_z*dwp_y*fit
+                    dF_y += X_x*t424 - X_z*dwp_x*fit
                     dF_z += -X_x*dwp_y*fit + X_y*dwp_x*fit
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
@@ -1615,10 +1573,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     alpha = alphas[i]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t457 = dwp_z*fit
-                    t458 = X_z*fit
-                    dh[i3] = X_y*t457 + alpha*dF_x + df_x - dwp_y*t458
-                    dh[i3 + 1] = -X_x*t457 + alpha*dF_y + df_y + dwp_x*t458
+                    t425 = dwp_z*fit
+                    t426 = X_z*fit
+                    dh[i3] = X_y*t425 + alpha*dF_x + df_x - dwp_y*t426
+                    dh[i3 + 1] = -X_x*t425 + alpha*dF_y + df_y + dwp_x*t426
                     dh[i3 + 2] = X_x*dwp_y*fit - X_y*dwp_x*fit + alpha*dF_z + df_z
                 # differential: force on the nodes
                 for i in range(N_POSITIONS):
@@ -1643,33 +1601,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t459 = dm_y*psi_z
-                    t460 = dpsi_z*m_y
-                    t461 = -m_x*psi_y + m_y*psi_x
-                    t462 = e0*t461
-                    t463 = m_x*psi_z - m_z*psi_x
-                    t464 = dpsi_z*e0
-                    t465 = dm_x*psi_y
-                    t466 = dpsi_y*m_x
-                    t467 = e0*(dm_y*psi_x + dpsi_x*m_y - t465 - t466)
-                    t468 = dm_x*psi_z
-                    t469 = dpsi_z*m_x
-                    t470 = dm_z*psi_x
-                    t471 = dpsi_x*m_z
-                    t472 = t468 + t469 - t470 - t471
-                    t473 = e0*psi_z
-                    t474 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t475 = t461*t474
-                    t476 = psi_z*t474
-                    t477 = -m_y*psi_z + m_z*psi_y
-                    t478 = dm_z*psi_y + dpsi_y*m_z - t459 - t460
-                    dg[j3] = (dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t462 + psi_y*t467 +
-                        psi_y*t475 + (0.5)*t459 + (0.5)*t460 - t463*t464 - t463*t476 - t472*t473)
-                    dg[j3 + 1] = (dm_y - dpsi_x*t462 - psi_x*t467 - psi_x*t475 + t464*t477 -
-                        0.5*t468 - 0.5*t469 + (0.5)*t470 + (0.5)*t471 + t473*t478 + t476*t477)
-                    dg[j3 + 2] = (-0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t463 - 0.5*dpsi_x*m_y -
-                        dpsi_y*e0*t477 + e0*psi_x*t472 - e0*psi_y*t478 + psi_x*t463*t474 -
-                        psi_y*t474*t477 + (0.5)*t465 + (0.5)*t466)
+                    t427 = dm_y*psi_z
+                    t428 = dpsi_z*m_y
+                    t429 = -m_x*psi_y + m_y*psi_x
+                    t430 = e0*t429
+                    t431 = m_x*psi_z - m_z*psi_x
+                    t432 = dpsi_z*e0
+                    t433 = dm_x*psi_y
+                    t434 = dpsi_y*m_x
+                    t435 = e0*(dm_y*psi_x + dpsi_x*m_y - t433 - t434)
+                    t436 = dm_x*psi_z
+                    t437 = dpsi_z*m_x
+                    t438 = dm_z*psi_x
+                    t439 = dpsi_x*m_z
+                    t440 = t436 + t437 - t438 - t439
+                    t441 = e0*psi_z
+                    t442 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t443 = t429*t442
+                    t444 = psi_z*t442
+                    t445 = -m_y*psi_z + m_z*psi_y
+                    t446 = dm_z*psi_y + dpsi_y*m_z - t427 - t428
+                    dg[j3] = (dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t430 + psi_y*t435 +
+                        psi_y*t443 + (0.5)*t427 + (0.5)*t428 - t431*t432 - t431*t444 - t440*t441)
+                    dg[j3 + 1] = (dm_y - dpsi_x*t430 - psi_x*t435 - psi_x*t443 + t432*t445 -
+                        0.5*t436 - 0.5*t437 + (0.5)*t438 + (0.5)*t439 + t441*t446 + t444*t445)
+                    dg[j3 + 2] = (-0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t431 - 0.5*dpsi_x*m_y -
+                        dpsi_y*e0*t445 + e0*psi_x*t440 - e0*psi_y*t446 + psi_x*t431*t442 -
+                        psi_y*t442*t445 + (0.5)*t433 + (0.5)*t434)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

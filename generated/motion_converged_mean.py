@@ -194,29 +194,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
             e0 = e0s[j]
-            t20 = Om0_y*psi_z
-            t21 = Om_y*psi_z
-            t22 = Om0_x*psi_y
-            t23 = Om0_y*psi_x - t22
-            t24 = e0*psi_y
-            t25 = Om_x*psi_z
-            t26 = Om_z*psi_x
-            t27 = t25 - t26
-            t28 = e0*psi_z
-            t29 = Om_x*psi_y
-            t30 = Om_y*psi_x - t29
-            t31 = Om0_x*psi_z
-            t32 = Om0_z*psi_x
-            t33 = t31 - t32
-            t34 = e0*psi_x
-            t35 = Om_z*psi_y - t21
-            t36 = Om0_z*psi_y - t20
-            eta[j3] = (-Om0_x + (0.5)*Om0_z*psi_y + Om_x + (0.5)*Om_z*psi_y + e0*psi_y*t30 +
-                e0*psi_z*t33 - 0.5*t20 - 0.5*t21 - t23*t24 - t27*t28)
-            eta[j3 + 1] = (-Om0_y + Om_y + t23*t34 + (0.5)*t25 - 0.5*t26 + t28*t35 - t28*t36 -
-                t30*t34 + (0.5)*t31 - 0.5*t32)
-            eta[j3 + 2] = ((0.5)*Om0_y*psi_x - Om0_z + (0.5)*Om_y*psi_x + Om_z + e0*psi_x*t27 +
-                e0*psi_y*t36 - 0.5*t22 - t24*t35 - 0.5*t29 - t33*t34)
+            t20 = (0.5)*Om0_z + (0.5)*Om_z
+            t21 = Om0_y + Om_y
+            t22 = (0.5)*psi_z
+            t23 = -Om0_y + Om_y
+            t24 = -Om0_x + Om_x
+            t25 = psi_x*t23 - psi_y*t24
+            t26 = -Om0_z + Om_z
+            t27 = -psi_x*t26 + psi_z*t24
+            t28 = Om0_x + Om_x
+            t29 = psi_y*t26 - psi_z*t23
+            eta[j3] = -Om0_x + Om_x + e0*(psi_y*t25 - psi_z*t27) + psi_y*t20 - t21*t22
+            eta[j3 + 1] = -Om0_y + Om_y + e0*(-psi_x*t25 + psi_z*t29) - psi_x*t20 + t22*t28
+            eta[j3 + 2] = (-Om0_z + Om_z + e0*(psi_x*t27 - psi_y*t29) + (0.5)*psi_x*t21 -
+                0.5*psi_y*t28)
         # rates of the internal modes
         for k in range(MODES, n):
             vm = ve[k]
@@ -232,44 +223,44 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
             e0 = e0s[j]
             e1 = e1s[j]
-            t37 = -Om_x*psi_y + Om_y*psi_x
-            t38 = e0*ep_y
-            t39 = Om0_x*psi_z - Om0_z*psi_x
-            t40 = e0*ep_z
-            t41 = Om0_x*ep_z
-            t42 = -Om0_z*ep_x + t41
-            t43 = e0*psi_z
-            t44 = -Om0_x*psi_y + Om0_y*psi_x
-            t45 = Om_x*psi_z - Om_z*psi_x
-            t46 = -Om0_x*ep_y + Om0_y*ep_x
-            t47 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-            t48 = e0*psi_y
-            t49 = A_x*psi_z
-            t50 = Om_x*ep_z
-            t51 = -A_z*psi_x - Om_z*ep_x + t49 + t50
-            t52 = 2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z
-            t53 = e1*t52
-            t54 = psi_y*t53
-            t55 = psi_z*t53
-            t56 = e0*ep_x
-            t57 = -Om_y*psi_z + Om_z*psi_y
-            t58 = e0*psi_x
-            t59 = -Om0_y*psi_z + Om0_z*psi_y
-            t60 = -Om0_y*ep_z + Om0_z*ep_y
-            t61 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-            t62 = psi_x*t53
+            t30 = -Om_x*psi_y + Om_y*psi_x
+            t31 = e0*ep_y
+            t32 = Om0_x*psi_z - Om0_z*psi_x
+            t33 = e0*ep_z
+            t34 = Om0_x*ep_z
+            t35 = -Om0_z*ep_x + t34
+            t36 = e0*psi_z
+            t37 = -Om0_x*psi_y + Om0_y*psi_x
+            t38 = Om_x*psi_z - Om_z*psi_x
+            t39 = -Om0_x*ep_y + Om0_y*ep_x
+            t40 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
+            t41 = e0*psi_y
+            t42 = A_x*psi_z
+            t43 = Om_x*ep_z
+            t44 = -A_z*psi_x - Om_z*ep_x + t42 + t43
+            t45 = 2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z
+            t46 = e1*t45
+            t47 = psi_y*t46
+            t48 = psi_z*t46
+            t49 = e0*ep_x
+            t50 = -Om_y*psi_z + Om_z*psi_y
+            t51 = e0*psi_x
+            t52 = -Om0_y*psi_z + Om0_z*psi_y
+            t53 = -Om0_y*ep_z + Om0_z*ep_y
+            t54 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
+            t55 = psi_x*t46
             rhs_x += (-alpha_r*(-A_x + (0.5)*A_y*psi_z - 0.5*A_z*psi_y + (0.5)*Om0_y*ep_z -
-                0.5*Om0_z*ep_y + (0.5)*Om_y*ep_z - 0.5*Om_z*ep_y + e0*ep_y*t44 + e0*ep_z*t45 +
-                e0*psi_y*t46 + e0*psi_z*t51 + e1*psi_y*t44*t52 + e1*psi_z*t45*t52 - t37*t38 -
-                t37*t54 - t39*t40 - t39*t55 - t42*t43 - t47*t48))
+                0.5*Om0_z*ep_y + (0.5)*Om_y*ep_z - 0.5*Om_z*ep_y + e0*ep_y*t37 + e0*ep_z*t38 +
+                e0*psi_y*t39 + e0*psi_z*t44 + e1*psi_y*t37*t45 + e1*psi_z*t38*t45 - t30*t31 -
+                t30*t47 - t32*t33 - t32*t48 - t35*t36 - t40*t41))
             rhs_y += (-alpha_r*(-A_y + (0.5)*A_z*psi_x + (0.5)*Om0_z*ep_x + (0.5)*Om_z*ep_x +
-                e0*ep_x*t37 + e0*ep_z*t59 + e0*psi_x*t47 + e0*psi_z*t60 + e1*psi_x*t37*t52 +
-                e1*psi_z*t52*t59 - t40*t57 - 0.5*t41 - t43*t61 - t44*t56 - t44*t62 - t46*t58 -
-                0.5*t49 - 0.5*t50 - t55*t57))
+                e0*ep_x*t30 + e0*ep_z*t52 + e0*psi_x*t40 + e0*psi_z*t53 + e1*psi_x*t30*t45 +
+                e1*psi_z*t45*t52 - t33*t50 - 0.5*t34 - t36*t54 - t37*t49 - t37*t55 - t39*t51 -
+                0.5*t42 - 0.5*t43 - t48*t50))
             rhs_z += (-alpha_r*((0.5)*A_x*psi_y - 0.5*A_y*psi_x - A_z + (0.5)*Om0_x*ep_y -
-                0.5*Om0_y*ep_x + (0.5)*Om_x*ep_y - 0.5*Om_y*ep_x + e0*ep_x*t39 + e0*ep_y*t57 +
-                e0*psi_x*t42 + e0*psi_y*t61 + e1*psi_x*t39*t52 + e1*psi_y*t52*t57 - t38*t59 -
-                t45*t56 - t45*t62 - t48*t60 - t51*t58 - t54*t59))
+                0.5*Om0_y*ep_x + (0.5)*Om_x*ep_y - 0.5*Om_y*ep_x + e0*ep_x*t32 + e0*ep_y*t50 +
+                e0*psi_x*t35 + e0*psi_y*t54 + e1*psi_x*t32*t45 + e1*psi_y*t45*t50 - t31*t52 -
+                t38*t49 - t38*t55 - t41*t53 - t44*t51 - t47*t52))
         Om0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
         Om0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
         Om0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -281,15 +272,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             acc_x, acc_y, acc_z = acc[i3], acc[i3 + 1], acc[i3 + 2]
-            t63 = X_y + u_y
-            t64 = X_z + u_z
-            t65 = X_x + u_x
+            t56 = X_y + u_y
+            t57 = X_z + u_z
+            t58 = X_x + u_x
             etad[i3] = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y +
-                Om0_z*vs_y - Om0d_y*t64 + Om0d_z*t63 - a0_x + acc_x)
+                Om0_z*vs_y - Om0d_y*t57 + Om0d_z*t56 - a0_x + acc_x)
             etad[i3 + 1] = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x -
-                Om0_z*vs_x + Om0d_x*t64 - Om0d_z*t65 - a0_y + acc_y)
+                Om0_z*vs_x + Om0d_x*t57 - Om0d_z*t58 - a0_y + acc_y)
             etad[i3 + 2] = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x +
-                Om0_y*vs_x - Om0d_x*t63 + Om0d_y*t65 - a0_z + acc_z)
+                Om0_y*vs_x - Om0d_x*t56 + Om0d_y*t58 - a0_z + acc_z)
         # rate: rates of the elastic rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
@@ -299,57 +290,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
             e0 = e0s[j]
             e1 = e1s[j]
-            t66 = A_y*psi_z
-            t67 = Om0_y*ep_z
-            t68 = Om0d_y*psi_z
-            t69 = Om_y*ep_z
-            t70 = -Om_x*psi_y + Om_y*psi_x
-            t71 = e0*ep_y
-            t72 = Om0_x*psi_z - Om0_z*psi_x
-            t73 = e0*ep_z
-            t74 = -Om0_x*psi_y + Om0_y*psi_x
-            t75 = Om_x*psi_z - Om_z*psi_x
-            t76 = A_x*psi_y
-            t77 = Om_x*ep_y
-            t78 = A_y*psi_x + Om_y*ep_x - t76 - t77
-            t79 = e0*psi_y
-            t80 = Om0_x*ep_z
-            t81 = Om0d_x*psi_z
-            t82 = Om0_z*ep_x
-            t83 = Om0d_z*psi_x
-            t84 = t80 + t81 - t82 - t83
-            t85 = e0*psi_z
-            t86 = Om0_x*ep_y
-            t87 = Om0d_x*psi_y
-            t88 = Om0_y*ep_x + Om0d_y*psi_x - t86 - t87
-            t89 = A_x*psi_z
-            t90 = Om_x*ep_z
-            t91 = A_z*psi_x
-            t92 = Om_z*ep_x
-            t93 = t89 + t90 - t91 - t92
-            t94 = 2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z
-            t95 = e1*t94
-            t96 = psi_y*t95
-            t97 = psi_z*t95
-            t98 = e0*ep_x
-            t99 = -Om_y*psi_z + Om_z*psi_y
-            t100 = -Om0_y*psi_z + Om0_z*psi_y
-            t101 = e0*psi_x
-            t102 = A_z*psi_y + Om_z*ep_y - t66 - t69
-            t103 = Om0_z*ep_y + Om0d_z*psi_y - t67 - t68
-            t104 = psi_x*t95
-            etad[j3] = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y - Om0d_x + (0.5)*Om0d_z*psi_y +
-                (0.5)*Om_z*ep_y - 0.5*t66 - 0.5*t67 - 0.5*t68 - 0.5*t69 + t70*t71 + t70*t96 -
-                t71*t74 + t72*t73 + t72*t97 - t73*t75 - t74*t96 - t75*t97 + t78*t79 - t79*t88 +
-                t84*t85 - t85*t93)
-            etad[j3 + 1] = (A_y - Om0d_y - t100*t73 - t100*t97 - t101*t78 + t101*t88 + t102*t85 -
-                t103*t85 - t104*t70 + t104*t74 - t70*t98 + t73*t99 + t74*t98 + (0.5)*t80 +
-                (0.5)*t81 - 0.5*t82 - 0.5*t83 + (0.5)*t89 + (0.5)*t90 - 0.5*t91 - 0.5*t92 +
-                t97*t99)
-            etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om0d_y*psi_x - Om0d_z
-                + (0.5)*Om_y*ep_x + e0*ep_x*t75 + e0*ep_y*t100 + e0*psi_x*t93 + e0*psi_y*t103 +
-                e1*psi_x*t75*t94 + e1*psi_y*t100*t94 - t101*t84 - t102*t79 - t104*t72 - t71*t99 -
-                t72*t98 - 0.5*t76 - 0.5*t77 - 0.5*t86 - 0.5*t87 - t96*t99)
+            t59 = -Om0_y + Om_y
+            t60 = -Om0_x + Om_x
+            t61 = psi_x*t59 - psi_y*t60
+            t62 = -Om0_z + Om_z
+            t63 = -psi_x*t62 + psi_z*t60
+            t64 = A_y - Om0d_y
+            t65 = A_x - Om0d_x
+            t66 = ep_x*t59 - ep_y*t60 + psi_x*t64 - psi_y*t65
+            t67 = A_z - Om0d_z
+            t68 = -ep_x*t62 + ep_z*t60 - psi_x*t67 + psi_z*t65
+            t69 = (0.5)*Om0_z + (0.5)*Om_z
+            t70 = (0.5)*A_z + (0.5)*Om0d_z
+            t71 = Om0_y + Om_y
+            t72 = (0.5)*ep_z
+            t73 = A_y + Om0d_y
+            t74 = (0.5)*psi_z
+            t75 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
+            t76 = psi_y*t62 - psi_z*t59
+            t77 = ep_y*t62 - ep_z*t59 + psi_y*t67 - psi_z*t64
+            t78 = Om0_x + Om_x
+            t79 = A_x + Om0d_x
+            etad[j3] = (e0*(ep_y*t61 - ep_z*t63 + psi_y*t66 - psi_z*t68) + ep_y*t69 + psi_y*t70 +
+                t65 - t71*t72 - t73*t74 + t75*(psi_y*t61 - psi_z*t63))
+            etad[j3 + 1] = (e0*(-ep_x*t61 + ep_z*t76 - psi_x*t66 + psi_z*t77) - ep_x*t69 -
+                psi_x*t70 + t64 + t72*t78 + t74*t79 + t75*(-psi_x*t61 + psi_z*t76))
+            etad[j3 + 2] = (e0*(ep_x*t63 - ep_y*t76 + psi_x*t68 - psi_y*t77) + (0.5)*ep_x*t71 -
+                0.5*ep_y*t78 + (0.5)*psi_x*t73 - 0.5*psi_y*t79 + t67 + t75*(psi_x*t63 - psi_y*t76))
         # rate: rates of the internal modes
         for k in range(MODES, n):
             am = ae[k]

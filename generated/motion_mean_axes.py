@@ -255,29 +255,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
             e0 = e0s[j]
-            t42 = Om0_y*psi_z
-            t43 = Om_y*psi_z
-            t44 = Om0_x*psi_y
-            t45 = Om0_y*psi_x - t44
-            t46 = e0*psi_y
-            t47 = Om_x*psi_z
-            t48 = Om_z*psi_x
-            t49 = t47 - t48
-            t50 = e0*psi_z
-            t51 = Om_x*psi_y
-            t52 = Om_y*psi_x - t51
-            t53 = Om0_x*psi_z
-            t54 = Om0_z*psi_x
-            t55 = t53 - t54
-            t56 = e0*psi_x
-            t57 = Om_z*psi_y - t43
-            t58 = Om0_z*psi_y - t42
-            eta[j3] = (-Om0_x + (0.5)*Om0_z*psi_y + Om_x + (0.5)*Om_z*psi_y + e0*psi_y*t52 +
-                e0*psi_z*t55 - 0.5*t42 - 0.5*t43 - t45*t46 - t49*t50)
-            eta[j3 + 1] = (-Om0_y + Om_y + t45*t56 + (0.5)*t47 - 0.5*t48 + t50*t57 - t50*t58 -
-                t52*t56 + (0.5)*t53 - 0.5*t54)
-            eta[j3 + 2] = ((0.5)*Om0_y*psi_x - Om0_z + (0.5)*Om_y*psi_x + Om_z + e0*psi_x*t49 +
-                e0*psi_y*t58 - 0.5*t44 - t46*t57 - 0.5*t51 - t55*t56)
+            t42 = (0.5)*Om0_z + (0.5)*Om_z
+            t43 = Om0_y + Om_y
+            t44 = (0.5)*psi_z
+            t45 = -Om0_y + Om_y
+            t46 = -Om0_x + Om_x
+            t47 = psi_x*t45 - psi_y*t46
+            t48 = -Om0_z + Om_z
+            t49 = -psi_x*t48 + psi_z*t46
+            t50 = Om0_x + Om_x
+            t51 = psi_y*t48 - psi_z*t45
+            eta[j3] = -Om0_x + Om_x + e0*(psi_y*t47 - psi_z*t49) + psi_y*t42 - t43*t44
+            eta[j3 + 1] = -Om0_y + Om_y + e0*(-psi_x*t47 + psi_z*t51) - psi_x*t42 + t44*t50
+            eta[j3 + 2] = (-Om0_z + Om_z + e0*(psi_x*t49 - psi_y*t51) + (0.5)*psi_x*t43 -
+                0.5*psi_y*t50)
         # rates of the internal modes
         for k in range(MODES, n):
             vm = ve[k]
@@ -295,15 +286,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
             eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
             acc_x, acc_y, acc_z = acc[i3], acc[i3 + 1], acc[i3 + 2]
-            t59 = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y + Om0_z*vs_y -
+            t52 = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y + Om0_z*vs_y -
                 a0_x + acc_x)
-            t60 = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x - Om0_z*vs_x -
+            t53 = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x - Om0_z*vs_x -
                 a0_y + acc_y)
-            t61 = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x + Om0_y*vs_x -
+            t54 = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x + Om0_y*vs_x -
                 a0_z + acc_z)
-            rhs_x += -Gam_positionx_x*t59 - Gam_positiony_x*t60 - Gam_positionz_x*t61
-            rhs_y += -Gam_positionx_y*t59 - Gam_positiony_y*t60 - Gam_positionz_y*t61
-            rhs_z += -Gam_positionx_z*t59 - Gam_positiony_z*t60 - Gam_positionz_z*t61
+            rhs_x += -Gam_positionx_x*t52 - Gam_positiony_x*t53 - Gam_positionz_x*t54
+            rhs_y += -Gam_positionx_y*t52 - Gam_positiony_y*t53 - Gam_positionz_y*t54
+            rhs_z += -Gam_positionx_z*t52 - Gam_positiony_z*t53 - Gam_positionz_z*t54
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
@@ -318,52 +309,52 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
             e0 = e0s[j]
             e1 = e1s[j]
-            t62 = A_y*psi_z
-            t63 = Om0_y*ep_z
-            t64 = Om_y*ep_z
-            t65 = -Om_x*psi_y + Om_y*psi_x
-            t66 = e0*ep_y
-            t67 = Om0_x*psi_z - Om0_z*psi_x
-            t68 = e0*ep_z
-            t69 = Om0_x*ep_z
-            t70 = Om0_z*ep_x
-            t71 = t69 - t70
-            t72 = e0*psi_z
-            t73 = -Om0_x*psi_y + Om0_y*psi_x
-            t74 = Om_x*psi_z - Om_z*psi_x
-            t75 = Om0_x*ep_y
-            t76 = Om0_y*ep_x - t75
-            t77 = e0*psi_y
-            t78 = A_x*psi_y
-            t79 = Om_x*ep_y
-            t80 = A_y*psi_x + Om_y*ep_x - t78 - t79
-            t81 = A_x*psi_z
-            t82 = Om_x*ep_z
-            t83 = A_z*psi_x
-            t84 = Om_z*ep_x
-            t85 = t81 + t82 - t83 - t84
-            t86 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
-            t87 = psi_y*t86
-            t88 = psi_z*t86
-            t89 = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y + (0.5)*Om_z*ep_y - 0.5*t62 - 0.5*t63
-                - 0.5*t64 + t65*t66 + t65*t87 - t66*t73 + t67*t68 + t67*t88 - t68*t74 + t71*t72 -
-                t72*t85 - t73*t87 - t74*t88 - t76*t77 + t77*t80)
-            t90 = e0*ep_x
-            t91 = -Om_y*psi_z + Om_z*psi_y
-            t92 = e0*psi_x
-            t93 = -Om0_y*psi_z + Om0_z*psi_y
-            t94 = Om0_z*ep_y - t63
-            t95 = A_z*psi_y + Om_z*ep_y - t62 - t64
-            t96 = psi_x*t86
-            t97 = (A_y - t65*t90 - t65*t96 + t68*t91 - t68*t93 + (0.5)*t69 - 0.5*t70 - t72*t94 +
-                t72*t95 + t73*t90 + t73*t96 + t76*t92 - t80*t92 + (0.5)*t81 + (0.5)*t82 - 0.5*t83
-                - 0.5*t84 + t88*t91 - t88*t93)
-            t98 = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om_y*ep_x - t66*t91 + t66*t93
-                - t67*t90 - t67*t96 - t71*t92 + t74*t90 + t74*t96 - 0.5*t75 + t77*t94 - t77*t95 -
-                0.5*t78 - 0.5*t79 + t85*t92 - t87*t91 + t87*t93)
-            rhs_x += -Gam_rotationx_x*t89 - Gam_rotationy_x*t97 - Gam_rotationz_x*t98
-            rhs_y += -Gam_rotationx_y*t89 - Gam_rotationy_y*t97 - Gam_rotationz_y*t98
-            rhs_z += -Gam_rotationx_z*t89 - Gam_rotationy_z*t97 - Gam_rotationz_z*t98
+            t55 = A_y*psi_z
+            t56 = Om0_y*ep_z
+            t57 = Om_y*ep_z
+            t58 = -Om_x*psi_y + Om_y*psi_x
+            t59 = e0*ep_y
+            t60 = Om0_x*psi_z - Om0_z*psi_x
+            t61 = e0*ep_z
+            t62 = Om0_x*ep_z
+            t63 = Om0_z*ep_x
+            t64 = t62 - t63
+            t65 = e0*psi_z
+            t66 = -Om0_x*psi_y + Om0_y*psi_x
+            t67 = Om_x*psi_z - Om_z*psi_x
+            t68 = Om0_x*ep_y
+            t69 = Om0_y*ep_x - t68
+            t70 = e0*psi_y
+            t71 = A_x*psi_y
+            t72 = Om_x*ep_y
+            t73 = A_y*psi_x + Om_y*ep_x - t71 - t72
+            t74 = A_x*psi_z
+            t75 = Om_x*ep_z
+            t76 = A_z*psi_x
+            t77 = Om_z*ep_x
+            t78 = t74 + t75 - t76 - t77
+            t79 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
+            t80 = psi_y*t79
+            t81 = psi_z*t79
+            t82 = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y + (0.5)*Om_z*ep_y - 0.5*t55 - 0.5*t56
+                - 0.5*t57 + t58*t59 + t58*t80 - t59*t66 + t60*t61 + t60*t81 - t61*t67 + t64*t65 -
+                t65*t78 - t66*t80 - t67*t81 - t69*t70 + t70*t73)
+            t83 = e0*ep_x
+            t84 = -Om_y*psi_z + Om_z*psi_y
+            t85 = e0*psi_x
+            t86 = -Om0_y*psi_z + Om0_z*psi_y
+            t87 = Om0_z*ep_y - t56
+            t88 = A_z*psi_y + Om_z*ep_y - t55 - t57
+            t89 = psi_x*t79
+            t90 = (A_y - t58*t83 - t58*t89 + t61*t84 - t61*t86 + (0.5)*t62 - 0.5*t63 - t65*t87 +
+                t65*t88 + t66*t83 + t66*t89 + t69*t85 - t73*t85 + (0.5)*t74 + (0.5)*t75 - 0.5*t76
+                - 0.5*t77 + t81*t84 - t81*t86)
+            t91 = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om_y*ep_x - t59*t84 + t59*t86
+                - t60*t83 - t60*t89 - t64*t85 + t67*t83 + t67*t89 - 0.5*t68 + t70*t87 - t70*t88 -
+                0.5*t71 - 0.5*t72 + t78*t85 - t80*t84 + t80*t86)
+            rhs_x += -Gam_rotationx_x*t82 - Gam_rotationy_x*t90 - Gam_rotationz_x*t91
+            rhs_y += -Gam_rotationx_y*t82 - Gam_rotationy_y*t90 - Gam_rotationz_y*t91
+            rhs_z += -Gam_rotationx_z*t82 - Gam_rotationy_z*t90 - Gam_rotationz_z*t91
         for k in range(MODES, n):
             Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
             am = ae[k]
@@ -381,15 +372,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
             eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
             acc_x, acc_y, acc_z = acc[i3], acc[i3 + 1], acc[i3 + 2]
-            t99 = X_y + u_y
-            t100 = X_z + u_z
-            t101 = X_x + u_x
+            t92 = X_y + u_y
+            t93 = X_z + u_z
+            t94 = X_x + u_x
             etad[i3] = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y +
-                Om0_z*vs_y - Om0d_y*t100 + Om0d_z*t99 - a0_x + acc_x)
+                Om0_z*vs_y - Om0d_y*t93 + Om0d_z*t92 - a0_x + acc_x)
             etad[i3 + 1] = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x -
-                Om0_z*vs_x + Om0d_x*t100 - Om0d_z*t101 - a0_y + acc_y)
+                Om0_z*vs_x + Om0d_x*t93 - Om0d_z*t94 - a0_y + acc_y)
             etad[i3 + 2] = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x +
-                Om0_y*vs_x - Om0d_x*t99 + Om0d_y*t101 - a0_z + acc_z)
+                Om0_y*vs_x - Om0d_x*t92 + Om0d_y*t94 - a0_z + acc_z)
         # rate: rates of the elastic rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
@@ -399,57 +390,34 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
             e0 = e0s[j]
             e1 = e1s[j]
-            t102 = A_y*psi_z
-            t103 = Om0_y*ep_z
-            t104 = Om0d_y*psi_z
-            t105 = Om_y*ep_z
-            t106 = -Om_x*psi_y + Om_y*psi_x
-            t107 = e0*ep_y
-            t108 = Om0_x*psi_z - Om0_z*psi_x
-            t109 = e0*ep_z
-            t110 = -Om0_x*psi_y + Om0_y*psi_x
-            t111 = Om_x*psi_z - Om_z*psi_x
-            t112 = A_x*psi_y
-            t113 = Om_x*ep_y
-            t114 = A_y*psi_x + Om_y*ep_x - t112 - t113
-            t115 = e0*psi_y
-            t116 = Om0_x*ep_z
-            t117 = Om0d_x*psi_z
-            t118 = Om0_z*ep_x
-            t119 = Om0d_z*psi_x
-            t120 = t116 + t117 - t118 - t119
-            t121 = e0*psi_z
-            t122 = Om0_x*ep_y
-            t123 = Om0d_x*psi_y
-            t124 = Om0_y*ep_x + Om0d_y*psi_x - t122 - t123
-            t125 = A_x*psi_z
-            t126 = Om_x*ep_z
-            t127 = A_z*psi_x
-            t128 = Om_z*ep_x
-            t129 = t125 + t126 - t127 - t128
-            t130 = 2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z
-            t131 = e1*t130
-            t132 = psi_y*t131
-            t133 = psi_z*t131
-            t134 = e0*ep_x
-            t135 = -Om_y*psi_z + Om_z*psi_y
-            t136 = -Om0_y*psi_z + Om0_z*psi_y
-            t137 = e0*psi_x
-            t138 = A_z*psi_y + Om_z*ep_y - t102 - t105
-            t139 = Om0_z*ep_y + Om0d_z*psi_y - t103 - t104
-            t140 = psi_x*t131
-            etad[j3] = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y - Om0d_x + (0.5)*Om0d_z*psi_y +
-                (0.5)*Om_z*ep_y - 0.5*t102 - 0.5*t103 - 0.5*t104 - 0.5*t105 + t106*t107 +
-                t106*t132 - t107*t110 + t108*t109 + t108*t133 - t109*t111 - t110*t132 - t111*t133
-                + t114*t115 - t115*t124 + t120*t121 - t121*t129)
-            etad[j3 + 1] = (A_y - Om0d_y - t106*t134 - t106*t140 + t109*t135 - t109*t136 +
-                t110*t134 + t110*t140 - t114*t137 + (0.5)*t116 + (0.5)*t117 - 0.5*t118 - 0.5*t119
-                + t121*t138 - t121*t139 + t124*t137 + (0.5)*t125 + (0.5)*t126 - 0.5*t127 -
-                0.5*t128 + t133*t135 - t133*t136)
-            etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om0d_y*psi_x - Om0d_z
-                + (0.5)*Om_y*ep_x + e0*ep_x*t111 + e0*ep_y*t136 + e0*psi_x*t129 + e0*psi_y*t139 +
-                e1*psi_x*t111*t130 + e1*psi_y*t130*t136 - t107*t135 - t108*t134 - t108*t140 -
-                0.5*t112 - 0.5*t113 - t115*t138 - t120*t137 - 0.5*t122 - 0.5*t123 - t132*t135)
+            t95 = -Om0_y + Om_y
+            t96 = -Om0_x + Om_x
+            t97 = psi_x*t95 - psi_y*t96
+            t98 = -Om0_z + Om_z
+            t99 = -psi_x*t98 + psi_z*t96
+            t100 = A_y - Om0d_y
+            t101 = A_x - Om0d_x
+            t102 = ep_x*t95 - ep_y*t96 + psi_x*t100 - psi_y*t101
+            t103 = A_z - Om0d_z
+            t104 = -ep_x*t98 + ep_z*t96 - psi_x*t103 + psi_z*t101
+            t105 = (0.5)*Om0_z + (0.5)*Om_z
+            t106 = (0.5)*A_z + (0.5)*Om0d_z
+            t107 = Om0_y + Om_y
+            t108 = (0.5)*ep_z
+            t109 = A_y + Om0d_y
+            t110 = (0.5)*psi_z
+            t111 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
+            t112 = psi_y*t98 - psi_z*t95
+            t113 = ep_y*t98 - ep_z*t95 + psi_y*t103 - psi_z*t100
+            t114 = Om0_x + Om_x
+            t115 = A_x + Om0d_x
+            etad[j3] = (e0*(ep_y*t97 - ep_z*t99 + psi_y*t102 - psi_z*t104) + ep_y*t105 +
+                psi_y*t106 + t101 - t107*t108 - t109*t110 + t111*(psi_y*t97 - psi_z*t99))
+            etad[j3 + 1] = (e0*(-ep_x*t97 + ep_z*t112 - psi_x*t102 + psi_z*t113) - ep_x*t105 -
+                psi_x*t106 + t100 + t108*t114 + t110*t115 + t111*(-psi_x*t97 + psi_z*t112))
+            etad[j3 + 2] = (e0*(ep_x*t99 - ep_y*t112 + psi_x*t104 - psi_y*t113) + (0.5)*ep_x*t107
+                - 0.5*ep_y*t114 + (0.5)*psi_x*t109 - 0.5*psi_y*t115 + t103 + t111*(psi_x*t99 -
+                psi_y*t112))
         # rate: rates of the internal modes
         for k in range(MODES, n):
             am = ae[k]

@@ -247,29 +247,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
             e0 = e0s[j]
-            t39 = Om0_y*psi_z
-            t40 = Om_y*psi_z
-            t41 = Om0_x*psi_y
-            t42 = Om0_y*psi_x - t41
-            t43 = e0*psi_y
-            t44 = Om_x*psi_z
-            t45 = Om_z*psi_x
-            t46 = t44 - t45
-            t47 = e0*psi_z
-            t48 = Om_x*psi_y
-            t49 = Om_y*psi_x - t48
-            t50 = Om0_x*psi_z
-            t51 = Om0_z*psi_x
-            t52 = t50 - t51
-            t53 = e0*psi_x
-            t54 = Om_z*psi_y - t40
-            t55 = Om0_z*psi_y - t39
-            eta[j3] = (-Om0_x + (0.5)*Om0_z*psi_y + Om_x + (0.5)*Om_z*psi_y + e0*psi_y*t49 +
-                e0*psi_z*t52 - 0.5*t39 - 0.5*t40 - t42*t43 - t46*t47)
-            eta[j3 + 1] = (-Om0_y + Om_y + t42*t53 + (0.5)*t44 - 0.5*t45 + t47*t54 - t47*t55 -
-                t49*t53 + (0.5)*t50 - 0.5*t51)
-            eta[j3 + 2] = ((0.5)*Om0_y*psi_x - Om0_z + (0.5)*Om_y*psi_x + Om_z + e0*psi_x*t46 +
-                e0*psi_y*t55 - 0.5*t41 - t43*t54 - 0.5*t48 - t52*t53)
+            t39 = (0.5)*Om0_z + (0.5)*Om_z
+            t40 = Om0_y + Om_y
+            t41 = (0.5)*psi_z
+            t42 = -Om0_y + Om_y
+            t43 = -Om0_x + Om_x
+            t44 = psi_x*t42 - psi_y*t43
+            t45 = -Om0_z + Om_z
+            t46 = -psi_x*t45 + psi_z*t43
+            t47 = Om0_x + Om_x
+            t48 = psi_y*t45 - psi_z*t42
+            eta[j3] = -Om0_x + Om_x + e0*(psi_y*t44 - psi_z*t46) + psi_y*t39 - t40*t41
+            eta[j3 + 1] = -Om0_y + Om_y + e0*(-psi_x*t44 + psi_z*t48) - psi_x*t39 + t41*t47
+            eta[j3 + 2] = (-Om0_z + Om_z + e0*(psi_x*t46 - psi_y*t48) + (0.5)*psi_x*t40 -
+                0.5*psi_y*t47)
         # rates of the internal modes
         for k in range(MODES, n):
             vm = ve[k]
@@ -285,76 +276,76 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
             b0 = b0s[j]
             b1 = b1s[j]
-            t56 = A_y*beta_z
-            t57 = Om_y*dbeta_z
-            t58 = -Om_x*beta_y + Om_y*beta_x
-            t59 = b0*t58
-            t60 = Om_x*beta_z - Om_z*beta_x
-            t61 = b0*dbeta_z
-            t62 = A_x*beta_y
-            t63 = Om_x*dbeta_y
-            t64 = b0*(A_y*beta_x + Om_y*dbeta_x - t62 - t63)
-            t65 = A_x*beta_z
-            t66 = Om_x*dbeta_z
-            t67 = A_z*beta_x
-            t68 = Om_z*dbeta_x
-            t69 = t65 + t66 - t67 - t68
-            t70 = b0*beta_z
-            t71 = b1*(2*beta_x*dbeta_x + 2*beta_y*dbeta_y + 2*beta_z*dbeta_z)
-            t72 = t58*t71
-            t73 = beta_z*t71
-            t74 = -Om_y*beta_z + Om_z*beta_y
-            t75 = A_z*beta_y + Om_z*dbeta_y - t56 - t57
-            dmean_dth0_x += (alpha_r*(A_x + (0.5)*A_z*beta_y + (0.5)*Om_z*dbeta_y + beta_y*t64 +
-                beta_y*t72 + dbeta_y*t59 - 0.5*t56 - 0.5*t57 - t60*t61 - t60*t73 - t69*t70))
-            dmean_dth0_y += (alpha_r*(A_y - beta_x*t64 - beta_x*t72 - dbeta_x*t59 + t61*t74 +
-                (0.5)*t65 + (0.5)*t66 - 0.5*t67 - 0.5*t68 + t70*t75 + t73*t74))
-            dmean_dth0_z += (alpha_r*((0.5)*A_y*beta_x + A_z + (0.5)*Om_y*dbeta_x + b0*beta_x*t69
-                - b0*beta_y*t75 + b0*dbeta_x*t60 - b0*dbeta_y*t74 + beta_x*t60*t71 -
-                beta_y*t71*t74 - 0.5*t62 - 0.5*t63))
+            t49 = A_y*beta_z
+            t50 = Om_y*dbeta_z
+            t51 = -Om_x*beta_y + Om_y*beta_x
+            t52 = b0*t51
+            t53 = Om_x*beta_z - Om_z*beta_x
+            t54 = b0*dbeta_z
+            t55 = A_x*beta_y
+            t56 = Om_x*dbeta_y
+            t57 = b0*(A_y*beta_x + Om_y*dbeta_x - t55 - t56)
+            t58 = A_x*beta_z
+            t59 = Om_x*dbeta_z
+            t60 = A_z*beta_x
+            t61 = Om_z*dbeta_x
+            t62 = t58 + t59 - t60 - t61
+            t63 = b0*beta_z
+            t64 = b1*(2*beta_x*dbeta_x + 2*beta_y*dbeta_y + 2*beta_z*dbeta_z)
+            t65 = t51*t64
+            t66 = beta_z*t64
+            t67 = -Om_y*beta_z + Om_z*beta_y
+            t68 = A_z*beta_y + Om_z*dbeta_y - t49 - t50
+            dmean_dth0_x += (alpha_r*(A_x + (0.5)*A_z*beta_y + (0.5)*Om_z*dbeta_y + beta_y*t57 +
+                beta_y*t65 + dbeta_y*t52 - 0.5*t49 - 0.5*t50 - t53*t54 - t53*t66 - t62*t63))
+            dmean_dth0_y += (alpha_r*(A_y - beta_x*t57 - beta_x*t65 - dbeta_x*t52 + t54*t67 +
+                (0.5)*t58 + (0.5)*t59 - 0.5*t60 - 0.5*t61 + t63*t68 + t66*t67))
+            dmean_dth0_z += (alpha_r*((0.5)*A_y*beta_x + A_z + (0.5)*Om_y*dbeta_x + b0*beta_x*t62
+                - b0*beta_y*t68 + b0*dbeta_x*t53 - b0*dbeta_y*t67 + beta_x*t53*t64 -
+                beta_y*t64*t67 - 0.5*t55 - 0.5*t56))
         # rate: rate of the frame, (19)
-        t76 = beta0_z*c2
-        t77 = beta0_x*c3
-        t78 = beta0_y*t77
-        t79 = beta0_y*c2
-        t80 = beta0_z*t77
-        t81 = beta0_y*beta0_y
-        t82 = c3*t81
-        t83 = beta0_z*beta0_z
-        t84 = c3*t83 - 1
-        t85 = c2*dbeta0_z
-        t86 = 2*dbeta0_x
-        t87 = 2*beta0_y*dbeta0_y
-        t88 = 2*beta0_z*dbeta0_z
-        t89 = beta0_x*t86 + t87 + t88
-        t90 = t89*(-0.5*c3 + c4)
-        t91 = beta0_z*t90
-        t92 = c3*dbeta0_x
-        t93 = t89*(-0.5*c4 + (1.5)*c5)
-        t94 = beta0_x*t93
-        t95 = beta0_y*t92 + beta0_y*t94 + dbeta0_y*t77
-        t96 = c2*dbeta0_y
-        t97 = beta0_y*t90
-        t98 = beta0_z*t92 + beta0_z*t94 + dbeta0_z*t77
-        t99 = c3*t88 + t83*t93
-        t100 = c3*t87 + t81*t93
-        t101 = beta0_x*c2
-        t102 = beta0_y*c3
-        t103 = beta0_x*beta0_x
-        t104 = c3*t103
-        t105 = c2*dbeta0_x
-        t106 = beta0_x*t90
-        t107 = beta0_y*beta0_z*t93 + beta0_z*c3*dbeta0_y + dbeta0_z*t102
-        t108 = t103*t93 + t77*t86
-        Om0d_x = (dmean_dth0_x*(-t82 - t84) + dmean_dth0_y*(t76 + t78) + dmean_dth0_z*(-t79 + t80)
-            + mean_dth0_x*(-t100 - t99) + mean_dth0_y*(t85 + t91 + t95) + mean_dth0_z*(-t96 - t97
-            + t98))
-        Om0d_y = (dmean_dth0_x*(-t76 + t78) + dmean_dth0_y*(-t104 - t84) +
-            dmean_dth0_z*(beta0_z*t102 + t101) + mean_dth0_x*(-t85 - t91 + t95) +
-            mean_dth0_y*(-t108 - t99) + mean_dth0_z*(t105 + t106 + t107))
-        Om0d_z = (dmean_dth0_x*(t79 + t80) + dmean_dth0_y*(beta0_y*beta0_z*c3 - t101) +
-            dmean_dth0_z*(-t104 - t82 + 1) + mean_dth0_x*(t96 + t97 + t98) + mean_dth0_y*(-t105 -
-            t106 + t107) + mean_dth0_z*(-t100 - t108))
+        t69 = beta0_z*c2
+        t70 = beta0_x*c3
+        t71 = beta0_y*t70
+        t72 = beta0_y*c2
+        t73 = beta0_z*t70
+        t74 = beta0_y*beta0_y
+        t75 = c3*t74
+        t76 = beta0_z*beta0_z
+        t77 = c3*t76 - 1
+        t78 = c2*dbeta0_z
+        t79 = 2*dbeta0_x
+        t80 = 2*beta0_y*dbeta0_y
+        t81 = 2*beta0_z*dbeta0_z
+        t82 = beta0_x*t79 + t80 + t81
+        t83 = t82*(-0.5*c3 + c4)
+        t84 = beta0_z*t83
+        t85 = c3*dbeta0_x
+        t86 = t82*(-0.5*c4 + (1.5)*c5)
+        t87 = beta0_x*t86
+        t88 = beta0_y*t85 + beta0_y*t87 + dbeta0_y*t70
+        t89 = c2*dbeta0_y
+        t90 = beta0_y*t83
+        t91 = beta0_z*t85 + beta0_z*t87 + dbeta0_z*t70
+        t92 = c3*t81 + t76*t86
+        t93 = c3*t80 + t74*t86
+        t94 = beta0_x*c2
+        t95 = beta0_y*c3
+        t96 = beta0_x*beta0_x
+        t97 = c3*t96
+        t98 = c2*dbeta0_x
+        t99 = beta0_x*t83
+        t100 = beta0_y*beta0_z*t86 + beta0_z*c3*dbeta0_y + dbeta0_z*t95
+        t101 = t70*t79 + t86*t96
+        Om0d_x = (dmean_dth0_x*(-t75 - t77) + dmean_dth0_y*(t69 + t71) + dmean_dth0_z*(-t72 + t73)
+            + mean_dth0_x*(-t92 - t93) + mean_dth0_y*(t78 + t84 + t88) + mean_dth0_z*(-t89 - t90 +
+            t91))
+        Om0d_y = (dmean_dth0_x*(-t69 + t71) + dmean_dth0_y*(-t77 - t97) +
+            dmean_dth0_z*(beta0_z*t95 + t94) + mean_dth0_x*(-t78 - t84 + t88) + mean_dth0_y*(-t101
+            - t92) + mean_dth0_z*(t100 + t98 + t99))
+        Om0d_z = (dmean_dth0_x*(t72 + t73) + dmean_dth0_y*(beta0_y*beta0_z*c3 - t94) +
+            dmean_dth0_z*(-t75 - t97 + 1) + mean_dth0_x*(t89 + t90 + t91) + mean_dth0_y*(t100 -
+            t98 - t99) + mean_dth0_z*(-t101 - t93))
         # rate: rates of the elastic displacements
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -363,15 +354,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             acc_x, acc_y, acc_z = acc[i3], acc[i3 + 1], acc[i3 + 2]
-            t109 = X_y + u_y
-            t110 = X_z + u_z
-            t111 = X_x + u_x
+            t102 = X_y + u_y
+            t103 = X_z + u_z
+            t104 = X_x + u_x
             etad[i3] = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y +
-                Om0_z*vs_y - Om0d_y*t110 + Om0d_z*t109 - a0_x + acc_x)
+                Om0_z*vs_y - Om0d_y*t103 + Om0d_z*t102 - a0_x + acc_x)
             etad[i3 + 1] = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x -
-                Om0_z*vs_x + Om0d_x*t110 - Om0d_z*t111 - a0_y + acc_y)
+                Om0_z*vs_x + Om0d_x*t103 - Om0d_z*t104 - a0_y + acc_y)
             etad[i3 + 2] = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x +
-                Om0_y*vs_x - Om0d_x*t109 + Om0d_y*t111 - a0_z + acc_z)
+                Om0_y*vs_x - Om0d_x*t102 + Om0d_y*t104 - a0_z + acc_z)
         # rate: rates of the elastic rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
@@ -381,57 +372,34 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
             e0 = e0s[j]
             e1 = e1s[j]
-            t112 = A_y*psi_z
-            t113 = Om0_y*ep_z
-            t114 = Om0d_y*psi_z
-            t115 = Om_y*ep_z
-            t116 = -Om_x*psi_y + Om_y*psi_x
-            t117 = e0*ep_y
-            t118 = Om0_x*psi_z - Om0_z*psi_x
-            t119 = e0*ep_z
-            t120 = -Om0_x*psi_y + Om0_y*psi_x
-            t121 = Om_x*psi_z - Om_z*psi_x
-            t122 = A_x*psi_y
-            t123 = Om_x*ep_y
-            t124 = A_y*psi_x + Om_y*ep_x - t122 - t123
-            t125 = e0*psi_y
-            t126 = Om0_x*ep_z
-            t127 = Om0d_x*psi_z
-            t128 = Om0_z*ep_x
-            t129 = Om0d_z*psi_x
-            t130 = t126 + t127 - t128 - t129
-            t131 = e0*psi_z
-            t132 = Om0_x*ep_y
-            t133 = Om0d_x*psi_y
-            t134 = Om0_y*ep_x + Om0d_y*psi_x - t132 - t133
-            t135 = A_x*psi_z
-            t136 = Om_x*ep_z
-            t137 = A_z*psi_x
-            t138 = Om_z*ep_x
-            t139 = t135 + t136 - t137 - t138
-            t140 = 2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z
-            t141 = e1*t140
-            t142 = psi_y*t141
-            t143 = psi_z*t141
-            t144 = e0*ep_x
-            t145 = -Om_y*psi_z + Om_z*psi_y
-            t146 = -Om0_y*psi_z + Om0_z*psi_y
-            t147 = e0*psi_x
-            t148 = A_z*psi_y + Om_z*ep_y - t112 - t115
-            t149 = Om0_z*ep_y + Om0d_z*psi_y - t113 - t114
-            t150 = psi_x*t141
-            etad[j3] = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y - Om0d_x + (0.5)*Om0d_z*psi_y +
-                (0.5)*Om_z*ep_y - 0.5*t112 - 0.5*t113 - 0.5*t114 - 0.5*t115 + t116*t117 +
-                t116*t142 - t117*t120 + t118*t119 + t118*t143 - t119*t121 - t120*t142 - t121*t143
-                + t124*t125 - t125*t134 + t130*t131 - t131*t139)
-            etad[j3 + 1] = (A_y - Om0d_y - t116*t144 - t116*t150 + t119*t145 - t119*t146 +
-                t120*t144 + t120*t150 - t124*t147 + (0.5)*t126 + (0.5)*t127 - 0.5*t128 - 0.5*t129
-                + t131*t148 - t131*t149 + t134*t147 + (0.5)*t135 + (0.5)*t136 - 0.5*t137 -
-                0.5*t138 + t143*t145 - t143*t146)
-            etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om0d_y*psi_x - Om0d_z
-                + (0.5)*Om_y*ep_x + e0*ep_x*t121 + e0*ep_y*t146 + e0*psi_x*t139 + e0*psi_y*t149 +
-                e1*psi_x*t121*t140 + e1*psi_y*t140*t146 - t117*t145 - t118*t144 - t118*t150 -
-                0.5*t122 - 0.5*t123 - t125*t148 - t130*t147 - 0.5*t132 - 0.5*t133 - t142*t145)
+            t105 = -Om0_y + Om_y
+            t106 = -Om0_x + Om_x
+            t107 = psi_x*t105 - psi_y*t106
+            t108 = -Om0_z + Om_z
+            t109 = -psi_x*t108 + psi_z*t106
+            t110 = A_y - Om0d_y
+            t111 = A_x - Om0d_x
+            t112 = ep_x*t105 - ep_y*t106 + psi_x*t110 - psi_y*t111
+            t113 = A_z - Om0d_z
+            t114 = -ep_x*t108 + ep_z*t106 - psi_x*t113 + psi_z*t111
+            t115 = (0.5)*Om0_z + (0.5)*Om_z
+            t116 = (0.5)*A_z + (0.5)*Om0d_z
+            t117 = Om0_y + Om_y
+            t118 = (0.5)*ep_z
+            t119 = A_y + Om0d_y
+            t120 = (0.5)*psi_z
+            t121 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
+            t122 = psi_y*t108 - psi_z*t105
+            t123 = ep_y*t108 - ep_z*t105 + psi_y*t113 - psi_z*t110
+            t124 = Om0_x + Om_x
+            t125 = A_x + Om0d_x
+            etad[j3] = (e0*(ep_y*t107 - ep_z*t109 + psi_y*t112 - psi_z*t114) + ep_y*t115 +
+                psi_y*t116 + t111 - t117*t118 - t119*t120 + t121*(psi_y*t107 - psi_z*t109))
+            etad[j3 + 1] = (e0*(-ep_x*t107 + ep_z*t122 - psi_x*t112 + psi_z*t123) - ep_x*t115 -
+                psi_x*t116 + t110 + t118*t124 + t120*t125 + t121*(-psi_x*t107 + psi_z*t122))
+            etad[j3 + 2] = (e0*(ep_x*t109 - ep_y*t122 + psi_x*t114 - psi_y*t123) + (0.5)*ep_x*t117
+                - 0.5*ep_y*t124 + (0.5)*psi_x*t119 - 0.5*psi_y*t125 + t113 + t121*(psi_x*t109 -
+                psi_y*t122))
         # rate: rates of the internal modes
         for k in range(MODES, n):
             am = ae[k]

@@ -196,29 +196,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
             e0 = e0s[j]
-            t18 = Om0_y*psi_z
-            t19 = Om_y*psi_z
-            t20 = Om0_x*psi_y
-            t21 = Om0_y*psi_x - t20
-            t22 = e0*psi_y
-            t23 = Om_x*psi_z
-            t24 = Om_z*psi_x
-            t25 = t23 - t24
-            t26 = e0*psi_z
-            t27 = Om_x*psi_y
-            t28 = Om_y*psi_x - t27
-            t29 = Om0_x*psi_z
-            t30 = Om0_z*psi_x
-            t31 = t29 - t30
-            t32 = e0*psi_x
-            t33 = Om_z*psi_y - t19
-            t34 = Om0_z*psi_y - t18
-            eta[j3] = (-Om0_x + (0.5)*Om0_z*psi_y + Om_x + (0.5)*Om_z*psi_y + e0*psi_y*t28 +
-                e0*psi_z*t31 - 0.5*t18 - 0.5*t19 - t21*t22 - t25*t26)
-            eta[j3 + 1] = (-Om0_y + Om_y + t21*t32 + (0.5)*t23 - 0.5*t24 + t26*t33 - t26*t34 -
-                t28*t32 + (0.5)*t29 - 0.5*t30)
-            eta[j3 + 2] = ((0.5)*Om0_y*psi_x - Om0_z + (0.5)*Om_y*psi_x + Om_z + e0*psi_x*t25 +
-                e0*psi_y*t34 - 0.5*t20 - t22*t33 - 0.5*t27 - t31*t32)
+            t18 = (0.5)*Om0_z + (0.5)*Om_z
+            t19 = Om0_y + Om_y
+            t20 = (0.5)*psi_z
+            t21 = -Om0_y + Om_y
+            t22 = -Om0_x + Om_x
+            t23 = psi_x*t21 - psi_y*t22
+            t24 = -Om0_z + Om_z
+            t25 = -psi_x*t24 + psi_z*t22
+            t26 = Om0_x + Om_x
+            t27 = psi_y*t24 - psi_z*t21
+            eta[j3] = -Om0_x + Om_x + e0*(psi_y*t23 - psi_z*t25) + psi_y*t18 - t19*t20
+            eta[j3 + 1] = -Om0_y + Om_y + e0*(-psi_x*t23 + psi_z*t27) - psi_x*t18 + t20*t26
+            eta[j3 + 2] = (-Om0_z + Om_z + e0*(psi_x*t25 - psi_y*t27) + (0.5)*psi_x*t19 -
+                0.5*psi_y*t26)
         # rates of the internal modes
         for k in range(MODES, n):
             vm = ve[k]
@@ -232,15 +223,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
             eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
             acc_x, acc_y, acc_z = acc[i3], acc[i3 + 1], acc[i3 + 2]
-            t35 = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x + Om0_y*vs_x -
+            t28 = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x + Om0_y*vs_x -
                 a0_z + acc_z)
-            t36 = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x - Om0_z*vs_x -
+            t29 = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x - Om0_z*vs_x -
                 a0_y + acc_y)
-            t37 = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y + Om0_z*vs_y -
+            t30 = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y + Om0_z*vs_y -
                 a0_x + acc_x)
-            rhs_x += -fit*(X_y*t35 - X_z*t36)
-            rhs_y += -fit*(-X_x*t35 + X_z*t37)
-            rhs_z += -fit*(X_x*t36 - X_y*t37)
+            rhs_x += -fit*(X_y*t28 - X_z*t29)
+            rhs_y += -fit*(-X_x*t28 + X_z*t30)
+            rhs_z += -fit*(X_x*t29 - X_y*t30)
         Om0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
         Om0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
         Om0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -252,15 +243,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
             eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
             acc_x, acc_y, acc_z = acc[i3], acc[i3 + 1], acc[i3 + 2]
-            t38 = X_y + u_y
-            t39 = X_z + u_z
-            t40 = X_x + u_x
+            t31 = X_y + u_y
+            t32 = X_z + u_z
+            t33 = X_x + u_x
             etad[i3] = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y +
-                Om0_z*vs_y - Om0d_y*t39 + Om0d_z*t38 - a0_x + acc_x)
+                Om0_z*vs_y - Om0d_y*t32 + Om0d_z*t31 - a0_x + acc_x)
             etad[i3 + 1] = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x -
-                Om0_z*vs_x + Om0d_x*t39 - Om0d_z*t40 - a0_y + acc_y)
+                Om0_z*vs_x + Om0d_x*t32 - Om0d_z*t33 - a0_y + acc_y)
             etad[i3 + 2] = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x +
-                Om0_y*vs_x - Om0d_x*t38 + Om0d_y*t40 - a0_z + acc_z)
+                Om0_y*vs_x - Om0d_x*t31 + Om0d_y*t33 - a0_z + acc_z)
         # rate: rates of the elastic rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
@@ -270,56 +261,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
             e0 = e0s[j]
             e1 = e1s[j]
-            t41 = A_y*psi_z
-            t42 = Om0_y*ep_z
-            t43 = Om0d_y*psi_z
-            t44 = Om_y*ep_z
-            t45 = -Om_x*psi_y + Om_y*psi_x
-            t46 = e0*ep_y
-            t47 = Om0_x*psi_z - Om0_z*psi_x
-            t48 = e0*ep_z
-            t49 = -Om0_x*psi_y + Om0_y*psi_x
-            t50 = Om_x*psi_z - Om_z*psi_x
-            t51 = A_x*psi_y
-            t52 = Om_x*ep_y
-            t53 = A_y*psi_x + Om_y*ep_x - t51 - t52
-            t54 = e0*psi_y
-            t55 = Om0_x*ep_z
-            t56 = Om0d_x*psi_z
-            t57 = Om0_z*ep_x
-            t58 = Om0d_z*psi_x
-            t59 = t55 + t56 - t57 - t58
-            t60 = e0*psi_z
-            t61 = Om0_x*ep_y
-            t62 = Om0d_x*psi_y
-            t63 = Om0_y*ep_x + Om0d_y*psi_x - t61 - t62
-            t64 = A_x*psi_z
-            t65 = Om_x*ep_z
-            t66 = A_z*psi_x
-            t67 = Om_z*ep_x
-            t68 = t64 + t65 - t66 - t67
-            t69 = 2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z
-            t70 = e1*t69
-            t71 = psi_y*t70
-            t72 = psi_z*t70
-            t73 = e0*ep_x
-            t74 = -Om_y*psi_z + Om_z*psi_y
-            t75 = -Om0_y*psi_z + Om0_z*psi_y
-            t76 = e0*psi_x
-            t77 = A_z*psi_y + Om_z*ep_y - t41 - t44
-            t78 = Om0_z*ep_y + Om0d_z*psi_y - t42 - t43
-            t79 = psi_x*t70
-            etad[j3] = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y - Om0d_x + (0.5)*Om0d_z*psi_y +
-                (0.5)*Om_z*ep_y - 0.5*t41 - 0.5*t42 - 0.5*t43 - 0.5*t44 + t45*t46 + t45*t71 -
-                t46*t49 + t47*t48 + t47*t72 - t48*t50 - t49*t71 - t50*t72 + t53*t54 - t54*t63 +
-                t59*t60 - t60*t68)
-            etad[j3 + 1] = (A_y - Om0d_y - t45*t73 - t45*t79 + t48*t74 - t48*t75 + t49*t73 +
-                t49*t79 - t53*t76 + (0.5)*t55 + (0.5)*t56 - 0.5*t57 - 0.5*t58 + t60*t77 - t60*t78
-                + t63*t76 + (0.5)*t64 + (0.5)*t65 - 0.5*t66 - 0.5*t67 + t72*t74 - t72*t75)
-            etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om0d_y*psi_x - Om0d_z
-                + (0.5)*Om_y*ep_x + e0*ep_x*t50 + e0*ep_y*t75 + e0*psi_x*t68 + e0*psi_y*t78 +
-                e1*psi_x*t50*t69 + e1*psi_y*t69*t75 - t46*t74 - t47*t73 - t47*t79 - 0.5*t51 -
-                0.5*t52 - t54*t77 - t59*t76 - 0.5*t61 - 0.5*t62 - t71*t74)
+            t34 = -Om0_y + Om_y
+            t35 = -Om0_x + Om_x
+            t36 = psi_x*t34 - psi_y*t35
+            t37 = -Om0_z + Om_z
+            t38 = -psi_x*t37 + psi_z*t35
+            t39 = A_y - Om0d_y
+            t40 = A_x - Om0d_x
+            t41 = ep_x*t34 - ep_y*t35 + psi_x*t39 - psi_y*t40
+            t42 = A_z - Om0d_z
+            t43 = -ep_x*t37 + ep_z*t35 - psi_x*t42 + psi_z*t40
+            t44 = (0.5)*Om0_z + (0.5)*Om_z
+            t45 = (0.5)*A_z + (0.5)*Om0d_z
+            t46 = Om0_y + Om_y
+            t47 = (0.5)*ep_z
+            t48 = A_y + Om0d_y
+            t49 = (0.5)*psi_z
+            t50 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
+            t51 = psi_y*t37 - psi_z*t34
+            t52 = ep_y*t37 - ep_z*t34 + psi_y*t42 - psi_z*t39
+            t53 = Om0_x + Om_x
+            t54 = A_x + Om0d_x
+            etad[j3] = (e0*(ep_y*t36 - ep_z*t38 + psi_y*t41 - psi_z*t43) + ep_y*t44 + psi_y*t45 +
+                t40 - t46*t47 - t48*t49 + t50*(psi_y*t36 - psi_z*t38))
+            etad[j3 + 1] = (e0*(-ep_x*t36 + ep_z*t51 - psi_x*t41 + psi_z*t52) - ep_x*t44 -
+                psi_x*t45 + t39 + t47*t53 + t49*t54 + t50*(-psi_x*t36 + psi_z*t51))
+            etad[j3 + 2] = (e0*(ep_x*t38 - ep_y*t51 + psi_x*t43 - psi_y*t52) + (0.5)*ep_x*t46 -
+                0.5*ep_y*t53 + (0.5)*psi_x*t48 - 0.5*psi_y*t54 + t42 + t50*(psi_x*t38 - psi_y*t51))
         # rate: rates of the internal modes
         for k in range(MODES, n):
             am = ae[k]

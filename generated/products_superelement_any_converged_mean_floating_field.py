@@ -65,8 +65,8 @@ WORK_ROWS = 137
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (707, 168, 573, 1),
-              "column": (159, 156, 2249, 4)}
+OPERATIONS = {"residual": (707, 168, 419, 1),
+              "column": (159, 156, 1786, 4)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("sizes", (3,), "slaved coordinates, resultants of second order, damped or not"),
     Part("turn", ("entries",), "axes of the body in the frame: columns of a rotation"),
@@ -276,30 +276,35 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e0 = e0s[j]
                 t3 = e0*psi_y*psi_y
                 t4 = e0*psi_z*psi_z - 1
-                t5 = (0.5)*psi_z
-                t6 = e0*psi_x
-                t7 = psi_y*t6
-                t8 = (0.5)*psi_y
-                t9 = psi_z*t6
-                t10 = e0*psi_x*psi_x
-                t11 = (0.5)*psi_x
-                t12 = e0*psi_z
-                t13 = psi_y*t12
-                t14 = -Om_x*psi_y + Om_y*psi_x
-                t15 = Om_x*psi_z - Om_z*psi_x
-                t16 = -Om_y*psi_z + Om_z*psi_y
-                B_00 += alpha_r*(-t3 - t4)
-                B_01 += alpha_r*(t5 + t7)
-                B_02 += alpha_r*(-t8 + t9)
-                B_10 += alpha_r*(-t5 + t7)
-                B_11 += alpha_r*(-t10 - t4)
-                B_12 += alpha_r*(t11 + t13)
-                B_20 += alpha_r*(t8 + t9)
-                B_21 += alpha_r*(-t11 + t13)
-                B_22 += alpha_r*(-t10 - t3 + 1)
-                rhs_x += -alpha_r*(-Om_x + (0.5)*Om_y*psi_z - Om_z*t8 - e0*psi_y*t14 + e0*psi_z*t15)
-                rhs_y += -alpha_r*(-Om_x*t5 - Om_y + (0.5)*Om_z*psi_x + e0*psi_x*t14 - t12*t16)
-                rhs_z += -alpha_r*((0.5)*Om_x*psi_y - Om_y*t11 - Om_z + e0*psi_y*t16 - t15*t6)
+                t5 = -t3 - t4
+                t6 = (0.5)*psi_z
+                t7 = e0*psi_x
+                t8 = psi_y*t7
+                t9 = t6 + t8
+                t10 = (0.5)*psi_y
+                t11 = psi_z*t7
+                t12 = -t10 + t11
+                t13 = -t6 + t8
+                t14 = e0*psi_x*psi_x
+                t15 = -t14 - t4
+                t16 = (0.5)*psi_x
+                t17 = e0*psi_y*psi_z
+                t18 = t16 + t17
+                t19 = t10 + t11
+                t20 = -t16 + t17
+                t21 = -t14 - t3 + 1
+                B_00 += alpha_r*t5
+                B_01 += alpha_r*t9
+                B_02 += alpha_r*t12
+                B_10 += alpha_r*t13
+                B_11 += alpha_r*t15
+                B_12 += alpha_r*t18
+                B_20 += alpha_r*t19
+                B_21 += alpha_r*t20
+                B_22 += alpha_r*t21
+                rhs_x += -alpha_r*(-Om_x*t5 - Om_y*t13 - Om_z*t19)
+                rhs_y += -alpha_r*(-Om_x*t9 - Om_y*t15 - Om_z*t20)
+                rhs_z += -alpha_r*(-Om_x*t12 - Om_y*t18 - Om_z*t21)
             Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
                 B_12, B_20, B_21, B_22)
             Om0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
@@ -333,41 +338,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t17 = X_y + u_y
-                t18 = X_z + u_z
-                t19 = X_x + u_x
-                eta[i3] = -Om0_y*t18 + Om0_z*t17 - v0_x + vs_x
-                eta[i3 + 1] = Om0_x*t18 - Om0_z*t19 - v0_y + vs_y
-                eta[i3 + 2] = -Om0_x*t17 + Om0_y*t19 - v0_z + vs_z
+                t22 = X_y + u_y
+                t23 = X_z + u_z
+                t24 = X_x + u_x
+                eta[i3] = -Om0_y*t23 + Om0_z*t22 - v0_x + vs_x
+                eta[i3 + 1] = Om0_x*t23 - Om0_z*t24 - v0_y + vs_y
+                eta[i3 + 2] = -Om0_x*t22 + Om0_y*t24 - v0_z + vs_z
             # rates of the elastic rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
                 e0 = e0s[j]
-                t20 = Om0_y*psi_z
-                t21 = Om_y*psi_z
-                t22 = Om0_x*psi_y
-                t23 = Om0_y*psi_x - t22
-                t24 = e0*psi_y
-                t25 = Om_x*psi_z
-                t26 = Om_z*psi_x
-                t27 = t25 - t26
-                t28 = e0*psi_z
-                t29 = Om_x*psi_y
-                t30 = Om_y*psi_x - t29
-                t31 = Om0_x*psi_z
-                t32 = Om0_z*psi_x
-                t33 = t31 - t32
-                t34 = e0*psi_x
-                t35 = Om_z*psi_y - t21
-                t36 = Om0_z*psi_y - t20
-                eta[j3] = (-Om0_x + (0.5)*Om0_z*psi_y + Om_x + (0.5)*Om_z*psi_y + e0*psi_y*t30 +
-                    e0*psi_z*t33 - 0.5*t20 - 0.5*t21 - t23*t24 - t27*t28)
-                eta[j3 + 1] = (-Om0_y + Om_y + t23*t34 + (0.5)*t25 - 0.5*t26 + t28*t35 - t28*t36 -
-                    t30*t34 + (0.5)*t31 - 0.5*t32)
-                eta[j3 + 2] = ((0.5)*Om0_y*psi_x - Om0_z + (0.5)*Om_y*psi_x + Om_z + e0*psi_x*t27
-                    + e0*psi_y*t36 - 0.5*t22 - t24*t35 - 0.5*t29 - t33*t34)
+                t25 = (0.5)*Om0_z + (0.5)*Om_z
+                t26 = Om0_y + Om_y
+                t27 = (0.5)*psi_z
+                t28 = -Om0_y + Om_y
+                t29 = -Om0_x + Om_x
+                t30 = psi_x*t28 - psi_y*t29
+                t31 = -Om0_z + Om_z
+                t32 = -psi_x*t31 + psi_z*t29
+                t33 = Om0_x + Om_x
+                t34 = psi_y*t31 - psi_z*t28
+                eta[j3] = -Om0_x + Om_x + e0*(psi_y*t30 - psi_z*t32) + psi_y*t25 - t26*t27
+                eta[j3 + 1] = -Om0_y + Om_y + e0*(-psi_x*t30 + psi_z*t34) - psi_x*t25 + t27*t33
+                eta[j3 + 2] = (-Om0_z + Om_z + e0*(psi_x*t32 - psi_y*t34) + (0.5)*psi_x*t26 -
+                    0.5*psi_y*t33)
             # rates of the internal modes
             for k in range(MODES, n):
                 vm = ve[k]
@@ -381,49 +377,31 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t37 = A_y*psi_z
-                t38 = Om0_y*ep_z
-                t39 = Om_y*ep_z
-                t40 = -Om_x*psi_y + Om_y*psi_x
-                t41 = e0*ep_y
-                t42 = Om0_x*psi_z - Om0_z*psi_x
-                t43 = e0*ep_z
-                t44 = Om0_x*ep_z
-                t45 = Om0_z*ep_x
-                t46 = t44 - t45
-                t47 = e0*psi_z
-                t48 = -Om0_x*psi_y + Om0_y*psi_x
-                t49 = Om_x*psi_z - Om_z*psi_x
-                t50 = Om0_x*ep_y
-                t51 = Om0_y*ep_x - t50
-                t52 = e0*psi_y
-                t53 = A_x*psi_y
-                t54 = Om_x*ep_y
-                t55 = A_y*psi_x + Om_y*ep_x - t53 - t54
-                t56 = A_x*psi_z
-                t57 = Om_x*ep_z
-                t58 = A_z*psi_x
-                t59 = Om_z*ep_x
-                t60 = t56 + t57 - t58 - t59
-                t61 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
-                t62 = psi_y*t61
-                t63 = psi_z*t61
-                t64 = e0*ep_x
-                t65 = -Om_y*psi_z + Om_z*psi_y
-                t66 = e0*psi_x
-                t67 = -Om0_y*psi_z + Om0_z*psi_y
-                t68 = Om0_z*ep_y - t38
-                t69 = A_z*psi_y + Om_z*ep_y - t37 - t39
-                t70 = psi_x*t61
-                etad[j3] = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y + (0.5)*Om_z*ep_y - 0.5*t37 -
-                    0.5*t38 - 0.5*t39 + t40*t41 + t40*t62 - t41*t48 + t42*t43 + t42*t63 - t43*t49
-                    + t46*t47 - t47*t60 - t48*t62 - t49*t63 - t51*t52 + t52*t55)
-                etad[j3 + 1] = (A_y - t40*t64 - t40*t70 + t43*t65 - t43*t67 + (0.5)*t44 - 0.5*t45
-                    - t47*t68 + t47*t69 + t48*t64 + t48*t70 + t51*t66 - t55*t66 + (0.5)*t56 +
-                    (0.5)*t57 - 0.5*t58 - 0.5*t59 + t63*t65 - t63*t67)
-                etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om_y*ep_x -
-                    t41*t65 + t41*t67 - t42*t64 - t42*t70 - t46*t66 + t49*t64 + t49*t70 - 0.5*t50
-                    + t52*t68 - t52*t69 - 0.5*t53 - 0.5*t54 + t60*t66 - t62*t65 + t62*t67)
+                t35 = A_y*psi_z
+                t36 = (0.5)*Om0_z + (0.5)*Om_z
+                t37 = Om0_y + Om_y
+                t38 = (0.5)*ep_z
+                t39 = -Om0_y + Om_y
+                t40 = -Om0_x + Om_x
+                t41 = psi_x*t39 - psi_y*t40
+                t42 = -Om0_z + Om_z
+                t43 = -psi_x*t42 + psi_z*t40
+                t44 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
+                t45 = A_x*psi_y
+                t46 = A_y*psi_x + ep_x*t39 - ep_y*t40 - t45
+                t47 = A_x*psi_z
+                t48 = A_z*psi_x
+                t49 = -ep_x*t42 + ep_z*t40 + t47 - t48
+                t50 = Om0_x + Om_x
+                t51 = psi_y*t42 - psi_z*t39
+                t52 = A_z*psi_y + ep_y*t42 - ep_z*t39 - t35
+                etad[j3] = (A_x + (0.5)*A_z*psi_y + e0*(ep_y*t41 - ep_z*t43 + psi_y*t46 -
+                    psi_z*t49) + ep_y*t36 - 0.5*t35 - t37*t38 + t44*(psi_y*t41 - psi_z*t43))
+                etad[j3 + 1] = (A_y + e0*(-ep_x*t41 + ep_z*t51 - psi_x*t46 + psi_z*t52) - ep_x*t36
+                    + t38*t50 + t44*(-psi_x*t41 + psi_z*t51) + (0.5)*t47 - 0.5*t48)
+                etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + e0*(ep_x*t43 - ep_y*t51 + psi_x*t49 -
+                    psi_y*t52) + (0.5)*ep_x*t37 - 0.5*ep_y*t50 + t44*(psi_x*t43 - psi_y*t51) -
+                    0.5*t45)
             # rate: B rate = sum alpha_j T^-1(psi_j) rate_j
             rhs_x = rhs_y = rhs_z = 0.0
             for j in range(N_ROTATIONS):
@@ -442,20 +420,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 epd_x, epd_y, epd_z = etad[j3], etad[j3 + 1], etad[j3 + 2]
                 e0 = e0s[j]
-                t71 = (0.5)*psi_z
-                t72 = e0*psi_x
-                t73 = psi_y*t72
-                t74 = (0.5)*psi_y
-                t75 = psi_z*t72
-                t76 = e0*psi_y*psi_y
-                t77 = e0*psi_z*psi_z - 1
-                t78 = (0.5)*psi_x
-                t79 = e0*psi_y*psi_z
-                t80 = e0*psi_x*psi_x
-                etad[j3] = Om0d_x*(t76 + t77) + Om0d_y*(-t71 - t73) + Om0d_z*(t74 - t75) + epd_x
-                etad[j3 + 1] = Om0d_x*(t71 - t73) + Om0d_y*(t77 + t80) + Om0d_z*(-t78 - t79) + epd_y
-                etad[j3 + 2] = (Om0d_x*(-t74 - t75) + Om0d_y*(t78 - t79) + Om0d_z*(t76 + t80 - 1)
-                    + epd_z)
+                t53 = Om0d_y*psi_z
+                t54 = Om0d_z*psi_y
+                t55 = Om0d_x*psi_y
+                t56 = Om0d_y*psi_x
+                t57 = t55 - t56
+                t58 = Om0d_x*psi_z
+                t59 = Om0d_z*psi_x - t58
+                t60 = t53 - t54
+                etad[j3] = -Om0d_x + e0*(psi_y*t57 - psi_z*t59) + epd_x - 0.5*t53 + (0.5)*t54
+                etad[j3 + 1] = (-Om0d_y - 0.5*Om0d_z*psi_x + e0*(-psi_x*t57 + psi_z*t60) + epd_y +
+                    (0.5)*t58)
+                etad[j3 + 2] = -Om0d_z + e0*(psi_x*t59 - psi_y*t60) + epd_z - 0.5*t55 + (0.5)*t56
             # rate: rates of the elastic displacements
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -464,15 +440,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t81 = X_y + u_y
-                t82 = X_z + u_z
-                t83 = X_x + u_x
+                t61 = X_y + u_y
+                t62 = X_z + u_z
+                t63 = X_x + u_x
                 etad[i3] = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y +
-                    Om0_z*vs_y - Om0d_y*t82 + Om0d_z*t81 - a0_x + acc_x)
+                    Om0_z*vs_y - Om0d_y*t62 + Om0d_z*t61 - a0_x + acc_x)
                 etad[i3 + 1] = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x -
-                    Om0_z*vs_x + Om0d_x*t82 - Om0d_z*t83 - a0_y + acc_y)
+                    Om0_z*vs_x + Om0d_x*t62 - Om0d_z*t63 - a0_y + acc_y)
                 etad[i3 + 2] = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x +
-                    Om0_y*vs_x - Om0d_x*t81 + Om0d_y*t83 - a0_z + acc_z)
+                    Om0_y*vs_x - Om0d_x*t61 + Om0d_y*t63 - a0_z + acc_z)
             # rate: rates of the internal modes
             for k in range(MODES, n):
                 am = ae[k]
@@ -556,12 +532,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
-            t84 = a0_x - gamma_x
-            t85 = a0_y - gamma_y
-            t86 = a0_z - gamma_z
-            zdd[N] = t84*turn_xx + t85*turn_yx + t86*turn_zx
-            zdd[N + 1] = t84*turn_xy + t85*turn_yy + t86*turn_zy
-            zdd[N + 2] = t84*turn_xz + t85*turn_yz + t86*turn_zz
+            t64 = a0_x - gamma_x
+            t65 = a0_y - gamma_y
+            t66 = a0_z - gamma_z
+            zdd[N] = t64*turn_xx + t65*turn_yx + t66*turn_zx
+            zdd[N + 1] = t64*turn_xy + t65*turn_yy + t66*turn_zy
+            zdd[N + 2] = t64*turn_xz + t65*turn_yz + t66*turn_zz
             zdd[N + 3] = Om0d_x*turn_xx + Om0d_y*turn_yx + Om0d_z*turn_zx
             zdd[N + 4] = Om0d_x*turn_xy + Om0d_y*turn_yy + Om0d_z*turn_zy
             zdd[N + 5] = Om0d_x*turn_xz + Om0d_y*turn_yz + Om0d_z*turn_zz
@@ -572,30 +548,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             felt_x, felt_y, felt_z = zdd[N], zdd[N + 1], zdd[N + 2]
             turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
-            t87 = spin_x*spin_x
-            t88 = spin_y*spin_y
-            t89 = spin_z*spin_z
-            t90 = spin_x*spin_y
-            t91 = spin_x*spin_z
-            t92 = spin_y*spin_z
+            t67 = spin_x*spin_x
+            t68 = spin_y*spin_y
+            t69 = spin_z*spin_z
+            t70 = spin_x*spin_y
+            t71 = spin_x*spin_z
+            t72 = spin_y*spin_z
             by_moment_columns[0] = felt_x
             by_moment_columns[1] = felt_y
             by_moment_columns[2] = felt_z
             by_moment_columns[3] = turning_x
             by_moment_columns[4] = turning_y
             by_moment_columns[5] = turning_z
-            by_moment_columns[6] = -0.5*t87
-            by_moment_columns[7] = -0.5*t88
-            by_moment_columns[8] = -0.5*t89
-            by_moment_columns[9] = -t90
-            by_moment_columns[10] = -t91
-            by_moment_columns[11] = -t92
-            by_products[0] = -t87
-            by_products[1] = -t88
-            by_products[2] = -t89
-            by_products[3] = -2*t90
-            by_products[4] = -2*t91
-            by_products[5] = -2*t92
+            by_moment_columns[6] = -0.5*t67
+            by_moment_columns[7] = -0.5*t68
+            by_moment_columns[8] = -0.5*t69
+            by_moment_columns[9] = -t70
+            by_moment_columns[10] = -t71
+            by_moment_columns[11] = -t72
+            by_products[0] = -t67
+            by_products[1] = -t68
+            by_products[2] = -t69
+            by_products[3] = -2*t70
+            by_products[4] = -2*t71
+            by_products[5] = -2*t72
             by_products[6] = turning_x
             by_products[7] = turning_y
             by_products[8] = turning_z
@@ -623,10 +599,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 lam_e = lam[e]
                 along_e = along[e]
                 twice_e = twice[e]
-                t93 = (0.5)*twice_e
-                t94 = 1/lam_e
-                by_E[e] = t93
-                by_Gy[e] = along_e + t93*t94
+                t73 = (0.5)*twice_e
+                t74 = 1/lam_e
+                by_E[e] = t73
+                by_Gy[e] = along_e + t73*t74
             # and of Sbar y
             by_Gy[resultants] = 1
             # forces of the resultants and their geometric stiffness, with Sbar y
@@ -638,32 +614,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             mass = masses[0]
-            t95 = 2*sum_cd_z
-            t96 = 2*spin_z
-            t97 = spin_x*sum_c_y - spin_y*sum_c_x
-            t98 = -spin_x*sum_c_z + spin_z*sum_c_x
-            t99 = spin_y*sum_c_z - spin_z*sum_c_y
-            t100 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
-            t101 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
-            t102 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
-            local[N] = (felt_x*mass + spin_y*t95 + spin_y*t97 - spin_z*t98 - sum_c_y*turning_z +
-                sum_c_z*turning_y - sum_cd_y*t96 + sum_cdd_x)
-            local[N + 1] = (felt_y*mass - spin_x*t95 - spin_x*t97 + spin_z*t99 + sum_c_x*turning_z
-                - sum_c_z*turning_x + sum_cd_x*t96 + sum_cdd_y)
-            local[N + 2] = (felt_z*mass + 2*spin_x*sum_cd_y + spin_x*t98 - 2*spin_y*sum_cd_x -
-                spin_y*t99 - sum_c_x*turning_y + sum_c_y*turning_x + sum_cdd_z)
+            t75 = 2*sum_cd_z
+            t76 = 2*spin_z
+            t77 = spin_x*sum_c_y - spin_y*sum_c_x
+            t78 = -spin_x*sum_c_z + spin_z*sum_c_x
+            t79 = spin_y*sum_c_z - spin_z*sum_c_y
+            t80 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
+            t81 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
+            t82 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
+            local[N] = (felt_x*mass + spin_y*t75 + spin_y*t77 - spin_z*t78 - sum_c_y*turning_z +
+                sum_c_z*turning_y - sum_cd_y*t76 + sum_cdd_x)
+            local[N + 1] = (felt_y*mass - spin_x*t75 - spin_x*t77 + spin_z*t79 + sum_c_x*turning_z
+                - sum_c_z*turning_x + sum_cd_x*t76 + sum_cdd_y)
+            local[N + 2] = (felt_z*mass + 2*spin_x*sum_cd_y + spin_x*t78 - 2*spin_y*sum_cd_x -
+                spin_y*t79 - sum_c_x*turning_y + sum_c_y*turning_x + sum_cdd_z)
             local[N + 3] = (-felt_y*sum_c_z + felt_z*sum_c_y + spin_x*sum_Jd_xx + spin_y*sum_Jd_xy
-                + spin_y*sum_spun_z + spin_y*t100 + spin_z*sum_Jd_xz - spin_z*sum_spun_y -
-                spin_z*t101 + sum_J_xx*turning_x + sum_J_xy*turning_y + sum_J_xz*turning_z +
+                + spin_y*sum_spun_z + spin_y*t80 + spin_z*sum_Jd_xz - spin_z*sum_spun_y -
+                spin_z*t81 + sum_J_xx*turning_x + sum_J_xy*turning_y + sum_J_xz*turning_z +
                 sum_accelerated_x + sum_coupled_x)
             local[N + 4] = (felt_x*sum_c_z - felt_z*sum_c_x + spin_x*sum_Jd_xy - spin_x*sum_spun_z
-                - spin_x*t100 + spin_y*sum_Jd_yy + spin_z*sum_Jd_yz + spin_z*sum_spun_x +
-                spin_z*t102 + sum_J_xy*turning_x + sum_J_yy*turning_y + sum_J_yz*turning_z +
+                - spin_x*t80 + spin_y*sum_Jd_yy + spin_z*sum_Jd_yz + spin_z*sum_spun_x +
+                spin_z*t82 + sum_J_xy*turning_x + sum_J_yy*turning_y + sum_J_yz*turning_z +
                 sum_accelerated_y + sum_coupled_y)
             local[N + 5] = (-felt_x*sum_c_y + felt_y*sum_c_x + spin_x*sum_Jd_xz +
-                spin_x*sum_spun_y + spin_x*t101 + spin_y*sum_Jd_yz - spin_y*sum_spun_x -
-                spin_y*t102 + spin_z*sum_Jd_zz + sum_J_xz*turning_x + sum_J_yz*turning_y +
-                sum_J_zz*turning_z + sum_accelerated_z + sum_coupled_z)
+                spin_x*sum_spun_y + spin_x*t81 + spin_y*sum_Jd_yz - spin_y*sum_spun_x - spin_y*t82
+                + spin_z*sum_Jd_zz + sum_J_xz*turning_x + sum_J_yz*turning_y + sum_J_zz*turning_z
+                + sum_accelerated_z + sum_coupled_z)
             # forces conjugate to y
             from_free(local, axes_back, order, unordered, s, bound, bound_free, free)
             # forces on the frame: elastic (30) and inertia (57)
@@ -674,15 +650,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t103 = X_z + u_z
-                t104 = X_y + u_y
-                t105 = X_x + u_x
+                t83 = X_z + u_z
+                t84 = X_y + u_y
+                t85 = X_x + u_x
                 F_x += -f_x
                 F_y += -f_y
                 F_z += -f_z
-                W_x += f_y*t103 - f_z*t104
-                W_y += -f_x*t103 + f_z*t105
-                W_z += f_x*t104 - f_y*t105
+                W_x += f_y*t83 - f_z*t84
+                W_y += -f_x*t83 + f_z*t85
+                W_z += f_x*t84 - f_y*t85
             # inertia and weight on the frame
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
@@ -700,21 +676,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
-                t106 = -m_x*psi_y + m_y*psi_x
-                t107 = m_x*psi_z
-                t108 = -m_z*psi_x + t107
-                t109 = -m_y*psi_z + m_z*psi_y
-                W_x += -e0*psi_y*t106 + e0*psi_z*t108 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-                W_y += e0*psi_x*t106 - e0*psi_z*t109 - m_y + (0.5)*m_z*psi_x - 0.5*t107
-                W_z += -e0*psi_x*t108 + e0*psi_y*t109 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+                t86 = -m_x*psi_y + m_y*psi_x
+                t87 = m_x*psi_z
+                t88 = -m_z*psi_x + t87
+                t89 = -m_y*psi_z + m_z*psi_y
+                W_x += -e0*psi_y*t86 + e0*psi_z*t88 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+                W_y += e0*psi_x*t86 - e0*psi_z*t89 - m_y + (0.5)*m_z*psi_x - 0.5*t87
+                W_z += -e0*psi_x*t88 + e0*psi_y*t89 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
             # B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
-            t110 = W_x + rhs_x
-            t111 = W_y + rhs_y
-            t112 = W_z + rhs_z
-            wp_x = Bxx*t110 + Byx*t111 + Bzx*t112
-            wp_y = Bxy*t110 + Byy*t111 + Bzy*t112
-            wp_z = Bxz*t110 + Byz*t111 + Bzz*t112
+            t90 = W_x + rhs_x
+            t91 = W_y + rhs_y
+            t92 = W_z + rhs_z
+            wp_x = Bxx*t90 + Byx*t91 + Bzx*t92
+            wp_y = Bxy*t90 + Byy*t91 + Bzy*t92
+            wp_z = Bxz*t90 + Byz*t91 + Bzz*t92
             # force on the nodes in frame axes, (30), (57)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -737,30 +713,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
-                t113 = m_y*psi_z
-                t114 = m_x*psi_y
-                t115 = m_y*psi_x - t114
-                t116 = e0*psi_y
-                t117 = m_x*psi_z
-                t118 = m_z*psi_x
-                t119 = t117 - t118
-                t120 = e0*psi_z
-                t121 = psi_y*wp_z
-                t122 = psi_z*wp_y
-                t123 = psi_x*wp_y
-                t124 = psi_y*wp_x
-                t125 = t123 - t124
-                t126 = psi_x*wp_z
-                t127 = psi_z*wp_x - t126
-                t128 = m_z*psi_y - t113
-                t129 = e0*psi_x
-                t130 = t121 - t122
-                g[j3] = (alpha_r*(t116*t125 - t120*t127 - 0.5*t121 + (0.5)*t122 + wp_x) + m_x -
-                    0.5*m_z*psi_y + (0.5)*t113 + t115*t116 - t119*t120)
-                g[j3 + 1] = (alpha_r*(-0.5*psi_z*wp_x + t120*t130 - t125*t129 + (0.5)*t126 + wp_y)
-                    + m_y - t115*t129 - 0.5*t117 + (0.5)*t118 + t120*t128)
-                g[j3 + 2] = (alpha_r*(-t116*t130 - 0.5*t123 + (0.5)*t124 + t127*t129 + wp_z) -
-                    0.5*m_y*psi_x + m_z + (0.5)*t114 - t116*t128 + t119*t129)
+                t93 = alpha_r*wp_y + m_y
+                t94 = psi_z*t93
+                t95 = alpha_r*wp_z + m_z
+                t96 = psi_y*t95
+                t97 = psi_x*t93
+                t98 = alpha_r*wp_x + m_x
+                t99 = psi_y*t98
+                t100 = e0*(t97 - t99)
+                t101 = psi_x*t95
+                t102 = psi_z*t98 - t101
+                t103 = e0*psi_z
+                t104 = -t94 + t96
+                g[j3] = psi_y*t100 - t102*t103 + (0.5)*t94 - 0.5*t96 + t98
+                g[j3 + 1] = -psi_x*t100 - 0.5*psi_z*t98 + (0.5)*t101 + t103*t104 + t93
+                g[j3 + 2] = e0*psi_x*t102 - e0*psi_y*t104 + t95 - 0.5*t97 + (0.5)*t99
             # force of the internal modes
             for k in range(MODES, n):
                 fm = s[k]
@@ -778,12 +745,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # factors of the local tangents
             turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
-            t131 = 2*c_geo*spin_x
+            t105 = 2*c_geo*spin_x
             by_couplings[0] = -c_geo*spin_x*spin_x
             by_couplings[1] = -c_geo*spin_y*spin_y
             by_couplings[2] = -c_geo*spin_z*spin_z
-            by_couplings[3] = -spin_y*t131
-            by_couplings[4] = -spin_z*t131
+            by_couplings[3] = -spin_y*t105
+            by_couplings[4] = -spin_z*t105
             by_couplings[5] = -2*c_geo*spin_y*spin_z
             by_couplings[6] = c_geo*turning_x
             by_couplings[7] = c_geo*turning_y
@@ -851,55 +818,55 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 row_jd_xx, row_jd_yy, row_jd_zz, row_jd_xy, row_jd_xz, row_jd_yz = (more[i],
                     more[hN + i], more[2*hN + i], more[3*hN + i], more[4*hN + i], more[5*hN + i])
                 row_wa_x, row_wa_y, row_wa_z = more[12*hN + i], more[13*hN + i], more[14*hN + i]
-                t132 = row_S1_x*spin_z
-                t133 = row_S1_z*spin_x
-                t134 = t132 - t133
-                t135 = row_S1_x*spin_y
-                t136 = row_S1_y*spin_x - t135
-                t137 = row_S1_y*spin_z
-                t138 = row_S1_z*spin_y - t137
-                t139 = 2*spin_x
-                t140 = 2*spin_y
-                t141 = 2*spin_z
-                t142 = row_h_xx + 2*row_j_xx
-                t143 = row_h_xy + 2*row_j_xy
-                t144 = row_h_xz + 2*row_j_xz
-                t145 = row_h_yz + 2*row_j_yz
-                t146 = row_h_zz + 2*row_j_zz
-                t147 = spin_x*t144 + spin_y*t145 + spin_z*t146
-                t148 = row_h_yy + 2*row_j_yy
-                t149 = spin_x*t143 + spin_y*t148 + spin_z*t145
-                t150 = spin_x*t142 + spin_y*t143 + spin_z*t144
-                t151 = row_g_z + row_u_z
-                t152 = row_g_y + row_u_y
-                t153 = row_g_x + row_u_x
-                Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t136 -
-                    spin_z*t134))
-                Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t136
-                    + spin_z*t138))
+                t106 = row_S1_x*spin_z
+                t107 = row_S1_z*spin_x
+                t108 = t106 - t107
+                t109 = row_S1_x*spin_y
+                t110 = row_S1_y*spin_x - t109
+                t111 = row_S1_y*spin_z
+                t112 = row_S1_z*spin_y - t111
+                t113 = 2*spin_x
+                t114 = 2*spin_y
+                t115 = 2*spin_z
+                t116 = row_h_xx + 2*row_j_xx
+                t117 = row_h_xy + 2*row_j_xy
+                t118 = row_h_xz + 2*row_j_xz
+                t119 = row_h_yz + 2*row_j_yz
+                t120 = row_h_zz + 2*row_j_zz
+                t121 = spin_x*t118 + spin_y*t119 + spin_z*t120
+                t122 = row_h_yy + 2*row_j_yy
+                t123 = spin_x*t117 + spin_y*t122 + spin_z*t119
+                t124 = spin_x*t116 + spin_y*t117 + spin_z*t118
+                t125 = row_g_z + row_u_z
+                t126 = row_g_y + row_u_y
+                t127 = row_g_x + row_u_x
+                Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t110 -
+                    spin_z*t108))
+                Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t110
+                    + spin_z*t112))
                 Lz[i*deep + N + 2] = (c_geo*(-row_S1_x*turning_y + row_S1_y*turning_x +
-                    spin_x*t134 - spin_y*t138))
-                Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t139 +
-                    row_jd_xy*t140 + row_jd_xz*t141 - row_w_y*spin_z + row_w_z*spin_y + row_wa_x +
-                    spin_y*t147 - spin_z*t149 + t142*turning_x + t143*turning_y + t144*turning_z))
-                Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t139 +
-                    row_jd_yy*t140 + row_jd_yz*t141 + row_w_x*spin_z - row_w_z*spin_x + row_wa_y -
-                    spin_x*t147 + spin_z*t150 + t143*turning_x + t145*turning_z + t148*turning_y))
-                Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t139 +
-                    row_jd_yz*t140 + row_jd_zz*t141 - row_w_x*spin_y + row_w_y*spin_x + row_wa_z +
-                    spin_x*t149 - spin_y*t150 + t144*turning_x + t145*turning_y + t146*turning_z))
-                Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t137
-                Lv[i*deep + N + 1] = 2*t132 - 2*t133
-                Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t135
-                Lv[i*deep + N + 3] = row_v_x + row_w_x + spin_y*t151 - spin_z*t152 + t150
-                Lv[i*deep + N + 4] = row_v_y + row_w_y - spin_x*t151 + spin_z*t153 + t149
-                Lv[i*deep + N + 5] = row_v_z + row_w_z + spin_x*t152 - spin_y*t153 + t147
+                    spin_x*t108 - spin_y*t112))
+                Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t113 +
+                    row_jd_xy*t114 + row_jd_xz*t115 - row_w_y*spin_z + row_w_z*spin_y + row_wa_x +
+                    spin_y*t121 - spin_z*t123 + t116*turning_x + t117*turning_y + t118*turning_z))
+                Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t113 +
+                    row_jd_yy*t114 + row_jd_yz*t115 + row_w_x*spin_z - row_w_z*spin_x + row_wa_y -
+                    spin_x*t121 + spin_z*t124 + t117*turning_x + t119*turning_z + t122*turning_y))
+                Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t113 +
+                    row_jd_yz*t114 + row_jd_zz*t115 - row_w_x*spin_y + row_w_y*spin_x + row_wa_z +
+                    spin_x*t123 - spin_y*t124 + t118*turning_x + t119*turning_y + t120*turning_z))
+                Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t111
+                Lv[i*deep + N + 1] = 2*t106 - 2*t107
+                Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t109
+                Lv[i*deep + N + 3] = row_v_x + row_w_x + spin_y*t125 - spin_z*t126 + t124
+                Lv[i*deep + N + 4] = row_v_y + row_w_y - spin_x*t125 + spin_z*t127 + t123
+                Lv[i*deep + N + 5] = row_v_z + row_w_z + spin_x*t126 - spin_y*t127 + t121
                 La[i*deep + N] = row_S1_x
                 La[i*deep + N + 1] = row_S1_y
                 La[i*deep + N + 2] = row_S1_z
-                La[i*deep + N + 3] = t153
-                La[i*deep + N + 4] = t152
-                La[i*deep + N + 5] = t151
+                La[i*deep + N + 3] = t127
+                La[i*deep + N + 4] = t126
+                La[i*deep + N + 5] = t125
             # local tangents: motion of the frame
             for i in range(N):
                 spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
@@ -919,14 +886,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     products[11*hN + i])
                 row_w_x, row_w_y, row_w_z = (products[12*hN + i], products[13*hN + i],
                     products[14*hN + i])
-                t154 = row_h_xy + 2*row_j_xy
-                t155 = row_h_xz + 2*row_j_xz
-                t156 = row_h_yz + 2*row_j_yz
-                Lv[N*deep + i] = (row_v_x - row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t154
-                    - spin_z*t155)
-                Lv[(N + 1)*deep + i] = (row_v_y - row_w_y - spin_x*t154 - spin_y*(row_h_yy +
-                    2*row_j_yy) - spin_z*t156)
-                Lv[(N + 2)*deep + i] = (row_v_z - row_w_z - spin_x*t155 - spin_y*t156 -
+                t128 = row_h_xy + 2*row_j_xy
+                t129 = row_h_xz + 2*row_j_xz
+                t130 = row_h_yz + 2*row_j_yz
+                Lv[N*deep + i] = (row_v_x - row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t128
+                    - spin_z*t129)
+                Lv[(N + 1)*deep + i] = (row_v_y - row_w_y - spin_x*t128 - spin_y*(row_h_yy +
+                    2*row_j_yy) - spin_z*t130)
+                Lv[(N + 2)*deep + i] = (row_v_z - row_w_z - spin_x*t129 - spin_y*t130 -
                     spin_z*(row_h_zz + 2*row_j_zz))
                 La[N*deep + i] = row_S1_x
                 La[(N + 1)*deep + i] = row_S1_y
@@ -937,79 +904,79 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # local tangents: force on the frame by its motion
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             mass = masses[0]
-            t157 = spin_y*sum_c_y
-            t158 = spin_z*sum_c_z
-            t159 = 2*sum_cd_z
-            t160 = spin_x*sum_c_y
-            t161 = 2*sum_cd_y
-            t162 = spin_z*sum_c_x
-            t163 = spin_y*sum_J_xz
-            t164 = spin_z*sum_J_xy
-            t165 = spin_y*sum_J_yz
-            t166 = spin_x*sum_J_xz
-            t167 = spin_z*sum_J_zz + sum_spun_z
-            t168 = spin_z*sum_J_yz
-            t169 = spin_x*sum_J_xy
-            t170 = spin_y*sum_J_yy + sum_spun_y
-            t171 = spin_x*sum_c_x
-            t172 = 2*sum_cd_x
-            t173 = spin_y*sum_c_z
-            t174 = spin_x*sum_J_yz
-            t175 = spin_z*sum_J_xz
-            t176 = spin_y*sum_J_xy
-            t177 = spin_x*sum_J_xx + sum_spun_x
-            t178 = -sum_c_y
-            t179 = -sum_c_z
-            t180 = -sum_c_x
-            Lv[N*deep + N] = t157 + t158
-            Lv[N*deep + N + 1] = spin_y*sum_c_x - t159 - 2*t160
-            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t161 + t162
-            Lv[N*deep + N + 3] = sum_Jd_xx + t163 - t164
-            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t165 - 2*t166 - t167
-            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t168 + 2*t169 + t170
-            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t159 + t160
-            Lv[(N + 1)*deep + N + 1] = t158 + t171
-            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t172 - 2*t173
-            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t165 + t166 + t167
-            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t164 - t174
-            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t175 - 2*t176 - t177
-            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t161 - 2*t162
-            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t172 + t173
-            Lv[(N + 2)*deep + N + 2] = t157 + t171
-            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t168 - t169 - t170
-            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t175 + t176 + t177
-            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t163 + t174
+            t131 = spin_y*sum_c_y
+            t132 = spin_z*sum_c_z
+            t133 = 2*sum_cd_z
+            t134 = spin_x*sum_c_y
+            t135 = 2*sum_cd_y
+            t136 = spin_z*sum_c_x
+            t137 = spin_y*sum_J_xz
+            t138 = spin_z*sum_J_xy
+            t139 = spin_y*sum_J_yz
+            t140 = spin_x*sum_J_xz
+            t141 = spin_z*sum_J_zz + sum_spun_z
+            t142 = spin_z*sum_J_yz
+            t143 = spin_x*sum_J_xy
+            t144 = spin_y*sum_J_yy + sum_spun_y
+            t145 = spin_x*sum_c_x
+            t146 = 2*sum_cd_x
+            t147 = spin_y*sum_c_z
+            t148 = spin_x*sum_J_yz
+            t149 = spin_z*sum_J_xz
+            t150 = spin_y*sum_J_xy
+            t151 = spin_x*sum_J_xx + sum_spun_x
+            t152 = -sum_c_y
+            t153 = -sum_c_z
+            t154 = -sum_c_x
+            Lv[N*deep + N] = t131 + t132
+            Lv[N*deep + N + 1] = spin_y*sum_c_x - t133 - 2*t134
+            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t135 + t136
+            Lv[N*deep + N + 3] = sum_Jd_xx + t137 - t138
+            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t139 - 2*t140 - t141
+            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t142 + 2*t143 + t144
+            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t133 + t134
+            Lv[(N + 1)*deep + N + 1] = t132 + t145
+            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t146 - 2*t147
+            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t139 + t140 + t141
+            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t138 - t148
+            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t149 - 2*t150 - t151
+            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t135 - 2*t136
+            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t146 + t147
+            Lv[(N + 2)*deep + N + 2] = t131 + t145
+            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t142 - t143 - t144
+            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t149 + t150 + t151
+            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t137 + t148
             La[N*deep + N] = mass
             La[N*deep + N + 1] = 0.0
             La[N*deep + N + 2] = 0.0
             La[N*deep + N + 3] = 0.0
             La[N*deep + N + 4] = sum_c_z
-            La[N*deep + N + 5] = t178
+            La[N*deep + N + 5] = t152
             La[(N + 1)*deep + N] = 0.0
             La[(N + 1)*deep + N + 1] = mass
             La[(N + 1)*deep + N + 2] = 0.0
-            La[(N + 1)*deep + N + 3] = t179
+            La[(N + 1)*deep + N + 3] = t153
             La[(N + 1)*deep + N + 4] = 0.0
             La[(N + 1)*deep + N + 5] = sum_c_x
             La[(N + 2)*deep + N] = 0.0
             La[(N + 2)*deep + N + 1] = 0.0
             La[(N + 2)*deep + N + 2] = mass
             La[(N + 2)*deep + N + 3] = sum_c_y
-            La[(N + 2)*deep + N + 4] = t180
+            La[(N + 2)*deep + N + 4] = t154
             La[(N + 2)*deep + N + 5] = 0.0
             La[(N + 3)*deep + N] = 0.0
-            La[(N + 3)*deep + N + 1] = t179
+            La[(N + 3)*deep + N + 1] = t153
             La[(N + 3)*deep + N + 2] = sum_c_y
             La[(N + 3)*deep + N + 3] = sum_J_xx
             La[(N + 3)*deep + N + 4] = sum_J_xy
             La[(N + 3)*deep + N + 5] = sum_J_xz
             La[(N + 4)*deep + N] = sum_c_z
             La[(N + 4)*deep + N + 1] = 0.0
-            La[(N + 4)*deep + N + 2] = t180
+            La[(N + 4)*deep + N + 2] = t154
             La[(N + 4)*deep + N + 3] = sum_J_xy
             La[(N + 4)*deep + N + 4] = sum_J_yy
             La[(N + 4)*deep + N + 5] = sum_J_yz
-            La[(N + 5)*deep + N] = t178
+            La[(N + 5)*deep + N] = t152
             La[(N + 5)*deep + N + 1] = sum_c_x
             La[(N + 5)*deep + N + 2] = 0.0
             La[(N + 5)*deep + N + 3] = sum_J_xz
@@ -1083,16 +1050,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                 e0 = e0s[j]
-                t181 = -dth_x*psi_y + dth_y*psi_x
-                t182 = dth_x*psi_z
-                t183 = -dth_z*psi_x + t182
-                t184 = -dth_y*psi_z + dth_z*psi_y
-                rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y - e0*psi_y*t181 +
-                    e0*psi_z*t183))
-                rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t181 - e0*psi_z*t184 -
-                    0.5*t182))
-                rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t183 +
-                    e0*psi_y*t184))
+                t155 = -dth_x*psi_y + dth_y*psi_x
+                t156 = dth_x*psi_z
+                t157 = -dth_z*psi_x + t156
+                t158 = -dth_y*psi_z + dth_z*psi_y
+                rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y - e0*psi_y*t155 +
+                    e0*psi_z*t157))
+                rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t155 - e0*psi_z*t158 -
+                    0.5*t156))
+                rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t157 +
+                    e0*psi_y*t158))
             dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1102,41 +1069,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t185 = X_y + u_y
-                t186 = X_z + u_z
-                t187 = X_x + u_x
-                dy[i3] = -dth0_y*t186 + dth0_z*t185 - dx0_x + dx_x
-                dy[i3 + 1] = dth0_x*t186 - dth0_z*t187 - dx0_y + dx_y
-                dy[i3 + 2] = -dth0_x*t185 + dth0_y*t187 - dx0_z + dx_z
+                t159 = X_y + u_y
+                t160 = X_z + u_z
+                t161 = X_x + u_x
+                dy[i3] = -dth0_y*t160 + dth0_z*t159 - dx0_x + dx_x
+                dy[i3 + 1] = dth0_x*t160 - dth0_z*t161 - dx0_y + dx_y
+                dy[i3 + 2] = -dth0_x*t159 + dth0_y*t161 - dx0_z + dx_z
             # variation of the elastic rotations, (17)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                 e0 = e0s[j]
-                t188 = dth0_y*psi_z
-                t189 = dth_y*psi_z
-                t190 = dth0_x*psi_y
-                t191 = dth0_y*psi_x - t190
-                t192 = e0*psi_y
-                t193 = dth_x*psi_z
-                t194 = dth_z*psi_x
-                t195 = t193 - t194
-                t196 = e0*psi_z
-                t197 = dth_x*psi_y
-                t198 = dth_y*psi_x - t197
-                t199 = dth0_x*psi_z
-                t200 = dth0_z*psi_x
-                t201 = t199 - t200
-                t202 = e0*psi_x
-                t203 = dth_z*psi_y - t189
-                t204 = dth0_z*psi_y - t188
-                dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y + e0*psi_y*t198
-                    + e0*psi_z*t201 - 0.5*t188 - 0.5*t189 - t191*t192 - t195*t196)
-                dy[j3 + 1] = (-dth0_y + dth_y + t191*t202 + (0.5)*t193 - 0.5*t194 + t196*t203 -
-                    t196*t204 - t198*t202 + (0.5)*t199 - 0.5*t200)
-                dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                    e0*psi_x*t195 + e0*psi_y*t204 - 0.5*t190 - t192*t203 - 0.5*t197 - t201*t202)
+                t162 = (0.5)*dth0_z + (0.5)*dth_z
+                t163 = dth0_y + dth_y
+                t164 = (0.5)*psi_z
+                t165 = -dth0_y + dth_y
+                t166 = -dth0_x + dth_x
+                t167 = psi_x*t165 - psi_y*t166
+                t168 = -dth0_z + dth_z
+                t169 = -psi_x*t168 + psi_z*t166
+                t170 = dth0_x + dth_x
+                t171 = psi_y*t168 - psi_z*t165
+                dy[j3] = -dth0_x + dth_x + e0*(psi_y*t167 - psi_z*t169) + psi_y*t162 - t163*t164
+                dy[j3 + 1] = (-dth0_y + dth_y + e0*(-psi_x*t167 + psi_z*t171) - psi_x*t162 +
+                    t164*t170)
+                dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t169 - psi_y*t171) + (0.5)*psi_x*t163 -
+                    0.5*psi_y*t170)
             # differential: internal modes
             for k in range(MODES, n):
                 dqm = dqe[k]
@@ -1178,47 +1137,56 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t205 = -Om_x*psi_y + Om_y*psi_x
+                t172 = (0.5)*dpsi_y
+                t173 = (0.5)*psi_z
+                t174 = e0*psi_x
+                t175 = psi_y*t174
+                t176 = (0.5)*psi_y
+                t177 = psi_z*t174
+                t178 = Om0_x*psi_z - Om0_z*psi_x
+                t179 = Om0_x*dpsi_z - Om0_z*dpsi_x
+                t180 = -Om0_x*psi_y + Om0_y*psi_x
+                t181 = -Om0_x*dpsi_y + Om0_y*dpsi_x
+                t182 = psi_y*psi_y
+                t183 = e0*t182
+                t184 = psi_z*psi_z
+                t185 = e0*t184 - 1
+                t186 = 2*dpsi_x*psi_x
+                t187 = 2*dpsi_y*psi_y
+                t188 = 2*dpsi_z*psi_z
+                t189 = t186 + t187 + t188
+                t190 = e1*t189
+                t191 = (0.5)*dpsi_z
+                t192 = dpsi_x*e0
+                t193 = psi_x*t190
+                t194 = dpsi_y*t174 + psi_y*t192 + psi_y*t193
+                t195 = dpsi_z*t174 + psi_z*t192 + psi_z*t193
+                t196 = e0*t188 + t184*t190
+                t197 = e0*t187 + t182*t190
+                t198 = (0.5)*psi_x
+                t199 = e0*psi_y
+                t200 = psi_z*t199
+                t201 = -Om0_y*psi_z + Om0_z*psi_y
+                t202 = -Om0_y*dpsi_z + Om0_z*dpsi_y
+                t203 = psi_x*psi_x
+                t204 = e0*t203
+                t205 = (0.5)*dpsi_x
                 t206 = dpsi_y*e0
-                t207 = Om0_x*psi_z - Om0_z*psi_x
-                t208 = dpsi_z*e0
-                t209 = Om0_x*dpsi_z
-                t210 = -Om0_z*dpsi_x + t209
-                t211 = e0*psi_z
-                t212 = -Om0_x*psi_y + Om0_y*psi_x
-                t213 = Om_x*psi_z - Om_z*psi_x
-                t214 = -Om0_x*dpsi_y + Om0_y*dpsi_x
-                t215 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                t216 = e0*psi_y
-                t217 = Om_x*dpsi_z
-                t218 = dOm_x*psi_z
-                t219 = -Om_z*dpsi_x - dOm_z*psi_x + t217 + t218
-                t220 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t221 = e1*t220
-                t222 = psi_y*t221
-                t223 = psi_z*t221
-                t224 = dpsi_x*e0
-                t225 = -Om_y*psi_z + Om_z*psi_y
-                t226 = e0*psi_x
-                t227 = -Om0_y*psi_z + Om0_z*psi_y
-                t228 = -Om0_y*dpsi_z + Om0_z*dpsi_y
-                t229 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                t230 = psi_x*t221
-                rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - 0.5*Om0_z*dpsi_y + (0.5)*Om_y*dpsi_z -
-                    0.5*Om_z*dpsi_y - dOm_x + (0.5)*dOm_y*psi_z - 0.5*dOm_z*psi_y + dpsi_y*e0*t212
-                    + dpsi_z*e0*t213 + e0*psi_y*t214 + e0*psi_z*t219 + e1*psi_y*t212*t220 +
-                    e1*psi_z*t213*t220 - t205*t206 - t205*t222 - t207*t208 - t207*t223 - t210*t211
-                    - t215*t216))
-                rhs_y += (-alpha_r*((0.5)*Om0_z*dpsi_x + (0.5)*Om_z*dpsi_x - dOm_y +
-                    (0.5)*dOm_z*psi_x + dpsi_x*e0*t205 + dpsi_z*e0*t227 + e0*psi_x*t215 +
-                    e0*psi_z*t228 + e1*psi_x*t205*t220 + e1*psi_z*t220*t227 - t208*t225 - 0.5*t209
-                    - t211*t229 - t212*t224 - t212*t230 - t214*t226 - 0.5*t217 - 0.5*t218 -
-                    t223*t225))
-                rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x + (0.5)*Om_x*dpsi_y -
-                    0.5*Om_y*dpsi_x + (0.5)*dOm_x*psi_y - 0.5*dOm_y*psi_x - dOm_z + dpsi_x*e0*t207
-                    + dpsi_y*e0*t225 + e0*psi_x*t210 + e0*psi_y*t229 + e1*psi_x*t207*t220 +
-                    e1*psi_y*t220*t225 - t206*t227 - t213*t224 - t213*t230 - t216*t228 - t219*t226
-                    - t222*t227))
+                t207 = psi_y*t190
+                t208 = dpsi_z*t199 + psi_z*t206 + psi_z*t207
+                t209 = e0*t186 + t190*t203
+                rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - Om0_z*t172 - Om_x*(-t196 - t197) -
+                    Om_y*(-t191 + t194) - Om_z*(t172 + t195) - dOm_x*(-t183 - t185) - dOm_y*(-t173
+                    + t175) - dOm_z*(t176 + t177) + dpsi_y*e0*t180 - dpsi_z*e0*t178 +
+                    e0*psi_y*t181 - e0*psi_z*t179 + e1*psi_y*t180*t189 - psi_z*t178*t190))
+                rhs_y += (-alpha_r*(-Om0_x*t191 + (0.5)*Om0_z*dpsi_x - Om_x*(t191 + t194) -
+                    Om_y*(-t196 - t209) - Om_z*(-t205 + t208) - dOm_x*(t173 + t175) - dOm_y*(-t185
+                    - t204) - dOm_z*(-t198 + t200) + dpsi_z*e0*t201 + e0*psi_z*t202 +
+                    e1*psi_z*t189*t201 - t174*t181 - t180*t192 - t180*t193))
+                rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x - Om_x*(-t172 + t195) -
+                    Om_y*(t205 + t208) - Om_z*(-t197 - t209) - dOm_x*(-t176 + t177) - dOm_y*(t198
+                    + t200) - dOm_z*(-t183 - t204 + 1) + dpsi_x*e0*t178 + e0*psi_x*t179 +
+                    e1*psi_x*t178*t189 - t199*t202 - t201*t206 - t201*t207))
             dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1251,12 +1219,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                t231 = X_y + u_y
-                t232 = X_z + u_z
-                t233 = X_x + u_x
-                deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t232 + dOm0_z*t231 - dv0_x + dvs_x
-                deta[i3 + 1] = Om0_x*du_z - Om0_z*du_x + dOm0_x*t232 - dOm0_z*t233 - dv0_y + dvs_y
-                deta[i3 + 2] = -Om0_x*du_y + Om0_y*du_x - dOm0_x*t231 + dOm0_y*t233 - dv0_z + dvs_z
+                t210 = X_y + u_y
+                t211 = X_z + u_z
+                t212 = X_x + u_x
+                deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t211 + dOm0_z*t210 - dv0_x + dvs_x
+                deta[i3 + 1] = Om0_x*du_z - Om0_z*du_x + dOm0_x*t211 - dOm0_z*t212 - dv0_y + dvs_y
+                deta[i3 + 2] = -Om0_x*du_y + Om0_y*du_x - dOm0_x*t210 + dOm0_y*t212 - dv0_z + dvs_z
             # differential: rates of the elastic rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -1266,59 +1234,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t234 = Om0_y*dpsi_z
-                t235 = Om_y*dpsi_z
-                t236 = dOm0_y*psi_z
-                t237 = dOm_y*psi_z
-                t238 = -Om0_x*psi_y + Om0_y*psi_x
-                t239 = dpsi_y*e0
-                t240 = Om_x*psi_z - Om_z*psi_x
-                t241 = dpsi_z*e0
-                t242 = -Om_x*psi_y + Om_y*psi_x
-                t243 = Om0_x*psi_z - Om0_z*psi_x
-                t244 = Om0_x*dpsi_y
-                t245 = dOm0_x*psi_y
-                t246 = Om0_y*dpsi_x + dOm0_y*psi_x - t244 - t245
-                t247 = e0*psi_y
-                t248 = Om_x*dpsi_z
-                t249 = dOm_x*psi_z
-                t250 = Om_z*dpsi_x
-                t251 = dOm_z*psi_x
-                t252 = t248 + t249 - t250 - t251
-                t253 = e0*psi_z
-                t254 = Om_x*dpsi_y
-                t255 = dOm_x*psi_y
-                t256 = Om_y*dpsi_x + dOm_y*psi_x - t254 - t255
-                t257 = Om0_x*dpsi_z
-                t258 = dOm0_x*psi_z
-                t259 = Om0_z*dpsi_x
-                t260 = dOm0_z*psi_x
-                t261 = t257 + t258 - t259 - t260
-                t262 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t263 = e1*t262
-                t264 = psi_y*t263
-                t265 = psi_z*t263
-                t266 = dpsi_x*e0
-                t267 = -Om_y*psi_z + Om_z*psi_y
-                t268 = -Om0_y*psi_z + Om0_z*psi_y
-                t269 = e0*psi_x
-                t270 = Om_z*dpsi_y + dOm_z*psi_y - t235 - t237
-                t271 = Om0_z*dpsi_y + dOm0_z*psi_y - t234 - t236
-                t272 = psi_x*t263
-                deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x + (0.5)*dOm0_z*psi_y +
-                    dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t242 + dpsi_z*e0*t243 + e0*psi_y*t256 +
-                    e0*psi_z*t261 + e1*psi_y*t242*t262 + e1*psi_z*t243*t262 - 0.5*t234 - 0.5*t235
-                    - 0.5*t236 - 0.5*t237 - t238*t239 - t238*t264 - t240*t241 - t240*t265 -
-                    t246*t247 - t252*t253)
-                deta[j3 + 1] = (-dOm0_y + dOm_y + t238*t266 + t238*t272 + t241*t267 - t241*t268 -
-                    t242*t266 - t242*t272 + t246*t269 + (0.5)*t248 + (0.5)*t249 - 0.5*t250 -
-                    0.5*t251 + t253*t270 - t253*t271 - t256*t269 + (0.5)*t257 + (0.5)*t258 -
-                    0.5*t259 - 0.5*t260 + t265*t267 - t265*t268)
-                deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                    dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t240 + dpsi_y*e0*t268 +
-                    e0*psi_x*t252 + e0*psi_y*t271 + e1*psi_x*t240*t262 + e1*psi_y*t262*t268 -
-                    t239*t267 - t243*t266 - t243*t272 - 0.5*t244 - 0.5*t245 - t247*t270 - 0.5*t254
-                    - 0.5*t255 - t261*t269 - t264*t267)
+                t213 = (0.5)*Om0_z + (0.5)*Om_z
+                t214 = Om0_y + Om_y
+                t215 = (0.5)*dpsi_z
+                t216 = (0.5)*dOm0_z + (0.5)*dOm_z
+                t217 = dOm0_y + dOm_y
+                t218 = (0.5)*psi_z
+                t219 = -Om0_y + Om_y
+                t220 = -Om0_x + Om_x
+                t221 = psi_x*t219 - psi_y*t220
+                t222 = -Om0_z + Om_z
+                t223 = -psi_x*t222 + psi_z*t220
+                t224 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                t225 = -dOm0_y + dOm_y
+                t226 = -dOm0_x + dOm_x
+                t227 = dpsi_x*t219 - dpsi_y*t220 + psi_x*t225 - psi_y*t226
+                t228 = -dOm0_z + dOm_z
+                t229 = -dpsi_x*t222 + dpsi_z*t220 - psi_x*t228 + psi_z*t226
+                t230 = Om0_x + Om_x
+                t231 = dOm0_x + dOm_x
+                t232 = psi_y*t222 - psi_z*t219
+                t233 = dpsi_y*t222 - dpsi_z*t219 + psi_y*t228 - psi_z*t225
+                deta[j3] = (-dOm0_x + dOm_x + dpsi_y*t213 + e0*(dpsi_y*t221 - dpsi_z*t223 +
+                    psi_y*t227 - psi_z*t229) + psi_y*t216 - t214*t215 - t217*t218 +
+                    t224*(psi_y*t221 - psi_z*t223))
+                deta[j3 + 1] = (-dOm0_y + dOm_y - dpsi_x*t213 + e0*(-dpsi_x*t221 + dpsi_z*t232 -
+                    psi_x*t227 + psi_z*t233) - psi_x*t216 + t215*t230 + t218*t231 +
+                    t224*(-psi_x*t221 + psi_z*t232))
+                deta[j3 + 2] = (-dOm0_z + dOm_z + (0.5)*dpsi_x*t214 - 0.5*dpsi_y*t230 +
+                    e0*(dpsi_x*t223 - dpsi_y*t232 + psi_x*t229 - psi_y*t233) + (0.5)*psi_x*t217 -
+                    0.5*psi_y*t231 + t224*(psi_x*t223 - psi_y*t232))
             # differential: rates of the internal modes
             for k in range(MODES, n):
                 dvm = dve[k]
@@ -1337,126 +1282,72 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e0 = e0s[j]
                 e1 = e1s[j]
                 e2 = e2s[j]
-                t273 = A_y*dpsi_z
-                t274 = Om0_y*dep_z
-                t275 = Om_y*dep_z
-                t276 = dA_y*psi_z
-                t277 = dOm0_y*ep_z
-                t278 = dOm_y*ep_z
-                t279 = -Om_x*psi_y + Om_y*psi_x
-                t280 = dep_y*e0
-                t281 = Om0_x*psi_z - Om0_z*psi_x
-                t282 = dep_z*e0
-                t283 = Om0_x*ep_z - Om0_z*ep_x
-                t284 = dpsi_z*e0
-                t285 = -Om0_x*psi_y + Om0_y*psi_x
-                t286 = Om_x*psi_z - Om_z*psi_x
-                t287 = -Om0_x*ep_y + Om0_y*ep_x
-                t288 = dpsi_y*e0
-                t289 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                t290 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                t291 = e0*ep_y
-                t292 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                t293 = e0*ep_z
-                t294 = Om0_x*dep_z
-                t295 = dOm0_x*ep_z
-                t296 = Om0_z*dep_x
-                t297 = dOm0_z*ep_x
-                t298 = t294 + t295 - t296 - t297
-                t299 = e0*psi_z
-                t300 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                t301 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                t302 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                t303 = Om0_x*dep_y
-                t304 = dOm0_x*ep_y
-                t305 = Om0_y*dep_x + dOm0_y*ep_x - t303 - t304
-                t306 = e0*psi_y
-                t307 = 2*psi_x
-                t308 = 2*psi_y
-                t309 = 2*psi_z
-                t310 = ep_x*t307 + ep_y*t308 + ep_z*t309
-                t311 = e1*t310
-                t312 = dpsi_y*t311
-                t313 = dpsi_z*t311
-                t314 = dpsi_x*t307 + dpsi_y*t308 + dpsi_z*t309
-                t315 = e1*t314
-                t316 = ep_y*t315
-                t317 = ep_z*t315
-                t318 = psi_z*t315
-                t319 = psi_y*t315
-                t320 = psi_y*t311
-                t321 = psi_z*t311
-                t322 = A_x*dpsi_y
-                t323 = Om_x*dep_y
-                t324 = dA_x*psi_y
-                t325 = dOm_x*ep_y
-                t326 = A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t322 - t323 - t324 - t325
-                t327 = A_x*dpsi_z
-                t328 = Om_x*dep_z
-                t329 = dA_x*psi_z
-                t330 = dOm_x*ep_z
-                t331 = A_z*dpsi_x
-                t332 = Om_z*dep_x
-                t333 = dA_z*psi_x
-                t334 = dOm_z*ep_x
-                t335 = t327 + t328 + t329 + t330 - t331 - t332 - t333 - t334
-                t336 = (e1*(dep_x*t307 + dep_y*t308 + dep_z*t309 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
+                t234 = A_y*dpsi_z
+                t235 = dA_y*psi_z
+                t236 = (0.5)*Om0_z + (0.5)*Om_z
+                t237 = Om0_y + Om_y
+                t238 = (0.5)*dep_z
+                t239 = (0.5)*dOm0_z + (0.5)*dOm_z
+                t240 = dOm0_y + dOm_y
+                t241 = (0.5)*ep_z
+                t242 = -Om0_y + Om_y
+                t243 = -Om0_x + Om_x
+                t244 = psi_x*t242 - psi_y*t243
+                t245 = -Om0_z + Om_z
+                t246 = -psi_x*t245 + psi_z*t243
+                t247 = psi_y*t244 - psi_z*t246
+                t248 = 2*psi_x
+                t249 = 2*psi_y
+                t250 = 2*psi_z
+                t251 = (e1*(dep_x*t248 + dep_y*t249 + dep_z*t250 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
                     2*dpsi_z*ep_z))
-                t337 = psi_y*t279
-                t338 = psi_z*t336
-                t339 = t285*t336
-                t340 = e2*t310*t314
-                t341 = psi_z*t340
-                t342 = t285*t340
-                t343 = dep_x*e0
-                t344 = -Om_y*psi_z + Om_z*psi_y
-                t345 = dpsi_x*e0
-                t346 = -Om0_y*psi_z + Om0_z*psi_y
-                t347 = -Om0_y*ep_z + Om0_z*ep_y
-                t348 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                t349 = e0*ep_x
-                t350 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                t351 = e0*psi_x
-                t352 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                t353 = Om0_z*dep_y + dOm0_z*ep_y - t274 - t277
-                t354 = dpsi_x*t311
-                t355 = ep_x*t315
-                t356 = psi_x*t315
-                t357 = psi_x*t311
-                t358 = A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t273 - t275 - t276 - t278
-                t359 = psi_x*t336
-                t360 = psi_x*t340
-                t361 = psi_y*t336
-                t362 = psi_y*t340
-                detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om_z*dep_y + dA_x +
-                    (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y + (0.5)*dOm_z*ep_y - psi_y*t339 -
-                    psi_y*t342 - 0.5*t273 - 0.5*t274 - 0.5*t275 - 0.5*t276 - 0.5*t277 - 0.5*t278 +
-                    t279*t280 + t279*t312 + t279*t316 - t280*t285 + t281*t282 + t281*t313 +
-                    t281*t317 + t281*t338 + t281*t341 - t282*t286 + t283*t284 + t283*t318 -
-                    t284*t300 - t285*t312 - t285*t316 - t286*t313 - t286*t317 - t286*t338 -
-                    t286*t341 - t287*t288 - t287*t319 + t288*t289 + t289*t319 + t290*t291 +
-                    t290*t320 - t291*t301 + t292*t293 + t292*t321 - t293*t302 + t298*t299 -
-                    t299*t335 - t300*t318 - t301*t320 - t302*t321 - t305*t306 + t306*t326 +
-                    t336*t337 + t337*t340)
-                detad[j3 + 1] = (dA_y + psi_x*t339 + psi_x*t342 - t279*t343 - t279*t354 -
-                    t279*t355 - t279*t359 - t279*t360 + t282*t344 - t282*t346 - t284*t347 +
-                    t284*t348 + t285*t343 + t285*t354 + t285*t355 + t287*t345 + t287*t356 -
-                    t289*t345 - t289*t356 - t290*t349 - t290*t357 + t293*t350 - t293*t352 +
-                    (0.5)*t294 + (0.5)*t295 - 0.5*t296 - 0.5*t297 - t299*t353 + t299*t358 +
-                    t301*t349 + t301*t357 + t305*t351 + t313*t344 - t313*t346 + t317*t344 -
-                    t317*t346 - t318*t347 + t318*t348 + t321*t350 - t321*t352 - t326*t351 +
-                    (0.5)*t327 + (0.5)*t328 + (0.5)*t329 + (0.5)*t330 - 0.5*t331 - 0.5*t332 -
-                    0.5*t333 - 0.5*t334 + t338*t344 - t338*t346 + t341*t344 - t341*t346)
-                detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om_y*dep_x +
-                    (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x + (0.5)*dOm_y*ep_x - t280*t344 +
-                    t280*t346 - t281*t343 - t281*t354 - t281*t355 - t281*t359 - t281*t360 -
-                    t283*t345 - t283*t356 + t286*t343 + t286*t354 + t286*t355 + t286*t359 +
-                    t286*t360 + t288*t347 - t288*t348 - t291*t350 + t291*t352 - t292*t349 -
-                    t292*t357 - t298*t351 + t300*t345 + t300*t356 + t302*t349 + t302*t357 -
-                    0.5*t303 - 0.5*t304 + t306*t353 - t306*t358 - t312*t344 + t312*t346 -
-                    t316*t344 + t316*t346 + t319*t347 - t319*t348 - t320*t350 + t320*t352 -
-                    0.5*t322 - 0.5*t323 - 0.5*t324 - 0.5*t325 + t335*t351 - t344*t361 - t344*t362
-                    + t346*t361 + t346*t362)
+                t252 = dpsi_x*t248 + dpsi_y*t249 + dpsi_z*t250
+                t253 = ep_x*t248 + ep_y*t249 + ep_z*t250
+                t254 = e2*t252*t253
+                t255 = -A_x*psi_y + A_y*psi_x + ep_x*t242 - ep_y*t243
+                t256 = A_x*psi_z - A_z*psi_x - ep_x*t245 + ep_z*t243
+                t257 = e1*t252
+                t258 = -dOm0_y + dOm_y
+                t259 = -dOm0_x + dOm_x
+                t260 = dpsi_x*t242 - dpsi_y*t243 + psi_x*t258 - psi_y*t259
+                t261 = -dOm0_z + dOm_z
+                t262 = -dpsi_x*t245 + dpsi_z*t243 - psi_x*t261 + psi_z*t259
+                t263 = e1*t253
+                t264 = A_x*dpsi_y
+                t265 = dA_x*psi_y
+                t266 = (A_y*dpsi_x + dA_y*psi_x + dep_x*t242 - dep_y*t243 + ep_x*t258 - ep_y*t259
+                    - t264 - t265)
+                t267 = A_x*dpsi_z
+                t268 = dA_x*psi_z
+                t269 = A_z*dpsi_x
+                t270 = dA_z*psi_x
+                t271 = -dep_x*t245 + dep_z*t243 - ep_x*t261 + ep_z*t259 + t267 + t268 - t269 - t270
+                t272 = Om0_x + Om_x
+                t273 = dOm0_x + dOm_x
+                t274 = psi_y*t245 - psi_z*t242
+                t275 = -psi_x*t244 + psi_z*t274
+                t276 = -A_y*psi_z + A_z*psi_y + ep_y*t245 - ep_z*t242
+                t277 = dpsi_y*t245 - dpsi_z*t242 + psi_y*t261 - psi_z*t258
+                t278 = (A_z*dpsi_y + dA_z*psi_y + dep_y*t245 - dep_z*t242 + ep_y*t261 - ep_z*t258
+                    - t234 - t235)
+                t279 = psi_x*t246 - psi_y*t274
+                detad[j3] = ((0.5)*A_z*dpsi_y + dA_x + (0.5)*dA_z*psi_y + dep_y*t236 +
+                    e0*(dep_y*t244 - dep_z*t246 + dpsi_y*t255 - dpsi_z*t256 + ep_y*t260 -
+                    ep_z*t262 + psi_y*t266 - psi_z*t271) + ep_y*t239 - 0.5*t234 - 0.5*t235 -
+                    t237*t238 - t240*t241 + t247*t251 + t247*t254 + t257*(ep_y*t244 - ep_z*t246 +
+                    psi_y*t255 - psi_z*t256) + t263*(dpsi_y*t244 - dpsi_z*t246 + psi_y*t260 -
+                    psi_z*t262))
+                detad[j3 + 1] = (dA_y - dep_x*t236 + e0*(-dep_x*t244 + dep_z*t274 - dpsi_x*t255 +
+                    dpsi_z*t276 - ep_x*t260 + ep_z*t277 - psi_x*t266 + psi_z*t278) - ep_x*t239 +
+                    t238*t272 + t241*t273 + t251*t275 + t254*t275 + t257*(-ep_x*t244 + ep_z*t274 -
+                    psi_x*t255 + psi_z*t276) + t263*(-dpsi_x*t244 + dpsi_z*t274 - psi_x*t260 +
+                    psi_z*t277) + (0.5)*t267 + (0.5)*t268 - 0.5*t269 - 0.5*t270)
+                detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*dA_y*psi_x + dA_z + (0.5)*dep_x*t237 -
+                    0.5*dep_y*t272 + e0*(dep_x*t246 - dep_y*t274 + dpsi_x*t256 - dpsi_y*t276 +
+                    ep_x*t262 - ep_y*t277 + psi_x*t271 - psi_y*t278) + (0.5)*ep_x*t240 -
+                    0.5*ep_y*t273 + t251*t279 + t254*t279 + t257*(ep_x*t246 - ep_y*t274 +
+                    psi_x*t256 - psi_y*t276) + t263*(dpsi_x*t246 - dpsi_y*t274 + psi_x*t262 -
+                    psi_y*t277) - 0.5*t264 - 0.5*t265)
             # differential: rate: B rate = sum alpha_j T^-1(psi_j) rate_j
             rhs_x = rhs_y = rhs_z = 0.0
             for j in range(N_ROTATIONS):
@@ -1467,31 +1358,31 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t363 = (0.5)*dpsi_z
-                t364 = dpsi_x*e0
-                t365 = e0*psi_x
-                t366 = 2*dpsi_x*psi_x
-                t367 = 2*dpsi_y*psi_y
-                t368 = 2*dpsi_z*psi_z
-                t369 = e1*(t366 + t367 + t368)
-                t370 = psi_x*t369
-                t371 = dpsi_y*t365 + psi_y*t364 + psi_y*t370
-                t372 = Om0d_y*alpha_r
-                t373 = (0.5)*dpsi_y
-                t374 = dpsi_z*t365 + psi_z*t364 + psi_z*t370
-                t375 = Om0d_z*alpha_r
-                t376 = e0*t368 + psi_z*psi_z*t369
-                t377 = e0*t367 + psi_y*psi_y*t369
-                t378 = Om0d_x*alpha_r
-                t379 = (0.5)*dpsi_x
-                t380 = dpsi_y*e0*psi_z + dpsi_z*e0*psi_y + psi_y*psi_z*t369
-                t381 = e0*t366 + psi_x*psi_x*t369
-                rhs_x += (alpha_r*depd_x - t372*(t363 + t371) - t375*(-t373 + t374) - t378*(-t376
-                    - t377))
-                rhs_y += (alpha_r*depd_y - t372*(-t376 - t381) - t375*(t379 + t380) - t378*(-t363
-                    + t371))
-                rhs_z += (alpha_r*depd_z - t372*(-t379 + t380) - t375*(-t377 - t381) - t378*(t373
-                    + t374))
+                t280 = (0.5)*dpsi_z
+                t281 = dpsi_x*e0
+                t282 = e0*psi_x
+                t283 = 2*dpsi_x*psi_x
+                t284 = 2*dpsi_y*psi_y
+                t285 = 2*dpsi_z*psi_z
+                t286 = e1*(t283 + t284 + t285)
+                t287 = psi_x*t286
+                t288 = dpsi_y*t282 + psi_y*t281 + psi_y*t287
+                t289 = Om0d_y*alpha_r
+                t290 = (0.5)*dpsi_y
+                t291 = dpsi_z*t282 + psi_z*t281 + psi_z*t287
+                t292 = Om0d_z*alpha_r
+                t293 = e0*t285 + psi_z*psi_z*t286
+                t294 = e0*t284 + psi_y*psi_y*t286
+                t295 = Om0d_x*alpha_r
+                t296 = (0.5)*dpsi_x
+                t297 = dpsi_y*e0*psi_z + dpsi_z*e0*psi_y + psi_y*psi_z*t286
+                t298 = e0*t283 + psi_x*psi_x*t286
+                rhs_x += (alpha_r*depd_x - t289*(t280 + t288) - t292*(-t290 + t291) - t295*(-t293
+                    - t294))
+                rhs_y += (alpha_r*depd_y - t289*(-t293 - t298) - t292*(t296 + t297) - t295*(-t280
+                    + t288))
+                rhs_z += (alpha_r*depd_z - t289*(-t296 + t297) - t292*(-t294 - t298) - t295*(t290
+                    + t291))
             dOm0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dOm0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dOm0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1503,44 +1394,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t382 = (0.5)*psi_z
-                t383 = e0*psi_x
-                t384 = psi_y*t383
-                t385 = (0.5)*psi_y
-                t386 = psi_z*t383
-                t387 = psi_y*psi_y
-                t388 = e0*t387
-                t389 = psi_z*psi_z
-                t390 = e0*t389 - 1
-                t391 = (0.5)*dpsi_z
-                t392 = dpsi_x*e0
-                t393 = 2*dpsi_x*psi_x
-                t394 = 2*dpsi_y*psi_y
-                t395 = 2*dpsi_z*psi_z
-                t396 = e1*(t393 + t394 + t395)
-                t397 = psi_x*t396
-                t398 = dpsi_y*t383 + psi_y*t392 + psi_y*t397
-                t399 = (0.5)*dpsi_y
-                t400 = dpsi_z*t383 + psi_z*t392 + psi_z*t397
-                t401 = e0*t395 + t389*t396
-                t402 = e0*t394 + t387*t396
-                t403 = (0.5)*psi_x
-                t404 = e0*psi_z
-                t405 = psi_y*t404
-                t406 = psi_x*psi_x
-                t407 = e0*t406
-                t408 = (0.5)*dpsi_x
-                t409 = dpsi_y*t404 + dpsi_z*e0*psi_y + psi_y*psi_z*t396
-                t410 = e0*t393 + t396*t406
-                detad[j3] = (Om0d_x*(t401 + t402) + Om0d_y*(-t391 - t398) + Om0d_z*(t399 - t400) +
-                    dOm0d_x*(t388 + t390) + dOm0d_y*(-t382 - t384) + dOm0d_z*(t385 - t386) +
-                    depd_x)
-                detad[j3 + 1] = (Om0d_x*(t391 - t398) + Om0d_y*(t401 + t410) + Om0d_z*(-t408 -
-                    t409) + dOm0d_x*(t382 - t384) + dOm0d_y*(t390 + t407) + dOm0d_z*(-t403 - t405)
-                    + depd_y)
-                detad[j3 + 2] = (Om0d_x*(-t399 - t400) + Om0d_y*(t408 - t409) + Om0d_z*(t402 +
-                    t410) + dOm0d_x*(-t385 - t386) + dOm0d_y*(t403 - t405) + dOm0d_z*(t388 + t407
-                    - 1) + depd_z)
+                t299 = Om0d_y*dpsi_z
+                t300 = Om0d_z*dpsi_y
+                t301 = dOm0d_y*psi_z
+                t302 = dOm0d_z*psi_y
+                t303 = Om0d_x*psi_y - Om0d_y*psi_x
+                t304 = -Om0d_x*psi_z + Om0d_z*psi_x
+                t305 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                t306 = Om0d_x*dpsi_y
+                t307 = dOm0d_x*psi_y
+                t308 = Om0d_y*dpsi_x
+                t309 = dOm0d_y*psi_x
+                t310 = t306 + t307 - t308 - t309
+                t311 = Om0d_x*dpsi_z
+                t312 = dOm0d_x*psi_z
+                t313 = Om0d_z*dpsi_x + dOm0d_z*psi_x - t311 - t312
+                t314 = Om0d_y*psi_z - Om0d_z*psi_y
+                t315 = t299 - t300 + t301 - t302
+                detad[j3] = (-dOm0d_x + depd_x + e0*(dpsi_y*t303 - dpsi_z*t304 + psi_y*t310 -
+                    psi_z*t313) - 0.5*t299 + (0.5)*t300 - 0.5*t301 + (0.5)*t302 + t305*(psi_y*t303
+                    - psi_z*t304))
+                detad[j3 + 1] = (-0.5*Om0d_z*dpsi_x - dOm0d_y - 0.5*dOm0d_z*psi_x + depd_y +
+                    e0*(-dpsi_x*t303 + dpsi_z*t314 - psi_x*t310 + psi_z*t315) + t305*(-psi_x*t303
+                    + psi_z*t314) + (0.5)*t311 + (0.5)*t312)
+                detad[j3 + 2] = (-dOm0d_z + depd_z + e0*(dpsi_x*t304 - dpsi_y*t314 + psi_x*t313 -
+                    psi_y*t315) + t305*(psi_x*t304 - psi_y*t314) - 0.5*t306 - 0.5*t307 +
+                    (0.5)*t308 + (0.5)*t309)
             # differential: rate: rates of the elastic displacements
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -1552,21 +1431,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                 dacc_x, dacc_y, dacc_z = dacc[i3], dacc[i3 + 1], dacc[i3 + 2]
                 deu_x, deu_y, deu_z = deta[i3], deta[i3 + 1], deta[i3 + 2]
-                t411 = X_y + u_y
-                t412 = X_z + u_z
-                t413 = X_x + u_x
+                t316 = X_y + u_y
+                t317 = X_z + u_z
+                t318 = X_x + u_x
                 detad[i3] = (-Om0_y*deu_z + Om0_y*dv0_z - Om0_y*dvs_z + Om0_z*deu_y - Om0_z*dv0_y
                     + Om0_z*dvs_y - Om0d_y*du_z + Om0d_z*du_y - dOm0_y*eu_z + dOm0_y*v0_z -
-                    dOm0_y*vs_z + dOm0_z*eu_y - dOm0_z*v0_y + dOm0_z*vs_y - dOm0d_y*t412 +
-                    dOm0d_z*t411 - da0_x + dacc_x)
+                    dOm0_y*vs_z + dOm0_z*eu_y - dOm0_z*v0_y + dOm0_z*vs_y - dOm0d_y*t317 +
+                    dOm0d_z*t316 - da0_x + dacc_x)
                 detad[i3 + 1] = (Om0_x*deu_z - Om0_x*dv0_z + Om0_x*dvs_z - Om0_z*deu_x +
                     Om0_z*dv0_x - Om0_z*dvs_x + Om0d_x*du_z - Om0d_z*du_x + dOm0_x*eu_z -
                     dOm0_x*v0_z + dOm0_x*vs_z - dOm0_z*eu_x + dOm0_z*v0_x - dOm0_z*vs_x +
-                    dOm0d_x*t412 - dOm0d_z*t413 - da0_y + dacc_y)
+                    dOm0d_x*t317 - dOm0d_z*t318 - da0_y + dacc_y)
                 detad[i3 + 2] = (-Om0_x*deu_y + Om0_x*dv0_y - Om0_x*dvs_y + Om0_y*deu_x -
                     Om0_y*dv0_x + Om0_y*dvs_x - Om0d_x*du_y + Om0d_y*du_x - dOm0_x*eu_y +
                     dOm0_x*v0_y - dOm0_x*vs_y + dOm0_y*eu_x - dOm0_y*v0_x + dOm0_y*vs_x -
-                    dOm0d_x*t411 + dOm0d_y*t413 - da0_z + dacc_z)
+                    dOm0d_x*t316 + dOm0d_y*t318 - da0_z + dacc_z)
             # differential: rate: rates of the internal modes
             for k in range(MODES, n):
                 dam = dae[k]
@@ -1586,12 +1465,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
             dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-            t414 = da0_x - dgamma_x
-            t415 = da0_y - dgamma_y
-            t416 = da0_z - dgamma_z
-            dzdd[N] = t414*turn_xx + t415*turn_yx + t416*turn_zx
-            dzdd[N + 1] = t414*turn_xy + t415*turn_yy + t416*turn_zy
-            dzdd[N + 2] = t414*turn_xz + t415*turn_yz + t416*turn_zz
+            t319 = da0_x - dgamma_x
+            t320 = da0_y - dgamma_y
+            t321 = da0_z - dgamma_z
+            dzdd[N] = t319*turn_xx + t320*turn_yx + t321*turn_zx
+            dzdd[N + 1] = t319*turn_xy + t320*turn_yy + t321*turn_zy
+            dzdd[N + 2] = t319*turn_xz + t320*turn_yz + t321*turn_zz
             dzdd[N + 3] = dOm0d_x*turn_xx + dOm0d_y*turn_yx + dOm0d_z*turn_zx
             dzdd[N + 4] = dOm0d_x*turn_xy + dOm0d_y*turn_yy + dOm0d_z*turn_zy
             dzdd[N + 5] = dOm0d_x*turn_xz + dOm0d_y*turn_yz + dOm0d_z*turn_zz
@@ -1616,15 +1495,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                t417 = X_z + u_z
-                t418 = X_y + u_y
-                t419 = X_x + u_x
+                t322 = X_z + u_z
+                t323 = X_y + u_y
+                t324 = X_x + u_x
                 dF_x += -df_x
                 dF_y += -df_y
                 dF_z += -df_z
-                dW_x += df_y*t417 - df_z*t418 - du_y*f_z + du_z*f_y
-                dW_y += -df_x*t417 + df_z*t419 + du_x*f_z - du_z*f_x
-                dW_z += df_x*t418 - df_y*t419 - du_x*f_y + du_y*f_x
+                dW_x += df_y*t322 - df_z*t323 - du_y*f_z + du_z*f_y
+                dW_y += -df_x*t322 + df_z*t324 + du_x*f_z - du_z*f_x
+                dW_z += df_x*t323 - df_y*t324 - du_x*f_y + du_y*f_x
             # differential: inertia and weight on the frame
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
@@ -1645,25 +1524,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t420 = -m_x*psi_y + m_y*psi_x
-                t421 = m_x*psi_z - m_z*psi_x
-                t422 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                t423 = dm_x*psi_z
-                t424 = dpsi_z*m_x
-                t425 = -dm_z*psi_x - dpsi_x*m_z + t423 + t424
-                t426 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t427 = e1*t426
-                t428 = -m_y*psi_z + m_z*psi_y
-                t429 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t420 -
-                    0.5*dpsi_y*m_z + dpsi_z*e0*t421 + (0.5)*dpsi_z*m_y - e0*psi_y*t422 +
-                    e0*psi_z*t425 + e1*psi_z*t421*t426 - psi_y*t420*t427)
-                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t420 + (0.5)*dpsi_x*m_z -
-                    dpsi_z*e0*t428 + e0*psi_x*t422 - e0*psi_z*t429 + e1*psi_x*t420*t426 -
-                    psi_z*t427*t428 - 0.5*t423 - 0.5*t424)
-                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t421 -
-                    0.5*dpsi_x*m_y + dpsi_y*e0*t428 + (0.5)*dpsi_y*m_x - e0*psi_x*t425 +
-                    e0*psi_y*t429 + e1*psi_y*t426*t428 - psi_x*t421*t427)
+                t325 = -m_x*psi_y + m_y*psi_x
+                t326 = m_x*psi_z - m_z*psi_x
+                t327 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                t328 = dm_x*psi_z
+                t329 = dpsi_z*m_x
+                t330 = -dm_z*psi_x - dpsi_x*m_z + t328 + t329
+                t331 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t332 = e1*t331
+                t333 = -m_y*psi_z + m_z*psi_y
+                t334 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t325 -
+                    0.5*dpsi_y*m_z + dpsi_z*e0*t326 + (0.5)*dpsi_z*m_y - e0*psi_y*t327 +
+                    e0*psi_z*t330 + e1*psi_z*t326*t331 - psi_y*t325*t332)
+                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t325 + (0.5)*dpsi_x*m_z -
+                    dpsi_z*e0*t333 + e0*psi_x*t327 - e0*psi_z*t334 + e1*psi_x*t325*t331 -
+                    psi_z*t332*t333 - 0.5*t328 - 0.5*t329)
+                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t326 -
+                    0.5*dpsi_x*m_y + dpsi_y*e0*t333 + (0.5)*dpsi_y*m_x - e0*psi_x*t330 +
+                    e0*psi_y*t334 + e1*psi_y*t331*t333 - psi_x*t326*t332)
             # differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
             for j in range(N_ROTATIONS):
@@ -1673,33 +1552,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t430 = dpsi_y*wp_z
-                t431 = dpsi_z*wp_y
-                t432 = psi_x*wp_y - psi_y*wp_x
-                t433 = e0*t432
-                t434 = dpsi_x*wp_y
-                t435 = dpsi_y*wp_x
-                t436 = e0*(t434 - t435)
-                t437 = -psi_x*wp_z + psi_z*wp_x
-                t438 = dpsi_x*wp_z
-                t439 = dpsi_z*wp_x - t438
-                t440 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t441 = e1*t440
-                t442 = t432*t441
-                t443 = psi_y*wp_z - psi_z*wp_y
-                t444 = t430 - t431
-                rhs_x += (-alpha_r*(dpsi_y*t433 - dpsi_z*e0*t437 - e0*psi_z*t439 + psi_y*t436 +
-                    psi_y*t442 - psi_z*t437*t441 + (0.5)*t430 - 0.5*t431))
-                rhs_y += (-alpha_r*(-dpsi_x*t433 + dpsi_z*e0*t443 + (0.5)*dpsi_z*wp_x +
-                    e0*psi_z*t444 + e1*psi_z*t440*t443 - psi_x*t436 - psi_x*t442 - 0.5*t438))
-                rhs_z += (-alpha_r*(dpsi_x*e0*t437 - dpsi_y*e0*t443 + e0*psi_x*t439 -
-                    e0*psi_y*t444 + psi_x*t437*t441 - psi_y*t441*t443 + (0.5)*t434 - 0.5*t435))
-            t445 = dW_x + rhs_x
-            t446 = dW_y + rhs_y
-            t447 = dW_z + rhs_z
-            dwp_x = Bxx*t445 + Byx*t446 + Bzx*t447
-            dwp_y = Bxy*t445 + Byy*t446 + Bzy*t447
-            dwp_z = Bxz*t445 + Byz*t446 + Bzz*t447
+                t335 = dpsi_y*wp_z
+                t336 = dpsi_z*wp_y
+                t337 = psi_x*wp_y - psi_y*wp_x
+                t338 = e0*t337
+                t339 = dpsi_x*wp_y
+                t340 = dpsi_y*wp_x
+                t341 = e0*(t339 - t340)
+                t342 = -psi_x*wp_z + psi_z*wp_x
+                t343 = dpsi_x*wp_z
+                t344 = dpsi_z*wp_x - t343
+                t345 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t346 = e1*t345
+                t347 = t337*t346
+                t348 = psi_y*wp_z - psi_z*wp_y
+                t349 = t335 - t336
+                rhs_x += (-alpha_r*(dpsi_y*t338 - dpsi_z*e0*t342 - e0*psi_z*t344 + psi_y*t341 +
+                    psi_y*t347 - psi_z*t342*t346 + (0.5)*t335 - 0.5*t336))
+                rhs_y += (-alpha_r*(-dpsi_x*t338 + dpsi_z*e0*t348 + (0.5)*dpsi_z*wp_x +
+                    e0*psi_z*t349 + e1*psi_z*t345*t348 - psi_x*t341 - psi_x*t347 - 0.5*t343))
+                rhs_z += (-alpha_r*(dpsi_x*e0*t342 - dpsi_y*e0*t348 + e0*psi_x*t344 -
+                    e0*psi_y*t349 + psi_x*t342*t346 - psi_y*t346*t348 + (0.5)*t339 - 0.5*t340))
+            t350 = dW_x + rhs_x
+            t351 = dW_y + rhs_y
+            t352 = dW_z + rhs_z
+            dwp_x = Bxx*t350 + Byx*t351 + Bzx*t352
+            dwp_y = Bxy*t350 + Byy*t351 + Bzy*t352
+            dwp_z = Bxz*t350 + Byz*t351 + Bzz*t352
             # differential: force on the nodes in frame axes, (30), (57)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -1726,58 +1605,42 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t448 = dm_y*psi_z
-                t449 = dpsi_z*m_y
-                t450 = -m_x*psi_y + m_y*psi_x
-                t451 = dpsi_y*e0
-                t452 = m_x*psi_z - m_z*psi_x
-                t453 = dpsi_z*e0
-                t454 = dm_x*psi_y
-                t455 = dpsi_y*m_x
-                t456 = dm_y*psi_x + dpsi_x*m_y - t454 - t455
-                t457 = e0*psi_y
-                t458 = dm_x*psi_z
-                t459 = dpsi_z*m_x
-                t460 = dm_z*psi_x
-                t461 = dpsi_x*m_z
-                t462 = t458 + t459 - t460 - t461
-                t463 = e0*psi_z
-                t464 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                t465 = psi_y*t464
-                t466 = psi_z*t464
-                t467 = dpsi_y*wp_z
-                t468 = dpsi_z*wp_y
-                t469 = dwp_y*psi_z
-                t470 = dwp_z*psi_y
-                t471 = psi_x*wp_y - psi_y*wp_x
-                t472 = -psi_x*wp_z + psi_z*wp_x
-                t473 = dpsi_x*wp_y
-                t474 = dwp_y*psi_x
-                t475 = dpsi_y*wp_x
-                t476 = dwp_x*psi_y
-                t477 = t473 + t474 - t475 - t476
-                t478 = dpsi_x*wp_z
-                t479 = dwp_z*psi_x
-                t480 = dpsi_z*wp_x + dwp_x*psi_z - t478 - t479
-                t481 = -m_y*psi_z + m_z*psi_y
-                t482 = dpsi_x*e0
-                t483 = dm_z*psi_y + dpsi_y*m_z - t448 - t449
-                t484 = e0*psi_x
-                t485 = psi_x*t464
-                t486 = psi_y*wp_z - psi_z*wp_y
-                t487 = t467 - t468 - t469 + t470
-                dg[j3] = (alpha_r*(dwp_x + t451*t471 - t453*t472 + t457*t477 - t463*t480 +
-                    t465*t471 - t466*t472 - 0.5*t467 + (0.5)*t468 + (0.5)*t469 - 0.5*t470) + dm_x
-                    - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + (0.5)*t448 + (0.5)*t449 + t450*t451 +
-                    t450*t465 - t452*t453 - t452*t466 + t456*t457 - t462*t463)
-                dg[j3 + 1] = (alpha_r*(-0.5*dpsi_z*wp_x - 0.5*dwp_x*psi_z + dwp_y + t453*t486 +
-                    t463*t487 + t466*t486 - t471*t482 - t471*t485 - t477*t484 + (0.5)*t478 +
-                    (0.5)*t479) + dm_y - t450*t482 - t450*t485 + t453*t481 - t456*t484 - 0.5*t458
-                    - 0.5*t459 + (0.5)*t460 + (0.5)*t461 + t463*t483 + t466*t481)
-                dg[j3 + 2] = (alpha_r*(dwp_z - t451*t486 - t457*t487 - t465*t486 + t472*t482 +
-                    t472*t485 - 0.5*t473 - 0.5*t474 + (0.5)*t475 + (0.5)*t476 + t480*t484) -
-                    0.5*dm_y*psi_x + dm_z - 0.5*dpsi_x*m_y - t451*t481 + t452*t482 + t452*t485 +
-                    (0.5)*t454 + (0.5)*t455 - t457*t483 + t462*t484 - t465*t481)
+                t353 = alpha_r*wp_y + m_y
+                t354 = dpsi_z*t353
+                t355 = alpha_r*dwp_y + dm_y
+                t356 = psi_z*t355
+                t357 = alpha_r*wp_z + m_z
+                t358 = dpsi_y*t357
+                t359 = alpha_r*dwp_z + dm_z
+                t360 = psi_y*t359
+                t361 = alpha_r*wp_x + m_x
+                t362 = psi_x*t353 - psi_y*t361
+                t363 = e0*t362
+                t364 = dpsi_x*t353
+                t365 = psi_x*t355
+                t366 = dpsi_y*t361
+                t367 = alpha_r*dwp_x + dm_x
+                t368 = psi_y*t367
+                t369 = e0*(t364 + t365 - t366 - t368)
+                t370 = -psi_x*t357 + psi_z*t361
+                t371 = dpsi_z*e0
+                t372 = dpsi_x*t357
+                t373 = psi_x*t359
+                t374 = dpsi_z*t361 + psi_z*t367 - t372 - t373
+                t375 = e0*psi_z
+                t376 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                t377 = t362*t376
+                t378 = psi_z*t376
+                t379 = psi_y*t357 - psi_z*t353
+                t380 = -t354 - t356 + t358 + t360
+                dg[j3] = (dpsi_y*t363 + psi_y*t369 + psi_y*t377 + (0.5)*t354 + (0.5)*t356 -
+                    0.5*t358 - 0.5*t360 + t367 - t370*t371 - t370*t378 - t374*t375)
+                dg[j3 + 1] = (-dpsi_x*t363 - 0.5*dpsi_z*t361 - psi_x*t369 - psi_x*t377 -
+                    0.5*psi_z*t367 + t355 + t371*t379 + (0.5)*t372 + (0.5)*t373 + t375*t380 +
+                    t378*t379)
+                dg[j3 + 2] = (dpsi_x*e0*t370 - dpsi_y*e0*t379 + e0*psi_x*t374 - e0*psi_y*t380 +
+                    psi_x*t370*t376 - psi_y*t376*t379 + t359 - 0.5*t364 - 0.5*t365 + (0.5)*t366 +
+                    (0.5)*t368)
             # differential: force of the internal modes
             for k in range(MODES, n):
                 dfm = ds[k]
@@ -1882,98 +1745,73 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdgt_x, bdgt_y, bdgt_z = bdg[j3], bdg[j3 + 1], bdg[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t488 = e0*psi_y
-                t489 = m_y*t488
-                t490 = e0*psi_z
-                t491 = m_z*t490
-                t492 = m_x*psi_y
-                t493 = m_y*psi_x - t492
-                t494 = 2*e1
-                t495 = psi_x*t494
-                t496 = psi_y*t495
-                t497 = t493*t496
-                t498 = m_x*psi_z
-                t499 = m_z*psi_x
-                t500 = t498 - t499
-                t501 = psi_z*t495
-                t502 = t500*t501
-                t503 = t488*wp_y
-                t504 = t490*wp_z
-                t505 = psi_x*wp_y
-                t506 = psi_y*wp_x
-                t507 = t505 - t506
-                t508 = t496*t507
-                t509 = psi_x*wp_z
-                t510 = psi_z*wp_x - t509
-                t511 = t501*t510
-                t512 = (0.5)*m_y
-                t513 = e0*t500
-                t514 = m_y*psi_z
-                t515 = m_z*psi_y - t514
-                t516 = psi_x*psi_x
-                t517 = t494*t516
-                t518 = (0.5)*wp_y
-                t519 = e0*t510
-                t520 = psi_y*wp_z
-                t521 = psi_z*wp_y
-                t522 = t520 - t521
-                t523 = (0.5)*m_z
-                t524 = e0*t493
-                t525 = (0.5)*wp_z
-                t526 = e0*t507
-                t527 = e0*psi_x
-                t528 = m_x*t527
-                t529 = psi_y*psi_z*t494
-                t530 = t515*t529
-                t531 = t527*wp_x
-                t532 = t522*t529
-                t533 = psi_y*psi_y
-                t534 = t494*t533
-                t535 = (0.5)*m_x
-                t536 = e0*t515
-                t537 = (0.5)*wp_x
-                t538 = e0*t522
-                t539 = psi_z*psi_z
-                t540 = t494*t539
-                t541 = (0.5)*psi_z
-                t542 = psi_x*t488
-                t543 = bdgt_y*(-t541 + t542)
-                t544 = (0.5)*psi_y
-                t545 = psi_x*t490
-                t546 = bdgt_z*(t544 + t545)
-                t547 = e0*t533
-                t548 = e0*t539 - 1
-                t549 = bdgt_x*(-t547 - t548)
-                t550 = bdgt_x*(t541 + t542)
-                t551 = (0.5)*psi_x
-                t552 = psi_z*t488
-                t553 = bdgt_z*(-t551 + t552)
-                t554 = e0*t516
-                t555 = bdgt_y*(-t548 - t554)
-                t556 = bdgt_x*(-t544 + t545)
-                t557 = bdgt_y*(t551 + t552)
-                t558 = bdgt_z*(-t547 - t554 + 1)
-                bdy[j3] += (bdgt_x*(alpha_r*(t503 + t504 + t508 - t511) + t489 + t491 + t497 -
-                    t502) + bdgt_y*(alpha_r*(-e0*t505 + 2*e1*psi_x*psi_z*t522 - t507*t517 + t525 -
-                    t526) - e0*m_y*psi_x - t493*t517 + t501*t515 + t523 - t524) +
-                    bdgt_z*(alpha_r*(-e0*t509 + 2*e1*t510*t516 - t496*t522 - t518 + t519) -
-                    e0*t499 - t496*t515 + t500*t517 - t512 + t513))
-                bdy[j3 + 1] += (bdgt_x*(alpha_r*(-e0*t506 + 2*e1*t507*t533 - t510*t529 - t525 +
-                    t526) - e0*t492 + t493*t534 - t500*t529 - t523 + t524) + bdgt_y*(alpha_r*(t504
-                    - t508 + t531 + t532) + t491 - t497 + t528 + t530) + bdgt_z*(alpha_r*(-e0*t520
-                    + 2*e1*psi_x*psi_y*t510 - t522*t534 + t537 - t538) - e0*m_z*psi_y + t496*t500
-                    - t515*t534 + t535 - t536))
-                bdy[j3 + 2] += (bdgt_x*(alpha_r*(-e0*psi_z*wp_x + 2*e1*psi_y*psi_z*t507 -
-                    t510*t540 + t518 - t519) - e0*t498 + t493*t529 - t500*t540 + t512 - t513) +
-                    bdgt_y*(alpha_r*(-e0*t521 + 2*e1*t522*t539 - t501*t507 - t537 + t538) -
-                    e0*t514 - t493*t501 + t515*t540 - t535 + t536) + bdgt_z*(alpha_r*(t503 + t511
-                    + t531 - t532) + t489 + t502 + t528 - t530))
-                bds[j3] += t543 + t546 + t549
-                bds[j3 + 1] += t550 + t553 + t555
-                bds[j3 + 2] += t556 + t557 + t558
-                bdwp_x += alpha_r*t543 + alpha_r*t546 + alpha_r*t549
-                bdwp_y += alpha_r*t550 + alpha_r*t553 + alpha_r*t555
-                bdwp_z += alpha_r*t556 + alpha_r*t557 + alpha_r*t558
+                t381 = alpha_r*wp_y
+                t382 = m_y + t381
+                t383 = e0*psi_y
+                t384 = alpha_r*wp_z
+                t385 = m_z + t384
+                t386 = -t385
+                t387 = psi_x*t382
+                t388 = alpha_r*wp_x
+                t389 = m_x + t388
+                t390 = -psi_y*t389 + t387
+                t391 = 2*e1
+                t392 = psi_x*t391
+                t393 = psi_y*t392
+                t394 = t390*t393
+                t395 = -psi_x*t385 + psi_z*t389
+                t396 = psi_z*t392
+                t397 = t395*t396
+                t398 = psi_x*psi_x
+                t399 = psi_y*t385
+                t400 = -psi_z*t382 + t399
+                t401 = -e0*t390 + (0.5)*m_z + (0.5)*t384
+                t402 = -e0*t395 + (0.5)*m_y + (0.5)*t381
+                t403 = -t389
+                t404 = e0*psi_x
+                t405 = psi_y*psi_z*t391
+                t406 = -t400*t405
+                t407 = psi_y*psi_y
+                t408 = -e0*t400 + (0.5)*m_x + (0.5)*t388
+                t409 = -t382
+                t410 = psi_z*psi_z
+                t411 = (0.5)*psi_z
+                t412 = psi_x*t383
+                t413 = (0.5)*psi_y
+                t414 = e0*psi_x*psi_z
+                t415 = e0*t407
+                t416 = e0*t410
+                t417 = t416 - 1
+                t418 = (0.5)*psi_x
+                t419 = psi_z*t383
+                t420 = e0*t398
+                t421 = alpha_r*t411
+                t422 = alpha_r*t412
+                t423 = alpha_r*t413
+                t424 = alpha_r*t414
+                t425 = alpha_r*t415
+                t426 = -alpha_r
+                t427 = alpha_r*t416 + t426
+                t428 = alpha_r*t418
+                t429 = alpha_r*t419
+                t430 = alpha_r*t420
+                bdy[j3] += (bdgt_x*(-e0*psi_z*t386 + t382*t383 + t394 - t397) + bdgt_y*(-e0*t387 -
+                    t390*t391*t398 + t396*t400 + t401) + bdgt_z*(e0*psi_x*t386 + 2*e1*t395*t398 -
+                    t393*t400 - t402))
+                bdy[j3 + 1] += (bdgt_x*(e0*psi_y*t403 + 2*e1*t390*t407 - t395*t405 - t401) +
+                    bdgt_y*(e0*psi_z*t385 - t394 - t403*t404 - t406) + bdgt_z*(-e0*t399 -
+                    t391*t400*t407 + t393*t395 + t408))
+                bdy[j3 + 2] += (bdgt_x*(-e0*psi_z*t389 + t390*t405 - t391*t395*t410 + t402) +
+                    bdgt_y*(e0*psi_z*t409 + 2*e1*t400*t410 - t390*t396 - t408) +
+                    bdgt_z*(-t383*t409 + t389*t404 + t397 + t406))
+                bds[j3] += bdgt_x*(-t415 - t417) + bdgt_y*(-t411 + t412) + bdgt_z*(t413 + t414)
+                bds[j3 + 1] += bdgt_x*(t411 + t412) + bdgt_y*(-t417 - t420) + bdgt_z*(-t418 + t419)
+                bds[j3 + 2] += (bdgt_x*(-t413 + t414) + bdgt_y*(t418 + t419) + bdgt_z*(-t415 -
+                    t420 + 1))
+                bdwp_x += bdgt_x*(-t425 - t427) + bdgt_y*(-t421 + t422) + bdgt_z*(t423 + t424)
+                bdwp_y += bdgt_x*(t421 + t422) + bdgt_y*(-t427 - t430) + bdgt_z*(-t428 + t429)
+                bdwp_z += (bdgt_x*(-t423 + t424) + bdgt_y*(t428 + t429) + bdgt_z*(-t425 - t426 -
+                    t430))
             # transposed: differential: force on the nodes, left in frame axes
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -1998,12 +1836,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdF_z += alpha*bdh_z
             # transposed: differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
-            t559 = bdwp_x + rhs_x
-            t560 = bdwp_y + rhs_y
-            t561 = bdwp_z + rhs_z
-            mdwp_x = Bxx*t559 + Bxy*t560 + Bxz*t561
-            mdwp_y = Byx*t559 + Byy*t560 + Byz*t561
-            mdwp_z = Bzx*t559 + Bzy*t560 + Bzz*t561
+            t431 = bdwp_x + rhs_x
+            t432 = bdwp_y + rhs_y
+            t433 = bdwp_z + rhs_z
+            mdwp_x = Bxx*t431 + Bxy*t432 + Bxz*t433
+            mdwp_y = Byx*t431 + Byy*t432 + Byz*t433
+            mdwp_z = Bzx*t431 + Bzy*t432 + Bzz*t433
             # transposed: differential: B^T wp = W
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -2011,41 +1849,41 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t562 = e0*psi_y*wp_y
-                t563 = e0*psi_z*wp_z
-                t564 = psi_x*wp_y
-                t565 = psi_y*wp_x
-                t566 = t564 - t565
-                t567 = 2*e1
-                t568 = psi_x*t567
-                t569 = psi_y*t568
-                t570 = t566*t569
-                t571 = psi_x*wp_z
-                t572 = psi_z*wp_x - t571
-                t573 = psi_z*t568
-                t574 = t572*t573
-                t575 = alpha_r*mdwp_x
-                t576 = psi_x*psi_x*t567
-                t577 = psi_y*wp_z
-                t578 = psi_z*wp_y
-                t579 = t577 - t578
-                t580 = e0*t572 + (0.5)*wp_y
-                t581 = alpha_r*mdwp_z
-                t582 = e0*t566 + (0.5)*wp_z
-                t583 = alpha_r*mdwp_y
-                t584 = e0*psi_x*wp_x
-                t585 = psi_y*psi_z*t567
-                t586 = t579*t585
-                t587 = psi_y*psi_y*t567
-                t588 = e0*t579 + (0.5)*wp_x
-                t589 = psi_z*psi_z*t567
-                bdy[j3] += (-t575*(t562 + t563 + t570 - t574) - t581*(-e0*t571 - t569*t579 +
-                    t572*t576 + t580) - t583*(-e0*t564 + 2*e1*psi_x*psi_z*t579 - t566*t576 - t582))
-                bdy[j3 + 1] += (-t575*(-e0*t565 + t566*t587 - t572*t585 + t582) - t581*(-e0*t577 +
-                    2*e1*psi_x*psi_y*t572 - t579*t587 - t588) - t583*(t563 - t570 + t584 + t586))
-                bdy[j3 + 2] += (-t575*(-e0*psi_z*wp_x + 2*e1*psi_y*psi_z*t566 - t572*t589 - t580)
-                    - t581*(t562 + t574 + t584 - t586) - t583*(-e0*t578 - t566*t573 + t579*t589 +
-                    t588))
+                t434 = e0*psi_y*wp_y
+                t435 = e0*psi_z*wp_z
+                t436 = psi_x*wp_y
+                t437 = psi_y*wp_x
+                t438 = t436 - t437
+                t439 = 2*e1
+                t440 = psi_x*t439
+                t441 = psi_y*t440
+                t442 = t438*t441
+                t443 = psi_x*wp_z
+                t444 = psi_z*wp_x - t443
+                t445 = psi_z*t440
+                t446 = t444*t445
+                t447 = alpha_r*mdwp_x
+                t448 = psi_x*psi_x*t439
+                t449 = psi_y*wp_z
+                t450 = psi_z*wp_y
+                t451 = t449 - t450
+                t452 = e0*t444 + (0.5)*wp_y
+                t453 = alpha_r*mdwp_z
+                t454 = e0*t438 + (0.5)*wp_z
+                t455 = alpha_r*mdwp_y
+                t456 = e0*psi_x*wp_x
+                t457 = psi_y*psi_z*t439
+                t458 = t451*t457
+                t459 = psi_y*psi_y*t439
+                t460 = e0*t451 + (0.5)*wp_x
+                t461 = psi_z*psi_z*t439
+                bdy[j3] += (-t447*(t434 + t435 + t442 - t446) - t453*(-e0*t443 - t441*t451 +
+                    t444*t448 + t452) - t455*(-e0*t436 + 2*e1*psi_x*psi_z*t451 - t438*t448 - t454))
+                bdy[j3 + 1] += (-t447*(-e0*t437 + t438*t459 - t444*t457 + t454) - t453*(-e0*t449 +
+                    2*e1*psi_x*psi_y*t444 - t451*t459 - t460) - t455*(t435 - t442 + t456 + t458))
+                bdy[j3 + 2] += (-t447*(-e0*psi_z*wp_x + 2*e1*psi_y*psi_z*t438 - t444*t461 - t452)
+                    - t453*(t434 + t446 + t456 - t458) - t455*(-e0*t450 - t438*t445 + t451*t461 +
+                    t460))
             # transposed: differential: B^T wp = W
             bdW_x += mdwp_x
             bdW_y += mdwp_y
@@ -2057,53 +1895,53 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t590 = e0*psi_y
-                t591 = m_y*t590
-                t592 = e0*psi_z
-                t593 = m_z*t592
-                t594 = -m_x*psi_y + m_y*psi_x
-                t595 = 2*e1
-                t596 = psi_x*t595
-                t597 = psi_y*t596
-                t598 = t594*t597
-                t599 = m_x*psi_z
-                t600 = -m_z*psi_x + t599
-                t601 = psi_z*t596
-                t602 = t600*t601
-                t603 = psi_x*psi_x
-                t604 = t595*t603
-                t605 = -m_y*psi_z + m_z*psi_y
-                t606 = e0*t594 + (0.5)*m_z
-                t607 = e0*t600 + (0.5)*m_y
-                t608 = e0*m_x*psi_x
-                t609 = psi_y*psi_z*t595
-                t610 = t605*t609
-                t611 = psi_y*psi_y
-                t612 = t595*t611
-                t613 = e0*t605 + (0.5)*m_x
-                t614 = psi_z*psi_z
-                t615 = t595*t614
-                t616 = (0.5)*psi_z
-                t617 = psi_x*t590
-                t618 = (0.5)*psi_y
-                t619 = psi_x*t592
-                t620 = e0*t611
-                t621 = e0*t614 - 1
-                t622 = (0.5)*psi_x
-                t623 = psi_z*t590
-                t624 = e0*t603
-                bdy[j3] += (bdW_x*(-t591 - t593 - t598 + t602) + bdW_y*(e0*m_y*psi_x + t594*t604 -
-                    t601*t605 + t606) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t605 - t600*t604 -
-                    t607))
-                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t600 - t594*t612 - t606) +
-                    bdW_y*(-t593 + t598 - t608 - t610) + bdW_z*(e0*m_z*psi_y - t597*t600 +
-                    t605*t612 + t613))
-                bdy[j3 + 2] += (bdW_x*(e0*t599 - t594*t609 + t600*t615 + t607) +
-                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t594 - t605*t615 - t613) + bdW_z*(-t591
-                    - t602 - t608 + t610))
-                bds[j3] += bdW_x*(t620 + t621) + bdW_y*(-t616 - t617) + bdW_z*(t618 - t619)
-                bds[j3 + 1] += bdW_x*(t616 - t617) + bdW_y*(t621 + t624) + bdW_z*(-t622 - t623)
-                bds[j3 + 2] += bdW_x*(-t618 - t619) + bdW_y*(t622 - t623) + bdW_z*(t620 + t624 - 1)
+                t462 = e0*psi_y
+                t463 = m_y*t462
+                t464 = e0*psi_z
+                t465 = m_z*t464
+                t466 = -m_x*psi_y + m_y*psi_x
+                t467 = 2*e1
+                t468 = psi_x*t467
+                t469 = psi_y*t468
+                t470 = t466*t469
+                t471 = m_x*psi_z
+                t472 = -m_z*psi_x + t471
+                t473 = psi_z*t468
+                t474 = t472*t473
+                t475 = psi_x*psi_x
+                t476 = t467*t475
+                t477 = -m_y*psi_z + m_z*psi_y
+                t478 = e0*t466 + (0.5)*m_z
+                t479 = e0*t472 + (0.5)*m_y
+                t480 = e0*m_x*psi_x
+                t481 = psi_y*psi_z*t467
+                t482 = t477*t481
+                t483 = psi_y*psi_y
+                t484 = t467*t483
+                t485 = e0*t477 + (0.5)*m_x
+                t486 = psi_z*psi_z
+                t487 = t467*t486
+                t488 = (0.5)*psi_z
+                t489 = psi_x*t462
+                t490 = (0.5)*psi_y
+                t491 = psi_x*t464
+                t492 = e0*t483
+                t493 = e0*t486 - 1
+                t494 = (0.5)*psi_x
+                t495 = psi_z*t462
+                t496 = e0*t475
+                bdy[j3] += (bdW_x*(-t463 - t465 - t470 + t474) + bdW_y*(e0*m_y*psi_x + t466*t476 -
+                    t473*t477 + t478) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t477 - t472*t476 -
+                    t479))
+                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t472 - t466*t484 - t478) +
+                    bdW_y*(-t465 + t470 - t480 - t482) + bdW_z*(e0*m_z*psi_y - t469*t472 +
+                    t477*t484 + t485))
+                bdy[j3 + 2] += (bdW_x*(e0*t471 - t466*t481 + t472*t487 + t479) +
+                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t466 - t477*t487 - t485) + bdW_z*(-t463
+                    - t474 - t480 + t482))
+                bds[j3] += bdW_x*(t492 + t493) + bdW_y*(-t488 - t489) + bdW_z*(t490 - t491)
+                bds[j3 + 1] += bdW_x*(t488 - t489) + bdW_y*(t493 + t496) + bdW_z*(-t494 - t495)
+                bds[j3 + 2] += bdW_x*(-t490 - t491) + bdW_y*(t494 - t495) + bdW_z*(t492 + t496 - 1)
             # transposed: differential: inertia and weight on the frame
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
@@ -2119,12 +1957,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t625 = X_y + u_y
-                t626 = X_z + u_z
-                t627 = X_x + u_x
-                bds[i3] += -bdF_x - bdW_y*t626 + bdW_z*t625
-                bds[i3 + 1] += -bdF_y + bdW_x*t626 - bdW_z*t627
-                bds[i3 + 2] += -bdF_z - bdW_x*t625 + bdW_y*t627
+                t497 = X_y + u_y
+                t498 = X_z + u_z
+                t499 = X_x + u_x
+                bds[i3] += -bdF_x - bdW_y*t498 + bdW_z*t497
+                bds[i3 + 1] += -bdF_y + bdW_x*t498 - bdW_z*t499
+                bds[i3 + 2] += -bdF_z - bdW_x*t497 + bdW_y*t499
                 bdy[i3] += bdW_y*f_z - bdW_z*f_y
                 bdy[i3 + 1] += -bdW_x*f_z + bdW_z*f_x
                 bdy[i3 + 2] += bdW_x*f_y - bdW_y*f_x
@@ -2146,15 +1984,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             bdfelt_x, bdfelt_y, bdfelt_z = bdzdd[N], bdzdd[N + 1], bdzdd[N + 2]
             bdturning_x, bdturning_y, bdturning_z = bdzdd[N + 3], bdzdd[N + 4], bdzdd[N + 5]
             bdspin_x, bdspin_y, bdspin_z = bdzd[N], bdzd[N + 1], bdzd[N + 2]
-            t628 = bdfelt_x*turn_xx + bdfelt_y*turn_xy + bdfelt_z*turn_xz
-            t629 = bdfelt_x*turn_yx + bdfelt_y*turn_yy + bdfelt_z*turn_yz
-            t630 = bdfelt_x*turn_zx + bdfelt_y*turn_zy + bdfelt_z*turn_zz
-            bda0_x += t628
-            bda0_y += t629
-            bda0_z += t630
-            bdgamma[0] += -t628
-            bdgamma[1] += -t629
-            bdgamma[2] += -t630
+            t500 = bdfelt_x*turn_xx + bdfelt_y*turn_xy + bdfelt_z*turn_xz
+            t501 = bdfelt_x*turn_yx + bdfelt_y*turn_yy + bdfelt_z*turn_yz
+            t502 = bdfelt_x*turn_zx + bdfelt_y*turn_zy + bdfelt_z*turn_zz
+            bda0_x += t500
+            bda0_y += t501
+            bda0_z += t502
+            bdgamma[0] += -t500
+            bdgamma[1] += -t501
+            bdgamma[2] += -t502
             bdOm0d_x += bdturning_x*turn_xx + bdturning_y*turn_xy + bdturning_z*turn_xz
             bdOm0d_y += bdturning_x*turn_yx + bdturning_y*turn_yy + bdturning_z*turn_yz
             bdOm0d_z += bdturning_x*turn_zx + bdturning_y*turn_zy + bdturning_z*turn_zz
@@ -2212,40 +2050,40 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 bdeud_x, bdeud_y, bdeud_z = bdetad[i3], bdetad[i3 + 1], bdetad[i3 + 2]
-                t631 = Om0_y*bdeud_z - Om0_z*bdeud_y
-                t632 = Om0_x*bdeud_z - Om0_z*bdeud_x
-                t633 = -t632
-                t634 = Om0_x*bdeud_y - Om0_y*bdeud_x
-                t635 = eu_z - v0_z + vs_z
-                t636 = eu_y - v0_y + vs_y
-                t637 = eu_x - v0_x + vs_x
-                t638 = X_z + u_z
-                t639 = X_y + u_y
-                t640 = X_x + u_x
+                t503 = Om0_y*bdeud_z - Om0_z*bdeud_y
+                t504 = Om0_x*bdeud_z - Om0_z*bdeud_x
+                t505 = -t504
+                t506 = Om0_x*bdeud_y - Om0_y*bdeud_x
+                t507 = eu_z - v0_z + vs_z
+                t508 = eu_y - v0_y + vs_y
+                t509 = eu_x - v0_x + vs_x
+                t510 = X_z + u_z
+                t511 = X_y + u_y
+                t512 = X_x + u_x
                 bdy[i3] += Om0d_y*bdeud_z - Om0d_z*bdeud_y
                 bdy[i3 + 1] += -Om0d_x*bdeud_z + Om0d_z*bdeud_x
                 bdy[i3 + 2] += Om0d_x*bdeud_y - Om0d_y*bdeud_x
-                bdyd[i3] += t631
-                bdyd[i3 + 1] += t633
-                bdyd[i3 + 2] += t634
+                bdyd[i3] += t503
+                bdyd[i3 + 1] += t505
+                bdyd[i3 + 2] += t506
                 bdacc[i3] += bdeud_x
                 bdacc[i3 + 1] += bdeud_y
                 bdacc[i3 + 2] += bdeud_z
-                bdOm0_x += bdeud_y*t635 - bdeud_z*t636
-                bdOm0_y += -bdeud_x*t635 + bdeud_z*t637
-                bdOm0_z += bdeud_x*t636 - bdeud_y*t637
-                bdv0_x += -t631
-                bdv0_y += t632
-                bdv0_z += -t634
+                bdOm0_x += bdeud_y*t507 - bdeud_z*t508
+                bdOm0_y += -bdeud_x*t507 + bdeud_z*t509
+                bdOm0_z += bdeud_x*t508 - bdeud_y*t509
+                bdv0_x += -t503
+                bdv0_y += t504
+                bdv0_z += -t506
                 bda0_x += -bdeud_x
                 bda0_y += -bdeud_y
                 bda0_z += -bdeud_z
-                bdeta[i3] += t631
-                bdeta[i3 + 1] += t633
-                bdeta[i3 + 2] += t634
-                bdOm0d_x += bdeud_y*t638 - bdeud_z*t639
-                bdOm0d_y += -bdeud_x*t638 + bdeud_z*t640
-                bdOm0d_z += bdeud_x*t639 - bdeud_y*t640
+                bdeta[i3] += t503
+                bdeta[i3 + 1] += t505
+                bdeta[i3 + 2] += t506
+                bdOm0d_x += bdeud_y*t510 - bdeud_z*t511
+                bdOm0d_y += -bdeud_x*t510 + bdeud_z*t512
+                bdOm0d_z += bdeud_x*t511 - bdeud_y*t512
             # transposed: differential: rate: rates of the elastic rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -2253,63 +2091,61 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdepd_x, bdepd_y, bdepd_z = bdetad[j3], bdetad[j3 + 1], bdetad[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t641 = 2*e1
-                t642 = psi_x*t641
-                t643 = psi_y*psi_z*t642
-                t644 = -t643 - 0.5
-                t645 = e0*psi_y
-                t646 = psi_x*psi_x
-                t647 = t641*t646
-                t648 = psi_y*t647
-                t649 = -t645 - t648
-                t650 = psi_z*psi_z
-                t651 = t642*t650
-                t652 = e0*psi_x
-                t653 = psi_x*psi_x*psi_x*t641 + 2*t652
-                t654 = 0.5 - t643
-                t655 = e0*psi_z
-                t656 = psi_z*t647
-                t657 = -t655 - t656
-                t658 = psi_y*psi_y
-                t659 = t642*t658
-                t660 = -t652 - t659
-                t661 = psi_y*t641*t650
-                t662 = psi_y*psi_y*psi_y*t641 + 2*t645
-                t663 = psi_z*t641*t658
-                t664 = -t655 - t663
-                t665 = -t651 - t652
-                t666 = psi_z*psi_z*psi_z*t641 + 2*t655
-                t667 = -t645 - t661
-                t668 = (0.5)*psi_z
-                t669 = psi_x*t645
-                t670 = (0.5)*psi_y
-                t671 = psi_x*t655
-                t672 = e0*t658
-                t673 = e0*t650 - 1
-                t674 = (0.5)*psi_x
-                t675 = psi_z*t645
-                t676 = e0*t646
-                bdy[j3] += (bdepd_x*(Om0d_x*(t651 + t659) + Om0d_y*t649 + Om0d_z*t657) +
-                    bdepd_y*(Om0d_x*t649 + Om0d_y*(t651 + t653) + Om0d_z*t644) +
-                    bdepd_z*(Om0d_x*t657 + Om0d_y*t654 + Om0d_z*(t653 + t659)))
-                bdy[j3 + 1] += (bdepd_x*(Om0d_x*(t661 + t662) + Om0d_y*t660 + Om0d_z*t654) +
-                    bdepd_y*(Om0d_x*t660 + Om0d_y*(t648 + t661) + Om0d_z*t664) +
-                    bdepd_z*(Om0d_x*t644 + Om0d_y*t664 + Om0d_z*(t648 + t662)))
-                bdy[j3 + 2] += (bdepd_x*(Om0d_x*(t663 + t666) + Om0d_y*t644 + Om0d_z*t665) +
-                    bdepd_y*(Om0d_x*t654 + Om0d_y*(t656 + t666) + Om0d_z*t667) +
-                    bdepd_z*(Om0d_x*t665 + Om0d_y*t667 + Om0d_z*(t656 + t663)))
-                bdOm0d_x += bdepd_x*(t672 + t673) + bdepd_y*(t668 - t669) + bdepd_z*(-t670 - t671)
-                bdOm0d_y += bdepd_x*(-t668 - t669) + bdepd_y*(t673 + t676) + bdepd_z*(t674 - t675)
-                bdOm0d_z += (bdepd_x*(t670 - t671) + bdepd_y*(-t674 - t675) + bdepd_z*(t672 + t676
-                    - 1))
+                t513 = Om0d_y*psi_y
+                t514 = Om0d_z*psi_z
+                t515 = Om0d_x*psi_y
+                t516 = -Om0d_y*psi_x
+                t517 = t515 + t516
+                t518 = Om0d_x*psi_z
+                t519 = -Om0d_z*psi_x
+                t520 = -t518 - t519
+                t521 = psi_y*t517 - psi_z*t520
+                t522 = 2*e1
+                t523 = psi_x*t522
+                t524 = (0.5)*Om0d_z
+                t525 = Om0d_y*psi_z
+                t526 = -Om0d_z*psi_y
+                t527 = t525 + t526
+                t528 = -psi_x*t517 + psi_z*t527
+                t529 = (0.5)*Om0d_y
+                t530 = psi_x*t520 - psi_y*t527
+                t531 = Om0d_x*psi_x
+                t532 = psi_y*t522
+                t533 = (0.5)*Om0d_x
+                t534 = psi_z*t522
+                t535 = (0.5)*psi_z
+                t536 = e0*psi_x
+                t537 = psi_y*t536
+                t538 = (0.5)*psi_y
+                t539 = psi_z*t536
+                t540 = psi_y*psi_y
+                t541 = psi_z*psi_z
+                t542 = (0.5)*psi_x
+                t543 = e0*psi_y*psi_z
+                t544 = psi_x*psi_x
+                bdy[j3] += (bdepd_x*(e0*(-t513 - t514) + t521*t523) + bdepd_y*(e0*(2*Om0d_y*psi_x
+                    - t515) + t523*t528 - t524) + bdepd_z*(e0*(2*Om0d_z*psi_x - t518) + t523*t530
+                    + t529))
+                bdy[j3 + 1] += (bdepd_x*(e0*(2*t515 + t516) + t521*t532 + t524) +
+                    bdepd_y*(e0*(-t514 - t531) + t528*t532) + bdepd_z*(e0*(2*Om0d_z*psi_y - t525)
+                    + t530*t532 - t533))
+                bdy[j3 + 2] += (bdepd_x*(e0*(2*t518 + t519) + t521*t534 - t529) +
+                    bdepd_y*(e0*(2*t525 + t526) + t528*t534 + t533) + bdepd_z*(e0*(-t513 - t531) +
+                    t530*t534))
+                bdOm0d_x += (bdepd_x*(e0*(t540 + t541) - 1) + bdepd_y*(t535 - t537) +
+                    bdepd_z*(-t538 - t539))
+                bdOm0d_y += (bdepd_x*(-t535 - t537) + bdepd_y*(e0*(t541 + t544) - 1) +
+                    bdepd_z*(t542 - t543))
+                bdOm0d_z += (bdepd_x*(t538 - t539) + bdepd_y*(-t542 - t543) + bdepd_z*(e0*(t540 +
+                    t544) - 1))
             # transposed: differential: rate: B rate = sum alpha_j T^-1(psi_j) rate_j
             rhs_x = rhs_y = rhs_z = 0.0
-            t677 = bdOm0d_x + rhs_x
-            t678 = bdOm0d_y + rhs_y
-            t679 = bdOm0d_z + rhs_z
-            mdOm0d_x = Bxx*t677 + Byx*t678 + Bzx*t679
-            mdOm0d_y = Bxy*t677 + Byy*t678 + Bzy*t679
-            mdOm0d_z = Bxz*t677 + Byz*t678 + Bzz*t679
+            t545 = bdOm0d_x + rhs_x
+            t546 = bdOm0d_y + rhs_y
+            t547 = bdOm0d_z + rhs_z
+            mdOm0d_x = Bxx*t545 + Byx*t546 + Bzx*t547
+            mdOm0d_y = Bxy*t545 + Byy*t546 + Bzy*t547
+            mdOm0d_z = Bxz*t545 + Byz*t546 + Bzz*t547
             # transposed: differential: rate: B rate = sum alpha_j T^-1(psi_j) rate_j
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -2317,44 +2153,44 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t680 = e0*psi_y
-                t681 = 2*e1
-                t682 = psi_x*psi_x*t681
-                t683 = psi_y*t682
-                t684 = t680 + t683
-                t685 = Om0d_y*alpha_r
-                t686 = e0*psi_z
-                t687 = psi_z*t682
-                t688 = t686 + t687
-                t689 = Om0d_z*alpha_r
-                t690 = psi_y*psi_y
-                t691 = psi_x*t681
-                t692 = t690*t691
-                t693 = psi_z*psi_z
-                t694 = t691*t693
-                t695 = Om0d_x*alpha_r
-                t696 = psi_y*psi_z*t691
-                t697 = t696 + 0.5
-                t698 = e0*psi_x
-                t699 = psi_x*psi_x*psi_x*t681 + 2*t698
-                t700 = t696 - 0.5
-                t701 = t692 + t698
-                t702 = psi_y*t681*t693
-                t703 = psi_y*psi_y*psi_y*t681 + 2*t680
-                t704 = psi_z*t681*t690
-                t705 = t686 + t704
-                t706 = t694 + t698
-                t707 = psi_z*psi_z*psi_z*t681 + 2*t686
-                t708 = t680 + t702
-                bdy[j3] += (-mdOm0d_x*(t684*t685 + t688*t689 + t695*(-t692 - t694)) -
-                    mdOm0d_y*(t684*t695 + t685*(-t694 - t699) + t689*t697) - mdOm0d_z*(t685*t700 +
-                    t688*t695 + t689*(-t692 - t699)))
-                bdy[j3 + 1] += (-mdOm0d_x*(t685*t701 + t689*t700 + t695*(-t702 - t703)) -
-                    mdOm0d_y*(t685*(-t683 - t702) + t689*t705 + t695*t701) - mdOm0d_z*(t685*t705 +
-                    t689*(-t683 - t703) + t695*t697))
-                bdy[j3 + 2] += (-mdOm0d_x*(t685*t697 + t689*t706 + t695*(-t704 - t707)) -
-                    mdOm0d_y*(t685*(-t687 - t707) + t689*t708 + t695*t700) - mdOm0d_z*(t685*t708 +
-                    t689*(-t687 - t704) + t695*t706))
+                t548 = e0*psi_y
+                t549 = 2*e1
+                t550 = psi_x*psi_x*t549
+                t551 = psi_y*t550
+                t552 = t548 + t551
+                t553 = Om0d_y*alpha_r
+                t554 = e0*psi_z
+                t555 = psi_z*t550
+                t556 = t554 + t555
+                t557 = Om0d_z*alpha_r
+                t558 = psi_y*psi_y
+                t559 = psi_x*t549
+                t560 = t558*t559
+                t561 = psi_z*psi_z
+                t562 = t559*t561
+                t563 = Om0d_x*alpha_r
+                t564 = psi_y*psi_z*t559
+                t565 = t564 + 0.5
+                t566 = e0*psi_x
+                t567 = psi_x*psi_x*psi_x*t549 + 2*t566
+                t568 = t564 - 0.5
+                t569 = t560 + t566
+                t570 = psi_y*t549*t561
+                t571 = psi_y*psi_y*psi_y*t549 + 2*t548
+                t572 = psi_z*t549*t558
+                t573 = t554 + t572
+                t574 = t562 + t566
+                t575 = psi_z*psi_z*psi_z*t549 + 2*t554
+                t576 = t548 + t570
+                bdy[j3] += (-mdOm0d_x*(t552*t553 + t556*t557 + t563*(-t560 - t562)) -
+                    mdOm0d_y*(t552*t563 + t553*(-t562 - t567) + t557*t565) - mdOm0d_z*(t553*t568 +
+                    t556*t563 + t557*(-t560 - t567)))
+                bdy[j3 + 1] += (-mdOm0d_x*(t553*t569 + t557*t568 + t563*(-t570 - t571)) -
+                    mdOm0d_y*(t553*(-t551 - t570) + t557*t573 + t563*t569) - mdOm0d_z*(t553*t573 +
+                    t557*(-t551 - t571) + t563*t565))
+                bdy[j3 + 2] += (-mdOm0d_x*(t553*t565 + t557*t574 + t563*(-t572 - t575)) -
+                    mdOm0d_y*(t553*(-t555 - t575) + t557*t576 + t563*t568) - mdOm0d_z*(t553*t576 +
+                    t557*(-t555 - t572) + t563*t574))
                 bdetad[j3] += alpha_r*mdOm0d_x
                 bdetad[j3 + 1] += alpha_r*mdOm0d_y
                 bdetad[j3 + 2] += alpha_r*mdOm0d_z
@@ -2369,220 +2205,157 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e0 = e0s[j]
                 e1 = e1s[j]
                 e2 = e2s[j]
-                t709 = (0.5)*ep_z
-                t710 = e0*ep_x
-                t711 = e0*psi_x
-                t712 = 2*ep_x
-                t713 = psi_x*t712
-                t714 = 2*ep_y
-                t715 = psi_y*t714
-                t716 = 2*ep_z
-                t717 = psi_z*t716
-                t718 = t713 + t715 + t717
-                t719 = e1*t718
-                t720 = psi_x*t719
-                t721 = ep_y*t711 + psi_y*t710 + psi_y*t720
-                t722 = t709 + t721
-                t723 = (0.5)*ep_y
-                t724 = ep_z*t711 + psi_z*t710 + psi_z*t720
-                t725 = -t723 + t724
-                t726 = psi_z*psi_z
-                t727 = e0*t717 + t719*t726
-                t728 = psi_y*psi_y
-                t729 = e0*t715 + t719*t728
-                t730 = t727 + t729
-                t731 = -t709 + t721
-                t732 = (0.5)*ep_x
-                t733 = e0*psi_z
-                t734 = e0*psi_y
-                t735 = psi_y*t719
-                t736 = ep_y*t733 + ep_z*t734 + psi_z*t735
-                t737 = t732 + t736
-                t738 = psi_x*psi_x
-                t739 = e0*t713 + t719*t738
-                t740 = t727 + t739
-                t741 = t723 + t724
-                t742 = -t732 + t736
-                t743 = t729 + t739
-                t744 = (0.5)*psi_z
-                t745 = psi_y*t711
-                t746 = (0.5)*psi_y
-                t747 = psi_z*t711
-                t748 = e0*t728
-                t749 = e0*t726 - 1
-                t750 = (0.5)*psi_x
-                t751 = psi_y*t733
-                t752 = e0*t738
-                t753 = e1*t712
-                t754 = Om0_x*psi_y
-                t755 = Om0_y*psi_x - t754
-                t756 = psi_y*t755
-                t757 = t753*t756
-                t758 = Om_x*psi_z
-                t759 = Om_z*psi_x
-                t760 = t758 - t759
-                t761 = psi_z*t753
-                t762 = t760*t761
-                t763 = e1*psi_x
-                t764 = t714*t763
-                t765 = t755*t764
-                t766 = t716*t763
-                t767 = t760*t766
-                t768 = -Om0_x*ep_y + Om0_y*ep_x
-                t769 = 2*e1
-                t770 = psi_x*t769
-                t771 = psi_y*t770
-                t772 = t768*t771
-                t773 = A_x*psi_z
-                t774 = Om_x*ep_z
-                t775 = A_z*psi_x
-                t776 = Om_z*ep_x
-                t777 = t773 + t774 - t775 - t776
-                t778 = psi_z*t770
-                t779 = t777*t778
-                t780 = Om_x*psi_y
-                t781 = Om_y*psi_x - t780
-                t782 = psi_y*t753
-                t783 = t781*t782
-                t784 = Om0_z*psi_x
-                t785 = Om0_x*psi_z - t784
-                t786 = t761*t785
-                t787 = t764*t781
-                t788 = t766*t785
-                t789 = A_x*psi_y
-                t790 = Om_x*ep_y
-                t791 = A_y*psi_x + Om_y*ep_x - t789 - t790
-                t792 = t771*t791
-                t793 = Om0_z*ep_x
-                t794 = Om0_x*ep_z - t793
-                t795 = t778*t794
-                t796 = 2*e2*t718
-                t797 = psi_x*t796
-                t798 = t756*t797
-                t799 = psi_z*t797
-                t800 = t760*t799
-                t801 = psi_y*t797
-                t802 = t781*t801
-                t803 = t785*t799
-                t804 = e0*ep_z
-                t805 = psi_z*t719
-                t806 = A_z*t733 - Om0_z*t804 - Om0_z*t805 + Om_z*t804 + Om_z*t805
-                t807 = e0*ep_y
-                t808 = A_y*t734 - Om0_y*t735 - Om0_y*t807 + Om_y*t735 + Om_y*t807
-                t809 = (0.5)*A_z
-                t810 = e0*t768
-                t811 = ep_x*t763
-                t812 = Om0_y*psi_z
-                t813 = Om0_z*psi_y - t812
-                t814 = Om_y*psi_z
-                t815 = Om_z*psi_y - t814
-                t816 = Om0_y*ep_z
-                t817 = Om0_z*ep_y - t816
-                t818 = e0*t791
-                t819 = Om_y*psi_x
-                t820 = A_y*psi_z
-                t821 = Om_y*ep_z
-                t822 = A_z*psi_y + Om_z*ep_y - t820 - t821
-                t823 = t738*t769
-                t824 = t719*t781
-                t825 = t719*t755
-                t826 = t738*t796
-                t827 = 4*t811
-                t828 = (0.5)*A_y + e0*t777 - e0*t794 + t719*t760 - t719*t785
-                t829 = psi_z*t714
-                t830 = e1*t813
-                t831 = t829*t830
-                t832 = psi_y*t716
-                t833 = t830*t832
-                t834 = psi_z*t769
-                t835 = psi_y*t834
-                t836 = t817*t835
-                t837 = e1*t815
-                t838 = t829*t837
-                t839 = t832*t837
-                t840 = t822*t835
-                t841 = psi_z*t796
-                t842 = psi_y*t841
-                t843 = t813*t842
-                t844 = t815*t842
-                t845 = A_x*t711 - Om0_x*t710 - Om0_x*t720 + Om_x*t710 + Om_x*t720
-                t846 = 4*e1*ep_y
-                t847 = e1*t760
-                t848 = t728*t769
-                t849 = t728*t796
-                t850 = Om_z*psi_y
-                t851 = (0.5)*A_x - e0*t817 + e0*t822 - t719*t813 + t719*t815
-                t852 = t726*t769
-                t853 = t726*t796
-                t854 = 4*ep_z*psi_z
-                t855 = t771*t781
-                t856 = t778*t785
-                t857 = t756*t770
-                t858 = t760*t778
-                t859 = Om0_z*t733 - Om_z*e0*psi_z
-                t860 = Om0_y*t734 - Om_y*e0*psi_y
-                t861 = (0.5)*Om0_z + (0.5)*Om_z - e0*t755 + e0*t781
-                t862 = (0.5)*Om0_y + (0.5)*Om_y + e0*t760 - e0*t785
-                t863 = t815*t835
-                t864 = t813*t835
-                t865 = Om0_x*t711 - Om_x*e0*psi_x
-                t866 = (0.5)*Om0_x + (0.5)*Om_x - e0*t813 + e0*t815
-                bdve[j3] += -bdepd_x*t730 + bdepd_y*t722 + bdepd_z*t725
-                bdve[j3 + 1] += bdepd_x*t731 - bdepd_y*t740 + bdepd_z*t737
-                bdve[j3 + 2] += bdepd_x*t741 + bdepd_y*t742 - bdepd_z*t743
-                bdae[j3] += bdepd_x*(-t748 - t749) + bdepd_y*(t744 + t745) + bdepd_z*(-t746 + t747)
-                bdae[j3 + 1] += (bdepd_x*(-t744 + t745) + bdepd_y*(-t749 - t752) + bdepd_z*(t750 +
-                    t751))
-                bdae[j3 + 2] += (bdepd_x*(t746 + t747) + bdepd_y*(-t750 + t751) + bdepd_z*(-t748 -
-                    t752 + 1))
-                bdy[j3] += (bdepd_x*(-t757 - t762 - t765 - t767 - t772 - t779 + t783 + t786 + t787
-                    + t788 + t792 + t795 - t798 - t800 + t802 + t803 + t806 + t808) +
-                    bdepd_y*(-A_y*e0*psi_x + Om0_y*e0*ep_x + Om0_y*e1*psi_x*t718 - Om_y*e0*ep_x +
-                    4*e1*ep_x*psi_x*t755 + 2*e1*ep_x*psi_z*t815 + 2*e1*ep_z*psi_x*t815 +
-                    2*e1*psi_x*psi_z*t822 + 2*e1*t738*t768 + 2*e2*psi_x*psi_z*t718*t815 +
-                    2*e2*t718*t738*t755 - t719*t819 - t761*t813 - t766*t813 - t778*t817 -
-                    4*t781*t811 - t781*t826 - t791*t823 - t799*t813 - t809 + t810 - t818 - t824 +
-                    t825) + bdepd_z*(-e0*t775 - e0*t776 + e0*t793 - t719*t759 + t719*t784 +
-                    t760*t826 + t760*t827 + t764*t813 - t764*t815 + t771*t817 - t771*t822 +
-                    t777*t823 + t782*t813 - t782*t815 - t785*t826 - t785*t827 - t794*t823 +
-                    t801*t813 - t801*t815 + t828))
-                bdy[j3 + 1] += (bdepd_x*(Om0_x*e0*ep_y + Om0_x*e1*psi_y*t718 - e0*t789 - e0*t790 +
-                    4*e1*ep_y*psi_y*t781 + 2*e1*ep_y*psi_z*t785 + 2*e1*ep_z*psi_y*t785 +
-                    2*e1*psi_y*psi_z*t794 + 2*e1*t728*t791 + 2*e2*psi_y*psi_z*t718*t785 +
-                    2*e2*t718*t728*t781 - t719*t780 - t755*t849 - t756*t846 - t760*t842 -
-                    t768*t848 - t777*t835 + t809 - t810 + t818 + t824 - t825 - t829*t847 -
-                    t832*t847) + bdepd_y*(t757 + t765 + t772 - t783 - t787 - t792 + t798 - t802 +
-                    t806 - t831 - t833 - t836 + t838 + t839 + t840 - t843 + t844 + t845) +
-                    bdepd_z*(-A_z*e0*psi_y + Om0_z*e0*ep_y + Om0_z*e1*psi_y*t718 - Om_z*e0*ep_y +
-                    2*e1*ep_x*psi_y*t760 + 2*e1*ep_y*psi_x*t760 + 4*e1*ep_y*psi_y*t813 +
-                    2*e1*psi_x*psi_y*t777 + 2*e1*t728*t817 + 2*e2*psi_x*psi_y*t718*t760 +
-                    2*e2*t718*t728*t813 - psi_y*t815*t846 - t719*t850 - t764*t785 - t771*t794 -
-                    t782*t785 - t785*t801 - t815*t849 - t822*t848 - t851))
-                bdy[j3 + 2] += (bdepd_x*(Om0_x*e0*ep_z + Om0_x*e1*psi_z*t718 - e0*t773 - e0*t774 +
-                    2*e1*ep_y*psi_z*t781 + 2*e1*ep_z*psi_y*t781 + 4*e1*ep_z*psi_z*t785 +
-                    2*e1*psi_y*psi_z*t791 - e1*t716*t756 + 2*e1*t726*t794 - e1*t755*t829 +
-                    2*e2*psi_y*psi_z*t718*t781 + 2*e2*t718*t726*t785 - t719*t758 - t756*t841 -
-                    t760*t853 - t768*t835 - t777*t852 - t828 - t847*t854) + bdepd_y*(e0*t816 -
-                    e0*t820 - e0*t821 + t719*t812 - t719*t814 + t755*t761 + t755*t766 + t755*t799
-                    - t761*t781 - t766*t781 + t768*t778 - t778*t791 - t781*t799 - t813*t853 +
-                    t815*t853 - t817*t852 + t822*t852 - t830*t854 + t837*t854 + t851) +
-                    bdepd_z*(t762 + t767 + t779 - t786 - t788 - t795 + t800 - t803 + t808 + t831 +
-                    t833 + t836 - t838 - t839 - t840 + t843 - t844 + t845))
-                bdOm0_x += bdepd_x*t730 - bdepd_y*t731 - bdepd_z*t741
-                bdOm0_y += -bdepd_x*t722 + bdepd_y*t740 - bdepd_z*t742
-                bdOm0_z += -bdepd_x*t725 - bdepd_y*t737 + bdepd_z*t743
-                bdeta[j3] += (bdepd_x*(t855 + t856 - t857 - t858 - t859 - t860) +
-                    bdepd_y*(Om0_y*e0*psi_x - e0*t819 + 2*e1*psi_x*psi_z*t815 + 2*e1*t738*t755 -
-                    t778*t813 - t781*t823 - t861) + bdepd_z*(-e0*t759 + e0*t784 + t760*t823 +
-                    t771*t813 - t771*t815 - t785*t823 + t862))
-                bdeta[j3 + 1] += (bdepd_x*(e0*t754 - e0*t780 - t755*t848 - t760*t835 + t781*t848 +
-                    t785*t835 + t861) + bdepd_y*(-t855 + t857 - t859 + t863 - t864 - t865) +
-                    bdepd_z*(Om0_z*e0*psi_y - e0*t850 + 2*e1*psi_x*psi_y*t760 + 2*e1*t728*t813 -
-                    t771*t785 - t815*t848 - t866))
-                bdeta[j3 + 2] += (bdepd_x*(Om0_x*e0*psi_z - e0*t758 + 2*e1*psi_y*psi_z*t781 +
-                    2*e1*t726*t785 - t756*t834 - t760*t852 - t862) + bdepd_y*(e0*t812 - e0*t814 +
-                    t755*t778 - t778*t781 - t813*t852 + t815*t852 + t866) + bdepd_z*(-t856 + t858
-                    - t860 - t863 + t864 - t865))
+                t577 = (0.5)*ep_z
+                t578 = ep_x*psi_y + ep_y*psi_x
+                t579 = 2*ep_x
+                t580 = psi_x*t579
+                t581 = 2*ep_y
+                t582 = psi_y*t581
+                t583 = 2*ep_z
+                t584 = psi_z*t583
+                t585 = t582 + t584
+                t586 = t580 + t585
+                t587 = e1*t586
+                t588 = psi_x*t587
+                t589 = psi_y*t588
+                t590 = e0*t578 + t589
+                t591 = (0.5)*ep_y
+                t592 = ep_x*psi_z + ep_z*psi_x
+                t593 = psi_z*t588
+                t594 = e0*t592 + t593
+                t595 = psi_y*psi_y
+                t596 = psi_z*psi_z
+                t597 = t595 + t596
+                t598 = -t597
+                t599 = (0.5)*ep_x
+                t600 = ep_y*psi_z + ep_z*psi_y
+                t601 = psi_y*psi_z
+                t602 = t587*t601
+                t603 = e0*t600 + t602
+                t604 = t580 + t584
+                t605 = psi_x*psi_x
+                t606 = t596 + t605
+                t607 = -t606
+                t608 = t580 + t582
+                t609 = t595 + t605
+                t610 = -t609
+                t611 = (0.5)*psi_z
+                t612 = e0*psi_x
+                t613 = psi_y*t612
+                t614 = (0.5)*psi_y
+                t615 = psi_z*t612
+                t616 = (0.5)*psi_x
+                t617 = e0*t601
+                t618 = A_y*psi_y
+                t619 = A_z*psi_z
+                t620 = Om0_y - Om_y
+                t621 = -t620
+                t622 = Om0_z - Om_z
+                t623 = psi_y*t621 - psi_z*t622
+                t624 = psi_x*t621
+                t625 = Om0_x - Om_x
+                t626 = -t625
+                t627 = -psi_y*t626
+                t628 = t624 + t627
+                t629 = -t622
+                t630 = psi_x*t629
+                t631 = psi_z*t626 - t630
+                t632 = psi_y*t628 - psi_z*t631
+                t633 = e1*t579
+                t634 = 2*e2*t586
+                t635 = psi_x*t634
+                t636 = A_x*psi_y
+                t637 = ep_y*t626
+                t638 = t636 + t637
+                t639 = A_y*psi_x + ep_x*t621 - t638
+                t640 = A_z*psi_x
+                t641 = -ep_x*t629
+                t642 = -t640 + t641
+                t643 = A_x*psi_z
+                t644 = ep_z*t626
+                t645 = t643 + t644
+                t646 = t642 + t645
+                t647 = ep_y*t628 - ep_z*t631 + psi_y*t639 - psi_z*t646
+                t648 = 2*e1
+                t649 = psi_x*t648
+                t650 = (0.5)*A_z
+                t651 = A_y*psi_x
+                t652 = ep_x*t621
+                t653 = -2*t624 - t627
+                t654 = psi_y*t629
+                t655 = -psi_z*t621
+                t656 = t654 + t655
+                t657 = -psi_x*t628 + psi_z*t656
+                t658 = A_y*psi_z
+                t659 = ep_z*t621
+                t660 = t658 + t659
+                t661 = A_z*psi_y + ep_y*t629 - t660
+                t662 = -ep_x*t628 + ep_z*t656 - psi_x*t639 + psi_z*t661
+                t663 = (0.5)*A_y
+                t664 = psi_z*t626
+                t665 = psi_x*t622 - t630 + t664
+                t666 = psi_x*t631 - psi_y*t656
+                t667 = ep_x*t631 - ep_y*t656 + psi_x*t646 - psi_y*t661
+                t668 = A_x*psi_x
+                t669 = -psi_x*t625 + psi_z*t629
+                t670 = e1*t581
+                t671 = psi_y*t634
+                t672 = psi_y*t648
+                t673 = (0.5)*A_x
+                t674 = A_z*psi_y
+                t675 = ep_y*t629
+                t676 = -2*t654 - t655
+                t677 = psi_y*t625 + t628
+                t678 = psi_x*t626 - psi_y*t620
+                t679 = e1*t583
+                t680 = psi_z*t634
+                t681 = psi_z*t648
+                t682 = t630 - 2*t664
+                t683 = psi_z*t620 + t656
+                t684 = -t578
+                t685 = -t592
+                t686 = -t600
+                t687 = (0.5)*Om0_z + (0.5)*Om_z
+                t688 = (0.5)*Om0_y + (0.5)*Om_y
+                t689 = (0.5)*Om0_x + (0.5)*Om_x
+                bdve[j3] += (bdepd_x*(-e0*t585 + t587*t598) + bdepd_y*(t577 + t590) +
+                    bdepd_z*(-t591 + t594))
+                bdve[j3 + 1] += (bdepd_x*(-t577 + t590) + bdepd_y*(-e0*t604 + t587*t607) +
+                    bdepd_z*(t599 + t603))
+                bdve[j3 + 2] += (bdepd_x*(t591 + t594) + bdepd_y*(-t599 + t603) +
+                    bdepd_z*(-e0*t608 + t587*t610))
+                bdae[j3] += bdepd_x*(e0*t598 + 1) + bdepd_y*(t611 + t613) + bdepd_z*(-t614 + t615)
+                bdae[j3 + 1] += (bdepd_x*(-t611 + t613) + bdepd_y*(e0*t607 + 1) + bdepd_z*(t616 +
+                    t617))
+                bdae[j3 + 2] += (bdepd_x*(t614 + t615) + bdepd_y*(-t616 + t617) + bdepd_z*(e0*t610
+                    + 1))
+                bdy[j3] += (bdepd_x*(e0*(ep_y*t621 - ep_z*t622 + t618 + t619) + t587*t623 +
+                    t632*t633 + t632*t635 + t647*t649) + bdepd_y*(e0*(t638 - 2*t651 - 2*t652) +
+                    t587*t653 + t633*t657 + t635*t657 + t649*t662 - t650) + bdepd_z*(e0*(ep_x*t622
+                    - 2*t640 + t641 + t645) + t587*t665 + t633*t666 + t635*t666 + t649*t667 +
+                    t663))
+                bdy[j3 + 1] += (bdepd_x*(e0*(ep_y*t625 - 2*t636 - t637 + t651 + t652) + t587*t677
+                    + t632*t670 + t632*t671 + t647*t672 + t650) + bdepd_y*(e0*(-ep_x*t625 +
+                    ep_z*t629 + t619 + t668) + t587*t669 + t657*t670 + t657*t671 + t662*t672) +
+                    bdepd_z*(e0*(t660 - 2*t674 - 2*t675) + t587*t676 + t666*t670 + t666*t671 +
+                    t667*t672 - t673))
+                bdy[j3 + 2] += (bdepd_x*(e0*(-t642 - 2*t643 - 2*t644) + t587*t682 + t632*t679 +
+                    t632*t680 + t647*t681 - t663) + bdepd_y*(e0*(ep_z*t620 - 2*t658 - t659 + t674
+                    + t675) + t587*t683 + t657*t679 + t657*t680 + t662*t681 + t673) +
+                    bdepd_z*(e0*(ep_x*t626 - ep_y*t620 + t618 + t668) + t587*t678 + t666*t679 +
+                    t666*t680 + t667*t681))
+                bdOm0_x += (bdepd_x*(e0*t585 + t587*t597) + bdepd_y*(e0*t684 + t577 - t589) +
+                    bdepd_z*(e0*t685 - t591 - t593))
+                bdOm0_y += (bdepd_x*(e0*t684 - t577 - t589) + bdepd_y*(e0*t604 + t587*t606) +
+                    bdepd_z*(e0*t686 + t599 - t602))
+                bdOm0_z += (bdepd_x*(e0*t685 + t591 - t593) + bdepd_y*(e0*t686 - t599 - t602) +
+                    bdepd_z*(e0*t608 + t587*t609))
+                bdeta[j3] += (bdepd_x*(e0*t623 + t632*t649) + bdepd_y*(e0*t653 + 2*e1*psi_x*t657 -
+                    t687) + bdepd_z*(e0*t665 + t649*t666 + t688))
+                bdeta[j3 + 1] += (bdepd_x*(e0*t677 + t632*t672 + t687) + bdepd_y*(e0*t669 +
+                    t657*t672) + bdepd_z*(e0*t676 + 2*e1*psi_y*t666 - t689))
+                bdeta[j3 + 2] += (bdepd_x*(e0*t682 + 2*e1*psi_z*t632 - t688) + bdepd_y*(e0*t683 +
+                    t657*t681 + t689) + bdepd_z*(e0*t678 + t666*t681))
             # overwritten: differential: rate: rates of the elastic rotations, the frame held
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -2601,98 +2374,83 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdep_x, bdep_y, bdep_z = bdeta[j3], bdeta[j3 + 1], bdeta[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t867 = (0.5)*psi_z
-                t868 = e0*psi_x
-                t869 = psi_y*t868
-                t870 = t867 + t869
-                t871 = (0.5)*psi_y
-                t872 = psi_z*t868
-                t873 = -t871 + t872
-                t874 = psi_y*psi_y
-                t875 = e0*t874
-                t876 = psi_z*psi_z
-                t877 = e0*t876 - 1
-                t878 = t875 + t877
-                t879 = -t867 + t869
-                t880 = (0.5)*psi_x
-                t881 = e0*psi_y
-                t882 = psi_z*t881
-                t883 = t880 + t882
-                t884 = psi_x*psi_x
-                t885 = e0*t884
-                t886 = t877 + t885
-                t887 = t871 + t872
-                t888 = -t880 + t882
-                t889 = t875 + t885 - 1
-                t890 = Om_x*psi_y
-                t891 = Om_y*psi_x - t890
-                t892 = 2*e1
-                t893 = psi_x*t892
-                t894 = psi_y*t893
-                t895 = t891*t894
-                t896 = Om0_z*psi_x
-                t897 = Om0_x*psi_z - t896
-                t898 = psi_z*t893
-                t899 = t897*t898
-                t900 = Om0_x*psi_y
-                t901 = Om0_y*psi_x - t900
-                t902 = t894*t901
-                t903 = Om_x*psi_z
-                t904 = Om_z*psi_x
-                t905 = t903 - t904
-                t906 = t898*t905
-                t907 = Om0_z*e0*psi_z - Om_z*e0*psi_z
-                t908 = Om0_y*t881 - Om_y*e0*psi_y
-                t909 = t884*t892
-                t910 = Om_y*psi_z
-                t911 = Om_z*psi_y - t910
-                t912 = Om0_y*psi_z
-                t913 = Om0_z*psi_y - t912
-                t914 = (0.5)*Om0_z + (0.5)*Om_z + e0*t891 - e0*t901
-                t915 = (0.5)*Om0_y + (0.5)*Om_y - e0*t897 + e0*t905
-                t916 = psi_y*psi_z*t892
-                t917 = t911*t916
-                t918 = t913*t916
-                t919 = Om0_x*t868 - Om_x*e0*psi_x
-                t920 = t874*t892
-                t921 = (0.5)*Om0_x + (0.5)*Om_x + e0*t911 - e0*t913
-                t922 = t876*t892
-                bdve[j3] += -bdep_x*t878 + bdep_y*t870 + bdep_z*t873
-                bdve[j3 + 1] += bdep_x*t879 - bdep_y*t886 + bdep_z*t883
-                bdve[j3 + 2] += bdep_x*t887 + bdep_y*t888 - bdep_z*t889
-                bdy[j3] += (bdep_x*(t895 + t899 - t902 - t906 - t907 - t908) +
-                    bdep_y*(Om0_y*e0*psi_x - Om_y*e0*psi_x + 2*e1*psi_x*psi_z*t911 +
-                    2*e1*t884*t901 - t891*t909 - t898*t913 - t914) + bdep_z*(e0*t896 - e0*t904 -
-                    t894*t911 + t894*t913 - t897*t909 + t905*t909 + t915))
-                bdy[j3 + 1] += (bdep_x*(-e0*t890 + e0*t900 + t891*t920 + t897*t916 - t901*t920 -
-                    t905*t916 + t914) + bdep_y*(-t895 + t902 - t907 + t917 - t918 - t919) +
-                    bdep_z*(Om0_z*e0*psi_y - Om_z*e0*psi_y + 2*e1*psi_x*psi_y*t905 +
-                    2*e1*t874*t913 - t894*t897 - t911*t920 - t921))
-                bdy[j3 + 2] += (bdep_x*(Om0_x*e0*psi_z - e0*t903 + 2*e1*psi_y*psi_z*t891 +
-                    2*e1*t876*t897 - t901*t916 - t905*t922 - t915) + bdep_y*(-e0*t910 + e0*t912 -
-                    t891*t898 + t898*t901 + t911*t922 - t913*t922 + t921) + bdep_z*(-t899 + t906 -
-                    t908 - t917 + t918 - t919))
-                bdOm0_x += bdep_x*t878 - bdep_y*t879 - bdep_z*t887
-                bdOm0_y += -bdep_x*t870 + bdep_y*t886 - bdep_z*t888
-                bdOm0_z += -bdep_x*t873 - bdep_y*t883 + bdep_z*t889
+                t690 = (0.5)*psi_z
+                t691 = e0*psi_x
+                t692 = psi_y*t691
+                t693 = t690 + t692
+                t694 = (0.5)*psi_y
+                t695 = psi_z*t691
+                t696 = -t694 + t695
+                t697 = psi_y*psi_y
+                t698 = psi_z*psi_z
+                t699 = t697 + t698
+                t700 = -t690 + t692
+                t701 = (0.5)*psi_x
+                t702 = e0*psi_y*psi_z
+                t703 = t701 + t702
+                t704 = psi_x*psi_x
+                t705 = t698 + t704
+                t706 = t694 + t695
+                t707 = -t701 + t702
+                t708 = t697 + t704
+                t709 = Om0_y - Om_y
+                t710 = -t709
+                t711 = Om0_z - Om_z
+                t712 = psi_x*t710
+                t713 = Om0_x - Om_x
+                t714 = -t713
+                t715 = -psi_y*t714
+                t716 = t712 + t715
+                t717 = -t711
+                t718 = psi_x*t717
+                t719 = psi_z*t714 - t718
+                t720 = psi_y*t716 - psi_z*t719
+                t721 = 2*e1
+                t722 = psi_x*t721
+                t723 = psi_y*t717
+                t724 = -psi_z*t710
+                t725 = t723 + t724
+                t726 = -psi_x*t716 + psi_z*t725
+                t727 = (0.5)*Om0_z + (0.5)*Om_z
+                t728 = psi_z*t714
+                t729 = psi_x*t719 - psi_y*t725
+                t730 = (0.5)*Om0_y + (0.5)*Om_y
+                t731 = psi_y*t721
+                t732 = (0.5)*Om0_x + (0.5)*Om_x
+                t733 = psi_z*t721
+                bdve[j3] += bdep_x*(-e0*t699 + 1) + bdep_y*t693 + bdep_z*t696
+                bdve[j3 + 1] += bdep_x*t700 + bdep_y*(-e0*t705 + 1) + bdep_z*t703
+                bdve[j3 + 2] += bdep_x*t706 + bdep_y*t707 + bdep_z*(-e0*t708 + 1)
+                bdy[j3] += (bdep_x*(e0*(psi_y*t710 - psi_z*t711) + t720*t722) +
+                    bdep_y*(e0*(-2*t712 - t715) + 2*e1*psi_x*t726 - t727) + bdep_z*(e0*(psi_x*t711
+                    - t718 + t728) + t722*t729 + t730))
+                bdy[j3 + 1] += (bdep_x*(e0*(psi_y*t713 + t716) + t720*t731 + t727) +
+                    bdep_y*(e0*(-psi_x*t713 + psi_z*t717) + t726*t731) + bdep_z*(e0*(-2*t723 -
+                    t724) + 2*e1*psi_y*t729 - t732))
+                bdy[j3 + 2] += (bdep_x*(e0*(t718 - 2*t728) + 2*e1*psi_z*t720 - t730) +
+                    bdep_y*(e0*(psi_z*t709 + t725) + t726*t733 + t732) + bdep_z*(e0*(psi_x*t714 -
+                    psi_y*t709) + t729*t733))
+                bdOm0_x += bdep_x*(e0*t699 - 1) - bdep_y*t700 - bdep_z*t706
+                bdOm0_y += -bdep_x*t693 + bdep_y*(e0*t705 - 1) - bdep_z*t707
+                bdOm0_z += -bdep_x*t696 - bdep_y*t703 + bdep_z*(e0*t708 - 1)
             # transposed: differential: rates of the elastic displacements
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 bdeu_x, bdeu_y, bdeu_z = bdeta[i3], bdeta[i3 + 1], bdeta[i3 + 2]
-                t923 = X_z + u_z
-                t924 = X_y + u_y
-                t925 = X_x + u_x
+                t734 = X_z + u_z
+                t735 = X_y + u_y
+                t736 = X_x + u_x
                 bdy[i3] += Om0_y*bdeu_z - Om0_z*bdeu_y
                 bdy[i3 + 1] += -Om0_x*bdeu_z + Om0_z*bdeu_x
                 bdy[i3 + 2] += Om0_x*bdeu_y - Om0_y*bdeu_x
                 bdyd[i3] += bdeu_x
                 bdyd[i3 + 1] += bdeu_y
                 bdyd[i3 + 2] += bdeu_z
-                bdOm0_x += bdeu_y*t923 - bdeu_z*t924
-                bdOm0_y += -bdeu_x*t923 + bdeu_z*t925
-                bdOm0_z += bdeu_x*t924 - bdeu_y*t925
+                bdOm0_x += bdeu_y*t734 - bdeu_z*t735
+                bdOm0_y += -bdeu_x*t734 + bdeu_z*t736
+                bdOm0_z += bdeu_x*t735 - bdeu_y*t736
                 bdv0_x += -bdeu_x
                 bdv0_y += -bdeu_y
                 bdv0_z += -bdeu_z
@@ -2719,12 +2477,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdy[k] = 0.0
             # transposed: differential: B rate = sum alpha_j T^-1(psi_j) rate_j
             rhs_x = rhs_y = rhs_z = 0.0
-            t926 = bdOm0_x + rhs_x
-            t927 = bdOm0_y + rhs_y
-            t928 = bdOm0_z + rhs_z
-            mdOm0_x = Bxx*t926 + Byx*t927 + Bzx*t928
-            mdOm0_y = Bxy*t926 + Byy*t927 + Bzy*t928
-            mdOm0_z = Bxz*t926 + Byz*t927 + Bzz*t928
+            t737 = bdOm0_x + rhs_x
+            t738 = bdOm0_y + rhs_y
+            t739 = bdOm0_z + rhs_z
+            mdOm0_x = Bxx*t737 + Byx*t738 + Bzx*t739
+            mdOm0_y = Bxy*t737 + Byy*t738 + Bzy*t739
+            mdOm0_z = Bxz*t737 + Byz*t738 + Bzz*t739
             # transposed: differential: B rate = sum alpha_j T^-1(psi_j) rate_j
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -2733,70 +2491,84 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t929 = (0.5)*psi_z
-                t930 = e0*psi_x
-                t931 = psi_y*t930
-                t932 = alpha_r*mdOm0_y
-                t933 = (0.5)*psi_y
-                t934 = psi_z*t930
-                t935 = alpha_r*mdOm0_z
-                t936 = psi_y*psi_y
-                t937 = e0*t936
-                t938 = psi_z*psi_z
-                t939 = e0*t938 - 1
-                t940 = alpha_r*mdOm0_x
-                t941 = (0.5)*psi_x
-                t942 = e0*psi_y
-                t943 = psi_z*t942
-                t944 = psi_x*psi_x
-                t945 = e0*t944
-                t946 = -Om_x*psi_y + Om_y*psi_x
-                t947 = 2*e1
-                t948 = psi_x*t947
-                t949 = psi_y*t948
-                t950 = t946*t949
-                t951 = Om0_x*psi_z
-                t952 = Om0_z*psi_x
-                t953 = t951 - t952
-                t954 = psi_z*t948
-                t955 = t953*t954
-                t956 = Om0_x*psi_y
-                t957 = Om0_y*psi_x - t956
-                t958 = t949*t957
-                t959 = Om_x*psi_z
-                t960 = -Om_z*psi_x + t959
-                t961 = t954*t960
-                t962 = e0*psi_z
-                t963 = Om0_z*t962 - Om_z*t962
-                t964 = Om0_y*t942 - Om_y*t942
-                t965 = t944*t947
-                t966 = -Om_y*psi_z + Om_z*psi_y
-                t967 = Om0_y*psi_z
-                t968 = Om0_z*psi_y - t967
-                t969 = (0.5)*Om0_z + (0.5)*Om_z + e0*t946 - e0*t957
-                t970 = (0.5)*Om0_y + (0.5)*Om_y - e0*t953 + e0*t960
-                t971 = psi_y*psi_z*t947
-                t972 = t966*t971
-                t973 = t968*t971
-                t974 = Om0_x*t930 - Om_x*t930
-                t975 = t936*t947
-                t976 = (0.5)*Om0_x + (0.5)*Om_x + e0*t966 - e0*t968
-                t977 = t938*t947
-                bdve[j3] += -t932*(-t929 - t931) - t935*(t933 - t934) - t940*(t937 + t939)
-                bdve[j3 + 1] += -t932*(t939 + t945) - t935*(-t941 - t943) - t940*(t929 - t931)
-                bdve[j3 + 2] += -t932*(t941 - t943) - t935*(t937 + t945 - 1) - t940*(-t933 - t934)
-                bdy[j3] += (-t932*(-Om0_y*e0*psi_x + Om_y*e0*psi_x + t946*t965 - t954*t966 +
-                    t954*t968 - t957*t965 + t969) - t935*(Om_z*e0*psi_x - e0*t952 +
-                    2*e1*psi_x*psi_y*t966 + 2*e1*t944*t953 - t949*t968 - t960*t965 - t970) -
-                    t940*(-t950 - t955 + t958 + t961 + t963 + t964))
-                bdy[j3 + 1] += (-t932*(t950 - t958 + t963 - t972 + t973 + t974) -
-                    t935*(-Om0_z*e0*psi_y + Om_z*e0*psi_y + t949*t953 - t949*t960 + t966*t975 -
-                    t968*t975 + t976) - t940*(Om_x*e0*psi_y - e0*t956 + 2*e1*psi_y*psi_z*t960 +
-                    2*e1*t936*t957 - t946*t975 - t953*t971 - t969))
-                bdy[j3 + 2] += (-t932*(Om_y*e0*psi_z - e0*t967 + 2*e1*psi_x*psi_z*t946 +
-                    2*e1*t938*t968 - t954*t957 - t966*t977 - t976) - t935*(t955 - t961 + t964 +
-                    t972 - t973 + t974) - t940*(-e0*t951 + e0*t959 - t946*t971 - t953*t977 +
-                    t957*t971 + t960*t977 + t970))
+                t740 = (0.5)*psi_z
+                t741 = e0*psi_y
+                t742 = psi_x*t741
+                t743 = alpha_r*mdOm0_y
+                t744 = (0.5)*psi_y
+                t745 = e0*psi_z
+                t746 = psi_x*t745
+                t747 = alpha_r*mdOm0_z
+                t748 = psi_y*psi_y
+                t749 = e0*t748
+                t750 = psi_z*psi_z
+                t751 = e0*t750 - 1
+                t752 = alpha_r*mdOm0_x
+                t753 = (0.5)*psi_x
+                t754 = psi_z*t741
+                t755 = psi_x*psi_x
+                t756 = e0*t755
+                t757 = -Om0_y*e0*psi_y
+                t758 = -Om0_z*e0*psi_z
+                t759 = 2*e1
+                t760 = t755*t759
+                t761 = psi_y*t760
+                t762 = t741 + t761
+                t763 = psi_z*t760
+                t764 = t745 + t763
+                t765 = -Om0_x*psi_y + Om0_y*psi_x
+                t766 = psi_x*t759
+                t767 = psi_y*t766
+                t768 = t765*t767
+                t769 = Om0_z*psi_x
+                t770 = Om0_x*psi_z - t769
+                t771 = psi_z*t766
+                t772 = t770*t771
+                t773 = t748*t766
+                t774 = t750*t766
+                t775 = (0.5)*Om0_y
+                t776 = psi_y*t771
+                t777 = t776 + 0.5
+                t778 = e0*t770
+                t779 = -Om0_y*psi_z + Om0_z*psi_y
+                t780 = e0*psi_x
+                t781 = psi_x*psi_x*psi_x*t759 + 2*t780
+                t782 = (0.5)*Om0_z
+                t783 = t776 - 0.5
+                t784 = e0*t765
+                t785 = -Om0_x*e0*psi_x
+                t786 = t773 + t780
+                t787 = t748*t759
+                t788 = psi_z*t787
+                t789 = t745 + t788
+                t790 = psi_y*psi_z*t759
+                t791 = t779*t790
+                t792 = t750*t759
+                t793 = psi_y*t792
+                t794 = psi_y*psi_y*psi_y*t759 + 2*t741
+                t795 = (0.5)*Om0_x
+                t796 = e0*t779
+                t797 = t774 + t780
+                t798 = t741 + t793
+                t799 = psi_z*psi_z*psi_z*t759 + 2*t745
+                bdve[j3] += -t743*(-t740 - t742) - t747*(t744 - t746) - t752*(t749 + t751)
+                bdve[j3 + 1] += -t743*(t751 + t756) - t747*(-t753 - t754) - t752*(t740 - t742)
+                bdve[j3 + 2] += -t743*(t753 - t754) - t747*(t749 + t756 - 1) - t752*(-t744 - t746)
+                bdy[j3] += (-t743*(-Om0_y*e0*psi_x - Om_x*t762 - Om_y*(-t774 - t781) - Om_z*t783 +
+                    2*e1*psi_x*psi_z*t779 - t760*t765 + t782 - t784) - t747*(-Om_x*t764 -
+                    Om_y*t777 - Om_z*(-t773 - t781) - e0*t769 + 2*e1*t755*t770 - t767*t779 - t775
+                    + t778) - t752*(-Om_x*(-t773 - t774) - Om_y*t762 - Om_z*t764 - t757 - t758 +
+                    t768 - t772))
+                bdy[j3 + 1] += (-t743*(-Om_x*t786 - Om_y*(-t761 - t793) - Om_z*t789 - t758 - t768
+                    - t785 + t791) - t747*(-Om0_z*t741 - Om_x*t783 - Om_y*t789 - Om_z*(-t761 -
+                    t794) + 2*e1*psi_x*psi_y*t770 - t779*t787 + t795 - t796) - t752*(-Om0_x*t741 -
+                    Om_x*(-t793 - t794) - Om_y*t786 - Om_z*t777 + 2*e1*t748*t765 - t770*t790 -
+                    t782 + t784))
+                bdy[j3 + 2] += (-t743*(-Om0_y*t745 - Om_x*t777 - Om_y*(-t763 - t799) - Om_z*t798 +
+                    2*e1*t750*t779 - t765*t771 - t795 + t796) - t747*(-Om_x*t797 - Om_y*t798 -
+                    Om_z*(-t763 - t788) - t757 + t772 - t785 - t791) - t752*(-Om0_x*t745 -
+                    Om_x*(-t788 - t799) - Om_y*t783 - Om_z*t797 + 2*e1*psi_y*psi_z*t765 -
+                    t770*t792 + t775 - t778))
             # transposed: differential: velocity and acceleration of the nodes in frame axes, (33)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -2847,43 +2619,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 bdpsi_x, bdpsi_y, bdpsi_z = bdy[j3], bdy[j3 + 1], bdy[j3 + 2]
                 e0 = e0s[j]
-                t978 = (0.5)*psi_z
-                t979 = e0*psi_x
-                t980 = psi_y*t979
-                t981 = t978 + t980
-                t982 = (0.5)*psi_y
-                t983 = psi_z*t979
-                t984 = -t982 + t983
-                t985 = e0*psi_y*psi_y
-                t986 = e0*psi_z*psi_z - 1
-                t987 = t985 + t986
-                t988 = -t978 + t980
-                t989 = (0.5)*psi_x
-                t990 = e0*psi_y*psi_z
-                t991 = t989 + t990
-                t992 = e0*psi_x*psi_x
-                t993 = t986 + t992
-                t994 = t982 + t983
-                t995 = -t989 + t990
-                t996 = t985 + t992 - 1
-                bdqe[j3] += -bdpsi_x*t987 + bdpsi_y*t981 + bdpsi_z*t984
-                bdqe[j3 + 1] += bdpsi_x*t988 - bdpsi_y*t993 + bdpsi_z*t991
-                bdqe[j3 + 2] += bdpsi_x*t994 + bdpsi_y*t995 - bdpsi_z*t996
-                bdth0_x += bdpsi_x*t987 - bdpsi_y*t988 - bdpsi_z*t994
-                bdth0_y += -bdpsi_x*t981 + bdpsi_y*t993 - bdpsi_z*t995
-                bdth0_z += -bdpsi_x*t984 - bdpsi_y*t991 + bdpsi_z*t996
+                t800 = (0.5)*psi_z
+                t801 = e0*psi_x
+                t802 = psi_y*t801
+                t803 = t800 + t802
+                t804 = (0.5)*psi_y
+                t805 = psi_z*t801
+                t806 = -t804 + t805
+                t807 = psi_y*psi_y
+                t808 = psi_z*psi_z
+                t809 = t807 + t808
+                t810 = -t800 + t802
+                t811 = (0.5)*psi_x
+                t812 = e0*psi_y*psi_z
+                t813 = t811 + t812
+                t814 = psi_x*psi_x
+                t815 = t808 + t814
+                t816 = t804 + t805
+                t817 = -t811 + t812
+                t818 = t807 + t814
+                bdqe[j3] += bdpsi_x*(-e0*t809 + 1) + bdpsi_y*t803 + bdpsi_z*t806
+                bdqe[j3 + 1] += bdpsi_x*t810 + bdpsi_y*(-e0*t815 + 1) + bdpsi_z*t813
+                bdqe[j3 + 2] += bdpsi_x*t816 + bdpsi_y*t817 + bdpsi_z*(-e0*t818 + 1)
+                bdth0_x += bdpsi_x*(e0*t809 - 1) - bdpsi_y*t810 - bdpsi_z*t816
+                bdth0_y += -bdpsi_x*t803 + bdpsi_y*(e0*t815 - 1) - bdpsi_z*t817
+                bdth0_z += -bdpsi_x*t806 - bdpsi_y*t813 + bdpsi_z*(e0*t818 - 1)
             # transposed: differential: displacement of the nodes in the frame, (11)
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 bdu_x, bdu_y, bdu_z = bdy[i3], bdy[i3 + 1], bdy[i3 + 2]
-                t997 = X_z + u_z
-                t998 = X_y + u_y
-                t999 = X_x + u_x
-                bdth0_x += bdu_y*t997 - bdu_z*t998
-                bdth0_y += -bdu_x*t997 + bdu_z*t999
-                bdth0_z += bdu_x*t998 - bdu_y*t999
+                t819 = X_z + u_z
+                t820 = X_y + u_y
+                t821 = X_x + u_x
+                bdth0_x += bdu_y*t819 - bdu_z*t820
+                bdth0_y += -bdu_x*t819 + bdu_z*t821
+                bdth0_z += bdu_x*t820 - bdu_y*t821
                 bdqe[i3] += bdu_x
                 bdqe[i3 + 1] += bdu_y
                 bdqe[i3 + 2] += bdu_z
@@ -2892,36 +2664,34 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdx0_z += -bdu_z
             # transposed: B rate = sum alpha_j T^-1(psi_j) rate_j
             rhs_x = rhs_y = rhs_z = 0.0
-            t1000 = bdth0_x + rhs_x
-            t1001 = bdth0_y + rhs_y
-            t1002 = bdth0_z + rhs_z
-            mdth0_x = Bxx*t1000 + Byx*t1001 + Bzx*t1002
-            mdth0_y = Bxy*t1000 + Byy*t1001 + Bzy*t1002
-            mdth0_z = Bxz*t1000 + Byz*t1001 + Bzz*t1002
+            t822 = bdth0_x + rhs_x
+            t823 = bdth0_y + rhs_y
+            t824 = bdth0_z + rhs_z
+            mdth0_x = Bxx*t822 + Byx*t823 + Bzx*t824
+            mdth0_y = Bxy*t822 + Byy*t823 + Bzy*t824
+            mdth0_z = Bxz*t822 + Byz*t823 + Bzz*t824
             # transposed: B rate = sum alpha_j T^-1(psi_j) rate_j
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 alpha_r = alpha_rs[j]
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e0 = e0s[j]
-                t1003 = (0.5)*psi_z
-                t1004 = e0*psi_x
-                t1005 = psi_y*t1004
-                t1006 = alpha_r*mdth0_y
-                t1007 = (0.5)*psi_y
-                t1008 = psi_z*t1004
-                t1009 = alpha_r*mdth0_z
-                t1010 = e0*psi_y*psi_y
-                t1011 = e0*psi_z*psi_z - 1
-                t1012 = alpha_r*mdth0_x
-                t1013 = (0.5)*psi_x
-                t1014 = e0*psi_y*psi_z
-                t1015 = e0*psi_x*psi_x
-                bdqe[j3] += -t1006*(-t1003 - t1005) - t1009*(t1007 - t1008) - t1012*(t1010 + t1011)
-                bdqe[j3 + 1] += (-t1006*(t1011 + t1015) - t1009*(-t1013 - t1014) - t1012*(t1003 -
-                    t1005))
-                bdqe[j3 + 2] += (-t1006*(t1013 - t1014) - t1009*(t1010 + t1015 - 1) -
-                    t1012*(-t1007 - t1008))
+                t825 = (0.5)*psi_z
+                t826 = e0*psi_x
+                t827 = psi_y*t826
+                t828 = alpha_r*mdth0_y
+                t829 = (0.5)*psi_y
+                t830 = psi_z*t826
+                t831 = alpha_r*mdth0_z
+                t832 = e0*psi_y*psi_y
+                t833 = e0*psi_z*psi_z - 1
+                t834 = alpha_r*mdth0_x
+                t835 = (0.5)*psi_x
+                t836 = e0*psi_y*psi_z
+                t837 = e0*psi_x*psi_x
+                bdqe[j3] += -t828*(-t825 - t827) - t831*(t829 - t830) - t834*(t832 + t833)
+                bdqe[j3 + 1] += -t828*(t833 + t837) - t831*(-t835 - t836) - t834*(t825 - t827)
+                bdqe[j3 + 2] += -t828*(t835 - t836) - t831*(t832 + t837 - 1) - t834*(-t829 - t830)
             # transposed: origin of the frame, (14)
             for i in range(N_POSITIONS):
                 i3 = 3*i

@@ -43,8 +43,8 @@ WORK_ROWS = 46
 WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (300, 136, 249, 3),
-              "column": (84, 136, 890, 5)}
+OPERATIONS = {"residual": (300, 136, 193, 3),
+              "column": (84, 136, 873, 5)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
 KEPT = 16      # numbers kept between two calls
 
@@ -192,30 +192,35 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e0 = e0s[j]
                 t3 = e0*psi_y*psi_y
                 t4 = e0*psi_z*psi_z - 1
-                t5 = (0.5)*psi_z
-                t6 = e0*psi_x
-                t7 = psi_y*t6
-                t8 = (0.5)*psi_y
-                t9 = psi_z*t6
-                t10 = e0*psi_x*psi_x
-                t11 = (0.5)*psi_x
-                t12 = e0*psi_z
-                t13 = psi_y*t12
-                t14 = -Om_x*psi_y + Om_y*psi_x
-                t15 = Om_x*psi_z - Om_z*psi_x
-                t16 = -Om_y*psi_z + Om_z*psi_y
-                B_00 += alpha_r*(-t3 - t4)
-                B_01 += alpha_r*(t5 + t7)
-                B_02 += alpha_r*(-t8 + t9)
-                B_10 += alpha_r*(-t5 + t7)
-                B_11 += alpha_r*(-t10 - t4)
-                B_12 += alpha_r*(t11 + t13)
-                B_20 += alpha_r*(t8 + t9)
-                B_21 += alpha_r*(-t11 + t13)
-                B_22 += alpha_r*(-t10 - t3 + 1)
-                rhs_x += -alpha_r*(-Om_x + (0.5)*Om_y*psi_z - Om_z*t8 - e0*psi_y*t14 + e0*psi_z*t15)
-                rhs_y += -alpha_r*(-Om_x*t5 - Om_y + (0.5)*Om_z*psi_x + e0*psi_x*t14 - t12*t16)
-                rhs_z += -alpha_r*((0.5)*Om_x*psi_y - Om_y*t11 - Om_z + e0*psi_y*t16 - t15*t6)
+                t5 = -t3 - t4
+                t6 = (0.5)*psi_z
+                t7 = e0*psi_x
+                t8 = psi_y*t7
+                t9 = t6 + t8
+                t10 = (0.5)*psi_y
+                t11 = psi_z*t7
+                t12 = -t10 + t11
+                t13 = -t6 + t8
+                t14 = e0*psi_x*psi_x
+                t15 = -t14 - t4
+                t16 = (0.5)*psi_x
+                t17 = e0*psi_y*psi_z
+                t18 = t16 + t17
+                t19 = t10 + t11
+                t20 = -t16 + t17
+                t21 = -t14 - t3 + 1
+                B_00 += alpha_r*t5
+                B_01 += alpha_r*t9
+                B_02 += alpha_r*t12
+                B_10 += alpha_r*t13
+                B_11 += alpha_r*t15
+                B_12 += alpha_r*t18
+                B_20 += alpha_r*t19
+                B_21 += alpha_r*t20
+                B_22 += alpha_r*t21
+                rhs_x += -alpha_r*(-Om_x*t5 - Om_y*t13 - Om_z*t19)
+                rhs_y += -alpha_r*(-Om_x*t9 - Om_y*t15 - Om_z*t20)
+                rhs_z += -alpha_r*(-Om_x*t12 - Om_y*t18 - Om_z*t21)
             Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
                 B_12, B_20, B_21, B_22)
             Om0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
@@ -275,47 +280,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t17 = alpha*mass
-                t18 = X_z + u_z
-                t19 = X_y + u_y
-                t20 = X_x + u_x
-                F_x += -f_x - gamma_x*t17
-                F_y += -f_y - gamma_y*t17
-                F_z += -f_z - gamma_z*t17
-                W_x += f_y*t18 - f_z*t19 - px_y*vs_z + px_z*vs_y
-                W_y += -f_x*t18 + f_z*t20 + px_x*vs_z - px_z*vs_x
-                W_z += f_x*t19 - f_y*t20 - px_x*vs_y + px_y*vs_x
+                t22 = alpha*mass
+                t23 = X_z + u_z
+                t24 = X_y + u_y
+                t25 = X_x + u_x
+                F_x += -f_x - gamma_x*t22
+                F_y += -f_y - gamma_y*t22
+                F_z += -f_z - gamma_z*t22
+                W_x += f_y*t23 - f_z*t24 - px_y*vs_z + px_z*vs_y
+                W_y += -f_x*t23 + f_z*t25 + px_x*vs_z - px_z*vs_x
+                W_z += f_x*t24 - f_y*t25 - px_x*vs_y + px_y*vs_x
             # moment of gravity on the frame
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             d_x, d_y, d_z = d[0], d[1], d[2]
             mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
-            t21 = d_z + mc_z
-            t22 = d_y + mc_y
-            t23 = d_x + mc_x
-            W_x += gamma_y*t21 - gamma_z*t22
-            W_y += -gamma_x*t21 + gamma_z*t23
-            W_z += gamma_x*t22 - gamma_y*t23
+            t26 = d_z + mc_z
+            t27 = d_y + mc_y
+            t28 = d_x + mc_x
+            W_x += gamma_y*t26 - gamma_z*t27
+            W_y += -gamma_x*t26 + gamma_z*t28
+            W_z += gamma_x*t27 - gamma_y*t28
             # moments on the frame: elastic (30) and inertia (45)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
-                t24 = -m_x*psi_y + m_y*psi_x
-                t25 = m_x*psi_z
-                t26 = -m_z*psi_x + t25
-                t27 = -m_y*psi_z + m_z*psi_y
-                W_x += -e0*psi_y*t24 + e0*psi_z*t26 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-                W_y += e0*psi_x*t24 - e0*psi_z*t27 - m_y + (0.5)*m_z*psi_x - 0.5*t25
-                W_z += -e0*psi_x*t26 + e0*psi_y*t27 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+                t29 = -m_x*psi_y + m_y*psi_x
+                t30 = m_x*psi_z
+                t31 = -m_z*psi_x + t30
+                t32 = -m_y*psi_z + m_z*psi_y
+                W_x += -e0*psi_y*t29 + e0*psi_z*t31 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+                W_y += e0*psi_x*t29 - e0*psi_z*t32 - m_y + (0.5)*m_z*psi_x - 0.5*t30
+                W_z += -e0*psi_x*t31 + e0*psi_y*t32 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
             # B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
-            t28 = W_x + rhs_x
-            t29 = W_y + rhs_y
-            t30 = W_z + rhs_z
-            wp_x = Bxx*t28 + Byx*t29 + Bzx*t30
-            wp_y = Bxy*t28 + Byy*t29 + Bzy*t30
-            wp_z = Bxz*t28 + Byz*t29 + Bzz*t30
+            t33 = W_x + rhs_x
+            t34 = W_y + rhs_y
+            t35 = W_z + rhs_z
+            wp_x = Bxx*t33 + Byx*t34 + Bzx*t35
+            wp_y = Bxy*t33 + Byy*t34 + Bzy*t35
+            wp_z = Bxz*t33 + Byz*t34 + Bzz*t35
             # force on the nodes in frame axes, (30), (57)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -343,30 +348,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 pwd_x, pwd_y, pwd_z = pd[j3], pd[j3 + 1], pd[j3 + 2]
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
-                t31 = m_y*psi_z
-                t32 = m_x*psi_y
-                t33 = m_y*psi_x - t32
-                t34 = e0*psi_y
-                t35 = m_x*psi_z
-                t36 = m_z*psi_x
-                t37 = t35 - t36
-                t38 = e0*psi_z
-                t39 = psi_y*wp_z
-                t40 = psi_z*wp_y
-                t41 = psi_x*wp_y
-                t42 = psi_y*wp_x
-                t43 = t41 - t42
-                t44 = psi_x*wp_z
-                t45 = psi_z*wp_x - t44
-                t46 = m_z*psi_y - t31
-                t47 = e0*psi_x
-                t48 = t39 - t40
-                g[j3] = (Om_y*pw_z - Om_z*pw_y + alpha_r*(t34*t43 - t38*t45 - 0.5*t39 + (0.5)*t40
-                    + wp_x) + m_x - 0.5*m_z*psi_y + pwd_x + (0.5)*t31 + t33*t34 - t37*t38)
-                g[j3 + 1] = (-Om_x*pw_z + Om_z*pw_x + alpha_r*(-0.5*psi_z*wp_x + t38*t48 - t43*t47
-                    + (0.5)*t44 + wp_y) + m_y + pwd_y - t33*t47 - 0.5*t35 + (0.5)*t36 + t38*t46)
-                g[j3 + 2] = (Om_x*pw_y - Om_y*pw_x + alpha_r*(-t34*t48 - 0.5*t41 + (0.5)*t42 +
-                    t45*t47 + wp_z) - 0.5*m_y*psi_x + m_z + pwd_z + (0.5)*t32 - t34*t46 + t37*t47)
+                t36 = alpha_r*wp_y + m_y
+                t37 = psi_z*t36
+                t38 = alpha_r*wp_z + m_z
+                t39 = psi_y*t38
+                t40 = psi_x*t36
+                t41 = alpha_r*wp_x + m_x
+                t42 = psi_y*t41
+                t43 = e0*(t40 - t42)
+                t44 = psi_x*t38
+                t45 = psi_z*t41 - t44
+                t46 = e0*psi_z
+                t47 = -t37 + t39
+                g[j3] = (Om_y*pw_z - Om_z*pw_y + psi_y*t43 + pwd_x + (0.5)*t37 - 0.5*t39 + t41 -
+                    t45*t46)
+                g[j3 + 1] = (-Om_x*pw_z + Om_z*pw_x - psi_x*t43 - 0.5*psi_z*t41 + pwd_y + t36 +
+                    (0.5)*t44 + t46*t47)
+                g[j3 + 2] = (Om_x*pw_y - Om_y*pw_x + e0*psi_x*t45 - e0*psi_y*t47 + pwd_z + t38 -
+                    0.5*t40 + (0.5)*t42)
             # force of the internal modes
             for k in range(MODES, n):
                 fm = s[k]
@@ -429,16 +428,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                 e0 = e0s[j]
-                t49 = -dth_x*psi_y + dth_y*psi_x
-                t50 = dth_x*psi_z
-                t51 = -dth_z*psi_x + t50
-                t52 = -dth_y*psi_z + dth_z*psi_y
-                rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y - e0*psi_y*t49 +
-                    e0*psi_z*t51))
-                rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t49 - e0*psi_z*t52 -
-                    0.5*t50))
-                rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t51 +
-                    e0*psi_y*t52))
+                t48 = -dth_x*psi_y + dth_y*psi_x
+                t49 = dth_x*psi_z
+                t50 = -dth_z*psi_x + t49
+                t51 = -dth_y*psi_z + dth_z*psi_y
+                rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y - e0*psi_y*t48 +
+                    e0*psi_z*t50))
+                rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t48 - e0*psi_z*t51 -
+                    0.5*t49))
+                rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t50 +
+                    e0*psi_y*t51))
             dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -448,41 +447,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-                t53 = X_y + u_y
-                t54 = X_z + u_z
-                t55 = X_x + u_x
-                dy[i3] = -dth0_y*t54 + dth0_z*t53 - dx0_x + dx_x
-                dy[i3 + 1] = dth0_x*t54 - dth0_z*t55 - dx0_y + dx_y
-                dy[i3 + 2] = -dth0_x*t53 + dth0_y*t55 - dx0_z + dx_z
+                t52 = X_y + u_y
+                t53 = X_z + u_z
+                t54 = X_x + u_x
+                dy[i3] = -dth0_y*t53 + dth0_z*t52 - dx0_x + dx_x
+                dy[i3 + 1] = dth0_x*t53 - dth0_z*t54 - dx0_y + dx_y
+                dy[i3 + 2] = -dth0_x*t52 + dth0_y*t54 - dx0_z + dx_z
             # variation of the elastic rotations, (17)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                 e0 = e0s[j]
-                t56 = dth0_y*psi_z
-                t57 = dth_y*psi_z
-                t58 = dth0_x*psi_y
-                t59 = dth0_y*psi_x - t58
-                t60 = e0*psi_y
-                t61 = dth_x*psi_z
-                t62 = dth_z*psi_x
-                t63 = t61 - t62
-                t64 = e0*psi_z
-                t65 = dth_x*psi_y
-                t66 = dth_y*psi_x - t65
-                t67 = dth0_x*psi_z
-                t68 = dth0_z*psi_x
-                t69 = t67 - t68
-                t70 = e0*psi_x
-                t71 = dth_z*psi_y - t57
-                t72 = dth0_z*psi_y - t56
-                dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y + e0*psi_y*t66
-                    + e0*psi_z*t69 - 0.5*t56 - 0.5*t57 - t59*t60 - t63*t64)
-                dy[j3 + 1] = (-dth0_y + dth_y + t59*t70 + (0.5)*t61 - 0.5*t62 + t64*t71 - t64*t72
-                    - t66*t70 + (0.5)*t67 - 0.5*t68)
-                dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                    e0*psi_x*t63 + e0*psi_y*t72 - 0.5*t58 - t60*t71 - 0.5*t65 - t69*t70)
+                t55 = (0.5)*dth0_z + (0.5)*dth_z
+                t56 = dth0_y + dth_y
+                t57 = (0.5)*psi_z
+                t58 = -dth0_y + dth_y
+                t59 = -dth0_x + dth_x
+                t60 = psi_x*t58 - psi_y*t59
+                t61 = -dth0_z + dth_z
+                t62 = -psi_x*t61 + psi_z*t59
+                t63 = dth0_x + dth_x
+                t64 = psi_y*t61 - psi_z*t58
+                dy[j3] = -dth0_x + dth_x + e0*(psi_y*t60 - psi_z*t62) + psi_y*t55 - t56*t57
+                dy[j3 + 1] = -dth0_y + dth_y + e0*(-psi_x*t60 + psi_z*t64) - psi_x*t55 + t57*t63
+                dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t62 - psi_y*t64) + (0.5)*psi_x*t56 -
+                    0.5*psi_y*t63)
             # differential: internal modes
             for k in range(MODES, n):
                 dqm = dqe[k]
@@ -539,44 +529,56 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t73 = -Om_x*psi_y + Om_y*psi_x
-                t74 = dpsi_y*e0
-                t75 = Om0_x*psi_z - Om0_z*psi_x
-                t76 = dpsi_z*e0
-                t77 = Om0_x*dpsi_z
-                t78 = -Om0_z*dpsi_x + t77
-                t79 = e0*psi_z
-                t80 = -Om0_x*psi_y + Om0_y*psi_x
-                t81 = Om_x*psi_z - Om_z*psi_x
-                t82 = -Om0_x*dpsi_y + Om0_y*dpsi_x
-                t83 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                t84 = e0*psi_y
-                t85 = Om_x*dpsi_z
-                t86 = dOm_x*psi_z
-                t87 = -Om_z*dpsi_x - dOm_z*psi_x + t85 + t86
-                t88 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t89 = e1*t88
-                t90 = psi_y*t89
-                t91 = psi_z*t89
-                t92 = dpsi_x*e0
-                t93 = -Om_y*psi_z + Om_z*psi_y
-                t94 = e0*psi_x
-                t95 = -Om0_y*psi_z + Om0_z*psi_y
-                t96 = -Om0_y*dpsi_z + Om0_z*dpsi_y
-                t97 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                t98 = psi_x*t89
-                rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - 0.5*Om0_z*dpsi_y + (0.5)*Om_y*dpsi_z -
-                    0.5*Om_z*dpsi_y - dOm_x + (0.5)*dOm_y*psi_z - 0.5*dOm_z*psi_y + dpsi_y*e0*t80
-                    + dpsi_z*e0*t81 + e0*psi_y*t82 + e0*psi_z*t87 + e1*psi_y*t80*t88 +
-                    e1*psi_z*t81*t88 - t73*t74 - t73*t90 - t75*t76 - t75*t91 - t78*t79 - t83*t84))
-                rhs_y += (-alpha_r*((0.5)*Om0_z*dpsi_x + (0.5)*Om_z*dpsi_x - dOm_y +
-                    (0.5)*dOm_z*psi_x + dpsi_x*e0*t73 + dpsi_z*e0*t95 + e0*psi_x*t83 +
-                    e0*psi_z*t96 + e1*psi_x*t73*t88 + e1*psi_z*t88*t95 - t76*t93 - 0.5*t77 -
-                    t79*t97 - t80*t92 - t80*t98 - t82*t94 - 0.5*t85 - 0.5*t86 - t91*t93))
-                rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x + (0.5)*Om_x*dpsi_y -
-                    0.5*Om_y*dpsi_x + (0.5)*dOm_x*psi_y - 0.5*dOm_y*psi_x - dOm_z + dpsi_x*e0*t75
-                    + dpsi_y*e0*t93 + e0*psi_x*t78 + e0*psi_y*t97 + e1*psi_x*t75*t88 +
-                    e1*psi_y*t88*t93 - t74*t95 - t81*t92 - t81*t98 - t84*t96 - t87*t94 - t90*t95))
+                t65 = (0.5)*dpsi_y
+                t66 = (0.5)*psi_z
+                t67 = e0*psi_x
+                t68 = psi_y*t67
+                t69 = (0.5)*psi_y
+                t70 = psi_z*t67
+                t71 = Om0_x*psi_z - Om0_z*psi_x
+                t72 = Om0_x*dpsi_z - Om0_z*dpsi_x
+                t73 = -Om0_x*psi_y + Om0_y*psi_x
+                t74 = -Om0_x*dpsi_y + Om0_y*dpsi_x
+                t75 = psi_y*psi_y
+                t76 = e0*t75
+                t77 = psi_z*psi_z
+                t78 = e0*t77 - 1
+                t79 = 2*dpsi_x*psi_x
+                t80 = 2*dpsi_y*psi_y
+                t81 = 2*dpsi_z*psi_z
+                t82 = t79 + t80 + t81
+                t83 = e1*t82
+                t84 = (0.5)*dpsi_z
+                t85 = dpsi_x*e0
+                t86 = psi_x*t83
+                t87 = dpsi_y*t67 + psi_y*t85 + psi_y*t86
+                t88 = dpsi_z*t67 + psi_z*t85 + psi_z*t86
+                t89 = e0*t81 + t77*t83
+                t90 = e0*t80 + t75*t83
+                t91 = (0.5)*psi_x
+                t92 = e0*psi_y
+                t93 = psi_z*t92
+                t94 = -Om0_y*psi_z + Om0_z*psi_y
+                t95 = -Om0_y*dpsi_z + Om0_z*dpsi_y
+                t96 = psi_x*psi_x
+                t97 = e0*t96
+                t98 = (0.5)*dpsi_x
+                t99 = dpsi_y*e0
+                t100 = psi_y*t83
+                t101 = dpsi_z*t92 + psi_z*t100 + psi_z*t99
+                t102 = e0*t79 + t83*t96
+                rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - Om0_z*t65 - Om_x*(-t89 - t90) -
+                    Om_y*(-t84 + t87) - Om_z*(t65 + t88) - dOm_x*(-t76 - t78) - dOm_y*(-t66 + t68)
+                    - dOm_z*(t69 + t70) + dpsi_y*e0*t73 - dpsi_z*e0*t71 + e0*psi_y*t74 -
+                    e0*psi_z*t72 + e1*psi_y*t73*t82 - psi_z*t71*t83))
+                rhs_y += (-alpha_r*(-Om0_x*t84 + (0.5)*Om0_z*dpsi_x - Om_x*(t84 + t87) -
+                    Om_y*(-t102 - t89) - Om_z*(t101 - t98) - dOm_x*(t66 + t68) - dOm_y*(-t78 -
+                    t97) - dOm_z*(-t91 + t93) + dpsi_z*e0*t94 + e0*psi_z*t95 + e1*psi_z*t82*t94 -
+                    t67*t74 - t73*t85 - t73*t86))
+                rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x - Om_x*(-t65 + t88) -
+                    Om_y*(t101 + t98) - Om_z*(-t102 - t90) - dOm_x*(-t69 + t70) - dOm_y*(t91 +
+                    t93) - dOm_z*(-t76 - t97 + 1) + dpsi_x*e0*t71 + e0*psi_x*t72 +
+                    e1*psi_x*t71*t82 - t100*t94 - t92*t95 - t94*t99))
             dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -625,18 +627,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                 dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
-                t99 = alpha*mass
-                t100 = X_z + u_z
-                t101 = X_y + u_y
-                t102 = X_x + u_x
-                dF_x += -df_x - dgamma_x*t99
-                dF_y += -df_y - dgamma_y*t99
-                dF_z += -df_z - dgamma_z*t99
-                dW_x += (df_y*t100 - df_z*t101 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y +
+                t103 = alpha*mass
+                t104 = X_z + u_z
+                t105 = X_y + u_y
+                t106 = X_x + u_x
+                dF_x += -df_x - dgamma_x*t103
+                dF_y += -df_y - dgamma_y*t103
+                dF_z += -df_z - dgamma_z*t103
+                dW_x += (df_y*t104 - df_z*t105 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y +
                     dvs_y*px_z - dvs_z*px_y)
-                dW_y += (-df_x*t100 + df_z*t102 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z - du_z*f_x -
+                dW_y += (-df_x*t104 + df_z*t106 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z - du_z*f_x -
                     dvs_x*px_z + dvs_z*px_x)
-                dW_z += (df_x*t101 - df_y*t102 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x +
+                dW_z += (df_x*t105 - df_y*t106 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x +
                     dvs_x*px_y - dvs_y*px_x)
             # differential: moment of gravity on the frame
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
@@ -644,12 +646,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
             dd_x, dd_y, dd_z = dd[0], dd[1], dd[2]
             dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-            t103 = d_y + mc_y
-            t104 = d_z + mc_z
-            t105 = d_x + mc_x
-            dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t104 - dgamma_z*t103
-            dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t104 + dgamma_z*t105
-            dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t103 - dgamma_y*t105
+            t107 = d_y + mc_y
+            t108 = d_z + mc_z
+            t109 = d_x + mc_x
+            dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t108 - dgamma_z*t107
+            dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t108 + dgamma_z*t109
+            dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t107 - dgamma_y*t109
             # differential: moments on the frame: elastic (30) and inertia (45)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -659,25 +661,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t106 = -m_x*psi_y + m_y*psi_x
-                t107 = m_x*psi_z - m_z*psi_x
-                t108 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                t109 = dm_x*psi_z
-                t110 = dpsi_z*m_x
-                t111 = -dm_z*psi_x - dpsi_x*m_z + t109 + t110
-                t112 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t113 = e1*t112
-                t114 = -m_y*psi_z + m_z*psi_y
-                t115 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t106 -
-                    0.5*dpsi_y*m_z + dpsi_z*e0*t107 + (0.5)*dpsi_z*m_y - e0*psi_y*t108 +
-                    e0*psi_z*t111 + e1*psi_z*t107*t112 - psi_y*t106*t113)
-                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t106 + (0.5)*dpsi_x*m_z -
-                    dpsi_z*e0*t114 + e0*psi_x*t108 - e0*psi_z*t115 + e1*psi_x*t106*t112 -
-                    psi_z*t113*t114 - 0.5*t109 - 0.5*t110)
-                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t107 -
-                    0.5*dpsi_x*m_y + dpsi_y*e0*t114 + (0.5)*dpsi_y*m_x - e0*psi_x*t111 +
-                    e0*psi_y*t115 + e1*psi_y*t112*t114 - psi_x*t107*t113)
+                t110 = -m_x*psi_y + m_y*psi_x
+                t111 = m_x*psi_z - m_z*psi_x
+                t112 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                t113 = dm_x*psi_z
+                t114 = dpsi_z*m_x
+                t115 = -dm_z*psi_x - dpsi_x*m_z + t113 + t114
+                t116 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t117 = e1*t116
+                t118 = -m_y*psi_z + m_z*psi_y
+                t119 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t110 -
+                    0.5*dpsi_y*m_z + dpsi_z*e0*t111 + (0.5)*dpsi_z*m_y - e0*psi_y*t112 +
+                    e0*psi_z*t115 + e1*psi_z*t111*t116 - psi_y*t110*t117)
+                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t110 + (0.5)*dpsi_x*m_z -
+                    dpsi_z*e0*t118 + e0*psi_x*t112 - e0*psi_z*t119 + e1*psi_x*t110*t116 -
+                    psi_z*t117*t118 - 0.5*t113 - 0.5*t114)
+                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t111 -
+                    0.5*dpsi_x*m_y + dpsi_y*e0*t118 + (0.5)*dpsi_y*m_x - e0*psi_x*t115 +
+                    e0*psi_y*t119 + e1*psi_y*t116*t118 - psi_x*t111*t117)
             # differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
             for j in range(N_ROTATIONS):
@@ -687,33 +689,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t116 = dpsi_y*wp_z
-                t117 = dpsi_z*wp_y
-                t118 = psi_x*wp_y - psi_y*wp_x
-                t119 = e0*t118
-                t120 = dpsi_x*wp_y
-                t121 = dpsi_y*wp_x
-                t122 = e0*(t120 - t121)
-                t123 = -psi_x*wp_z + psi_z*wp_x
-                t124 = dpsi_x*wp_z
-                t125 = dpsi_z*wp_x - t124
-                t126 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t127 = e1*t126
-                t128 = t118*t127
-                t129 = psi_y*wp_z - psi_z*wp_y
-                t130 = t116 - t117
-                rhs_x += (-alpha_r*(dpsi_y*t119 - dpsi_z*e0*t123 - e0*psi_z*t125 + psi_y*t122 +
-                    psi_y*t128 - psi_z*t123*t127 + (0.5)*t116 - 0.5*t117))
-                rhs_y += (-alpha_r*(-dpsi_x*t119 + dpsi_z*e0*t129 + (0.5)*dpsi_z*wp_x +
-                    e0*psi_z*t130 + e1*psi_z*t126*t129 - psi_x*t122 - psi_x*t128 - 0.5*t124))
-                rhs_z += (-alpha_r*(dpsi_x*e0*t123 - dpsi_y*e0*t129 + e0*psi_x*t125 -
-                    e0*psi_y*t130 + psi_x*t123*t127 - psi_y*t127*t129 + (0.5)*t120 - 0.5*t121))
-            t131 = dW_x + rhs_x
-            t132 = dW_y + rhs_y
-            t133 = dW_z + rhs_z
-            dwp_x = Bxx*t131 + Byx*t132 + Bzx*t133
-            dwp_y = Bxy*t131 + Byy*t132 + Bzy*t133
-            dwp_z = Bxz*t131 + Byz*t132 + Bzz*t133
+                t120 = dpsi_y*wp_z
+                t121 = dpsi_z*wp_y
+                t122 = psi_x*wp_y - psi_y*wp_x
+                t123 = e0*t122
+                t124 = dpsi_x*wp_y
+                t125 = dpsi_y*wp_x
+                t126 = e0*(t124 - t125)
+                t127 = -psi_x*wp_z + psi_z*wp_x
+                t128 = dpsi_x*wp_z
+                t129 = dpsi_z*wp_x - t128
+                t130 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t131 = e1*t130
+                t132 = t122*t131
+                t133 = psi_y*wp_z - psi_z*wp_y
+                t134 = t120 - t121
+                rhs_x += (-alpha_r*(dpsi_y*t123 - dpsi_z*e0*t127 - e0*psi_z*t129 + psi_y*t126 +
+                    psi_y*t132 - psi_z*t127*t131 + (0.5)*t120 - 0.5*t121))
+                rhs_y += (-alpha_r*(-dpsi_x*t123 + dpsi_z*e0*t133 + (0.5)*dpsi_z*wp_x +
+                    e0*psi_z*t134 + e1*psi_z*t130*t133 - psi_x*t126 - psi_x*t132 - 0.5*t128))
+                rhs_z += (-alpha_r*(dpsi_x*e0*t127 - dpsi_y*e0*t133 + e0*psi_x*t129 -
+                    e0*psi_y*t134 + psi_x*t127*t131 - psi_y*t131*t133 + (0.5)*t124 - 0.5*t125))
+            t135 = dW_x + rhs_x
+            t136 = dW_y + rhs_y
+            t137 = dW_z + rhs_z
+            dwp_x = Bxx*t135 + Byx*t136 + Bzx*t137
+            dwp_y = Bxy*t135 + Byy*t136 + Bzy*t137
+            dwp_z = Bxz*t135 + Byz*t136 + Bzz*t137
             # differential: force on the nodes in frame axes, (30), (57)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -751,61 +753,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpwd_x, dpwd_y, dpwd_z = dpd[j3], dpd[j3 + 1], dpd[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t134 = dm_y*psi_z
-                t135 = dpsi_z*m_y
-                t136 = -m_x*psi_y + m_y*psi_x
-                t137 = dpsi_y*e0
-                t138 = m_x*psi_z - m_z*psi_x
-                t139 = dpsi_z*e0
-                t140 = dm_x*psi_y
-                t141 = dpsi_y*m_x
-                t142 = dm_y*psi_x + dpsi_x*m_y - t140 - t141
-                t143 = e0*psi_y
-                t144 = dm_x*psi_z
-                t145 = dpsi_z*m_x
-                t146 = dm_z*psi_x
-                t147 = dpsi_x*m_z
-                t148 = t144 + t145 - t146 - t147
-                t149 = e0*psi_z
-                t150 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                t151 = psi_y*t150
-                t152 = psi_z*t150
-                t153 = dpsi_y*wp_z
-                t154 = dpsi_z*wp_y
-                t155 = dwp_y*psi_z
-                t156 = dwp_z*psi_y
-                t157 = psi_x*wp_y - psi_y*wp_x
-                t158 = -psi_x*wp_z + psi_z*wp_x
-                t159 = dpsi_x*wp_y
-                t160 = dwp_y*psi_x
-                t161 = dpsi_y*wp_x
-                t162 = dwp_x*psi_y
-                t163 = t159 + t160 - t161 - t162
-                t164 = dpsi_x*wp_z
-                t165 = dwp_z*psi_x
-                t166 = dpsi_z*wp_x + dwp_x*psi_z - t164 - t165
-                t167 = -m_y*psi_z + m_z*psi_y
-                t168 = dpsi_x*e0
-                t169 = dm_z*psi_y + dpsi_y*m_z - t134 - t135
-                t170 = e0*psi_x
-                t171 = psi_x*t150
-                t172 = psi_y*wp_z - psi_z*wp_y
-                t173 = t153 - t154 - t155 + t156
-                dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + alpha_r*(dwp_x + t137*t157 - t139*t158 +
-                    t143*t163 - t149*t166 + t151*t157 - t152*t158 - 0.5*t153 + (0.5)*t154 +
-                    (0.5)*t155 - 0.5*t156) + dOm_y*pw_z - dOm_z*pw_y + dm_x - 0.5*dm_z*psi_y -
-                    0.5*dpsi_y*m_z + dpwd_x + (0.5)*t134 + (0.5)*t135 + t136*t137 + t136*t151 -
-                    t138*t139 - t138*t152 + t142*t143 - t148*t149)
-                dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x + alpha_r*(-0.5*dpsi_z*wp_x -
-                    0.5*dwp_x*psi_z + dwp_y + t139*t172 + t149*t173 + t152*t172 - t157*t168 -
-                    t157*t171 - t163*t170 + (0.5)*t164 + (0.5)*t165) - dOm_x*pw_z + dOm_z*pw_x +
-                    dm_y + dpwd_y - t136*t168 - t136*t171 + t139*t167 - t142*t170 - 0.5*t144 -
-                    0.5*t145 + (0.5)*t146 + (0.5)*t147 + t149*t169 + t152*t167)
-                dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + alpha_r*(dwp_z - t137*t172 - t143*t173 -
-                    t151*t172 + t158*t168 + t158*t171 - 0.5*t159 - 0.5*t160 + (0.5)*t161 +
-                    (0.5)*t162 + t166*t170) + dOm_x*pw_y - dOm_y*pw_x - 0.5*dm_y*psi_x + dm_z -
-                    0.5*dpsi_x*m_y + dpwd_z - t137*t167 + t138*t168 + t138*t171 + (0.5)*t140 +
-                    (0.5)*t141 - t143*t169 + t148*t170 - t151*t167)
+                t138 = alpha_r*wp_y + m_y
+                t139 = dpsi_z*t138
+                t140 = alpha_r*dwp_y + dm_y
+                t141 = psi_z*t140
+                t142 = alpha_r*wp_z + m_z
+                t143 = dpsi_y*t142
+                t144 = alpha_r*dwp_z + dm_z
+                t145 = psi_y*t144
+                t146 = alpha_r*wp_x + m_x
+                t147 = psi_x*t138 - psi_y*t146
+                t148 = e0*t147
+                t149 = dpsi_x*t138
+                t150 = psi_x*t140
+                t151 = dpsi_y*t146
+                t152 = alpha_r*dwp_x + dm_x
+                t153 = psi_y*t152
+                t154 = e0*(t149 + t150 - t151 - t153)
+                t155 = -psi_x*t142 + psi_z*t146
+                t156 = dpsi_z*e0
+                t157 = dpsi_x*t142
+                t158 = psi_x*t144
+                t159 = dpsi_z*t146 + psi_z*t152 - t157 - t158
+                t160 = e0*psi_z
+                t161 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                t162 = t147*t161
+                t163 = psi_z*t161
+                t164 = psi_y*t142 - psi_z*t138
+                t165 = -t139 - t141 + t143 + t145
+                dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + dOm_y*pw_z - dOm_z*pw_y + dpsi_y*t148 + dpwd_x
+                    + psi_y*t154 + psi_y*t162 + (0.5)*t139 + (0.5)*t141 - 0.5*t143 - 0.5*t145 +
+                    t152 - t155*t156 - t155*t163 - t159*t160)
+                dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x - dOm_x*pw_z + dOm_z*pw_x - dpsi_x*t148 -
+                    0.5*dpsi_z*t146 + dpwd_y - psi_x*t154 - psi_x*t162 - 0.5*psi_z*t152 + t140 +
+                    t156*t164 + (0.5)*t157 + (0.5)*t158 + t160*t165 + t163*t164)
+                dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + dOm_x*pw_y - dOm_y*pw_x + dpsi_x*e0*t155 -
+                    dpsi_y*e0*t164 + dpwd_z + e0*psi_x*t159 - e0*psi_y*t165 + psi_x*t155*t161 -
+                    psi_y*t161*t164 + t144 - 0.5*t149 - 0.5*t150 + (0.5)*t151 + (0.5)*t153)
             # differential: force of the internal modes
             for k in range(MODES, n):
                 dfm = ds[k]
@@ -897,107 +881,82 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdgt_x, bdgt_y, bdgt_z = bdg[j3], bdg[j3 + 1], bdg[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t174 = e0*psi_y
-                t175 = m_y*t174
-                t176 = e0*psi_z
-                t177 = m_z*t176
-                t178 = m_x*psi_y
-                t179 = m_y*psi_x - t178
-                t180 = 2*e1
-                t181 = psi_x*t180
-                t182 = psi_y*t181
-                t183 = t179*t182
-                t184 = m_x*psi_z
-                t185 = m_z*psi_x
-                t186 = t184 - t185
-                t187 = psi_z*t181
-                t188 = t186*t187
-                t189 = t174*wp_y
-                t190 = t176*wp_z
-                t191 = psi_x*wp_y
-                t192 = psi_y*wp_x
-                t193 = t191 - t192
-                t194 = t182*t193
-                t195 = psi_x*wp_z
-                t196 = psi_z*wp_x - t195
-                t197 = t187*t196
-                t198 = (0.5)*m_y
-                t199 = e0*t186
-                t200 = m_y*psi_z
-                t201 = m_z*psi_y - t200
-                t202 = psi_x*psi_x
-                t203 = t180*t202
-                t204 = (0.5)*wp_y
-                t205 = e0*t196
-                t206 = psi_y*wp_z
-                t207 = psi_z*wp_y
-                t208 = t206 - t207
-                t209 = (0.5)*m_z
-                t210 = e0*t179
-                t211 = (0.5)*wp_z
-                t212 = e0*t193
-                t213 = e0*psi_x
-                t214 = m_x*t213
-                t215 = psi_y*psi_z*t180
-                t216 = t201*t215
-                t217 = t213*wp_x
-                t218 = t208*t215
-                t219 = psi_y*psi_y
-                t220 = t180*t219
-                t221 = (0.5)*m_x
-                t222 = e0*t201
-                t223 = (0.5)*wp_x
-                t224 = e0*t208
-                t225 = psi_z*psi_z
-                t226 = t180*t225
-                t227 = (0.5)*psi_z
-                t228 = psi_x*t174
-                t229 = bdgt_y*(-t227 + t228)
-                t230 = (0.5)*psi_y
-                t231 = psi_x*t176
-                t232 = bdgt_z*(t230 + t231)
-                t233 = e0*t219
-                t234 = e0*t225 - 1
-                t235 = bdgt_x*(-t233 - t234)
-                t236 = bdgt_x*(t227 + t228)
-                t237 = (0.5)*psi_x
-                t238 = psi_z*t174
-                t239 = bdgt_z*(-t237 + t238)
-                t240 = e0*t202
-                t241 = bdgt_y*(-t234 - t240)
-                t242 = bdgt_x*(-t230 + t231)
-                t243 = bdgt_y*(t237 + t238)
-                t244 = bdgt_z*(-t233 - t240 + 1)
+                t166 = alpha_r*wp_y
+                t167 = m_y + t166
+                t168 = e0*psi_y
+                t169 = alpha_r*wp_z
+                t170 = m_z + t169
+                t171 = -t170
+                t172 = psi_x*t167
+                t173 = alpha_r*wp_x
+                t174 = m_x + t173
+                t175 = -psi_y*t174 + t172
+                t176 = 2*e1
+                t177 = psi_x*t176
+                t178 = psi_y*t177
+                t179 = t175*t178
+                t180 = -psi_x*t170 + psi_z*t174
+                t181 = psi_z*t177
+                t182 = t180*t181
+                t183 = psi_x*psi_x
+                t184 = psi_y*t170
+                t185 = -psi_z*t167 + t184
+                t186 = -e0*t175 + (0.5)*m_z + (0.5)*t169
+                t187 = -e0*t180 + (0.5)*m_y + (0.5)*t166
+                t188 = -t174
+                t189 = e0*psi_x
+                t190 = psi_y*psi_z*t176
+                t191 = -t185*t190
+                t192 = psi_y*psi_y
+                t193 = -e0*t185 + (0.5)*m_x + (0.5)*t173
+                t194 = -t167
+                t195 = psi_z*psi_z
+                t196 = (0.5)*psi_z
+                t197 = psi_x*t168
+                t198 = (0.5)*psi_y
+                t199 = e0*psi_x*psi_z
+                t200 = e0*t192
+                t201 = e0*t195
+                t202 = t201 - 1
+                t203 = (0.5)*psi_x
+                t204 = psi_z*t168
+                t205 = e0*t183
+                t206 = alpha_r*t196
+                t207 = alpha_r*t197
+                t208 = alpha_r*t198
+                t209 = alpha_r*t199
+                t210 = alpha_r*t200
+                t211 = -alpha_r
+                t212 = alpha_r*t201 + t211
+                t213 = alpha_r*t203
+                t214 = alpha_r*t204
+                t215 = alpha_r*t205
                 bdve[j3] += -bdgt_y*pw_z + bdgt_z*pw_y
                 bdve[j3 + 1] += bdgt_x*pw_z - bdgt_z*pw_x
                 bdve[j3 + 2] += -bdgt_x*pw_y + bdgt_y*pw_x
-                bdy[j3] += (bdgt_x*(alpha_r*(t189 + t190 + t194 - t197) + t175 + t177 + t183 -
-                    t188) + bdgt_y*(alpha_r*(-e0*t191 + 2*e1*psi_x*psi_z*t208 - t193*t203 + t211 -
-                    t212) - e0*m_y*psi_x - t179*t203 + t187*t201 + t209 - t210) +
-                    bdgt_z*(alpha_r*(-e0*t195 + 2*e1*t196*t202 - t182*t208 - t204 + t205) -
-                    e0*t185 - t182*t201 + t186*t203 - t198 + t199))
-                bdy[j3 + 1] += (bdgt_x*(alpha_r*(-e0*t192 + 2*e1*t193*t219 - t196*t215 - t211 +
-                    t212) - e0*t178 + t179*t220 - t186*t215 - t209 + t210) + bdgt_y*(alpha_r*(t190
-                    - t194 + t217 + t218) + t177 - t183 + t214 + t216) + bdgt_z*(alpha_r*(-e0*t206
-                    + 2*e1*psi_x*psi_y*t196 - t208*t220 + t223 - t224) - e0*m_z*psi_y + t182*t186
-                    - t201*t220 + t221 - t222))
-                bdy[j3 + 2] += (bdgt_x*(alpha_r*(-e0*psi_z*wp_x + 2*e1*psi_y*psi_z*t193 -
-                    t196*t226 + t204 - t205) - e0*t184 + t179*t215 - t186*t226 + t198 - t199) +
-                    bdgt_y*(alpha_r*(-e0*t207 + 2*e1*t208*t225 - t187*t193 - t223 + t224) -
-                    e0*t200 - t179*t187 + t201*t226 - t221 + t222) + bdgt_z*(alpha_r*(t189 + t197
-                    + t217 - t218) + t175 + t188 + t214 - t216))
-                bds[j3] += t229 + t232 + t235
-                bds[j3 + 1] += t236 + t239 + t241
-                bds[j3 + 2] += t242 + t243 + t244
+                bdy[j3] += (bdgt_x*(-e0*psi_z*t171 + t167*t168 + t179 - t182) + bdgt_y*(-e0*t172 -
+                    t175*t176*t183 + t181*t185 + t186) + bdgt_z*(e0*psi_x*t171 + 2*e1*t180*t183 -
+                    t178*t185 - t187))
+                bdy[j3 + 1] += (bdgt_x*(e0*psi_y*t188 + 2*e1*t175*t192 - t180*t190 - t186) +
+                    bdgt_y*(e0*psi_z*t170 - t179 - t188*t189 - t191) + bdgt_z*(-e0*t184 -
+                    t176*t185*t192 + t178*t180 + t193))
+                bdy[j3 + 2] += (bdgt_x*(-e0*psi_z*t174 + t175*t190 - t176*t180*t195 + t187) +
+                    bdgt_y*(e0*psi_z*t194 + 2*e1*t185*t195 - t175*t181 - t193) +
+                    bdgt_z*(-t168*t194 + t174*t189 + t182 + t191))
+                bds[j3] += bdgt_x*(-t200 - t202) + bdgt_y*(-t196 + t197) + bdgt_z*(t198 + t199)
+                bds[j3 + 1] += bdgt_x*(t196 + t197) + bdgt_y*(-t202 - t205) + bdgt_z*(-t203 + t204)
+                bds[j3 + 2] += (bdgt_x*(-t198 + t199) + bdgt_y*(t203 + t204) + bdgt_z*(-t200 -
+                    t205 + 1))
                 bdp[j3] += -Om_y*bdgt_z + Om_z*bdgt_y
                 bdp[j3 + 1] += Om_x*bdgt_z - Om_z*bdgt_x
                 bdp[j3 + 2] += -Om_x*bdgt_y + Om_y*bdgt_x
                 bdpd[j3] += bdgt_x
                 bdpd[j3 + 1] += bdgt_y
                 bdpd[j3 + 2] += bdgt_z
-                bdwp_x += alpha_r*t229 + alpha_r*t232 + alpha_r*t235
-                bdwp_y += alpha_r*t236 + alpha_r*t239 + alpha_r*t241
-                bdwp_z += alpha_r*t242 + alpha_r*t243 + alpha_r*t244
+                bdwp_x += bdgt_x*(-t210 - t212) + bdgt_y*(-t206 + t207) + bdgt_z*(t208 + t209)
+                bdwp_y += bdgt_x*(t206 + t207) + bdgt_y*(-t212 - t215) + bdgt_z*(-t213 + t214)
+                bdwp_z += (bdgt_x*(-t208 + t209) + bdgt_y*(t213 + t214) + bdgt_z*(-t210 - t211 -
+                    t215))
             # transposed: differential: force on the nodes, left in frame axes
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -1032,12 +991,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdF_z += alpha*bdh_z
             # transposed: differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
-            t245 = bdwp_x + rhs_x
-            t246 = bdwp_y + rhs_y
-            t247 = bdwp_z + rhs_z
-            mdwp_x = Bxx*t245 + Bxy*t246 + Bxz*t247
-            mdwp_y = Byx*t245 + Byy*t246 + Byz*t247
-            mdwp_z = Bzx*t245 + Bzy*t246 + Bzz*t247
+            t216 = bdwp_x + rhs_x
+            t217 = bdwp_y + rhs_y
+            t218 = bdwp_z + rhs_z
+            mdwp_x = Bxx*t216 + Bxy*t217 + Bxz*t218
+            mdwp_y = Byx*t216 + Byy*t217 + Byz*t218
+            mdwp_z = Bzx*t216 + Bzy*t217 + Bzz*t218
             # transposed: differential: B^T wp = W
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -1045,41 +1004,41 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t248 = e0*psi_y*wp_y
-                t249 = e0*psi_z*wp_z
-                t250 = psi_x*wp_y
-                t251 = psi_y*wp_x
-                t252 = t250 - t251
-                t253 = 2*e1
-                t254 = psi_x*t253
-                t255 = psi_y*t254
-                t256 = t252*t255
-                t257 = psi_x*wp_z
-                t258 = psi_z*wp_x - t257
-                t259 = psi_z*t254
-                t260 = t258*t259
-                t261 = alpha_r*mdwp_x
-                t262 = psi_x*psi_x*t253
-                t263 = psi_y*wp_z
-                t264 = psi_z*wp_y
-                t265 = t263 - t264
-                t266 = e0*t258 + (0.5)*wp_y
-                t267 = alpha_r*mdwp_z
-                t268 = e0*t252 + (0.5)*wp_z
-                t269 = alpha_r*mdwp_y
-                t270 = e0*psi_x*wp_x
-                t271 = psi_y*psi_z*t253
-                t272 = t265*t271
-                t273 = psi_y*psi_y*t253
-                t274 = e0*t265 + (0.5)*wp_x
-                t275 = psi_z*psi_z*t253
-                bdy[j3] += (-t261*(t248 + t249 + t256 - t260) - t267*(-e0*t257 - t255*t265 +
-                    t258*t262 + t266) - t269*(-e0*t250 + 2*e1*psi_x*psi_z*t265 - t252*t262 - t268))
-                bdy[j3 + 1] += (-t261*(-e0*t251 + t252*t273 - t258*t271 + t268) - t267*(-e0*t263 +
-                    2*e1*psi_x*psi_y*t258 - t265*t273 - t274) - t269*(t249 - t256 + t270 + t272))
-                bdy[j3 + 2] += (-t261*(-e0*psi_z*wp_x + 2*e1*psi_y*psi_z*t252 - t258*t275 - t266)
-                    - t267*(t248 + t260 + t270 - t272) - t269*(-e0*t264 - t252*t259 + t265*t275 +
-                    t274))
+                t219 = e0*psi_y*wp_y
+                t220 = e0*psi_z*wp_z
+                t221 = psi_x*wp_y
+                t222 = psi_y*wp_x
+                t223 = t221 - t222
+                t224 = 2*e1
+                t225 = psi_x*t224
+                t226 = psi_y*t225
+                t227 = t223*t226
+                t228 = psi_x*wp_z
+                t229 = psi_z*wp_x - t228
+                t230 = psi_z*t225
+                t231 = t229*t230
+                t232 = alpha_r*mdwp_x
+                t233 = psi_x*psi_x*t224
+                t234 = psi_y*wp_z
+                t235 = psi_z*wp_y
+                t236 = t234 - t235
+                t237 = e0*t229 + (0.5)*wp_y
+                t238 = alpha_r*mdwp_z
+                t239 = e0*t223 + (0.5)*wp_z
+                t240 = alpha_r*mdwp_y
+                t241 = e0*psi_x*wp_x
+                t242 = psi_y*psi_z*t224
+                t243 = t236*t242
+                t244 = psi_y*psi_y*t224
+                t245 = e0*t236 + (0.5)*wp_x
+                t246 = psi_z*psi_z*t224
+                bdy[j3] += (-t232*(t219 + t220 + t227 - t231) - t238*(-e0*t228 - t226*t236 +
+                    t229*t233 + t237) - t240*(-e0*t221 + 2*e1*psi_x*psi_z*t236 - t223*t233 - t239))
+                bdy[j3 + 1] += (-t232*(-e0*t222 + t223*t244 - t229*t242 + t239) - t238*(-e0*t234 +
+                    2*e1*psi_x*psi_y*t229 - t236*t244 - t245) - t240*(t220 - t227 + t241 + t243))
+                bdy[j3 + 2] += (-t232*(-e0*psi_z*wp_x + 2*e1*psi_y*psi_z*t223 - t229*t246 - t237)
+                    - t238*(t219 + t231 + t241 - t243) - t240*(-e0*t235 - t223*t230 + t236*t246 +
+                    t245))
             # transposed: differential: B^T wp = W
             bdW_x += mdwp_x
             bdW_y += mdwp_y
@@ -1091,66 +1050,66 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t276 = e0*psi_y
-                t277 = m_y*t276
-                t278 = e0*psi_z
-                t279 = m_z*t278
-                t280 = -m_x*psi_y + m_y*psi_x
-                t281 = 2*e1
-                t282 = psi_x*t281
-                t283 = psi_y*t282
-                t284 = t280*t283
-                t285 = m_x*psi_z
-                t286 = -m_z*psi_x + t285
-                t287 = psi_z*t282
-                t288 = t286*t287
-                t289 = psi_x*psi_x
-                t290 = t281*t289
-                t291 = -m_y*psi_z + m_z*psi_y
-                t292 = e0*t280 + (0.5)*m_z
-                t293 = e0*t286 + (0.5)*m_y
-                t294 = e0*m_x*psi_x
-                t295 = psi_y*psi_z*t281
-                t296 = t291*t295
-                t297 = psi_y*psi_y
-                t298 = t281*t297
-                t299 = e0*t291 + (0.5)*m_x
-                t300 = psi_z*psi_z
-                t301 = t281*t300
-                t302 = (0.5)*psi_z
-                t303 = psi_x*t276
-                t304 = (0.5)*psi_y
-                t305 = psi_x*t278
-                t306 = e0*t297
-                t307 = e0*t300 - 1
-                t308 = (0.5)*psi_x
-                t309 = psi_z*t276
-                t310 = e0*t289
-                bdy[j3] += (bdW_x*(-t277 - t279 - t284 + t288) + bdW_y*(e0*m_y*psi_x + t280*t290 -
-                    t287*t291 + t292) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t291 - t286*t290 -
-                    t293))
-                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t286 - t280*t298 - t292) +
-                    bdW_y*(-t279 + t284 - t294 - t296) + bdW_z*(e0*m_z*psi_y - t283*t286 +
-                    t291*t298 + t299))
-                bdy[j3 + 2] += (bdW_x*(e0*t285 - t280*t295 + t286*t301 + t293) +
-                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t280 - t291*t301 - t299) + bdW_z*(-t277
-                    - t288 - t294 + t296))
-                bds[j3] += bdW_x*(t306 + t307) + bdW_y*(-t302 - t303) + bdW_z*(t304 - t305)
-                bds[j3 + 1] += bdW_x*(t302 - t303) + bdW_y*(t307 + t310) + bdW_z*(-t308 - t309)
-                bds[j3 + 2] += bdW_x*(-t304 - t305) + bdW_y*(t308 - t309) + bdW_z*(t306 + t310 - 1)
+                t247 = e0*psi_y
+                t248 = m_y*t247
+                t249 = e0*psi_z
+                t250 = m_z*t249
+                t251 = -m_x*psi_y + m_y*psi_x
+                t252 = 2*e1
+                t253 = psi_x*t252
+                t254 = psi_y*t253
+                t255 = t251*t254
+                t256 = m_x*psi_z
+                t257 = -m_z*psi_x + t256
+                t258 = psi_z*t253
+                t259 = t257*t258
+                t260 = psi_x*psi_x
+                t261 = t252*t260
+                t262 = -m_y*psi_z + m_z*psi_y
+                t263 = e0*t251 + (0.5)*m_z
+                t264 = e0*t257 + (0.5)*m_y
+                t265 = e0*m_x*psi_x
+                t266 = psi_y*psi_z*t252
+                t267 = t262*t266
+                t268 = psi_y*psi_y
+                t269 = t252*t268
+                t270 = e0*t262 + (0.5)*m_x
+                t271 = psi_z*psi_z
+                t272 = t252*t271
+                t273 = (0.5)*psi_z
+                t274 = psi_x*t247
+                t275 = (0.5)*psi_y
+                t276 = psi_x*t249
+                t277 = e0*t268
+                t278 = e0*t271 - 1
+                t279 = (0.5)*psi_x
+                t280 = psi_z*t247
+                t281 = e0*t260
+                bdy[j3] += (bdW_x*(-t248 - t250 - t255 + t259) + bdW_y*(e0*m_y*psi_x + t251*t261 -
+                    t258*t262 + t263) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t262 - t257*t261 -
+                    t264))
+                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t257 - t251*t269 - t263) +
+                    bdW_y*(-t250 + t255 - t265 - t267) + bdW_z*(e0*m_z*psi_y - t254*t257 +
+                    t262*t269 + t270))
+                bdy[j3 + 2] += (bdW_x*(e0*t256 - t251*t266 + t257*t272 + t264) +
+                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t251 - t262*t272 - t270) + bdW_z*(-t248
+                    - t259 - t265 + t267))
+                bds[j3] += bdW_x*(t277 + t278) + bdW_y*(-t273 - t274) + bdW_z*(t275 - t276)
+                bds[j3 + 1] += bdW_x*(t273 - t274) + bdW_y*(t278 + t281) + bdW_z*(-t279 - t280)
+                bds[j3 + 2] += bdW_x*(-t275 - t276) + bdW_y*(t279 - t280) + bdW_z*(t277 + t281 - 1)
             # transposed: differential: moment of gravity on the frame
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             d_x, d_y, d_z = d[0], d[1], d[2]
             mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
-            t311 = d_y + mc_y
-            t312 = d_z + mc_z
-            t313 = d_x + mc_x
+            t282 = d_y + mc_y
+            t283 = d_z + mc_z
+            t284 = d_x + mc_x
             bdd[0] += bdW_y*gamma_z - bdW_z*gamma_y
             bdd[1] += -bdW_x*gamma_z + bdW_z*gamma_x
             bdd[2] += bdW_x*gamma_y - bdW_y*gamma_x
-            bdgamma[0] += -bdW_y*t312 + bdW_z*t311
-            bdgamma[1] += bdW_x*t312 - bdW_z*t313
-            bdgamma[2] += -bdW_x*t311 + bdW_y*t313
+            bdgamma[0] += -bdW_y*t283 + bdW_z*t282
+            bdgamma[1] += bdW_x*t283 - bdW_z*t284
+            bdgamma[2] += -bdW_x*t282 + bdW_y*t284
             # transposed: differential: forces on the frame: elastic (30) and inertia (57)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -1161,16 +1120,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t314 = alpha*mass
-                t315 = X_y + u_y
-                t316 = X_z + u_z
-                t317 = X_x + u_x
-                bdgamma[0] += -bdF_x*t314
-                bdgamma[1] += -bdF_y*t314
-                bdgamma[2] += -bdF_z*t314
-                bds[i3] += -bdF_x - bdW_y*t316 + bdW_z*t315
-                bds[i3 + 1] += -bdF_y + bdW_x*t316 - bdW_z*t317
-                bds[i3 + 2] += -bdF_z - bdW_x*t315 + bdW_y*t317
+                t285 = alpha*mass
+                t286 = X_y + u_y
+                t287 = X_z + u_z
+                t288 = X_x + u_x
+                bdgamma[0] += -bdF_x*t285
+                bdgamma[1] += -bdF_y*t285
+                bdgamma[2] += -bdF_z*t285
+                bds[i3] += -bdF_x - bdW_y*t287 + bdW_z*t286
+                bds[i3 + 1] += -bdF_y + bdW_x*t287 - bdW_z*t288
+                bds[i3 + 2] += -bdF_z - bdW_x*t286 + bdW_y*t288
                 bdy[i3] += bdW_y*f_z - bdW_z*f_y
                 bdy[i3 + 1] += -bdW_x*f_z + bdW_z*f_x
                 bdy[i3 + 2] += bdW_x*f_y - bdW_y*f_x
@@ -1218,12 +1177,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdOm0_z += bdvsd_x*vs_y - bdvsd_y*vs_x
             # transposed: differential: B rate = sum alpha_j T^-1(psi_j) rate_j
             rhs_x = rhs_y = rhs_z = 0.0
-            t318 = bdOm0_x + rhs_x
-            t319 = bdOm0_y + rhs_y
-            t320 = bdOm0_z + rhs_z
-            mdOm0_x = Bxx*t318 + Byx*t319 + Bzx*t320
-            mdOm0_y = Bxy*t318 + Byy*t319 + Bzy*t320
-            mdOm0_z = Bxz*t318 + Byz*t319 + Bzz*t320
+            t289 = bdOm0_x + rhs_x
+            t290 = bdOm0_y + rhs_y
+            t291 = bdOm0_z + rhs_z
+            mdOm0_x = Bxx*t289 + Byx*t290 + Bzx*t291
+            mdOm0_y = Bxy*t289 + Byy*t290 + Bzy*t291
+            mdOm0_z = Bxz*t289 + Byz*t290 + Bzz*t291
             # transposed: differential: B rate = sum alpha_j T^-1(psi_j) rate_j
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -1232,70 +1191,84 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t321 = (0.5)*psi_z
-                t322 = e0*psi_x
-                t323 = psi_y*t322
-                t324 = alpha_r*mdOm0_y
-                t325 = (0.5)*psi_y
-                t326 = psi_z*t322
-                t327 = alpha_r*mdOm0_z
-                t328 = psi_y*psi_y
-                t329 = e0*t328
-                t330 = psi_z*psi_z
-                t331 = e0*t330 - 1
-                t332 = alpha_r*mdOm0_x
-                t333 = (0.5)*psi_x
-                t334 = e0*psi_y
-                t335 = psi_z*t334
-                t336 = psi_x*psi_x
-                t337 = e0*t336
-                t338 = -Om_x*psi_y + Om_y*psi_x
-                t339 = 2*e1
-                t340 = psi_x*t339
-                t341 = psi_y*t340
-                t342 = t338*t341
-                t343 = Om0_x*psi_z
-                t344 = Om0_z*psi_x
-                t345 = t343 - t344
-                t346 = psi_z*t340
-                t347 = t345*t346
-                t348 = Om0_x*psi_y
-                t349 = Om0_y*psi_x - t348
-                t350 = t341*t349
-                t351 = Om_x*psi_z
-                t352 = -Om_z*psi_x + t351
-                t353 = t346*t352
-                t354 = e0*psi_z
-                t355 = Om0_z*t354 - Om_z*t354
-                t356 = Om0_y*t334 - Om_y*t334
-                t357 = t336*t339
-                t358 = -Om_y*psi_z + Om_z*psi_y
-                t359 = Om0_y*psi_z
-                t360 = Om0_z*psi_y - t359
-                t361 = (0.5)*Om0_z + (0.5)*Om_z + e0*t338 - e0*t349
-                t362 = (0.5)*Om0_y + (0.5)*Om_y - e0*t345 + e0*t352
-                t363 = psi_y*psi_z*t339
-                t364 = t358*t363
-                t365 = t360*t363
-                t366 = Om0_x*t322 - Om_x*t322
-                t367 = t328*t339
-                t368 = (0.5)*Om0_x + (0.5)*Om_x + e0*t358 - e0*t360
-                t369 = t330*t339
-                bdve[j3] += -t324*(-t321 - t323) - t327*(t325 - t326) - t332*(t329 + t331)
-                bdve[j3 + 1] += -t324*(t331 + t337) - t327*(-t333 - t335) - t332*(t321 - t323)
-                bdve[j3 + 2] += -t324*(t333 - t335) - t327*(t329 + t337 - 1) - t332*(-t325 - t326)
-                bdy[j3] += (-t324*(-Om0_y*e0*psi_x + Om_y*e0*psi_x + t338*t357 - t346*t358 +
-                    t346*t360 - t349*t357 + t361) - t327*(Om_z*e0*psi_x - e0*t344 +
-                    2*e1*psi_x*psi_y*t358 + 2*e1*t336*t345 - t341*t360 - t352*t357 - t362) -
-                    t332*(-t342 - t347 + t350 + t353 + t355 + t356))
-                bdy[j3 + 1] += (-t324*(t342 - t350 + t355 - t364 + t365 + t366) -
-                    t327*(-Om0_z*e0*psi_y + Om_z*e0*psi_y + t341*t345 - t341*t352 + t358*t367 -
-                    t360*t367 + t368) - t332*(Om_x*e0*psi_y - e0*t348 + 2*e1*psi_y*psi_z*t352 +
-                    2*e1*t328*t349 - t338*t367 - t345*t363 - t361))
-                bdy[j3 + 2] += (-t324*(Om_y*e0*psi_z - e0*t359 + 2*e1*psi_x*psi_z*t338 +
-                    2*e1*t330*t360 - t346*t349 - t358*t369 - t368) - t327*(t347 - t353 + t356 +
-                    t364 - t365 + t366) - t332*(-e0*t343 + e0*t351 - t338*t363 - t345*t369 +
-                    t349*t363 + t352*t369 + t362))
+                t292 = (0.5)*psi_z
+                t293 = e0*psi_y
+                t294 = psi_x*t293
+                t295 = alpha_r*mdOm0_y
+                t296 = (0.5)*psi_y
+                t297 = e0*psi_z
+                t298 = psi_x*t297
+                t299 = alpha_r*mdOm0_z
+                t300 = psi_y*psi_y
+                t301 = e0*t300
+                t302 = psi_z*psi_z
+                t303 = e0*t302 - 1
+                t304 = alpha_r*mdOm0_x
+                t305 = (0.5)*psi_x
+                t306 = psi_z*t293
+                t307 = psi_x*psi_x
+                t308 = e0*t307
+                t309 = -Om0_y*e0*psi_y
+                t310 = -Om0_z*e0*psi_z
+                t311 = 2*e1
+                t312 = t307*t311
+                t313 = psi_y*t312
+                t314 = t293 + t313
+                t315 = psi_z*t312
+                t316 = t297 + t315
+                t317 = -Om0_x*psi_y + Om0_y*psi_x
+                t318 = psi_x*t311
+                t319 = psi_y*t318
+                t320 = t317*t319
+                t321 = Om0_z*psi_x
+                t322 = Om0_x*psi_z - t321
+                t323 = psi_z*t318
+                t324 = t322*t323
+                t325 = t300*t318
+                t326 = t302*t318
+                t327 = (0.5)*Om0_y
+                t328 = psi_y*t323
+                t329 = t328 + 0.5
+                t330 = e0*t322
+                t331 = -Om0_y*psi_z + Om0_z*psi_y
+                t332 = e0*psi_x
+                t333 = psi_x*psi_x*psi_x*t311 + 2*t332
+                t334 = (0.5)*Om0_z
+                t335 = t328 - 0.5
+                t336 = e0*t317
+                t337 = -Om0_x*e0*psi_x
+                t338 = t325 + t332
+                t339 = t300*t311
+                t340 = psi_z*t339
+                t341 = t297 + t340
+                t342 = psi_y*psi_z*t311
+                t343 = t331*t342
+                t344 = t302*t311
+                t345 = psi_y*t344
+                t346 = psi_y*psi_y*psi_y*t311 + 2*t293
+                t347 = (0.5)*Om0_x
+                t348 = e0*t331
+                t349 = t326 + t332
+                t350 = t293 + t345
+                t351 = psi_z*psi_z*psi_z*t311 + 2*t297
+                bdve[j3] += -t295*(-t292 - t294) - t299*(t296 - t298) - t304*(t301 + t303)
+                bdve[j3 + 1] += -t295*(t303 + t308) - t299*(-t305 - t306) - t304*(t292 - t294)
+                bdve[j3 + 2] += -t295*(t305 - t306) - t299*(t301 + t308 - 1) - t304*(-t296 - t298)
+                bdy[j3] += (-t295*(-Om0_y*e0*psi_x - Om_x*t314 - Om_y*(-t326 - t333) - Om_z*t335 +
+                    2*e1*psi_x*psi_z*t331 - t312*t317 + t334 - t336) - t299*(-Om_x*t316 -
+                    Om_y*t329 - Om_z*(-t325 - t333) - e0*t321 + 2*e1*t307*t322 - t319*t331 - t327
+                    + t330) - t304*(-Om_x*(-t325 - t326) - Om_y*t314 - Om_z*t316 - t309 - t310 +
+                    t320 - t324))
+                bdy[j3 + 1] += (-t295*(-Om_x*t338 - Om_y*(-t313 - t345) - Om_z*t341 - t310 - t320
+                    - t337 + t343) - t299*(-Om0_z*t293 - Om_x*t335 - Om_y*t341 - Om_z*(-t313 -
+                    t346) + 2*e1*psi_x*psi_y*t322 - t331*t339 + t347 - t348) - t304*(-Om0_x*t293 -
+                    Om_x*(-t345 - t346) - Om_y*t338 - Om_z*t329 + 2*e1*t300*t317 - t322*t342 -
+                    t334 + t336))
+                bdy[j3 + 2] += (-t295*(-Om0_y*t297 - Om_x*t329 - Om_y*(-t315 - t351) - Om_z*t350 +
+                    2*e1*t302*t331 - t317*t323 - t347 + t348) - t299*(-Om_x*t349 - Om_y*t350 -
+                    Om_z*(-t315 - t340) - t309 + t324 - t337 - t343) - t304*(-Om0_x*t297 -
+                    Om_x*(-t340 - t351) - Om_y*t335 - Om_z*t349 + 2*e1*psi_y*psi_z*t317 -
+                    t322*t344 + t327 - t330))
             # transposed: differential: material angular velocities, (52)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -1355,43 +1328,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 bdpsi_x, bdpsi_y, bdpsi_z = bdy[j3], bdy[j3 + 1], bdy[j3 + 2]
                 e0 = e0s[j]
-                t370 = (0.5)*psi_z
-                t371 = e0*psi_x
-                t372 = psi_y*t371
-                t373 = t370 + t372
-                t374 = (0.5)*psi_y
-                t375 = psi_z*t371
-                t376 = -t374 + t375
-                t377 = e0*psi_y*psi_y
-                t378 = e0*psi_z*psi_z - 1
-                t379 = t377 + t378
-                t380 = -t370 + t372
-                t381 = (0.5)*psi_x
-                t382 = e0*psi_y*psi_z
-                t383 = t381 + t382
-                t384 = e0*psi_x*psi_x
-                t385 = t378 + t384
-                t386 = t374 + t375
-                t387 = -t381 + t382
-                t388 = t377 + t384 - 1
-                bdqe[j3] += -bdpsi_x*t379 + bdpsi_y*t373 + bdpsi_z*t376
-                bdqe[j3 + 1] += bdpsi_x*t380 - bdpsi_y*t385 + bdpsi_z*t383
-                bdqe[j3 + 2] += bdpsi_x*t386 + bdpsi_y*t387 - bdpsi_z*t388
-                bdth0_x += bdpsi_x*t379 - bdpsi_y*t380 - bdpsi_z*t386
-                bdth0_y += -bdpsi_x*t373 + bdpsi_y*t385 - bdpsi_z*t387
-                bdth0_z += -bdpsi_x*t376 - bdpsi_y*t383 + bdpsi_z*t388
+                t352 = (0.5)*psi_z
+                t353 = e0*psi_x
+                t354 = psi_y*t353
+                t355 = t352 + t354
+                t356 = (0.5)*psi_y
+                t357 = psi_z*t353
+                t358 = -t356 + t357
+                t359 = psi_y*psi_y
+                t360 = psi_z*psi_z
+                t361 = t359 + t360
+                t362 = -t352 + t354
+                t363 = (0.5)*psi_x
+                t364 = e0*psi_y*psi_z
+                t365 = t363 + t364
+                t366 = psi_x*psi_x
+                t367 = t360 + t366
+                t368 = t356 + t357
+                t369 = -t363 + t364
+                t370 = t359 + t366
+                bdqe[j3] += bdpsi_x*(-e0*t361 + 1) + bdpsi_y*t355 + bdpsi_z*t358
+                bdqe[j3 + 1] += bdpsi_x*t362 + bdpsi_y*(-e0*t367 + 1) + bdpsi_z*t365
+                bdqe[j3 + 2] += bdpsi_x*t368 + bdpsi_y*t369 + bdpsi_z*(-e0*t370 + 1)
+                bdth0_x += bdpsi_x*(e0*t361 - 1) - bdpsi_y*t362 - bdpsi_z*t368
+                bdth0_y += -bdpsi_x*t355 + bdpsi_y*(e0*t367 - 1) - bdpsi_z*t369
+                bdth0_z += -bdpsi_x*t358 - bdpsi_y*t365 + bdpsi_z*(e0*t370 - 1)
             # transposed: differential: displacement of the nodes in the frame, (11)
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 bdu_x, bdu_y, bdu_z = bdy[i3], bdy[i3 + 1], bdy[i3 + 2]
-                t389 = X_z + u_z
-                t390 = X_y + u_y
-                t391 = X_x + u_x
-                bdth0_x += bdu_y*t389 - bdu_z*t390
-                bdth0_y += -bdu_x*t389 + bdu_z*t391
-                bdth0_z += bdu_x*t390 - bdu_y*t391
+                t371 = X_z + u_z
+                t372 = X_y + u_y
+                t373 = X_x + u_x
+                bdth0_x += bdu_y*t371 - bdu_z*t372
+                bdth0_y += -bdu_x*t371 + bdu_z*t373
+                bdth0_z += bdu_x*t372 - bdu_y*t373
                 bdqe[i3] += bdu_x
                 bdqe[i3 + 1] += bdu_y
                 bdqe[i3 + 2] += bdu_z
@@ -1400,34 +1373,34 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdx0_z += -bdu_z
             # transposed: B rate = sum alpha_j T^-1(psi_j) rate_j
             rhs_x = rhs_y = rhs_z = 0.0
-            t392 = bdth0_x + rhs_x
-            t393 = bdth0_y + rhs_y
-            t394 = bdth0_z + rhs_z
-            mdth0_x = Bxx*t392 + Byx*t393 + Bzx*t394
-            mdth0_y = Bxy*t392 + Byy*t393 + Bzy*t394
-            mdth0_z = Bxz*t392 + Byz*t393 + Bzz*t394
+            t374 = bdth0_x + rhs_x
+            t375 = bdth0_y + rhs_y
+            t376 = bdth0_z + rhs_z
+            mdth0_x = Bxx*t374 + Byx*t375 + Bzx*t376
+            mdth0_y = Bxy*t374 + Byy*t375 + Bzy*t376
+            mdth0_z = Bxz*t374 + Byz*t375 + Bzz*t376
             # transposed: B rate = sum alpha_j T^-1(psi_j) rate_j
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 alpha_r = alpha_rs[j]
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e0 = e0s[j]
-                t395 = (0.5)*psi_z
-                t396 = e0*psi_x
-                t397 = psi_y*t396
-                t398 = alpha_r*mdth0_y
-                t399 = (0.5)*psi_y
-                t400 = psi_z*t396
-                t401 = alpha_r*mdth0_z
-                t402 = e0*psi_y*psi_y
-                t403 = e0*psi_z*psi_z - 1
-                t404 = alpha_r*mdth0_x
-                t405 = (0.5)*psi_x
-                t406 = e0*psi_y*psi_z
-                t407 = e0*psi_x*psi_x
-                bdqe[j3] += -t398*(-t395 - t397) - t401*(t399 - t400) - t404*(t402 + t403)
-                bdqe[j3 + 1] += -t398*(t403 + t407) - t401*(-t405 - t406) - t404*(t395 - t397)
-                bdqe[j3 + 2] += -t398*(t405 - t406) - t401*(t402 + t407 - 1) - t404*(-t399 - t400)
+                t377 = (0.5)*psi_z
+                t378 = e0*psi_x
+                t379 = psi_y*t378
+                t380 = alpha_r*mdth0_y
+                t381 = (0.5)*psi_y
+                t382 = psi_z*t378
+                t383 = alpha_r*mdth0_z
+                t384 = e0*psi_y*psi_y
+                t385 = e0*psi_z*psi_z - 1
+                t386 = alpha_r*mdth0_x
+                t387 = (0.5)*psi_x
+                t388 = e0*psi_y*psi_z
+                t389 = e0*psi_x*psi_x
+                bdqe[j3] += -t380*(-t377 - t379) - t383*(t381 - t382) - t386*(t384 + t385)
+                bdqe[j3 + 1] += -t380*(t385 + t389) - t383*(-t387 - t388) - t386*(t377 - t379)
+                bdqe[j3 + 2] += -t380*(t387 - t388) - t383*(t384 + t389 - 1) - t386*(-t381 - t382)
             # transposed: origin of the frame, (14)
             for i in range(N_POSITIONS):
                 i3 = 3*i

@@ -55,8 +55,8 @@ WORK_ROWS = 53
 WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (787, 168, 573, 2),
-              "column": (1969, 156, 2249, 7)}
+OPERATIONS = {"residual": (787, 168, 419, 2),
+              "column": (1969, 156, 1786, 7)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("columns", (1,), "columns of C: n of a damped body, else none"),
     Part("Jc", ("pairs",), "moments of inertia about the centre of mass, at rest"),
@@ -217,30 +217,35 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e0 = e0s[j]
                 t3 = e0*psi_y*psi_y
                 t4 = e0*psi_z*psi_z - 1
-                t5 = (0.5)*psi_z
-                t6 = e0*psi_x
-                t7 = psi_y*t6
-                t8 = (0.5)*psi_y
-                t9 = psi_z*t6
-                t10 = e0*psi_x*psi_x
-                t11 = (0.5)*psi_x
-                t12 = e0*psi_z
-                t13 = psi_y*t12
-                t14 = -Om_x*psi_y + Om_y*psi_x
-                t15 = Om_x*psi_z - Om_z*psi_x
-                t16 = -Om_y*psi_z + Om_z*psi_y
-                B_00 += alpha_r*(-t3 - t4)
-                B_01 += alpha_r*(t5 + t7)
-                B_02 += alpha_r*(-t8 + t9)
-                B_10 += alpha_r*(-t5 + t7)
-                B_11 += alpha_r*(-t10 - t4)
-                B_12 += alpha_r*(t11 + t13)
-                B_20 += alpha_r*(t8 + t9)
-                B_21 += alpha_r*(-t11 + t13)
-                B_22 += alpha_r*(-t10 - t3 + 1)
-                rhs_x += -alpha_r*(-Om_x + (0.5)*Om_y*psi_z - Om_z*t8 - e0*psi_y*t14 + e0*psi_z*t15)
-                rhs_y += -alpha_r*(-Om_x*t5 - Om_y + (0.5)*Om_z*psi_x + e0*psi_x*t14 - t12*t16)
-                rhs_z += -alpha_r*((0.5)*Om_x*psi_y - Om_y*t11 - Om_z + e0*psi_y*t16 - t15*t6)
+                t5 = -t3 - t4
+                t6 = (0.5)*psi_z
+                t7 = e0*psi_x
+                t8 = psi_y*t7
+                t9 = t6 + t8
+                t10 = (0.5)*psi_y
+                t11 = psi_z*t7
+                t12 = -t10 + t11
+                t13 = -t6 + t8
+                t14 = e0*psi_x*psi_x
+                t15 = -t14 - t4
+                t16 = (0.5)*psi_x
+                t17 = e0*psi_y*psi_z
+                t18 = t16 + t17
+                t19 = t10 + t11
+                t20 = -t16 + t17
+                t21 = -t14 - t3 + 1
+                B_00 += alpha_r*t5
+                B_01 += alpha_r*t9
+                B_02 += alpha_r*t12
+                B_10 += alpha_r*t13
+                B_11 += alpha_r*t15
+                B_12 += alpha_r*t18
+                B_20 += alpha_r*t19
+                B_21 += alpha_r*t20
+                B_22 += alpha_r*t21
+                rhs_x += -alpha_r*(-Om_x*t5 - Om_y*t13 - Om_z*t19)
+                rhs_y += -alpha_r*(-Om_x*t9 - Om_y*t15 - Om_z*t20)
+                rhs_z += -alpha_r*(-Om_x*t12 - Om_y*t18 - Om_z*t21)
             Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
                 B_12, B_20, B_21, B_22)
             Om0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
@@ -274,41 +279,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t17 = X_y + u_y
-                t18 = X_z + u_z
-                t19 = X_x + u_x
-                eta[i3] = -Om0_y*t18 + Om0_z*t17 - v0_x + vs_x
-                eta[i3 + 1] = Om0_x*t18 - Om0_z*t19 - v0_y + vs_y
-                eta[i3 + 2] = -Om0_x*t17 + Om0_y*t19 - v0_z + vs_z
+                t22 = X_y + u_y
+                t23 = X_z + u_z
+                t24 = X_x + u_x
+                eta[i3] = -Om0_y*t23 + Om0_z*t22 - v0_x + vs_x
+                eta[i3 + 1] = Om0_x*t23 - Om0_z*t24 - v0_y + vs_y
+                eta[i3 + 2] = -Om0_x*t22 + Om0_y*t24 - v0_z + vs_z
             # rates of the elastic rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
                 e0 = e0s[j]
-                t20 = Om0_y*psi_z
-                t21 = Om_y*psi_z
-                t22 = Om0_x*psi_y
-                t23 = Om0_y*psi_x - t22
-                t24 = e0*psi_y
-                t25 = Om_x*psi_z
-                t26 = Om_z*psi_x
-                t27 = t25 - t26
-                t28 = e0*psi_z
-                t29 = Om_x*psi_y
-                t30 = Om_y*psi_x - t29
-                t31 = Om0_x*psi_z
-                t32 = Om0_z*psi_x
-                t33 = t31 - t32
-                t34 = e0*psi_x
-                t35 = Om_z*psi_y - t21
-                t36 = Om0_z*psi_y - t20
-                eta[j3] = (-Om0_x + (0.5)*Om0_z*psi_y + Om_x + (0.5)*Om_z*psi_y + e0*psi_y*t30 +
-                    e0*psi_z*t33 - 0.5*t20 - 0.5*t21 - t23*t24 - t27*t28)
-                eta[j3 + 1] = (-Om0_y + Om_y + t23*t34 + (0.5)*t25 - 0.5*t26 + t28*t35 - t28*t36 -
-                    t30*t34 + (0.5)*t31 - 0.5*t32)
-                eta[j3 + 2] = ((0.5)*Om0_y*psi_x - Om0_z + (0.5)*Om_y*psi_x + Om_z + e0*psi_x*t27
-                    + e0*psi_y*t36 - 0.5*t22 - t24*t35 - 0.5*t29 - t33*t34)
+                t25 = (0.5)*Om0_z + (0.5)*Om_z
+                t26 = Om0_y + Om_y
+                t27 = (0.5)*psi_z
+                t28 = -Om0_y + Om_y
+                t29 = -Om0_x + Om_x
+                t30 = psi_x*t28 - psi_y*t29
+                t31 = -Om0_z + Om_z
+                t32 = -psi_x*t31 + psi_z*t29
+                t33 = Om0_x + Om_x
+                t34 = psi_y*t31 - psi_z*t28
+                eta[j3] = -Om0_x + Om_x + e0*(psi_y*t30 - psi_z*t32) + psi_y*t25 - t26*t27
+                eta[j3 + 1] = -Om0_y + Om_y + e0*(-psi_x*t30 + psi_z*t34) - psi_x*t25 + t27*t33
+                eta[j3 + 2] = (-Om0_z + Om_z + e0*(psi_x*t32 - psi_y*t34) + (0.5)*psi_x*t26 -
+                    0.5*psi_y*t33)
             # rates of the internal modes
             for k in range(MODES, n):
                 vm = ve[k]
@@ -322,49 +318,31 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t37 = A_y*psi_z
-                t38 = Om0_y*ep_z
-                t39 = Om_y*ep_z
-                t40 = -Om_x*psi_y + Om_y*psi_x
-                t41 = e0*ep_y
-                t42 = Om0_x*psi_z - Om0_z*psi_x
-                t43 = e0*ep_z
-                t44 = Om0_x*ep_z
-                t45 = Om0_z*ep_x
-                t46 = t44 - t45
-                t47 = e0*psi_z
-                t48 = -Om0_x*psi_y + Om0_y*psi_x
-                t49 = Om_x*psi_z - Om_z*psi_x
-                t50 = Om0_x*ep_y
-                t51 = Om0_y*ep_x - t50
-                t52 = e0*psi_y
-                t53 = A_x*psi_y
-                t54 = Om_x*ep_y
-                t55 = A_y*psi_x + Om_y*ep_x - t53 - t54
-                t56 = A_x*psi_z
-                t57 = Om_x*ep_z
-                t58 = A_z*psi_x
-                t59 = Om_z*ep_x
-                t60 = t56 + t57 - t58 - t59
-                t61 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
-                t62 = psi_y*t61
-                t63 = psi_z*t61
-                t64 = e0*ep_x
-                t65 = -Om_y*psi_z + Om_z*psi_y
-                t66 = e0*psi_x
-                t67 = -Om0_y*psi_z + Om0_z*psi_y
-                t68 = Om0_z*ep_y - t38
-                t69 = A_z*psi_y + Om_z*ep_y - t37 - t39
-                t70 = psi_x*t61
-                etad[j3] = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y + (0.5)*Om_z*ep_y - 0.5*t37 -
-                    0.5*t38 - 0.5*t39 + t40*t41 + t40*t62 - t41*t48 + t42*t43 + t42*t63 - t43*t49
-                    + t46*t47 - t47*t60 - t48*t62 - t49*t63 - t51*t52 + t52*t55)
-                etad[j3 + 1] = (A_y - t40*t64 - t40*t70 + t43*t65 - t43*t67 + (0.5)*t44 - 0.5*t45
-                    - t47*t68 + t47*t69 + t48*t64 + t48*t70 + t51*t66 - t55*t66 + (0.5)*t56 +
-                    (0.5)*t57 - 0.5*t58 - 0.5*t59 + t63*t65 - t63*t67)
-                etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om_y*ep_x -
-                    t41*t65 + t41*t67 - t42*t64 - t42*t70 - t46*t66 + t49*t64 + t49*t70 - 0.5*t50
-                    + t52*t68 - t52*t69 - 0.5*t53 - 0.5*t54 + t60*t66 - t62*t65 + t62*t67)
+                t35 = A_y*psi_z
+                t36 = (0.5)*Om0_z + (0.5)*Om_z
+                t37 = Om0_y + Om_y
+                t38 = (0.5)*ep_z
+                t39 = -Om0_y + Om_y
+                t40 = -Om0_x + Om_x
+                t41 = psi_x*t39 - psi_y*t40
+                t42 = -Om0_z + Om_z
+                t43 = -psi_x*t42 + psi_z*t40
+                t44 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
+                t45 = A_x*psi_y
+                t46 = A_y*psi_x + ep_x*t39 - ep_y*t40 - t45
+                t47 = A_x*psi_z
+                t48 = A_z*psi_x
+                t49 = -ep_x*t42 + ep_z*t40 + t47 - t48
+                t50 = Om0_x + Om_x
+                t51 = psi_y*t42 - psi_z*t39
+                t52 = A_z*psi_y + ep_y*t42 - ep_z*t39 - t35
+                etad[j3] = (A_x + (0.5)*A_z*psi_y + e0*(ep_y*t41 - ep_z*t43 + psi_y*t46 -
+                    psi_z*t49) + ep_y*t36 - 0.5*t35 - t37*t38 + t44*(psi_y*t41 - psi_z*t43))
+                etad[j3 + 1] = (A_y + e0*(-ep_x*t41 + ep_z*t51 - psi_x*t46 + psi_z*t52) - ep_x*t36
+                    + t38*t50 + t44*(-psi_x*t41 + psi_z*t51) + (0.5)*t47 - 0.5*t48)
+                etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + e0*(ep_x*t43 - ep_y*t51 + psi_x*t49 -
+                    psi_y*t52) + (0.5)*ep_x*t37 - 0.5*ep_y*t50 + t44*(psi_x*t43 - psi_y*t51) -
+                    0.5*t45)
             # rate: B rate = sum alpha_j T^-1(psi_j) rate_j
             rhs_x = rhs_y = rhs_z = 0.0
             for j in range(N_ROTATIONS):
@@ -383,20 +361,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 epd_x, epd_y, epd_z = etad[j3], etad[j3 + 1], etad[j3 + 2]
                 e0 = e0s[j]
-                t71 = (0.5)*psi_z
-                t72 = e0*psi_x
-                t73 = psi_y*t72
-                t74 = (0.5)*psi_y
-                t75 = psi_z*t72
-                t76 = e0*psi_y*psi_y
-                t77 = e0*psi_z*psi_z - 1
-                t78 = (0.5)*psi_x
-                t79 = e0*psi_y*psi_z
-                t80 = e0*psi_x*psi_x
-                etad[j3] = Om0d_x*(t76 + t77) + Om0d_y*(-t71 - t73) + Om0d_z*(t74 - t75) + epd_x
-                etad[j3 + 1] = Om0d_x*(t71 - t73) + Om0d_y*(t77 + t80) + Om0d_z*(-t78 - t79) + epd_y
-                etad[j3 + 2] = (Om0d_x*(-t74 - t75) + Om0d_y*(t78 - t79) + Om0d_z*(t76 + t80 - 1)
-                    + epd_z)
+                t53 = Om0d_y*psi_z
+                t54 = Om0d_z*psi_y
+                t55 = Om0d_x*psi_y
+                t56 = Om0d_y*psi_x
+                t57 = t55 - t56
+                t58 = Om0d_x*psi_z
+                t59 = Om0d_z*psi_x - t58
+                t60 = t53 - t54
+                etad[j3] = -Om0d_x + e0*(psi_y*t57 - psi_z*t59) + epd_x - 0.5*t53 + (0.5)*t54
+                etad[j3 + 1] = (-Om0d_y - 0.5*Om0d_z*psi_x + e0*(-psi_x*t57 + psi_z*t60) + epd_y +
+                    (0.5)*t58)
+                etad[j3 + 2] = -Om0d_z + e0*(psi_x*t59 - psi_y*t60) + epd_z - 0.5*t55 + (0.5)*t56
             # rate: rates of the elastic displacements
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -405,15 +381,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t81 = X_y + u_y
-                t82 = X_z + u_z
-                t83 = X_x + u_x
+                t61 = X_y + u_y
+                t62 = X_z + u_z
+                t63 = X_x + u_x
                 etad[i3] = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y +
-                    Om0_z*vs_y - Om0d_y*t82 + Om0d_z*t81 - a0_x + acc_x)
+                    Om0_z*vs_y - Om0d_y*t62 + Om0d_z*t61 - a0_x + acc_x)
                 etad[i3 + 1] = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x -
-                    Om0_z*vs_x + Om0d_x*t82 - Om0d_z*t83 - a0_y + acc_y)
+                    Om0_z*vs_x + Om0d_x*t62 - Om0d_z*t63 - a0_y + acc_y)
                 etad[i3 + 2] = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x +
-                    Om0_y*vs_x - Om0d_x*t81 + Om0d_y*t83 - a0_z + acc_z)
+                    Om0_y*vs_x - Om0d_x*t61 + Om0d_y*t63 - a0_z + acc_z)
             # rate: rates of the internal modes
             for k in range(MODES, n):
                 am = ae[k]
@@ -443,55 +419,55 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # angular velocity of the rigid part
             angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
             angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
-            t84 = -Om0_y*angle0_z + Om0_z*angle0_y
-            t85 = angle0_y*angle1_z - angle0_z*angle1_y
-            t86 = -Om0_x*angle0_y + Om0_y*angle0_x
-            t87 = Om0_x*angle0_z - Om0_z*angle0_x
-            t88 = angle0_x*angle1_y - angle0_y*angle1_x
-            t89 = -angle0_x*angle1_z + angle0_z*angle1_x
-            wc_x = (Om0_x + angle1_x - r1*t84 - r2*t85 + r2*(angle0_y*t86 - angle0_z*t87) +
-                r3*(angle0_y*t88 - angle0_z*t89))
-            wc_y = (Om0_y + angle1_y - r1*t87 - r2*t89 + r2*(-angle0_x*t86 + angle0_z*t84) +
-                r3*(-angle0_x*t88 + angle0_z*t85))
-            wc_z = (Om0_z + angle1_z - r1*t86 - r2*t88 + r2*(angle0_x*t87 - angle0_y*t84) +
-                r3*(angle0_x*t89 - angle0_y*t85))
+            t64 = -Om0_y*angle0_z + Om0_z*angle0_y
+            t65 = angle0_y*angle1_z - angle0_z*angle1_y
+            t66 = -Om0_x*angle0_y + Om0_y*angle0_x
+            t67 = Om0_x*angle0_z - Om0_z*angle0_x
+            t68 = angle0_x*angle1_y - angle0_y*angle1_x
+            t69 = -angle0_x*angle1_z + angle0_z*angle1_x
+            wc_x = (Om0_x + angle1_x - r1*t64 - r2*t65 + r2*(angle0_y*t66 - angle0_z*t67) +
+                r3*(angle0_y*t68 - angle0_z*t69))
+            wc_y = (Om0_y + angle1_y - r1*t67 - r2*t69 + r2*(-angle0_x*t66 + angle0_z*t64) +
+                r3*(-angle0_x*t68 + angle0_z*t65))
+            wc_z = (Om0_z + angle1_z - r1*t66 - r2*t68 + r2*(angle0_x*t67 - angle0_y*t64) +
+                r3*(angle0_x*t69 - angle0_y*t65))
             # its rate
             angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
             angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
             angle2_x, angle2_y, angle2_z = rigid2[3], rigid2[4], rigid2[5]
-            t90 = -Om0d_y*angle0_z + Om0d_z*angle0_y
-            t91 = angle0_y*angle2_z - angle0_z*angle2_y
-            t92 = -Om0d_x*angle0_y + Om0d_y*angle0_x
-            t93 = Om0d_x*angle0_z - Om0d_z*angle0_x
-            t94 = angle0_x*angle2_y - angle0_y*angle2_x
-            t95 = -angle0_x*angle2_z + angle0_z*angle2_x
-            t96 = angle0_x*angle1_y - angle0_y*angle1_x
-            t97 = -angle0_x*angle1_z + angle0_z*angle1_x
-            t98 = angle0_y*angle1_z - angle0_z*angle1_y
-            t99 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
-            t100 = t99*(-r3 + 2*r4)
-            t101 = angle0_y*t96 - angle0_z*t97
-            t102 = t99*(-r4 + 3*r5)
-            t103 = Om0_x*angle0_z - Om0_z*angle0_x
-            t104 = -Om0_x*angle0_y + Om0_y*angle0_x
-            t105 = -Om0_y*angle0_z + Om0_z*angle0_y
-            t106 = Om0_y - r1*t103 + r2*(-angle0_x*t104 + angle0_z*t105)
-            t107 = angle0_x*t97 - angle0_y*t98
-            t108 = angle1_z - r2*t96 + r3*t107
-            t109 = -angle0_x*t96 + angle0_z*t98
-            t110 = angle1_y - r2*t97 + r3*t109
-            t111 = Om0_z - r1*t104 + r2*(angle0_x*t103 - angle0_y*t105)
-            t112 = angle1_x - r2*t98 + r3*t101
-            t113 = Om0_x - r1*t105 + r2*(angle0_y*t104 - angle0_z*t103)
-            wcd_x = (Om0d_x + angle2_x - r1*t90 - r2*t91 + r2*(angle0_y*t92 - angle0_z*t93) +
-                r3*(angle0_y*t94 - angle0_z*t95) + r3*(angle1_y*t96 - angle1_z*t97) - t100*t98 +
-                t101*t102 + t106*t108 - t110*t111)
-            wcd_y = (Om0d_y + angle2_y - r1*t93 - r2*t95 + r2*(-angle0_x*t92 + angle0_z*t90) +
-                r3*(-angle0_x*t94 + angle0_z*t91) + r3*(-angle1_x*t96 + angle1_z*t98) - t100*t97 +
-                t102*t109 - t108*t113 + t111*t112)
-            wcd_z = (Om0d_z + angle2_z - r1*t92 - r2*t94 + r2*(angle0_x*t93 - angle0_y*t90) +
-                r3*(angle0_x*t95 - angle0_y*t91) + r3*(angle1_x*t97 - angle1_y*t98) - t100*t96 +
-                t102*t107 - t106*t112 + t110*t113)
+            t70 = -Om0d_y*angle0_z + Om0d_z*angle0_y
+            t71 = angle0_y*angle2_z - angle0_z*angle2_y
+            t72 = -Om0d_x*angle0_y + Om0d_y*angle0_x
+            t73 = Om0d_x*angle0_z - Om0d_z*angle0_x
+            t74 = angle0_x*angle2_y - angle0_y*angle2_x
+            t75 = -angle0_x*angle2_z + angle0_z*angle2_x
+            t76 = angle0_x*angle1_y - angle0_y*angle1_x
+            t77 = -angle0_x*angle1_z + angle0_z*angle1_x
+            t78 = angle0_y*angle1_z - angle0_z*angle1_y
+            t79 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
+            t80 = t79*(-r3 + 2*r4)
+            t81 = angle0_y*t76 - angle0_z*t77
+            t82 = t79*(-r4 + 3*r5)
+            t83 = Om0_x*angle0_z - Om0_z*angle0_x
+            t84 = -Om0_x*angle0_y + Om0_y*angle0_x
+            t85 = -Om0_y*angle0_z + Om0_z*angle0_y
+            t86 = Om0_y - r1*t83 + r2*(-angle0_x*t84 + angle0_z*t85)
+            t87 = angle0_x*t77 - angle0_y*t78
+            t88 = angle1_z - r2*t76 + r3*t87
+            t89 = -angle0_x*t76 + angle0_z*t78
+            t90 = angle1_y - r2*t77 + r3*t89
+            t91 = Om0_z - r1*t84 + r2*(angle0_x*t83 - angle0_y*t85)
+            t92 = angle1_x - r2*t78 + r3*t81
+            t93 = Om0_x - r1*t85 + r2*(angle0_y*t84 - angle0_z*t83)
+            wcd_x = (Om0d_x + angle2_x - r1*t70 - r2*t71 + r2*(angle0_y*t72 - angle0_z*t73) +
+                r3*(angle0_y*t74 - angle0_z*t75) + r3*(angle1_y*t76 - angle1_z*t77) - t78*t80 +
+                t81*t82 + t86*t88 - t90*t91)
+            wcd_y = (Om0d_y + angle2_y - r1*t73 - r2*t75 + r2*(-angle0_x*t72 + angle0_z*t70) +
+                r3*(-angle0_x*t74 + angle0_z*t71) + r3*(-angle1_x*t76 + angle1_z*t78) - t77*t80 +
+                t82*t89 - t88*t93 + t91*t92)
+            wcd_z = (Om0d_z + angle2_z - r1*t72 - r2*t74 + r2*(angle0_x*t73 - angle0_y*t70) +
+                r3*(angle0_x*t75 - angle0_y*t71) + r3*(angle1_x*t77 - angle1_y*t78) - t76*t80 +
+                t82*t87 - t86*t92 + t90*t93)
             # rate of its momentum and of the moment of it
             first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
             first1_x, first1_y, first1_z = rigid1[0], rigid1[1], rigid1[2]
@@ -500,26 +476,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             mass = masses[0]
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             Jc_xx, Jc_yy, Jc_zz, Jc_xy, Jc_xz, Jc_yz = Jc[0], Jc[1], Jc[2], Jc[3], Jc[4], Jc[5]
-            t114 = 2*first1_z
-            t115 = 2*Om0_z
-            t116 = first0_z + mc_z
-            t117 = first0_y + mc_y
-            t118 = first0_x + mc_x
-            t119 = Om0_x*t117 - Om0_y*t118
-            t120 = -Om0_x*t116 + Om0_z*t118
-            t121 = Om0_y*t116 - Om0_z*t117
-            t122 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
-            t123 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
-            t124 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
-            Rt_x = (Om0_y*t114 + Om0_y*t119 - Om0_z*t120 + Om0d_y*t116 - Om0d_z*t117 -
-                first1_y*t115 + first2_x + mass*(a0_x - gamma_x))
-            Rt_y = (-Om0_x*t114 - Om0_x*t119 + Om0_z*t121 - Om0d_x*t116 + Om0d_z*t118 +
-                first1_x*t115 + first2_y + mass*(a0_y - gamma_y))
-            Rt_z = (2*Om0_x*first1_y + Om0_x*t120 - 2*Om0_y*first1_x - Om0_y*t121 + Om0d_x*t117 -
-                Om0d_y*t118 + first2_z + mass*(a0_z - gamma_z))
-            Mc_x = Jc_xx*wcd_x + Jc_xy*wcd_y + Jc_xz*wcd_z + t122*wc_y - t123*wc_z
-            Mc_y = Jc_xy*wcd_x + Jc_yy*wcd_y + Jc_yz*wcd_z - t122*wc_x + t124*wc_z
-            Mc_z = Jc_xz*wcd_x + Jc_yz*wcd_y + Jc_zz*wcd_z + t123*wc_x - t124*wc_y
+            t94 = 2*first1_z
+            t95 = 2*Om0_z
+            t96 = first0_z + mc_z
+            t97 = first0_y + mc_y
+            t98 = first0_x + mc_x
+            t99 = Om0_x*t97 - Om0_y*t98
+            t100 = -Om0_x*t96 + Om0_z*t98
+            t101 = Om0_y*t96 - Om0_z*t97
+            t102 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
+            t103 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
+            t104 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
+            Rt_x = (Om0_y*t94 + Om0_y*t99 - Om0_z*t100 + Om0d_y*t96 - Om0d_z*t97 - first1_y*t95 +
+                first2_x + mass*(a0_x - gamma_x))
+            Rt_y = (-Om0_x*t94 - Om0_x*t99 + Om0_z*t101 - Om0d_x*t96 + Om0d_z*t98 + first1_x*t95 +
+                first2_y + mass*(a0_y - gamma_y))
+            Rt_z = (2*Om0_x*first1_y + Om0_x*t100 - 2*Om0_y*first1_x - Om0_y*t101 + Om0d_x*t97 -
+                Om0d_y*t98 + first2_z + mass*(a0_z - gamma_z))
+            Mc_x = Jc_xx*wcd_x + Jc_xy*wcd_y + Jc_xz*wcd_z + t102*wc_y - t103*wc_z
+            Mc_y = Jc_xy*wcd_x + Jc_yy*wcd_y + Jc_yz*wcd_z - t102*wc_x + t104*wc_z
+            Mc_z = Jc_xz*wcd_x + Jc_yz*wcd_y + Jc_zz*wcd_z + t103*wc_x - t104*wc_y
             # moment on the frame, forces on the first moment and mean rotation
             first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
             angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
@@ -528,28 +504,28 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
             mass = masses[0]
             Jc_xx, Jc_yy, Jc_zz, Jc_xy, Jc_xz, Jc_yz = Jc[0], Jc[1], Jc[2], Jc[3], Jc[4], Jc[5]
-            t125 = -Mc_y*angle0_z + Mc_z*angle0_y
-            t126 = 1/mass
-            t127 = first0_y + mc_y
-            t128 = first0_z + mc_z
-            t129 = -Mc_x*angle0_y + Mc_y*angle0_x
-            t130 = Mc_x*angle0_z - Mc_z*angle0_x
-            t131 = angle0_y*t129 - angle0_z*t130
-            t132 = first0_x + mc_x
-            t133 = -angle0_x*t129 + angle0_z*t125
-            t134 = angle0_x*t130 - angle0_y*t125
-            Rr_x = Mc_x + r1*t125 + r2*t131 + t126*(-Rt_y*t128 + Rt_z*t127)
-            Rr_y = Mc_y + r1*t130 + r2*t133 + t126*(Rt_x*t128 - Rt_z*t132)
-            Rr_z = Mc_z + r1*t129 + r2*t134 + t126*(-Rt_x*t127 + Rt_y*t132)
-            carried[0] = t126*(Rt_x - first2_x)
-            carried[1] = t126*(Rt_y - first2_y)
-            carried[2] = t126*(Rt_z - first2_z)
-            carried[3] = (-Jc_xx*angle2_x - Jc_xy*angle2_y - Jc_xz*angle2_z + Mc_x + r2*t125 +
-                r3*t131)
-            carried[4] = (-Jc_xy*angle2_x - Jc_yy*angle2_y - Jc_yz*angle2_z + Mc_y + r2*t130 +
-                r3*t133)
-            carried[5] = (-Jc_xz*angle2_x - Jc_yz*angle2_y - Jc_zz*angle2_z + Mc_z + r2*t129 +
-                r3*t134)
+            t105 = -Mc_y*angle0_z + Mc_z*angle0_y
+            t106 = 1/mass
+            t107 = first0_y + mc_y
+            t108 = first0_z + mc_z
+            t109 = -Mc_x*angle0_y + Mc_y*angle0_x
+            t110 = Mc_x*angle0_z - Mc_z*angle0_x
+            t111 = angle0_y*t109 - angle0_z*t110
+            t112 = first0_x + mc_x
+            t113 = -angle0_x*t109 + angle0_z*t105
+            t114 = angle0_x*t110 - angle0_y*t105
+            Rr_x = Mc_x + r1*t105 + r2*t111 + t106*(-Rt_y*t108 + Rt_z*t107)
+            Rr_y = Mc_y + r1*t110 + r2*t113 + t106*(Rt_x*t108 - Rt_z*t112)
+            Rr_z = Mc_z + r1*t109 + r2*t114 + t106*(-Rt_x*t107 + Rt_y*t112)
+            carried[0] = t106*(Rt_x - first2_x)
+            carried[1] = t106*(Rt_y - first2_y)
+            carried[2] = t106*(Rt_z - first2_z)
+            carried[3] = (-Jc_xx*angle2_x - Jc_xy*angle2_y - Jc_xz*angle2_z + Mc_x + r2*t105 +
+                r3*t111)
+            carried[4] = (-Jc_xy*angle2_x - Jc_yy*angle2_y - Jc_yz*angle2_z + Mc_y + r2*t110 +
+                r3*t113)
+            carried[5] = (-Jc_xz*angle2_x - Jc_yz*angle2_y - Jc_zz*angle2_z + Mc_z + r2*t109 +
+                r3*t114)
             # forces of the rigid part, conjugate to y
             add_block_times(rigid_columns, carried, s, n, 6, padded(n))
             # damping force, Cbar ydot
@@ -562,15 +538,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t135 = X_z + u_z
-                t136 = X_y + u_y
-                t137 = X_x + u_x
+                t115 = X_z + u_z
+                t116 = X_y + u_y
+                t117 = X_x + u_x
                 F_x += -f_x
                 F_y += -f_y
                 F_z += -f_z
-                W_x += f_y*t135 - f_z*t136
-                W_y += -f_x*t135 + f_z*t137
-                W_z += f_x*t136 - f_y*t137
+                W_x += f_y*t115 - f_z*t116
+                W_y += -f_x*t115 + f_z*t117
+                W_z += f_x*t116 - f_y*t117
             # inertia and weight on the frame
             F_x += Rt_x
             F_y += Rt_y
@@ -584,21 +560,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
-                t138 = -m_x*psi_y + m_y*psi_x
-                t139 = m_x*psi_z
-                t140 = -m_z*psi_x + t139
-                t141 = -m_y*psi_z + m_z*psi_y
-                W_x += -e0*psi_y*t138 + e0*psi_z*t140 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-                W_y += e0*psi_x*t138 - e0*psi_z*t141 - m_y + (0.5)*m_z*psi_x - 0.5*t139
-                W_z += -e0*psi_x*t140 + e0*psi_y*t141 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+                t118 = -m_x*psi_y + m_y*psi_x
+                t119 = m_x*psi_z
+                t120 = -m_z*psi_x + t119
+                t121 = -m_y*psi_z + m_z*psi_y
+                W_x += -e0*psi_y*t118 + e0*psi_z*t120 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+                W_y += e0*psi_x*t118 - e0*psi_z*t121 - m_y + (0.5)*m_z*psi_x - 0.5*t119
+                W_z += -e0*psi_x*t120 + e0*psi_y*t121 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
             # B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
-            t142 = W_x + rhs_x
-            t143 = W_y + rhs_y
-            t144 = W_z + rhs_z
-            wp_x = Bxx*t142 + Byx*t143 + Bzx*t144
-            wp_y = Bxy*t142 + Byy*t143 + Bzy*t144
-            wp_z = Bxz*t142 + Byz*t143 + Bzz*t144
+            t122 = W_x + rhs_x
+            t123 = W_y + rhs_y
+            t124 = W_z + rhs_z
+            wp_x = Bxx*t122 + Byx*t123 + Bzx*t124
+            wp_y = Bxy*t122 + Byy*t123 + Bzy*t124
+            wp_z = Bxz*t122 + Byz*t123 + Bzz*t124
             # force on the nodes in frame axes, (30), (57)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -621,30 +597,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
-                t145 = m_y*psi_z
-                t146 = m_x*psi_y
-                t147 = m_y*psi_x - t146
-                t148 = e0*psi_y
-                t149 = m_x*psi_z
-                t150 = m_z*psi_x
-                t151 = t149 - t150
-                t152 = e0*psi_z
-                t153 = psi_y*wp_z
-                t154 = psi_z*wp_y
-                t155 = psi_x*wp_y
-                t156 = psi_y*wp_x
-                t157 = t155 - t156
-                t158 = psi_x*wp_z
-                t159 = psi_z*wp_x - t158
-                t160 = m_z*psi_y - t145
-                t161 = e0*psi_x
-                t162 = t153 - t154
-                g[j3] = (alpha_r*(t148*t157 - t152*t159 - 0.5*t153 + (0.5)*t154 + wp_x) + m_x -
-                    0.5*m_z*psi_y + (0.5)*t145 + t147*t148 - t151*t152)
-                g[j3 + 1] = (alpha_r*(-0.5*psi_z*wp_x + t152*t162 - t157*t161 + (0.5)*t158 + wp_y)
-                    + m_y - t147*t161 - 0.5*t149 + (0.5)*t150 + t152*t160)
-                g[j3 + 2] = (alpha_r*(-t148*t162 - 0.5*t155 + (0.5)*t156 + t159*t161 + wp_z) -
-                    0.5*m_y*psi_x + m_z + (0.5)*t146 - t148*t160 + t151*t161)
+                t125 = alpha_r*wp_y + m_y
+                t126 = psi_z*t125
+                t127 = alpha_r*wp_z + m_z
+                t128 = psi_y*t127
+                t129 = psi_x*t125
+                t130 = alpha_r*wp_x + m_x
+                t131 = psi_y*t130
+                t132 = e0*(t129 - t131)
+                t133 = psi_x*t127
+                t134 = psi_z*t130 - t133
+                t135 = e0*psi_z
+                t136 = -t126 + t128
+                g[j3] = psi_y*t132 + (0.5)*t126 - 0.5*t128 + t130 - t134*t135
+                g[j3 + 1] = -psi_x*t132 - 0.5*psi_z*t130 + t125 + (0.5)*t133 + t135*t136
+                g[j3 + 2] = e0*psi_x*t134 - e0*psi_y*t136 + t127 - 0.5*t129 + (0.5)*t131
             # force of the internal modes
             for k in range(MODES, n):
                 fm = s[k]
@@ -755,16 +722,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                 e0 = e0s[j]
-                t163 = -dth_x*psi_y + dth_y*psi_x
-                t164 = dth_x*psi_z
-                t165 = -dth_z*psi_x + t164
-                t166 = -dth_y*psi_z + dth_z*psi_y
-                rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y - e0*psi_y*t163 +
-                    e0*psi_z*t165))
-                rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t163 - e0*psi_z*t166 -
-                    0.5*t164))
-                rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t165 +
-                    e0*psi_y*t166))
+                t137 = -dth_x*psi_y + dth_y*psi_x
+                t138 = dth_x*psi_z
+                t139 = -dth_z*psi_x + t138
+                t140 = -dth_y*psi_z + dth_z*psi_y
+                rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y - e0*psi_y*t137 +
+                    e0*psi_z*t139))
+                rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t137 - e0*psi_z*t140 -
+                    0.5*t138))
+                rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t139 +
+                    e0*psi_y*t140))
             dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -774,41 +741,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t167 = X_y + u_y
-                t168 = X_z + u_z
-                t169 = X_x + u_x
-                dy[i3] = -dth0_y*t168 + dth0_z*t167 - dx0_x + dx_x
-                dy[i3 + 1] = dth0_x*t168 - dth0_z*t169 - dx0_y + dx_y
-                dy[i3 + 2] = -dth0_x*t167 + dth0_y*t169 - dx0_z + dx_z
+                t141 = X_y + u_y
+                t142 = X_z + u_z
+                t143 = X_x + u_x
+                dy[i3] = -dth0_y*t142 + dth0_z*t141 - dx0_x + dx_x
+                dy[i3 + 1] = dth0_x*t142 - dth0_z*t143 - dx0_y + dx_y
+                dy[i3 + 2] = -dth0_x*t141 + dth0_y*t143 - dx0_z + dx_z
             # variation of the elastic rotations, (17)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                 e0 = e0s[j]
-                t170 = dth0_y*psi_z
-                t171 = dth_y*psi_z
-                t172 = dth0_x*psi_y
-                t173 = dth0_y*psi_x - t172
-                t174 = e0*psi_y
-                t175 = dth_x*psi_z
-                t176 = dth_z*psi_x
-                t177 = t175 - t176
-                t178 = e0*psi_z
-                t179 = dth_x*psi_y
-                t180 = dth_y*psi_x - t179
-                t181 = dth0_x*psi_z
-                t182 = dth0_z*psi_x
-                t183 = t181 - t182
-                t184 = e0*psi_x
-                t185 = dth_z*psi_y - t171
-                t186 = dth0_z*psi_y - t170
-                dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y + e0*psi_y*t180
-                    + e0*psi_z*t183 - 0.5*t170 - 0.5*t171 - t173*t174 - t177*t178)
-                dy[j3 + 1] = (-dth0_y + dth_y + t173*t184 + (0.5)*t175 - 0.5*t176 + t178*t185 -
-                    t178*t186 - t180*t184 + (0.5)*t181 - 0.5*t182)
-                dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                    e0*psi_x*t177 + e0*psi_y*t186 - 0.5*t172 - t174*t185 - 0.5*t179 - t183*t184)
+                t144 = (0.5)*dth0_z + (0.5)*dth_z
+                t145 = dth0_y + dth_y
+                t146 = (0.5)*psi_z
+                t147 = -dth0_y + dth_y
+                t148 = -dth0_x + dth_x
+                t149 = psi_x*t147 - psi_y*t148
+                t150 = -dth0_z + dth_z
+                t151 = -psi_x*t150 + psi_z*t148
+                t152 = dth0_x + dth_x
+                t153 = psi_y*t150 - psi_z*t147
+                dy[j3] = -dth0_x + dth_x + e0*(psi_y*t149 - psi_z*t151) + psi_y*t144 - t145*t146
+                dy[j3 + 1] = (-dth0_y + dth_y + e0*(-psi_x*t149 + psi_z*t153) - psi_x*t144 +
+                    t146*t152)
+                dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t151 - psi_y*t153) + (0.5)*psi_x*t145 -
+                    0.5*psi_y*t152)
             # differential: internal modes
             for k in range(MODES, n):
                 dqm = dqe[k]
@@ -846,47 +805,56 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t187 = -Om_x*psi_y + Om_y*psi_x
+                t154 = (0.5)*dpsi_y
+                t155 = (0.5)*psi_z
+                t156 = e0*psi_x
+                t157 = psi_y*t156
+                t158 = (0.5)*psi_y
+                t159 = psi_z*t156
+                t160 = Om0_x*psi_z - Om0_z*psi_x
+                t161 = Om0_x*dpsi_z - Om0_z*dpsi_x
+                t162 = -Om0_x*psi_y + Om0_y*psi_x
+                t163 = -Om0_x*dpsi_y + Om0_y*dpsi_x
+                t164 = psi_y*psi_y
+                t165 = e0*t164
+                t166 = psi_z*psi_z
+                t167 = e0*t166 - 1
+                t168 = 2*dpsi_x*psi_x
+                t169 = 2*dpsi_y*psi_y
+                t170 = 2*dpsi_z*psi_z
+                t171 = t168 + t169 + t170
+                t172 = e1*t171
+                t173 = (0.5)*dpsi_z
+                t174 = dpsi_x*e0
+                t175 = psi_x*t172
+                t176 = dpsi_y*t156 + psi_y*t174 + psi_y*t175
+                t177 = dpsi_z*t156 + psi_z*t174 + psi_z*t175
+                t178 = e0*t170 + t166*t172
+                t179 = e0*t169 + t164*t172
+                t180 = (0.5)*psi_x
+                t181 = e0*psi_y
+                t182 = psi_z*t181
+                t183 = -Om0_y*psi_z + Om0_z*psi_y
+                t184 = -Om0_y*dpsi_z + Om0_z*dpsi_y
+                t185 = psi_x*psi_x
+                t186 = e0*t185
+                t187 = (0.5)*dpsi_x
                 t188 = dpsi_y*e0
-                t189 = Om0_x*psi_z - Om0_z*psi_x
-                t190 = dpsi_z*e0
-                t191 = Om0_x*dpsi_z
-                t192 = -Om0_z*dpsi_x + t191
-                t193 = e0*psi_z
-                t194 = -Om0_x*psi_y + Om0_y*psi_x
-                t195 = Om_x*psi_z - Om_z*psi_x
-                t196 = -Om0_x*dpsi_y + Om0_y*dpsi_x
-                t197 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                t198 = e0*psi_y
-                t199 = Om_x*dpsi_z
-                t200 = dOm_x*psi_z
-                t201 = -Om_z*dpsi_x - dOm_z*psi_x + t199 + t200
-                t202 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t203 = e1*t202
-                t204 = psi_y*t203
-                t205 = psi_z*t203
-                t206 = dpsi_x*e0
-                t207 = -Om_y*psi_z + Om_z*psi_y
-                t208 = e0*psi_x
-                t209 = -Om0_y*psi_z + Om0_z*psi_y
-                t210 = -Om0_y*dpsi_z + Om0_z*dpsi_y
-                t211 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                t212 = psi_x*t203
-                rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - 0.5*Om0_z*dpsi_y + (0.5)*Om_y*dpsi_z -
-                    0.5*Om_z*dpsi_y - dOm_x + (0.5)*dOm_y*psi_z - 0.5*dOm_z*psi_y + dpsi_y*e0*t194
-                    + dpsi_z*e0*t195 + e0*psi_y*t196 + e0*psi_z*t201 + e1*psi_y*t194*t202 +
-                    e1*psi_z*t195*t202 - t187*t188 - t187*t204 - t189*t190 - t189*t205 - t192*t193
-                    - t197*t198))
-                rhs_y += (-alpha_r*((0.5)*Om0_z*dpsi_x + (0.5)*Om_z*dpsi_x - dOm_y +
-                    (0.5)*dOm_z*psi_x + dpsi_x*e0*t187 + dpsi_z*e0*t209 + e0*psi_x*t197 +
-                    e0*psi_z*t210 + e1*psi_x*t187*t202 + e1*psi_z*t202*t209 - t190*t207 - 0.5*t191
-                    - t193*t211 - t194*t206 - t194*t212 - t196*t208 - 0.5*t199 - 0.5*t200 -
-                    t205*t207))
-                rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x + (0.5)*Om_x*dpsi_y -
-                    0.5*Om_y*dpsi_x + (0.5)*dOm_x*psi_y - 0.5*dOm_y*psi_x - dOm_z + dpsi_x*e0*t189
-                    + dpsi_y*e0*t207 + e0*psi_x*t192 + e0*psi_y*t211 + e1*psi_x*t189*t202 +
-                    e1*psi_y*t202*t207 - t188*t209 - t195*t206 - t195*t212 - t198*t210 - t201*t208
-                    - t204*t209))
+                t189 = psi_y*t172
+                t190 = dpsi_z*t181 + psi_z*t188 + psi_z*t189
+                t191 = e0*t168 + t172*t185
+                rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - Om0_z*t154 - Om_x*(-t178 - t179) -
+                    Om_y*(-t173 + t176) - Om_z*(t154 + t177) - dOm_x*(-t165 - t167) - dOm_y*(-t155
+                    + t157) - dOm_z*(t158 + t159) + dpsi_y*e0*t162 - dpsi_z*e0*t160 +
+                    e0*psi_y*t163 - e0*psi_z*t161 + e1*psi_y*t162*t171 - psi_z*t160*t172))
+                rhs_y += (-alpha_r*(-Om0_x*t173 + (0.5)*Om0_z*dpsi_x - Om_x*(t173 + t176) -
+                    Om_y*(-t178 - t191) - Om_z*(-t187 + t190) - dOm_x*(t155 + t157) - dOm_y*(-t167
+                    - t186) - dOm_z*(-t180 + t182) + dpsi_z*e0*t183 + e0*psi_z*t184 +
+                    e1*psi_z*t171*t183 - t156*t163 - t162*t174 - t162*t175))
+                rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x - Om_x*(-t154 + t177) -
+                    Om_y*(t187 + t190) - Om_z*(-t179 - t191) - dOm_x*(-t158 + t159) - dOm_y*(t180
+                    + t182) - dOm_z*(-t165 - t186 + 1) + dpsi_x*e0*t160 + e0*psi_x*t161 +
+                    e1*psi_x*t160*t171 - t181*t184 - t183*t188 - t183*t189))
             dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -919,12 +887,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                t213 = X_y + u_y
-                t214 = X_z + u_z
-                t215 = X_x + u_x
-                deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t214 + dOm0_z*t213 - dv0_x + dvs_x
-                deta[i3 + 1] = Om0_x*du_z - Om0_z*du_x + dOm0_x*t214 - dOm0_z*t215 - dv0_y + dvs_y
-                deta[i3 + 2] = -Om0_x*du_y + Om0_y*du_x - dOm0_x*t213 + dOm0_y*t215 - dv0_z + dvs_z
+                t192 = X_y + u_y
+                t193 = X_z + u_z
+                t194 = X_x + u_x
+                deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t193 + dOm0_z*t192 - dv0_x + dvs_x
+                deta[i3 + 1] = Om0_x*du_z - Om0_z*du_x + dOm0_x*t193 - dOm0_z*t194 - dv0_y + dvs_y
+                deta[i3 + 2] = -Om0_x*du_y + Om0_y*du_x - dOm0_x*t192 + dOm0_y*t194 - dv0_z + dvs_z
             # differential: rates of the elastic rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -934,59 +902,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t216 = Om0_y*dpsi_z
-                t217 = Om_y*dpsi_z
-                t218 = dOm0_y*psi_z
-                t219 = dOm_y*psi_z
-                t220 = -Om0_x*psi_y + Om0_y*psi_x
-                t221 = dpsi_y*e0
-                t222 = Om_x*psi_z - Om_z*psi_x
-                t223 = dpsi_z*e0
-                t224 = -Om_x*psi_y + Om_y*psi_x
-                t225 = Om0_x*psi_z - Om0_z*psi_x
-                t226 = Om0_x*dpsi_y
-                t227 = dOm0_x*psi_y
-                t228 = Om0_y*dpsi_x + dOm0_y*psi_x - t226 - t227
-                t229 = e0*psi_y
-                t230 = Om_x*dpsi_z
-                t231 = dOm_x*psi_z
-                t232 = Om_z*dpsi_x
-                t233 = dOm_z*psi_x
-                t234 = t230 + t231 - t232 - t233
-                t235 = e0*psi_z
-                t236 = Om_x*dpsi_y
-                t237 = dOm_x*psi_y
-                t238 = Om_y*dpsi_x + dOm_y*psi_x - t236 - t237
-                t239 = Om0_x*dpsi_z
-                t240 = dOm0_x*psi_z
-                t241 = Om0_z*dpsi_x
-                t242 = dOm0_z*psi_x
-                t243 = t239 + t240 - t241 - t242
-                t244 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t245 = e1*t244
-                t246 = psi_y*t245
-                t247 = psi_z*t245
-                t248 = dpsi_x*e0
-                t249 = -Om_y*psi_z + Om_z*psi_y
-                t250 = -Om0_y*psi_z + Om0_z*psi_y
-                t251 = e0*psi_x
-                t252 = Om_z*dpsi_y + dOm_z*psi_y - t217 - t219
-                t253 = Om0_z*dpsi_y + dOm0_z*psi_y - t216 - t218
-                t254 = psi_x*t245
-                deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x + (0.5)*dOm0_z*psi_y +
-                    dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t224 + dpsi_z*e0*t225 + e0*psi_y*t238 +
-                    e0*psi_z*t243 + e1*psi_y*t224*t244 + e1*psi_z*t225*t244 - 0.5*t216 - 0.5*t217
-                    - 0.5*t218 - 0.5*t219 - t220*t221 - t220*t246 - t222*t223 - t222*t247 -
-                    t228*t229 - t234*t235)
-                deta[j3 + 1] = (-dOm0_y + dOm_y + t220*t248 + t220*t254 + t223*t249 - t223*t250 -
-                    t224*t248 - t224*t254 + t228*t251 + (0.5)*t230 + (0.5)*t231 - 0.5*t232 -
-                    0.5*t233 + t235*t252 - t235*t253 - t238*t251 + (0.5)*t239 + (0.5)*t240 -
-                    0.5*t241 - 0.5*t242 + t247*t249 - t247*t250)
-                deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                    dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t222 + dpsi_y*e0*t250 +
-                    e0*psi_x*t234 + e0*psi_y*t253 + e1*psi_x*t222*t244 + e1*psi_y*t244*t250 -
-                    t221*t249 - t225*t248 - t225*t254 - 0.5*t226 - 0.5*t227 - t229*t252 - 0.5*t236
-                    - 0.5*t237 - t243*t251 - t246*t249)
+                t195 = (0.5)*Om0_z + (0.5)*Om_z
+                t196 = Om0_y + Om_y
+                t197 = (0.5)*dpsi_z
+                t198 = (0.5)*dOm0_z + (0.5)*dOm_z
+                t199 = dOm0_y + dOm_y
+                t200 = (0.5)*psi_z
+                t201 = -Om0_y + Om_y
+                t202 = -Om0_x + Om_x
+                t203 = psi_x*t201 - psi_y*t202
+                t204 = -Om0_z + Om_z
+                t205 = -psi_x*t204 + psi_z*t202
+                t206 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                t207 = -dOm0_y + dOm_y
+                t208 = -dOm0_x + dOm_x
+                t209 = dpsi_x*t201 - dpsi_y*t202 + psi_x*t207 - psi_y*t208
+                t210 = -dOm0_z + dOm_z
+                t211 = -dpsi_x*t204 + dpsi_z*t202 - psi_x*t210 + psi_z*t208
+                t212 = Om0_x + Om_x
+                t213 = dOm0_x + dOm_x
+                t214 = psi_y*t204 - psi_z*t201
+                t215 = dpsi_y*t204 - dpsi_z*t201 + psi_y*t210 - psi_z*t207
+                deta[j3] = (-dOm0_x + dOm_x + dpsi_y*t195 + e0*(dpsi_y*t203 - dpsi_z*t205 +
+                    psi_y*t209 - psi_z*t211) + psi_y*t198 - t196*t197 - t199*t200 +
+                    t206*(psi_y*t203 - psi_z*t205))
+                deta[j3 + 1] = (-dOm0_y + dOm_y - dpsi_x*t195 + e0*(-dpsi_x*t203 + dpsi_z*t214 -
+                    psi_x*t209 + psi_z*t215) - psi_x*t198 + t197*t212 + t200*t213 +
+                    t206*(-psi_x*t203 + psi_z*t214))
+                deta[j3 + 2] = (-dOm0_z + dOm_z + (0.5)*dpsi_x*t196 - 0.5*dpsi_y*t212 +
+                    e0*(dpsi_x*t205 - dpsi_y*t214 + psi_x*t211 - psi_y*t215) + (0.5)*psi_x*t199 -
+                    0.5*psi_y*t213 + t206*(psi_x*t205 - psi_y*t214))
             # differential: rates of the internal modes
             for k in range(MODES, n):
                 dvm = dve[k]
@@ -1005,126 +950,72 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e0 = e0s[j]
                 e1 = e1s[j]
                 e2 = e2s[j]
-                t255 = A_y*dpsi_z
-                t256 = Om0_y*dep_z
-                t257 = Om_y*dep_z
-                t258 = dA_y*psi_z
-                t259 = dOm0_y*ep_z
-                t260 = dOm_y*ep_z
-                t261 = -Om_x*psi_y + Om_y*psi_x
-                t262 = dep_y*e0
-                t263 = Om0_x*psi_z - Om0_z*psi_x
-                t264 = dep_z*e0
-                t265 = Om0_x*ep_z - Om0_z*ep_x
-                t266 = dpsi_z*e0
-                t267 = -Om0_x*psi_y + Om0_y*psi_x
-                t268 = Om_x*psi_z - Om_z*psi_x
-                t269 = -Om0_x*ep_y + Om0_y*ep_x
-                t270 = dpsi_y*e0
-                t271 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                t272 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                t273 = e0*ep_y
-                t274 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                t275 = e0*ep_z
-                t276 = Om0_x*dep_z
-                t277 = dOm0_x*ep_z
-                t278 = Om0_z*dep_x
-                t279 = dOm0_z*ep_x
-                t280 = t276 + t277 - t278 - t279
-                t281 = e0*psi_z
-                t282 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                t283 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                t284 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                t285 = Om0_x*dep_y
-                t286 = dOm0_x*ep_y
-                t287 = Om0_y*dep_x + dOm0_y*ep_x - t285 - t286
-                t288 = e0*psi_y
-                t289 = 2*psi_x
-                t290 = 2*psi_y
-                t291 = 2*psi_z
-                t292 = ep_x*t289 + ep_y*t290 + ep_z*t291
-                t293 = e1*t292
-                t294 = dpsi_y*t293
-                t295 = dpsi_z*t293
-                t296 = dpsi_x*t289 + dpsi_y*t290 + dpsi_z*t291
-                t297 = e1*t296
-                t298 = ep_y*t297
-                t299 = ep_z*t297
-                t300 = psi_z*t297
-                t301 = psi_y*t297
-                t302 = psi_y*t293
-                t303 = psi_z*t293
-                t304 = A_x*dpsi_y
-                t305 = Om_x*dep_y
-                t306 = dA_x*psi_y
-                t307 = dOm_x*ep_y
-                t308 = A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t304 - t305 - t306 - t307
-                t309 = A_x*dpsi_z
-                t310 = Om_x*dep_z
-                t311 = dA_x*psi_z
-                t312 = dOm_x*ep_z
-                t313 = A_z*dpsi_x
-                t314 = Om_z*dep_x
-                t315 = dA_z*psi_x
-                t316 = dOm_z*ep_x
-                t317 = t309 + t310 + t311 + t312 - t313 - t314 - t315 - t316
-                t318 = (e1*(dep_x*t289 + dep_y*t290 + dep_z*t291 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
+                t216 = A_y*dpsi_z
+                t217 = dA_y*psi_z
+                t218 = (0.5)*Om0_z + (0.5)*Om_z
+                t219 = Om0_y + Om_y
+                t220 = (0.5)*dep_z
+                t221 = (0.5)*dOm0_z + (0.5)*dOm_z
+                t222 = dOm0_y + dOm_y
+                t223 = (0.5)*ep_z
+                t224 = -Om0_y + Om_y
+                t225 = -Om0_x + Om_x
+                t226 = psi_x*t224 - psi_y*t225
+                t227 = -Om0_z + Om_z
+                t228 = -psi_x*t227 + psi_z*t225
+                t229 = psi_y*t226 - psi_z*t228
+                t230 = 2*psi_x
+                t231 = 2*psi_y
+                t232 = 2*psi_z
+                t233 = (e1*(dep_x*t230 + dep_y*t231 + dep_z*t232 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
                     2*dpsi_z*ep_z))
-                t319 = psi_y*t261
-                t320 = psi_z*t318
-                t321 = t267*t318
-                t322 = e2*t292*t296
-                t323 = psi_z*t322
-                t324 = t267*t322
-                t325 = dep_x*e0
-                t326 = -Om_y*psi_z + Om_z*psi_y
-                t327 = dpsi_x*e0
-                t328 = -Om0_y*psi_z + Om0_z*psi_y
-                t329 = -Om0_y*ep_z + Om0_z*ep_y
-                t330 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                t331 = e0*ep_x
-                t332 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                t333 = e0*psi_x
-                t334 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                t335 = Om0_z*dep_y + dOm0_z*ep_y - t256 - t259
-                t336 = dpsi_x*t293
-                t337 = ep_x*t297
-                t338 = psi_x*t297
-                t339 = psi_x*t293
-                t340 = A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t255 - t257 - t258 - t260
-                t341 = psi_x*t318
-                t342 = psi_x*t322
-                t343 = psi_y*t318
-                t344 = psi_y*t322
-                detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om_z*dep_y + dA_x +
-                    (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y + (0.5)*dOm_z*ep_y - psi_y*t321 -
-                    psi_y*t324 - 0.5*t255 - 0.5*t256 - 0.5*t257 - 0.5*t258 - 0.5*t259 - 0.5*t260 +
-                    t261*t262 + t261*t294 + t261*t298 - t262*t267 + t263*t264 + t263*t295 +
-                    t263*t299 + t263*t320 + t263*t323 - t264*t268 + t265*t266 + t265*t300 -
-                    t266*t282 - t267*t294 - t267*t298 - t268*t295 - t268*t299 - t268*t320 -
-                    t268*t323 - t269*t270 - t269*t301 + t270*t271 + t271*t301 + t272*t273 +
-                    t272*t302 - t273*t283 + t274*t275 + t274*t303 - t275*t284 + t280*t281 -
-                    t281*t317 - t282*t300 - t283*t302 - t284*t303 - t287*t288 + t288*t308 +
-                    t318*t319 + t319*t322)
-                detad[j3 + 1] = (dA_y + psi_x*t321 + psi_x*t324 - t261*t325 - t261*t336 -
-                    t261*t337 - t261*t341 - t261*t342 + t264*t326 - t264*t328 - t266*t329 +
-                    t266*t330 + t267*t325 + t267*t336 + t267*t337 + t269*t327 + t269*t338 -
-                    t271*t327 - t271*t338 - t272*t331 - t272*t339 + t275*t332 - t275*t334 +
-                    (0.5)*t276 + (0.5)*t277 - 0.5*t278 - 0.5*t279 - t281*t335 + t281*t340 +
-                    t283*t331 + t283*t339 + t287*t333 + t295*t326 - t295*t328 + t299*t326 -
-                    t299*t328 - t300*t329 + t300*t330 + t303*t332 - t303*t334 - t308*t333 +
-                    (0.5)*t309 + (0.5)*t310 + (0.5)*t311 + (0.5)*t312 - 0.5*t313 - 0.5*t314 -
-                    0.5*t315 - 0.5*t316 + t320*t326 - t320*t328 + t323*t326 - t323*t328)
-                detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om_y*dep_x +
-                    (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x + (0.5)*dOm_y*ep_x - t262*t326 +
-                    t262*t328 - t263*t325 - t263*t336 - t263*t337 - t263*t341 - t263*t342 -
-                    t265*t327 - t265*t338 + t268*t325 + t268*t336 + t268*t337 + t268*t341 +
-                    t268*t342 + t270*t329 - t270*t330 - t273*t332 + t273*t334 - t274*t331 -
-                    t274*t339 - t280*t333 + t282*t327 + t282*t338 + t284*t331 + t284*t339 -
-                    0.5*t285 - 0.5*t286 + t288*t335 - t288*t340 - t294*t326 + t294*t328 -
-                    t298*t326 + t298*t328 + t301*t329 - t301*t330 - t302*t332 + t302*t334 -
-                    0.5*t304 - 0.5*t305 - 0.5*t306 - 0.5*t307 + t317*t333 - t326*t343 - t326*t344
-                    + t328*t343 + t328*t344)
+                t234 = dpsi_x*t230 + dpsi_y*t231 + dpsi_z*t232
+                t235 = ep_x*t230 + ep_y*t231 + ep_z*t232
+                t236 = e2*t234*t235
+                t237 = -A_x*psi_y + A_y*psi_x + ep_x*t224 - ep_y*t225
+                t238 = A_x*psi_z - A_z*psi_x - ep_x*t227 + ep_z*t225
+                t239 = e1*t234
+                t240 = -dOm0_y + dOm_y
+                t241 = -dOm0_x + dOm_x
+                t242 = dpsi_x*t224 - dpsi_y*t225 + psi_x*t240 - psi_y*t241
+                t243 = -dOm0_z + dOm_z
+                t244 = -dpsi_x*t227 + dpsi_z*t225 - psi_x*t243 + psi_z*t241
+                t245 = e1*t235
+                t246 = A_x*dpsi_y
+                t247 = dA_x*psi_y
+                t248 = (A_y*dpsi_x + dA_y*psi_x + dep_x*t224 - dep_y*t225 + ep_x*t240 - ep_y*t241
+                    - t246 - t247)
+                t249 = A_x*dpsi_z
+                t250 = dA_x*psi_z
+                t251 = A_z*dpsi_x
+                t252 = dA_z*psi_x
+                t253 = -dep_x*t227 + dep_z*t225 - ep_x*t243 + ep_z*t241 + t249 + t250 - t251 - t252
+                t254 = Om0_x + Om_x
+                t255 = dOm0_x + dOm_x
+                t256 = psi_y*t227 - psi_z*t224
+                t257 = -psi_x*t226 + psi_z*t256
+                t258 = -A_y*psi_z + A_z*psi_y + ep_y*t227 - ep_z*t224
+                t259 = dpsi_y*t227 - dpsi_z*t224 + psi_y*t243 - psi_z*t240
+                t260 = (A_z*dpsi_y + dA_z*psi_y + dep_y*t227 - dep_z*t224 + ep_y*t243 - ep_z*t240
+                    - t216 - t217)
+                t261 = psi_x*t228 - psi_y*t256
+                detad[j3] = ((0.5)*A_z*dpsi_y + dA_x + (0.5)*dA_z*psi_y + dep_y*t218 +
+                    e0*(dep_y*t226 - dep_z*t228 + dpsi_y*t237 - dpsi_z*t238 + ep_y*t242 -
+                    ep_z*t244 + psi_y*t248 - psi_z*t253) + ep_y*t221 - 0.5*t216 - 0.5*t217 -
+                    t219*t220 - t222*t223 + t229*t233 + t229*t236 + t239*(ep_y*t226 - ep_z*t228 +
+                    psi_y*t237 - psi_z*t238) + t245*(dpsi_y*t226 - dpsi_z*t228 + psi_y*t242 -
+                    psi_z*t244))
+                detad[j3 + 1] = (dA_y - dep_x*t218 + e0*(-dep_x*t226 + dep_z*t256 - dpsi_x*t237 +
+                    dpsi_z*t258 - ep_x*t242 + ep_z*t259 - psi_x*t248 + psi_z*t260) - ep_x*t221 +
+                    t220*t254 + t223*t255 + t233*t257 + t236*t257 + t239*(-ep_x*t226 + ep_z*t256 -
+                    psi_x*t237 + psi_z*t258) + t245*(-dpsi_x*t226 + dpsi_z*t256 - psi_x*t242 +
+                    psi_z*t259) + (0.5)*t249 + (0.5)*t250 - 0.5*t251 - 0.5*t252)
+                detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*dA_y*psi_x + dA_z + (0.5)*dep_x*t219 -
+                    0.5*dep_y*t254 + e0*(dep_x*t228 - dep_y*t256 + dpsi_x*t238 - dpsi_y*t258 +
+                    ep_x*t244 - ep_y*t259 + psi_x*t253 - psi_y*t260) + (0.5)*ep_x*t222 -
+                    0.5*ep_y*t255 + t233*t261 + t236*t261 + t239*(ep_x*t228 - ep_y*t256 +
+                    psi_x*t238 - psi_y*t258) + t245*(dpsi_x*t228 - dpsi_y*t256 + psi_x*t244 -
+                    psi_y*t259) - 0.5*t246 - 0.5*t247)
             # differential: rate: B rate = sum alpha_j T^-1(psi_j) rate_j
             rhs_x = rhs_y = rhs_z = 0.0
             for j in range(N_ROTATIONS):
@@ -1135,31 +1026,31 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t345 = (0.5)*dpsi_z
-                t346 = dpsi_x*e0
-                t347 = e0*psi_x
-                t348 = 2*dpsi_x*psi_x
-                t349 = 2*dpsi_y*psi_y
-                t350 = 2*dpsi_z*psi_z
-                t351 = e1*(t348 + t349 + t350)
-                t352 = psi_x*t351
-                t353 = dpsi_y*t347 + psi_y*t346 + psi_y*t352
-                t354 = Om0d_y*alpha_r
-                t355 = (0.5)*dpsi_y
-                t356 = dpsi_z*t347 + psi_z*t346 + psi_z*t352
-                t357 = Om0d_z*alpha_r
-                t358 = e0*t350 + psi_z*psi_z*t351
-                t359 = e0*t349 + psi_y*psi_y*t351
-                t360 = Om0d_x*alpha_r
-                t361 = (0.5)*dpsi_x
-                t362 = dpsi_y*e0*psi_z + dpsi_z*e0*psi_y + psi_y*psi_z*t351
-                t363 = e0*t348 + psi_x*psi_x*t351
-                rhs_x += (alpha_r*depd_x - t354*(t345 + t353) - t357*(-t355 + t356) - t360*(-t358
-                    - t359))
-                rhs_y += (alpha_r*depd_y - t354*(-t358 - t363) - t357*(t361 + t362) - t360*(-t345
-                    + t353))
-                rhs_z += (alpha_r*depd_z - t354*(-t361 + t362) - t357*(-t359 - t363) - t360*(t355
-                    + t356))
+                t262 = (0.5)*dpsi_z
+                t263 = dpsi_x*e0
+                t264 = e0*psi_x
+                t265 = 2*dpsi_x*psi_x
+                t266 = 2*dpsi_y*psi_y
+                t267 = 2*dpsi_z*psi_z
+                t268 = e1*(t265 + t266 + t267)
+                t269 = psi_x*t268
+                t270 = dpsi_y*t264 + psi_y*t263 + psi_y*t269
+                t271 = Om0d_y*alpha_r
+                t272 = (0.5)*dpsi_y
+                t273 = dpsi_z*t264 + psi_z*t263 + psi_z*t269
+                t274 = Om0d_z*alpha_r
+                t275 = e0*t267 + psi_z*psi_z*t268
+                t276 = e0*t266 + psi_y*psi_y*t268
+                t277 = Om0d_x*alpha_r
+                t278 = (0.5)*dpsi_x
+                t279 = dpsi_y*e0*psi_z + dpsi_z*e0*psi_y + psi_y*psi_z*t268
+                t280 = e0*t265 + psi_x*psi_x*t268
+                rhs_x += (alpha_r*depd_x - t271*(t262 + t270) - t274*(-t272 + t273) - t277*(-t275
+                    - t276))
+                rhs_y += (alpha_r*depd_y - t271*(-t275 - t280) - t274*(t278 + t279) - t277*(-t262
+                    + t270))
+                rhs_z += (alpha_r*depd_z - t271*(-t278 + t279) - t274*(-t276 - t280) - t277*(t272
+                    + t273))
             dOm0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dOm0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dOm0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1171,44 +1062,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t364 = (0.5)*psi_z
-                t365 = e0*psi_x
-                t366 = psi_y*t365
-                t367 = (0.5)*psi_y
-                t368 = psi_z*t365
-                t369 = psi_y*psi_y
-                t370 = e0*t369
-                t371 = psi_z*psi_z
-                t372 = e0*t371 - 1
-                t373 = (0.5)*dpsi_z
-                t374 = dpsi_x*e0
-                t375 = 2*dpsi_x*psi_x
-                t376 = 2*dpsi_y*psi_y
-                t377 = 2*dpsi_z*psi_z
-                t378 = e1*(t375 + t376 + t377)
-                t379 = psi_x*t378
-                t380 = dpsi_y*t365 + psi_y*t374 + psi_y*t379
-                t381 = (0.5)*dpsi_y
-                t382 = dpsi_z*t365 + psi_z*t374 + psi_z*t379
-                t383 = e0*t377 + t371*t378
-                t384 = e0*t376 + t369*t378
-                t385 = (0.5)*psi_x
-                t386 = e0*psi_z
-                t387 = psi_y*t386
-                t388 = psi_x*psi_x
-                t389 = e0*t388
-                t390 = (0.5)*dpsi_x
-                t391 = dpsi_y*t386 + dpsi_z*e0*psi_y + psi_y*psi_z*t378
-                t392 = e0*t375 + t378*t388
-                detad[j3] = (Om0d_x*(t383 + t384) + Om0d_y*(-t373 - t380) + Om0d_z*(t381 - t382) +
-                    dOm0d_x*(t370 + t372) + dOm0d_y*(-t364 - t366) + dOm0d_z*(t367 - t368) +
-                    depd_x)
-                detad[j3 + 1] = (Om0d_x*(t373 - t380) + Om0d_y*(t383 + t392) + Om0d_z*(-t390 -
-                    t391) + dOm0d_x*(t364 - t366) + dOm0d_y*(t372 + t389) + dOm0d_z*(-t385 - t387)
-                    + depd_y)
-                detad[j3 + 2] = (Om0d_x*(-t381 - t382) + Om0d_y*(t390 - t391) + Om0d_z*(t384 +
-                    t392) + dOm0d_x*(-t367 - t368) + dOm0d_y*(t385 - t387) + dOm0d_z*(t370 + t389
-                    - 1) + depd_z)
+                t281 = Om0d_y*dpsi_z
+                t282 = Om0d_z*dpsi_y
+                t283 = dOm0d_y*psi_z
+                t284 = dOm0d_z*psi_y
+                t285 = Om0d_x*psi_y - Om0d_y*psi_x
+                t286 = -Om0d_x*psi_z + Om0d_z*psi_x
+                t287 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                t288 = Om0d_x*dpsi_y
+                t289 = dOm0d_x*psi_y
+                t290 = Om0d_y*dpsi_x
+                t291 = dOm0d_y*psi_x
+                t292 = t288 + t289 - t290 - t291
+                t293 = Om0d_x*dpsi_z
+                t294 = dOm0d_x*psi_z
+                t295 = Om0d_z*dpsi_x + dOm0d_z*psi_x - t293 - t294
+                t296 = Om0d_y*psi_z - Om0d_z*psi_y
+                t297 = t281 - t282 + t283 - t284
+                detad[j3] = (-dOm0d_x + depd_x + e0*(dpsi_y*t285 - dpsi_z*t286 + psi_y*t292 -
+                    psi_z*t295) - 0.5*t281 + (0.5)*t282 - 0.5*t283 + (0.5)*t284 + t287*(psi_y*t285
+                    - psi_z*t286))
+                detad[j3 + 1] = (-0.5*Om0d_z*dpsi_x - dOm0d_y - 0.5*dOm0d_z*psi_x + depd_y +
+                    e0*(-dpsi_x*t285 + dpsi_z*t296 - psi_x*t292 + psi_z*t297) + t287*(-psi_x*t285
+                    + psi_z*t296) + (0.5)*t293 + (0.5)*t294)
+                detad[j3 + 2] = (-dOm0d_z + depd_z + e0*(dpsi_x*t286 - dpsi_y*t296 + psi_x*t295 -
+                    psi_y*t297) + t287*(psi_x*t286 - psi_y*t296) - 0.5*t288 - 0.5*t289 +
+                    (0.5)*t290 + (0.5)*t291)
             # differential: rate: rates of the elastic displacements
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -1220,21 +1099,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                 dacc_x, dacc_y, dacc_z = dacc[i3], dacc[i3 + 1], dacc[i3 + 2]
                 deu_x, deu_y, deu_z = deta[i3], deta[i3 + 1], deta[i3 + 2]
-                t393 = X_y + u_y
-                t394 = X_z + u_z
-                t395 = X_x + u_x
+                t298 = X_y + u_y
+                t299 = X_z + u_z
+                t300 = X_x + u_x
                 detad[i3] = (-Om0_y*deu_z + Om0_y*dv0_z - Om0_y*dvs_z + Om0_z*deu_y - Om0_z*dv0_y
                     + Om0_z*dvs_y - Om0d_y*du_z + Om0d_z*du_y - dOm0_y*eu_z + dOm0_y*v0_z -
-                    dOm0_y*vs_z + dOm0_z*eu_y - dOm0_z*v0_y + dOm0_z*vs_y - dOm0d_y*t394 +
-                    dOm0d_z*t393 - da0_x + dacc_x)
+                    dOm0_y*vs_z + dOm0_z*eu_y - dOm0_z*v0_y + dOm0_z*vs_y - dOm0d_y*t299 +
+                    dOm0d_z*t298 - da0_x + dacc_x)
                 detad[i3 + 1] = (Om0_x*deu_z - Om0_x*dv0_z + Om0_x*dvs_z - Om0_z*deu_x +
                     Om0_z*dv0_x - Om0_z*dvs_x + Om0d_x*du_z - Om0d_z*du_x + dOm0_x*eu_z -
                     dOm0_x*v0_z + dOm0_x*vs_z - dOm0_z*eu_x + dOm0_z*v0_x - dOm0_z*vs_x +
-                    dOm0d_x*t394 - dOm0d_z*t395 - da0_y + dacc_y)
+                    dOm0d_x*t299 - dOm0d_z*t300 - da0_y + dacc_y)
                 detad[i3 + 2] = (-Om0_x*deu_y + Om0_x*dv0_y - Om0_x*dvs_y + Om0_y*deu_x -
                     Om0_y*dv0_x + Om0_y*dvs_x - Om0d_x*du_y + Om0d_y*du_x - dOm0_x*eu_y +
                     dOm0_x*v0_y - dOm0_x*vs_y + dOm0_y*eu_x - dOm0_y*v0_x + dOm0_y*vs_x -
-                    dOm0d_x*t393 + dOm0d_y*t395 - da0_z + dacc_z)
+                    dOm0d_x*t298 + dOm0d_y*t300 - da0_z + dacc_z)
             # differential: rate: rates of the internal modes
             for k in range(MODES, n):
                 dam = dae[k]
@@ -1260,36 +1139,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
             dangle0_x, dangle0_y, dangle0_z = drigid0[3], drigid0[4], drigid0[5]
             dangle1_x, dangle1_y, dangle1_z = drigid1[3], drigid1[4], drigid1[5]
-            t396 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
-            t397 = angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z + angle1_z*dangle0_y
-            t398 = angle0_y*angle1_z - angle0_z*angle1_y
-            t399 = (0.5)*r3
-            t400 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
-            t401 = t400*(r4 - t399)
-            t402 = -Om0_y*angle0_z + Om0_z*angle0_y
-            t403 = t400*(-0.5*r2 + t399)
-            t404 = -Om0_x*angle0_y + Om0_y*angle0_x
-            t405 = Om0_x*angle0_z - Om0_z*angle0_x
-            t406 = angle0_x*angle1_y - angle0_y*angle1_x
-            t407 = -angle0_x*angle1_z + angle0_z*angle1_x
-            t408 = t400*(-0.5*r4 + (1.5)*r5)
-            t409 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
-            t410 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
-            t411 = angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y + angle1_y*dangle0_x
-            t412 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
+            t301 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
+            t302 = angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z + angle1_z*dangle0_y
+            t303 = angle0_y*angle1_z - angle0_z*angle1_y
+            t304 = (0.5)*r3
+            t305 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
+            t306 = t305*(r4 - t304)
+            t307 = -Om0_y*angle0_z + Om0_z*angle0_y
+            t308 = t305*(-0.5*r2 + t304)
+            t309 = -Om0_x*angle0_y + Om0_y*angle0_x
+            t310 = Om0_x*angle0_z - Om0_z*angle0_x
+            t311 = angle0_x*angle1_y - angle0_y*angle1_x
+            t312 = -angle0_x*angle1_z + angle0_z*angle1_x
+            t313 = t305*(-0.5*r4 + (1.5)*r5)
+            t314 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
+            t315 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
+            t316 = angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y + angle1_y*dangle0_x
+            t317 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
                 angle1_z*dangle0_x)
-            dwc_x = (dOm0_x + dangle1_x - r1*t396 - r2*t397 + r2*(angle0_y*t409 - angle0_z*t410 +
-                dangle0_y*t404 - dangle0_z*t405) + r3*(angle0_y*t411 - angle0_z*t412 +
-                dangle0_y*t406 - dangle0_z*t407) - t398*t401 + t401*(angle0_y*t404 -
-                angle0_z*t405) - t402*t403 + t408*(angle0_y*t406 - angle0_z*t407))
-            dwc_y = (dOm0_y + dangle1_y - r1*t410 - r2*t412 + r2*(-angle0_x*t409 + angle0_z*t396 -
-                dangle0_x*t404 + dangle0_z*t402) + r3*(-angle0_x*t411 + angle0_z*t397 -
-                dangle0_x*t406 + dangle0_z*t398) - t401*t407 + t401*(-angle0_x*t404 +
-                angle0_z*t402) - t403*t405 + t408*(-angle0_x*t406 + angle0_z*t398))
-            dwc_z = (dOm0_z + dangle1_z - r1*t409 - r2*t411 + r2*(angle0_x*t410 - angle0_y*t396 +
-                dangle0_x*t405 - dangle0_y*t402) + r3*(angle0_x*t412 - angle0_y*t397 +
-                dangle0_x*t407 - dangle0_y*t398) - t401*t406 + t401*(angle0_x*t405 -
-                angle0_y*t402) - t403*t404 + t408*(angle0_x*t407 - angle0_y*t398))
+            dwc_x = (dOm0_x + dangle1_x - r1*t301 - r2*t302 + r2*(angle0_y*t314 - angle0_z*t315 +
+                dangle0_y*t309 - dangle0_z*t310) + r3*(angle0_y*t316 - angle0_z*t317 +
+                dangle0_y*t311 - dangle0_z*t312) - t303*t306 + t306*(angle0_y*t309 -
+                angle0_z*t310) - t307*t308 + t313*(angle0_y*t311 - angle0_z*t312))
+            dwc_y = (dOm0_y + dangle1_y - r1*t315 - r2*t317 + r2*(-angle0_x*t314 + angle0_z*t301 -
+                dangle0_x*t309 + dangle0_z*t307) + r3*(-angle0_x*t316 + angle0_z*t302 -
+                dangle0_x*t311 + dangle0_z*t303) - t306*t312 + t306*(-angle0_x*t309 +
+                angle0_z*t307) - t308*t310 + t313*(-angle0_x*t311 + angle0_z*t303))
+            dwc_z = (dOm0_z + dangle1_z - r1*t314 - r2*t316 + r2*(angle0_x*t315 - angle0_y*t301 +
+                dangle0_x*t310 - dangle0_y*t307) + r3*(angle0_x*t317 - angle0_y*t302 +
+                dangle0_x*t312 - dangle0_y*t303) - t306*t311 + t306*(angle0_x*t310 -
+                angle0_y*t307) - t308*t309 + t313*(angle0_x*t312 - angle0_y*t303))
             # differential: its rate
             angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
             angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
@@ -1297,95 +1176,95 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dangle0_x, dangle0_y, dangle0_z = drigid0[3], drigid0[4], drigid0[5]
             dangle1_x, dangle1_y, dangle1_z = drigid1[3], drigid1[4], drigid1[5]
             dangle2_x, dangle2_y, dangle2_z = drigid2[3], drigid2[4], drigid2[5]
-            t413 = -Om0d_y*dangle0_z + Om0d_z*dangle0_y + angle0_y*dOm0d_z - angle0_z*dOm0d_y
-            t414 = angle0_y*dangle2_z - angle0_z*dangle2_y - angle2_y*dangle0_z + angle2_z*dangle0_y
-            t415 = angle0_y*angle2_z - angle0_z*angle2_y
-            t416 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
-            t417 = (0.5)*r3
-            t418 = t416*(r4 - t417)
-            t419 = -Om0d_y*angle0_z + Om0d_z*angle0_y
-            t420 = -0.5*r2 + t417
-            t421 = t416*t420
-            t422 = angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z + angle1_z*dangle0_y
-            t423 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
-            t424 = -r3 + 2*r4
-            t425 = t423*t424
-            t426 = angle0_y*angle1_z - angle0_z*angle1_y
-            t427 = (angle0_x*dangle1_x + angle0_y*dangle1_y + angle0_z*dangle1_z +
+            t318 = -Om0d_y*dangle0_z + Om0d_z*dangle0_y + angle0_y*dOm0d_z - angle0_z*dOm0d_y
+            t319 = angle0_y*dangle2_z - angle0_z*dangle2_y - angle2_y*dangle0_z + angle2_z*dangle0_y
+            t320 = angle0_y*angle2_z - angle0_z*angle2_y
+            t321 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
+            t322 = (0.5)*r3
+            t323 = t321*(r4 - t322)
+            t324 = -Om0d_y*angle0_z + Om0d_z*angle0_y
+            t325 = -0.5*r2 + t322
+            t326 = t321*t325
+            t327 = angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z + angle1_z*dangle0_y
+            t328 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
+            t329 = -r3 + 2*r4
+            t330 = t328*t329
+            t331 = angle0_y*angle1_z - angle0_z*angle1_y
+            t332 = (angle0_x*dangle1_x + angle0_y*dangle1_y + angle0_z*dangle1_z +
                 angle1_x*dangle0_x + angle1_y*dangle0_y + angle1_z*dangle0_z)
-            t428 = t424*t427
-            t429 = -Om0d_x*angle0_y + Om0d_y*angle0_x
-            t430 = Om0d_x*angle0_z - Om0d_z*angle0_x
-            t431 = angle0_x*angle2_y - angle0_y*angle2_x
-            t432 = -angle0_x*angle2_z + angle0_z*angle2_x
-            t433 = t416*(-0.5*r4 + (1.5)*r5)
-            t434 = angle0_x*angle1_y - angle0_y*angle1_x
-            t435 = -angle0_x*angle1_z + angle0_z*angle1_x
-            t436 = angle0_y*t434 - angle0_z*t435
-            t437 = -r4 + 3*r5
-            t438 = t427*t437
-            t439 = -Om0d_x*dangle0_y + Om0d_y*dangle0_x + angle0_x*dOm0d_y - angle0_y*dOm0d_x
-            t440 = Om0d_x*dangle0_z - Om0d_z*dangle0_x - angle0_x*dOm0d_z + angle0_z*dOm0d_x
-            t441 = angle0_x*dangle2_y - angle0_y*dangle2_x - angle2_x*dangle0_y + angle2_y*dangle0_x
-            t442 = (-angle0_x*dangle2_z + angle0_z*dangle2_x + angle2_x*dangle0_z -
+            t333 = t329*t332
+            t334 = -Om0d_x*angle0_y + Om0d_y*angle0_x
+            t335 = Om0d_x*angle0_z - Om0d_z*angle0_x
+            t336 = angle0_x*angle2_y - angle0_y*angle2_x
+            t337 = -angle0_x*angle2_z + angle0_z*angle2_x
+            t338 = t321*(-0.5*r4 + (1.5)*r5)
+            t339 = angle0_x*angle1_y - angle0_y*angle1_x
+            t340 = -angle0_x*angle1_z + angle0_z*angle1_x
+            t341 = angle0_y*t339 - angle0_z*t340
+            t342 = -r4 + 3*r5
+            t343 = t332*t342
+            t344 = -Om0d_x*dangle0_y + Om0d_y*dangle0_x + angle0_x*dOm0d_y - angle0_y*dOm0d_x
+            t345 = Om0d_x*dangle0_z - Om0d_z*dangle0_x - angle0_x*dOm0d_z + angle0_z*dOm0d_x
+            t346 = angle0_x*dangle2_y - angle0_y*dangle2_x - angle2_x*dangle0_y + angle2_y*dangle0_x
+            t347 = (-angle0_x*dangle2_z + angle0_z*dangle2_x + angle2_x*dangle0_z -
                 angle2_z*dangle0_x)
-            t443 = angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y + angle1_y*dangle0_x
-            t444 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
+            t348 = angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y + angle1_y*dangle0_x
+            t349 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
                 angle1_z*dangle0_x)
-            t445 = -0.5*r5 + 2*r6
-            t446 = t423*(2*t416*t445 - t433)
-            t447 = angle0_y*t443 - angle0_z*t444 + dangle0_y*t434 - dangle0_z*t435
-            t448 = t423*t437
-            t449 = t423*(-t416*t445 + 3*t416*(-0.5*r6 + (2.5)*r7))
-            t450 = Om0_x*angle0_z - Om0_z*angle0_x
-            t451 = -Om0_x*angle0_y + Om0_y*angle0_x
-            t452 = -Om0_y*angle0_z + Om0_z*angle0_y
-            t453 = -angle0_x*t451 + angle0_z*t452
-            t454 = Om0_y - r1*t450 + r2*t453
-            t455 = angle0_x*t435 - angle0_y*t426
-            t456 = angle0_x*t444 - angle0_y*t422 + dangle0_x*t435 - dangle0_y*t426
-            t457 = dangle1_z - r2*t443 + r3*t456 - t418*t434 + t433*t455
-            t458 = angle1_z - r2*t434 + r3*t455
-            t459 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
-            t460 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
-            t461 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
-            t462 = (dOm0_y - r1*t459 + r2*(-angle0_x*t460 + angle0_z*t461 - dangle0_x*t451 +
-                dangle0_z*t452) + t418*t453 - t421*t450)
-            t463 = angle0_x*t450 - angle0_y*t452
-            t464 = Om0_z - r1*t451 + r2*t463
-            t465 = -angle0_x*t434 + angle0_z*t426
-            t466 = -angle0_x*t443 + angle0_z*t422 - dangle0_x*t434 + dangle0_z*t426
-            t467 = dangle1_y - r2*t444 + r3*t466 - t418*t435 + t433*t465
-            t468 = angle1_y - r2*t435 + r3*t465
-            t469 = (dOm0_z - r1*t460 + r2*(angle0_x*t459 - angle0_y*t461 + dangle0_x*t450 -
-                dangle0_y*t452) - t416*t420*t451 + t418*t463)
-            t470 = dangle1_x - r2*t422 + r3*t447 - t418*t426 + t433*t436
-            t471 = angle1_x - r2*t426 + r3*t436
-            t472 = angle0_y*t451 - angle0_z*t450
-            t473 = Om0_x - r1*t452 + r2*t472
-            t474 = (dOm0_x - r1*t461 + r2*(angle0_y*t460 - angle0_z*t459 + dangle0_y*t451 -
-                dangle0_z*t450) - t416*t420*t452 + t418*t472)
-            dwcd_x = (dOm0d_x + dangle2_x - r1*t413 - r2*t414 + r2*(angle0_y*t439 - angle0_z*t440
-                + dangle0_y*t429 - dangle0_z*t430) + r3*(angle0_y*t441 - angle0_z*t442 +
-                dangle0_y*t431 - dangle0_z*t432) + r3*(angle1_y*t443 - angle1_z*t444 +
-                dangle1_y*t434 - dangle1_z*t435) - t415*t418 + t418*(angle0_y*t429 -
-                angle0_z*t430) - t419*t421 - t422*t425 - t426*t428 - t426*t446 +
-                t433*(angle0_y*t431 - angle0_z*t432) + t433*(angle1_y*t434 - angle1_z*t435) +
-                t436*t438 + t436*t449 + t447*t448 + t454*t457 + t458*t462 - t464*t467 - t468*t469)
-            dwcd_y = (dOm0d_y + dangle2_y - r1*t440 - r2*t442 + r2*(-angle0_x*t439 + angle0_z*t413
-                - dangle0_x*t429 + dangle0_z*t419) + r3*(-angle0_x*t441 + angle0_z*t414 -
-                dangle0_x*t431 + dangle0_z*t415) + r3*(-angle1_x*t443 + angle1_z*t422 -
-                dangle1_x*t434 + dangle1_z*t426) - t418*t432 + t418*(-angle0_x*t429 +
-                angle0_z*t419) - t421*t430 - t425*t444 - t428*t435 + t433*(-angle0_x*t431 +
-                angle0_z*t415) + t433*(-angle1_x*t434 + angle1_z*t426) - t435*t446 + t438*t465 +
-                t448*t466 + t449*t465 - t457*t473 - t458*t474 + t464*t470 + t469*t471)
-            dwcd_z = (dOm0d_z + dangle2_z - r1*t439 - r2*t441 + r2*(angle0_x*t440 - angle0_y*t413
-                + dangle0_x*t430 - dangle0_y*t419) + r3*(angle0_x*t442 - angle0_y*t414 +
-                dangle0_x*t432 - dangle0_y*t415) + r3*(angle1_x*t444 - angle1_y*t422 +
-                dangle1_x*t435 - dangle1_y*t426) - t418*t431 + t418*(angle0_x*t430 -
-                angle0_y*t419) - t421*t429 - t425*t443 - t428*t434 + t433*(angle0_x*t432 -
-                angle0_y*t415) + t433*(angle1_x*t435 - angle1_y*t426) - t434*t446 + t438*t455 +
-                t448*t456 + t449*t455 - t454*t470 - t462*t471 + t467*t473 + t468*t474)
+            t350 = -0.5*r5 + 2*r6
+            t351 = t328*(2*t321*t350 - t338)
+            t352 = angle0_y*t348 - angle0_z*t349 + dangle0_y*t339 - dangle0_z*t340
+            t353 = t328*t342
+            t354 = t328*(-t321*t350 + 3*t321*(-0.5*r6 + (2.5)*r7))
+            t355 = Om0_x*angle0_z - Om0_z*angle0_x
+            t356 = -Om0_x*angle0_y + Om0_y*angle0_x
+            t357 = -Om0_y*angle0_z + Om0_z*angle0_y
+            t358 = -angle0_x*t356 + angle0_z*t357
+            t359 = Om0_y - r1*t355 + r2*t358
+            t360 = angle0_x*t340 - angle0_y*t331
+            t361 = angle0_x*t349 - angle0_y*t327 + dangle0_x*t340 - dangle0_y*t331
+            t362 = dangle1_z - r2*t348 + r3*t361 - t323*t339 + t338*t360
+            t363 = angle1_z - r2*t339 + r3*t360
+            t364 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
+            t365 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
+            t366 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
+            t367 = (dOm0_y - r1*t364 + r2*(-angle0_x*t365 + angle0_z*t366 - dangle0_x*t356 +
+                dangle0_z*t357) + t323*t358 - t326*t355)
+            t368 = angle0_x*t355 - angle0_y*t357
+            t369 = Om0_z - r1*t356 + r2*t368
+            t370 = -angle0_x*t339 + angle0_z*t331
+            t371 = -angle0_x*t348 + angle0_z*t327 - dangle0_x*t339 + dangle0_z*t331
+            t372 = dangle1_y - r2*t349 + r3*t371 - t323*t340 + t338*t370
+            t373 = angle1_y - r2*t340 + r3*t370
+            t374 = (dOm0_z - r1*t365 + r2*(angle0_x*t364 - angle0_y*t366 + dangle0_x*t355 -
+                dangle0_y*t357) - t321*t325*t356 + t323*t368)
+            t375 = dangle1_x - r2*t327 + r3*t352 - t323*t331 + t338*t341
+            t376 = angle1_x - r2*t331 + r3*t341
+            t377 = angle0_y*t356 - angle0_z*t355
+            t378 = Om0_x - r1*t357 + r2*t377
+            t379 = (dOm0_x - r1*t366 + r2*(angle0_y*t365 - angle0_z*t364 + dangle0_y*t356 -
+                dangle0_z*t355) - t321*t325*t357 + t323*t377)
+            dwcd_x = (dOm0d_x + dangle2_x - r1*t318 - r2*t319 + r2*(angle0_y*t344 - angle0_z*t345
+                + dangle0_y*t334 - dangle0_z*t335) + r3*(angle0_y*t346 - angle0_z*t347 +
+                dangle0_y*t336 - dangle0_z*t337) + r3*(angle1_y*t348 - angle1_z*t349 +
+                dangle1_y*t339 - dangle1_z*t340) - t320*t323 + t323*(angle0_y*t334 -
+                angle0_z*t335) - t324*t326 - t327*t330 - t331*t333 - t331*t351 +
+                t338*(angle0_y*t336 - angle0_z*t337) + t338*(angle1_y*t339 - angle1_z*t340) +
+                t341*t343 + t341*t354 + t352*t353 + t359*t362 + t363*t367 - t369*t372 - t373*t374)
+            dwcd_y = (dOm0d_y + dangle2_y - r1*t345 - r2*t347 + r2*(-angle0_x*t344 + angle0_z*t318
+                - dangle0_x*t334 + dangle0_z*t324) + r3*(-angle0_x*t346 + angle0_z*t319 -
+                dangle0_x*t336 + dangle0_z*t320) + r3*(-angle1_x*t348 + angle1_z*t327 -
+                dangle1_x*t339 + dangle1_z*t331) - t323*t337 + t323*(-angle0_x*t334 +
+                angle0_z*t324) - t326*t335 - t330*t349 - t333*t340 + t338*(-angle0_x*t336 +
+                angle0_z*t320) + t338*(-angle1_x*t339 + angle1_z*t331) - t340*t351 + t343*t370 +
+                t353*t371 + t354*t370 - t362*t378 - t363*t379 + t369*t375 + t374*t376)
+            dwcd_z = (dOm0d_z + dangle2_z - r1*t344 - r2*t346 + r2*(angle0_x*t345 - angle0_y*t318
+                + dangle0_x*t335 - dangle0_y*t324) + r3*(angle0_x*t347 - angle0_y*t319 +
+                dangle0_x*t337 - dangle0_y*t320) + r3*(angle1_x*t349 - angle1_y*t327 +
+                dangle1_x*t340 - dangle1_y*t331) - t323*t336 + t323*(angle0_x*t335 -
+                angle0_y*t324) - t326*t334 - t330*t348 - t333*t339 + t338*(angle0_x*t337 -
+                angle0_y*t320) + t338*(angle1_x*t340 - angle1_y*t331) - t339*t351 + t343*t360 +
+                t353*t361 + t354*t360 - t359*t375 - t367*t376 + t372*t378 + t373*t379)
             # differential: rate of its momentum and of the moment of it
             first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
             first1_x, first1_y, first1_z = rigid1[0], rigid1[1], rigid1[2]
@@ -1396,41 +1275,41 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dfirst0_x, dfirst0_y, dfirst0_z = drigid0[0], drigid0[1], drigid0[2]
             dfirst1_x, dfirst1_y, dfirst1_z = drigid1[0], drigid1[1], drigid1[2]
             dfirst2_x, dfirst2_y, dfirst2_z = drigid2[0], drigid2[1], drigid2[2]
-            t475 = 2*dfirst1_z
-            t476 = 2*Om0_z
-            t477 = 2*first1_z
-            t478 = 2*dOm0_z
-            t479 = first0_z + mc_z
-            t480 = first0_y + mc_y
-            t481 = first0_x + mc_x
-            t482 = Om0_x*t480 - Om0_y*t481
-            t483 = -Om0_x*t479 + Om0_z*t481
-            t484 = Om0_x*dfirst0_y - Om0_y*dfirst0_x + dOm0_x*t480 - dOm0_y*t481
-            t485 = -Om0_x*dfirst0_z + Om0_z*dfirst0_x - dOm0_x*t479 + dOm0_z*t481
-            t486 = Om0_y*t479 - Om0_z*t480
-            t487 = Om0_y*dfirst0_z - Om0_z*dfirst0_y + dOm0_y*t479 - dOm0_z*t480
-            t488 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
-            t489 = Jc_xz*dwc_x + Jc_yz*dwc_y + Jc_zz*dwc_z
-            t490 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
-            t491 = Jc_xy*dwc_x + Jc_yy*dwc_y + Jc_yz*dwc_z
-            t492 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
-            t493 = Jc_xx*dwc_x + Jc_xy*dwc_y + Jc_xz*dwc_z
-            dRt_x = (Om0_y*t475 + Om0_y*t484 - Om0_z*t485 + Om0d_y*dfirst0_z - Om0d_z*dfirst0_y +
-                dOm0_y*t477 + dOm0_y*t482 - dOm0_z*t483 + dOm0d_y*t479 - dOm0d_z*t480 -
-                dfirst1_y*t476 + dfirst2_x - first1_y*t478 + mass*(da0_x - dgamma_x))
-            dRt_y = (-Om0_x*t475 - Om0_x*t484 + Om0_z*t487 - Om0d_x*dfirst0_z + Om0d_z*dfirst0_x -
-                dOm0_x*t477 - dOm0_x*t482 + dOm0_z*t486 - dOm0d_x*t479 + dOm0d_z*t481 +
-                dfirst1_x*t476 + dfirst2_y + first1_x*t478 + mass*(da0_y - dgamma_y))
-            dRt_z = (2*Om0_x*dfirst1_y + Om0_x*t485 - 2*Om0_y*dfirst1_x - Om0_y*t487 +
-                Om0d_x*dfirst0_y - Om0d_y*dfirst0_x + 2*dOm0_x*first1_y + dOm0_x*t483 -
-                2*dOm0_y*first1_x - dOm0_y*t486 + dOm0d_x*t480 - dOm0d_y*t481 + dfirst2_z +
+            t380 = 2*dfirst1_z
+            t381 = 2*Om0_z
+            t382 = 2*first1_z
+            t383 = 2*dOm0_z
+            t384 = first0_z + mc_z
+            t385 = first0_y + mc_y
+            t386 = first0_x + mc_x
+            t387 = Om0_x*t385 - Om0_y*t386
+            t388 = -Om0_x*t384 + Om0_z*t386
+            t389 = Om0_x*dfirst0_y - Om0_y*dfirst0_x + dOm0_x*t385 - dOm0_y*t386
+            t390 = -Om0_x*dfirst0_z + Om0_z*dfirst0_x - dOm0_x*t384 + dOm0_z*t386
+            t391 = Om0_y*t384 - Om0_z*t385
+            t392 = Om0_y*dfirst0_z - Om0_z*dfirst0_y + dOm0_y*t384 - dOm0_z*t385
+            t393 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
+            t394 = Jc_xz*dwc_x + Jc_yz*dwc_y + Jc_zz*dwc_z
+            t395 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
+            t396 = Jc_xy*dwc_x + Jc_yy*dwc_y + Jc_yz*dwc_z
+            t397 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
+            t398 = Jc_xx*dwc_x + Jc_xy*dwc_y + Jc_xz*dwc_z
+            dRt_x = (Om0_y*t380 + Om0_y*t389 - Om0_z*t390 + Om0d_y*dfirst0_z - Om0d_z*dfirst0_y +
+                dOm0_y*t382 + dOm0_y*t387 - dOm0_z*t388 + dOm0d_y*t384 - dOm0d_z*t385 -
+                dfirst1_y*t381 + dfirst2_x - first1_y*t383 + mass*(da0_x - dgamma_x))
+            dRt_y = (-Om0_x*t380 - Om0_x*t389 + Om0_z*t392 - Om0d_x*dfirst0_z + Om0d_z*dfirst0_x -
+                dOm0_x*t382 - dOm0_x*t387 + dOm0_z*t391 - dOm0d_x*t384 + dOm0d_z*t386 +
+                dfirst1_x*t381 + dfirst2_y + first1_x*t383 + mass*(da0_y - dgamma_y))
+            dRt_z = (2*Om0_x*dfirst1_y + Om0_x*t390 - 2*Om0_y*dfirst1_x - Om0_y*t392 +
+                Om0d_x*dfirst0_y - Om0d_y*dfirst0_x + 2*dOm0_x*first1_y + dOm0_x*t388 -
+                2*dOm0_y*first1_x - dOm0_y*t391 + dOm0d_x*t385 - dOm0d_y*t386 + dfirst2_z +
                 mass*(da0_z - dgamma_z))
-            dMc_x = (Jc_xx*dwcd_x + Jc_xy*dwcd_y + Jc_xz*dwcd_z + dwc_y*t488 - dwc_z*t490 +
-                t489*wc_y - t491*wc_z)
-            dMc_y = (Jc_xy*dwcd_x + Jc_yy*dwcd_y + Jc_yz*dwcd_z - dwc_x*t488 + dwc_z*t492 -
-                t489*wc_x + t493*wc_z)
-            dMc_z = (Jc_xz*dwcd_x + Jc_yz*dwcd_y + Jc_zz*dwcd_z + dwc_x*t490 - dwc_y*t492 +
-                t491*wc_x - t493*wc_y)
+            dMc_x = (Jc_xx*dwcd_x + Jc_xy*dwcd_y + Jc_xz*dwcd_z + dwc_y*t393 - dwc_z*t395 +
+                t394*wc_y - t396*wc_z)
+            dMc_y = (Jc_xy*dwcd_x + Jc_yy*dwcd_y + Jc_yz*dwcd_z - dwc_x*t393 + dwc_z*t397 -
+                t394*wc_x + t398*wc_z)
+            dMc_z = (Jc_xz*dwcd_x + Jc_yz*dwcd_y + Jc_zz*dwcd_z + dwc_x*t395 - dwc_y*t397 +
+                t396*wc_x - t398*wc_y)
             # differential: moment on the frame, forces on the first moment and mean rotation
             first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
             angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
@@ -1441,42 +1320,42 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dangle0_x, dangle0_y, dangle0_z = drigid0[3], drigid0[4], drigid0[5]
             dfirst2_x, dfirst2_y, dfirst2_z = drigid2[0], drigid2[1], drigid2[2]
             dangle2_x, dangle2_y, dangle2_z = drigid2[3], drigid2[4], drigid2[5]
-            t494 = -Mc_y*dangle0_z + Mc_z*dangle0_y + angle0_y*dMc_z - angle0_z*dMc_y
-            t495 = 1/mass
-            t496 = first0_y + mc_y
-            t497 = first0_z + mc_z
-            t498 = -Mc_y*angle0_z + Mc_z*angle0_y
-            t499 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
-            t500 = (0.5)*r3
-            t501 = t499*(-0.5*r2 + t500)
-            t502 = -Mc_x*angle0_y + Mc_y*angle0_x
-            t503 = Mc_x*angle0_z - Mc_z*angle0_x
-            t504 = angle0_y*t502 - angle0_z*t503
-            t505 = t499*(r4 - t500)
-            t506 = -Mc_x*dangle0_y + Mc_y*dangle0_x + angle0_x*dMc_y - angle0_y*dMc_x
-            t507 = Mc_x*dangle0_z - Mc_z*dangle0_x - angle0_x*dMc_z + angle0_z*dMc_x
-            t508 = angle0_y*t506 - angle0_z*t507 + dangle0_y*t502 - dangle0_z*t503
-            t509 = first0_x + mc_x
-            t510 = -angle0_x*t502 + angle0_z*t498
-            t511 = -angle0_x*t506 + angle0_z*t494 - dangle0_x*t502 + dangle0_z*t498
-            t512 = angle0_x*t503 - angle0_y*t498
-            t513 = angle0_x*t507 - angle0_y*t494 + dangle0_x*t503 - dangle0_y*t498
-            t514 = t499*(-0.5*r4 + (1.5)*r5)
-            dRr_x = (dMc_x + r1*t494 + r2*t508 + t495*(-Rt_y*dfirst0_z + Rt_z*dfirst0_y -
-                dRt_y*t497 + dRt_z*t496) + t498*t501 + t504*t505)
-            dRr_y = (dMc_y + r1*t507 + r2*t511 + t495*(Rt_x*dfirst0_z - Rt_z*dfirst0_x +
-                dRt_x*t497 - dRt_z*t509) + t501*t503 + t505*t510)
-            dRr_z = (dMc_z + r1*t506 + r2*t513 + t495*(-Rt_x*dfirst0_y + Rt_y*dfirst0_x -
-                dRt_x*t496 + dRt_y*t509) + t501*t502 + t505*t512)
-            dcarried[0] = t495*(dRt_x - dfirst2_x)
-            dcarried[1] = t495*(dRt_y - dfirst2_y)
-            dcarried[2] = t495*(dRt_z - dfirst2_z)
-            dcarried[3] = (-Jc_xx*dangle2_x - Jc_xy*dangle2_y - Jc_xz*dangle2_z + dMc_x + r2*t494
-                + r3*t508 + t498*t505 + t504*t514)
-            dcarried[4] = (-Jc_xy*dangle2_x - Jc_yy*dangle2_y - Jc_yz*dangle2_z + dMc_y + r2*t507
-                + r3*t511 + t503*t505 + t510*t514)
-            dcarried[5] = (-Jc_xz*dangle2_x - Jc_yz*dangle2_y - Jc_zz*dangle2_z + dMc_z + r2*t506
-                + r3*t513 + t502*t505 + t512*t514)
+            t399 = -Mc_y*dangle0_z + Mc_z*dangle0_y + angle0_y*dMc_z - angle0_z*dMc_y
+            t400 = 1/mass
+            t401 = first0_y + mc_y
+            t402 = first0_z + mc_z
+            t403 = -Mc_y*angle0_z + Mc_z*angle0_y
+            t404 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
+            t405 = (0.5)*r3
+            t406 = t404*(-0.5*r2 + t405)
+            t407 = -Mc_x*angle0_y + Mc_y*angle0_x
+            t408 = Mc_x*angle0_z - Mc_z*angle0_x
+            t409 = angle0_y*t407 - angle0_z*t408
+            t410 = t404*(r4 - t405)
+            t411 = -Mc_x*dangle0_y + Mc_y*dangle0_x + angle0_x*dMc_y - angle0_y*dMc_x
+            t412 = Mc_x*dangle0_z - Mc_z*dangle0_x - angle0_x*dMc_z + angle0_z*dMc_x
+            t413 = angle0_y*t411 - angle0_z*t412 + dangle0_y*t407 - dangle0_z*t408
+            t414 = first0_x + mc_x
+            t415 = -angle0_x*t407 + angle0_z*t403
+            t416 = -angle0_x*t411 + angle0_z*t399 - dangle0_x*t407 + dangle0_z*t403
+            t417 = angle0_x*t408 - angle0_y*t403
+            t418 = angle0_x*t412 - angle0_y*t399 + dangle0_x*t408 - dangle0_y*t403
+            t419 = t404*(-0.5*r4 + (1.5)*r5)
+            dRr_x = (dMc_x + r1*t399 + r2*t413 + t400*(-Rt_y*dfirst0_z + Rt_z*dfirst0_y -
+                dRt_y*t402 + dRt_z*t401) + t403*t406 + t409*t410)
+            dRr_y = (dMc_y + r1*t412 + r2*t416 + t400*(Rt_x*dfirst0_z - Rt_z*dfirst0_x +
+                dRt_x*t402 - dRt_z*t414) + t406*t408 + t410*t415)
+            dRr_z = (dMc_z + r1*t411 + r2*t418 + t400*(-Rt_x*dfirst0_y + Rt_y*dfirst0_x -
+                dRt_x*t401 + dRt_y*t414) + t406*t407 + t410*t417)
+            dcarried[0] = t400*(dRt_x - dfirst2_x)
+            dcarried[1] = t400*(dRt_y - dfirst2_y)
+            dcarried[2] = t400*(dRt_z - dfirst2_z)
+            dcarried[3] = (-Jc_xx*dangle2_x - Jc_xy*dangle2_y - Jc_xz*dangle2_z + dMc_x + r2*t399
+                + r3*t413 + t403*t410 + t409*t419)
+            dcarried[4] = (-Jc_xy*dangle2_x - Jc_yy*dangle2_y - Jc_yz*dangle2_z + dMc_y + r2*t412
+                + r3*t416 + t408*t410 + t415*t419)
+            dcarried[5] = (-Jc_xz*dangle2_x - Jc_yz*dangle2_y - Jc_zz*dangle2_z + dMc_z + r2*t411
+                + r3*t418 + t407*t410 + t417*t419)
             # forces of the rigid part, conjugate to y
             add_block_times(rigid_columns, dcarried, ds, n, 6, padded(n))
             # damping force, Cbar ydot
@@ -1491,15 +1370,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                t515 = X_z + u_z
-                t516 = X_y + u_y
-                t517 = X_x + u_x
+                t420 = X_z + u_z
+                t421 = X_y + u_y
+                t422 = X_x + u_x
                 dF_x += -df_x
                 dF_y += -df_y
                 dF_z += -df_z
-                dW_x += df_y*t515 - df_z*t516 - du_y*f_z + du_z*f_y
-                dW_y += -df_x*t515 + df_z*t517 + du_x*f_z - du_z*f_x
-                dW_z += df_x*t516 - df_y*t517 - du_x*f_y + du_y*f_x
+                dW_x += df_y*t420 - df_z*t421 - du_y*f_z + du_z*f_y
+                dW_y += -df_x*t420 + df_z*t422 + du_x*f_z - du_z*f_x
+                dW_z += df_x*t421 - df_y*t422 - du_x*f_y + du_y*f_x
             # differential: inertia and weight on the frame
             dF_x += dRt_x
             dF_y += dRt_y
@@ -1516,25 +1395,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t518 = -m_x*psi_y + m_y*psi_x
-                t519 = m_x*psi_z - m_z*psi_x
-                t520 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                t521 = dm_x*psi_z
-                t522 = dpsi_z*m_x
-                t523 = -dm_z*psi_x - dpsi_x*m_z + t521 + t522
-                t524 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t525 = e1*t524
-                t526 = -m_y*psi_z + m_z*psi_y
-                t527 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t518 -
-                    0.5*dpsi_y*m_z + dpsi_z*e0*t519 + (0.5)*dpsi_z*m_y - e0*psi_y*t520 +
-                    e0*psi_z*t523 + e1*psi_z*t519*t524 - psi_y*t518*t525)
-                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t518 + (0.5)*dpsi_x*m_z -
-                    dpsi_z*e0*t526 + e0*psi_x*t520 - e0*psi_z*t527 + e1*psi_x*t518*t524 -
-                    psi_z*t525*t526 - 0.5*t521 - 0.5*t522)
-                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t519 -
-                    0.5*dpsi_x*m_y + dpsi_y*e0*t526 + (0.5)*dpsi_y*m_x - e0*psi_x*t523 +
-                    e0*psi_y*t527 + e1*psi_y*t524*t526 - psi_x*t519*t525)
+                t423 = -m_x*psi_y + m_y*psi_x
+                t424 = m_x*psi_z - m_z*psi_x
+                t425 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                t426 = dm_x*psi_z
+                t427 = dpsi_z*m_x
+                t428 = -dm_z*psi_x - dpsi_x*m_z + t426 + t427
+                t429 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t430 = e1*t429
+                t431 = -m_y*psi_z + m_z*psi_y
+                t432 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t423 -
+                    0.5*dpsi_y*m_z + dpsi_z*e0*t424 + (0.5)*dpsi_z*m_y - e0*psi_y*t425 +
+                    e0*psi_z*t428 + e1*psi_z*t424*t429 - psi_y*t423*t430)
+                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t423 + (0.5)*dpsi_x*m_z -
+                    dpsi_z*e0*t431 + e0*psi_x*t425 - e0*psi_z*t432 + e1*psi_x*t423*t429 -
+                    psi_z*t430*t431 - 0.5*t426 - 0.5*t427)
+                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t424 -
+                    0.5*dpsi_x*m_y + dpsi_y*e0*t431 + (0.5)*dpsi_y*m_x - e0*psi_x*t428 +
+                    e0*psi_y*t432 + e1*psi_y*t429*t431 - psi_x*t424*t430)
             # differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
             for j in range(N_ROTATIONS):
@@ -1544,33 +1423,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t528 = dpsi_y*wp_z
-                t529 = dpsi_z*wp_y
-                t530 = psi_x*wp_y - psi_y*wp_x
-                t531 = e0*t530
-                t532 = dpsi_x*wp_y
-                t533 = dpsi_y*wp_x
-                t534 = e0*(t532 - t533)
-                t535 = -psi_x*wp_z + psi_z*wp_x
-                t536 = dpsi_x*wp_z
-                t537 = dpsi_z*wp_x - t536
-                t538 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t539 = e1*t538
-                t540 = t530*t539
-                t541 = psi_y*wp_z - psi_z*wp_y
-                t542 = t528 - t529
-                rhs_x += (-alpha_r*(dpsi_y*t531 - dpsi_z*e0*t535 - e0*psi_z*t537 + psi_y*t534 +
-                    psi_y*t540 - psi_z*t535*t539 + (0.5)*t528 - 0.5*t529))
-                rhs_y += (-alpha_r*(-dpsi_x*t531 + dpsi_z*e0*t541 + (0.5)*dpsi_z*wp_x +
-                    e0*psi_z*t542 + e1*psi_z*t538*t541 - psi_x*t534 - psi_x*t540 - 0.5*t536))
-                rhs_z += (-alpha_r*(dpsi_x*e0*t535 - dpsi_y*e0*t541 + e0*psi_x*t537 -
-                    e0*psi_y*t542 + psi_x*t535*t539 - psi_y*t539*t541 + (0.5)*t532 - 0.5*t533))
-            t543 = dW_x + rhs_x
-            t544 = dW_y + rhs_y
-            t545 = dW_z + rhs_z
-            dwp_x = Bxx*t543 + Byx*t544 + Bzx*t545
-            dwp_y = Bxy*t543 + Byy*t544 + Bzy*t545
-            dwp_z = Bxz*t543 + Byz*t544 + Bzz*t545
+                t433 = dpsi_y*wp_z
+                t434 = dpsi_z*wp_y
+                t435 = psi_x*wp_y - psi_y*wp_x
+                t436 = e0*t435
+                t437 = dpsi_x*wp_y
+                t438 = dpsi_y*wp_x
+                t439 = e0*(t437 - t438)
+                t440 = -psi_x*wp_z + psi_z*wp_x
+                t441 = dpsi_x*wp_z
+                t442 = dpsi_z*wp_x - t441
+                t443 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t444 = e1*t443
+                t445 = t435*t444
+                t446 = psi_y*wp_z - psi_z*wp_y
+                t447 = t433 - t434
+                rhs_x += (-alpha_r*(dpsi_y*t436 - dpsi_z*e0*t440 - e0*psi_z*t442 + psi_y*t439 +
+                    psi_y*t445 - psi_z*t440*t444 + (0.5)*t433 - 0.5*t434))
+                rhs_y += (-alpha_r*(-dpsi_x*t436 + dpsi_z*e0*t446 + (0.5)*dpsi_z*wp_x +
+                    e0*psi_z*t447 + e1*psi_z*t443*t446 - psi_x*t439 - psi_x*t445 - 0.5*t441))
+                rhs_z += (-alpha_r*(dpsi_x*e0*t440 - dpsi_y*e0*t446 + e0*psi_x*t442 -
+                    e0*psi_y*t447 + psi_x*t440*t444 - psi_y*t444*t446 + (0.5)*t437 - 0.5*t438))
+            t448 = dW_x + rhs_x
+            t449 = dW_y + rhs_y
+            t450 = dW_z + rhs_z
+            dwp_x = Bxx*t448 + Byx*t449 + Bzx*t450
+            dwp_y = Bxy*t448 + Byy*t449 + Bzy*t450
+            dwp_z = Bxz*t448 + Byz*t449 + Bzz*t450
             # differential: force on the nodes in frame axes, (30), (57)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -1597,58 +1476,42 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t546 = dm_y*psi_z
-                t547 = dpsi_z*m_y
-                t548 = -m_x*psi_y + m_y*psi_x
-                t549 = dpsi_y*e0
-                t550 = m_x*psi_z - m_z*psi_x
-                t551 = dpsi_z*e0
-                t552 = dm_x*psi_y
-                t553 = dpsi_y*m_x
-                t554 = dm_y*psi_x + dpsi_x*m_y - t552 - t553
-                t555 = e0*psi_y
-                t556 = dm_x*psi_z
-                t557 = dpsi_z*m_x
-                t558 = dm_z*psi_x
-                t559 = dpsi_x*m_z
-                t560 = t556 + t557 - t558 - t559
-                t561 = e0*psi_z
-                t562 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                t563 = psi_y*t562
-                t564 = psi_z*t562
-                t565 = dpsi_y*wp_z
-                t566 = dpsi_z*wp_y
-                t567 = dwp_y*psi_z
-                t568 = dwp_z*psi_y
-                t569 = psi_x*wp_y - psi_y*wp_x
-                t570 = -psi_x*wp_z + psi_z*wp_x
-                t571 = dpsi_x*wp_y
-                t572 = dwp_y*psi_x
-                t573 = dpsi_y*wp_x
-                t574 = dwp_x*psi_y
-                t575 = t571 + t572 - t573 - t574
-                t576 = dpsi_x*wp_z
-                t577 = dwp_z*psi_x
-                t578 = dpsi_z*wp_x + dwp_x*psi_z - t576 - t577
-                t579 = -m_y*psi_z + m_z*psi_y
-                t580 = dpsi_x*e0
-                t581 = dm_z*psi_y + dpsi_y*m_z - t546 - t547
-                t582 = e0*psi_x
-                t583 = psi_x*t562
-                t584 = psi_y*wp_z - psi_z*wp_y
-                t585 = t565 - t566 - t567 + t568
-                dg[j3] = (alpha_r*(dwp_x + t549*t569 - t551*t570 + t555*t575 - t561*t578 +
-                    t563*t569 - t564*t570 - 0.5*t565 + (0.5)*t566 + (0.5)*t567 - 0.5*t568) + dm_x
-                    - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + (0.5)*t546 + (0.5)*t547 + t548*t549 +
-                    t548*t563 - t550*t551 - t550*t564 + t554*t555 - t560*t561)
-                dg[j3 + 1] = (alpha_r*(-0.5*dpsi_z*wp_x - 0.5*dwp_x*psi_z + dwp_y + t551*t584 +
-                    t561*t585 + t564*t584 - t569*t580 - t569*t583 - t575*t582 + (0.5)*t576 +
-                    (0.5)*t577) + dm_y - t548*t580 - t548*t583 + t551*t579 - t554*t582 - 0.5*t556
-                    - 0.5*t557 + (0.5)*t558 + (0.5)*t559 + t561*t581 + t564*t579)
-                dg[j3 + 2] = (alpha_r*(dwp_z - t549*t584 - t555*t585 - t563*t584 + t570*t580 +
-                    t570*t583 - 0.5*t571 - 0.5*t572 + (0.5)*t573 + (0.5)*t574 + t578*t582) -
-                    0.5*dm_y*psi_x + dm_z - 0.5*dpsi_x*m_y - t549*t579 + t550*t580 + t550*t583 +
-                    (0.5)*t552 + (0.5)*t553 - t555*t581 + t560*t582 - t563*t579)
+                t451 = alpha_r*wp_y + m_y
+                t452 = dpsi_z*t451
+                t453 = alpha_r*dwp_y + dm_y
+                t454 = psi_z*t453
+                t455 = alpha_r*wp_z + m_z
+                t456 = dpsi_y*t455
+                t457 = alpha_r*dwp_z + dm_z
+                t458 = psi_y*t457
+                t459 = alpha_r*wp_x + m_x
+                t460 = psi_x*t451 - psi_y*t459
+                t461 = e0*t460
+                t462 = dpsi_x*t451
+                t463 = psi_x*t453
+                t464 = dpsi_y*t459
+                t465 = alpha_r*dwp_x + dm_x
+                t466 = psi_y*t465
+                t467 = e0*(t462 + t463 - t464 - t466)
+                t468 = -psi_x*t455 + psi_z*t459
+                t469 = dpsi_z*e0
+                t470 = dpsi_x*t455
+                t471 = psi_x*t457
+                t472 = dpsi_z*t459 + psi_z*t465 - t470 - t471
+                t473 = e0*psi_z
+                t474 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                t475 = t460*t474
+                t476 = psi_z*t474
+                t477 = psi_y*t455 - psi_z*t451
+                t478 = -t452 - t454 + t456 + t458
+                dg[j3] = (dpsi_y*t461 + psi_y*t467 + psi_y*t475 + (0.5)*t452 + (0.5)*t454 -
+                    0.5*t456 - 0.5*t458 + t465 - t468*t469 - t468*t476 - t472*t473)
+                dg[j3 + 1] = (-dpsi_x*t461 - 0.5*dpsi_z*t459 - psi_x*t467 - psi_x*t475 -
+                    0.5*psi_z*t465 + t453 + t469*t477 + (0.5)*t470 + (0.5)*t471 + t473*t478 +
+                    t476*t477)
+                dg[j3 + 2] = (dpsi_x*e0*t468 - dpsi_y*e0*t477 + e0*psi_x*t472 - e0*psi_y*t478 +
+                    psi_x*t468*t474 - psi_y*t474*t477 + t457 - 0.5*t462 - 0.5*t463 + (0.5)*t464 +
+                    (0.5)*t466)
             # differential: force of the internal modes
             for k in range(MODES, n):
                 dfm = ds[k]
@@ -1786,98 +1649,73 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdgt_x, bdgt_y, bdgt_z = bdg[j3], bdg[j3 + 1], bdg[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t586 = e0*psi_y
-                t587 = m_y*t586
-                t588 = e0*psi_z
-                t589 = m_z*t588
-                t590 = m_x*psi_y
-                t591 = m_y*psi_x - t590
-                t592 = 2*e1
-                t593 = psi_x*t592
-                t594 = psi_y*t593
-                t595 = t591*t594
-                t596 = m_x*psi_z
-                t597 = m_z*psi_x
-                t598 = t596 - t597
-                t599 = psi_z*t593
-                t600 = t598*t599
-                t601 = t586*wp_y
-                t602 = t588*wp_z
-                t603 = psi_x*wp_y
-                t604 = psi_y*wp_x
-                t605 = t603 - t604
-                t606 = t594*t605
-                t607 = psi_x*wp_z
-                t608 = psi_z*wp_x - t607
-                t609 = t599*t608
-                t610 = (0.5)*m_y
-                t611 = e0*t598
-                t612 = m_y*psi_z
-                t613 = m_z*psi_y - t612
-                t614 = psi_x*psi_x
-                t615 = t592*t614
-                t616 = (0.5)*wp_y
-                t617 = e0*t608
-                t618 = psi_y*wp_z
-                t619 = psi_z*wp_y
-                t620 = t618 - t619
-                t621 = (0.5)*m_z
-                t622 = e0*t591
-                t623 = (0.5)*wp_z
-                t624 = e0*t605
-                t625 = e0*psi_x
-                t626 = m_x*t625
-                t627 = psi_y*psi_z*t592
-                t628 = t613*t627
-                t629 = t625*wp_x
-                t630 = t620*t627
-                t631 = psi_y*psi_y
-                t632 = t592*t631
-                t633 = (0.5)*m_x
-                t634 = e0*t613
-                t635 = (0.5)*wp_x
-                t636 = e0*t620
-                t637 = psi_z*psi_z
-                t638 = t592*t637
-                t639 = (0.5)*psi_z
-                t640 = psi_x*t586
-                t641 = bdgt_y*(-t639 + t640)
-                t642 = (0.5)*psi_y
-                t643 = psi_x*t588
-                t644 = bdgt_z*(t642 + t643)
-                t645 = e0*t631
-                t646 = e0*t637 - 1
-                t647 = bdgt_x*(-t645 - t646)
-                t648 = bdgt_x*(t639 + t640)
-                t649 = (0.5)*psi_x
-                t650 = psi_z*t586
-                t651 = bdgt_z*(-t649 + t650)
-                t652 = e0*t614
-                t653 = bdgt_y*(-t646 - t652)
-                t654 = bdgt_x*(-t642 + t643)
-                t655 = bdgt_y*(t649 + t650)
-                t656 = bdgt_z*(-t645 - t652 + 1)
-                bdy[j3] += (bdgt_x*(alpha_r*(t601 + t602 + t606 - t609) + t587 + t589 + t595 -
-                    t600) + bdgt_y*(alpha_r*(-e0*t603 + 2*e1*psi_x*psi_z*t620 - t605*t615 + t623 -
-                    t624) - e0*m_y*psi_x - t591*t615 + t599*t613 + t621 - t622) +
-                    bdgt_z*(alpha_r*(-e0*t607 + 2*e1*t608*t614 - t594*t620 - t616 + t617) -
-                    e0*t597 - t594*t613 + t598*t615 - t610 + t611))
-                bdy[j3 + 1] += (bdgt_x*(alpha_r*(-e0*t604 + 2*e1*t605*t631 - t608*t627 - t623 +
-                    t624) - e0*t590 + t591*t632 - t598*t627 - t621 + t622) + bdgt_y*(alpha_r*(t602
-                    - t606 + t629 + t630) + t589 - t595 + t626 + t628) + bdgt_z*(alpha_r*(-e0*t618
-                    + 2*e1*psi_x*psi_y*t608 - t620*t632 + t635 - t636) - e0*m_z*psi_y + t594*t598
-                    - t613*t632 + t633 - t634))
-                bdy[j3 + 2] += (bdgt_x*(alpha_r*(-e0*psi_z*wp_x + 2*e1*psi_y*psi_z*t605 -
-                    t608*t638 + t616 - t617) - e0*t596 + t591*t627 - t598*t638 + t610 - t611) +
-                    bdgt_y*(alpha_r*(-e0*t619 + 2*e1*t620*t637 - t599*t605 - t635 + t636) -
-                    e0*t612 - t591*t599 + t613*t638 - t633 + t634) + bdgt_z*(alpha_r*(t601 + t609
-                    + t629 - t630) + t587 + t600 + t626 - t628))
-                bds[j3] += t641 + t644 + t647
-                bds[j3 + 1] += t648 + t651 + t653
-                bds[j3 + 2] += t654 + t655 + t656
-                bdwp_x += alpha_r*t641 + alpha_r*t644 + alpha_r*t647
-                bdwp_y += alpha_r*t648 + alpha_r*t651 + alpha_r*t653
-                bdwp_z += alpha_r*t654 + alpha_r*t655 + alpha_r*t656
+                t479 = alpha_r*wp_y
+                t480 = m_y + t479
+                t481 = e0*psi_y
+                t482 = alpha_r*wp_z
+                t483 = m_z + t482
+                t484 = -t483
+                t485 = psi_x*t480
+                t486 = alpha_r*wp_x
+                t487 = m_x + t486
+                t488 = -psi_y*t487 + t485
+                t489 = 2*e1
+                t490 = psi_x*t489
+                t491 = psi_y*t490
+                t492 = t488*t491
+                t493 = -psi_x*t483 + psi_z*t487
+                t494 = psi_z*t490
+                t495 = t493*t494
+                t496 = psi_x*psi_x
+                t497 = psi_y*t483
+                t498 = -psi_z*t480 + t497
+                t499 = -e0*t488 + (0.5)*m_z + (0.5)*t482
+                t500 = -e0*t493 + (0.5)*m_y + (0.5)*t479
+                t501 = -t487
+                t502 = e0*psi_x
+                t503 = psi_y*psi_z*t489
+                t504 = -t498*t503
+                t505 = psi_y*psi_y
+                t506 = -e0*t498 + (0.5)*m_x + (0.5)*t486
+                t507 = -t480
+                t508 = psi_z*psi_z
+                t509 = (0.5)*psi_z
+                t510 = psi_x*t481
+                t511 = (0.5)*psi_y
+                t512 = e0*psi_x*psi_z
+                t513 = e0*t505
+                t514 = e0*t508
+                t515 = t514 - 1
+                t516 = (0.5)*psi_x
+                t517 = psi_z*t481
+                t518 = e0*t496
+                t519 = alpha_r*t509
+                t520 = alpha_r*t510
+                t521 = alpha_r*t511
+                t522 = alpha_r*t512
+                t523 = alpha_r*t513
+                t524 = -alpha_r
+                t525 = alpha_r*t514 + t524
+                t526 = alpha_r*t516
+                t527 = alpha_r*t517
+                t528 = alpha_r*t518
+                bdy[j3] += (bdgt_x*(-e0*psi_z*t484 + t480*t481 + t492 - t495) + bdgt_y*(-e0*t485 -
+                    t488*t489*t496 + t494*t498 + t499) + bdgt_z*(e0*psi_x*t484 + 2*e1*t493*t496 -
+                    t491*t498 - t500))
+                bdy[j3 + 1] += (bdgt_x*(e0*psi_y*t501 + 2*e1*t488*t505 - t493*t503 - t499) +
+                    bdgt_y*(e0*psi_z*t483 - t492 - t501*t502 - t504) + bdgt_z*(-e0*t497 -
+                    t489*t498*t505 + t491*t493 + t506))
+                bdy[j3 + 2] += (bdgt_x*(-e0*psi_z*t487 + t488*t503 - t489*t493*t508 + t500) +
+                    bdgt_y*(e0*psi_z*t507 + 2*e1*t498*t508 - t488*t494 - t506) +
+                    bdgt_z*(-t481*t507 + t487*t502 + t495 + t504))
+                bds[j3] += bdgt_x*(-t513 - t515) + bdgt_y*(-t509 + t510) + bdgt_z*(t511 + t512)
+                bds[j3 + 1] += bdgt_x*(t509 + t510) + bdgt_y*(-t515 - t518) + bdgt_z*(-t516 + t517)
+                bds[j3 + 2] += (bdgt_x*(-t511 + t512) + bdgt_y*(t516 + t517) + bdgt_z*(-t513 -
+                    t518 + 1))
+                bdwp_x += bdgt_x*(-t523 - t525) + bdgt_y*(-t519 + t520) + bdgt_z*(t521 + t522)
+                bdwp_y += bdgt_x*(t519 + t520) + bdgt_y*(-t525 - t528) + bdgt_z*(-t526 + t527)
+                bdwp_z += (bdgt_x*(-t521 + t522) + bdgt_y*(t526 + t527) + bdgt_z*(-t523 - t524 -
+                    t528))
             # transposed: differential: force on the nodes, left in frame axes
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -1902,12 +1740,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdF_z += alpha*bdh_z
             # transposed: differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
-            t657 = bdwp_x + rhs_x
-            t658 = bdwp_y + rhs_y
-            t659 = bdwp_z + rhs_z
-            mdwp_x = Bxx*t657 + Bxy*t658 + Bxz*t659
-            mdwp_y = Byx*t657 + Byy*t658 + Byz*t659
-            mdwp_z = Bzx*t657 + Bzy*t658 + Bzz*t659
+            t529 = bdwp_x + rhs_x
+            t530 = bdwp_y + rhs_y
+            t531 = bdwp_z + rhs_z
+            mdwp_x = Bxx*t529 + Bxy*t530 + Bxz*t531
+            mdwp_y = Byx*t529 + Byy*t530 + Byz*t531
+            mdwp_z = Bzx*t529 + Bzy*t530 + Bzz*t531
             # transposed: differential: B^T wp = W
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -1915,41 +1753,41 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t660 = e0*psi_y*wp_y
-                t661 = e0*psi_z*wp_z
-                t662 = psi_x*wp_y
-                t663 = psi_y*wp_x
-                t664 = t662 - t663
-                t665 = 2*e1
-                t666 = psi_x*t665
-                t667 = psi_y*t666
-                t668 = t664*t667
-                t669 = psi_x*wp_z
-                t670 = psi_z*wp_x - t669
-                t671 = psi_z*t666
-                t672 = t670*t671
-                t673 = alpha_r*mdwp_x
-                t674 = psi_x*psi_x*t665
-                t675 = psi_y*wp_z
-                t676 = psi_z*wp_y
-                t677 = t675 - t676
-                t678 = e0*t670 + (0.5)*wp_y
-                t679 = alpha_r*mdwp_z
-                t680 = e0*t664 + (0.5)*wp_z
-                t681 = alpha_r*mdwp_y
-                t682 = e0*psi_x*wp_x
-                t683 = psi_y*psi_z*t665
-                t684 = t677*t683
-                t685 = psi_y*psi_y*t665
-                t686 = e0*t677 + (0.5)*wp_x
-                t687 = psi_z*psi_z*t665
-                bdy[j3] += (-t673*(t660 + t661 + t668 - t672) - t679*(-e0*t669 - t667*t677 +
-                    t670*t674 + t678) - t681*(-e0*t662 + 2*e1*psi_x*psi_z*t677 - t664*t674 - t680))
-                bdy[j3 + 1] += (-t673*(-e0*t663 + t664*t685 - t670*t683 + t680) - t679*(-e0*t675 +
-                    2*e1*psi_x*psi_y*t670 - t677*t685 - t686) - t681*(t661 - t668 + t682 + t684))
-                bdy[j3 + 2] += (-t673*(-e0*psi_z*wp_x + 2*e1*psi_y*psi_z*t664 - t670*t687 - t678)
-                    - t679*(t660 + t672 + t682 - t684) - t681*(-e0*t676 - t664*t671 + t677*t687 +
-                    t686))
+                t532 = e0*psi_y*wp_y
+                t533 = e0*psi_z*wp_z
+                t534 = psi_x*wp_y
+                t535 = psi_y*wp_x
+                t536 = t534 - t535
+                t537 = 2*e1
+                t538 = psi_x*t537
+                t539 = psi_y*t538
+                t540 = t536*t539
+                t541 = psi_x*wp_z
+                t542 = psi_z*wp_x - t541
+                t543 = psi_z*t538
+                t544 = t542*t543
+                t545 = alpha_r*mdwp_x
+                t546 = psi_x*psi_x*t537
+                t547 = psi_y*wp_z
+                t548 = psi_z*wp_y
+                t549 = t547 - t548
+                t550 = e0*t542 + (0.5)*wp_y
+                t551 = alpha_r*mdwp_z
+                t552 = e0*t536 + (0.5)*wp_z
+                t553 = alpha_r*mdwp_y
+                t554 = e0*psi_x*wp_x
+                t555 = psi_y*psi_z*t537
+                t556 = t549*t555
+                t557 = psi_y*psi_y*t537
+                t558 = e0*t549 + (0.5)*wp_x
+                t559 = psi_z*psi_z*t537
+                bdy[j3] += (-t545*(t532 + t533 + t540 - t544) - t551*(-e0*t541 - t539*t549 +
+                    t542*t546 + t550) - t553*(-e0*t534 + 2*e1*psi_x*psi_z*t549 - t536*t546 - t552))
+                bdy[j3 + 1] += (-t545*(-e0*t535 + t536*t557 - t542*t555 + t552) - t551*(-e0*t547 +
+                    2*e1*psi_x*psi_y*t542 - t549*t557 - t558) - t553*(t533 - t540 + t554 + t556))
+                bdy[j3 + 2] += (-t545*(-e0*psi_z*wp_x + 2*e1*psi_y*psi_z*t536 - t542*t559 - t550)
+                    - t551*(t532 + t544 + t554 - t556) - t553*(-e0*t548 - t536*t543 + t549*t559 +
+                    t558))
             # transposed: differential: B^T wp = W
             bdW_x += mdwp_x
             bdW_y += mdwp_y
@@ -1961,53 +1799,53 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t688 = e0*psi_y
-                t689 = m_y*t688
-                t690 = e0*psi_z
-                t691 = m_z*t690
-                t692 = -m_x*psi_y + m_y*psi_x
-                t693 = 2*e1
-                t694 = psi_x*t693
-                t695 = psi_y*t694
-                t696 = t692*t695
-                t697 = m_x*psi_z
-                t698 = -m_z*psi_x + t697
-                t699 = psi_z*t694
-                t700 = t698*t699
-                t701 = psi_x*psi_x
-                t702 = t693*t701
-                t703 = -m_y*psi_z + m_z*psi_y
-                t704 = e0*t692 + (0.5)*m_z
-                t705 = e0*t698 + (0.5)*m_y
-                t706 = e0*m_x*psi_x
-                t707 = psi_y*psi_z*t693
-                t708 = t703*t707
-                t709 = psi_y*psi_y
-                t710 = t693*t709
-                t711 = e0*t703 + (0.5)*m_x
-                t712 = psi_z*psi_z
-                t713 = t693*t712
-                t714 = (0.5)*psi_z
-                t715 = psi_x*t688
-                t716 = (0.5)*psi_y
-                t717 = psi_x*t690
-                t718 = e0*t709
-                t719 = e0*t712 - 1
-                t720 = (0.5)*psi_x
-                t721 = psi_z*t688
-                t722 = e0*t701
-                bdy[j3] += (bdW_x*(-t689 - t691 - t696 + t700) + bdW_y*(e0*m_y*psi_x + t692*t702 -
-                    t699*t703 + t704) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t703 - t698*t702 -
-                    t705))
-                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t698 - t692*t710 - t704) +
-                    bdW_y*(-t691 + t696 - t706 - t708) + bdW_z*(e0*m_z*psi_y - t695*t698 +
-                    t703*t710 + t711))
-                bdy[j3 + 2] += (bdW_x*(e0*t697 - t692*t707 + t698*t713 + t705) +
-                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t692 - t703*t713 - t711) + bdW_z*(-t689
-                    - t700 - t706 + t708))
-                bds[j3] += bdW_x*(t718 + t719) + bdW_y*(-t714 - t715) + bdW_z*(t716 - t717)
-                bds[j3 + 1] += bdW_x*(t714 - t715) + bdW_y*(t719 + t722) + bdW_z*(-t720 - t721)
-                bds[j3 + 2] += bdW_x*(-t716 - t717) + bdW_y*(t720 - t721) + bdW_z*(t718 + t722 - 1)
+                t560 = e0*psi_y
+                t561 = m_y*t560
+                t562 = e0*psi_z
+                t563 = m_z*t562
+                t564 = -m_x*psi_y + m_y*psi_x
+                t565 = 2*e1
+                t566 = psi_x*t565
+                t567 = psi_y*t566
+                t568 = t564*t567
+                t569 = m_x*psi_z
+                t570 = -m_z*psi_x + t569
+                t571 = psi_z*t566
+                t572 = t570*t571
+                t573 = psi_x*psi_x
+                t574 = t565*t573
+                t575 = -m_y*psi_z + m_z*psi_y
+                t576 = e0*t564 + (0.5)*m_z
+                t577 = e0*t570 + (0.5)*m_y
+                t578 = e0*m_x*psi_x
+                t579 = psi_y*psi_z*t565
+                t580 = t575*t579
+                t581 = psi_y*psi_y
+                t582 = t565*t581
+                t583 = e0*t575 + (0.5)*m_x
+                t584 = psi_z*psi_z
+                t585 = t565*t584
+                t586 = (0.5)*psi_z
+                t587 = psi_x*t560
+                t588 = (0.5)*psi_y
+                t589 = psi_x*t562
+                t590 = e0*t581
+                t591 = e0*t584 - 1
+                t592 = (0.5)*psi_x
+                t593 = psi_z*t560
+                t594 = e0*t573
+                bdy[j3] += (bdW_x*(-t561 - t563 - t568 + t572) + bdW_y*(e0*m_y*psi_x + t564*t574 -
+                    t571*t575 + t576) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t575 - t570*t574 -
+                    t577))
+                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t570 - t564*t582 - t576) +
+                    bdW_y*(-t563 + t568 - t578 - t580) + bdW_z*(e0*m_z*psi_y - t567*t570 +
+                    t575*t582 + t583))
+                bdy[j3 + 2] += (bdW_x*(e0*t569 - t564*t579 + t570*t585 + t577) +
+                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t564 - t575*t585 - t583) + bdW_z*(-t561
+                    - t572 - t578 + t580))
+                bds[j3] += bdW_x*(t590 + t591) + bdW_y*(-t586 - t587) + bdW_z*(t588 - t589)
+                bds[j3 + 1] += bdW_x*(t586 - t587) + bdW_y*(t591 + t594) + bdW_z*(-t592 - t593)
+                bds[j3 + 2] += bdW_x*(-t588 - t589) + bdW_y*(t592 - t593) + bdW_z*(t590 + t594 - 1)
             # transposed: differential: inertia and weight on the frame
             bdRt_x += bdF_x
             bdRt_y += bdF_y
@@ -2021,12 +1859,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t723 = X_y + u_y
-                t724 = X_z + u_z
-                t725 = X_x + u_x
-                bds[i3] += -bdF_x - bdW_y*t724 + bdW_z*t723
-                bds[i3 + 1] += -bdF_y + bdW_x*t724 - bdW_z*t725
-                bds[i3 + 2] += -bdF_z - bdW_x*t723 + bdW_y*t725
+                t595 = X_y + u_y
+                t596 = X_z + u_z
+                t597 = X_x + u_x
+                bds[i3] += -bdF_x - bdW_y*t596 + bdW_z*t595
+                bds[i3 + 1] += -bdF_y + bdW_x*t596 - bdW_z*t597
+                bds[i3 + 2] += -bdF_z - bdW_x*t595 + bdW_y*t597
                 bdy[i3] += bdW_y*f_z - bdW_z*f_y
                 bdy[i3 + 1] += -bdW_x*f_z + bdW_z*f_x
                 bdy[i3 + 2] += bdW_x*f_y - bdW_y*f_x
@@ -2043,115 +1881,115 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             Jc_xx, Jc_yy, Jc_zz, Jc_xy, Jc_xz, Jc_yz = Jc[0], Jc[1], Jc[2], Jc[3], Jc[4], Jc[5]
             bdon_first_x, bdon_first_y, bdon_first_z = bdcarried[0], bdcarried[1], bdcarried[2]
             bdon_angle_x, bdon_angle_y, bdon_angle_z = bdcarried[3], bdcarried[4], bdcarried[5]
-            t726 = 1/mass
-            t727 = bdRr_z*t726
-            t728 = bdRr_y*t726
-            t729 = bdRr_x*t726
-            t730 = Mc_y*angle0_y
-            t731 = Mc_z*angle0_z
-            t732 = t730 + t731
-            t733 = Mc_y*angle0_z
-            t734 = -Mc_z*angle0_y
-            t735 = -t733 - t734
-            t736 = (0.5)*r3
-            t737 = -0.5*r2 + t736
-            t738 = 2*angle0_x
-            t739 = Mc_x*angle0_y
-            t740 = -Mc_y*angle0_x
-            t741 = -t739 - t740
-            t742 = angle0_y*t741
-            t743 = Mc_x*angle0_z
-            t744 = Mc_z*angle0_x
-            t745 = -t744
-            t746 = t743 + t745
-            t747 = angle0_z*t746
-            t748 = t742 - t747
-            t749 = r4 - t736
-            t750 = t738*t749
-            t751 = -0.5*r4 + (1.5)*r5
-            t752 = t738*t751
-            t753 = Mc_y*r1
-            t754 = t743 - 2*t744
-            t755 = angle0_x*t741
-            t756 = 2*t737
-            t757 = angle0_x*t746
-            t758 = angle0_y*t735
-            t759 = t757 - t758
-            t760 = Mc_y*r2
-            t761 = 2*t749
-            t762 = Mc_z*r1
-            t763 = -2*Mc_y*angle0_x + t739
-            t764 = angle0_z*t735 - t755
-            t765 = Mc_z*r2
-            t766 = Mc_x*angle0_x
-            t767 = t731 + t766
-            t768 = angle0_y*t761
-            t769 = 2*t751
-            t770 = angle0_y*t769
-            t771 = -2*t739 - t740
-            t772 = Mc_x*r1
-            t773 = -2*Mc_z*angle0_y + t733
-            t774 = Mc_x*r2
-            t775 = t730 + t766
-            t776 = angle0_z*t761
-            t777 = angle0_z*t769
-            t778 = -2*t733 - t734
-            t779 = -2*t743 - t745
-            t780 = angle0_z*t735
-            t781 = bdon_first_x*t726
-            t782 = first0_z + mc_z
-            t783 = first0_y + mc_y
-            t784 = bdon_first_y*t726
-            t785 = first0_x + mc_x
-            t786 = bdon_first_z*t726
-            t787 = angle0_z*r1
-            t788 = angle0_y*r2
-            t789 = angle0_x*t788
-            t790 = angle0_z*r2
-            t791 = angle0_x*r3
-            t792 = angle0_y*t791
-            t793 = angle0_y*r1
-            t794 = angle0_x*t790
-            t795 = angle0_z*t791
-            t796 = angle0_y*angle0_y
-            t797 = angle0_z*angle0_z
-            t798 = -t796 - t797
-            t799 = angle0_x*r1
-            t800 = angle0_x*r2
-            t801 = angle0_x*angle0_x
-            t802 = -t797 - t801
-            t803 = -t796 - t801
-            bdrigid0[0] += Rt_y*t727 - Rt_z*bdRr_y*t726
-            bdrigid0[1] += -Rt_x*t727 + Rt_z*bdRr_x*t726
-            bdrigid0[2] += Rt_x*t728 - Rt_y*t729
-            bdrigid0[3] += (bdRr_x*(r2*t732 + t735*t737*t738 + t748*t750) + bdRr_y*(r2*t763 +
-                t750*t764 + t756*t757 - t762) + bdRr_z*(r2*t754 + t750*t759 + t753 + t755*t756) +
-                bdon_angle_x*(r3*t732 + t735*t750 + t748*t752) + bdon_angle_y*(r3*t763 + t752*t764
-                + t757*t761 - t765) + bdon_angle_z*(r3*t754 + t752*t759 + t755*t761 + t760))
-            bdrigid0[4] += (bdRr_x*(r2*t771 + t748*t768 + t756*t758 + t762) +
-                bdRr_y*(angle0_y*t746*t756 + r2*t767 + t764*t768) + bdRr_z*(r2*t773 + t742*t756 +
-                t759*t768 - t772) + bdon_angle_x*(r3*t771 + t748*t770 + t758*t761 + t765) +
-                bdon_angle_y*(r3*t767 + t746*t768 + t764*t770) + bdon_angle_z*(r3*t773 + t742*t761
-                + t759*t770 - t774))
-            bdrigid0[5] += (bdRr_x*(r2*t779 + t748*t776 - t753 + t756*t780) + bdRr_y*(r2*t778 +
-                t747*t756 + t764*t776 + t772) + bdRr_z*(angle0_z*t741*t756 + r2*t775 + t759*t776)
-                + bdon_angle_x*(r3*t779 + t748*t777 - t760 + t761*t780) + bdon_angle_y*(r3*t778 +
-                t747*t761 + t764*t777 + t774) + bdon_angle_z*(r3*t775 + t741*t776 + t759*t777))
-            bdRt_x += -t727*t783 + t728*t782 + t781
-            bdRt_y += t727*t785 - t729*t782 + t784
-            bdRt_z += -t728*t785 + t729*t783 + t786
-            bdMc_x += (bdRr_x*(r2*t798 + 1) + bdRr_y*(t787 + t789) + bdRr_z*(-t793 + t794) +
-                bdon_angle_x*(r3*t798 + 1) + bdon_angle_y*(t790 + t792) + bdon_angle_z*(-t788 +
-                t795))
-            bdMc_y += (bdRr_x*(-t787 + t789) + bdRr_y*(r2*t802 + 1) + bdRr_z*(angle0_y*t790 +
-                t799) + bdon_angle_x*(-t790 + t792) + bdon_angle_y*(r3*t802 + 1) +
-                bdon_angle_z*(angle0_y*angle0_z*r3 + t800))
-            bdMc_z += (bdRr_x*(t793 + t794) + bdRr_y*(angle0_y*angle0_z*r2 - t799) +
-                bdRr_z*(r2*t803 + 1) + bdon_angle_x*(t788 + t795) +
-                bdon_angle_y*(angle0_y*angle0_z*r3 - t800) + bdon_angle_z*(r3*t803 + 1))
-            bdrigid2[0] += -t781
-            bdrigid2[1] += -t784
-            bdrigid2[2] += -t786
+            t598 = 1/mass
+            t599 = bdRr_z*t598
+            t600 = bdRr_y*t598
+            t601 = bdRr_x*t598
+            t602 = Mc_y*angle0_y
+            t603 = Mc_z*angle0_z
+            t604 = t602 + t603
+            t605 = Mc_y*angle0_z
+            t606 = -Mc_z*angle0_y
+            t607 = -t605 - t606
+            t608 = (0.5)*r3
+            t609 = -0.5*r2 + t608
+            t610 = 2*angle0_x
+            t611 = Mc_x*angle0_y
+            t612 = -Mc_y*angle0_x
+            t613 = -t611 - t612
+            t614 = angle0_y*t613
+            t615 = Mc_x*angle0_z
+            t616 = Mc_z*angle0_x
+            t617 = -t616
+            t618 = t615 + t617
+            t619 = angle0_z*t618
+            t620 = t614 - t619
+            t621 = r4 - t608
+            t622 = t610*t621
+            t623 = -0.5*r4 + (1.5)*r5
+            t624 = t610*t623
+            t625 = Mc_y*r1
+            t626 = t615 - 2*t616
+            t627 = angle0_x*t613
+            t628 = 2*t609
+            t629 = angle0_x*t618
+            t630 = angle0_y*t607
+            t631 = t629 - t630
+            t632 = Mc_y*r2
+            t633 = 2*t621
+            t634 = Mc_z*r1
+            t635 = -2*Mc_y*angle0_x + t611
+            t636 = angle0_z*t607 - t627
+            t637 = Mc_z*r2
+            t638 = Mc_x*angle0_x
+            t639 = t603 + t638
+            t640 = angle0_y*t633
+            t641 = 2*t623
+            t642 = angle0_y*t641
+            t643 = -2*t611 - t612
+            t644 = Mc_x*r1
+            t645 = -2*Mc_z*angle0_y + t605
+            t646 = Mc_x*r2
+            t647 = t602 + t638
+            t648 = angle0_z*t633
+            t649 = angle0_z*t641
+            t650 = -2*t605 - t606
+            t651 = -2*t615 - t617
+            t652 = angle0_z*t607
+            t653 = bdon_first_x*t598
+            t654 = first0_z + mc_z
+            t655 = first0_y + mc_y
+            t656 = bdon_first_y*t598
+            t657 = first0_x + mc_x
+            t658 = bdon_first_z*t598
+            t659 = angle0_z*r1
+            t660 = angle0_y*r2
+            t661 = angle0_x*t660
+            t662 = angle0_z*r2
+            t663 = angle0_x*r3
+            t664 = angle0_y*t663
+            t665 = angle0_y*r1
+            t666 = angle0_x*t662
+            t667 = angle0_z*t663
+            t668 = angle0_y*angle0_y
+            t669 = angle0_z*angle0_z
+            t670 = -t668 - t669
+            t671 = angle0_x*r1
+            t672 = angle0_x*r2
+            t673 = angle0_x*angle0_x
+            t674 = -t669 - t673
+            t675 = -t668 - t673
+            bdrigid0[0] += Rt_y*t599 - Rt_z*bdRr_y*t598
+            bdrigid0[1] += -Rt_x*t599 + Rt_z*bdRr_x*t598
+            bdrigid0[2] += Rt_x*t600 - Rt_y*t601
+            bdrigid0[3] += (bdRr_x*(r2*t604 + t607*t609*t610 + t620*t622) + bdRr_y*(r2*t635 +
+                t622*t636 + t628*t629 - t634) + bdRr_z*(r2*t626 + t622*t631 + t625 + t627*t628) +
+                bdon_angle_x*(r3*t604 + t607*t622 + t620*t624) + bdon_angle_y*(r3*t635 + t624*t636
+                + t629*t633 - t637) + bdon_angle_z*(r3*t626 + t624*t631 + t627*t633 + t632))
+            bdrigid0[4] += (bdRr_x*(r2*t643 + t620*t640 + t628*t630 + t634) +
+                bdRr_y*(angle0_y*t618*t628 + r2*t639 + t636*t640) + bdRr_z*(r2*t645 + t614*t628 +
+                t631*t640 - t644) + bdon_angle_x*(r3*t643 + t620*t642 + t630*t633 + t637) +
+                bdon_angle_y*(r3*t639 + t618*t640 + t636*t642) + bdon_angle_z*(r3*t645 + t614*t633
+                + t631*t642 - t646))
+            bdrigid0[5] += (bdRr_x*(r2*t651 + t620*t648 - t625 + t628*t652) + bdRr_y*(r2*t650 +
+                t619*t628 + t636*t648 + t644) + bdRr_z*(angle0_z*t613*t628 + r2*t647 + t631*t648)
+                + bdon_angle_x*(r3*t651 + t620*t649 - t632 + t633*t652) + bdon_angle_y*(r3*t650 +
+                t619*t633 + t636*t649 + t646) + bdon_angle_z*(r3*t647 + t613*t648 + t631*t649))
+            bdRt_x += -t599*t655 + t600*t654 + t653
+            bdRt_y += t599*t657 - t601*t654 + t656
+            bdRt_z += -t600*t657 + t601*t655 + t658
+            bdMc_x += (bdRr_x*(r2*t670 + 1) + bdRr_y*(t659 + t661) + bdRr_z*(-t665 + t666) +
+                bdon_angle_x*(r3*t670 + 1) + bdon_angle_y*(t662 + t664) + bdon_angle_z*(-t660 +
+                t667))
+            bdMc_y += (bdRr_x*(-t659 + t661) + bdRr_y*(r2*t674 + 1) + bdRr_z*(angle0_y*t662 +
+                t671) + bdon_angle_x*(-t662 + t664) + bdon_angle_y*(r3*t674 + 1) +
+                bdon_angle_z*(angle0_y*angle0_z*r3 + t672))
+            bdMc_z += (bdRr_x*(t665 + t666) + bdRr_y*(angle0_y*angle0_z*r2 - t671) +
+                bdRr_z*(r2*t675 + 1) + bdon_angle_x*(t660 + t667) +
+                bdon_angle_y*(angle0_y*angle0_z*r3 - t672) + bdon_angle_z*(r3*t675 + 1))
+            bdrigid2[0] += -t653
+            bdrigid2[1] += -t656
+            bdrigid2[2] += -t658
             bdrigid2[3] += -Jc_xx*bdon_angle_x - Jc_xy*bdon_angle_y - Jc_xz*bdon_angle_z
             bdrigid2[4] += -Jc_xy*bdon_angle_x - Jc_yy*bdon_angle_y - Jc_yz*bdon_angle_z
             bdrigid2[5] += -Jc_xz*bdon_angle_x - Jc_yz*bdon_angle_y - Jc_zz*bdon_angle_z
@@ -2161,70 +1999,70 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
             mass = masses[0]
             Jc_xx, Jc_yy, Jc_zz, Jc_xy, Jc_xz, Jc_yz = Jc[0], Jc[1], Jc[2], Jc[3], Jc[4], Jc[5]
-            t804 = first0_y + mc_y
-            t805 = Om0_x*t804
-            t806 = first0_x + mc_x
-            t807 = -Om0_y*t806 + 2*first1_z
-            t808 = first0_z + mc_z
-            t809 = -t808
-            t810 = Om0_z*t806
-            t811 = -Om0_x*t808 + 2*first1_y
-            t812 = Om0_y*t808
-            t813 = -Om0_z*t804 + 2*first1_x
-            t814 = -t806
-            t815 = -t804
-            t816 = bdRt_x*mass
-            t817 = bdRt_y*mass
-            t818 = bdRt_z*mass
-            t819 = Om0_x*Om0_y
-            t820 = Om0_x*Om0_z
-            t821 = Om0_y*Om0_y
-            t822 = Om0_z*Om0_z
-            t823 = Om0_y*Om0_z
-            t824 = Om0_x*Om0_x
-            t825 = 2*bdRt_z
-            t826 = Jc_xy*wc_z
-            t827 = Jc_xz*wc_y
-            t828 = Jc_yy*wc_y
-            t829 = Jc_yz*wc_z
-            t830 = Jc_xy*wc_x
-            t831 = Jc_yz*wc_y
-            t832 = Jc_zz*wc_z
-            t833 = Jc_xz*wc_x
-            t834 = -Jc_yz*wc_x
-            t835 = Jc_xx*wc_x
-            t836 = Jc_xz*wc_z
-            t837 = Jc_xy*wc_y
-            bdOm0_x += (bdRt_x*(Om0_y*t804 - Om0_z*t809) + bdRt_y*(-2*t805 - t807) +
-                bdRt_z*(Om0_x*t809 + t810 + t811))
-            bdOm0_y += (bdRt_x*(Om0_y*t814 + t805 + t807) + bdRt_y*(-Om0_x*t814 + Om0_z*t808) +
-                bdRt_z*(-2*t812 - t813))
-            bdOm0_z += (bdRt_x*(-2*t810 - t811) + bdRt_y*(Om0_z*t815 + t812 + t813) +
-                bdRt_z*(Om0_x*t806 - Om0_y*t815))
-            bda0_x += t816
-            bda0_y += t817
-            bda0_z += t818
-            bdOm0d_x += bdRt_y*t809 + bdRt_z*t804
-            bdOm0d_y += bdRt_x*t808 + bdRt_z*t814
-            bdOm0d_z += bdRt_x*t815 + bdRt_y*t806
-            bdgamma[0] += -t816
-            bdgamma[1] += -t817
-            bdgamma[2] += -t818
-            bdrigid0[0] += bdRt_x*(-t821 - t822) + bdRt_y*(Om0d_z + t819) + bdRt_z*(-Om0d_y + t820)
-            bdrigid0[1] += bdRt_x*(-Om0d_z + t819) + bdRt_y*(-t822 - t824) + bdRt_z*(Om0d_x + t823)
-            bdrigid0[2] += bdRt_x*(Om0d_y + t820) + bdRt_y*(-Om0d_x + t823) + bdRt_z*(-t821 - t824)
-            bdrigid1[0] += -Om0_y*t825 + 2*Om0_z*bdRt_y
-            bdrigid1[1] += Om0_x*t825 - 2*Om0_z*bdRt_x
+            t676 = first0_y + mc_y
+            t677 = Om0_x*t676
+            t678 = first0_x + mc_x
+            t679 = -Om0_y*t678 + 2*first1_z
+            t680 = first0_z + mc_z
+            t681 = -t680
+            t682 = Om0_z*t678
+            t683 = -Om0_x*t680 + 2*first1_y
+            t684 = Om0_y*t680
+            t685 = -Om0_z*t676 + 2*first1_x
+            t686 = -t678
+            t687 = -t676
+            t688 = bdRt_x*mass
+            t689 = bdRt_y*mass
+            t690 = bdRt_z*mass
+            t691 = Om0_x*Om0_y
+            t692 = Om0_x*Om0_z
+            t693 = Om0_y*Om0_y
+            t694 = Om0_z*Om0_z
+            t695 = Om0_y*Om0_z
+            t696 = Om0_x*Om0_x
+            t697 = 2*bdRt_z
+            t698 = Jc_xy*wc_z
+            t699 = Jc_xz*wc_y
+            t700 = Jc_yy*wc_y
+            t701 = Jc_yz*wc_z
+            t702 = Jc_xy*wc_x
+            t703 = Jc_yz*wc_y
+            t704 = Jc_zz*wc_z
+            t705 = Jc_xz*wc_x
+            t706 = -Jc_yz*wc_x
+            t707 = Jc_xx*wc_x
+            t708 = Jc_xz*wc_z
+            t709 = Jc_xy*wc_y
+            bdOm0_x += (bdRt_x*(Om0_y*t676 - Om0_z*t681) + bdRt_y*(-2*t677 - t679) +
+                bdRt_z*(Om0_x*t681 + t682 + t683))
+            bdOm0_y += (bdRt_x*(Om0_y*t686 + t677 + t679) + bdRt_y*(-Om0_x*t686 + Om0_z*t680) +
+                bdRt_z*(-2*t684 - t685))
+            bdOm0_z += (bdRt_x*(-2*t682 - t683) + bdRt_y*(Om0_z*t687 + t684 + t685) +
+                bdRt_z*(Om0_x*t678 - Om0_y*t687))
+            bda0_x += t688
+            bda0_y += t689
+            bda0_z += t690
+            bdOm0d_x += bdRt_y*t681 + bdRt_z*t676
+            bdOm0d_y += bdRt_x*t680 + bdRt_z*t686
+            bdOm0d_z += bdRt_x*t687 + bdRt_y*t678
+            bdgamma[0] += -t688
+            bdgamma[1] += -t689
+            bdgamma[2] += -t690
+            bdrigid0[0] += bdRt_x*(-t693 - t694) + bdRt_y*(Om0d_z + t691) + bdRt_z*(-Om0d_y + t692)
+            bdrigid0[1] += bdRt_x*(-Om0d_z + t691) + bdRt_y*(-t694 - t696) + bdRt_z*(Om0d_x + t695)
+            bdrigid0[2] += bdRt_x*(Om0d_y + t692) + bdRt_y*(-Om0d_x + t695) + bdRt_z*(-t693 - t696)
+            bdrigid1[0] += -Om0_y*t697 + 2*Om0_z*bdRt_y
+            bdrigid1[1] += Om0_x*t697 - 2*Om0_z*bdRt_x
             bdrigid1[2] += -2*Om0_x*bdRt_y + 2*Om0_y*bdRt_x
             bdrigid2[0] += bdRt_x
             bdrigid2[1] += bdRt_y
             bdrigid2[2] += bdRt_z
-            bdwc_x += (bdMc_x*(-t826 + t827) + bdMc_y*(Jc_xx*wc_z - t831 - t832 - 2*t833) +
-                bdMc_z*(-Jc_xx*wc_y + t828 + t829 + 2*t830))
-            bdwc_y += (bdMc_x*(-Jc_yy*wc_z + 2*t831 + t832 + t833) + bdMc_y*(t826 + t834) +
-                bdMc_z*(Jc_yy*wc_x - t835 - t836 - 2*t837))
-            bdwc_z += (bdMc_x*(Jc_zz*wc_y - t828 - 2*t829 - t830) + bdMc_y*(-Jc_zz*wc_x + t835 +
-                2*t836 + t837) + bdMc_z*(-t827 - t834))
+            bdwc_x += (bdMc_x*(-t698 + t699) + bdMc_y*(Jc_xx*wc_z - t703 - t704 - 2*t705) +
+                bdMc_z*(-Jc_xx*wc_y + t700 + t701 + 2*t702))
+            bdwc_y += (bdMc_x*(-Jc_yy*wc_z + 2*t703 + t704 + t705) + bdMc_y*(t698 + t706) +
+                bdMc_z*(Jc_yy*wc_x - t707 - t708 - 2*t709))
+            bdwc_z += (bdMc_x*(Jc_zz*wc_y - t700 - 2*t701 - t702) + bdMc_y*(-Jc_zz*wc_x + t707 +
+                2*t708 + t709) + bdMc_z*(-t699 - t706))
             bdwcd_x += Jc_xx*bdMc_x + Jc_xy*bdMc_y + Jc_xz*bdMc_z
             bdwcd_y += Jc_xy*bdMc_x + Jc_yy*bdMc_y + Jc_yz*bdMc_z
             bdwcd_z += Jc_xz*bdMc_x + Jc_yz*bdMc_y + Jc_zz*bdMc_z
@@ -2232,407 +2070,403 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
             angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
             angle2_x, angle2_y, angle2_z = rigid2[3], rigid2[4], rigid2[5]
-            t838 = angle0_z*r1
-            t839 = angle0_y*r2
-            t840 = angle0_x*t839
-            t841 = -t838 + t840
-            t842 = angle0_x*angle1_y
-            t843 = angle0_y*angle1_x
-            t844 = -t843
-            t845 = t842 + t844
-            t846 = angle0_x*angle1_z
-            t847 = -angle0_z*angle1_x
-            t848 = -t846 - t847
-            t849 = angle0_x*t848
-            t850 = angle0_y*angle1_z
-            t851 = angle0_z*angle1_y
-            t852 = -t851
-            t853 = t850 + t852
-            t854 = angle0_y*t853
-            t855 = t849 - t854
-            t856 = angle1_z - r2*t845 + r3*t855
-            t857 = angle0_y*r1
-            t858 = angle0_z*r2
-            t859 = angle0_x*t858
-            t860 = t857 + t859
-            t861 = angle0_x*t845
-            t862 = angle0_z*t853 - t861
-            t863 = angle1_y - r2*t848 + r3*t862
-            t864 = angle0_y*t845
-            t865 = angle0_z*t848
-            t866 = t864 - t865
-            t867 = angle1_x - r2*t853 + r3*t866
-            t868 = angle0_y*angle0_y
-            t869 = angle0_z*angle0_z
-            t870 = -t868 - t869
-            t871 = r2*t870 + 1
-            t872 = angle0_x*r1
-            t873 = angle0_z*t839
-            t874 = t872 - t873
-            t875 = -t874
-            t876 = t838 + t840
-            t877 = angle0_x*angle0_x
-            t878 = -t869 - t877
-            t879 = r2*t878 + 1
-            t880 = -t857 + t859
-            t881 = t872 + t873
-            t882 = -t868 - t877
-            t883 = r2*t882 + 1
-            t884 = Om0d_y*angle0_y
-            t885 = Om0d_z*angle0_z
-            t886 = angle1_y*angle1_y
-            t887 = angle1_z*angle1_z
-            t888 = angle0_y*angle2_y
-            t889 = angle0_z*angle2_z
-            t890 = angle0_y*angle2_z
-            t891 = angle0_z*angle2_y
-            t892 = -t891
-            t893 = t890 + t892
-            t894 = (0.5)*r3
-            t895 = r4 - t894
-            t896 = 2*angle0_x
-            t897 = t895*t896
-            t898 = Om0d_y*angle0_z
-            t899 = -Om0d_z*angle0_y
-            t900 = -t898 - t899
-            t901 = -0.5*r2 + t894
-            t902 = -r3 + 2*r4
-            t903 = angle1_x*t902
-            t904 = angle0_y*angle1_y
-            t905 = angle0_z*angle1_z
-            t906 = t904 + t905
-            t907 = -r4 + 3*r5
-            t908 = angle0_x*angle1_x
-            t909 = t906 + t908
-            t910 = t907*t909
-            t911 = Om0d_x*angle0_y
-            t912 = -Om0d_y*angle0_x
-            t913 = -t911 - t912
-            t914 = angle0_y*t913
-            t915 = Om0d_x*angle0_z
-            t916 = Om0d_z*angle0_x
-            t917 = -t916
-            t918 = t915 + t917
-            t919 = angle0_z*t918
-            t920 = t914 - t919
-            t921 = angle1_x*t907
-            t922 = angle0_x*angle2_y
-            t923 = angle0_y*angle2_x
-            t924 = -t923
-            t925 = t922 + t924
-            t926 = angle0_y*t925
-            t927 = angle0_x*angle2_z
-            t928 = -angle0_z*angle2_x
-            t929 = -t927 - t928
-            t930 = angle0_z*t929
-            t931 = t926 - t930
-            t932 = -0.5*r4 + (1.5)*r5
-            t933 = t896*t932
-            t934 = angle1_y*t845
-            t935 = angle1_z*t848
-            t936 = t934 - t935
-            t937 = -0.5*r5 + 2*r6
-            t938 = t909*(4*angle0_x*t937 - t933)
-            t939 = -0.5*r6 + (2.5)*r7
-            t940 = t909*(6*angle0_x*t939 - t896*t937)
-            t941 = Om0_z*r1
-            t942 = Om0_x*angle0_y
-            t943 = Om0_x*angle0_z
-            t944 = Om0_z*angle0_x
-            t945 = -t944
-            t946 = t943 + t945
-            t947 = angle0_x*t946
-            t948 = 2*t901
-            t949 = -Om0_y*angle0_x
-            t950 = -t942 - t949
-            t951 = angle0_x*t950
-            t952 = Om0_y*angle0_z
-            t953 = -Om0_z*angle0_y
-            t954 = -t952 - t953
-            t955 = angle0_z*t954 - t951
-            t956 = r2*(-2*Om0_y*angle0_x + t942) + t897*t955 + t941 - t947*t948
-            t957 = Om0_y - r1*t946 + r2*t955
-            t958 = angle1_y*r2
-            t959 = 2*t846 + t847
-            t960 = -t959
-            t961 = 2*t895
-            t962 = 2*angle0_x*t855*t932 + r3*t960 - t861*t961 - t958
-            t963 = Om0_y*r1
-            t964 = angle0_y*t954
-            t965 = t947 - t964
-            t966 = -r2*(t943 - 2*t944) - t897*t965 + t948*t951 + t963
-            t967 = Om0_z - r1*t950 + r2*t965
-            t968 = -t967
-            t969 = angle1_z*r2
-            t970 = 2*t842 + t844
-            t971 = -t970
-            t972 = r3*t971 - t849*t961 + t862*t933 + t969
-            t973 = Om0d_z*r1
-            t974 = angle2_z*r2
-            t975 = angle1_x*r3
-            t976 = -angle1_y*t975
-            t977 = angle0_x*t929
-            t978 = angle0_x*t918
-            t979 = angle1_x*t848
-            t980 = t902*t909
-            t981 = angle1_z*t980
-            t982 = angle0_x*t913
-            t983 = angle0_z*t900 - t982
-            t984 = angle0_x*t925
-            t985 = angle0_z*t893 - t984
-            t986 = angle1_x*t845
-            t987 = angle1_z*t853 - t986
-            t988 = r3*t906 - t853*t897 + t866*t933
-            t989 = Om0_y*angle0_y
-            t990 = Om0_z*angle0_z
-            t991 = angle0_z*t946
-            t992 = angle0_y*t950 - t991
-            t993 = -2*angle0_x*t901*t954 + r2*(t989 + t990) + t897*t992
-            t994 = Om0_x - r1*t954 + r2*t992
-            t995 = -t994
-            t996 = Om0d_y*r1
-            t997 = angle2_y*r2
-            t998 = -angle1_z*t975
-            t999 = angle1_y*t980
-            t1000 = angle0_y*t900
-            t1001 = -t1000 + t978
-            t1002 = angle0_y*t893
-            t1003 = -t1002 + t977
-            t1004 = angle1_y*t853
-            t1005 = -t1004 + t979
-            t1006 = -t957
-            t1007 = Om0d_x*angle0_x
-            t1008 = angle1_x*angle1_x
-            t1009 = angle0_x*angle2_x
-            t1010 = 2*angle0_y
-            t1011 = t1010*t895
-            t1012 = t1010*t901
-            t1013 = t848*t902
-            t1014 = t905 + t908
-            t1015 = angle1_y*t907
-            t1016 = t1010*t932
-            t1017 = t909*(4*angle0_y*t937 - t1016)
-            t1018 = t909*(6*angle0_y*t939 - t1010*t937)
-            t1019 = Om0_x*r1
-            t1020 = -2*angle0_y*t901*t950 + r2*(-2*Om0_z*angle0_y + t952) + t1011*t965 + t1019
-            t1021 = t842 - 2*t843
-            t1022 = 2*angle0_y*t866*t932 + r3*t1021 - t854*t961 - t969
-            t1023 = -r2*(-2*t942 - t949) - t1011*t992 + t941 + t948*t964
-            t1024 = angle1_x*r2
-            t1025 = 2*t850 + t852
-            t1026 = -t1025
-            t1027 = r3*t1026 + t1016*t855 + t1024 - t864*t961
-            t1028 = Om0d_x*r1
-            t1029 = angle2_x*r2
-            t1030 = -angle1_y*angle1_z*r3
-            t1031 = t903*t909
-            t1032 = r3*t1014 - t1011*t848 + t1016*t862
-            t1033 = Om0_x*angle0_x
-            t1034 = r2*(t1033 + t990) + t1011*t955 - t1012*t946
-            t1035 = 2*angle0_z
-            t1036 = t1035*t895
-            t1037 = t845*t902
-            t1038 = t904 + t908
-            t1039 = angle1_z*t907
-            t1040 = t1035*t932
-            t1041 = t909*(4*angle0_z*t937 - t1040)
-            t1042 = t909*(6*angle0_z*t939 - t1035*t937)
-            t1043 = -2*angle0_z*t901*t954 + r2*(-2*t943 - t945) + t1036*t992 + t963
-            t1044 = t850 - 2*t851
-            t1045 = 2*angle0_z*t862*t932 + r3*t1044 - t1024 - t865*t961
-            t1046 = -2*angle0_z*t895*t955 - r2*(-2*t952 - t953) + t1019 + t948*t991
-            t1047 = -2*angle0_z*angle1_x + t846
-            t1048 = angle0_z*t853
-            t1049 = r3*t1047 + t1040*t866 - t1048*t961 + t958
-            t1050 = r3*t1038 - t1036*t845 + t1040*t855
-            t1051 = -2*angle0_z*t901*t950 + r2*(t1033 + t989) + t1036*t965
-            t1052 = angle0_x*t907
-            t1053 = angle0_x*r3
-            t1054 = angle0_z*t1053
-            t1055 = t1054 + t839
-            t1056 = angle0_y*t1053
-            t1057 = t1056 - t858
-            t1058 = angle0_z*t980
-            t1059 = angle0_x*t910
-            t1060 = angle0_y*t1059
-            t1061 = r3*t870 + 1
-            t1062 = angle0_y*t980
-            t1063 = angle0_z*t1059
-            t1064 = angle0_y*t907
-            t1065 = t1056 + t858
-            t1066 = angle0_x*r2
-            t1067 = angle0_y*angle0_z*r3 - t1066
-            t1068 = r3*t878 + 1
-            t1069 = angle0_x*t980
-            t1070 = angle0_y*angle0_z
-            t1071 = t1070*t910
-            t1072 = angle0_z*t907
-            t1073 = r3*t1070 + t1066
-            t1074 = t1054 - t839
-            t1075 = r3*t882 + 1
-            bdOm0_x += (bdwcd_x*(t841*t856 - t860*t863) + bdwcd_y*(-t856*t871 + t860*t867) +
-                bdwcd_z*(-t841*t867 + t863*t871))
-            bdOm0_y += (bdwcd_x*(t856*t879 + t863*t874) + bdwcd_y*(-t856*t876 + t867*t875) +
-                bdwcd_z*(t863*t876 - t867*t879))
-            bdOm0_z += (bdwcd_x*(t856*t881 - t863*t883) + bdwcd_y*(-t856*t880 + t867*t883) +
-                bdwcd_z*(t863*t880 - t867*t881))
-            bdOm0d_x += bdwcd_x*t871 + bdwcd_y*t841 + bdwcd_z*t860
-            bdOm0d_y += bdwcd_x*t876 + bdwcd_y*t879 + bdwcd_z*t875
-            bdOm0d_z += bdwcd_x*t880 + bdwcd_y*t881 + bdwcd_z*t883
-            bdrigid0[3] += (bdwcd_x*(r2*(t884 + t885) + r3*(t886 + t887) + r3*(t888 + t889) -
-                t853*t903 - t853*t938 + t856*t956 + t863*t966 + t866*t921 + t866*t940 - t893*t897
-                - t896*t900*t901 + t897*t920 + t906*t910 + t931*t933 + t933*t936 + t957*t962 +
-                t968*t972) + bdwcd_y*(r2*(-2*Om0d_y*angle0_x + t911) + r3*(-2*t922 - t924) -
-                t848*t938 - t856*t993 + t862*t921 + t862*t940 - t867*t966 + t897*t983 - t902*t979
-                + t910*t971 + t933*t985 + t933*t987 - t948*t978 - t961*t977 + t962*t995 +
-                t967*t988 + t973 + t974 + t976 + t981) + bdwcd_z*(r2*(t915 - 2*t916) + r3*(-2*t927
-                - t928) + t1001*t897 + t1003*t933 + t1005*t933 + t1006*t988 - t845*t938 +
-                t855*t921 + t855*t940 + t863*t993 - t867*t956 - t902*t986 + t910*t960 - t948*t982
-                - t961*t984 + t972*t994 - t996 - t997 + t998 - t999))
-            bdrigid0[4] += (bdwcd_x*(r2*(-2*t911 - t912) + r3*(t922 - 2*t923) - t1000*t948 -
-                t1002*t961 - t1004*t902 + t1011*t920 + t1015*t866 + t1016*t931 + t1016*t936 -
-                t1017*t853 + t1018*t866 - t1020*t863 + t1021*t910 + t1027*t957 + t1032*t968 +
-                t1034*t856 - t973 - t974 + t976 - t981) + bdwcd_y*(-angle1_y*t1013 + r2*(t1007 +
-                t885) + r3*(t1008 + t887) + r3*(t1009 + t889) - t1011*t929 + t1011*t983 -
-                t1012*t918 + t1014*t910 + t1015*t862 + t1016*t985 + t1016*t987 - t1017*t848 +
-                t1018*t862 + t1020*t867 + t1022*t967 + t1023*t856 + t1027*t995) +
-                bdwcd_z*(r2*(-2*Om0d_z*angle0_y + t898) + r3*(-2*t890 - t892) + t1001*t1011 +
-                t1003*t1016 + t1005*t1016 + t1006*t1022 + t1015*t855 - t1017*t845 + t1018*t855 -
-                t1023*t863 + t1026*t910 + t1028 + t1029 + t1030 + t1031 + t1032*t994 - t1034*t867
-                - t902*t934 - t914*t948 - t926*t961))
-            bdrigid0[5] += (bdwcd_x*(-angle0_z*t893*t961 - angle0_z*t900*t948 - angle1_z*t853*t902
-                + r2*(-2*t915 - t917) + r3*(-2*angle0_z*angle2_x + t927) + t1036*t920 + t1039*t866
-                + t1040*t931 + t1040*t936 - t1041*t853 + t1042*t866 + t1045*t968 - t1046*t856 +
-                t1047*t910 + t1050*t957 - t1051*t863 + t996 + t997 + t998 + t999) +
-                bdwcd_y*(r2*(-2*t898 - t899) + r3*(t890 - 2*t891) - t1028 - t1029 + t1030 - t1031
-                + t1036*t983 + t1039*t862 + t1040*t985 + t1040*t987 - t1041*t848 + t1042*t862 -
-                t1043*t856 + t1044*t910 + t1049*t967 + t1050*t995 + t1051*t867 - t902*t935 -
-                t919*t948 - t930*t961) + bdwcd_z*(-angle1_z*t1037 + r2*(t1007 + t884) + r3*(t1008
-                + t886) + r3*(t1009 + t888) + t1001*t1036 + t1003*t1040 + t1005*t1040 +
-                t1006*t1049 - t1035*t901*t913 - t1036*t925 + t1038*t910 + t1039*t855 - t1041*t845
-                + t1042*t855 + t1043*t863 + t1045*t994 + t1046*t867))
-            bdrigid1[3] += (bdwcd_x*(-angle0_x*t853*t902 - r3*t906 + t1052*t866 + t1055*t957 +
-                t1057*t968 + t870*t910) + bdwcd_y*(-r3*t1021 + t1052*t862 + t1055*t995 - t1058 +
-                t1060 + t1061*t967 - t849*t902) + bdwcd_z*(-r3*t1047 + t1006*t1061 + t1052*t855 +
-                t1057*t994 + t1062 + t1063 - t861*t902))
-            bdrigid1[4] += (bdwcd_x*(r3*t970 + t1058 + t1060 + t1064*t866 + t1067*t957 +
-                t1068*t968 - t854*t902) + bdwcd_y*(-angle0_y*t1013 - r3*t1014 + t1064*t862 +
-                t1065*t967 + t1067*t995 + t878*t910) + bdwcd_z*(-r3*t1044 + t1006*t1065 +
-                t1064*t855 + t1068*t994 - t1069 + t1071 - t864*t902))
-            bdrigid1[5] += (bdwcd_x*(r3*t959 - t1048*t902 - t1062 + t1063 + t1072*t866 +
-                t1073*t968 + t1075*t957) + bdwcd_y*(r3*t1025 + t1069 + t1071 + t1072*t862 +
-                t1074*t967 + t1075*t995 - t865*t902) + bdwcd_z*(-angle0_z*t1037 - r3*t1038 +
-                t1006*t1074 + t1072*t855 + t1073*t994 + t882*t910))
-            bdrigid2[3] += bdwcd_x*t1061 + bdwcd_y*t1057 + bdwcd_z*t1055
-            bdrigid2[4] += bdwcd_x*t1065 + bdwcd_y*t1068 + bdwcd_z*t1067
-            bdrigid2[5] += bdwcd_x*t1074 + bdwcd_y*t1073 + bdwcd_z*t1075
+            t710 = angle0_z*r1
+            t711 = angle0_y*r2
+            t712 = angle0_x*t711
+            t713 = -t710 + t712
+            t714 = angle0_x*angle1_y
+            t715 = angle0_y*angle1_x
+            t716 = -t715
+            t717 = t714 + t716
+            t718 = angle0_x*angle1_z
+            t719 = -angle0_z*angle1_x
+            t720 = -t718 - t719
+            t721 = angle0_x*t720
+            t722 = angle0_y*angle1_z
+            t723 = angle0_z*angle1_y
+            t724 = -t723
+            t725 = t722 + t724
+            t726 = angle0_y*t725
+            t727 = t721 - t726
+            t728 = angle1_z - r2*t717 + r3*t727
+            t729 = angle0_y*r1
+            t730 = angle0_z*r2
+            t731 = angle0_x*t730
+            t732 = t729 + t731
+            t733 = angle0_x*t717
+            t734 = angle0_z*t725 - t733
+            t735 = angle1_y - r2*t720 + r3*t734
+            t736 = angle0_y*t717
+            t737 = angle0_z*t720
+            t738 = t736 - t737
+            t739 = angle1_x - r2*t725 + r3*t738
+            t740 = angle0_y*angle0_y
+            t741 = angle0_z*angle0_z
+            t742 = -t740 - t741
+            t743 = r2*t742 + 1
+            t744 = angle0_x*r1
+            t745 = angle0_z*t711
+            t746 = t744 - t745
+            t747 = -t746
+            t748 = t710 + t712
+            t749 = angle0_x*angle0_x
+            t750 = -t741 - t749
+            t751 = r2*t750 + 1
+            t752 = -t729 + t731
+            t753 = t744 + t745
+            t754 = -t740 - t749
+            t755 = r2*t754 + 1
+            t756 = Om0d_y*angle0_y
+            t757 = Om0d_z*angle0_z
+            t758 = angle1_y*angle1_y
+            t759 = angle1_z*angle1_z
+            t760 = angle0_y*angle2_y
+            t761 = angle0_z*angle2_z
+            t762 = angle0_y*angle2_z
+            t763 = angle0_z*angle2_y
+            t764 = -t763
+            t765 = t762 + t764
+            t766 = (0.5)*r3
+            t767 = r4 - t766
+            t768 = 2*angle0_x
+            t769 = t767*t768
+            t770 = Om0d_y*angle0_z
+            t771 = -Om0d_z*angle0_y
+            t772 = -t770 - t771
+            t773 = -0.5*r2 + t766
+            t774 = -r3 + 2*r4
+            t775 = angle1_x*t774
+            t776 = angle0_y*angle1_y
+            t777 = angle0_z*angle1_z
+            t778 = t776 + t777
+            t779 = -r4 + 3*r5
+            t780 = angle0_x*angle1_x
+            t781 = t778 + t780
+            t782 = t779*t781
+            t783 = Om0d_x*angle0_y
+            t784 = -Om0d_y*angle0_x
+            t785 = -t783 - t784
+            t786 = angle0_y*t785
+            t787 = Om0d_x*angle0_z
+            t788 = Om0d_z*angle0_x
+            t789 = -t788
+            t790 = t787 + t789
+            t791 = angle0_z*t790
+            t792 = t786 - t791
+            t793 = angle1_x*t779
+            t794 = angle0_x*angle2_y
+            t795 = angle0_y*angle2_x
+            t796 = -t795
+            t797 = t794 + t796
+            t798 = angle0_y*t797
+            t799 = angle0_x*angle2_z
+            t800 = -angle0_z*angle2_x
+            t801 = -t799 - t800
+            t802 = angle0_z*t801
+            t803 = t798 - t802
+            t804 = -0.5*r4 + (1.5)*r5
+            t805 = t768*t804
+            t806 = angle1_y*t717
+            t807 = angle1_z*t720
+            t808 = t806 - t807
+            t809 = -0.5*r5 + 2*r6
+            t810 = t781*(4*angle0_x*t809 - t805)
+            t811 = -0.5*r6 + (2.5)*r7
+            t812 = t781*(6*angle0_x*t811 - t768*t809)
+            t813 = Om0_z*r1
+            t814 = Om0_x*angle0_y
+            t815 = Om0_x*angle0_z
+            t816 = Om0_z*angle0_x
+            t817 = -t816
+            t818 = t815 + t817
+            t819 = angle0_x*t818
+            t820 = 2*t773
+            t821 = -Om0_y*angle0_x
+            t822 = -t814 - t821
+            t823 = angle0_x*t822
+            t824 = Om0_y*angle0_z
+            t825 = -Om0_z*angle0_y
+            t826 = -t824 - t825
+            t827 = angle0_z*t826 - t823
+            t828 = r2*(-2*Om0_y*angle0_x + t814) + t769*t827 + t813 - t819*t820
+            t829 = Om0_y - r1*t818 + r2*t827
+            t830 = angle1_y*r2
+            t831 = 2*t718 + t719
+            t832 = -t831
+            t833 = 2*t767
+            t834 = 2*angle0_x*t727*t804 + r3*t832 - t733*t833 - t830
+            t835 = Om0_y*r1
+            t836 = angle0_y*t826
+            t837 = t819 - t836
+            t838 = -r2*(t815 - 2*t816) - t769*t837 + t820*t823 + t835
+            t839 = Om0_z - r1*t822 + r2*t837
+            t840 = -t839
+            t841 = angle1_z*r2
+            t842 = 2*t714 + t716
+            t843 = -t842
+            t844 = r3*t843 - t721*t833 + t734*t805 + t841
+            t845 = Om0d_z*r1
+            t846 = angle2_z*r2
+            t847 = angle1_x*r3
+            t848 = -angle1_y*t847
+            t849 = angle0_x*t801
+            t850 = angle0_x*t790
+            t851 = angle1_x*t720
+            t852 = t774*t781
+            t853 = angle1_z*t852
+            t854 = angle0_x*t785
+            t855 = angle0_z*t772 - t854
+            t856 = angle0_x*t797
+            t857 = angle0_z*t765 - t856
+            t858 = angle1_x*t717
+            t859 = angle1_z*t725 - t858
+            t860 = r3*t778 - t725*t769 + t738*t805
+            t861 = Om0_y*angle0_y
+            t862 = Om0_z*angle0_z
+            t863 = angle0_z*t818
+            t864 = angle0_y*t822 - t863
+            t865 = -2*angle0_x*t773*t826 + r2*(t861 + t862) + t769*t864
+            t866 = Om0_x - r1*t826 + r2*t864
+            t867 = -t866
+            t868 = Om0d_y*r1
+            t869 = angle2_y*r2
+            t870 = -angle1_z*t847
+            t871 = angle1_y*t852
+            t872 = angle0_y*t772
+            t873 = t850 - t872
+            t874 = angle0_y*t765
+            t875 = t849 - t874
+            t876 = angle1_y*t725
+            t877 = t851 - t876
+            t878 = -t829
+            t879 = Om0d_x*angle0_x
+            t880 = angle1_x*angle1_x
+            t881 = angle0_x*angle2_x
+            t882 = 2*angle0_y
+            t883 = t767*t882
+            t884 = t773*t882
+            t885 = t720*t774
+            t886 = t777 + t780
+            t887 = angle1_y*t779
+            t888 = t804*t882
+            t889 = t781*(4*angle0_y*t809 - t888)
+            t890 = t781*(6*angle0_y*t811 - t809*t882)
+            t891 = Om0_x*r1
+            t892 = -2*angle0_y*t773*t822 + r2*(-2*Om0_z*angle0_y + t824) + t837*t883 + t891
+            t893 = t714 - 2*t715
+            t894 = 2*angle0_y*t738*t804 + r3*t893 - t726*t833 - t841
+            t895 = -r2*(-2*t814 - t821) + t813 + t820*t836 - t864*t883
+            t896 = angle1_x*r2
+            t897 = 2*t722 + t724
+            t898 = -t897
+            t899 = r3*t898 + t727*t888 - t736*t833 + t896
+            t900 = Om0d_x*r1
+            t901 = angle2_x*r2
+            t902 = -angle1_y*angle1_z*r3
+            t903 = t775*t781
+            t904 = r3*t886 - t720*t883 + t734*t888
+            t905 = Om0_x*angle0_x
+            t906 = r2*(t862 + t905) - t818*t884 + t827*t883
+            t907 = 2*angle0_z
+            t908 = t767*t907
+            t909 = t717*t774
+            t910 = t776 + t780
+            t911 = angle1_z*t779
+            t912 = t804*t907
+            t913 = t781*(4*angle0_z*t809 - t912)
+            t914 = t781*(6*angle0_z*t811 - t809*t907)
+            t915 = -2*angle0_z*t773*t826 + r2*(-2*t815 - t817) + t835 + t864*t908
+            t916 = t722 - 2*t723
+            t917 = 2*angle0_z*t734*t804 + r3*t916 - t737*t833 - t896
+            t918 = -2*angle0_z*t767*t827 - r2*(-2*t824 - t825) + t820*t863 + t891
+            t919 = -2*angle0_z*angle1_x + t718
+            t920 = angle0_z*t725
+            t921 = r3*t919 + t738*t912 + t830 - t833*t920
+            t922 = r3*t910 - t717*t908 + t727*t912
+            t923 = -2*angle0_z*t773*t822 + r2*(t861 + t905) + t837*t908
+            t924 = angle0_x*t779
+            t925 = angle0_x*r3
+            t926 = angle0_z*t925
+            t927 = t711 + t926
+            t928 = angle0_y*t925
+            t929 = -t730 + t928
+            t930 = angle0_z*t852
+            t931 = angle0_x*t782
+            t932 = angle0_y*t931
+            t933 = r3*t742 + 1
+            t934 = angle0_y*t852
+            t935 = angle0_z*t931
+            t936 = angle0_y*t779
+            t937 = t730 + t928
+            t938 = angle0_x*r2
+            t939 = angle0_y*angle0_z*r3 - t938
+            t940 = r3*t750 + 1
+            t941 = angle0_x*t852
+            t942 = angle0_y*angle0_z
+            t943 = t782*t942
+            t944 = angle0_z*t779
+            t945 = r3*t942 + t938
+            t946 = -t711 + t926
+            t947 = r3*t754 + 1
+            bdOm0_x += (bdwcd_x*(t713*t728 - t732*t735) + bdwcd_y*(-t728*t743 + t732*t739) +
+                bdwcd_z*(-t713*t739 + t735*t743))
+            bdOm0_y += (bdwcd_x*(t728*t751 + t735*t746) + bdwcd_y*(-t728*t748 + t739*t747) +
+                bdwcd_z*(t735*t748 - t739*t751))
+            bdOm0_z += (bdwcd_x*(t728*t753 - t735*t755) + bdwcd_y*(-t728*t752 + t739*t755) +
+                bdwcd_z*(t735*t752 - t739*t753))
+            bdOm0d_x += bdwcd_x*t743 + bdwcd_y*t713 + bdwcd_z*t732
+            bdOm0d_y += bdwcd_x*t748 + bdwcd_y*t751 + bdwcd_z*t747
+            bdOm0d_z += bdwcd_x*t752 + bdwcd_y*t753 + bdwcd_z*t755
+            bdrigid0[3] += (bdwcd_x*(r2*(t756 + t757) + r3*(t758 + t759) + r3*(t760 + t761) -
+                t725*t775 - t725*t810 + t728*t828 + t735*t838 + t738*t793 + t738*t812 - t765*t769
+                - t768*t772*t773 + t769*t792 + t778*t782 + t803*t805 + t805*t808 + t829*t834 +
+                t840*t844) + bdwcd_y*(r2*(-2*Om0d_y*angle0_x + t783) + r3*(-2*t794 - t796) -
+                t720*t810 - t728*t865 + t734*t793 + t734*t812 - t739*t838 + t769*t855 - t774*t851
+                + t782*t843 + t805*t857 + t805*t859 - t820*t850 - t833*t849 + t834*t867 +
+                t839*t860 + t845 + t846 + t848 + t853) + bdwcd_z*(r2*(t787 - 2*t788) + r3*(-2*t799
+                - t800) - t717*t810 + t727*t793 + t727*t812 + t735*t865 - t739*t828 + t769*t873 -
+                t774*t858 + t782*t832 + t805*t875 + t805*t877 - t820*t854 - t833*t856 + t844*t866
+                + t860*t878 - t868 - t869 + t870 - t871))
+            bdrigid0[4] += (bdwcd_x*(r2*(-2*t783 - t784) + r3*(t794 - 2*t795) - t725*t889 +
+                t728*t906 - t735*t892 + t738*t887 + t738*t890 - t774*t876 + t782*t893 + t792*t883
+                + t803*t888 + t808*t888 - t820*t872 + t829*t899 - t833*t874 + t840*t904 - t845 -
+                t846 + t848 - t853) + bdwcd_y*(-angle1_y*t885 + r2*(t757 + t879) + r3*(t759 +
+                t880) + r3*(t761 + t881) - t720*t889 + t728*t895 + t734*t887 + t734*t890 +
+                t739*t892 + t782*t886 - t790*t884 - t801*t883 + t839*t894 + t855*t883 + t857*t888
+                + t859*t888 + t867*t899) + bdwcd_z*(r2*(-2*Om0d_z*angle0_y + t770) + r3*(-2*t762 -
+                t764) - t717*t889 + t727*t887 + t727*t890 - t735*t895 - t739*t906 - t774*t806 +
+                t782*t898 - t786*t820 - t798*t833 + t866*t904 + t873*t883 + t875*t888 + t877*t888
+                + t878*t894 + t900 + t901 + t902 + t903))
+            bdrigid0[5] += (bdwcd_x*(-angle0_z*t765*t833 - angle0_z*t772*t820 - angle1_z*t725*t774
+                + r2*(-2*t787 - t789) + r3*(-2*angle0_z*angle2_x + t799) - t725*t913 - t728*t918 -
+                t735*t923 + t738*t911 + t738*t914 + t782*t919 + t792*t908 + t803*t912 + t808*t912
+                + t829*t922 + t840*t917 + t868 + t869 + t870 + t871) + bdwcd_y*(r2*(-2*t770 -
+                t771) + r3*(t762 - 2*t763) - t720*t913 - t728*t915 + t734*t911 + t734*t914 +
+                t739*t923 - t774*t807 + t782*t916 - t791*t820 - t802*t833 + t839*t921 + t855*t908
+                + t857*t912 + t859*t912 + t867*t922 - t900 - t901 + t902 - t903) +
+                bdwcd_z*(-angle1_z*t909 + r2*(t756 + t879) + r3*(t758 + t880) + r3*(t760 + t881) -
+                t717*t913 + t727*t911 + t727*t914 + t735*t915 + t739*t918 - t773*t785*t907 +
+                t782*t910 - t797*t908 + t866*t917 + t873*t908 + t875*t912 + t877*t912 + t878*t921))
+            bdrigid1[3] += (bdwcd_x*(-angle0_x*t725*t774 - r3*t778 + t738*t924 + t742*t782 +
+                t829*t927 + t840*t929) + bdwcd_y*(-r3*t893 - t721*t774 + t734*t924 + t839*t933 +
+                t867*t927 - t930 + t932) + bdwcd_z*(-r3*t919 + t727*t924 - t733*t774 + t866*t929 +
+                t878*t933 + t934 + t935))
+            bdrigid1[4] += (bdwcd_x*(r3*t842 - t726*t774 + t738*t936 + t829*t939 + t840*t940 +
+                t930 + t932) + bdwcd_y*(-angle0_y*t885 - r3*t886 + t734*t936 + t750*t782 +
+                t839*t937 + t867*t939) + bdwcd_z*(-r3*t916 + t727*t936 - t736*t774 + t866*t940 +
+                t878*t937 - t941 + t943))
+            bdrigid1[5] += (bdwcd_x*(r3*t831 + t738*t944 - t774*t920 + t829*t947 + t840*t945 -
+                t934 + t935) + bdwcd_y*(r3*t897 + t734*t944 - t737*t774 + t839*t946 + t867*t947 +
+                t941 + t943) + bdwcd_z*(-angle0_z*t909 - r3*t910 + t727*t944 + t754*t782 +
+                t866*t945 + t878*t946))
+            bdrigid2[3] += bdwcd_x*t933 + bdwcd_y*t929 + bdwcd_z*t927
+            bdrigid2[4] += bdwcd_x*t937 + bdwcd_y*t940 + bdwcd_z*t939
+            bdrigid2[5] += bdwcd_x*t946 + bdwcd_y*t945 + bdwcd_z*t947
             # transposed: differential: angular velocity of the rigid part
             angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
             angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
-            t1076 = angle0_y*r1
-            t1077 = angle0_z*r2
-            t1078 = angle0_x*t1077
-            t1079 = angle0_z*r1
-            t1080 = angle0_y*r2
-            t1081 = angle0_x*t1080
-            t1082 = angle0_y*angle0_y
-            t1083 = angle0_z*angle0_z
-            t1084 = -t1082 - t1083
-            t1085 = angle0_x*r1
-            t1086 = angle0_x*angle0_x
-            t1087 = -t1083 - t1086
-            t1088 = -t1082 - t1086
-            t1089 = Om0_y*angle0_y
-            t1090 = Om0_z*angle0_z
-            t1091 = angle0_y*angle1_y
-            t1092 = angle0_z*angle1_z
-            t1093 = angle0_y*angle1_z
-            t1094 = angle0_z*angle1_y
-            t1095 = -t1094
-            t1096 = t1093 + t1095
-            t1097 = (0.5)*r3
-            t1098 = r4 - t1097
-            t1099 = 2*angle0_x
-            t1100 = t1098*t1099
-            t1101 = Om0_y*angle0_z
-            t1102 = -Om0_z*angle0_y
-            t1103 = -t1101 - t1102
-            t1104 = -0.5*r2 + t1097
-            t1105 = Om0_x*angle0_y
-            t1106 = -Om0_y*angle0_x
-            t1107 = -t1105 - t1106
-            t1108 = angle0_y*t1107
-            t1109 = Om0_x*angle0_z
-            t1110 = Om0_z*angle0_x
-            t1111 = -t1110
-            t1112 = t1109 + t1111
-            t1113 = angle0_z*t1112
-            t1114 = t1108 - t1113
-            t1115 = angle0_x*angle1_y
-            t1116 = angle0_y*angle1_x
-            t1117 = -t1116
-            t1118 = t1115 + t1117
-            t1119 = angle0_y*t1118
-            t1120 = angle0_x*angle1_z
-            t1121 = -angle0_z*angle1_x
-            t1122 = -t1120 - t1121
-            t1123 = angle0_z*t1122
-            t1124 = t1119 - t1123
-            t1125 = -0.5*r4 + (1.5)*r5
-            t1126 = t1099*t1125
-            t1127 = angle0_x*t1122
-            t1128 = 2*t1098
-            t1129 = angle0_x*t1112
-            t1130 = 2*t1104
-            t1131 = angle0_x*t1107
-            t1132 = angle0_z*t1103 - t1131
-            t1133 = angle0_x*t1118
-            t1134 = angle0_z*t1096 - t1133
-            t1135 = Om0_z*r1 + angle1_z*r2
-            t1136 = angle0_y*t1103
-            t1137 = t1129 - t1136
-            t1138 = angle0_y*t1096
-            t1139 = t1127 - t1138
-            t1140 = Om0_y*r1 + angle1_y*r2
-            t1141 = Om0_x*angle0_x
-            t1142 = angle0_x*angle1_x
-            t1143 = angle0_y*t1128
-            t1144 = 2*t1125
-            t1145 = angle0_y*t1144
-            t1146 = Om0_x*r1 + angle1_x*r2
-            t1147 = angle0_z*t1128
-            t1148 = angle0_z*t1144
-            t1149 = angle0_x*r3
-            t1150 = angle0_z*t1149
-            t1151 = angle0_y*t1149
-            t1152 = angle0_x*r2
-            bdOm0_x += bdwc_x*(r2*t1084 + 1) + bdwc_y*(-t1079 + t1081) + bdwc_z*(t1076 + t1078)
-            bdOm0_y += (bdwc_x*(t1079 + t1081) + bdwc_y*(r2*t1087 + 1) +
-                bdwc_z*(angle0_y*angle0_z*r2 - t1085))
-            bdOm0_z += (bdwc_x*(-t1076 + t1078) + bdwc_y*(angle0_y*t1077 + t1085) +
-                bdwc_z*(r2*t1088 + 1))
-            bdrigid0[3] += (bdwc_x*(r2*(t1089 + t1090) + r3*(t1091 + t1092) - t1096*t1100 -
-                t1099*t1103*t1104 + t1100*t1114 + t1124*t1126) + bdwc_y*(r2*(-2*Om0_y*angle0_x +
-                t1105) + r3*(-2*t1115 - t1117) + t1100*t1132 + t1126*t1134 - t1127*t1128 -
-                t1129*t1130 + t1135) + bdwc_z*(2*angle0_x*t1098*t1137 + 2*angle0_x*t1125*t1139 +
-                r2*(t1109 - 2*t1110) + r3*(-2*t1120 - t1121) - t1128*t1133 - t1130*t1131 - t1140))
-            bdrigid0[4] += (bdwc_x*(2*angle0_y*t1098*t1114 + 2*angle0_y*t1124*t1125 + r2*(-2*t1105
-                - t1106) + r3*(t1115 - 2*t1116) - t1128*t1138 - t1130*t1136 - t1135) +
-                bdwc_y*(-angle0_y*t1112*t1130 + r2*(t1090 + t1141) + r3*(t1092 + t1142) -
-                t1122*t1143 + t1132*t1143 + t1134*t1145) + bdwc_z*(r2*(-2*Om0_z*angle0_y + t1101)
-                + r3*(-2*t1093 - t1095) - t1108*t1130 - t1119*t1128 + t1137*t1143 + t1139*t1145 +
-                t1146))
-            bdrigid0[5] += (bdwc_x*(-angle0_z*t1096*t1128 - angle0_z*t1103*t1130 + r2*(-2*t1109 -
-                t1111) + r3*(-2*angle0_z*angle1_x + t1120) + t1114*t1147 + t1124*t1148 + t1140) +
-                bdwc_y*(2*angle0_z*t1098*t1132 + 2*angle0_z*t1125*t1134 + r2*(-2*t1101 - t1102) +
-                r3*(t1093 - 2*t1094) - t1113*t1130 - t1123*t1128 - t1146) +
-                bdwc_z*(-angle0_z*t1107*t1130 + r2*(t1089 + t1141) + r3*(t1091 + t1142) -
-                t1118*t1147 + t1137*t1147 + t1139*t1148))
-            bdrigid1[3] += bdwc_x*(r3*t1084 + 1) + bdwc_y*(-t1077 + t1151) + bdwc_z*(t1080 + t1150)
-            bdrigid1[4] += (bdwc_x*(t1077 + t1151) + bdwc_y*(r3*t1087 + 1) +
-                bdwc_z*(angle0_y*angle0_z*r3 - t1152))
-            bdrigid1[5] += (bdwc_x*(-t1080 + t1150) + bdwc_y*(angle0_y*angle0_z*r3 + t1152) +
-                bdwc_z*(r3*t1088 + 1))
+            t948 = angle0_y*r1
+            t949 = angle0_z*r2
+            t950 = angle0_x*t949
+            t951 = angle0_z*r1
+            t952 = angle0_y*r2
+            t953 = angle0_x*t952
+            t954 = angle0_y*angle0_y
+            t955 = angle0_z*angle0_z
+            t956 = -t954 - t955
+            t957 = angle0_x*r1
+            t958 = angle0_x*angle0_x
+            t959 = -t955 - t958
+            t960 = -t954 - t958
+            t961 = Om0_y*angle0_y
+            t962 = Om0_z*angle0_z
+            t963 = angle0_y*angle1_y
+            t964 = angle0_z*angle1_z
+            t965 = angle0_y*angle1_z
+            t966 = angle0_z*angle1_y
+            t967 = -t966
+            t968 = t965 + t967
+            t969 = (0.5)*r3
+            t970 = r4 - t969
+            t971 = 2*angle0_x
+            t972 = t970*t971
+            t973 = Om0_y*angle0_z
+            t974 = -Om0_z*angle0_y
+            t975 = -t973 - t974
+            t976 = -0.5*r2 + t969
+            t977 = Om0_x*angle0_y
+            t978 = -Om0_y*angle0_x
+            t979 = -t977 - t978
+            t980 = angle0_y*t979
+            t981 = Om0_x*angle0_z
+            t982 = Om0_z*angle0_x
+            t983 = -t982
+            t984 = t981 + t983
+            t985 = angle0_z*t984
+            t986 = t980 - t985
+            t987 = angle0_x*angle1_y
+            t988 = angle0_y*angle1_x
+            t989 = -t988
+            t990 = t987 + t989
+            t991 = angle0_y*t990
+            t992 = angle0_x*angle1_z
+            t993 = -angle0_z*angle1_x
+            t994 = -t992 - t993
+            t995 = angle0_z*t994
+            t996 = t991 - t995
+            t997 = -0.5*r4 + (1.5)*r5
+            t998 = t971*t997
+            t999 = angle0_x*t994
+            t1000 = 2*t970
+            t1001 = angle0_x*t984
+            t1002 = 2*t976
+            t1003 = angle0_x*t979
+            t1004 = angle0_z*t975 - t1003
+            t1005 = angle0_x*t990
+            t1006 = angle0_z*t968 - t1005
+            t1007 = Om0_z*r1 + angle1_z*r2
+            t1008 = angle0_y*t975
+            t1009 = t1001 - t1008
+            t1010 = angle0_y*t968
+            t1011 = -t1010 + t999
+            t1012 = Om0_y*r1 + angle1_y*r2
+            t1013 = Om0_x*angle0_x
+            t1014 = angle0_x*angle1_x
+            t1015 = angle0_y*t1000
+            t1016 = 2*t997
+            t1017 = angle0_y*t1016
+            t1018 = Om0_x*r1 + angle1_x*r2
+            t1019 = angle0_z*t1000
+            t1020 = angle0_z*t1016
+            t1021 = angle0_x*r3
+            t1022 = angle0_z*t1021
+            t1023 = angle0_y*t1021
+            t1024 = angle0_x*r2
+            bdOm0_x += bdwc_x*(r2*t956 + 1) + bdwc_y*(-t951 + t953) + bdwc_z*(t948 + t950)
+            bdOm0_y += (bdwc_x*(t951 + t953) + bdwc_y*(r2*t959 + 1) + bdwc_z*(angle0_y*angle0_z*r2
+                - t957))
+            bdOm0_z += bdwc_x*(-t948 + t950) + bdwc_y*(angle0_y*t949 + t957) + bdwc_z*(r2*t960 + 1)
+            bdrigid0[3] += (bdwc_x*(r2*(t961 + t962) + r3*(t963 + t964) - t968*t972 -
+                t971*t975*t976 + t972*t986 + t996*t998) + bdwc_y*(r2*(-2*Om0_y*angle0_x + t977) +
+                r3*(-2*t987 - t989) - t1000*t999 - t1001*t1002 + t1004*t972 + t1006*t998 + t1007)
+                + bdwc_z*(2*angle0_x*t1009*t970 + 2*angle0_x*t1011*t997 + r2*(t981 - 2*t982) +
+                r3*(-2*t992 - t993) - t1000*t1005 - t1002*t1003 - t1012))
+            bdrigid0[4] += (bdwc_x*(2*angle0_y*t970*t986 + 2*angle0_y*t996*t997 + r2*(-2*t977 -
+                t978) + r3*(t987 - 2*t988) - t1000*t1010 - t1002*t1008 - t1007) +
+                bdwc_y*(-angle0_y*t1002*t984 + r2*(t1013 + t962) + r3*(t1014 + t964) + t1004*t1015
+                + t1006*t1017 - t1015*t994) + bdwc_z*(r2*(-2*Om0_z*angle0_y + t973) + r3*(-2*t965
+                - t967) - t1000*t991 - t1002*t980 + t1009*t1015 + t1011*t1017 + t1018))
+            bdrigid0[5] += (bdwc_x*(-angle0_z*t1000*t968 - angle0_z*t1002*t975 + r2*(-2*t981 -
+                t983) + r3*(-2*angle0_z*angle1_x + t992) + t1012 + t1019*t986 + t1020*t996) +
+                bdwc_y*(2*angle0_z*t1004*t970 + 2*angle0_z*t1006*t997 + r2*(-2*t973 - t974) +
+                r3*(t965 - 2*t966) - t1000*t995 - t1002*t985 - t1018) +
+                bdwc_z*(-angle0_z*t1002*t979 + r2*(t1013 + t961) + r3*(t1014 + t963) + t1009*t1019
+                + t1011*t1020 - t1019*t990))
+            bdrigid1[3] += bdwc_x*(r3*t956 + 1) + bdwc_y*(t1023 - t949) + bdwc_z*(t1022 + t952)
+            bdrigid1[4] += (bdwc_x*(t1023 + t949) + bdwc_y*(r3*t959 + 1) +
+                bdwc_z*(angle0_y*angle0_z*r3 - t1024))
+            bdrigid1[5] += (bdwc_x*(t1022 - t952) + bdwc_y*(angle0_y*angle0_z*r3 + t1024) +
+                bdwc_z*(r3*t960 + 1))
             # transposed: rigid part of detad
             add_rows_times(rigid_rows, bdrigid2, bdetad, 6, n, padded(6))
             # transposed: rigid part of deta
@@ -2662,40 +2496,40 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 bdeud_x, bdeud_y, bdeud_z = bdetad[i3], bdetad[i3 + 1], bdetad[i3 + 2]
-                t1153 = Om0_y*bdeud_z - Om0_z*bdeud_y
-                t1154 = Om0_x*bdeud_z - Om0_z*bdeud_x
-                t1155 = -t1154
-                t1156 = Om0_x*bdeud_y - Om0_y*bdeud_x
-                t1157 = eu_z - v0_z + vs_z
-                t1158 = eu_y - v0_y + vs_y
-                t1159 = eu_x - v0_x + vs_x
-                t1160 = X_z + u_z
-                t1161 = X_y + u_y
-                t1162 = X_x + u_x
+                t1025 = Om0_y*bdeud_z - Om0_z*bdeud_y
+                t1026 = Om0_x*bdeud_z - Om0_z*bdeud_x
+                t1027 = -t1026
+                t1028 = Om0_x*bdeud_y - Om0_y*bdeud_x
+                t1029 = eu_z - v0_z + vs_z
+                t1030 = eu_y - v0_y + vs_y
+                t1031 = eu_x - v0_x + vs_x
+                t1032 = X_z + u_z
+                t1033 = X_y + u_y
+                t1034 = X_x + u_x
                 bdy[i3] += Om0d_y*bdeud_z - Om0d_z*bdeud_y
                 bdy[i3 + 1] += -Om0d_x*bdeud_z + Om0d_z*bdeud_x
                 bdy[i3 + 2] += Om0d_x*bdeud_y - Om0d_y*bdeud_x
-                bdyd[i3] += t1153
-                bdyd[i3 + 1] += t1155
-                bdyd[i3 + 2] += t1156
+                bdyd[i3] += t1025
+                bdyd[i3 + 1] += t1027
+                bdyd[i3 + 2] += t1028
                 bdacc[i3] += bdeud_x
                 bdacc[i3 + 1] += bdeud_y
                 bdacc[i3 + 2] += bdeud_z
-                bdOm0_x += bdeud_y*t1157 - bdeud_z*t1158
-                bdOm0_y += -bdeud_x*t1157 + bdeud_z*t1159
-                bdOm0_z += bdeud_x*t1158 - bdeud_y*t1159
-                bdv0_x += -t1153
-                bdv0_y += t1154
-                bdv0_z += -t1156
+                bdOm0_x += bdeud_y*t1029 - bdeud_z*t1030
+                bdOm0_y += -bdeud_x*t1029 + bdeud_z*t1031
+                bdOm0_z += bdeud_x*t1030 - bdeud_y*t1031
+                bdv0_x += -t1025
+                bdv0_y += t1026
+                bdv0_z += -t1028
                 bda0_x += -bdeud_x
                 bda0_y += -bdeud_y
                 bda0_z += -bdeud_z
-                bdeta[i3] += t1153
-                bdeta[i3 + 1] += t1155
-                bdeta[i3 + 2] += t1156
-                bdOm0d_x += bdeud_y*t1160 - bdeud_z*t1161
-                bdOm0d_y += -bdeud_x*t1160 + bdeud_z*t1162
-                bdOm0d_z += bdeud_x*t1161 - bdeud_y*t1162
+                bdeta[i3] += t1025
+                bdeta[i3 + 1] += t1027
+                bdeta[i3 + 2] += t1028
+                bdOm0d_x += bdeud_y*t1032 - bdeud_z*t1033
+                bdOm0d_y += -bdeud_x*t1032 + bdeud_z*t1034
+                bdOm0d_z += bdeud_x*t1033 - bdeud_y*t1034
             # transposed: differential: rate: rates of the elastic rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -2703,65 +2537,61 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdepd_x, bdepd_y, bdepd_z = bdetad[j3], bdetad[j3 + 1], bdetad[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t1163 = 2*e1
-                t1164 = psi_x*t1163
-                t1165 = psi_y*psi_z*t1164
-                t1166 = -t1165 - 0.5
-                t1167 = e0*psi_y
-                t1168 = psi_x*psi_x
-                t1169 = t1163*t1168
-                t1170 = psi_y*t1169
-                t1171 = -t1167 - t1170
-                t1172 = psi_z*psi_z
-                t1173 = t1164*t1172
-                t1174 = e0*psi_x
-                t1175 = psi_x*psi_x*psi_x*t1163 + 2*t1174
-                t1176 = 0.5 - t1165
-                t1177 = e0*psi_z
-                t1178 = psi_z*t1169
-                t1179 = -t1177 - t1178
-                t1180 = psi_y*psi_y
-                t1181 = t1164*t1180
-                t1182 = -t1174 - t1181
-                t1183 = psi_y*t1163*t1172
-                t1184 = psi_y*psi_y*psi_y*t1163 + 2*t1167
-                t1185 = psi_z*t1163*t1180
-                t1186 = -t1177 - t1185
-                t1187 = -t1173 - t1174
-                t1188 = psi_z*psi_z*psi_z*t1163 + 2*t1177
-                t1189 = -t1167 - t1183
-                t1190 = (0.5)*psi_z
-                t1191 = psi_x*t1167
-                t1192 = (0.5)*psi_y
-                t1193 = psi_x*t1177
-                t1194 = e0*t1180
-                t1195 = e0*t1172 - 1
-                t1196 = (0.5)*psi_x
-                t1197 = psi_z*t1167
-                t1198 = e0*t1168
-                bdy[j3] += (bdepd_x*(Om0d_x*(t1173 + t1181) + Om0d_y*t1171 + Om0d_z*t1179) +
-                    bdepd_y*(Om0d_x*t1171 + Om0d_y*(t1173 + t1175) + Om0d_z*t1166) +
-                    bdepd_z*(Om0d_x*t1179 + Om0d_y*t1176 + Om0d_z*(t1175 + t1181)))
-                bdy[j3 + 1] += (bdepd_x*(Om0d_x*(t1183 + t1184) + Om0d_y*t1182 + Om0d_z*t1176) +
-                    bdepd_y*(Om0d_x*t1182 + Om0d_y*(t1170 + t1183) + Om0d_z*t1186) +
-                    bdepd_z*(Om0d_x*t1166 + Om0d_y*t1186 + Om0d_z*(t1170 + t1184)))
-                bdy[j3 + 2] += (bdepd_x*(Om0d_x*(t1185 + t1188) + Om0d_y*t1166 + Om0d_z*t1187) +
-                    bdepd_y*(Om0d_x*t1176 + Om0d_y*(t1178 + t1188) + Om0d_z*t1189) +
-                    bdepd_z*(Om0d_x*t1187 + Om0d_y*t1189 + Om0d_z*(t1178 + t1185)))
-                bdOm0d_x += (bdepd_x*(t1194 + t1195) + bdepd_y*(t1190 - t1191) + bdepd_z*(-t1192 -
-                    t1193))
-                bdOm0d_y += (bdepd_x*(-t1190 - t1191) + bdepd_y*(t1195 + t1198) + bdepd_z*(t1196 -
-                    t1197))
-                bdOm0d_z += (bdepd_x*(t1192 - t1193) + bdepd_y*(-t1196 - t1197) + bdepd_z*(t1194 +
-                    t1198 - 1))
+                t1035 = Om0d_y*psi_y
+                t1036 = Om0d_z*psi_z
+                t1037 = Om0d_x*psi_y
+                t1038 = -Om0d_y*psi_x
+                t1039 = t1037 + t1038
+                t1040 = Om0d_x*psi_z
+                t1041 = -Om0d_z*psi_x
+                t1042 = -t1040 - t1041
+                t1043 = psi_y*t1039 - psi_z*t1042
+                t1044 = 2*e1
+                t1045 = psi_x*t1044
+                t1046 = (0.5)*Om0d_z
+                t1047 = Om0d_y*psi_z
+                t1048 = -Om0d_z*psi_y
+                t1049 = t1047 + t1048
+                t1050 = -psi_x*t1039 + psi_z*t1049
+                t1051 = (0.5)*Om0d_y
+                t1052 = psi_x*t1042 - psi_y*t1049
+                t1053 = Om0d_x*psi_x
+                t1054 = psi_y*t1044
+                t1055 = (0.5)*Om0d_x
+                t1056 = psi_z*t1044
+                t1057 = (0.5)*psi_z
+                t1058 = e0*psi_x
+                t1059 = psi_y*t1058
+                t1060 = (0.5)*psi_y
+                t1061 = psi_z*t1058
+                t1062 = psi_y*psi_y
+                t1063 = psi_z*psi_z
+                t1064 = (0.5)*psi_x
+                t1065 = e0*psi_y*psi_z
+                t1066 = psi_x*psi_x
+                bdy[j3] += (bdepd_x*(e0*(-t1035 - t1036) + t1043*t1045) +
+                    bdepd_y*(e0*(2*Om0d_y*psi_x - t1037) + t1045*t1050 - t1046) +
+                    bdepd_z*(e0*(2*Om0d_z*psi_x - t1040) + t1045*t1052 + t1051))
+                bdy[j3 + 1] += (bdepd_x*(e0*(2*t1037 + t1038) + t1043*t1054 + t1046) +
+                    bdepd_y*(e0*(-t1036 - t1053) + t1050*t1054) + bdepd_z*(e0*(2*Om0d_z*psi_y -
+                    t1047) + t1052*t1054 - t1055))
+                bdy[j3 + 2] += (bdepd_x*(e0*(2*t1040 + t1041) + t1043*t1056 - t1051) +
+                    bdepd_y*(e0*(2*t1047 + t1048) + t1050*t1056 + t1055) + bdepd_z*(e0*(-t1035 -
+                    t1053) + t1052*t1056))
+                bdOm0d_x += (bdepd_x*(e0*(t1062 + t1063) - 1) + bdepd_y*(t1057 - t1059) +
+                    bdepd_z*(-t1060 - t1061))
+                bdOm0d_y += (bdepd_x*(-t1057 - t1059) + bdepd_y*(e0*(t1063 + t1066) - 1) +
+                    bdepd_z*(t1064 - t1065))
+                bdOm0d_z += (bdepd_x*(t1060 - t1061) + bdepd_y*(-t1064 - t1065) +
+                    bdepd_z*(e0*(t1062 + t1066) - 1))
             # transposed: differential: rate: B rate = sum alpha_j T^-1(psi_j) rate_j
             rhs_x = rhs_y = rhs_z = 0.0
-            t1199 = bdOm0d_x + rhs_x
-            t1200 = bdOm0d_y + rhs_y
-            t1201 = bdOm0d_z + rhs_z
-            mdOm0d_x = Bxx*t1199 + Byx*t1200 + Bzx*t1201
-            mdOm0d_y = Bxy*t1199 + Byy*t1200 + Bzy*t1201
-            mdOm0d_z = Bxz*t1199 + Byz*t1200 + Bzz*t1201
+            t1067 = bdOm0d_x + rhs_x
+            t1068 = bdOm0d_y + rhs_y
+            t1069 = bdOm0d_z + rhs_z
+            mdOm0d_x = Bxx*t1067 + Byx*t1068 + Bzx*t1069
+            mdOm0d_y = Bxy*t1067 + Byy*t1068 + Bzy*t1069
+            mdOm0d_z = Bxz*t1067 + Byz*t1068 + Bzz*t1069
             # transposed: differential: rate: B rate = sum alpha_j T^-1(psi_j) rate_j
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -2769,44 +2599,44 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t1202 = e0*psi_y
-                t1203 = 2*e1
-                t1204 = psi_x*psi_x*t1203
-                t1205 = psi_y*t1204
-                t1206 = t1202 + t1205
-                t1207 = Om0d_y*alpha_r
-                t1208 = e0*psi_z
-                t1209 = psi_z*t1204
-                t1210 = t1208 + t1209
-                t1211 = Om0d_z*alpha_r
-                t1212 = psi_y*psi_y
-                t1213 = psi_x*t1203
-                t1214 = t1212*t1213
-                t1215 = psi_z*psi_z
-                t1216 = t1213*t1215
-                t1217 = Om0d_x*alpha_r
-                t1218 = psi_y*psi_z*t1213
-                t1219 = t1218 + 0.5
-                t1220 = e0*psi_x
-                t1221 = psi_x*psi_x*psi_x*t1203 + 2*t1220
-                t1222 = t1218 - 0.5
-                t1223 = t1214 + t1220
-                t1224 = psi_y*t1203*t1215
-                t1225 = psi_y*psi_y*psi_y*t1203 + 2*t1202
-                t1226 = psi_z*t1203*t1212
-                t1227 = t1208 + t1226
-                t1228 = t1216 + t1220
-                t1229 = psi_z*psi_z*psi_z*t1203 + 2*t1208
-                t1230 = t1202 + t1224
-                bdy[j3] += (-mdOm0d_x*(t1206*t1207 + t1210*t1211 + t1217*(-t1214 - t1216)) -
-                    mdOm0d_y*(t1206*t1217 + t1207*(-t1216 - t1221) + t1211*t1219) -
-                    mdOm0d_z*(t1207*t1222 + t1210*t1217 + t1211*(-t1214 - t1221)))
-                bdy[j3 + 1] += (-mdOm0d_x*(t1207*t1223 + t1211*t1222 + t1217*(-t1224 - t1225)) -
-                    mdOm0d_y*(t1207*(-t1205 - t1224) + t1211*t1227 + t1217*t1223) -
-                    mdOm0d_z*(t1207*t1227 + t1211*(-t1205 - t1225) + t1217*t1219))
-                bdy[j3 + 2] += (-mdOm0d_x*(t1207*t1219 + t1211*t1228 + t1217*(-t1226 - t1229)) -
-                    mdOm0d_y*(t1207*(-t1209 - t1229) + t1211*t1230 + t1217*t1222) -
-                    mdOm0d_z*(t1207*t1230 + t1211*(-t1209 - t1226) + t1217*t1228))
+                t1070 = e0*psi_y
+                t1071 = 2*e1
+                t1072 = psi_x*psi_x*t1071
+                t1073 = psi_y*t1072
+                t1074 = t1070 + t1073
+                t1075 = Om0d_y*alpha_r
+                t1076 = e0*psi_z
+                t1077 = psi_z*t1072
+                t1078 = t1076 + t1077
+                t1079 = Om0d_z*alpha_r
+                t1080 = psi_y*psi_y
+                t1081 = psi_x*t1071
+                t1082 = t1080*t1081
+                t1083 = psi_z*psi_z
+                t1084 = t1081*t1083
+                t1085 = Om0d_x*alpha_r
+                t1086 = psi_y*psi_z*t1081
+                t1087 = t1086 + 0.5
+                t1088 = e0*psi_x
+                t1089 = psi_x*psi_x*psi_x*t1071 + 2*t1088
+                t1090 = t1086 - 0.5
+                t1091 = t1082 + t1088
+                t1092 = psi_y*t1071*t1083
+                t1093 = psi_y*psi_y*psi_y*t1071 + 2*t1070
+                t1094 = psi_z*t1071*t1080
+                t1095 = t1076 + t1094
+                t1096 = t1084 + t1088
+                t1097 = psi_z*psi_z*psi_z*t1071 + 2*t1076
+                t1098 = t1070 + t1092
+                bdy[j3] += (-mdOm0d_x*(t1074*t1075 + t1078*t1079 + t1085*(-t1082 - t1084)) -
+                    mdOm0d_y*(t1074*t1085 + t1075*(-t1084 - t1089) + t1079*t1087) -
+                    mdOm0d_z*(t1075*t1090 + t1078*t1085 + t1079*(-t1082 - t1089)))
+                bdy[j3 + 1] += (-mdOm0d_x*(t1075*t1091 + t1079*t1090 + t1085*(-t1092 - t1093)) -
+                    mdOm0d_y*(t1075*(-t1073 - t1092) + t1079*t1095 + t1085*t1091) -
+                    mdOm0d_z*(t1075*t1095 + t1079*(-t1073 - t1093) + t1085*t1087))
+                bdy[j3 + 2] += (-mdOm0d_x*(t1075*t1087 + t1079*t1096 + t1085*(-t1094 - t1097)) -
+                    mdOm0d_y*(t1075*(-t1077 - t1097) + t1079*t1098 + t1085*t1090) -
+                    mdOm0d_z*(t1075*t1098 + t1079*(-t1077 - t1094) + t1085*t1096))
                 bdetad[j3] += alpha_r*mdOm0d_x
                 bdetad[j3 + 1] += alpha_r*mdOm0d_y
                 bdetad[j3 + 2] += alpha_r*mdOm0d_z
@@ -2821,225 +2651,158 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e0 = e0s[j]
                 e1 = e1s[j]
                 e2 = e2s[j]
-                t1231 = (0.5)*ep_z
-                t1232 = e0*ep_x
-                t1233 = e0*psi_x
-                t1234 = 2*ep_x
-                t1235 = psi_x*t1234
-                t1236 = 2*ep_y
-                t1237 = psi_y*t1236
-                t1238 = 2*ep_z
-                t1239 = psi_z*t1238
-                t1240 = t1235 + t1237 + t1239
-                t1241 = e1*t1240
-                t1242 = psi_x*t1241
-                t1243 = ep_y*t1233 + psi_y*t1232 + psi_y*t1242
-                t1244 = t1231 + t1243
-                t1245 = (0.5)*ep_y
-                t1246 = ep_z*t1233 + psi_z*t1232 + psi_z*t1242
-                t1247 = -t1245 + t1246
-                t1248 = psi_z*psi_z
-                t1249 = e0*t1239 + t1241*t1248
-                t1250 = psi_y*psi_y
-                t1251 = e0*t1237 + t1241*t1250
-                t1252 = t1249 + t1251
-                t1253 = -t1231 + t1243
-                t1254 = (0.5)*ep_x
-                t1255 = e0*psi_z
-                t1256 = e0*psi_y
-                t1257 = psi_y*t1241
-                t1258 = ep_y*t1255 + ep_z*t1256 + psi_z*t1257
-                t1259 = t1254 + t1258
-                t1260 = psi_x*psi_x
-                t1261 = e0*t1235 + t1241*t1260
-                t1262 = t1249 + t1261
-                t1263 = t1245 + t1246
-                t1264 = -t1254 + t1258
-                t1265 = t1251 + t1261
-                t1266 = (0.5)*psi_z
-                t1267 = psi_y*t1233
-                t1268 = (0.5)*psi_y
-                t1269 = psi_z*t1233
-                t1270 = e0*t1250
-                t1271 = e0*t1248 - 1
-                t1272 = (0.5)*psi_x
-                t1273 = psi_y*t1255
-                t1274 = e0*t1260
-                t1275 = e1*t1234
-                t1276 = Om0_x*psi_y
-                t1277 = Om0_y*psi_x - t1276
-                t1278 = psi_y*t1277
-                t1279 = t1275*t1278
-                t1280 = Om_x*psi_z
-                t1281 = Om_z*psi_x
-                t1282 = t1280 - t1281
-                t1283 = psi_z*t1275
-                t1284 = t1282*t1283
-                t1285 = e1*psi_x
-                t1286 = t1236*t1285
-                t1287 = t1277*t1286
-                t1288 = t1238*t1285
-                t1289 = t1282*t1288
-                t1290 = -Om0_x*ep_y + Om0_y*ep_x
-                t1291 = 2*e1
-                t1292 = psi_x*t1291
-                t1293 = psi_y*t1292
-                t1294 = t1290*t1293
-                t1295 = A_x*psi_z
-                t1296 = Om_x*ep_z
-                t1297 = A_z*psi_x
-                t1298 = Om_z*ep_x
-                t1299 = t1295 + t1296 - t1297 - t1298
-                t1300 = psi_z*t1292
-                t1301 = t1299*t1300
-                t1302 = Om_x*psi_y
-                t1303 = Om_y*psi_x - t1302
-                t1304 = psi_y*t1275
-                t1305 = t1303*t1304
-                t1306 = Om0_z*psi_x
-                t1307 = Om0_x*psi_z - t1306
-                t1308 = t1283*t1307
-                t1309 = t1286*t1303
-                t1310 = t1288*t1307
-                t1311 = A_x*psi_y
-                t1312 = Om_x*ep_y
-                t1313 = A_y*psi_x + Om_y*ep_x - t1311 - t1312
-                t1314 = t1293*t1313
-                t1315 = Om0_z*ep_x
-                t1316 = Om0_x*ep_z - t1315
-                t1317 = t1300*t1316
-                t1318 = 2*e2*t1240
-                t1319 = psi_x*t1318
-                t1320 = t1278*t1319
-                t1321 = psi_z*t1319
-                t1322 = t1282*t1321
-                t1323 = psi_y*t1319
-                t1324 = t1303*t1323
-                t1325 = t1307*t1321
-                t1326 = e0*ep_z
-                t1327 = psi_z*t1241
-                t1328 = A_z*t1255 - Om0_z*t1326 - Om0_z*t1327 + Om_z*t1326 + Om_z*t1327
-                t1329 = e0*ep_y
-                t1330 = A_y*t1256 - Om0_y*t1257 - Om0_y*t1329 + Om_y*t1257 + Om_y*t1329
-                t1331 = (0.5)*A_z
-                t1332 = e0*t1290
-                t1333 = ep_x*t1285
-                t1334 = Om0_y*psi_z
-                t1335 = Om0_z*psi_y - t1334
-                t1336 = Om_y*psi_z
-                t1337 = Om_z*psi_y - t1336
-                t1338 = Om0_y*ep_z
-                t1339 = Om0_z*ep_y - t1338
-                t1340 = e0*t1313
-                t1341 = Om_y*psi_x
-                t1342 = A_y*psi_z
-                t1343 = Om_y*ep_z
-                t1344 = A_z*psi_y + Om_z*ep_y - t1342 - t1343
-                t1345 = t1260*t1291
-                t1346 = t1241*t1303
-                t1347 = t1241*t1277
-                t1348 = t1260*t1318
-                t1349 = 4*t1333
-                t1350 = (0.5)*A_y + e0*t1299 - e0*t1316 + t1241*t1282 - t1241*t1307
-                t1351 = psi_z*t1236
-                t1352 = e1*t1335
-                t1353 = t1351*t1352
-                t1354 = psi_y*t1238
-                t1355 = t1352*t1354
-                t1356 = psi_z*t1291
-                t1357 = psi_y*t1356
-                t1358 = t1339*t1357
-                t1359 = e1*t1337
-                t1360 = t1351*t1359
-                t1361 = t1354*t1359
-                t1362 = t1344*t1357
-                t1363 = psi_z*t1318
-                t1364 = psi_y*t1363
-                t1365 = t1335*t1364
-                t1366 = t1337*t1364
-                t1367 = A_x*t1233 - Om0_x*t1232 - Om0_x*t1242 + Om_x*t1232 + Om_x*t1242
-                t1368 = 4*e1*ep_y
-                t1369 = e1*t1282
-                t1370 = t1250*t1291
-                t1371 = t1250*t1318
-                t1372 = Om_z*psi_y
-                t1373 = (0.5)*A_x - e0*t1339 + e0*t1344 - t1241*t1335 + t1241*t1337
-                t1374 = t1248*t1291
-                t1375 = t1248*t1318
-                t1376 = 4*ep_z*psi_z
-                t1377 = t1293*t1303
-                t1378 = t1300*t1307
-                t1379 = t1278*t1292
-                t1380 = t1282*t1300
-                t1381 = Om0_z*t1255 - Om_z*e0*psi_z
-                t1382 = Om0_y*t1256 - Om_y*e0*psi_y
-                t1383 = (0.5)*Om0_z + (0.5)*Om_z - e0*t1277 + e0*t1303
-                t1384 = (0.5)*Om0_y + (0.5)*Om_y + e0*t1282 - e0*t1307
-                t1385 = t1337*t1357
-                t1386 = t1335*t1357
-                t1387 = Om0_x*t1233 - Om_x*e0*psi_x
-                t1388 = (0.5)*Om0_x + (0.5)*Om_x - e0*t1335 + e0*t1337
-                bdve[j3] += -bdepd_x*t1252 + bdepd_y*t1244 + bdepd_z*t1247
-                bdve[j3 + 1] += bdepd_x*t1253 - bdepd_y*t1262 + bdepd_z*t1259
-                bdve[j3 + 2] += bdepd_x*t1263 + bdepd_y*t1264 - bdepd_z*t1265
-                bdae[j3] += (bdepd_x*(-t1270 - t1271) + bdepd_y*(t1266 + t1267) + bdepd_z*(-t1268
-                    + t1269))
-                bdae[j3 + 1] += (bdepd_x*(-t1266 + t1267) + bdepd_y*(-t1271 - t1274) +
-                    bdepd_z*(t1272 + t1273))
-                bdae[j3 + 2] += (bdepd_x*(t1268 + t1269) + bdepd_y*(-t1272 + t1273) +
-                    bdepd_z*(-t1270 - t1274 + 1))
-                bdy[j3] += (bdepd_x*(-t1279 - t1284 - t1287 - t1289 - t1294 - t1301 + t1305 +
-                    t1308 + t1309 + t1310 + t1314 + t1317 - t1320 - t1322 + t1324 + t1325 + t1328
-                    + t1330) + bdepd_y*(-A_y*e0*psi_x + Om0_y*e0*ep_x + Om0_y*e1*psi_x*t1240 -
-                    Om_y*e0*ep_x + 4*e1*ep_x*psi_x*t1277 + 2*e1*ep_x*psi_z*t1337 +
-                    2*e1*ep_z*psi_x*t1337 + 2*e1*psi_x*psi_z*t1344 + 2*e1*t1260*t1290 +
-                    2*e2*psi_x*psi_z*t1240*t1337 + 2*e2*t1240*t1260*t1277 - t1241*t1341 -
-                    t1283*t1335 - t1288*t1335 - t1300*t1339 - 4*t1303*t1333 - t1303*t1348 -
-                    t1313*t1345 - t1321*t1335 - t1331 + t1332 - t1340 - t1346 + t1347) +
-                    bdepd_z*(-e0*t1297 - e0*t1298 + e0*t1315 - t1241*t1281 + t1241*t1306 +
-                    t1282*t1348 + t1282*t1349 + t1286*t1335 - t1286*t1337 + t1293*t1339 -
-                    t1293*t1344 + t1299*t1345 + t1304*t1335 - t1304*t1337 - t1307*t1348 -
-                    t1307*t1349 - t1316*t1345 + t1323*t1335 - t1323*t1337 + t1350))
-                bdy[j3 + 1] += (bdepd_x*(Om0_x*e0*ep_y + Om0_x*e1*psi_y*t1240 - e0*t1311 -
-                    e0*t1312 + 4*e1*ep_y*psi_y*t1303 + 2*e1*ep_y*psi_z*t1307 +
-                    2*e1*ep_z*psi_y*t1307 + 2*e1*psi_y*psi_z*t1316 + 2*e1*t1250*t1313 +
-                    2*e2*psi_y*psi_z*t1240*t1307 + 2*e2*t1240*t1250*t1303 - t1241*t1302 -
-                    t1277*t1371 - t1278*t1368 - t1282*t1364 - t1290*t1370 - t1299*t1357 + t1331 -
-                    t1332 + t1340 + t1346 - t1347 - t1351*t1369 - t1354*t1369) + bdepd_y*(t1279 +
-                    t1287 + t1294 - t1305 - t1309 - t1314 + t1320 - t1324 + t1328 - t1353 - t1355
-                    - t1358 + t1360 + t1361 + t1362 - t1365 + t1366 + t1367) +
-                    bdepd_z*(-A_z*e0*psi_y + Om0_z*e0*ep_y + Om0_z*e1*psi_y*t1240 - Om_z*e0*ep_y +
-                    2*e1*ep_x*psi_y*t1282 + 2*e1*ep_y*psi_x*t1282 + 4*e1*ep_y*psi_y*t1335 +
-                    2*e1*psi_x*psi_y*t1299 + 2*e1*t1250*t1339 + 2*e2*psi_x*psi_y*t1240*t1282 +
-                    2*e2*t1240*t1250*t1335 - psi_y*t1337*t1368 - t1241*t1372 - t1286*t1307 -
-                    t1293*t1316 - t1304*t1307 - t1307*t1323 - t1337*t1371 - t1344*t1370 - t1373))
-                bdy[j3 + 2] += (bdepd_x*(Om0_x*e0*ep_z + Om0_x*e1*psi_z*t1240 - e0*t1295 -
-                    e0*t1296 + 2*e1*ep_y*psi_z*t1303 + 2*e1*ep_z*psi_y*t1303 +
-                    4*e1*ep_z*psi_z*t1307 + 2*e1*psi_y*psi_z*t1313 - e1*t1238*t1278 +
-                    2*e1*t1248*t1316 - e1*t1277*t1351 + 2*e2*psi_y*psi_z*t1240*t1303 +
-                    2*e2*t1240*t1248*t1307 - t1241*t1280 - t1278*t1363 - t1282*t1375 - t1290*t1357
-                    - t1299*t1374 - t1350 - t1369*t1376) + bdepd_y*(e0*t1338 - e0*t1342 - e0*t1343
-                    + t1241*t1334 - t1241*t1336 + t1277*t1283 + t1277*t1288 + t1277*t1321 -
-                    t1283*t1303 - t1288*t1303 + t1290*t1300 - t1300*t1313 - t1303*t1321 -
-                    t1335*t1375 + t1337*t1375 - t1339*t1374 + t1344*t1374 - t1352*t1376 +
-                    t1359*t1376 + t1373) + bdepd_z*(t1284 + t1289 + t1301 - t1308 - t1310 - t1317
-                    + t1322 - t1325 + t1330 + t1353 + t1355 + t1358 - t1360 - t1361 - t1362 +
-                    t1365 - t1366 + t1367))
-                bdOm0_x += bdepd_x*t1252 - bdepd_y*t1253 - bdepd_z*t1263
-                bdOm0_y += -bdepd_x*t1244 + bdepd_y*t1262 - bdepd_z*t1264
-                bdOm0_z += -bdepd_x*t1247 - bdepd_y*t1259 + bdepd_z*t1265
-                bdeta[j3] += (bdepd_x*(t1377 + t1378 - t1379 - t1380 - t1381 - t1382) +
-                    bdepd_y*(Om0_y*e0*psi_x - e0*t1341 + 2*e1*psi_x*psi_z*t1337 + 2*e1*t1260*t1277
-                    - t1300*t1335 - t1303*t1345 - t1383) + bdepd_z*(-e0*t1281 + e0*t1306 +
-                    t1282*t1345 + t1293*t1335 - t1293*t1337 - t1307*t1345 + t1384))
-                bdeta[j3 + 1] += (bdepd_x*(e0*t1276 - e0*t1302 - t1277*t1370 - t1282*t1357 +
-                    t1303*t1370 + t1307*t1357 + t1383) + bdepd_y*(-t1377 + t1379 - t1381 + t1385 -
-                    t1386 - t1387) + bdepd_z*(Om0_z*e0*psi_y - e0*t1372 + 2*e1*psi_x*psi_y*t1282 +
-                    2*e1*t1250*t1335 - t1293*t1307 - t1337*t1370 - t1388))
-                bdeta[j3 + 2] += (bdepd_x*(Om0_x*e0*psi_z - e0*t1280 + 2*e1*psi_y*psi_z*t1303 +
-                    2*e1*t1248*t1307 - t1278*t1356 - t1282*t1374 - t1384) + bdepd_y*(e0*t1334 -
-                    e0*t1336 + t1277*t1300 - t1300*t1303 - t1335*t1374 + t1337*t1374 + t1388) +
-                    bdepd_z*(-t1378 + t1380 - t1382 - t1385 + t1386 - t1387))
+                t1099 = (0.5)*ep_z
+                t1100 = ep_x*psi_y + ep_y*psi_x
+                t1101 = 2*ep_x
+                t1102 = psi_x*t1101
+                t1103 = 2*ep_y
+                t1104 = psi_y*t1103
+                t1105 = 2*ep_z
+                t1106 = psi_z*t1105
+                t1107 = t1104 + t1106
+                t1108 = t1102 + t1107
+                t1109 = e1*t1108
+                t1110 = psi_x*t1109
+                t1111 = psi_y*t1110
+                t1112 = e0*t1100 + t1111
+                t1113 = (0.5)*ep_y
+                t1114 = ep_x*psi_z + ep_z*psi_x
+                t1115 = psi_z*t1110
+                t1116 = e0*t1114 + t1115
+                t1117 = psi_y*psi_y
+                t1118 = psi_z*psi_z
+                t1119 = t1117 + t1118
+                t1120 = -t1119
+                t1121 = (0.5)*ep_x
+                t1122 = ep_y*psi_z + ep_z*psi_y
+                t1123 = psi_y*psi_z
+                t1124 = t1109*t1123
+                t1125 = e0*t1122 + t1124
+                t1126 = t1102 + t1106
+                t1127 = psi_x*psi_x
+                t1128 = t1118 + t1127
+                t1129 = -t1128
+                t1130 = t1102 + t1104
+                t1131 = t1117 + t1127
+                t1132 = -t1131
+                t1133 = (0.5)*psi_z
+                t1134 = e0*psi_x
+                t1135 = psi_y*t1134
+                t1136 = (0.5)*psi_y
+                t1137 = psi_z*t1134
+                t1138 = (0.5)*psi_x
+                t1139 = e0*t1123
+                t1140 = A_y*psi_y
+                t1141 = A_z*psi_z
+                t1142 = Om0_y - Om_y
+                t1143 = -t1142
+                t1144 = Om0_z - Om_z
+                t1145 = psi_y*t1143 - psi_z*t1144
+                t1146 = psi_x*t1143
+                t1147 = Om0_x - Om_x
+                t1148 = -t1147
+                t1149 = -psi_y*t1148
+                t1150 = t1146 + t1149
+                t1151 = -t1144
+                t1152 = psi_x*t1151
+                t1153 = psi_z*t1148 - t1152
+                t1154 = psi_y*t1150 - psi_z*t1153
+                t1155 = e1*t1101
+                t1156 = 2*e2*t1108
+                t1157 = psi_x*t1156
+                t1158 = A_x*psi_y
+                t1159 = ep_y*t1148
+                t1160 = t1158 + t1159
+                t1161 = A_y*psi_x + ep_x*t1143 - t1160
+                t1162 = A_z*psi_x
+                t1163 = -ep_x*t1151
+                t1164 = -t1162 + t1163
+                t1165 = A_x*psi_z
+                t1166 = ep_z*t1148
+                t1167 = t1165 + t1166
+                t1168 = t1164 + t1167
+                t1169 = ep_y*t1150 - ep_z*t1153 + psi_y*t1161 - psi_z*t1168
+                t1170 = 2*e1
+                t1171 = psi_x*t1170
+                t1172 = (0.5)*A_z
+                t1173 = A_y*psi_x
+                t1174 = ep_x*t1143
+                t1175 = -2*t1146 - t1149
+                t1176 = psi_y*t1151
+                t1177 = -psi_z*t1143
+                t1178 = t1176 + t1177
+                t1179 = -psi_x*t1150 + psi_z*t1178
+                t1180 = A_y*psi_z
+                t1181 = ep_z*t1143
+                t1182 = t1180 + t1181
+                t1183 = A_z*psi_y + ep_y*t1151 - t1182
+                t1184 = -ep_x*t1150 + ep_z*t1178 - psi_x*t1161 + psi_z*t1183
+                t1185 = (0.5)*A_y
+                t1186 = psi_z*t1148
+                t1187 = psi_x*t1144 - t1152 + t1186
+                t1188 = psi_x*t1153 - psi_y*t1178
+                t1189 = ep_x*t1153 - ep_y*t1178 + psi_x*t1168 - psi_y*t1183
+                t1190 = A_x*psi_x
+                t1191 = -psi_x*t1147 + psi_z*t1151
+                t1192 = e1*t1103
+                t1193 = psi_y*t1156
+                t1194 = psi_y*t1170
+                t1195 = (0.5)*A_x
+                t1196 = A_z*psi_y
+                t1197 = ep_y*t1151
+                t1198 = -2*t1176 - t1177
+                t1199 = psi_y*t1147 + t1150
+                t1200 = psi_x*t1148 - psi_y*t1142
+                t1201 = e1*t1105
+                t1202 = psi_z*t1156
+                t1203 = psi_z*t1170
+                t1204 = t1152 - 2*t1186
+                t1205 = psi_z*t1142 + t1178
+                t1206 = -t1100
+                t1207 = -t1114
+                t1208 = -t1122
+                t1209 = (0.5)*Om0_z + (0.5)*Om_z
+                t1210 = (0.5)*Om0_y + (0.5)*Om_y
+                t1211 = (0.5)*Om0_x + (0.5)*Om_x
+                bdve[j3] += (bdepd_x*(-e0*t1107 + t1109*t1120) + bdepd_y*(t1099 + t1112) +
+                    bdepd_z*(-t1113 + t1116))
+                bdve[j3 + 1] += (bdepd_x*(-t1099 + t1112) + bdepd_y*(-e0*t1126 + t1109*t1129) +
+                    bdepd_z*(t1121 + t1125))
+                bdve[j3 + 2] += (bdepd_x*(t1113 + t1116) + bdepd_y*(-t1121 + t1125) +
+                    bdepd_z*(-e0*t1130 + t1109*t1132))
+                bdae[j3] += (bdepd_x*(e0*t1120 + 1) + bdepd_y*(t1133 + t1135) + bdepd_z*(-t1136 +
+                    t1137))
+                bdae[j3 + 1] += (bdepd_x*(-t1133 + t1135) + bdepd_y*(e0*t1129 + 1) +
+                    bdepd_z*(t1138 + t1139))
+                bdae[j3 + 2] += (bdepd_x*(t1136 + t1137) + bdepd_y*(-t1138 + t1139) +
+                    bdepd_z*(e0*t1132 + 1))
+                bdy[j3] += (bdepd_x*(e0*(ep_y*t1143 - ep_z*t1144 + t1140 + t1141) + t1109*t1145 +
+                    t1154*t1155 + t1154*t1157 + t1169*t1171) + bdepd_y*(e0*(t1160 - 2*t1173 -
+                    2*t1174) + t1109*t1175 + t1155*t1179 + t1157*t1179 + t1171*t1184 - t1172) +
+                    bdepd_z*(e0*(ep_x*t1144 - 2*t1162 + t1163 + t1167) + t1109*t1187 + t1155*t1188
+                    + t1157*t1188 + t1171*t1189 + t1185))
+                bdy[j3 + 1] += (bdepd_x*(e0*(ep_y*t1147 - 2*t1158 - t1159 + t1173 + t1174) +
+                    t1109*t1199 + t1154*t1192 + t1154*t1193 + t1169*t1194 + t1172) +
+                    bdepd_y*(e0*(-ep_x*t1147 + ep_z*t1151 + t1141 + t1190) + t1109*t1191 +
+                    t1179*t1192 + t1179*t1193 + t1184*t1194) + bdepd_z*(e0*(t1182 - 2*t1196 -
+                    2*t1197) + t1109*t1198 + t1188*t1192 + t1188*t1193 + t1189*t1194 - t1195))
+                bdy[j3 + 2] += (bdepd_x*(e0*(-t1164 - 2*t1165 - 2*t1166) + t1109*t1204 +
+                    t1154*t1201 + t1154*t1202 + t1169*t1203 - t1185) + bdepd_y*(e0*(ep_z*t1142 -
+                    2*t1180 - t1181 + t1196 + t1197) + t1109*t1205 + t1179*t1201 + t1179*t1202 +
+                    t1184*t1203 + t1195) + bdepd_z*(e0*(ep_x*t1148 - ep_y*t1142 + t1140 + t1190) +
+                    t1109*t1200 + t1188*t1201 + t1188*t1202 + t1189*t1203))
+                bdOm0_x += (bdepd_x*(e0*t1107 + t1109*t1119) + bdepd_y*(e0*t1206 + t1099 - t1111)
+                    + bdepd_z*(e0*t1207 - t1113 - t1115))
+                bdOm0_y += (bdepd_x*(e0*t1206 - t1099 - t1111) + bdepd_y*(e0*t1126 + t1109*t1128)
+                    + bdepd_z*(e0*t1208 + t1121 - t1124))
+                bdOm0_z += (bdepd_x*(e0*t1207 + t1113 - t1115) + bdepd_y*(e0*t1208 - t1121 -
+                    t1124) + bdepd_z*(e0*t1130 + t1109*t1131))
+                bdeta[j3] += (bdepd_x*(e0*t1145 + t1154*t1171) + bdepd_y*(e0*t1175 +
+                    2*e1*psi_x*t1179 - t1209) + bdepd_z*(e0*t1187 + t1171*t1188 + t1210))
+                bdeta[j3 + 1] += (bdepd_x*(e0*t1199 + t1154*t1194 + t1209) + bdepd_y*(e0*t1191 +
+                    t1179*t1194) + bdepd_z*(e0*t1198 + 2*e1*psi_y*t1188 - t1211))
+                bdeta[j3 + 2] += (bdepd_x*(e0*t1204 + 2*e1*psi_z*t1154 - t1210) +
+                    bdepd_y*(e0*t1205 + t1179*t1203 + t1211) + bdepd_z*(e0*t1200 + t1188*t1203))
             # overwritten: differential: rate: rates of the elastic rotations, the frame held
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -3058,98 +2821,83 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdep_x, bdep_y, bdep_z = bdeta[j3], bdeta[j3 + 1], bdeta[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t1389 = (0.5)*psi_z
-                t1390 = e0*psi_x
-                t1391 = psi_y*t1390
-                t1392 = t1389 + t1391
-                t1393 = (0.5)*psi_y
-                t1394 = psi_z*t1390
-                t1395 = -t1393 + t1394
-                t1396 = psi_y*psi_y
-                t1397 = e0*t1396
-                t1398 = psi_z*psi_z
-                t1399 = e0*t1398 - 1
-                t1400 = t1397 + t1399
-                t1401 = -t1389 + t1391
-                t1402 = (0.5)*psi_x
-                t1403 = e0*psi_y
-                t1404 = psi_z*t1403
-                t1405 = t1402 + t1404
-                t1406 = psi_x*psi_x
-                t1407 = e0*t1406
-                t1408 = t1399 + t1407
-                t1409 = t1393 + t1394
-                t1410 = -t1402 + t1404
-                t1411 = t1397 + t1407 - 1
-                t1412 = Om_x*psi_y
-                t1413 = Om_y*psi_x - t1412
-                t1414 = 2*e1
-                t1415 = psi_x*t1414
-                t1416 = psi_y*t1415
-                t1417 = t1413*t1416
-                t1418 = Om0_z*psi_x
-                t1419 = Om0_x*psi_z - t1418
-                t1420 = psi_z*t1415
-                t1421 = t1419*t1420
-                t1422 = Om0_x*psi_y
-                t1423 = Om0_y*psi_x - t1422
-                t1424 = t1416*t1423
-                t1425 = Om_x*psi_z
-                t1426 = Om_z*psi_x
-                t1427 = t1425 - t1426
-                t1428 = t1420*t1427
-                t1429 = Om0_z*e0*psi_z - Om_z*e0*psi_z
-                t1430 = Om0_y*t1403 - Om_y*e0*psi_y
-                t1431 = t1406*t1414
-                t1432 = Om_y*psi_z
-                t1433 = Om_z*psi_y - t1432
-                t1434 = Om0_y*psi_z
-                t1435 = Om0_z*psi_y - t1434
-                t1436 = (0.5)*Om0_z + (0.5)*Om_z + e0*t1413 - e0*t1423
-                t1437 = (0.5)*Om0_y + (0.5)*Om_y - e0*t1419 + e0*t1427
-                t1438 = psi_y*psi_z*t1414
-                t1439 = t1433*t1438
-                t1440 = t1435*t1438
-                t1441 = Om0_x*t1390 - Om_x*e0*psi_x
-                t1442 = t1396*t1414
-                t1443 = (0.5)*Om0_x + (0.5)*Om_x + e0*t1433 - e0*t1435
-                t1444 = t1398*t1414
-                bdve[j3] += -bdep_x*t1400 + bdep_y*t1392 + bdep_z*t1395
-                bdve[j3 + 1] += bdep_x*t1401 - bdep_y*t1408 + bdep_z*t1405
-                bdve[j3 + 2] += bdep_x*t1409 + bdep_y*t1410 - bdep_z*t1411
-                bdy[j3] += (bdep_x*(t1417 + t1421 - t1424 - t1428 - t1429 - t1430) +
-                    bdep_y*(Om0_y*e0*psi_x - Om_y*e0*psi_x + 2*e1*psi_x*psi_z*t1433 +
-                    2*e1*t1406*t1423 - t1413*t1431 - t1420*t1435 - t1436) + bdep_z*(e0*t1418 -
-                    e0*t1426 - t1416*t1433 + t1416*t1435 - t1419*t1431 + t1427*t1431 + t1437))
-                bdy[j3 + 1] += (bdep_x*(-e0*t1412 + e0*t1422 + t1413*t1442 + t1419*t1438 -
-                    t1423*t1442 - t1427*t1438 + t1436) + bdep_y*(-t1417 + t1424 - t1429 + t1439 -
-                    t1440 - t1441) + bdep_z*(Om0_z*e0*psi_y - Om_z*e0*psi_y +
-                    2*e1*psi_x*psi_y*t1427 + 2*e1*t1396*t1435 - t1416*t1419 - t1433*t1442 - t1443))
-                bdy[j3 + 2] += (bdep_x*(Om0_x*e0*psi_z - e0*t1425 + 2*e1*psi_y*psi_z*t1413 +
-                    2*e1*t1398*t1419 - t1423*t1438 - t1427*t1444 - t1437) + bdep_y*(-e0*t1432 +
-                    e0*t1434 - t1413*t1420 + t1420*t1423 + t1433*t1444 - t1435*t1444 + t1443) +
-                    bdep_z*(-t1421 + t1428 - t1430 - t1439 + t1440 - t1441))
-                bdOm0_x += bdep_x*t1400 - bdep_y*t1401 - bdep_z*t1409
-                bdOm0_y += -bdep_x*t1392 + bdep_y*t1408 - bdep_z*t1410
-                bdOm0_z += -bdep_x*t1395 - bdep_y*t1405 + bdep_z*t1411
+                t1212 = (0.5)*psi_z
+                t1213 = e0*psi_x
+                t1214 = psi_y*t1213
+                t1215 = t1212 + t1214
+                t1216 = (0.5)*psi_y
+                t1217 = psi_z*t1213
+                t1218 = -t1216 + t1217
+                t1219 = psi_y*psi_y
+                t1220 = psi_z*psi_z
+                t1221 = t1219 + t1220
+                t1222 = -t1212 + t1214
+                t1223 = (0.5)*psi_x
+                t1224 = e0*psi_y*psi_z
+                t1225 = t1223 + t1224
+                t1226 = psi_x*psi_x
+                t1227 = t1220 + t1226
+                t1228 = t1216 + t1217
+                t1229 = -t1223 + t1224
+                t1230 = t1219 + t1226
+                t1231 = Om0_y - Om_y
+                t1232 = -t1231
+                t1233 = Om0_z - Om_z
+                t1234 = psi_x*t1232
+                t1235 = Om0_x - Om_x
+                t1236 = -t1235
+                t1237 = -psi_y*t1236
+                t1238 = t1234 + t1237
+                t1239 = -t1233
+                t1240 = psi_x*t1239
+                t1241 = psi_z*t1236 - t1240
+                t1242 = psi_y*t1238 - psi_z*t1241
+                t1243 = 2*e1
+                t1244 = psi_x*t1243
+                t1245 = psi_y*t1239
+                t1246 = -psi_z*t1232
+                t1247 = t1245 + t1246
+                t1248 = -psi_x*t1238 + psi_z*t1247
+                t1249 = (0.5)*Om0_z + (0.5)*Om_z
+                t1250 = psi_z*t1236
+                t1251 = psi_x*t1241 - psi_y*t1247
+                t1252 = (0.5)*Om0_y + (0.5)*Om_y
+                t1253 = psi_y*t1243
+                t1254 = (0.5)*Om0_x + (0.5)*Om_x
+                t1255 = psi_z*t1243
+                bdve[j3] += bdep_x*(-e0*t1221 + 1) + bdep_y*t1215 + bdep_z*t1218
+                bdve[j3 + 1] += bdep_x*t1222 + bdep_y*(-e0*t1227 + 1) + bdep_z*t1225
+                bdve[j3 + 2] += bdep_x*t1228 + bdep_y*t1229 + bdep_z*(-e0*t1230 + 1)
+                bdy[j3] += (bdep_x*(e0*(psi_y*t1232 - psi_z*t1233) + t1242*t1244) +
+                    bdep_y*(e0*(-2*t1234 - t1237) + 2*e1*psi_x*t1248 - t1249) +
+                    bdep_z*(e0*(psi_x*t1233 - t1240 + t1250) + t1244*t1251 + t1252))
+                bdy[j3 + 1] += (bdep_x*(e0*(psi_y*t1235 + t1238) + t1242*t1253 + t1249) +
+                    bdep_y*(e0*(-psi_x*t1235 + psi_z*t1239) + t1248*t1253) + bdep_z*(e0*(-2*t1245
+                    - t1246) + 2*e1*psi_y*t1251 - t1254))
+                bdy[j3 + 2] += (bdep_x*(e0*(t1240 - 2*t1250) + 2*e1*psi_z*t1242 - t1252) +
+                    bdep_y*(e0*(psi_z*t1231 + t1247) + t1248*t1255 + t1254) +
+                    bdep_z*(e0*(psi_x*t1236 - psi_y*t1231) + t1251*t1255))
+                bdOm0_x += bdep_x*(e0*t1221 - 1) - bdep_y*t1222 - bdep_z*t1228
+                bdOm0_y += -bdep_x*t1215 + bdep_y*(e0*t1227 - 1) - bdep_z*t1229
+                bdOm0_z += -bdep_x*t1218 - bdep_y*t1225 + bdep_z*(e0*t1230 - 1)
             # transposed: differential: rates of the elastic displacements
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 bdeu_x, bdeu_y, bdeu_z = bdeta[i3], bdeta[i3 + 1], bdeta[i3 + 2]
-                t1445 = X_z + u_z
-                t1446 = X_y + u_y
-                t1447 = X_x + u_x
+                t1256 = X_z + u_z
+                t1257 = X_y + u_y
+                t1258 = X_x + u_x
                 bdy[i3] += Om0_y*bdeu_z - Om0_z*bdeu_y
                 bdy[i3 + 1] += -Om0_x*bdeu_z + Om0_z*bdeu_x
                 bdy[i3 + 2] += Om0_x*bdeu_y - Om0_y*bdeu_x
                 bdyd[i3] += bdeu_x
                 bdyd[i3 + 1] += bdeu_y
                 bdyd[i3 + 2] += bdeu_z
-                bdOm0_x += bdeu_y*t1445 - bdeu_z*t1446
-                bdOm0_y += -bdeu_x*t1445 + bdeu_z*t1447
-                bdOm0_z += bdeu_x*t1446 - bdeu_y*t1447
+                bdOm0_x += bdeu_y*t1256 - bdeu_z*t1257
+                bdOm0_y += -bdeu_x*t1256 + bdeu_z*t1258
+                bdOm0_z += bdeu_x*t1257 - bdeu_y*t1258
                 bdv0_x += -bdeu_x
                 bdv0_y += -bdeu_y
                 bdv0_z += -bdeu_z
@@ -3176,12 +2924,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdy[k] = 0.0
             # transposed: differential: B rate = sum alpha_j T^-1(psi_j) rate_j
             rhs_x = rhs_y = rhs_z = 0.0
-            t1448 = bdOm0_x + rhs_x
-            t1449 = bdOm0_y + rhs_y
-            t1450 = bdOm0_z + rhs_z
-            mdOm0_x = Bxx*t1448 + Byx*t1449 + Bzx*t1450
-            mdOm0_y = Bxy*t1448 + Byy*t1449 + Bzy*t1450
-            mdOm0_z = Bxz*t1448 + Byz*t1449 + Bzz*t1450
+            t1259 = bdOm0_x + rhs_x
+            t1260 = bdOm0_y + rhs_y
+            t1261 = bdOm0_z + rhs_z
+            mdOm0_x = Bxx*t1259 + Byx*t1260 + Bzx*t1261
+            mdOm0_y = Bxy*t1259 + Byy*t1260 + Bzy*t1261
+            mdOm0_z = Bxz*t1259 + Byz*t1260 + Bzz*t1261
             # transposed: differential: B rate = sum alpha_j T^-1(psi_j) rate_j
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -3190,72 +2938,86 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t1451 = (0.5)*psi_z
-                t1452 = e0*psi_x
-                t1453 = psi_y*t1452
-                t1454 = alpha_r*mdOm0_y
-                t1455 = (0.5)*psi_y
-                t1456 = psi_z*t1452
-                t1457 = alpha_r*mdOm0_z
-                t1458 = psi_y*psi_y
-                t1459 = e0*t1458
-                t1460 = psi_z*psi_z
-                t1461 = e0*t1460 - 1
-                t1462 = alpha_r*mdOm0_x
-                t1463 = (0.5)*psi_x
-                t1464 = e0*psi_y
-                t1465 = psi_z*t1464
-                t1466 = psi_x*psi_x
-                t1467 = e0*t1466
-                t1468 = -Om_x*psi_y + Om_y*psi_x
-                t1469 = 2*e1
-                t1470 = psi_x*t1469
-                t1471 = psi_y*t1470
-                t1472 = t1468*t1471
-                t1473 = Om0_x*psi_z
-                t1474 = Om0_z*psi_x
-                t1475 = t1473 - t1474
-                t1476 = psi_z*t1470
-                t1477 = t1475*t1476
-                t1478 = Om0_x*psi_y
-                t1479 = Om0_y*psi_x - t1478
-                t1480 = t1471*t1479
-                t1481 = Om_x*psi_z
-                t1482 = -Om_z*psi_x + t1481
-                t1483 = t1476*t1482
-                t1484 = e0*psi_z
-                t1485 = Om0_z*t1484 - Om_z*t1484
-                t1486 = Om0_y*t1464 - Om_y*t1464
-                t1487 = t1466*t1469
-                t1488 = -Om_y*psi_z + Om_z*psi_y
-                t1489 = Om0_y*psi_z
-                t1490 = Om0_z*psi_y - t1489
-                t1491 = (0.5)*Om0_z + (0.5)*Om_z + e0*t1468 - e0*t1479
-                t1492 = (0.5)*Om0_y + (0.5)*Om_y - e0*t1475 + e0*t1482
-                t1493 = psi_y*psi_z*t1469
-                t1494 = t1488*t1493
-                t1495 = t1490*t1493
-                t1496 = Om0_x*t1452 - Om_x*t1452
-                t1497 = t1458*t1469
-                t1498 = (0.5)*Om0_x + (0.5)*Om_x + e0*t1488 - e0*t1490
-                t1499 = t1460*t1469
-                bdve[j3] += -t1454*(-t1451 - t1453) - t1457*(t1455 - t1456) - t1462*(t1459 + t1461)
-                bdve[j3 + 1] += (-t1454*(t1461 + t1467) - t1457*(-t1463 - t1465) - t1462*(t1451 -
-                    t1453))
-                bdve[j3 + 2] += (-t1454*(t1463 - t1465) - t1457*(t1459 + t1467 - 1) -
-                    t1462*(-t1455 - t1456))
-                bdy[j3] += (-t1454*(-Om0_y*e0*psi_x + Om_y*e0*psi_x + t1468*t1487 - t1476*t1488 +
-                    t1476*t1490 - t1479*t1487 + t1491) - t1457*(Om_z*e0*psi_x - e0*t1474 +
-                    2*e1*psi_x*psi_y*t1488 + 2*e1*t1466*t1475 - t1471*t1490 - t1482*t1487 - t1492)
-                    - t1462*(-t1472 - t1477 + t1480 + t1483 + t1485 + t1486))
-                bdy[j3 + 1] += (-t1454*(t1472 - t1480 + t1485 - t1494 + t1495 + t1496) -
-                    t1457*(-Om0_z*e0*psi_y + Om_z*e0*psi_y + t1471*t1475 - t1471*t1482 +
-                    t1488*t1497 - t1490*t1497 + t1498) - t1462*(Om_x*e0*psi_y - e0*t1478 +
-                    2*e1*psi_y*psi_z*t1482 + 2*e1*t1458*t1479 - t1468*t1497 - t1475*t1493 - t1491))
-                bdy[j3 + 2] += (-t1454*(Om_y*e0*psi_z - e0*t1489 + 2*e1*psi_x*psi_z*t1468 +
-                    2*e1*t1460*t1490 - t1476*t1479 - t1488*t1499 - t1498) - t1457*(t1477 - t1483 +
-                    t1486 + t1494 - t1495 + t1496) - t1462*(-e0*t1473 + e0*t1481 - t1468*t1493 -
-                    t1475*t1499 + t1479*t1493 + t1482*t1499 + t1492))
+                t1262 = (0.5)*psi_z
+                t1263 = e0*psi_y
+                t1264 = psi_x*t1263
+                t1265 = alpha_r*mdOm0_y
+                t1266 = (0.5)*psi_y
+                t1267 = e0*psi_z
+                t1268 = psi_x*t1267
+                t1269 = alpha_r*mdOm0_z
+                t1270 = psi_y*psi_y
+                t1271 = e0*t1270
+                t1272 = psi_z*psi_z
+                t1273 = e0*t1272 - 1
+                t1274 = alpha_r*mdOm0_x
+                t1275 = (0.5)*psi_x
+                t1276 = psi_z*t1263
+                t1277 = psi_x*psi_x
+                t1278 = e0*t1277
+                t1279 = -Om0_y*e0*psi_y
+                t1280 = -Om0_z*e0*psi_z
+                t1281 = 2*e1
+                t1282 = t1277*t1281
+                t1283 = psi_y*t1282
+                t1284 = t1263 + t1283
+                t1285 = psi_z*t1282
+                t1286 = t1267 + t1285
+                t1287 = -Om0_x*psi_y + Om0_y*psi_x
+                t1288 = psi_x*t1281
+                t1289 = psi_y*t1288
+                t1290 = t1287*t1289
+                t1291 = Om0_z*psi_x
+                t1292 = Om0_x*psi_z - t1291
+                t1293 = psi_z*t1288
+                t1294 = t1292*t1293
+                t1295 = t1270*t1288
+                t1296 = t1272*t1288
+                t1297 = (0.5)*Om0_y
+                t1298 = psi_y*t1293
+                t1299 = t1298 + 0.5
+                t1300 = e0*t1292
+                t1301 = -Om0_y*psi_z + Om0_z*psi_y
+                t1302 = e0*psi_x
+                t1303 = psi_x*psi_x*psi_x*t1281 + 2*t1302
+                t1304 = (0.5)*Om0_z
+                t1305 = t1298 - 0.5
+                t1306 = e0*t1287
+                t1307 = -Om0_x*e0*psi_x
+                t1308 = t1295 + t1302
+                t1309 = t1270*t1281
+                t1310 = psi_z*t1309
+                t1311 = t1267 + t1310
+                t1312 = psi_y*psi_z*t1281
+                t1313 = t1301*t1312
+                t1314 = t1272*t1281
+                t1315 = psi_y*t1314
+                t1316 = psi_y*psi_y*psi_y*t1281 + 2*t1263
+                t1317 = (0.5)*Om0_x
+                t1318 = e0*t1301
+                t1319 = t1296 + t1302
+                t1320 = t1263 + t1315
+                t1321 = psi_z*psi_z*psi_z*t1281 + 2*t1267
+                bdve[j3] += -t1265*(-t1262 - t1264) - t1269*(t1266 - t1268) - t1274*(t1271 + t1273)
+                bdve[j3 + 1] += (-t1265*(t1273 + t1278) - t1269*(-t1275 - t1276) - t1274*(t1262 -
+                    t1264))
+                bdve[j3 + 2] += (-t1265*(t1275 - t1276) - t1269*(t1271 + t1278 - 1) -
+                    t1274*(-t1266 - t1268))
+                bdy[j3] += (-t1265*(-Om0_y*e0*psi_x - Om_x*t1284 - Om_y*(-t1296 - t1303) -
+                    Om_z*t1305 + 2*e1*psi_x*psi_z*t1301 - t1282*t1287 + t1304 - t1306) -
+                    t1269*(-Om_x*t1286 - Om_y*t1299 - Om_z*(-t1295 - t1303) - e0*t1291 +
+                    2*e1*t1277*t1292 - t1289*t1301 - t1297 + t1300) - t1274*(-Om_x*(-t1295 -
+                    t1296) - Om_y*t1284 - Om_z*t1286 - t1279 - t1280 + t1290 - t1294))
+                bdy[j3 + 1] += (-t1265*(-Om_x*t1308 - Om_y*(-t1283 - t1315) - Om_z*t1311 - t1280 -
+                    t1290 - t1307 + t1313) - t1269*(-Om0_z*t1263 - Om_x*t1305 - Om_y*t1311 -
+                    Om_z*(-t1283 - t1316) + 2*e1*psi_x*psi_y*t1292 - t1301*t1309 + t1317 - t1318)
+                    - t1274*(-Om0_x*t1263 - Om_x*(-t1315 - t1316) - Om_y*t1308 - Om_z*t1299 +
+                    2*e1*t1270*t1287 - t1292*t1312 - t1304 + t1306))
+                bdy[j3 + 2] += (-t1265*(-Om0_y*t1267 - Om_x*t1299 - Om_y*(-t1285 - t1321) -
+                    Om_z*t1320 + 2*e1*t1272*t1301 - t1287*t1293 - t1317 + t1318) -
+                    t1269*(-Om_x*t1319 - Om_y*t1320 - Om_z*(-t1285 - t1310) - t1279 + t1294 -
+                    t1307 - t1313) - t1274*(-Om0_x*t1267 - Om_x*(-t1310 - t1321) - Om_y*t1305 -
+                    Om_z*t1319 + 2*e1*psi_y*psi_z*t1287 - t1292*t1314 + t1297 - t1300))
             # transposed: differential: velocity and acceleration of the nodes in frame axes, (33)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -3295,43 +3057,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 bdpsi_x, bdpsi_y, bdpsi_z = bdy[j3], bdy[j3 + 1], bdy[j3 + 2]
                 e0 = e0s[j]
-                t1500 = (0.5)*psi_z
-                t1501 = e0*psi_x
-                t1502 = psi_y*t1501
-                t1503 = t1500 + t1502
-                t1504 = (0.5)*psi_y
-                t1505 = psi_z*t1501
-                t1506 = -t1504 + t1505
-                t1507 = e0*psi_y*psi_y
-                t1508 = e0*psi_z*psi_z - 1
-                t1509 = t1507 + t1508
-                t1510 = -t1500 + t1502
-                t1511 = (0.5)*psi_x
-                t1512 = e0*psi_y*psi_z
-                t1513 = t1511 + t1512
-                t1514 = e0*psi_x*psi_x
-                t1515 = t1508 + t1514
-                t1516 = t1504 + t1505
-                t1517 = -t1511 + t1512
-                t1518 = t1507 + t1514 - 1
-                bdqe[j3] += -bdpsi_x*t1509 + bdpsi_y*t1503 + bdpsi_z*t1506
-                bdqe[j3 + 1] += bdpsi_x*t1510 - bdpsi_y*t1515 + bdpsi_z*t1513
-                bdqe[j3 + 2] += bdpsi_x*t1516 + bdpsi_y*t1517 - bdpsi_z*t1518
-                bdth0_x += bdpsi_x*t1509 - bdpsi_y*t1510 - bdpsi_z*t1516
-                bdth0_y += -bdpsi_x*t1503 + bdpsi_y*t1515 - bdpsi_z*t1517
-                bdth0_z += -bdpsi_x*t1506 - bdpsi_y*t1513 + bdpsi_z*t1518
+                t1322 = (0.5)*psi_z
+                t1323 = e0*psi_x
+                t1324 = psi_y*t1323
+                t1325 = t1322 + t1324
+                t1326 = (0.5)*psi_y
+                t1327 = psi_z*t1323
+                t1328 = -t1326 + t1327
+                t1329 = psi_y*psi_y
+                t1330 = psi_z*psi_z
+                t1331 = t1329 + t1330
+                t1332 = -t1322 + t1324
+                t1333 = (0.5)*psi_x
+                t1334 = e0*psi_y*psi_z
+                t1335 = t1333 + t1334
+                t1336 = psi_x*psi_x
+                t1337 = t1330 + t1336
+                t1338 = t1326 + t1327
+                t1339 = -t1333 + t1334
+                t1340 = t1329 + t1336
+                bdqe[j3] += bdpsi_x*(-e0*t1331 + 1) + bdpsi_y*t1325 + bdpsi_z*t1328
+                bdqe[j3 + 1] += bdpsi_x*t1332 + bdpsi_y*(-e0*t1337 + 1) + bdpsi_z*t1335
+                bdqe[j3 + 2] += bdpsi_x*t1338 + bdpsi_y*t1339 + bdpsi_z*(-e0*t1340 + 1)
+                bdth0_x += bdpsi_x*(e0*t1331 - 1) - bdpsi_y*t1332 - bdpsi_z*t1338
+                bdth0_y += -bdpsi_x*t1325 + bdpsi_y*(e0*t1337 - 1) - bdpsi_z*t1339
+                bdth0_z += -bdpsi_x*t1328 - bdpsi_y*t1335 + bdpsi_z*(e0*t1340 - 1)
             # transposed: differential: displacement of the nodes in the frame, (11)
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 bdu_x, bdu_y, bdu_z = bdy[i3], bdy[i3 + 1], bdy[i3 + 2]
-                t1519 = X_z + u_z
-                t1520 = X_y + u_y
-                t1521 = X_x + u_x
-                bdth0_x += bdu_y*t1519 - bdu_z*t1520
-                bdth0_y += -bdu_x*t1519 + bdu_z*t1521
-                bdth0_z += bdu_x*t1520 - bdu_y*t1521
+                t1341 = X_z + u_z
+                t1342 = X_y + u_y
+                t1343 = X_x + u_x
+                bdth0_x += bdu_y*t1341 - bdu_z*t1342
+                bdth0_y += -bdu_x*t1341 + bdu_z*t1343
+                bdth0_z += bdu_x*t1342 - bdu_y*t1343
                 bdqe[i3] += bdu_x
                 bdqe[i3 + 1] += bdu_y
                 bdqe[i3 + 2] += bdu_z
@@ -3340,36 +3102,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdx0_z += -bdu_z
             # transposed: B rate = sum alpha_j T^-1(psi_j) rate_j
             rhs_x = rhs_y = rhs_z = 0.0
-            t1522 = bdth0_x + rhs_x
-            t1523 = bdth0_y + rhs_y
-            t1524 = bdth0_z + rhs_z
-            mdth0_x = Bxx*t1522 + Byx*t1523 + Bzx*t1524
-            mdth0_y = Bxy*t1522 + Byy*t1523 + Bzy*t1524
-            mdth0_z = Bxz*t1522 + Byz*t1523 + Bzz*t1524
+            t1344 = bdth0_x + rhs_x
+            t1345 = bdth0_y + rhs_y
+            t1346 = bdth0_z + rhs_z
+            mdth0_x = Bxx*t1344 + Byx*t1345 + Bzx*t1346
+            mdth0_y = Bxy*t1344 + Byy*t1345 + Bzy*t1346
+            mdth0_z = Bxz*t1344 + Byz*t1345 + Bzz*t1346
             # transposed: B rate = sum alpha_j T^-1(psi_j) rate_j
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 alpha_r = alpha_rs[j]
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e0 = e0s[j]
-                t1525 = (0.5)*psi_z
-                t1526 = e0*psi_x
-                t1527 = psi_y*t1526
-                t1528 = alpha_r*mdth0_y
-                t1529 = (0.5)*psi_y
-                t1530 = psi_z*t1526
-                t1531 = alpha_r*mdth0_z
-                t1532 = e0*psi_y*psi_y
-                t1533 = e0*psi_z*psi_z - 1
-                t1534 = alpha_r*mdth0_x
-                t1535 = (0.5)*psi_x
-                t1536 = e0*psi_y*psi_z
-                t1537 = e0*psi_x*psi_x
-                bdqe[j3] += -t1528*(-t1525 - t1527) - t1531*(t1529 - t1530) - t1534*(t1532 + t1533)
-                bdqe[j3 + 1] += (-t1528*(t1533 + t1537) - t1531*(-t1535 - t1536) - t1534*(t1525 -
-                    t1527))
-                bdqe[j3 + 2] += (-t1528*(t1535 - t1536) - t1531*(t1532 + t1537 - 1) -
-                    t1534*(-t1529 - t1530))
+                t1347 = (0.5)*psi_z
+                t1348 = e0*psi_x
+                t1349 = psi_y*t1348
+                t1350 = alpha_r*mdth0_y
+                t1351 = (0.5)*psi_y
+                t1352 = psi_z*t1348
+                t1353 = alpha_r*mdth0_z
+                t1354 = e0*psi_y*psi_y
+                t1355 = e0*psi_z*psi_z - 1
+                t1356 = alpha_r*mdth0_x
+                t1357 = (0.5)*psi_x
+                t1358 = e0*psi_y*psi_z
+                t1359 = e0*psi_x*psi_x
+                bdqe[j3] += -t1350*(-t1347 - t1349) - t1353*(t1351 - t1352) - t1356*(t1354 + t1355)
+                bdqe[j3 + 1] += (-t1350*(t1355 + t1359) - t1353*(-t1357 - t1358) - t1356*(t1347 -
+                    t1349))
+                bdqe[j3 + 2] += (-t1350*(t1357 - t1358) - t1353*(t1354 + t1359 - 1) -
+                    t1356*(-t1351 - t1352))
             # transposed: origin of the frame, (14)
             for i in range(N_POSITIONS):
                 i3 = 3*i

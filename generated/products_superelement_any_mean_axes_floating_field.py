@@ -65,8 +65,8 @@ WORK_ROWS = 137
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (1107, 276, 654, 1),
-              "column": (159, 360, 2690, 4)}
+OPERATIONS = {"residual": (1107, 276, 519, 1),
+              "column": (159, 360, 2178, 4)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("Gam", ("n", "turns"), "mean rotation of y, a column for each coordinate"),
     Part("sizes", (3,), "slaved coordinates, resultants of second order, damped or not"),
@@ -413,29 +413,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
                 e0 = e0s[j]
-                t42 = Om0_y*psi_z
-                t43 = Om_y*psi_z
-                t44 = Om0_x*psi_y
-                t45 = Om0_y*psi_x - t44
-                t46 = e0*psi_y
-                t47 = Om_x*psi_z
-                t48 = Om_z*psi_x
-                t49 = t47 - t48
-                t50 = e0*psi_z
-                t51 = Om_x*psi_y
-                t52 = Om_y*psi_x - t51
-                t53 = Om0_x*psi_z
-                t54 = Om0_z*psi_x
-                t55 = t53 - t54
-                t56 = e0*psi_x
-                t57 = Om_z*psi_y - t43
-                t58 = Om0_z*psi_y - t42
-                eta[j3] = (-Om0_x + (0.5)*Om0_z*psi_y + Om_x + (0.5)*Om_z*psi_y + e0*psi_y*t52 +
-                    e0*psi_z*t55 - 0.5*t42 - 0.5*t43 - t45*t46 - t49*t50)
-                eta[j3 + 1] = (-Om0_y + Om_y + t45*t56 + (0.5)*t47 - 0.5*t48 + t50*t57 - t50*t58 -
-                    t52*t56 + (0.5)*t53 - 0.5*t54)
-                eta[j3 + 2] = ((0.5)*Om0_y*psi_x - Om0_z + (0.5)*Om_y*psi_x + Om_z + e0*psi_x*t49
-                    + e0*psi_y*t58 - 0.5*t44 - t46*t57 - 0.5*t51 - t55*t56)
+                t42 = (0.5)*Om0_z + (0.5)*Om_z
+                t43 = Om0_y + Om_y
+                t44 = (0.5)*psi_z
+                t45 = -Om0_y + Om_y
+                t46 = -Om0_x + Om_x
+                t47 = psi_x*t45 - psi_y*t46
+                t48 = -Om0_z + Om_z
+                t49 = -psi_x*t48 + psi_z*t46
+                t50 = Om0_x + Om_x
+                t51 = psi_y*t48 - psi_z*t45
+                eta[j3] = -Om0_x + Om_x + e0*(psi_y*t47 - psi_z*t49) + psi_y*t42 - t43*t44
+                eta[j3 + 1] = -Om0_y + Om_y + e0*(-psi_x*t47 + psi_z*t51) - psi_x*t42 + t44*t50
+                eta[j3 + 2] = (-Om0_z + Om_z + e0*(psi_x*t49 - psi_y*t51) + (0.5)*psi_x*t43 -
+                    0.5*psi_y*t50)
             # rates of the internal modes
             for k in range(MODES, n):
                 vm = ve[k]
@@ -461,49 +452,31 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t59 = A_y*psi_z
-                t60 = Om0_y*ep_z
-                t61 = Om_y*ep_z
-                t62 = -Om_x*psi_y + Om_y*psi_x
-                t63 = e0*ep_y
-                t64 = Om0_x*psi_z - Om0_z*psi_x
-                t65 = e0*ep_z
-                t66 = Om0_x*ep_z
-                t67 = Om0_z*ep_x
-                t68 = t66 - t67
-                t69 = e0*psi_z
-                t70 = -Om0_x*psi_y + Om0_y*psi_x
-                t71 = Om_x*psi_z - Om_z*psi_x
-                t72 = Om0_x*ep_y
-                t73 = Om0_y*ep_x - t72
-                t74 = e0*psi_y
-                t75 = A_x*psi_y
-                t76 = Om_x*ep_y
-                t77 = A_y*psi_x + Om_y*ep_x - t75 - t76
-                t78 = A_x*psi_z
-                t79 = Om_x*ep_z
-                t80 = A_z*psi_x
-                t81 = Om_z*ep_x
-                t82 = t78 + t79 - t80 - t81
-                t83 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
-                t84 = psi_y*t83
-                t85 = psi_z*t83
-                t86 = e0*ep_x
-                t87 = -Om_y*psi_z + Om_z*psi_y
-                t88 = e0*psi_x
-                t89 = -Om0_y*psi_z + Om0_z*psi_y
-                t90 = Om0_z*ep_y - t60
-                t91 = A_z*psi_y + Om_z*ep_y - t59 - t61
-                t92 = psi_x*t83
-                etad[j3] = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y + (0.5)*Om_z*ep_y - 0.5*t59 -
-                    0.5*t60 - 0.5*t61 + t62*t63 + t62*t84 - t63*t70 + t64*t65 + t64*t85 - t65*t71
-                    + t68*t69 - t69*t82 - t70*t84 - t71*t85 - t73*t74 + t74*t77)
-                etad[j3 + 1] = (A_y - t62*t86 - t62*t92 + t65*t87 - t65*t89 + (0.5)*t66 - 0.5*t67
-                    - t69*t90 + t69*t91 + t70*t86 + t70*t92 + t73*t88 - t77*t88 + (0.5)*t78 +
-                    (0.5)*t79 - 0.5*t80 - 0.5*t81 + t85*t87 - t85*t89)
-                etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om_y*ep_x -
-                    t63*t87 + t63*t89 - t64*t86 - t64*t92 - t68*t88 + t71*t86 + t71*t92 - 0.5*t72
-                    + t74*t90 - t74*t91 - 0.5*t75 - 0.5*t76 + t82*t88 - t84*t87 + t84*t89)
+                t52 = A_y*psi_z
+                t53 = (0.5)*Om0_z + (0.5)*Om_z
+                t54 = Om0_y + Om_y
+                t55 = (0.5)*ep_z
+                t56 = -Om0_y + Om_y
+                t57 = -Om0_x + Om_x
+                t58 = psi_x*t56 - psi_y*t57
+                t59 = -Om0_z + Om_z
+                t60 = -psi_x*t59 + psi_z*t57
+                t61 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
+                t62 = A_x*psi_y
+                t63 = A_y*psi_x + ep_x*t56 - ep_y*t57 - t62
+                t64 = A_x*psi_z
+                t65 = A_z*psi_x
+                t66 = -ep_x*t59 + ep_z*t57 + t64 - t65
+                t67 = Om0_x + Om_x
+                t68 = psi_y*t59 - psi_z*t56
+                t69 = A_z*psi_y + ep_y*t59 - ep_z*t56 - t52
+                etad[j3] = (A_x + (0.5)*A_z*psi_y + e0*(ep_y*t58 - ep_z*t60 + psi_y*t63 -
+                    psi_z*t66) + ep_y*t53 - 0.5*t52 - t54*t55 + t61*(psi_y*t58 - psi_z*t60))
+                etad[j3 + 1] = (A_y + e0*(-ep_x*t58 + ep_z*t68 - psi_x*t63 + psi_z*t69) - ep_x*t53
+                    + t55*t67 + t61*(-psi_x*t58 + psi_z*t68) + (0.5)*t64 - 0.5*t65)
+                etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + e0*(ep_x*t60 - ep_y*t68 + psi_x*t66 -
+                    psi_y*t69) + (0.5)*ep_x*t54 - 0.5*ep_y*t67 + t61*(psi_x*t60 - psi_y*t68) -
+                    0.5*t62)
             # rate: rates of the internal modes
             for k in range(MODES, n):
                 am = ae[k]
@@ -549,33 +522,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 epd_x, epd_y, epd_z = etad[j3], etad[j3 + 1], etad[j3 + 2]
                 e0 = e0s[j]
-                t93 = (0.5)*psi_z
-                t94 = e0*psi_x
-                t95 = psi_y*t94
-                t96 = (0.5)*psi_y
-                t97 = psi_z*t94
-                t98 = e0*psi_y*psi_y
-                t99 = e0*psi_z*psi_z - 1
-                t100 = (0.5)*psi_x
-                t101 = e0*psi_y*psi_z
-                t102 = e0*psi_x*psi_x
-                etad[j3] = Om0d_x*(t98 + t99) + Om0d_y*(-t93 - t95) + Om0d_z*(t96 - t97) + epd_x
-                etad[j3 + 1] = (Om0d_x*(t93 - t95) + Om0d_y*(t102 + t99) + Om0d_z*(-t100 - t101) +
-                    epd_y)
-                etad[j3 + 2] = (Om0d_x*(-t96 - t97) + Om0d_y*(t100 - t101) + Om0d_z*(t102 + t98 -
-                    1) + epd_z)
+                t70 = Om0d_y*psi_z
+                t71 = Om0d_z*psi_y
+                t72 = Om0d_x*psi_y
+                t73 = Om0d_y*psi_x
+                t74 = t72 - t73
+                t75 = Om0d_x*psi_z
+                t76 = Om0d_z*psi_x - t75
+                t77 = t70 - t71
+                etad[j3] = -Om0d_x + e0*(psi_y*t74 - psi_z*t76) + epd_x - 0.5*t70 + (0.5)*t71
+                etad[j3 + 1] = (-Om0d_y - 0.5*Om0d_z*psi_x + e0*(-psi_x*t74 + psi_z*t77) + epd_y +
+                    (0.5)*t75)
+                etad[j3 + 2] = -Om0d_z + e0*(psi_x*t76 - psi_y*t77) + epd_z - 0.5*t72 + (0.5)*t73
             # rate: rates of the elastic displacements
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 eud_x, eud_y, eud_z = etad[i3], etad[i3 + 1], etad[i3 + 2]
-                t103 = X_y + u_y
-                t104 = X_z + u_z
-                t105 = X_x + u_x
-                etad[i3] = -Om0d_y*t104 + Om0d_z*t103 + eud_x
-                etad[i3 + 1] = Om0d_x*t104 - Om0d_z*t105 + eud_y
-                etad[i3 + 2] = -Om0d_x*t103 + Om0d_y*t105 + eud_z
+                t78 = X_y + u_y
+                t79 = X_z + u_z
+                t80 = X_x + u_x
+                etad[i3] = -Om0d_y*t79 + Om0d_z*t78 + eud_x
+                etad[i3 + 1] = Om0d_x*t79 - Om0d_z*t80 + eud_y
+                etad[i3 + 2] = -Om0d_x*t78 + Om0d_y*t80 + eud_z
             # gravity in frame axes
             field_x, field_y, field_z = field[0], field[1], field[2]
             gamma[0] = R0_xx*field_x + R0_yx*field_y + R0_zx*field_z
@@ -655,12 +625,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
-            t106 = a0_x - gamma_x
-            t107 = a0_y - gamma_y
-            t108 = a0_z - gamma_z
-            zdd[N] = t106*turn_xx + t107*turn_yx + t108*turn_zx
-            zdd[N + 1] = t106*turn_xy + t107*turn_yy + t108*turn_zy
-            zdd[N + 2] = t106*turn_xz + t107*turn_yz + t108*turn_zz
+            t81 = a0_x - gamma_x
+            t82 = a0_y - gamma_y
+            t83 = a0_z - gamma_z
+            zdd[N] = t81*turn_xx + t82*turn_yx + t83*turn_zx
+            zdd[N + 1] = t81*turn_xy + t82*turn_yy + t83*turn_zy
+            zdd[N + 2] = t81*turn_xz + t82*turn_yz + t83*turn_zz
             zdd[N + 3] = Om0d_x*turn_xx + Om0d_y*turn_yx + Om0d_z*turn_zx
             zdd[N + 4] = Om0d_x*turn_xy + Om0d_y*turn_yy + Om0d_z*turn_zy
             zdd[N + 5] = Om0d_x*turn_xz + Om0d_y*turn_yz + Om0d_z*turn_zz
@@ -671,30 +641,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             felt_x, felt_y, felt_z = zdd[N], zdd[N + 1], zdd[N + 2]
             turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
-            t109 = spin_x*spin_x
-            t110 = spin_y*spin_y
-            t111 = spin_z*spin_z
-            t112 = spin_x*spin_y
-            t113 = spin_x*spin_z
-            t114 = spin_y*spin_z
+            t84 = spin_x*spin_x
+            t85 = spin_y*spin_y
+            t86 = spin_z*spin_z
+            t87 = spin_x*spin_y
+            t88 = spin_x*spin_z
+            t89 = spin_y*spin_z
             by_moment_columns[0] = felt_x
             by_moment_columns[1] = felt_y
             by_moment_columns[2] = felt_z
             by_moment_columns[3] = turning_x
             by_moment_columns[4] = turning_y
             by_moment_columns[5] = turning_z
-            by_moment_columns[6] = -0.5*t109
-            by_moment_columns[7] = -0.5*t110
-            by_moment_columns[8] = -0.5*t111
-            by_moment_columns[9] = -t112
-            by_moment_columns[10] = -t113
-            by_moment_columns[11] = -t114
-            by_products[0] = -t109
-            by_products[1] = -t110
-            by_products[2] = -t111
-            by_products[3] = -2*t112
-            by_products[4] = -2*t113
-            by_products[5] = -2*t114
+            by_moment_columns[6] = -0.5*t84
+            by_moment_columns[7] = -0.5*t85
+            by_moment_columns[8] = -0.5*t86
+            by_moment_columns[9] = -t87
+            by_moment_columns[10] = -t88
+            by_moment_columns[11] = -t89
+            by_products[0] = -t84
+            by_products[1] = -t85
+            by_products[2] = -t86
+            by_products[3] = -2*t87
+            by_products[4] = -2*t88
+            by_products[5] = -2*t89
             by_products[6] = turning_x
             by_products[7] = turning_y
             by_products[8] = turning_z
@@ -722,10 +692,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 lam_e = lam[e]
                 along_e = along[e]
                 twice_e = twice[e]
-                t115 = (0.5)*twice_e
-                t116 = 1/lam_e
-                by_E[e] = t115
-                by_Gy[e] = along_e + t115*t116
+                t90 = (0.5)*twice_e
+                t91 = 1/lam_e
+                by_E[e] = t90
+                by_Gy[e] = along_e + t90*t91
             # and of Sbar y
             by_Gy[resultants] = 1
             # forces of the resultants and their geometric stiffness, with Sbar y
@@ -737,32 +707,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             mass = masses[0]
-            t117 = 2*sum_cd_z
-            t118 = 2*spin_z
-            t119 = spin_x*sum_c_y - spin_y*sum_c_x
-            t120 = -spin_x*sum_c_z + spin_z*sum_c_x
-            t121 = spin_y*sum_c_z - spin_z*sum_c_y
-            t122 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
-            t123 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
-            t124 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
-            local[N] = (felt_x*mass + spin_y*t117 + spin_y*t119 - spin_z*t120 - sum_c_y*turning_z
-                + sum_c_z*turning_y - sum_cd_y*t118 + sum_cdd_x)
-            local[N + 1] = (felt_y*mass - spin_x*t117 - spin_x*t119 + spin_z*t121 +
-                sum_c_x*turning_z - sum_c_z*turning_x + sum_cd_x*t118 + sum_cdd_y)
-            local[N + 2] = (felt_z*mass + 2*spin_x*sum_cd_y + spin_x*t120 - 2*spin_y*sum_cd_x -
-                spin_y*t121 - sum_c_x*turning_y + sum_c_y*turning_x + sum_cdd_z)
+            t92 = 2*sum_cd_z
+            t93 = 2*spin_z
+            t94 = spin_x*sum_c_y - spin_y*sum_c_x
+            t95 = -spin_x*sum_c_z + spin_z*sum_c_x
+            t96 = spin_y*sum_c_z - spin_z*sum_c_y
+            t97 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
+            t98 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
+            t99 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
+            local[N] = (felt_x*mass + spin_y*t92 + spin_y*t94 - spin_z*t95 - sum_c_y*turning_z +
+                sum_c_z*turning_y - sum_cd_y*t93 + sum_cdd_x)
+            local[N + 1] = (felt_y*mass - spin_x*t92 - spin_x*t94 + spin_z*t96 + sum_c_x*turning_z
+                - sum_c_z*turning_x + sum_cd_x*t93 + sum_cdd_y)
+            local[N + 2] = (felt_z*mass + 2*spin_x*sum_cd_y + spin_x*t95 - 2*spin_y*sum_cd_x -
+                spin_y*t96 - sum_c_x*turning_y + sum_c_y*turning_x + sum_cdd_z)
             local[N + 3] = (-felt_y*sum_c_z + felt_z*sum_c_y + spin_x*sum_Jd_xx + spin_y*sum_Jd_xy
-                + spin_y*sum_spun_z + spin_y*t122 + spin_z*sum_Jd_xz - spin_z*sum_spun_y -
-                spin_z*t123 + sum_J_xx*turning_x + sum_J_xy*turning_y + sum_J_xz*turning_z +
+                + spin_y*sum_spun_z + spin_y*t97 + spin_z*sum_Jd_xz - spin_z*sum_spun_y -
+                spin_z*t98 + sum_J_xx*turning_x + sum_J_xy*turning_y + sum_J_xz*turning_z +
                 sum_accelerated_x + sum_coupled_x)
             local[N + 4] = (felt_x*sum_c_z - felt_z*sum_c_x + spin_x*sum_Jd_xy - spin_x*sum_spun_z
-                - spin_x*t122 + spin_y*sum_Jd_yy + spin_z*sum_Jd_yz + spin_z*sum_spun_x +
-                spin_z*t124 + sum_J_xy*turning_x + sum_J_yy*turning_y + sum_J_yz*turning_z +
+                - spin_x*t97 + spin_y*sum_Jd_yy + spin_z*sum_Jd_yz + spin_z*sum_spun_x +
+                spin_z*t99 + sum_J_xy*turning_x + sum_J_yy*turning_y + sum_J_yz*turning_z +
                 sum_accelerated_y + sum_coupled_y)
             local[N + 5] = (-felt_x*sum_c_y + felt_y*sum_c_x + spin_x*sum_Jd_xz +
-                spin_x*sum_spun_y + spin_x*t123 + spin_y*sum_Jd_yz - spin_y*sum_spun_x -
-                spin_y*t124 + spin_z*sum_Jd_zz + sum_J_xz*turning_x + sum_J_yz*turning_y +
-                sum_J_zz*turning_z + sum_accelerated_z + sum_coupled_z)
+                spin_x*sum_spun_y + spin_x*t98 + spin_y*sum_Jd_yz - spin_y*sum_spun_x - spin_y*t99
+                + spin_z*sum_Jd_zz + sum_J_xz*turning_x + sum_J_yz*turning_y + sum_J_zz*turning_z
+                + sum_accelerated_z + sum_coupled_z)
             # forces conjugate to y
             from_free(local, axes_back, order, unordered, s, bound, bound_free, free)
             # forces on the frame: elastic (30) and inertia (57)
@@ -773,15 +743,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t125 = X_z + u_z
-                t126 = X_y + u_y
-                t127 = X_x + u_x
+                t100 = X_z + u_z
+                t101 = X_y + u_y
+                t102 = X_x + u_x
                 F_x += -f_x
                 F_y += -f_y
                 F_z += -f_z
-                W_x += f_y*t125 - f_z*t126
-                W_y += -f_x*t125 + f_z*t127
-                W_z += f_x*t126 - f_y*t127
+                W_x += f_y*t100 - f_z*t101
+                W_y += -f_x*t100 + f_z*t102
+                W_z += f_x*t101 - f_y*t102
             # inertia and weight on the frame
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
@@ -799,21 +769,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
-                t128 = -m_x*psi_y + m_y*psi_x
-                t129 = m_x*psi_z
-                t130 = -m_z*psi_x + t129
-                t131 = -m_y*psi_z + m_z*psi_y
-                W_x += -e0*psi_y*t128 + e0*psi_z*t130 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-                W_y += e0*psi_x*t128 - e0*psi_z*t131 - m_y + (0.5)*m_z*psi_x - 0.5*t129
-                W_z += -e0*psi_x*t130 + e0*psi_y*t131 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+                t103 = -m_x*psi_y + m_y*psi_x
+                t104 = m_x*psi_z
+                t105 = -m_z*psi_x + t104
+                t106 = -m_y*psi_z + m_z*psi_y
+                W_x += -e0*psi_y*t103 + e0*psi_z*t105 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+                W_y += e0*psi_x*t103 - e0*psi_z*t106 - m_y + (0.5)*m_z*psi_x - 0.5*t104
+                W_z += -e0*psi_x*t105 + e0*psi_y*t106 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
             # B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
-            t132 = W_x + rhs_x
-            t133 = W_y + rhs_y
-            t134 = W_z + rhs_z
-            wp_x = Bxx*t132 + Byx*t133 + Bzx*t134
-            wp_y = Bxy*t132 + Byy*t133 + Bzy*t134
-            wp_z = Bxz*t132 + Byz*t133 + Bzz*t134
+            t107 = W_x + rhs_x
+            t108 = W_y + rhs_y
+            t109 = W_z + rhs_z
+            wp_x = Bxx*t107 + Byx*t108 + Bzx*t109
+            wp_y = Bxy*t107 + Byy*t108 + Bzy*t109
+            wp_z = Bxz*t107 + Byz*t108 + Bzz*t109
             # force on the origin, through the frame
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -862,28 +832,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gam[3*(j3 + 2) + 1], Gam[3*(j3 + 2) + 2])
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
-                t135 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z
-                t136 = psi_z*t135
-                t137 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z
-                t138 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z
-                t139 = psi_y*t138
-                t140 = psi_x*t135 - t139
-                t141 = e0*psi_y
-                t142 = m_x*psi_z
-                t143 = -m_z*psi_x + t142
-                t144 = e0*psi_z
-                t145 = -m_x*psi_y + m_y*psi_x
-                t146 = psi_x*t137
-                t147 = psi_z*t138 - t146
-                t148 = e0*psi_x
-                t149 = psi_y*t137 - t136
-                t150 = -m_y*psi_z + m_z*psi_y
-                g[j3] = (e0*psi_y*t145 + e0*psi_z*t147 + m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y +
-                    (0.5)*psi_y*t137 - 0.5*t136 - t138 - t140*t141 - t143*t144)
-                g[j3 + 1] = (e0*psi_x*t140 + e0*psi_z*t150 + m_y + (0.5)*m_z*psi_x +
-                    (0.5)*psi_z*t138 - t135 - 0.5*t142 - t144*t149 - t145*t148 - 0.5*t146)
-                g[j3 + 2] = (e0*psi_x*t143 + e0*psi_y*t149 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x + m_z
-                    + (0.5)*psi_x*t135 - t137 - 0.5*t139 - t141*t150 - t147*t148)
+                t110 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z - m_z
+                t111 = -t110
+                t112 = psi_y*t111
+                t113 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z - m_y
+                t114 = -t113
+                t115 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z - m_x
+                t116 = -t115
+                t117 = -psi_x*t111 + psi_z*t116
+                t118 = psi_x*t114
+                t119 = -psi_y*t116 + t118
+                t120 = -psi_z*t114 + t112
+                g[j3] = e0*psi_y*t119 - e0*psi_z*t117 + (0.5)*psi_z*t114 - 0.5*t112 - t115
+                g[j3 + 1] = (-e0*psi_x*t119 + e0*psi_z*t120 + (0.5)*psi_x*t111 - 0.5*psi_z*t116 -
+                    t113)
+                g[j3 + 2] = e0*psi_x*t117 - e0*psi_y*t120 + (0.5)*psi_y*t116 - t110 - 0.5*t118
             # force of the internal modes
             for k in range(MODES, n):
                 Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
@@ -902,12 +865,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # factors of the local tangents
             turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
-            t151 = 2*c_geo*spin_x
+            t121 = 2*c_geo*spin_x
             by_couplings[0] = -c_geo*spin_x*spin_x
             by_couplings[1] = -c_geo*spin_y*spin_y
             by_couplings[2] = -c_geo*spin_z*spin_z
-            by_couplings[3] = -spin_y*t151
-            by_couplings[4] = -spin_z*t151
+            by_couplings[3] = -spin_y*t121
+            by_couplings[4] = -spin_z*t121
             by_couplings[5] = -2*c_geo*spin_y*spin_z
             by_couplings[6] = c_geo*turning_x
             by_couplings[7] = c_geo*turning_y
@@ -975,55 +938,55 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 row_jd_xx, row_jd_yy, row_jd_zz, row_jd_xy, row_jd_xz, row_jd_yz = (more[i],
                     more[hN + i], more[2*hN + i], more[3*hN + i], more[4*hN + i], more[5*hN + i])
                 row_wa_x, row_wa_y, row_wa_z = more[12*hN + i], more[13*hN + i], more[14*hN + i]
-                t152 = row_S1_x*spin_z
-                t153 = row_S1_z*spin_x
-                t154 = t152 - t153
-                t155 = row_S1_x*spin_y
-                t156 = row_S1_y*spin_x - t155
-                t157 = row_S1_y*spin_z
-                t158 = row_S1_z*spin_y - t157
-                t159 = 2*spin_x
-                t160 = 2*spin_y
-                t161 = 2*spin_z
-                t162 = row_h_xx + 2*row_j_xx
-                t163 = row_h_xy + 2*row_j_xy
-                t164 = row_h_xz + 2*row_j_xz
-                t165 = row_h_yz + 2*row_j_yz
-                t166 = row_h_zz + 2*row_j_zz
-                t167 = spin_x*t164 + spin_y*t165 + spin_z*t166
-                t168 = row_h_yy + 2*row_j_yy
-                t169 = spin_x*t163 + spin_y*t168 + spin_z*t165
-                t170 = spin_x*t162 + spin_y*t163 + spin_z*t164
-                t171 = row_g_z + row_u_z
-                t172 = row_g_y + row_u_y
-                t173 = row_g_x + row_u_x
-                Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t156 -
-                    spin_z*t154))
-                Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t156
-                    + spin_z*t158))
+                t122 = row_S1_x*spin_z
+                t123 = row_S1_z*spin_x
+                t124 = t122 - t123
+                t125 = row_S1_x*spin_y
+                t126 = row_S1_y*spin_x - t125
+                t127 = row_S1_y*spin_z
+                t128 = row_S1_z*spin_y - t127
+                t129 = 2*spin_x
+                t130 = 2*spin_y
+                t131 = 2*spin_z
+                t132 = row_h_xx + 2*row_j_xx
+                t133 = row_h_xy + 2*row_j_xy
+                t134 = row_h_xz + 2*row_j_xz
+                t135 = row_h_yz + 2*row_j_yz
+                t136 = row_h_zz + 2*row_j_zz
+                t137 = spin_x*t134 + spin_y*t135 + spin_z*t136
+                t138 = row_h_yy + 2*row_j_yy
+                t139 = spin_x*t133 + spin_y*t138 + spin_z*t135
+                t140 = spin_x*t132 + spin_y*t133 + spin_z*t134
+                t141 = row_g_z + row_u_z
+                t142 = row_g_y + row_u_y
+                t143 = row_g_x + row_u_x
+                Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t126 -
+                    spin_z*t124))
+                Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t126
+                    + spin_z*t128))
                 Lz[i*deep + N + 2] = (c_geo*(-row_S1_x*turning_y + row_S1_y*turning_x +
-                    spin_x*t154 - spin_y*t158))
-                Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t159 +
-                    row_jd_xy*t160 + row_jd_xz*t161 - row_w_y*spin_z + row_w_z*spin_y + row_wa_x +
-                    spin_y*t167 - spin_z*t169 + t162*turning_x + t163*turning_y + t164*turning_z))
-                Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t159 +
-                    row_jd_yy*t160 + row_jd_yz*t161 + row_w_x*spin_z - row_w_z*spin_x + row_wa_y -
-                    spin_x*t167 + spin_z*t170 + t163*turning_x + t165*turning_z + t168*turning_y))
-                Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t159 +
-                    row_jd_yz*t160 + row_jd_zz*t161 - row_w_x*spin_y + row_w_y*spin_x + row_wa_z +
-                    spin_x*t169 - spin_y*t170 + t164*turning_x + t165*turning_y + t166*turning_z))
-                Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t157
-                Lv[i*deep + N + 1] = 2*t152 - 2*t153
-                Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t155
-                Lv[i*deep + N + 3] = row_v_x + row_w_x + spin_y*t171 - spin_z*t172 + t170
-                Lv[i*deep + N + 4] = row_v_y + row_w_y - spin_x*t171 + spin_z*t173 + t169
-                Lv[i*deep + N + 5] = row_v_z + row_w_z + spin_x*t172 - spin_y*t173 + t167
+                    spin_x*t124 - spin_y*t128))
+                Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t129 +
+                    row_jd_xy*t130 + row_jd_xz*t131 - row_w_y*spin_z + row_w_z*spin_y + row_wa_x +
+                    spin_y*t137 - spin_z*t139 + t132*turning_x + t133*turning_y + t134*turning_z))
+                Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t129 +
+                    row_jd_yy*t130 + row_jd_yz*t131 + row_w_x*spin_z - row_w_z*spin_x + row_wa_y -
+                    spin_x*t137 + spin_z*t140 + t133*turning_x + t135*turning_z + t138*turning_y))
+                Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t129 +
+                    row_jd_yz*t130 + row_jd_zz*t131 - row_w_x*spin_y + row_w_y*spin_x + row_wa_z +
+                    spin_x*t139 - spin_y*t140 + t134*turning_x + t135*turning_y + t136*turning_z))
+                Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t127
+                Lv[i*deep + N + 1] = 2*t122 - 2*t123
+                Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t125
+                Lv[i*deep + N + 3] = row_v_x + row_w_x + spin_y*t141 - spin_z*t142 + t140
+                Lv[i*deep + N + 4] = row_v_y + row_w_y - spin_x*t141 + spin_z*t143 + t139
+                Lv[i*deep + N + 5] = row_v_z + row_w_z + spin_x*t142 - spin_y*t143 + t137
                 La[i*deep + N] = row_S1_x
                 La[i*deep + N + 1] = row_S1_y
                 La[i*deep + N + 2] = row_S1_z
-                La[i*deep + N + 3] = t173
-                La[i*deep + N + 4] = t172
-                La[i*deep + N + 5] = t171
+                La[i*deep + N + 3] = t143
+                La[i*deep + N + 4] = t142
+                La[i*deep + N + 5] = t141
             # local tangents: motion of the frame
             for i in range(N):
                 spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
@@ -1043,14 +1006,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     products[11*hN + i])
                 row_w_x, row_w_y, row_w_z = (products[12*hN + i], products[13*hN + i],
                     products[14*hN + i])
-                t174 = row_h_xy + 2*row_j_xy
-                t175 = row_h_xz + 2*row_j_xz
-                t176 = row_h_yz + 2*row_j_yz
-                Lv[N*deep + i] = (row_v_x - row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t174
-                    - spin_z*t175)
-                Lv[(N + 1)*deep + i] = (row_v_y - row_w_y - spin_x*t174 - spin_y*(row_h_yy +
-                    2*row_j_yy) - spin_z*t176)
-                Lv[(N + 2)*deep + i] = (row_v_z - row_w_z - spin_x*t175 - spin_y*t176 -
+                t144 = row_h_xy + 2*row_j_xy
+                t145 = row_h_xz + 2*row_j_xz
+                t146 = row_h_yz + 2*row_j_yz
+                Lv[N*deep + i] = (row_v_x - row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t144
+                    - spin_z*t145)
+                Lv[(N + 1)*deep + i] = (row_v_y - row_w_y - spin_x*t144 - spin_y*(row_h_yy +
+                    2*row_j_yy) - spin_z*t146)
+                Lv[(N + 2)*deep + i] = (row_v_z - row_w_z - spin_x*t145 - spin_y*t146 -
                     spin_z*(row_h_zz + 2*row_j_zz))
                 La[N*deep + i] = row_S1_x
                 La[(N + 1)*deep + i] = row_S1_y
@@ -1061,79 +1024,79 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # local tangents: force on the frame by its motion
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             mass = masses[0]
-            t177 = spin_y*sum_c_y
-            t178 = spin_z*sum_c_z
-            t179 = 2*sum_cd_z
-            t180 = spin_x*sum_c_y
-            t181 = 2*sum_cd_y
-            t182 = spin_z*sum_c_x
-            t183 = spin_y*sum_J_xz
-            t184 = spin_z*sum_J_xy
-            t185 = spin_y*sum_J_yz
-            t186 = spin_x*sum_J_xz
-            t187 = spin_z*sum_J_zz + sum_spun_z
-            t188 = spin_z*sum_J_yz
-            t189 = spin_x*sum_J_xy
-            t190 = spin_y*sum_J_yy + sum_spun_y
-            t191 = spin_x*sum_c_x
-            t192 = 2*sum_cd_x
-            t193 = spin_y*sum_c_z
-            t194 = spin_x*sum_J_yz
-            t195 = spin_z*sum_J_xz
-            t196 = spin_y*sum_J_xy
-            t197 = spin_x*sum_J_xx + sum_spun_x
-            t198 = -sum_c_y
-            t199 = -sum_c_z
-            t200 = -sum_c_x
-            Lv[N*deep + N] = t177 + t178
-            Lv[N*deep + N + 1] = spin_y*sum_c_x - t179 - 2*t180
-            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t181 + t182
-            Lv[N*deep + N + 3] = sum_Jd_xx + t183 - t184
-            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t185 - 2*t186 - t187
-            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t188 + 2*t189 + t190
-            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t179 + t180
-            Lv[(N + 1)*deep + N + 1] = t178 + t191
-            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t192 - 2*t193
-            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t185 + t186 + t187
-            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t184 - t194
-            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t195 - 2*t196 - t197
-            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t181 - 2*t182
-            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t192 + t193
-            Lv[(N + 2)*deep + N + 2] = t177 + t191
-            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t188 - t189 - t190
-            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t195 + t196 + t197
-            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t183 + t194
+            t147 = spin_y*sum_c_y
+            t148 = spin_z*sum_c_z
+            t149 = 2*sum_cd_z
+            t150 = spin_x*sum_c_y
+            t151 = 2*sum_cd_y
+            t152 = spin_z*sum_c_x
+            t153 = spin_y*sum_J_xz
+            t154 = spin_z*sum_J_xy
+            t155 = spin_y*sum_J_yz
+            t156 = spin_x*sum_J_xz
+            t157 = spin_z*sum_J_zz + sum_spun_z
+            t158 = spin_z*sum_J_yz
+            t159 = spin_x*sum_J_xy
+            t160 = spin_y*sum_J_yy + sum_spun_y
+            t161 = spin_x*sum_c_x
+            t162 = 2*sum_cd_x
+            t163 = spin_y*sum_c_z
+            t164 = spin_x*sum_J_yz
+            t165 = spin_z*sum_J_xz
+            t166 = spin_y*sum_J_xy
+            t167 = spin_x*sum_J_xx + sum_spun_x
+            t168 = -sum_c_y
+            t169 = -sum_c_z
+            t170 = -sum_c_x
+            Lv[N*deep + N] = t147 + t148
+            Lv[N*deep + N + 1] = spin_y*sum_c_x - t149 - 2*t150
+            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t151 + t152
+            Lv[N*deep + N + 3] = sum_Jd_xx + t153 - t154
+            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t155 - 2*t156 - t157
+            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t158 + 2*t159 + t160
+            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t149 + t150
+            Lv[(N + 1)*deep + N + 1] = t148 + t161
+            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t162 - 2*t163
+            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t155 + t156 + t157
+            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t154 - t164
+            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t165 - 2*t166 - t167
+            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t151 - 2*t152
+            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t162 + t163
+            Lv[(N + 2)*deep + N + 2] = t147 + t161
+            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t158 - t159 - t160
+            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t165 + t166 + t167
+            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t153 + t164
             La[N*deep + N] = mass
             La[N*deep + N + 1] = 0.0
             La[N*deep + N + 2] = 0.0
             La[N*deep + N + 3] = 0.0
             La[N*deep + N + 4] = sum_c_z
-            La[N*deep + N + 5] = t198
+            La[N*deep + N + 5] = t168
             La[(N + 1)*deep + N] = 0.0
             La[(N + 1)*deep + N + 1] = mass
             La[(N + 1)*deep + N + 2] = 0.0
-            La[(N + 1)*deep + N + 3] = t199
+            La[(N + 1)*deep + N + 3] = t169
             La[(N + 1)*deep + N + 4] = 0.0
             La[(N + 1)*deep + N + 5] = sum_c_x
             La[(N + 2)*deep + N] = 0.0
             La[(N + 2)*deep + N + 1] = 0.0
             La[(N + 2)*deep + N + 2] = mass
             La[(N + 2)*deep + N + 3] = sum_c_y
-            La[(N + 2)*deep + N + 4] = t200
+            La[(N + 2)*deep + N + 4] = t170
             La[(N + 2)*deep + N + 5] = 0.0
             La[(N + 3)*deep + N] = 0.0
-            La[(N + 3)*deep + N + 1] = t199
+            La[(N + 3)*deep + N + 1] = t169
             La[(N + 3)*deep + N + 2] = sum_c_y
             La[(N + 3)*deep + N + 3] = sum_J_xx
             La[(N + 3)*deep + N + 4] = sum_J_xy
             La[(N + 3)*deep + N + 5] = sum_J_xz
             La[(N + 4)*deep + N] = sum_c_z
             La[(N + 4)*deep + N + 1] = 0.0
-            La[(N + 4)*deep + N + 2] = t200
+            La[(N + 4)*deep + N + 2] = t170
             La[(N + 4)*deep + N + 3] = sum_J_xy
             La[(N + 4)*deep + N + 4] = sum_J_yy
             La[(N + 4)*deep + N + 5] = sum_J_yz
-            La[(N + 5)*deep + N] = t198
+            La[(N + 5)*deep + N] = t168
             La[(N + 5)*deep + N + 1] = sum_c_x
             La[(N + 5)*deep + N + 2] = 0.0
             La[(N + 5)*deep + N + 3] = sum_J_xz
@@ -1210,12 +1173,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Gam_positionz_x, Gam_positionz_y, Gam_positionz_z = (Gam[3*(i3 + 2)],
                     Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
                 dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                t201 = -dx0_x + dx_x
-                t202 = -dx0_y + dx_y
-                t203 = -dx0_z + dx_z
-                rhs_x += -Gam_positionx_x*t201 - Gam_positiony_x*t202 - Gam_positionz_x*t203
-                rhs_y += -Gam_positionx_y*t201 - Gam_positiony_y*t202 - Gam_positionz_y*t203
-                rhs_z += -Gam_positionx_z*t201 - Gam_positiony_z*t202 - Gam_positionz_z*t203
+                t171 = -dx0_x + dx_x
+                t172 = -dx0_y + dx_y
+                t173 = -dx0_z + dx_z
+                rhs_x += -Gam_positionx_x*t171 - Gam_positiony_x*t172 - Gam_positionz_x*t173
+                rhs_y += -Gam_positionx_y*t171 - Gam_positiony_y*t172 - Gam_positionz_y*t173
+                rhs_z += -Gam_positionx_z*t171 - Gam_positiony_z*t172 - Gam_positionz_z*t173
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
@@ -1227,20 +1190,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gam[3*(j3 + 2) + 1], Gam[3*(j3 + 2) + 2])
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                 e0 = e0s[j]
-                t204 = dth_y*psi_z
-                t205 = dth_x*psi_y
-                t206 = e0*(dth_y*psi_x - t205)
-                t207 = dth_x*psi_z
-                t208 = dth_z*psi_x
-                t209 = t207 - t208
-                t210 = e0*psi_z
-                t211 = dth_x + (0.5)*dth_z*psi_y + psi_y*t206 - 0.5*t204 - t209*t210
-                t212 = dth_z*psi_y - t204
-                t213 = dth_y - psi_x*t206 + (0.5)*t207 - 0.5*t208 + t210*t212
-                t214 = (0.5)*dth_y*psi_x + dth_z + e0*psi_x*t209 - e0*psi_y*t212 - 0.5*t205
-                rhs_x += -Gam_rotationx_x*t211 - Gam_rotationy_x*t213 - Gam_rotationz_x*t214
-                rhs_y += -Gam_rotationx_y*t211 - Gam_rotationy_y*t213 - Gam_rotationz_y*t214
-                rhs_z += -Gam_rotationx_z*t211 - Gam_rotationy_z*t213 - Gam_rotationz_z*t214
+                t174 = dth_y*psi_z
+                t175 = dth_x*psi_y
+                t176 = e0*(dth_y*psi_x - t175)
+                t177 = dth_x*psi_z
+                t178 = dth_z*psi_x
+                t179 = t177 - t178
+                t180 = e0*psi_z
+                t181 = dth_x + (0.5)*dth_z*psi_y + psi_y*t176 - 0.5*t174 - t179*t180
+                t182 = dth_z*psi_y - t174
+                t183 = dth_y - psi_x*t176 + (0.5)*t177 - 0.5*t178 + t180*t182
+                t184 = (0.5)*dth_y*psi_x + dth_z + e0*psi_x*t179 - e0*psi_y*t182 - 0.5*t175
+                rhs_x += -Gam_rotationx_x*t181 - Gam_rotationy_x*t183 - Gam_rotationz_x*t184
+                rhs_y += -Gam_rotationx_y*t181 - Gam_rotationy_y*t183 - Gam_rotationz_y*t184
+                rhs_z += -Gam_rotationx_z*t181 - Gam_rotationy_z*t183 - Gam_rotationz_z*t184
             for k in range(MODES, n):
                 Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
                 dqm = dqe[k]
@@ -1256,41 +1219,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                t215 = X_y + u_y
-                t216 = X_z + u_z
-                t217 = X_x + u_x
-                dy[i3] = -dth0_y*t216 + dth0_z*t215 - dx0_x + dx_x
-                dy[i3 + 1] = dth0_x*t216 - dth0_z*t217 - dx0_y + dx_y
-                dy[i3 + 2] = -dth0_x*t215 + dth0_y*t217 - dx0_z + dx_z
+                t185 = X_y + u_y
+                t186 = X_z + u_z
+                t187 = X_x + u_x
+                dy[i3] = -dth0_y*t186 + dth0_z*t185 - dx0_x + dx_x
+                dy[i3 + 1] = dth0_x*t186 - dth0_z*t187 - dx0_y + dx_y
+                dy[i3 + 2] = -dth0_x*t185 + dth0_y*t187 - dx0_z + dx_z
             # variation of the elastic rotations, (17)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                 e0 = e0s[j]
-                t218 = dth0_y*psi_z
-                t219 = dth_y*psi_z
-                t220 = dth0_x*psi_y
-                t221 = dth0_y*psi_x - t220
-                t222 = e0*psi_y
-                t223 = dth_x*psi_z
-                t224 = dth_z*psi_x
-                t225 = t223 - t224
-                t226 = e0*psi_z
-                t227 = dth_x*psi_y
-                t228 = dth_y*psi_x - t227
-                t229 = dth0_x*psi_z
-                t230 = dth0_z*psi_x
-                t231 = t229 - t230
-                t232 = e0*psi_x
-                t233 = dth_z*psi_y - t219
-                t234 = dth0_z*psi_y - t218
-                dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y + e0*psi_y*t228
-                    + e0*psi_z*t231 - 0.5*t218 - 0.5*t219 - t221*t222 - t225*t226)
-                dy[j3 + 1] = (-dth0_y + dth_y + t221*t232 + (0.5)*t223 - 0.5*t224 + t226*t233 -
-                    t226*t234 - t228*t232 + (0.5)*t229 - 0.5*t230)
-                dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                    e0*psi_x*t225 + e0*psi_y*t234 - 0.5*t220 - t222*t233 - 0.5*t227 - t231*t232)
+                t188 = (0.5)*dth0_z + (0.5)*dth_z
+                t189 = dth0_y + dth_y
+                t190 = (0.5)*psi_z
+                t191 = -dth0_y + dth_y
+                t192 = -dth0_x + dth_x
+                t193 = psi_x*t191 - psi_y*t192
+                t194 = -dth0_z + dth_z
+                t195 = -psi_x*t194 + psi_z*t192
+                t196 = dth0_x + dth_x
+                t197 = psi_y*t194 - psi_z*t191
+                dy[j3] = -dth0_x + dth_x + e0*(psi_y*t193 - psi_z*t195) + psi_y*t188 - t189*t190
+                dy[j3 + 1] = (-dth0_y + dth_y + e0*(-psi_x*t193 + psi_z*t197) - psi_x*t188 +
+                    t190*t196)
+                dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t195 - psi_y*t197) + (0.5)*psi_x*t189 -
+                    0.5*psi_y*t196)
             # differential: internal modes
             for k in range(MODES, n):
                 dqm = dqe[k]
@@ -1342,12 +1297,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                t235 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
-                t236 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
-                t237 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
-                rhs_x += -Gam_positionx_x*t235 - Gam_positiony_x*t236 - Gam_positionz_x*t237
-                rhs_y += -Gam_positionx_y*t235 - Gam_positiony_y*t236 - Gam_positionz_y*t237
-                rhs_z += -Gam_positionx_z*t235 - Gam_positiony_z*t236 - Gam_positionz_z*t237
+                t198 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
+                t199 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
+                t200 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
+                rhs_x += -Gam_positionx_x*t198 - Gam_positiony_x*t199 - Gam_positionz_x*t200
+                rhs_y += -Gam_positionx_y*t198 - Gam_positiony_y*t199 - Gam_positionz_y*t200
+                rhs_z += -Gam_positionx_z*t198 - Gam_positiony_z*t199 - Gam_positionz_z*t200
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
@@ -1362,55 +1317,55 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t238 = Om0_y*dpsi_z
-                t239 = Om_y*dpsi_z
-                t240 = dOm_y*psi_z
-                t241 = -Om_x*psi_y + Om_y*psi_x
-                t242 = dpsi_y*e0
-                t243 = Om0_x*psi_z - Om0_z*psi_x
-                t244 = dpsi_z*e0
-                t245 = Om0_x*dpsi_z
-                t246 = Om0_z*dpsi_x
-                t247 = t245 - t246
-                t248 = e0*psi_z
-                t249 = -Om0_x*psi_y + Om0_y*psi_x
-                t250 = Om_x*psi_z - Om_z*psi_x
-                t251 = Om0_x*dpsi_y
-                t252 = Om0_y*dpsi_x - t251
-                t253 = e0*psi_y
-                t254 = Om_x*dpsi_y
-                t255 = dOm_x*psi_y
-                t256 = Om_y*dpsi_x + dOm_y*psi_x - t254 - t255
-                t257 = Om_x*dpsi_z
-                t258 = dOm_x*psi_z
-                t259 = Om_z*dpsi_x
-                t260 = dOm_z*psi_x
-                t261 = t257 + t258 - t259 - t260
-                t262 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                t263 = psi_y*t262
-                t264 = psi_z*t262
-                t265 = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y + dOm_x + (0.5)*dOm_z*psi_y -
-                    0.5*t238 - 0.5*t239 - 0.5*t240 + t241*t242 + t241*t263 - t242*t249 + t243*t244
-                    + t243*t264 - t244*t250 + t247*t248 - t248*t261 - t249*t263 - t250*t264 -
-                    t252*t253 + t253*t256)
-                t266 = dpsi_x*e0
-                t267 = -Om_y*psi_z + Om_z*psi_y
-                t268 = e0*psi_x
-                t269 = -Om0_y*psi_z + Om0_z*psi_y
-                t270 = Om0_z*dpsi_y - t238
-                t271 = Om_z*dpsi_y + dOm_z*psi_y - t239 - t240
-                t272 = psi_x*t262
-                t273 = (dOm_y - t241*t266 - t241*t272 + t244*t267 - t244*t269 + (0.5)*t245 -
-                    0.5*t246 - t248*t270 + t248*t271 + t249*t266 + t249*t272 + t252*t268 -
-                    t256*t268 + (0.5)*t257 + (0.5)*t258 - 0.5*t259 - 0.5*t260 + t264*t267 -
-                    t264*t269)
-                t274 = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm_y*psi_x + dOm_z -
-                    t242*t267 + t242*t269 - t243*t266 - t243*t272 - t247*t268 + t250*t266 +
-                    t250*t272 - 0.5*t251 + t253*t270 - t253*t271 - 0.5*t254 - 0.5*t255 + t261*t268
-                    - t263*t267 + t263*t269)
-                rhs_x += -Gam_rotationx_x*t265 - Gam_rotationy_x*t273 - Gam_rotationz_x*t274
-                rhs_y += -Gam_rotationx_y*t265 - Gam_rotationy_y*t273 - Gam_rotationz_y*t274
-                rhs_z += -Gam_rotationx_z*t265 - Gam_rotationy_z*t273 - Gam_rotationz_z*t274
+                t201 = Om0_y*dpsi_z
+                t202 = Om_y*dpsi_z
+                t203 = dOm_y*psi_z
+                t204 = -Om_x*psi_y + Om_y*psi_x
+                t205 = dpsi_y*e0
+                t206 = Om0_x*psi_z - Om0_z*psi_x
+                t207 = dpsi_z*e0
+                t208 = Om0_x*dpsi_z
+                t209 = Om0_z*dpsi_x
+                t210 = t208 - t209
+                t211 = e0*psi_z
+                t212 = -Om0_x*psi_y + Om0_y*psi_x
+                t213 = Om_x*psi_z - Om_z*psi_x
+                t214 = Om0_x*dpsi_y
+                t215 = Om0_y*dpsi_x - t214
+                t216 = e0*psi_y
+                t217 = Om_x*dpsi_y
+                t218 = dOm_x*psi_y
+                t219 = Om_y*dpsi_x + dOm_y*psi_x - t217 - t218
+                t220 = Om_x*dpsi_z
+                t221 = dOm_x*psi_z
+                t222 = Om_z*dpsi_x
+                t223 = dOm_z*psi_x
+                t224 = t220 + t221 - t222 - t223
+                t225 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                t226 = psi_y*t225
+                t227 = psi_z*t225
+                t228 = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y + dOm_x + (0.5)*dOm_z*psi_y -
+                    0.5*t201 - 0.5*t202 - 0.5*t203 + t204*t205 + t204*t226 - t205*t212 + t206*t207
+                    + t206*t227 - t207*t213 + t210*t211 - t211*t224 - t212*t226 - t213*t227 -
+                    t215*t216 + t216*t219)
+                t229 = dpsi_x*e0
+                t230 = -Om_y*psi_z + Om_z*psi_y
+                t231 = e0*psi_x
+                t232 = -Om0_y*psi_z + Om0_z*psi_y
+                t233 = Om0_z*dpsi_y - t201
+                t234 = Om_z*dpsi_y + dOm_z*psi_y - t202 - t203
+                t235 = psi_x*t225
+                t236 = (dOm_y - t204*t229 - t204*t235 + t207*t230 - t207*t232 + (0.5)*t208 -
+                    0.5*t209 - t211*t233 + t211*t234 + t212*t229 + t212*t235 + t215*t231 -
+                    t219*t231 + (0.5)*t220 + (0.5)*t221 - 0.5*t222 - 0.5*t223 + t227*t230 -
+                    t227*t232)
+                t237 = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm_y*psi_x + dOm_z -
+                    t205*t230 + t205*t232 - t206*t229 - t206*t235 - t210*t231 + t213*t229 +
+                    t213*t235 - 0.5*t214 + t216*t233 - t216*t234 - 0.5*t217 - 0.5*t218 + t224*t231
+                    - t226*t230 + t226*t232)
+                rhs_x += -Gam_rotationx_x*t228 - Gam_rotationy_x*t236 - Gam_rotationz_x*t237
+                rhs_y += -Gam_rotationx_y*t228 - Gam_rotationy_y*t236 - Gam_rotationz_y*t237
+                rhs_z += -Gam_rotationx_z*t228 - Gam_rotationy_z*t236 - Gam_rotationz_z*t237
             for k in range(MODES, n):
                 Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
                 dvm = dve[k]
@@ -1449,12 +1404,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                t275 = X_y + u_y
-                t276 = X_z + u_z
-                t277 = X_x + u_x
-                deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t276 + dOm0_z*t275 - dv0_x + dvs_x
-                deta[i3 + 1] = Om0_x*du_z - Om0_z*du_x + dOm0_x*t276 - dOm0_z*t277 - dv0_y + dvs_y
-                deta[i3 + 2] = -Om0_x*du_y + Om0_y*du_x - dOm0_x*t275 + dOm0_y*t277 - dv0_z + dvs_z
+                t238 = X_y + u_y
+                t239 = X_z + u_z
+                t240 = X_x + u_x
+                deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t239 + dOm0_z*t238 - dv0_x + dvs_x
+                deta[i3 + 1] = Om0_x*du_z - Om0_z*du_x + dOm0_x*t239 - dOm0_z*t240 - dv0_y + dvs_y
+                deta[i3 + 2] = -Om0_x*du_y + Om0_y*du_x - dOm0_x*t238 + dOm0_y*t240 - dv0_z + dvs_z
             # differential: rates of the elastic rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -1464,59 +1419,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t278 = Om0_y*dpsi_z
-                t279 = Om_y*dpsi_z
-                t280 = dOm0_y*psi_z
-                t281 = dOm_y*psi_z
-                t282 = -Om0_x*psi_y + Om0_y*psi_x
-                t283 = dpsi_y*e0
-                t284 = Om_x*psi_z - Om_z*psi_x
-                t285 = dpsi_z*e0
-                t286 = -Om_x*psi_y + Om_y*psi_x
-                t287 = Om0_x*psi_z - Om0_z*psi_x
-                t288 = Om0_x*dpsi_y
-                t289 = dOm0_x*psi_y
-                t290 = Om0_y*dpsi_x + dOm0_y*psi_x - t288 - t289
-                t291 = e0*psi_y
-                t292 = Om_x*dpsi_z
-                t293 = dOm_x*psi_z
-                t294 = Om_z*dpsi_x
-                t295 = dOm_z*psi_x
-                t296 = t292 + t293 - t294 - t295
-                t297 = e0*psi_z
-                t298 = Om_x*dpsi_y
-                t299 = dOm_x*psi_y
-                t300 = Om_y*dpsi_x + dOm_y*psi_x - t298 - t299
-                t301 = Om0_x*dpsi_z
-                t302 = dOm0_x*psi_z
-                t303 = Om0_z*dpsi_x
-                t304 = dOm0_z*psi_x
-                t305 = t301 + t302 - t303 - t304
-                t306 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t307 = e1*t306
-                t308 = psi_y*t307
-                t309 = psi_z*t307
-                t310 = dpsi_x*e0
-                t311 = -Om_y*psi_z + Om_z*psi_y
-                t312 = -Om0_y*psi_z + Om0_z*psi_y
-                t313 = e0*psi_x
-                t314 = Om_z*dpsi_y + dOm_z*psi_y - t279 - t281
-                t315 = Om0_z*dpsi_y + dOm0_z*psi_y - t278 - t280
-                t316 = psi_x*t307
-                deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x + (0.5)*dOm0_z*psi_y +
-                    dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t286 + dpsi_z*e0*t287 + e0*psi_y*t300 +
-                    e0*psi_z*t305 + e1*psi_y*t286*t306 + e1*psi_z*t287*t306 - 0.5*t278 - 0.5*t279
-                    - 0.5*t280 - 0.5*t281 - t282*t283 - t282*t308 - t284*t285 - t284*t309 -
-                    t290*t291 - t296*t297)
-                deta[j3 + 1] = (-dOm0_y + dOm_y + t282*t310 + t282*t316 + t285*t311 - t285*t312 -
-                    t286*t310 - t286*t316 + t290*t313 + (0.5)*t292 + (0.5)*t293 - 0.5*t294 -
-                    0.5*t295 + t297*t314 - t297*t315 - t300*t313 + (0.5)*t301 + (0.5)*t302 -
-                    0.5*t303 - 0.5*t304 + t309*t311 - t309*t312)
-                deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                    dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t284 + dpsi_y*e0*t312 +
-                    e0*psi_x*t296 + e0*psi_y*t315 + e1*psi_x*t284*t306 + e1*psi_y*t306*t312 -
-                    t283*t311 - t287*t310 - t287*t316 - 0.5*t288 - 0.5*t289 - t291*t314 - 0.5*t298
-                    - 0.5*t299 - t305*t313 - t308*t311)
+                t241 = (0.5)*Om0_z + (0.5)*Om_z
+                t242 = Om0_y + Om_y
+                t243 = (0.5)*dpsi_z
+                t244 = (0.5)*dOm0_z + (0.5)*dOm_z
+                t245 = dOm0_y + dOm_y
+                t246 = (0.5)*psi_z
+                t247 = -Om0_y + Om_y
+                t248 = -Om0_x + Om_x
+                t249 = psi_x*t247 - psi_y*t248
+                t250 = -Om0_z + Om_z
+                t251 = -psi_x*t250 + psi_z*t248
+                t252 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                t253 = -dOm0_y + dOm_y
+                t254 = -dOm0_x + dOm_x
+                t255 = dpsi_x*t247 - dpsi_y*t248 + psi_x*t253 - psi_y*t254
+                t256 = -dOm0_z + dOm_z
+                t257 = -dpsi_x*t250 + dpsi_z*t248 - psi_x*t256 + psi_z*t254
+                t258 = Om0_x + Om_x
+                t259 = dOm0_x + dOm_x
+                t260 = psi_y*t250 - psi_z*t247
+                t261 = dpsi_y*t250 - dpsi_z*t247 + psi_y*t256 - psi_z*t253
+                deta[j3] = (-dOm0_x + dOm_x + dpsi_y*t241 + e0*(dpsi_y*t249 - dpsi_z*t251 +
+                    psi_y*t255 - psi_z*t257) + psi_y*t244 - t242*t243 - t245*t246 +
+                    t252*(psi_y*t249 - psi_z*t251))
+                deta[j3 + 1] = (-dOm0_y + dOm_y - dpsi_x*t241 + e0*(-dpsi_x*t249 + dpsi_z*t260 -
+                    psi_x*t255 + psi_z*t261) - psi_x*t244 + t243*t258 + t246*t259 +
+                    t252*(-psi_x*t249 + psi_z*t260))
+                deta[j3 + 2] = (-dOm0_z + dOm_z + (0.5)*dpsi_x*t242 - 0.5*dpsi_y*t258 +
+                    e0*(dpsi_x*t251 - dpsi_y*t260 + psi_x*t257 - psi_y*t261) + (0.5)*psi_x*t245 -
+                    0.5*psi_y*t259 + t252*(psi_x*t251 - psi_y*t260))
             # differential: rates of the internal modes
             for k in range(MODES, n):
                 dvm = dve[k]
@@ -1552,126 +1484,72 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e0 = e0s[j]
                 e1 = e1s[j]
                 e2 = e2s[j]
-                t317 = A_y*dpsi_z
-                t318 = Om0_y*dep_z
-                t319 = Om_y*dep_z
-                t320 = dA_y*psi_z
-                t321 = dOm0_y*ep_z
-                t322 = dOm_y*ep_z
-                t323 = -Om_x*psi_y + Om_y*psi_x
-                t324 = dep_y*e0
-                t325 = Om0_x*psi_z - Om0_z*psi_x
-                t326 = dep_z*e0
-                t327 = Om0_x*ep_z - Om0_z*ep_x
-                t328 = dpsi_z*e0
-                t329 = -Om0_x*psi_y + Om0_y*psi_x
-                t330 = Om_x*psi_z - Om_z*psi_x
-                t331 = -Om0_x*ep_y + Om0_y*ep_x
-                t332 = dpsi_y*e0
-                t333 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                t334 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                t335 = e0*ep_y
-                t336 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                t337 = e0*ep_z
-                t338 = Om0_x*dep_z
-                t339 = dOm0_x*ep_z
-                t340 = Om0_z*dep_x
-                t341 = dOm0_z*ep_x
-                t342 = t338 + t339 - t340 - t341
-                t343 = e0*psi_z
-                t344 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                t345 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                t346 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                t347 = Om0_x*dep_y
-                t348 = dOm0_x*ep_y
-                t349 = Om0_y*dep_x + dOm0_y*ep_x - t347 - t348
-                t350 = e0*psi_y
-                t351 = 2*psi_x
-                t352 = 2*psi_y
-                t353 = 2*psi_z
-                t354 = ep_x*t351 + ep_y*t352 + ep_z*t353
-                t355 = e1*t354
-                t356 = dpsi_y*t355
-                t357 = dpsi_z*t355
-                t358 = dpsi_x*t351 + dpsi_y*t352 + dpsi_z*t353
-                t359 = e1*t358
-                t360 = ep_y*t359
-                t361 = ep_z*t359
-                t362 = psi_z*t359
-                t363 = psi_y*t359
-                t364 = psi_y*t355
-                t365 = psi_z*t355
-                t366 = A_x*dpsi_y
-                t367 = Om_x*dep_y
-                t368 = dA_x*psi_y
-                t369 = dOm_x*ep_y
-                t370 = A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t366 - t367 - t368 - t369
-                t371 = A_x*dpsi_z
-                t372 = Om_x*dep_z
-                t373 = dA_x*psi_z
-                t374 = dOm_x*ep_z
-                t375 = A_z*dpsi_x
-                t376 = Om_z*dep_x
-                t377 = dA_z*psi_x
-                t378 = dOm_z*ep_x
-                t379 = t371 + t372 + t373 + t374 - t375 - t376 - t377 - t378
-                t380 = (e1*(dep_x*t351 + dep_y*t352 + dep_z*t353 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
+                t262 = A_y*dpsi_z
+                t263 = dA_y*psi_z
+                t264 = (0.5)*Om0_z + (0.5)*Om_z
+                t265 = Om0_y + Om_y
+                t266 = (0.5)*dep_z
+                t267 = (0.5)*dOm0_z + (0.5)*dOm_z
+                t268 = dOm0_y + dOm_y
+                t269 = (0.5)*ep_z
+                t270 = -Om0_y + Om_y
+                t271 = -Om0_x + Om_x
+                t272 = psi_x*t270 - psi_y*t271
+                t273 = -Om0_z + Om_z
+                t274 = -psi_x*t273 + psi_z*t271
+                t275 = psi_y*t272 - psi_z*t274
+                t276 = 2*psi_x
+                t277 = 2*psi_y
+                t278 = 2*psi_z
+                t279 = (e1*(dep_x*t276 + dep_y*t277 + dep_z*t278 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
                     2*dpsi_z*ep_z))
-                t381 = psi_y*t323
-                t382 = psi_z*t380
-                t383 = t329*t380
-                t384 = e2*t354*t358
-                t385 = psi_z*t384
-                t386 = t329*t384
-                t387 = dep_x*e0
-                t388 = -Om_y*psi_z + Om_z*psi_y
-                t389 = dpsi_x*e0
-                t390 = -Om0_y*psi_z + Om0_z*psi_y
-                t391 = -Om0_y*ep_z + Om0_z*ep_y
-                t392 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                t393 = e0*ep_x
-                t394 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                t395 = e0*psi_x
-                t396 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                t397 = Om0_z*dep_y + dOm0_z*ep_y - t318 - t321
-                t398 = dpsi_x*t355
-                t399 = ep_x*t359
-                t400 = psi_x*t359
-                t401 = psi_x*t355
-                t402 = A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t317 - t319 - t320 - t322
-                t403 = psi_x*t380
-                t404 = psi_x*t384
-                t405 = psi_y*t380
-                t406 = psi_y*t384
-                detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om_z*dep_y + dA_x +
-                    (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y + (0.5)*dOm_z*ep_y - psi_y*t383 -
-                    psi_y*t386 - 0.5*t317 - 0.5*t318 - 0.5*t319 - 0.5*t320 - 0.5*t321 - 0.5*t322 +
-                    t323*t324 + t323*t356 + t323*t360 - t324*t329 + t325*t326 + t325*t357 +
-                    t325*t361 + t325*t382 + t325*t385 - t326*t330 + t327*t328 + t327*t362 -
-                    t328*t344 - t329*t356 - t329*t360 - t330*t357 - t330*t361 - t330*t382 -
-                    t330*t385 - t331*t332 - t331*t363 + t332*t333 + t333*t363 + t334*t335 +
-                    t334*t364 - t335*t345 + t336*t337 + t336*t365 - t337*t346 + t342*t343 -
-                    t343*t379 - t344*t362 - t345*t364 - t346*t365 - t349*t350 + t350*t370 +
-                    t380*t381 + t381*t384)
-                detad[j3 + 1] = (dA_y + psi_x*t383 + psi_x*t386 - t323*t387 - t323*t398 -
-                    t323*t399 - t323*t403 - t323*t404 + t326*t388 - t326*t390 - t328*t391 +
-                    t328*t392 + t329*t387 + t329*t398 + t329*t399 + t331*t389 + t331*t400 -
-                    t333*t389 - t333*t400 - t334*t393 - t334*t401 + t337*t394 - t337*t396 +
-                    (0.5)*t338 + (0.5)*t339 - 0.5*t340 - 0.5*t341 - t343*t397 + t343*t402 +
-                    t345*t393 + t345*t401 + t349*t395 + t357*t388 - t357*t390 + t361*t388 -
-                    t361*t390 - t362*t391 + t362*t392 + t365*t394 - t365*t396 - t370*t395 +
-                    (0.5)*t371 + (0.5)*t372 + (0.5)*t373 + (0.5)*t374 - 0.5*t375 - 0.5*t376 -
-                    0.5*t377 - 0.5*t378 + t382*t388 - t382*t390 + t385*t388 - t385*t390)
-                detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om_y*dep_x +
-                    (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x + (0.5)*dOm_y*ep_x - t324*t388 +
-                    t324*t390 - t325*t387 - t325*t398 - t325*t399 - t325*t403 - t325*t404 -
-                    t327*t389 - t327*t400 + t330*t387 + t330*t398 + t330*t399 + t330*t403 +
-                    t330*t404 + t332*t391 - t332*t392 - t335*t394 + t335*t396 - t336*t393 -
-                    t336*t401 - t342*t395 + t344*t389 + t344*t400 + t346*t393 + t346*t401 -
-                    0.5*t347 - 0.5*t348 + t350*t397 - t350*t402 - t356*t388 + t356*t390 -
-                    t360*t388 + t360*t390 + t363*t391 - t363*t392 - t364*t394 + t364*t396 -
-                    0.5*t366 - 0.5*t367 - 0.5*t368 - 0.5*t369 + t379*t395 - t388*t405 - t388*t406
-                    + t390*t405 + t390*t406)
+                t280 = dpsi_x*t276 + dpsi_y*t277 + dpsi_z*t278
+                t281 = ep_x*t276 + ep_y*t277 + ep_z*t278
+                t282 = e2*t280*t281
+                t283 = -A_x*psi_y + A_y*psi_x + ep_x*t270 - ep_y*t271
+                t284 = A_x*psi_z - A_z*psi_x - ep_x*t273 + ep_z*t271
+                t285 = e1*t280
+                t286 = -dOm0_y + dOm_y
+                t287 = -dOm0_x + dOm_x
+                t288 = dpsi_x*t270 - dpsi_y*t271 + psi_x*t286 - psi_y*t287
+                t289 = -dOm0_z + dOm_z
+                t290 = -dpsi_x*t273 + dpsi_z*t271 - psi_x*t289 + psi_z*t287
+                t291 = e1*t281
+                t292 = A_x*dpsi_y
+                t293 = dA_x*psi_y
+                t294 = (A_y*dpsi_x + dA_y*psi_x + dep_x*t270 - dep_y*t271 + ep_x*t286 - ep_y*t287
+                    - t292 - t293)
+                t295 = A_x*dpsi_z
+                t296 = dA_x*psi_z
+                t297 = A_z*dpsi_x
+                t298 = dA_z*psi_x
+                t299 = -dep_x*t273 + dep_z*t271 - ep_x*t289 + ep_z*t287 + t295 + t296 - t297 - t298
+                t300 = Om0_x + Om_x
+                t301 = dOm0_x + dOm_x
+                t302 = psi_y*t273 - psi_z*t270
+                t303 = -psi_x*t272 + psi_z*t302
+                t304 = -A_y*psi_z + A_z*psi_y + ep_y*t273 - ep_z*t270
+                t305 = dpsi_y*t273 - dpsi_z*t270 + psi_y*t289 - psi_z*t286
+                t306 = (A_z*dpsi_y + dA_z*psi_y + dep_y*t273 - dep_z*t270 + ep_y*t289 - ep_z*t286
+                    - t262 - t263)
+                t307 = psi_x*t274 - psi_y*t302
+                detad[j3] = ((0.5)*A_z*dpsi_y + dA_x + (0.5)*dA_z*psi_y + dep_y*t264 +
+                    e0*(dep_y*t272 - dep_z*t274 + dpsi_y*t283 - dpsi_z*t284 + ep_y*t288 -
+                    ep_z*t290 + psi_y*t294 - psi_z*t299) + ep_y*t267 - 0.5*t262 - 0.5*t263 -
+                    t265*t266 - t268*t269 + t275*t279 + t275*t282 + t285*(ep_y*t272 - ep_z*t274 +
+                    psi_y*t283 - psi_z*t284) + t291*(dpsi_y*t272 - dpsi_z*t274 + psi_y*t288 -
+                    psi_z*t290))
+                detad[j3 + 1] = (dA_y - dep_x*t264 + e0*(-dep_x*t272 + dep_z*t302 - dpsi_x*t283 +
+                    dpsi_z*t304 - ep_x*t288 + ep_z*t305 - psi_x*t294 + psi_z*t306) - ep_x*t267 +
+                    t266*t300 + t269*t301 + t279*t303 + t282*t303 + t285*(-ep_x*t272 + ep_z*t302 -
+                    psi_x*t283 + psi_z*t304) + t291*(-dpsi_x*t272 + dpsi_z*t302 - psi_x*t288 +
+                    psi_z*t305) + (0.5)*t295 + (0.5)*t296 - 0.5*t297 - 0.5*t298)
+                detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*dA_y*psi_x + dA_z + (0.5)*dep_x*t265 -
+                    0.5*dep_y*t300 + e0*(dep_x*t274 - dep_y*t302 + dpsi_x*t284 - dpsi_y*t304 +
+                    ep_x*t290 - ep_y*t305 + psi_x*t299 - psi_y*t306) + (0.5)*ep_x*t268 -
+                    0.5*ep_y*t301 + t279*t307 + t282*t307 + t285*(ep_x*t274 - ep_y*t302 +
+                    psi_x*t284 - psi_y*t304) + t291*(dpsi_x*t274 - dpsi_y*t302 + psi_x*t290 -
+                    psi_y*t305) - 0.5*t292 - 0.5*t293)
             # differential: rate: rates of the internal modes
             for k in range(MODES, n):
                 dam = dae[k]
@@ -1713,46 +1591,46 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t407 = (0.5)*dpsi_z
-                t408 = dpsi_x*e0
-                t409 = e0*psi_x
-                t410 = 2*dpsi_x*psi_x
-                t411 = 2*dpsi_y*psi_y
-                t412 = 2*dpsi_z*psi_z
-                t413 = e1*(t410 + t411 + t412)
-                t414 = psi_x*t413
-                t415 = dpsi_y*t409 + psi_y*t408 + psi_y*t414
-                t416 = t407 - t415
-                t417 = (0.5)*dpsi_y
-                t418 = dpsi_z*t409 + psi_z*t408 + psi_z*t414
-                t419 = -t417 - t418
-                t420 = e0*t412 + psi_z*psi_z*t413
-                t421 = e0*t411 + psi_y*psi_y*t413
-                t422 = t420 + t421
-                t423 = -t407 - t415
-                t424 = (0.5)*dpsi_x
-                t425 = dpsi_y*e0*psi_z + dpsi_z*e0*psi_y + psi_y*psi_z*t413
-                t426 = t424 - t425
-                t427 = e0*t410 + psi_x*psi_x*t413
-                t428 = t420 + t427
-                t429 = t417 - t418
-                t430 = -t424 - t425
-                t431 = t421 + t427
+                t308 = (0.5)*dpsi_z
+                t309 = dpsi_x*e0
+                t310 = e0*psi_x
+                t311 = 2*dpsi_x*psi_x
+                t312 = 2*dpsi_y*psi_y
+                t313 = 2*dpsi_z*psi_z
+                t314 = e1*(t311 + t312 + t313)
+                t315 = psi_x*t314
+                t316 = dpsi_y*t310 + psi_y*t309 + psi_y*t315
+                t317 = t308 - t316
+                t318 = (0.5)*dpsi_y
+                t319 = dpsi_z*t310 + psi_z*t309 + psi_z*t315
+                t320 = -t318 - t319
+                t321 = e0*t313 + psi_z*psi_z*t314
+                t322 = e0*t312 + psi_y*psi_y*t314
+                t323 = t321 + t322
+                t324 = -t308 - t316
+                t325 = (0.5)*dpsi_x
+                t326 = dpsi_y*e0*psi_z + dpsi_z*e0*psi_y + psi_y*psi_z*t314
+                t327 = t325 - t326
+                t328 = e0*t311 + psi_x*psi_x*t314
+                t329 = t321 + t328
+                t330 = t318 - t319
+                t331 = -t325 - t326
+                t332 = t322 + t328
                 rhs_x += (-Gam_rotationx_x*depd_x - Gam_rotationy_x*depd_y -
-                    Gam_rotationz_x*depd_z - Om0d_x*(Gam_rotationx_x*t422 + Gam_rotationy_x*t416 +
-                    Gam_rotationz_x*t419) - Om0d_y*(Gam_rotationx_x*t423 + Gam_rotationy_x*t428 +
-                    Gam_rotationz_x*t426) - Om0d_z*(Gam_rotationx_x*t429 + Gam_rotationy_x*t430 +
-                    Gam_rotationz_x*t431))
+                    Gam_rotationz_x*depd_z - Om0d_x*(Gam_rotationx_x*t323 + Gam_rotationy_x*t317 +
+                    Gam_rotationz_x*t320) - Om0d_y*(Gam_rotationx_x*t324 + Gam_rotationy_x*t329 +
+                    Gam_rotationz_x*t327) - Om0d_z*(Gam_rotationx_x*t330 + Gam_rotationy_x*t331 +
+                    Gam_rotationz_x*t332))
                 rhs_y += (-Gam_rotationx_y*depd_x - Gam_rotationy_y*depd_y -
-                    Gam_rotationz_y*depd_z - Om0d_x*(Gam_rotationx_y*t422 + Gam_rotationy_y*t416 +
-                    Gam_rotationz_y*t419) - Om0d_y*(Gam_rotationx_y*t423 + Gam_rotationy_y*t428 +
-                    Gam_rotationz_y*t426) - Om0d_z*(Gam_rotationx_y*t429 + Gam_rotationy_y*t430 +
-                    Gam_rotationz_y*t431))
+                    Gam_rotationz_y*depd_z - Om0d_x*(Gam_rotationx_y*t323 + Gam_rotationy_y*t317 +
+                    Gam_rotationz_y*t320) - Om0d_y*(Gam_rotationx_y*t324 + Gam_rotationy_y*t329 +
+                    Gam_rotationz_y*t327) - Om0d_z*(Gam_rotationx_y*t330 + Gam_rotationy_y*t331 +
+                    Gam_rotationz_y*t332))
                 rhs_z += (-Gam_rotationx_z*depd_x - Gam_rotationy_z*depd_y -
-                    Gam_rotationz_z*depd_z - Om0d_x*(Gam_rotationx_z*t422 + Gam_rotationy_z*t416 +
-                    Gam_rotationz_z*t419) - Om0d_y*(Gam_rotationx_z*t423 + Gam_rotationy_z*t428 +
-                    Gam_rotationz_z*t426) - Om0d_z*(Gam_rotationx_z*t429 + Gam_rotationy_z*t430 +
-                    Gam_rotationz_z*t431))
+                    Gam_rotationz_z*depd_z - Om0d_x*(Gam_rotationx_z*t323 + Gam_rotationy_z*t317 +
+                    Gam_rotationz_z*t320) - Om0d_y*(Gam_rotationx_z*t324 + Gam_rotationy_z*t329 +
+                    Gam_rotationz_z*t327) - Om0d_z*(Gam_rotationx_z*t330 + Gam_rotationy_z*t331 +
+                    Gam_rotationz_z*t332))
             for k in range(MODES, n):
                 Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
                 demd = detad[k]
@@ -1770,44 +1648,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t432 = (0.5)*psi_z
-                t433 = e0*psi_x
-                t434 = psi_y*t433
-                t435 = (0.5)*psi_y
-                t436 = psi_z*t433
-                t437 = psi_y*psi_y
-                t438 = e0*t437
-                t439 = psi_z*psi_z
-                t440 = e0*t439 - 1
-                t441 = (0.5)*dpsi_z
-                t442 = dpsi_x*e0
-                t443 = 2*dpsi_x*psi_x
-                t444 = 2*dpsi_y*psi_y
-                t445 = 2*dpsi_z*psi_z
-                t446 = e1*(t443 + t444 + t445)
-                t447 = psi_x*t446
-                t448 = dpsi_y*t433 + psi_y*t442 + psi_y*t447
-                t449 = (0.5)*dpsi_y
-                t450 = dpsi_z*t433 + psi_z*t442 + psi_z*t447
-                t451 = e0*t445 + t439*t446
-                t452 = e0*t444 + t437*t446
-                t453 = (0.5)*psi_x
-                t454 = e0*psi_z
-                t455 = psi_y*t454
-                t456 = psi_x*psi_x
-                t457 = e0*t456
-                t458 = (0.5)*dpsi_x
-                t459 = dpsi_y*t454 + dpsi_z*e0*psi_y + psi_y*psi_z*t446
-                t460 = e0*t443 + t446*t456
-                detad[j3] = (Om0d_x*(t451 + t452) + Om0d_y*(-t441 - t448) + Om0d_z*(t449 - t450) +
-                    dOm0d_x*(t438 + t440) + dOm0d_y*(-t432 - t434) + dOm0d_z*(t435 - t436) +
-                    depd_x)
-                detad[j3 + 1] = (Om0d_x*(t441 - t448) + Om0d_y*(t451 + t460) + Om0d_z*(-t458 -
-                    t459) + dOm0d_x*(t432 - t434) + dOm0d_y*(t440 + t457) + dOm0d_z*(-t453 - t455)
-                    + depd_y)
-                detad[j3 + 2] = (Om0d_x*(-t449 - t450) + Om0d_y*(t458 - t459) + Om0d_z*(t452 +
-                    t460) + dOm0d_x*(-t435 - t436) + dOm0d_y*(t453 - t455) + dOm0d_z*(t438 + t457
-                    - 1) + depd_z)
+                t333 = Om0d_y*dpsi_z
+                t334 = Om0d_z*dpsi_y
+                t335 = dOm0d_y*psi_z
+                t336 = dOm0d_z*psi_y
+                t337 = Om0d_x*psi_y - Om0d_y*psi_x
+                t338 = -Om0d_x*psi_z + Om0d_z*psi_x
+                t339 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                t340 = Om0d_x*dpsi_y
+                t341 = dOm0d_x*psi_y
+                t342 = Om0d_y*dpsi_x
+                t343 = dOm0d_y*psi_x
+                t344 = t340 + t341 - t342 - t343
+                t345 = Om0d_x*dpsi_z
+                t346 = dOm0d_x*psi_z
+                t347 = Om0d_z*dpsi_x + dOm0d_z*psi_x - t345 - t346
+                t348 = Om0d_y*psi_z - Om0d_z*psi_y
+                t349 = t333 - t334 + t335 - t336
+                detad[j3] = (-dOm0d_x + depd_x + e0*(dpsi_y*t337 - dpsi_z*t338 + psi_y*t344 -
+                    psi_z*t347) - 0.5*t333 + (0.5)*t334 - 0.5*t335 + (0.5)*t336 + t339*(psi_y*t337
+                    - psi_z*t338))
+                detad[j3 + 1] = (-0.5*Om0d_z*dpsi_x - dOm0d_y - 0.5*dOm0d_z*psi_x + depd_y +
+                    e0*(-dpsi_x*t337 + dpsi_z*t348 - psi_x*t344 + psi_z*t349) + t339*(-psi_x*t337
+                    + psi_z*t348) + (0.5)*t345 + (0.5)*t346)
+                detad[j3 + 2] = (-dOm0d_z + depd_z + e0*(dpsi_x*t338 - dpsi_y*t348 + psi_x*t347 -
+                    psi_y*t349) + t339*(psi_x*t338 - psi_y*t348) - 0.5*t340 - 0.5*t341 +
+                    (0.5)*t342 + (0.5)*t343)
             # differential: rate: rates of the elastic displacements
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -1815,12 +1681,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 deud_x, deud_y, deud_z = detad[i3], detad[i3 + 1], detad[i3 + 2]
-                t461 = X_y + u_y
-                t462 = X_z + u_z
-                t463 = X_x + u_x
-                detad[i3] = -Om0d_y*du_z + Om0d_z*du_y - dOm0d_y*t462 + dOm0d_z*t461 + deud_x
-                detad[i3 + 1] = Om0d_x*du_z - Om0d_z*du_x + dOm0d_x*t462 - dOm0d_z*t463 + deud_y
-                detad[i3 + 2] = -Om0d_x*du_y + Om0d_y*du_x - dOm0d_x*t461 + dOm0d_y*t463 + deud_z
+                t350 = X_y + u_y
+                t351 = X_z + u_z
+                t352 = X_x + u_x
+                detad[i3] = -Om0d_y*du_z + Om0d_z*du_y - dOm0d_y*t351 + dOm0d_z*t350 + deud_x
+                detad[i3 + 1] = Om0d_x*du_z - Om0d_z*du_x + dOm0d_x*t351 - dOm0d_z*t352 + deud_y
+                detad[i3 + 2] = -Om0d_x*du_y + Om0d_y*du_x - dOm0d_x*t350 + dOm0d_y*t352 + deud_z
             # differential: gravity in frame axes
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             dgamma[0] = -dth0_y*gamma_z + dth0_z*gamma_y
@@ -1836,12 +1702,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
             dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-            t464 = da0_x - dgamma_x
-            t465 = da0_y - dgamma_y
-            t466 = da0_z - dgamma_z
-            dzdd[N] = t464*turn_xx + t465*turn_yx + t466*turn_zx
-            dzdd[N + 1] = t464*turn_xy + t465*turn_yy + t466*turn_zy
-            dzdd[N + 2] = t464*turn_xz + t465*turn_yz + t466*turn_zz
+            t353 = da0_x - dgamma_x
+            t354 = da0_y - dgamma_y
+            t355 = da0_z - dgamma_z
+            dzdd[N] = t353*turn_xx + t354*turn_yx + t355*turn_zx
+            dzdd[N + 1] = t353*turn_xy + t354*turn_yy + t355*turn_zy
+            dzdd[N + 2] = t353*turn_xz + t354*turn_yz + t355*turn_zz
             dzdd[N + 3] = dOm0d_x*turn_xx + dOm0d_y*turn_yx + dOm0d_z*turn_zx
             dzdd[N + 4] = dOm0d_x*turn_xy + dOm0d_y*turn_yy + dOm0d_z*turn_zy
             dzdd[N + 5] = dOm0d_x*turn_xz + dOm0d_y*turn_yz + dOm0d_z*turn_zz
@@ -1866,15 +1732,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                t467 = X_z + u_z
-                t468 = X_y + u_y
-                t469 = X_x + u_x
+                t356 = X_z + u_z
+                t357 = X_y + u_y
+                t358 = X_x + u_x
                 dF_x += -df_x
                 dF_y += -df_y
                 dF_z += -df_z
-                dW_x += df_y*t467 - df_z*t468 - du_y*f_z + du_z*f_y
-                dW_y += -df_x*t467 + df_z*t469 + du_x*f_z - du_z*f_x
-                dW_z += df_x*t468 - df_y*t469 - du_x*f_y + du_y*f_x
+                dW_x += df_y*t356 - df_z*t357 - du_y*f_z + du_z*f_y
+                dW_y += -df_x*t356 + df_z*t358 + du_x*f_z - du_z*f_x
+                dW_z += df_x*t357 - df_y*t358 - du_x*f_y + du_y*f_x
             # differential: inertia and weight on the frame
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
@@ -1895,25 +1761,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t470 = -m_x*psi_y + m_y*psi_x
-                t471 = m_x*psi_z - m_z*psi_x
-                t472 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                t473 = dm_x*psi_z
-                t474 = dpsi_z*m_x
-                t475 = -dm_z*psi_x - dpsi_x*m_z + t473 + t474
-                t476 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t477 = e1*t476
-                t478 = -m_y*psi_z + m_z*psi_y
-                t479 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t470 -
-                    0.5*dpsi_y*m_z + dpsi_z*e0*t471 + (0.5)*dpsi_z*m_y - e0*psi_y*t472 +
-                    e0*psi_z*t475 + e1*psi_z*t471*t476 - psi_y*t470*t477)
-                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t470 + (0.5)*dpsi_x*m_z -
-                    dpsi_z*e0*t478 + e0*psi_x*t472 - e0*psi_z*t479 + e1*psi_x*t470*t476 -
-                    psi_z*t477*t478 - 0.5*t473 - 0.5*t474)
-                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t471 -
-                    0.5*dpsi_x*m_y + dpsi_y*e0*t478 + (0.5)*dpsi_y*m_x - e0*psi_x*t475 +
-                    e0*psi_y*t479 + e1*psi_y*t476*t478 - psi_x*t471*t477)
+                t359 = -m_x*psi_y + m_y*psi_x
+                t360 = m_x*psi_z - m_z*psi_x
+                t361 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                t362 = dm_x*psi_z
+                t363 = dpsi_z*m_x
+                t364 = -dm_z*psi_x - dpsi_x*m_z + t362 + t363
+                t365 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t366 = e1*t365
+                t367 = -m_y*psi_z + m_z*psi_y
+                t368 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t359 -
+                    0.5*dpsi_y*m_z + dpsi_z*e0*t360 + (0.5)*dpsi_z*m_y - e0*psi_y*t361 +
+                    e0*psi_z*t364 + e1*psi_z*t360*t365 - psi_y*t359*t366)
+                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t359 + (0.5)*dpsi_x*m_z -
+                    dpsi_z*e0*t367 + e0*psi_x*t361 - e0*psi_z*t368 + e1*psi_x*t359*t365 -
+                    psi_z*t366*t367 - 0.5*t362 - 0.5*t363)
+                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t360 -
+                    0.5*dpsi_x*m_y + dpsi_y*e0*t367 + (0.5)*dpsi_y*m_x - e0*psi_x*t364 +
+                    e0*psi_y*t368 + e1*psi_y*t365*t367 - psi_x*t360*t366)
             # differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
             for i in range(N_POSITIONS):
@@ -1925,12 +1791,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Gam_positionz_x, Gam_positionz_y, Gam_positionz_z = (Gam[3*(i3 + 2)],
                     Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                t480 = Gam_positiony_x*wp_x + Gam_positiony_y*wp_y + Gam_positiony_z*wp_z
-                t481 = Gam_positionz_x*wp_x + Gam_positionz_y*wp_y + Gam_positionz_z*wp_z
-                t482 = Gam_positionx_x*wp_x + Gam_positionx_y*wp_y + Gam_positionx_z*wp_z
-                rhs_x += du_y*t481 - du_z*t480
-                rhs_y += -du_x*t481 + du_z*t482
-                rhs_z += du_x*t480 - du_y*t482
+                t369 = Gam_positiony_x*wp_x + Gam_positiony_y*wp_y + Gam_positiony_z*wp_z
+                t370 = Gam_positionz_x*wp_x + Gam_positionz_y*wp_y + Gam_positionz_z*wp_z
+                t371 = Gam_positionx_x*wp_x + Gam_positionx_y*wp_y + Gam_positionx_z*wp_z
+                rhs_x += du_y*t370 - du_z*t369
+                rhs_y += -du_x*t370 + du_z*t371
+                rhs_z += du_x*t369 - du_y*t371
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
@@ -1943,36 +1809,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t483 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z
-                t484 = dpsi_y*t483
-                t485 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z
-                t486 = dpsi_z*t485
-                t487 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z
-                t488 = psi_x*t485 - psi_y*t487
-                t489 = e0*t488
-                t490 = dpsi_x*t485
-                t491 = dpsi_y*t487
-                t492 = e0*(t490 - t491)
-                t493 = -psi_x*t483 + psi_z*t487
-                t494 = dpsi_x*t483
-                t495 = dpsi_z*t487 - t494
-                t496 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t497 = e1*t496
-                t498 = t488*t497
-                t499 = psi_y*t483 - psi_z*t485
-                t500 = t484 - t486
-                rhs_x += (dpsi_y*t489 - dpsi_z*e0*t493 - e0*psi_z*t495 + psi_y*t492 + psi_y*t498 -
-                    psi_z*t493*t497 + (0.5)*t484 - 0.5*t486)
-                rhs_y += (-dpsi_x*t489 + dpsi_z*e0*t499 + (0.5)*dpsi_z*t487 + e0*psi_z*t500 +
-                    e1*psi_z*t496*t499 - psi_x*t492 - psi_x*t498 - 0.5*t494)
-                rhs_z += (dpsi_x*e0*t493 - dpsi_y*e0*t499 + e0*psi_x*t495 - e0*psi_y*t500 +
-                    psi_x*t493*t497 - psi_y*t497*t499 + (0.5)*t490 - 0.5*t491)
-            t501 = dW_x + rhs_x
-            t502 = dW_y + rhs_y
-            t503 = dW_z + rhs_z
-            dwp_x = Bxx*t501 + Byx*t502 + Bzx*t503
-            dwp_y = Bxy*t501 + Byy*t502 + Bzy*t503
-            dwp_z = Bxz*t501 + Byz*t502 + Bzz*t503
+                t372 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z
+                t373 = dpsi_y*t372
+                t374 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z
+                t375 = dpsi_z*t374
+                t376 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z
+                t377 = psi_x*t374 - psi_y*t376
+                t378 = e0*t377
+                t379 = dpsi_x*t374
+                t380 = dpsi_y*t376
+                t381 = e0*(t379 - t380)
+                t382 = -psi_x*t372 + psi_z*t376
+                t383 = dpsi_x*t372
+                t384 = dpsi_z*t376 - t383
+                t385 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t386 = e1*t385
+                t387 = t377*t386
+                t388 = psi_y*t372 - psi_z*t374
+                t389 = t373 - t375
+                rhs_x += (dpsi_y*t378 - dpsi_z*e0*t382 - e0*psi_z*t384 + psi_y*t381 + psi_y*t387 -
+                    psi_z*t382*t386 + (0.5)*t373 - 0.5*t375)
+                rhs_y += (-dpsi_x*t378 + dpsi_z*e0*t388 + (0.5)*dpsi_z*t376 + e0*psi_z*t389 +
+                    e1*psi_z*t385*t388 - psi_x*t381 - psi_x*t387 - 0.5*t383)
+                rhs_z += (dpsi_x*e0*t382 - dpsi_y*e0*t388 + e0*psi_x*t384 - e0*psi_y*t389 +
+                    psi_x*t382*t386 - psi_y*t386*t388 + (0.5)*t379 - 0.5*t380)
+            t390 = dW_x + rhs_x
+            t391 = dW_y + rhs_y
+            t392 = dW_z + rhs_z
+            dwp_x = Bxx*t390 + Byx*t391 + Bzx*t392
+            dwp_y = Bxy*t390 + Byy*t391 + Bzy*t392
+            dwp_z = Bxz*t390 + Byz*t391 + Bzz*t392
             # differential: force on the origin, through the frame
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -2025,58 +1891,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t504 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z
-                t505 = dpsi_z*t504
-                t506 = Gam_rotationy_x*dwp_x + Gam_rotationy_y*dwp_y + Gam_rotationy_z*dwp_z
-                t507 = psi_z*t506
-                t508 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z
-                t509 = Gam_rotationz_x*dwp_x + Gam_rotationz_y*dwp_y + Gam_rotationz_z*dwp_z
-                t510 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z
-                t511 = psi_x*t504 - psi_y*t510
-                t512 = dpsi_y*e0
-                t513 = m_x*psi_z - m_z*psi_x
-                t514 = dpsi_z*e0
-                t515 = dpsi_y*t510
-                t516 = Gam_rotationx_x*dwp_x + Gam_rotationx_y*dwp_y + Gam_rotationx_z*dwp_z
-                t517 = psi_y*t516
-                t518 = dpsi_x*t504 + psi_x*t506 - t515 - t517
-                t519 = e0*psi_y
-                t520 = dm_x*psi_z
-                t521 = dpsi_z*m_x
-                t522 = -dm_z*psi_x - dpsi_x*m_z + t520 + t521
-                t523 = e0*psi_z
-                t524 = -m_x*psi_y + m_y*psi_x
-                t525 = -psi_x*t508 + psi_z*t510
-                t526 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                t527 = dpsi_x*t508
-                t528 = psi_x*t509
-                t529 = dpsi_z*t510 + psi_z*t516 - t527 - t528
-                t530 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t531 = e1*t530
-                t532 = psi_y*t531
-                t533 = psi_z*t531
-                t534 = dpsi_x*e0
-                t535 = psi_y*t508 - psi_z*t504
-                t536 = e0*psi_x
-                t537 = dpsi_y*t508 + psi_y*t509 - t505 - t507
-                t538 = -m_y*psi_z + m_z*psi_y
-                t539 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                t540 = psi_x*t531
-                dg[j3] = (dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y + dpsi_y*e0*t524 -
-                    0.5*dpsi_y*m_z + (0.5)*dpsi_y*t508 + dpsi_z*e0*t525 + (0.5)*dpsi_z*m_y +
-                    e0*psi_y*t526 + e0*psi_z*t529 + e1*psi_y*t524*t530 + e1*psi_z*t525*t530 +
-                    (0.5)*psi_y*t509 - 0.5*t505 - 0.5*t507 - t511*t512 - t511*t532 - t513*t514 -
-                    t513*t533 - t516 - t518*t519 - t522*t523)
-                dg[j3 + 1] = (dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t511 + (0.5)*dpsi_x*m_z +
-                    dpsi_z*e0*t538 + (0.5)*dpsi_z*t510 + e0*psi_x*t518 + e0*psi_z*t539 +
-                    e1*psi_x*t511*t530 + e1*psi_z*t530*t538 + (0.5)*psi_z*t516 - t506 - t514*t535
-                    - 0.5*t520 - 0.5*t521 - t523*t537 - t524*t534 - t524*t540 - t526*t536 -
-                    0.5*t527 - 0.5*t528 - t533*t535)
-                dg[j3 + 2] = ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t513 -
-                    0.5*dpsi_x*m_y + (0.5)*dpsi_x*t504 + dpsi_y*e0*t535 + (0.5)*dpsi_y*m_x +
-                    e0*psi_x*t522 + e0*psi_y*t537 + e1*psi_x*t513*t530 + e1*psi_y*t530*t535 +
-                    (0.5)*psi_x*t506 - t509 - t512*t538 - 0.5*t515 - 0.5*t517 - t519*t539 -
-                    t525*t534 - t525*t540 - t529*t536 - t532*t538)
+                t393 = -Gam_rotationz_x*wp_x - Gam_rotationz_y*wp_y - Gam_rotationz_z*wp_z + m_z
+                t394 = dpsi_y*t393
+                t395 = Gam_rotationz_x*dwp_x + Gam_rotationz_y*dwp_y + Gam_rotationz_z*dwp_z - dm_z
+                t396 = -t395
+                t397 = psi_y*t396
+                t398 = -Gam_rotationy_x*wp_x - Gam_rotationy_y*wp_y - Gam_rotationy_z*wp_z + m_y
+                t399 = Gam_rotationy_x*dwp_x + Gam_rotationy_y*dwp_y + Gam_rotationy_z*dwp_z - dm_y
+                t400 = -t399
+                t401 = -Gam_rotationx_x*wp_x - Gam_rotationx_y*wp_y - Gam_rotationx_z*wp_z + m_x
+                t402 = -psi_x*t393 + psi_z*t401
+                t403 = Gam_rotationx_x*dwp_x + Gam_rotationx_y*dwp_y + Gam_rotationx_z*dwp_z - dm_x
+                t404 = -t403
+                t405 = -dpsi_x*t393 + dpsi_z*t401 - psi_x*t396 + psi_z*t404
+                t406 = psi_x*t398 - psi_y*t401
+                t407 = dpsi_x*t398
+                t408 = psi_x*t400
+                t409 = -dpsi_y*t401 - psi_y*t404 + t407 + t408
+                t410 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t411 = e1*t410
+                t412 = psi_y*t393 - psi_z*t398
+                t413 = -dpsi_z*t398 - psi_z*t400 + t394 + t397
+                dg[j3] = (dpsi_y*e0*t406 - dpsi_z*e0*t402 + (0.5)*dpsi_z*t398 + e0*psi_y*t409 -
+                    e0*psi_z*t405 + e1*psi_y*t406*t410 + (0.5)*psi_z*t400 - psi_z*t402*t411 -
+                    0.5*t394 - 0.5*t397 - t403)
+                dg[j3 + 1] = (-dpsi_x*e0*t406 + (0.5)*dpsi_x*t393 + dpsi_z*e0*t412 -
+                    0.5*dpsi_z*t401 - e0*psi_x*t409 + e0*psi_z*t413 + e1*psi_z*t410*t412 +
+                    (0.5)*psi_x*t396 - psi_x*t406*t411 - 0.5*psi_z*t404 - t399)
+                dg[j3 + 2] = (dpsi_x*e0*t402 - dpsi_y*e0*t412 + (0.5)*dpsi_y*t401 + e0*psi_x*t405
+                    - e0*psi_y*t413 + e1*psi_x*t402*t410 + (0.5)*psi_y*t404 - psi_y*t411*t412 -
+                    t395 - 0.5*t407 - 0.5*t408)
             # differential: force of the internal modes
             for k in range(MODES, n):
                 Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
@@ -2191,106 +2035,93 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdgt_x, bdgt_y, bdgt_z = bdg[j3], bdg[j3 + 1], bdg[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t541 = e0*psi_y
-                t542 = m_y*t541
-                t543 = e0*psi_z
-                t544 = m_z*t543
-                t545 = m_x*psi_y
-                t546 = m_y*psi_x - t545
-                t547 = 2*e1
-                t548 = psi_x*t547
-                t549 = psi_y*t548
-                t550 = t546*t549
-                t551 = m_x*psi_z
-                t552 = m_z*psi_x
-                t553 = t551 - t552
-                t554 = psi_z*t548
-                t555 = t553*t554
-                t556 = Gam_rotationy_x*wp_x
-                t557 = Gam_rotationy_y*wp_y
-                t558 = Gam_rotationy_z*wp_z
-                t559 = t556 + t557 + t558
-                t560 = Gam_rotationz_x*wp_x
-                t561 = Gam_rotationz_y*wp_y
-                t562 = Gam_rotationz_z*wp_z
-                t563 = t560 + t561 + t562
-                t564 = -t563
-                t565 = Gam_rotationx_x*wp_x
-                t566 = Gam_rotationx_y*wp_y
-                t567 = Gam_rotationx_z*wp_z
-                t568 = t565 + t566 + t567
-                t569 = psi_x*t559 - psi_y*t568
-                t570 = t549*t569
-                t571 = -psi_x*t563 + psi_z*t568
-                t572 = t554*t571
-                t573 = psi_x*psi_x
-                t574 = t547*t573
-                t575 = m_y*psi_z
-                t576 = m_z*psi_y - t575
-                t577 = psi_y*t563 - psi_z*t559
-                t578 = e0*t546 - e0*t569 - 0.5*m_z + (0.5)*t560 + (0.5)*t561 + (0.5)*t562
-                t579 = e0*psi_x
-                t580 = e0*t553 - e0*t571 - 0.5*m_y + (0.5)*t556 + (0.5)*t557 + (0.5)*t558
-                t581 = m_x*t579
-                t582 = psi_y*psi_z*t547
-                t583 = t576*t582
-                t584 = -t568
-                t585 = t577*t582
-                t586 = psi_y*psi_y
-                t587 = t547*t586
-                t588 = e0*t576 - e0*t577 - 0.5*m_x + (0.5)*t565 + (0.5)*t566 + (0.5)*t567
-                t589 = -t559
-                t590 = psi_z*psi_z
-                t591 = t547*t590
-                t592 = (0.5)*psi_z
-                t593 = psi_x*t541
-                t594 = (0.5)*psi_y
-                t595 = psi_x*t543
-                t596 = e0*t586
-                t597 = e0*t590 - 1
-                t598 = (0.5)*psi_x
-                t599 = psi_z*t541
-                t600 = e0*t573
-                t601 = -Gam_rotationx_x*psi_y + Gam_rotationy_x*psi_x
-                t602 = Gam_rotationx_x*psi_z - Gam_rotationz_x*psi_x
-                t603 = -Gam_rotationy_x*psi_z + Gam_rotationz_x*psi_y
-                t604 = -Gam_rotationx_y*psi_y + Gam_rotationy_y*psi_x
-                t605 = Gam_rotationx_y*psi_z - Gam_rotationz_y*psi_x
-                t606 = -Gam_rotationy_y*psi_z + Gam_rotationz_y*psi_y
-                t607 = -Gam_rotationx_z*psi_y + Gam_rotationy_z*psi_x
-                t608 = Gam_rotationx_z*psi_z - Gam_rotationz_z*psi_x
-                t609 = -Gam_rotationy_z*psi_z + Gam_rotationz_z*psi_y
-                bdy[j3] += (bdgt_x*(-t541*t559 + t542 + t543*t564 + t544 + t550 - t555 - t570 +
-                    t572) + bdgt_y*(-e0*m_y*psi_x + e0*psi_x*t559 + 2*e1*psi_x*psi_z*t576 +
-                    2*e1*t569*t573 - t546*t574 - t554*t577 - t578) + bdgt_z*(-e0*t552 - t549*t576
-                    + t549*t577 + t553*t574 - t564*t579 - t571*t574 + t580))
-                bdy[j3 + 1] += (bdgt_x*(-e0*t545 - t541*t584 + t546*t587 - t553*t582 - t569*t587 +
-                    t571*t582 + t578) + bdgt_y*(-t543*t563 + t544 - t550 + t570 + t579*t584 + t581
-                    + t583 - t585) + bdgt_z*(-e0*m_z*psi_y + e0*psi_y*t563 + 2*e1*psi_x*psi_y*t553
-                    + 2*e1*t577*t586 - t549*t571 - t576*t587 - t588))
-                bdy[j3 + 2] += (bdgt_x*(e0*psi_z*t568 - e0*t551 + 2*e1*psi_y*psi_z*t546 +
-                    2*e1*t571*t590 - t553*t591 - t569*t582 - t580) + bdgt_y*(-e0*t575 - t543*t589
-                    - t546*t554 + t554*t569 + t576*t591 - t577*t591 + t588) + bdgt_z*(t541*t589 +
-                    t542 + t555 - t568*t579 - t572 + t581 - t583 + t585))
-                bds[j3] += bdgt_x*(-t596 - t597) + bdgt_y*(-t592 + t593) + bdgt_z*(t594 + t595)
-                bds[j3 + 1] += bdgt_x*(t592 + t593) + bdgt_y*(-t597 - t600) + bdgt_z*(-t598 + t599)
-                bds[j3 + 2] += (bdgt_x*(-t594 + t595) + bdgt_y*(t598 + t599) + bdgt_z*(-t596 -
-                    t600 + 1))
-                bdwp_x += (bdgt_x*(-Gam_rotationx_x - Gam_rotationy_x*t592 +
-                    (0.5)*Gam_rotationz_x*psi_y + e0*psi_z*t602 - t541*t601) +
-                    bdgt_y*((0.5)*Gam_rotationx_x*psi_z - Gam_rotationy_x - Gam_rotationz_x*t598 +
-                    e0*psi_x*t601 - t543*t603) + bdgt_z*(-Gam_rotationx_x*t594 +
-                    (0.5)*Gam_rotationy_x*psi_x - Gam_rotationz_x + e0*psi_y*t603 - t579*t602))
-                bdwp_y += (bdgt_x*(-Gam_rotationx_y - Gam_rotationy_y*t592 +
-                    (0.5)*Gam_rotationz_y*psi_y + e0*psi_z*t605 - t541*t604) +
-                    bdgt_y*((0.5)*Gam_rotationx_y*psi_z - Gam_rotationy_y - Gam_rotationz_y*t598 +
-                    e0*psi_x*t604 - t543*t606) + bdgt_z*(-Gam_rotationx_y*t594 +
-                    (0.5)*Gam_rotationy_y*psi_x - Gam_rotationz_y + e0*psi_y*t606 - t579*t605))
-                bdwp_z += (bdgt_x*(-Gam_rotationx_z - Gam_rotationy_z*t592 +
-                    (0.5)*Gam_rotationz_z*psi_y + e0*psi_z*t608 - t541*t607) +
-                    bdgt_y*((0.5)*Gam_rotationx_z*psi_z - Gam_rotationy_z - Gam_rotationz_z*t598 +
-                    e0*psi_x*t607 - t543*t609) + bdgt_z*(-Gam_rotationx_z*t594 +
-                    (0.5)*Gam_rotationy_z*psi_x - Gam_rotationz_z + e0*psi_y*t609 - t579*t608))
+                t414 = Gam_rotationy_x*wp_x
+                t415 = Gam_rotationy_y*wp_y
+                t416 = Gam_rotationy_z*wp_z
+                t417 = -m_y + t414 + t415 + t416
+                t418 = -t417
+                t419 = e0*psi_y
+                t420 = Gam_rotationz_x*wp_x
+                t421 = Gam_rotationz_y*wp_y
+                t422 = Gam_rotationz_z*wp_z
+                t423 = -m_z + t420 + t421 + t422
+                t424 = e0*t423
+                t425 = psi_x*t418
+                t426 = Gam_rotationx_x*wp_x
+                t427 = Gam_rotationx_y*wp_y
+                t428 = Gam_rotationx_z*wp_z
+                t429 = -m_x + t426 + t427 + t428
+                t430 = -t429
+                t431 = -psi_y*t430 + t425
+                t432 = 2*e1
+                t433 = psi_x*t432
+                t434 = psi_y*t433
+                t435 = t431*t434
+                t436 = -t423
+                t437 = -psi_x*t436 + psi_z*t430
+                t438 = psi_z*t433
+                t439 = t437*t438
+                t440 = psi_x*psi_x
+                t441 = t432*t440
+                t442 = psi_y*t436
+                t443 = -psi_z*t418 + t442
+                t444 = e0*t437 - 0.5*m_y + (0.5)*t414 + (0.5)*t415 + (0.5)*t416
+                t445 = e0*t431 - 0.5*m_z + (0.5)*t420 + (0.5)*t421 + (0.5)*t422
+                t446 = e0*psi_x
+                t447 = psi_y*psi_z*t432
+                t448 = -t443*t447
+                t449 = psi_y*psi_y
+                t450 = t432*t449
+                t451 = e0*t443 - 0.5*m_x + (0.5)*t426 + (0.5)*t427 + (0.5)*t428
+                t452 = e0*psi_z
+                t453 = psi_z*psi_z
+                t454 = t432*t453
+                t455 = (0.5)*psi_z
+                t456 = psi_x*t419
+                t457 = (0.5)*psi_y
+                t458 = psi_x*t452
+                t459 = e0*t449
+                t460 = e0*t453 - 1
+                t461 = (0.5)*psi_x
+                t462 = psi_z*t419
+                t463 = e0*t440
+                t464 = -Gam_rotationx_x*psi_z + Gam_rotationz_x*psi_x
+                t465 = Gam_rotationx_x*psi_y - Gam_rotationy_x*psi_x
+                t466 = Gam_rotationy_x*psi_z - Gam_rotationz_x*psi_y
+                t467 = -Gam_rotationx_y*psi_z + Gam_rotationz_y*psi_x
+                t468 = Gam_rotationx_y*psi_y - Gam_rotationy_y*psi_x
+                t469 = Gam_rotationy_y*psi_z - Gam_rotationz_y*psi_y
+                t470 = -Gam_rotationx_z*psi_z + Gam_rotationz_z*psi_x
+                t471 = Gam_rotationx_z*psi_y - Gam_rotationy_z*psi_x
+                t472 = Gam_rotationy_z*psi_z - Gam_rotationz_z*psi_y
+                bdy[j3] += (bdgt_x*(-psi_z*t424 + t418*t419 + t435 - t439) + bdgt_y*(-e0*t425 +
+                    2*e1*psi_x*psi_z*t443 - t431*t441 - t445) + bdgt_z*(psi_x*t424 - t434*t443 +
+                    t437*t441 + t444))
+                bdy[j3 + 1] += (bdgt_x*(t419*t429 + t431*t450 - t437*t447 + t445) +
+                    bdgt_y*(e0*psi_z*t436 - t429*t446 - t435 - t448) + bdgt_z*(-e0*t442 +
+                    2*e1*psi_x*psi_y*t437 - t443*t450 - t451))
+                bdy[j3 + 2] += (bdgt_x*(-e0*psi_z*t430 + 2*e1*psi_y*psi_z*t431 - t437*t454 - t444)
+                    + bdgt_y*(t417*t452 - t431*t438 + t443*t454 + t451) + bdgt_z*(-t417*t419 +
+                    t430*t446 + t439 + t448))
+                bds[j3] += bdgt_x*(-t459 - t460) + bdgt_y*(-t455 + t456) + bdgt_z*(t457 + t458)
+                bds[j3 + 1] += bdgt_x*(t455 + t456) + bdgt_y*(-t460 - t463) + bdgt_z*(-t461 + t462)
+                bds[j3 + 2] += (bdgt_x*(-t457 + t458) + bdgt_y*(t461 + t462) + bdgt_z*(-t459 -
+                    t463 + 1))
+                bdwp_x += (bdgt_x*(-Gam_rotationx_x - Gam_rotationy_x*t455 +
+                    (0.5)*Gam_rotationz_x*psi_y + e0*psi_y*t465 - t452*t464) +
+                    bdgt_y*((0.5)*Gam_rotationx_x*psi_z - Gam_rotationy_x - Gam_rotationz_x*t461 +
+                    e0*psi_z*t466 - t446*t465) + bdgt_z*(-Gam_rotationx_x*t457 +
+                    (0.5)*Gam_rotationy_x*psi_x - Gam_rotationz_x + e0*psi_x*t464 - t419*t466))
+                bdwp_y += (bdgt_x*(-Gam_rotationx_y - Gam_rotationy_y*t455 +
+                    (0.5)*Gam_rotationz_y*psi_y + e0*psi_y*t468 - t452*t467) +
+                    bdgt_y*((0.5)*Gam_rotationx_y*psi_z - Gam_rotationy_y - Gam_rotationz_y*t461 +
+                    e0*psi_z*t469 - t446*t468) + bdgt_z*(-Gam_rotationx_y*t457 +
+                    (0.5)*Gam_rotationy_y*psi_x - Gam_rotationz_y + e0*psi_x*t467 - t419*t469))
+                bdwp_z += (bdgt_x*(-Gam_rotationx_z - Gam_rotationy_z*t455 +
+                    (0.5)*Gam_rotationz_z*psi_y + e0*psi_y*t471 - t452*t470) +
+                    bdgt_y*((0.5)*Gam_rotationx_z*psi_z - Gam_rotationy_z - Gam_rotationz_z*t461 +
+                    e0*psi_z*t472 - t446*t471) + bdgt_z*(-Gam_rotationx_z*t457 +
+                    (0.5)*Gam_rotationy_z*psi_x - Gam_rotationz_z + e0*psi_x*t470 - t419*t472))
             # transposed: differential: force on the nodes, left in frame axes
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -2336,12 +2167,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdwp_z += Gam_positionx_z*bdF_x + Gam_positiony_z*bdF_y + Gam_positionz_z*bdF_z
             # transposed: differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
-            t610 = bdwp_x + rhs_x
-            t611 = bdwp_y + rhs_y
-            t612 = bdwp_z + rhs_z
-            mdwp_x = Bxx*t610 + Bxy*t611 + Bxz*t612
-            mdwp_y = Byx*t610 + Byy*t611 + Byz*t612
-            mdwp_z = Bzx*t610 + Bzy*t611 + Bzz*t612
+            t473 = bdwp_x + rhs_x
+            t474 = bdwp_y + rhs_y
+            t475 = bdwp_z + rhs_z
+            mdwp_x = Bxx*t473 + Bxy*t474 + Bxz*t475
+            mdwp_y = Byx*t473 + Byy*t474 + Byz*t475
+            mdwp_z = Bzx*t473 + Bzy*t474 + Bzz*t475
             # transposed: differential: B^T wp = W
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -2351,12 +2182,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gam[3*(i3 + 1) + 1], Gam[3*(i3 + 1) + 2])
                 Gam_positionz_x, Gam_positionz_y, Gam_positionz_z = (Gam[3*(i3 + 2)],
                     Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
-                t613 = Gam_positionz_x*wp_x + Gam_positionz_y*wp_y + Gam_positionz_z*wp_z
-                t614 = Gam_positiony_x*wp_x + Gam_positiony_y*wp_y + Gam_positiony_z*wp_z
-                t615 = Gam_positionx_x*wp_x + Gam_positionx_y*wp_y + Gam_positionx_z*wp_z
-                bdy[i3] += -mdwp_y*t613 + mdwp_z*t614
-                bdy[i3 + 1] += mdwp_x*t613 - mdwp_z*t615
-                bdy[i3 + 2] += -mdwp_x*t614 + mdwp_y*t615
+                t476 = Gam_positionz_x*wp_x + Gam_positionz_y*wp_y + Gam_positionz_z*wp_z
+                t477 = Gam_positiony_x*wp_x + Gam_positiony_y*wp_y + Gam_positiony_z*wp_z
+                t478 = Gam_positionx_x*wp_x + Gam_positionx_y*wp_y + Gam_positionx_z*wp_z
+                bdy[i3] += -mdwp_y*t476 + mdwp_z*t477
+                bdy[i3 + 1] += mdwp_x*t476 - mdwp_z*t478
+                bdy[i3 + 2] += -mdwp_x*t477 + mdwp_y*t478
             # transposed: differential: B^T wp = W
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -2369,52 +2200,52 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gam[3*(j3 + 2) + 1], Gam[3*(j3 + 2) + 2])
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t616 = Gam_rotationy_x*wp_x
-                t617 = Gam_rotationy_y*wp_y
-                t618 = Gam_rotationy_z*wp_z
-                t619 = t616 + t617 + t618
-                t620 = e0*psi_y
-                t621 = Gam_rotationz_x*wp_x
-                t622 = Gam_rotationz_y*wp_y
-                t623 = Gam_rotationz_z*wp_z
-                t624 = t621 + t622 + t623
-                t625 = -t624
-                t626 = psi_x*t619
-                t627 = Gam_rotationx_x*wp_x
-                t628 = Gam_rotationx_y*wp_y
-                t629 = Gam_rotationx_z*wp_z
-                t630 = t627 + t628 + t629
-                t631 = -psi_y*t630 + t626
-                t632 = 2*e1
-                t633 = psi_x*t632
-                t634 = psi_y*t633
-                t635 = t631*t634
-                t636 = -psi_x*t624 + psi_z*t630
-                t637 = psi_z*t633
-                t638 = t636*t637
-                t639 = psi_x*psi_x*t632
-                t640 = psi_y*t624
-                t641 = -psi_z*t619 + t640
-                t642 = e0*t631 + (0.5)*t621 + (0.5)*t622 + (0.5)*t623
-                t643 = e0*t636 + (0.5)*t616 + (0.5)*t617 + (0.5)*t618
-                t644 = e0*psi_z
-                t645 = -t630
-                t646 = e0*psi_x
-                t647 = psi_y*psi_z*t632
-                t648 = -t641*t647
-                t649 = psi_y*psi_y*t632
-                t650 = e0*t641 + (0.5)*t627 + (0.5)*t628 + (0.5)*t629
-                t651 = -t619
-                t652 = psi_z*psi_z*t632
-                bdy[j3] += (-mdwp_x*(e0*psi_z*t625 - t619*t620 - t635 + t638) - mdwp_y*(e0*t626 +
-                    t631*t639 - t637*t641 + t642) - mdwp_z*(-e0*psi_x*t625 + 2*e1*psi_x*psi_y*t641
-                    - t636*t639 - t643))
-                bdy[j3 + 1] += (-mdwp_x*(2*e1*psi_y*psi_z*t636 - t620*t645 - t631*t649 - t642) -
-                    mdwp_y*(-t624*t644 + t635 + t645*t646 + t648) - mdwp_z*(e0*t640 - t634*t636 +
-                    t641*t649 + t650))
-                bdy[j3 + 2] += (-mdwp_x*(e0*psi_z*t630 - t631*t647 + t636*t652 + t643) -
-                    mdwp_y*(2*e1*psi_x*psi_z*t631 - t641*t652 - t644*t651 - t650) -
-                    mdwp_z*(e0*psi_y*t651 - t630*t646 - t638 - t648))
+                t479 = Gam_rotationy_x*wp_x
+                t480 = Gam_rotationy_y*wp_y
+                t481 = Gam_rotationy_z*wp_z
+                t482 = t479 + t480 + t481
+                t483 = e0*psi_y
+                t484 = Gam_rotationz_x*wp_x
+                t485 = Gam_rotationz_y*wp_y
+                t486 = Gam_rotationz_z*wp_z
+                t487 = t484 + t485 + t486
+                t488 = -t487
+                t489 = psi_x*t482
+                t490 = Gam_rotationx_x*wp_x
+                t491 = Gam_rotationx_y*wp_y
+                t492 = Gam_rotationx_z*wp_z
+                t493 = t490 + t491 + t492
+                t494 = -psi_y*t493 + t489
+                t495 = 2*e1
+                t496 = psi_x*t495
+                t497 = psi_y*t496
+                t498 = t494*t497
+                t499 = -psi_x*t487 + psi_z*t493
+                t500 = psi_z*t496
+                t501 = t499*t500
+                t502 = psi_x*psi_x*t495
+                t503 = psi_y*t487
+                t504 = -psi_z*t482 + t503
+                t505 = e0*t494 + (0.5)*t484 + (0.5)*t485 + (0.5)*t486
+                t506 = e0*t499 + (0.5)*t479 + (0.5)*t480 + (0.5)*t481
+                t507 = e0*psi_z
+                t508 = -t493
+                t509 = e0*psi_x
+                t510 = psi_y*psi_z*t495
+                t511 = -t504*t510
+                t512 = psi_y*psi_y*t495
+                t513 = e0*t504 + (0.5)*t490 + (0.5)*t491 + (0.5)*t492
+                t514 = -t482
+                t515 = psi_z*psi_z*t495
+                bdy[j3] += (-mdwp_x*(e0*psi_z*t488 - t482*t483 - t498 + t501) - mdwp_y*(e0*t489 +
+                    t494*t502 - t500*t504 + t505) - mdwp_z*(-e0*psi_x*t488 + 2*e1*psi_x*psi_y*t504
+                    - t499*t502 - t506))
+                bdy[j3 + 1] += (-mdwp_x*(2*e1*psi_y*psi_z*t499 - t483*t508 - t494*t512 - t505) -
+                    mdwp_y*(-t487*t507 + t498 + t508*t509 + t511) - mdwp_z*(e0*t503 - t497*t499 +
+                    t504*t512 + t513))
+                bdy[j3 + 2] += (-mdwp_x*(e0*psi_z*t493 - t494*t510 + t499*t515 + t506) -
+                    mdwp_y*(2*e1*psi_x*psi_z*t494 - t504*t515 - t507*t514 - t513) -
+                    mdwp_z*(e0*psi_y*t514 - t493*t509 - t501 - t511))
             # transposed: differential: B^T wp = W
             bdW_x += mdwp_x
             bdW_y += mdwp_y
@@ -2426,53 +2257,53 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t653 = e0*psi_y
-                t654 = m_y*t653
-                t655 = e0*psi_z
-                t656 = m_z*t655
-                t657 = -m_x*psi_y + m_y*psi_x
-                t658 = 2*e1
-                t659 = psi_x*t658
-                t660 = psi_y*t659
-                t661 = t657*t660
-                t662 = m_x*psi_z
-                t663 = -m_z*psi_x + t662
-                t664 = psi_z*t659
-                t665 = t663*t664
-                t666 = psi_x*psi_x
-                t667 = t658*t666
-                t668 = -m_y*psi_z + m_z*psi_y
-                t669 = e0*t657 + (0.5)*m_z
-                t670 = e0*t663 + (0.5)*m_y
-                t671 = e0*m_x*psi_x
-                t672 = psi_y*psi_z*t658
-                t673 = t668*t672
-                t674 = psi_y*psi_y
-                t675 = t658*t674
-                t676 = e0*t668 + (0.5)*m_x
-                t677 = psi_z*psi_z
-                t678 = t658*t677
-                t679 = (0.5)*psi_z
-                t680 = psi_x*t653
-                t681 = (0.5)*psi_y
-                t682 = psi_x*t655
-                t683 = e0*t674
-                t684 = e0*t677 - 1
-                t685 = (0.5)*psi_x
-                t686 = psi_z*t653
-                t687 = e0*t666
-                bdy[j3] += (bdW_x*(-t654 - t656 - t661 + t665) + bdW_y*(e0*m_y*psi_x + t657*t667 -
-                    t664*t668 + t669) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t668 - t663*t667 -
-                    t670))
-                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t663 - t657*t675 - t669) +
-                    bdW_y*(-t656 + t661 - t671 - t673) + bdW_z*(e0*m_z*psi_y - t660*t663 +
-                    t668*t675 + t676))
-                bdy[j3 + 2] += (bdW_x*(e0*t662 - t657*t672 + t663*t678 + t670) +
-                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t657 - t668*t678 - t676) + bdW_z*(-t654
-                    - t665 - t671 + t673))
-                bds[j3] += bdW_x*(t683 + t684) + bdW_y*(-t679 - t680) + bdW_z*(t681 - t682)
-                bds[j3 + 1] += bdW_x*(t679 - t680) + bdW_y*(t684 + t687) + bdW_z*(-t685 - t686)
-                bds[j3 + 2] += bdW_x*(-t681 - t682) + bdW_y*(t685 - t686) + bdW_z*(t683 + t687 - 1)
+                t516 = e0*psi_y
+                t517 = m_y*t516
+                t518 = e0*psi_z
+                t519 = m_z*t518
+                t520 = -m_x*psi_y + m_y*psi_x
+                t521 = 2*e1
+                t522 = psi_x*t521
+                t523 = psi_y*t522
+                t524 = t520*t523
+                t525 = m_x*psi_z
+                t526 = -m_z*psi_x + t525
+                t527 = psi_z*t522
+                t528 = t526*t527
+                t529 = psi_x*psi_x
+                t530 = t521*t529
+                t531 = -m_y*psi_z + m_z*psi_y
+                t532 = e0*t520 + (0.5)*m_z
+                t533 = e0*t526 + (0.5)*m_y
+                t534 = e0*m_x*psi_x
+                t535 = psi_y*psi_z*t521
+                t536 = t531*t535
+                t537 = psi_y*psi_y
+                t538 = t521*t537
+                t539 = e0*t531 + (0.5)*m_x
+                t540 = psi_z*psi_z
+                t541 = t521*t540
+                t542 = (0.5)*psi_z
+                t543 = psi_x*t516
+                t544 = (0.5)*psi_y
+                t545 = psi_x*t518
+                t546 = e0*t537
+                t547 = e0*t540 - 1
+                t548 = (0.5)*psi_x
+                t549 = psi_z*t516
+                t550 = e0*t529
+                bdy[j3] += (bdW_x*(-t517 - t519 - t524 + t528) + bdW_y*(e0*m_y*psi_x + t520*t530 -
+                    t527*t531 + t532) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t531 - t526*t530 -
+                    t533))
+                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t526 - t520*t538 - t532) +
+                    bdW_y*(-t519 + t524 - t534 - t536) + bdW_z*(e0*m_z*psi_y - t523*t526 +
+                    t531*t538 + t539))
+                bdy[j3 + 2] += (bdW_x*(e0*t525 - t520*t535 + t526*t541 + t533) +
+                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t520 - t531*t541 - t539) + bdW_z*(-t517
+                    - t528 - t534 + t536))
+                bds[j3] += bdW_x*(t546 + t547) + bdW_y*(-t542 - t543) + bdW_z*(t544 - t545)
+                bds[j3 + 1] += bdW_x*(t542 - t543) + bdW_y*(t547 + t550) + bdW_z*(-t548 - t549)
+                bds[j3 + 2] += bdW_x*(-t544 - t545) + bdW_y*(t548 - t549) + bdW_z*(t546 + t550 - 1)
             # transposed: differential: inertia and weight on the frame
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
@@ -2488,12 +2319,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t688 = X_y + u_y
-                t689 = X_z + u_z
-                t690 = X_x + u_x
-                bds[i3] += -bdF_x - bdW_y*t689 + bdW_z*t688
-                bds[i3 + 1] += -bdF_y + bdW_x*t689 - bdW_z*t690
-                bds[i3 + 2] += -bdF_z - bdW_x*t688 + bdW_y*t690
+                t551 = X_y + u_y
+                t552 = X_z + u_z
+                t553 = X_x + u_x
+                bds[i3] += -bdF_x - bdW_y*t552 + bdW_z*t551
+                bds[i3 + 1] += -bdF_y + bdW_x*t552 - bdW_z*t553
+                bds[i3 + 2] += -bdF_z - bdW_x*t551 + bdW_y*t553
                 bdy[i3] += bdW_y*f_z - bdW_z*f_y
                 bdy[i3 + 1] += -bdW_x*f_z + bdW_z*f_x
                 bdy[i3 + 2] += bdW_x*f_y - bdW_y*f_x
@@ -2515,15 +2346,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             bdfelt_x, bdfelt_y, bdfelt_z = bdzdd[N], bdzdd[N + 1], bdzdd[N + 2]
             bdturning_x, bdturning_y, bdturning_z = bdzdd[N + 3], bdzdd[N + 4], bdzdd[N + 5]
             bdspin_x, bdspin_y, bdspin_z = bdzd[N], bdzd[N + 1], bdzd[N + 2]
-            t691 = bdfelt_x*turn_xx + bdfelt_y*turn_xy + bdfelt_z*turn_xz
-            t692 = bdfelt_x*turn_yx + bdfelt_y*turn_yy + bdfelt_z*turn_yz
-            t693 = bdfelt_x*turn_zx + bdfelt_y*turn_zy + bdfelt_z*turn_zz
-            bda0_x += t691
-            bda0_y += t692
-            bda0_z += t693
-            bdgamma[0] += -t691
-            bdgamma[1] += -t692
-            bdgamma[2] += -t693
+            t554 = bdfelt_x*turn_xx + bdfelt_y*turn_xy + bdfelt_z*turn_xz
+            t555 = bdfelt_x*turn_yx + bdfelt_y*turn_yy + bdfelt_z*turn_yz
+            t556 = bdfelt_x*turn_zx + bdfelt_y*turn_zy + bdfelt_z*turn_zz
+            bda0_x += t554
+            bda0_y += t555
+            bda0_z += t556
+            bdgamma[0] += -t554
+            bdgamma[1] += -t555
+            bdgamma[2] += -t556
             bdOm0d_x += bdturning_x*turn_xx + bdturning_y*turn_xy + bdturning_z*turn_xz
             bdOm0d_y += bdturning_x*turn_yx + bdturning_y*turn_yy + bdturning_z*turn_yz
             bdOm0d_z += bdturning_x*turn_zx + bdturning_y*turn_zy + bdturning_z*turn_zz
@@ -2575,15 +2406,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 bdeud_x, bdeud_y, bdeud_z = bdetad[i3], bdetad[i3 + 1], bdetad[i3 + 2]
-                t694 = X_z + u_z
-                t695 = X_y + u_y
-                t696 = X_x + u_x
+                t557 = X_z + u_z
+                t558 = X_y + u_y
+                t559 = X_x + u_x
                 bdy[i3] += Om0d_y*bdeud_z - Om0d_z*bdeud_y
                 bdy[i3 + 1] += -Om0d_x*bdeud_z + Om0d_z*bdeud_x
                 bdy[i3 + 2] += Om0d_x*bdeud_y - Om0d_y*bdeud_x
-                bdOm0d_x += bdeud_y*t694 - bdeud_z*t695
-                bdOm0d_y += -bdeud_x*t694 + bdeud_z*t696
-                bdOm0d_z += bdeud_x*t695 - bdeud_y*t696
+                bdOm0d_x += bdeud_y*t557 - bdeud_z*t558
+                bdOm0d_y += -bdeud_x*t557 + bdeud_z*t559
+                bdOm0d_z += bdeud_x*t558 - bdeud_y*t559
             # transposed: differential: rate: rates of the elastic rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -2591,63 +2422,61 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdepd_x, bdepd_y, bdepd_z = bdetad[j3], bdetad[j3 + 1], bdetad[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t697 = 2*e1
-                t698 = psi_x*t697
-                t699 = psi_y*psi_z*t698
-                t700 = -t699 - 0.5
-                t701 = e0*psi_y
-                t702 = psi_x*psi_x
-                t703 = t697*t702
-                t704 = psi_y*t703
-                t705 = -t701 - t704
-                t706 = psi_z*psi_z
-                t707 = t698*t706
-                t708 = e0*psi_x
-                t709 = psi_x*psi_x*psi_x*t697 + 2*t708
-                t710 = 0.5 - t699
-                t711 = e0*psi_z
-                t712 = psi_z*t703
-                t713 = -t711 - t712
-                t714 = psi_y*psi_y
-                t715 = t698*t714
-                t716 = -t708 - t715
-                t717 = psi_y*t697*t706
-                t718 = psi_y*psi_y*psi_y*t697 + 2*t701
-                t719 = psi_z*t697*t714
-                t720 = -t711 - t719
-                t721 = -t707 - t708
-                t722 = psi_z*psi_z*psi_z*t697 + 2*t711
-                t723 = -t701 - t717
-                t724 = (0.5)*psi_z
-                t725 = psi_x*t701
-                t726 = (0.5)*psi_y
-                t727 = psi_x*t711
-                t728 = e0*t714
-                t729 = e0*t706 - 1
-                t730 = (0.5)*psi_x
-                t731 = psi_z*t701
-                t732 = e0*t702
-                bdy[j3] += (bdepd_x*(Om0d_x*(t707 + t715) + Om0d_y*t705 + Om0d_z*t713) +
-                    bdepd_y*(Om0d_x*t705 + Om0d_y*(t707 + t709) + Om0d_z*t700) +
-                    bdepd_z*(Om0d_x*t713 + Om0d_y*t710 + Om0d_z*(t709 + t715)))
-                bdy[j3 + 1] += (bdepd_x*(Om0d_x*(t717 + t718) + Om0d_y*t716 + Om0d_z*t710) +
-                    bdepd_y*(Om0d_x*t716 + Om0d_y*(t704 + t717) + Om0d_z*t720) +
-                    bdepd_z*(Om0d_x*t700 + Om0d_y*t720 + Om0d_z*(t704 + t718)))
-                bdy[j3 + 2] += (bdepd_x*(Om0d_x*(t719 + t722) + Om0d_y*t700 + Om0d_z*t721) +
-                    bdepd_y*(Om0d_x*t710 + Om0d_y*(t712 + t722) + Om0d_z*t723) +
-                    bdepd_z*(Om0d_x*t721 + Om0d_y*t723 + Om0d_z*(t712 + t719)))
-                bdOm0d_x += bdepd_x*(t728 + t729) + bdepd_y*(t724 - t725) + bdepd_z*(-t726 - t727)
-                bdOm0d_y += bdepd_x*(-t724 - t725) + bdepd_y*(t729 + t732) + bdepd_z*(t730 - t731)
-                bdOm0d_z += (bdepd_x*(t726 - t727) + bdepd_y*(-t730 - t731) + bdepd_z*(t728 + t732
-                    - 1))
+                t560 = Om0d_y*psi_y
+                t561 = Om0d_z*psi_z
+                t562 = Om0d_x*psi_y
+                t563 = -Om0d_y*psi_x
+                t564 = t562 + t563
+                t565 = Om0d_x*psi_z
+                t566 = -Om0d_z*psi_x
+                t567 = -t565 - t566
+                t568 = psi_y*t564 - psi_z*t567
+                t569 = 2*e1
+                t570 = psi_x*t569
+                t571 = (0.5)*Om0d_z
+                t572 = Om0d_y*psi_z
+                t573 = -Om0d_z*psi_y
+                t574 = t572 + t573
+                t575 = -psi_x*t564 + psi_z*t574
+                t576 = (0.5)*Om0d_y
+                t577 = psi_x*t567 - psi_y*t574
+                t578 = Om0d_x*psi_x
+                t579 = psi_y*t569
+                t580 = (0.5)*Om0d_x
+                t581 = psi_z*t569
+                t582 = (0.5)*psi_z
+                t583 = e0*psi_x
+                t584 = psi_y*t583
+                t585 = (0.5)*psi_y
+                t586 = psi_z*t583
+                t587 = psi_y*psi_y
+                t588 = psi_z*psi_z
+                t589 = (0.5)*psi_x
+                t590 = e0*psi_y*psi_z
+                t591 = psi_x*psi_x
+                bdy[j3] += (bdepd_x*(e0*(-t560 - t561) + t568*t570) + bdepd_y*(e0*(2*Om0d_y*psi_x
+                    - t562) + t570*t575 - t571) + bdepd_z*(e0*(2*Om0d_z*psi_x - t565) + t570*t577
+                    + t576))
+                bdy[j3 + 1] += (bdepd_x*(e0*(2*t562 + t563) + t568*t579 + t571) +
+                    bdepd_y*(e0*(-t561 - t578) + t575*t579) + bdepd_z*(e0*(2*Om0d_z*psi_y - t572)
+                    + t577*t579 - t580))
+                bdy[j3 + 2] += (bdepd_x*(e0*(2*t565 + t566) + t568*t581 - t576) +
+                    bdepd_y*(e0*(2*t572 + t573) + t575*t581 + t580) + bdepd_z*(e0*(-t560 - t578) +
+                    t577*t581))
+                bdOm0d_x += (bdepd_x*(e0*(t587 + t588) - 1) + bdepd_y*(t582 - t584) +
+                    bdepd_z*(-t585 - t586))
+                bdOm0d_y += (bdepd_x*(-t582 - t584) + bdepd_y*(e0*(t588 + t591) - 1) +
+                    bdepd_z*(t589 - t590))
+                bdOm0d_z += (bdepd_x*(t585 - t586) + bdepd_y*(-t589 - t590) + bdepd_z*(e0*(t587 +
+                    t591) - 1))
             # transposed: differential: rate: mean rotation of the rates = 0
             rhs_x = rhs_y = rhs_z = 0.0
-            t733 = bdOm0d_x + rhs_x
-            t734 = bdOm0d_y + rhs_y
-            t735 = bdOm0d_z + rhs_z
-            mdOm0d_x = Bxx*t733 + Byx*t734 + Bzx*t735
-            mdOm0d_y = Bxy*t733 + Byy*t734 + Bzy*t735
-            mdOm0d_z = Bxz*t733 + Byz*t734 + Bzz*t735
+            t592 = bdOm0d_x + rhs_x
+            t593 = bdOm0d_y + rhs_y
+            t594 = bdOm0d_z + rhs_z
+            mdOm0d_x = Bxx*t592 + Byx*t593 + Bzx*t594
+            mdOm0d_y = Bxy*t592 + Byy*t593 + Bzy*t594
+            mdOm0d_z = Bxz*t592 + Byz*t593 + Bzz*t594
             # transposed: differential: rate: mean rotation of the rates = 0
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -2684,74 +2513,74 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gam[3*(j3 + 2) + 1], Gam[3*(j3 + 2) + 2])
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t736 = 2*e1
-                t737 = psi_x*t736
-                t738 = psi_y*psi_z*t737
-                t739 = 0.5 - t738
-                t740 = e0*psi_y
-                t741 = psi_x*psi_x*t736
-                t742 = psi_y*t741
-                t743 = -t740 - t742
-                t744 = psi_z*psi_z
-                t745 = t737*t744
-                t746 = e0*psi_x
-                t747 = psi_x*psi_x*psi_x*t736 + 2*t746
-                t748 = t745 + t747
-                t749 = -t738 - 0.5
-                t750 = e0*psi_z
-                t751 = psi_z*t741
-                t752 = -t750 - t751
-                t753 = psi_y*psi_y
-                t754 = t737*t753
-                t755 = t747 + t754
-                t756 = t745 + t754
-                t757 = -t746 - t754
-                t758 = psi_y*t736*t744
-                t759 = psi_y*psi_y*psi_y*t736 + 2*t740
-                t760 = t758 + t759
-                t761 = psi_z*t736*t753
-                t762 = -t750 - t761
-                t763 = t742 + t759
-                t764 = t742 + t758
-                t765 = -t745 - t746
-                t766 = psi_z*psi_z*psi_z*t736 + 2*t750
-                t767 = t761 + t766
-                t768 = -t740 - t758
-                t769 = t751 + t766
-                t770 = t751 + t761
-                bdy[j3] += (-mdOm0d_x*(Om0d_x*(Gam_rotationx_x*t756 + Gam_rotationy_x*t743 +
-                    Gam_rotationz_x*t752) + Om0d_y*(Gam_rotationx_x*t743 + Gam_rotationy_x*t748 +
-                    Gam_rotationz_x*t739) + Om0d_z*(Gam_rotationx_x*t752 + Gam_rotationy_x*t749 +
-                    Gam_rotationz_x*t755)) - mdOm0d_y*(Om0d_x*(Gam_rotationx_y*t756 +
-                    Gam_rotationy_y*t743 + Gam_rotationz_y*t752) + Om0d_y*(Gam_rotationx_y*t743 +
-                    Gam_rotationy_y*t748 + Gam_rotationz_y*t739) + Om0d_z*(Gam_rotationx_y*t752 +
-                    Gam_rotationy_y*t749 + Gam_rotationz_y*t755)) -
-                    mdOm0d_z*(Om0d_x*(Gam_rotationx_z*t756 + Gam_rotationy_z*t743 +
-                    Gam_rotationz_z*t752) + Om0d_y*(Gam_rotationx_z*t743 + Gam_rotationy_z*t748 +
-                    Gam_rotationz_z*t739) + Om0d_z*(Gam_rotationx_z*t752 + Gam_rotationy_z*t749 +
-                    Gam_rotationz_z*t755)))
-                bdy[j3 + 1] += (-mdOm0d_x*(Om0d_x*(Gam_rotationx_x*t760 + Gam_rotationy_x*t757 +
-                    Gam_rotationz_x*t749) + Om0d_y*(Gam_rotationx_x*t757 + Gam_rotationy_x*t764 +
-                    Gam_rotationz_x*t762) + Om0d_z*(Gam_rotationx_x*t739 + Gam_rotationy_x*t762 +
-                    Gam_rotationz_x*t763)) - mdOm0d_y*(Om0d_x*(Gam_rotationx_y*t760 +
-                    Gam_rotationy_y*t757 + Gam_rotationz_y*t749) + Om0d_y*(Gam_rotationx_y*t757 +
-                    Gam_rotationy_y*t764 + Gam_rotationz_y*t762) + Om0d_z*(Gam_rotationx_y*t739 +
-                    Gam_rotationy_y*t762 + Gam_rotationz_y*t763)) -
-                    mdOm0d_z*(Om0d_x*(Gam_rotationx_z*t760 + Gam_rotationy_z*t757 +
-                    Gam_rotationz_z*t749) + Om0d_y*(Gam_rotationx_z*t757 + Gam_rotationy_z*t764 +
-                    Gam_rotationz_z*t762) + Om0d_z*(Gam_rotationx_z*t739 + Gam_rotationy_z*t762 +
-                    Gam_rotationz_z*t763)))
-                bdy[j3 + 2] += (-mdOm0d_x*(Om0d_x*(Gam_rotationx_x*t767 + Gam_rotationy_x*t739 +
-                    Gam_rotationz_x*t765) + Om0d_y*(Gam_rotationx_x*t749 + Gam_rotationy_x*t769 +
-                    Gam_rotationz_x*t768) + Om0d_z*(Gam_rotationx_x*t765 + Gam_rotationy_x*t768 +
-                    Gam_rotationz_x*t770)) - mdOm0d_y*(Om0d_x*(Gam_rotationx_y*t767 +
-                    Gam_rotationy_y*t739 + Gam_rotationz_y*t765) + Om0d_y*(Gam_rotationx_y*t749 +
-                    Gam_rotationy_y*t769 + Gam_rotationz_y*t768) + Om0d_z*(Gam_rotationx_y*t765 +
-                    Gam_rotationy_y*t768 + Gam_rotationz_y*t770)) -
-                    mdOm0d_z*(Om0d_x*(Gam_rotationx_z*t767 + Gam_rotationy_z*t739 +
-                    Gam_rotationz_z*t765) + Om0d_y*(Gam_rotationx_z*t749 + Gam_rotationy_z*t769 +
-                    Gam_rotationz_z*t768) + Om0d_z*(Gam_rotationx_z*t765 + Gam_rotationy_z*t768 +
-                    Gam_rotationz_z*t770)))
+                t595 = 2*e1
+                t596 = psi_x*t595
+                t597 = psi_y*psi_z*t596
+                t598 = 0.5 - t597
+                t599 = e0*psi_y
+                t600 = psi_x*psi_x*t595
+                t601 = psi_y*t600
+                t602 = -t599 - t601
+                t603 = psi_z*psi_z
+                t604 = t596*t603
+                t605 = e0*psi_x
+                t606 = psi_x*psi_x*psi_x*t595 + 2*t605
+                t607 = t604 + t606
+                t608 = -t597 - 0.5
+                t609 = e0*psi_z
+                t610 = psi_z*t600
+                t611 = -t609 - t610
+                t612 = psi_y*psi_y
+                t613 = t596*t612
+                t614 = t606 + t613
+                t615 = t604 + t613
+                t616 = -t605 - t613
+                t617 = psi_y*t595*t603
+                t618 = psi_y*psi_y*psi_y*t595 + 2*t599
+                t619 = t617 + t618
+                t620 = psi_z*t595*t612
+                t621 = -t609 - t620
+                t622 = t601 + t618
+                t623 = t601 + t617
+                t624 = -t604 - t605
+                t625 = psi_z*psi_z*psi_z*t595 + 2*t609
+                t626 = t620 + t625
+                t627 = -t599 - t617
+                t628 = t610 + t625
+                t629 = t610 + t620
+                bdy[j3] += (-mdOm0d_x*(Om0d_x*(Gam_rotationx_x*t615 + Gam_rotationy_x*t602 +
+                    Gam_rotationz_x*t611) + Om0d_y*(Gam_rotationx_x*t602 + Gam_rotationy_x*t607 +
+                    Gam_rotationz_x*t598) + Om0d_z*(Gam_rotationx_x*t611 + Gam_rotationy_x*t608 +
+                    Gam_rotationz_x*t614)) - mdOm0d_y*(Om0d_x*(Gam_rotationx_y*t615 +
+                    Gam_rotationy_y*t602 + Gam_rotationz_y*t611) + Om0d_y*(Gam_rotationx_y*t602 +
+                    Gam_rotationy_y*t607 + Gam_rotationz_y*t598) + Om0d_z*(Gam_rotationx_y*t611 +
+                    Gam_rotationy_y*t608 + Gam_rotationz_y*t614)) -
+                    mdOm0d_z*(Om0d_x*(Gam_rotationx_z*t615 + Gam_rotationy_z*t602 +
+                    Gam_rotationz_z*t611) + Om0d_y*(Gam_rotationx_z*t602 + Gam_rotationy_z*t607 +
+                    Gam_rotationz_z*t598) + Om0d_z*(Gam_rotationx_z*t611 + Gam_rotationy_z*t608 +
+                    Gam_rotationz_z*t614)))
+                bdy[j3 + 1] += (-mdOm0d_x*(Om0d_x*(Gam_rotationx_x*t619 + Gam_rotationy_x*t616 +
+                    Gam_rotationz_x*t608) + Om0d_y*(Gam_rotationx_x*t616 + Gam_rotationy_x*t623 +
+                    Gam_rotationz_x*t621) + Om0d_z*(Gam_rotationx_x*t598 + Gam_rotationy_x*t621 +
+                    Gam_rotationz_x*t622)) - mdOm0d_y*(Om0d_x*(Gam_rotationx_y*t619 +
+                    Gam_rotationy_y*t616 + Gam_rotationz_y*t608) + Om0d_y*(Gam_rotationx_y*t616 +
+                    Gam_rotationy_y*t623 + Gam_rotationz_y*t621) + Om0d_z*(Gam_rotationx_y*t598 +
+                    Gam_rotationy_y*t621 + Gam_rotationz_y*t622)) -
+                    mdOm0d_z*(Om0d_x*(Gam_rotationx_z*t619 + Gam_rotationy_z*t616 +
+                    Gam_rotationz_z*t608) + Om0d_y*(Gam_rotationx_z*t616 + Gam_rotationy_z*t623 +
+                    Gam_rotationz_z*t621) + Om0d_z*(Gam_rotationx_z*t598 + Gam_rotationy_z*t621 +
+                    Gam_rotationz_z*t622)))
+                bdy[j3 + 2] += (-mdOm0d_x*(Om0d_x*(Gam_rotationx_x*t626 + Gam_rotationy_x*t598 +
+                    Gam_rotationz_x*t624) + Om0d_y*(Gam_rotationx_x*t608 + Gam_rotationy_x*t628 +
+                    Gam_rotationz_x*t627) + Om0d_z*(Gam_rotationx_x*t624 + Gam_rotationy_x*t627 +
+                    Gam_rotationz_x*t629)) - mdOm0d_y*(Om0d_x*(Gam_rotationx_y*t626 +
+                    Gam_rotationy_y*t598 + Gam_rotationz_y*t624) + Om0d_y*(Gam_rotationx_y*t608 +
+                    Gam_rotationy_y*t628 + Gam_rotationz_y*t627) + Om0d_z*(Gam_rotationx_y*t624 +
+                    Gam_rotationy_y*t627 + Gam_rotationz_y*t629)) -
+                    mdOm0d_z*(Om0d_x*(Gam_rotationx_z*t626 + Gam_rotationy_z*t598 +
+                    Gam_rotationz_z*t624) + Om0d_y*(Gam_rotationx_z*t608 + Gam_rotationy_z*t628 +
+                    Gam_rotationz_z*t627) + Om0d_z*(Gam_rotationx_z*t624 + Gam_rotationy_z*t627 +
+                    Gam_rotationz_z*t629)))
                 bdetad[j3] += (-Gam_rotationx_x*mdOm0d_x - Gam_rotationx_y*mdOm0d_y -
                     Gam_rotationx_z*mdOm0d_z)
                 bdetad[j3 + 1] += (-Gam_rotationy_x*mdOm0d_x - Gam_rotationy_y*mdOm0d_y -
@@ -2777,220 +2606,157 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e0 = e0s[j]
                 e1 = e1s[j]
                 e2 = e2s[j]
-                t771 = (0.5)*ep_z
-                t772 = e0*ep_x
-                t773 = e0*psi_x
-                t774 = 2*ep_x
-                t775 = psi_x*t774
-                t776 = 2*ep_y
-                t777 = psi_y*t776
-                t778 = 2*ep_z
-                t779 = psi_z*t778
-                t780 = t775 + t777 + t779
-                t781 = e1*t780
-                t782 = psi_x*t781
-                t783 = ep_y*t773 + psi_y*t772 + psi_y*t782
-                t784 = t771 + t783
-                t785 = (0.5)*ep_y
-                t786 = ep_z*t773 + psi_z*t772 + psi_z*t782
-                t787 = -t785 + t786
-                t788 = psi_z*psi_z
-                t789 = e0*t779 + t781*t788
-                t790 = psi_y*psi_y
-                t791 = e0*t777 + t781*t790
-                t792 = t789 + t791
-                t793 = -t771 + t783
-                t794 = (0.5)*ep_x
-                t795 = e0*psi_z
-                t796 = e0*psi_y
-                t797 = psi_y*t781
-                t798 = ep_y*t795 + ep_z*t796 + psi_z*t797
-                t799 = t794 + t798
-                t800 = psi_x*psi_x
-                t801 = e0*t775 + t781*t800
-                t802 = t789 + t801
-                t803 = t785 + t786
-                t804 = -t794 + t798
-                t805 = t791 + t801
-                t806 = (0.5)*psi_z
-                t807 = psi_y*t773
-                t808 = (0.5)*psi_y
-                t809 = psi_z*t773
-                t810 = e0*t790
-                t811 = e0*t788 - 1
-                t812 = (0.5)*psi_x
-                t813 = psi_y*t795
-                t814 = e0*t800
-                t815 = e1*t774
-                t816 = Om0_x*psi_y
-                t817 = Om0_y*psi_x - t816
-                t818 = psi_y*t817
-                t819 = t815*t818
-                t820 = Om_x*psi_z
-                t821 = Om_z*psi_x
-                t822 = t820 - t821
-                t823 = psi_z*t815
-                t824 = t822*t823
-                t825 = e1*psi_x
-                t826 = t776*t825
-                t827 = t817*t826
-                t828 = t778*t825
-                t829 = t822*t828
-                t830 = -Om0_x*ep_y + Om0_y*ep_x
-                t831 = 2*e1
-                t832 = psi_x*t831
-                t833 = psi_y*t832
-                t834 = t830*t833
-                t835 = A_x*psi_z
-                t836 = Om_x*ep_z
-                t837 = A_z*psi_x
-                t838 = Om_z*ep_x
-                t839 = t835 + t836 - t837 - t838
-                t840 = psi_z*t832
-                t841 = t839*t840
-                t842 = Om_x*psi_y
-                t843 = Om_y*psi_x - t842
-                t844 = psi_y*t815
-                t845 = t843*t844
-                t846 = Om0_z*psi_x
-                t847 = Om0_x*psi_z - t846
-                t848 = t823*t847
-                t849 = t826*t843
-                t850 = t828*t847
-                t851 = A_x*psi_y
-                t852 = Om_x*ep_y
-                t853 = A_y*psi_x + Om_y*ep_x - t851 - t852
-                t854 = t833*t853
-                t855 = Om0_z*ep_x
-                t856 = Om0_x*ep_z - t855
-                t857 = t840*t856
-                t858 = 2*e2*t780
-                t859 = psi_x*t858
-                t860 = t818*t859
-                t861 = psi_z*t859
-                t862 = t822*t861
-                t863 = psi_y*t859
-                t864 = t843*t863
-                t865 = t847*t861
-                t866 = e0*ep_z
-                t867 = psi_z*t781
-                t868 = A_z*t795 - Om0_z*t866 - Om0_z*t867 + Om_z*t866 + Om_z*t867
-                t869 = e0*ep_y
-                t870 = A_y*t796 - Om0_y*t797 - Om0_y*t869 + Om_y*t797 + Om_y*t869
-                t871 = (0.5)*A_z
-                t872 = e0*t830
-                t873 = ep_x*t825
-                t874 = Om0_y*psi_z
-                t875 = Om0_z*psi_y - t874
-                t876 = Om_y*psi_z
-                t877 = Om_z*psi_y - t876
-                t878 = Om0_y*ep_z
-                t879 = Om0_z*ep_y - t878
-                t880 = e0*t853
-                t881 = Om_y*psi_x
-                t882 = A_y*psi_z
-                t883 = Om_y*ep_z
-                t884 = A_z*psi_y + Om_z*ep_y - t882 - t883
-                t885 = t800*t831
-                t886 = t781*t843
-                t887 = t781*t817
-                t888 = t800*t858
-                t889 = 4*t873
-                t890 = (0.5)*A_y + e0*t839 - e0*t856 + t781*t822 - t781*t847
-                t891 = psi_z*t776
-                t892 = e1*t875
-                t893 = t891*t892
-                t894 = psi_y*t778
-                t895 = t892*t894
-                t896 = psi_z*t831
-                t897 = psi_y*t896
-                t898 = t879*t897
-                t899 = e1*t877
-                t900 = t891*t899
-                t901 = t894*t899
-                t902 = t884*t897
-                t903 = psi_z*t858
-                t904 = psi_y*t903
-                t905 = t875*t904
-                t906 = t877*t904
-                t907 = A_x*t773 - Om0_x*t772 - Om0_x*t782 + Om_x*t772 + Om_x*t782
-                t908 = 4*e1*ep_y
-                t909 = e1*t822
-                t910 = t790*t831
-                t911 = t790*t858
-                t912 = Om_z*psi_y
-                t913 = (0.5)*A_x - e0*t879 + e0*t884 - t781*t875 + t781*t877
-                t914 = t788*t831
-                t915 = t788*t858
-                t916 = 4*ep_z*psi_z
-                t917 = t833*t843
-                t918 = t840*t847
-                t919 = t818*t832
-                t920 = t822*t840
-                t921 = Om0_z*t795 - Om_z*e0*psi_z
-                t922 = Om0_y*t796 - Om_y*e0*psi_y
-                t923 = (0.5)*Om0_z + (0.5)*Om_z - e0*t817 + e0*t843
-                t924 = (0.5)*Om0_y + (0.5)*Om_y + e0*t822 - e0*t847
-                t925 = t877*t897
-                t926 = t875*t897
-                t927 = Om0_x*t773 - Om_x*e0*psi_x
-                t928 = (0.5)*Om0_x + (0.5)*Om_x - e0*t875 + e0*t877
-                bdve[j3] += -bdepd_x*t792 + bdepd_y*t784 + bdepd_z*t787
-                bdve[j3 + 1] += bdepd_x*t793 - bdepd_y*t802 + bdepd_z*t799
-                bdve[j3 + 2] += bdepd_x*t803 + bdepd_y*t804 - bdepd_z*t805
-                bdae[j3] += bdepd_x*(-t810 - t811) + bdepd_y*(t806 + t807) + bdepd_z*(-t808 + t809)
-                bdae[j3 + 1] += (bdepd_x*(-t806 + t807) + bdepd_y*(-t811 - t814) + bdepd_z*(t812 +
-                    t813))
-                bdae[j3 + 2] += (bdepd_x*(t808 + t809) + bdepd_y*(-t812 + t813) + bdepd_z*(-t810 -
-                    t814 + 1))
-                bdy[j3] += (bdepd_x*(-t819 - t824 - t827 - t829 - t834 - t841 + t845 + t848 + t849
-                    + t850 + t854 + t857 - t860 - t862 + t864 + t865 + t868 + t870) +
-                    bdepd_y*(-A_y*e0*psi_x + Om0_y*e0*ep_x + Om0_y*e1*psi_x*t780 - Om_y*e0*ep_x +
-                    4*e1*ep_x*psi_x*t817 + 2*e1*ep_x*psi_z*t877 + 2*e1*ep_z*psi_x*t877 +
-                    2*e1*psi_x*psi_z*t884 + 2*e1*t800*t830 + 2*e2*psi_x*psi_z*t780*t877 +
-                    2*e2*t780*t800*t817 - t781*t881 - t823*t875 - t828*t875 - t840*t879 -
-                    4*t843*t873 - t843*t888 - t853*t885 - t861*t875 - t871 + t872 - t880 - t886 +
-                    t887) + bdepd_z*(-e0*t837 - e0*t838 + e0*t855 - t781*t821 + t781*t846 +
-                    t822*t888 + t822*t889 + t826*t875 - t826*t877 + t833*t879 - t833*t884 +
-                    t839*t885 + t844*t875 - t844*t877 - t847*t888 - t847*t889 - t856*t885 +
-                    t863*t875 - t863*t877 + t890))
-                bdy[j3 + 1] += (bdepd_x*(Om0_x*e0*ep_y + Om0_x*e1*psi_y*t780 - e0*t851 - e0*t852 +
-                    4*e1*ep_y*psi_y*t843 + 2*e1*ep_y*psi_z*t847 + 2*e1*ep_z*psi_y*t847 +
-                    2*e1*psi_y*psi_z*t856 + 2*e1*t790*t853 + 2*e2*psi_y*psi_z*t780*t847 +
-                    2*e2*t780*t790*t843 - t781*t842 - t817*t911 - t818*t908 - t822*t904 -
-                    t830*t910 - t839*t897 + t871 - t872 + t880 + t886 - t887 - t891*t909 -
-                    t894*t909) + bdepd_y*(t819 + t827 + t834 - t845 - t849 - t854 + t860 - t864 +
-                    t868 - t893 - t895 - t898 + t900 + t901 + t902 - t905 + t906 + t907) +
-                    bdepd_z*(-A_z*e0*psi_y + Om0_z*e0*ep_y + Om0_z*e1*psi_y*t780 - Om_z*e0*ep_y +
-                    2*e1*ep_x*psi_y*t822 + 2*e1*ep_y*psi_x*t822 + 4*e1*ep_y*psi_y*t875 +
-                    2*e1*psi_x*psi_y*t839 + 2*e1*t790*t879 + 2*e2*psi_x*psi_y*t780*t822 +
-                    2*e2*t780*t790*t875 - psi_y*t877*t908 - t781*t912 - t826*t847 - t833*t856 -
-                    t844*t847 - t847*t863 - t877*t911 - t884*t910 - t913))
-                bdy[j3 + 2] += (bdepd_x*(Om0_x*e0*ep_z + Om0_x*e1*psi_z*t780 - e0*t835 - e0*t836 +
-                    2*e1*ep_y*psi_z*t843 + 2*e1*ep_z*psi_y*t843 + 4*e1*ep_z*psi_z*t847 +
-                    2*e1*psi_y*psi_z*t853 - e1*t778*t818 + 2*e1*t788*t856 - e1*t817*t891 +
-                    2*e2*psi_y*psi_z*t780*t843 + 2*e2*t780*t788*t847 - t781*t820 - t818*t903 -
-                    t822*t915 - t830*t897 - t839*t914 - t890 - t909*t916) + bdepd_y*(e0*t878 -
-                    e0*t882 - e0*t883 + t781*t874 - t781*t876 + t817*t823 + t817*t828 + t817*t861
-                    - t823*t843 - t828*t843 + t830*t840 - t840*t853 - t843*t861 - t875*t915 +
-                    t877*t915 - t879*t914 + t884*t914 - t892*t916 + t899*t916 + t913) +
-                    bdepd_z*(t824 + t829 + t841 - t848 - t850 - t857 + t862 - t865 + t870 + t893 +
-                    t895 + t898 - t900 - t901 - t902 + t905 - t906 + t907))
-                bdOm0_x += bdepd_x*t792 - bdepd_y*t793 - bdepd_z*t803
-                bdOm0_y += -bdepd_x*t784 + bdepd_y*t802 - bdepd_z*t804
-                bdOm0_z += -bdepd_x*t787 - bdepd_y*t799 + bdepd_z*t805
-                bdeta[j3] += (bdepd_x*(t917 + t918 - t919 - t920 - t921 - t922) +
-                    bdepd_y*(Om0_y*e0*psi_x - e0*t881 + 2*e1*psi_x*psi_z*t877 + 2*e1*t800*t817 -
-                    t840*t875 - t843*t885 - t923) + bdepd_z*(-e0*t821 + e0*t846 + t822*t885 +
-                    t833*t875 - t833*t877 - t847*t885 + t924))
-                bdeta[j3 + 1] += (bdepd_x*(e0*t816 - e0*t842 - t817*t910 - t822*t897 + t843*t910 +
-                    t847*t897 + t923) + bdepd_y*(-t917 + t919 - t921 + t925 - t926 - t927) +
-                    bdepd_z*(Om0_z*e0*psi_y - e0*t912 + 2*e1*psi_x*psi_y*t822 + 2*e1*t790*t875 -
-                    t833*t847 - t877*t910 - t928))
-                bdeta[j3 + 2] += (bdepd_x*(Om0_x*e0*psi_z - e0*t820 + 2*e1*psi_y*psi_z*t843 +
-                    2*e1*t788*t847 - t818*t896 - t822*t914 - t924) + bdepd_y*(e0*t874 - e0*t876 +
-                    t817*t840 - t840*t843 - t875*t914 + t877*t914 + t928) + bdepd_z*(-t918 + t920
-                    - t922 - t925 + t926 - t927))
+                t630 = (0.5)*ep_z
+                t631 = ep_x*psi_y + ep_y*psi_x
+                t632 = 2*ep_x
+                t633 = psi_x*t632
+                t634 = 2*ep_y
+                t635 = psi_y*t634
+                t636 = 2*ep_z
+                t637 = psi_z*t636
+                t638 = t635 + t637
+                t639 = t633 + t638
+                t640 = e1*t639
+                t641 = psi_x*t640
+                t642 = psi_y*t641
+                t643 = e0*t631 + t642
+                t644 = (0.5)*ep_y
+                t645 = ep_x*psi_z + ep_z*psi_x
+                t646 = psi_z*t641
+                t647 = e0*t645 + t646
+                t648 = psi_y*psi_y
+                t649 = psi_z*psi_z
+                t650 = t648 + t649
+                t651 = -t650
+                t652 = (0.5)*ep_x
+                t653 = ep_y*psi_z + ep_z*psi_y
+                t654 = psi_y*psi_z
+                t655 = t640*t654
+                t656 = e0*t653 + t655
+                t657 = t633 + t637
+                t658 = psi_x*psi_x
+                t659 = t649 + t658
+                t660 = -t659
+                t661 = t633 + t635
+                t662 = t648 + t658
+                t663 = -t662
+                t664 = (0.5)*psi_z
+                t665 = e0*psi_x
+                t666 = psi_y*t665
+                t667 = (0.5)*psi_y
+                t668 = psi_z*t665
+                t669 = (0.5)*psi_x
+                t670 = e0*t654
+                t671 = A_y*psi_y
+                t672 = A_z*psi_z
+                t673 = Om0_y - Om_y
+                t674 = -t673
+                t675 = Om0_z - Om_z
+                t676 = psi_y*t674 - psi_z*t675
+                t677 = psi_x*t674
+                t678 = Om0_x - Om_x
+                t679 = -t678
+                t680 = -psi_y*t679
+                t681 = t677 + t680
+                t682 = -t675
+                t683 = psi_x*t682
+                t684 = psi_z*t679 - t683
+                t685 = psi_y*t681 - psi_z*t684
+                t686 = e1*t632
+                t687 = 2*e2*t639
+                t688 = psi_x*t687
+                t689 = A_x*psi_y
+                t690 = ep_y*t679
+                t691 = t689 + t690
+                t692 = A_y*psi_x + ep_x*t674 - t691
+                t693 = A_z*psi_x
+                t694 = -ep_x*t682
+                t695 = -t693 + t694
+                t696 = A_x*psi_z
+                t697 = ep_z*t679
+                t698 = t696 + t697
+                t699 = t695 + t698
+                t700 = ep_y*t681 - ep_z*t684 + psi_y*t692 - psi_z*t699
+                t701 = 2*e1
+                t702 = psi_x*t701
+                t703 = (0.5)*A_z
+                t704 = A_y*psi_x
+                t705 = ep_x*t674
+                t706 = -2*t677 - t680
+                t707 = psi_y*t682
+                t708 = -psi_z*t674
+                t709 = t707 + t708
+                t710 = -psi_x*t681 + psi_z*t709
+                t711 = A_y*psi_z
+                t712 = ep_z*t674
+                t713 = t711 + t712
+                t714 = A_z*psi_y + ep_y*t682 - t713
+                t715 = -ep_x*t681 + ep_z*t709 - psi_x*t692 + psi_z*t714
+                t716 = (0.5)*A_y
+                t717 = psi_z*t679
+                t718 = psi_x*t675 - t683 + t717
+                t719 = psi_x*t684 - psi_y*t709
+                t720 = ep_x*t684 - ep_y*t709 + psi_x*t699 - psi_y*t714
+                t721 = A_x*psi_x
+                t722 = -psi_x*t678 + psi_z*t682
+                t723 = e1*t634
+                t724 = psi_y*t687
+                t725 = psi_y*t701
+                t726 = (0.5)*A_x
+                t727 = A_z*psi_y
+                t728 = ep_y*t682
+                t729 = -2*t707 - t708
+                t730 = psi_y*t678 + t681
+                t731 = psi_x*t679 - psi_y*t673
+                t732 = e1*t636
+                t733 = psi_z*t687
+                t734 = psi_z*t701
+                t735 = t683 - 2*t717
+                t736 = psi_z*t673 + t709
+                t737 = -t631
+                t738 = -t645
+                t739 = -t653
+                t740 = (0.5)*Om0_z + (0.5)*Om_z
+                t741 = (0.5)*Om0_y + (0.5)*Om_y
+                t742 = (0.5)*Om0_x + (0.5)*Om_x
+                bdve[j3] += (bdepd_x*(-e0*t638 + t640*t651) + bdepd_y*(t630 + t643) +
+                    bdepd_z*(-t644 + t647))
+                bdve[j3 + 1] += (bdepd_x*(-t630 + t643) + bdepd_y*(-e0*t657 + t640*t660) +
+                    bdepd_z*(t652 + t656))
+                bdve[j3 + 2] += (bdepd_x*(t644 + t647) + bdepd_y*(-t652 + t656) +
+                    bdepd_z*(-e0*t661 + t640*t663))
+                bdae[j3] += bdepd_x*(e0*t651 + 1) + bdepd_y*(t664 + t666) + bdepd_z*(-t667 + t668)
+                bdae[j3 + 1] += (bdepd_x*(-t664 + t666) + bdepd_y*(e0*t660 + 1) + bdepd_z*(t669 +
+                    t670))
+                bdae[j3 + 2] += (bdepd_x*(t667 + t668) + bdepd_y*(-t669 + t670) + bdepd_z*(e0*t663
+                    + 1))
+                bdy[j3] += (bdepd_x*(e0*(ep_y*t674 - ep_z*t675 + t671 + t672) + t640*t676 +
+                    t685*t686 + t685*t688 + t700*t702) + bdepd_y*(e0*(t691 - 2*t704 - 2*t705) +
+                    t640*t706 + t686*t710 + t688*t710 + t702*t715 - t703) + bdepd_z*(e0*(ep_x*t675
+                    - 2*t693 + t694 + t698) + t640*t718 + t686*t719 + t688*t719 + t702*t720 +
+                    t716))
+                bdy[j3 + 1] += (bdepd_x*(e0*(ep_y*t678 - 2*t689 - t690 + t704 + t705) + t640*t730
+                    + t685*t723 + t685*t724 + t700*t725 + t703) + bdepd_y*(e0*(-ep_x*t678 +
+                    ep_z*t682 + t672 + t721) + t640*t722 + t710*t723 + t710*t724 + t715*t725) +
+                    bdepd_z*(e0*(t713 - 2*t727 - 2*t728) + t640*t729 + t719*t723 + t719*t724 +
+                    t720*t725 - t726))
+                bdy[j3 + 2] += (bdepd_x*(e0*(-t695 - 2*t696 - 2*t697) + t640*t735 + t685*t732 +
+                    t685*t733 + t700*t734 - t716) + bdepd_y*(e0*(ep_z*t673 - 2*t711 - t712 + t727
+                    + t728) + t640*t736 + t710*t732 + t710*t733 + t715*t734 + t726) +
+                    bdepd_z*(e0*(ep_x*t679 - ep_y*t673 + t671 + t721) + t640*t731 + t719*t732 +
+                    t719*t733 + t720*t734))
+                bdOm0_x += (bdepd_x*(e0*t638 + t640*t650) + bdepd_y*(e0*t737 + t630 - t642) +
+                    bdepd_z*(e0*t738 - t644 - t646))
+                bdOm0_y += (bdepd_x*(e0*t737 - t630 - t642) + bdepd_y*(e0*t657 + t640*t659) +
+                    bdepd_z*(e0*t739 + t652 - t655))
+                bdOm0_z += (bdepd_x*(e0*t738 + t644 - t646) + bdepd_y*(e0*t739 - t652 - t655) +
+                    bdepd_z*(e0*t661 + t640*t662))
+                bdeta[j3] += (bdepd_x*(e0*t676 + t685*t702) + bdepd_y*(e0*t706 + 2*e1*psi_x*t710 -
+                    t740) + bdepd_z*(e0*t718 + t702*t719 + t741))
+                bdeta[j3 + 1] += (bdepd_x*(e0*t730 + t685*t725 + t740) + bdepd_y*(e0*t722 +
+                    t710*t725) + bdepd_z*(e0*t729 + 2*e1*psi_y*t719 - t742))
+                bdeta[j3 + 2] += (bdepd_x*(e0*t735 + 2*e1*psi_z*t685 - t741) + bdepd_y*(e0*t736 +
+                    t710*t734 + t742) + bdepd_z*(e0*t731 + t719*t734))
             # overwritten: differential: rate: rates of the elastic rotations, the frame held
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -3003,31 +2769,31 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
                 eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
                 bdeud_x, bdeud_y, bdeud_z = bdetad[i3], bdetad[i3 + 1], bdetad[i3 + 2]
-                t929 = Om0_y*bdeud_z - Om0_z*bdeud_y
-                t930 = Om0_x*bdeud_z - Om0_z*bdeud_x
-                t931 = -t930
-                t932 = Om0_x*bdeud_y - Om0_y*bdeud_x
-                t933 = eu_z - v0_z + vs_z
-                t934 = eu_y - v0_y + vs_y
-                t935 = eu_x - v0_x + vs_x
-                bdyd[i3] += t929
-                bdyd[i3 + 1] += t931
-                bdyd[i3 + 2] += t932
+                t743 = Om0_y*bdeud_z - Om0_z*bdeud_y
+                t744 = Om0_x*bdeud_z - Om0_z*bdeud_x
+                t745 = -t744
+                t746 = Om0_x*bdeud_y - Om0_y*bdeud_x
+                t747 = eu_z - v0_z + vs_z
+                t748 = eu_y - v0_y + vs_y
+                t749 = eu_x - v0_x + vs_x
+                bdyd[i3] += t743
+                bdyd[i3 + 1] += t745
+                bdyd[i3 + 2] += t746
                 bdacc[i3] += bdeud_x
                 bdacc[i3 + 1] += bdeud_y
                 bdacc[i3 + 2] += bdeud_z
-                bdv0_x += -t929
-                bdv0_y += t930
-                bdv0_z += -t932
-                bdOm0_x += bdeud_y*t933 - bdeud_z*t934
-                bdOm0_y += -bdeud_x*t933 + bdeud_z*t935
-                bdOm0_z += bdeud_x*t934 - bdeud_y*t935
+                bdv0_x += -t743
+                bdv0_y += t744
+                bdv0_z += -t746
+                bdOm0_x += bdeud_y*t747 - bdeud_z*t748
+                bdOm0_y += -bdeud_x*t747 + bdeud_z*t749
+                bdOm0_z += bdeud_x*t748 - bdeud_y*t749
                 bda0_x += -bdeud_x
                 bda0_y += -bdeud_y
                 bda0_z += -bdeud_z
-                bdeta[i3] += t929
-                bdeta[i3 + 1] += t931
-                bdeta[i3 + 2] += t932
+                bdeta[i3] += t743
+                bdeta[i3 + 1] += t745
+                bdeta[i3 + 2] += t746
             # overwritten: differential: rate: rates of the elastic displacements, the frame held
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -3046,89 +2812,74 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdep_x, bdep_y, bdep_z = bdeta[j3], bdeta[j3 + 1], bdeta[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t936 = (0.5)*psi_z
-                t937 = e0*psi_x
-                t938 = psi_y*t937
-                t939 = t936 + t938
-                t940 = (0.5)*psi_y
-                t941 = psi_z*t937
-                t942 = -t940 + t941
-                t943 = psi_y*psi_y
-                t944 = e0*t943
-                t945 = psi_z*psi_z
-                t946 = e0*t945 - 1
-                t947 = t944 + t946
-                t948 = -t936 + t938
-                t949 = (0.5)*psi_x
-                t950 = e0*psi_y
-                t951 = psi_z*t950
-                t952 = t949 + t951
-                t953 = psi_x*psi_x
-                t954 = e0*t953
-                t955 = t946 + t954
-                t956 = t940 + t941
-                t957 = -t949 + t951
-                t958 = t944 + t954 - 1
-                t959 = Om_x*psi_y
-                t960 = Om_y*psi_x - t959
-                t961 = 2*e1
-                t962 = psi_x*t961
-                t963 = psi_y*t962
-                t964 = t960*t963
-                t965 = Om0_z*psi_x
-                t966 = Om0_x*psi_z - t965
-                t967 = psi_z*t962
-                t968 = t966*t967
-                t969 = Om0_x*psi_y
-                t970 = Om0_y*psi_x - t969
-                t971 = t963*t970
-                t972 = Om_x*psi_z
-                t973 = Om_z*psi_x
-                t974 = t972 - t973
-                t975 = t967*t974
-                t976 = Om0_z*e0*psi_z - Om_z*e0*psi_z
-                t977 = Om0_y*t950 - Om_y*e0*psi_y
-                t978 = t953*t961
-                t979 = Om_y*psi_z
-                t980 = Om_z*psi_y - t979
-                t981 = Om0_y*psi_z
-                t982 = Om0_z*psi_y - t981
-                t983 = (0.5)*Om0_z + (0.5)*Om_z + e0*t960 - e0*t970
-                t984 = (0.5)*Om0_y + (0.5)*Om_y - e0*t966 + e0*t974
-                t985 = psi_y*psi_z*t961
-                t986 = t980*t985
-                t987 = t982*t985
-                t988 = Om0_x*t937 - Om_x*e0*psi_x
-                t989 = t943*t961
-                t990 = (0.5)*Om0_x + (0.5)*Om_x + e0*t980 - e0*t982
-                t991 = t945*t961
-                bdve[j3] += -bdep_x*t947 + bdep_y*t939 + bdep_z*t942
-                bdve[j3 + 1] += bdep_x*t948 - bdep_y*t955 + bdep_z*t952
-                bdve[j3 + 2] += bdep_x*t956 + bdep_y*t957 - bdep_z*t958
-                bdy[j3] += (bdep_x*(t964 + t968 - t971 - t975 - t976 - t977) +
-                    bdep_y*(Om0_y*e0*psi_x - Om_y*e0*psi_x + 2*e1*psi_x*psi_z*t980 +
-                    2*e1*t953*t970 - t960*t978 - t967*t982 - t983) + bdep_z*(e0*t965 - e0*t973 -
-                    t963*t980 + t963*t982 - t966*t978 + t974*t978 + t984))
-                bdy[j3 + 1] += (bdep_x*(-e0*t959 + e0*t969 + t960*t989 + t966*t985 - t970*t989 -
-                    t974*t985 + t983) + bdep_y*(-t964 + t971 - t976 + t986 - t987 - t988) +
-                    bdep_z*(Om0_z*e0*psi_y - Om_z*e0*psi_y + 2*e1*psi_x*psi_y*t974 +
-                    2*e1*t943*t982 - t963*t966 - t980*t989 - t990))
-                bdy[j3 + 2] += (bdep_x*(Om0_x*e0*psi_z - e0*t972 + 2*e1*psi_y*psi_z*t960 +
-                    2*e1*t945*t966 - t970*t985 - t974*t991 - t984) + bdep_y*(-e0*t979 + e0*t981 -
-                    t960*t967 + t967*t970 + t980*t991 - t982*t991 + t990) + bdep_z*(-t968 + t975 -
-                    t977 - t986 + t987 - t988))
-                bdOm0_x += bdep_x*t947 - bdep_y*t948 - bdep_z*t956
-                bdOm0_y += -bdep_x*t939 + bdep_y*t955 - bdep_z*t957
-                bdOm0_z += -bdep_x*t942 - bdep_y*t952 + bdep_z*t958
+                t750 = (0.5)*psi_z
+                t751 = e0*psi_x
+                t752 = psi_y*t751
+                t753 = t750 + t752
+                t754 = (0.5)*psi_y
+                t755 = psi_z*t751
+                t756 = -t754 + t755
+                t757 = psi_y*psi_y
+                t758 = psi_z*psi_z
+                t759 = t757 + t758
+                t760 = -t750 + t752
+                t761 = (0.5)*psi_x
+                t762 = e0*psi_y*psi_z
+                t763 = t761 + t762
+                t764 = psi_x*psi_x
+                t765 = t758 + t764
+                t766 = t754 + t755
+                t767 = -t761 + t762
+                t768 = t757 + t764
+                t769 = Om0_y - Om_y
+                t770 = -t769
+                t771 = Om0_z - Om_z
+                t772 = psi_x*t770
+                t773 = Om0_x - Om_x
+                t774 = -t773
+                t775 = -psi_y*t774
+                t776 = t772 + t775
+                t777 = -t771
+                t778 = psi_x*t777
+                t779 = psi_z*t774 - t778
+                t780 = psi_y*t776 - psi_z*t779
+                t781 = 2*e1
+                t782 = psi_x*t781
+                t783 = psi_y*t777
+                t784 = -psi_z*t770
+                t785 = t783 + t784
+                t786 = -psi_x*t776 + psi_z*t785
+                t787 = (0.5)*Om0_z + (0.5)*Om_z
+                t788 = psi_z*t774
+                t789 = psi_x*t779 - psi_y*t785
+                t790 = (0.5)*Om0_y + (0.5)*Om_y
+                t791 = psi_y*t781
+                t792 = (0.5)*Om0_x + (0.5)*Om_x
+                t793 = psi_z*t781
+                bdve[j3] += bdep_x*(-e0*t759 + 1) + bdep_y*t753 + bdep_z*t756
+                bdve[j3 + 1] += bdep_x*t760 + bdep_y*(-e0*t765 + 1) + bdep_z*t763
+                bdve[j3 + 2] += bdep_x*t766 + bdep_y*t767 + bdep_z*(-e0*t768 + 1)
+                bdy[j3] += (bdep_x*(e0*(psi_y*t770 - psi_z*t771) + t780*t782) +
+                    bdep_y*(e0*(-2*t772 - t775) + 2*e1*psi_x*t786 - t787) + bdep_z*(e0*(psi_x*t771
+                    - t778 + t788) + t782*t789 + t790))
+                bdy[j3 + 1] += (bdep_x*(e0*(psi_y*t773 + t776) + t780*t791 + t787) +
+                    bdep_y*(e0*(-psi_x*t773 + psi_z*t777) + t786*t791) + bdep_z*(e0*(-2*t783 -
+                    t784) + 2*e1*psi_y*t789 - t792))
+                bdy[j3 + 2] += (bdep_x*(e0*(t778 - 2*t788) + 2*e1*psi_z*t780 - t790) +
+                    bdep_y*(e0*(psi_z*t769 + t785) + t786*t793 + t792) + bdep_z*(e0*(psi_x*t774 -
+                    psi_y*t769) + t789*t793))
+                bdOm0_x += bdep_x*(e0*t759 - 1) - bdep_y*t760 - bdep_z*t766
+                bdOm0_y += -bdep_x*t753 + bdep_y*(e0*t765 - 1) - bdep_z*t767
+                bdOm0_z += -bdep_x*t756 - bdep_y*t763 + bdep_z*(e0*t768 - 1)
             # transposed: differential: rates of the elastic displacements
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 bdeu_x, bdeu_y, bdeu_z = bdeta[i3], bdeta[i3 + 1], bdeta[i3 + 2]
-                t992 = X_z + u_z
-                t993 = X_y + u_y
-                t994 = X_x + u_x
+                t794 = X_z + u_z
+                t795 = X_y + u_y
+                t796 = X_x + u_x
                 bdy[i3] += Om0_y*bdeu_z - Om0_z*bdeu_y
                 bdy[i3 + 1] += -Om0_x*bdeu_z + Om0_z*bdeu_x
                 bdy[i3 + 2] += Om0_x*bdeu_y - Om0_y*bdeu_x
@@ -3138,9 +2889,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdv0_x += -bdeu_x
                 bdv0_y += -bdeu_y
                 bdv0_z += -bdeu_z
-                bdOm0_x += bdeu_y*t992 - bdeu_z*t993
-                bdOm0_y += -bdeu_x*t992 + bdeu_z*t994
-                bdOm0_z += bdeu_x*t993 - bdeu_y*t994
+                bdOm0_x += bdeu_y*t794 - bdeu_z*t795
+                bdOm0_y += -bdeu_x*t794 + bdeu_z*t796
+                bdOm0_z += bdeu_x*t795 - bdeu_y*t796
             # transposed: differential: origin of the frame, (14)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -3168,12 +2919,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdy[k] = 0.0
             # transposed: differential: mean rotation of the rates = 0
             rhs_x = rhs_y = rhs_z = 0.0
-            t995 = bdOm0_x + rhs_x
-            t996 = bdOm0_y + rhs_y
-            t997 = bdOm0_z + rhs_z
-            mdOm0_x = Bxx*t995 + Byx*t996 + Bzx*t997
-            mdOm0_y = Bxy*t995 + Byy*t996 + Bzy*t997
-            mdOm0_z = Bxz*t995 + Byz*t996 + Bzz*t997
+            t797 = bdOm0_x + rhs_x
+            t798 = bdOm0_y + rhs_y
+            t799 = bdOm0_z + rhs_z
+            mdOm0_x = Bxx*t797 + Byx*t798 + Bzx*t799
+            mdOm0_y = Bxy*t797 + Byy*t798 + Bzy*t799
+            mdOm0_z = Bxz*t797 + Byz*t798 + Bzz*t799
             # transposed: differential: mean rotation of the rates = 0
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -3183,9 +2934,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gam[3*(i3 + 1) + 1], Gam[3*(i3 + 1) + 2])
                 Gam_positionz_x, Gam_positionz_y, Gam_positionz_z = (Gam[3*(i3 + 2)],
                     Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
-                t998 = Gam_positionx_x*mdOm0_x + Gam_positionx_y*mdOm0_y + Gam_positionx_z*mdOm0_z
-                t999 = Gam_positiony_x*mdOm0_x + Gam_positiony_y*mdOm0_y + Gam_positiony_z*mdOm0_z
-                t1000 = Gam_positionz_x*mdOm0_x + Gam_positionz_y*mdOm0_y + Gam_positionz_z*mdOm0_z
+                t800 = Gam_positionx_x*mdOm0_x + Gam_positionx_y*mdOm0_y + Gam_positionx_z*mdOm0_z
+                t801 = Gam_positiony_x*mdOm0_x + Gam_positiony_y*mdOm0_y + Gam_positiony_z*mdOm0_z
+                t802 = Gam_positionz_x*mdOm0_x + Gam_positionz_y*mdOm0_y + Gam_positionz_z*mdOm0_z
                 bdy[i3] += (-mdOm0_x*(-Gam_positiony_x*Om0_z + Gam_positionz_x*Om0_y) -
                     mdOm0_y*(-Gam_positiony_y*Om0_z + Gam_positionz_y*Om0_y) -
                     mdOm0_z*(-Gam_positiony_z*Om0_z + Gam_positionz_z*Om0_y))
@@ -3195,12 +2946,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdy[i3 + 2] += (-mdOm0_x*(-Gam_positionx_x*Om0_y + Gam_positiony_x*Om0_x) -
                     mdOm0_y*(-Gam_positionx_y*Om0_y + Gam_positiony_y*Om0_x) -
                     mdOm0_z*(-Gam_positionx_z*Om0_y + Gam_positiony_z*Om0_x))
-                bdyd[i3] += -t998
-                bdyd[i3 + 1] += -t999
-                bdyd[i3 + 2] += -t1000
-                bdv0_x += t998
-                bdv0_y += t999
-                bdv0_z += t1000
+                bdyd[i3] += -t800
+                bdyd[i3 + 1] += -t801
+                bdyd[i3 + 2] += -t802
+                bdv0_x += t800
+                bdv0_y += t801
+                bdv0_z += t802
             # transposed: differential: mean rotation of the rates = 0
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -3214,107 +2965,98 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t1001 = (0.5)*psi_z
-                t1002 = e0*psi_x
-                t1003 = psi_y*t1002
-                t1004 = t1001 + t1003
-                t1005 = (0.5)*psi_y
-                t1006 = psi_z*t1002
-                t1007 = -t1005 + t1006
-                t1008 = psi_y*psi_y
-                t1009 = e0*t1008
-                t1010 = psi_z*psi_z
-                t1011 = e0*t1010 - 1
-                t1012 = -t1009 - t1011
-                t1013 = -t1001 + t1003
-                t1014 = (0.5)*psi_x
-                t1015 = e0*psi_y
-                t1016 = psi_z*t1015
-                t1017 = t1014 + t1016
-                t1018 = psi_x*psi_x
-                t1019 = e0*t1018
-                t1020 = -t1011 - t1019
-                t1021 = t1005 + t1006
-                t1022 = -t1014 + t1016
-                t1023 = -t1009 - t1019 + 1
-                t1024 = Om_x*psi_y
-                t1025 = Om_y*psi_x - t1024
-                t1026 = 2*e1
-                t1027 = psi_x*t1026
-                t1028 = psi_y*t1027
-                t1029 = t1025*t1028
-                t1030 = Om0_z*psi_x
-                t1031 = Om0_x*psi_z - t1030
-                t1032 = psi_z*t1027
-                t1033 = t1031*t1032
-                t1034 = Om0_x*psi_y
-                t1035 = Om0_y*psi_x - t1034
-                t1036 = t1028*t1035
-                t1037 = Om_x*psi_z
-                t1038 = Om_z*psi_x
-                t1039 = t1037 - t1038
-                t1040 = t1032*t1039
-                t1041 = Om0_z*e0*psi_z - Om_z*e0*psi_z
-                t1042 = Om0_y*t1015 - Om_y*e0*psi_y
-                t1043 = t1029 + t1033 - t1036 - t1040 - t1041 - t1042
-                t1044 = t1018*t1026
-                t1045 = Om_y*psi_z
-                t1046 = Om_z*psi_y - t1045
-                t1047 = Om0_y*psi_z
-                t1048 = Om0_z*psi_y - t1047
-                t1049 = (0.5)*Om0_z + (0.5)*Om_z + e0*t1025 - e0*t1035
-                t1050 = (Om0_y*e0*psi_x - Om_y*e0*psi_x + 2*e1*psi_x*psi_z*t1046 +
-                    2*e1*t1018*t1035 - t1025*t1044 - t1032*t1048 - t1049)
-                t1051 = (0.5)*Om0_y + (0.5)*Om_y - e0*t1031 + e0*t1039
-                t1052 = (e0*t1030 - e0*t1038 - t1028*t1046 + t1028*t1048 - t1031*t1044 +
-                    t1039*t1044 + t1051)
-                t1053 = psi_y*psi_z*t1026
-                t1054 = t1046*t1053
-                t1055 = t1048*t1053
-                t1056 = Om0_x*t1002 - Om_x*e0*psi_x
-                t1057 = -t1029 + t1036 - t1041 + t1054 - t1055 - t1056
-                t1058 = t1008*t1026
-                t1059 = (-e0*t1024 + e0*t1034 + t1025*t1058 + t1031*t1053 - t1035*t1058 -
-                    t1039*t1053 + t1049)
-                t1060 = (0.5)*Om0_x + (0.5)*Om_x + e0*t1046 - e0*t1048
-                t1061 = (Om0_z*e0*psi_y - Om_z*e0*psi_y + 2*e1*psi_x*psi_y*t1039 +
-                    2*e1*t1008*t1048 - t1028*t1031 - t1046*t1058 - t1060)
-                t1062 = -t1033 + t1040 - t1042 - t1054 + t1055 - t1056
-                t1063 = t1010*t1026
-                t1064 = (Om0_x*e0*psi_z - e0*t1037 + 2*e1*psi_y*psi_z*t1025 + 2*e1*t1010*t1031 -
-                    t1035*t1053 - t1039*t1063 - t1051)
-                t1065 = (-e0*t1045 + e0*t1047 - t1025*t1032 + t1032*t1035 + t1046*t1063 -
-                    t1048*t1063 + t1060)
-                bdve[j3] += (-mdOm0_x*(Gam_rotationx_x*t1012 + Gam_rotationy_x*t1004 +
-                    Gam_rotationz_x*t1007) - mdOm0_y*(Gam_rotationx_y*t1012 +
-                    Gam_rotationy_y*t1004 + Gam_rotationz_y*t1007) -
-                    mdOm0_z*(Gam_rotationx_z*t1012 + Gam_rotationy_z*t1004 +
-                    Gam_rotationz_z*t1007))
-                bdve[j3 + 1] += (-mdOm0_x*(Gam_rotationx_x*t1013 + Gam_rotationy_x*t1020 +
-                    Gam_rotationz_x*t1017) - mdOm0_y*(Gam_rotationx_y*t1013 +
-                    Gam_rotationy_y*t1020 + Gam_rotationz_y*t1017) -
-                    mdOm0_z*(Gam_rotationx_z*t1013 + Gam_rotationy_z*t1020 +
-                    Gam_rotationz_z*t1017))
-                bdve[j3 + 2] += (-mdOm0_x*(Gam_rotationx_x*t1021 + Gam_rotationy_x*t1022 +
-                    Gam_rotationz_x*t1023) - mdOm0_y*(Gam_rotationx_y*t1021 +
-                    Gam_rotationy_y*t1022 + Gam_rotationz_y*t1023) -
-                    mdOm0_z*(Gam_rotationx_z*t1021 + Gam_rotationy_z*t1022 +
-                    Gam_rotationz_z*t1023))
-                bdy[j3] += (-mdOm0_x*(Gam_rotationx_x*t1043 + Gam_rotationy_x*t1050 +
-                    Gam_rotationz_x*t1052) - mdOm0_y*(Gam_rotationx_y*t1043 +
-                    Gam_rotationy_y*t1050 + Gam_rotationz_y*t1052) -
-                    mdOm0_z*(Gam_rotationx_z*t1043 + Gam_rotationy_z*t1050 +
-                    Gam_rotationz_z*t1052))
-                bdy[j3 + 1] += (-mdOm0_x*(Gam_rotationx_x*t1059 + Gam_rotationy_x*t1057 +
-                    Gam_rotationz_x*t1061) - mdOm0_y*(Gam_rotationx_y*t1059 +
-                    Gam_rotationy_y*t1057 + Gam_rotationz_y*t1061) -
-                    mdOm0_z*(Gam_rotationx_z*t1059 + Gam_rotationy_z*t1057 +
-                    Gam_rotationz_z*t1061))
-                bdy[j3 + 2] += (-mdOm0_x*(Gam_rotationx_x*t1064 + Gam_rotationy_x*t1065 +
-                    Gam_rotationz_x*t1062) - mdOm0_y*(Gam_rotationx_y*t1064 +
-                    Gam_rotationy_y*t1065 + Gam_rotationz_y*t1062) -
-                    mdOm0_z*(Gam_rotationx_z*t1064 + Gam_rotationy_z*t1065 +
-                    Gam_rotationz_z*t1062))
+                t803 = (0.5)*psi_z
+                t804 = e0*psi_x
+                t805 = psi_y*t804
+                t806 = t803 + t805
+                t807 = (0.5)*psi_y
+                t808 = psi_z*t804
+                t809 = -t807 + t808
+                t810 = psi_y*psi_y
+                t811 = e0*t810
+                t812 = psi_z*psi_z
+                t813 = e0*t812 - 1
+                t814 = -t811 - t813
+                t815 = -t803 + t805
+                t816 = (0.5)*psi_x
+                t817 = e0*psi_y
+                t818 = psi_z*t817
+                t819 = t816 + t818
+                t820 = psi_x*psi_x
+                t821 = e0*t820
+                t822 = -t813 - t821
+                t823 = t807 + t808
+                t824 = -t816 + t818
+                t825 = -t811 - t821 + 1
+                t826 = Om_x*psi_y
+                t827 = Om_y*psi_x - t826
+                t828 = 2*e1
+                t829 = psi_x*t828
+                t830 = psi_y*t829
+                t831 = t827*t830
+                t832 = Om0_z*psi_x
+                t833 = Om0_x*psi_z - t832
+                t834 = psi_z*t829
+                t835 = t833*t834
+                t836 = Om0_x*psi_y
+                t837 = Om0_y*psi_x - t836
+                t838 = t830*t837
+                t839 = Om_x*psi_z
+                t840 = Om_z*psi_x
+                t841 = t839 - t840
+                t842 = t834*t841
+                t843 = Om0_z*e0*psi_z - Om_z*e0*psi_z
+                t844 = Om0_y*t817 - Om_y*e0*psi_y
+                t845 = t831 + t835 - t838 - t842 - t843 - t844
+                t846 = t820*t828
+                t847 = Om_y*psi_z
+                t848 = Om_z*psi_y - t847
+                t849 = Om0_y*psi_z
+                t850 = Om0_z*psi_y - t849
+                t851 = (0.5)*Om0_z + (0.5)*Om_z + e0*t827 - e0*t837
+                t852 = (Om0_y*e0*psi_x - Om_y*e0*psi_x + 2*e1*psi_x*psi_z*t848 + 2*e1*t820*t837 -
+                    t827*t846 - t834*t850 - t851)
+                t853 = (0.5)*Om0_y + (0.5)*Om_y - e0*t833 + e0*t841
+                t854 = e0*t832 - e0*t840 - t830*t848 + t830*t850 - t833*t846 + t841*t846 + t853
+                t855 = psi_y*psi_z*t828
+                t856 = t848*t855
+                t857 = t850*t855
+                t858 = Om0_x*t804 - Om_x*e0*psi_x
+                t859 = -t831 + t838 - t843 + t856 - t857 - t858
+                t860 = t810*t828
+                t861 = -e0*t826 + e0*t836 + t827*t860 + t833*t855 - t837*t860 - t841*t855 + t851
+                t862 = (0.5)*Om0_x + (0.5)*Om_x + e0*t848 - e0*t850
+                t863 = (Om0_z*e0*psi_y - Om_z*e0*psi_y + 2*e1*psi_x*psi_y*t841 + 2*e1*t810*t850 -
+                    t830*t833 - t848*t860 - t862)
+                t864 = -t835 + t842 - t844 - t856 + t857 - t858
+                t865 = t812*t828
+                t866 = (Om0_x*e0*psi_z - e0*t839 + 2*e1*psi_y*psi_z*t827 + 2*e1*t812*t833 -
+                    t837*t855 - t841*t865 - t853)
+                t867 = -e0*t847 + e0*t849 - t827*t834 + t834*t837 + t848*t865 - t850*t865 + t862
+                bdve[j3] += (-mdOm0_x*(Gam_rotationx_x*t814 + Gam_rotationy_x*t806 +
+                    Gam_rotationz_x*t809) - mdOm0_y*(Gam_rotationx_y*t814 + Gam_rotationy_y*t806 +
+                    Gam_rotationz_y*t809) - mdOm0_z*(Gam_rotationx_z*t814 + Gam_rotationy_z*t806 +
+                    Gam_rotationz_z*t809))
+                bdve[j3 + 1] += (-mdOm0_x*(Gam_rotationx_x*t815 + Gam_rotationy_x*t822 +
+                    Gam_rotationz_x*t819) - mdOm0_y*(Gam_rotationx_y*t815 + Gam_rotationy_y*t822 +
+                    Gam_rotationz_y*t819) - mdOm0_z*(Gam_rotationx_z*t815 + Gam_rotationy_z*t822 +
+                    Gam_rotationz_z*t819))
+                bdve[j3 + 2] += (-mdOm0_x*(Gam_rotationx_x*t823 + Gam_rotationy_x*t824 +
+                    Gam_rotationz_x*t825) - mdOm0_y*(Gam_rotationx_y*t823 + Gam_rotationy_y*t824 +
+                    Gam_rotationz_y*t825) - mdOm0_z*(Gam_rotationx_z*t823 + Gam_rotationy_z*t824 +
+                    Gam_rotationz_z*t825))
+                bdy[j3] += (-mdOm0_x*(Gam_rotationx_x*t845 + Gam_rotationy_x*t852 +
+                    Gam_rotationz_x*t854) - mdOm0_y*(Gam_rotationx_y*t845 + Gam_rotationy_y*t852 +
+                    Gam_rotationz_y*t854) - mdOm0_z*(Gam_rotationx_z*t845 + Gam_rotationy_z*t852 +
+                    Gam_rotationz_z*t854))
+                bdy[j3 + 1] += (-mdOm0_x*(Gam_rotationx_x*t861 + Gam_rotationy_x*t859 +
+                    Gam_rotationz_x*t863) - mdOm0_y*(Gam_rotationx_y*t861 + Gam_rotationy_y*t859 +
+                    Gam_rotationz_y*t863) - mdOm0_z*(Gam_rotationx_z*t861 + Gam_rotationy_z*t859 +
+                    Gam_rotationz_z*t863))
+                bdy[j3 + 2] += (-mdOm0_x*(Gam_rotationx_x*t866 + Gam_rotationy_x*t867 +
+                    Gam_rotationz_x*t864) - mdOm0_y*(Gam_rotationx_y*t866 + Gam_rotationy_y*t867 +
+                    Gam_rotationz_y*t864) - mdOm0_z*(Gam_rotationx_z*t866 + Gam_rotationy_z*t867 +
+                    Gam_rotationz_z*t864))
             # transposed: differential: mean rotation of the rates = 0
             for k in range(MODES, n):
                 Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
@@ -3380,43 +3122,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 bdpsi_x, bdpsi_y, bdpsi_z = bdy[j3], bdy[j3 + 1], bdy[j3 + 2]
                 e0 = e0s[j]
-                t1066 = (0.5)*psi_z
-                t1067 = e0*psi_x
-                t1068 = psi_y*t1067
-                t1069 = t1066 + t1068
-                t1070 = (0.5)*psi_y
-                t1071 = psi_z*t1067
-                t1072 = -t1070 + t1071
-                t1073 = e0*psi_y*psi_y
-                t1074 = e0*psi_z*psi_z - 1
-                t1075 = t1073 + t1074
-                t1076 = -t1066 + t1068
-                t1077 = (0.5)*psi_x
-                t1078 = e0*psi_y*psi_z
-                t1079 = t1077 + t1078
-                t1080 = e0*psi_x*psi_x
-                t1081 = t1074 + t1080
-                t1082 = t1070 + t1071
-                t1083 = -t1077 + t1078
-                t1084 = t1073 + t1080 - 1
-                bdqe[j3] += -bdpsi_x*t1075 + bdpsi_y*t1069 + bdpsi_z*t1072
-                bdqe[j3 + 1] += bdpsi_x*t1076 - bdpsi_y*t1081 + bdpsi_z*t1079
-                bdqe[j3 + 2] += bdpsi_x*t1082 + bdpsi_y*t1083 - bdpsi_z*t1084
-                bdth0_x += bdpsi_x*t1075 - bdpsi_y*t1076 - bdpsi_z*t1082
-                bdth0_y += -bdpsi_x*t1069 + bdpsi_y*t1081 - bdpsi_z*t1083
-                bdth0_z += -bdpsi_x*t1072 - bdpsi_y*t1079 + bdpsi_z*t1084
+                t868 = (0.5)*psi_z
+                t869 = e0*psi_x
+                t870 = psi_y*t869
+                t871 = t868 + t870
+                t872 = (0.5)*psi_y
+                t873 = psi_z*t869
+                t874 = -t872 + t873
+                t875 = psi_y*psi_y
+                t876 = psi_z*psi_z
+                t877 = t875 + t876
+                t878 = -t868 + t870
+                t879 = (0.5)*psi_x
+                t880 = e0*psi_y*psi_z
+                t881 = t879 + t880
+                t882 = psi_x*psi_x
+                t883 = t876 + t882
+                t884 = t872 + t873
+                t885 = -t879 + t880
+                t886 = t875 + t882
+                bdqe[j3] += bdpsi_x*(-e0*t877 + 1) + bdpsi_y*t871 + bdpsi_z*t874
+                bdqe[j3 + 1] += bdpsi_x*t878 + bdpsi_y*(-e0*t883 + 1) + bdpsi_z*t881
+                bdqe[j3 + 2] += bdpsi_x*t884 + bdpsi_y*t885 + bdpsi_z*(-e0*t886 + 1)
+                bdth0_x += bdpsi_x*(e0*t877 - 1) - bdpsi_y*t878 - bdpsi_z*t884
+                bdth0_y += -bdpsi_x*t871 + bdpsi_y*(e0*t883 - 1) - bdpsi_z*t885
+                bdth0_z += -bdpsi_x*t874 - bdpsi_y*t881 + bdpsi_z*(e0*t886 - 1)
             # transposed: differential: displacement of the nodes in the frame, (11)
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 bdu_x, bdu_y, bdu_z = bdy[i3], bdy[i3 + 1], bdy[i3 + 2]
-                t1085 = X_z + u_z
-                t1086 = X_y + u_y
-                t1087 = X_x + u_x
-                bdth0_x += bdu_y*t1085 - bdu_z*t1086
-                bdth0_y += -bdu_x*t1085 + bdu_z*t1087
-                bdth0_z += bdu_x*t1086 - bdu_y*t1087
+                t887 = X_z + u_z
+                t888 = X_y + u_y
+                t889 = X_x + u_x
+                bdth0_x += bdu_y*t887 - bdu_z*t888
+                bdth0_y += -bdu_x*t887 + bdu_z*t889
+                bdth0_z += bdu_x*t888 - bdu_y*t889
                 bdqe[i3] += bdu_x
                 bdqe[i3 + 1] += bdu_y
                 bdqe[i3 + 2] += bdu_z
@@ -3425,12 +3167,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdx0_z += -bdu_z
             # transposed: mean rotation of the rates = 0
             rhs_x = rhs_y = rhs_z = 0.0
-            t1088 = bdth0_x + rhs_x
-            t1089 = bdth0_y + rhs_y
-            t1090 = bdth0_z + rhs_z
-            mdth0_x = Bxx*t1088 + Byx*t1089 + Bzx*t1090
-            mdth0_y = Bxy*t1088 + Byy*t1089 + Bzy*t1090
-            mdth0_z = Bxz*t1088 + Byz*t1089 + Bzz*t1090
+            t890 = bdth0_x + rhs_x
+            t891 = bdth0_y + rhs_y
+            t892 = bdth0_z + rhs_z
+            mdth0_x = Bxx*t890 + Byx*t891 + Bzx*t892
+            mdth0_y = Bxy*t890 + Byy*t891 + Bzy*t892
+            mdth0_z = Bxz*t890 + Byz*t891 + Bzz*t892
             # transposed: mean rotation of the rates = 0
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -3440,15 +3182,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gam[3*(i3 + 1) + 1], Gam[3*(i3 + 1) + 2])
                 Gam_positionz_x, Gam_positionz_y, Gam_positionz_z = (Gam[3*(i3 + 2)],
                     Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
-                t1091 = Gam_positionx_x*mdth0_x + Gam_positionx_y*mdth0_y + Gam_positionx_z*mdth0_z
-                t1092 = Gam_positiony_x*mdth0_x + Gam_positiony_y*mdth0_y + Gam_positiony_z*mdth0_z
-                t1093 = Gam_positionz_x*mdth0_x + Gam_positionz_y*mdth0_y + Gam_positionz_z*mdth0_z
-                bdqe[i3] += -t1091
-                bdqe[i3 + 1] += -t1092
-                bdqe[i3 + 2] += -t1093
-                bdx0_x += t1091
-                bdx0_y += t1092
-                bdx0_z += t1093
+                t893 = Gam_positionx_x*mdth0_x + Gam_positionx_y*mdth0_y + Gam_positionx_z*mdth0_z
+                t894 = Gam_positiony_x*mdth0_x + Gam_positiony_y*mdth0_y + Gam_positiony_z*mdth0_z
+                t895 = Gam_positionz_x*mdth0_x + Gam_positionz_y*mdth0_y + Gam_positionz_z*mdth0_z
+                bdqe[i3] += -t893
+                bdqe[i3 + 1] += -t894
+                bdqe[i3 + 2] += -t895
+                bdx0_x += t893
+                bdx0_y += t894
+                bdx0_z += t895
             # transposed: mean rotation of the rates = 0
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -3460,40 +3202,37 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Gam_rotationz_x, Gam_rotationz_y, Gam_rotationz_z = (Gam[3*(j3 + 2)],
                     Gam[3*(j3 + 2) + 1], Gam[3*(j3 + 2) + 2])
                 e0 = e0s[j]
-                t1094 = (0.5)*psi_z
-                t1095 = e0*psi_x
-                t1096 = psi_y*t1095
-                t1097 = t1094 + t1096
-                t1098 = (0.5)*psi_y
-                t1099 = psi_z*t1095
-                t1100 = -t1098 + t1099
-                t1101 = e0*psi_y*psi_y
-                t1102 = e0*psi_z*psi_z - 1
-                t1103 = -t1101 - t1102
-                t1104 = -t1094 + t1096
-                t1105 = (0.5)*psi_x
-                t1106 = e0*psi_y*psi_z
-                t1107 = t1105 + t1106
-                t1108 = e0*psi_x*psi_x
-                t1109 = -t1102 - t1108
-                t1110 = t1098 + t1099
-                t1111 = -t1105 + t1106
-                t1112 = -t1101 - t1108 + 1
-                bdqe[j3] += (-mdth0_x*(Gam_rotationx_x*t1103 + Gam_rotationy_x*t1097 +
-                    Gam_rotationz_x*t1100) - mdth0_y*(Gam_rotationx_y*t1103 +
-                    Gam_rotationy_y*t1097 + Gam_rotationz_y*t1100) -
-                    mdth0_z*(Gam_rotationx_z*t1103 + Gam_rotationy_z*t1097 +
-                    Gam_rotationz_z*t1100))
-                bdqe[j3 + 1] += (-mdth0_x*(Gam_rotationx_x*t1104 + Gam_rotationy_x*t1109 +
-                    Gam_rotationz_x*t1107) - mdth0_y*(Gam_rotationx_y*t1104 +
-                    Gam_rotationy_y*t1109 + Gam_rotationz_y*t1107) -
-                    mdth0_z*(Gam_rotationx_z*t1104 + Gam_rotationy_z*t1109 +
-                    Gam_rotationz_z*t1107))
-                bdqe[j3 + 2] += (-mdth0_x*(Gam_rotationx_x*t1110 + Gam_rotationy_x*t1111 +
-                    Gam_rotationz_x*t1112) - mdth0_y*(Gam_rotationx_y*t1110 +
-                    Gam_rotationy_y*t1111 + Gam_rotationz_y*t1112) -
-                    mdth0_z*(Gam_rotationx_z*t1110 + Gam_rotationy_z*t1111 +
-                    Gam_rotationz_z*t1112))
+                t896 = (0.5)*psi_z
+                t897 = e0*psi_x
+                t898 = psi_y*t897
+                t899 = t896 + t898
+                t900 = (0.5)*psi_y
+                t901 = psi_z*t897
+                t902 = -t900 + t901
+                t903 = e0*psi_y*psi_y
+                t904 = e0*psi_z*psi_z - 1
+                t905 = -t903 - t904
+                t906 = -t896 + t898
+                t907 = (0.5)*psi_x
+                t908 = e0*psi_y*psi_z
+                t909 = t907 + t908
+                t910 = e0*psi_x*psi_x
+                t911 = -t904 - t910
+                t912 = t900 + t901
+                t913 = -t907 + t908
+                t914 = -t903 - t910 + 1
+                bdqe[j3] += (-mdth0_x*(Gam_rotationx_x*t905 + Gam_rotationy_x*t899 +
+                    Gam_rotationz_x*t902) - mdth0_y*(Gam_rotationx_y*t905 + Gam_rotationy_y*t899 +
+                    Gam_rotationz_y*t902) - mdth0_z*(Gam_rotationx_z*t905 + Gam_rotationy_z*t899 +
+                    Gam_rotationz_z*t902))
+                bdqe[j3 + 1] += (-mdth0_x*(Gam_rotationx_x*t906 + Gam_rotationy_x*t911 +
+                    Gam_rotationz_x*t909) - mdth0_y*(Gam_rotationx_y*t906 + Gam_rotationy_y*t911 +
+                    Gam_rotationz_y*t909) - mdth0_z*(Gam_rotationx_z*t906 + Gam_rotationy_z*t911 +
+                    Gam_rotationz_z*t909))
+                bdqe[j3 + 2] += (-mdth0_x*(Gam_rotationx_x*t912 + Gam_rotationy_x*t913 +
+                    Gam_rotationz_x*t914) - mdth0_y*(Gam_rotationx_y*t912 + Gam_rotationy_y*t913 +
+                    Gam_rotationz_y*t914) - mdth0_z*(Gam_rotationx_z*t912 + Gam_rotationy_z*t913 +
+                    Gam_rotationz_z*t914))
             # transposed: mean rotation of the rates = 0
             for k in range(MODES, n):
                 Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]

@@ -69,8 +69,8 @@ WORK_ROWS = 137
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (867, 263, 440, 1),
-              "column": (159, 299, 1482, 4)}
+OPERATIONS = {"residual": (867, 263, 320, 1),
+              "column": (159, 299, 1064, 4)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("sizes", (3,), "slaved coordinates, resultants of second order, damped or not"),
     Part("turn", ("entries",), "axes of the body in the frame: columns of a rotation"),
@@ -360,29 +360,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
                 e0 = e0s[j]
-                t18 = Om0_y*psi_z
-                t19 = Om_y*psi_z
-                t20 = Om0_x*psi_y
-                t21 = Om0_y*psi_x - t20
-                t22 = e0*psi_y
-                t23 = Om_x*psi_z
-                t24 = Om_z*psi_x
-                t25 = t23 - t24
-                t26 = e0*psi_z
-                t27 = Om_x*psi_y
-                t28 = Om_y*psi_x - t27
-                t29 = Om0_x*psi_z
-                t30 = Om0_z*psi_x
-                t31 = t29 - t30
-                t32 = e0*psi_x
-                t33 = Om_z*psi_y - t19
-                t34 = Om0_z*psi_y - t18
-                eta[j3] = (-Om0_x + (0.5)*Om0_z*psi_y + Om_x + (0.5)*Om_z*psi_y + e0*psi_y*t28 +
-                    e0*psi_z*t31 - 0.5*t18 - 0.5*t19 - t21*t22 - t25*t26)
-                eta[j3 + 1] = (-Om0_y + Om_y + t21*t32 + (0.5)*t23 - 0.5*t24 + t26*t33 - t26*t34 -
-                    t28*t32 + (0.5)*t29 - 0.5*t30)
-                eta[j3 + 2] = ((0.5)*Om0_y*psi_x - Om0_z + (0.5)*Om_y*psi_x + Om_z + e0*psi_x*t25
-                    + e0*psi_y*t34 - 0.5*t20 - t22*t33 - 0.5*t27 - t31*t32)
+                t18 = (0.5)*Om0_z + (0.5)*Om_z
+                t19 = Om0_y + Om_y
+                t20 = (0.5)*psi_z
+                t21 = -Om0_y + Om_y
+                t22 = -Om0_x + Om_x
+                t23 = psi_x*t21 - psi_y*t22
+                t24 = -Om0_z + Om_z
+                t25 = -psi_x*t24 + psi_z*t22
+                t26 = Om0_x + Om_x
+                t27 = psi_y*t24 - psi_z*t21
+                eta[j3] = -Om0_x + Om_x + e0*(psi_y*t23 - psi_z*t25) + psi_y*t18 - t19*t20
+                eta[j3 + 1] = -Om0_y + Om_y + e0*(-psi_x*t23 + psi_z*t27) - psi_x*t18 + t20*t26
+                eta[j3 + 2] = (-Om0_z + Om_z + e0*(psi_x*t25 - psi_y*t27) + (0.5)*psi_x*t19 -
+                    0.5*psi_y*t26)
             # rates of the internal modes
             for k in range(MODES, n):
                 vm = ve[k]
@@ -406,9 +397,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 eud_x, eud_y, eud_z = etad[i3], etad[i3 + 1], etad[i3 + 2]
-                t35 = eud_z*fit
-                rhs_x += -X_y*t35 + X_z*eud_y*fit
-                rhs_y += X_x*t35 - X_z*eud_x*fit
+                t28 = eud_z*fit
+                rhs_x += -X_y*t28 + X_z*eud_y*fit
+                rhs_y += X_x*t28 - X_z*eud_x*fit
                 rhs_z += -X_x*eud_y*fit + X_y*eud_x*fit
             Om0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             Om0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
@@ -419,12 +410,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 eud_x, eud_y, eud_z = etad[i3], etad[i3 + 1], etad[i3 + 2]
-                t36 = X_y + u_y
-                t37 = X_z + u_z
-                t38 = X_x + u_x
-                etad[i3] = -Om0d_y*t37 + Om0d_z*t36 + eud_x
-                etad[i3 + 1] = Om0d_x*t37 - Om0d_z*t38 + eud_y
-                etad[i3 + 2] = -Om0d_x*t36 + Om0d_y*t38 + eud_z
+                t29 = X_y + u_y
+                t30 = X_z + u_z
+                t31 = X_x + u_x
+                etad[i3] = -Om0d_y*t30 + Om0d_z*t29 + eud_x
+                etad[i3 + 1] = Om0d_x*t30 - Om0d_z*t31 + eud_y
+                etad[i3 + 2] = -Om0d_x*t29 + Om0d_y*t31 + eud_z
             # rate: rates of the elastic rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -434,57 +425,34 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t39 = A_y*psi_z
-                t40 = Om0_y*ep_z
-                t41 = Om0d_y*psi_z
-                t42 = Om_y*ep_z
-                t43 = -Om_x*psi_y + Om_y*psi_x
-                t44 = e0*ep_y
-                t45 = Om0_x*psi_z - Om0_z*psi_x
-                t46 = e0*ep_z
-                t47 = -Om0_x*psi_y + Om0_y*psi_x
-                t48 = Om_x*psi_z - Om_z*psi_x
-                t49 = A_x*psi_y
-                t50 = Om_x*ep_y
-                t51 = A_y*psi_x + Om_y*ep_x - t49 - t50
-                t52 = e0*psi_y
-                t53 = Om0_x*ep_z
-                t54 = Om0d_x*psi_z
-                t55 = Om0_z*ep_x
-                t56 = Om0d_z*psi_x
-                t57 = t53 + t54 - t55 - t56
-                t58 = e0*psi_z
-                t59 = Om0_x*ep_y
-                t60 = Om0d_x*psi_y
-                t61 = Om0_y*ep_x + Om0d_y*psi_x - t59 - t60
-                t62 = A_x*psi_z
-                t63 = Om_x*ep_z
-                t64 = A_z*psi_x
-                t65 = Om_z*ep_x
-                t66 = t62 + t63 - t64 - t65
-                t67 = 2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z
-                t68 = e1*t67
-                t69 = psi_y*t68
-                t70 = psi_z*t68
-                t71 = e0*ep_x
-                t72 = -Om_y*psi_z + Om_z*psi_y
-                t73 = -Om0_y*psi_z + Om0_z*psi_y
-                t74 = e0*psi_x
-                t75 = A_z*psi_y + Om_z*ep_y - t39 - t42
-                t76 = Om0_z*ep_y + Om0d_z*psi_y - t40 - t41
-                t77 = psi_x*t68
-                etad[j3] = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y - Om0d_x + (0.5)*Om0d_z*psi_y
-                    + (0.5)*Om_z*ep_y - 0.5*t39 - 0.5*t40 - 0.5*t41 - 0.5*t42 + t43*t44 + t43*t69
-                    - t44*t47 + t45*t46 + t45*t70 - t46*t48 - t47*t69 - t48*t70 + t51*t52 -
-                    t52*t61 + t57*t58 - t58*t66)
-                etad[j3 + 1] = (A_y - Om0d_y - t43*t71 - t43*t77 + t46*t72 - t46*t73 + t47*t71 +
-                    t47*t77 - t51*t74 + (0.5)*t53 + (0.5)*t54 - 0.5*t55 - 0.5*t56 + t58*t75 -
-                    t58*t76 + t61*t74 + (0.5)*t62 + (0.5)*t63 - 0.5*t64 - 0.5*t65 + t70*t72 -
-                    t70*t73)
-                etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om0d_y*psi_x -
-                    Om0d_z + (0.5)*Om_y*ep_x + e0*ep_x*t48 + e0*ep_y*t73 + e0*psi_x*t66 +
-                    e0*psi_y*t76 + e1*psi_x*t48*t67 + e1*psi_y*t67*t73 - t44*t72 - t45*t71 -
-                    t45*t77 - 0.5*t49 - 0.5*t50 - t52*t75 - t57*t74 - 0.5*t59 - 0.5*t60 - t69*t72)
+                t32 = -Om0_y + Om_y
+                t33 = -Om0_x + Om_x
+                t34 = psi_x*t32 - psi_y*t33
+                t35 = -Om0_z + Om_z
+                t36 = -psi_x*t35 + psi_z*t33
+                t37 = A_y - Om0d_y
+                t38 = A_x - Om0d_x
+                t39 = ep_x*t32 - ep_y*t33 + psi_x*t37 - psi_y*t38
+                t40 = A_z - Om0d_z
+                t41 = -ep_x*t35 + ep_z*t33 - psi_x*t40 + psi_z*t38
+                t42 = (0.5)*Om0_z + (0.5)*Om_z
+                t43 = (0.5)*A_z + (0.5)*Om0d_z
+                t44 = Om0_y + Om_y
+                t45 = (0.5)*ep_z
+                t46 = A_y + Om0d_y
+                t47 = (0.5)*psi_z
+                t48 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
+                t49 = psi_y*t35 - psi_z*t32
+                t50 = ep_y*t35 - ep_z*t32 + psi_y*t40 - psi_z*t37
+                t51 = Om0_x + Om_x
+                t52 = A_x + Om0d_x
+                etad[j3] = (e0*(ep_y*t34 - ep_z*t36 + psi_y*t39 - psi_z*t41) + ep_y*t42 +
+                    psi_y*t43 + t38 - t44*t45 - t46*t47 + t48*(psi_y*t34 - psi_z*t36))
+                etad[j3 + 1] = (e0*(-ep_x*t34 + ep_z*t49 - psi_x*t39 + psi_z*t50) - ep_x*t42 -
+                    psi_x*t43 + t37 + t45*t51 + t47*t52 + t48*(-psi_x*t34 + psi_z*t49))
+                etad[j3 + 2] = (e0*(ep_x*t36 - ep_y*t49 + psi_x*t41 - psi_y*t50) + (0.5)*ep_x*t44
+                    - 0.5*ep_y*t51 + (0.5)*psi_x*t46 - 0.5*psi_y*t52 + t40 + t48*(psi_x*t36 -
+                    psi_y*t49))
             # rate: rates of the internal modes
             for k in range(MODES, n):
                 am = ae[k]
@@ -568,12 +536,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
-            t78 = a0_x - gamma_x
-            t79 = a0_y - gamma_y
-            t80 = a0_z - gamma_z
-            zdd[N] = t78*turn_xx + t79*turn_yx + t80*turn_zx
-            zdd[N + 1] = t78*turn_xy + t79*turn_yy + t80*turn_zy
-            zdd[N + 2] = t78*turn_xz + t79*turn_yz + t80*turn_zz
+            t53 = a0_x - gamma_x
+            t54 = a0_y - gamma_y
+            t55 = a0_z - gamma_z
+            zdd[N] = t53*turn_xx + t54*turn_yx + t55*turn_zx
+            zdd[N + 1] = t53*turn_xy + t54*turn_yy + t55*turn_zy
+            zdd[N + 2] = t53*turn_xz + t54*turn_yz + t55*turn_zz
             zdd[N + 3] = Om0d_x*turn_xx + Om0d_y*turn_yx + Om0d_z*turn_zx
             zdd[N + 4] = Om0d_x*turn_xy + Om0d_y*turn_yy + Om0d_z*turn_zy
             zdd[N + 5] = Om0d_x*turn_xz + Om0d_y*turn_yz + Om0d_z*turn_zz
@@ -584,30 +552,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             felt_x, felt_y, felt_z = zdd[N], zdd[N + 1], zdd[N + 2]
             turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
-            t81 = spin_x*spin_x
-            t82 = spin_y*spin_y
-            t83 = spin_z*spin_z
-            t84 = spin_x*spin_y
-            t85 = spin_x*spin_z
-            t86 = spin_y*spin_z
+            t56 = spin_x*spin_x
+            t57 = spin_y*spin_y
+            t58 = spin_z*spin_z
+            t59 = spin_x*spin_y
+            t60 = spin_x*spin_z
+            t61 = spin_y*spin_z
             by_moment_columns[0] = felt_x
             by_moment_columns[1] = felt_y
             by_moment_columns[2] = felt_z
             by_moment_columns[3] = turning_x
             by_moment_columns[4] = turning_y
             by_moment_columns[5] = turning_z
-            by_moment_columns[6] = -0.5*t81
-            by_moment_columns[7] = -0.5*t82
-            by_moment_columns[8] = -0.5*t83
-            by_moment_columns[9] = -t84
-            by_moment_columns[10] = -t85
-            by_moment_columns[11] = -t86
-            by_products[0] = -t81
-            by_products[1] = -t82
-            by_products[2] = -t83
-            by_products[3] = -2*t84
-            by_products[4] = -2*t85
-            by_products[5] = -2*t86
+            by_moment_columns[6] = -0.5*t56
+            by_moment_columns[7] = -0.5*t57
+            by_moment_columns[8] = -0.5*t58
+            by_moment_columns[9] = -t59
+            by_moment_columns[10] = -t60
+            by_moment_columns[11] = -t61
+            by_products[0] = -t56
+            by_products[1] = -t57
+            by_products[2] = -t58
+            by_products[3] = -2*t59
+            by_products[4] = -2*t60
+            by_products[5] = -2*t61
             by_products[6] = turning_x
             by_products[7] = turning_y
             by_products[8] = turning_z
@@ -635,10 +603,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 lam_e = lam[e]
                 along_e = along[e]
                 twice_e = twice[e]
-                t87 = (0.5)*twice_e
-                t88 = 1/lam_e
-                by_E[e] = t87
-                by_Gy[e] = along_e + t87*t88
+                t62 = (0.5)*twice_e
+                t63 = 1/lam_e
+                by_E[e] = t62
+                by_Gy[e] = along_e + t62*t63
             # and of Sbar y
             by_Gy[resultants] = 1
             # forces of the resultants and their geometric stiffness, with Sbar y
@@ -650,30 +618,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             mass = masses[0]
-            t89 = 2*sum_cd_z
-            t90 = 2*spin_z
-            t91 = spin_x*sum_c_y - spin_y*sum_c_x
-            t92 = -spin_x*sum_c_z + spin_z*sum_c_x
-            t93 = spin_y*sum_c_z - spin_z*sum_c_y
-            t94 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
-            t95 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
-            t96 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
-            local[N] = (felt_x*mass + spin_y*t89 + spin_y*t91 - spin_z*t92 - sum_c_y*turning_z +
-                sum_c_z*turning_y - sum_cd_y*t90 + sum_cdd_x)
-            local[N + 1] = (felt_y*mass - spin_x*t89 - spin_x*t91 + spin_z*t93 + sum_c_x*turning_z
-                - sum_c_z*turning_x + sum_cd_x*t90 + sum_cdd_y)
-            local[N + 2] = (felt_z*mass + 2*spin_x*sum_cd_y + spin_x*t92 - 2*spin_y*sum_cd_x -
-                spin_y*t93 - sum_c_x*turning_y + sum_c_y*turning_x + sum_cdd_z)
+            t64 = 2*sum_cd_z
+            t65 = 2*spin_z
+            t66 = spin_x*sum_c_y - spin_y*sum_c_x
+            t67 = -spin_x*sum_c_z + spin_z*sum_c_x
+            t68 = spin_y*sum_c_z - spin_z*sum_c_y
+            t69 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
+            t70 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
+            t71 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
+            local[N] = (felt_x*mass + spin_y*t64 + spin_y*t66 - spin_z*t67 - sum_c_y*turning_z +
+                sum_c_z*turning_y - sum_cd_y*t65 + sum_cdd_x)
+            local[N + 1] = (felt_y*mass - spin_x*t64 - spin_x*t66 + spin_z*t68 + sum_c_x*turning_z
+                - sum_c_z*turning_x + sum_cd_x*t65 + sum_cdd_y)
+            local[N + 2] = (felt_z*mass + 2*spin_x*sum_cd_y + spin_x*t67 - 2*spin_y*sum_cd_x -
+                spin_y*t68 - sum_c_x*turning_y + sum_c_y*turning_x + sum_cdd_z)
             local[N + 3] = (-felt_y*sum_c_z + felt_z*sum_c_y + spin_x*sum_Jd_xx + spin_y*sum_Jd_xy
-                + spin_y*sum_spun_z + spin_y*t94 + spin_z*sum_Jd_xz - spin_z*sum_spun_y -
-                spin_z*t95 + sum_J_xx*turning_x + sum_J_xy*turning_y + sum_J_xz*turning_z +
+                + spin_y*sum_spun_z + spin_y*t69 + spin_z*sum_Jd_xz - spin_z*sum_spun_y -
+                spin_z*t70 + sum_J_xx*turning_x + sum_J_xy*turning_y + sum_J_xz*turning_z +
                 sum_accelerated_x + sum_coupled_x)
             local[N + 4] = (felt_x*sum_c_z - felt_z*sum_c_x + spin_x*sum_Jd_xy - spin_x*sum_spun_z
-                - spin_x*t94 + spin_y*sum_Jd_yy + spin_z*sum_Jd_yz + spin_z*sum_spun_x +
-                spin_z*t96 + sum_J_xy*turning_x + sum_J_yy*turning_y + sum_J_yz*turning_z +
+                - spin_x*t69 + spin_y*sum_Jd_yy + spin_z*sum_Jd_yz + spin_z*sum_spun_x +
+                spin_z*t71 + sum_J_xy*turning_x + sum_J_yy*turning_y + sum_J_yz*turning_z +
                 sum_accelerated_y + sum_coupled_y)
             local[N + 5] = (-felt_x*sum_c_y + felt_y*sum_c_x + spin_x*sum_Jd_xz +
-                spin_x*sum_spun_y + spin_x*t95 + spin_y*sum_Jd_yz - spin_y*sum_spun_x - spin_y*t96
+                spin_x*sum_spun_y + spin_x*t70 + spin_y*sum_Jd_yz - spin_y*sum_spun_x - spin_y*t71
                 + spin_z*sum_Jd_zz + sum_J_xz*turning_x + sum_J_yz*turning_y + sum_J_zz*turning_z
                 + sum_accelerated_z + sum_coupled_z)
             # forces conjugate to y
@@ -686,15 +654,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t97 = X_z + u_z
-                t98 = X_y + u_y
-                t99 = X_x + u_x
+                t72 = X_z + u_z
+                t73 = X_y + u_y
+                t74 = X_x + u_x
                 F_x += -f_x
                 F_y += -f_y
                 F_z += -f_z
-                W_x += f_y*t97 - f_z*t98
-                W_y += -f_x*t97 + f_z*t99
-                W_z += f_x*t98 - f_y*t99
+                W_x += f_y*t72 - f_z*t73
+                W_y += -f_x*t72 + f_z*t74
+                W_z += f_x*t73 - f_y*t74
             # inertia and weight on the frame
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
@@ -712,29 +680,29 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
-                t100 = -m_x*psi_y + m_y*psi_x
-                t101 = m_x*psi_z
-                t102 = -m_z*psi_x + t101
-                t103 = -m_y*psi_z + m_z*psi_y
-                W_x += -e0*psi_y*t100 + e0*psi_z*t102 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-                W_y += e0*psi_x*t100 - e0*psi_z*t103 - m_y + (0.5)*m_z*psi_x - 0.5*t101
-                W_z += -e0*psi_x*t102 + e0*psi_y*t103 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+                t75 = -m_x*psi_y + m_y*psi_x
+                t76 = m_x*psi_z
+                t77 = -m_z*psi_x + t76
+                t78 = -m_y*psi_z + m_z*psi_y
+                W_x += -e0*psi_y*t75 + e0*psi_z*t77 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+                W_y += e0*psi_x*t75 - e0*psi_z*t78 - m_y + (0.5)*m_z*psi_x - 0.5*t76
+                W_z += -e0*psi_x*t77 + e0*psi_y*t78 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
             # B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
-            t104 = W_x + rhs_x
-            t105 = W_y + rhs_y
-            t106 = W_z + rhs_z
-            wp_x = Bxx*t104 + Byx*t105 + Bzx*t106
-            wp_y = Bxy*t104 + Byy*t105 + Bzy*t106
-            wp_z = Bxz*t104 + Byz*t105 + Bzz*t106
+            t79 = W_x + rhs_x
+            t80 = W_y + rhs_y
+            t81 = W_z + rhs_z
+            wp_x = Bxx*t79 + Byx*t80 + Bzx*t81
+            wp_y = Bxy*t79 + Byy*t80 + Bzy*t81
+            wp_z = Bxz*t79 + Byz*t80 + Bzz*t81
             # force on the origin, through the frame
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t107 = fit*wp_z
-                F_x += -X_y*t107 + X_z*fit*wp_y
-                F_y += X_x*t107 - X_z*fit*wp_x
+                t82 = fit*wp_z
+                F_x += -X_y*t82 + X_z*fit*wp_y
+                F_y += X_x*t82 - X_z*fit*wp_x
                 F_z += -X_x*fit*wp_y + X_y*fit*wp_x
             # force on the nodes in frame axes, (30), (57)
             for i in range(N_POSITIONS):
@@ -743,10 +711,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 alpha = alphas[i]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t108 = fit*wp_z
-                t109 = X_z*fit
-                h[i3] = F_x*alpha + X_y*t108 + f_x - t109*wp_y
-                h[i3 + 1] = F_y*alpha - X_x*t108 + f_y + t109*wp_x
+                t83 = fit*wp_z
+                t84 = X_z*fit
+                h[i3] = F_x*alpha + X_y*t83 + f_x - t84*wp_y
+                h[i3 + 1] = F_y*alpha - X_x*t83 + f_y + t84*wp_x
                 h[i3 + 2] = F_z*alpha + X_x*fit*wp_y - X_y*fit*wp_x + f_z
             # force on the nodes
             for i in range(N_POSITIONS):
@@ -761,17 +729,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
-                t110 = m_y*psi_z
-                t111 = m_x*psi_y
-                t112 = e0*(m_y*psi_x - t111)
-                t113 = m_x*psi_z
-                t114 = m_z*psi_x
-                t115 = t113 - t114
-                t116 = e0*psi_z
-                t117 = m_z*psi_y - t110
-                g[j3] = m_x - 0.5*m_z*psi_y + psi_y*t112 + (0.5)*t110 - t115*t116
-                g[j3 + 1] = m_y - psi_x*t112 - 0.5*t113 + (0.5)*t114 + t116*t117
-                g[j3 + 2] = e0*psi_x*t115 - e0*psi_y*t117 - 0.5*m_y*psi_x + m_z + (0.5)*t111
+                t85 = m_y*psi_z
+                t86 = m_x*psi_y
+                t87 = e0*(m_y*psi_x - t86)
+                t88 = m_x*psi_z
+                t89 = m_z*psi_x
+                t90 = t88 - t89
+                t91 = e0*psi_z
+                t92 = m_z*psi_y - t85
+                g[j3] = m_x - 0.5*m_z*psi_y + psi_y*t87 + (0.5)*t85 - t90*t91
+                g[j3 + 1] = m_y - psi_x*t87 - 0.5*t88 + (0.5)*t89 + t91*t92
+                g[j3 + 2] = e0*psi_x*t90 - e0*psi_y*t92 - 0.5*m_y*psi_x + m_z + (0.5)*t86
             # force of the internal modes
             for k in range(MODES, n):
                 fm = s[k]
@@ -789,12 +757,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # factors of the local tangents
             turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
-            t118 = 2*c_geo*spin_x
+            t93 = 2*c_geo*spin_x
             by_couplings[0] = -c_geo*spin_x*spin_x
             by_couplings[1] = -c_geo*spin_y*spin_y
             by_couplings[2] = -c_geo*spin_z*spin_z
-            by_couplings[3] = -spin_y*t118
-            by_couplings[4] = -spin_z*t118
+            by_couplings[3] = -spin_y*t93
+            by_couplings[4] = -spin_z*t93
             by_couplings[5] = -2*c_geo*spin_y*spin_z
             by_couplings[6] = c_geo*turning_x
             by_couplings[7] = c_geo*turning_y
@@ -862,55 +830,55 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 row_jd_xx, row_jd_yy, row_jd_zz, row_jd_xy, row_jd_xz, row_jd_yz = (more[i],
                     more[hN + i], more[2*hN + i], more[3*hN + i], more[4*hN + i], more[5*hN + i])
                 row_wa_x, row_wa_y, row_wa_z = more[12*hN + i], more[13*hN + i], more[14*hN + i]
-                t119 = row_S1_x*spin_z
-                t120 = row_S1_z*spin_x
-                t121 = t119 - t120
-                t122 = row_S1_x*spin_y
-                t123 = row_S1_y*spin_x - t122
-                t124 = row_S1_y*spin_z
-                t125 = row_S1_z*spin_y - t124
-                t126 = 2*spin_x
-                t127 = 2*spin_y
-                t128 = 2*spin_z
-                t129 = row_h_xx + 2*row_j_xx
-                t130 = row_h_xy + 2*row_j_xy
-                t131 = row_h_xz + 2*row_j_xz
-                t132 = row_h_yz + 2*row_j_yz
-                t133 = row_h_zz + 2*row_j_zz
-                t134 = spin_x*t131 + spin_y*t132 + spin_z*t133
-                t135 = row_h_yy + 2*row_j_yy
-                t136 = spin_x*t130 + spin_y*t135 + spin_z*t132
-                t137 = spin_x*t129 + spin_y*t130 + spin_z*t131
-                t138 = row_g_z + row_u_z
-                t139 = row_g_y + row_u_y
-                t140 = row_g_x + row_u_x
-                Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t123 -
-                    spin_z*t121))
-                Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t123
-                    + spin_z*t125))
-                Lz[i*deep + N + 2] = (c_geo*(-row_S1_x*turning_y + row_S1_y*turning_x +
-                    spin_x*t121 - spin_y*t125))
-                Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t126 +
-                    row_jd_xy*t127 + row_jd_xz*t128 - row_w_y*spin_z + row_w_z*spin_y + row_wa_x +
-                    spin_y*t134 - spin_z*t136 + t129*turning_x + t130*turning_y + t131*turning_z))
-                Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t126 +
-                    row_jd_yy*t127 + row_jd_yz*t128 + row_w_x*spin_z - row_w_z*spin_x + row_wa_y -
-                    spin_x*t134 + spin_z*t137 + t130*turning_x + t132*turning_z + t135*turning_y))
-                Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t126 +
-                    row_jd_yz*t127 + row_jd_zz*t128 - row_w_x*spin_y + row_w_y*spin_x + row_wa_z +
-                    spin_x*t136 - spin_y*t137 + t131*turning_x + t132*turning_y + t133*turning_z))
-                Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t124
-                Lv[i*deep + N + 1] = 2*t119 - 2*t120
-                Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t122
-                Lv[i*deep + N + 3] = row_v_x + row_w_x + spin_y*t138 - spin_z*t139 + t137
-                Lv[i*deep + N + 4] = row_v_y + row_w_y - spin_x*t138 + spin_z*t140 + t136
-                Lv[i*deep + N + 5] = row_v_z + row_w_z + spin_x*t139 - spin_y*t140 + t134
+                t94 = row_S1_x*spin_z
+                t95 = row_S1_z*spin_x
+                t96 = t94 - t95
+                t97 = row_S1_x*spin_y
+                t98 = row_S1_y*spin_x - t97
+                t99 = row_S1_y*spin_z
+                t100 = row_S1_z*spin_y - t99
+                t101 = 2*spin_x
+                t102 = 2*spin_y
+                t103 = 2*spin_z
+                t104 = row_h_xx + 2*row_j_xx
+                t105 = row_h_xy + 2*row_j_xy
+                t106 = row_h_xz + 2*row_j_xz
+                t107 = row_h_yz + 2*row_j_yz
+                t108 = row_h_zz + 2*row_j_zz
+                t109 = spin_x*t106 + spin_y*t107 + spin_z*t108
+                t110 = row_h_yy + 2*row_j_yy
+                t111 = spin_x*t105 + spin_y*t110 + spin_z*t107
+                t112 = spin_x*t104 + spin_y*t105 + spin_z*t106
+                t113 = row_g_z + row_u_z
+                t114 = row_g_y + row_u_y
+                t115 = row_g_x + row_u_x
+                Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t98 -
+                    spin_z*t96))
+                Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t98
+                    + spin_z*t100))
+                Lz[i*deep + N + 2] = (c_geo*(-row_S1_x*turning_y + row_S1_y*turning_x + spin_x*t96
+                    - spin_y*t100))
+                Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t101 +
+                    row_jd_xy*t102 + row_jd_xz*t103 - row_w_y*spin_z + row_w_z*spin_y + row_wa_x +
+                    spin_y*t109 - spin_z*t111 + t104*turning_x + t105*turning_y + t106*turning_z))
+                Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t101 +
+                    row_jd_yy*t102 + row_jd_yz*t103 + row_w_x*spin_z - row_w_z*spin_x + row_wa_y -
+                    spin_x*t109 + spin_z*t112 + t105*turning_x + t107*turning_z + t110*turning_y))
+                Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t101 +
+                    row_jd_yz*t102 + row_jd_zz*t103 - row_w_x*spin_y + row_w_y*spin_x + row_wa_z +
+                    spin_x*t111 - spin_y*t112 + t106*turning_x + t107*turning_y + t108*turning_z))
+                Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t99
+                Lv[i*deep + N + 1] = 2*t94 - 2*t95
+                Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t97
+                Lv[i*deep + N + 3] = row_v_x + row_w_x + spin_y*t113 - spin_z*t114 + t112
+                Lv[i*deep + N + 4] = row_v_y + row_w_y - spin_x*t113 + spin_z*t115 + t111
+                Lv[i*deep + N + 5] = row_v_z + row_w_z + spin_x*t114 - spin_y*t115 + t109
                 La[i*deep + N] = row_S1_x
                 La[i*deep + N + 1] = row_S1_y
                 La[i*deep + N + 2] = row_S1_z
-                La[i*deep + N + 3] = t140
-                La[i*deep + N + 4] = t139
-                La[i*deep + N + 5] = t138
+                La[i*deep + N + 3] = t115
+                La[i*deep + N + 4] = t114
+                La[i*deep + N + 5] = t113
             # local tangents: motion of the frame
             for i in range(N):
                 spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
@@ -930,14 +898,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     products[11*hN + i])
                 row_w_x, row_w_y, row_w_z = (products[12*hN + i], products[13*hN + i],
                     products[14*hN + i])
-                t141 = row_h_xy + 2*row_j_xy
-                t142 = row_h_xz + 2*row_j_xz
-                t143 = row_h_yz + 2*row_j_yz
-                Lv[N*deep + i] = (row_v_x - row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t141
-                    - spin_z*t142)
-                Lv[(N + 1)*deep + i] = (row_v_y - row_w_y - spin_x*t141 - spin_y*(row_h_yy +
-                    2*row_j_yy) - spin_z*t143)
-                Lv[(N + 2)*deep + i] = (row_v_z - row_w_z - spin_x*t142 - spin_y*t143 -
+                t116 = row_h_xy + 2*row_j_xy
+                t117 = row_h_xz + 2*row_j_xz
+                t118 = row_h_yz + 2*row_j_yz
+                Lv[N*deep + i] = (row_v_x - row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t116
+                    - spin_z*t117)
+                Lv[(N + 1)*deep + i] = (row_v_y - row_w_y - spin_x*t116 - spin_y*(row_h_yy +
+                    2*row_j_yy) - spin_z*t118)
+                Lv[(N + 2)*deep + i] = (row_v_z - row_w_z - spin_x*t117 - spin_y*t118 -
                     spin_z*(row_h_zz + 2*row_j_zz))
                 La[N*deep + i] = row_S1_x
                 La[(N + 1)*deep + i] = row_S1_y
@@ -948,79 +916,79 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # local tangents: force on the frame by its motion
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             mass = masses[0]
-            t144 = spin_y*sum_c_y
-            t145 = spin_z*sum_c_z
-            t146 = 2*sum_cd_z
-            t147 = spin_x*sum_c_y
-            t148 = 2*sum_cd_y
-            t149 = spin_z*sum_c_x
-            t150 = spin_y*sum_J_xz
-            t151 = spin_z*sum_J_xy
-            t152 = spin_y*sum_J_yz
-            t153 = spin_x*sum_J_xz
-            t154 = spin_z*sum_J_zz + sum_spun_z
-            t155 = spin_z*sum_J_yz
-            t156 = spin_x*sum_J_xy
-            t157 = spin_y*sum_J_yy + sum_spun_y
-            t158 = spin_x*sum_c_x
-            t159 = 2*sum_cd_x
-            t160 = spin_y*sum_c_z
-            t161 = spin_x*sum_J_yz
-            t162 = spin_z*sum_J_xz
-            t163 = spin_y*sum_J_xy
-            t164 = spin_x*sum_J_xx + sum_spun_x
-            t165 = -sum_c_y
-            t166 = -sum_c_z
-            t167 = -sum_c_x
-            Lv[N*deep + N] = t144 + t145
-            Lv[N*deep + N + 1] = spin_y*sum_c_x - t146 - 2*t147
-            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t148 + t149
-            Lv[N*deep + N + 3] = sum_Jd_xx + t150 - t151
-            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t152 - 2*t153 - t154
-            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t155 + 2*t156 + t157
-            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t146 + t147
-            Lv[(N + 1)*deep + N + 1] = t145 + t158
-            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t159 - 2*t160
-            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t152 + t153 + t154
-            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t151 - t161
-            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t162 - 2*t163 - t164
-            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t148 - 2*t149
-            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t159 + t160
-            Lv[(N + 2)*deep + N + 2] = t144 + t158
-            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t155 - t156 - t157
-            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t162 + t163 + t164
-            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t150 + t161
+            t119 = spin_y*sum_c_y
+            t120 = spin_z*sum_c_z
+            t121 = 2*sum_cd_z
+            t122 = spin_x*sum_c_y
+            t123 = 2*sum_cd_y
+            t124 = spin_z*sum_c_x
+            t125 = spin_y*sum_J_xz
+            t126 = spin_z*sum_J_xy
+            t127 = spin_y*sum_J_yz
+            t128 = spin_x*sum_J_xz
+            t129 = spin_z*sum_J_zz + sum_spun_z
+            t130 = spin_z*sum_J_yz
+            t131 = spin_x*sum_J_xy
+            t132 = spin_y*sum_J_yy + sum_spun_y
+            t133 = spin_x*sum_c_x
+            t134 = 2*sum_cd_x
+            t135 = spin_y*sum_c_z
+            t136 = spin_x*sum_J_yz
+            t137 = spin_z*sum_J_xz
+            t138 = spin_y*sum_J_xy
+            t139 = spin_x*sum_J_xx + sum_spun_x
+            t140 = -sum_c_y
+            t141 = -sum_c_z
+            t142 = -sum_c_x
+            Lv[N*deep + N] = t119 + t120
+            Lv[N*deep + N + 1] = spin_y*sum_c_x - t121 - 2*t122
+            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t123 + t124
+            Lv[N*deep + N + 3] = sum_Jd_xx + t125 - t126
+            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t127 - 2*t128 - t129
+            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t130 + 2*t131 + t132
+            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t121 + t122
+            Lv[(N + 1)*deep + N + 1] = t120 + t133
+            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t134 - 2*t135
+            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t127 + t128 + t129
+            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t126 - t136
+            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t137 - 2*t138 - t139
+            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t123 - 2*t124
+            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t134 + t135
+            Lv[(N + 2)*deep + N + 2] = t119 + t133
+            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t130 - t131 - t132
+            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t137 + t138 + t139
+            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t125 + t136
             La[N*deep + N] = mass
             La[N*deep + N + 1] = 0.0
             La[N*deep + N + 2] = 0.0
             La[N*deep + N + 3] = 0.0
             La[N*deep + N + 4] = sum_c_z
-            La[N*deep + N + 5] = t165
+            La[N*deep + N + 5] = t140
             La[(N + 1)*deep + N] = 0.0
             La[(N + 1)*deep + N + 1] = mass
             La[(N + 1)*deep + N + 2] = 0.0
-            La[(N + 1)*deep + N + 3] = t166
+            La[(N + 1)*deep + N + 3] = t141
             La[(N + 1)*deep + N + 4] = 0.0
             La[(N + 1)*deep + N + 5] = sum_c_x
             La[(N + 2)*deep + N] = 0.0
             La[(N + 2)*deep + N + 1] = 0.0
             La[(N + 2)*deep + N + 2] = mass
             La[(N + 2)*deep + N + 3] = sum_c_y
-            La[(N + 2)*deep + N + 4] = t167
+            La[(N + 2)*deep + N + 4] = t142
             La[(N + 2)*deep + N + 5] = 0.0
             La[(N + 3)*deep + N] = 0.0
-            La[(N + 3)*deep + N + 1] = t166
+            La[(N + 3)*deep + N + 1] = t141
             La[(N + 3)*deep + N + 2] = sum_c_y
             La[(N + 3)*deep + N + 3] = sum_J_xx
             La[(N + 3)*deep + N + 4] = sum_J_xy
             La[(N + 3)*deep + N + 5] = sum_J_xz
             La[(N + 4)*deep + N] = sum_c_z
             La[(N + 4)*deep + N + 1] = 0.0
-            La[(N + 4)*deep + N + 2] = t167
+            La[(N + 4)*deep + N + 2] = t142
             La[(N + 4)*deep + N + 3] = sum_J_xy
             La[(N + 4)*deep + N + 4] = sum_J_yy
             La[(N + 4)*deep + N + 5] = sum_J_yz
-            La[(N + 5)*deep + N] = t165
+            La[(N + 5)*deep + N] = t140
             La[(N + 5)*deep + N + 1] = sum_c_x
             La[(N + 5)*deep + N + 2] = 0.0
             La[(N + 5)*deep + N + 3] = sum_J_xz
@@ -1093,12 +1061,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                t168 = -dx0_z + dx_z
-                t169 = -dx0_y + dx_y
-                t170 = -dx0_x + dx_x
-                rhs_x += -fit*(X_y*t168 - X_z*t169)
-                rhs_y += -fit*(-X_x*t168 + X_z*t170)
-                rhs_z += -fit*(X_x*t169 - X_y*t170)
+                t143 = -dx0_z + dx_z
+                t144 = -dx0_y + dx_y
+                t145 = -dx0_x + dx_x
+                rhs_x += -fit*(X_y*t143 - X_z*t144)
+                rhs_y += -fit*(-X_x*t143 + X_z*t145)
+                rhs_z += -fit*(X_x*t144 - X_y*t145)
             dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1108,41 +1076,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                t171 = X_y + u_y
-                t172 = X_z + u_z
-                t173 = X_x + u_x
-                dy[i3] = -dth0_y*t172 + dth0_z*t171 - dx0_x + dx_x
-                dy[i3 + 1] = dth0_x*t172 - dth0_z*t173 - dx0_y + dx_y
-                dy[i3 + 2] = -dth0_x*t171 + dth0_y*t173 - dx0_z + dx_z
+                t146 = X_y + u_y
+                t147 = X_z + u_z
+                t148 = X_x + u_x
+                dy[i3] = -dth0_y*t147 + dth0_z*t146 - dx0_x + dx_x
+                dy[i3 + 1] = dth0_x*t147 - dth0_z*t148 - dx0_y + dx_y
+                dy[i3 + 2] = -dth0_x*t146 + dth0_y*t148 - dx0_z + dx_z
             # variation of the elastic rotations, (17)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                 e0 = e0s[j]
-                t174 = dth0_y*psi_z
-                t175 = dth_y*psi_z
-                t176 = dth0_x*psi_y
-                t177 = dth0_y*psi_x - t176
-                t178 = e0*psi_y
-                t179 = dth_x*psi_z
-                t180 = dth_z*psi_x
-                t181 = t179 - t180
-                t182 = e0*psi_z
-                t183 = dth_x*psi_y
-                t184 = dth_y*psi_x - t183
-                t185 = dth0_x*psi_z
-                t186 = dth0_z*psi_x
-                t187 = t185 - t186
-                t188 = e0*psi_x
-                t189 = dth_z*psi_y - t175
-                t190 = dth0_z*psi_y - t174
-                dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y + e0*psi_y*t184
-                    + e0*psi_z*t187 - 0.5*t174 - 0.5*t175 - t177*t178 - t181*t182)
-                dy[j3 + 1] = (-dth0_y + dth_y + t177*t188 + (0.5)*t179 - 0.5*t180 + t182*t189 -
-                    t182*t190 - t184*t188 + (0.5)*t185 - 0.5*t186)
-                dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                    e0*psi_x*t181 + e0*psi_y*t190 - 0.5*t176 - t178*t189 - 0.5*t183 - t187*t188)
+                t149 = (0.5)*dth0_z + (0.5)*dth_z
+                t150 = dth0_y + dth_y
+                t151 = (0.5)*psi_z
+                t152 = -dth0_y + dth_y
+                t153 = -dth0_x + dth_x
+                t154 = psi_x*t152 - psi_y*t153
+                t155 = -dth0_z + dth_z
+                t156 = -psi_x*t155 + psi_z*t153
+                t157 = dth0_x + dth_x
+                t158 = psi_y*t155 - psi_z*t152
+                dy[j3] = -dth0_x + dth_x + e0*(psi_y*t154 - psi_z*t156) + psi_y*t149 - t150*t151
+                dy[j3 + 1] = (-dth0_y + dth_y + e0*(-psi_x*t154 + psi_z*t158) - psi_x*t149 +
+                    t151*t157)
+                dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t156 - psi_y*t158) + (0.5)*psi_x*t150 -
+                    0.5*psi_y*t157)
             # differential: internal modes
             for k in range(MODES, n):
                 dqm = dqe[k]
@@ -1190,12 +1150,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                t191 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
-                t192 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
-                t193 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
-                rhs_x += -fit*(X_y*t191 - X_z*t192)
-                rhs_y += -fit*(-X_x*t191 + X_z*t193)
-                rhs_z += -fit*(X_x*t192 - X_y*t193)
+                t159 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
+                t160 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
+                t161 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
+                rhs_x += -fit*(X_y*t159 - X_z*t160)
+                rhs_y += -fit*(-X_x*t159 + X_z*t161)
+                rhs_z += -fit*(X_x*t160 - X_y*t161)
             dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1228,12 +1188,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                t194 = X_y + u_y
-                t195 = X_z + u_z
-                t196 = X_x + u_x
-                deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t195 + dOm0_z*t194 - dv0_x + dvs_x
-                deta[i3 + 1] = Om0_x*du_z - Om0_z*du_x + dOm0_x*t195 - dOm0_z*t196 - dv0_y + dvs_y
-                deta[i3 + 2] = -Om0_x*du_y + Om0_y*du_x - dOm0_x*t194 + dOm0_y*t196 - dv0_z + dvs_z
+                t162 = X_y + u_y
+                t163 = X_z + u_z
+                t164 = X_x + u_x
+                deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t163 + dOm0_z*t162 - dv0_x + dvs_x
+                deta[i3 + 1] = Om0_x*du_z - Om0_z*du_x + dOm0_x*t163 - dOm0_z*t164 - dv0_y + dvs_y
+                deta[i3 + 2] = -Om0_x*du_y + Om0_y*du_x - dOm0_x*t162 + dOm0_y*t164 - dv0_z + dvs_z
             # differential: rates of the elastic rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -1243,59 +1203,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t197 = Om0_y*dpsi_z
-                t198 = Om_y*dpsi_z
-                t199 = dOm0_y*psi_z
-                t200 = dOm_y*psi_z
-                t201 = -Om0_x*psi_y + Om0_y*psi_x
-                t202 = dpsi_y*e0
-                t203 = Om_x*psi_z - Om_z*psi_x
-                t204 = dpsi_z*e0
-                t205 = -Om_x*psi_y + Om_y*psi_x
-                t206 = Om0_x*psi_z - Om0_z*psi_x
-                t207 = Om0_x*dpsi_y
-                t208 = dOm0_x*psi_y
-                t209 = Om0_y*dpsi_x + dOm0_y*psi_x - t207 - t208
-                t210 = e0*psi_y
-                t211 = Om_x*dpsi_z
-                t212 = dOm_x*psi_z
-                t213 = Om_z*dpsi_x
-                t214 = dOm_z*psi_x
-                t215 = t211 + t212 - t213 - t214
-                t216 = e0*psi_z
-                t217 = Om_x*dpsi_y
-                t218 = dOm_x*psi_y
-                t219 = Om_y*dpsi_x + dOm_y*psi_x - t217 - t218
-                t220 = Om0_x*dpsi_z
-                t221 = dOm0_x*psi_z
-                t222 = Om0_z*dpsi_x
-                t223 = dOm0_z*psi_x
-                t224 = t220 + t221 - t222 - t223
-                t225 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t226 = e1*t225
-                t227 = psi_y*t226
-                t228 = psi_z*t226
-                t229 = dpsi_x*e0
-                t230 = -Om_y*psi_z + Om_z*psi_y
-                t231 = -Om0_y*psi_z + Om0_z*psi_y
-                t232 = e0*psi_x
-                t233 = Om_z*dpsi_y + dOm_z*psi_y - t198 - t200
-                t234 = Om0_z*dpsi_y + dOm0_z*psi_y - t197 - t199
-                t235 = psi_x*t226
-                deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x + (0.5)*dOm0_z*psi_y +
-                    dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t205 + dpsi_z*e0*t206 + e0*psi_y*t219 +
-                    e0*psi_z*t224 + e1*psi_y*t205*t225 + e1*psi_z*t206*t225 - 0.5*t197 - 0.5*t198
-                    - 0.5*t199 - 0.5*t200 - t201*t202 - t201*t227 - t203*t204 - t203*t228 -
-                    t209*t210 - t215*t216)
-                deta[j3 + 1] = (-dOm0_y + dOm_y + t201*t229 + t201*t235 + t204*t230 - t204*t231 -
-                    t205*t229 - t205*t235 + t209*t232 + (0.5)*t211 + (0.5)*t212 - 0.5*t213 -
-                    0.5*t214 + t216*t233 - t216*t234 - t219*t232 + (0.5)*t220 + (0.5)*t221 -
-                    0.5*t222 - 0.5*t223 + t228*t230 - t228*t231)
-                deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                    dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t203 + dpsi_y*e0*t231 +
-                    e0*psi_x*t215 + e0*psi_y*t234 + e1*psi_x*t203*t225 + e1*psi_y*t225*t231 -
-                    t202*t230 - t206*t229 - t206*t235 - 0.5*t207 - 0.5*t208 - t210*t233 - 0.5*t217
-                    - 0.5*t218 - t224*t232 - t227*t230)
+                t165 = (0.5)*Om0_z + (0.5)*Om_z
+                t166 = Om0_y + Om_y
+                t167 = (0.5)*dpsi_z
+                t168 = (0.5)*dOm0_z + (0.5)*dOm_z
+                t169 = dOm0_y + dOm_y
+                t170 = (0.5)*psi_z
+                t171 = -Om0_y + Om_y
+                t172 = -Om0_x + Om_x
+                t173 = psi_x*t171 - psi_y*t172
+                t174 = -Om0_z + Om_z
+                t175 = -psi_x*t174 + psi_z*t172
+                t176 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                t177 = -dOm0_y + dOm_y
+                t178 = -dOm0_x + dOm_x
+                t179 = dpsi_x*t171 - dpsi_y*t172 + psi_x*t177 - psi_y*t178
+                t180 = -dOm0_z + dOm_z
+                t181 = -dpsi_x*t174 + dpsi_z*t172 - psi_x*t180 + psi_z*t178
+                t182 = Om0_x + Om_x
+                t183 = dOm0_x + dOm_x
+                t184 = psi_y*t174 - psi_z*t171
+                t185 = dpsi_y*t174 - dpsi_z*t171 + psi_y*t180 - psi_z*t177
+                deta[j3] = (-dOm0_x + dOm_x + dpsi_y*t165 + e0*(dpsi_y*t173 - dpsi_z*t175 +
+                    psi_y*t179 - psi_z*t181) + psi_y*t168 - t166*t167 - t169*t170 +
+                    t176*(psi_y*t173 - psi_z*t175))
+                deta[j3 + 1] = (-dOm0_y + dOm_y - dpsi_x*t165 + e0*(-dpsi_x*t173 + dpsi_z*t184 -
+                    psi_x*t179 + psi_z*t185) - psi_x*t168 + t167*t182 + t170*t183 +
+                    t176*(-psi_x*t173 + psi_z*t184))
+                deta[j3 + 2] = (-dOm0_z + dOm_z + (0.5)*dpsi_x*t166 - 0.5*dpsi_y*t182 +
+                    e0*(dpsi_x*t175 - dpsi_y*t184 + psi_x*t181 - psi_y*t185) + (0.5)*psi_x*t169 -
+                    0.5*psi_y*t183 + t176*(psi_x*t175 - psi_y*t184))
             # differential: rates of the internal modes
             for k in range(MODES, n):
                 dvm = dve[k]
@@ -1325,20 +1262,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 deud_x, deud_y, deud_z = detad[i3], detad[i3 + 1], detad[i3 + 2]
-                t236 = Om0d_y*fit
-                t237 = X_y*t236
-                t238 = X_z*fit
-                t239 = Om0d_z*t238
-                t240 = X_y*du_y
-                t241 = X_z*du_z
-                t242 = Om0d_x*fit
-                t243 = X_x*t242
-                t244 = X_x*du_x
-                rhs_x += (-X_y*deud_z*fit + X_z*deud_y*fit - du_x*t237 - du_x*t239 - t242*(-t240 -
-                    t241))
-                rhs_y += X_x*deud_z*fit - deud_x*t238 - du_y*t239 - du_y*t243 - t236*(-t241 - t244)
-                rhs_z += (-Om0d_z*fit*(-t240 - t244) - X_x*deud_y*fit + X_y*deud_x*fit - du_z*t237
-                    - du_z*t243)
+                t186 = Om0d_y*fit
+                t187 = X_y*t186
+                t188 = X_z*fit
+                t189 = Om0d_z*t188
+                t190 = X_y*du_y
+                t191 = X_z*du_z
+                t192 = Om0d_x*fit
+                t193 = X_x*t192
+                t194 = X_x*du_x
+                rhs_x += (-X_y*deud_z*fit + X_z*deud_y*fit - du_x*t187 - du_x*t189 - t192*(-t190 -
+                    t191))
+                rhs_y += X_x*deud_z*fit - deud_x*t188 - du_y*t189 - du_y*t193 - t186*(-t191 - t194)
+                rhs_z += (-Om0d_z*fit*(-t190 - t194) - X_x*deud_y*fit + X_y*deud_x*fit - du_z*t187
+                    - du_z*t193)
             dOm0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dOm0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dOm0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1349,12 +1286,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 deud_x, deud_y, deud_z = detad[i3], detad[i3 + 1], detad[i3 + 2]
-                t245 = X_y + u_y
-                t246 = X_z + u_z
-                t247 = X_x + u_x
-                detad[i3] = -Om0d_y*du_z + Om0d_z*du_y - dOm0d_y*t246 + dOm0d_z*t245 + deud_x
-                detad[i3 + 1] = Om0d_x*du_z - Om0d_z*du_x + dOm0d_x*t246 - dOm0d_z*t247 + deud_y
-                detad[i3 + 2] = -Om0d_x*du_y + Om0d_y*du_x - dOm0d_x*t245 + dOm0d_y*t247 + deud_z
+                t195 = X_y + u_y
+                t196 = X_z + u_z
+                t197 = X_x + u_x
+                detad[i3] = -Om0d_y*du_z + Om0d_z*du_y - dOm0d_y*t196 + dOm0d_z*t195 + deud_x
+                detad[i3 + 1] = Om0d_x*du_z - Om0d_z*du_x + dOm0d_x*t196 - dOm0d_z*t197 + deud_y
+                detad[i3 + 2] = -Om0d_x*du_y + Om0d_y*du_x - dOm0d_x*t195 + dOm0d_y*t197 + deud_z
             # differential: rate: rates of the elastic rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -1369,141 +1306,78 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e0 = e0s[j]
                 e1 = e1s[j]
                 e2 = e2s[j]
-                t248 = A_y*dpsi_z
-                t249 = Om0_y*dep_z
-                t250 = Om0d_y*dpsi_z
-                t251 = Om_y*dep_z
-                t252 = dA_y*psi_z
-                t253 = dOm0_y*ep_z
-                t254 = dOm0d_y*psi_z
-                t255 = dOm_y*ep_z
-                t256 = -Om0_x*psi_y + Om0_y*psi_x
-                t257 = dep_y*e0
-                t258 = Om_x*psi_z - Om_z*psi_x
-                t259 = dep_z*e0
-                t260 = -Om_x*psi_y + Om_y*psi_x
-                t261 = Om0_x*psi_z - Om0_z*psi_x
-                t262 = -Om0_x*ep_y + Om0_y*ep_x - Om0d_x*psi_y + Om0d_y*psi_x
-                t263 = dpsi_y*e0
-                t264 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                t265 = dpsi_z*e0
-                t266 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                t267 = e0*ep_y
-                t268 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                t269 = e0*ep_z
-                t270 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                t271 = Om0_x*ep_z - Om0_z*ep_x + Om0d_x*psi_z - Om0d_z*psi_x
-                t272 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                t273 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                t274 = 2*psi_x
-                t275 = 2*psi_y
-                t276 = 2*psi_z
-                t277 = ep_x*t274 + ep_y*t275 + ep_z*t276
-                t278 = e1*t277
-                t279 = dpsi_y*t278
-                t280 = dpsi_z*t278
-                t281 = dpsi_x*t274 + dpsi_y*t275 + dpsi_z*t276
-                t282 = e1*t281
-                t283 = ep_y*t282
-                t284 = ep_z*t282
-                t285 = psi_y*t282
-                t286 = psi_y*t278
-                t287 = psi_z*t282
-                t288 = psi_z*t278
-                t289 = Om0_x*dep_y
-                t290 = Om0d_x*dpsi_y
-                t291 = dOm0_x*ep_y
-                t292 = dOm0d_x*psi_y
-                t293 = (Om0_y*dep_x + Om0d_y*dpsi_x + dOm0_y*ep_x + dOm0d_y*psi_x - t289 - t290 -
-                    t291 - t292)
-                t294 = e0*psi_y
-                t295 = A_x*dpsi_z
-                t296 = Om_x*dep_z
-                t297 = dA_x*psi_z
-                t298 = dOm_x*ep_z
-                t299 = A_z*dpsi_x
-                t300 = Om_z*dep_x
-                t301 = dA_z*psi_x
-                t302 = dOm_z*ep_x
-                t303 = t295 + t296 + t297 + t298 - t299 - t300 - t301 - t302
-                t304 = e0*psi_z
-                t305 = A_x*dpsi_y
-                t306 = Om_x*dep_y
-                t307 = dA_x*psi_y
-                t308 = dOm_x*ep_y
-                t309 = A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t305 - t306 - t307 - t308
-                t310 = Om0_x*dep_z
-                t311 = Om0d_x*dpsi_z
-                t312 = dOm0_x*ep_z
-                t313 = dOm0d_x*psi_z
-                t314 = Om0_z*dep_x
-                t315 = Om0d_z*dpsi_x
-                t316 = dOm0_z*ep_x
-                t317 = dOm0d_z*psi_x
-                t318 = t310 + t311 + t312 + t313 - t314 - t315 - t316 - t317
-                t319 = (dep_x*t274 + dep_y*t275 + dep_z*t276 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
-                    2*dpsi_z*ep_z)
-                t320 = e1*t319
-                t321 = t256*t320
-                t322 = psi_z*t320
-                t323 = e2*t277*t281
-                t324 = t256*t323
-                t325 = psi_z*t323
-                t326 = dep_x*e0
-                t327 = -Om_y*psi_z + Om_z*psi_y
-                t328 = -Om0_y*psi_z + Om0_z*psi_y
-                t329 = dpsi_x*e0
-                t330 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                t331 = e0*ep_x
-                t332 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                t333 = -Om0_y*ep_z + Om0_z*ep_y - Om0d_y*psi_z + Om0d_z*psi_y
-                t334 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                t335 = dpsi_x*t278
-                t336 = ep_x*t282
-                t337 = psi_x*t282
-                t338 = psi_x*t278
-                t339 = e0*psi_x
-                t340 = A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t248 - t251 - t252 - t255
-                t341 = (Om0_z*dep_y + Om0d_z*dpsi_y + dOm0_z*ep_y + dOm0d_z*psi_y - t249 - t250 -
-                    t253 - t254)
-                t342 = psi_x*t320
-                t343 = psi_x*t323
-                detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om0d_z*dpsi_y +
-                    (0.5)*Om_z*dep_y + dA_x + (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y - dOm0d_x +
-                    (0.5)*dOm0d_z*psi_y + (0.5)*dOm_z*ep_y + dep_y*e0*t260 + dep_z*e0*t261 +
-                    dpsi_y*e0*t270 + dpsi_y*e1*t260*t277 + dpsi_z*e0*t271 + dpsi_z*e1*t261*t277 +
-                    e0*ep_y*t272 + e0*ep_z*t273 + e0*psi_y*t309 + e0*psi_z*t318 +
-                    e1*ep_y*t260*t281 + e1*ep_z*t261*t281 + e1*psi_y*t260*t319 +
-                    e1*psi_y*t270*t281 + e1*psi_y*t272*t277 + e1*psi_z*t261*t319 +
-                    e1*psi_z*t271*t281 + e1*psi_z*t273*t277 + e2*psi_y*t260*t277*t281 +
-                    e2*psi_z*t261*t277*t281 - psi_y*t321 - psi_y*t324 - 0.5*t248 - 0.5*t249 -
-                    0.5*t250 - 0.5*t251 - 0.5*t252 - 0.5*t253 - 0.5*t254 - 0.5*t255 - t256*t257 -
-                    t256*t279 - t256*t283 - t258*t259 - t258*t280 - t258*t284 - t258*t322 -
-                    t258*t325 - t262*t263 - t262*t285 - t264*t265 - t264*t287 - t266*t267 -
-                    t266*t286 - t268*t269 - t268*t288 - t293*t294 - t303*t304)
-                detad[j3 + 1] = (dA_y - dOm0d_y + psi_x*t321 + psi_x*t324 + t256*t326 + t256*t335
-                    + t256*t336 + t259*t327 - t259*t328 - t260*t326 - t260*t335 - t260*t336 -
-                    t260*t342 - t260*t343 + t262*t329 + t262*t337 + t265*t330 - t265*t333 +
-                    t266*t331 + t266*t338 + t269*t332 - t269*t334 - t270*t329 - t270*t337 -
-                    t272*t331 - t272*t338 + t280*t327 - t280*t328 + t284*t327 - t284*t328 +
-                    t287*t330 - t287*t333 + t288*t332 - t288*t334 + t293*t339 + (0.5)*t295 +
-                    (0.5)*t296 + (0.5)*t297 + (0.5)*t298 - 0.5*t299 - 0.5*t300 - 0.5*t301 -
-                    0.5*t302 + t304*t340 - t304*t341 - t309*t339 + (0.5)*t310 + (0.5)*t311 +
-                    (0.5)*t312 + (0.5)*t313 - 0.5*t314 - 0.5*t315 - 0.5*t316 - 0.5*t317 +
-                    t322*t327 - t322*t328 + t325*t327 - t325*t328)
-                detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om0d_y*dpsi_x +
-                    (0.5)*Om_y*dep_x + (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x +
-                    (0.5)*dOm0d_y*psi_x - dOm0d_z + (0.5)*dOm_y*ep_x + dep_x*e0*t258 +
-                    dep_y*e0*t328 + dpsi_x*e0*t264 + dpsi_x*e1*t258*t277 + dpsi_y*e0*t333 +
-                    dpsi_y*e1*t277*t328 + e0*ep_x*t268 + e0*ep_y*t334 + e0*psi_x*t303 +
-                    e0*psi_y*t341 + e1*ep_x*t258*t281 + e1*ep_y*t281*t328 + e1*psi_x*t258*t319 +
-                    e1*psi_x*t264*t281 + e1*psi_x*t268*t277 + e1*psi_y*t277*t334 +
-                    e1*psi_y*t281*t333 + e1*psi_y*t319*t328 + e2*psi_x*t258*t277*t281 +
-                    e2*psi_y*t277*t281*t328 - psi_y*t320*t327 - psi_y*t323*t327 - t257*t327 -
-                    t261*t326 - t261*t335 - t261*t336 - t261*t342 - t261*t343 - t263*t330 -
-                    t267*t332 - t271*t329 - t271*t337 - t273*t331 - t273*t338 - t279*t327 -
-                    t283*t327 - t285*t330 - t286*t332 - 0.5*t289 - 0.5*t290 - 0.5*t291 - 0.5*t292
-                    - t294*t340 - 0.5*t305 - 0.5*t306 - 0.5*t307 - 0.5*t308 - t318*t339)
+                t198 = -Om0_y + Om_y
+                t199 = -Om0_x + Om_x
+                t200 = psi_x*t198 - psi_y*t199
+                t201 = -Om0_z + Om_z
+                t202 = -psi_x*t201 + psi_z*t199
+                t203 = A_y - Om0d_y
+                t204 = A_x - Om0d_x
+                t205 = ep_x*t198 - ep_y*t199 + psi_x*t203 - psi_y*t204
+                t206 = -dOm0_y + dOm_y
+                t207 = -dOm0_x + dOm_x
+                t208 = dpsi_x*t198 - dpsi_y*t199 + psi_x*t206 - psi_y*t207
+                t209 = A_z - Om0d_z
+                t210 = -ep_x*t201 + ep_z*t199 - psi_x*t209 + psi_z*t204
+                t211 = -dOm0_z + dOm_z
+                t212 = -dpsi_x*t201 + dpsi_z*t199 - psi_x*t211 + psi_z*t207
+                t213 = dA_y - dOm0d_y
+                t214 = dA_x - dOm0d_x
+                t215 = (dep_x*t198 - dep_y*t199 + dpsi_x*t203 - dpsi_y*t204 + ep_x*t206 -
+                    ep_y*t207 + psi_x*t213 - psi_y*t214)
+                t216 = dA_z - dOm0d_z
+                t217 = (-dep_x*t201 + dep_z*t199 - dpsi_x*t209 + dpsi_z*t204 - ep_x*t211 +
+                    ep_z*t207 - psi_x*t216 + psi_z*t214)
+                t218 = (0.5)*Om0_z + (0.5)*Om_z
+                t219 = (0.5)*A_z + (0.5)*Om0d_z
+                t220 = (0.5)*dOm0_z + (0.5)*dOm_z
+                t221 = (0.5)*dA_z + (0.5)*dOm0d_z
+                t222 = Om0_y + Om_y
+                t223 = (0.5)*dep_z
+                t224 = A_y + Om0d_y
+                t225 = (0.5)*dpsi_z
+                t226 = dOm0_y + dOm_y
+                t227 = (0.5)*ep_z
+                t228 = dA_y + dOm0d_y
+                t229 = (0.5)*psi_z
+                t230 = psi_y*t200 - psi_z*t202
+                t231 = 2*psi_x
+                t232 = 2*psi_y
+                t233 = 2*psi_z
+                t234 = (e1*(dep_x*t231 + dep_y*t232 + dep_z*t233 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
+                    2*dpsi_z*ep_z))
+                t235 = dpsi_x*t231 + dpsi_y*t232 + dpsi_z*t233
+                t236 = e1*t235
+                t237 = ep_x*t231 + ep_y*t232 + ep_z*t233
+                t238 = e1*t237
+                t239 = e2*t235*t237
+                t240 = psi_y*t201 - psi_z*t198
+                t241 = ep_y*t201 - ep_z*t198 + psi_y*t209 - psi_z*t203
+                t242 = dpsi_y*t201 - dpsi_z*t198 + psi_y*t211 - psi_z*t206
+                t243 = (dep_y*t201 - dep_z*t198 + dpsi_y*t209 - dpsi_z*t203 + ep_y*t211 -
+                    ep_z*t206 + psi_y*t216 - psi_z*t213)
+                t244 = Om0_x + Om_x
+                t245 = A_x + Om0d_x
+                t246 = dOm0_x + dOm_x
+                t247 = dA_x + dOm0d_x
+                t248 = -psi_x*t200 + psi_z*t240
+                t249 = psi_x*t202 - psi_y*t240
+                detad[j3] = (dep_y*t218 + dpsi_y*t219 + e0*(dep_y*t200 - dep_z*t202 + dpsi_y*t205
+                    - dpsi_z*t210 + ep_y*t208 - ep_z*t212 + psi_y*t215 - psi_z*t217) + ep_y*t220 +
+                    psi_y*t221 + t214 - t222*t223 - t224*t225 - t226*t227 - t228*t229 + t230*t234
+                    + t230*t239 + t236*(ep_y*t200 - ep_z*t202 + psi_y*t205 - psi_z*t210) +
+                    t238*(dpsi_y*t200 - dpsi_z*t202 + psi_y*t208 - psi_z*t212))
+                detad[j3 + 1] = (-dep_x*t218 - dpsi_x*t219 + e0*(-dep_x*t200 + dep_z*t240 -
+                    dpsi_x*t205 + dpsi_z*t241 - ep_x*t208 + ep_z*t242 - psi_x*t215 + psi_z*t243) -
+                    ep_x*t220 - psi_x*t221 + t213 + t223*t244 + t225*t245 + t227*t246 + t229*t247
+                    + t234*t248 + t236*(-ep_x*t200 + ep_z*t240 - psi_x*t205 + psi_z*t241) +
+                    t238*(-dpsi_x*t200 + dpsi_z*t240 - psi_x*t208 + psi_z*t242) + t239*t248)
+                detad[j3 + 2] = ((0.5)*dep_x*t222 - 0.5*dep_y*t244 + (0.5)*dpsi_x*t224 -
+                    0.5*dpsi_y*t245 + e0*(dep_x*t202 - dep_y*t240 + dpsi_x*t210 - dpsi_y*t241 +
+                    ep_x*t212 - ep_y*t242 + psi_x*t217 - psi_y*t243) + (0.5)*ep_x*t226 -
+                    0.5*ep_y*t246 + (0.5)*psi_x*t228 - 0.5*psi_y*t247 + t216 + t234*t249 +
+                    t236*(ep_x*t202 - ep_y*t240 + psi_x*t210 - psi_y*t241) + t238*(dpsi_x*t202 -
+                    dpsi_y*t240 + psi_x*t212 - psi_y*t242) + t239*t249)
             # differential: rate: rates of the internal modes
             for k in range(MODES, n):
                 dam = dae[k]
@@ -1523,12 +1397,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
             dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-            t344 = da0_x - dgamma_x
-            t345 = da0_y - dgamma_y
-            t346 = da0_z - dgamma_z
-            dzdd[N] = t344*turn_xx + t345*turn_yx + t346*turn_zx
-            dzdd[N + 1] = t344*turn_xy + t345*turn_yy + t346*turn_zy
-            dzdd[N + 2] = t344*turn_xz + t345*turn_yz + t346*turn_zz
+            t250 = da0_x - dgamma_x
+            t251 = da0_y - dgamma_y
+            t252 = da0_z - dgamma_z
+            dzdd[N] = t250*turn_xx + t251*turn_yx + t252*turn_zx
+            dzdd[N + 1] = t250*turn_xy + t251*turn_yy + t252*turn_zy
+            dzdd[N + 2] = t250*turn_xz + t251*turn_yz + t252*turn_zz
             dzdd[N + 3] = dOm0d_x*turn_xx + dOm0d_y*turn_yx + dOm0d_z*turn_zx
             dzdd[N + 4] = dOm0d_x*turn_xy + dOm0d_y*turn_yy + dOm0d_z*turn_zy
             dzdd[N + 5] = dOm0d_x*turn_xz + dOm0d_y*turn_yz + dOm0d_z*turn_zz
@@ -1553,15 +1427,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                t347 = X_z + u_z
-                t348 = X_y + u_y
-                t349 = X_x + u_x
+                t253 = X_z + u_z
+                t254 = X_y + u_y
+                t255 = X_x + u_x
                 dF_x += -df_x
                 dF_y += -df_y
                 dF_z += -df_z
-                dW_x += df_y*t347 - df_z*t348 - du_y*f_z + du_z*f_y
-                dW_y += -df_x*t347 + df_z*t349 + du_x*f_z - du_z*f_x
-                dW_z += df_x*t348 - df_y*t349 - du_x*f_y + du_y*f_x
+                dW_x += df_y*t253 - df_z*t254 - du_y*f_z + du_z*f_y
+                dW_y += -df_x*t253 + df_z*t255 + du_x*f_z - du_z*f_x
+                dW_z += df_x*t254 - df_y*t255 - du_x*f_y + du_y*f_x
             # differential: inertia and weight on the frame
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
@@ -1582,25 +1456,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t350 = -m_x*psi_y + m_y*psi_x
-                t351 = m_x*psi_z - m_z*psi_x
-                t352 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                t353 = dm_x*psi_z
-                t354 = dpsi_z*m_x
-                t355 = -dm_z*psi_x - dpsi_x*m_z + t353 + t354
-                t356 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t357 = e1*t356
-                t358 = -m_y*psi_z + m_z*psi_y
-                t359 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t350 -
-                    0.5*dpsi_y*m_z + dpsi_z*e0*t351 + (0.5)*dpsi_z*m_y - e0*psi_y*t352 +
-                    e0*psi_z*t355 + e1*psi_z*t351*t356 - psi_y*t350*t357)
-                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t350 + (0.5)*dpsi_x*m_z -
-                    dpsi_z*e0*t358 + e0*psi_x*t352 - e0*psi_z*t359 + e1*psi_x*t350*t356 -
-                    psi_z*t357*t358 - 0.5*t353 - 0.5*t354)
-                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t351 -
-                    0.5*dpsi_x*m_y + dpsi_y*e0*t358 + (0.5)*dpsi_y*m_x - e0*psi_x*t355 +
-                    e0*psi_y*t359 + e1*psi_y*t356*t358 - psi_x*t351*t357)
+                t256 = -m_x*psi_y + m_y*psi_x
+                t257 = m_x*psi_z - m_z*psi_x
+                t258 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                t259 = dm_x*psi_z
+                t260 = dpsi_z*m_x
+                t261 = -dm_z*psi_x - dpsi_x*m_z + t259 + t260
+                t262 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t263 = e1*t262
+                t264 = -m_y*psi_z + m_z*psi_y
+                t265 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t256 -
+                    0.5*dpsi_y*m_z + dpsi_z*e0*t257 + (0.5)*dpsi_z*m_y - e0*psi_y*t258 +
+                    e0*psi_z*t261 + e1*psi_z*t257*t262 - psi_y*t256*t263)
+                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t256 + (0.5)*dpsi_x*m_z -
+                    dpsi_z*e0*t264 + e0*psi_x*t258 - e0*psi_z*t265 + e1*psi_x*t256*t262 -
+                    psi_z*t263*t264 - 0.5*t259 - 0.5*t260)
+                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t257 -
+                    0.5*dpsi_x*m_y + dpsi_y*e0*t264 + (0.5)*dpsi_y*m_x - e0*psi_x*t261 +
+                    e0*psi_y*t265 + e1*psi_y*t262*t264 - psi_x*t257*t263)
             # differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
             for i in range(N_POSITIONS):
@@ -1608,26 +1482,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                t360 = X_x*wp_y - X_y*wp_x
-                t361 = -X_x*wp_z + X_z*wp_x
-                t362 = X_y*wp_z - X_z*wp_y
-                rhs_x += -fit*(du_y*t360 - du_z*t361)
-                rhs_y += -fit*(-du_x*t360 + du_z*t362)
-                rhs_z += -fit*(du_x*t361 - du_y*t362)
-            t363 = dW_x + rhs_x
-            t364 = dW_y + rhs_y
-            t365 = dW_z + rhs_z
-            dwp_x = Bxx*t363 + Byx*t364 + Bzx*t365
-            dwp_y = Bxy*t363 + Byy*t364 + Bzy*t365
-            dwp_z = Bxz*t363 + Byz*t364 + Bzz*t365
+                t266 = X_x*wp_y - X_y*wp_x
+                t267 = -X_x*wp_z + X_z*wp_x
+                t268 = X_y*wp_z - X_z*wp_y
+                rhs_x += -fit*(du_y*t266 - du_z*t267)
+                rhs_y += -fit*(-du_x*t266 + du_z*t268)
+                rhs_z += -fit*(du_x*t267 - du_y*t268)
+            t269 = dW_x + rhs_x
+            t270 = dW_y + rhs_y
+            t271 = dW_z + rhs_z
+            dwp_x = Bxx*t269 + Byx*t270 + Bzx*t271
+            dwp_y = Bxy*t269 + Byy*t270 + Bzy*t271
+            dwp_z = Bxz*t269 + Byz*t270 + Bzz*t271
             # differential: force on the origin, through the frame
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t366 = dwp_z*fit
-                dF_x += -X_y*t366 + X_z*dwp_y*fit
-                dF_y += X_x*t366 - X_z*dwp_x*fit
+                t272 = dwp_z*fit
+                dF_x += -X_y*t272 + X_z*dwp_y*fit
+                dF_y += X_x*t272 - X_z*dwp_x*fit
                 dF_z += -X_x*dwp_y*fit + X_y*dwp_x*fit
             # differential: force on the nodes in frame axes, (30), (57)
             for i in range(N_POSITIONS):
@@ -1636,10 +1510,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 alpha = alphas[i]
                 df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                t367 = dwp_z*fit
-                t368 = X_z*fit
-                dh[i3] = X_y*t367 + alpha*dF_x + df_x - dwp_y*t368
-                dh[i3 + 1] = -X_x*t367 + alpha*dF_y + df_y + dwp_x*t368
+                t273 = dwp_z*fit
+                t274 = X_z*fit
+                dh[i3] = X_y*t273 + alpha*dF_x + df_x - dwp_y*t274
+                dh[i3 + 1] = -X_x*t273 + alpha*dF_y + df_y + dwp_x*t274
                 dh[i3 + 2] = X_x*dwp_y*fit - X_y*dwp_x*fit + alpha*dF_z + df_z
             # differential: force on the nodes, left in frame axes
             for i in range(N_POSITIONS):
@@ -1658,33 +1532,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t369 = dm_y*psi_z
-                t370 = dpsi_z*m_y
-                t371 = -m_x*psi_y + m_y*psi_x
-                t372 = e0*t371
-                t373 = m_x*psi_z - m_z*psi_x
-                t374 = dpsi_z*e0
-                t375 = dm_x*psi_y
-                t376 = dpsi_y*m_x
-                t377 = e0*(dm_y*psi_x + dpsi_x*m_y - t375 - t376)
-                t378 = dm_x*psi_z
-                t379 = dpsi_z*m_x
-                t380 = dm_z*psi_x
-                t381 = dpsi_x*m_z
-                t382 = t378 + t379 - t380 - t381
-                t383 = e0*psi_z
-                t384 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                t385 = t371*t384
-                t386 = psi_z*t384
-                t387 = -m_y*psi_z + m_z*psi_y
-                t388 = dm_z*psi_y + dpsi_y*m_z - t369 - t370
-                dg[j3] = (dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t372 + psi_y*t377 +
-                    psi_y*t385 + (0.5)*t369 + (0.5)*t370 - t373*t374 - t373*t386 - t382*t383)
-                dg[j3 + 1] = (dm_y - dpsi_x*t372 - psi_x*t377 - psi_x*t385 + t374*t387 - 0.5*t378
-                    - 0.5*t379 + (0.5)*t380 + (0.5)*t381 + t383*t388 + t386*t387)
-                dg[j3 + 2] = (-0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t373 - 0.5*dpsi_x*m_y -
-                    dpsi_y*e0*t387 + e0*psi_x*t382 - e0*psi_y*t388 + psi_x*t373*t384 -
-                    psi_y*t384*t387 + (0.5)*t375 + (0.5)*t376)
+                t275 = dm_y*psi_z
+                t276 = dpsi_z*m_y
+                t277 = -m_x*psi_y + m_y*psi_x
+                t278 = e0*t277
+                t279 = m_x*psi_z - m_z*psi_x
+                t280 = dpsi_z*e0
+                t281 = dm_x*psi_y
+                t282 = dpsi_y*m_x
+                t283 = e0*(dm_y*psi_x + dpsi_x*m_y - t281 - t282)
+                t284 = dm_x*psi_z
+                t285 = dpsi_z*m_x
+                t286 = dm_z*psi_x
+                t287 = dpsi_x*m_z
+                t288 = t284 + t285 - t286 - t287
+                t289 = e0*psi_z
+                t290 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                t291 = t277*t290
+                t292 = psi_z*t290
+                t293 = -m_y*psi_z + m_z*psi_y
+                t294 = dm_z*psi_y + dpsi_y*m_z - t275 - t276
+                dg[j3] = (dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t278 + psi_y*t283 +
+                    psi_y*t291 + (0.5)*t275 + (0.5)*t276 - t279*t280 - t279*t292 - t288*t289)
+                dg[j3 + 1] = (dm_y - dpsi_x*t278 - psi_x*t283 - psi_x*t291 + t280*t293 - 0.5*t284
+                    - 0.5*t285 + (0.5)*t286 + (0.5)*t287 + t289*t294 + t292*t293)
+                dg[j3 + 2] = (-0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t279 - 0.5*dpsi_x*m_y -
+                    dpsi_y*e0*t293 + e0*psi_x*t288 - e0*psi_y*t294 + psi_x*t279*t290 -
+                    psi_y*t290*t293 + (0.5)*t281 + (0.5)*t282)
             # differential: force of the internal modes
             for k in range(MODES, n):
                 dfm = ds[k]
@@ -1788,57 +1662,57 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdgt_x, bdgt_y, bdgt_z = bdg[j3], bdg[j3 + 1], bdg[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t389 = e0*psi_y
-                t390 = m_y*t389
-                t391 = e0*psi_z
-                t392 = m_z*t391
-                t393 = m_x*psi_y
-                t394 = m_y*psi_x - t393
-                t395 = 2*e1
-                t396 = psi_x*t395
-                t397 = psi_y*t396
-                t398 = t394*t397
-                t399 = m_x*psi_z
-                t400 = m_z*psi_x
-                t401 = t399 - t400
-                t402 = psi_z*t396
-                t403 = t401*t402
-                t404 = (0.5)*m_y
-                t405 = e0*t401
-                t406 = m_y*psi_z
-                t407 = m_z*psi_y - t406
-                t408 = psi_x*psi_x
-                t409 = (0.5)*m_z
-                t410 = e0*t394
-                t411 = e0*m_x*psi_x
-                t412 = psi_y*psi_z*t395
-                t413 = t407*t412
-                t414 = psi_y*psi_y
-                t415 = (0.5)*m_x
-                t416 = e0*t407
-                t417 = psi_z*psi_z
-                t418 = (0.5)*psi_z
-                t419 = psi_x*t389
-                t420 = (0.5)*psi_y
-                t421 = psi_x*t391
-                t422 = e0*t414
-                t423 = e0*t417 - 1
-                t424 = (0.5)*psi_x
-                t425 = psi_z*t389
-                t426 = e0*t408
-                bdy[j3] += (bdgt_x*(t390 + t392 + t398 - t403) + bdgt_y*(-e0*m_y*psi_x +
-                    2*e1*psi_x*psi_z*t407 - t394*t395*t408 + t409 - t410) + bdgt_z*(-e0*t400 +
-                    2*e1*t401*t408 - t397*t407 - t404 + t405))
-                bdy[j3 + 1] += (bdgt_x*(-e0*t393 + 2*e1*t394*t414 - t401*t412 - t409 + t410) +
-                    bdgt_y*(t392 - t398 + t411 + t413) + bdgt_z*(-e0*m_z*psi_y +
-                    2*e1*psi_x*psi_y*t401 - t395*t407*t414 + t415 - t416))
-                bdy[j3 + 2] += (bdgt_x*(-e0*t399 + 2*e1*psi_y*psi_z*t394 - t395*t401*t417 + t404 -
-                    t405) + bdgt_y*(-e0*t406 + 2*e1*t407*t417 - t394*t402 - t415 + t416) +
-                    bdgt_z*(t390 + t403 + t411 - t413))
-                bds[j3] += bdgt_x*(-t422 - t423) + bdgt_y*(-t418 + t419) + bdgt_z*(t420 + t421)
-                bds[j3 + 1] += bdgt_x*(t418 + t419) + bdgt_y*(-t423 - t426) + bdgt_z*(-t424 + t425)
-                bds[j3 + 2] += (bdgt_x*(-t420 + t421) + bdgt_y*(t424 + t425) + bdgt_z*(-t422 -
-                    t426 + 1))
+                t295 = e0*psi_y
+                t296 = m_y*t295
+                t297 = e0*psi_z
+                t298 = m_z*t297
+                t299 = m_x*psi_y
+                t300 = m_y*psi_x - t299
+                t301 = 2*e1
+                t302 = psi_x*t301
+                t303 = psi_y*t302
+                t304 = t300*t303
+                t305 = m_x*psi_z
+                t306 = m_z*psi_x
+                t307 = t305 - t306
+                t308 = psi_z*t302
+                t309 = t307*t308
+                t310 = (0.5)*m_y
+                t311 = e0*t307
+                t312 = m_y*psi_z
+                t313 = m_z*psi_y - t312
+                t314 = psi_x*psi_x
+                t315 = (0.5)*m_z
+                t316 = e0*t300
+                t317 = e0*m_x*psi_x
+                t318 = psi_y*psi_z*t301
+                t319 = t313*t318
+                t320 = psi_y*psi_y
+                t321 = (0.5)*m_x
+                t322 = e0*t313
+                t323 = psi_z*psi_z
+                t324 = (0.5)*psi_z
+                t325 = psi_x*t295
+                t326 = (0.5)*psi_y
+                t327 = psi_x*t297
+                t328 = e0*t320
+                t329 = e0*t323 - 1
+                t330 = (0.5)*psi_x
+                t331 = psi_z*t295
+                t332 = e0*t314
+                bdy[j3] += (bdgt_x*(t296 + t298 + t304 - t309) + bdgt_y*(-e0*m_y*psi_x +
+                    2*e1*psi_x*psi_z*t313 - t300*t301*t314 + t315 - t316) + bdgt_z*(-e0*t306 +
+                    2*e1*t307*t314 - t303*t313 - t310 + t311))
+                bdy[j3 + 1] += (bdgt_x*(-e0*t299 + 2*e1*t300*t320 - t307*t318 - t315 + t316) +
+                    bdgt_y*(t298 - t304 + t317 + t319) + bdgt_z*(-e0*m_z*psi_y +
+                    2*e1*psi_x*psi_y*t307 - t301*t313*t320 + t321 - t322))
+                bdy[j3 + 2] += (bdgt_x*(-e0*t305 + 2*e1*psi_y*psi_z*t300 - t301*t307*t323 + t310 -
+                    t311) + bdgt_y*(-e0*t312 + 2*e1*t313*t323 - t300*t308 - t321 + t322) +
+                    bdgt_z*(t296 + t309 + t317 - t319))
+                bds[j3] += bdgt_x*(-t328 - t329) + bdgt_y*(-t324 + t325) + bdgt_z*(t326 + t327)
+                bds[j3 + 1] += bdgt_x*(t324 + t325) + bdgt_y*(-t329 - t332) + bdgt_z*(-t330 + t331)
+                bds[j3 + 2] += (bdgt_x*(-t326 + t327) + bdgt_y*(t330 + t331) + bdgt_z*(-t328 -
+                    t332 + 1))
             # transposed: differential: force on the nodes, left in frame axes
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -1857,47 +1731,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 alpha = alphas[i]
                 bdh_x, bdh_y, bdh_z = bdh[i3], bdh[i3 + 1], bdh[i3 + 2]
-                t427 = bdh_z*fit
+                t333 = bdh_z*fit
                 bds[i3] += bdh_x
                 bds[i3 + 1] += bdh_y
                 bds[i3 + 2] += bdh_z
                 bdF_x += alpha*bdh_x
                 bdF_y += alpha*bdh_y
                 bdF_z += alpha*bdh_z
-                bdwp_x += -X_y*t427 + X_z*bdh_y*fit
-                bdwp_y += X_x*t427 - X_z*bdh_x*fit
+                bdwp_x += -X_y*t333 + X_z*bdh_y*fit
+                bdwp_y += X_x*t333 - X_z*bdh_x*fit
                 bdwp_z += -X_x*bdh_y*fit + X_y*bdh_x*fit
             # transposed: differential: force on the origin, through the frame
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t428 = bdF_z*fit
-                bdwp_x += X_y*t428 - X_z*bdF_y*fit
-                bdwp_y += -X_x*t428 + X_z*bdF_x*fit
+                t334 = bdF_z*fit
+                bdwp_x += X_y*t334 - X_z*bdF_y*fit
+                bdwp_y += -X_x*t334 + X_z*bdF_x*fit
                 bdwp_z += X_x*bdF_y*fit - X_y*bdF_x*fit
             # transposed: differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
-            t429 = bdwp_x + rhs_x
-            t430 = bdwp_y + rhs_y
-            t431 = bdwp_z + rhs_z
-            mdwp_x = Bxx*t429 + Bxy*t430 + Bxz*t431
-            mdwp_y = Byx*t429 + Byy*t430 + Byz*t431
-            mdwp_z = Bzx*t429 + Bzy*t430 + Bzz*t431
+            t335 = bdwp_x + rhs_x
+            t336 = bdwp_y + rhs_y
+            t337 = bdwp_z + rhs_z
+            mdwp_x = Bxx*t335 + Bxy*t336 + Bxz*t337
+            mdwp_y = Byx*t335 + Byy*t336 + Byz*t337
+            mdwp_z = Bzx*t335 + Bzy*t336 + Bzz*t337
             # transposed: differential: B^T wp = W
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t432 = X_x*wp_y - X_y*wp_x
-                t433 = fit*mdwp_y
-                t434 = X_x*wp_z - X_z*wp_x
-                t435 = fit*mdwp_z
-                t436 = fit*mdwp_x
-                t437 = X_y*wp_z - X_z*wp_y
-                bdy[i3] += t432*t433 + t434*t435
-                bdy[i3 + 1] += -t432*t436 + t435*t437
-                bdy[i3 + 2] += -t433*t437 - t434*t436
+                t338 = X_x*wp_y - X_y*wp_x
+                t339 = fit*mdwp_y
+                t340 = X_x*wp_z - X_z*wp_x
+                t341 = fit*mdwp_z
+                t342 = fit*mdwp_x
+                t343 = X_y*wp_z - X_z*wp_y
+                bdy[i3] += t338*t339 + t340*t341
+                bdy[i3 + 1] += -t338*t342 + t341*t343
+                bdy[i3 + 2] += -t339*t343 - t340*t342
             # transposed: differential: B^T wp = W
             bdW_x += mdwp_x
             bdW_y += mdwp_y
@@ -1909,53 +1783,53 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t438 = e0*psi_y
-                t439 = m_y*t438
-                t440 = e0*psi_z
-                t441 = m_z*t440
-                t442 = -m_x*psi_y + m_y*psi_x
-                t443 = 2*e1
-                t444 = psi_x*t443
-                t445 = psi_y*t444
-                t446 = t442*t445
-                t447 = m_x*psi_z
-                t448 = -m_z*psi_x + t447
-                t449 = psi_z*t444
-                t450 = t448*t449
-                t451 = psi_x*psi_x
-                t452 = t443*t451
-                t453 = -m_y*psi_z + m_z*psi_y
-                t454 = e0*t442 + (0.5)*m_z
-                t455 = e0*t448 + (0.5)*m_y
-                t456 = e0*m_x*psi_x
-                t457 = psi_y*psi_z*t443
-                t458 = t453*t457
-                t459 = psi_y*psi_y
-                t460 = t443*t459
-                t461 = e0*t453 + (0.5)*m_x
-                t462 = psi_z*psi_z
-                t463 = t443*t462
-                t464 = (0.5)*psi_z
-                t465 = psi_x*t438
-                t466 = (0.5)*psi_y
-                t467 = psi_x*t440
-                t468 = e0*t459
-                t469 = e0*t462 - 1
-                t470 = (0.5)*psi_x
-                t471 = psi_z*t438
-                t472 = e0*t451
-                bdy[j3] += (bdW_x*(-t439 - t441 - t446 + t450) + bdW_y*(e0*m_y*psi_x + t442*t452 -
-                    t449*t453 + t454) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t453 - t448*t452 -
-                    t455))
-                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t448 - t442*t460 - t454) +
-                    bdW_y*(-t441 + t446 - t456 - t458) + bdW_z*(e0*m_z*psi_y - t445*t448 +
-                    t453*t460 + t461))
-                bdy[j3 + 2] += (bdW_x*(e0*t447 - t442*t457 + t448*t463 + t455) +
-                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t442 - t453*t463 - t461) + bdW_z*(-t439
-                    - t450 - t456 + t458))
-                bds[j3] += bdW_x*(t468 + t469) + bdW_y*(-t464 - t465) + bdW_z*(t466 - t467)
-                bds[j3 + 1] += bdW_x*(t464 - t465) + bdW_y*(t469 + t472) + bdW_z*(-t470 - t471)
-                bds[j3 + 2] += bdW_x*(-t466 - t467) + bdW_y*(t470 - t471) + bdW_z*(t468 + t472 - 1)
+                t344 = e0*psi_y
+                t345 = m_y*t344
+                t346 = e0*psi_z
+                t347 = m_z*t346
+                t348 = -m_x*psi_y + m_y*psi_x
+                t349 = 2*e1
+                t350 = psi_x*t349
+                t351 = psi_y*t350
+                t352 = t348*t351
+                t353 = m_x*psi_z
+                t354 = -m_z*psi_x + t353
+                t355 = psi_z*t350
+                t356 = t354*t355
+                t357 = psi_x*psi_x
+                t358 = t349*t357
+                t359 = -m_y*psi_z + m_z*psi_y
+                t360 = e0*t348 + (0.5)*m_z
+                t361 = e0*t354 + (0.5)*m_y
+                t362 = e0*m_x*psi_x
+                t363 = psi_y*psi_z*t349
+                t364 = t359*t363
+                t365 = psi_y*psi_y
+                t366 = t349*t365
+                t367 = e0*t359 + (0.5)*m_x
+                t368 = psi_z*psi_z
+                t369 = t349*t368
+                t370 = (0.5)*psi_z
+                t371 = psi_x*t344
+                t372 = (0.5)*psi_y
+                t373 = psi_x*t346
+                t374 = e0*t365
+                t375 = e0*t368 - 1
+                t376 = (0.5)*psi_x
+                t377 = psi_z*t344
+                t378 = e0*t357
+                bdy[j3] += (bdW_x*(-t345 - t347 - t352 + t356) + bdW_y*(e0*m_y*psi_x + t348*t358 -
+                    t355*t359 + t360) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t359 - t354*t358 -
+                    t361))
+                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t354 - t348*t366 - t360) +
+                    bdW_y*(-t347 + t352 - t362 - t364) + bdW_z*(e0*m_z*psi_y - t351*t354 +
+                    t359*t366 + t367))
+                bdy[j3 + 2] += (bdW_x*(e0*t353 - t348*t363 + t354*t369 + t361) +
+                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t348 - t359*t369 - t367) + bdW_z*(-t345
+                    - t356 - t362 + t364))
+                bds[j3] += bdW_x*(t374 + t375) + bdW_y*(-t370 - t371) + bdW_z*(t372 - t373)
+                bds[j3 + 1] += bdW_x*(t370 - t371) + bdW_y*(t375 + t378) + bdW_z*(-t376 - t377)
+                bds[j3 + 2] += bdW_x*(-t372 - t373) + bdW_y*(t376 - t377) + bdW_z*(t374 + t378 - 1)
             # transposed: differential: inertia and weight on the frame
             turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                 turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
@@ -1971,12 +1845,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t473 = X_y + u_y
-                t474 = X_z + u_z
-                t475 = X_x + u_x
-                bds[i3] += -bdF_x - bdW_y*t474 + bdW_z*t473
-                bds[i3 + 1] += -bdF_y + bdW_x*t474 - bdW_z*t475
-                bds[i3 + 2] += -bdF_z - bdW_x*t473 + bdW_y*t475
+                t379 = X_y + u_y
+                t380 = X_z + u_z
+                t381 = X_x + u_x
+                bds[i3] += -bdF_x - bdW_y*t380 + bdW_z*t379
+                bds[i3 + 1] += -bdF_y + bdW_x*t380 - bdW_z*t381
+                bds[i3 + 2] += -bdF_z - bdW_x*t379 + bdW_y*t381
                 bdy[i3] += bdW_y*f_z - bdW_z*f_y
                 bdy[i3 + 1] += -bdW_x*f_z + bdW_z*f_x
                 bdy[i3 + 2] += bdW_x*f_y - bdW_y*f_x
@@ -1998,15 +1872,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             bdfelt_x, bdfelt_y, bdfelt_z = bdzdd[N], bdzdd[N + 1], bdzdd[N + 2]
             bdturning_x, bdturning_y, bdturning_z = bdzdd[N + 3], bdzdd[N + 4], bdzdd[N + 5]
             bdspin_x, bdspin_y, bdspin_z = bdzd[N], bdzd[N + 1], bdzd[N + 2]
-            t476 = bdfelt_x*turn_xx + bdfelt_y*turn_xy + bdfelt_z*turn_xz
-            t477 = bdfelt_x*turn_yx + bdfelt_y*turn_yy + bdfelt_z*turn_yz
-            t478 = bdfelt_x*turn_zx + bdfelt_y*turn_zy + bdfelt_z*turn_zz
-            bda0_x += t476
-            bda0_y += t477
-            bda0_z += t478
-            bdgamma[0] += -t476
-            bdgamma[1] += -t477
-            bdgamma[2] += -t478
+            t382 = bdfelt_x*turn_xx + bdfelt_y*turn_xy + bdfelt_z*turn_xz
+            t383 = bdfelt_x*turn_yx + bdfelt_y*turn_yy + bdfelt_z*turn_yz
+            t384 = bdfelt_x*turn_zx + bdfelt_y*turn_zy + bdfelt_z*turn_zz
+            bda0_x += t382
+            bda0_y += t383
+            bda0_z += t384
+            bdgamma[0] += -t382
+            bdgamma[1] += -t383
+            bdgamma[2] += -t384
             bdOm0d_x += bdturning_x*turn_xx + bdturning_y*turn_xy + bdturning_z*turn_xz
             bdOm0d_y += bdturning_x*turn_yx + bdturning_y*turn_yy + bdturning_z*turn_yz
             bdOm0d_z += bdturning_x*turn_zx + bdturning_y*turn_zy + bdturning_z*turn_zz
@@ -2067,309 +1941,241 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e0 = e0s[j]
                 e1 = e1s[j]
                 e2 = e2s[j]
-                t479 = (0.5)*ep_z
-                t480 = e0*ep_x
-                t481 = e0*psi_x
-                t482 = 2*ep_x
-                t483 = psi_x*t482
-                t484 = 2*ep_y
-                t485 = psi_y*t484
-                t486 = 2*ep_z
-                t487 = psi_z*t486
-                t488 = t483 + t485 + t487
-                t489 = e1*t488
-                t490 = psi_x*t489
-                t491 = ep_y*t481 + psi_y*t480 + psi_y*t490
-                t492 = t479 + t491
-                t493 = (0.5)*ep_y
-                t494 = ep_z*t481 + psi_z*t480 + psi_z*t490
-                t495 = -t493 + t494
-                t496 = psi_z*psi_z
-                t497 = e0*t487 + t489*t496
-                t498 = psi_y*psi_y
-                t499 = e0*t485 + t489*t498
-                t500 = t497 + t499
-                t501 = -t479 + t491
-                t502 = (0.5)*ep_x
-                t503 = e0*psi_z
-                t504 = e0*psi_y
-                t505 = psi_y*t489
-                t506 = ep_y*t503 + ep_z*t504 + psi_z*t505
-                t507 = t502 + t506
-                t508 = psi_x*psi_x
-                t509 = e0*t483 + t489*t508
-                t510 = t497 + t509
-                t511 = t493 + t494
-                t512 = -t502 + t506
-                t513 = t499 + t509
-                t514 = (0.5)*psi_z
-                t515 = psi_y*t481
-                t516 = t514 + t515
-                t517 = (0.5)*psi_y
-                t518 = psi_z*t481
-                t519 = -t517 + t518
-                t520 = e0*t498
-                t521 = e0*t496 - 1
-                t522 = t520 + t521
-                t523 = -t514 + t515
-                t524 = (0.5)*psi_x
-                t525 = psi_y*t503
-                t526 = t524 + t525
-                t527 = e0*t508
-                t528 = t521 + t527
-                t529 = t517 + t518
-                t530 = -t524 + t525
-                t531 = t520 + t527 - 1
-                t532 = e1*t482
-                t533 = Om0_x*psi_y
-                t534 = Om0_y*psi_x - t533
-                t535 = psi_y*t534
-                t536 = t532*t535
-                t537 = Om_x*psi_z
-                t538 = Om_z*psi_x
-                t539 = t537 - t538
-                t540 = psi_z*t532
-                t541 = t539*t540
-                t542 = e1*psi_x
-                t543 = t484*t542
-                t544 = t534*t543
-                t545 = t486*t542
-                t546 = t539*t545
-                t547 = Om0_x*ep_y
-                t548 = Om0d_x*psi_y
-                t549 = Om0_y*ep_x + Om0d_y*psi_x - t547 - t548
-                t550 = 2*e1
-                t551 = psi_x*t550
-                t552 = psi_y*t551
-                t553 = t549*t552
-                t554 = A_x*psi_z
-                t555 = Om_x*ep_z
-                t556 = A_z*psi_x
-                t557 = Om_z*ep_x
-                t558 = t554 + t555 - t556 - t557
-                t559 = psi_z*t551
-                t560 = t558*t559
-                t561 = Om_x*psi_y
-                t562 = Om_y*psi_x - t561
-                t563 = psi_y*t532
-                t564 = t562*t563
-                t565 = Om0_z*psi_x
-                t566 = Om0_x*psi_z - t565
-                t567 = t540*t566
-                t568 = t543*t562
-                t569 = t545*t566
-                t570 = A_x*psi_y
-                t571 = Om_x*ep_y
-                t572 = A_y*psi_x + Om_y*ep_x - t570 - t571
-                t573 = t552*t572
-                t574 = Om0_z*ep_x
-                t575 = Om0d_z*psi_x
-                t576 = Om0_x*ep_z + Om0d_x*psi_z - t574 - t575
-                t577 = t559*t576
-                t578 = 2*e2*t488
-                t579 = psi_x*t578
-                t580 = t535*t579
-                t581 = psi_z*t579
-                t582 = t539*t581
-                t583 = psi_y*t579
-                t584 = t562*t583
-                t585 = t566*t581
-                t586 = e0*ep_z
-                t587 = psi_z*t489
-                t588 = A_z*t503 - Om0_z*t586 - Om0_z*t587 - Om0d_z*t503 + Om_z*t586 + Om_z*t587
-                t589 = e0*ep_y
-                t590 = A_y*t504 - Om0_y*t505 - Om0_y*t589 - Om0d_y*t504 + Om_y*t505 + Om_y*t589
-                t591 = t508*t550
-                t592 = Om_y*psi_x
-                t593 = Om_y*psi_z
-                t594 = Om_z*psi_y - t593
-                t595 = A_y*psi_z
-                t596 = Om_y*ep_z
-                t597 = A_z*psi_y + Om_z*ep_y - t595 - t596
-                t598 = Om0_y*psi_z
-                t599 = Om0_z*psi_y - t598
-                t600 = Om0_y*ep_z
-                t601 = Om0d_y*psi_z
-                t602 = Om0_z*ep_y + Om0d_z*psi_y - t600 - t601
-                t603 = t508*t578
-                t604 = 4*t562
-                t605 = ep_x*t542
-                t606 = (0.5)*A_z + (0.5)*Om0d_z - e0*t549 + e0*t572 - t489*t534 + t489*t562
-                t607 = 4*t605
-                t608 = (0.5)*A_y + (0.5)*Om0d_y + e0*t558 - e0*t576 + t489*t539 - t489*t566
-                t609 = psi_z*t484
-                t610 = e1*t599
-                t611 = t609*t610
-                t612 = psi_y*t486
-                t613 = t610*t612
-                t614 = psi_z*t550
-                t615 = psi_y*t614
-                t616 = t602*t615
-                t617 = e1*t594
-                t618 = t609*t617
-                t619 = t612*t617
-                t620 = t597*t615
-                t621 = psi_z*t578
-                t622 = psi_y*t621
-                t623 = t599*t622
-                t624 = t594*t622
-                t625 = A_x*t481 - Om0_x*t480 - Om0_x*t490 - Om0d_x*t481 + Om_x*t480 + Om_x*t490
-                t626 = t498*t550
-                t627 = e1*ep_y
-                t628 = 4*t627
-                t629 = e1*t539
-                t630 = t498*t578
-                t631 = e1*t566
-                t632 = Om_z*psi_y
-                t633 = (0.5)*A_x + (0.5)*Om0d_x + e0*t597 - e0*t602 + t489*t594 - t489*t599
-                t634 = t496*t550
-                t635 = t496*t578
-                t636 = 4*ep_z*psi_z
-                t637 = t552*t562
-                t638 = t559*t566
-                t639 = t535*t551
-                t640 = t539*t559
-                t641 = Om0_z*t503 - Om_z*e0*psi_z
-                t642 = Om0_y*t504 - Om_y*e0*psi_y
-                t643 = (0.5)*Om0_z + (0.5)*Om_z - e0*t534 + e0*t562
-                t644 = (0.5)*Om0_y + (0.5)*Om_y + e0*t539 - e0*t566
-                t645 = t594*t615
-                t646 = t599*t615
-                t647 = Om0_x*t481 - Om_x*e0*psi_x
-                t648 = (0.5)*Om0_x + (0.5)*Om_x + e0*t594 - e0*t599
-                bdve[j3] += -bdepd_x*t500 + bdepd_y*t492 + bdepd_z*t495
-                bdve[j3 + 1] += bdepd_x*t501 - bdepd_y*t510 + bdepd_z*t507
-                bdve[j3 + 2] += bdepd_x*t511 + bdepd_y*t512 - bdepd_z*t513
-                bdae[j3] += -bdepd_x*t522 + bdepd_y*t516 + bdepd_z*t519
-                bdae[j3 + 1] += bdepd_x*t523 - bdepd_y*t528 + bdepd_z*t526
-                bdae[j3 + 2] += bdepd_x*t529 + bdepd_y*t530 - bdepd_z*t531
-                bdy[j3] += (bdepd_x*(-t536 - t541 - t544 - t546 - t553 - t560 + t564 + t567 + t568
-                    + t569 + t573 + t577 - t580 - t582 + t584 + t585 + t588 + t590) +
-                    bdepd_y*(-A_y*e0*psi_x + Om0_y*e0*ep_x + Om0_y*e1*psi_x*t488 + Om0d_y*e0*psi_x
-                    - Om_y*e0*ep_x + 4*e1*ep_x*psi_x*t534 + 2*e1*ep_x*psi_z*t594 +
-                    2*e1*ep_z*psi_x*t594 + 2*e1*psi_x*psi_z*t597 + 2*e1*t508*t549 +
-                    2*e2*psi_x*psi_z*t488*t594 + 2*e2*t488*t508*t534 - t489*t592 - t540*t599 -
-                    t545*t599 - t559*t602 - t562*t603 - t572*t591 - t581*t599 - t604*t605 - t606)
-                    + bdepd_z*(-e0*t556 - e0*t557 + e0*t574 + e0*t575 - t489*t538 + t489*t565 +
-                    t539*t603 + t539*t607 - t543*t594 + t543*t599 - t552*t597 + t552*t602 +
-                    t558*t591 - t563*t594 + t563*t599 - t566*t603 - t566*t607 - t576*t591 -
-                    t583*t594 + t583*t599 + t608))
-                bdy[j3 + 1] += (bdepd_x*(e0*t547 + e0*t548 - e0*t570 - e0*t571 + psi_y*t604*t627 +
-                    t489*t533 - t489*t561 - t534*t630 - t535*t628 - t539*t622 - t549*t626 -
-                    t558*t615 + t562*t630 + t566*t622 + t572*t626 + t576*t615 + t606 - t609*t629 +
-                    t609*t631 - t612*t629 + t612*t631) + bdepd_y*(t536 + t544 + t553 - t564 - t568
-                    - t573 + t580 - t584 + t588 - t611 - t613 - t616 + t618 + t619 + t620 - t623 +
-                    t624 + t625) + bdepd_z*(-A_z*e0*psi_y + Om0_z*e0*ep_y + Om0_z*e1*psi_y*t488 +
-                    Om0d_z*e0*psi_y - Om_z*e0*ep_y + 2*e1*ep_x*psi_y*t539 + 2*e1*ep_y*psi_x*t539 +
-                    4*e1*ep_y*psi_y*t599 + 2*e1*psi_x*psi_y*t558 + 2*e1*t498*t602 +
-                    2*e2*psi_x*psi_y*t488*t539 + 2*e2*t488*t498*t599 - psi_y*t594*t628 - t489*t632
-                    - t543*t566 - t552*t576 - t563*t566 - t566*t583 - t594*t630 - t597*t626 -
-                    t633))
-                bdy[j3 + 2] += (bdepd_x*(Om0_x*e0*ep_z + Om0_x*e1*psi_z*t488 + Om0d_x*e0*psi_z -
-                    e0*t554 - e0*t555 + 2*e1*ep_y*psi_z*t562 + 2*e1*ep_z*psi_y*t562 +
-                    4*e1*ep_z*psi_z*t566 + 2*e1*psi_y*psi_z*t572 - e1*t486*t535 + 2*e1*t496*t576 -
-                    e1*t534*t609 + 2*e2*psi_y*psi_z*t488*t562 + 2*e2*t488*t496*t566 - t489*t537 -
-                    t535*t621 - t539*t635 - t549*t615 - t558*t634 - t608 - t629*t636) +
-                    bdepd_y*(-e0*t595 - e0*t596 + e0*t600 + e0*t601 - t489*t593 + t489*t598 +
-                    t534*t540 + t534*t545 + t534*t581 - t540*t562 - t545*t562 + t549*t559 -
-                    t559*t572 - t562*t581 + t594*t635 + t597*t634 - t599*t635 - t602*t634 -
-                    t610*t636 + t617*t636 + t633) + bdepd_z*(t541 + t546 + t560 - t567 - t569 -
-                    t577 + t582 - t585 + t590 + t611 + t613 + t616 - t618 - t619 - t620 + t623 -
-                    t624 + t625))
-                bdOm0_x += bdepd_x*t500 - bdepd_y*t501 - bdepd_z*t511
-                bdOm0_y += -bdepd_x*t492 + bdepd_y*t510 - bdepd_z*t512
-                bdOm0_z += -bdepd_x*t495 - bdepd_y*t507 + bdepd_z*t513
-                bdeta[j3] += (bdepd_x*(t637 + t638 - t639 - t640 - t641 - t642) +
-                    bdepd_y*(Om0_y*e0*psi_x - e0*t592 + 2*e1*psi_x*psi_z*t594 + 2*e1*t508*t534 -
-                    t559*t599 - t562*t591 - t643) + bdepd_z*(-e0*t538 + e0*t565 + t539*t591 -
-                    t552*t594 + t552*t599 - t566*t591 + t644))
-                bdeta[j3 + 1] += (bdepd_x*(e0*t533 - e0*t561 - t534*t626 - t539*t615 + t562*t626 +
-                    t566*t615 + t643) + bdepd_y*(-t637 + t639 - t641 + t645 - t646 - t647) +
-                    bdepd_z*(Om0_z*e0*psi_y - e0*t632 + 2*e1*psi_x*psi_y*t539 + 2*e1*t498*t599 -
-                    t552*t566 - t594*t626 - t648))
-                bdeta[j3 + 2] += (bdepd_x*(Om0_x*e0*psi_z - e0*t537 + 2*e1*psi_y*psi_z*t562 +
-                    2*e1*t496*t566 - t535*t614 - t539*t634 - t644) + bdepd_y*(-e0*t593 + e0*t598 +
-                    t534*t559 - t559*t562 + t594*t634 - t599*t634 + t648) + bdepd_z*(-t638 + t640
-                    - t642 - t645 + t646 - t647))
-                bdOm0d_x += bdepd_x*t522 - bdepd_y*t523 - bdepd_z*t529
-                bdOm0d_y += -bdepd_x*t516 + bdepd_y*t528 - bdepd_z*t530
-                bdOm0d_z += -bdepd_x*t519 - bdepd_y*t526 + bdepd_z*t531
+                t385 = (0.5)*ep_z
+                t386 = ep_x*psi_y + ep_y*psi_x
+                t387 = 2*ep_x
+                t388 = psi_x*t387
+                t389 = 2*ep_y
+                t390 = psi_y*t389
+                t391 = 2*ep_z
+                t392 = psi_z*t391
+                t393 = t390 + t392
+                t394 = t388 + t393
+                t395 = e1*t394
+                t396 = psi_x*t395
+                t397 = psi_y*t396
+                t398 = e0*t386 + t397
+                t399 = (0.5)*ep_y
+                t400 = ep_x*psi_z + ep_z*psi_x
+                t401 = psi_z*t396
+                t402 = e0*t400 + t401
+                t403 = psi_y*psi_y
+                t404 = psi_z*psi_z
+                t405 = t403 + t404
+                t406 = -t405
+                t407 = (0.5)*ep_x
+                t408 = ep_y*psi_z + ep_z*psi_y
+                t409 = psi_y*psi_z
+                t410 = t395*t409
+                t411 = e0*t408 + t410
+                t412 = t388 + t392
+                t413 = psi_x*psi_x
+                t414 = t404 + t413
+                t415 = -t414
+                t416 = t388 + t390
+                t417 = t403 + t413
+                t418 = -t417
+                t419 = (0.5)*psi_z
+                t420 = e0*psi_x
+                t421 = psi_y*t420
+                t422 = t419 + t421
+                t423 = (0.5)*psi_y
+                t424 = psi_z*t420
+                t425 = -t423 + t424
+                t426 = -t419 + t421
+                t427 = (0.5)*psi_x
+                t428 = e0*t409
+                t429 = t427 + t428
+                t430 = t423 + t424
+                t431 = -t427 + t428
+                t432 = Om0_y - Om_y
+                t433 = -t432
+                t434 = Om0_z - Om_z
+                t435 = psi_y*t433 - psi_z*t434
+                t436 = A_y - Om0d_y
+                t437 = A_z - Om0d_z
+                t438 = -t437
+                t439 = psi_x*t433
+                t440 = Om0_x - Om_x
+                t441 = -t440
+                t442 = -psi_y*t441
+                t443 = t439 + t442
+                t444 = -t434
+                t445 = psi_x*t444
+                t446 = psi_z*t441 - t445
+                t447 = psi_y*t443 - psi_z*t446
+                t448 = e1*t387
+                t449 = 2*e2*t394
+                t450 = psi_x*t449
+                t451 = ep_x*t433
+                t452 = psi_x*t436
+                t453 = A_x - Om0d_x
+                t454 = -ep_y*t441 - psi_y*t453
+                t455 = t451 + t452 + t454
+                t456 = ep_x*t444
+                t457 = psi_x*t437
+                t458 = t456 + t457
+                t459 = ep_z*t441 + psi_z*t453 - t458
+                t460 = ep_y*t443 - ep_z*t446 + psi_y*t455 - psi_z*t459
+                t461 = 2*e1
+                t462 = psi_x*t461
+                t463 = (0.5)*A_z
+                t464 = (0.5)*Om0d_z
+                t465 = -2*t439 - t442
+                t466 = psi_y*t444
+                t467 = -psi_z*t433
+                t468 = t466 + t467
+                t469 = -psi_x*t443 + psi_z*t468
+                t470 = ep_y*t444
+                t471 = psi_y*t437
+                t472 = -ep_z*t433 - psi_z*t436
+                t473 = t470 + t471 + t472
+                t474 = -ep_x*t443 + ep_z*t468 - psi_x*t455 + psi_z*t473
+                t475 = (0.5)*A_y
+                t476 = (0.5)*Om0d_y
+                t477 = psi_z*t441
+                t478 = psi_x*t434 - t445 + t477
+                t479 = psi_x*t446 - psi_y*t468
+                t480 = ep_z*t441
+                t481 = psi_z*t453
+                t482 = ep_x*t446 - ep_y*t468 + psi_x*t459 - psi_y*t473
+                t483 = -psi_x*t440 + psi_z*t444
+                t484 = -t453
+                t485 = e1*t389
+                t486 = psi_y*t449
+                t487 = psi_y*t461
+                t488 = (0.5)*A_x
+                t489 = (0.5)*Om0d_x
+                t490 = -2*t466 - t467
+                t491 = psi_y*t440 + t443
+                t492 = psi_x*t441 - psi_y*t432
+                t493 = -t436
+                t494 = e1*t391
+                t495 = psi_z*t449
+                t496 = psi_z*t461
+                t497 = t445 - 2*t477
+                t498 = psi_z*t432 + t468
+                t499 = -t386
+                t500 = -t400
+                t501 = -t408
+                t502 = (0.5)*Om0_z + (0.5)*Om_z
+                t503 = (0.5)*Om0_y + (0.5)*Om_y
+                t504 = (0.5)*Om0_x + (0.5)*Om_x
+                bdve[j3] += (bdepd_x*(-e0*t393 + t395*t406) + bdepd_y*(t385 + t398) +
+                    bdepd_z*(-t399 + t402))
+                bdve[j3 + 1] += (bdepd_x*(-t385 + t398) + bdepd_y*(-e0*t412 + t395*t415) +
+                    bdepd_z*(t407 + t411))
+                bdve[j3 + 2] += (bdepd_x*(t399 + t402) + bdepd_y*(-t407 + t411) +
+                    bdepd_z*(-e0*t416 + t395*t418))
+                bdae[j3] += bdepd_x*(e0*t406 + 1) + bdepd_y*t422 + bdepd_z*t425
+                bdae[j3 + 1] += bdepd_x*t426 + bdepd_y*(e0*t415 + 1) + bdepd_z*t429
+                bdae[j3 + 2] += bdepd_x*t430 + bdepd_y*t431 + bdepd_z*(e0*t418 + 1)
+                bdy[j3] += (bdepd_x*(e0*(ep_y*t433 - ep_z*t434 + psi_y*t436 - psi_z*t438) +
+                    t395*t435 + t447*t448 + t447*t450 + t460*t462) + bdepd_y*(e0*(-2*t451 - 2*t452
+                    - t454) + t395*t465 + t448*t469 + t450*t469 + t462*t474 - t463 - t464) +
+                    bdepd_z*(e0*(ep_x*t434 + psi_x*t438 - t456 - t457 + t480 + t481) + t395*t478 +
+                    t448*t479 + t450*t479 + t462*t482 + t475 + t476))
+                bdy[j3 + 1] += (bdepd_x*(e0*(ep_y*t440 + psi_y*t484 + t455) + t395*t491 +
+                    t447*t485 + t447*t486 + t460*t487 + t463 + t464) + bdepd_y*(e0*(-ep_x*t440 +
+                    ep_z*t444 - psi_x*t484 + psi_z*t437) + t395*t483 + t469*t485 + t469*t486 +
+                    t474*t487) + bdepd_z*(e0*(-2*t470 - 2*t471 - t472) + t395*t490 + t479*t485 +
+                    t479*t486 + t482*t487 - t488 - t489))
+                bdy[j3 + 2] += (bdepd_x*(e0*(t458 - 2*t480 - 2*t481) + t395*t497 + t447*t494 +
+                    t447*t495 + t460*t496 - t475 - t476) + bdepd_y*(e0*(ep_z*t432 + psi_z*t493 +
+                    t473) + t395*t498 + t469*t494 + t469*t495 + t474*t496 + t488 + t489) +
+                    bdepd_z*(e0*(ep_x*t441 - ep_y*t432 + psi_x*t453 - psi_y*t493) + t395*t492 +
+                    t479*t494 + t479*t495 + t482*t496))
+                bdOm0_x += (bdepd_x*(e0*t393 + t395*t405) + bdepd_y*(e0*t499 + t385 - t397) +
+                    bdepd_z*(e0*t500 - t399 - t401))
+                bdOm0_y += (bdepd_x*(e0*t499 - t385 - t397) + bdepd_y*(e0*t412 + t395*t414) +
+                    bdepd_z*(e0*t501 + t407 - t410))
+                bdOm0_z += (bdepd_x*(e0*t500 + t399 - t401) + bdepd_y*(e0*t501 - t407 - t410) +
+                    bdepd_z*(e0*t416 + t395*t417))
+                bdeta[j3] += (bdepd_x*(e0*t435 + t447*t462) + bdepd_y*(e0*t465 + 2*e1*psi_x*t469 -
+                    t502) + bdepd_z*(e0*t478 + t462*t479 + t503))
+                bdeta[j3 + 1] += (bdepd_x*(e0*t491 + t447*t487 + t502) + bdepd_y*(e0*t483 +
+                    t469*t487) + bdepd_z*(e0*t490 + 2*e1*psi_y*t479 - t504))
+                bdeta[j3 + 2] += (bdepd_x*(e0*t497 + 2*e1*psi_z*t447 - t503) + bdepd_y*(e0*t498 +
+                    t469*t496 + t504) + bdepd_z*(e0*t492 + t479*t496))
+                bdOm0d_x += bdepd_x*(e0*t405 - 1) - bdepd_y*t426 - bdepd_z*t430
+                bdOm0d_y += -bdepd_x*t422 + bdepd_y*(e0*t414 - 1) - bdepd_z*t431
+                bdOm0d_z += -bdepd_x*t425 - bdepd_y*t429 + bdepd_z*(e0*t417 - 1)
             # transposed: differential: rate: rates of the elastic displacements
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 bdeud_x, bdeud_y, bdeud_z = bdetad[i3], bdetad[i3 + 1], bdetad[i3 + 2]
-                t649 = X_z + u_z
-                t650 = X_y + u_y
-                t651 = X_x + u_x
+                t505 = X_z + u_z
+                t506 = X_y + u_y
+                t507 = X_x + u_x
                 bdy[i3] += Om0d_y*bdeud_z - Om0d_z*bdeud_y
                 bdy[i3 + 1] += -Om0d_x*bdeud_z + Om0d_z*bdeud_x
                 bdy[i3 + 2] += Om0d_x*bdeud_y - Om0d_y*bdeud_x
-                bdOm0d_x += bdeud_y*t649 - bdeud_z*t650
-                bdOm0d_y += -bdeud_x*t649 + bdeud_z*t651
-                bdOm0d_z += bdeud_x*t650 - bdeud_y*t651
+                bdOm0d_x += bdeud_y*t505 - bdeud_z*t506
+                bdOm0d_y += -bdeud_x*t505 + bdeud_z*t507
+                bdOm0d_z += bdeud_x*t506 - bdeud_y*t507
             # transposed: differential: rate: sum w_j X_j x (rate of r_j) = 0
             rhs_x = rhs_y = rhs_z = 0.0
-            t652 = bdOm0d_x + rhs_x
-            t653 = bdOm0d_y + rhs_y
-            t654 = bdOm0d_z + rhs_z
-            mdOm0d_x = Bxx*t652 + Byx*t653 + Bzx*t654
-            mdOm0d_y = Bxy*t652 + Byy*t653 + Bzy*t654
-            mdOm0d_z = Bxz*t652 + Byz*t653 + Bzz*t654
+            t508 = bdOm0d_x + rhs_x
+            t509 = bdOm0d_y + rhs_y
+            t510 = bdOm0d_z + rhs_z
+            mdOm0d_x = Bxx*t508 + Byx*t509 + Bzx*t510
+            mdOm0d_y = Bxy*t508 + Byy*t509 + Bzy*t510
+            mdOm0d_z = Bxz*t508 + Byz*t509 + Bzz*t510
             # transposed: differential: rate: sum w_j X_j x (rate of r_j) = 0
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t655 = X_x*fit
-                t656 = mdOm0d_y*t655
-                t657 = mdOm0d_z*t655
-                t658 = X_y*fit
-                t659 = Om0d_y*t658
-                t660 = X_z*fit
-                t661 = Om0d_z*t660
-                t662 = mdOm0d_x*t658
-                t663 = mdOm0d_z*t658
-                t664 = Om0d_x*t655
-                t665 = mdOm0d_y*t660
-                bdy[i3] += Om0d_y*t656 + Om0d_z*t657 - mdOm0d_x*(t659 + t661)
-                bdy[i3 + 1] += Om0d_x*t662 + Om0d_z*t663 - mdOm0d_y*(t661 + t664)
-                bdy[i3 + 2] += Om0d_x*mdOm0d_x*t660 + Om0d_y*t665 - mdOm0d_z*(t659 + t664)
-                bdetad[i3] += t663 - t665
-                bdetad[i3 + 1] += X_z*fit*mdOm0d_x - t657
-                bdetad[i3 + 2] += t656 - t662
+                t511 = X_x*fit
+                t512 = mdOm0d_y*t511
+                t513 = mdOm0d_z*t511
+                t514 = X_y*fit
+                t515 = Om0d_y*t514
+                t516 = X_z*fit
+                t517 = Om0d_z*t516
+                t518 = mdOm0d_x*t514
+                t519 = mdOm0d_z*t514
+                t520 = Om0d_x*t511
+                t521 = mdOm0d_y*t516
+                bdy[i3] += Om0d_y*t512 + Om0d_z*t513 - mdOm0d_x*(t515 + t517)
+                bdy[i3 + 1] += Om0d_x*t518 + Om0d_z*t519 - mdOm0d_y*(t517 + t520)
+                bdy[i3 + 2] += Om0d_x*mdOm0d_x*t516 + Om0d_y*t521 - mdOm0d_z*(t515 + t520)
+                bdetad[i3] += t519 - t521
+                bdetad[i3 + 1] += X_z*fit*mdOm0d_x - t513
+                bdetad[i3 + 2] += t512 - t518
             # transposed: differential: rate: rates of the elastic displacements, the frame held
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
                 eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
                 bdeud_x, bdeud_y, bdeud_z = bdetad[i3], bdetad[i3 + 1], bdetad[i3 + 2]
-                t666 = Om0_y*bdeud_z - Om0_z*bdeud_y
-                t667 = Om0_x*bdeud_z - Om0_z*bdeud_x
-                t668 = -t667
-                t669 = Om0_x*bdeud_y - Om0_y*bdeud_x
-                t670 = eu_z - v0_z + vs_z
-                t671 = eu_y - v0_y + vs_y
-                t672 = eu_x - v0_x + vs_x
-                bdyd[i3] += t666
-                bdyd[i3 + 1] += t668
-                bdyd[i3 + 2] += t669
+                t522 = Om0_y*bdeud_z - Om0_z*bdeud_y
+                t523 = Om0_x*bdeud_z - Om0_z*bdeud_x
+                t524 = -t523
+                t525 = Om0_x*bdeud_y - Om0_y*bdeud_x
+                t526 = eu_z - v0_z + vs_z
+                t527 = eu_y - v0_y + vs_y
+                t528 = eu_x - v0_x + vs_x
+                bdyd[i3] += t522
+                bdyd[i3 + 1] += t524
+                bdyd[i3 + 2] += t525
                 bdacc[i3] += bdeud_x
                 bdacc[i3 + 1] += bdeud_y
                 bdacc[i3 + 2] += bdeud_z
-                bdv0_x += -t666
-                bdv0_y += t667
-                bdv0_z += -t669
-                bdOm0_x += bdeud_y*t670 - bdeud_z*t671
-                bdOm0_y += -bdeud_x*t670 + bdeud_z*t672
-                bdOm0_z += bdeud_x*t671 - bdeud_y*t672
+                bdv0_x += -t522
+                bdv0_y += t523
+                bdv0_z += -t525
+                bdOm0_x += bdeud_y*t526 - bdeud_z*t527
+                bdOm0_y += -bdeud_x*t526 + bdeud_z*t528
+                bdOm0_z += bdeud_x*t527 - bdeud_y*t528
                 bda0_x += -bdeud_x
                 bda0_y += -bdeud_y
                 bda0_z += -bdeud_z
-                bdeta[i3] += t666
-                bdeta[i3 + 1] += t668
-                bdeta[i3 + 2] += t669
+                bdeta[i3] += t522
+                bdeta[i3 + 1] += t524
+                bdeta[i3 + 2] += t525
             # overwritten: differential: rate: rates of the elastic displacements, the frame held
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -2388,89 +2194,74 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdep_x, bdep_y, bdep_z = bdeta[j3], bdeta[j3 + 1], bdeta[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t673 = (0.5)*psi_z
-                t674 = e0*psi_x
-                t675 = psi_y*t674
-                t676 = t673 + t675
-                t677 = (0.5)*psi_y
-                t678 = psi_z*t674
-                t679 = -t677 + t678
-                t680 = psi_y*psi_y
-                t681 = e0*t680
-                t682 = psi_z*psi_z
-                t683 = e0*t682 - 1
-                t684 = t681 + t683
-                t685 = -t673 + t675
-                t686 = (0.5)*psi_x
-                t687 = e0*psi_y
-                t688 = psi_z*t687
-                t689 = t686 + t688
-                t690 = psi_x*psi_x
-                t691 = e0*t690
-                t692 = t683 + t691
-                t693 = t677 + t678
-                t694 = -t686 + t688
-                t695 = t681 + t691 - 1
-                t696 = Om_x*psi_y
-                t697 = Om_y*psi_x - t696
-                t698 = 2*e1
-                t699 = psi_x*t698
-                t700 = psi_y*t699
-                t701 = t697*t700
-                t702 = Om0_z*psi_x
-                t703 = Om0_x*psi_z - t702
-                t704 = psi_z*t699
-                t705 = t703*t704
-                t706 = Om0_x*psi_y
-                t707 = Om0_y*psi_x - t706
-                t708 = t700*t707
-                t709 = Om_x*psi_z
-                t710 = Om_z*psi_x
-                t711 = t709 - t710
-                t712 = t704*t711
-                t713 = Om0_z*e0*psi_z - Om_z*e0*psi_z
-                t714 = Om0_y*t687 - Om_y*e0*psi_y
-                t715 = t690*t698
-                t716 = Om_y*psi_z
-                t717 = Om_z*psi_y - t716
-                t718 = Om0_y*psi_z
-                t719 = Om0_z*psi_y - t718
-                t720 = (0.5)*Om0_z + (0.5)*Om_z + e0*t697 - e0*t707
-                t721 = (0.5)*Om0_y + (0.5)*Om_y - e0*t703 + e0*t711
-                t722 = psi_y*psi_z*t698
-                t723 = t717*t722
-                t724 = t719*t722
-                t725 = Om0_x*t674 - Om_x*e0*psi_x
-                t726 = t680*t698
-                t727 = (0.5)*Om0_x + (0.5)*Om_x + e0*t717 - e0*t719
-                t728 = t682*t698
-                bdve[j3] += -bdep_x*t684 + bdep_y*t676 + bdep_z*t679
-                bdve[j3 + 1] += bdep_x*t685 - bdep_y*t692 + bdep_z*t689
-                bdve[j3 + 2] += bdep_x*t693 + bdep_y*t694 - bdep_z*t695
-                bdy[j3] += (bdep_x*(t701 + t705 - t708 - t712 - t713 - t714) +
-                    bdep_y*(Om0_y*e0*psi_x - Om_y*e0*psi_x + 2*e1*psi_x*psi_z*t717 +
-                    2*e1*t690*t707 - t697*t715 - t704*t719 - t720) + bdep_z*(e0*t702 - e0*t710 -
-                    t700*t717 + t700*t719 - t703*t715 + t711*t715 + t721))
-                bdy[j3 + 1] += (bdep_x*(-e0*t696 + e0*t706 + t697*t726 + t703*t722 - t707*t726 -
-                    t711*t722 + t720) + bdep_y*(-t701 + t708 - t713 + t723 - t724 - t725) +
-                    bdep_z*(Om0_z*e0*psi_y - Om_z*e0*psi_y + 2*e1*psi_x*psi_y*t711 +
-                    2*e1*t680*t719 - t700*t703 - t717*t726 - t727))
-                bdy[j3 + 2] += (bdep_x*(Om0_x*e0*psi_z - e0*t709 + 2*e1*psi_y*psi_z*t697 +
-                    2*e1*t682*t703 - t707*t722 - t711*t728 - t721) + bdep_y*(-e0*t716 + e0*t718 -
-                    t697*t704 + t704*t707 + t717*t728 - t719*t728 + t727) + bdep_z*(-t705 + t712 -
-                    t714 - t723 + t724 - t725))
-                bdOm0_x += bdep_x*t684 - bdep_y*t685 - bdep_z*t693
-                bdOm0_y += -bdep_x*t676 + bdep_y*t692 - bdep_z*t694
-                bdOm0_z += -bdep_x*t679 - bdep_y*t689 + bdep_z*t695
+                t529 = (0.5)*psi_z
+                t530 = e0*psi_x
+                t531 = psi_y*t530
+                t532 = t529 + t531
+                t533 = (0.5)*psi_y
+                t534 = psi_z*t530
+                t535 = -t533 + t534
+                t536 = psi_y*psi_y
+                t537 = psi_z*psi_z
+                t538 = t536 + t537
+                t539 = -t529 + t531
+                t540 = (0.5)*psi_x
+                t541 = e0*psi_y*psi_z
+                t542 = t540 + t541
+                t543 = psi_x*psi_x
+                t544 = t537 + t543
+                t545 = t533 + t534
+                t546 = -t540 + t541
+                t547 = t536 + t543
+                t548 = Om0_y - Om_y
+                t549 = -t548
+                t550 = Om0_z - Om_z
+                t551 = psi_x*t549
+                t552 = Om0_x - Om_x
+                t553 = -t552
+                t554 = -psi_y*t553
+                t555 = t551 + t554
+                t556 = -t550
+                t557 = psi_x*t556
+                t558 = psi_z*t553 - t557
+                t559 = psi_y*t555 - psi_z*t558
+                t560 = 2*e1
+                t561 = psi_x*t560
+                t562 = psi_y*t556
+                t563 = -psi_z*t549
+                t564 = t562 + t563
+                t565 = -psi_x*t555 + psi_z*t564
+                t566 = (0.5)*Om0_z + (0.5)*Om_z
+                t567 = psi_z*t553
+                t568 = psi_x*t558 - psi_y*t564
+                t569 = (0.5)*Om0_y + (0.5)*Om_y
+                t570 = psi_y*t560
+                t571 = (0.5)*Om0_x + (0.5)*Om_x
+                t572 = psi_z*t560
+                bdve[j3] += bdep_x*(-e0*t538 + 1) + bdep_y*t532 + bdep_z*t535
+                bdve[j3 + 1] += bdep_x*t539 + bdep_y*(-e0*t544 + 1) + bdep_z*t542
+                bdve[j3 + 2] += bdep_x*t545 + bdep_y*t546 + bdep_z*(-e0*t547 + 1)
+                bdy[j3] += (bdep_x*(e0*(psi_y*t549 - psi_z*t550) + t559*t561) +
+                    bdep_y*(e0*(-2*t551 - t554) + 2*e1*psi_x*t565 - t566) + bdep_z*(e0*(psi_x*t550
+                    - t557 + t567) + t561*t568 + t569))
+                bdy[j3 + 1] += (bdep_x*(e0*(psi_y*t552 + t555) + t559*t570 + t566) +
+                    bdep_y*(e0*(-psi_x*t552 + psi_z*t556) + t565*t570) + bdep_z*(e0*(-2*t562 -
+                    t563) + 2*e1*psi_y*t568 - t571))
+                bdy[j3 + 2] += (bdep_x*(e0*(t557 - 2*t567) + 2*e1*psi_z*t559 - t569) +
+                    bdep_y*(e0*(psi_z*t548 + t564) + t565*t572 + t571) + bdep_z*(e0*(psi_x*t553 -
+                    psi_y*t548) + t568*t572))
+                bdOm0_x += bdep_x*(e0*t538 - 1) - bdep_y*t539 - bdep_z*t545
+                bdOm0_y += -bdep_x*t532 + bdep_y*(e0*t544 - 1) - bdep_z*t546
+                bdOm0_z += -bdep_x*t535 - bdep_y*t542 + bdep_z*(e0*t547 - 1)
             # transposed: differential: rates of the elastic displacements
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 bdeu_x, bdeu_y, bdeu_z = bdeta[i3], bdeta[i3 + 1], bdeta[i3 + 2]
-                t729 = X_z + u_z
-                t730 = X_y + u_y
-                t731 = X_x + u_x
+                t573 = X_z + u_z
+                t574 = X_y + u_y
+                t575 = X_x + u_x
                 bdy[i3] += Om0_y*bdeu_z - Om0_z*bdeu_y
                 bdy[i3 + 1] += -Om0_x*bdeu_z + Om0_z*bdeu_x
                 bdy[i3 + 2] += Om0_x*bdeu_y - Om0_y*bdeu_x
@@ -2480,9 +2271,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdv0_x += -bdeu_x
                 bdv0_y += -bdeu_y
                 bdv0_z += -bdeu_z
-                bdOm0_x += bdeu_y*t729 - bdeu_z*t730
-                bdOm0_y += -bdeu_x*t729 + bdeu_z*t731
-                bdOm0_z += bdeu_x*t730 - bdeu_y*t731
+                bdOm0_x += bdeu_y*t573 - bdeu_z*t574
+                bdOm0_y += -bdeu_x*t573 + bdeu_z*t575
+                bdOm0_z += bdeu_x*t574 - bdeu_y*t575
             # transposed: differential: origin of the frame, (14)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -2510,40 +2301,40 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdy[k] = 0.0
             # transposed: differential: sum w_j X_j x (rate of r_j) = 0
             rhs_x = rhs_y = rhs_z = 0.0
-            t732 = bdOm0_x + rhs_x
-            t733 = bdOm0_y + rhs_y
-            t734 = bdOm0_z + rhs_z
-            mdOm0_x = Bxx*t732 + Byx*t733 + Bzx*t734
-            mdOm0_y = Bxy*t732 + Byy*t733 + Bzy*t734
-            mdOm0_z = Bxz*t732 + Byz*t733 + Bzz*t734
+            t576 = bdOm0_x + rhs_x
+            t577 = bdOm0_y + rhs_y
+            t578 = bdOm0_z + rhs_z
+            mdOm0_x = Bxx*t576 + Byx*t577 + Bzx*t578
+            mdOm0_y = Bxy*t576 + Byy*t577 + Bzy*t578
+            mdOm0_z = Bxz*t576 + Byz*t577 + Bzz*t578
             # transposed: differential: sum w_j X_j x (rate of r_j) = 0
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t735 = fit*mdOm0_y
-                t736 = X_x*t735
-                t737 = fit*mdOm0_z
-                t738 = X_x*t737
-                t739 = Om0_y*X_y
-                t740 = Om0_z*X_z
-                t741 = fit*mdOm0_x
-                t742 = X_y*t741
-                t743 = X_y*t737
-                t744 = Om0_x*X_x
-                t745 = X_z*t735
-                t746 = t743 - t745
-                t747 = -X_z*fit*mdOm0_x + t738
-                t748 = t736 - t742
-                bdy[i3] += Om0_y*t736 + Om0_z*t738 - t741*(t739 + t740)
-                bdy[i3 + 1] += Om0_x*t742 + Om0_z*t743 - t735*(t740 + t744)
-                bdy[i3 + 2] += Om0_x*X_z*t741 + Om0_y*t745 - t737*(t739 + t744)
-                bdyd[i3] += t746
-                bdyd[i3 + 1] += -t747
-                bdyd[i3 + 2] += t748
-                bdv0_x += -t746
-                bdv0_y += t747
-                bdv0_z += -t748
+                t579 = fit*mdOm0_y
+                t580 = X_x*t579
+                t581 = fit*mdOm0_z
+                t582 = X_x*t581
+                t583 = Om0_y*X_y
+                t584 = Om0_z*X_z
+                t585 = fit*mdOm0_x
+                t586 = X_y*t585
+                t587 = X_y*t581
+                t588 = Om0_x*X_x
+                t589 = X_z*t579
+                t590 = t587 - t589
+                t591 = -X_z*fit*mdOm0_x + t582
+                t592 = t580 - t586
+                bdy[i3] += Om0_y*t580 + Om0_z*t582 - t585*(t583 + t584)
+                bdy[i3 + 1] += Om0_x*t586 + Om0_z*t587 - t579*(t584 + t588)
+                bdy[i3 + 2] += Om0_x*X_z*t585 + Om0_y*t589 - t581*(t583 + t588)
+                bdyd[i3] += t590
+                bdyd[i3 + 1] += -t591
+                bdyd[i3 + 2] += t592
+                bdv0_x += -t590
+                bdv0_y += t591
+                bdv0_z += -t592
             # transposed: differential: origin of the frame, (14)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -2605,43 +2396,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 bdpsi_x, bdpsi_y, bdpsi_z = bdy[j3], bdy[j3 + 1], bdy[j3 + 2]
                 e0 = e0s[j]
-                t749 = (0.5)*psi_z
-                t750 = e0*psi_x
-                t751 = psi_y*t750
-                t752 = -t749 + t751
-                t753 = (0.5)*psi_y
-                t754 = psi_z*t750
-                t755 = t753 + t754
-                t756 = e0*psi_y*psi_y
-                t757 = e0*psi_z*psi_z - 1
-                t758 = t756 + t757
-                t759 = t749 + t751
-                t760 = (0.5)*psi_x
-                t761 = e0*psi_y*psi_z
-                t762 = -t760 + t761
-                t763 = e0*psi_x*psi_x
-                t764 = t757 + t763
-                t765 = -t753 + t754
-                t766 = t760 + t761
-                t767 = t756 + t763 - 1
-                bdth0_x += bdpsi_x*t758 - bdpsi_y*t752 - bdpsi_z*t755
-                bdth0_y += -bdpsi_x*t759 + bdpsi_y*t764 - bdpsi_z*t762
-                bdth0_z += -bdpsi_x*t765 - bdpsi_y*t766 + bdpsi_z*t767
-                bdqe[j3] += -bdpsi_x*t758 + bdpsi_y*t759 + bdpsi_z*t765
-                bdqe[j3 + 1] += bdpsi_x*t752 - bdpsi_y*t764 + bdpsi_z*t766
-                bdqe[j3 + 2] += bdpsi_x*t755 + bdpsi_y*t762 - bdpsi_z*t767
+                t593 = (0.5)*psi_z
+                t594 = e0*psi_x
+                t595 = psi_y*t594
+                t596 = -t593 + t595
+                t597 = (0.5)*psi_y
+                t598 = psi_z*t594
+                t599 = t597 + t598
+                t600 = psi_y*psi_y
+                t601 = psi_z*psi_z
+                t602 = t600 + t601
+                t603 = t593 + t595
+                t604 = (0.5)*psi_x
+                t605 = e0*psi_y*psi_z
+                t606 = -t604 + t605
+                t607 = psi_x*psi_x
+                t608 = t601 + t607
+                t609 = -t597 + t598
+                t610 = t604 + t605
+                t611 = t600 + t607
+                bdth0_x += bdpsi_x*(e0*t602 - 1) - bdpsi_y*t596 - bdpsi_z*t599
+                bdth0_y += -bdpsi_x*t603 + bdpsi_y*(e0*t608 - 1) - bdpsi_z*t606
+                bdth0_z += -bdpsi_x*t609 - bdpsi_y*t610 + bdpsi_z*(e0*t611 - 1)
+                bdqe[j3] += bdpsi_x*(-e0*t602 + 1) + bdpsi_y*t603 + bdpsi_z*t609
+                bdqe[j3 + 1] += bdpsi_x*t596 + bdpsi_y*(-e0*t608 + 1) + bdpsi_z*t610
+                bdqe[j3 + 2] += bdpsi_x*t599 + bdpsi_y*t606 + bdpsi_z*(-e0*t611 + 1)
             # transposed: differential: displacement of the nodes in the frame, (11)
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 bdu_x, bdu_y, bdu_z = bdy[i3], bdy[i3 + 1], bdy[i3 + 2]
-                t768 = X_z + u_z
-                t769 = X_y + u_y
-                t770 = X_x + u_x
-                bdth0_x += bdu_y*t768 - bdu_z*t769
-                bdth0_y += -bdu_x*t768 + bdu_z*t770
-                bdth0_z += bdu_x*t769 - bdu_y*t770
+                t612 = X_z + u_z
+                t613 = X_y + u_y
+                t614 = X_x + u_x
+                bdth0_x += bdu_y*t612 - bdu_z*t613
+                bdth0_y += -bdu_x*t612 + bdu_z*t614
+                bdth0_z += bdu_x*t613 - bdu_y*t614
                 bdqe[i3] += bdu_x
                 bdqe[i3 + 1] += bdu_y
                 bdqe[i3 + 2] += bdu_z
@@ -2650,27 +2441,27 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdx0_z += -bdu_z
             # transposed: sum w_j X_j x (rate of r_j) = 0
             rhs_x = rhs_y = rhs_z = 0.0
-            t771 = bdth0_x + rhs_x
-            t772 = bdth0_y + rhs_y
-            t773 = bdth0_z + rhs_z
-            mdth0_x = Bxx*t771 + Byx*t772 + Bzx*t773
-            mdth0_y = Bxy*t771 + Byy*t772 + Bzy*t773
-            mdth0_z = Bxz*t771 + Byz*t772 + Bzz*t773
+            t615 = bdth0_x + rhs_x
+            t616 = bdth0_y + rhs_y
+            t617 = bdth0_z + rhs_z
+            mdth0_x = Bxx*t615 + Byx*t616 + Bzx*t617
+            mdth0_y = Bxy*t615 + Byy*t616 + Bzy*t617
+            mdth0_z = Bxz*t615 + Byz*t616 + Bzz*t617
             # transposed: sum w_j X_j x (rate of r_j) = 0
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t774 = fit*mdth0_z
-                t775 = X_y*t774 - X_z*fit*mdth0_y
-                t776 = X_x*t774 - X_z*fit*mdth0_x
-                t777 = X_x*fit*mdth0_y - X_y*fit*mdth0_x
-                bdqe[i3] += t775
-                bdqe[i3 + 1] += -t776
-                bdqe[i3 + 2] += t777
-                bdx0_x += -t775
-                bdx0_y += t776
-                bdx0_z += -t777
+                t618 = fit*mdth0_z
+                t619 = X_y*t618 - X_z*fit*mdth0_y
+                t620 = X_x*t618 - X_z*fit*mdth0_x
+                t621 = X_x*fit*mdth0_y - X_y*fit*mdth0_x
+                bdqe[i3] += t619
+                bdqe[i3 + 1] += -t620
+                bdqe[i3 + 2] += t621
+                bdx0_x += -t619
+                bdx0_y += t620
+                bdx0_z += -t621
             # transposed: origin of the frame, (14)
             for i in range(N_POSITIONS):
                 i3 = 3*i

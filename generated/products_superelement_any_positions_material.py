@@ -44,7 +44,7 @@ WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
 OPERATIONS = {"residual": (460, 217, 128, 3),
-              "column": (84, 244, 380, 5)}
+              "column": (84, 244, 387, 5)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
 KEPT = 16      # numbers kept between two calls
 
@@ -469,29 +469,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                 e0 = e0s[j]
-                t46 = dth0_y*psi_z
-                t47 = dth_y*psi_z
-                t48 = dth0_x*psi_y
-                t49 = dth0_y*psi_x - t48
-                t50 = e0*psi_y
-                t51 = dth_x*psi_z
-                t52 = dth_z*psi_x
-                t53 = t51 - t52
-                t54 = e0*psi_z
-                t55 = dth_x*psi_y
-                t56 = dth_y*psi_x - t55
-                t57 = dth0_x*psi_z
-                t58 = dth0_z*psi_x
-                t59 = t57 - t58
-                t60 = e0*psi_x
-                t61 = dth_z*psi_y - t47
-                t62 = dth0_z*psi_y - t46
-                dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y + e0*psi_y*t56
-                    + e0*psi_z*t59 - 0.5*t46 - 0.5*t47 - t49*t50 - t53*t54)
-                dy[j3 + 1] = (-dth0_y + dth_y + t49*t60 + (0.5)*t51 - 0.5*t52 + t54*t61 - t54*t62
-                    - t56*t60 + (0.5)*t57 - 0.5*t58)
-                dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                    e0*psi_x*t53 + e0*psi_y*t62 - 0.5*t48 - t50*t61 - 0.5*t55 - t59*t60)
+                t46 = (0.5)*dth0_z + (0.5)*dth_z
+                t47 = dth0_y + dth_y
+                t48 = (0.5)*psi_z
+                t49 = -dth0_y + dth_y
+                t50 = -dth0_x + dth_x
+                t51 = psi_x*t49 - psi_y*t50
+                t52 = -dth0_z + dth_z
+                t53 = -psi_x*t52 + psi_z*t50
+                t54 = dth0_x + dth_x
+                t55 = psi_y*t52 - psi_z*t49
+                dy[j3] = -dth0_x + dth_x + e0*(psi_y*t51 - psi_z*t53) + psi_y*t46 - t47*t48
+                dy[j3 + 1] = -dth0_y + dth_y + e0*(-psi_x*t51 + psi_z*t55) - psi_x*t46 + t48*t54
+                dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t53 - psi_y*t55) + (0.5)*psi_x*t47 -
+                    0.5*psi_y*t54)
             # differential: internal modes
             for k in range(MODES, n):
                 dqm = dqe[k]
@@ -554,12 +545,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                t63 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
-                t64 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
-                t65 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
-                rhs_x += -fit*(X_y*t63 - X_z*t64)
-                rhs_y += -fit*(-X_x*t63 + X_z*t65)
-                rhs_z += -fit*(X_x*t64 - X_y*t65)
+                t56 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
+                t57 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
+                t58 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
+                rhs_x += -fit*(X_y*t56 - X_z*t57)
+                rhs_y += -fit*(-X_x*t56 + X_z*t58)
+                rhs_z += -fit*(X_x*t57 - X_y*t58)
             dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -608,18 +599,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                 dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
-                t66 = alpha*mass
-                t67 = X_z + u_z
-                t68 = X_y + u_y
-                t69 = X_x + u_x
-                dF_x += -df_x - dgamma_x*t66
-                dF_y += -df_y - dgamma_y*t66
-                dF_z += -df_z - dgamma_z*t66
-                dW_x += (df_y*t67 - df_z*t68 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y +
+                t59 = alpha*mass
+                t60 = X_z + u_z
+                t61 = X_y + u_y
+                t62 = X_x + u_x
+                dF_x += -df_x - dgamma_x*t59
+                dF_y += -df_y - dgamma_y*t59
+                dF_z += -df_z - dgamma_z*t59
+                dW_x += (df_y*t60 - df_z*t61 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y +
                     dvs_y*px_z - dvs_z*px_y)
-                dW_y += (-df_x*t67 + df_z*t69 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z - du_z*f_x -
+                dW_y += (-df_x*t60 + df_z*t62 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z - du_z*f_x -
                     dvs_x*px_z + dvs_z*px_x)
-                dW_z += (df_x*t68 - df_y*t69 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x +
+                dW_z += (df_x*t61 - df_y*t62 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x +
                     dvs_x*px_y - dvs_y*px_x)
             # differential: moment of gravity on the frame
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
@@ -627,12 +618,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
             dd_x, dd_y, dd_z = dd[0], dd[1], dd[2]
             dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-            t70 = d_y + mc_y
-            t71 = d_z + mc_z
-            t72 = d_x + mc_x
-            dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t71 - dgamma_z*t70
-            dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t71 + dgamma_z*t72
-            dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t70 - dgamma_y*t72
+            t63 = d_y + mc_y
+            t64 = d_z + mc_z
+            t65 = d_x + mc_x
+            dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t64 - dgamma_z*t63
+            dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t64 + dgamma_z*t65
+            dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t63 - dgamma_y*t65
             # differential: moments on the frame: elastic (30) and inertia (45)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -642,25 +633,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t73 = -m_x*psi_y + m_y*psi_x
-                t74 = m_x*psi_z - m_z*psi_x
-                t75 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                t76 = dm_x*psi_z
-                t77 = dpsi_z*m_x
-                t78 = -dm_z*psi_x - dpsi_x*m_z + t76 + t77
-                t79 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t80 = e1*t79
-                t81 = -m_y*psi_z + m_z*psi_y
-                t82 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t73 -
-                    0.5*dpsi_y*m_z + dpsi_z*e0*t74 + (0.5)*dpsi_z*m_y - e0*psi_y*t75 +
-                    e0*psi_z*t78 + e1*psi_z*t74*t79 - psi_y*t73*t80)
-                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t73 + (0.5)*dpsi_x*m_z -
-                    dpsi_z*e0*t81 + e0*psi_x*t75 - e0*psi_z*t82 + e1*psi_x*t73*t79 - psi_z*t80*t81
-                    - 0.5*t76 - 0.5*t77)
-                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t74 - 0.5*dpsi_x*m_y
-                    + dpsi_y*e0*t81 + (0.5)*dpsi_y*m_x - e0*psi_x*t78 + e0*psi_y*t82 +
-                    e1*psi_y*t79*t81 - psi_x*t74*t80)
+                t66 = -m_x*psi_y + m_y*psi_x
+                t67 = m_x*psi_z - m_z*psi_x
+                t68 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                t69 = dm_x*psi_z
+                t70 = dpsi_z*m_x
+                t71 = -dm_z*psi_x - dpsi_x*m_z + t69 + t70
+                t72 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t73 = e1*t72
+                t74 = -m_y*psi_z + m_z*psi_y
+                t75 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t66 -
+                    0.5*dpsi_y*m_z + dpsi_z*e0*t67 + (0.5)*dpsi_z*m_y - e0*psi_y*t68 +
+                    e0*psi_z*t71 + e1*psi_z*t67*t72 - psi_y*t66*t73)
+                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t66 + (0.5)*dpsi_x*m_z -
+                    dpsi_z*e0*t74 + e0*psi_x*t68 - e0*psi_z*t75 + e1*psi_x*t66*t72 - psi_z*t73*t74
+                    - 0.5*t69 - 0.5*t70)
+                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t67 - 0.5*dpsi_x*m_y
+                    + dpsi_y*e0*t74 + (0.5)*dpsi_y*m_x - e0*psi_x*t71 + e0*psi_y*t75 +
+                    e1*psi_y*t72*t74 - psi_x*t67*t73)
             # differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
             for i in range(N_POSITIONS):
@@ -668,26 +659,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                t83 = X_x*wp_y - X_y*wp_x
-                t84 = -X_x*wp_z + X_z*wp_x
-                t85 = X_y*wp_z - X_z*wp_y
-                rhs_x += -fit*(du_y*t83 - du_z*t84)
-                rhs_y += -fit*(-du_x*t83 + du_z*t85)
-                rhs_z += -fit*(du_x*t84 - du_y*t85)
-            t86 = dW_x + rhs_x
-            t87 = dW_y + rhs_y
-            t88 = dW_z + rhs_z
-            dwp_x = Bxx*t86 + Byx*t87 + Bzx*t88
-            dwp_y = Bxy*t86 + Byy*t87 + Bzy*t88
-            dwp_z = Bxz*t86 + Byz*t87 + Bzz*t88
+                t76 = X_x*wp_y - X_y*wp_x
+                t77 = -X_x*wp_z + X_z*wp_x
+                t78 = X_y*wp_z - X_z*wp_y
+                rhs_x += -fit*(du_y*t76 - du_z*t77)
+                rhs_y += -fit*(-du_x*t76 + du_z*t78)
+                rhs_z += -fit*(du_x*t77 - du_y*t78)
+            t79 = dW_x + rhs_x
+            t80 = dW_y + rhs_y
+            t81 = dW_z + rhs_z
+            dwp_x = Bxx*t79 + Byx*t80 + Bzx*t81
+            dwp_y = Bxy*t79 + Byy*t80 + Bzy*t81
+            dwp_z = Bxz*t79 + Byz*t80 + Bzz*t81
             # differential: force on the origin, through the frame
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t89 = dwp_z*fit
-                dF_x += -X_y*t89 + X_z*dwp_y*fit
-                dF_y += X_x*t89 - X_z*dwp_x*fit
+                t82 = dwp_z*fit
+                dF_x += -X_y*t82 + X_z*dwp_y*fit
+                dF_y += X_x*t82 - X_z*dwp_x*fit
                 dF_z += -X_x*dwp_y*fit + X_y*dwp_x*fit
             # differential: force on the nodes in frame axes, (30), (57)
             for i in range(N_POSITIONS):
@@ -699,12 +690,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                 dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
                 dpxd_x, dpxd_y, dpxd_z = dpd[i3], dpd[i3 + 1], dpd[i3 + 2]
-                t90 = dwp_z*fit
-                t91 = X_z*fit
-                dh[i3] = (Om0_y*dpx_z - Om0_z*dpx_y + X_y*t90 + alpha*dF_x + dOm0_y*px_z -
-                    dOm0_z*px_y + df_x + dpxd_x - dwp_y*t91)
-                dh[i3 + 1] = (-Om0_x*dpx_z + Om0_z*dpx_x - X_x*t90 + alpha*dF_y - dOm0_x*px_z +
-                    dOm0_z*px_x + df_y + dpxd_y + dwp_x*t91)
+                t83 = dwp_z*fit
+                t84 = X_z*fit
+                dh[i3] = (Om0_y*dpx_z - Om0_z*dpx_y + X_y*t83 + alpha*dF_x + dOm0_y*px_z -
+                    dOm0_z*px_y + df_x + dpxd_x - dwp_y*t84)
+                dh[i3 + 1] = (-Om0_x*dpx_z + Om0_z*dpx_x - X_x*t83 + alpha*dF_y - dOm0_x*px_z +
+                    dOm0_z*px_x + df_y + dpxd_y + dwp_x*t84)
                 dh[i3 + 2] = (Om0_x*dpx_y - Om0_y*dpx_x + X_x*dwp_y*fit - X_y*dwp_x*fit +
                     alpha*dF_z + dOm0_x*px_y - dOm0_y*px_x + df_z + dpxd_z)
             # differential: force on the nodes, left in frame axes
@@ -729,36 +720,35 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpwd_x, dpwd_y, dpwd_z = dpd[j3], dpd[j3 + 1], dpd[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t92 = dm_y*psi_z
-                t93 = dpsi_z*m_y
-                t94 = -m_x*psi_y + m_y*psi_x
-                t95 = e0*t94
-                t96 = m_x*psi_z - m_z*psi_x
-                t97 = dpsi_z*e0
-                t98 = dm_x*psi_y
-                t99 = dpsi_y*m_x
-                t100 = e0*(dm_y*psi_x + dpsi_x*m_y - t98 - t99)
-                t101 = dm_x*psi_z
-                t102 = dpsi_z*m_x
-                t103 = dm_z*psi_x
-                t104 = dpsi_x*m_z
-                t105 = t101 + t102 - t103 - t104
-                t106 = e0*psi_z
-                t107 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                t108 = t107*t94
-                t109 = psi_z*t107
-                t110 = -m_y*psi_z + m_z*psi_y
-                t111 = dm_z*psi_y + dpsi_y*m_z - t92 - t93
+                t85 = dm_y*psi_z
+                t86 = dpsi_z*m_y
+                t87 = -m_x*psi_y + m_y*psi_x
+                t88 = e0*t87
+                t89 = m_x*psi_z - m_z*psi_x
+                t90 = dpsi_z*e0
+                t91 = dm_x*psi_y
+                t92 = dpsi_y*m_x
+                t93 = e0*(dm_y*psi_x + dpsi_x*m_y - t91 - t92)
+                t94 = dm_x*psi_z
+                t95 = dpsi_z*m_x
+                t96 = dm_z*psi_x
+                t97 = dpsi_x*m_z
+                t98 = t94 + t95 - t96 - t97
+                t99 = e0*psi_z
+                t100 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                t101 = t100*t87
+                t102 = psi_z*t100
+                t103 = -m_y*psi_z + m_z*psi_y
+                t104 = dm_z*psi_y + dpsi_y*m_z - t85 - t86
                 dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + dOm_y*pw_z - dOm_z*pw_y + dm_x -
-                    0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t95 + dpwd_x + psi_y*t100 +
-                    psi_y*t108 - t105*t106 - t109*t96 + (0.5)*t92 + (0.5)*t93 - t96*t97)
+                    0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t88 + dpwd_x + psi_y*t101 + psi_y*t93
+                    - t102*t89 + (0.5)*t85 + (0.5)*t86 - t89*t90 - t98*t99)
                 dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x - dOm_x*pw_z + dOm_z*pw_x + dm_y -
-                    dpsi_x*t95 + dpwd_y - psi_x*t100 - psi_x*t108 - 0.5*t101 - 0.5*t102 +
-                    (0.5)*t103 + (0.5)*t104 + t106*t111 + t109*t110 + t110*t97)
+                    dpsi_x*t88 + dpwd_y - psi_x*t101 - psi_x*t93 + t102*t103 + t103*t90 + t104*t99
+                    - 0.5*t94 - 0.5*t95 + (0.5)*t96 + (0.5)*t97)
                 dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + dOm_x*pw_y - dOm_y*pw_x - 0.5*dm_y*psi_x +
-                    dm_z + dpsi_x*e0*t96 - 0.5*dpsi_x*m_y - dpsi_y*e0*t110 + dpwd_z +
-                    e0*psi_x*t105 - e0*psi_y*t111 + psi_x*t107*t96 - psi_y*t107*t110 + (0.5)*t98 +
-                    (0.5)*t99)
+                    dm_z + dpsi_x*e0*t89 - 0.5*dpsi_x*m_y - dpsi_y*e0*t103 + dpwd_z + e0*psi_x*t98
+                    - e0*psi_y*t104 + psi_x*t100*t89 - psi_y*t100*t103 + (0.5)*t91 + (0.5)*t92)
             # differential: force of the internal modes
             for k in range(MODES, n):
                 dfm = ds[k]
@@ -852,60 +842,60 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdgt_x, bdgt_y, bdgt_z = bdg[j3], bdg[j3 + 1], bdg[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t112 = e0*psi_y
-                t113 = m_y*t112
-                t114 = e0*psi_z
-                t115 = m_z*t114
-                t116 = m_x*psi_y
-                t117 = m_y*psi_x - t116
-                t118 = 2*e1
-                t119 = psi_x*t118
-                t120 = psi_y*t119
-                t121 = t117*t120
-                t122 = m_x*psi_z
-                t123 = m_z*psi_x
-                t124 = t122 - t123
-                t125 = psi_z*t119
-                t126 = t124*t125
-                t127 = (0.5)*m_y
-                t128 = e0*t124
-                t129 = m_y*psi_z
-                t130 = m_z*psi_y - t129
-                t131 = psi_x*psi_x
-                t132 = (0.5)*m_z
-                t133 = e0*t117
-                t134 = e0*m_x*psi_x
-                t135 = psi_y*psi_z*t118
-                t136 = t130*t135
-                t137 = psi_y*psi_y
-                t138 = (0.5)*m_x
-                t139 = e0*t130
-                t140 = psi_z*psi_z
-                t141 = (0.5)*psi_z
-                t142 = psi_x*t112
-                t143 = (0.5)*psi_y
-                t144 = psi_x*t114
-                t145 = e0*t137
-                t146 = e0*t140 - 1
-                t147 = (0.5)*psi_x
-                t148 = psi_z*t112
-                t149 = e0*t131
+                t105 = e0*psi_y
+                t106 = m_y*t105
+                t107 = e0*psi_z
+                t108 = m_z*t107
+                t109 = m_x*psi_y
+                t110 = m_y*psi_x - t109
+                t111 = 2*e1
+                t112 = psi_x*t111
+                t113 = psi_y*t112
+                t114 = t110*t113
+                t115 = m_x*psi_z
+                t116 = m_z*psi_x
+                t117 = t115 - t116
+                t118 = psi_z*t112
+                t119 = t117*t118
+                t120 = (0.5)*m_y
+                t121 = e0*t117
+                t122 = m_y*psi_z
+                t123 = m_z*psi_y - t122
+                t124 = psi_x*psi_x
+                t125 = (0.5)*m_z
+                t126 = e0*t110
+                t127 = e0*m_x*psi_x
+                t128 = psi_y*psi_z*t111
+                t129 = t123*t128
+                t130 = psi_y*psi_y
+                t131 = (0.5)*m_x
+                t132 = e0*t123
+                t133 = psi_z*psi_z
+                t134 = (0.5)*psi_z
+                t135 = psi_x*t105
+                t136 = (0.5)*psi_y
+                t137 = psi_x*t107
+                t138 = e0*t130
+                t139 = e0*t133 - 1
+                t140 = (0.5)*psi_x
+                t141 = psi_z*t105
+                t142 = e0*t124
                 bdve[j3] += -bdgt_y*pw_z + bdgt_z*pw_y
                 bdve[j3 + 1] += bdgt_x*pw_z - bdgt_z*pw_x
                 bdve[j3 + 2] += -bdgt_x*pw_y + bdgt_y*pw_x
-                bdy[j3] += (bdgt_x*(t113 + t115 + t121 - t126) + bdgt_y*(-e0*m_y*psi_x +
-                    2*e1*psi_x*psi_z*t130 - t117*t118*t131 + t132 - t133) + bdgt_z*(-e0*t123 +
-                    2*e1*t124*t131 - t120*t130 - t127 + t128))
-                bdy[j3 + 1] += (bdgt_x*(-e0*t116 + 2*e1*t117*t137 - t124*t135 - t132 + t133) +
-                    bdgt_y*(t115 - t121 + t134 + t136) + bdgt_z*(-e0*m_z*psi_y +
-                    2*e1*psi_x*psi_y*t124 - t118*t130*t137 + t138 - t139))
-                bdy[j3 + 2] += (bdgt_x*(-e0*t122 + 2*e1*psi_y*psi_z*t117 - t118*t124*t140 + t127 -
-                    t128) + bdgt_y*(-e0*t129 + 2*e1*t130*t140 - t117*t125 - t138 + t139) +
-                    bdgt_z*(t113 + t126 + t134 - t136))
-                bds[j3] += bdgt_x*(-t145 - t146) + bdgt_y*(-t141 + t142) + bdgt_z*(t143 + t144)
-                bds[j3 + 1] += bdgt_x*(t141 + t142) + bdgt_y*(-t146 - t149) + bdgt_z*(-t147 + t148)
-                bds[j3 + 2] += (bdgt_x*(-t143 + t144) + bdgt_y*(t147 + t148) + bdgt_z*(-t145 -
-                    t149 + 1))
+                bdy[j3] += (bdgt_x*(t106 + t108 + t114 - t119) + bdgt_y*(-e0*m_y*psi_x +
+                    2*e1*psi_x*psi_z*t123 - t110*t111*t124 + t125 - t126) + bdgt_z*(-e0*t116 +
+                    2*e1*t117*t124 - t113*t123 - t120 + t121))
+                bdy[j3 + 1] += (bdgt_x*(-e0*t109 + 2*e1*t110*t130 - t117*t128 - t125 + t126) +
+                    bdgt_y*(t108 - t114 + t127 + t129) + bdgt_z*(-e0*m_z*psi_y +
+                    2*e1*psi_x*psi_y*t117 - t111*t123*t130 + t131 - t132))
+                bdy[j3 + 2] += (bdgt_x*(-e0*t115 + 2*e1*psi_y*psi_z*t110 - t111*t117*t133 + t120 -
+                    t121) + bdgt_y*(-e0*t122 + 2*e1*t123*t133 - t110*t118 - t131 + t132) +
+                    bdgt_z*(t106 + t119 + t127 - t129))
+                bds[j3] += bdgt_x*(-t138 - t139) + bdgt_y*(-t134 + t135) + bdgt_z*(t136 + t137)
+                bds[j3 + 1] += bdgt_x*(t134 + t135) + bdgt_y*(-t139 - t142) + bdgt_z*(-t140 + t141)
+                bds[j3 + 2] += (bdgt_x*(-t136 + t137) + bdgt_y*(t140 + t141) + bdgt_z*(-t138 -
+                    t142 + 1))
                 bdp[j3] += -Om_y*bdgt_z + Om_z*bdgt_y
                 bdp[j3 + 1] += Om_x*bdgt_z - Om_z*bdgt_x
                 bdp[j3 + 2] += -Om_x*bdgt_y + Om_y*bdgt_x
@@ -931,7 +921,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 alpha = alphas[i]
                 px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
                 bdh_x, bdh_y, bdh_z = bdh[i3], bdh[i3 + 1], bdh[i3 + 2]
-                t150 = bdh_z*fit
+                t143 = bdh_z*fit
                 bds[i3] += bdh_x
                 bds[i3 + 1] += bdh_y
                 bds[i3 + 2] += bdh_z
@@ -947,40 +937,40 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdF_x += alpha*bdh_x
                 bdF_y += alpha*bdh_y
                 bdF_z += alpha*bdh_z
-                bdwp_x += -X_y*t150 + X_z*bdh_y*fit
-                bdwp_y += X_x*t150 - X_z*bdh_x*fit
+                bdwp_x += -X_y*t143 + X_z*bdh_y*fit
+                bdwp_y += X_x*t143 - X_z*bdh_x*fit
                 bdwp_z += -X_x*bdh_y*fit + X_y*bdh_x*fit
             # transposed: differential: force on the origin, through the frame
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t151 = bdF_z*fit
-                bdwp_x += X_y*t151 - X_z*bdF_y*fit
-                bdwp_y += -X_x*t151 + X_z*bdF_x*fit
+                t144 = bdF_z*fit
+                bdwp_x += X_y*t144 - X_z*bdF_y*fit
+                bdwp_y += -X_x*t144 + X_z*bdF_x*fit
                 bdwp_z += X_x*bdF_y*fit - X_y*bdF_x*fit
             # transposed: differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
-            t152 = bdwp_x + rhs_x
-            t153 = bdwp_y + rhs_y
-            t154 = bdwp_z + rhs_z
-            mdwp_x = Bxx*t152 + Bxy*t153 + Bxz*t154
-            mdwp_y = Byx*t152 + Byy*t153 + Byz*t154
-            mdwp_z = Bzx*t152 + Bzy*t153 + Bzz*t154
+            t145 = bdwp_x + rhs_x
+            t146 = bdwp_y + rhs_y
+            t147 = bdwp_z + rhs_z
+            mdwp_x = Bxx*t145 + Bxy*t146 + Bxz*t147
+            mdwp_y = Byx*t145 + Byy*t146 + Byz*t147
+            mdwp_z = Bzx*t145 + Bzy*t146 + Bzz*t147
             # transposed: differential: B^T wp = W
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t155 = X_x*wp_y - X_y*wp_x
-                t156 = fit*mdwp_y
-                t157 = X_x*wp_z - X_z*wp_x
-                t158 = fit*mdwp_z
-                t159 = fit*mdwp_x
-                t160 = X_y*wp_z - X_z*wp_y
-                bdy[i3] += t155*t156 + t157*t158
-                bdy[i3 + 1] += -t155*t159 + t158*t160
-                bdy[i3 + 2] += -t156*t160 - t157*t159
+                t148 = X_x*wp_y - X_y*wp_x
+                t149 = fit*mdwp_y
+                t150 = X_x*wp_z - X_z*wp_x
+                t151 = fit*mdwp_z
+                t152 = fit*mdwp_x
+                t153 = X_y*wp_z - X_z*wp_y
+                bdy[i3] += t148*t149 + t150*t151
+                bdy[i3 + 1] += -t148*t152 + t151*t153
+                bdy[i3 + 2] += -t149*t153 - t150*t152
             # transposed: differential: B^T wp = W
             bdW_x += mdwp_x
             bdW_y += mdwp_y
@@ -992,66 +982,66 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t161 = e0*psi_y
-                t162 = m_y*t161
-                t163 = e0*psi_z
-                t164 = m_z*t163
-                t165 = -m_x*psi_y + m_y*psi_x
-                t166 = 2*e1
-                t167 = psi_x*t166
-                t168 = psi_y*t167
-                t169 = t165*t168
-                t170 = m_x*psi_z
-                t171 = -m_z*psi_x + t170
-                t172 = psi_z*t167
-                t173 = t171*t172
-                t174 = psi_x*psi_x
-                t175 = t166*t174
-                t176 = -m_y*psi_z + m_z*psi_y
-                t177 = e0*t165 + (0.5)*m_z
-                t178 = e0*t171 + (0.5)*m_y
-                t179 = e0*m_x*psi_x
-                t180 = psi_y*psi_z*t166
-                t181 = t176*t180
-                t182 = psi_y*psi_y
-                t183 = t166*t182
-                t184 = e0*t176 + (0.5)*m_x
-                t185 = psi_z*psi_z
-                t186 = t166*t185
-                t187 = (0.5)*psi_z
-                t188 = psi_x*t161
-                t189 = (0.5)*psi_y
-                t190 = psi_x*t163
-                t191 = e0*t182
-                t192 = e0*t185 - 1
-                t193 = (0.5)*psi_x
-                t194 = psi_z*t161
-                t195 = e0*t174
-                bdy[j3] += (bdW_x*(-t162 - t164 - t169 + t173) + bdW_y*(e0*m_y*psi_x + t165*t175 -
-                    t172*t176 + t177) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t176 - t171*t175 -
-                    t178))
-                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t171 - t165*t183 - t177) +
-                    bdW_y*(-t164 + t169 - t179 - t181) + bdW_z*(e0*m_z*psi_y - t168*t171 +
-                    t176*t183 + t184))
-                bdy[j3 + 2] += (bdW_x*(e0*t170 - t165*t180 + t171*t186 + t178) +
-                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t165 - t176*t186 - t184) + bdW_z*(-t162
-                    - t173 - t179 + t181))
-                bds[j3] += bdW_x*(t191 + t192) + bdW_y*(-t187 - t188) + bdW_z*(t189 - t190)
-                bds[j3 + 1] += bdW_x*(t187 - t188) + bdW_y*(t192 + t195) + bdW_z*(-t193 - t194)
-                bds[j3 + 2] += bdW_x*(-t189 - t190) + bdW_y*(t193 - t194) + bdW_z*(t191 + t195 - 1)
+                t154 = e0*psi_y
+                t155 = m_y*t154
+                t156 = e0*psi_z
+                t157 = m_z*t156
+                t158 = -m_x*psi_y + m_y*psi_x
+                t159 = 2*e1
+                t160 = psi_x*t159
+                t161 = psi_y*t160
+                t162 = t158*t161
+                t163 = m_x*psi_z
+                t164 = -m_z*psi_x + t163
+                t165 = psi_z*t160
+                t166 = t164*t165
+                t167 = psi_x*psi_x
+                t168 = t159*t167
+                t169 = -m_y*psi_z + m_z*psi_y
+                t170 = e0*t158 + (0.5)*m_z
+                t171 = e0*t164 + (0.5)*m_y
+                t172 = e0*m_x*psi_x
+                t173 = psi_y*psi_z*t159
+                t174 = t169*t173
+                t175 = psi_y*psi_y
+                t176 = t159*t175
+                t177 = e0*t169 + (0.5)*m_x
+                t178 = psi_z*psi_z
+                t179 = t159*t178
+                t180 = (0.5)*psi_z
+                t181 = psi_x*t154
+                t182 = (0.5)*psi_y
+                t183 = psi_x*t156
+                t184 = e0*t175
+                t185 = e0*t178 - 1
+                t186 = (0.5)*psi_x
+                t187 = psi_z*t154
+                t188 = e0*t167
+                bdy[j3] += (bdW_x*(-t155 - t157 - t162 + t166) + bdW_y*(e0*m_y*psi_x + t158*t168 -
+                    t165*t169 + t170) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t169 - t164*t168 -
+                    t171))
+                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t164 - t158*t176 - t170) +
+                    bdW_y*(-t157 + t162 - t172 - t174) + bdW_z*(e0*m_z*psi_y - t161*t164 +
+                    t169*t176 + t177))
+                bdy[j3 + 2] += (bdW_x*(e0*t163 - t158*t173 + t164*t179 + t171) +
+                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t158 - t169*t179 - t177) + bdW_z*(-t155
+                    - t166 - t172 + t174))
+                bds[j3] += bdW_x*(t184 + t185) + bdW_y*(-t180 - t181) + bdW_z*(t182 - t183)
+                bds[j3 + 1] += bdW_x*(t180 - t181) + bdW_y*(t185 + t188) + bdW_z*(-t186 - t187)
+                bds[j3 + 2] += bdW_x*(-t182 - t183) + bdW_y*(t186 - t187) + bdW_z*(t184 + t188 - 1)
             # transposed: differential: moment of gravity on the frame
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             d_x, d_y, d_z = d[0], d[1], d[2]
             mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
-            t196 = d_y + mc_y
-            t197 = d_z + mc_z
-            t198 = d_x + mc_x
+            t189 = d_y + mc_y
+            t190 = d_z + mc_z
+            t191 = d_x + mc_x
             bdd[0] += bdW_y*gamma_z - bdW_z*gamma_y
             bdd[1] += -bdW_x*gamma_z + bdW_z*gamma_x
             bdd[2] += bdW_x*gamma_y - bdW_y*gamma_x
-            bdgamma[0] += -bdW_y*t197 + bdW_z*t196
-            bdgamma[1] += bdW_x*t197 - bdW_z*t198
-            bdgamma[2] += -bdW_x*t196 + bdW_y*t198
+            bdgamma[0] += -bdW_y*t190 + bdW_z*t189
+            bdgamma[1] += bdW_x*t190 - bdW_z*t191
+            bdgamma[2] += -bdW_x*t189 + bdW_y*t191
             # transposed: differential: forces on the frame: elastic (30) and inertia (57)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -1062,16 +1052,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
                 mass = masses[0]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t199 = alpha*mass
-                t200 = X_y + u_y
-                t201 = X_z + u_z
-                t202 = X_x + u_x
-                bdgamma[0] += -bdF_x*t199
-                bdgamma[1] += -bdF_y*t199
-                bdgamma[2] += -bdF_z*t199
-                bds[i3] += -bdF_x - bdW_y*t201 + bdW_z*t200
-                bds[i3 + 1] += -bdF_y + bdW_x*t201 - bdW_z*t202
-                bds[i3 + 2] += -bdF_z - bdW_x*t200 + bdW_y*t202
+                t192 = alpha*mass
+                t193 = X_y + u_y
+                t194 = X_z + u_z
+                t195 = X_x + u_x
+                bdgamma[0] += -bdF_x*t192
+                bdgamma[1] += -bdF_y*t192
+                bdgamma[2] += -bdF_z*t192
+                bds[i3] += -bdF_x - bdW_y*t194 + bdW_z*t193
+                bds[i3 + 1] += -bdF_y + bdW_x*t194 - bdW_z*t195
+                bds[i3 + 2] += -bdF_z - bdW_x*t193 + bdW_y*t195
                 bdy[i3] += bdW_y*f_z - bdW_z*f_y
                 bdy[i3 + 1] += -bdW_x*f_z + bdW_z*f_x
                 bdy[i3 + 2] += bdW_x*f_y - bdW_y*f_x
@@ -1119,40 +1109,40 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdOm0_z += bdvsd_x*vs_y - bdvsd_y*vs_x
             # transposed: differential: sum w_j X_j x (rate of r_j) = 0
             rhs_x = rhs_y = rhs_z = 0.0
-            t203 = bdOm0_x + rhs_x
-            t204 = bdOm0_y + rhs_y
-            t205 = bdOm0_z + rhs_z
-            mdOm0_x = Bxx*t203 + Byx*t204 + Bzx*t205
-            mdOm0_y = Bxy*t203 + Byy*t204 + Bzy*t205
-            mdOm0_z = Bxz*t203 + Byz*t204 + Bzz*t205
+            t196 = bdOm0_x + rhs_x
+            t197 = bdOm0_y + rhs_y
+            t198 = bdOm0_z + rhs_z
+            mdOm0_x = Bxx*t196 + Byx*t197 + Bzx*t198
+            mdOm0_y = Bxy*t196 + Byy*t197 + Bzy*t198
+            mdOm0_z = Bxz*t196 + Byz*t197 + Bzz*t198
             # transposed: differential: sum w_j X_j x (rate of r_j) = 0
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t206 = fit*mdOm0_y
-                t207 = X_x*t206
-                t208 = fit*mdOm0_z
-                t209 = X_x*t208
-                t210 = Om0_y*X_y
-                t211 = Om0_z*X_z
-                t212 = fit*mdOm0_x
-                t213 = X_y*t212
-                t214 = X_y*t208
-                t215 = Om0_x*X_x
-                t216 = X_z*t206
-                t217 = t214 - t216
-                t218 = -X_z*fit*mdOm0_x + t209
-                t219 = t207 - t213
-                bdy[i3] += Om0_y*t207 + Om0_z*t209 - t212*(t210 + t211)
-                bdy[i3 + 1] += Om0_x*t213 + Om0_z*t214 - t206*(t211 + t215)
-                bdy[i3 + 2] += Om0_x*X_z*t212 + Om0_y*t216 - t208*(t210 + t215)
-                bdyd[i3] += t217
-                bdyd[i3 + 1] += -t218
-                bdyd[i3 + 2] += t219
-                bdv0_x += -t217
-                bdv0_y += t218
-                bdv0_z += -t219
+                t199 = fit*mdOm0_y
+                t200 = X_x*t199
+                t201 = fit*mdOm0_z
+                t202 = X_x*t201
+                t203 = Om0_y*X_y
+                t204 = Om0_z*X_z
+                t205 = fit*mdOm0_x
+                t206 = X_y*t205
+                t207 = X_y*t201
+                t208 = Om0_x*X_x
+                t209 = X_z*t199
+                t210 = t207 - t209
+                t211 = -X_z*fit*mdOm0_x + t202
+                t212 = t200 - t206
+                bdy[i3] += Om0_y*t200 + Om0_z*t202 - t205*(t203 + t204)
+                bdy[i3 + 1] += Om0_x*t206 + Om0_z*t207 - t199*(t204 + t208)
+                bdy[i3 + 2] += Om0_x*X_z*t205 + Om0_y*t209 - t201*(t203 + t208)
+                bdyd[i3] += t210
+                bdyd[i3 + 1] += -t211
+                bdyd[i3 + 2] += t212
+                bdv0_x += -t210
+                bdv0_y += t211
+                bdv0_z += -t212
             # transposed: differential: origin of the frame, (14)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -1219,43 +1209,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 bdpsi_x, bdpsi_y, bdpsi_z = bdy[j3], bdy[j3 + 1], bdy[j3 + 2]
                 e0 = e0s[j]
-                t220 = (0.5)*psi_z
-                t221 = e0*psi_x
-                t222 = psi_y*t221
-                t223 = -t220 + t222
-                t224 = (0.5)*psi_y
-                t225 = psi_z*t221
-                t226 = t224 + t225
-                t227 = e0*psi_y*psi_y
-                t228 = e0*psi_z*psi_z - 1
-                t229 = t227 + t228
-                t230 = t220 + t222
-                t231 = (0.5)*psi_x
-                t232 = e0*psi_y*psi_z
-                t233 = -t231 + t232
-                t234 = e0*psi_x*psi_x
-                t235 = t228 + t234
-                t236 = -t224 + t225
-                t237 = t231 + t232
-                t238 = t227 + t234 - 1
-                bdth0_x += bdpsi_x*t229 - bdpsi_y*t223 - bdpsi_z*t226
-                bdth0_y += -bdpsi_x*t230 + bdpsi_y*t235 - bdpsi_z*t233
-                bdth0_z += -bdpsi_x*t236 - bdpsi_y*t237 + bdpsi_z*t238
-                bdqe[j3] += -bdpsi_x*t229 + bdpsi_y*t230 + bdpsi_z*t236
-                bdqe[j3 + 1] += bdpsi_x*t223 - bdpsi_y*t235 + bdpsi_z*t237
-                bdqe[j3 + 2] += bdpsi_x*t226 + bdpsi_y*t233 - bdpsi_z*t238
+                t213 = (0.5)*psi_z
+                t214 = e0*psi_x
+                t215 = psi_y*t214
+                t216 = -t213 + t215
+                t217 = (0.5)*psi_y
+                t218 = psi_z*t214
+                t219 = t217 + t218
+                t220 = psi_y*psi_y
+                t221 = psi_z*psi_z
+                t222 = t220 + t221
+                t223 = t213 + t215
+                t224 = (0.5)*psi_x
+                t225 = e0*psi_y*psi_z
+                t226 = -t224 + t225
+                t227 = psi_x*psi_x
+                t228 = t221 + t227
+                t229 = -t217 + t218
+                t230 = t224 + t225
+                t231 = t220 + t227
+                bdth0_x += bdpsi_x*(e0*t222 - 1) - bdpsi_y*t216 - bdpsi_z*t219
+                bdth0_y += -bdpsi_x*t223 + bdpsi_y*(e0*t228 - 1) - bdpsi_z*t226
+                bdth0_z += -bdpsi_x*t229 - bdpsi_y*t230 + bdpsi_z*(e0*t231 - 1)
+                bdqe[j3] += bdpsi_x*(-e0*t222 + 1) + bdpsi_y*t223 + bdpsi_z*t229
+                bdqe[j3 + 1] += bdpsi_x*t216 + bdpsi_y*(-e0*t228 + 1) + bdpsi_z*t230
+                bdqe[j3 + 2] += bdpsi_x*t219 + bdpsi_y*t226 + bdpsi_z*(-e0*t231 + 1)
             # transposed: differential: displacement of the nodes in the frame, (11)
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 bdu_x, bdu_y, bdu_z = bdy[i3], bdy[i3 + 1], bdy[i3 + 2]
-                t239 = X_z + u_z
-                t240 = X_y + u_y
-                t241 = X_x + u_x
-                bdth0_x += bdu_y*t239 - bdu_z*t240
-                bdth0_y += -bdu_x*t239 + bdu_z*t241
-                bdth0_z += bdu_x*t240 - bdu_y*t241
+                t232 = X_z + u_z
+                t233 = X_y + u_y
+                t234 = X_x + u_x
+                bdth0_x += bdu_y*t232 - bdu_z*t233
+                bdth0_y += -bdu_x*t232 + bdu_z*t234
+                bdth0_z += bdu_x*t233 - bdu_y*t234
                 bdqe[i3] += bdu_x
                 bdqe[i3 + 1] += bdu_y
                 bdqe[i3 + 2] += bdu_z
@@ -1264,27 +1254,27 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdx0_z += -bdu_z
             # transposed: sum w_j X_j x (rate of r_j) = 0
             rhs_x = rhs_y = rhs_z = 0.0
-            t242 = bdth0_x + rhs_x
-            t243 = bdth0_y + rhs_y
-            t244 = bdth0_z + rhs_z
-            mdth0_x = Bxx*t242 + Byx*t243 + Bzx*t244
-            mdth0_y = Bxy*t242 + Byy*t243 + Bzy*t244
-            mdth0_z = Bxz*t242 + Byz*t243 + Bzz*t244
+            t235 = bdth0_x + rhs_x
+            t236 = bdth0_y + rhs_y
+            t237 = bdth0_z + rhs_z
+            mdth0_x = Bxx*t235 + Byx*t236 + Bzx*t237
+            mdth0_y = Bxy*t235 + Byy*t236 + Bzy*t237
+            mdth0_z = Bxz*t235 + Byz*t236 + Bzz*t237
             # transposed: sum w_j X_j x (rate of r_j) = 0
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t245 = fit*mdth0_z
-                t246 = X_y*t245 - X_z*fit*mdth0_y
-                t247 = X_x*t245 - X_z*fit*mdth0_x
-                t248 = X_x*fit*mdth0_y - X_y*fit*mdth0_x
-                bdqe[i3] += t246
-                bdqe[i3 + 1] += -t247
-                bdqe[i3 + 2] += t248
-                bdx0_x += -t246
-                bdx0_y += t247
-                bdx0_z += -t248
+                t238 = fit*mdth0_z
+                t239 = X_y*t238 - X_z*fit*mdth0_y
+                t240 = X_x*t238 - X_z*fit*mdth0_x
+                t241 = X_x*fit*mdth0_y - X_y*fit*mdth0_x
+                bdqe[i3] += t239
+                bdqe[i3 + 1] += -t240
+                bdqe[i3 + 2] += t241
+                bdx0_x += -t239
+                bdx0_y += t240
+                bdx0_z += -t241
             # transposed: origin of the frame, (14)
             for i in range(N_POSITIONS):
                 i3 = 3*i

@@ -56,8 +56,8 @@ WORK_ROWS = 53
 WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (947, 263, 440, 2),
-              "column": (1969, 299, 1482, 7)}
+OPERATIONS = {"residual": (947, 263, 320, 2),
+              "column": (1969, 299, 1064, 7)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("columns", (1,), "columns of C: n of a damped body, else none"),
     Part("Jc", ("pairs",), "moments of inertia about the centre of mass, at rest"),
@@ -298,29 +298,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
                 e0 = e0s[j]
-                t18 = Om0_y*psi_z
-                t19 = Om_y*psi_z
-                t20 = Om0_x*psi_y
-                t21 = Om0_y*psi_x - t20
-                t22 = e0*psi_y
-                t23 = Om_x*psi_z
-                t24 = Om_z*psi_x
-                t25 = t23 - t24
-                t26 = e0*psi_z
-                t27 = Om_x*psi_y
-                t28 = Om_y*psi_x - t27
-                t29 = Om0_x*psi_z
-                t30 = Om0_z*psi_x
-                t31 = t29 - t30
-                t32 = e0*psi_x
-                t33 = Om_z*psi_y - t19
-                t34 = Om0_z*psi_y - t18
-                eta[j3] = (-Om0_x + (0.5)*Om0_z*psi_y + Om_x + (0.5)*Om_z*psi_y + e0*psi_y*t28 +
-                    e0*psi_z*t31 - 0.5*t18 - 0.5*t19 - t21*t22 - t25*t26)
-                eta[j3 + 1] = (-Om0_y + Om_y + t21*t32 + (0.5)*t23 - 0.5*t24 + t26*t33 - t26*t34 -
-                    t28*t32 + (0.5)*t29 - 0.5*t30)
-                eta[j3 + 2] = ((0.5)*Om0_y*psi_x - Om0_z + (0.5)*Om_y*psi_x + Om_z + e0*psi_x*t25
-                    + e0*psi_y*t34 - 0.5*t20 - t22*t33 - 0.5*t27 - t31*t32)
+                t18 = (0.5)*Om0_z + (0.5)*Om_z
+                t19 = Om0_y + Om_y
+                t20 = (0.5)*psi_z
+                t21 = -Om0_y + Om_y
+                t22 = -Om0_x + Om_x
+                t23 = psi_x*t21 - psi_y*t22
+                t24 = -Om0_z + Om_z
+                t25 = -psi_x*t24 + psi_z*t22
+                t26 = Om0_x + Om_x
+                t27 = psi_y*t24 - psi_z*t21
+                eta[j3] = -Om0_x + Om_x + e0*(psi_y*t23 - psi_z*t25) + psi_y*t18 - t19*t20
+                eta[j3 + 1] = -Om0_y + Om_y + e0*(-psi_x*t23 + psi_z*t27) - psi_x*t18 + t20*t26
+                eta[j3 + 2] = (-Om0_z + Om_z + e0*(psi_x*t25 - psi_y*t27) + (0.5)*psi_x*t19 -
+                    0.5*psi_y*t26)
             # rates of the internal modes
             for k in range(MODES, n):
                 vm = ve[k]
@@ -344,9 +335,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 eud_x, eud_y, eud_z = etad[i3], etad[i3 + 1], etad[i3 + 2]
-                t35 = eud_z*fit
-                rhs_x += -X_y*t35 + X_z*eud_y*fit
-                rhs_y += X_x*t35 - X_z*eud_x*fit
+                t28 = eud_z*fit
+                rhs_x += -X_y*t28 + X_z*eud_y*fit
+                rhs_y += X_x*t28 - X_z*eud_x*fit
                 rhs_z += -X_x*eud_y*fit + X_y*eud_x*fit
             Om0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             Om0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
@@ -357,12 +348,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 eud_x, eud_y, eud_z = etad[i3], etad[i3 + 1], etad[i3 + 2]
-                t36 = X_y + u_y
-                t37 = X_z + u_z
-                t38 = X_x + u_x
-                etad[i3] = -Om0d_y*t37 + Om0d_z*t36 + eud_x
-                etad[i3 + 1] = Om0d_x*t37 - Om0d_z*t38 + eud_y
-                etad[i3 + 2] = -Om0d_x*t36 + Om0d_y*t38 + eud_z
+                t29 = X_y + u_y
+                t30 = X_z + u_z
+                t31 = X_x + u_x
+                etad[i3] = -Om0d_y*t30 + Om0d_z*t29 + eud_x
+                etad[i3 + 1] = Om0d_x*t30 - Om0d_z*t31 + eud_y
+                etad[i3 + 2] = -Om0d_x*t29 + Om0d_y*t31 + eud_z
             # rate: rates of the elastic rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -372,57 +363,34 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t39 = A_y*psi_z
-                t40 = Om0_y*ep_z
-                t41 = Om0d_y*psi_z
-                t42 = Om_y*ep_z
-                t43 = -Om_x*psi_y + Om_y*psi_x
-                t44 = e0*ep_y
-                t45 = Om0_x*psi_z - Om0_z*psi_x
-                t46 = e0*ep_z
-                t47 = -Om0_x*psi_y + Om0_y*psi_x
-                t48 = Om_x*psi_z - Om_z*psi_x
-                t49 = A_x*psi_y
-                t50 = Om_x*ep_y
-                t51 = A_y*psi_x + Om_y*ep_x - t49 - t50
-                t52 = e0*psi_y
-                t53 = Om0_x*ep_z
-                t54 = Om0d_x*psi_z
-                t55 = Om0_z*ep_x
-                t56 = Om0d_z*psi_x
-                t57 = t53 + t54 - t55 - t56
-                t58 = e0*psi_z
-                t59 = Om0_x*ep_y
-                t60 = Om0d_x*psi_y
-                t61 = Om0_y*ep_x + Om0d_y*psi_x - t59 - t60
-                t62 = A_x*psi_z
-                t63 = Om_x*ep_z
-                t64 = A_z*psi_x
-                t65 = Om_z*ep_x
-                t66 = t62 + t63 - t64 - t65
-                t67 = 2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z
-                t68 = e1*t67
-                t69 = psi_y*t68
-                t70 = psi_z*t68
-                t71 = e0*ep_x
-                t72 = -Om_y*psi_z + Om_z*psi_y
-                t73 = -Om0_y*psi_z + Om0_z*psi_y
-                t74 = e0*psi_x
-                t75 = A_z*psi_y + Om_z*ep_y - t39 - t42
-                t76 = Om0_z*ep_y + Om0d_z*psi_y - t40 - t41
-                t77 = psi_x*t68
-                etad[j3] = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y - Om0d_x + (0.5)*Om0d_z*psi_y
-                    + (0.5)*Om_z*ep_y - 0.5*t39 - 0.5*t40 - 0.5*t41 - 0.5*t42 + t43*t44 + t43*t69
-                    - t44*t47 + t45*t46 + t45*t70 - t46*t48 - t47*t69 - t48*t70 + t51*t52 -
-                    t52*t61 + t57*t58 - t58*t66)
-                etad[j3 + 1] = (A_y - Om0d_y - t43*t71 - t43*t77 + t46*t72 - t46*t73 + t47*t71 +
-                    t47*t77 - t51*t74 + (0.5)*t53 + (0.5)*t54 - 0.5*t55 - 0.5*t56 + t58*t75 -
-                    t58*t76 + t61*t74 + (0.5)*t62 + (0.5)*t63 - 0.5*t64 - 0.5*t65 + t70*t72 -
-                    t70*t73)
-                etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om0d_y*psi_x -
-                    Om0d_z + (0.5)*Om_y*ep_x + e0*ep_x*t48 + e0*ep_y*t73 + e0*psi_x*t66 +
-                    e0*psi_y*t76 + e1*psi_x*t48*t67 + e1*psi_y*t67*t73 - t44*t72 - t45*t71 -
-                    t45*t77 - 0.5*t49 - 0.5*t50 - t52*t75 - t57*t74 - 0.5*t59 - 0.5*t60 - t69*t72)
+                t32 = -Om0_y + Om_y
+                t33 = -Om0_x + Om_x
+                t34 = psi_x*t32 - psi_y*t33
+                t35 = -Om0_z + Om_z
+                t36 = -psi_x*t35 + psi_z*t33
+                t37 = A_y - Om0d_y
+                t38 = A_x - Om0d_x
+                t39 = ep_x*t32 - ep_y*t33 + psi_x*t37 - psi_y*t38
+                t40 = A_z - Om0d_z
+                t41 = -ep_x*t35 + ep_z*t33 - psi_x*t40 + psi_z*t38
+                t42 = (0.5)*Om0_z + (0.5)*Om_z
+                t43 = (0.5)*A_z + (0.5)*Om0d_z
+                t44 = Om0_y + Om_y
+                t45 = (0.5)*ep_z
+                t46 = A_y + Om0d_y
+                t47 = (0.5)*psi_z
+                t48 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
+                t49 = psi_y*t35 - psi_z*t32
+                t50 = ep_y*t35 - ep_z*t32 + psi_y*t40 - psi_z*t37
+                t51 = Om0_x + Om_x
+                t52 = A_x + Om0d_x
+                etad[j3] = (e0*(ep_y*t34 - ep_z*t36 + psi_y*t39 - psi_z*t41) + ep_y*t42 +
+                    psi_y*t43 + t38 - t44*t45 - t46*t47 + t48*(psi_y*t34 - psi_z*t36))
+                etad[j3 + 1] = (e0*(-ep_x*t34 + ep_z*t49 - psi_x*t39 + psi_z*t50) - ep_x*t42 -
+                    psi_x*t43 + t37 + t45*t51 + t47*t52 + t48*(-psi_x*t34 + psi_z*t49))
+                etad[j3 + 2] = (e0*(ep_x*t36 - ep_y*t49 + psi_x*t41 - psi_y*t50) + (0.5)*ep_x*t44
+                    - 0.5*ep_y*t51 + (0.5)*psi_x*t46 - 0.5*psi_y*t52 + t40 + t48*(psi_x*t36 -
+                    psi_y*t49))
             # rate: rates of the internal modes
             for k in range(MODES, n):
                 am = ae[k]
@@ -452,55 +420,55 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # angular velocity of the rigid part
             angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
             angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
-            t78 = -Om0_y*angle0_z + Om0_z*angle0_y
-            t79 = angle0_y*angle1_z - angle0_z*angle1_y
-            t80 = -Om0_x*angle0_y + Om0_y*angle0_x
-            t81 = Om0_x*angle0_z - Om0_z*angle0_x
-            t82 = angle0_x*angle1_y - angle0_y*angle1_x
-            t83 = -angle0_x*angle1_z + angle0_z*angle1_x
-            wc_x = (Om0_x + angle1_x - r1*t78 - r2*t79 + r2*(angle0_y*t80 - angle0_z*t81) +
-                r3*(angle0_y*t82 - angle0_z*t83))
-            wc_y = (Om0_y + angle1_y - r1*t81 - r2*t83 + r2*(-angle0_x*t80 + angle0_z*t78) +
-                r3*(-angle0_x*t82 + angle0_z*t79))
-            wc_z = (Om0_z + angle1_z - r1*t80 - r2*t82 + r2*(angle0_x*t81 - angle0_y*t78) +
-                r3*(angle0_x*t83 - angle0_y*t79))
+            t53 = -Om0_y*angle0_z + Om0_z*angle0_y
+            t54 = angle0_y*angle1_z - angle0_z*angle1_y
+            t55 = -Om0_x*angle0_y + Om0_y*angle0_x
+            t56 = Om0_x*angle0_z - Om0_z*angle0_x
+            t57 = angle0_x*angle1_y - angle0_y*angle1_x
+            t58 = -angle0_x*angle1_z + angle0_z*angle1_x
+            wc_x = (Om0_x + angle1_x - r1*t53 - r2*t54 + r2*(angle0_y*t55 - angle0_z*t56) +
+                r3*(angle0_y*t57 - angle0_z*t58))
+            wc_y = (Om0_y + angle1_y - r1*t56 - r2*t58 + r2*(-angle0_x*t55 + angle0_z*t53) +
+                r3*(-angle0_x*t57 + angle0_z*t54))
+            wc_z = (Om0_z + angle1_z - r1*t55 - r2*t57 + r2*(angle0_x*t56 - angle0_y*t53) +
+                r3*(angle0_x*t58 - angle0_y*t54))
             # its rate
             angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
             angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
             angle2_x, angle2_y, angle2_z = rigid2[3], rigid2[4], rigid2[5]
-            t84 = -Om0d_y*angle0_z + Om0d_z*angle0_y
-            t85 = angle0_y*angle2_z - angle0_z*angle2_y
-            t86 = -Om0d_x*angle0_y + Om0d_y*angle0_x
-            t87 = Om0d_x*angle0_z - Om0d_z*angle0_x
-            t88 = angle0_x*angle2_y - angle0_y*angle2_x
-            t89 = -angle0_x*angle2_z + angle0_z*angle2_x
-            t90 = angle0_x*angle1_y - angle0_y*angle1_x
-            t91 = -angle0_x*angle1_z + angle0_z*angle1_x
-            t92 = angle0_y*angle1_z - angle0_z*angle1_y
-            t93 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
-            t94 = t93*(-r3 + 2*r4)
-            t95 = angle0_y*t90 - angle0_z*t91
-            t96 = t93*(-r4 + 3*r5)
-            t97 = Om0_x*angle0_z - Om0_z*angle0_x
-            t98 = -Om0_x*angle0_y + Om0_y*angle0_x
-            t99 = -Om0_y*angle0_z + Om0_z*angle0_y
-            t100 = Om0_y - r1*t97 + r2*(-angle0_x*t98 + angle0_z*t99)
-            t101 = angle0_x*t91 - angle0_y*t92
-            t102 = angle1_z - r2*t90 + r3*t101
-            t103 = -angle0_x*t90 + angle0_z*t92
-            t104 = angle1_y - r2*t91 + r3*t103
-            t105 = Om0_z - r1*t98 + r2*(angle0_x*t97 - angle0_y*t99)
-            t106 = angle1_x - r2*t92 + r3*t95
-            t107 = Om0_x - r1*t99 + r2*(angle0_y*t98 - angle0_z*t97)
-            wcd_x = (Om0d_x + angle2_x - r1*t84 - r2*t85 + r2*(angle0_y*t86 - angle0_z*t87) +
-                r3*(angle0_y*t88 - angle0_z*t89) + r3*(angle1_y*t90 - angle1_z*t91) + t100*t102 -
-                t104*t105 - t92*t94 + t95*t96)
-            wcd_y = (Om0d_y + angle2_y - r1*t87 - r2*t89 + r2*(-angle0_x*t86 + angle0_z*t84) +
-                r3*(-angle0_x*t88 + angle0_z*t85) + r3*(-angle1_x*t90 + angle1_z*t92) - t102*t107
-                + t103*t96 + t105*t106 - t91*t94)
-            wcd_z = (Om0d_z + angle2_z - r1*t86 - r2*t88 + r2*(angle0_x*t87 - angle0_y*t84) +
-                r3*(angle0_x*t89 - angle0_y*t85) + r3*(angle1_x*t91 - angle1_y*t92) - t100*t106 +
-                t101*t96 + t104*t107 - t90*t94)
+            t59 = -Om0d_y*angle0_z + Om0d_z*angle0_y
+            t60 = angle0_y*angle2_z - angle0_z*angle2_y
+            t61 = -Om0d_x*angle0_y + Om0d_y*angle0_x
+            t62 = Om0d_x*angle0_z - Om0d_z*angle0_x
+            t63 = angle0_x*angle2_y - angle0_y*angle2_x
+            t64 = -angle0_x*angle2_z + angle0_z*angle2_x
+            t65 = angle0_x*angle1_y - angle0_y*angle1_x
+            t66 = -angle0_x*angle1_z + angle0_z*angle1_x
+            t67 = angle0_y*angle1_z - angle0_z*angle1_y
+            t68 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
+            t69 = t68*(-r3 + 2*r4)
+            t70 = angle0_y*t65 - angle0_z*t66
+            t71 = t68*(-r4 + 3*r5)
+            t72 = Om0_x*angle0_z - Om0_z*angle0_x
+            t73 = -Om0_x*angle0_y + Om0_y*angle0_x
+            t74 = -Om0_y*angle0_z + Om0_z*angle0_y
+            t75 = Om0_y - r1*t72 + r2*(-angle0_x*t73 + angle0_z*t74)
+            t76 = angle0_x*t66 - angle0_y*t67
+            t77 = angle1_z - r2*t65 + r3*t76
+            t78 = -angle0_x*t65 + angle0_z*t67
+            t79 = angle1_y - r2*t66 + r3*t78
+            t80 = Om0_z - r1*t73 + r2*(angle0_x*t72 - angle0_y*t74)
+            t81 = angle1_x - r2*t67 + r3*t70
+            t82 = Om0_x - r1*t74 + r2*(angle0_y*t73 - angle0_z*t72)
+            wcd_x = (Om0d_x + angle2_x - r1*t59 - r2*t60 + r2*(angle0_y*t61 - angle0_z*t62) +
+                r3*(angle0_y*t63 - angle0_z*t64) + r3*(angle1_y*t65 - angle1_z*t66) - t67*t69 +
+                t70*t71 + t75*t77 - t79*t80)
+            wcd_y = (Om0d_y + angle2_y - r1*t62 - r2*t64 + r2*(-angle0_x*t61 + angle0_z*t59) +
+                r3*(-angle0_x*t63 + angle0_z*t60) + r3*(-angle1_x*t65 + angle1_z*t67) - t66*t69 +
+                t71*t78 - t77*t82 + t80*t81)
+            wcd_z = (Om0d_z + angle2_z - r1*t61 - r2*t63 + r2*(angle0_x*t62 - angle0_y*t59) +
+                r3*(angle0_x*t64 - angle0_y*t60) + r3*(angle1_x*t66 - angle1_y*t67) - t65*t69 +
+                t71*t76 - t75*t81 + t79*t82)
             # rate of its momentum and of the moment of it
             first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
             first1_x, first1_y, first1_z = rigid1[0], rigid1[1], rigid1[2]
@@ -509,26 +477,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             mass = masses[0]
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             Jc_xx, Jc_yy, Jc_zz, Jc_xy, Jc_xz, Jc_yz = Jc[0], Jc[1], Jc[2], Jc[3], Jc[4], Jc[5]
-            t108 = 2*first1_z
-            t109 = 2*Om0_z
-            t110 = first0_z + mc_z
-            t111 = first0_y + mc_y
-            t112 = first0_x + mc_x
-            t113 = Om0_x*t111 - Om0_y*t112
-            t114 = -Om0_x*t110 + Om0_z*t112
-            t115 = Om0_y*t110 - Om0_z*t111
-            t116 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
-            t117 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
-            t118 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
-            Rt_x = (Om0_y*t108 + Om0_y*t113 - Om0_z*t114 + Om0d_y*t110 - Om0d_z*t111 -
-                first1_y*t109 + first2_x + mass*(a0_x - gamma_x))
-            Rt_y = (-Om0_x*t108 - Om0_x*t113 + Om0_z*t115 - Om0d_x*t110 + Om0d_z*t112 +
-                first1_x*t109 + first2_y + mass*(a0_y - gamma_y))
-            Rt_z = (2*Om0_x*first1_y + Om0_x*t114 - 2*Om0_y*first1_x - Om0_y*t115 + Om0d_x*t111 -
-                Om0d_y*t112 + first2_z + mass*(a0_z - gamma_z))
-            Mc_x = Jc_xx*wcd_x + Jc_xy*wcd_y + Jc_xz*wcd_z + t116*wc_y - t117*wc_z
-            Mc_y = Jc_xy*wcd_x + Jc_yy*wcd_y + Jc_yz*wcd_z - t116*wc_x + t118*wc_z
-            Mc_z = Jc_xz*wcd_x + Jc_yz*wcd_y + Jc_zz*wcd_z + t117*wc_x - t118*wc_y
+            t83 = 2*first1_z
+            t84 = 2*Om0_z
+            t85 = first0_z + mc_z
+            t86 = first0_y + mc_y
+            t87 = first0_x + mc_x
+            t88 = Om0_x*t86 - Om0_y*t87
+            t89 = -Om0_x*t85 + Om0_z*t87
+            t90 = Om0_y*t85 - Om0_z*t86
+            t91 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
+            t92 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
+            t93 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
+            Rt_x = (Om0_y*t83 + Om0_y*t88 - Om0_z*t89 + Om0d_y*t85 - Om0d_z*t86 - first1_y*t84 +
+                first2_x + mass*(a0_x - gamma_x))
+            Rt_y = (-Om0_x*t83 - Om0_x*t88 + Om0_z*t90 - Om0d_x*t85 + Om0d_z*t87 + first1_x*t84 +
+                first2_y + mass*(a0_y - gamma_y))
+            Rt_z = (2*Om0_x*first1_y + Om0_x*t89 - 2*Om0_y*first1_x - Om0_y*t90 + Om0d_x*t86 -
+                Om0d_y*t87 + first2_z + mass*(a0_z - gamma_z))
+            Mc_x = Jc_xx*wcd_x + Jc_xy*wcd_y + Jc_xz*wcd_z + t91*wc_y - t92*wc_z
+            Mc_y = Jc_xy*wcd_x + Jc_yy*wcd_y + Jc_yz*wcd_z - t91*wc_x + t93*wc_z
+            Mc_z = Jc_xz*wcd_x + Jc_yz*wcd_y + Jc_zz*wcd_z + t92*wc_x - t93*wc_y
             # moment on the frame, forces on the first moment and mean rotation
             first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
             angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
@@ -537,28 +505,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
             mass = masses[0]
             Jc_xx, Jc_yy, Jc_zz, Jc_xy, Jc_xz, Jc_yz = Jc[0], Jc[1], Jc[2], Jc[3], Jc[4], Jc[5]
-            t119 = -Mc_y*angle0_z + Mc_z*angle0_y
-            t120 = 1/mass
-            t121 = first0_y + mc_y
-            t122 = first0_z + mc_z
-            t123 = -Mc_x*angle0_y + Mc_y*angle0_x
-            t124 = Mc_x*angle0_z - Mc_z*angle0_x
-            t125 = angle0_y*t123 - angle0_z*t124
-            t126 = first0_x + mc_x
-            t127 = -angle0_x*t123 + angle0_z*t119
-            t128 = angle0_x*t124 - angle0_y*t119
-            Rr_x = Mc_x + r1*t119 + r2*t125 + t120*(-Rt_y*t122 + Rt_z*t121)
-            Rr_y = Mc_y + r1*t124 + r2*t127 + t120*(Rt_x*t122 - Rt_z*t126)
-            Rr_z = Mc_z + r1*t123 + r2*t128 + t120*(-Rt_x*t121 + Rt_y*t126)
-            carried[0] = t120*(Rt_x - first2_x)
-            carried[1] = t120*(Rt_y - first2_y)
-            carried[2] = t120*(Rt_z - first2_z)
-            carried[3] = (-Jc_xx*angle2_x - Jc_xy*angle2_y - Jc_xz*angle2_z + Mc_x + r2*t119 +
-                r3*t125)
-            carried[4] = (-Jc_xy*angle2_x - Jc_yy*angle2_y - Jc_yz*angle2_z + Mc_y + r2*t124 +
-                r3*t127)
-            carried[5] = (-Jc_xz*angle2_x - Jc_yz*angle2_y - Jc_zz*angle2_z + Mc_z + r2*t123 +
-                r3*t128)
+            t94 = -Mc_y*angle0_z + Mc_z*angle0_y
+            t95 = 1/mass
+            t96 = first0_y + mc_y
+            t97 = first0_z + mc_z
+            t98 = -Mc_x*angle0_y + Mc_y*angle0_x
+            t99 = Mc_x*angle0_z - Mc_z*angle0_x
+            t100 = angle0_y*t98 - angle0_z*t99
+            t101 = first0_x + mc_x
+            t102 = -angle0_x*t98 + angle0_z*t94
+            t103 = angle0_x*t99 - angle0_y*t94
+            Rr_x = Mc_x + r1*t94 + r2*t100 + t95*(-Rt_y*t97 + Rt_z*t96)
+            Rr_y = Mc_y + r1*t99 + r2*t102 + t95*(Rt_x*t97 - Rt_z*t101)
+            Rr_z = Mc_z + r1*t98 + r2*t103 + t95*(-Rt_x*t96 + Rt_y*t101)
+            carried[0] = t95*(Rt_x - first2_x)
+            carried[1] = t95*(Rt_y - first2_y)
+            carried[2] = t95*(Rt_z - first2_z)
+            carried[3] = -Jc_xx*angle2_x - Jc_xy*angle2_y - Jc_xz*angle2_z + Mc_x + r2*t94 + r3*t100
+            carried[4] = -Jc_xy*angle2_x - Jc_yy*angle2_y - Jc_yz*angle2_z + Mc_y + r2*t99 + r3*t102
+            carried[5] = -Jc_xz*angle2_x - Jc_yz*angle2_y - Jc_zz*angle2_z + Mc_z + r2*t98 + r3*t103
             # forces of the rigid part, conjugate to y
             add_block_times(rigid_columns, carried, s, n, 6, padded(n))
             # damping force, Cbar ydot
@@ -571,15 +536,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t129 = X_z + u_z
-                t130 = X_y + u_y
-                t131 = X_x + u_x
+                t104 = X_z + u_z
+                t105 = X_y + u_y
+                t106 = X_x + u_x
                 F_x += -f_x
                 F_y += -f_y
                 F_z += -f_z
-                W_x += f_y*t129 - f_z*t130
-                W_y += -f_x*t129 + f_z*t131
-                W_z += f_x*t130 - f_y*t131
+                W_x += f_y*t104 - f_z*t105
+                W_y += -f_x*t104 + f_z*t106
+                W_z += f_x*t105 - f_y*t106
             # inertia and weight on the frame
             F_x += Rt_x
             F_y += Rt_y
@@ -593,29 +558,29 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
-                t132 = -m_x*psi_y + m_y*psi_x
-                t133 = m_x*psi_z
-                t134 = -m_z*psi_x + t133
-                t135 = -m_y*psi_z + m_z*psi_y
-                W_x += -e0*psi_y*t132 + e0*psi_z*t134 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-                W_y += e0*psi_x*t132 - e0*psi_z*t135 - m_y + (0.5)*m_z*psi_x - 0.5*t133
-                W_z += -e0*psi_x*t134 + e0*psi_y*t135 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+                t107 = -m_x*psi_y + m_y*psi_x
+                t108 = m_x*psi_z
+                t109 = -m_z*psi_x + t108
+                t110 = -m_y*psi_z + m_z*psi_y
+                W_x += -e0*psi_y*t107 + e0*psi_z*t109 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+                W_y += e0*psi_x*t107 - e0*psi_z*t110 - m_y + (0.5)*m_z*psi_x - 0.5*t108
+                W_z += -e0*psi_x*t109 + e0*psi_y*t110 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
             # B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
-            t136 = W_x + rhs_x
-            t137 = W_y + rhs_y
-            t138 = W_z + rhs_z
-            wp_x = Bxx*t136 + Byx*t137 + Bzx*t138
-            wp_y = Bxy*t136 + Byy*t137 + Bzy*t138
-            wp_z = Bxz*t136 + Byz*t137 + Bzz*t138
+            t111 = W_x + rhs_x
+            t112 = W_y + rhs_y
+            t113 = W_z + rhs_z
+            wp_x = Bxx*t111 + Byx*t112 + Bzx*t113
+            wp_y = Bxy*t111 + Byy*t112 + Bzy*t113
+            wp_z = Bxz*t111 + Byz*t112 + Bzz*t113
             # force on the origin, through the frame
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t139 = fit*wp_z
-                F_x += -X_y*t139 + X_z*fit*wp_y
-                F_y += X_x*t139 - X_z*fit*wp_x
+                t114 = fit*wp_z
+                F_x += -X_y*t114 + X_z*fit*wp_y
+                F_y += X_x*t114 - X_z*fit*wp_x
                 F_z += -X_x*fit*wp_y + X_y*fit*wp_x
             # force on the nodes in frame axes, (30), (57)
             for i in range(N_POSITIONS):
@@ -624,10 +589,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 alpha = alphas[i]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t140 = fit*wp_z
-                t141 = X_z*fit
-                h[i3] = F_x*alpha + X_y*t140 + f_x - t141*wp_y
-                h[i3 + 1] = F_y*alpha - X_x*t140 + f_y + t141*wp_x
+                t115 = fit*wp_z
+                t116 = X_z*fit
+                h[i3] = F_x*alpha + X_y*t115 + f_x - t116*wp_y
+                h[i3 + 1] = F_y*alpha - X_x*t115 + f_y + t116*wp_x
                 h[i3 + 2] = F_z*alpha + X_x*fit*wp_y - X_y*fit*wp_x + f_z
             # force on the nodes
             for i in range(N_POSITIONS):
@@ -642,17 +607,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
-                t142 = m_y*psi_z
-                t143 = m_x*psi_y
-                t144 = e0*(m_y*psi_x - t143)
-                t145 = m_x*psi_z
-                t146 = m_z*psi_x
-                t147 = t145 - t146
-                t148 = e0*psi_z
-                t149 = m_z*psi_y - t142
-                g[j3] = m_x - 0.5*m_z*psi_y + psi_y*t144 + (0.5)*t142 - t147*t148
-                g[j3 + 1] = m_y - psi_x*t144 - 0.5*t145 + (0.5)*t146 + t148*t149
-                g[j3 + 2] = e0*psi_x*t147 - e0*psi_y*t149 - 0.5*m_y*psi_x + m_z + (0.5)*t143
+                t117 = m_y*psi_z
+                t118 = m_x*psi_y
+                t119 = e0*(m_y*psi_x - t118)
+                t120 = m_x*psi_z
+                t121 = m_z*psi_x
+                t122 = t120 - t121
+                t123 = e0*psi_z
+                t124 = m_z*psi_y - t117
+                g[j3] = m_x - 0.5*m_z*psi_y + psi_y*t119 + (0.5)*t117 - t122*t123
+                g[j3 + 1] = m_y - psi_x*t119 - 0.5*t120 + (0.5)*t121 + t123*t124
+                g[j3 + 2] = e0*psi_x*t122 - e0*psi_y*t124 - 0.5*m_y*psi_x + m_z + (0.5)*t118
             # force of the internal modes
             for k in range(MODES, n):
                 fm = s[k]
@@ -762,12 +727,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                t150 = -dx0_z + dx_z
-                t151 = -dx0_y + dx_y
-                t152 = -dx0_x + dx_x
-                rhs_x += -fit*(X_y*t150 - X_z*t151)
-                rhs_y += -fit*(-X_x*t150 + X_z*t152)
-                rhs_z += -fit*(X_x*t151 - X_y*t152)
+                t125 = -dx0_z + dx_z
+                t126 = -dx0_y + dx_y
+                t127 = -dx0_x + dx_x
+                rhs_x += -fit*(X_y*t125 - X_z*t126)
+                rhs_y += -fit*(-X_x*t125 + X_z*t127)
+                rhs_z += -fit*(X_x*t126 - X_y*t127)
             dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -777,41 +742,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                t153 = X_y + u_y
-                t154 = X_z + u_z
-                t155 = X_x + u_x
-                dy[i3] = -dth0_y*t154 + dth0_z*t153 - dx0_x + dx_x
-                dy[i3 + 1] = dth0_x*t154 - dth0_z*t155 - dx0_y + dx_y
-                dy[i3 + 2] = -dth0_x*t153 + dth0_y*t155 - dx0_z + dx_z
+                t128 = X_y + u_y
+                t129 = X_z + u_z
+                t130 = X_x + u_x
+                dy[i3] = -dth0_y*t129 + dth0_z*t128 - dx0_x + dx_x
+                dy[i3 + 1] = dth0_x*t129 - dth0_z*t130 - dx0_y + dx_y
+                dy[i3 + 2] = -dth0_x*t128 + dth0_y*t130 - dx0_z + dx_z
             # variation of the elastic rotations, (17)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                 e0 = e0s[j]
-                t156 = dth0_y*psi_z
-                t157 = dth_y*psi_z
-                t158 = dth0_x*psi_y
-                t159 = dth0_y*psi_x - t158
-                t160 = e0*psi_y
-                t161 = dth_x*psi_z
-                t162 = dth_z*psi_x
-                t163 = t161 - t162
-                t164 = e0*psi_z
-                t165 = dth_x*psi_y
-                t166 = dth_y*psi_x - t165
-                t167 = dth0_x*psi_z
-                t168 = dth0_z*psi_x
-                t169 = t167 - t168
-                t170 = e0*psi_x
-                t171 = dth_z*psi_y - t157
-                t172 = dth0_z*psi_y - t156
-                dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y + e0*psi_y*t166
-                    + e0*psi_z*t169 - 0.5*t156 - 0.5*t157 - t159*t160 - t163*t164)
-                dy[j3 + 1] = (-dth0_y + dth_y + t159*t170 + (0.5)*t161 - 0.5*t162 + t164*t171 -
-                    t164*t172 - t166*t170 + (0.5)*t167 - 0.5*t168)
-                dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                    e0*psi_x*t163 + e0*psi_y*t172 - 0.5*t158 - t160*t171 - 0.5*t165 - t169*t170)
+                t131 = (0.5)*dth0_z + (0.5)*dth_z
+                t132 = dth0_y + dth_y
+                t133 = (0.5)*psi_z
+                t134 = -dth0_y + dth_y
+                t135 = -dth0_x + dth_x
+                t136 = psi_x*t134 - psi_y*t135
+                t137 = -dth0_z + dth_z
+                t138 = -psi_x*t137 + psi_z*t135
+                t139 = dth0_x + dth_x
+                t140 = psi_y*t137 - psi_z*t134
+                dy[j3] = -dth0_x + dth_x + e0*(psi_y*t136 - psi_z*t138) + psi_y*t131 - t132*t133
+                dy[j3 + 1] = (-dth0_y + dth_y + e0*(-psi_x*t136 + psi_z*t140) - psi_x*t131 +
+                    t133*t139)
+                dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t138 - psi_y*t140) + (0.5)*psi_x*t132 -
+                    0.5*psi_y*t139)
             # differential: internal modes
             for k in range(MODES, n):
                 dqm = dqe[k]
@@ -855,12 +812,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                t173 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
-                t174 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
-                t175 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
-                rhs_x += -fit*(X_y*t173 - X_z*t174)
-                rhs_y += -fit*(-X_x*t173 + X_z*t175)
-                rhs_z += -fit*(X_x*t174 - X_y*t175)
+                t141 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
+                t142 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
+                t143 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
+                rhs_x += -fit*(X_y*t141 - X_z*t142)
+                rhs_y += -fit*(-X_x*t141 + X_z*t143)
+                rhs_z += -fit*(X_x*t142 - X_y*t143)
             dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -893,12 +850,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                t176 = X_y + u_y
-                t177 = X_z + u_z
-                t178 = X_x + u_x
-                deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t177 + dOm0_z*t176 - dv0_x + dvs_x
-                deta[i3 + 1] = Om0_x*du_z - Om0_z*du_x + dOm0_x*t177 - dOm0_z*t178 - dv0_y + dvs_y
-                deta[i3 + 2] = -Om0_x*du_y + Om0_y*du_x - dOm0_x*t176 + dOm0_y*t178 - dv0_z + dvs_z
+                t144 = X_y + u_y
+                t145 = X_z + u_z
+                t146 = X_x + u_x
+                deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t145 + dOm0_z*t144 - dv0_x + dvs_x
+                deta[i3 + 1] = Om0_x*du_z - Om0_z*du_x + dOm0_x*t145 - dOm0_z*t146 - dv0_y + dvs_y
+                deta[i3 + 2] = -Om0_x*du_y + Om0_y*du_x - dOm0_x*t144 + dOm0_y*t146 - dv0_z + dvs_z
             # differential: rates of the elastic rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -908,59 +865,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t179 = Om0_y*dpsi_z
-                t180 = Om_y*dpsi_z
-                t181 = dOm0_y*psi_z
-                t182 = dOm_y*psi_z
-                t183 = -Om0_x*psi_y + Om0_y*psi_x
-                t184 = dpsi_y*e0
-                t185 = Om_x*psi_z - Om_z*psi_x
-                t186 = dpsi_z*e0
-                t187 = -Om_x*psi_y + Om_y*psi_x
-                t188 = Om0_x*psi_z - Om0_z*psi_x
-                t189 = Om0_x*dpsi_y
-                t190 = dOm0_x*psi_y
-                t191 = Om0_y*dpsi_x + dOm0_y*psi_x - t189 - t190
-                t192 = e0*psi_y
-                t193 = Om_x*dpsi_z
-                t194 = dOm_x*psi_z
-                t195 = Om_z*dpsi_x
-                t196 = dOm_z*psi_x
-                t197 = t193 + t194 - t195 - t196
-                t198 = e0*psi_z
-                t199 = Om_x*dpsi_y
-                t200 = dOm_x*psi_y
-                t201 = Om_y*dpsi_x + dOm_y*psi_x - t199 - t200
-                t202 = Om0_x*dpsi_z
-                t203 = dOm0_x*psi_z
-                t204 = Om0_z*dpsi_x
-                t205 = dOm0_z*psi_x
-                t206 = t202 + t203 - t204 - t205
-                t207 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t208 = e1*t207
-                t209 = psi_y*t208
-                t210 = psi_z*t208
-                t211 = dpsi_x*e0
-                t212 = -Om_y*psi_z + Om_z*psi_y
-                t213 = -Om0_y*psi_z + Om0_z*psi_y
-                t214 = e0*psi_x
-                t215 = Om_z*dpsi_y + dOm_z*psi_y - t180 - t182
-                t216 = Om0_z*dpsi_y + dOm0_z*psi_y - t179 - t181
-                t217 = psi_x*t208
-                deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x + (0.5)*dOm0_z*psi_y +
-                    dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t187 + dpsi_z*e0*t188 + e0*psi_y*t201 +
-                    e0*psi_z*t206 + e1*psi_y*t187*t207 + e1*psi_z*t188*t207 - 0.5*t179 - 0.5*t180
-                    - 0.5*t181 - 0.5*t182 - t183*t184 - t183*t209 - t185*t186 - t185*t210 -
-                    t191*t192 - t197*t198)
-                deta[j3 + 1] = (-dOm0_y + dOm_y + t183*t211 + t183*t217 + t186*t212 - t186*t213 -
-                    t187*t211 - t187*t217 + t191*t214 + (0.5)*t193 + (0.5)*t194 - 0.5*t195 -
-                    0.5*t196 + t198*t215 - t198*t216 - t201*t214 + (0.5)*t202 + (0.5)*t203 -
-                    0.5*t204 - 0.5*t205 + t210*t212 - t210*t213)
-                deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                    dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t185 + dpsi_y*e0*t213 +
-                    e0*psi_x*t197 + e0*psi_y*t216 + e1*psi_x*t185*t207 + e1*psi_y*t207*t213 -
-                    t184*t212 - t188*t211 - t188*t217 - 0.5*t189 - 0.5*t190 - t192*t215 - 0.5*t199
-                    - 0.5*t200 - t206*t214 - t209*t212)
+                t147 = (0.5)*Om0_z + (0.5)*Om_z
+                t148 = Om0_y + Om_y
+                t149 = (0.5)*dpsi_z
+                t150 = (0.5)*dOm0_z + (0.5)*dOm_z
+                t151 = dOm0_y + dOm_y
+                t152 = (0.5)*psi_z
+                t153 = -Om0_y + Om_y
+                t154 = -Om0_x + Om_x
+                t155 = psi_x*t153 - psi_y*t154
+                t156 = -Om0_z + Om_z
+                t157 = -psi_x*t156 + psi_z*t154
+                t158 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                t159 = -dOm0_y + dOm_y
+                t160 = -dOm0_x + dOm_x
+                t161 = dpsi_x*t153 - dpsi_y*t154 + psi_x*t159 - psi_y*t160
+                t162 = -dOm0_z + dOm_z
+                t163 = -dpsi_x*t156 + dpsi_z*t154 - psi_x*t162 + psi_z*t160
+                t164 = Om0_x + Om_x
+                t165 = dOm0_x + dOm_x
+                t166 = psi_y*t156 - psi_z*t153
+                t167 = dpsi_y*t156 - dpsi_z*t153 + psi_y*t162 - psi_z*t159
+                deta[j3] = (-dOm0_x + dOm_x + dpsi_y*t147 + e0*(dpsi_y*t155 - dpsi_z*t157 +
+                    psi_y*t161 - psi_z*t163) + psi_y*t150 - t148*t149 - t151*t152 +
+                    t158*(psi_y*t155 - psi_z*t157))
+                deta[j3 + 1] = (-dOm0_y + dOm_y - dpsi_x*t147 + e0*(-dpsi_x*t155 + dpsi_z*t166 -
+                    psi_x*t161 + psi_z*t167) - psi_x*t150 + t149*t164 + t152*t165 +
+                    t158*(-psi_x*t155 + psi_z*t166))
+                deta[j3 + 2] = (-dOm0_z + dOm_z + (0.5)*dpsi_x*t148 - 0.5*dpsi_y*t164 +
+                    e0*(dpsi_x*t157 - dpsi_y*t166 + psi_x*t163 - psi_y*t167) + (0.5)*psi_x*t151 -
+                    0.5*psi_y*t165 + t158*(psi_x*t157 - psi_y*t166))
             # differential: rates of the internal modes
             for k in range(MODES, n):
                 dvm = dve[k]
@@ -990,20 +924,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 deud_x, deud_y, deud_z = detad[i3], detad[i3 + 1], detad[i3 + 2]
-                t218 = Om0d_y*fit
-                t219 = X_y*t218
-                t220 = X_z*fit
-                t221 = Om0d_z*t220
-                t222 = X_y*du_y
-                t223 = X_z*du_z
-                t224 = Om0d_x*fit
-                t225 = X_x*t224
-                t226 = X_x*du_x
-                rhs_x += (-X_y*deud_z*fit + X_z*deud_y*fit - du_x*t219 - du_x*t221 - t224*(-t222 -
-                    t223))
-                rhs_y += X_x*deud_z*fit - deud_x*t220 - du_y*t221 - du_y*t225 - t218*(-t223 - t226)
-                rhs_z += (-Om0d_z*fit*(-t222 - t226) - X_x*deud_y*fit + X_y*deud_x*fit - du_z*t219
-                    - du_z*t225)
+                t168 = Om0d_y*fit
+                t169 = X_y*t168
+                t170 = X_z*fit
+                t171 = Om0d_z*t170
+                t172 = X_y*du_y
+                t173 = X_z*du_z
+                t174 = Om0d_x*fit
+                t175 = X_x*t174
+                t176 = X_x*du_x
+                rhs_x += (-X_y*deud_z*fit + X_z*deud_y*fit - du_x*t169 - du_x*t171 - t174*(-t172 -
+                    t173))
+                rhs_y += X_x*deud_z*fit - deud_x*t170 - du_y*t171 - du_y*t175 - t168*(-t173 - t176)
+                rhs_z += (-Om0d_z*fit*(-t172 - t176) - X_x*deud_y*fit + X_y*deud_x*fit - du_z*t169
+                    - du_z*t175)
             dOm0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dOm0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dOm0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1014,12 +948,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 deud_x, deud_y, deud_z = detad[i3], detad[i3 + 1], detad[i3 + 2]
-                t227 = X_y + u_y
-                t228 = X_z + u_z
-                t229 = X_x + u_x
-                detad[i3] = -Om0d_y*du_z + Om0d_z*du_y - dOm0d_y*t228 + dOm0d_z*t227 + deud_x
-                detad[i3 + 1] = Om0d_x*du_z - Om0d_z*du_x + dOm0d_x*t228 - dOm0d_z*t229 + deud_y
-                detad[i3 + 2] = -Om0d_x*du_y + Om0d_y*du_x - dOm0d_x*t227 + dOm0d_y*t229 + deud_z
+                t177 = X_y + u_y
+                t178 = X_z + u_z
+                t179 = X_x + u_x
+                detad[i3] = -Om0d_y*du_z + Om0d_z*du_y - dOm0d_y*t178 + dOm0d_z*t177 + deud_x
+                detad[i3 + 1] = Om0d_x*du_z - Om0d_z*du_x + dOm0d_x*t178 - dOm0d_z*t179 + deud_y
+                detad[i3 + 2] = -Om0d_x*du_y + Om0d_y*du_x - dOm0d_x*t177 + dOm0d_y*t179 + deud_z
             # differential: rate: rates of the elastic rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -1034,141 +968,78 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e0 = e0s[j]
                 e1 = e1s[j]
                 e2 = e2s[j]
-                t230 = A_y*dpsi_z
-                t231 = Om0_y*dep_z
-                t232 = Om0d_y*dpsi_z
-                t233 = Om_y*dep_z
-                t234 = dA_y*psi_z
-                t235 = dOm0_y*ep_z
-                t236 = dOm0d_y*psi_z
-                t237 = dOm_y*ep_z
-                t238 = -Om0_x*psi_y + Om0_y*psi_x
-                t239 = dep_y*e0
-                t240 = Om_x*psi_z - Om_z*psi_x
-                t241 = dep_z*e0
-                t242 = -Om_x*psi_y + Om_y*psi_x
-                t243 = Om0_x*psi_z - Om0_z*psi_x
-                t244 = -Om0_x*ep_y + Om0_y*ep_x - Om0d_x*psi_y + Om0d_y*psi_x
-                t245 = dpsi_y*e0
-                t246 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                t247 = dpsi_z*e0
-                t248 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                t249 = e0*ep_y
-                t250 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                t251 = e0*ep_z
-                t252 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                t253 = Om0_x*ep_z - Om0_z*ep_x + Om0d_x*psi_z - Om0d_z*psi_x
-                t254 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                t255 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                t256 = 2*psi_x
-                t257 = 2*psi_y
-                t258 = 2*psi_z
-                t259 = ep_x*t256 + ep_y*t257 + ep_z*t258
-                t260 = e1*t259
-                t261 = dpsi_y*t260
-                t262 = dpsi_z*t260
-                t263 = dpsi_x*t256 + dpsi_y*t257 + dpsi_z*t258
-                t264 = e1*t263
-                t265 = ep_y*t264
-                t266 = ep_z*t264
-                t267 = psi_y*t264
-                t268 = psi_y*t260
-                t269 = psi_z*t264
-                t270 = psi_z*t260
-                t271 = Om0_x*dep_y
-                t272 = Om0d_x*dpsi_y
-                t273 = dOm0_x*ep_y
-                t274 = dOm0d_x*psi_y
-                t275 = (Om0_y*dep_x + Om0d_y*dpsi_x + dOm0_y*ep_x + dOm0d_y*psi_x - t271 - t272 -
-                    t273 - t274)
-                t276 = e0*psi_y
-                t277 = A_x*dpsi_z
-                t278 = Om_x*dep_z
-                t279 = dA_x*psi_z
-                t280 = dOm_x*ep_z
-                t281 = A_z*dpsi_x
-                t282 = Om_z*dep_x
-                t283 = dA_z*psi_x
-                t284 = dOm_z*ep_x
-                t285 = t277 + t278 + t279 + t280 - t281 - t282 - t283 - t284
-                t286 = e0*psi_z
-                t287 = A_x*dpsi_y
-                t288 = Om_x*dep_y
-                t289 = dA_x*psi_y
-                t290 = dOm_x*ep_y
-                t291 = A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t287 - t288 - t289 - t290
-                t292 = Om0_x*dep_z
-                t293 = Om0d_x*dpsi_z
-                t294 = dOm0_x*ep_z
-                t295 = dOm0d_x*psi_z
-                t296 = Om0_z*dep_x
-                t297 = Om0d_z*dpsi_x
-                t298 = dOm0_z*ep_x
-                t299 = dOm0d_z*psi_x
-                t300 = t292 + t293 + t294 + t295 - t296 - t297 - t298 - t299
-                t301 = (dep_x*t256 + dep_y*t257 + dep_z*t258 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
-                    2*dpsi_z*ep_z)
-                t302 = e1*t301
-                t303 = t238*t302
-                t304 = psi_z*t302
-                t305 = e2*t259*t263
-                t306 = t238*t305
-                t307 = psi_z*t305
-                t308 = dep_x*e0
-                t309 = -Om_y*psi_z + Om_z*psi_y
-                t310 = -Om0_y*psi_z + Om0_z*psi_y
-                t311 = dpsi_x*e0
-                t312 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                t313 = e0*ep_x
-                t314 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                t315 = -Om0_y*ep_z + Om0_z*ep_y - Om0d_y*psi_z + Om0d_z*psi_y
-                t316 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                t317 = dpsi_x*t260
-                t318 = ep_x*t264
-                t319 = psi_x*t264
-                t320 = psi_x*t260
-                t321 = e0*psi_x
-                t322 = A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t230 - t233 - t234 - t237
-                t323 = (Om0_z*dep_y + Om0d_z*dpsi_y + dOm0_z*ep_y + dOm0d_z*psi_y - t231 - t232 -
-                    t235 - t236)
-                t324 = psi_x*t302
-                t325 = psi_x*t305
-                detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om0d_z*dpsi_y +
-                    (0.5)*Om_z*dep_y + dA_x + (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y - dOm0d_x +
-                    (0.5)*dOm0d_z*psi_y + (0.5)*dOm_z*ep_y + dep_y*e0*t242 + dep_z*e0*t243 +
-                    dpsi_y*e0*t252 + dpsi_y*e1*t242*t259 + dpsi_z*e0*t253 + dpsi_z*e1*t243*t259 +
-                    e0*ep_y*t254 + e0*ep_z*t255 + e0*psi_y*t291 + e0*psi_z*t300 +
-                    e1*ep_y*t242*t263 + e1*ep_z*t243*t263 + e1*psi_y*t242*t301 +
-                    e1*psi_y*t252*t263 + e1*psi_y*t254*t259 + e1*psi_z*t243*t301 +
-                    e1*psi_z*t253*t263 + e1*psi_z*t255*t259 + e2*psi_y*t242*t259*t263 +
-                    e2*psi_z*t243*t259*t263 - psi_y*t303 - psi_y*t306 - 0.5*t230 - 0.5*t231 -
-                    0.5*t232 - 0.5*t233 - 0.5*t234 - 0.5*t235 - 0.5*t236 - 0.5*t237 - t238*t239 -
-                    t238*t261 - t238*t265 - t240*t241 - t240*t262 - t240*t266 - t240*t304 -
-                    t240*t307 - t244*t245 - t244*t267 - t246*t247 - t246*t269 - t248*t249 -
-                    t248*t268 - t250*t251 - t250*t270 - t275*t276 - t285*t286)
-                detad[j3 + 1] = (dA_y - dOm0d_y + psi_x*t303 + psi_x*t306 + t238*t308 + t238*t317
-                    + t238*t318 + t241*t309 - t241*t310 - t242*t308 - t242*t317 - t242*t318 -
-                    t242*t324 - t242*t325 + t244*t311 + t244*t319 + t247*t312 - t247*t315 +
-                    t248*t313 + t248*t320 + t251*t314 - t251*t316 - t252*t311 - t252*t319 -
-                    t254*t313 - t254*t320 + t262*t309 - t262*t310 + t266*t309 - t266*t310 +
-                    t269*t312 - t269*t315 + t270*t314 - t270*t316 + t275*t321 + (0.5)*t277 +
-                    (0.5)*t278 + (0.5)*t279 + (0.5)*t280 - 0.5*t281 - 0.5*t282 - 0.5*t283 -
-                    0.5*t284 + t286*t322 - t286*t323 - t291*t321 + (0.5)*t292 + (0.5)*t293 +
-                    (0.5)*t294 + (0.5)*t295 - 0.5*t296 - 0.5*t297 - 0.5*t298 - 0.5*t299 +
-                    t304*t309 - t304*t310 + t307*t309 - t307*t310)
-                detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om0d_y*dpsi_x +
-                    (0.5)*Om_y*dep_x + (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x +
-                    (0.5)*dOm0d_y*psi_x - dOm0d_z + (0.5)*dOm_y*ep_x + dep_x*e0*t240 +
-                    dep_y*e0*t310 + dpsi_x*e0*t246 + dpsi_x*e1*t240*t259 + dpsi_y*e0*t315 +
-                    dpsi_y*e1*t259*t310 + e0*ep_x*t250 + e0*ep_y*t316 + e0*psi_x*t285 +
-                    e0*psi_y*t323 + e1*ep_x*t240*t263 + e1*ep_y*t263*t310 + e1*psi_x*t240*t301 +
-                    e1*psi_x*t246*t263 + e1*psi_x*t250*t259 + e1*psi_y*t259*t316 +
-                    e1*psi_y*t263*t315 + e1*psi_y*t301*t310 + e2*psi_x*t240*t259*t263 +
-                    e2*psi_y*t259*t263*t310 - psi_y*t302*t309 - psi_y*t305*t309 - t239*t309 -
-                    t243*t308 - t243*t317 - t243*t318 - t243*t324 - t243*t325 - t245*t312 -
-                    t249*t314 - t253*t311 - t253*t319 - t255*t313 - t255*t320 - t261*t309 -
-                    t265*t309 - t267*t312 - t268*t314 - 0.5*t271 - 0.5*t272 - 0.5*t273 - 0.5*t274
-                    - t276*t322 - 0.5*t287 - 0.5*t288 - 0.5*t289 - 0.5*t290 - t300*t321)
+                t180 = -Om0_y + Om_y
+                t181 = -Om0_x + Om_x
+                t182 = psi_x*t180 - psi_y*t181
+                t183 = -Om0_z + Om_z
+                t184 = -psi_x*t183 + psi_z*t181
+                t185 = A_y - Om0d_y
+                t186 = A_x - Om0d_x
+                t187 = ep_x*t180 - ep_y*t181 + psi_x*t185 - psi_y*t186
+                t188 = -dOm0_y + dOm_y
+                t189 = -dOm0_x + dOm_x
+                t190 = dpsi_x*t180 - dpsi_y*t181 + psi_x*t188 - psi_y*t189
+                t191 = A_z - Om0d_z
+                t192 = -ep_x*t183 + ep_z*t181 - psi_x*t191 + psi_z*t186
+                t193 = -dOm0_z + dOm_z
+                t194 = -dpsi_x*t183 + dpsi_z*t181 - psi_x*t193 + psi_z*t189
+                t195 = dA_y - dOm0d_y
+                t196 = dA_x - dOm0d_x
+                t197 = (dep_x*t180 - dep_y*t181 + dpsi_x*t185 - dpsi_y*t186 + ep_x*t188 -
+                    ep_y*t189 + psi_x*t195 - psi_y*t196)
+                t198 = dA_z - dOm0d_z
+                t199 = (-dep_x*t183 + dep_z*t181 - dpsi_x*t191 + dpsi_z*t186 - ep_x*t193 +
+                    ep_z*t189 - psi_x*t198 + psi_z*t196)
+                t200 = (0.5)*Om0_z + (0.5)*Om_z
+                t201 = (0.5)*A_z + (0.5)*Om0d_z
+                t202 = (0.5)*dOm0_z + (0.5)*dOm_z
+                t203 = (0.5)*dA_z + (0.5)*dOm0d_z
+                t204 = Om0_y + Om_y
+                t205 = (0.5)*dep_z
+                t206 = A_y + Om0d_y
+                t207 = (0.5)*dpsi_z
+                t208 = dOm0_y + dOm_y
+                t209 = (0.5)*ep_z
+                t210 = dA_y + dOm0d_y
+                t211 = (0.5)*psi_z
+                t212 = psi_y*t182 - psi_z*t184
+                t213 = 2*psi_x
+                t214 = 2*psi_y
+                t215 = 2*psi_z
+                t216 = (e1*(dep_x*t213 + dep_y*t214 + dep_z*t215 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
+                    2*dpsi_z*ep_z))
+                t217 = dpsi_x*t213 + dpsi_y*t214 + dpsi_z*t215
+                t218 = e1*t217
+                t219 = ep_x*t213 + ep_y*t214 + ep_z*t215
+                t220 = e1*t219
+                t221 = e2*t217*t219
+                t222 = psi_y*t183 - psi_z*t180
+                t223 = ep_y*t183 - ep_z*t180 + psi_y*t191 - psi_z*t185
+                t224 = dpsi_y*t183 - dpsi_z*t180 + psi_y*t193 - psi_z*t188
+                t225 = (dep_y*t183 - dep_z*t180 + dpsi_y*t191 - dpsi_z*t185 + ep_y*t193 -
+                    ep_z*t188 + psi_y*t198 - psi_z*t195)
+                t226 = Om0_x + Om_x
+                t227 = A_x + Om0d_x
+                t228 = dOm0_x + dOm_x
+                t229 = dA_x + dOm0d_x
+                t230 = -psi_x*t182 + psi_z*t222
+                t231 = psi_x*t184 - psi_y*t222
+                detad[j3] = (dep_y*t200 + dpsi_y*t201 + e0*(dep_y*t182 - dep_z*t184 + dpsi_y*t187
+                    - dpsi_z*t192 + ep_y*t190 - ep_z*t194 + psi_y*t197 - psi_z*t199) + ep_y*t202 +
+                    psi_y*t203 + t196 - t204*t205 - t206*t207 - t208*t209 - t210*t211 + t212*t216
+                    + t212*t221 + t218*(ep_y*t182 - ep_z*t184 + psi_y*t187 - psi_z*t192) +
+                    t220*(dpsi_y*t182 - dpsi_z*t184 + psi_y*t190 - psi_z*t194))
+                detad[j3 + 1] = (-dep_x*t200 - dpsi_x*t201 + e0*(-dep_x*t182 + dep_z*t222 -
+                    dpsi_x*t187 + dpsi_z*t223 - ep_x*t190 + ep_z*t224 - psi_x*t197 + psi_z*t225) -
+                    ep_x*t202 - psi_x*t203 + t195 + t205*t226 + t207*t227 + t209*t228 + t211*t229
+                    + t216*t230 + t218*(-ep_x*t182 + ep_z*t222 - psi_x*t187 + psi_z*t223) +
+                    t220*(-dpsi_x*t182 + dpsi_z*t222 - psi_x*t190 + psi_z*t224) + t221*t230)
+                detad[j3 + 2] = ((0.5)*dep_x*t204 - 0.5*dep_y*t226 + (0.5)*dpsi_x*t206 -
+                    0.5*dpsi_y*t227 + e0*(dep_x*t184 - dep_y*t222 + dpsi_x*t192 - dpsi_y*t223 +
+                    ep_x*t194 - ep_y*t224 + psi_x*t199 - psi_y*t225) + (0.5)*ep_x*t208 -
+                    0.5*ep_y*t228 + (0.5)*psi_x*t210 - 0.5*psi_y*t229 + t198 + t216*t231 +
+                    t218*(ep_x*t184 - ep_y*t222 + psi_x*t192 - psi_y*t223) + t220*(dpsi_x*t184 -
+                    dpsi_y*t222 + psi_x*t194 - psi_y*t224) + t221*t231)
             # differential: rate: rates of the internal modes
             for k in range(MODES, n):
                 dam = dae[k]
@@ -1194,36 +1065,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
             dangle0_x, dangle0_y, dangle0_z = drigid0[3], drigid0[4], drigid0[5]
             dangle1_x, dangle1_y, dangle1_z = drigid1[3], drigid1[4], drigid1[5]
-            t326 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
-            t327 = angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z + angle1_z*dangle0_y
-            t328 = angle0_y*angle1_z - angle0_z*angle1_y
-            t329 = (0.5)*r3
-            t330 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
-            t331 = t330*(r4 - t329)
-            t332 = -Om0_y*angle0_z + Om0_z*angle0_y
-            t333 = t330*(-0.5*r2 + t329)
-            t334 = -Om0_x*angle0_y + Om0_y*angle0_x
-            t335 = Om0_x*angle0_z - Om0_z*angle0_x
-            t336 = angle0_x*angle1_y - angle0_y*angle1_x
-            t337 = -angle0_x*angle1_z + angle0_z*angle1_x
-            t338 = t330*(-0.5*r4 + (1.5)*r5)
-            t339 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
-            t340 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
-            t341 = angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y + angle1_y*dangle0_x
-            t342 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
+            t232 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
+            t233 = angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z + angle1_z*dangle0_y
+            t234 = angle0_y*angle1_z - angle0_z*angle1_y
+            t235 = (0.5)*r3
+            t236 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
+            t237 = t236*(r4 - t235)
+            t238 = -Om0_y*angle0_z + Om0_z*angle0_y
+            t239 = t236*(-0.5*r2 + t235)
+            t240 = -Om0_x*angle0_y + Om0_y*angle0_x
+            t241 = Om0_x*angle0_z - Om0_z*angle0_x
+            t242 = angle0_x*angle1_y - angle0_y*angle1_x
+            t243 = -angle0_x*angle1_z + angle0_z*angle1_x
+            t244 = t236*(-0.5*r4 + (1.5)*r5)
+            t245 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
+            t246 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
+            t247 = angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y + angle1_y*dangle0_x
+            t248 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
                 angle1_z*dangle0_x)
-            dwc_x = (dOm0_x + dangle1_x - r1*t326 - r2*t327 + r2*(angle0_y*t339 - angle0_z*t340 +
-                dangle0_y*t334 - dangle0_z*t335) + r3*(angle0_y*t341 - angle0_z*t342 +
-                dangle0_y*t336 - dangle0_z*t337) - t328*t331 + t331*(angle0_y*t334 -
-                angle0_z*t335) - t332*t333 + t338*(angle0_y*t336 - angle0_z*t337))
-            dwc_y = (dOm0_y + dangle1_y - r1*t340 - r2*t342 + r2*(-angle0_x*t339 + angle0_z*t326 -
-                dangle0_x*t334 + dangle0_z*t332) + r3*(-angle0_x*t341 + angle0_z*t327 -
-                dangle0_x*t336 + dangle0_z*t328) - t331*t337 + t331*(-angle0_x*t334 +
-                angle0_z*t332) - t333*t335 + t338*(-angle0_x*t336 + angle0_z*t328))
-            dwc_z = (dOm0_z + dangle1_z - r1*t339 - r2*t341 + r2*(angle0_x*t340 - angle0_y*t326 +
-                dangle0_x*t335 - dangle0_y*t332) + r3*(angle0_x*t342 - angle0_y*t327 +
-                dangle0_x*t337 - dangle0_y*t328) - t331*t336 + t331*(angle0_x*t335 -
-                angle0_y*t332) - t333*t334 + t338*(angle0_x*t337 - angle0_y*t328))
+            dwc_x = (dOm0_x + dangle1_x - r1*t232 - r2*t233 + r2*(angle0_y*t245 - angle0_z*t246 +
+                dangle0_y*t240 - dangle0_z*t241) + r3*(angle0_y*t247 - angle0_z*t248 +
+                dangle0_y*t242 - dangle0_z*t243) - t234*t237 + t237*(angle0_y*t240 -
+                angle0_z*t241) - t238*t239 + t244*(angle0_y*t242 - angle0_z*t243))
+            dwc_y = (dOm0_y + dangle1_y - r1*t246 - r2*t248 + r2*(-angle0_x*t245 + angle0_z*t232 -
+                dangle0_x*t240 + dangle0_z*t238) + r3*(-angle0_x*t247 + angle0_z*t233 -
+                dangle0_x*t242 + dangle0_z*t234) - t237*t243 + t237*(-angle0_x*t240 +
+                angle0_z*t238) - t239*t241 + t244*(-angle0_x*t242 + angle0_z*t234))
+            dwc_z = (dOm0_z + dangle1_z - r1*t245 - r2*t247 + r2*(angle0_x*t246 - angle0_y*t232 +
+                dangle0_x*t241 - dangle0_y*t238) + r3*(angle0_x*t248 - angle0_y*t233 +
+                dangle0_x*t243 - dangle0_y*t234) - t237*t242 + t237*(angle0_x*t241 -
+                angle0_y*t238) - t239*t240 + t244*(angle0_x*t243 - angle0_y*t234))
             # differential: its rate
             angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
             angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
@@ -1231,95 +1102,95 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dangle0_x, dangle0_y, dangle0_z = drigid0[3], drigid0[4], drigid0[5]
             dangle1_x, dangle1_y, dangle1_z = drigid1[3], drigid1[4], drigid1[5]
             dangle2_x, dangle2_y, dangle2_z = drigid2[3], drigid2[4], drigid2[5]
-            t343 = -Om0d_y*dangle0_z + Om0d_z*dangle0_y + angle0_y*dOm0d_z - angle0_z*dOm0d_y
-            t344 = angle0_y*dangle2_z - angle0_z*dangle2_y - angle2_y*dangle0_z + angle2_z*dangle0_y
-            t345 = angle0_y*angle2_z - angle0_z*angle2_y
-            t346 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
-            t347 = (0.5)*r3
-            t348 = t346*(r4 - t347)
-            t349 = -Om0d_y*angle0_z + Om0d_z*angle0_y
-            t350 = -0.5*r2 + t347
-            t351 = t346*t350
-            t352 = angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z + angle1_z*dangle0_y
-            t353 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
-            t354 = -r3 + 2*r4
-            t355 = t353*t354
-            t356 = angle0_y*angle1_z - angle0_z*angle1_y
-            t357 = (angle0_x*dangle1_x + angle0_y*dangle1_y + angle0_z*dangle1_z +
+            t249 = -Om0d_y*dangle0_z + Om0d_z*dangle0_y + angle0_y*dOm0d_z - angle0_z*dOm0d_y
+            t250 = angle0_y*dangle2_z - angle0_z*dangle2_y - angle2_y*dangle0_z + angle2_z*dangle0_y
+            t251 = angle0_y*angle2_z - angle0_z*angle2_y
+            t252 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
+            t253 = (0.5)*r3
+            t254 = t252*(r4 - t253)
+            t255 = -Om0d_y*angle0_z + Om0d_z*angle0_y
+            t256 = -0.5*r2 + t253
+            t257 = t252*t256
+            t258 = angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z + angle1_z*dangle0_y
+            t259 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
+            t260 = -r3 + 2*r4
+            t261 = t259*t260
+            t262 = angle0_y*angle1_z - angle0_z*angle1_y
+            t263 = (angle0_x*dangle1_x + angle0_y*dangle1_y + angle0_z*dangle1_z +
                 angle1_x*dangle0_x + angle1_y*dangle0_y + angle1_z*dangle0_z)
-            t358 = t354*t357
-            t359 = -Om0d_x*angle0_y + Om0d_y*angle0_x
-            t360 = Om0d_x*angle0_z - Om0d_z*angle0_x
-            t361 = angle0_x*angle2_y - angle0_y*angle2_x
-            t362 = -angle0_x*angle2_z + angle0_z*angle2_x
-            t363 = t346*(-0.5*r4 + (1.5)*r5)
-            t364 = angle0_x*angle1_y - angle0_y*angle1_x
-            t365 = -angle0_x*angle1_z + angle0_z*angle1_x
-            t366 = angle0_y*t364 - angle0_z*t365
-            t367 = -r4 + 3*r5
-            t368 = t357*t367
-            t369 = -Om0d_x*dangle0_y + Om0d_y*dangle0_x + angle0_x*dOm0d_y - angle0_y*dOm0d_x
-            t370 = Om0d_x*dangle0_z - Om0d_z*dangle0_x - angle0_x*dOm0d_z + angle0_z*dOm0d_x
-            t371 = angle0_x*dangle2_y - angle0_y*dangle2_x - angle2_x*dangle0_y + angle2_y*dangle0_x
-            t372 = (-angle0_x*dangle2_z + angle0_z*dangle2_x + angle2_x*dangle0_z -
+            t264 = t260*t263
+            t265 = -Om0d_x*angle0_y + Om0d_y*angle0_x
+            t266 = Om0d_x*angle0_z - Om0d_z*angle0_x
+            t267 = angle0_x*angle2_y - angle0_y*angle2_x
+            t268 = -angle0_x*angle2_z + angle0_z*angle2_x
+            t269 = t252*(-0.5*r4 + (1.5)*r5)
+            t270 = angle0_x*angle1_y - angle0_y*angle1_x
+            t271 = -angle0_x*angle1_z + angle0_z*angle1_x
+            t272 = angle0_y*t270 - angle0_z*t271
+            t273 = -r4 + 3*r5
+            t274 = t263*t273
+            t275 = -Om0d_x*dangle0_y + Om0d_y*dangle0_x + angle0_x*dOm0d_y - angle0_y*dOm0d_x
+            t276 = Om0d_x*dangle0_z - Om0d_z*dangle0_x - angle0_x*dOm0d_z + angle0_z*dOm0d_x
+            t277 = angle0_x*dangle2_y - angle0_y*dangle2_x - angle2_x*dangle0_y + angle2_y*dangle0_x
+            t278 = (-angle0_x*dangle2_z + angle0_z*dangle2_x + angle2_x*dangle0_z -
                 angle2_z*dangle0_x)
-            t373 = angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y + angle1_y*dangle0_x
-            t374 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
+            t279 = angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y + angle1_y*dangle0_x
+            t280 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
                 angle1_z*dangle0_x)
-            t375 = -0.5*r5 + 2*r6
-            t376 = t353*(2*t346*t375 - t363)
-            t377 = angle0_y*t373 - angle0_z*t374 + dangle0_y*t364 - dangle0_z*t365
-            t378 = t353*t367
-            t379 = t353*(-t346*t375 + 3*t346*(-0.5*r6 + (2.5)*r7))
-            t380 = Om0_x*angle0_z - Om0_z*angle0_x
-            t381 = -Om0_x*angle0_y + Om0_y*angle0_x
-            t382 = -Om0_y*angle0_z + Om0_z*angle0_y
-            t383 = -angle0_x*t381 + angle0_z*t382
-            t384 = Om0_y - r1*t380 + r2*t383
-            t385 = angle0_x*t365 - angle0_y*t356
-            t386 = angle0_x*t374 - angle0_y*t352 + dangle0_x*t365 - dangle0_y*t356
-            t387 = dangle1_z - r2*t373 + r3*t386 - t348*t364 + t363*t385
-            t388 = angle1_z - r2*t364 + r3*t385
-            t389 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
-            t390 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
-            t391 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
-            t392 = (dOm0_y - r1*t389 + r2*(-angle0_x*t390 + angle0_z*t391 - dangle0_x*t381 +
-                dangle0_z*t382) + t348*t383 - t351*t380)
-            t393 = angle0_x*t380 - angle0_y*t382
-            t394 = Om0_z - r1*t381 + r2*t393
-            t395 = -angle0_x*t364 + angle0_z*t356
-            t396 = -angle0_x*t373 + angle0_z*t352 - dangle0_x*t364 + dangle0_z*t356
-            t397 = dangle1_y - r2*t374 + r3*t396 - t348*t365 + t363*t395
-            t398 = angle1_y - r2*t365 + r3*t395
-            t399 = (dOm0_z - r1*t390 + r2*(angle0_x*t389 - angle0_y*t391 + dangle0_x*t380 -
-                dangle0_y*t382) - t346*t350*t381 + t348*t393)
-            t400 = dangle1_x - r2*t352 + r3*t377 - t348*t356 + t363*t366
-            t401 = angle1_x - r2*t356 + r3*t366
-            t402 = angle0_y*t381 - angle0_z*t380
-            t403 = Om0_x - r1*t382 + r2*t402
-            t404 = (dOm0_x - r1*t391 + r2*(angle0_y*t390 - angle0_z*t389 + dangle0_y*t381 -
-                dangle0_z*t380) - t346*t350*t382 + t348*t402)
-            dwcd_x = (dOm0d_x + dangle2_x - r1*t343 - r2*t344 + r2*(angle0_y*t369 - angle0_z*t370
-                + dangle0_y*t359 - dangle0_z*t360) + r3*(angle0_y*t371 - angle0_z*t372 +
-                dangle0_y*t361 - dangle0_z*t362) + r3*(angle1_y*t373 - angle1_z*t374 +
-                dangle1_y*t364 - dangle1_z*t365) - t345*t348 + t348*(angle0_y*t359 -
-                angle0_z*t360) - t349*t351 - t352*t355 - t356*t358 - t356*t376 +
-                t363*(angle0_y*t361 - angle0_z*t362) + t363*(angle1_y*t364 - angle1_z*t365) +
-                t366*t368 + t366*t379 + t377*t378 + t384*t387 + t388*t392 - t394*t397 - t398*t399)
-            dwcd_y = (dOm0d_y + dangle2_y - r1*t370 - r2*t372 + r2*(-angle0_x*t369 + angle0_z*t343
-                - dangle0_x*t359 + dangle0_z*t349) + r3*(-angle0_x*t371 + angle0_z*t344 -
-                dangle0_x*t361 + dangle0_z*t345) + r3*(-angle1_x*t373 + angle1_z*t352 -
-                dangle1_x*t364 + dangle1_z*t356) - t348*t362 + t348*(-angle0_x*t359 +
-                angle0_z*t349) - t351*t360 - t355*t374 - t358*t365 + t363*(-angle0_x*t361 +
-                angle0_z*t345) + t363*(-angle1_x*t364 + angle1_z*t356) - t365*t376 + t368*t395 +
-                t378*t396 + t379*t395 - t387*t403 - t388*t404 + t394*t400 + t399*t401)
-            dwcd_z = (dOm0d_z + dangle2_z - r1*t369 - r2*t371 + r2*(angle0_x*t370 - angle0_y*t343
-                + dangle0_x*t360 - dangle0_y*t349) + r3*(angle0_x*t372 - angle0_y*t344 +
-                dangle0_x*t362 - dangle0_y*t345) + r3*(angle1_x*t374 - angle1_y*t352 +
-                dangle1_x*t365 - dangle1_y*t356) - t348*t361 + t348*(angle0_x*t360 -
-                angle0_y*t349) - t351*t359 - t355*t373 - t358*t364 + t363*(angle0_x*t362 -
-                angle0_y*t345) + t363*(angle1_x*t365 - angle1_y*t356) - t364*t376 + t368*t385 +
-                t378*t386 + t379*t385 - t384*t400 - t392*t401 + t397*t403 + t398*t404)
+            t281 = -0.5*r5 + 2*r6
+            t282 = t259*(2*t252*t281 - t269)
+            t283 = angle0_y*t279 - angle0_z*t280 + dangle0_y*t270 - dangle0_z*t271
+            t284 = t259*t273
+            t285 = t259*(-t252*t281 + 3*t252*(-0.5*r6 + (2.5)*r7))
+            t286 = Om0_x*angle0_z - Om0_z*angle0_x
+            t287 = -Om0_x*angle0_y + Om0_y*angle0_x
+            t288 = -Om0_y*angle0_z + Om0_z*angle0_y
+            t289 = -angle0_x*t287 + angle0_z*t288
+            t290 = Om0_y - r1*t286 + r2*t289
+            t291 = angle0_x*t271 - angle0_y*t262
+            t292 = angle0_x*t280 - angle0_y*t258 + dangle0_x*t271 - dangle0_y*t262
+            t293 = dangle1_z - r2*t279 + r3*t292 - t254*t270 + t269*t291
+            t294 = angle1_z - r2*t270 + r3*t291
+            t295 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
+            t296 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
+            t297 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
+            t298 = (dOm0_y - r1*t295 + r2*(-angle0_x*t296 + angle0_z*t297 - dangle0_x*t287 +
+                dangle0_z*t288) + t254*t289 - t257*t286)
+            t299 = angle0_x*t286 - angle0_y*t288
+            t300 = Om0_z - r1*t287 + r2*t299
+            t301 = -angle0_x*t270 + angle0_z*t262
+            t302 = -angle0_x*t279 + angle0_z*t258 - dangle0_x*t270 + dangle0_z*t262
+            t303 = dangle1_y - r2*t280 + r3*t302 - t254*t271 + t269*t301
+            t304 = angle1_y - r2*t271 + r3*t301
+            t305 = (dOm0_z - r1*t296 + r2*(angle0_x*t295 - angle0_y*t297 + dangle0_x*t286 -
+                dangle0_y*t288) - t252*t256*t287 + t254*t299)
+            t306 = dangle1_x - r2*t258 + r3*t283 - t254*t262 + t269*t272
+            t307 = angle1_x - r2*t262 + r3*t272
+            t308 = angle0_y*t287 - angle0_z*t286
+            t309 = Om0_x - r1*t288 + r2*t308
+            t310 = (dOm0_x - r1*t297 + r2*(angle0_y*t296 - angle0_z*t295 + dangle0_y*t287 -
+                dangle0_z*t286) - t252*t256*t288 + t254*t308)
+            dwcd_x = (dOm0d_x + dangle2_x - r1*t249 - r2*t250 + r2*(angle0_y*t275 - angle0_z*t276
+                + dangle0_y*t265 - dangle0_z*t266) + r3*(angle0_y*t277 - angle0_z*t278 +
+                dangle0_y*t267 - dangle0_z*t268) + r3*(angle1_y*t279 - angle1_z*t280 +
+                dangle1_y*t270 - dangle1_z*t271) - t251*t254 + t254*(angle0_y*t265 -
+                angle0_z*t266) - t255*t257 - t258*t261 - t262*t264 - t262*t282 +
+                t269*(angle0_y*t267 - angle0_z*t268) + t269*(angle1_y*t270 - angle1_z*t271) +
+                t272*t274 + t272*t285 + t283*t284 + t290*t293 + t294*t298 - t300*t303 - t304*t305)
+            dwcd_y = (dOm0d_y + dangle2_y - r1*t276 - r2*t278 + r2*(-angle0_x*t275 + angle0_z*t249
+                - dangle0_x*t265 + dangle0_z*t255) + r3*(-angle0_x*t277 + angle0_z*t250 -
+                dangle0_x*t267 + dangle0_z*t251) + r3*(-angle1_x*t279 + angle1_z*t258 -
+                dangle1_x*t270 + dangle1_z*t262) - t254*t268 + t254*(-angle0_x*t265 +
+                angle0_z*t255) - t257*t266 - t261*t280 - t264*t271 + t269*(-angle0_x*t267 +
+                angle0_z*t251) + t269*(-angle1_x*t270 + angle1_z*t262) - t271*t282 + t274*t301 +
+                t284*t302 + t285*t301 - t293*t309 - t294*t310 + t300*t306 + t305*t307)
+            dwcd_z = (dOm0d_z + dangle2_z - r1*t275 - r2*t277 + r2*(angle0_x*t276 - angle0_y*t249
+                + dangle0_x*t266 - dangle0_y*t255) + r3*(angle0_x*t278 - angle0_y*t250 +
+                dangle0_x*t268 - dangle0_y*t251) + r3*(angle1_x*t280 - angle1_y*t258 +
+                dangle1_x*t271 - dangle1_y*t262) - t254*t267 + t254*(angle0_x*t266 -
+                angle0_y*t255) - t257*t265 - t261*t279 - t264*t270 + t269*(angle0_x*t268 -
+                angle0_y*t251) + t269*(angle1_x*t271 - angle1_y*t262) - t270*t282 + t274*t291 +
+                t284*t292 + t285*t291 - t290*t306 - t298*t307 + t303*t309 + t304*t310)
             # differential: rate of its momentum and of the moment of it
             first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
             first1_x, first1_y, first1_z = rigid1[0], rigid1[1], rigid1[2]
@@ -1330,41 +1201,41 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dfirst0_x, dfirst0_y, dfirst0_z = drigid0[0], drigid0[1], drigid0[2]
             dfirst1_x, dfirst1_y, dfirst1_z = drigid1[0], drigid1[1], drigid1[2]
             dfirst2_x, dfirst2_y, dfirst2_z = drigid2[0], drigid2[1], drigid2[2]
-            t405 = 2*dfirst1_z
-            t406 = 2*Om0_z
-            t407 = 2*first1_z
-            t408 = 2*dOm0_z
-            t409 = first0_z + mc_z
-            t410 = first0_y + mc_y
-            t411 = first0_x + mc_x
-            t412 = Om0_x*t410 - Om0_y*t411
-            t413 = -Om0_x*t409 + Om0_z*t411
-            t414 = Om0_x*dfirst0_y - Om0_y*dfirst0_x + dOm0_x*t410 - dOm0_y*t411
-            t415 = -Om0_x*dfirst0_z + Om0_z*dfirst0_x - dOm0_x*t409 + dOm0_z*t411
-            t416 = Om0_y*t409 - Om0_z*t410
-            t417 = Om0_y*dfirst0_z - Om0_z*dfirst0_y + dOm0_y*t409 - dOm0_z*t410
-            t418 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
-            t419 = Jc_xz*dwc_x + Jc_yz*dwc_y + Jc_zz*dwc_z
-            t420 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
-            t421 = Jc_xy*dwc_x + Jc_yy*dwc_y + Jc_yz*dwc_z
-            t422 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
-            t423 = Jc_xx*dwc_x + Jc_xy*dwc_y + Jc_xz*dwc_z
-            dRt_x = (Om0_y*t405 + Om0_y*t414 - Om0_z*t415 + Om0d_y*dfirst0_z - Om0d_z*dfirst0_y +
-                dOm0_y*t407 + dOm0_y*t412 - dOm0_z*t413 + dOm0d_y*t409 - dOm0d_z*t410 -
-                dfirst1_y*t406 + dfirst2_x - first1_y*t408 + mass*(da0_x - dgamma_x))
-            dRt_y = (-Om0_x*t405 - Om0_x*t414 + Om0_z*t417 - Om0d_x*dfirst0_z + Om0d_z*dfirst0_x -
-                dOm0_x*t407 - dOm0_x*t412 + dOm0_z*t416 - dOm0d_x*t409 + dOm0d_z*t411 +
-                dfirst1_x*t406 + dfirst2_y + first1_x*t408 + mass*(da0_y - dgamma_y))
-            dRt_z = (2*Om0_x*dfirst1_y + Om0_x*t415 - 2*Om0_y*dfirst1_x - Om0_y*t417 +
-                Om0d_x*dfirst0_y - Om0d_y*dfirst0_x + 2*dOm0_x*first1_y + dOm0_x*t413 -
-                2*dOm0_y*first1_x - dOm0_y*t416 + dOm0d_x*t410 - dOm0d_y*t411 + dfirst2_z +
+            t311 = 2*dfirst1_z
+            t312 = 2*Om0_z
+            t313 = 2*first1_z
+            t314 = 2*dOm0_z
+            t315 = first0_z + mc_z
+            t316 = first0_y + mc_y
+            t317 = first0_x + mc_x
+            t318 = Om0_x*t316 - Om0_y*t317
+            t319 = -Om0_x*t315 + Om0_z*t317
+            t320 = Om0_x*dfirst0_y - Om0_y*dfirst0_x + dOm0_x*t316 - dOm0_y*t317
+            t321 = -Om0_x*dfirst0_z + Om0_z*dfirst0_x - dOm0_x*t315 + dOm0_z*t317
+            t322 = Om0_y*t315 - Om0_z*t316
+            t323 = Om0_y*dfirst0_z - Om0_z*dfirst0_y + dOm0_y*t315 - dOm0_z*t316
+            t324 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
+            t325 = Jc_xz*dwc_x + Jc_yz*dwc_y + Jc_zz*dwc_z
+            t326 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
+            t327 = Jc_xy*dwc_x + Jc_yy*dwc_y + Jc_yz*dwc_z
+            t328 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
+            t329 = Jc_xx*dwc_x + Jc_xy*dwc_y + Jc_xz*dwc_z
+            dRt_x = (Om0_y*t311 + Om0_y*t320 - Om0_z*t321 + Om0d_y*dfirst0_z - Om0d_z*dfirst0_y +
+                dOm0_y*t313 + dOm0_y*t318 - dOm0_z*t319 + dOm0d_y*t315 - dOm0d_z*t316 -
+                dfirst1_y*t312 + dfirst2_x - first1_y*t314 + mass*(da0_x - dgamma_x))
+            dRt_y = (-Om0_x*t311 - Om0_x*t320 + Om0_z*t323 - Om0d_x*dfirst0_z + Om0d_z*dfirst0_x -
+                dOm0_x*t313 - dOm0_x*t318 + dOm0_z*t322 - dOm0d_x*t315 + dOm0d_z*t317 +
+                dfirst1_x*t312 + dfirst2_y + first1_x*t314 + mass*(da0_y - dgamma_y))
+            dRt_z = (2*Om0_x*dfirst1_y + Om0_x*t321 - 2*Om0_y*dfirst1_x - Om0_y*t323 +
+                Om0d_x*dfirst0_y - Om0d_y*dfirst0_x + 2*dOm0_x*first1_y + dOm0_x*t319 -
+                2*dOm0_y*first1_x - dOm0_y*t322 + dOm0d_x*t316 - dOm0d_y*t317 + dfirst2_z +
                 mass*(da0_z - dgamma_z))
-            dMc_x = (Jc_xx*dwcd_x + Jc_xy*dwcd_y + Jc_xz*dwcd_z + dwc_y*t418 - dwc_z*t420 +
-                t419*wc_y - t421*wc_z)
-            dMc_y = (Jc_xy*dwcd_x + Jc_yy*dwcd_y + Jc_yz*dwcd_z - dwc_x*t418 + dwc_z*t422 -
-                t419*wc_x + t423*wc_z)
-            dMc_z = (Jc_xz*dwcd_x + Jc_yz*dwcd_y + Jc_zz*dwcd_z + dwc_x*t420 - dwc_y*t422 +
-                t421*wc_x - t423*wc_y)
+            dMc_x = (Jc_xx*dwcd_x + Jc_xy*dwcd_y + Jc_xz*dwcd_z + dwc_y*t324 - dwc_z*t326 +
+                t325*wc_y - t327*wc_z)
+            dMc_y = (Jc_xy*dwcd_x + Jc_yy*dwcd_y + Jc_yz*dwcd_z - dwc_x*t324 + dwc_z*t328 -
+                t325*wc_x + t329*wc_z)
+            dMc_z = (Jc_xz*dwcd_x + Jc_yz*dwcd_y + Jc_zz*dwcd_z + dwc_x*t326 - dwc_y*t328 +
+                t327*wc_x - t329*wc_y)
             # differential: moment on the frame, forces on the first moment and mean rotation
             first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
             angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
@@ -1375,42 +1246,42 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dangle0_x, dangle0_y, dangle0_z = drigid0[3], drigid0[4], drigid0[5]
             dfirst2_x, dfirst2_y, dfirst2_z = drigid2[0], drigid2[1], drigid2[2]
             dangle2_x, dangle2_y, dangle2_z = drigid2[3], drigid2[4], drigid2[5]
-            t424 = -Mc_y*dangle0_z + Mc_z*dangle0_y + angle0_y*dMc_z - angle0_z*dMc_y
-            t425 = 1/mass
-            t426 = first0_y + mc_y
-            t427 = first0_z + mc_z
-            t428 = -Mc_y*angle0_z + Mc_z*angle0_y
-            t429 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
-            t430 = (0.5)*r3
-            t431 = t429*(-0.5*r2 + t430)
-            t432 = -Mc_x*angle0_y + Mc_y*angle0_x
-            t433 = Mc_x*angle0_z - Mc_z*angle0_x
-            t434 = angle0_y*t432 - angle0_z*t433
-            t435 = t429*(r4 - t430)
-            t436 = -Mc_x*dangle0_y + Mc_y*dangle0_x + angle0_x*dMc_y - angle0_y*dMc_x
-            t437 = Mc_x*dangle0_z - Mc_z*dangle0_x - angle0_x*dMc_z + angle0_z*dMc_x
-            t438 = angle0_y*t436 - angle0_z*t437 + dangle0_y*t432 - dangle0_z*t433
-            t439 = first0_x + mc_x
-            t440 = -angle0_x*t432 + angle0_z*t428
-            t441 = -angle0_x*t436 + angle0_z*t424 - dangle0_x*t432 + dangle0_z*t428
-            t442 = angle0_x*t433 - angle0_y*t428
-            t443 = angle0_x*t437 - angle0_y*t424 + dangle0_x*t433 - dangle0_y*t428
-            t444 = t429*(-0.5*r4 + (1.5)*r5)
-            dRr_x = (dMc_x + r1*t424 + r2*t438 + t425*(-Rt_y*dfirst0_z + Rt_z*dfirst0_y -
-                dRt_y*t427 + dRt_z*t426) + t428*t431 + t434*t435)
-            dRr_y = (dMc_y + r1*t437 + r2*t441 + t425*(Rt_x*dfirst0_z - Rt_z*dfirst0_x +
-                dRt_x*t427 - dRt_z*t439) + t431*t433 + t435*t440)
-            dRr_z = (dMc_z + r1*t436 + r2*t443 + t425*(-Rt_x*dfirst0_y + Rt_y*dfirst0_x -
-                dRt_x*t426 + dRt_y*t439) + t431*t432 + t435*t442)
-            dcarried[0] = t425*(dRt_x - dfirst2_x)
-            dcarried[1] = t425*(dRt_y - dfirst2_y)
-            dcarried[2] = t425*(dRt_z - dfirst2_z)
-            dcarried[3] = (-Jc_xx*dangle2_x - Jc_xy*dangle2_y - Jc_xz*dangle2_z + dMc_x + r2*t424
-                + r3*t438 + t428*t435 + t434*t444)
-            dcarried[4] = (-Jc_xy*dangle2_x - Jc_yy*dangle2_y - Jc_yz*dangle2_z + dMc_y + r2*t437
-                + r3*t441 + t433*t435 + t440*t444)
-            dcarried[5] = (-Jc_xz*dangle2_x - Jc_yz*dangle2_y - Jc_zz*dangle2_z + dMc_z + r2*t436
-                + r3*t443 + t432*t435 + t442*t444)
+            t330 = -Mc_y*dangle0_z + Mc_z*dangle0_y + angle0_y*dMc_z - angle0_z*dMc_y
+            t331 = 1/mass
+            t332 = first0_y + mc_y
+            t333 = first0_z + mc_z
+            t334 = -Mc_y*angle0_z + Mc_z*angle0_y
+            t335 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
+            t336 = (0.5)*r3
+            t337 = t335*(-0.5*r2 + t336)
+            t338 = -Mc_x*angle0_y + Mc_y*angle0_x
+            t339 = Mc_x*angle0_z - Mc_z*angle0_x
+            t340 = angle0_y*t338 - angle0_z*t339
+            t341 = t335*(r4 - t336)
+            t342 = -Mc_x*dangle0_y + Mc_y*dangle0_x + angle0_x*dMc_y - angle0_y*dMc_x
+            t343 = Mc_x*dangle0_z - Mc_z*dangle0_x - angle0_x*dMc_z + angle0_z*dMc_x
+            t344 = angle0_y*t342 - angle0_z*t343 + dangle0_y*t338 - dangle0_z*t339
+            t345 = first0_x + mc_x
+            t346 = -angle0_x*t338 + angle0_z*t334
+            t347 = -angle0_x*t342 + angle0_z*t330 - dangle0_x*t338 + dangle0_z*t334
+            t348 = angle0_x*t339 - angle0_y*t334
+            t349 = angle0_x*t343 - angle0_y*t330 + dangle0_x*t339 - dangle0_y*t334
+            t350 = t335*(-0.5*r4 + (1.5)*r5)
+            dRr_x = (dMc_x + r1*t330 + r2*t344 + t331*(-Rt_y*dfirst0_z + Rt_z*dfirst0_y -
+                dRt_y*t333 + dRt_z*t332) + t334*t337 + t340*t341)
+            dRr_y = (dMc_y + r1*t343 + r2*t347 + t331*(Rt_x*dfirst0_z - Rt_z*dfirst0_x +
+                dRt_x*t333 - dRt_z*t345) + t337*t339 + t341*t346)
+            dRr_z = (dMc_z + r1*t342 + r2*t349 + t331*(-Rt_x*dfirst0_y + Rt_y*dfirst0_x -
+                dRt_x*t332 + dRt_y*t345) + t337*t338 + t341*t348)
+            dcarried[0] = t331*(dRt_x - dfirst2_x)
+            dcarried[1] = t331*(dRt_y - dfirst2_y)
+            dcarried[2] = t331*(dRt_z - dfirst2_z)
+            dcarried[3] = (-Jc_xx*dangle2_x - Jc_xy*dangle2_y - Jc_xz*dangle2_z + dMc_x + r2*t330
+                + r3*t344 + t334*t341 + t340*t350)
+            dcarried[4] = (-Jc_xy*dangle2_x - Jc_yy*dangle2_y - Jc_yz*dangle2_z + dMc_y + r2*t343
+                + r3*t347 + t339*t341 + t346*t350)
+            dcarried[5] = (-Jc_xz*dangle2_x - Jc_yz*dangle2_y - Jc_zz*dangle2_z + dMc_z + r2*t342
+                + r3*t349 + t338*t341 + t348*t350)
             # forces of the rigid part, conjugate to y
             add_block_times(rigid_columns, dcarried, ds, n, 6, padded(n))
             # damping force, Cbar ydot
@@ -1425,15 +1296,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                t445 = X_z + u_z
-                t446 = X_y + u_y
-                t447 = X_x + u_x
+                t351 = X_z + u_z
+                t352 = X_y + u_y
+                t353 = X_x + u_x
                 dF_x += -df_x
                 dF_y += -df_y
                 dF_z += -df_z
-                dW_x += df_y*t445 - df_z*t446 - du_y*f_z + du_z*f_y
-                dW_y += -df_x*t445 + df_z*t447 + du_x*f_z - du_z*f_x
-                dW_z += df_x*t446 - df_y*t447 - du_x*f_y + du_y*f_x
+                dW_x += df_y*t351 - df_z*t352 - du_y*f_z + du_z*f_y
+                dW_y += -df_x*t351 + df_z*t353 + du_x*f_z - du_z*f_x
+                dW_z += df_x*t352 - df_y*t353 - du_x*f_y + du_y*f_x
             # differential: inertia and weight on the frame
             dF_x += dRt_x
             dF_y += dRt_y
@@ -1450,25 +1321,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t448 = -m_x*psi_y + m_y*psi_x
-                t449 = m_x*psi_z - m_z*psi_x
-                t450 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                t451 = dm_x*psi_z
-                t452 = dpsi_z*m_x
-                t453 = -dm_z*psi_x - dpsi_x*m_z + t451 + t452
-                t454 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t455 = e1*t454
-                t456 = -m_y*psi_z + m_z*psi_y
-                t457 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t448 -
-                    0.5*dpsi_y*m_z + dpsi_z*e0*t449 + (0.5)*dpsi_z*m_y - e0*psi_y*t450 +
-                    e0*psi_z*t453 + e1*psi_z*t449*t454 - psi_y*t448*t455)
-                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t448 + (0.5)*dpsi_x*m_z -
-                    dpsi_z*e0*t456 + e0*psi_x*t450 - e0*psi_z*t457 + e1*psi_x*t448*t454 -
-                    psi_z*t455*t456 - 0.5*t451 - 0.5*t452)
-                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t449 -
-                    0.5*dpsi_x*m_y + dpsi_y*e0*t456 + (0.5)*dpsi_y*m_x - e0*psi_x*t453 +
-                    e0*psi_y*t457 + e1*psi_y*t454*t456 - psi_x*t449*t455)
+                t354 = -m_x*psi_y + m_y*psi_x
+                t355 = m_x*psi_z - m_z*psi_x
+                t356 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                t357 = dm_x*psi_z
+                t358 = dpsi_z*m_x
+                t359 = -dm_z*psi_x - dpsi_x*m_z + t357 + t358
+                t360 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t361 = e1*t360
+                t362 = -m_y*psi_z + m_z*psi_y
+                t363 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t354 -
+                    0.5*dpsi_y*m_z + dpsi_z*e0*t355 + (0.5)*dpsi_z*m_y - e0*psi_y*t356 +
+                    e0*psi_z*t359 + e1*psi_z*t355*t360 - psi_y*t354*t361)
+                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t354 + (0.5)*dpsi_x*m_z -
+                    dpsi_z*e0*t362 + e0*psi_x*t356 - e0*psi_z*t363 + e1*psi_x*t354*t360 -
+                    psi_z*t361*t362 - 0.5*t357 - 0.5*t358)
+                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t355 -
+                    0.5*dpsi_x*m_y + dpsi_y*e0*t362 + (0.5)*dpsi_y*m_x - e0*psi_x*t359 +
+                    e0*psi_y*t363 + e1*psi_y*t360*t362 - psi_x*t355*t361)
             # differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
             for i in range(N_POSITIONS):
@@ -1476,26 +1347,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                t458 = X_x*wp_y - X_y*wp_x
-                t459 = -X_x*wp_z + X_z*wp_x
-                t460 = X_y*wp_z - X_z*wp_y
-                rhs_x += -fit*(du_y*t458 - du_z*t459)
-                rhs_y += -fit*(-du_x*t458 + du_z*t460)
-                rhs_z += -fit*(du_x*t459 - du_y*t460)
-            t461 = dW_x + rhs_x
-            t462 = dW_y + rhs_y
-            t463 = dW_z + rhs_z
-            dwp_x = Bxx*t461 + Byx*t462 + Bzx*t463
-            dwp_y = Bxy*t461 + Byy*t462 + Bzy*t463
-            dwp_z = Bxz*t461 + Byz*t462 + Bzz*t463
+                t364 = X_x*wp_y - X_y*wp_x
+                t365 = -X_x*wp_z + X_z*wp_x
+                t366 = X_y*wp_z - X_z*wp_y
+                rhs_x += -fit*(du_y*t364 - du_z*t365)
+                rhs_y += -fit*(-du_x*t364 + du_z*t366)
+                rhs_z += -fit*(du_x*t365 - du_y*t366)
+            t367 = dW_x + rhs_x
+            t368 = dW_y + rhs_y
+            t369 = dW_z + rhs_z
+            dwp_x = Bxx*t367 + Byx*t368 + Bzx*t369
+            dwp_y = Bxy*t367 + Byy*t368 + Bzy*t369
+            dwp_z = Bxz*t367 + Byz*t368 + Bzz*t369
             # differential: force on the origin, through the frame
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t464 = dwp_z*fit
-                dF_x += -X_y*t464 + X_z*dwp_y*fit
-                dF_y += X_x*t464 - X_z*dwp_x*fit
+                t370 = dwp_z*fit
+                dF_x += -X_y*t370 + X_z*dwp_y*fit
+                dF_y += X_x*t370 - X_z*dwp_x*fit
                 dF_z += -X_x*dwp_y*fit + X_y*dwp_x*fit
             # differential: force on the nodes in frame axes, (30), (57)
             for i in range(N_POSITIONS):
@@ -1504,10 +1375,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 alpha = alphas[i]
                 df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                t465 = dwp_z*fit
-                t466 = X_z*fit
-                dh[i3] = X_y*t465 + alpha*dF_x + df_x - dwp_y*t466
-                dh[i3 + 1] = -X_x*t465 + alpha*dF_y + df_y + dwp_x*t466
+                t371 = dwp_z*fit
+                t372 = X_z*fit
+                dh[i3] = X_y*t371 + alpha*dF_x + df_x - dwp_y*t372
+                dh[i3 + 1] = -X_x*t371 + alpha*dF_y + df_y + dwp_x*t372
                 dh[i3 + 2] = X_x*dwp_y*fit - X_y*dwp_x*fit + alpha*dF_z + df_z
             # differential: force on the nodes, left in frame axes
             for i in range(N_POSITIONS):
@@ -1526,33 +1397,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t467 = dm_y*psi_z
-                t468 = dpsi_z*m_y
-                t469 = -m_x*psi_y + m_y*psi_x
-                t470 = e0*t469
-                t471 = m_x*psi_z - m_z*psi_x
-                t472 = dpsi_z*e0
-                t473 = dm_x*psi_y
-                t474 = dpsi_y*m_x
-                t475 = e0*(dm_y*psi_x + dpsi_x*m_y - t473 - t474)
-                t476 = dm_x*psi_z
-                t477 = dpsi_z*m_x
-                t478 = dm_z*psi_x
-                t479 = dpsi_x*m_z
-                t480 = t476 + t477 - t478 - t479
-                t481 = e0*psi_z
-                t482 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                t483 = t469*t482
-                t484 = psi_z*t482
-                t485 = -m_y*psi_z + m_z*psi_y
-                t486 = dm_z*psi_y + dpsi_y*m_z - t467 - t468
-                dg[j3] = (dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t470 + psi_y*t475 +
-                    psi_y*t483 + (0.5)*t467 + (0.5)*t468 - t471*t472 - t471*t484 - t480*t481)
-                dg[j3 + 1] = (dm_y - dpsi_x*t470 - psi_x*t475 - psi_x*t483 + t472*t485 - 0.5*t476
-                    - 0.5*t477 + (0.5)*t478 + (0.5)*t479 + t481*t486 + t484*t485)
-                dg[j3 + 2] = (-0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t471 - 0.5*dpsi_x*m_y -
-                    dpsi_y*e0*t485 + e0*psi_x*t480 - e0*psi_y*t486 + psi_x*t471*t482 -
-                    psi_y*t482*t485 + (0.5)*t473 + (0.5)*t474)
+                t373 = dm_y*psi_z
+                t374 = dpsi_z*m_y
+                t375 = -m_x*psi_y + m_y*psi_x
+                t376 = e0*t375
+                t377 = m_x*psi_z - m_z*psi_x
+                t378 = dpsi_z*e0
+                t379 = dm_x*psi_y
+                t380 = dpsi_y*m_x
+                t381 = e0*(dm_y*psi_x + dpsi_x*m_y - t379 - t380)
+                t382 = dm_x*psi_z
+                t383 = dpsi_z*m_x
+                t384 = dm_z*psi_x
+                t385 = dpsi_x*m_z
+                t386 = t382 + t383 - t384 - t385
+                t387 = e0*psi_z
+                t388 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                t389 = t375*t388
+                t390 = psi_z*t388
+                t391 = -m_y*psi_z + m_z*psi_y
+                t392 = dm_z*psi_y + dpsi_y*m_z - t373 - t374
+                dg[j3] = (dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t376 + psi_y*t381 +
+                    psi_y*t389 + (0.5)*t373 + (0.5)*t374 - t377*t378 - t377*t390 - t386*t387)
+                dg[j3 + 1] = (dm_y - dpsi_x*t376 - psi_x*t381 - psi_x*t389 + t378*t391 - 0.5*t382
+                    - 0.5*t383 + (0.5)*t384 + (0.5)*t385 + t387*t392 + t390*t391)
+                dg[j3 + 2] = (-0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t377 - 0.5*dpsi_x*m_y -
+                    dpsi_y*e0*t391 + e0*psi_x*t386 - e0*psi_y*t392 + psi_x*t377*t388 -
+                    psi_y*t388*t391 + (0.5)*t379 + (0.5)*t380)
             # differential: force of the internal modes
             for k in range(MODES, n):
                 dfm = ds[k]
@@ -1689,57 +1560,57 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdgt_x, bdgt_y, bdgt_z = bdg[j3], bdg[j3 + 1], bdg[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t487 = e0*psi_y
-                t488 = m_y*t487
-                t489 = e0*psi_z
-                t490 = m_z*t489
-                t491 = m_x*psi_y
-                t492 = m_y*psi_x - t491
-                t493 = 2*e1
-                t494 = psi_x*t493
-                t495 = psi_y*t494
-                t496 = t492*t495
-                t497 = m_x*psi_z
-                t498 = m_z*psi_x
-                t499 = t497 - t498
-                t500 = psi_z*t494
-                t501 = t499*t500
-                t502 = (0.5)*m_y
-                t503 = e0*t499
-                t504 = m_y*psi_z
-                t505 = m_z*psi_y - t504
-                t506 = psi_x*psi_x
-                t507 = (0.5)*m_z
-                t508 = e0*t492
-                t509 = e0*m_x*psi_x
-                t510 = psi_y*psi_z*t493
-                t511 = t505*t510
-                t512 = psi_y*psi_y
-                t513 = (0.5)*m_x
-                t514 = e0*t505
-                t515 = psi_z*psi_z
-                t516 = (0.5)*psi_z
-                t517 = psi_x*t487
-                t518 = (0.5)*psi_y
-                t519 = psi_x*t489
-                t520 = e0*t512
-                t521 = e0*t515 - 1
-                t522 = (0.5)*psi_x
-                t523 = psi_z*t487
-                t524 = e0*t506
-                bdy[j3] += (bdgt_x*(t488 + t490 + t496 - t501) + bdgt_y*(-e0*m_y*psi_x +
-                    2*e1*psi_x*psi_z*t505 - t492*t493*t506 + t507 - t508) + bdgt_z*(-e0*t498 +
-                    2*e1*t499*t506 - t495*t505 - t502 + t503))
-                bdy[j3 + 1] += (bdgt_x*(-e0*t491 + 2*e1*t492*t512 - t499*t510 - t507 + t508) +
-                    bdgt_y*(t490 - t496 + t509 + t511) + bdgt_z*(-e0*m_z*psi_y +
-                    2*e1*psi_x*psi_y*t499 - t493*t505*t512 + t513 - t514))
-                bdy[j3 + 2] += (bdgt_x*(-e0*t497 + 2*e1*psi_y*psi_z*t492 - t493*t499*t515 + t502 -
-                    t503) + bdgt_y*(-e0*t504 + 2*e1*t505*t515 - t492*t500 - t513 + t514) +
-                    bdgt_z*(t488 + t501 + t509 - t511))
-                bds[j3] += bdgt_x*(-t520 - t521) + bdgt_y*(-t516 + t517) + bdgt_z*(t518 + t519)
-                bds[j3 + 1] += bdgt_x*(t516 + t517) + bdgt_y*(-t521 - t524) + bdgt_z*(-t522 + t523)
-                bds[j3 + 2] += (bdgt_x*(-t518 + t519) + bdgt_y*(t522 + t523) + bdgt_z*(-t520 -
-                    t524 + 1))
+                t393 = e0*psi_y
+                t394 = m_y*t393
+                t395 = e0*psi_z
+                t396 = m_z*t395
+                t397 = m_x*psi_y
+                t398 = m_y*psi_x - t397
+                t399 = 2*e1
+                t400 = psi_x*t399
+                t401 = psi_y*t400
+                t402 = t398*t401
+                t403 = m_x*psi_z
+                t404 = m_z*psi_x
+                t405 = t403 - t404
+                t406 = psi_z*t400
+                t407 = t405*t406
+                t408 = (0.5)*m_y
+                t409 = e0*t405
+                t410 = m_y*psi_z
+                t411 = m_z*psi_y - t410
+                t412 = psi_x*psi_x
+                t413 = (0.5)*m_z
+                t414 = e0*t398
+                t415 = e0*m_x*psi_x
+                t416 = psi_y*psi_z*t399
+                t417 = t411*t416
+                t418 = psi_y*psi_y
+                t419 = (0.5)*m_x
+                t420 = e0*t411
+                t421 = psi_z*psi_z
+                t422 = (0.5)*psi_z
+                t423 = psi_x*t393
+                t424 = (0.5)*psi_y
+                t425 = psi_x*t395
+                t426 = e0*t418
+                t427 = e0*t421 - 1
+                t428 = (0.5)*psi_x
+                t429 = psi_z*t393
+                t430 = e0*t412
+                bdy[j3] += (bdgt_x*(t394 + t396 + t402 - t407) + bdgt_y*(-e0*m_y*psi_x +
+                    2*e1*psi_x*psi_z*t411 - t398*t399*t412 + t413 - t414) + bdgt_z*(-e0*t404 +
+                    2*e1*t405*t412 - t401*t411 - t408 + t409))
+                bdy[j3 + 1] += (bdgt_x*(-e0*t397 + 2*e1*t398*t418 - t405*t416 - t413 + t414) +
+                    bdgt_y*(t396 - t402 + t415 + t417) + bdgt_z*(-e0*m_z*psi_y +
+                    2*e1*psi_x*psi_y*t405 - t399*t411*t418 + t419 - t420))
+                bdy[j3 + 2] += (bdgt_x*(-e0*t403 + 2*e1*psi_y*psi_z*t398 - t399*t405*t421 + t408 -
+                    t409) + bdgt_y*(-e0*t410 + 2*e1*t411*t421 - t398*t406 - t419 + t420) +
+                    bdgt_z*(t394 + t407 + t415 - t417))
+                bds[j3] += bdgt_x*(-t426 - t427) + bdgt_y*(-t422 + t423) + bdgt_z*(t424 + t425)
+                bds[j3 + 1] += bdgt_x*(t422 + t423) + bdgt_y*(-t427 - t430) + bdgt_z*(-t428 + t429)
+                bds[j3 + 2] += (bdgt_x*(-t424 + t425) + bdgt_y*(t428 + t429) + bdgt_z*(-t426 -
+                    t430 + 1))
             # transposed: differential: force on the nodes, left in frame axes
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -1758,47 +1629,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 alpha = alphas[i]
                 bdh_x, bdh_y, bdh_z = bdh[i3], bdh[i3 + 1], bdh[i3 + 2]
-                t525 = bdh_z*fit
+                t431 = bdh_z*fit
                 bds[i3] += bdh_x
                 bds[i3 + 1] += bdh_y
                 bds[i3 + 2] += bdh_z
                 bdF_x += alpha*bdh_x
                 bdF_y += alpha*bdh_y
                 bdF_z += alpha*bdh_z
-                bdwp_x += -X_y*t525 + X_z*bdh_y*fit
-                bdwp_y += X_x*t525 - X_z*bdh_x*fit
+                bdwp_x += -X_y*t431 + X_z*bdh_y*fit
+                bdwp_y += X_x*t431 - X_z*bdh_x*fit
                 bdwp_z += -X_x*bdh_y*fit + X_y*bdh_x*fit
             # transposed: differential: force on the origin, through the frame
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t526 = bdF_z*fit
-                bdwp_x += X_y*t526 - X_z*bdF_y*fit
-                bdwp_y += -X_x*t526 + X_z*bdF_x*fit
+                t432 = bdF_z*fit
+                bdwp_x += X_y*t432 - X_z*bdF_y*fit
+                bdwp_y += -X_x*t432 + X_z*bdF_x*fit
                 bdwp_z += X_x*bdF_y*fit - X_y*bdF_x*fit
             # transposed: differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
-            t527 = bdwp_x + rhs_x
-            t528 = bdwp_y + rhs_y
-            t529 = bdwp_z + rhs_z
-            mdwp_x = Bxx*t527 + Bxy*t528 + Bxz*t529
-            mdwp_y = Byx*t527 + Byy*t528 + Byz*t529
-            mdwp_z = Bzx*t527 + Bzy*t528 + Bzz*t529
+            t433 = bdwp_x + rhs_x
+            t434 = bdwp_y + rhs_y
+            t435 = bdwp_z + rhs_z
+            mdwp_x = Bxx*t433 + Bxy*t434 + Bxz*t435
+            mdwp_y = Byx*t433 + Byy*t434 + Byz*t435
+            mdwp_z = Bzx*t433 + Bzy*t434 + Bzz*t435
             # transposed: differential: B^T wp = W
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t530 = X_x*wp_y - X_y*wp_x
-                t531 = fit*mdwp_y
-                t532 = X_x*wp_z - X_z*wp_x
-                t533 = fit*mdwp_z
-                t534 = fit*mdwp_x
-                t535 = X_y*wp_z - X_z*wp_y
-                bdy[i3] += t530*t531 + t532*t533
-                bdy[i3 + 1] += -t530*t534 + t533*t535
-                bdy[i3 + 2] += -t531*t535 - t532*t534
+                t436 = X_x*wp_y - X_y*wp_x
+                t437 = fit*mdwp_y
+                t438 = X_x*wp_z - X_z*wp_x
+                t439 = fit*mdwp_z
+                t440 = fit*mdwp_x
+                t441 = X_y*wp_z - X_z*wp_y
+                bdy[i3] += t436*t437 + t438*t439
+                bdy[i3 + 1] += -t436*t440 + t439*t441
+                bdy[i3 + 2] += -t437*t441 - t438*t440
             # transposed: differential: B^T wp = W
             bdW_x += mdwp_x
             bdW_y += mdwp_y
@@ -1810,53 +1681,53 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t536 = e0*psi_y
-                t537 = m_y*t536
-                t538 = e0*psi_z
-                t539 = m_z*t538
-                t540 = -m_x*psi_y + m_y*psi_x
-                t541 = 2*e1
-                t542 = psi_x*t541
-                t543 = psi_y*t542
-                t544 = t540*t543
-                t545 = m_x*psi_z
-                t546 = -m_z*psi_x + t545
-                t547 = psi_z*t542
-                t548 = t546*t547
-                t549 = psi_x*psi_x
-                t550 = t541*t549
-                t551 = -m_y*psi_z + m_z*psi_y
-                t552 = e0*t540 + (0.5)*m_z
-                t553 = e0*t546 + (0.5)*m_y
-                t554 = e0*m_x*psi_x
-                t555 = psi_y*psi_z*t541
-                t556 = t551*t555
-                t557 = psi_y*psi_y
-                t558 = t541*t557
-                t559 = e0*t551 + (0.5)*m_x
-                t560 = psi_z*psi_z
-                t561 = t541*t560
-                t562 = (0.5)*psi_z
-                t563 = psi_x*t536
-                t564 = (0.5)*psi_y
-                t565 = psi_x*t538
-                t566 = e0*t557
-                t567 = e0*t560 - 1
-                t568 = (0.5)*psi_x
-                t569 = psi_z*t536
-                t570 = e0*t549
-                bdy[j3] += (bdW_x*(-t537 - t539 - t544 + t548) + bdW_y*(e0*m_y*psi_x + t540*t550 -
-                    t547*t551 + t552) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t551 - t546*t550 -
-                    t553))
-                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t546 - t540*t558 - t552) +
-                    bdW_y*(-t539 + t544 - t554 - t556) + bdW_z*(e0*m_z*psi_y - t543*t546 +
-                    t551*t558 + t559))
-                bdy[j3 + 2] += (bdW_x*(e0*t545 - t540*t555 + t546*t561 + t553) +
-                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t540 - t551*t561 - t559) + bdW_z*(-t537
-                    - t548 - t554 + t556))
-                bds[j3] += bdW_x*(t566 + t567) + bdW_y*(-t562 - t563) + bdW_z*(t564 - t565)
-                bds[j3 + 1] += bdW_x*(t562 - t563) + bdW_y*(t567 + t570) + bdW_z*(-t568 - t569)
-                bds[j3 + 2] += bdW_x*(-t564 - t565) + bdW_y*(t568 - t569) + bdW_z*(t566 + t570 - 1)
+                t442 = e0*psi_y
+                t443 = m_y*t442
+                t444 = e0*psi_z
+                t445 = m_z*t444
+                t446 = -m_x*psi_y + m_y*psi_x
+                t447 = 2*e1
+                t448 = psi_x*t447
+                t449 = psi_y*t448
+                t450 = t446*t449
+                t451 = m_x*psi_z
+                t452 = -m_z*psi_x + t451
+                t453 = psi_z*t448
+                t454 = t452*t453
+                t455 = psi_x*psi_x
+                t456 = t447*t455
+                t457 = -m_y*psi_z + m_z*psi_y
+                t458 = e0*t446 + (0.5)*m_z
+                t459 = e0*t452 + (0.5)*m_y
+                t460 = e0*m_x*psi_x
+                t461 = psi_y*psi_z*t447
+                t462 = t457*t461
+                t463 = psi_y*psi_y
+                t464 = t447*t463
+                t465 = e0*t457 + (0.5)*m_x
+                t466 = psi_z*psi_z
+                t467 = t447*t466
+                t468 = (0.5)*psi_z
+                t469 = psi_x*t442
+                t470 = (0.5)*psi_y
+                t471 = psi_x*t444
+                t472 = e0*t463
+                t473 = e0*t466 - 1
+                t474 = (0.5)*psi_x
+                t475 = psi_z*t442
+                t476 = e0*t455
+                bdy[j3] += (bdW_x*(-t443 - t445 - t450 + t454) + bdW_y*(e0*m_y*psi_x + t446*t456 -
+                    t453*t457 + t458) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t457 - t452*t456 -
+                    t459))
+                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t452 - t446*t464 - t458) +
+                    bdW_y*(-t445 + t450 - t460 - t462) + bdW_z*(e0*m_z*psi_y - t449*t452 +
+                    t457*t464 + t465))
+                bdy[j3 + 2] += (bdW_x*(e0*t451 - t446*t461 + t452*t467 + t459) +
+                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t446 - t457*t467 - t465) + bdW_z*(-t443
+                    - t454 - t460 + t462))
+                bds[j3] += bdW_x*(t472 + t473) + bdW_y*(-t468 - t469) + bdW_z*(t470 - t471)
+                bds[j3 + 1] += bdW_x*(t468 - t469) + bdW_y*(t473 + t476) + bdW_z*(-t474 - t475)
+                bds[j3 + 2] += bdW_x*(-t470 - t471) + bdW_y*(t474 - t475) + bdW_z*(t472 + t476 - 1)
             # transposed: differential: inertia and weight on the frame
             bdRt_x += bdF_x
             bdRt_y += bdF_y
@@ -1870,12 +1741,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t571 = X_y + u_y
-                t572 = X_z + u_z
-                t573 = X_x + u_x
-                bds[i3] += -bdF_x - bdW_y*t572 + bdW_z*t571
-                bds[i3 + 1] += -bdF_y + bdW_x*t572 - bdW_z*t573
-                bds[i3 + 2] += -bdF_z - bdW_x*t571 + bdW_y*t573
+                t477 = X_y + u_y
+                t478 = X_z + u_z
+                t479 = X_x + u_x
+                bds[i3] += -bdF_x - bdW_y*t478 + bdW_z*t477
+                bds[i3 + 1] += -bdF_y + bdW_x*t478 - bdW_z*t479
+                bds[i3 + 2] += -bdF_z - bdW_x*t477 + bdW_y*t479
                 bdy[i3] += bdW_y*f_z - bdW_z*f_y
                 bdy[i3 + 1] += -bdW_x*f_z + bdW_z*f_x
                 bdy[i3 + 2] += bdW_x*f_y - bdW_y*f_x
@@ -1892,115 +1763,115 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             Jc_xx, Jc_yy, Jc_zz, Jc_xy, Jc_xz, Jc_yz = Jc[0], Jc[1], Jc[2], Jc[3], Jc[4], Jc[5]
             bdon_first_x, bdon_first_y, bdon_first_z = bdcarried[0], bdcarried[1], bdcarried[2]
             bdon_angle_x, bdon_angle_y, bdon_angle_z = bdcarried[3], bdcarried[4], bdcarried[5]
-            t574 = 1/mass
-            t575 = bdRr_z*t574
-            t576 = bdRr_y*t574
-            t577 = bdRr_x*t574
-            t578 = Mc_y*angle0_y
-            t579 = Mc_z*angle0_z
-            t580 = t578 + t579
-            t581 = Mc_y*angle0_z
-            t582 = -Mc_z*angle0_y
-            t583 = -t581 - t582
-            t584 = (0.5)*r3
-            t585 = -0.5*r2 + t584
-            t586 = 2*angle0_x
-            t587 = Mc_x*angle0_y
-            t588 = -Mc_y*angle0_x
-            t589 = -t587 - t588
-            t590 = angle0_y*t589
-            t591 = Mc_x*angle0_z
-            t592 = Mc_z*angle0_x
-            t593 = -t592
-            t594 = t591 + t593
-            t595 = angle0_z*t594
-            t596 = t590 - t595
-            t597 = r4 - t584
-            t598 = t586*t597
-            t599 = -0.5*r4 + (1.5)*r5
-            t600 = t586*t599
-            t601 = Mc_y*r1
-            t602 = t591 - 2*t592
-            t603 = angle0_x*t589
-            t604 = 2*t585
-            t605 = angle0_x*t594
-            t606 = angle0_y*t583
-            t607 = t605 - t606
-            t608 = Mc_y*r2
-            t609 = 2*t597
-            t610 = Mc_z*r1
-            t611 = -2*Mc_y*angle0_x + t587
-            t612 = angle0_z*t583 - t603
-            t613 = Mc_z*r2
-            t614 = Mc_x*angle0_x
-            t615 = t579 + t614
-            t616 = angle0_y*t609
-            t617 = 2*t599
-            t618 = angle0_y*t617
-            t619 = -2*t587 - t588
-            t620 = Mc_x*r1
-            t621 = -2*Mc_z*angle0_y + t581
-            t622 = Mc_x*r2
-            t623 = t578 + t614
-            t624 = angle0_z*t609
-            t625 = angle0_z*t617
-            t626 = -2*t581 - t582
-            t627 = -2*t591 - t593
-            t628 = angle0_z*t583
-            t629 = bdon_first_x*t574
-            t630 = first0_z + mc_z
-            t631 = first0_y + mc_y
-            t632 = bdon_first_y*t574
-            t633 = first0_x + mc_x
-            t634 = bdon_first_z*t574
-            t635 = angle0_z*r1
-            t636 = angle0_y*r2
-            t637 = angle0_x*t636
-            t638 = angle0_z*r2
-            t639 = angle0_x*r3
-            t640 = angle0_y*t639
-            t641 = angle0_y*r1
-            t642 = angle0_x*t638
-            t643 = angle0_z*t639
-            t644 = angle0_y*angle0_y
-            t645 = angle0_z*angle0_z
-            t646 = -t644 - t645
-            t647 = angle0_x*r1
-            t648 = angle0_x*r2
-            t649 = angle0_x*angle0_x
-            t650 = -t645 - t649
-            t651 = -t644 - t649
-            bdrigid0[0] += Rt_y*t575 - Rt_z*bdRr_y*t574
-            bdrigid0[1] += -Rt_x*t575 + Rt_z*bdRr_x*t574
-            bdrigid0[2] += Rt_x*t576 - Rt_y*t577
-            bdrigid0[3] += (bdRr_x*(r2*t580 + t583*t585*t586 + t596*t598) + bdRr_y*(r2*t611 +
-                t598*t612 + t604*t605 - t610) + bdRr_z*(r2*t602 + t598*t607 + t601 + t603*t604) +
-                bdon_angle_x*(r3*t580 + t583*t598 + t596*t600) + bdon_angle_y*(r3*t611 + t600*t612
-                + t605*t609 - t613) + bdon_angle_z*(r3*t602 + t600*t607 + t603*t609 + t608))
-            bdrigid0[4] += (bdRr_x*(r2*t619 + t596*t616 + t604*t606 + t610) +
-                bdRr_y*(angle0_y*t594*t604 + r2*t615 + t612*t616) + bdRr_z*(r2*t621 + t590*t604 +
-                t607*t616 - t620) + bdon_angle_x*(r3*t619 + t596*t618 + t606*t609 + t613) +
-                bdon_angle_y*(r3*t615 + t594*t616 + t612*t618) + bdon_angle_z*(r3*t621 + t590*t609
-                + t607*t618 - t622))
-            bdrigid0[5] += (bdRr_x*(r2*t627 + t596*t624 - t601 + t604*t628) + bdRr_y*(r2*t626 +
-                t595*t604 + t612*t624 + t620) + bdRr_z*(angle0_z*t589*t604 + r2*t623 + t607*t624)
-                + bdon_angle_x*(r3*t627 + t596*t625 - t608 + t609*t628) + bdon_angle_y*(r3*t626 +
-                t595*t609 + t612*t625 + t622) + bdon_angle_z*(r3*t623 + t589*t624 + t607*t625))
-            bdRt_x += -t575*t631 + t576*t630 + t629
-            bdRt_y += t575*t633 - t577*t630 + t632
-            bdRt_z += -t576*t633 + t577*t631 + t634
-            bdMc_x += (bdRr_x*(r2*t646 + 1) + bdRr_y*(t635 + t637) + bdRr_z*(-t641 + t642) +
-                bdon_angle_x*(r3*t646 + 1) + bdon_angle_y*(t638 + t640) + bdon_angle_z*(-t636 +
-                t643))
-            bdMc_y += (bdRr_x*(-t635 + t637) + bdRr_y*(r2*t650 + 1) + bdRr_z*(angle0_y*t638 +
-                t647) + bdon_angle_x*(-t638 + t640) + bdon_angle_y*(r3*t650 + 1) +
-                bdon_angle_z*(angle0_y*angle0_z*r3 + t648))
-            bdMc_z += (bdRr_x*(t641 + t642) + bdRr_y*(angle0_y*angle0_z*r2 - t647) +
-                bdRr_z*(r2*t651 + 1) + bdon_angle_x*(t636 + t643) +
-                bdon_angle_y*(angle0_y*angle0_z*r3 - t648) + bdon_angle_z*(r3*t651 + 1))
-            bdrigid2[0] += -t629
-            bdrigid2[1] += -t632
-            bdrigid2[2] += -t634
+            t480 = 1/mass
+            t481 = bdRr_z*t480
+            t482 = bdRr_y*t480
+            t483 = bdRr_x*t480
+            t484 = Mc_y*angle0_y
+            t485 = Mc_z*angle0_z
+            t486 = t484 + t485
+            t487 = Mc_y*angle0_z
+            t488 = -Mc_z*angle0_y
+            t489 = -t487 - t488
+            t490 = (0.5)*r3
+            t491 = -0.5*r2 + t490
+            t492 = 2*angle0_x
+            t493 = Mc_x*angle0_y
+            t494 = -Mc_y*angle0_x
+            t495 = -t493 - t494
+            t496 = angle0_y*t495
+            t497 = Mc_x*angle0_z
+            t498 = Mc_z*angle0_x
+            t499 = -t498
+            t500 = t497 + t499
+            t501 = angle0_z*t500
+            t502 = t496 - t501
+            t503 = r4 - t490
+            t504 = t492*t503
+            t505 = -0.5*r4 + (1.5)*r5
+            t506 = t492*t505
+            t507 = Mc_y*r1
+            t508 = t497 - 2*t498
+            t509 = angle0_x*t495
+            t510 = 2*t491
+            t511 = angle0_x*t500
+            t512 = angle0_y*t489
+            t513 = t511 - t512
+            t514 = Mc_y*r2
+            t515 = 2*t503
+            t516 = Mc_z*r1
+            t517 = -2*Mc_y*angle0_x + t493
+            t518 = angle0_z*t489 - t509
+            t519 = Mc_z*r2
+            t520 = Mc_x*angle0_x
+            t521 = t485 + t520
+            t522 = angle0_y*t515
+            t523 = 2*t505
+            t524 = angle0_y*t523
+            t525 = -2*t493 - t494
+            t526 = Mc_x*r1
+            t527 = -2*Mc_z*angle0_y + t487
+            t528 = Mc_x*r2
+            t529 = t484 + t520
+            t530 = angle0_z*t515
+            t531 = angle0_z*t523
+            t532 = -2*t487 - t488
+            t533 = -2*t497 - t499
+            t534 = angle0_z*t489
+            t535 = bdon_first_x*t480
+            t536 = first0_z + mc_z
+            t537 = first0_y + mc_y
+            t538 = bdon_first_y*t480
+            t539 = first0_x + mc_x
+            t540 = bdon_first_z*t480
+            t541 = angle0_z*r1
+            t542 = angle0_y*r2
+            t543 = angle0_x*t542
+            t544 = angle0_z*r2
+            t545 = angle0_x*r3
+            t546 = angle0_y*t545
+            t547 = angle0_y*r1
+            t548 = angle0_x*t544
+            t549 = angle0_z*t545
+            t550 = angle0_y*angle0_y
+            t551 = angle0_z*angle0_z
+            t552 = -t550 - t551
+            t553 = angle0_x*r1
+            t554 = angle0_x*r2
+            t555 = angle0_x*angle0_x
+            t556 = -t551 - t555
+            t557 = -t550 - t555
+            bdrigid0[0] += Rt_y*t481 - Rt_z*bdRr_y*t480
+            bdrigid0[1] += -Rt_x*t481 + Rt_z*bdRr_x*t480
+            bdrigid0[2] += Rt_x*t482 - Rt_y*t483
+            bdrigid0[3] += (bdRr_x*(r2*t486 + t489*t491*t492 + t502*t504) + bdRr_y*(r2*t517 +
+                t504*t518 + t510*t511 - t516) + bdRr_z*(r2*t508 + t504*t513 + t507 + t509*t510) +
+                bdon_angle_x*(r3*t486 + t489*t504 + t502*t506) + bdon_angle_y*(r3*t517 + t506*t518
+                + t511*t515 - t519) + bdon_angle_z*(r3*t508 + t506*t513 + t509*t515 + t514))
+            bdrigid0[4] += (bdRr_x*(r2*t525 + t502*t522 + t510*t512 + t516) +
+                bdRr_y*(angle0_y*t500*t510 + r2*t521 + t518*t522) + bdRr_z*(r2*t527 + t496*t510 +
+                t513*t522 - t526) + bdon_angle_x*(r3*t525 + t502*t524 + t512*t515 + t519) +
+                bdon_angle_y*(r3*t521 + t500*t522 + t518*t524) + bdon_angle_z*(r3*t527 + t496*t515
+                + t513*t524 - t528))
+            bdrigid0[5] += (bdRr_x*(r2*t533 + t502*t530 - t507 + t510*t534) + bdRr_y*(r2*t532 +
+                t501*t510 + t518*t530 + t526) + bdRr_z*(angle0_z*t495*t510 + r2*t529 + t513*t530)
+                + bdon_angle_x*(r3*t533 + t502*t531 - t514 + t515*t534) + bdon_angle_y*(r3*t532 +
+                t501*t515 + t518*t531 + t528) + bdon_angle_z*(r3*t529 + t495*t530 + t513*t531))
+            bdRt_x += -t481*t537 + t482*t536 + t535
+            bdRt_y += t481*t539 - t483*t536 + t538
+            bdRt_z += -t482*t539 + t483*t537 + t540
+            bdMc_x += (bdRr_x*(r2*t552 + 1) + bdRr_y*(t541 + t543) + bdRr_z*(-t547 + t548) +
+                bdon_angle_x*(r3*t552 + 1) + bdon_angle_y*(t544 + t546) + bdon_angle_z*(-t542 +
+                t549))
+            bdMc_y += (bdRr_x*(-t541 + t543) + bdRr_y*(r2*t556 + 1) + bdRr_z*(angle0_y*t544 +
+                t553) + bdon_angle_x*(-t544 + t546) + bdon_angle_y*(r3*t556 + 1) +
+                bdon_angle_z*(angle0_y*angle0_z*r3 + t554))
+            bdMc_z += (bdRr_x*(t547 + t548) + bdRr_y*(angle0_y*angle0_z*r2 - t553) +
+                bdRr_z*(r2*t557 + 1) + bdon_angle_x*(t542 + t549) +
+                bdon_angle_y*(angle0_y*angle0_z*r3 - t554) + bdon_angle_z*(r3*t557 + 1))
+            bdrigid2[0] += -t535
+            bdrigid2[1] += -t538
+            bdrigid2[2] += -t540
             bdrigid2[3] += -Jc_xx*bdon_angle_x - Jc_xy*bdon_angle_y - Jc_xz*bdon_angle_z
             bdrigid2[4] += -Jc_xy*bdon_angle_x - Jc_yy*bdon_angle_y - Jc_yz*bdon_angle_z
             bdrigid2[5] += -Jc_xz*bdon_angle_x - Jc_yz*bdon_angle_y - Jc_zz*bdon_angle_z
@@ -2010,70 +1881,70 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
             mass = masses[0]
             Jc_xx, Jc_yy, Jc_zz, Jc_xy, Jc_xz, Jc_yz = Jc[0], Jc[1], Jc[2], Jc[3], Jc[4], Jc[5]
-            t652 = first0_y + mc_y
-            t653 = Om0_x*t652
-            t654 = first0_x + mc_x
-            t655 = -Om0_y*t654 + 2*first1_z
-            t656 = first0_z + mc_z
-            t657 = -t656
-            t658 = Om0_z*t654
-            t659 = -Om0_x*t656 + 2*first1_y
-            t660 = Om0_y*t656
-            t661 = -Om0_z*t652 + 2*first1_x
-            t662 = -t654
-            t663 = -t652
-            t664 = bdRt_x*mass
-            t665 = bdRt_y*mass
-            t666 = bdRt_z*mass
-            t667 = Om0_x*Om0_y
-            t668 = Om0_x*Om0_z
-            t669 = Om0_y*Om0_y
-            t670 = Om0_z*Om0_z
-            t671 = Om0_y*Om0_z
-            t672 = Om0_x*Om0_x
-            t673 = 2*bdRt_z
-            t674 = Jc_xy*wc_z
-            t675 = Jc_xz*wc_y
-            t676 = Jc_yy*wc_y
-            t677 = Jc_yz*wc_z
-            t678 = Jc_xy*wc_x
-            t679 = Jc_yz*wc_y
-            t680 = Jc_zz*wc_z
-            t681 = Jc_xz*wc_x
-            t682 = -Jc_yz*wc_x
-            t683 = Jc_xx*wc_x
-            t684 = Jc_xz*wc_z
-            t685 = Jc_xy*wc_y
-            bdOm0_x += (bdRt_x*(Om0_y*t652 - Om0_z*t657) + bdRt_y*(-2*t653 - t655) +
-                bdRt_z*(Om0_x*t657 + t658 + t659))
-            bdOm0_y += (bdRt_x*(Om0_y*t662 + t653 + t655) + bdRt_y*(-Om0_x*t662 + Om0_z*t656) +
-                bdRt_z*(-2*t660 - t661))
-            bdOm0_z += (bdRt_x*(-2*t658 - t659) + bdRt_y*(Om0_z*t663 + t660 + t661) +
-                bdRt_z*(Om0_x*t654 - Om0_y*t663))
-            bda0_x += t664
-            bda0_y += t665
-            bda0_z += t666
-            bdOm0d_x += bdRt_y*t657 + bdRt_z*t652
-            bdOm0d_y += bdRt_x*t656 + bdRt_z*t662
-            bdOm0d_z += bdRt_x*t663 + bdRt_y*t654
-            bdgamma[0] += -t664
-            bdgamma[1] += -t665
-            bdgamma[2] += -t666
-            bdrigid0[0] += bdRt_x*(-t669 - t670) + bdRt_y*(Om0d_z + t667) + bdRt_z*(-Om0d_y + t668)
-            bdrigid0[1] += bdRt_x*(-Om0d_z + t667) + bdRt_y*(-t670 - t672) + bdRt_z*(Om0d_x + t671)
-            bdrigid0[2] += bdRt_x*(Om0d_y + t668) + bdRt_y*(-Om0d_x + t671) + bdRt_z*(-t669 - t672)
-            bdrigid1[0] += -Om0_y*t673 + 2*Om0_z*bdRt_y
-            bdrigid1[1] += Om0_x*t673 - 2*Om0_z*bdRt_x
+            t558 = first0_y + mc_y
+            t559 = Om0_x*t558
+            t560 = first0_x + mc_x
+            t561 = -Om0_y*t560 + 2*first1_z
+            t562 = first0_z + mc_z
+            t563 = -t562
+            t564 = Om0_z*t560
+            t565 = -Om0_x*t562 + 2*first1_y
+            t566 = Om0_y*t562
+            t567 = -Om0_z*t558 + 2*first1_x
+            t568 = -t560
+            t569 = -t558
+            t570 = bdRt_x*mass
+            t571 = bdRt_y*mass
+            t572 = bdRt_z*mass
+            t573 = Om0_x*Om0_y
+            t574 = Om0_x*Om0_z
+            t575 = Om0_y*Om0_y
+            t576 = Om0_z*Om0_z
+            t577 = Om0_y*Om0_z
+            t578 = Om0_x*Om0_x
+            t579 = 2*bdRt_z
+            t580 = Jc_xy*wc_z
+            t581 = Jc_xz*wc_y
+            t582 = Jc_yy*wc_y
+            t583 = Jc_yz*wc_z
+            t584 = Jc_xy*wc_x
+            t585 = Jc_yz*wc_y
+            t586 = Jc_zz*wc_z
+            t587 = Jc_xz*wc_x
+            t588 = -Jc_yz*wc_x
+            t589 = Jc_xx*wc_x
+            t590 = Jc_xz*wc_z
+            t591 = Jc_xy*wc_y
+            bdOm0_x += (bdRt_x*(Om0_y*t558 - Om0_z*t563) + bdRt_y*(-2*t559 - t561) +
+                bdRt_z*(Om0_x*t563 + t564 + t565))
+            bdOm0_y += (bdRt_x*(Om0_y*t568 + t559 + t561) + bdRt_y*(-Om0_x*t568 + Om0_z*t562) +
+                bdRt_z*(-2*t566 - t567))
+            bdOm0_z += (bdRt_x*(-2*t564 - t565) + bdRt_y*(Om0_z*t569 + t566 + t567) +
+                bdRt_z*(Om0_x*t560 - Om0_y*t569))
+            bda0_x += t570
+            bda0_y += t571
+            bda0_z += t572
+            bdOm0d_x += bdRt_y*t563 + bdRt_z*t558
+            bdOm0d_y += bdRt_x*t562 + bdRt_z*t568
+            bdOm0d_z += bdRt_x*t569 + bdRt_y*t560
+            bdgamma[0] += -t570
+            bdgamma[1] += -t571
+            bdgamma[2] += -t572
+            bdrigid0[0] += bdRt_x*(-t575 - t576) + bdRt_y*(Om0d_z + t573) + bdRt_z*(-Om0d_y + t574)
+            bdrigid0[1] += bdRt_x*(-Om0d_z + t573) + bdRt_y*(-t576 - t578) + bdRt_z*(Om0d_x + t577)
+            bdrigid0[2] += bdRt_x*(Om0d_y + t574) + bdRt_y*(-Om0d_x + t577) + bdRt_z*(-t575 - t578)
+            bdrigid1[0] += -Om0_y*t579 + 2*Om0_z*bdRt_y
+            bdrigid1[1] += Om0_x*t579 - 2*Om0_z*bdRt_x
             bdrigid1[2] += -2*Om0_x*bdRt_y + 2*Om0_y*bdRt_x
             bdrigid2[0] += bdRt_x
             bdrigid2[1] += bdRt_y
             bdrigid2[2] += bdRt_z
-            bdwc_x += (bdMc_x*(-t674 + t675) + bdMc_y*(Jc_xx*wc_z - t679 - t680 - 2*t681) +
-                bdMc_z*(-Jc_xx*wc_y + t676 + t677 + 2*t678))
-            bdwc_y += (bdMc_x*(-Jc_yy*wc_z + 2*t679 + t680 + t681) + bdMc_y*(t674 + t682) +
-                bdMc_z*(Jc_yy*wc_x - t683 - t684 - 2*t685))
-            bdwc_z += (bdMc_x*(Jc_zz*wc_y - t676 - 2*t677 - t678) + bdMc_y*(-Jc_zz*wc_x + t683 +
-                2*t684 + t685) + bdMc_z*(-t675 - t682))
+            bdwc_x += (bdMc_x*(-t580 + t581) + bdMc_y*(Jc_xx*wc_z - t585 - t586 - 2*t587) +
+                bdMc_z*(-Jc_xx*wc_y + t582 + t583 + 2*t584))
+            bdwc_y += (bdMc_x*(-Jc_yy*wc_z + 2*t585 + t586 + t587) + bdMc_y*(t580 + t588) +
+                bdMc_z*(Jc_yy*wc_x - t589 - t590 - 2*t591))
+            bdwc_z += (bdMc_x*(Jc_zz*wc_y - t582 - 2*t583 - t584) + bdMc_y*(-Jc_zz*wc_x + t589 +
+                2*t590 + t591) + bdMc_z*(-t581 - t588))
             bdwcd_x += Jc_xx*bdMc_x + Jc_xy*bdMc_y + Jc_xz*bdMc_z
             bdwcd_y += Jc_xy*bdMc_x + Jc_yy*bdMc_y + Jc_yz*bdMc_z
             bdwcd_z += Jc_xz*bdMc_x + Jc_yz*bdMc_y + Jc_zz*bdMc_z
@@ -2081,402 +1952,402 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
             angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
             angle2_x, angle2_y, angle2_z = rigid2[3], rigid2[4], rigid2[5]
-            t686 = angle0_z*r1
-            t687 = angle0_y*r2
-            t688 = angle0_x*t687
-            t689 = -t686 + t688
-            t690 = angle0_x*angle1_y
-            t691 = angle0_y*angle1_x
-            t692 = -t691
-            t693 = t690 + t692
-            t694 = angle0_x*angle1_z
-            t695 = -angle0_z*angle1_x
-            t696 = -t694 - t695
-            t697 = angle0_x*t696
-            t698 = angle0_y*angle1_z
-            t699 = angle0_z*angle1_y
-            t700 = -t699
-            t701 = t698 + t700
-            t702 = angle0_y*t701
-            t703 = t697 - t702
-            t704 = angle1_z - r2*t693 + r3*t703
-            t705 = angle0_y*r1
-            t706 = angle0_z*r2
-            t707 = angle0_x*t706
-            t708 = t705 + t707
-            t709 = angle0_x*t693
-            t710 = angle0_z*t701 - t709
-            t711 = angle1_y - r2*t696 + r3*t710
-            t712 = angle0_y*t693
-            t713 = angle0_z*t696
-            t714 = t712 - t713
-            t715 = angle1_x - r2*t701 + r3*t714
-            t716 = angle0_y*angle0_y
-            t717 = angle0_z*angle0_z
-            t718 = -t716 - t717
-            t719 = r2*t718 + 1
-            t720 = angle0_x*r1
-            t721 = angle0_z*t687
-            t722 = t720 - t721
-            t723 = -t722
-            t724 = t686 + t688
-            t725 = angle0_x*angle0_x
-            t726 = -t717 - t725
-            t727 = r2*t726 + 1
-            t728 = -t705 + t707
-            t729 = t720 + t721
-            t730 = -t716 - t725
-            t731 = r2*t730 + 1
-            t732 = Om0d_y*angle0_y
-            t733 = Om0d_z*angle0_z
-            t734 = angle1_y*angle1_y
-            t735 = angle1_z*angle1_z
-            t736 = angle0_y*angle2_y
-            t737 = angle0_z*angle2_z
-            t738 = angle0_y*angle2_z
-            t739 = angle0_z*angle2_y
-            t740 = -t739
-            t741 = t738 + t740
-            t742 = (0.5)*r3
-            t743 = r4 - t742
-            t744 = 2*angle0_x
-            t745 = t743*t744
-            t746 = Om0d_y*angle0_z
-            t747 = -Om0d_z*angle0_y
-            t748 = -t746 - t747
-            t749 = -0.5*r2 + t742
-            t750 = -r3 + 2*r4
-            t751 = angle1_x*t750
-            t752 = angle0_y*angle1_y
-            t753 = angle0_z*angle1_z
-            t754 = t752 + t753
-            t755 = -r4 + 3*r5
-            t756 = angle0_x*angle1_x
-            t757 = t754 + t756
-            t758 = t755*t757
-            t759 = Om0d_x*angle0_y
-            t760 = -Om0d_y*angle0_x
-            t761 = -t759 - t760
-            t762 = angle0_y*t761
-            t763 = Om0d_x*angle0_z
-            t764 = Om0d_z*angle0_x
-            t765 = -t764
-            t766 = t763 + t765
-            t767 = angle0_z*t766
-            t768 = t762 - t767
-            t769 = angle1_x*t755
-            t770 = angle0_x*angle2_y
-            t771 = angle0_y*angle2_x
-            t772 = -t771
-            t773 = t770 + t772
-            t774 = angle0_y*t773
-            t775 = angle0_x*angle2_z
-            t776 = -angle0_z*angle2_x
-            t777 = -t775 - t776
-            t778 = angle0_z*t777
-            t779 = t774 - t778
-            t780 = -0.5*r4 + (1.5)*r5
-            t781 = t744*t780
-            t782 = angle1_y*t693
-            t783 = angle1_z*t696
-            t784 = t782 - t783
-            t785 = -0.5*r5 + 2*r6
-            t786 = t757*(4*angle0_x*t785 - t781)
-            t787 = -0.5*r6 + (2.5)*r7
-            t788 = t757*(6*angle0_x*t787 - t744*t785)
-            t789 = Om0_z*r1
-            t790 = Om0_x*angle0_y
-            t791 = Om0_x*angle0_z
-            t792 = Om0_z*angle0_x
-            t793 = -t792
-            t794 = t791 + t793
-            t795 = angle0_x*t794
-            t796 = 2*t749
-            t797 = -Om0_y*angle0_x
-            t798 = -t790 - t797
-            t799 = angle0_x*t798
-            t800 = Om0_y*angle0_z
-            t801 = -Om0_z*angle0_y
-            t802 = -t800 - t801
-            t803 = angle0_z*t802 - t799
-            t804 = r2*(-2*Om0_y*angle0_x + t790) + t745*t803 + t789 - t795*t796
-            t805 = Om0_y - r1*t794 + r2*t803
-            t806 = angle1_y*r2
-            t807 = 2*t694 + t695
-            t808 = -t807
-            t809 = 2*t743
-            t810 = 2*angle0_x*t703*t780 + r3*t808 - t709*t809 - t806
-            t811 = Om0_y*r1
-            t812 = angle0_y*t802
-            t813 = t795 - t812
-            t814 = -r2*(t791 - 2*t792) - t745*t813 + t796*t799 + t811
-            t815 = Om0_z - r1*t798 + r2*t813
-            t816 = -t815
-            t817 = angle1_z*r2
-            t818 = 2*t690 + t692
-            t819 = -t818
-            t820 = r3*t819 - t697*t809 + t710*t781 + t817
-            t821 = Om0d_z*r1
-            t822 = angle2_z*r2
-            t823 = angle1_x*r3
-            t824 = -angle1_y*t823
-            t825 = angle0_x*t777
-            t826 = angle0_x*t766
-            t827 = angle1_x*t696
-            t828 = t750*t757
-            t829 = angle1_z*t828
-            t830 = angle0_x*t761
-            t831 = angle0_z*t748 - t830
-            t832 = angle0_x*t773
-            t833 = angle0_z*t741 - t832
-            t834 = angle1_x*t693
-            t835 = angle1_z*t701 - t834
-            t836 = r3*t754 - t701*t745 + t714*t781
-            t837 = Om0_y*angle0_y
-            t838 = Om0_z*angle0_z
-            t839 = angle0_z*t794
-            t840 = angle0_y*t798 - t839
-            t841 = -2*angle0_x*t749*t802 + r2*(t837 + t838) + t745*t840
-            t842 = Om0_x - r1*t802 + r2*t840
-            t843 = -t842
-            t844 = Om0d_y*r1
-            t845 = angle2_y*r2
-            t846 = -angle1_z*t823
-            t847 = angle1_y*t828
-            t848 = angle0_y*t748
-            t849 = t826 - t848
-            t850 = angle0_y*t741
-            t851 = t825 - t850
-            t852 = angle1_y*t701
-            t853 = t827 - t852
-            t854 = -t805
-            t855 = Om0d_x*angle0_x
-            t856 = angle1_x*angle1_x
-            t857 = angle0_x*angle2_x
-            t858 = 2*angle0_y
-            t859 = t743*t858
-            t860 = t749*t858
-            t861 = t696*t750
-            t862 = t753 + t756
-            t863 = angle1_y*t755
-            t864 = t780*t858
-            t865 = t757*(4*angle0_y*t785 - t864)
-            t866 = t757*(6*angle0_y*t787 - t785*t858)
-            t867 = Om0_x*r1
-            t868 = -2*angle0_y*t749*t798 + r2*(-2*Om0_z*angle0_y + t800) + t813*t859 + t867
-            t869 = t690 - 2*t691
-            t870 = 2*angle0_y*t714*t780 + r3*t869 - t702*t809 - t817
-            t871 = -r2*(-2*t790 - t797) + t789 + t796*t812 - t840*t859
-            t872 = angle1_x*r2
-            t873 = 2*t698 + t700
-            t874 = -t873
-            t875 = r3*t874 + t703*t864 - t712*t809 + t872
-            t876 = Om0d_x*r1
-            t877 = angle2_x*r2
-            t878 = -angle1_y*angle1_z*r3
-            t879 = t751*t757
-            t880 = r3*t862 - t696*t859 + t710*t864
-            t881 = Om0_x*angle0_x
-            t882 = r2*(t838 + t881) - t794*t860 + t803*t859
-            t883 = 2*angle0_z
-            t884 = t743*t883
-            t885 = t693*t750
-            t886 = t752 + t756
-            t887 = angle1_z*t755
-            t888 = t780*t883
-            t889 = t757*(4*angle0_z*t785 - t888)
-            t890 = t757*(6*angle0_z*t787 - t785*t883)
-            t891 = -2*angle0_z*t749*t802 + r2*(-2*t791 - t793) + t811 + t840*t884
-            t892 = t698 - 2*t699
-            t893 = 2*angle0_z*t710*t780 + r3*t892 - t713*t809 - t872
-            t894 = -2*angle0_z*t743*t803 - r2*(-2*t800 - t801) + t796*t839 + t867
-            t895 = -2*angle0_z*angle1_x + t694
-            t896 = angle0_z*t701
-            t897 = r3*t895 + t714*t888 + t806 - t809*t896
-            t898 = r3*t886 - t693*t884 + t703*t888
-            t899 = -2*angle0_z*t749*t798 + r2*(t837 + t881) + t813*t884
-            t900 = angle0_x*t755
-            t901 = angle0_x*r3
-            t902 = angle0_z*t901
-            t903 = t687 + t902
-            t904 = angle0_y*t901
-            t905 = -t706 + t904
-            t906 = angle0_z*t828
-            t907 = angle0_x*t758
-            t908 = angle0_y*t907
-            t909 = r3*t718 + 1
-            t910 = angle0_y*t828
-            t911 = angle0_z*t907
-            t912 = angle0_y*t755
-            t913 = t706 + t904
-            t914 = angle0_x*r2
-            t915 = angle0_y*angle0_z*r3 - t914
-            t916 = r3*t726 + 1
-            t917 = angle0_x*t828
-            t918 = angle0_y*angle0_z
-            t919 = t758*t918
-            t920 = angle0_z*t755
-            t921 = r3*t918 + t914
-            t922 = -t687 + t902
-            t923 = r3*t730 + 1
-            bdOm0_x += (bdwcd_x*(t689*t704 - t708*t711) + bdwcd_y*(-t704*t719 + t708*t715) +
-                bdwcd_z*(-t689*t715 + t711*t719))
-            bdOm0_y += (bdwcd_x*(t704*t727 + t711*t722) + bdwcd_y*(-t704*t724 + t715*t723) +
-                bdwcd_z*(t711*t724 - t715*t727))
-            bdOm0_z += (bdwcd_x*(t704*t729 - t711*t731) + bdwcd_y*(-t704*t728 + t715*t731) +
-                bdwcd_z*(t711*t728 - t715*t729))
-            bdOm0d_x += bdwcd_x*t719 + bdwcd_y*t689 + bdwcd_z*t708
-            bdOm0d_y += bdwcd_x*t724 + bdwcd_y*t727 + bdwcd_z*t723
-            bdOm0d_z += bdwcd_x*t728 + bdwcd_y*t729 + bdwcd_z*t731
-            bdrigid0[3] += (bdwcd_x*(r2*(t732 + t733) + r3*(t734 + t735) + r3*(t736 + t737) -
-                t701*t751 - t701*t786 + t704*t804 + t711*t814 + t714*t769 + t714*t788 - t741*t745
-                - t744*t748*t749 + t745*t768 + t754*t758 + t779*t781 + t781*t784 + t805*t810 +
-                t816*t820) + bdwcd_y*(r2*(-2*Om0d_y*angle0_x + t759) + r3*(-2*t770 - t772) -
-                t696*t786 - t704*t841 + t710*t769 + t710*t788 - t715*t814 + t745*t831 - t750*t827
-                + t758*t819 + t781*t833 + t781*t835 - t796*t826 - t809*t825 + t810*t843 +
-                t815*t836 + t821 + t822 + t824 + t829) + bdwcd_z*(r2*(t763 - 2*t764) + r3*(-2*t775
-                - t776) - t693*t786 + t703*t769 + t703*t788 + t711*t841 - t715*t804 + t745*t849 -
-                t750*t834 + t758*t808 + t781*t851 + t781*t853 - t796*t830 - t809*t832 + t820*t842
-                + t836*t854 - t844 - t845 + t846 - t847))
-            bdrigid0[4] += (bdwcd_x*(r2*(-2*t759 - t760) + r3*(t770 - 2*t771) - t701*t865 +
-                t704*t882 - t711*t868 + t714*t863 + t714*t866 - t750*t852 + t758*t869 + t768*t859
-                + t779*t864 + t784*t864 - t796*t848 + t805*t875 - t809*t850 + t816*t880 - t821 -
-                t822 + t824 - t829) + bdwcd_y*(-angle1_y*t861 + r2*(t733 + t855) + r3*(t735 +
-                t856) + r3*(t737 + t857) - t696*t865 + t704*t871 + t710*t863 + t710*t866 +
-                t715*t868 + t758*t862 - t766*t860 - t777*t859 + t815*t870 + t831*t859 + t833*t864
-                + t835*t864 + t843*t875) + bdwcd_z*(r2*(-2*Om0d_z*angle0_y + t746) + r3*(-2*t738 -
-                t740) - t693*t865 + t703*t863 + t703*t866 - t711*t871 - t715*t882 - t750*t782 +
-                t758*t874 - t762*t796 - t774*t809 + t842*t880 + t849*t859 + t851*t864 + t853*t864
-                + t854*t870 + t876 + t877 + t878 + t879))
-            bdrigid0[5] += (bdwcd_x*(-angle0_z*t741*t809 - angle0_z*t748*t796 - angle1_z*t701*t750
-                + r2*(-2*t763 - t765) + r3*(-2*angle0_z*angle2_x + t775) - t701*t889 - t704*t894 -
-                t711*t899 + t714*t887 + t714*t890 + t758*t895 + t768*t884 + t779*t888 + t784*t888
-                + t805*t898 + t816*t893 + t844 + t845 + t846 + t847) + bdwcd_y*(r2*(-2*t746 -
-                t747) + r3*(t738 - 2*t739) - t696*t889 - t704*t891 + t710*t887 + t710*t890 +
-                t715*t899 - t750*t783 + t758*t892 - t767*t796 - t778*t809 + t815*t897 + t831*t884
-                + t833*t888 + t835*t888 + t843*t898 - t876 - t877 + t878 - t879) +
-                bdwcd_z*(-angle1_z*t885 + r2*(t732 + t855) + r3*(t734 + t856) + r3*(t736 + t857) -
-                t693*t889 + t703*t887 + t703*t890 + t711*t891 + t715*t894 - t749*t761*t883 +
-                t758*t886 - t773*t884 + t842*t893 + t849*t884 + t851*t888 + t853*t888 + t854*t897))
-            bdrigid1[3] += (bdwcd_x*(-angle0_x*t701*t750 - r3*t754 + t714*t900 + t718*t758 +
-                t805*t903 + t816*t905) + bdwcd_y*(-r3*t869 - t697*t750 + t710*t900 + t815*t909 +
-                t843*t903 - t906 + t908) + bdwcd_z*(-r3*t895 + t703*t900 - t709*t750 + t842*t905 +
-                t854*t909 + t910 + t911))
-            bdrigid1[4] += (bdwcd_x*(r3*t818 - t702*t750 + t714*t912 + t805*t915 + t816*t916 +
-                t906 + t908) + bdwcd_y*(-angle0_y*t861 - r3*t862 + t710*t912 + t726*t758 +
-                t815*t913 + t843*t915) + bdwcd_z*(-r3*t892 + t703*t912 - t712*t750 + t842*t916 +
-                t854*t913 - t917 + t919))
-            bdrigid1[5] += (bdwcd_x*(r3*t807 + t714*t920 - t750*t896 + t805*t923 + t816*t921 -
-                t910 + t911) + bdwcd_y*(r3*t873 + t710*t920 - t713*t750 + t815*t922 + t843*t923 +
-                t917 + t919) + bdwcd_z*(-angle0_z*t885 - r3*t886 + t703*t920 + t730*t758 +
-                t842*t921 + t854*t922))
-            bdrigid2[3] += bdwcd_x*t909 + bdwcd_y*t905 + bdwcd_z*t903
-            bdrigid2[4] += bdwcd_x*t913 + bdwcd_y*t916 + bdwcd_z*t915
-            bdrigid2[5] += bdwcd_x*t922 + bdwcd_y*t921 + bdwcd_z*t923
+            t592 = angle0_z*r1
+            t593 = angle0_y*r2
+            t594 = angle0_x*t593
+            t595 = -t592 + t594
+            t596 = angle0_x*angle1_y
+            t597 = angle0_y*angle1_x
+            t598 = -t597
+            t599 = t596 + t598
+            t600 = angle0_x*angle1_z
+            t601 = -angle0_z*angle1_x
+            t602 = -t600 - t601
+            t603 = angle0_x*t602
+            t604 = angle0_y*angle1_z
+            t605 = angle0_z*angle1_y
+            t606 = -t605
+            t607 = t604 + t606
+            t608 = angle0_y*t607
+            t609 = t603 - t608
+            t610 = angle1_z - r2*t599 + r3*t609
+            t611 = angle0_y*r1
+            t612 = angle0_z*r2
+            t613 = angle0_x*t612
+            t614 = t611 + t613
+            t615 = angle0_x*t599
+            t616 = angle0_z*t607 - t615
+            t617 = angle1_y - r2*t602 + r3*t616
+            t618 = angle0_y*t599
+            t619 = angle0_z*t602
+            t620 = t618 - t619
+            t621 = angle1_x - r2*t607 + r3*t620
+            t622 = angle0_y*angle0_y
+            t623 = angle0_z*angle0_z
+            t624 = -t622 - t623
+            t625 = r2*t624 + 1
+            t626 = angle0_x*r1
+            t627 = angle0_z*t593
+            t628 = t626 - t627
+            t629 = -t628
+            t630 = t592 + t594
+            t631 = angle0_x*angle0_x
+            t632 = -t623 - t631
+            t633 = r2*t632 + 1
+            t634 = -t611 + t613
+            t635 = t626 + t627
+            t636 = -t622 - t631
+            t637 = r2*t636 + 1
+            t638 = Om0d_y*angle0_y
+            t639 = Om0d_z*angle0_z
+            t640 = angle1_y*angle1_y
+            t641 = angle1_z*angle1_z
+            t642 = angle0_y*angle2_y
+            t643 = angle0_z*angle2_z
+            t644 = angle0_y*angle2_z
+            t645 = angle0_z*angle2_y
+            t646 = -t645
+            t647 = t644 + t646
+            t648 = (0.5)*r3
+            t649 = r4 - t648
+            t650 = 2*angle0_x
+            t651 = t649*t650
+            t652 = Om0d_y*angle0_z
+            t653 = -Om0d_z*angle0_y
+            t654 = -t652 - t653
+            t655 = -0.5*r2 + t648
+            t656 = -r3 + 2*r4
+            t657 = angle1_x*t656
+            t658 = angle0_y*angle1_y
+            t659 = angle0_z*angle1_z
+            t660 = t658 + t659
+            t661 = -r4 + 3*r5
+            t662 = angle0_x*angle1_x
+            t663 = t660 + t662
+            t664 = t661*t663
+            t665 = Om0d_x*angle0_y
+            t666 = -Om0d_y*angle0_x
+            t667 = -t665 - t666
+            t668 = angle0_y*t667
+            t669 = Om0d_x*angle0_z
+            t670 = Om0d_z*angle0_x
+            t671 = -t670
+            t672 = t669 + t671
+            t673 = angle0_z*t672
+            t674 = t668 - t673
+            t675 = angle1_x*t661
+            t676 = angle0_x*angle2_y
+            t677 = angle0_y*angle2_x
+            t678 = -t677
+            t679 = t676 + t678
+            t680 = angle0_y*t679
+            t681 = angle0_x*angle2_z
+            t682 = -angle0_z*angle2_x
+            t683 = -t681 - t682
+            t684 = angle0_z*t683
+            t685 = t680 - t684
+            t686 = -0.5*r4 + (1.5)*r5
+            t687 = t650*t686
+            t688 = angle1_y*t599
+            t689 = angle1_z*t602
+            t690 = t688 - t689
+            t691 = -0.5*r5 + 2*r6
+            t692 = t663*(4*angle0_x*t691 - t687)
+            t693 = -0.5*r6 + (2.5)*r7
+            t694 = t663*(6*angle0_x*t693 - t650*t691)
+            t695 = Om0_z*r1
+            t696 = Om0_x*angle0_y
+            t697 = Om0_x*angle0_z
+            t698 = Om0_z*angle0_x
+            t699 = -t698
+            t700 = t697 + t699
+            t701 = angle0_x*t700
+            t702 = 2*t655
+            t703 = -Om0_y*angle0_x
+            t704 = -t696 - t703
+            t705 = angle0_x*t704
+            t706 = Om0_y*angle0_z
+            t707 = -Om0_z*angle0_y
+            t708 = -t706 - t707
+            t709 = angle0_z*t708 - t705
+            t710 = r2*(-2*Om0_y*angle0_x + t696) + t651*t709 + t695 - t701*t702
+            t711 = Om0_y - r1*t700 + r2*t709
+            t712 = angle1_y*r2
+            t713 = 2*t600 + t601
+            t714 = -t713
+            t715 = 2*t649
+            t716 = 2*angle0_x*t609*t686 + r3*t714 - t615*t715 - t712
+            t717 = Om0_y*r1
+            t718 = angle0_y*t708
+            t719 = t701 - t718
+            t720 = -r2*(t697 - 2*t698) - t651*t719 + t702*t705 + t717
+            t721 = Om0_z - r1*t704 + r2*t719
+            t722 = -t721
+            t723 = angle1_z*r2
+            t724 = 2*t596 + t598
+            t725 = -t724
+            t726 = r3*t725 - t603*t715 + t616*t687 + t723
+            t727 = Om0d_z*r1
+            t728 = angle2_z*r2
+            t729 = angle1_x*r3
+            t730 = -angle1_y*t729
+            t731 = angle0_x*t683
+            t732 = angle0_x*t672
+            t733 = angle1_x*t602
+            t734 = t656*t663
+            t735 = angle1_z*t734
+            t736 = angle0_x*t667
+            t737 = angle0_z*t654 - t736
+            t738 = angle0_x*t679
+            t739 = angle0_z*t647 - t738
+            t740 = angle1_x*t599
+            t741 = angle1_z*t607 - t740
+            t742 = r3*t660 - t607*t651 + t620*t687
+            t743 = Om0_y*angle0_y
+            t744 = Om0_z*angle0_z
+            t745 = angle0_z*t700
+            t746 = angle0_y*t704 - t745
+            t747 = -2*angle0_x*t655*t708 + r2*(t743 + t744) + t651*t746
+            t748 = Om0_x - r1*t708 + r2*t746
+            t749 = -t748
+            t750 = Om0d_y*r1
+            t751 = angle2_y*r2
+            t752 = -angle1_z*t729
+            t753 = angle1_y*t734
+            t754 = angle0_y*t654
+            t755 = t732 - t754
+            t756 = angle0_y*t647
+            t757 = t731 - t756
+            t758 = angle1_y*t607
+            t759 = t733 - t758
+            t760 = -t711
+            t761 = Om0d_x*angle0_x
+            t762 = angle1_x*angle1_x
+            t763 = angle0_x*angle2_x
+            t764 = 2*angle0_y
+            t765 = t649*t764
+            t766 = t655*t764
+            t767 = t602*t656
+            t768 = t659 + t662
+            t769 = angle1_y*t661
+            t770 = t686*t764
+            t771 = t663*(4*angle0_y*t691 - t770)
+            t772 = t663*(6*angle0_y*t693 - t691*t764)
+            t773 = Om0_x*r1
+            t774 = -2*angle0_y*t655*t704 + r2*(-2*Om0_z*angle0_y + t706) + t719*t765 + t773
+            t775 = t596 - 2*t597
+            t776 = 2*angle0_y*t620*t686 + r3*t775 - t608*t715 - t723
+            t777 = -r2*(-2*t696 - t703) + t695 + t702*t718 - t746*t765
+            t778 = angle1_x*r2
+            t779 = 2*t604 + t606
+            t780 = -t779
+            t781 = r3*t780 + t609*t770 - t618*t715 + t778
+            t782 = Om0d_x*r1
+            t783 = angle2_x*r2
+            t784 = -angle1_y*angle1_z*r3
+            t785 = t657*t663
+            t786 = r3*t768 - t602*t765 + t616*t770
+            t787 = Om0_x*angle0_x
+            t788 = r2*(t744 + t787) - t700*t766 + t709*t765
+            t789 = 2*angle0_z
+            t790 = t649*t789
+            t791 = t599*t656
+            t792 = t658 + t662
+            t793 = angle1_z*t661
+            t794 = t686*t789
+            t795 = t663*(4*angle0_z*t691 - t794)
+            t796 = t663*(6*angle0_z*t693 - t691*t789)
+            t797 = -2*angle0_z*t655*t708 + r2*(-2*t697 - t699) + t717 + t746*t790
+            t798 = t604 - 2*t605
+            t799 = 2*angle0_z*t616*t686 + r3*t798 - t619*t715 - t778
+            t800 = -2*angle0_z*t649*t709 - r2*(-2*t706 - t707) + t702*t745 + t773
+            t801 = -2*angle0_z*angle1_x + t600
+            t802 = angle0_z*t607
+            t803 = r3*t801 + t620*t794 + t712 - t715*t802
+            t804 = r3*t792 - t599*t790 + t609*t794
+            t805 = -2*angle0_z*t655*t704 + r2*(t743 + t787) + t719*t790
+            t806 = angle0_x*t661
+            t807 = angle0_x*r3
+            t808 = angle0_z*t807
+            t809 = t593 + t808
+            t810 = angle0_y*t807
+            t811 = -t612 + t810
+            t812 = angle0_z*t734
+            t813 = angle0_x*t664
+            t814 = angle0_y*t813
+            t815 = r3*t624 + 1
+            t816 = angle0_y*t734
+            t817 = angle0_z*t813
+            t818 = angle0_y*t661
+            t819 = t612 + t810
+            t820 = angle0_x*r2
+            t821 = angle0_y*angle0_z*r3 - t820
+            t822 = r3*t632 + 1
+            t823 = angle0_x*t734
+            t824 = angle0_y*angle0_z
+            t825 = t664*t824
+            t826 = angle0_z*t661
+            t827 = r3*t824 + t820
+            t828 = -t593 + t808
+            t829 = r3*t636 + 1
+            bdOm0_x += (bdwcd_x*(t595*t610 - t614*t617) + bdwcd_y*(-t610*t625 + t614*t621) +
+                bdwcd_z*(-t595*t621 + t617*t625))
+            bdOm0_y += (bdwcd_x*(t610*t633 + t617*t628) + bdwcd_y*(-t610*t630 + t621*t629) +
+                bdwcd_z*(t617*t630 - t621*t633))
+            bdOm0_z += (bdwcd_x*(t610*t635 - t617*t637) + bdwcd_y*(-t610*t634 + t621*t637) +
+                bdwcd_z*(t617*t634 - t621*t635))
+            bdOm0d_x += bdwcd_x*t625 + bdwcd_y*t595 + bdwcd_z*t614
+            bdOm0d_y += bdwcd_x*t630 + bdwcd_y*t633 + bdwcd_z*t629
+            bdOm0d_z += bdwcd_x*t634 + bdwcd_y*t635 + bdwcd_z*t637
+            bdrigid0[3] += (bdwcd_x*(r2*(t638 + t639) + r3*(t640 + t641) + r3*(t642 + t643) -
+                t607*t657 - t607*t692 + t610*t710 + t617*t720 + t620*t675 + t620*t694 - t647*t651
+                - t650*t654*t655 + t651*t674 + t660*t664 + t685*t687 + t687*t690 + t711*t716 +
+                t722*t726) + bdwcd_y*(r2*(-2*Om0d_y*angle0_x + t665) + r3*(-2*t676 - t678) -
+                t602*t692 - t610*t747 + t616*t675 + t616*t694 - t621*t720 + t651*t737 - t656*t733
+                + t664*t725 + t687*t739 + t687*t741 - t702*t732 - t715*t731 + t716*t749 +
+                t721*t742 + t727 + t728 + t730 + t735) + bdwcd_z*(r2*(t669 - 2*t670) + r3*(-2*t681
+                - t682) - t599*t692 + t609*t675 + t609*t694 + t617*t747 - t621*t710 + t651*t755 -
+                t656*t740 + t664*t714 + t687*t757 + t687*t759 - t702*t736 - t715*t738 + t726*t748
+                + t742*t760 - t750 - t751 + t752 - t753))
+            bdrigid0[4] += (bdwcd_x*(r2*(-2*t665 - t666) + r3*(t676 - 2*t677) - t607*t771 +
+                t610*t788 - t617*t774 + t620*t769 + t620*t772 - t656*t758 + t664*t775 + t674*t765
+                + t685*t770 + t690*t770 - t702*t754 + t711*t781 - t715*t756 + t722*t786 - t727 -
+                t728 + t730 - t735) + bdwcd_y*(-angle1_y*t767 + r2*(t639 + t761) + r3*(t641 +
+                t762) + r3*(t643 + t763) - t602*t771 + t610*t777 + t616*t769 + t616*t772 +
+                t621*t774 + t664*t768 - t672*t766 - t683*t765 + t721*t776 + t737*t765 + t739*t770
+                + t741*t770 + t749*t781) + bdwcd_z*(r2*(-2*Om0d_z*angle0_y + t652) + r3*(-2*t644 -
+                t646) - t599*t771 + t609*t769 + t609*t772 - t617*t777 - t621*t788 - t656*t688 +
+                t664*t780 - t668*t702 - t680*t715 + t748*t786 + t755*t765 + t757*t770 + t759*t770
+                + t760*t776 + t782 + t783 + t784 + t785))
+            bdrigid0[5] += (bdwcd_x*(-angle0_z*t647*t715 - angle0_z*t654*t702 - angle1_z*t607*t656
+                + r2*(-2*t669 - t671) + r3*(-2*angle0_z*angle2_x + t681) - t607*t795 - t610*t800 -
+                t617*t805 + t620*t793 + t620*t796 + t664*t801 + t674*t790 + t685*t794 + t690*t794
+                + t711*t804 + t722*t799 + t750 + t751 + t752 + t753) + bdwcd_y*(r2*(-2*t652 -
+                t653) + r3*(t644 - 2*t645) - t602*t795 - t610*t797 + t616*t793 + t616*t796 +
+                t621*t805 - t656*t689 + t664*t798 - t673*t702 - t684*t715 + t721*t803 + t737*t790
+                + t739*t794 + t741*t794 + t749*t804 - t782 - t783 + t784 - t785) +
+                bdwcd_z*(-angle1_z*t791 + r2*(t638 + t761) + r3*(t640 + t762) + r3*(t642 + t763) -
+                t599*t795 + t609*t793 + t609*t796 + t617*t797 + t621*t800 - t655*t667*t789 +
+                t664*t792 - t679*t790 + t748*t799 + t755*t790 + t757*t794 + t759*t794 + t760*t803))
+            bdrigid1[3] += (bdwcd_x*(-angle0_x*t607*t656 - r3*t660 + t620*t806 + t624*t664 +
+                t711*t809 + t722*t811) + bdwcd_y*(-r3*t775 - t603*t656 + t616*t806 + t721*t815 +
+                t749*t809 - t812 + t814) + bdwcd_z*(-r3*t801 + t609*t806 - t615*t656 + t748*t811 +
+                t760*t815 + t816 + t817))
+            bdrigid1[4] += (bdwcd_x*(r3*t724 - t608*t656 + t620*t818 + t711*t821 + t722*t822 +
+                t812 + t814) + bdwcd_y*(-angle0_y*t767 - r3*t768 + t616*t818 + t632*t664 +
+                t721*t819 + t749*t821) + bdwcd_z*(-r3*t798 + t609*t818 - t618*t656 + t748*t822 +
+                t760*t819 - t823 + t825))
+            bdrigid1[5] += (bdwcd_x*(r3*t713 + t620*t826 - t656*t802 + t711*t829 + t722*t827 -
+                t816 + t817) + bdwcd_y*(r3*t779 + t616*t826 - t619*t656 + t721*t828 + t749*t829 +
+                t823 + t825) + bdwcd_z*(-angle0_z*t791 - r3*t792 + t609*t826 + t636*t664 +
+                t748*t827 + t760*t828))
+            bdrigid2[3] += bdwcd_x*t815 + bdwcd_y*t811 + bdwcd_z*t809
+            bdrigid2[4] += bdwcd_x*t819 + bdwcd_y*t822 + bdwcd_z*t821
+            bdrigid2[5] += bdwcd_x*t828 + bdwcd_y*t827 + bdwcd_z*t829
             # transposed: differential: angular velocity of the rigid part
             angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
             angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
-            t924 = angle0_y*r1
-            t925 = angle0_z*r2
-            t926 = angle0_x*t925
-            t927 = angle0_z*r1
-            t928 = angle0_y*r2
-            t929 = angle0_x*t928
-            t930 = angle0_y*angle0_y
-            t931 = angle0_z*angle0_z
-            t932 = -t930 - t931
-            t933 = angle0_x*r1
-            t934 = angle0_x*angle0_x
-            t935 = -t931 - t934
-            t936 = -t930 - t934
-            t937 = Om0_y*angle0_y
-            t938 = Om0_z*angle0_z
-            t939 = angle0_y*angle1_y
-            t940 = angle0_z*angle1_z
-            t941 = angle0_y*angle1_z
-            t942 = angle0_z*angle1_y
-            t943 = -t942
-            t944 = t941 + t943
-            t945 = (0.5)*r3
-            t946 = r4 - t945
-            t947 = 2*angle0_x
-            t948 = t946*t947
-            t949 = Om0_y*angle0_z
-            t950 = -Om0_z*angle0_y
-            t951 = -t949 - t950
-            t952 = -0.5*r2 + t945
-            t953 = Om0_x*angle0_y
-            t954 = -Om0_y*angle0_x
-            t955 = -t953 - t954
-            t956 = angle0_y*t955
-            t957 = Om0_x*angle0_z
-            t958 = Om0_z*angle0_x
-            t959 = -t958
-            t960 = t957 + t959
-            t961 = angle0_z*t960
-            t962 = t956 - t961
-            t963 = angle0_x*angle1_y
-            t964 = angle0_y*angle1_x
-            t965 = -t964
-            t966 = t963 + t965
-            t967 = angle0_y*t966
-            t968 = angle0_x*angle1_z
-            t969 = -angle0_z*angle1_x
-            t970 = -t968 - t969
-            t971 = angle0_z*t970
-            t972 = t967 - t971
-            t973 = -0.5*r4 + (1.5)*r5
-            t974 = t947*t973
-            t975 = angle0_x*t970
-            t976 = 2*t946
-            t977 = angle0_x*t960
-            t978 = 2*t952
-            t979 = angle0_x*t955
-            t980 = angle0_z*t951 - t979
-            t981 = angle0_x*t966
-            t982 = angle0_z*t944 - t981
-            t983 = Om0_z*r1 + angle1_z*r2
-            t984 = angle0_y*t951
-            t985 = t977 - t984
-            t986 = angle0_y*t944
-            t987 = t975 - t986
-            t988 = Om0_y*r1 + angle1_y*r2
-            t989 = Om0_x*angle0_x
-            t990 = angle0_x*angle1_x
-            t991 = angle0_y*t976
-            t992 = 2*t973
-            t993 = angle0_y*t992
-            t994 = Om0_x*r1 + angle1_x*r2
-            t995 = angle0_z*t976
-            t996 = angle0_z*t992
-            t997 = angle0_x*r3
-            t998 = angle0_z*t997
-            t999 = angle0_y*t997
-            t1000 = angle0_x*r2
-            bdOm0_x += bdwc_x*(r2*t932 + 1) + bdwc_y*(-t927 + t929) + bdwc_z*(t924 + t926)
-            bdOm0_y += (bdwc_x*(t927 + t929) + bdwc_y*(r2*t935 + 1) + bdwc_z*(angle0_y*angle0_z*r2
-                - t933))
-            bdOm0_z += bdwc_x*(-t924 + t926) + bdwc_y*(angle0_y*t925 + t933) + bdwc_z*(r2*t936 + 1)
-            bdrigid0[3] += (bdwc_x*(r2*(t937 + t938) + r3*(t939 + t940) - t944*t948 -
-                t947*t951*t952 + t948*t962 + t972*t974) + bdwc_y*(r2*(-2*Om0_y*angle0_x + t953) +
-                r3*(-2*t963 - t965) + t948*t980 + t974*t982 - t975*t976 - t977*t978 + t983) +
-                bdwc_z*(2*angle0_x*t946*t985 + 2*angle0_x*t973*t987 + r2*(t957 - 2*t958) +
-                r3*(-2*t968 - t969) - t976*t981 - t978*t979 - t988))
-            bdrigid0[4] += (bdwc_x*(2*angle0_y*t946*t962 + 2*angle0_y*t972*t973 + r2*(-2*t953 -
-                t954) + r3*(t963 - 2*t964) - t976*t986 - t978*t984 - t983) +
-                bdwc_y*(-angle0_y*t960*t978 + r2*(t938 + t989) + r3*(t940 + t990) - t970*t991 +
-                t980*t991 + t982*t993) + bdwc_z*(r2*(-2*Om0_z*angle0_y + t949) + r3*(-2*t941 -
-                t943) - t956*t978 - t967*t976 + t985*t991 + t987*t993 + t994))
-            bdrigid0[5] += (bdwc_x*(-angle0_z*t944*t976 - angle0_z*t951*t978 + r2*(-2*t957 - t959)
-                + r3*(-2*angle0_z*angle1_x + t968) + t962*t995 + t972*t996 + t988) +
-                bdwc_y*(2*angle0_z*t946*t980 + 2*angle0_z*t973*t982 + r2*(-2*t949 - t950) +
-                r3*(t941 - 2*t942) - t961*t978 - t971*t976 - t994) + bdwc_z*(-angle0_z*t955*t978 +
-                r2*(t937 + t989) + r3*(t939 + t990) - t966*t995 + t985*t995 + t987*t996))
-            bdrigid1[3] += bdwc_x*(r3*t932 + 1) + bdwc_y*(-t925 + t999) + bdwc_z*(t928 + t998)
-            bdrigid1[4] += (bdwc_x*(t925 + t999) + bdwc_y*(r3*t935 + 1) +
-                bdwc_z*(angle0_y*angle0_z*r3 - t1000))
-            bdrigid1[5] += (bdwc_x*(-t928 + t998) + bdwc_y*(angle0_y*angle0_z*r3 + t1000) +
-                bdwc_z*(r3*t936 + 1))
+            t830 = angle0_y*r1
+            t831 = angle0_z*r2
+            t832 = angle0_x*t831
+            t833 = angle0_z*r1
+            t834 = angle0_y*r2
+            t835 = angle0_x*t834
+            t836 = angle0_y*angle0_y
+            t837 = angle0_z*angle0_z
+            t838 = -t836 - t837
+            t839 = angle0_x*r1
+            t840 = angle0_x*angle0_x
+            t841 = -t837 - t840
+            t842 = -t836 - t840
+            t843 = Om0_y*angle0_y
+            t844 = Om0_z*angle0_z
+            t845 = angle0_y*angle1_y
+            t846 = angle0_z*angle1_z
+            t847 = angle0_y*angle1_z
+            t848 = angle0_z*angle1_y
+            t849 = -t848
+            t850 = t847 + t849
+            t851 = (0.5)*r3
+            t852 = r4 - t851
+            t853 = 2*angle0_x
+            t854 = t852*t853
+            t855 = Om0_y*angle0_z
+            t856 = -Om0_z*angle0_y
+            t857 = -t855 - t856
+            t858 = -0.5*r2 + t851
+            t859 = Om0_x*angle0_y
+            t860 = -Om0_y*angle0_x
+            t861 = -t859 - t860
+            t862 = angle0_y*t861
+            t863 = Om0_x*angle0_z
+            t864 = Om0_z*angle0_x
+            t865 = -t864
+            t866 = t863 + t865
+            t867 = angle0_z*t866
+            t868 = t862 - t867
+            t869 = angle0_x*angle1_y
+            t870 = angle0_y*angle1_x
+            t871 = -t870
+            t872 = t869 + t871
+            t873 = angle0_y*t872
+            t874 = angle0_x*angle1_z
+            t875 = -angle0_z*angle1_x
+            t876 = -t874 - t875
+            t877 = angle0_z*t876
+            t878 = t873 - t877
+            t879 = -0.5*r4 + (1.5)*r5
+            t880 = t853*t879
+            t881 = angle0_x*t876
+            t882 = 2*t852
+            t883 = angle0_x*t866
+            t884 = 2*t858
+            t885 = angle0_x*t861
+            t886 = angle0_z*t857 - t885
+            t887 = angle0_x*t872
+            t888 = angle0_z*t850 - t887
+            t889 = Om0_z*r1 + angle1_z*r2
+            t890 = angle0_y*t857
+            t891 = t883 - t890
+            t892 = angle0_y*t850
+            t893 = t881 - t892
+            t894 = Om0_y*r1 + angle1_y*r2
+            t895 = Om0_x*angle0_x
+            t896 = angle0_x*angle1_x
+            t897 = angle0_y*t882
+            t898 = 2*t879
+            t899 = angle0_y*t898
+            t900 = Om0_x*r1 + angle1_x*r2
+            t901 = angle0_z*t882
+            t902 = angle0_z*t898
+            t903 = angle0_x*r3
+            t904 = angle0_z*t903
+            t905 = angle0_y*t903
+            t906 = angle0_x*r2
+            bdOm0_x += bdwc_x*(r2*t838 + 1) + bdwc_y*(-t833 + t835) + bdwc_z*(t830 + t832)
+            bdOm0_y += (bdwc_x*(t833 + t835) + bdwc_y*(r2*t841 + 1) + bdwc_z*(angle0_y*angle0_z*r2
+                - t839))
+            bdOm0_z += bdwc_x*(-t830 + t832) + bdwc_y*(angle0_y*t831 + t839) + bdwc_z*(r2*t842 + 1)
+            bdrigid0[3] += (bdwc_x*(r2*(t843 + t844) + r3*(t845 + t846) - t850*t854 -
+                t853*t857*t858 + t854*t868 + t878*t880) + bdwc_y*(r2*(-2*Om0_y*angle0_x + t859) +
+                r3*(-2*t869 - t871) + t854*t886 + t880*t888 - t881*t882 - t883*t884 + t889) +
+                bdwc_z*(2*angle0_x*t852*t891 + 2*angle0_x*t879*t893 + r2*(t863 - 2*t864) +
+                r3*(-2*t874 - t875) - t882*t887 - t884*t885 - t894))
+            bdrigid0[4] += (bdwc_x*(2*angle0_y*t852*t868 + 2*angle0_y*t878*t879 + r2*(-2*t859 -
+                t860) + r3*(t869 - 2*t870) - t882*t892 - t884*t890 - t889) +
+                bdwc_y*(-angle0_y*t866*t884 + r2*(t844 + t895) + r3*(t846 + t896) - t876*t897 +
+                t886*t897 + t888*t899) + bdwc_z*(r2*(-2*Om0_z*angle0_y + t855) + r3*(-2*t847 -
+                t849) - t862*t884 - t873*t882 + t891*t897 + t893*t899 + t900))
+            bdrigid0[5] += (bdwc_x*(-angle0_z*t850*t882 - angle0_z*t857*t884 + r2*(-2*t863 - t865)
+                + r3*(-2*angle0_z*angle1_x + t874) + t868*t901 + t878*t902 + t894) +
+                bdwc_y*(2*angle0_z*t852*t886 + 2*angle0_z*t879*t888 + r2*(-2*t855 - t856) +
+                r3*(t847 - 2*t848) - t867*t884 - t877*t882 - t900) + bdwc_z*(-angle0_z*t861*t884 +
+                r2*(t843 + t895) + r3*(t845 + t896) - t872*t901 + t891*t901 + t893*t902))
+            bdrigid1[3] += bdwc_x*(r3*t838 + 1) + bdwc_y*(-t831 + t905) + bdwc_z*(t834 + t904)
+            bdrigid1[4] += (bdwc_x*(t831 + t905) + bdwc_y*(r3*t841 + 1) +
+                bdwc_z*(angle0_y*angle0_z*r3 - t906))
+            bdrigid1[5] += (bdwc_x*(-t834 + t904) + bdwc_y*(angle0_y*angle0_z*r3 + t906) +
+                bdwc_z*(r3*t842 + 1))
             # transposed: rigid part of detad
             add_rows_times(rigid_rows, bdrigid2, bdetad, 6, n, padded(6))
             # transposed: rigid part of deta
@@ -2509,315 +2380,241 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e0 = e0s[j]
                 e1 = e1s[j]
                 e2 = e2s[j]
-                t1001 = (0.5)*ep_z
-                t1002 = e0*ep_x
-                t1003 = e0*psi_x
-                t1004 = 2*ep_x
-                t1005 = psi_x*t1004
-                t1006 = 2*ep_y
-                t1007 = psi_y*t1006
-                t1008 = 2*ep_z
-                t1009 = psi_z*t1008
-                t1010 = t1005 + t1007 + t1009
-                t1011 = e1*t1010
-                t1012 = psi_x*t1011
-                t1013 = ep_y*t1003 + psi_y*t1002 + psi_y*t1012
-                t1014 = t1001 + t1013
-                t1015 = (0.5)*ep_y
-                t1016 = ep_z*t1003 + psi_z*t1002 + psi_z*t1012
-                t1017 = -t1015 + t1016
-                t1018 = psi_z*psi_z
-                t1019 = e0*t1009 + t1011*t1018
-                t1020 = psi_y*psi_y
-                t1021 = e0*t1007 + t1011*t1020
-                t1022 = t1019 + t1021
-                t1023 = -t1001 + t1013
-                t1024 = (0.5)*ep_x
-                t1025 = e0*psi_z
-                t1026 = e0*psi_y
-                t1027 = psi_y*t1011
-                t1028 = ep_y*t1025 + ep_z*t1026 + psi_z*t1027
-                t1029 = t1024 + t1028
-                t1030 = psi_x*psi_x
-                t1031 = e0*t1005 + t1011*t1030
-                t1032 = t1019 + t1031
-                t1033 = t1015 + t1016
-                t1034 = -t1024 + t1028
-                t1035 = t1021 + t1031
-                t1036 = (0.5)*psi_z
-                t1037 = psi_y*t1003
-                t1038 = t1036 + t1037
-                t1039 = (0.5)*psi_y
-                t1040 = psi_z*t1003
-                t1041 = -t1039 + t1040
-                t1042 = e0*t1020
-                t1043 = e0*t1018 - 1
-                t1044 = t1042 + t1043
-                t1045 = -t1036 + t1037
-                t1046 = (0.5)*psi_x
-                t1047 = psi_y*t1025
-                t1048 = t1046 + t1047
-                t1049 = e0*t1030
-                t1050 = t1043 + t1049
-                t1051 = t1039 + t1040
-                t1052 = -t1046 + t1047
-                t1053 = t1042 + t1049 - 1
-                t1054 = e1*t1004
-                t1055 = Om0_x*psi_y
-                t1056 = Om0_y*psi_x - t1055
-                t1057 = psi_y*t1056
-                t1058 = t1054*t1057
-                t1059 = Om_x*psi_z
-                t1060 = Om_z*psi_x
-                t1061 = t1059 - t1060
-                t1062 = psi_z*t1054
-                t1063 = t1061*t1062
-                t1064 = e1*psi_x
-                t1065 = t1006*t1064
-                t1066 = t1056*t1065
-                t1067 = t1008*t1064
-                t1068 = t1061*t1067
-                t1069 = Om0_x*ep_y
-                t1070 = Om0d_x*psi_y
-                t1071 = Om0_y*ep_x + Om0d_y*psi_x - t1069 - t1070
-                t1072 = 2*e1
-                t1073 = psi_x*t1072
-                t1074 = psi_y*t1073
-                t1075 = t1071*t1074
-                t1076 = A_x*psi_z
-                t1077 = Om_x*ep_z
-                t1078 = A_z*psi_x
-                t1079 = Om_z*ep_x
-                t1080 = t1076 + t1077 - t1078 - t1079
-                t1081 = psi_z*t1073
-                t1082 = t1080*t1081
-                t1083 = Om_x*psi_y
-                t1084 = Om_y*psi_x - t1083
-                t1085 = psi_y*t1054
-                t1086 = t1084*t1085
-                t1087 = Om0_z*psi_x
-                t1088 = Om0_x*psi_z - t1087
-                t1089 = t1062*t1088
-                t1090 = t1065*t1084
-                t1091 = t1067*t1088
-                t1092 = A_x*psi_y
-                t1093 = Om_x*ep_y
-                t1094 = A_y*psi_x + Om_y*ep_x - t1092 - t1093
-                t1095 = t1074*t1094
-                t1096 = Om0_z*ep_x
-                t1097 = Om0d_z*psi_x
-                t1098 = Om0_x*ep_z + Om0d_x*psi_z - t1096 - t1097
-                t1099 = t1081*t1098
-                t1100 = 2*e2*t1010
-                t1101 = psi_x*t1100
-                t1102 = t1057*t1101
-                t1103 = psi_z*t1101
-                t1104 = t1061*t1103
-                t1105 = psi_y*t1101
-                t1106 = t1084*t1105
-                t1107 = t1088*t1103
-                t1108 = e0*ep_z
-                t1109 = psi_z*t1011
-                t1110 = (A_z*t1025 - Om0_z*t1108 - Om0_z*t1109 - Om0d_z*t1025 + Om_z*t1108 +
-                    Om_z*t1109)
-                t1111 = e0*ep_y
-                t1112 = (A_y*t1026 - Om0_y*t1027 - Om0_y*t1111 - Om0d_y*t1026 + Om_y*t1027 +
-                    Om_y*t1111)
-                t1113 = t1030*t1072
-                t1114 = Om_y*psi_x
-                t1115 = Om_y*psi_z
-                t1116 = Om_z*psi_y - t1115
-                t1117 = A_y*psi_z
-                t1118 = Om_y*ep_z
-                t1119 = A_z*psi_y + Om_z*ep_y - t1117 - t1118
-                t1120 = Om0_y*psi_z
-                t1121 = Om0_z*psi_y - t1120
-                t1122 = Om0_y*ep_z
-                t1123 = Om0d_y*psi_z
-                t1124 = Om0_z*ep_y + Om0d_z*psi_y - t1122 - t1123
-                t1125 = t1030*t1100
-                t1126 = 4*t1084
-                t1127 = ep_x*t1064
-                t1128 = (0.5)*A_z + (0.5)*Om0d_z - e0*t1071 + e0*t1094 - t1011*t1056 + t1011*t1084
-                t1129 = 4*t1127
-                t1130 = (0.5)*A_y + (0.5)*Om0d_y + e0*t1080 - e0*t1098 + t1011*t1061 - t1011*t1088
-                t1131 = psi_z*t1006
-                t1132 = e1*t1121
-                t1133 = t1131*t1132
-                t1134 = psi_y*t1008
-                t1135 = t1132*t1134
-                t1136 = psi_z*t1072
-                t1137 = psi_y*t1136
-                t1138 = t1124*t1137
-                t1139 = e1*t1116
-                t1140 = t1131*t1139
-                t1141 = t1134*t1139
-                t1142 = t1119*t1137
-                t1143 = psi_z*t1100
-                t1144 = psi_y*t1143
-                t1145 = t1121*t1144
-                t1146 = t1116*t1144
-                t1147 = (A_x*t1003 - Om0_x*t1002 - Om0_x*t1012 - Om0d_x*t1003 + Om_x*t1002 +
-                    Om_x*t1012)
-                t1148 = t1020*t1072
-                t1149 = e1*ep_y
-                t1150 = 4*t1149
-                t1151 = e1*t1061
-                t1152 = t1020*t1100
-                t1153 = e1*t1088
-                t1154 = Om_z*psi_y
-                t1155 = (0.5)*A_x + (0.5)*Om0d_x + e0*t1119 - e0*t1124 + t1011*t1116 - t1011*t1121
-                t1156 = t1018*t1072
-                t1157 = t1018*t1100
-                t1158 = 4*ep_z*psi_z
-                t1159 = t1074*t1084
-                t1160 = t1081*t1088
-                t1161 = t1057*t1073
-                t1162 = t1061*t1081
-                t1163 = Om0_z*t1025 - Om_z*e0*psi_z
-                t1164 = Om0_y*t1026 - Om_y*e0*psi_y
-                t1165 = (0.5)*Om0_z + (0.5)*Om_z - e0*t1056 + e0*t1084
-                t1166 = (0.5)*Om0_y + (0.5)*Om_y + e0*t1061 - e0*t1088
-                t1167 = t1116*t1137
-                t1168 = t1121*t1137
-                t1169 = Om0_x*t1003 - Om_x*e0*psi_x
-                t1170 = (0.5)*Om0_x + (0.5)*Om_x + e0*t1116 - e0*t1121
-                bdve[j3] += -bdepd_x*t1022 + bdepd_y*t1014 + bdepd_z*t1017
-                bdve[j3 + 1] += bdepd_x*t1023 - bdepd_y*t1032 + bdepd_z*t1029
-                bdve[j3 + 2] += bdepd_x*t1033 + bdepd_y*t1034 - bdepd_z*t1035
-                bdae[j3] += -bdepd_x*t1044 + bdepd_y*t1038 + bdepd_z*t1041
-                bdae[j3 + 1] += bdepd_x*t1045 - bdepd_y*t1050 + bdepd_z*t1048
-                bdae[j3 + 2] += bdepd_x*t1051 + bdepd_y*t1052 - bdepd_z*t1053
-                bdy[j3] += (bdepd_x*(-t1058 - t1063 - t1066 - t1068 - t1075 - t1082 + t1086 +
-                    t1089 + t1090 + t1091 + t1095 + t1099 - t1102 - t1104 + t1106 + t1107 + t1110
-                    + t1112) + bdepd_y*(-A_y*e0*psi_x + Om0_y*e0*ep_x + Om0_y*e1*psi_x*t1010 +
-                    Om0d_y*e0*psi_x - Om_y*e0*ep_x + 4*e1*ep_x*psi_x*t1056 + 2*e1*ep_x*psi_z*t1116
-                    + 2*e1*ep_z*psi_x*t1116 + 2*e1*psi_x*psi_z*t1119 + 2*e1*t1030*t1071 +
-                    2*e2*psi_x*psi_z*t1010*t1116 + 2*e2*t1010*t1030*t1056 - t1011*t1114 -
-                    t1062*t1121 - t1067*t1121 - t1081*t1124 - t1084*t1125 - t1094*t1113 -
-                    t1103*t1121 - t1126*t1127 - t1128) + bdepd_z*(-e0*t1078 - e0*t1079 + e0*t1096
-                    + e0*t1097 - t1011*t1060 + t1011*t1087 + t1061*t1125 + t1061*t1129 -
-                    t1065*t1116 + t1065*t1121 - t1074*t1119 + t1074*t1124 + t1080*t1113 -
-                    t1085*t1116 + t1085*t1121 - t1088*t1125 - t1088*t1129 - t1098*t1113 -
-                    t1105*t1116 + t1105*t1121 + t1130))
-                bdy[j3 + 1] += (bdepd_x*(e0*t1069 + e0*t1070 - e0*t1092 - e0*t1093 +
-                    psi_y*t1126*t1149 + t1011*t1055 - t1011*t1083 - t1056*t1152 - t1057*t1150 -
-                    t1061*t1144 - t1071*t1148 - t1080*t1137 + t1084*t1152 + t1088*t1144 +
-                    t1094*t1148 + t1098*t1137 + t1128 - t1131*t1151 + t1131*t1153 - t1134*t1151 +
-                    t1134*t1153) + bdepd_y*(t1058 + t1066 + t1075 - t1086 - t1090 - t1095 + t1102
-                    - t1106 + t1110 - t1133 - t1135 - t1138 + t1140 + t1141 + t1142 - t1145 +
-                    t1146 + t1147) + bdepd_z*(-A_z*e0*psi_y + Om0_z*e0*ep_y + Om0_z*e1*psi_y*t1010
-                    + Om0d_z*e0*psi_y - Om_z*e0*ep_y + 2*e1*ep_x*psi_y*t1061 +
-                    2*e1*ep_y*psi_x*t1061 + 4*e1*ep_y*psi_y*t1121 + 2*e1*psi_x*psi_y*t1080 +
-                    2*e1*t1020*t1124 + 2*e2*psi_x*psi_y*t1010*t1061 + 2*e2*t1010*t1020*t1121 -
-                    psi_y*t1116*t1150 - t1011*t1154 - t1065*t1088 - t1074*t1098 - t1085*t1088 -
-                    t1088*t1105 - t1116*t1152 - t1119*t1148 - t1155))
-                bdy[j3 + 2] += (bdepd_x*(Om0_x*e0*ep_z + Om0_x*e1*psi_z*t1010 + Om0d_x*e0*psi_z -
-                    e0*t1076 - e0*t1077 + 2*e1*ep_y*psi_z*t1084 + 2*e1*ep_z*psi_y*t1084 +
-                    4*e1*ep_z*psi_z*t1088 + 2*e1*psi_y*psi_z*t1094 - e1*t1008*t1057 +
-                    2*e1*t1018*t1098 - e1*t1056*t1131 + 2*e2*psi_y*psi_z*t1010*t1084 +
-                    2*e2*t1010*t1018*t1088 - t1011*t1059 - t1057*t1143 - t1061*t1157 - t1071*t1137
-                    - t1080*t1156 - t1130 - t1151*t1158) + bdepd_y*(-e0*t1117 - e0*t1118 +
-                    e0*t1122 + e0*t1123 - t1011*t1115 + t1011*t1120 + t1056*t1062 + t1056*t1067 +
-                    t1056*t1103 - t1062*t1084 - t1067*t1084 + t1071*t1081 - t1081*t1094 -
-                    t1084*t1103 + t1116*t1157 + t1119*t1156 - t1121*t1157 - t1124*t1156 -
-                    t1132*t1158 + t1139*t1158 + t1155) + bdepd_z*(t1063 + t1068 + t1082 - t1089 -
-                    t1091 - t1099 + t1104 - t1107 + t1112 + t1133 + t1135 + t1138 - t1140 - t1141
-                    - t1142 + t1145 - t1146 + t1147))
-                bdOm0_x += bdepd_x*t1022 - bdepd_y*t1023 - bdepd_z*t1033
-                bdOm0_y += -bdepd_x*t1014 + bdepd_y*t1032 - bdepd_z*t1034
-                bdOm0_z += -bdepd_x*t1017 - bdepd_y*t1029 + bdepd_z*t1035
-                bdeta[j3] += (bdepd_x*(t1159 + t1160 - t1161 - t1162 - t1163 - t1164) +
-                    bdepd_y*(Om0_y*e0*psi_x - e0*t1114 + 2*e1*psi_x*psi_z*t1116 + 2*e1*t1030*t1056
-                    - t1081*t1121 - t1084*t1113 - t1165) + bdepd_z*(-e0*t1060 + e0*t1087 +
-                    t1061*t1113 - t1074*t1116 + t1074*t1121 - t1088*t1113 + t1166))
-                bdeta[j3 + 1] += (bdepd_x*(e0*t1055 - e0*t1083 - t1056*t1148 - t1061*t1137 +
-                    t1084*t1148 + t1088*t1137 + t1165) + bdepd_y*(-t1159 + t1161 - t1163 + t1167 -
-                    t1168 - t1169) + bdepd_z*(Om0_z*e0*psi_y - e0*t1154 + 2*e1*psi_x*psi_y*t1061 +
-                    2*e1*t1020*t1121 - t1074*t1088 - t1116*t1148 - t1170))
-                bdeta[j3 + 2] += (bdepd_x*(Om0_x*e0*psi_z - e0*t1059 + 2*e1*psi_y*psi_z*t1084 +
-                    2*e1*t1018*t1088 - t1057*t1136 - t1061*t1156 - t1166) + bdepd_y*(-e0*t1115 +
-                    e0*t1120 + t1056*t1081 - t1081*t1084 + t1116*t1156 - t1121*t1156 + t1170) +
-                    bdepd_z*(-t1160 + t1162 - t1164 - t1167 + t1168 - t1169))
-                bdOm0d_x += bdepd_x*t1044 - bdepd_y*t1045 - bdepd_z*t1051
-                bdOm0d_y += -bdepd_x*t1038 + bdepd_y*t1050 - bdepd_z*t1052
-                bdOm0d_z += -bdepd_x*t1041 - bdepd_y*t1048 + bdepd_z*t1053
+                t907 = (0.5)*ep_z
+                t908 = ep_x*psi_y + ep_y*psi_x
+                t909 = 2*ep_x
+                t910 = psi_x*t909
+                t911 = 2*ep_y
+                t912 = psi_y*t911
+                t913 = 2*ep_z
+                t914 = psi_z*t913
+                t915 = t912 + t914
+                t916 = t910 + t915
+                t917 = e1*t916
+                t918 = psi_x*t917
+                t919 = psi_y*t918
+                t920 = e0*t908 + t919
+                t921 = (0.5)*ep_y
+                t922 = ep_x*psi_z + ep_z*psi_x
+                t923 = psi_z*t918
+                t924 = e0*t922 + t923
+                t925 = psi_y*psi_y
+                t926 = psi_z*psi_z
+                t927 = t925 + t926
+                t928 = -t927
+                t929 = (0.5)*ep_x
+                t930 = ep_y*psi_z + ep_z*psi_y
+                t931 = psi_y*psi_z
+                t932 = t917*t931
+                t933 = e0*t930 + t932
+                t934 = t910 + t914
+                t935 = psi_x*psi_x
+                t936 = t926 + t935
+                t937 = -t936
+                t938 = t910 + t912
+                t939 = t925 + t935
+                t940 = -t939
+                t941 = (0.5)*psi_z
+                t942 = e0*psi_x
+                t943 = psi_y*t942
+                t944 = t941 + t943
+                t945 = (0.5)*psi_y
+                t946 = psi_z*t942
+                t947 = -t945 + t946
+                t948 = -t941 + t943
+                t949 = (0.5)*psi_x
+                t950 = e0*t931
+                t951 = t949 + t950
+                t952 = t945 + t946
+                t953 = -t949 + t950
+                t954 = Om0_y - Om_y
+                t955 = -t954
+                t956 = Om0_z - Om_z
+                t957 = psi_y*t955 - psi_z*t956
+                t958 = A_y - Om0d_y
+                t959 = A_z - Om0d_z
+                t960 = -t959
+                t961 = psi_x*t955
+                t962 = Om0_x - Om_x
+                t963 = -t962
+                t964 = -psi_y*t963
+                t965 = t961 + t964
+                t966 = -t956
+                t967 = psi_x*t966
+                t968 = psi_z*t963 - t967
+                t969 = psi_y*t965 - psi_z*t968
+                t970 = e1*t909
+                t971 = 2*e2*t916
+                t972 = psi_x*t971
+                t973 = ep_x*t955
+                t974 = psi_x*t958
+                t975 = A_x - Om0d_x
+                t976 = -ep_y*t963 - psi_y*t975
+                t977 = t973 + t974 + t976
+                t978 = ep_x*t966
+                t979 = psi_x*t959
+                t980 = t978 + t979
+                t981 = ep_z*t963 + psi_z*t975 - t980
+                t982 = ep_y*t965 - ep_z*t968 + psi_y*t977 - psi_z*t981
+                t983 = 2*e1
+                t984 = psi_x*t983
+                t985 = (0.5)*A_z
+                t986 = (0.5)*Om0d_z
+                t987 = -2*t961 - t964
+                t988 = psi_y*t966
+                t989 = -psi_z*t955
+                t990 = t988 + t989
+                t991 = -psi_x*t965 + psi_z*t990
+                t992 = ep_y*t966
+                t993 = psi_y*t959
+                t994 = -ep_z*t955 - psi_z*t958
+                t995 = t992 + t993 + t994
+                t996 = -ep_x*t965 + ep_z*t990 - psi_x*t977 + psi_z*t995
+                t997 = (0.5)*A_y
+                t998 = (0.5)*Om0d_y
+                t999 = psi_z*t963
+                t1000 = psi_x*t956 - t967 + t999
+                t1001 = psi_x*t968 - psi_y*t990
+                t1002 = ep_z*t963
+                t1003 = psi_z*t975
+                t1004 = ep_x*t968 - ep_y*t990 + psi_x*t981 - psi_y*t995
+                t1005 = -psi_x*t962 + psi_z*t966
+                t1006 = -t975
+                t1007 = e1*t911
+                t1008 = psi_y*t971
+                t1009 = psi_y*t983
+                t1010 = (0.5)*A_x
+                t1011 = (0.5)*Om0d_x
+                t1012 = -2*t988 - t989
+                t1013 = psi_y*t962 + t965
+                t1014 = psi_x*t963 - psi_y*t954
+                t1015 = -t958
+                t1016 = e1*t913
+                t1017 = psi_z*t971
+                t1018 = psi_z*t983
+                t1019 = t967 - 2*t999
+                t1020 = psi_z*t954 + t990
+                t1021 = -t908
+                t1022 = -t922
+                t1023 = -t930
+                t1024 = (0.5)*Om0_z + (0.5)*Om_z
+                t1025 = (0.5)*Om0_y + (0.5)*Om_y
+                t1026 = (0.5)*Om0_x + (0.5)*Om_x
+                bdve[j3] += (bdepd_x*(-e0*t915 + t917*t928) + bdepd_y*(t907 + t920) +
+                    bdepd_z*(-t921 + t924))
+                bdve[j3 + 1] += (bdepd_x*(-t907 + t920) + bdepd_y*(-e0*t934 + t917*t937) +
+                    bdepd_z*(t929 + t933))
+                bdve[j3 + 2] += (bdepd_x*(t921 + t924) + bdepd_y*(-t929 + t933) +
+                    bdepd_z*(-e0*t938 + t917*t940))
+                bdae[j3] += bdepd_x*(e0*t928 + 1) + bdepd_y*t944 + bdepd_z*t947
+                bdae[j3 + 1] += bdepd_x*t948 + bdepd_y*(e0*t937 + 1) + bdepd_z*t951
+                bdae[j3 + 2] += bdepd_x*t952 + bdepd_y*t953 + bdepd_z*(e0*t940 + 1)
+                bdy[j3] += (bdepd_x*(e0*(ep_y*t955 - ep_z*t956 + psi_y*t958 - psi_z*t960) +
+                    t917*t957 + t969*t970 + t969*t972 + t982*t984) + bdepd_y*(e0*(-2*t973 - 2*t974
+                    - t976) + t917*t987 + t970*t991 + t972*t991 + t984*t996 - t985 - t986) +
+                    bdepd_z*(e0*(ep_x*t956 + psi_x*t960 + t1002 + t1003 - t978 - t979) +
+                    t1000*t917 + t1001*t970 + t1001*t972 + t1004*t984 + t997 + t998))
+                bdy[j3 + 1] += (bdepd_x*(e0*(ep_y*t962 + psi_y*t1006 + t977) + t1007*t969 +
+                    t1008*t969 + t1009*t982 + t1013*t917 + t985 + t986) + bdepd_y*(e0*(-ep_x*t962
+                    + ep_z*t966 - psi_x*t1006 + psi_z*t959) + t1005*t917 + t1007*t991 + t1008*t991
+                    + t1009*t996) + bdepd_z*(e0*(-2*t992 - 2*t993 - t994) + t1001*t1007 +
+                    t1001*t1008 + t1004*t1009 - t1010 - t1011 + t1012*t917))
+                bdy[j3 + 2] += (bdepd_x*(e0*(-2*t1002 - 2*t1003 + t980) + t1016*t969 + t1017*t969
+                    + t1018*t982 + t1019*t917 - t997 - t998) + bdepd_y*(e0*(ep_z*t954 +
+                    psi_z*t1015 + t995) + t1010 + t1011 + t1016*t991 + t1017*t991 + t1018*t996 +
+                    t1020*t917) + bdepd_z*(e0*(ep_x*t963 - ep_y*t954 + psi_x*t975 - psi_y*t1015) +
+                    t1001*t1016 + t1001*t1017 + t1004*t1018 + t1014*t917))
+                bdOm0_x += (bdepd_x*(e0*t915 + t917*t927) + bdepd_y*(e0*t1021 + t907 - t919) +
+                    bdepd_z*(e0*t1022 - t921 - t923))
+                bdOm0_y += (bdepd_x*(e0*t1021 - t907 - t919) + bdepd_y*(e0*t934 + t917*t936) +
+                    bdepd_z*(e0*t1023 + t929 - t932))
+                bdOm0_z += (bdepd_x*(e0*t1022 + t921 - t923) + bdepd_y*(e0*t1023 - t929 - t932) +
+                    bdepd_z*(e0*t938 + t917*t939))
+                bdeta[j3] += (bdepd_x*(e0*t957 + t969*t984) + bdepd_y*(e0*t987 + 2*e1*psi_x*t991 -
+                    t1024) + bdepd_z*(e0*t1000 + t1001*t984 + t1025))
+                bdeta[j3 + 1] += (bdepd_x*(e0*t1013 + t1009*t969 + t1024) + bdepd_y*(e0*t1005 +
+                    t1009*t991) + bdepd_z*(e0*t1012 + 2*e1*psi_y*t1001 - t1026))
+                bdeta[j3 + 2] += (bdepd_x*(e0*t1019 + 2*e1*psi_z*t969 - t1025) + bdepd_y*(e0*t1020
+                    + t1018*t991 + t1026) + bdepd_z*(e0*t1014 + t1001*t1018))
+                bdOm0d_x += bdepd_x*(e0*t927 - 1) - bdepd_y*t948 - bdepd_z*t952
+                bdOm0d_y += -bdepd_x*t944 + bdepd_y*(e0*t936 - 1) - bdepd_z*t953
+                bdOm0d_z += -bdepd_x*t947 - bdepd_y*t951 + bdepd_z*(e0*t939 - 1)
             # transposed: differential: rate: rates of the elastic displacements
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 bdeud_x, bdeud_y, bdeud_z = bdetad[i3], bdetad[i3 + 1], bdetad[i3 + 2]
-                t1171 = X_z + u_z
-                t1172 = X_y + u_y
-                t1173 = X_x + u_x
+                t1027 = X_z + u_z
+                t1028 = X_y + u_y
+                t1029 = X_x + u_x
                 bdy[i3] += Om0d_y*bdeud_z - Om0d_z*bdeud_y
                 bdy[i3 + 1] += -Om0d_x*bdeud_z + Om0d_z*bdeud_x
                 bdy[i3 + 2] += Om0d_x*bdeud_y - Om0d_y*bdeud_x
-                bdOm0d_x += bdeud_y*t1171 - bdeud_z*t1172
-                bdOm0d_y += -bdeud_x*t1171 + bdeud_z*t1173
-                bdOm0d_z += bdeud_x*t1172 - bdeud_y*t1173
+                bdOm0d_x += bdeud_y*t1027 - bdeud_z*t1028
+                bdOm0d_y += -bdeud_x*t1027 + bdeud_z*t1029
+                bdOm0d_z += bdeud_x*t1028 - bdeud_y*t1029
             # transposed: differential: rate: sum w_j X_j x (rate of r_j) = 0
             rhs_x = rhs_y = rhs_z = 0.0
-            t1174 = bdOm0d_x + rhs_x
-            t1175 = bdOm0d_y + rhs_y
-            t1176 = bdOm0d_z + rhs_z
-            mdOm0d_x = Bxx*t1174 + Byx*t1175 + Bzx*t1176
-            mdOm0d_y = Bxy*t1174 + Byy*t1175 + Bzy*t1176
-            mdOm0d_z = Bxz*t1174 + Byz*t1175 + Bzz*t1176
+            t1030 = bdOm0d_x + rhs_x
+            t1031 = bdOm0d_y + rhs_y
+            t1032 = bdOm0d_z + rhs_z
+            mdOm0d_x = Bxx*t1030 + Byx*t1031 + Bzx*t1032
+            mdOm0d_y = Bxy*t1030 + Byy*t1031 + Bzy*t1032
+            mdOm0d_z = Bxz*t1030 + Byz*t1031 + Bzz*t1032
             # transposed: differential: rate: sum w_j X_j x (rate of r_j) = 0
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t1177 = X_x*fit
-                t1178 = mdOm0d_y*t1177
-                t1179 = mdOm0d_z*t1177
-                t1180 = X_y*fit
-                t1181 = Om0d_y*t1180
-                t1182 = X_z*fit
-                t1183 = Om0d_z*t1182
-                t1184 = mdOm0d_x*t1180
-                t1185 = mdOm0d_z*t1180
-                t1186 = Om0d_x*t1177
-                t1187 = mdOm0d_y*t1182
-                bdy[i3] += Om0d_y*t1178 + Om0d_z*t1179 - mdOm0d_x*(t1181 + t1183)
-                bdy[i3 + 1] += Om0d_x*t1184 + Om0d_z*t1185 - mdOm0d_y*(t1183 + t1186)
-                bdy[i3 + 2] += Om0d_x*mdOm0d_x*t1182 + Om0d_y*t1187 - mdOm0d_z*(t1181 + t1186)
-                bdetad[i3] += t1185 - t1187
-                bdetad[i3 + 1] += X_z*fit*mdOm0d_x - t1179
-                bdetad[i3 + 2] += t1178 - t1184
+                t1033 = X_x*fit
+                t1034 = mdOm0d_y*t1033
+                t1035 = mdOm0d_z*t1033
+                t1036 = X_y*fit
+                t1037 = Om0d_y*t1036
+                t1038 = X_z*fit
+                t1039 = Om0d_z*t1038
+                t1040 = mdOm0d_x*t1036
+                t1041 = mdOm0d_z*t1036
+                t1042 = Om0d_x*t1033
+                t1043 = mdOm0d_y*t1038
+                bdy[i3] += Om0d_y*t1034 + Om0d_z*t1035 - mdOm0d_x*(t1037 + t1039)
+                bdy[i3 + 1] += Om0d_x*t1040 + Om0d_z*t1041 - mdOm0d_y*(t1039 + t1042)
+                bdy[i3 + 2] += Om0d_x*mdOm0d_x*t1038 + Om0d_y*t1043 - mdOm0d_z*(t1037 + t1042)
+                bdetad[i3] += t1041 - t1043
+                bdetad[i3 + 1] += X_z*fit*mdOm0d_x - t1035
+                bdetad[i3 + 2] += t1034 - t1040
             # transposed: differential: rate: rates of the elastic displacements, the frame held
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
                 eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
                 bdeud_x, bdeud_y, bdeud_z = bdetad[i3], bdetad[i3 + 1], bdetad[i3 + 2]
-                t1188 = Om0_y*bdeud_z - Om0_z*bdeud_y
-                t1189 = Om0_x*bdeud_z - Om0_z*bdeud_x
-                t1190 = -t1189
-                t1191 = Om0_x*bdeud_y - Om0_y*bdeud_x
-                t1192 = eu_z - v0_z + vs_z
-                t1193 = eu_y - v0_y + vs_y
-                t1194 = eu_x - v0_x + vs_x
-                bdyd[i3] += t1188
-                bdyd[i3 + 1] += t1190
-                bdyd[i3 + 2] += t1191
+                t1044 = Om0_y*bdeud_z - Om0_z*bdeud_y
+                t1045 = Om0_x*bdeud_z - Om0_z*bdeud_x
+                t1046 = -t1045
+                t1047 = Om0_x*bdeud_y - Om0_y*bdeud_x
+                t1048 = eu_z - v0_z + vs_z
+                t1049 = eu_y - v0_y + vs_y
+                t1050 = eu_x - v0_x + vs_x
+                bdyd[i3] += t1044
+                bdyd[i3 + 1] += t1046
+                bdyd[i3 + 2] += t1047
                 bdacc[i3] += bdeud_x
                 bdacc[i3 + 1] += bdeud_y
                 bdacc[i3 + 2] += bdeud_z
-                bdv0_x += -t1188
-                bdv0_y += t1189
-                bdv0_z += -t1191
-                bdOm0_x += bdeud_y*t1192 - bdeud_z*t1193
-                bdOm0_y += -bdeud_x*t1192 + bdeud_z*t1194
-                bdOm0_z += bdeud_x*t1193 - bdeud_y*t1194
+                bdv0_x += -t1044
+                bdv0_y += t1045
+                bdv0_z += -t1047
+                bdOm0_x += bdeud_y*t1048 - bdeud_z*t1049
+                bdOm0_y += -bdeud_x*t1048 + bdeud_z*t1050
+                bdOm0_z += bdeud_x*t1049 - bdeud_y*t1050
                 bda0_x += -bdeud_x
                 bda0_y += -bdeud_y
                 bda0_z += -bdeud_z
-                bdeta[i3] += t1188
-                bdeta[i3 + 1] += t1190
-                bdeta[i3 + 2] += t1191
+                bdeta[i3] += t1044
+                bdeta[i3 + 1] += t1046
+                bdeta[i3 + 2] += t1047
             # overwritten: differential: rate: rates of the elastic displacements, the frame held
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -2836,89 +2633,74 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdep_x, bdep_y, bdep_z = bdeta[j3], bdeta[j3 + 1], bdeta[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t1195 = (0.5)*psi_z
-                t1196 = e0*psi_x
-                t1197 = psi_y*t1196
-                t1198 = t1195 + t1197
-                t1199 = (0.5)*psi_y
-                t1200 = psi_z*t1196
-                t1201 = -t1199 + t1200
-                t1202 = psi_y*psi_y
-                t1203 = e0*t1202
-                t1204 = psi_z*psi_z
-                t1205 = e0*t1204 - 1
-                t1206 = t1203 + t1205
-                t1207 = -t1195 + t1197
-                t1208 = (0.5)*psi_x
-                t1209 = e0*psi_y
-                t1210 = psi_z*t1209
-                t1211 = t1208 + t1210
-                t1212 = psi_x*psi_x
-                t1213 = e0*t1212
-                t1214 = t1205 + t1213
-                t1215 = t1199 + t1200
-                t1216 = -t1208 + t1210
-                t1217 = t1203 + t1213 - 1
-                t1218 = Om_x*psi_y
-                t1219 = Om_y*psi_x - t1218
-                t1220 = 2*e1
-                t1221 = psi_x*t1220
-                t1222 = psi_y*t1221
-                t1223 = t1219*t1222
-                t1224 = Om0_z*psi_x
-                t1225 = Om0_x*psi_z - t1224
-                t1226 = psi_z*t1221
-                t1227 = t1225*t1226
-                t1228 = Om0_x*psi_y
-                t1229 = Om0_y*psi_x - t1228
-                t1230 = t1222*t1229
-                t1231 = Om_x*psi_z
-                t1232 = Om_z*psi_x
-                t1233 = t1231 - t1232
-                t1234 = t1226*t1233
-                t1235 = Om0_z*e0*psi_z - Om_z*e0*psi_z
-                t1236 = Om0_y*t1209 - Om_y*e0*psi_y
-                t1237 = t1212*t1220
-                t1238 = Om_y*psi_z
-                t1239 = Om_z*psi_y - t1238
-                t1240 = Om0_y*psi_z
-                t1241 = Om0_z*psi_y - t1240
-                t1242 = (0.5)*Om0_z + (0.5)*Om_z + e0*t1219 - e0*t1229
-                t1243 = (0.5)*Om0_y + (0.5)*Om_y - e0*t1225 + e0*t1233
-                t1244 = psi_y*psi_z*t1220
-                t1245 = t1239*t1244
-                t1246 = t1241*t1244
-                t1247 = Om0_x*t1196 - Om_x*e0*psi_x
-                t1248 = t1202*t1220
-                t1249 = (0.5)*Om0_x + (0.5)*Om_x + e0*t1239 - e0*t1241
-                t1250 = t1204*t1220
-                bdve[j3] += -bdep_x*t1206 + bdep_y*t1198 + bdep_z*t1201
-                bdve[j3 + 1] += bdep_x*t1207 - bdep_y*t1214 + bdep_z*t1211
-                bdve[j3 + 2] += bdep_x*t1215 + bdep_y*t1216 - bdep_z*t1217
-                bdy[j3] += (bdep_x*(t1223 + t1227 - t1230 - t1234 - t1235 - t1236) +
-                    bdep_y*(Om0_y*e0*psi_x - Om_y*e0*psi_x + 2*e1*psi_x*psi_z*t1239 +
-                    2*e1*t1212*t1229 - t1219*t1237 - t1226*t1241 - t1242) + bdep_z*(e0*t1224 -
-                    e0*t1232 - t1222*t1239 + t1222*t1241 - t1225*t1237 + t1233*t1237 + t1243))
-                bdy[j3 + 1] += (bdep_x*(-e0*t1218 + e0*t1228 + t1219*t1248 + t1225*t1244 -
-                    t1229*t1248 - t1233*t1244 + t1242) + bdep_y*(-t1223 + t1230 - t1235 + t1245 -
-                    t1246 - t1247) + bdep_z*(Om0_z*e0*psi_y - Om_z*e0*psi_y +
-                    2*e1*psi_x*psi_y*t1233 + 2*e1*t1202*t1241 - t1222*t1225 - t1239*t1248 - t1249))
-                bdy[j3 + 2] += (bdep_x*(Om0_x*e0*psi_z - e0*t1231 + 2*e1*psi_y*psi_z*t1219 +
-                    2*e1*t1204*t1225 - t1229*t1244 - t1233*t1250 - t1243) + bdep_y*(-e0*t1238 +
-                    e0*t1240 - t1219*t1226 + t1226*t1229 + t1239*t1250 - t1241*t1250 + t1249) +
-                    bdep_z*(-t1227 + t1234 - t1236 - t1245 + t1246 - t1247))
-                bdOm0_x += bdep_x*t1206 - bdep_y*t1207 - bdep_z*t1215
-                bdOm0_y += -bdep_x*t1198 + bdep_y*t1214 - bdep_z*t1216
-                bdOm0_z += -bdep_x*t1201 - bdep_y*t1211 + bdep_z*t1217
+                t1051 = (0.5)*psi_z
+                t1052 = e0*psi_x
+                t1053 = psi_y*t1052
+                t1054 = t1051 + t1053
+                t1055 = (0.5)*psi_y
+                t1056 = psi_z*t1052
+                t1057 = -t1055 + t1056
+                t1058 = psi_y*psi_y
+                t1059 = psi_z*psi_z
+                t1060 = t1058 + t1059
+                t1061 = -t1051 + t1053
+                t1062 = (0.5)*psi_x
+                t1063 = e0*psi_y*psi_z
+                t1064 = t1062 + t1063
+                t1065 = psi_x*psi_x
+                t1066 = t1059 + t1065
+                t1067 = t1055 + t1056
+                t1068 = -t1062 + t1063
+                t1069 = t1058 + t1065
+                t1070 = Om0_y - Om_y
+                t1071 = -t1070
+                t1072 = Om0_z - Om_z
+                t1073 = psi_x*t1071
+                t1074 = Om0_x - Om_x
+                t1075 = -t1074
+                t1076 = -psi_y*t1075
+                t1077 = t1073 + t1076
+                t1078 = -t1072
+                t1079 = psi_x*t1078
+                t1080 = psi_z*t1075 - t1079
+                t1081 = psi_y*t1077 - psi_z*t1080
+                t1082 = 2*e1
+                t1083 = psi_x*t1082
+                t1084 = psi_y*t1078
+                t1085 = -psi_z*t1071
+                t1086 = t1084 + t1085
+                t1087 = -psi_x*t1077 + psi_z*t1086
+                t1088 = (0.5)*Om0_z + (0.5)*Om_z
+                t1089 = psi_z*t1075
+                t1090 = psi_x*t1080 - psi_y*t1086
+                t1091 = (0.5)*Om0_y + (0.5)*Om_y
+                t1092 = psi_y*t1082
+                t1093 = (0.5)*Om0_x + (0.5)*Om_x
+                t1094 = psi_z*t1082
+                bdve[j3] += bdep_x*(-e0*t1060 + 1) + bdep_y*t1054 + bdep_z*t1057
+                bdve[j3 + 1] += bdep_x*t1061 + bdep_y*(-e0*t1066 + 1) + bdep_z*t1064
+                bdve[j3 + 2] += bdep_x*t1067 + bdep_y*t1068 + bdep_z*(-e0*t1069 + 1)
+                bdy[j3] += (bdep_x*(e0*(psi_y*t1071 - psi_z*t1072) + t1081*t1083) +
+                    bdep_y*(e0*(-2*t1073 - t1076) + 2*e1*psi_x*t1087 - t1088) +
+                    bdep_z*(e0*(psi_x*t1072 - t1079 + t1089) + t1083*t1090 + t1091))
+                bdy[j3 + 1] += (bdep_x*(e0*(psi_y*t1074 + t1077) + t1081*t1092 + t1088) +
+                    bdep_y*(e0*(-psi_x*t1074 + psi_z*t1078) + t1087*t1092) + bdep_z*(e0*(-2*t1084
+                    - t1085) + 2*e1*psi_y*t1090 - t1093))
+                bdy[j3 + 2] += (bdep_x*(e0*(t1079 - 2*t1089) + 2*e1*psi_z*t1081 - t1091) +
+                    bdep_y*(e0*(psi_z*t1070 + t1086) + t1087*t1094 + t1093) +
+                    bdep_z*(e0*(psi_x*t1075 - psi_y*t1070) + t1090*t1094))
+                bdOm0_x += bdep_x*(e0*t1060 - 1) - bdep_y*t1061 - bdep_z*t1067
+                bdOm0_y += -bdep_x*t1054 + bdep_y*(e0*t1066 - 1) - bdep_z*t1068
+                bdOm0_z += -bdep_x*t1057 - bdep_y*t1064 + bdep_z*(e0*t1069 - 1)
             # transposed: differential: rates of the elastic displacements
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 bdeu_x, bdeu_y, bdeu_z = bdeta[i3], bdeta[i3 + 1], bdeta[i3 + 2]
-                t1251 = X_z + u_z
-                t1252 = X_y + u_y
-                t1253 = X_x + u_x
+                t1095 = X_z + u_z
+                t1096 = X_y + u_y
+                t1097 = X_x + u_x
                 bdy[i3] += Om0_y*bdeu_z - Om0_z*bdeu_y
                 bdy[i3 + 1] += -Om0_x*bdeu_z + Om0_z*bdeu_x
                 bdy[i3 + 2] += Om0_x*bdeu_y - Om0_y*bdeu_x
@@ -2928,9 +2710,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdv0_x += -bdeu_x
                 bdv0_y += -bdeu_y
                 bdv0_z += -bdeu_z
-                bdOm0_x += bdeu_y*t1251 - bdeu_z*t1252
-                bdOm0_y += -bdeu_x*t1251 + bdeu_z*t1253
-                bdOm0_z += bdeu_x*t1252 - bdeu_y*t1253
+                bdOm0_x += bdeu_y*t1095 - bdeu_z*t1096
+                bdOm0_y += -bdeu_x*t1095 + bdeu_z*t1097
+                bdOm0_z += bdeu_x*t1096 - bdeu_y*t1097
             # transposed: differential: origin of the frame, (14)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -2958,40 +2740,40 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdy[k] = 0.0
             # transposed: differential: sum w_j X_j x (rate of r_j) = 0
             rhs_x = rhs_y = rhs_z = 0.0
-            t1254 = bdOm0_x + rhs_x
-            t1255 = bdOm0_y + rhs_y
-            t1256 = bdOm0_z + rhs_z
-            mdOm0_x = Bxx*t1254 + Byx*t1255 + Bzx*t1256
-            mdOm0_y = Bxy*t1254 + Byy*t1255 + Bzy*t1256
-            mdOm0_z = Bxz*t1254 + Byz*t1255 + Bzz*t1256
+            t1098 = bdOm0_x + rhs_x
+            t1099 = bdOm0_y + rhs_y
+            t1100 = bdOm0_z + rhs_z
+            mdOm0_x = Bxx*t1098 + Byx*t1099 + Bzx*t1100
+            mdOm0_y = Bxy*t1098 + Byy*t1099 + Bzy*t1100
+            mdOm0_z = Bxz*t1098 + Byz*t1099 + Bzz*t1100
             # transposed: differential: sum w_j X_j x (rate of r_j) = 0
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t1257 = fit*mdOm0_y
-                t1258 = X_x*t1257
-                t1259 = fit*mdOm0_z
-                t1260 = X_x*t1259
-                t1261 = Om0_y*X_y
-                t1262 = Om0_z*X_z
-                t1263 = fit*mdOm0_x
-                t1264 = X_y*t1263
-                t1265 = X_y*t1259
-                t1266 = Om0_x*X_x
-                t1267 = X_z*t1257
-                t1268 = t1265 - t1267
-                t1269 = -X_z*fit*mdOm0_x + t1260
-                t1270 = t1258 - t1264
-                bdy[i3] += Om0_y*t1258 + Om0_z*t1260 - t1263*(t1261 + t1262)
-                bdy[i3 + 1] += Om0_x*t1264 + Om0_z*t1265 - t1257*(t1262 + t1266)
-                bdy[i3 + 2] += Om0_x*X_z*t1263 + Om0_y*t1267 - t1259*(t1261 + t1266)
-                bdyd[i3] += t1268
-                bdyd[i3 + 1] += -t1269
-                bdyd[i3 + 2] += t1270
-                bdv0_x += -t1268
-                bdv0_y += t1269
-                bdv0_z += -t1270
+                t1101 = fit*mdOm0_y
+                t1102 = X_x*t1101
+                t1103 = fit*mdOm0_z
+                t1104 = X_x*t1103
+                t1105 = Om0_y*X_y
+                t1106 = Om0_z*X_z
+                t1107 = fit*mdOm0_x
+                t1108 = X_y*t1107
+                t1109 = X_y*t1103
+                t1110 = Om0_x*X_x
+                t1111 = X_z*t1101
+                t1112 = t1109 - t1111
+                t1113 = -X_z*fit*mdOm0_x + t1104
+                t1114 = t1102 - t1108
+                bdy[i3] += Om0_y*t1102 + Om0_z*t1104 - t1107*(t1105 + t1106)
+                bdy[i3 + 1] += Om0_x*t1108 + Om0_z*t1109 - t1101*(t1106 + t1110)
+                bdy[i3 + 2] += Om0_x*X_z*t1107 + Om0_y*t1111 - t1103*(t1105 + t1110)
+                bdyd[i3] += t1112
+                bdyd[i3 + 1] += -t1113
+                bdyd[i3 + 2] += t1114
+                bdv0_x += -t1112
+                bdv0_y += t1113
+                bdv0_z += -t1114
             # transposed: differential: origin of the frame, (14)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -3042,43 +2824,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 bdpsi_x, bdpsi_y, bdpsi_z = bdy[j3], bdy[j3 + 1], bdy[j3 + 2]
                 e0 = e0s[j]
-                t1271 = (0.5)*psi_z
-                t1272 = e0*psi_x
-                t1273 = psi_y*t1272
-                t1274 = -t1271 + t1273
-                t1275 = (0.5)*psi_y
-                t1276 = psi_z*t1272
-                t1277 = t1275 + t1276
-                t1278 = e0*psi_y*psi_y
-                t1279 = e0*psi_z*psi_z - 1
-                t1280 = t1278 + t1279
-                t1281 = t1271 + t1273
-                t1282 = (0.5)*psi_x
-                t1283 = e0*psi_y*psi_z
-                t1284 = -t1282 + t1283
-                t1285 = e0*psi_x*psi_x
-                t1286 = t1279 + t1285
-                t1287 = -t1275 + t1276
-                t1288 = t1282 + t1283
-                t1289 = t1278 + t1285 - 1
-                bdth0_x += bdpsi_x*t1280 - bdpsi_y*t1274 - bdpsi_z*t1277
-                bdth0_y += -bdpsi_x*t1281 + bdpsi_y*t1286 - bdpsi_z*t1284
-                bdth0_z += -bdpsi_x*t1287 - bdpsi_y*t1288 + bdpsi_z*t1289
-                bdqe[j3] += -bdpsi_x*t1280 + bdpsi_y*t1281 + bdpsi_z*t1287
-                bdqe[j3 + 1] += bdpsi_x*t1274 - bdpsi_y*t1286 + bdpsi_z*t1288
-                bdqe[j3 + 2] += bdpsi_x*t1277 + bdpsi_y*t1284 - bdpsi_z*t1289
+                t1115 = (0.5)*psi_z
+                t1116 = e0*psi_x
+                t1117 = psi_y*t1116
+                t1118 = -t1115 + t1117
+                t1119 = (0.5)*psi_y
+                t1120 = psi_z*t1116
+                t1121 = t1119 + t1120
+                t1122 = psi_y*psi_y
+                t1123 = psi_z*psi_z
+                t1124 = t1122 + t1123
+                t1125 = t1115 + t1117
+                t1126 = (0.5)*psi_x
+                t1127 = e0*psi_y*psi_z
+                t1128 = -t1126 + t1127
+                t1129 = psi_x*psi_x
+                t1130 = t1123 + t1129
+                t1131 = -t1119 + t1120
+                t1132 = t1126 + t1127
+                t1133 = t1122 + t1129
+                bdth0_x += bdpsi_x*(e0*t1124 - 1) - bdpsi_y*t1118 - bdpsi_z*t1121
+                bdth0_y += -bdpsi_x*t1125 + bdpsi_y*(e0*t1130 - 1) - bdpsi_z*t1128
+                bdth0_z += -bdpsi_x*t1131 - bdpsi_y*t1132 + bdpsi_z*(e0*t1133 - 1)
+                bdqe[j3] += bdpsi_x*(-e0*t1124 + 1) + bdpsi_y*t1125 + bdpsi_z*t1131
+                bdqe[j3 + 1] += bdpsi_x*t1118 + bdpsi_y*(-e0*t1130 + 1) + bdpsi_z*t1132
+                bdqe[j3 + 2] += bdpsi_x*t1121 + bdpsi_y*t1128 + bdpsi_z*(-e0*t1133 + 1)
             # transposed: differential: displacement of the nodes in the frame, (11)
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 bdu_x, bdu_y, bdu_z = bdy[i3], bdy[i3 + 1], bdy[i3 + 2]
-                t1290 = X_z + u_z
-                t1291 = X_y + u_y
-                t1292 = X_x + u_x
-                bdth0_x += bdu_y*t1290 - bdu_z*t1291
-                bdth0_y += -bdu_x*t1290 + bdu_z*t1292
-                bdth0_z += bdu_x*t1291 - bdu_y*t1292
+                t1134 = X_z + u_z
+                t1135 = X_y + u_y
+                t1136 = X_x + u_x
+                bdth0_x += bdu_y*t1134 - bdu_z*t1135
+                bdth0_y += -bdu_x*t1134 + bdu_z*t1136
+                bdth0_z += bdu_x*t1135 - bdu_y*t1136
                 bdqe[i3] += bdu_x
                 bdqe[i3 + 1] += bdu_y
                 bdqe[i3 + 2] += bdu_z
@@ -3087,27 +2869,27 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdx0_z += -bdu_z
             # transposed: sum w_j X_j x (rate of r_j) = 0
             rhs_x = rhs_y = rhs_z = 0.0
-            t1293 = bdth0_x + rhs_x
-            t1294 = bdth0_y + rhs_y
-            t1295 = bdth0_z + rhs_z
-            mdth0_x = Bxx*t1293 + Byx*t1294 + Bzx*t1295
-            mdth0_y = Bxy*t1293 + Byy*t1294 + Bzy*t1295
-            mdth0_z = Bxz*t1293 + Byz*t1294 + Bzz*t1295
+            t1137 = bdth0_x + rhs_x
+            t1138 = bdth0_y + rhs_y
+            t1139 = bdth0_z + rhs_z
+            mdth0_x = Bxx*t1137 + Byx*t1138 + Bzx*t1139
+            mdth0_y = Bxy*t1137 + Byy*t1138 + Bzy*t1139
+            mdth0_z = Bxz*t1137 + Byz*t1138 + Bzz*t1139
             # transposed: sum w_j X_j x (rate of r_j) = 0
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t1296 = fit*mdth0_z
-                t1297 = X_y*t1296 - X_z*fit*mdth0_y
-                t1298 = X_x*t1296 - X_z*fit*mdth0_x
-                t1299 = X_x*fit*mdth0_y - X_y*fit*mdth0_x
-                bdqe[i3] += t1297
-                bdqe[i3 + 1] += -t1298
-                bdqe[i3 + 2] += t1299
-                bdx0_x += -t1297
-                bdx0_y += t1298
-                bdx0_z += -t1299
+                t1140 = fit*mdth0_z
+                t1141 = X_y*t1140 - X_z*fit*mdth0_y
+                t1142 = X_x*t1140 - X_z*fit*mdth0_x
+                t1143 = X_x*fit*mdth0_y - X_y*fit*mdth0_x
+                bdqe[i3] += t1141
+                bdqe[i3 + 1] += -t1142
+                bdqe[i3 + 2] += t1143
+                bdx0_x += -t1141
+                bdx0_y += t1142
+                bdx0_z += -t1143
             # transposed: origin of the frame, (14)
             for i in range(N_POSITIONS):
                 i3 = 3*i

@@ -44,8 +44,8 @@ WORK_ROWS = 52
 WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (300, 157, 329, 4),
-              "column": (84, 163, 1134, 6)}
+OPERATIONS = {"residual": (300, 157, 243, 4),
+              "column": (84, 163, 1053, 6)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + DAMPING_CONSTANTS
 KEPT = 16      # numbers kept between two calls
 
@@ -200,30 +200,35 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e0 = e0s[j]
                 t3 = e0*psi_y*psi_y
                 t4 = e0*psi_z*psi_z - 1
-                t5 = (0.5)*psi_z
-                t6 = e0*psi_x
-                t7 = psi_y*t6
-                t8 = (0.5)*psi_y
-                t9 = psi_z*t6
-                t10 = e0*psi_x*psi_x
-                t11 = (0.5)*psi_x
-                t12 = e0*psi_z
-                t13 = psi_y*t12
-                t14 = -Om_x*psi_y + Om_y*psi_x
-                t15 = Om_x*psi_z - Om_z*psi_x
-                t16 = -Om_y*psi_z + Om_z*psi_y
-                B_00 += alpha_r*(-t3 - t4)
-                B_01 += alpha_r*(t5 + t7)
-                B_02 += alpha_r*(-t8 + t9)
-                B_10 += alpha_r*(-t5 + t7)
-                B_11 += alpha_r*(-t10 - t4)
-                B_12 += alpha_r*(t11 + t13)
-                B_20 += alpha_r*(t8 + t9)
-                B_21 += alpha_r*(-t11 + t13)
-                B_22 += alpha_r*(-t10 - t3 + 1)
-                rhs_x += -alpha_r*(-Om_x + (0.5)*Om_y*psi_z - Om_z*t8 - e0*psi_y*t14 + e0*psi_z*t15)
-                rhs_y += -alpha_r*(-Om_x*t5 - Om_y + (0.5)*Om_z*psi_x + e0*psi_x*t14 - t12*t16)
-                rhs_z += -alpha_r*((0.5)*Om_x*psi_y - Om_y*t11 - Om_z + e0*psi_y*t16 - t15*t6)
+                t5 = -t3 - t4
+                t6 = (0.5)*psi_z
+                t7 = e0*psi_x
+                t8 = psi_y*t7
+                t9 = t6 + t8
+                t10 = (0.5)*psi_y
+                t11 = psi_z*t7
+                t12 = -t10 + t11
+                t13 = -t6 + t8
+                t14 = e0*psi_x*psi_x
+                t15 = -t14 - t4
+                t16 = (0.5)*psi_x
+                t17 = e0*psi_y*psi_z
+                t18 = t16 + t17
+                t19 = t10 + t11
+                t20 = -t16 + t17
+                t21 = -t14 - t3 + 1
+                B_00 += alpha_r*t5
+                B_01 += alpha_r*t9
+                B_02 += alpha_r*t12
+                B_10 += alpha_r*t13
+                B_11 += alpha_r*t15
+                B_12 += alpha_r*t18
+                B_20 += alpha_r*t19
+                B_21 += alpha_r*t20
+                B_22 += alpha_r*t21
+                rhs_x += -alpha_r*(-Om_x*t5 - Om_y*t13 - Om_z*t19)
+                rhs_y += -alpha_r*(-Om_x*t9 - Om_y*t15 - Om_z*t20)
+                rhs_z += -alpha_r*(-Om_x*t12 - Om_y*t18 - Om_z*t21)
             Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
                 B_12, B_20, B_21, B_22)
             Om0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
@@ -282,41 +287,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-                t17 = X_y + u_y
-                t18 = X_z + u_z
-                t19 = X_x + u_x
-                eta[i3] = -Om0_y*t18 + Om0_z*t17 - v0_x + vs_x
-                eta[i3 + 1] = Om0_x*t18 - Om0_z*t19 - v0_y + vs_y
-                eta[i3 + 2] = -Om0_x*t17 + Om0_y*t19 - v0_z + vs_z
+                t22 = X_y + u_y
+                t23 = X_z + u_z
+                t24 = X_x + u_x
+                eta[i3] = -Om0_y*t23 + Om0_z*t22 - v0_x + vs_x
+                eta[i3 + 1] = Om0_x*t23 - Om0_z*t24 - v0_y + vs_y
+                eta[i3 + 2] = -Om0_x*t22 + Om0_y*t24 - v0_z + vs_z
             # rates of the elastic rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
                 e0 = e0s[j]
-                t20 = Om0_y*psi_z
-                t21 = Om_y*psi_z
-                t22 = Om0_x*psi_y
-                t23 = Om0_y*psi_x - t22
-                t24 = e0*psi_y
-                t25 = Om_x*psi_z
-                t26 = Om_z*psi_x
-                t27 = t25 - t26
-                t28 = e0*psi_z
-                t29 = Om_x*psi_y
-                t30 = Om_y*psi_x - t29
-                t31 = Om0_x*psi_z
-                t32 = Om0_z*psi_x
-                t33 = t31 - t32
-                t34 = e0*psi_x
-                t35 = Om_z*psi_y - t21
-                t36 = Om0_z*psi_y - t20
-                eta[j3] = (-Om0_x + (0.5)*Om0_z*psi_y + Om_x + (0.5)*Om_z*psi_y + e0*psi_y*t30 +
-                    e0*psi_z*t33 - 0.5*t20 - 0.5*t21 - t23*t24 - t27*t28)
-                eta[j3 + 1] = (-Om0_y + Om_y + t23*t34 + (0.5)*t25 - 0.5*t26 + t28*t35 - t28*t36 -
-                    t30*t34 + (0.5)*t31 - 0.5*t32)
-                eta[j3 + 2] = ((0.5)*Om0_y*psi_x - Om0_z + (0.5)*Om_y*psi_x + Om_z + e0*psi_x*t27
-                    + e0*psi_y*t36 - 0.5*t22 - t24*t35 - 0.5*t29 - t33*t34)
+                t25 = (0.5)*Om0_z + (0.5)*Om_z
+                t26 = Om0_y + Om_y
+                t27 = (0.5)*psi_z
+                t28 = -Om0_y + Om_y
+                t29 = -Om0_x + Om_x
+                t30 = psi_x*t28 - psi_y*t29
+                t31 = -Om0_z + Om_z
+                t32 = -psi_x*t31 + psi_z*t29
+                t33 = Om0_x + Om_x
+                t34 = psi_y*t31 - psi_z*t28
+                eta[j3] = -Om0_x + Om_x + e0*(psi_y*t30 - psi_z*t32) + psi_y*t25 - t26*t27
+                eta[j3 + 1] = -Om0_y + Om_y + e0*(-psi_x*t30 + psi_z*t34) - psi_x*t25 + t27*t33
+                eta[j3 + 2] = (-Om0_z + Om_z + e0*(psi_x*t32 - psi_y*t34) + (0.5)*psi_x*t26 -
+                    0.5*psi_y*t33)
             # rates of the internal modes
             for k in range(MODES, n):
                 vm = ve[k]
@@ -343,47 +339,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t37 = alpha*mass
-                t38 = X_z + u_z
-                t39 = X_y + u_y
-                t40 = X_x + u_x
-                F_x += -f_x - gamma_x*t37
-                F_y += -f_y - gamma_y*t37
-                F_z += -f_z - gamma_z*t37
-                W_x += f_y*t38 - f_z*t39 - px_y*vs_z + px_z*vs_y
-                W_y += -f_x*t38 + f_z*t40 + px_x*vs_z - px_z*vs_x
-                W_z += f_x*t39 - f_y*t40 - px_x*vs_y + px_y*vs_x
+                t35 = alpha*mass
+                t36 = X_z + u_z
+                t37 = X_y + u_y
+                t38 = X_x + u_x
+                F_x += -f_x - gamma_x*t35
+                F_y += -f_y - gamma_y*t35
+                F_z += -f_z - gamma_z*t35
+                W_x += f_y*t36 - f_z*t37 - px_y*vs_z + px_z*vs_y
+                W_y += -f_x*t36 + f_z*t38 + px_x*vs_z - px_z*vs_x
+                W_z += f_x*t37 - f_y*t38 - px_x*vs_y + px_y*vs_x
             # moment of gravity on the frame
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             d_x, d_y, d_z = d[0], d[1], d[2]
             mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
-            t41 = d_z + mc_z
-            t42 = d_y + mc_y
-            t43 = d_x + mc_x
-            W_x += gamma_y*t41 - gamma_z*t42
-            W_y += -gamma_x*t41 + gamma_z*t43
-            W_z += gamma_x*t42 - gamma_y*t43
+            t39 = d_z + mc_z
+            t40 = d_y + mc_y
+            t41 = d_x + mc_x
+            W_x += gamma_y*t39 - gamma_z*t40
+            W_y += -gamma_x*t39 + gamma_z*t41
+            W_z += gamma_x*t40 - gamma_y*t41
             # moments on the frame: elastic (30) and inertia (45)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
-                t44 = -m_x*psi_y + m_y*psi_x
-                t45 = m_x*psi_z
-                t46 = -m_z*psi_x + t45
-                t47 = -m_y*psi_z + m_z*psi_y
-                W_x += -e0*psi_y*t44 + e0*psi_z*t46 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-                W_y += e0*psi_x*t44 - e0*psi_z*t47 - m_y + (0.5)*m_z*psi_x - 0.5*t45
-                W_z += -e0*psi_x*t46 + e0*psi_y*t47 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+                t42 = -m_x*psi_y + m_y*psi_x
+                t43 = m_x*psi_z
+                t44 = -m_z*psi_x + t43
+                t45 = -m_y*psi_z + m_z*psi_y
+                W_x += -e0*psi_y*t42 + e0*psi_z*t44 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+                W_y += e0*psi_x*t42 - e0*psi_z*t45 - m_y + (0.5)*m_z*psi_x - 0.5*t43
+                W_z += -e0*psi_x*t44 + e0*psi_y*t45 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
             # B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
-            t48 = W_x + rhs_x
-            t49 = W_y + rhs_y
-            t50 = W_z + rhs_z
-            wp_x = Bxx*t48 + Byx*t49 + Bzx*t50
-            wp_y = Bxy*t48 + Byy*t49 + Bzy*t50
-            wp_z = Bxz*t48 + Byz*t49 + Bzz*t50
+            t46 = W_x + rhs_x
+            t47 = W_y + rhs_y
+            t48 = W_z + rhs_z
+            wp_x = Bxx*t46 + Byx*t47 + Bzx*t48
+            wp_y = Bxy*t46 + Byy*t47 + Bzy*t48
+            wp_z = Bxz*t46 + Byz*t47 + Bzz*t48
             # force on the nodes in frame axes, (30), (57)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -411,30 +407,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 pwd_x, pwd_y, pwd_z = pd[j3], pd[j3 + 1], pd[j3 + 2]
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
-                t51 = m_y*psi_z
-                t52 = m_x*psi_y
-                t53 = m_y*psi_x - t52
-                t54 = e0*psi_y
-                t55 = m_x*psi_z
-                t56 = m_z*psi_x
-                t57 = t55 - t56
-                t58 = e0*psi_z
-                t59 = psi_y*wp_z
-                t60 = psi_z*wp_y
-                t61 = psi_x*wp_y
-                t62 = psi_y*wp_x
-                t63 = t61 - t62
-                t64 = psi_x*wp_z
-                t65 = psi_z*wp_x - t64
-                t66 = m_z*psi_y - t51
-                t67 = e0*psi_x
-                t68 = t59 - t60
-                g[j3] = (Om_y*pw_z - Om_z*pw_y + alpha_r*(t54*t63 - t58*t65 - 0.5*t59 + (0.5)*t60
-                    + wp_x) + m_x - 0.5*m_z*psi_y + pwd_x + (0.5)*t51 + t53*t54 - t57*t58)
-                g[j3 + 1] = (-Om_x*pw_z + Om_z*pw_x + alpha_r*(-0.5*psi_z*wp_x + t58*t68 - t63*t67
-                    + (0.5)*t64 + wp_y) + m_y + pwd_y - t53*t67 - 0.5*t55 + (0.5)*t56 + t58*t66)
-                g[j3 + 2] = (Om_x*pw_y - Om_y*pw_x + alpha_r*(-t54*t68 - 0.5*t61 + (0.5)*t62 +
-                    t65*t67 + wp_z) - 0.5*m_y*psi_x + m_z + pwd_z + (0.5)*t52 - t54*t66 + t57*t67)
+                t49 = alpha_r*wp_y + m_y
+                t50 = psi_z*t49
+                t51 = alpha_r*wp_z + m_z
+                t52 = psi_y*t51
+                t53 = psi_x*t49
+                t54 = alpha_r*wp_x + m_x
+                t55 = psi_y*t54
+                t56 = e0*(t53 - t55)
+                t57 = psi_x*t51
+                t58 = psi_z*t54 - t57
+                t59 = e0*psi_z
+                t60 = -t50 + t52
+                g[j3] = (Om_y*pw_z - Om_z*pw_y + psi_y*t56 + pwd_x + (0.5)*t50 - 0.5*t52 + t54 -
+                    t58*t59)
+                g[j3 + 1] = (-Om_x*pw_z + Om_z*pw_x - psi_x*t56 - 0.5*psi_z*t54 + pwd_y + t49 +
+                    (0.5)*t57 + t59*t60)
+                g[j3 + 2] = (Om_x*pw_y - Om_y*pw_x + e0*psi_x*t58 - e0*psi_y*t60 + pwd_z + t51 -
+                    0.5*t53 + (0.5)*t55)
             # force of the internal modes
             for k in range(MODES, n):
                 fm = s[k]
@@ -497,16 +487,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                 e0 = e0s[j]
-                t69 = -dth_x*psi_y + dth_y*psi_x
-                t70 = dth_x*psi_z
-                t71 = -dth_z*psi_x + t70
-                t72 = -dth_y*psi_z + dth_z*psi_y
-                rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y - e0*psi_y*t69 +
-                    e0*psi_z*t71))
-                rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t69 - e0*psi_z*t72 -
-                    0.5*t70))
-                rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t71 +
-                    e0*psi_y*t72))
+                t61 = -dth_x*psi_y + dth_y*psi_x
+                t62 = dth_x*psi_z
+                t63 = -dth_z*psi_x + t62
+                t64 = -dth_y*psi_z + dth_z*psi_y
+                rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y - e0*psi_y*t61 +
+                    e0*psi_z*t63))
+                rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t61 - e0*psi_z*t64 -
+                    0.5*t62))
+                rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t63 +
+                    e0*psi_y*t64))
             dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -516,41 +506,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-                t73 = X_y + u_y
-                t74 = X_z + u_z
-                t75 = X_x + u_x
-                dy[i3] = -dth0_y*t74 + dth0_z*t73 - dx0_x + dx_x
-                dy[i3 + 1] = dth0_x*t74 - dth0_z*t75 - dx0_y + dx_y
-                dy[i3 + 2] = -dth0_x*t73 + dth0_y*t75 - dx0_z + dx_z
+                t65 = X_y + u_y
+                t66 = X_z + u_z
+                t67 = X_x + u_x
+                dy[i3] = -dth0_y*t66 + dth0_z*t65 - dx0_x + dx_x
+                dy[i3 + 1] = dth0_x*t66 - dth0_z*t67 - dx0_y + dx_y
+                dy[i3 + 2] = -dth0_x*t65 + dth0_y*t67 - dx0_z + dx_z
             # variation of the elastic rotations, (17)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                 e0 = e0s[j]
-                t76 = dth0_y*psi_z
-                t77 = dth_y*psi_z
-                t78 = dth0_x*psi_y
-                t79 = dth0_y*psi_x - t78
-                t80 = e0*psi_y
-                t81 = dth_x*psi_z
-                t82 = dth_z*psi_x
-                t83 = t81 - t82
-                t84 = e0*psi_z
-                t85 = dth_x*psi_y
-                t86 = dth_y*psi_x - t85
-                t87 = dth0_x*psi_z
-                t88 = dth0_z*psi_x
-                t89 = t87 - t88
-                t90 = e0*psi_x
-                t91 = dth_z*psi_y - t77
-                t92 = dth0_z*psi_y - t76
-                dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y + e0*psi_y*t86
-                    + e0*psi_z*t89 - 0.5*t76 - 0.5*t77 - t79*t80 - t83*t84)
-                dy[j3 + 1] = (-dth0_y + dth_y + t79*t90 + (0.5)*t81 - 0.5*t82 + t84*t91 - t84*t92
-                    - t86*t90 + (0.5)*t87 - 0.5*t88)
-                dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                    e0*psi_x*t83 + e0*psi_y*t92 - 0.5*t78 - t80*t91 - 0.5*t85 - t89*t90)
+                t68 = (0.5)*dth0_z + (0.5)*dth_z
+                t69 = dth0_y + dth_y
+                t70 = (0.5)*psi_z
+                t71 = -dth0_y + dth_y
+                t72 = -dth0_x + dth_x
+                t73 = psi_x*t71 - psi_y*t72
+                t74 = -dth0_z + dth_z
+                t75 = -psi_x*t74 + psi_z*t72
+                t76 = dth0_x + dth_x
+                t77 = psi_y*t74 - psi_z*t71
+                dy[j3] = -dth0_x + dth_x + e0*(psi_y*t73 - psi_z*t75) + psi_y*t68 - t69*t70
+                dy[j3 + 1] = -dth0_y + dth_y + e0*(-psi_x*t73 + psi_z*t77) - psi_x*t68 + t70*t76
+                dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t75 - psi_y*t77) + (0.5)*psi_x*t69 -
+                    0.5*psi_y*t76)
             # differential: internal modes
             for k in range(MODES, n):
                 dqm = dqe[k]
@@ -607,46 +588,56 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t93 = -Om_x*psi_y + Om_y*psi_x
-                t94 = dpsi_y*e0
-                t95 = Om0_x*psi_z - Om0_z*psi_x
-                t96 = dpsi_z*e0
-                t97 = Om0_x*dpsi_z
-                t98 = -Om0_z*dpsi_x + t97
-                t99 = e0*psi_z
-                t100 = -Om0_x*psi_y + Om0_y*psi_x
-                t101 = Om_x*psi_z - Om_z*psi_x
-                t102 = -Om0_x*dpsi_y + Om0_y*dpsi_x
-                t103 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                t104 = e0*psi_y
-                t105 = Om_x*dpsi_z
-                t106 = dOm_x*psi_z
-                t107 = -Om_z*dpsi_x - dOm_z*psi_x + t105 + t106
-                t108 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t109 = e1*t108
-                t110 = psi_y*t109
-                t111 = psi_z*t109
-                t112 = dpsi_x*e0
-                t113 = -Om_y*psi_z + Om_z*psi_y
-                t114 = e0*psi_x
-                t115 = -Om0_y*psi_z + Om0_z*psi_y
-                t116 = -Om0_y*dpsi_z + Om0_z*dpsi_y
-                t117 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                t118 = psi_x*t109
-                rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - 0.5*Om0_z*dpsi_y + (0.5)*Om_y*dpsi_z -
-                    0.5*Om_z*dpsi_y - dOm_x + (0.5)*dOm_y*psi_z - 0.5*dOm_z*psi_y + dpsi_y*e0*t100
-                    + dpsi_z*e0*t101 + e0*psi_y*t102 + e0*psi_z*t107 + e1*psi_y*t100*t108 +
-                    e1*psi_z*t101*t108 - t103*t104 - t110*t93 - t111*t95 - t93*t94 - t95*t96 -
-                    t98*t99))
-                rhs_y += (-alpha_r*((0.5)*Om0_z*dpsi_x + (0.5)*Om_z*dpsi_x - dOm_y +
-                    (0.5)*dOm_z*psi_x + dpsi_x*e0*t93 + dpsi_z*e0*t115 + e0*psi_x*t103 +
-                    e0*psi_z*t116 + e1*psi_x*t108*t93 + e1*psi_z*t108*t115 - t100*t112 - t100*t118
-                    - t102*t114 - 0.5*t105 - 0.5*t106 - t111*t113 - t113*t96 - t117*t99 - 0.5*t97))
-                rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x + (0.5)*Om_x*dpsi_y -
-                    0.5*Om_y*dpsi_x + (0.5)*dOm_x*psi_y - 0.5*dOm_y*psi_x - dOm_z + dpsi_x*e0*t95
-                    + dpsi_y*e0*t113 + e0*psi_x*t98 + e0*psi_y*t117 + e1*psi_x*t108*t95 +
-                    e1*psi_y*t108*t113 - t101*t112 - t101*t118 - t104*t116 - t107*t114 - t110*t115
-                    - t115*t94))
+                t78 = (0.5)*dpsi_y
+                t79 = (0.5)*psi_z
+                t80 = e0*psi_x
+                t81 = psi_y*t80
+                t82 = (0.5)*psi_y
+                t83 = psi_z*t80
+                t84 = Om0_x*psi_z - Om0_z*psi_x
+                t85 = Om0_x*dpsi_z - Om0_z*dpsi_x
+                t86 = -Om0_x*psi_y + Om0_y*psi_x
+                t87 = -Om0_x*dpsi_y + Om0_y*dpsi_x
+                t88 = psi_y*psi_y
+                t89 = e0*t88
+                t90 = psi_z*psi_z
+                t91 = e0*t90 - 1
+                t92 = 2*dpsi_x*psi_x
+                t93 = 2*dpsi_y*psi_y
+                t94 = 2*dpsi_z*psi_z
+                t95 = t92 + t93 + t94
+                t96 = e1*t95
+                t97 = (0.5)*dpsi_z
+                t98 = dpsi_x*e0
+                t99 = psi_x*t96
+                t100 = dpsi_y*t80 + psi_y*t98 + psi_y*t99
+                t101 = dpsi_z*t80 + psi_z*t98 + psi_z*t99
+                t102 = e0*t94 + t90*t96
+                t103 = e0*t93 + t88*t96
+                t104 = (0.5)*psi_x
+                t105 = e0*psi_y
+                t106 = psi_z*t105
+                t107 = -Om0_y*psi_z + Om0_z*psi_y
+                t108 = -Om0_y*dpsi_z + Om0_z*dpsi_y
+                t109 = psi_x*psi_x
+                t110 = e0*t109
+                t111 = (0.5)*dpsi_x
+                t112 = dpsi_y*e0
+                t113 = psi_y*t96
+                t114 = dpsi_z*t105 + psi_z*t112 + psi_z*t113
+                t115 = e0*t92 + t109*t96
+                rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - Om0_z*t78 - Om_x*(-t102 - t103) -
+                    Om_y*(t100 - t97) - Om_z*(t101 + t78) - dOm_x*(-t89 - t91) - dOm_y*(-t79 +
+                    t81) - dOm_z*(t82 + t83) + dpsi_y*e0*t86 - dpsi_z*e0*t84 + e0*psi_y*t87 -
+                    e0*psi_z*t85 + e1*psi_y*t86*t95 - psi_z*t84*t96))
+                rhs_y += (-alpha_r*(-Om0_x*t97 + (0.5)*Om0_z*dpsi_x - Om_x*(t100 + t97) -
+                    Om_y*(-t102 - t115) - Om_z*(-t111 + t114) - dOm_x*(t79 + t81) - dOm_y*(-t110 -
+                    t91) - dOm_z*(-t104 + t106) + dpsi_z*e0*t107 + e0*psi_z*t108 +
+                    e1*psi_z*t107*t95 - t80*t87 - t86*t98 - t86*t99))
+                rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x - Om_x*(t101 - t78) -
+                    Om_y*(t111 + t114) - Om_z*(-t103 - t115) - dOm_x*(-t82 + t83) - dOm_y*(t104 +
+                    t106) - dOm_z*(-t110 - t89 + 1) + dpsi_x*e0*t84 + e0*psi_x*t85 +
+                    e1*psi_x*t84*t95 - t105*t108 - t107*t112 - t107*t113))
             dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -691,12 +682,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                t119 = X_y + u_y
-                t120 = X_z + u_z
-                t121 = X_x + u_x
-                deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t120 + dOm0_z*t119 - dv0_x + dvs_x
-                deta[i3 + 1] = Om0_x*du_z - Om0_z*du_x + dOm0_x*t120 - dOm0_z*t121 - dv0_y + dvs_y
-                deta[i3 + 2] = -Om0_x*du_y + Om0_y*du_x - dOm0_x*t119 + dOm0_y*t121 - dv0_z + dvs_z
+                t116 = X_y + u_y
+                t117 = X_z + u_z
+                t118 = X_x + u_x
+                deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t117 + dOm0_z*t116 - dv0_x + dvs_x
+                deta[i3 + 1] = Om0_x*du_z - Om0_z*du_x + dOm0_x*t117 - dOm0_z*t118 - dv0_y + dvs_y
+                deta[i3 + 2] = -Om0_x*du_y + Om0_y*du_x - dOm0_x*t116 + dOm0_y*t118 - dv0_z + dvs_z
             # differential: rates of the elastic rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -706,59 +697,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t122 = Om0_y*dpsi_z
-                t123 = Om_y*dpsi_z
-                t124 = dOm0_y*psi_z
-                t125 = dOm_y*psi_z
-                t126 = -Om0_x*psi_y + Om0_y*psi_x
-                t127 = dpsi_y*e0
-                t128 = Om_x*psi_z - Om_z*psi_x
-                t129 = dpsi_z*e0
-                t130 = -Om_x*psi_y + Om_y*psi_x
-                t131 = Om0_x*psi_z - Om0_z*psi_x
-                t132 = Om0_x*dpsi_y
-                t133 = dOm0_x*psi_y
-                t134 = Om0_y*dpsi_x + dOm0_y*psi_x - t132 - t133
-                t135 = e0*psi_y
-                t136 = Om_x*dpsi_z
-                t137 = dOm_x*psi_z
-                t138 = Om_z*dpsi_x
-                t139 = dOm_z*psi_x
-                t140 = t136 + t137 - t138 - t139
-                t141 = e0*psi_z
-                t142 = Om_x*dpsi_y
-                t143 = dOm_x*psi_y
-                t144 = Om_y*dpsi_x + dOm_y*psi_x - t142 - t143
-                t145 = Om0_x*dpsi_z
-                t146 = dOm0_x*psi_z
-                t147 = Om0_z*dpsi_x
-                t148 = dOm0_z*psi_x
-                t149 = t145 + t146 - t147 - t148
-                t150 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t151 = e1*t150
-                t152 = psi_y*t151
-                t153 = psi_z*t151
-                t154 = dpsi_x*e0
-                t155 = -Om_y*psi_z + Om_z*psi_y
-                t156 = -Om0_y*psi_z + Om0_z*psi_y
-                t157 = e0*psi_x
-                t158 = Om_z*dpsi_y + dOm_z*psi_y - t123 - t125
-                t159 = Om0_z*dpsi_y + dOm0_z*psi_y - t122 - t124
-                t160 = psi_x*t151
-                deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x + (0.5)*dOm0_z*psi_y +
-                    dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t130 + dpsi_z*e0*t131 + e0*psi_y*t144 +
-                    e0*psi_z*t149 + e1*psi_y*t130*t150 + e1*psi_z*t131*t150 - 0.5*t122 - 0.5*t123
-                    - 0.5*t124 - 0.5*t125 - t126*t127 - t126*t152 - t128*t129 - t128*t153 -
-                    t134*t135 - t140*t141)
-                deta[j3 + 1] = (-dOm0_y + dOm_y + t126*t154 + t126*t160 + t129*t155 - t129*t156 -
-                    t130*t154 - t130*t160 + t134*t157 + (0.5)*t136 + (0.5)*t137 - 0.5*t138 -
-                    0.5*t139 + t141*t158 - t141*t159 - t144*t157 + (0.5)*t145 + (0.5)*t146 -
-                    0.5*t147 - 0.5*t148 + t153*t155 - t153*t156)
-                deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                    dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t128 + dpsi_y*e0*t156 +
-                    e0*psi_x*t140 + e0*psi_y*t159 + e1*psi_x*t128*t150 + e1*psi_y*t150*t156 -
-                    t127*t155 - t131*t154 - t131*t160 - 0.5*t132 - 0.5*t133 - t135*t158 - 0.5*t142
-                    - 0.5*t143 - t149*t157 - t152*t155)
+                t119 = (0.5)*Om0_z + (0.5)*Om_z
+                t120 = Om0_y + Om_y
+                t121 = (0.5)*dpsi_z
+                t122 = (0.5)*dOm0_z + (0.5)*dOm_z
+                t123 = dOm0_y + dOm_y
+                t124 = (0.5)*psi_z
+                t125 = -Om0_y + Om_y
+                t126 = -Om0_x + Om_x
+                t127 = psi_x*t125 - psi_y*t126
+                t128 = -Om0_z + Om_z
+                t129 = -psi_x*t128 + psi_z*t126
+                t130 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                t131 = -dOm0_y + dOm_y
+                t132 = -dOm0_x + dOm_x
+                t133 = dpsi_x*t125 - dpsi_y*t126 + psi_x*t131 - psi_y*t132
+                t134 = -dOm0_z + dOm_z
+                t135 = -dpsi_x*t128 + dpsi_z*t126 - psi_x*t134 + psi_z*t132
+                t136 = Om0_x + Om_x
+                t137 = dOm0_x + dOm_x
+                t138 = psi_y*t128 - psi_z*t125
+                t139 = dpsi_y*t128 - dpsi_z*t125 + psi_y*t134 - psi_z*t131
+                deta[j3] = (-dOm0_x + dOm_x + dpsi_y*t119 + e0*(dpsi_y*t127 - dpsi_z*t129 +
+                    psi_y*t133 - psi_z*t135) + psi_y*t122 - t120*t121 - t123*t124 +
+                    t130*(psi_y*t127 - psi_z*t129))
+                deta[j3 + 1] = (-dOm0_y + dOm_y - dpsi_x*t119 + e0*(-dpsi_x*t127 + dpsi_z*t138 -
+                    psi_x*t133 + psi_z*t139) - psi_x*t122 + t121*t136 + t124*t137 +
+                    t130*(-psi_x*t127 + psi_z*t138))
+                deta[j3 + 2] = (-dOm0_z + dOm_z + (0.5)*dpsi_x*t120 - 0.5*dpsi_y*t136 +
+                    e0*(dpsi_x*t129 - dpsi_y*t138 + psi_x*t135 - psi_y*t139) + (0.5)*psi_x*t123 -
+                    0.5*psi_y*t137 + t130*(psi_x*t129 - psi_y*t138))
             # differential: rates of the internal modes
             for k in range(MODES, n):
                 dvm = dve[k]
@@ -789,18 +757,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                 dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
-                t161 = alpha*mass
-                t162 = X_z + u_z
-                t163 = X_y + u_y
-                t164 = X_x + u_x
-                dF_x += -df_x - dgamma_x*t161
-                dF_y += -df_y - dgamma_y*t161
-                dF_z += -df_z - dgamma_z*t161
-                dW_x += (df_y*t162 - df_z*t163 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y +
+                t140 = alpha*mass
+                t141 = X_z + u_z
+                t142 = X_y + u_y
+                t143 = X_x + u_x
+                dF_x += -df_x - dgamma_x*t140
+                dF_y += -df_y - dgamma_y*t140
+                dF_z += -df_z - dgamma_z*t140
+                dW_x += (df_y*t141 - df_z*t142 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y +
                     dvs_y*px_z - dvs_z*px_y)
-                dW_y += (-df_x*t162 + df_z*t164 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z - du_z*f_x -
+                dW_y += (-df_x*t141 + df_z*t143 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z - du_z*f_x -
                     dvs_x*px_z + dvs_z*px_x)
-                dW_z += (df_x*t163 - df_y*t164 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x +
+                dW_z += (df_x*t142 - df_y*t143 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x +
                     dvs_x*px_y - dvs_y*px_x)
             # differential: moment of gravity on the frame
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
@@ -808,12 +776,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
             dd_x, dd_y, dd_z = dd[0], dd[1], dd[2]
             dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-            t165 = d_y + mc_y
-            t166 = d_z + mc_z
-            t167 = d_x + mc_x
-            dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t166 - dgamma_z*t165
-            dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t166 + dgamma_z*t167
-            dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t165 - dgamma_y*t167
+            t144 = d_y + mc_y
+            t145 = d_z + mc_z
+            t146 = d_x + mc_x
+            dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t145 - dgamma_z*t144
+            dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t145 + dgamma_z*t146
+            dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t144 - dgamma_y*t146
             # differential: moments on the frame: elastic (30) and inertia (45)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -823,25 +791,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t168 = -m_x*psi_y + m_y*psi_x
-                t169 = m_x*psi_z - m_z*psi_x
-                t170 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                t171 = dm_x*psi_z
-                t172 = dpsi_z*m_x
-                t173 = -dm_z*psi_x - dpsi_x*m_z + t171 + t172
-                t174 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t175 = e1*t174
-                t176 = -m_y*psi_z + m_z*psi_y
-                t177 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t168 -
-                    0.5*dpsi_y*m_z + dpsi_z*e0*t169 + (0.5)*dpsi_z*m_y - e0*psi_y*t170 +
-                    e0*psi_z*t173 + e1*psi_z*t169*t174 - psi_y*t168*t175)
-                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t168 + (0.5)*dpsi_x*m_z -
-                    dpsi_z*e0*t176 + e0*psi_x*t170 - e0*psi_z*t177 + e1*psi_x*t168*t174 -
-                    psi_z*t175*t176 - 0.5*t171 - 0.5*t172)
-                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t169 -
-                    0.5*dpsi_x*m_y + dpsi_y*e0*t176 + (0.5)*dpsi_y*m_x - e0*psi_x*t173 +
-                    e0*psi_y*t177 + e1*psi_y*t174*t176 - psi_x*t169*t175)
+                t147 = -m_x*psi_y + m_y*psi_x
+                t148 = m_x*psi_z - m_z*psi_x
+                t149 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                t150 = dm_x*psi_z
+                t151 = dpsi_z*m_x
+                t152 = -dm_z*psi_x - dpsi_x*m_z + t150 + t151
+                t153 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t154 = e1*t153
+                t155 = -m_y*psi_z + m_z*psi_y
+                t156 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t147 -
+                    0.5*dpsi_y*m_z + dpsi_z*e0*t148 + (0.5)*dpsi_z*m_y - e0*psi_y*t149 +
+                    e0*psi_z*t152 + e1*psi_z*t148*t153 - psi_y*t147*t154)
+                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t147 + (0.5)*dpsi_x*m_z -
+                    dpsi_z*e0*t155 + e0*psi_x*t149 - e0*psi_z*t156 + e1*psi_x*t147*t153 -
+                    psi_z*t154*t155 - 0.5*t150 - 0.5*t151)
+                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t148 -
+                    0.5*dpsi_x*m_y + dpsi_y*e0*t155 + (0.5)*dpsi_y*m_x - e0*psi_x*t152 +
+                    e0*psi_y*t156 + e1*psi_y*t153*t155 - psi_x*t148*t154)
             # differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
             for j in range(N_ROTATIONS):
@@ -851,33 +819,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t178 = dpsi_y*wp_z
-                t179 = dpsi_z*wp_y
-                t180 = psi_x*wp_y - psi_y*wp_x
-                t181 = e0*t180
-                t182 = dpsi_x*wp_y
-                t183 = dpsi_y*wp_x
-                t184 = e0*(t182 - t183)
-                t185 = -psi_x*wp_z + psi_z*wp_x
-                t186 = dpsi_x*wp_z
-                t187 = dpsi_z*wp_x - t186
-                t188 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t189 = e1*t188
-                t190 = t180*t189
-                t191 = psi_y*wp_z - psi_z*wp_y
-                t192 = t178 - t179
-                rhs_x += (-alpha_r*(dpsi_y*t181 - dpsi_z*e0*t185 - e0*psi_z*t187 + psi_y*t184 +
-                    psi_y*t190 - psi_z*t185*t189 + (0.5)*t178 - 0.5*t179))
-                rhs_y += (-alpha_r*(-dpsi_x*t181 + dpsi_z*e0*t191 + (0.5)*dpsi_z*wp_x +
-                    e0*psi_z*t192 + e1*psi_z*t188*t191 - psi_x*t184 - psi_x*t190 - 0.5*t186))
-                rhs_z += (-alpha_r*(dpsi_x*e0*t185 - dpsi_y*e0*t191 + e0*psi_x*t187 -
-                    e0*psi_y*t192 + psi_x*t185*t189 - psi_y*t189*t191 + (0.5)*t182 - 0.5*t183))
-            t193 = dW_x + rhs_x
-            t194 = dW_y + rhs_y
-            t195 = dW_z + rhs_z
-            dwp_x = Bxx*t193 + Byx*t194 + Bzx*t195
-            dwp_y = Bxy*t193 + Byy*t194 + Bzy*t195
-            dwp_z = Bxz*t193 + Byz*t194 + Bzz*t195
+                t157 = dpsi_y*wp_z
+                t158 = dpsi_z*wp_y
+                t159 = psi_x*wp_y - psi_y*wp_x
+                t160 = e0*t159
+                t161 = dpsi_x*wp_y
+                t162 = dpsi_y*wp_x
+                t163 = e0*(t161 - t162)
+                t164 = -psi_x*wp_z + psi_z*wp_x
+                t165 = dpsi_x*wp_z
+                t166 = dpsi_z*wp_x - t165
+                t167 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t168 = e1*t167
+                t169 = t159*t168
+                t170 = psi_y*wp_z - psi_z*wp_y
+                t171 = t157 - t158
+                rhs_x += (-alpha_r*(dpsi_y*t160 - dpsi_z*e0*t164 - e0*psi_z*t166 + psi_y*t163 +
+                    psi_y*t169 - psi_z*t164*t168 + (0.5)*t157 - 0.5*t158))
+                rhs_y += (-alpha_r*(-dpsi_x*t160 + dpsi_z*e0*t170 + (0.5)*dpsi_z*wp_x +
+                    e0*psi_z*t171 + e1*psi_z*t167*t170 - psi_x*t163 - psi_x*t169 - 0.5*t165))
+                rhs_z += (-alpha_r*(dpsi_x*e0*t164 - dpsi_y*e0*t170 + e0*psi_x*t166 -
+                    e0*psi_y*t171 + psi_x*t164*t168 - psi_y*t168*t170 + (0.5)*t161 - 0.5*t162))
+            t172 = dW_x + rhs_x
+            t173 = dW_y + rhs_y
+            t174 = dW_z + rhs_z
+            dwp_x = Bxx*t172 + Byx*t173 + Bzx*t174
+            dwp_y = Bxy*t172 + Byy*t173 + Bzy*t174
+            dwp_z = Bxz*t172 + Byz*t173 + Bzz*t174
             # differential: force on the nodes in frame axes, (30), (57)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -915,61 +883,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpwd_x, dpwd_y, dpwd_z = dpd[j3], dpd[j3 + 1], dpd[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t196 = dm_y*psi_z
-                t197 = dpsi_z*m_y
-                t198 = -m_x*psi_y + m_y*psi_x
-                t199 = dpsi_y*e0
-                t200 = m_x*psi_z - m_z*psi_x
-                t201 = dpsi_z*e0
-                t202 = dm_x*psi_y
-                t203 = dpsi_y*m_x
-                t204 = dm_y*psi_x + dpsi_x*m_y - t202 - t203
-                t205 = e0*psi_y
-                t206 = dm_x*psi_z
-                t207 = dpsi_z*m_x
-                t208 = dm_z*psi_x
-                t209 = dpsi_x*m_z
-                t210 = t206 + t207 - t208 - t209
-                t211 = e0*psi_z
-                t212 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                t213 = psi_y*t212
-                t214 = psi_z*t212
-                t215 = dpsi_y*wp_z
-                t216 = dpsi_z*wp_y
-                t217 = dwp_y*psi_z
-                t218 = dwp_z*psi_y
-                t219 = psi_x*wp_y - psi_y*wp_x
-                t220 = -psi_x*wp_z + psi_z*wp_x
-                t221 = dpsi_x*wp_y
-                t222 = dwp_y*psi_x
-                t223 = dpsi_y*wp_x
-                t224 = dwp_x*psi_y
-                t225 = t221 + t222 - t223 - t224
-                t226 = dpsi_x*wp_z
-                t227 = dwp_z*psi_x
-                t228 = dpsi_z*wp_x + dwp_x*psi_z - t226 - t227
-                t229 = -m_y*psi_z + m_z*psi_y
-                t230 = dpsi_x*e0
-                t231 = dm_z*psi_y + dpsi_y*m_z - t196 - t197
-                t232 = e0*psi_x
-                t233 = psi_x*t212
-                t234 = psi_y*wp_z - psi_z*wp_y
-                t235 = t215 - t216 - t217 + t218
-                dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + alpha_r*(dwp_x + t199*t219 - t201*t220 +
-                    t205*t225 - t211*t228 + t213*t219 - t214*t220 - 0.5*t215 + (0.5)*t216 +
-                    (0.5)*t217 - 0.5*t218) + dOm_y*pw_z - dOm_z*pw_y + dm_x - 0.5*dm_z*psi_y -
-                    0.5*dpsi_y*m_z + dpwd_x + (0.5)*t196 + (0.5)*t197 + t198*t199 + t198*t213 -
-                    t200*t201 - t200*t214 + t204*t205 - t210*t211)
-                dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x + alpha_r*(-0.5*dpsi_z*wp_x -
-                    0.5*dwp_x*psi_z + dwp_y + t201*t234 + t211*t235 + t214*t234 - t219*t230 -
-                    t219*t233 - t225*t232 + (0.5)*t226 + (0.5)*t227) - dOm_x*pw_z + dOm_z*pw_x +
-                    dm_y + dpwd_y - t198*t230 - t198*t233 + t201*t229 - t204*t232 - 0.5*t206 -
-                    0.5*t207 + (0.5)*t208 + (0.5)*t209 + t211*t231 + t214*t229)
-                dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + alpha_r*(dwp_z - t199*t234 - t205*t235 -
-                    t213*t234 + t220*t230 + t220*t233 - 0.5*t221 - 0.5*t222 + (0.5)*t223 +
-                    (0.5)*t224 + t228*t232) + dOm_x*pw_y - dOm_y*pw_x - 0.5*dm_y*psi_x + dm_z -
-                    0.5*dpsi_x*m_y + dpwd_z - t199*t229 + t200*t230 + t200*t233 + (0.5)*t202 +
-                    (0.5)*t203 - t205*t231 + t210*t232 - t213*t229)
+                t175 = alpha_r*wp_y + m_y
+                t176 = dpsi_z*t175
+                t177 = alpha_r*dwp_y + dm_y
+                t178 = psi_z*t177
+                t179 = alpha_r*wp_z + m_z
+                t180 = dpsi_y*t179
+                t181 = alpha_r*dwp_z + dm_z
+                t182 = psi_y*t181
+                t183 = alpha_r*wp_x + m_x
+                t184 = psi_x*t175 - psi_y*t183
+                t185 = e0*t184
+                t186 = dpsi_x*t175
+                t187 = psi_x*t177
+                t188 = dpsi_y*t183
+                t189 = alpha_r*dwp_x + dm_x
+                t190 = psi_y*t189
+                t191 = e0*(t186 + t187 - t188 - t190)
+                t192 = -psi_x*t179 + psi_z*t183
+                t193 = dpsi_z*e0
+                t194 = dpsi_x*t179
+                t195 = psi_x*t181
+                t196 = dpsi_z*t183 + psi_z*t189 - t194 - t195
+                t197 = e0*psi_z
+                t198 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                t199 = t184*t198
+                t200 = psi_z*t198
+                t201 = psi_y*t179 - psi_z*t175
+                t202 = -t176 - t178 + t180 + t182
+                dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + dOm_y*pw_z - dOm_z*pw_y + dpsi_y*t185 + dpwd_x
+                    + psi_y*t191 + psi_y*t199 + (0.5)*t176 + (0.5)*t178 - 0.5*t180 - 0.5*t182 +
+                    t189 - t192*t193 - t192*t200 - t196*t197)
+                dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x - dOm_x*pw_z + dOm_z*pw_x - dpsi_x*t185 -
+                    0.5*dpsi_z*t183 + dpwd_y - psi_x*t191 - psi_x*t199 - 0.5*psi_z*t189 + t177 +
+                    t193*t201 + (0.5)*t194 + (0.5)*t195 + t197*t202 + t200*t201)
+                dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + dOm_x*pw_y - dOm_y*pw_x + dpsi_x*e0*t192 -
+                    dpsi_y*e0*t201 + dpwd_z + e0*psi_x*t196 - e0*psi_y*t202 + psi_x*t192*t198 -
+                    psi_y*t198*t201 + t181 - 0.5*t186 - 0.5*t187 + (0.5)*t188 + (0.5)*t190)
             # differential: force of the internal modes
             for k in range(MODES, n):
                 dfm = ds[k]
@@ -1068,107 +1018,82 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdgt_x, bdgt_y, bdgt_z = bdg[j3], bdg[j3 + 1], bdg[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t236 = e0*psi_y
-                t237 = m_y*t236
-                t238 = e0*psi_z
-                t239 = m_z*t238
-                t240 = m_x*psi_y
-                t241 = m_y*psi_x - t240
-                t242 = 2*e1
-                t243 = psi_x*t242
-                t244 = psi_y*t243
-                t245 = t241*t244
-                t246 = m_x*psi_z
-                t247 = m_z*psi_x
-                t248 = t246 - t247
-                t249 = psi_z*t243
-                t250 = t248*t249
-                t251 = t236*wp_y
-                t252 = t238*wp_z
-                t253 = psi_x*wp_y
-                t254 = psi_y*wp_x
-                t255 = t253 - t254
-                t256 = t244*t255
-                t257 = psi_x*wp_z
-                t258 = psi_z*wp_x - t257
-                t259 = t249*t258
-                t260 = (0.5)*m_y
-                t261 = e0*t248
-                t262 = m_y*psi_z
-                t263 = m_z*psi_y - t262
-                t264 = psi_x*psi_x
-                t265 = t242*t264
-                t266 = (0.5)*wp_y
-                t267 = e0*t258
-                t268 = psi_y*wp_z
-                t269 = psi_z*wp_y
-                t270 = t268 - t269
-                t271 = (0.5)*m_z
-                t272 = e0*t241
-                t273 = (0.5)*wp_z
-                t274 = e0*t255
-                t275 = e0*psi_x
-                t276 = m_x*t275
-                t277 = psi_y*psi_z*t242
-                t278 = t263*t277
-                t279 = t275*wp_x
-                t280 = t270*t277
-                t281 = psi_y*psi_y
-                t282 = t242*t281
-                t283 = (0.5)*m_x
-                t284 = e0*t263
-                t285 = (0.5)*wp_x
-                t286 = e0*t270
-                t287 = psi_z*psi_z
-                t288 = t242*t287
-                t289 = (0.5)*psi_z
-                t290 = psi_x*t236
-                t291 = bdgt_y*(-t289 + t290)
-                t292 = (0.5)*psi_y
-                t293 = psi_x*t238
-                t294 = bdgt_z*(t292 + t293)
-                t295 = e0*t281
-                t296 = e0*t287 - 1
-                t297 = bdgt_x*(-t295 - t296)
-                t298 = bdgt_x*(t289 + t290)
-                t299 = (0.5)*psi_x
-                t300 = psi_z*t236
-                t301 = bdgt_z*(-t299 + t300)
-                t302 = e0*t264
-                t303 = bdgt_y*(-t296 - t302)
-                t304 = bdgt_x*(-t292 + t293)
-                t305 = bdgt_y*(t299 + t300)
-                t306 = bdgt_z*(-t295 - t302 + 1)
+                t203 = alpha_r*wp_y
+                t204 = m_y + t203
+                t205 = e0*psi_y
+                t206 = alpha_r*wp_z
+                t207 = m_z + t206
+                t208 = -t207
+                t209 = psi_x*t204
+                t210 = alpha_r*wp_x
+                t211 = m_x + t210
+                t212 = -psi_y*t211 + t209
+                t213 = 2*e1
+                t214 = psi_x*t213
+                t215 = psi_y*t214
+                t216 = t212*t215
+                t217 = -psi_x*t207 + psi_z*t211
+                t218 = psi_z*t214
+                t219 = t217*t218
+                t220 = psi_x*psi_x
+                t221 = psi_y*t207
+                t222 = -psi_z*t204 + t221
+                t223 = -e0*t212 + (0.5)*m_z + (0.5)*t206
+                t224 = -e0*t217 + (0.5)*m_y + (0.5)*t203
+                t225 = -t211
+                t226 = e0*psi_x
+                t227 = psi_y*psi_z*t213
+                t228 = -t222*t227
+                t229 = psi_y*psi_y
+                t230 = -e0*t222 + (0.5)*m_x + (0.5)*t210
+                t231 = -t204
+                t232 = psi_z*psi_z
+                t233 = (0.5)*psi_z
+                t234 = psi_x*t205
+                t235 = (0.5)*psi_y
+                t236 = e0*psi_x*psi_z
+                t237 = e0*t229
+                t238 = e0*t232
+                t239 = t238 - 1
+                t240 = (0.5)*psi_x
+                t241 = psi_z*t205
+                t242 = e0*t220
+                t243 = alpha_r*t233
+                t244 = alpha_r*t234
+                t245 = alpha_r*t235
+                t246 = alpha_r*t236
+                t247 = alpha_r*t237
+                t248 = -alpha_r
+                t249 = alpha_r*t238 + t248
+                t250 = alpha_r*t240
+                t251 = alpha_r*t241
+                t252 = alpha_r*t242
                 bdve[j3] += -bdgt_y*pw_z + bdgt_z*pw_y
                 bdve[j3 + 1] += bdgt_x*pw_z - bdgt_z*pw_x
                 bdve[j3 + 2] += -bdgt_x*pw_y + bdgt_y*pw_x
-                bdy[j3] += (bdgt_x*(alpha_r*(t251 + t252 + t256 - t259) + t237 + t239 + t245 -
-                    t250) + bdgt_y*(alpha_r*(-e0*t253 + 2*e1*psi_x*psi_z*t270 - t255*t265 + t273 -
-                    t274) - e0*m_y*psi_x - t241*t265 + t249*t263 + t271 - t272) +
-                    bdgt_z*(alpha_r*(-e0*t257 + 2*e1*t258*t264 - t244*t270 - t266 + t267) -
-                    e0*t247 - t244*t263 + t248*t265 - t260 + t261))
-                bdy[j3 + 1] += (bdgt_x*(alpha_r*(-e0*t254 + 2*e1*t255*t281 - t258*t277 - t273 +
-                    t274) - e0*t240 + t241*t282 - t248*t277 - t271 + t272) + bdgt_y*(alpha_r*(t252
-                    - t256 + t279 + t280) + t239 - t245 + t276 + t278) + bdgt_z*(alpha_r*(-e0*t268
-                    + 2*e1*psi_x*psi_y*t258 - t270*t282 + t285 - t286) - e0*m_z*psi_y + t244*t248
-                    - t263*t282 + t283 - t284))
-                bdy[j3 + 2] += (bdgt_x*(alpha_r*(-e0*psi_z*wp_x + 2*e1*psi_y*psi_z*t255 -
-                    t258*t288 + t266 - t267) - e0*t246 + t241*t277 - t248*t288 + t260 - t261) +
-                    bdgt_y*(alpha_r*(-e0*t269 + 2*e1*t270*t287 - t249*t255 - t285 + t286) -
-                    e0*t262 - t241*t249 + t263*t288 - t283 + t284) + bdgt_z*(alpha_r*(t251 + t259
-                    + t279 - t280) + t237 + t250 + t276 - t278))
-                bds[j3] += t291 + t294 + t297
-                bds[j3 + 1] += t298 + t301 + t303
-                bds[j3 + 2] += t304 + t305 + t306
+                bdy[j3] += (bdgt_x*(-e0*psi_z*t208 + t204*t205 + t216 - t219) + bdgt_y*(-e0*t209 -
+                    t212*t213*t220 + t218*t222 + t223) + bdgt_z*(e0*psi_x*t208 + 2*e1*t217*t220 -
+                    t215*t222 - t224))
+                bdy[j3 + 1] += (bdgt_x*(e0*psi_y*t225 + 2*e1*t212*t229 - t217*t227 - t223) +
+                    bdgt_y*(e0*psi_z*t207 - t216 - t225*t226 - t228) + bdgt_z*(-e0*t221 -
+                    t213*t222*t229 + t215*t217 + t230))
+                bdy[j3 + 2] += (bdgt_x*(-e0*psi_z*t211 + t212*t227 - t213*t217*t232 + t224) +
+                    bdgt_y*(e0*psi_z*t231 + 2*e1*t222*t232 - t212*t218 - t230) +
+                    bdgt_z*(-t205*t231 + t211*t226 + t219 + t228))
+                bds[j3] += bdgt_x*(-t237 - t239) + bdgt_y*(-t233 + t234) + bdgt_z*(t235 + t236)
+                bds[j3 + 1] += bdgt_x*(t233 + t234) + bdgt_y*(-t239 - t242) + bdgt_z*(-t240 + t241)
+                bds[j3 + 2] += (bdgt_x*(-t235 + t236) + bdgt_y*(t240 + t241) + bdgt_z*(-t237 -
+                    t242 + 1))
                 bdp[j3] += -Om_y*bdgt_z + Om_z*bdgt_y
                 bdp[j3 + 1] += Om_x*bdgt_z - Om_z*bdgt_x
                 bdp[j3 + 2] += -Om_x*bdgt_y + Om_y*bdgt_x
                 bdpd[j3] += bdgt_x
                 bdpd[j3 + 1] += bdgt_y
                 bdpd[j3 + 2] += bdgt_z
-                bdwp_x += alpha_r*t291 + alpha_r*t294 + alpha_r*t297
-                bdwp_y += alpha_r*t298 + alpha_r*t301 + alpha_r*t303
-                bdwp_z += alpha_r*t304 + alpha_r*t305 + alpha_r*t306
+                bdwp_x += bdgt_x*(-t247 - t249) + bdgt_y*(-t243 + t244) + bdgt_z*(t245 + t246)
+                bdwp_y += bdgt_x*(t243 + t244) + bdgt_y*(-t249 - t252) + bdgt_z*(-t250 + t251)
+                bdwp_z += (bdgt_x*(-t245 + t246) + bdgt_y*(t250 + t251) + bdgt_z*(-t247 - t248 -
+                    t252))
             # transposed: differential: force on the nodes, left in frame axes
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -1203,12 +1128,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdF_z += alpha*bdh_z
             # transposed: differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
-            t307 = bdwp_x + rhs_x
-            t308 = bdwp_y + rhs_y
-            t309 = bdwp_z + rhs_z
-            mdwp_x = Bxx*t307 + Bxy*t308 + Bxz*t309
-            mdwp_y = Byx*t307 + Byy*t308 + Byz*t309
-            mdwp_z = Bzx*t307 + Bzy*t308 + Bzz*t309
+            t253 = bdwp_x + rhs_x
+            t254 = bdwp_y + rhs_y
+            t255 = bdwp_z + rhs_z
+            mdwp_x = Bxx*t253 + Bxy*t254 + Bxz*t255
+            mdwp_y = Byx*t253 + Byy*t254 + Byz*t255
+            mdwp_z = Bzx*t253 + Bzy*t254 + Bzz*t255
             # transposed: differential: B^T wp = W
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -1216,41 +1141,41 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t310 = e0*psi_y*wp_y
-                t311 = e0*psi_z*wp_z
-                t312 = psi_x*wp_y
-                t313 = psi_y*wp_x
-                t314 = t312 - t313
-                t315 = 2*e1
-                t316 = psi_x*t315
-                t317 = psi_y*t316
-                t318 = t314*t317
-                t319 = psi_x*wp_z
-                t320 = psi_z*wp_x - t319
-                t321 = psi_z*t316
-                t322 = t320*t321
-                t323 = alpha_r*mdwp_x
-                t324 = psi_x*psi_x*t315
-                t325 = psi_y*wp_z
-                t326 = psi_z*wp_y
-                t327 = t325 - t326
-                t328 = e0*t320 + (0.5)*wp_y
-                t329 = alpha_r*mdwp_z
-                t330 = e0*t314 + (0.5)*wp_z
-                t331 = alpha_r*mdwp_y
-                t332 = e0*psi_x*wp_x
-                t333 = psi_y*psi_z*t315
-                t334 = t327*t333
-                t335 = psi_y*psi_y*t315
-                t336 = e0*t327 + (0.5)*wp_x
-                t337 = psi_z*psi_z*t315
-                bdy[j3] += (-t323*(t310 + t311 + t318 - t322) - t329*(-e0*t319 - t317*t327 +
-                    t320*t324 + t328) - t331*(-e0*t312 + 2*e1*psi_x*psi_z*t327 - t314*t324 - t330))
-                bdy[j3 + 1] += (-t323*(-e0*t313 + t314*t335 - t320*t333 + t330) - t329*(-e0*t325 +
-                    2*e1*psi_x*psi_y*t320 - t327*t335 - t336) - t331*(t311 - t318 + t332 + t334))
-                bdy[j3 + 2] += (-t323*(-e0*psi_z*wp_x + 2*e1*psi_y*psi_z*t314 - t320*t337 - t328)
-                    - t329*(t310 + t322 + t332 - t334) - t331*(-e0*t326 - t314*t321 + t327*t337 +
-                    t336))
+                t256 = e0*psi_y*wp_y
+                t257 = e0*psi_z*wp_z
+                t258 = psi_x*wp_y
+                t259 = psi_y*wp_x
+                t260 = t258 - t259
+                t261 = 2*e1
+                t262 = psi_x*t261
+                t263 = psi_y*t262
+                t264 = t260*t263
+                t265 = psi_x*wp_z
+                t266 = psi_z*wp_x - t265
+                t267 = psi_z*t262
+                t268 = t266*t267
+                t269 = alpha_r*mdwp_x
+                t270 = psi_x*psi_x*t261
+                t271 = psi_y*wp_z
+                t272 = psi_z*wp_y
+                t273 = t271 - t272
+                t274 = e0*t266 + (0.5)*wp_y
+                t275 = alpha_r*mdwp_z
+                t276 = e0*t260 + (0.5)*wp_z
+                t277 = alpha_r*mdwp_y
+                t278 = e0*psi_x*wp_x
+                t279 = psi_y*psi_z*t261
+                t280 = t273*t279
+                t281 = psi_y*psi_y*t261
+                t282 = e0*t273 + (0.5)*wp_x
+                t283 = psi_z*psi_z*t261
+                bdy[j3] += (-t269*(t256 + t257 + t264 - t268) - t275*(-e0*t265 - t263*t273 +
+                    t266*t270 + t274) - t277*(-e0*t258 + 2*e1*psi_x*psi_z*t273 - t260*t270 - t276))
+                bdy[j3 + 1] += (-t269*(-e0*t259 + t260*t281 - t266*t279 + t276) - t275*(-e0*t271 +
+                    2*e1*psi_x*psi_y*t266 - t273*t281 - t282) - t277*(t257 - t264 + t278 + t280))
+                bdy[j3 + 2] += (-t269*(-e0*psi_z*wp_x + 2*e1*psi_y*psi_z*t260 - t266*t283 - t274)
+                    - t275*(t256 + t268 + t278 - t280) - t277*(-e0*t272 - t260*t267 + t273*t283 +
+                    t282))
             # transposed: differential: B^T wp = W
             bdW_x += mdwp_x
             bdW_y += mdwp_y
@@ -1262,66 +1187,66 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t338 = e0*psi_y
-                t339 = m_y*t338
-                t340 = e0*psi_z
-                t341 = m_z*t340
-                t342 = -m_x*psi_y + m_y*psi_x
-                t343 = 2*e1
-                t344 = psi_x*t343
-                t345 = psi_y*t344
-                t346 = t342*t345
-                t347 = m_x*psi_z
-                t348 = -m_z*psi_x + t347
-                t349 = psi_z*t344
-                t350 = t348*t349
-                t351 = psi_x*psi_x
-                t352 = t343*t351
-                t353 = -m_y*psi_z + m_z*psi_y
-                t354 = e0*t342 + (0.5)*m_z
-                t355 = e0*t348 + (0.5)*m_y
-                t356 = e0*m_x*psi_x
-                t357 = psi_y*psi_z*t343
-                t358 = t353*t357
-                t359 = psi_y*psi_y
-                t360 = t343*t359
-                t361 = e0*t353 + (0.5)*m_x
-                t362 = psi_z*psi_z
-                t363 = t343*t362
-                t364 = (0.5)*psi_z
-                t365 = psi_x*t338
-                t366 = (0.5)*psi_y
-                t367 = psi_x*t340
-                t368 = e0*t359
-                t369 = e0*t362 - 1
-                t370 = (0.5)*psi_x
-                t371 = psi_z*t338
-                t372 = e0*t351
-                bdy[j3] += (bdW_x*(-t339 - t341 - t346 + t350) + bdW_y*(e0*m_y*psi_x + t342*t352 -
-                    t349*t353 + t354) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t353 - t348*t352 -
-                    t355))
-                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t348 - t342*t360 - t354) +
-                    bdW_y*(-t341 + t346 - t356 - t358) + bdW_z*(e0*m_z*psi_y - t345*t348 +
-                    t353*t360 + t361))
-                bdy[j3 + 2] += (bdW_x*(e0*t347 - t342*t357 + t348*t363 + t355) +
-                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t342 - t353*t363 - t361) + bdW_z*(-t339
-                    - t350 - t356 + t358))
-                bds[j3] += bdW_x*(t368 + t369) + bdW_y*(-t364 - t365) + bdW_z*(t366 - t367)
-                bds[j3 + 1] += bdW_x*(t364 - t365) + bdW_y*(t369 + t372) + bdW_z*(-t370 - t371)
-                bds[j3 + 2] += bdW_x*(-t366 - t367) + bdW_y*(t370 - t371) + bdW_z*(t368 + t372 - 1)
+                t284 = e0*psi_y
+                t285 = m_y*t284
+                t286 = e0*psi_z
+                t287 = m_z*t286
+                t288 = -m_x*psi_y + m_y*psi_x
+                t289 = 2*e1
+                t290 = psi_x*t289
+                t291 = psi_y*t290
+                t292 = t288*t291
+                t293 = m_x*psi_z
+                t294 = -m_z*psi_x + t293
+                t295 = psi_z*t290
+                t296 = t294*t295
+                t297 = psi_x*psi_x
+                t298 = t289*t297
+                t299 = -m_y*psi_z + m_z*psi_y
+                t300 = e0*t288 + (0.5)*m_z
+                t301 = e0*t294 + (0.5)*m_y
+                t302 = e0*m_x*psi_x
+                t303 = psi_y*psi_z*t289
+                t304 = t299*t303
+                t305 = psi_y*psi_y
+                t306 = t289*t305
+                t307 = e0*t299 + (0.5)*m_x
+                t308 = psi_z*psi_z
+                t309 = t289*t308
+                t310 = (0.5)*psi_z
+                t311 = psi_x*t284
+                t312 = (0.5)*psi_y
+                t313 = psi_x*t286
+                t314 = e0*t305
+                t315 = e0*t308 - 1
+                t316 = (0.5)*psi_x
+                t317 = psi_z*t284
+                t318 = e0*t297
+                bdy[j3] += (bdW_x*(-t285 - t287 - t292 + t296) + bdW_y*(e0*m_y*psi_x + t288*t298 -
+                    t295*t299 + t300) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t299 - t294*t298 -
+                    t301))
+                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t294 - t288*t306 - t300) +
+                    bdW_y*(-t287 + t292 - t302 - t304) + bdW_z*(e0*m_z*psi_y - t291*t294 +
+                    t299*t306 + t307))
+                bdy[j3 + 2] += (bdW_x*(e0*t293 - t288*t303 + t294*t309 + t301) +
+                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t288 - t299*t309 - t307) + bdW_z*(-t285
+                    - t296 - t302 + t304))
+                bds[j3] += bdW_x*(t314 + t315) + bdW_y*(-t310 - t311) + bdW_z*(t312 - t313)
+                bds[j3 + 1] += bdW_x*(t310 - t311) + bdW_y*(t315 + t318) + bdW_z*(-t316 - t317)
+                bds[j3 + 2] += bdW_x*(-t312 - t313) + bdW_y*(t316 - t317) + bdW_z*(t314 + t318 - 1)
             # transposed: differential: moment of gravity on the frame
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             d_x, d_y, d_z = d[0], d[1], d[2]
             mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
-            t373 = d_y + mc_y
-            t374 = d_z + mc_z
-            t375 = d_x + mc_x
+            t319 = d_y + mc_y
+            t320 = d_z + mc_z
+            t321 = d_x + mc_x
             bdd[0] += bdW_y*gamma_z - bdW_z*gamma_y
             bdd[1] += -bdW_x*gamma_z + bdW_z*gamma_x
             bdd[2] += bdW_x*gamma_y - bdW_y*gamma_x
-            bdgamma[0] += -bdW_y*t374 + bdW_z*t373
-            bdgamma[1] += bdW_x*t374 - bdW_z*t375
-            bdgamma[2] += -bdW_x*t373 + bdW_y*t375
+            bdgamma[0] += -bdW_y*t320 + bdW_z*t319
+            bdgamma[1] += bdW_x*t320 - bdW_z*t321
+            bdgamma[2] += -bdW_x*t319 + bdW_y*t321
             # transposed: differential: forces on the frame: elastic (30) and inertia (57)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -1332,16 +1257,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t376 = alpha*mass
-                t377 = X_y + u_y
-                t378 = X_z + u_z
-                t379 = X_x + u_x
-                bdgamma[0] += -bdF_x*t376
-                bdgamma[1] += -bdF_y*t376
-                bdgamma[2] += -bdF_z*t376
-                bds[i3] += -bdF_x - bdW_y*t378 + bdW_z*t377
-                bds[i3 + 1] += -bdF_y + bdW_x*t378 - bdW_z*t379
-                bds[i3 + 2] += -bdF_z - bdW_x*t377 + bdW_y*t379
+                t322 = alpha*mass
+                t323 = X_y + u_y
+                t324 = X_z + u_z
+                t325 = X_x + u_x
+                bdgamma[0] += -bdF_x*t322
+                bdgamma[1] += -bdF_y*t322
+                bdgamma[2] += -bdF_z*t322
+                bds[i3] += -bdF_x - bdW_y*t324 + bdW_z*t323
+                bds[i3 + 1] += -bdF_y + bdW_x*t324 - bdW_z*t325
+                bds[i3 + 2] += -bdF_z - bdW_x*t323 + bdW_y*t325
                 bdy[i3] += bdW_y*f_z - bdW_z*f_y
                 bdy[i3 + 1] += -bdW_x*f_z + bdW_z*f_x
                 bdy[i3 + 2] += bdW_x*f_y - bdW_y*f_x
@@ -1373,98 +1298,83 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdep_x, bdep_y, bdep_z = bdeta[j3], bdeta[j3 + 1], bdeta[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t380 = (0.5)*psi_z
-                t381 = e0*psi_x
-                t382 = psi_y*t381
-                t383 = t380 + t382
-                t384 = (0.5)*psi_y
-                t385 = psi_z*t381
-                t386 = -t384 + t385
-                t387 = psi_y*psi_y
-                t388 = e0*t387
-                t389 = psi_z*psi_z
-                t390 = e0*t389 - 1
-                t391 = t388 + t390
-                t392 = -t380 + t382
-                t393 = (0.5)*psi_x
-                t394 = e0*psi_y
-                t395 = psi_z*t394
-                t396 = t393 + t395
-                t397 = psi_x*psi_x
-                t398 = e0*t397
-                t399 = t390 + t398
-                t400 = t384 + t385
-                t401 = -t393 + t395
-                t402 = t388 + t398 - 1
-                t403 = Om_x*psi_y
-                t404 = Om_y*psi_x - t403
-                t405 = 2*e1
-                t406 = psi_x*t405
-                t407 = psi_y*t406
-                t408 = t404*t407
-                t409 = Om0_z*psi_x
-                t410 = Om0_x*psi_z - t409
-                t411 = psi_z*t406
-                t412 = t410*t411
-                t413 = Om0_x*psi_y
-                t414 = Om0_y*psi_x - t413
-                t415 = t407*t414
-                t416 = Om_x*psi_z
-                t417 = Om_z*psi_x
-                t418 = t416 - t417
-                t419 = t411*t418
-                t420 = Om0_z*e0*psi_z - Om_z*e0*psi_z
-                t421 = Om0_y*t394 - Om_y*e0*psi_y
-                t422 = t397*t405
-                t423 = Om_y*psi_z
-                t424 = Om_z*psi_y - t423
-                t425 = Om0_y*psi_z
-                t426 = Om0_z*psi_y - t425
-                t427 = (0.5)*Om0_z + (0.5)*Om_z + e0*t404 - e0*t414
-                t428 = (0.5)*Om0_y + (0.5)*Om_y - e0*t410 + e0*t418
-                t429 = psi_y*psi_z*t405
-                t430 = t424*t429
-                t431 = t426*t429
-                t432 = Om0_x*t381 - Om_x*e0*psi_x
-                t433 = t387*t405
-                t434 = (0.5)*Om0_x + (0.5)*Om_x + e0*t424 - e0*t426
-                t435 = t389*t405
-                bdve[j3] += -bdep_x*t391 + bdep_y*t383 + bdep_z*t386
-                bdve[j3 + 1] += bdep_x*t392 - bdep_y*t399 + bdep_z*t396
-                bdve[j3 + 2] += bdep_x*t400 + bdep_y*t401 - bdep_z*t402
-                bdy[j3] += (bdep_x*(t408 + t412 - t415 - t419 - t420 - t421) +
-                    bdep_y*(Om0_y*e0*psi_x - Om_y*e0*psi_x + 2*e1*psi_x*psi_z*t424 +
-                    2*e1*t397*t414 - t404*t422 - t411*t426 - t427) + bdep_z*(e0*t409 - e0*t417 -
-                    t407*t424 + t407*t426 - t410*t422 + t418*t422 + t428))
-                bdy[j3 + 1] += (bdep_x*(-e0*t403 + e0*t413 + t404*t433 + t410*t429 - t414*t433 -
-                    t418*t429 + t427) + bdep_y*(-t408 + t415 - t420 + t430 - t431 - t432) +
-                    bdep_z*(Om0_z*e0*psi_y - Om_z*e0*psi_y + 2*e1*psi_x*psi_y*t418 +
-                    2*e1*t387*t426 - t407*t410 - t424*t433 - t434))
-                bdy[j3 + 2] += (bdep_x*(Om0_x*e0*psi_z - e0*t416 + 2*e1*psi_y*psi_z*t404 +
-                    2*e1*t389*t410 - t414*t429 - t418*t435 - t428) + bdep_y*(-e0*t423 + e0*t425 -
-                    t404*t411 + t411*t414 + t424*t435 - t426*t435 + t434) + bdep_z*(-t412 + t419 -
-                    t421 - t430 + t431 - t432))
-                bdOm0_x += bdep_x*t391 - bdep_y*t392 - bdep_z*t400
-                bdOm0_y += -bdep_x*t383 + bdep_y*t399 - bdep_z*t401
-                bdOm0_z += -bdep_x*t386 - bdep_y*t396 + bdep_z*t402
+                t326 = (0.5)*psi_z
+                t327 = e0*psi_x
+                t328 = psi_y*t327
+                t329 = t326 + t328
+                t330 = (0.5)*psi_y
+                t331 = psi_z*t327
+                t332 = -t330 + t331
+                t333 = psi_y*psi_y
+                t334 = psi_z*psi_z
+                t335 = t333 + t334
+                t336 = -t326 + t328
+                t337 = (0.5)*psi_x
+                t338 = e0*psi_y*psi_z
+                t339 = t337 + t338
+                t340 = psi_x*psi_x
+                t341 = t334 + t340
+                t342 = t330 + t331
+                t343 = -t337 + t338
+                t344 = t333 + t340
+                t345 = Om0_y - Om_y
+                t346 = -t345
+                t347 = Om0_z - Om_z
+                t348 = psi_x*t346
+                t349 = Om0_x - Om_x
+                t350 = -t349
+                t351 = -psi_y*t350
+                t352 = t348 + t351
+                t353 = -t347
+                t354 = psi_x*t353
+                t355 = psi_z*t350 - t354
+                t356 = psi_y*t352 - psi_z*t355
+                t357 = 2*e1
+                t358 = psi_x*t357
+                t359 = psi_y*t353
+                t360 = -psi_z*t346
+                t361 = t359 + t360
+                t362 = -psi_x*t352 + psi_z*t361
+                t363 = (0.5)*Om0_z + (0.5)*Om_z
+                t364 = psi_z*t350
+                t365 = psi_x*t355 - psi_y*t361
+                t366 = (0.5)*Om0_y + (0.5)*Om_y
+                t367 = psi_y*t357
+                t368 = (0.5)*Om0_x + (0.5)*Om_x
+                t369 = psi_z*t357
+                bdve[j3] += bdep_x*(-e0*t335 + 1) + bdep_y*t329 + bdep_z*t332
+                bdve[j3 + 1] += bdep_x*t336 + bdep_y*(-e0*t341 + 1) + bdep_z*t339
+                bdve[j3 + 2] += bdep_x*t342 + bdep_y*t343 + bdep_z*(-e0*t344 + 1)
+                bdy[j3] += (bdep_x*(e0*(psi_y*t346 - psi_z*t347) + t356*t358) +
+                    bdep_y*(e0*(-2*t348 - t351) + 2*e1*psi_x*t362 - t363) + bdep_z*(e0*(psi_x*t347
+                    - t354 + t364) + t358*t365 + t366))
+                bdy[j3 + 1] += (bdep_x*(e0*(psi_y*t349 + t352) + t356*t367 + t363) +
+                    bdep_y*(e0*(-psi_x*t349 + psi_z*t353) + t362*t367) + bdep_z*(e0*(-2*t359 -
+                    t360) + 2*e1*psi_y*t365 - t368))
+                bdy[j3 + 2] += (bdep_x*(e0*(t354 - 2*t364) + 2*e1*psi_z*t356 - t366) +
+                    bdep_y*(e0*(psi_z*t345 + t361) + t362*t369 + t368) + bdep_z*(e0*(psi_x*t350 -
+                    psi_y*t345) + t365*t369))
+                bdOm0_x += bdep_x*(e0*t335 - 1) - bdep_y*t336 - bdep_z*t342
+                bdOm0_y += -bdep_x*t329 + bdep_y*(e0*t341 - 1) - bdep_z*t343
+                bdOm0_z += -bdep_x*t332 - bdep_y*t339 + bdep_z*(e0*t344 - 1)
             # transposed: differential: rates of the elastic displacements
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 bdeu_x, bdeu_y, bdeu_z = bdeta[i3], bdeta[i3 + 1], bdeta[i3 + 2]
-                t436 = X_z + u_z
-                t437 = X_y + u_y
-                t438 = X_x + u_x
+                t370 = X_z + u_z
+                t371 = X_y + u_y
+                t372 = X_x + u_x
                 bdy[i3] += Om0_y*bdeu_z - Om0_z*bdeu_y
                 bdy[i3 + 1] += -Om0_x*bdeu_z + Om0_z*bdeu_x
                 bdy[i3 + 2] += Om0_x*bdeu_y - Om0_y*bdeu_x
                 bdyd[i3] += bdeu_x
                 bdyd[i3 + 1] += bdeu_y
                 bdyd[i3 + 2] += bdeu_z
-                bdOm0_x += bdeu_y*t436 - bdeu_z*t437
-                bdOm0_y += -bdeu_x*t436 + bdeu_z*t438
-                bdOm0_z += bdeu_x*t437 - bdeu_y*t438
+                bdOm0_x += bdeu_y*t370 - bdeu_z*t371
+                bdOm0_y += -bdeu_x*t370 + bdeu_z*t372
+                bdOm0_z += bdeu_x*t371 - bdeu_y*t372
                 bdv0_x += -bdeu_x
                 bdv0_y += -bdeu_y
                 bdv0_z += -bdeu_z
@@ -1509,12 +1419,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdOm0_z += bdvsd_x*vs_y - bdvsd_y*vs_x
             # transposed: differential: B rate = sum alpha_j T^-1(psi_j) rate_j
             rhs_x = rhs_y = rhs_z = 0.0
-            t439 = bdOm0_x + rhs_x
-            t440 = bdOm0_y + rhs_y
-            t441 = bdOm0_z + rhs_z
-            mdOm0_x = Bxx*t439 + Byx*t440 + Bzx*t441
-            mdOm0_y = Bxy*t439 + Byy*t440 + Bzy*t441
-            mdOm0_z = Bxz*t439 + Byz*t440 + Bzz*t441
+            t373 = bdOm0_x + rhs_x
+            t374 = bdOm0_y + rhs_y
+            t375 = bdOm0_z + rhs_z
+            mdOm0_x = Bxx*t373 + Byx*t374 + Bzx*t375
+            mdOm0_y = Bxy*t373 + Byy*t374 + Bzy*t375
+            mdOm0_z = Bxz*t373 + Byz*t374 + Bzz*t375
             # transposed: differential: B rate = sum alpha_j T^-1(psi_j) rate_j
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -1523,70 +1433,84 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t442 = (0.5)*psi_z
-                t443 = e0*psi_x
-                t444 = psi_y*t443
-                t445 = alpha_r*mdOm0_y
-                t446 = (0.5)*psi_y
-                t447 = psi_z*t443
-                t448 = alpha_r*mdOm0_z
-                t449 = psi_y*psi_y
-                t450 = e0*t449
-                t451 = psi_z*psi_z
-                t452 = e0*t451 - 1
-                t453 = alpha_r*mdOm0_x
-                t454 = (0.5)*psi_x
-                t455 = e0*psi_y
-                t456 = psi_z*t455
-                t457 = psi_x*psi_x
-                t458 = e0*t457
-                t459 = -Om_x*psi_y + Om_y*psi_x
-                t460 = 2*e1
-                t461 = psi_x*t460
-                t462 = psi_y*t461
-                t463 = t459*t462
-                t464 = Om0_x*psi_z
-                t465 = Om0_z*psi_x
-                t466 = t464 - t465
-                t467 = psi_z*t461
-                t468 = t466*t467
-                t469 = Om0_x*psi_y
-                t470 = Om0_y*psi_x - t469
-                t471 = t462*t470
-                t472 = Om_x*psi_z
-                t473 = -Om_z*psi_x + t472
-                t474 = t467*t473
-                t475 = e0*psi_z
-                t476 = Om0_z*t475 - Om_z*t475
-                t477 = Om0_y*t455 - Om_y*t455
-                t478 = t457*t460
-                t479 = -Om_y*psi_z + Om_z*psi_y
-                t480 = Om0_y*psi_z
-                t481 = Om0_z*psi_y - t480
-                t482 = (0.5)*Om0_z + (0.5)*Om_z + e0*t459 - e0*t470
-                t483 = (0.5)*Om0_y + (0.5)*Om_y - e0*t466 + e0*t473
-                t484 = psi_y*psi_z*t460
-                t485 = t479*t484
-                t486 = t481*t484
-                t487 = Om0_x*t443 - Om_x*t443
-                t488 = t449*t460
-                t489 = (0.5)*Om0_x + (0.5)*Om_x + e0*t479 - e0*t481
-                t490 = t451*t460
-                bdve[j3] += -t445*(-t442 - t444) - t448*(t446 - t447) - t453*(t450 + t452)
-                bdve[j3 + 1] += -t445*(t452 + t458) - t448*(-t454 - t456) - t453*(t442 - t444)
-                bdve[j3 + 2] += -t445*(t454 - t456) - t448*(t450 + t458 - 1) - t453*(-t446 - t447)
-                bdy[j3] += (-t445*(-Om0_y*e0*psi_x + Om_y*e0*psi_x + t459*t478 - t467*t479 +
-                    t467*t481 - t470*t478 + t482) - t448*(Om_z*e0*psi_x - e0*t465 +
-                    2*e1*psi_x*psi_y*t479 + 2*e1*t457*t466 - t462*t481 - t473*t478 - t483) -
-                    t453*(-t463 - t468 + t471 + t474 + t476 + t477))
-                bdy[j3 + 1] += (-t445*(t463 - t471 + t476 - t485 + t486 + t487) -
-                    t448*(-Om0_z*e0*psi_y + Om_z*e0*psi_y + t462*t466 - t462*t473 + t479*t488 -
-                    t481*t488 + t489) - t453*(Om_x*e0*psi_y - e0*t469 + 2*e1*psi_y*psi_z*t473 +
-                    2*e1*t449*t470 - t459*t488 - t466*t484 - t482))
-                bdy[j3 + 2] += (-t445*(Om_y*e0*psi_z - e0*t480 + 2*e1*psi_x*psi_z*t459 +
-                    2*e1*t451*t481 - t467*t470 - t479*t490 - t489) - t448*(t468 - t474 + t477 +
-                    t485 - t486 + t487) - t453*(-e0*t464 + e0*t472 - t459*t484 - t466*t490 +
-                    t470*t484 + t473*t490 + t483))
+                t376 = (0.5)*psi_z
+                t377 = e0*psi_y
+                t378 = psi_x*t377
+                t379 = alpha_r*mdOm0_y
+                t380 = (0.5)*psi_y
+                t381 = e0*psi_z
+                t382 = psi_x*t381
+                t383 = alpha_r*mdOm0_z
+                t384 = psi_y*psi_y
+                t385 = e0*t384
+                t386 = psi_z*psi_z
+                t387 = e0*t386 - 1
+                t388 = alpha_r*mdOm0_x
+                t389 = (0.5)*psi_x
+                t390 = psi_z*t377
+                t391 = psi_x*psi_x
+                t392 = e0*t391
+                t393 = -Om0_y*e0*psi_y
+                t394 = -Om0_z*e0*psi_z
+                t395 = 2*e1
+                t396 = t391*t395
+                t397 = psi_y*t396
+                t398 = t377 + t397
+                t399 = psi_z*t396
+                t400 = t381 + t399
+                t401 = -Om0_x*psi_y + Om0_y*psi_x
+                t402 = psi_x*t395
+                t403 = psi_y*t402
+                t404 = t401*t403
+                t405 = Om0_z*psi_x
+                t406 = Om0_x*psi_z - t405
+                t407 = psi_z*t402
+                t408 = t406*t407
+                t409 = t384*t402
+                t410 = t386*t402
+                t411 = (0.5)*Om0_y
+                t412 = psi_y*t407
+                t413 = t412 + 0.5
+                t414 = e0*t406
+                t415 = -Om0_y*psi_z + Om0_z*psi_y
+                t416 = e0*psi_x
+                t417 = psi_x*psi_x*psi_x*t395 + 2*t416
+                t418 = (0.5)*Om0_z
+                t419 = t412 - 0.5
+                t420 = e0*t401
+                t421 = -Om0_x*e0*psi_x
+                t422 = t409 + t416
+                t423 = t384*t395
+                t424 = psi_z*t423
+                t425 = t381 + t424
+                t426 = psi_y*psi_z*t395
+                t427 = t415*t426
+                t428 = t386*t395
+                t429 = psi_y*t428
+                t430 = psi_y*psi_y*psi_y*t395 + 2*t377
+                t431 = (0.5)*Om0_x
+                t432 = e0*t415
+                t433 = t410 + t416
+                t434 = t377 + t429
+                t435 = psi_z*psi_z*psi_z*t395 + 2*t381
+                bdve[j3] += -t379*(-t376 - t378) - t383*(t380 - t382) - t388*(t385 + t387)
+                bdve[j3 + 1] += -t379*(t387 + t392) - t383*(-t389 - t390) - t388*(t376 - t378)
+                bdve[j3 + 2] += -t379*(t389 - t390) - t383*(t385 + t392 - 1) - t388*(-t380 - t382)
+                bdy[j3] += (-t379*(-Om0_y*e0*psi_x - Om_x*t398 - Om_y*(-t410 - t417) - Om_z*t419 +
+                    2*e1*psi_x*psi_z*t415 - t396*t401 + t418 - t420) - t383*(-Om_x*t400 -
+                    Om_y*t413 - Om_z*(-t409 - t417) - e0*t405 + 2*e1*t391*t406 - t403*t415 - t411
+                    + t414) - t388*(-Om_x*(-t409 - t410) - Om_y*t398 - Om_z*t400 - t393 - t394 +
+                    t404 - t408))
+                bdy[j3 + 1] += (-t379*(-Om_x*t422 - Om_y*(-t397 - t429) - Om_z*t425 - t394 - t404
+                    - t421 + t427) - t383*(-Om0_z*t377 - Om_x*t419 - Om_y*t425 - Om_z*(-t397 -
+                    t430) + 2*e1*psi_x*psi_y*t406 - t415*t423 + t431 - t432) - t388*(-Om0_x*t377 -
+                    Om_x*(-t429 - t430) - Om_y*t422 - Om_z*t413 + 2*e1*t384*t401 - t406*t426 -
+                    t418 + t420))
+                bdy[j3 + 2] += (-t379*(-Om0_y*t381 - Om_x*t413 - Om_y*(-t399 - t435) - Om_z*t434 +
+                    2*e1*t386*t415 - t401*t407 - t431 + t432) - t383*(-Om_x*t433 - Om_y*t434 -
+                    Om_z*(-t399 - t424) - t393 + t408 - t421 - t427) - t388*(-Om0_x*t381 -
+                    Om_x*(-t424 - t435) - Om_y*t419 - Om_z*t433 + 2*e1*psi_y*psi_z*t401 -
+                    t406*t428 + t411 - t414))
             # transposed: differential: material angular velocities, (52)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -1646,43 +1570,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 bdpsi_x, bdpsi_y, bdpsi_z = bdy[j3], bdy[j3 + 1], bdy[j3 + 2]
                 e0 = e0s[j]
-                t491 = (0.5)*psi_z
-                t492 = e0*psi_x
-                t493 = psi_y*t492
-                t494 = t491 + t493
-                t495 = (0.5)*psi_y
-                t496 = psi_z*t492
-                t497 = -t495 + t496
-                t498 = e0*psi_y*psi_y
-                t499 = e0*psi_z*psi_z - 1
-                t500 = t498 + t499
-                t501 = -t491 + t493
-                t502 = (0.5)*psi_x
-                t503 = e0*psi_y*psi_z
-                t504 = t502 + t503
-                t505 = e0*psi_x*psi_x
-                t506 = t499 + t505
-                t507 = t495 + t496
-                t508 = -t502 + t503
-                t509 = t498 + t505 - 1
-                bdqe[j3] += -bdpsi_x*t500 + bdpsi_y*t494 + bdpsi_z*t497
-                bdqe[j3 + 1] += bdpsi_x*t501 - bdpsi_y*t506 + bdpsi_z*t504
-                bdqe[j3 + 2] += bdpsi_x*t507 + bdpsi_y*t508 - bdpsi_z*t509
-                bdth0_x += bdpsi_x*t500 - bdpsi_y*t501 - bdpsi_z*t507
-                bdth0_y += -bdpsi_x*t494 + bdpsi_y*t506 - bdpsi_z*t508
-                bdth0_z += -bdpsi_x*t497 - bdpsi_y*t504 + bdpsi_z*t509
+                t436 = (0.5)*psi_z
+                t437 = e0*psi_x
+                t438 = psi_y*t437
+                t439 = t436 + t438
+                t440 = (0.5)*psi_y
+                t441 = psi_z*t437
+                t442 = -t440 + t441
+                t443 = psi_y*psi_y
+                t444 = psi_z*psi_z
+                t445 = t443 + t444
+                t446 = -t436 + t438
+                t447 = (0.5)*psi_x
+                t448 = e0*psi_y*psi_z
+                t449 = t447 + t448
+                t450 = psi_x*psi_x
+                t451 = t444 + t450
+                t452 = t440 + t441
+                t453 = -t447 + t448
+                t454 = t443 + t450
+                bdqe[j3] += bdpsi_x*(-e0*t445 + 1) + bdpsi_y*t439 + bdpsi_z*t442
+                bdqe[j3 + 1] += bdpsi_x*t446 + bdpsi_y*(-e0*t451 + 1) + bdpsi_z*t449
+                bdqe[j3 + 2] += bdpsi_x*t452 + bdpsi_y*t453 + bdpsi_z*(-e0*t454 + 1)
+                bdth0_x += bdpsi_x*(e0*t445 - 1) - bdpsi_y*t446 - bdpsi_z*t452
+                bdth0_y += -bdpsi_x*t439 + bdpsi_y*(e0*t451 - 1) - bdpsi_z*t453
+                bdth0_z += -bdpsi_x*t442 - bdpsi_y*t449 + bdpsi_z*(e0*t454 - 1)
             # transposed: differential: displacement of the nodes in the frame, (11)
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 bdu_x, bdu_y, bdu_z = bdy[i3], bdy[i3 + 1], bdy[i3 + 2]
-                t510 = X_z + u_z
-                t511 = X_y + u_y
-                t512 = X_x + u_x
-                bdth0_x += bdu_y*t510 - bdu_z*t511
-                bdth0_y += -bdu_x*t510 + bdu_z*t512
-                bdth0_z += bdu_x*t511 - bdu_y*t512
+                t455 = X_z + u_z
+                t456 = X_y + u_y
+                t457 = X_x + u_x
+                bdth0_x += bdu_y*t455 - bdu_z*t456
+                bdth0_y += -bdu_x*t455 + bdu_z*t457
+                bdth0_z += bdu_x*t456 - bdu_y*t457
                 bdqe[i3] += bdu_x
                 bdqe[i3 + 1] += bdu_y
                 bdqe[i3 + 2] += bdu_z
@@ -1691,34 +1615,34 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdx0_z += -bdu_z
             # transposed: B rate = sum alpha_j T^-1(psi_j) rate_j
             rhs_x = rhs_y = rhs_z = 0.0
-            t513 = bdth0_x + rhs_x
-            t514 = bdth0_y + rhs_y
-            t515 = bdth0_z + rhs_z
-            mdth0_x = Bxx*t513 + Byx*t514 + Bzx*t515
-            mdth0_y = Bxy*t513 + Byy*t514 + Bzy*t515
-            mdth0_z = Bxz*t513 + Byz*t514 + Bzz*t515
+            t458 = bdth0_x + rhs_x
+            t459 = bdth0_y + rhs_y
+            t460 = bdth0_z + rhs_z
+            mdth0_x = Bxx*t458 + Byx*t459 + Bzx*t460
+            mdth0_y = Bxy*t458 + Byy*t459 + Bzy*t460
+            mdth0_z = Bxz*t458 + Byz*t459 + Bzz*t460
             # transposed: B rate = sum alpha_j T^-1(psi_j) rate_j
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 alpha_r = alpha_rs[j]
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e0 = e0s[j]
-                t516 = (0.5)*psi_z
-                t517 = e0*psi_x
-                t518 = psi_y*t517
-                t519 = alpha_r*mdth0_y
-                t520 = (0.5)*psi_y
-                t521 = psi_z*t517
-                t522 = alpha_r*mdth0_z
-                t523 = e0*psi_y*psi_y
-                t524 = e0*psi_z*psi_z - 1
-                t525 = alpha_r*mdth0_x
-                t526 = (0.5)*psi_x
-                t527 = e0*psi_y*psi_z
-                t528 = e0*psi_x*psi_x
-                bdqe[j3] += -t519*(-t516 - t518) - t522*(t520 - t521) - t525*(t523 + t524)
-                bdqe[j3 + 1] += -t519*(t524 + t528) - t522*(-t526 - t527) - t525*(t516 - t518)
-                bdqe[j3 + 2] += -t519*(t526 - t527) - t522*(t523 + t528 - 1) - t525*(-t520 - t521)
+                t461 = (0.5)*psi_z
+                t462 = e0*psi_x
+                t463 = psi_y*t462
+                t464 = alpha_r*mdth0_y
+                t465 = (0.5)*psi_y
+                t466 = psi_z*t462
+                t467 = alpha_r*mdth0_z
+                t468 = e0*psi_y*psi_y
+                t469 = e0*psi_z*psi_z - 1
+                t470 = alpha_r*mdth0_x
+                t471 = (0.5)*psi_x
+                t472 = e0*psi_y*psi_z
+                t473 = e0*psi_x*psi_x
+                bdqe[j3] += -t464*(-t461 - t463) - t467*(t465 - t466) - t470*(t468 + t469)
+                bdqe[j3 + 1] += -t464*(t469 + t473) - t467*(-t471 - t472) - t470*(t461 - t463)
+                bdqe[j3 + 2] += -t464*(t471 - t472) - t467*(t468 + t473 - 1) - t470*(-t465 - t466)
             # transposed: origin of the frame, (14)
             for i in range(N_POSITIONS):
                 i3 = 3*i

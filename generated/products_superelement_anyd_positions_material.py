@@ -44,8 +44,8 @@ WORK_ROWS = 52
 WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (460, 238, 208, 4),
-              "column": (84, 271, 624, 6)}
+OPERATIONS = {"residual": (460, 238, 178, 4),
+              "column": (84, 271, 567, 6)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + DAMPING_CONSTANTS
 KEPT = 16      # numbers kept between two calls
 
@@ -305,29 +305,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
                 e0 = e0s[j]
-                t18 = Om0_y*psi_z
-                t19 = Om_y*psi_z
-                t20 = Om0_x*psi_y
-                t21 = Om0_y*psi_x - t20
-                t22 = e0*psi_y
-                t23 = Om_x*psi_z
-                t24 = Om_z*psi_x
-                t25 = t23 - t24
-                t26 = e0*psi_z
-                t27 = Om_x*psi_y
-                t28 = Om_y*psi_x - t27
-                t29 = Om0_x*psi_z
-                t30 = Om0_z*psi_x
-                t31 = t29 - t30
-                t32 = e0*psi_x
-                t33 = Om_z*psi_y - t19
-                t34 = Om0_z*psi_y - t18
-                eta[j3] = (-Om0_x + (0.5)*Om0_z*psi_y + Om_x + (0.5)*Om_z*psi_y + e0*psi_y*t28 +
-                    e0*psi_z*t31 - 0.5*t18 - 0.5*t19 - t21*t22 - t25*t26)
-                eta[j3 + 1] = (-Om0_y + Om_y + t21*t32 + (0.5)*t23 - 0.5*t24 + t26*t33 - t26*t34 -
-                    t28*t32 + (0.5)*t29 - 0.5*t30)
-                eta[j3 + 2] = ((0.5)*Om0_y*psi_x - Om0_z + (0.5)*Om_y*psi_x + Om_z + e0*psi_x*t25
-                    + e0*psi_y*t34 - 0.5*t20 - t22*t33 - 0.5*t27 - t31*t32)
+                t18 = (0.5)*Om0_z + (0.5)*Om_z
+                t19 = Om0_y + Om_y
+                t20 = (0.5)*psi_z
+                t21 = -Om0_y + Om_y
+                t22 = -Om0_x + Om_x
+                t23 = psi_x*t21 - psi_y*t22
+                t24 = -Om0_z + Om_z
+                t25 = -psi_x*t24 + psi_z*t22
+                t26 = Om0_x + Om_x
+                t27 = psi_y*t24 - psi_z*t21
+                eta[j3] = -Om0_x + Om_x + e0*(psi_y*t23 - psi_z*t25) + psi_y*t18 - t19*t20
+                eta[j3 + 1] = -Om0_y + Om_y + e0*(-psi_x*t23 + psi_z*t27) - psi_x*t18 + t20*t26
+                eta[j3 + 2] = (-Om0_z + Om_z + e0*(psi_x*t25 - psi_y*t27) + (0.5)*psi_x*t19 -
+                    0.5*psi_y*t26)
             # rates of the internal modes
             for k in range(MODES, n):
                 vm = ve[k]
@@ -354,55 +345,55 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
                 mass = masses[0]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t35 = alpha*mass
-                t36 = X_z + u_z
-                t37 = X_y + u_y
-                t38 = X_x + u_x
-                F_x += -f_x - gamma_x*t35
-                F_y += -f_y - gamma_y*t35
-                F_z += -f_z - gamma_z*t35
-                W_x += f_y*t36 - f_z*t37 - px_y*vs_z + px_z*vs_y
-                W_y += -f_x*t36 + f_z*t38 + px_x*vs_z - px_z*vs_x
-                W_z += f_x*t37 - f_y*t38 - px_x*vs_y + px_y*vs_x
+                t28 = alpha*mass
+                t29 = X_z + u_z
+                t30 = X_y + u_y
+                t31 = X_x + u_x
+                F_x += -f_x - gamma_x*t28
+                F_y += -f_y - gamma_y*t28
+                F_z += -f_z - gamma_z*t28
+                W_x += f_y*t29 - f_z*t30 - px_y*vs_z + px_z*vs_y
+                W_y += -f_x*t29 + f_z*t31 + px_x*vs_z - px_z*vs_x
+                W_z += f_x*t30 - f_y*t31 - px_x*vs_y + px_y*vs_x
             # moment of gravity on the frame
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             d_x, d_y, d_z = d[0], d[1], d[2]
             mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
-            t39 = d_z + mc_z
-            t40 = d_y + mc_y
-            t41 = d_x + mc_x
-            W_x += gamma_y*t39 - gamma_z*t40
-            W_y += -gamma_x*t39 + gamma_z*t41
-            W_z += gamma_x*t40 - gamma_y*t41
+            t32 = d_z + mc_z
+            t33 = d_y + mc_y
+            t34 = d_x + mc_x
+            W_x += gamma_y*t32 - gamma_z*t33
+            W_y += -gamma_x*t32 + gamma_z*t34
+            W_z += gamma_x*t33 - gamma_y*t34
             # moments on the frame: elastic (30) and inertia (45)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
-                t42 = -m_x*psi_y + m_y*psi_x
-                t43 = m_x*psi_z
-                t44 = -m_z*psi_x + t43
-                t45 = -m_y*psi_z + m_z*psi_y
-                W_x += -e0*psi_y*t42 + e0*psi_z*t44 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-                W_y += e0*psi_x*t42 - e0*psi_z*t45 - m_y + (0.5)*m_z*psi_x - 0.5*t43
-                W_z += -e0*psi_x*t44 + e0*psi_y*t45 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+                t35 = -m_x*psi_y + m_y*psi_x
+                t36 = m_x*psi_z
+                t37 = -m_z*psi_x + t36
+                t38 = -m_y*psi_z + m_z*psi_y
+                W_x += -e0*psi_y*t35 + e0*psi_z*t37 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+                W_y += e0*psi_x*t35 - e0*psi_z*t38 - m_y + (0.5)*m_z*psi_x - 0.5*t36
+                W_z += -e0*psi_x*t37 + e0*psi_y*t38 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
             # B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
-            t46 = W_x + rhs_x
-            t47 = W_y + rhs_y
-            t48 = W_z + rhs_z
-            wp_x = Bxx*t46 + Byx*t47 + Bzx*t48
-            wp_y = Bxy*t46 + Byy*t47 + Bzy*t48
-            wp_z = Bxz*t46 + Byz*t47 + Bzz*t48
+            t39 = W_x + rhs_x
+            t40 = W_y + rhs_y
+            t41 = W_z + rhs_z
+            wp_x = Bxx*t39 + Byx*t40 + Bzx*t41
+            wp_y = Bxy*t39 + Byy*t40 + Bzy*t41
+            wp_z = Bxz*t39 + Byz*t40 + Bzz*t41
             # force on the origin, through the frame
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t49 = fit*wp_z
-                F_x += -X_y*t49 + X_z*fit*wp_y
-                F_y += X_x*t49 - X_z*fit*wp_x
+                t42 = fit*wp_z
+                F_x += -X_y*t42 + X_z*fit*wp_y
+                F_y += X_x*t42 - X_z*fit*wp_x
                 F_z += -X_x*fit*wp_y + X_y*fit*wp_x
             # force on the nodes in frame axes, (30), (57)
             for i in range(N_POSITIONS):
@@ -413,10 +404,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
                 pxd_x, pxd_y, pxd_z = pd[i3], pd[i3 + 1], pd[i3 + 2]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t50 = fit*wp_z
-                t51 = X_z*fit
-                h[i3] = F_x*alpha + Om0_y*px_z - Om0_z*px_y + X_y*t50 + f_x + pxd_x - t51*wp_y
-                h[i3 + 1] = F_y*alpha - Om0_x*px_z + Om0_z*px_x - X_x*t50 + f_y + pxd_y + t51*wp_x
+                t43 = fit*wp_z
+                t44 = X_z*fit
+                h[i3] = F_x*alpha + Om0_y*px_z - Om0_z*px_y + X_y*t43 + f_x + pxd_x - t44*wp_y
+                h[i3 + 1] = F_y*alpha - Om0_x*px_z + Om0_z*px_x - X_x*t43 + f_y + pxd_y + t44*wp_x
                 h[i3 + 2] = (F_z*alpha + Om0_x*px_y - Om0_y*px_x + X_x*fit*wp_y - X_y*fit*wp_x +
                     f_z + pxd_z)
             # force on the nodes
@@ -435,20 +426,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 pwd_x, pwd_y, pwd_z = pd[j3], pd[j3 + 1], pd[j3 + 2]
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
-                t52 = m_y*psi_z
-                t53 = m_x*psi_y
-                t54 = e0*(m_y*psi_x - t53)
-                t55 = m_x*psi_z
-                t56 = m_z*psi_x
-                t57 = t55 - t56
-                t58 = e0*psi_z
-                t59 = m_z*psi_y - t52
-                g[j3] = (Om_y*pw_z - Om_z*pw_y + m_x - 0.5*m_z*psi_y + psi_y*t54 + pwd_x +
-                    (0.5)*t52 - t57*t58)
-                g[j3 + 1] = (-Om_x*pw_z + Om_z*pw_x + m_y - psi_x*t54 + pwd_y - 0.5*t55 +
-                    (0.5)*t56 + t58*t59)
-                g[j3 + 2] = (Om_x*pw_y - Om_y*pw_x + e0*psi_x*t57 - e0*psi_y*t59 - 0.5*m_y*psi_x +
-                    m_z + pwd_z + (0.5)*t53)
+                t45 = m_y*psi_z
+                t46 = m_x*psi_y
+                t47 = e0*(m_y*psi_x - t46)
+                t48 = m_x*psi_z
+                t49 = m_z*psi_x
+                t50 = t48 - t49
+                t51 = e0*psi_z
+                t52 = m_z*psi_y - t45
+                g[j3] = (Om_y*pw_z - Om_z*pw_y + m_x - 0.5*m_z*psi_y + psi_y*t47 + pwd_x +
+                    (0.5)*t45 - t50*t51)
+                g[j3 + 1] = (-Om_x*pw_z + Om_z*pw_x + m_y - psi_x*t47 + pwd_y - 0.5*t48 +
+                    (0.5)*t49 + t51*t52)
+                g[j3 + 2] = (Om_x*pw_y - Om_y*pw_x + e0*psi_x*t50 - e0*psi_y*t52 - 0.5*m_y*psi_x +
+                    m_z + pwd_z + (0.5)*t46)
             # force of the internal modes
             for k in range(MODES, n):
                 fm = s[k]
@@ -510,12 +501,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                t60 = -dx0_z + dx_z
-                t61 = -dx0_y + dx_y
-                t62 = -dx0_x + dx_x
-                rhs_x += -fit*(X_y*t60 - X_z*t61)
-                rhs_y += -fit*(-X_x*t60 + X_z*t62)
-                rhs_z += -fit*(X_x*t61 - X_y*t62)
+                t53 = -dx0_z + dx_z
+                t54 = -dx0_y + dx_y
+                t55 = -dx0_x + dx_x
+                rhs_x += -fit*(X_y*t53 - X_z*t54)
+                rhs_y += -fit*(-X_x*t53 + X_z*t55)
+                rhs_z += -fit*(X_x*t54 - X_y*t55)
             dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -525,41 +516,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                t63 = X_y + u_y
-                t64 = X_z + u_z
-                t65 = X_x + u_x
-                dy[i3] = -dth0_y*t64 + dth0_z*t63 - dx0_x + dx_x
-                dy[i3 + 1] = dth0_x*t64 - dth0_z*t65 - dx0_y + dx_y
-                dy[i3 + 2] = -dth0_x*t63 + dth0_y*t65 - dx0_z + dx_z
+                t56 = X_y + u_y
+                t57 = X_z + u_z
+                t58 = X_x + u_x
+                dy[i3] = -dth0_y*t57 + dth0_z*t56 - dx0_x + dx_x
+                dy[i3 + 1] = dth0_x*t57 - dth0_z*t58 - dx0_y + dx_y
+                dy[i3 + 2] = -dth0_x*t56 + dth0_y*t58 - dx0_z + dx_z
             # variation of the elastic rotations, (17)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                 e0 = e0s[j]
-                t66 = dth0_y*psi_z
-                t67 = dth_y*psi_z
-                t68 = dth0_x*psi_y
-                t69 = dth0_y*psi_x - t68
-                t70 = e0*psi_y
-                t71 = dth_x*psi_z
-                t72 = dth_z*psi_x
-                t73 = t71 - t72
-                t74 = e0*psi_z
-                t75 = dth_x*psi_y
-                t76 = dth_y*psi_x - t75
-                t77 = dth0_x*psi_z
-                t78 = dth0_z*psi_x
-                t79 = t77 - t78
-                t80 = e0*psi_x
-                t81 = dth_z*psi_y - t67
-                t82 = dth0_z*psi_y - t66
-                dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y + e0*psi_y*t76
-                    + e0*psi_z*t79 - 0.5*t66 - 0.5*t67 - t69*t70 - t73*t74)
-                dy[j3 + 1] = (-dth0_y + dth_y + t69*t80 + (0.5)*t71 - 0.5*t72 + t74*t81 - t74*t82
-                    - t76*t80 + (0.5)*t77 - 0.5*t78)
-                dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                    e0*psi_x*t73 + e0*psi_y*t82 - 0.5*t68 - t70*t81 - 0.5*t75 - t79*t80)
+                t59 = (0.5)*dth0_z + (0.5)*dth_z
+                t60 = dth0_y + dth_y
+                t61 = (0.5)*psi_z
+                t62 = -dth0_y + dth_y
+                t63 = -dth0_x + dth_x
+                t64 = psi_x*t62 - psi_y*t63
+                t65 = -dth0_z + dth_z
+                t66 = -psi_x*t65 + psi_z*t63
+                t67 = dth0_x + dth_x
+                t68 = psi_y*t65 - psi_z*t62
+                dy[j3] = -dth0_x + dth_x + e0*(psi_y*t64 - psi_z*t66) + psi_y*t59 - t60*t61
+                dy[j3 + 1] = -dth0_y + dth_y + e0*(-psi_x*t64 + psi_z*t68) - psi_x*t59 + t61*t67
+                dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t66 - psi_y*t68) + (0.5)*psi_x*t60 -
+                    0.5*psi_y*t67)
             # differential: internal modes
             for k in range(MODES, n):
                 dqm = dqe[k]
@@ -622,12 +604,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                t83 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
-                t84 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
-                t85 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
-                rhs_x += -fit*(X_y*t83 - X_z*t84)
-                rhs_y += -fit*(-X_x*t83 + X_z*t85)
-                rhs_z += -fit*(X_x*t84 - X_y*t85)
+                t69 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
+                t70 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
+                t71 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
+                rhs_x += -fit*(X_y*t69 - X_z*t70)
+                rhs_y += -fit*(-X_x*t69 + X_z*t71)
+                rhs_z += -fit*(X_x*t70 - X_y*t71)
             dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -672,12 +654,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                t86 = X_y + u_y
-                t87 = X_z + u_z
-                t88 = X_x + u_x
-                deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t87 + dOm0_z*t86 - dv0_x + dvs_x
-                deta[i3 + 1] = Om0_x*du_z - Om0_z*du_x + dOm0_x*t87 - dOm0_z*t88 - dv0_y + dvs_y
-                deta[i3 + 2] = -Om0_x*du_y + Om0_y*du_x - dOm0_x*t86 + dOm0_y*t88 - dv0_z + dvs_z
+                t72 = X_y + u_y
+                t73 = X_z + u_z
+                t74 = X_x + u_x
+                deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t73 + dOm0_z*t72 - dv0_x + dvs_x
+                deta[i3 + 1] = Om0_x*du_z - Om0_z*du_x + dOm0_x*t73 - dOm0_z*t74 - dv0_y + dvs_y
+                deta[i3 + 2] = -Om0_x*du_y + Om0_y*du_x - dOm0_x*t72 + dOm0_y*t74 - dv0_z + dvs_z
             # differential: rates of the elastic rotations
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -687,59 +669,35 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t89 = Om0_y*dpsi_z
-                t90 = Om_y*dpsi_z
-                t91 = dOm0_y*psi_z
-                t92 = dOm_y*psi_z
-                t93 = -Om0_x*psi_y + Om0_y*psi_x
-                t94 = dpsi_y*e0
-                t95 = Om_x*psi_z - Om_z*psi_x
-                t96 = dpsi_z*e0
-                t97 = -Om_x*psi_y + Om_y*psi_x
-                t98 = Om0_x*psi_z - Om0_z*psi_x
-                t99 = Om0_x*dpsi_y
-                t100 = dOm0_x*psi_y
-                t101 = Om0_y*dpsi_x + dOm0_y*psi_x - t100 - t99
-                t102 = e0*psi_y
-                t103 = Om_x*dpsi_z
-                t104 = dOm_x*psi_z
-                t105 = Om_z*dpsi_x
-                t106 = dOm_z*psi_x
-                t107 = t103 + t104 - t105 - t106
-                t108 = e0*psi_z
-                t109 = Om_x*dpsi_y
-                t110 = dOm_x*psi_y
-                t111 = Om_y*dpsi_x + dOm_y*psi_x - t109 - t110
-                t112 = Om0_x*dpsi_z
-                t113 = dOm0_x*psi_z
-                t114 = Om0_z*dpsi_x
-                t115 = dOm0_z*psi_x
-                t116 = t112 + t113 - t114 - t115
-                t117 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t118 = e1*t117
-                t119 = psi_y*t118
-                t120 = psi_z*t118
-                t121 = dpsi_x*e0
-                t122 = -Om_y*psi_z + Om_z*psi_y
-                t123 = -Om0_y*psi_z + Om0_z*psi_y
-                t124 = e0*psi_x
-                t125 = Om_z*dpsi_y + dOm_z*psi_y - t90 - t92
-                t126 = Om0_z*dpsi_y + dOm0_z*psi_y - t89 - t91
-                t127 = psi_x*t118
-                deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x + (0.5)*dOm0_z*psi_y +
-                    dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t97 + dpsi_z*e0*t98 + e0*psi_y*t111 +
-                    e0*psi_z*t116 + e1*psi_y*t117*t97 + e1*psi_z*t117*t98 - t101*t102 - t107*t108
-                    - t119*t93 - t120*t95 - 0.5*t89 - 0.5*t90 - 0.5*t91 - 0.5*t92 - t93*t94 -
-                    t95*t96)
-                deta[j3 + 1] = (-dOm0_y + dOm_y + t101*t124 + (0.5)*t103 + (0.5)*t104 - 0.5*t105 -
-                    0.5*t106 + t108*t125 - t108*t126 - t111*t124 + (0.5)*t112 + (0.5)*t113 -
-                    0.5*t114 - 0.5*t115 + t120*t122 - t120*t123 + t121*t93 - t121*t97 + t122*t96 -
-                    t123*t96 + t127*t93 - t127*t97)
-                deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                    dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t95 + dpsi_y*e0*t123 +
-                    e0*psi_x*t107 + e0*psi_y*t126 + e1*psi_x*t117*t95 + e1*psi_y*t117*t123 -
-                    0.5*t100 - t102*t125 - 0.5*t109 - 0.5*t110 - t116*t124 - t119*t122 - t121*t98
-                    - t122*t94 - t127*t98 - 0.5*t99)
+                t75 = (0.5)*Om0_z + (0.5)*Om_z
+                t76 = Om0_y + Om_y
+                t77 = (0.5)*dpsi_z
+                t78 = (0.5)*dOm0_z + (0.5)*dOm_z
+                t79 = dOm0_y + dOm_y
+                t80 = (0.5)*psi_z
+                t81 = -Om0_y + Om_y
+                t82 = -Om0_x + Om_x
+                t83 = psi_x*t81 - psi_y*t82
+                t84 = -Om0_z + Om_z
+                t85 = -psi_x*t84 + psi_z*t82
+                t86 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                t87 = -dOm0_y + dOm_y
+                t88 = -dOm0_x + dOm_x
+                t89 = dpsi_x*t81 - dpsi_y*t82 + psi_x*t87 - psi_y*t88
+                t90 = -dOm0_z + dOm_z
+                t91 = -dpsi_x*t84 + dpsi_z*t82 - psi_x*t90 + psi_z*t88
+                t92 = Om0_x + Om_x
+                t93 = dOm0_x + dOm_x
+                t94 = psi_y*t84 - psi_z*t81
+                t95 = dpsi_y*t84 - dpsi_z*t81 + psi_y*t90 - psi_z*t87
+                deta[j3] = (-dOm0_x + dOm_x + dpsi_y*t75 + e0*(dpsi_y*t83 - dpsi_z*t85 + psi_y*t89
+                    - psi_z*t91) + psi_y*t78 - t76*t77 - t79*t80 + t86*(psi_y*t83 - psi_z*t85))
+                deta[j3 + 1] = (-dOm0_y + dOm_y - dpsi_x*t75 + e0*(-dpsi_x*t83 + dpsi_z*t94 -
+                    psi_x*t89 + psi_z*t95) - psi_x*t78 + t77*t92 + t80*t93 + t86*(-psi_x*t83 +
+                    psi_z*t94))
+                deta[j3 + 2] = (-dOm0_z + dOm_z + (0.5)*dpsi_x*t76 - 0.5*dpsi_y*t92 +
+                    e0*(dpsi_x*t85 - dpsi_y*t94 + psi_x*t91 - psi_y*t95) + (0.5)*psi_x*t79 -
+                    0.5*psi_y*t93 + t86*(psi_x*t85 - psi_y*t94))
             # differential: rates of the internal modes
             for k in range(MODES, n):
                 dvm = dve[k]
@@ -770,18 +728,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                 dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
-                t128 = alpha*mass
-                t129 = X_z + u_z
-                t130 = X_y + u_y
-                t131 = X_x + u_x
-                dF_x += -df_x - dgamma_x*t128
-                dF_y += -df_y - dgamma_y*t128
-                dF_z += -df_z - dgamma_z*t128
-                dW_x += (df_y*t129 - df_z*t130 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y +
+                t96 = alpha*mass
+                t97 = X_z + u_z
+                t98 = X_y + u_y
+                t99 = X_x + u_x
+                dF_x += -df_x - dgamma_x*t96
+                dF_y += -df_y - dgamma_y*t96
+                dF_z += -df_z - dgamma_z*t96
+                dW_x += (df_y*t97 - df_z*t98 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y +
                     dvs_y*px_z - dvs_z*px_y)
-                dW_y += (-df_x*t129 + df_z*t131 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z - du_z*f_x -
+                dW_y += (-df_x*t97 + df_z*t99 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z - du_z*f_x -
                     dvs_x*px_z + dvs_z*px_x)
-                dW_z += (df_x*t130 - df_y*t131 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x +
+                dW_z += (df_x*t98 - df_y*t99 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x +
                     dvs_x*px_y - dvs_y*px_x)
             # differential: moment of gravity on the frame
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
@@ -789,12 +747,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
             dd_x, dd_y, dd_z = dd[0], dd[1], dd[2]
             dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-            t132 = d_y + mc_y
-            t133 = d_z + mc_z
-            t134 = d_x + mc_x
-            dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t133 - dgamma_z*t132
-            dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t133 + dgamma_z*t134
-            dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t132 - dgamma_y*t134
+            t100 = d_y + mc_y
+            t101 = d_z + mc_z
+            t102 = d_x + mc_x
+            dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t101 - dgamma_z*t100
+            dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t101 + dgamma_z*t102
+            dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t100 - dgamma_y*t102
             # differential: moments on the frame: elastic (30) and inertia (45)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -804,25 +762,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t135 = -m_x*psi_y + m_y*psi_x
-                t136 = m_x*psi_z - m_z*psi_x
-                t137 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                t138 = dm_x*psi_z
-                t139 = dpsi_z*m_x
-                t140 = -dm_z*psi_x - dpsi_x*m_z + t138 + t139
-                t141 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t142 = e1*t141
-                t143 = -m_y*psi_z + m_z*psi_y
-                t144 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t135 -
-                    0.5*dpsi_y*m_z + dpsi_z*e0*t136 + (0.5)*dpsi_z*m_y - e0*psi_y*t137 +
-                    e0*psi_z*t140 + e1*psi_z*t136*t141 - psi_y*t135*t142)
-                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t135 + (0.5)*dpsi_x*m_z -
-                    dpsi_z*e0*t143 + e0*psi_x*t137 - e0*psi_z*t144 + e1*psi_x*t135*t141 -
-                    psi_z*t142*t143 - 0.5*t138 - 0.5*t139)
-                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t136 -
-                    0.5*dpsi_x*m_y + dpsi_y*e0*t143 + (0.5)*dpsi_y*m_x - e0*psi_x*t140 +
-                    e0*psi_y*t144 + e1*psi_y*t141*t143 - psi_x*t136*t142)
+                t103 = -m_x*psi_y + m_y*psi_x
+                t104 = m_x*psi_z - m_z*psi_x
+                t105 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                t106 = dm_x*psi_z
+                t107 = dpsi_z*m_x
+                t108 = -dm_z*psi_x - dpsi_x*m_z + t106 + t107
+                t109 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t110 = e1*t109
+                t111 = -m_y*psi_z + m_z*psi_y
+                t112 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t103 -
+                    0.5*dpsi_y*m_z + dpsi_z*e0*t104 + (0.5)*dpsi_z*m_y - e0*psi_y*t105 +
+                    e0*psi_z*t108 + e1*psi_z*t104*t109 - psi_y*t103*t110)
+                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t103 + (0.5)*dpsi_x*m_z -
+                    dpsi_z*e0*t111 + e0*psi_x*t105 - e0*psi_z*t112 + e1*psi_x*t103*t109 -
+                    psi_z*t110*t111 - 0.5*t106 - 0.5*t107)
+                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t104 -
+                    0.5*dpsi_x*m_y + dpsi_y*e0*t111 + (0.5)*dpsi_y*m_x - e0*psi_x*t108 +
+                    e0*psi_y*t112 + e1*psi_y*t109*t111 - psi_x*t104*t110)
             # differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
             for i in range(N_POSITIONS):
@@ -830,26 +788,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                t145 = X_x*wp_y - X_y*wp_x
-                t146 = -X_x*wp_z + X_z*wp_x
-                t147 = X_y*wp_z - X_z*wp_y
-                rhs_x += -fit*(du_y*t145 - du_z*t146)
-                rhs_y += -fit*(-du_x*t145 + du_z*t147)
-                rhs_z += -fit*(du_x*t146 - du_y*t147)
-            t148 = dW_x + rhs_x
-            t149 = dW_y + rhs_y
-            t150 = dW_z + rhs_z
-            dwp_x = Bxx*t148 + Byx*t149 + Bzx*t150
-            dwp_y = Bxy*t148 + Byy*t149 + Bzy*t150
-            dwp_z = Bxz*t148 + Byz*t149 + Bzz*t150
+                t113 = X_x*wp_y - X_y*wp_x
+                t114 = -X_x*wp_z + X_z*wp_x
+                t115 = X_y*wp_z - X_z*wp_y
+                rhs_x += -fit*(du_y*t113 - du_z*t114)
+                rhs_y += -fit*(-du_x*t113 + du_z*t115)
+                rhs_z += -fit*(du_x*t114 - du_y*t115)
+            t116 = dW_x + rhs_x
+            t117 = dW_y + rhs_y
+            t118 = dW_z + rhs_z
+            dwp_x = Bxx*t116 + Byx*t117 + Bzx*t118
+            dwp_y = Bxy*t116 + Byy*t117 + Bzy*t118
+            dwp_z = Bxz*t116 + Byz*t117 + Bzz*t118
             # differential: force on the origin, through the frame
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t151 = dwp_z*fit
-                dF_x += -X_y*t151 + X_z*dwp_y*fit
-                dF_y += X_x*t151 - X_z*dwp_x*fit
+                t119 = dwp_z*fit
+                dF_x += -X_y*t119 + X_z*dwp_y*fit
+                dF_y += X_x*t119 - X_z*dwp_x*fit
                 dF_z += -X_x*dwp_y*fit + X_y*dwp_x*fit
             # differential: force on the nodes in frame axes, (30), (57)
             for i in range(N_POSITIONS):
@@ -861,12 +819,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                 dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
                 dpxd_x, dpxd_y, dpxd_z = dpd[i3], dpd[i3 + 1], dpd[i3 + 2]
-                t152 = dwp_z*fit
-                t153 = X_z*fit
-                dh[i3] = (Om0_y*dpx_z - Om0_z*dpx_y + X_y*t152 + alpha*dF_x + dOm0_y*px_z -
-                    dOm0_z*px_y + df_x + dpxd_x - dwp_y*t153)
-                dh[i3 + 1] = (-Om0_x*dpx_z + Om0_z*dpx_x - X_x*t152 + alpha*dF_y - dOm0_x*px_z +
-                    dOm0_z*px_x + df_y + dpxd_y + dwp_x*t153)
+                t120 = dwp_z*fit
+                t121 = X_z*fit
+                dh[i3] = (Om0_y*dpx_z - Om0_z*dpx_y + X_y*t120 + alpha*dF_x + dOm0_y*px_z -
+                    dOm0_z*px_y + df_x + dpxd_x - dwp_y*t121)
+                dh[i3 + 1] = (-Om0_x*dpx_z + Om0_z*dpx_x - X_x*t120 + alpha*dF_y - dOm0_x*px_z +
+                    dOm0_z*px_x + df_y + dpxd_y + dwp_x*t121)
                 dh[i3 + 2] = (Om0_x*dpx_y - Om0_y*dpx_x + X_x*dwp_y*fit - X_y*dwp_x*fit +
                     alpha*dF_z + dOm0_x*px_y - dOm0_y*px_x + df_z + dpxd_z)
             # differential: force on the nodes, left in frame axes
@@ -891,36 +849,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpwd_x, dpwd_y, dpwd_z = dpd[j3], dpd[j3 + 1], dpd[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t154 = dm_y*psi_z
-                t155 = dpsi_z*m_y
-                t156 = -m_x*psi_y + m_y*psi_x
-                t157 = e0*t156
-                t158 = m_x*psi_z - m_z*psi_x
-                t159 = dpsi_z*e0
-                t160 = dm_x*psi_y
-                t161 = dpsi_y*m_x
-                t162 = e0*(dm_y*psi_x + dpsi_x*m_y - t160 - t161)
-                t163 = dm_x*psi_z
-                t164 = dpsi_z*m_x
-                t165 = dm_z*psi_x
-                t166 = dpsi_x*m_z
-                t167 = t163 + t164 - t165 - t166
-                t168 = e0*psi_z
-                t169 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                t170 = t156*t169
-                t171 = psi_z*t169
-                t172 = -m_y*psi_z + m_z*psi_y
-                t173 = dm_z*psi_y + dpsi_y*m_z - t154 - t155
+                t122 = dm_y*psi_z
+                t123 = dpsi_z*m_y
+                t124 = -m_x*psi_y + m_y*psi_x
+                t125 = e0*t124
+                t126 = m_x*psi_z - m_z*psi_x
+                t127 = dpsi_z*e0
+                t128 = dm_x*psi_y
+                t129 = dpsi_y*m_x
+                t130 = e0*(dm_y*psi_x + dpsi_x*m_y - t128 - t129)
+                t131 = dm_x*psi_z
+                t132 = dpsi_z*m_x
+                t133 = dm_z*psi_x
+                t134 = dpsi_x*m_z
+                t135 = t131 + t132 - t133 - t134
+                t136 = e0*psi_z
+                t137 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                t138 = t124*t137
+                t139 = psi_z*t137
+                t140 = -m_y*psi_z + m_z*psi_y
+                t141 = dm_z*psi_y + dpsi_y*m_z - t122 - t123
                 dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + dOm_y*pw_z - dOm_z*pw_y + dm_x -
-                    0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t157 + dpwd_x + psi_y*t162 +
-                    psi_y*t170 + (0.5)*t154 + (0.5)*t155 - t158*t159 - t158*t171 - t167*t168)
+                    0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t125 + dpwd_x + psi_y*t130 +
+                    psi_y*t138 + (0.5)*t122 + (0.5)*t123 - t126*t127 - t126*t139 - t135*t136)
                 dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x - dOm_x*pw_z + dOm_z*pw_x + dm_y -
-                    dpsi_x*t157 + dpwd_y - psi_x*t162 - psi_x*t170 + t159*t172 - 0.5*t163 -
-                    0.5*t164 + (0.5)*t165 + (0.5)*t166 + t168*t173 + t171*t172)
+                    dpsi_x*t125 + dpwd_y - psi_x*t130 - psi_x*t138 + t127*t140 - 0.5*t131 -
+                    0.5*t132 + (0.5)*t133 + (0.5)*t134 + t136*t141 + t139*t140)
                 dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + dOm_x*pw_y - dOm_y*pw_x - 0.5*dm_y*psi_x +
-                    dm_z + dpsi_x*e0*t158 - 0.5*dpsi_x*m_y - dpsi_y*e0*t172 + dpwd_z +
-                    e0*psi_x*t167 - e0*psi_y*t173 + psi_x*t158*t169 - psi_y*t169*t172 + (0.5)*t160
-                    + (0.5)*t161)
+                    dm_z + dpsi_x*e0*t126 - 0.5*dpsi_x*m_y - dpsi_y*e0*t140 + dpwd_z +
+                    e0*psi_x*t135 - e0*psi_y*t141 + psi_x*t126*t137 - psi_y*t137*t140 + (0.5)*t128
+                    + (0.5)*t129)
             # differential: force of the internal modes
             for k in range(MODES, n):
                 dfm = ds[k]
@@ -1018,60 +976,60 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdgt_x, bdgt_y, bdgt_z = bdg[j3], bdg[j3 + 1], bdg[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t174 = e0*psi_y
-                t175 = m_y*t174
-                t176 = e0*psi_z
-                t177 = m_z*t176
-                t178 = m_x*psi_y
-                t179 = m_y*psi_x - t178
-                t180 = 2*e1
-                t181 = psi_x*t180
-                t182 = psi_y*t181
-                t183 = t179*t182
-                t184 = m_x*psi_z
-                t185 = m_z*psi_x
-                t186 = t184 - t185
-                t187 = psi_z*t181
-                t188 = t186*t187
-                t189 = (0.5)*m_y
-                t190 = e0*t186
-                t191 = m_y*psi_z
-                t192 = m_z*psi_y - t191
-                t193 = psi_x*psi_x
-                t194 = (0.5)*m_z
-                t195 = e0*t179
-                t196 = e0*m_x*psi_x
-                t197 = psi_y*psi_z*t180
-                t198 = t192*t197
-                t199 = psi_y*psi_y
-                t200 = (0.5)*m_x
-                t201 = e0*t192
-                t202 = psi_z*psi_z
-                t203 = (0.5)*psi_z
-                t204 = psi_x*t174
-                t205 = (0.5)*psi_y
-                t206 = psi_x*t176
-                t207 = e0*t199
-                t208 = e0*t202 - 1
-                t209 = (0.5)*psi_x
-                t210 = psi_z*t174
-                t211 = e0*t193
+                t142 = e0*psi_y
+                t143 = m_y*t142
+                t144 = e0*psi_z
+                t145 = m_z*t144
+                t146 = m_x*psi_y
+                t147 = m_y*psi_x - t146
+                t148 = 2*e1
+                t149 = psi_x*t148
+                t150 = psi_y*t149
+                t151 = t147*t150
+                t152 = m_x*psi_z
+                t153 = m_z*psi_x
+                t154 = t152 - t153
+                t155 = psi_z*t149
+                t156 = t154*t155
+                t157 = (0.5)*m_y
+                t158 = e0*t154
+                t159 = m_y*psi_z
+                t160 = m_z*psi_y - t159
+                t161 = psi_x*psi_x
+                t162 = (0.5)*m_z
+                t163 = e0*t147
+                t164 = e0*m_x*psi_x
+                t165 = psi_y*psi_z*t148
+                t166 = t160*t165
+                t167 = psi_y*psi_y
+                t168 = (0.5)*m_x
+                t169 = e0*t160
+                t170 = psi_z*psi_z
+                t171 = (0.5)*psi_z
+                t172 = psi_x*t142
+                t173 = (0.5)*psi_y
+                t174 = psi_x*t144
+                t175 = e0*t167
+                t176 = e0*t170 - 1
+                t177 = (0.5)*psi_x
+                t178 = psi_z*t142
+                t179 = e0*t161
                 bdve[j3] += -bdgt_y*pw_z + bdgt_z*pw_y
                 bdve[j3 + 1] += bdgt_x*pw_z - bdgt_z*pw_x
                 bdve[j3 + 2] += -bdgt_x*pw_y + bdgt_y*pw_x
-                bdy[j3] += (bdgt_x*(t175 + t177 + t183 - t188) + bdgt_y*(-e0*m_y*psi_x +
-                    2*e1*psi_x*psi_z*t192 - t179*t180*t193 + t194 - t195) + bdgt_z*(-e0*t185 +
-                    2*e1*t186*t193 - t182*t192 - t189 + t190))
-                bdy[j3 + 1] += (bdgt_x*(-e0*t178 + 2*e1*t179*t199 - t186*t197 - t194 + t195) +
-                    bdgt_y*(t177 - t183 + t196 + t198) + bdgt_z*(-e0*m_z*psi_y +
-                    2*e1*psi_x*psi_y*t186 - t180*t192*t199 + t200 - t201))
-                bdy[j3 + 2] += (bdgt_x*(-e0*t184 + 2*e1*psi_y*psi_z*t179 - t180*t186*t202 + t189 -
-                    t190) + bdgt_y*(-e0*t191 + 2*e1*t192*t202 - t179*t187 - t200 + t201) +
-                    bdgt_z*(t175 + t188 + t196 - t198))
-                bds[j3] += bdgt_x*(-t207 - t208) + bdgt_y*(-t203 + t204) + bdgt_z*(t205 + t206)
-                bds[j3 + 1] += bdgt_x*(t203 + t204) + bdgt_y*(-t208 - t211) + bdgt_z*(-t209 + t210)
-                bds[j3 + 2] += (bdgt_x*(-t205 + t206) + bdgt_y*(t209 + t210) + bdgt_z*(-t207 -
-                    t211 + 1))
+                bdy[j3] += (bdgt_x*(t143 + t145 + t151 - t156) + bdgt_y*(-e0*m_y*psi_x +
+                    2*e1*psi_x*psi_z*t160 - t147*t148*t161 + t162 - t163) + bdgt_z*(-e0*t153 +
+                    2*e1*t154*t161 - t150*t160 - t157 + t158))
+                bdy[j3 + 1] += (bdgt_x*(-e0*t146 + 2*e1*t147*t167 - t154*t165 - t162 + t163) +
+                    bdgt_y*(t145 - t151 + t164 + t166) + bdgt_z*(-e0*m_z*psi_y +
+                    2*e1*psi_x*psi_y*t154 - t148*t160*t167 + t168 - t169))
+                bdy[j3 + 2] += (bdgt_x*(-e0*t152 + 2*e1*psi_y*psi_z*t147 - t148*t154*t170 + t157 -
+                    t158) + bdgt_y*(-e0*t159 + 2*e1*t160*t170 - t147*t155 - t168 + t169) +
+                    bdgt_z*(t143 + t156 + t164 - t166))
+                bds[j3] += bdgt_x*(-t175 - t176) + bdgt_y*(-t171 + t172) + bdgt_z*(t173 + t174)
+                bds[j3 + 1] += bdgt_x*(t171 + t172) + bdgt_y*(-t176 - t179) + bdgt_z*(-t177 + t178)
+                bds[j3 + 2] += (bdgt_x*(-t173 + t174) + bdgt_y*(t177 + t178) + bdgt_z*(-t175 -
+                    t179 + 1))
                 bdp[j3] += -Om_y*bdgt_z + Om_z*bdgt_y
                 bdp[j3 + 1] += Om_x*bdgt_z - Om_z*bdgt_x
                 bdp[j3 + 2] += -Om_x*bdgt_y + Om_y*bdgt_x
@@ -1097,7 +1055,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 alpha = alphas[i]
                 px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
                 bdh_x, bdh_y, bdh_z = bdh[i3], bdh[i3 + 1], bdh[i3 + 2]
-                t212 = bdh_z*fit
+                t180 = bdh_z*fit
                 bds[i3] += bdh_x
                 bds[i3 + 1] += bdh_y
                 bds[i3 + 2] += bdh_z
@@ -1113,40 +1071,40 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdF_x += alpha*bdh_x
                 bdF_y += alpha*bdh_y
                 bdF_z += alpha*bdh_z
-                bdwp_x += -X_y*t212 + X_z*bdh_y*fit
-                bdwp_y += X_x*t212 - X_z*bdh_x*fit
+                bdwp_x += -X_y*t180 + X_z*bdh_y*fit
+                bdwp_y += X_x*t180 - X_z*bdh_x*fit
                 bdwp_z += -X_x*bdh_y*fit + X_y*bdh_x*fit
             # transposed: differential: force on the origin, through the frame
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t213 = bdF_z*fit
-                bdwp_x += X_y*t213 - X_z*bdF_y*fit
-                bdwp_y += -X_x*t213 + X_z*bdF_x*fit
+                t181 = bdF_z*fit
+                bdwp_x += X_y*t181 - X_z*bdF_y*fit
+                bdwp_y += -X_x*t181 + X_z*bdF_x*fit
                 bdwp_z += X_x*bdF_y*fit - X_y*bdF_x*fit
             # transposed: differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
-            t214 = bdwp_x + rhs_x
-            t215 = bdwp_y + rhs_y
-            t216 = bdwp_z + rhs_z
-            mdwp_x = Bxx*t214 + Bxy*t215 + Bxz*t216
-            mdwp_y = Byx*t214 + Byy*t215 + Byz*t216
-            mdwp_z = Bzx*t214 + Bzy*t215 + Bzz*t216
+            t182 = bdwp_x + rhs_x
+            t183 = bdwp_y + rhs_y
+            t184 = bdwp_z + rhs_z
+            mdwp_x = Bxx*t182 + Bxy*t183 + Bxz*t184
+            mdwp_y = Byx*t182 + Byy*t183 + Byz*t184
+            mdwp_z = Bzx*t182 + Bzy*t183 + Bzz*t184
             # transposed: differential: B^T wp = W
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t217 = X_x*wp_y - X_y*wp_x
-                t218 = fit*mdwp_y
-                t219 = X_x*wp_z - X_z*wp_x
-                t220 = fit*mdwp_z
-                t221 = fit*mdwp_x
-                t222 = X_y*wp_z - X_z*wp_y
-                bdy[i3] += t217*t218 + t219*t220
-                bdy[i3 + 1] += -t217*t221 + t220*t222
-                bdy[i3 + 2] += -t218*t222 - t219*t221
+                t185 = X_x*wp_y - X_y*wp_x
+                t186 = fit*mdwp_y
+                t187 = X_x*wp_z - X_z*wp_x
+                t188 = fit*mdwp_z
+                t189 = fit*mdwp_x
+                t190 = X_y*wp_z - X_z*wp_y
+                bdy[i3] += t185*t186 + t187*t188
+                bdy[i3 + 1] += -t185*t189 + t188*t190
+                bdy[i3 + 2] += -t186*t190 - t187*t189
             # transposed: differential: B^T wp = W
             bdW_x += mdwp_x
             bdW_y += mdwp_y
@@ -1158,66 +1116,66 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t223 = e0*psi_y
-                t224 = m_y*t223
-                t225 = e0*psi_z
-                t226 = m_z*t225
-                t227 = -m_x*psi_y + m_y*psi_x
-                t228 = 2*e1
-                t229 = psi_x*t228
-                t230 = psi_y*t229
-                t231 = t227*t230
-                t232 = m_x*psi_z
-                t233 = -m_z*psi_x + t232
-                t234 = psi_z*t229
-                t235 = t233*t234
-                t236 = psi_x*psi_x
-                t237 = t228*t236
-                t238 = -m_y*psi_z + m_z*psi_y
-                t239 = e0*t227 + (0.5)*m_z
-                t240 = e0*t233 + (0.5)*m_y
-                t241 = e0*m_x*psi_x
-                t242 = psi_y*psi_z*t228
-                t243 = t238*t242
-                t244 = psi_y*psi_y
-                t245 = t228*t244
-                t246 = e0*t238 + (0.5)*m_x
-                t247 = psi_z*psi_z
-                t248 = t228*t247
-                t249 = (0.5)*psi_z
-                t250 = psi_x*t223
-                t251 = (0.5)*psi_y
-                t252 = psi_x*t225
-                t253 = e0*t244
-                t254 = e0*t247 - 1
-                t255 = (0.5)*psi_x
-                t256 = psi_z*t223
-                t257 = e0*t236
-                bdy[j3] += (bdW_x*(-t224 - t226 - t231 + t235) + bdW_y*(e0*m_y*psi_x + t227*t237 -
-                    t234*t238 + t239) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t238 - t233*t237 -
-                    t240))
-                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t233 - t227*t245 - t239) +
-                    bdW_y*(-t226 + t231 - t241 - t243) + bdW_z*(e0*m_z*psi_y - t230*t233 +
-                    t238*t245 + t246))
-                bdy[j3 + 2] += (bdW_x*(e0*t232 - t227*t242 + t233*t248 + t240) +
-                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t227 - t238*t248 - t246) + bdW_z*(-t224
-                    - t235 - t241 + t243))
-                bds[j3] += bdW_x*(t253 + t254) + bdW_y*(-t249 - t250) + bdW_z*(t251 - t252)
-                bds[j3 + 1] += bdW_x*(t249 - t250) + bdW_y*(t254 + t257) + bdW_z*(-t255 - t256)
-                bds[j3 + 2] += bdW_x*(-t251 - t252) + bdW_y*(t255 - t256) + bdW_z*(t253 + t257 - 1)
+                t191 = e0*psi_y
+                t192 = m_y*t191
+                t193 = e0*psi_z
+                t194 = m_z*t193
+                t195 = -m_x*psi_y + m_y*psi_x
+                t196 = 2*e1
+                t197 = psi_x*t196
+                t198 = psi_y*t197
+                t199 = t195*t198
+                t200 = m_x*psi_z
+                t201 = -m_z*psi_x + t200
+                t202 = psi_z*t197
+                t203 = t201*t202
+                t204 = psi_x*psi_x
+                t205 = t196*t204
+                t206 = -m_y*psi_z + m_z*psi_y
+                t207 = e0*t195 + (0.5)*m_z
+                t208 = e0*t201 + (0.5)*m_y
+                t209 = e0*m_x*psi_x
+                t210 = psi_y*psi_z*t196
+                t211 = t206*t210
+                t212 = psi_y*psi_y
+                t213 = t196*t212
+                t214 = e0*t206 + (0.5)*m_x
+                t215 = psi_z*psi_z
+                t216 = t196*t215
+                t217 = (0.5)*psi_z
+                t218 = psi_x*t191
+                t219 = (0.5)*psi_y
+                t220 = psi_x*t193
+                t221 = e0*t212
+                t222 = e0*t215 - 1
+                t223 = (0.5)*psi_x
+                t224 = psi_z*t191
+                t225 = e0*t204
+                bdy[j3] += (bdW_x*(-t192 - t194 - t199 + t203) + bdW_y*(e0*m_y*psi_x + t195*t205 -
+                    t202*t206 + t207) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t206 - t201*t205 -
+                    t208))
+                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t201 - t195*t213 - t207) +
+                    bdW_y*(-t194 + t199 - t209 - t211) + bdW_z*(e0*m_z*psi_y - t198*t201 +
+                    t206*t213 + t214))
+                bdy[j3 + 2] += (bdW_x*(e0*t200 - t195*t210 + t201*t216 + t208) +
+                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t195 - t206*t216 - t214) + bdW_z*(-t192
+                    - t203 - t209 + t211))
+                bds[j3] += bdW_x*(t221 + t222) + bdW_y*(-t217 - t218) + bdW_z*(t219 - t220)
+                bds[j3 + 1] += bdW_x*(t217 - t218) + bdW_y*(t222 + t225) + bdW_z*(-t223 - t224)
+                bds[j3 + 2] += bdW_x*(-t219 - t220) + bdW_y*(t223 - t224) + bdW_z*(t221 + t225 - 1)
             # transposed: differential: moment of gravity on the frame
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             d_x, d_y, d_z = d[0], d[1], d[2]
             mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
-            t258 = d_y + mc_y
-            t259 = d_z + mc_z
-            t260 = d_x + mc_x
+            t226 = d_y + mc_y
+            t227 = d_z + mc_z
+            t228 = d_x + mc_x
             bdd[0] += bdW_y*gamma_z - bdW_z*gamma_y
             bdd[1] += -bdW_x*gamma_z + bdW_z*gamma_x
             bdd[2] += bdW_x*gamma_y - bdW_y*gamma_x
-            bdgamma[0] += -bdW_y*t259 + bdW_z*t258
-            bdgamma[1] += bdW_x*t259 - bdW_z*t260
-            bdgamma[2] += -bdW_x*t258 + bdW_y*t260
+            bdgamma[0] += -bdW_y*t227 + bdW_z*t226
+            bdgamma[1] += bdW_x*t227 - bdW_z*t228
+            bdgamma[2] += -bdW_x*t226 + bdW_y*t228
             # transposed: differential: forces on the frame: elastic (30) and inertia (57)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -1228,16 +1186,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
                 mass = masses[0]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t261 = alpha*mass
-                t262 = X_y + u_y
-                t263 = X_z + u_z
-                t264 = X_x + u_x
-                bdgamma[0] += -bdF_x*t261
-                bdgamma[1] += -bdF_y*t261
-                bdgamma[2] += -bdF_z*t261
-                bds[i3] += -bdF_x - bdW_y*t263 + bdW_z*t262
-                bds[i3 + 1] += -bdF_y + bdW_x*t263 - bdW_z*t264
-                bds[i3 + 2] += -bdF_z - bdW_x*t262 + bdW_y*t264
+                t229 = alpha*mass
+                t230 = X_y + u_y
+                t231 = X_z + u_z
+                t232 = X_x + u_x
+                bdgamma[0] += -bdF_x*t229
+                bdgamma[1] += -bdF_y*t229
+                bdgamma[2] += -bdF_z*t229
+                bds[i3] += -bdF_x - bdW_y*t231 + bdW_z*t230
+                bds[i3 + 1] += -bdF_y + bdW_x*t231 - bdW_z*t232
+                bds[i3 + 2] += -bdF_z - bdW_x*t230 + bdW_y*t232
                 bdy[i3] += bdW_y*f_z - bdW_z*f_y
                 bdy[i3 + 1] += -bdW_x*f_z + bdW_z*f_x
                 bdy[i3 + 2] += bdW_x*f_y - bdW_y*f_x
@@ -1269,89 +1227,74 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdep_x, bdep_y, bdep_z = bdeta[j3], bdeta[j3 + 1], bdeta[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t265 = (0.5)*psi_z
-                t266 = e0*psi_x
-                t267 = psi_y*t266
-                t268 = t265 + t267
-                t269 = (0.5)*psi_y
-                t270 = psi_z*t266
-                t271 = -t269 + t270
-                t272 = psi_y*psi_y
-                t273 = e0*t272
-                t274 = psi_z*psi_z
-                t275 = e0*t274 - 1
-                t276 = t273 + t275
-                t277 = -t265 + t267
-                t278 = (0.5)*psi_x
-                t279 = e0*psi_y
-                t280 = psi_z*t279
-                t281 = t278 + t280
-                t282 = psi_x*psi_x
-                t283 = e0*t282
-                t284 = t275 + t283
-                t285 = t269 + t270
-                t286 = -t278 + t280
-                t287 = t273 + t283 - 1
-                t288 = Om_x*psi_y
-                t289 = Om_y*psi_x - t288
-                t290 = 2*e1
-                t291 = psi_x*t290
-                t292 = psi_y*t291
-                t293 = t289*t292
-                t294 = Om0_z*psi_x
-                t295 = Om0_x*psi_z - t294
-                t296 = psi_z*t291
-                t297 = t295*t296
-                t298 = Om0_x*psi_y
-                t299 = Om0_y*psi_x - t298
-                t300 = t292*t299
-                t301 = Om_x*psi_z
-                t302 = Om_z*psi_x
-                t303 = t301 - t302
-                t304 = t296*t303
-                t305 = Om0_z*e0*psi_z - Om_z*e0*psi_z
-                t306 = Om0_y*t279 - Om_y*e0*psi_y
-                t307 = t282*t290
-                t308 = Om_y*psi_z
-                t309 = Om_z*psi_y - t308
-                t310 = Om0_y*psi_z
-                t311 = Om0_z*psi_y - t310
-                t312 = (0.5)*Om0_z + (0.5)*Om_z + e0*t289 - e0*t299
-                t313 = (0.5)*Om0_y + (0.5)*Om_y - e0*t295 + e0*t303
-                t314 = psi_y*psi_z*t290
-                t315 = t309*t314
-                t316 = t311*t314
-                t317 = Om0_x*t266 - Om_x*e0*psi_x
-                t318 = t272*t290
-                t319 = (0.5)*Om0_x + (0.5)*Om_x + e0*t309 - e0*t311
-                t320 = t274*t290
-                bdve[j3] += -bdep_x*t276 + bdep_y*t268 + bdep_z*t271
-                bdve[j3 + 1] += bdep_x*t277 - bdep_y*t284 + bdep_z*t281
-                bdve[j3 + 2] += bdep_x*t285 + bdep_y*t286 - bdep_z*t287
-                bdy[j3] += (bdep_x*(t293 + t297 - t300 - t304 - t305 - t306) +
-                    bdep_y*(Om0_y*e0*psi_x - Om_y*e0*psi_x + 2*e1*psi_x*psi_z*t309 +
-                    2*e1*t282*t299 - t289*t307 - t296*t311 - t312) + bdep_z*(e0*t294 - e0*t302 -
-                    t292*t309 + t292*t311 - t295*t307 + t303*t307 + t313))
-                bdy[j3 + 1] += (bdep_x*(-e0*t288 + e0*t298 + t289*t318 + t295*t314 - t299*t318 -
-                    t303*t314 + t312) + bdep_y*(-t293 + t300 - t305 + t315 - t316 - t317) +
-                    bdep_z*(Om0_z*e0*psi_y - Om_z*e0*psi_y + 2*e1*psi_x*psi_y*t303 +
-                    2*e1*t272*t311 - t292*t295 - t309*t318 - t319))
-                bdy[j3 + 2] += (bdep_x*(Om0_x*e0*psi_z - e0*t301 + 2*e1*psi_y*psi_z*t289 +
-                    2*e1*t274*t295 - t299*t314 - t303*t320 - t313) + bdep_y*(-e0*t308 + e0*t310 -
-                    t289*t296 + t296*t299 + t309*t320 - t311*t320 + t319) + bdep_z*(-t297 + t304 -
-                    t306 - t315 + t316 - t317))
-                bdOm0_x += bdep_x*t276 - bdep_y*t277 - bdep_z*t285
-                bdOm0_y += -bdep_x*t268 + bdep_y*t284 - bdep_z*t286
-                bdOm0_z += -bdep_x*t271 - bdep_y*t281 + bdep_z*t287
+                t233 = (0.5)*psi_z
+                t234 = e0*psi_x
+                t235 = psi_y*t234
+                t236 = t233 + t235
+                t237 = (0.5)*psi_y
+                t238 = psi_z*t234
+                t239 = -t237 + t238
+                t240 = psi_y*psi_y
+                t241 = psi_z*psi_z
+                t242 = t240 + t241
+                t243 = -t233 + t235
+                t244 = (0.5)*psi_x
+                t245 = e0*psi_y*psi_z
+                t246 = t244 + t245
+                t247 = psi_x*psi_x
+                t248 = t241 + t247
+                t249 = t237 + t238
+                t250 = -t244 + t245
+                t251 = t240 + t247
+                t252 = Om0_y - Om_y
+                t253 = -t252
+                t254 = Om0_z - Om_z
+                t255 = psi_x*t253
+                t256 = Om0_x - Om_x
+                t257 = -t256
+                t258 = -psi_y*t257
+                t259 = t255 + t258
+                t260 = -t254
+                t261 = psi_x*t260
+                t262 = psi_z*t257 - t261
+                t263 = psi_y*t259 - psi_z*t262
+                t264 = 2*e1
+                t265 = psi_x*t264
+                t266 = psi_y*t260
+                t267 = -psi_z*t253
+                t268 = t266 + t267
+                t269 = -psi_x*t259 + psi_z*t268
+                t270 = (0.5)*Om0_z + (0.5)*Om_z
+                t271 = psi_z*t257
+                t272 = psi_x*t262 - psi_y*t268
+                t273 = (0.5)*Om0_y + (0.5)*Om_y
+                t274 = psi_y*t264
+                t275 = (0.5)*Om0_x + (0.5)*Om_x
+                t276 = psi_z*t264
+                bdve[j3] += bdep_x*(-e0*t242 + 1) + bdep_y*t236 + bdep_z*t239
+                bdve[j3 + 1] += bdep_x*t243 + bdep_y*(-e0*t248 + 1) + bdep_z*t246
+                bdve[j3 + 2] += bdep_x*t249 + bdep_y*t250 + bdep_z*(-e0*t251 + 1)
+                bdy[j3] += (bdep_x*(e0*(psi_y*t253 - psi_z*t254) + t263*t265) +
+                    bdep_y*(e0*(-2*t255 - t258) + 2*e1*psi_x*t269 - t270) + bdep_z*(e0*(psi_x*t254
+                    - t261 + t271) + t265*t272 + t273))
+                bdy[j3 + 1] += (bdep_x*(e0*(psi_y*t256 + t259) + t263*t274 + t270) +
+                    bdep_y*(e0*(-psi_x*t256 + psi_z*t260) + t269*t274) + bdep_z*(e0*(-2*t266 -
+                    t267) + 2*e1*psi_y*t272 - t275))
+                bdy[j3 + 2] += (bdep_x*(e0*(t261 - 2*t271) + 2*e1*psi_z*t263 - t273) +
+                    bdep_y*(e0*(psi_z*t252 + t268) + t269*t276 + t275) + bdep_z*(e0*(psi_x*t257 -
+                    psi_y*t252) + t272*t276))
+                bdOm0_x += bdep_x*(e0*t242 - 1) - bdep_y*t243 - bdep_z*t249
+                bdOm0_y += -bdep_x*t236 + bdep_y*(e0*t248 - 1) - bdep_z*t250
+                bdOm0_z += -bdep_x*t239 - bdep_y*t246 + bdep_z*(e0*t251 - 1)
             # transposed: differential: rates of the elastic displacements
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 bdeu_x, bdeu_y, bdeu_z = bdeta[i3], bdeta[i3 + 1], bdeta[i3 + 2]
-                t321 = X_z + u_z
-                t322 = X_y + u_y
-                t323 = X_x + u_x
+                t277 = X_z + u_z
+                t278 = X_y + u_y
+                t279 = X_x + u_x
                 bdy[i3] += Om0_y*bdeu_z - Om0_z*bdeu_y
                 bdy[i3 + 1] += -Om0_x*bdeu_z + Om0_z*bdeu_x
                 bdy[i3 + 2] += Om0_x*bdeu_y - Om0_y*bdeu_x
@@ -1361,9 +1304,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdv0_x += -bdeu_x
                 bdv0_y += -bdeu_y
                 bdv0_z += -bdeu_z
-                bdOm0_x += bdeu_y*t321 - bdeu_z*t322
-                bdOm0_y += -bdeu_x*t321 + bdeu_z*t323
-                bdOm0_z += bdeu_x*t322 - bdeu_y*t323
+                bdOm0_x += bdeu_y*t277 - bdeu_z*t278
+                bdOm0_y += -bdeu_x*t277 + bdeu_z*t279
+                bdOm0_z += bdeu_x*t278 - bdeu_y*t279
             # transposed: differential: origin of the frame, (14)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -1409,40 +1352,40 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdOm0_z += bdvsd_x*vs_y - bdvsd_y*vs_x
             # transposed: differential: sum w_j X_j x (rate of r_j) = 0
             rhs_x = rhs_y = rhs_z = 0.0
-            t324 = bdOm0_x + rhs_x
-            t325 = bdOm0_y + rhs_y
-            t326 = bdOm0_z + rhs_z
-            mdOm0_x = Bxx*t324 + Byx*t325 + Bzx*t326
-            mdOm0_y = Bxy*t324 + Byy*t325 + Bzy*t326
-            mdOm0_z = Bxz*t324 + Byz*t325 + Bzz*t326
+            t280 = bdOm0_x + rhs_x
+            t281 = bdOm0_y + rhs_y
+            t282 = bdOm0_z + rhs_z
+            mdOm0_x = Bxx*t280 + Byx*t281 + Bzx*t282
+            mdOm0_y = Bxy*t280 + Byy*t281 + Bzy*t282
+            mdOm0_z = Bxz*t280 + Byz*t281 + Bzz*t282
             # transposed: differential: sum w_j X_j x (rate of r_j) = 0
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t327 = fit*mdOm0_y
-                t328 = X_x*t327
-                t329 = fit*mdOm0_z
-                t330 = X_x*t329
-                t331 = Om0_y*X_y
-                t332 = Om0_z*X_z
-                t333 = fit*mdOm0_x
-                t334 = X_y*t333
-                t335 = X_y*t329
-                t336 = Om0_x*X_x
-                t337 = X_z*t327
-                t338 = t335 - t337
-                t339 = -X_z*fit*mdOm0_x + t330
-                t340 = t328 - t334
-                bdy[i3] += Om0_y*t328 + Om0_z*t330 - t333*(t331 + t332)
-                bdy[i3 + 1] += Om0_x*t334 + Om0_z*t335 - t327*(t332 + t336)
-                bdy[i3 + 2] += Om0_x*X_z*t333 + Om0_y*t337 - t329*(t331 + t336)
-                bdyd[i3] += t338
-                bdyd[i3 + 1] += -t339
-                bdyd[i3 + 2] += t340
-                bdv0_x += -t338
-                bdv0_y += t339
-                bdv0_z += -t340
+                t283 = fit*mdOm0_y
+                t284 = X_x*t283
+                t285 = fit*mdOm0_z
+                t286 = X_x*t285
+                t287 = Om0_y*X_y
+                t288 = Om0_z*X_z
+                t289 = fit*mdOm0_x
+                t290 = X_y*t289
+                t291 = X_y*t285
+                t292 = Om0_x*X_x
+                t293 = X_z*t283
+                t294 = t291 - t293
+                t295 = -X_z*fit*mdOm0_x + t286
+                t296 = t284 - t290
+                bdy[i3] += Om0_y*t284 + Om0_z*t286 - t289*(t287 + t288)
+                bdy[i3 + 1] += Om0_x*t290 + Om0_z*t291 - t283*(t288 + t292)
+                bdy[i3 + 2] += Om0_x*X_z*t289 + Om0_y*t293 - t285*(t287 + t292)
+                bdyd[i3] += t294
+                bdyd[i3 + 1] += -t295
+                bdyd[i3 + 2] += t296
+                bdv0_x += -t294
+                bdv0_y += t295
+                bdv0_z += -t296
             # transposed: differential: origin of the frame, (14)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -1513,43 +1456,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 bdpsi_x, bdpsi_y, bdpsi_z = bdy[j3], bdy[j3 + 1], bdy[j3 + 2]
                 e0 = e0s[j]
-                t341 = (0.5)*psi_z
-                t342 = e0*psi_x
-                t343 = psi_y*t342
-                t344 = -t341 + t343
-                t345 = (0.5)*psi_y
-                t346 = psi_z*t342
-                t347 = t345 + t346
-                t348 = e0*psi_y*psi_y
-                t349 = e0*psi_z*psi_z - 1
-                t350 = t348 + t349
-                t351 = t341 + t343
-                t352 = (0.5)*psi_x
-                t353 = e0*psi_y*psi_z
-                t354 = -t352 + t353
-                t355 = e0*psi_x*psi_x
-                t356 = t349 + t355
-                t357 = -t345 + t346
-                t358 = t352 + t353
-                t359 = t348 + t355 - 1
-                bdth0_x += bdpsi_x*t350 - bdpsi_y*t344 - bdpsi_z*t347
-                bdth0_y += -bdpsi_x*t351 + bdpsi_y*t356 - bdpsi_z*t354
-                bdth0_z += -bdpsi_x*t357 - bdpsi_y*t358 + bdpsi_z*t359
-                bdqe[j3] += -bdpsi_x*t350 + bdpsi_y*t351 + bdpsi_z*t357
-                bdqe[j3 + 1] += bdpsi_x*t344 - bdpsi_y*t356 + bdpsi_z*t358
-                bdqe[j3 + 2] += bdpsi_x*t347 + bdpsi_y*t354 - bdpsi_z*t359
+                t297 = (0.5)*psi_z
+                t298 = e0*psi_x
+                t299 = psi_y*t298
+                t300 = -t297 + t299
+                t301 = (0.5)*psi_y
+                t302 = psi_z*t298
+                t303 = t301 + t302
+                t304 = psi_y*psi_y
+                t305 = psi_z*psi_z
+                t306 = t304 + t305
+                t307 = t297 + t299
+                t308 = (0.5)*psi_x
+                t309 = e0*psi_y*psi_z
+                t310 = -t308 + t309
+                t311 = psi_x*psi_x
+                t312 = t305 + t311
+                t313 = -t301 + t302
+                t314 = t308 + t309
+                t315 = t304 + t311
+                bdth0_x += bdpsi_x*(e0*t306 - 1) - bdpsi_y*t300 - bdpsi_z*t303
+                bdth0_y += -bdpsi_x*t307 + bdpsi_y*(e0*t312 - 1) - bdpsi_z*t310
+                bdth0_z += -bdpsi_x*t313 - bdpsi_y*t314 + bdpsi_z*(e0*t315 - 1)
+                bdqe[j3] += bdpsi_x*(-e0*t306 + 1) + bdpsi_y*t307 + bdpsi_z*t313
+                bdqe[j3 + 1] += bdpsi_x*t300 + bdpsi_y*(-e0*t312 + 1) + bdpsi_z*t314
+                bdqe[j3 + 2] += bdpsi_x*t303 + bdpsi_y*t310 + bdpsi_z*(-e0*t315 + 1)
             # transposed: differential: displacement of the nodes in the frame, (11)
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 bdu_x, bdu_y, bdu_z = bdy[i3], bdy[i3 + 1], bdy[i3 + 2]
-                t360 = X_z + u_z
-                t361 = X_y + u_y
-                t362 = X_x + u_x
-                bdth0_x += bdu_y*t360 - bdu_z*t361
-                bdth0_y += -bdu_x*t360 + bdu_z*t362
-                bdth0_z += bdu_x*t361 - bdu_y*t362
+                t316 = X_z + u_z
+                t317 = X_y + u_y
+                t318 = X_x + u_x
+                bdth0_x += bdu_y*t316 - bdu_z*t317
+                bdth0_y += -bdu_x*t316 + bdu_z*t318
+                bdth0_z += bdu_x*t317 - bdu_y*t318
                 bdqe[i3] += bdu_x
                 bdqe[i3 + 1] += bdu_y
                 bdqe[i3 + 2] += bdu_z
@@ -1558,27 +1501,27 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdx0_z += -bdu_z
             # transposed: sum w_j X_j x (rate of r_j) = 0
             rhs_x = rhs_y = rhs_z = 0.0
-            t363 = bdth0_x + rhs_x
-            t364 = bdth0_y + rhs_y
-            t365 = bdth0_z + rhs_z
-            mdth0_x = Bxx*t363 + Byx*t364 + Bzx*t365
-            mdth0_y = Bxy*t363 + Byy*t364 + Bzy*t365
-            mdth0_z = Bxz*t363 + Byz*t364 + Bzz*t365
+            t319 = bdth0_x + rhs_x
+            t320 = bdth0_y + rhs_y
+            t321 = bdth0_z + rhs_z
+            mdth0_x = Bxx*t319 + Byx*t320 + Bzx*t321
+            mdth0_y = Bxy*t319 + Byy*t320 + Bzy*t321
+            mdth0_z = Bxz*t319 + Byz*t320 + Bzz*t321
             # transposed: sum w_j X_j x (rate of r_j) = 0
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t366 = fit*mdth0_z
-                t367 = X_y*t366 - X_z*fit*mdth0_y
-                t368 = X_x*t366 - X_z*fit*mdth0_x
-                t369 = X_x*fit*mdth0_y - X_y*fit*mdth0_x
-                bdqe[i3] += t367
-                bdqe[i3 + 1] += -t368
-                bdqe[i3 + 2] += t369
-                bdx0_x += -t367
-                bdx0_y += t368
-                bdx0_z += -t369
+                t322 = fit*mdth0_z
+                t323 = X_y*t322 - X_z*fit*mdth0_y
+                t324 = X_x*t322 - X_z*fit*mdth0_x
+                t325 = X_x*fit*mdth0_y - X_y*fit*mdth0_x
+                bdqe[i3] += t323
+                bdqe[i3 + 1] += -t324
+                bdqe[i3 + 2] += t325
+                bdx0_x += -t323
+                bdx0_y += t324
+                bdx0_z += -t325
             # transposed: origin of the frame, (14)
             for i in range(N_POSITIONS):
                 i3 = 3*i

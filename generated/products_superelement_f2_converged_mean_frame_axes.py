@@ -41,8 +41,8 @@ WORK_ROWS = 47
 WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (300, 136, 375, 3),
-              "column": (84, 136, 1283, 5)}
+OPERATIONS = {"residual": (300, 136, 319, 3),
+              "column": (84, 136, 1266, 5)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
 KEPT = 16      # numbers kept between two calls
 
@@ -204,30 +204,35 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e0 = e0s[j]
                 t3 = e0*psi_y*psi_y
                 t4 = e0*psi_z*psi_z - 1
-                t5 = (0.5)*psi_z
-                t6 = e0*psi_x
-                t7 = psi_y*t6
-                t8 = (0.5)*psi_y
-                t9 = psi_z*t6
-                t10 = e0*psi_x*psi_x
-                t11 = (0.5)*psi_x
-                t12 = e0*psi_z
-                t13 = psi_y*t12
-                t14 = -Om_x*psi_y + Om_y*psi_x
-                t15 = Om_x*psi_z - Om_z*psi_x
-                t16 = -Om_y*psi_z + Om_z*psi_y
-                B_00 += alpha_r*(-t3 - t4)
-                B_01 += alpha_r*(t5 + t7)
-                B_02 += alpha_r*(-t8 + t9)
-                B_10 += alpha_r*(-t5 + t7)
-                B_11 += alpha_r*(-t10 - t4)
-                B_12 += alpha_r*(t11 + t13)
-                B_20 += alpha_r*(t8 + t9)
-                B_21 += alpha_r*(-t11 + t13)
-                B_22 += alpha_r*(-t10 - t3 + 1)
-                rhs_x += -alpha_r*(-Om_x + (0.5)*Om_y*psi_z - Om_z*t8 - e0*psi_y*t14 + e0*psi_z*t15)
-                rhs_y += -alpha_r*(-Om_x*t5 - Om_y + (0.5)*Om_z*psi_x + e0*psi_x*t14 - t12*t16)
-                rhs_z += -alpha_r*((0.5)*Om_x*psi_y - Om_y*t11 - Om_z + e0*psi_y*t16 - t15*t6)
+                t5 = -t3 - t4
+                t6 = (0.5)*psi_z
+                t7 = e0*psi_x
+                t8 = psi_y*t7
+                t9 = t6 + t8
+                t10 = (0.5)*psi_y
+                t11 = psi_z*t7
+                t12 = -t10 + t11
+                t13 = -t6 + t8
+                t14 = e0*psi_x*psi_x
+                t15 = -t14 - t4
+                t16 = (0.5)*psi_x
+                t17 = e0*psi_y*psi_z
+                t18 = t16 + t17
+                t19 = t10 + t11
+                t20 = -t16 + t17
+                t21 = -t14 - t3 + 1
+                B_00 += alpha_r*t5
+                B_01 += alpha_r*t9
+                B_02 += alpha_r*t12
+                B_10 += alpha_r*t13
+                B_11 += alpha_r*t15
+                B_12 += alpha_r*t18
+                B_20 += alpha_r*t19
+                B_21 += alpha_r*t20
+                B_22 += alpha_r*t21
+                rhs_x += -alpha_r*(-Om_x*t5 - Om_y*t13 - Om_z*t19)
+                rhs_y += -alpha_r*(-Om_x*t9 - Om_y*t15 - Om_z*t20)
+                rhs_z += -alpha_r*(-Om_x*t12 - Om_y*t18 - Om_z*t21)
             Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
                 B_12, B_20, B_21, B_22)
             Om0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
@@ -291,26 +296,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t17 = alpha*mass
-                t18 = X_z + u_z
-                t19 = X_y + u_y
-                t20 = X_x + u_x
-                F_x += -f_x - gamma_x*t17
-                F_y += -f_y - gamma_y*t17
-                F_z += -f_z - gamma_z*t17
-                W_x += f_y*t18 - f_z*t19 - px_y*vs_z + px_z*vs_y
-                W_y += -f_x*t18 + f_z*t20 + px_x*vs_z - px_z*vs_x
-                W_z += f_x*t19 - f_y*t20 - px_x*vs_y + px_y*vs_x
+                t22 = alpha*mass
+                t23 = X_z + u_z
+                t24 = X_y + u_y
+                t25 = X_x + u_x
+                F_x += -f_x - gamma_x*t22
+                F_y += -f_y - gamma_y*t22
+                F_z += -f_z - gamma_z*t22
+                W_x += f_y*t23 - f_z*t24 - px_y*vs_z + px_z*vs_y
+                W_y += -f_x*t23 + f_z*t25 + px_x*vs_z - px_z*vs_x
+                W_z += f_x*t24 - f_y*t25 - px_x*vs_y + px_y*vs_x
             # moment of gravity on the frame
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             d_x, d_y, d_z = d[0], d[1], d[2]
             mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
-            t21 = d_z + mc_z
-            t22 = d_y + mc_y
-            t23 = d_x + mc_x
-            W_x += gamma_y*t21 - gamma_z*t22
-            W_y += -gamma_x*t21 + gamma_z*t23
-            W_z += gamma_x*t22 - gamma_y*t23
+            t26 = d_z + mc_z
+            t27 = d_y + mc_y
+            t28 = d_x + mc_x
+            W_x += gamma_y*t26 - gamma_z*t27
+            W_y += -gamma_x*t26 + gamma_z*t28
+            W_z += gamma_x*t27 - gamma_y*t28
             # moments on the frame: elastic (30) and inertia (45)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -319,24 +324,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 pw_x, pw_y, pw_z = p[j3], p[j3 + 1], p[j3 + 2]
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
-                t24 = -m_x*psi_y + m_y*psi_x
-                t25 = m_x*psi_z
-                t26 = -m_z*psi_x + t25
-                t27 = -m_y*psi_z + m_z*psi_y
-                W_x += (-e0*psi_y*t24 + e0*psi_z*t26 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y -
+                t29 = -m_x*psi_y + m_y*psi_x
+                t30 = m_x*psi_z
+                t31 = -m_z*psi_x + t30
+                t32 = -m_y*psi_z + m_z*psi_y
+                W_x += (-e0*psi_y*t29 + e0*psi_z*t31 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y -
                     pw_y*w_z + pw_z*w_y)
-                W_y += (e0*psi_x*t24 - e0*psi_z*t27 - m_y + (0.5)*m_z*psi_x + pw_x*w_z - pw_z*w_x
-                    - 0.5*t25)
-                W_z += (-e0*psi_x*t26 + e0*psi_y*t27 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z -
+                W_y += (e0*psi_x*t29 - e0*psi_z*t32 - m_y + (0.5)*m_z*psi_x + pw_x*w_z - pw_z*w_x
+                    - 0.5*t30)
+                W_z += (-e0*psi_x*t31 + e0*psi_y*t32 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z -
                     pw_x*w_y + pw_y*w_x)
             # B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
-            t28 = W_x + rhs_x
-            t29 = W_y + rhs_y
-            t30 = W_z + rhs_z
-            wp_x = Bxx*t28 + Byx*t29 + Bzx*t30
-            wp_y = Bxy*t28 + Byy*t29 + Bzy*t30
-            wp_z = Bxz*t28 + Byz*t29 + Bzz*t30
+            t33 = W_x + rhs_x
+            t34 = W_y + rhs_y
+            t35 = W_z + rhs_z
+            wp_x = Bxx*t33 + Byx*t34 + Bzx*t35
+            wp_y = Bxy*t33 + Byy*t34 + Bzy*t35
+            wp_z = Bxz*t33 + Byz*t34 + Bzz*t35
             # force on the nodes in frame axes, (30), (57)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -367,34 +372,27 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 pwd_x, pwd_y, pwd_z = pd[j3], pd[j3 + 1], pd[j3 + 2]
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
-                t31 = m_y*psi_z
-                t32 = m_x*psi_y
-                t33 = m_y*psi_x - t32
-                t34 = e0*psi_y
-                t35 = m_x*psi_z
-                t36 = m_z*psi_x
-                t37 = t35 - t36
-                t38 = e0*psi_z
-                t39 = Om0_y*pw_z - Om0_z*pw_y + pw_y*w_z - pw_z*w_y + pwd_x
-                t40 = -Om0_x*pw_z + Om0_z*pw_x - pw_x*w_z + pw_z*w_x + pwd_y
-                t41 = Om0_x*pw_y - Om0_y*pw_x + pw_x*w_y - pw_y*w_x + pwd_z
-                t42 = psi_y*wp_z
-                t43 = psi_z*wp_y
-                t44 = psi_x*wp_y
-                t45 = psi_y*wp_x
-                t46 = t44 - t45
-                t47 = psi_x*wp_z
-                t48 = psi_z*wp_x - t47
-                t49 = m_z*psi_y - t31
-                t50 = e0*psi_x
-                t51 = t42 - t43
-                g[j3] = (Q_xx*t39 + Q_yx*t40 + Q_zx*t41 + alpha_r*(t34*t46 - t38*t48 - 0.5*t42 +
-                    (0.5)*t43 + wp_x) + m_x - 0.5*m_z*psi_y + (0.5)*t31 + t33*t34 - t37*t38)
-                g[j3 + 1] = (Q_xy*t39 + Q_yy*t40 + Q_zy*t41 + alpha_r*(-0.5*psi_z*wp_x + t38*t51 -
-                    t46*t50 + (0.5)*t47 + wp_y) + m_y - t33*t50 - 0.5*t35 + (0.5)*t36 + t38*t49)
-                g[j3 + 2] = (Q_xz*t39 + Q_yz*t40 + Q_zz*t41 + alpha_r*(-t34*t51 - 0.5*t44 +
-                    (0.5)*t45 + t48*t50 + wp_z) - 0.5*m_y*psi_x + m_z + (0.5)*t32 - t34*t49 +
-                    t37*t50)
+                t36 = Om0_y*pw_z - Om0_z*pw_y + pw_y*w_z - pw_z*w_y + pwd_x
+                t37 = -Om0_x*pw_z + Om0_z*pw_x - pw_x*w_z + pw_z*w_x + pwd_y
+                t38 = Om0_x*pw_y - Om0_y*pw_x + pw_x*w_y - pw_y*w_x + pwd_z
+                t39 = alpha_r*wp_y + m_y
+                t40 = psi_z*t39
+                t41 = alpha_r*wp_z + m_z
+                t42 = psi_y*t41
+                t43 = psi_x*t39
+                t44 = alpha_r*wp_x + m_x
+                t45 = psi_y*t44
+                t46 = e0*(t43 - t45)
+                t47 = psi_x*t41
+                t48 = psi_z*t44 - t47
+                t49 = e0*psi_z
+                t50 = -t40 + t42
+                g[j3] = (Q_xx*t36 + Q_yx*t37 + Q_zx*t38 + psi_y*t46 + (0.5)*t40 - 0.5*t42 + t44 -
+                    t48*t49)
+                g[j3 + 1] = (Q_xy*t36 + Q_yy*t37 + Q_zy*t38 - psi_x*t46 - 0.5*psi_z*t44 + t39 +
+                    (0.5)*t47 + t49*t50)
+                g[j3 + 2] = (Q_xz*t36 + Q_yz*t37 + Q_zz*t38 + e0*psi_x*t48 - e0*psi_y*t50 + t41 -
+                    0.5*t43 + (0.5)*t45)
             # force of the internal modes
             for k in range(MODES, n):
                 fm = s[k]
@@ -457,16 +455,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                 e0 = e0s[j]
-                t52 = -dth_x*psi_y + dth_y*psi_x
-                t53 = dth_x*psi_z
-                t54 = -dth_z*psi_x + t53
-                t55 = -dth_y*psi_z + dth_z*psi_y
-                rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y - e0*psi_y*t52 +
-                    e0*psi_z*t54))
-                rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t52 - e0*psi_z*t55 -
-                    0.5*t53))
-                rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t54 +
-                    e0*psi_y*t55))
+                t51 = -dth_x*psi_y + dth_y*psi_x
+                t52 = dth_x*psi_z
+                t53 = -dth_z*psi_x + t52
+                t54 = -dth_y*psi_z + dth_z*psi_y
+                rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y - e0*psi_y*t51 +
+                    e0*psi_z*t53))
+                rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t51 - e0*psi_z*t54 -
+                    0.5*t52))
+                rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t53 +
+                    e0*psi_y*t54))
             dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -476,41 +474,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-                t56 = X_y + u_y
-                t57 = X_z + u_z
-                t58 = X_x + u_x
-                dy[i3] = -dth0_y*t57 + dth0_z*t56 - dx0_x + dx_x
-                dy[i3 + 1] = dth0_x*t57 - dth0_z*t58 - dx0_y + dx_y
-                dy[i3 + 2] = -dth0_x*t56 + dth0_y*t58 - dx0_z + dx_z
+                t55 = X_y + u_y
+                t56 = X_z + u_z
+                t57 = X_x + u_x
+                dy[i3] = -dth0_y*t56 + dth0_z*t55 - dx0_x + dx_x
+                dy[i3 + 1] = dth0_x*t56 - dth0_z*t57 - dx0_y + dx_y
+                dy[i3 + 2] = -dth0_x*t55 + dth0_y*t57 - dx0_z + dx_z
             # variation of the elastic rotations, (17)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                 e0 = e0s[j]
-                t59 = dth0_y*psi_z
-                t60 = dth_y*psi_z
-                t61 = dth0_x*psi_y
-                t62 = dth0_y*psi_x - t61
-                t63 = e0*psi_y
-                t64 = dth_x*psi_z
-                t65 = dth_z*psi_x
-                t66 = t64 - t65
-                t67 = e0*psi_z
-                t68 = dth_x*psi_y
-                t69 = dth_y*psi_x - t68
-                t70 = dth0_x*psi_z
-                t71 = dth0_z*psi_x
-                t72 = t70 - t71
-                t73 = e0*psi_x
-                t74 = dth_z*psi_y - t60
-                t75 = dth0_z*psi_y - t59
-                dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y + e0*psi_y*t69
-                    + e0*psi_z*t72 - 0.5*t59 - 0.5*t60 - t62*t63 - t66*t67)
-                dy[j3 + 1] = (-dth0_y + dth_y + t62*t73 + (0.5)*t64 - 0.5*t65 + t67*t74 - t67*t75
-                    - t69*t73 + (0.5)*t70 - 0.5*t71)
-                dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                    e0*psi_x*t66 + e0*psi_y*t75 - 0.5*t61 - t63*t74 - 0.5*t68 - t72*t73)
+                t58 = (0.5)*dth0_z + (0.5)*dth_z
+                t59 = dth0_y + dth_y
+                t60 = (0.5)*psi_z
+                t61 = -dth0_y + dth_y
+                t62 = -dth0_x + dth_x
+                t63 = psi_x*t61 - psi_y*t62
+                t64 = -dth0_z + dth_z
+                t65 = -psi_x*t64 + psi_z*t62
+                t66 = dth0_x + dth_x
+                t67 = psi_y*t64 - psi_z*t61
+                dy[j3] = -dth0_x + dth_x + e0*(psi_y*t63 - psi_z*t65) + psi_y*t58 - t59*t60
+                dy[j3 + 1] = -dth0_y + dth_y + e0*(-psi_x*t63 + psi_z*t67) - psi_x*t58 + t60*t66
+                dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t65 - psi_y*t67) + (0.5)*psi_x*t59 -
+                    0.5*psi_y*t66)
             # differential: internal modes
             for k in range(MODES, n):
                 dqm = dqe[k]
@@ -581,44 +570,56 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t76 = -Om_x*psi_y + Om_y*psi_x
-                t77 = dpsi_y*e0
-                t78 = Om0_x*psi_z - Om0_z*psi_x
-                t79 = dpsi_z*e0
-                t80 = Om0_x*dpsi_z
-                t81 = -Om0_z*dpsi_x + t80
-                t82 = e0*psi_z
-                t83 = -Om0_x*psi_y + Om0_y*psi_x
-                t84 = Om_x*psi_z - Om_z*psi_x
-                t85 = -Om0_x*dpsi_y + Om0_y*dpsi_x
-                t86 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                t87 = e0*psi_y
-                t88 = Om_x*dpsi_z
-                t89 = dOm_x*psi_z
-                t90 = -Om_z*dpsi_x - dOm_z*psi_x + t88 + t89
-                t91 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t92 = e1*t91
-                t93 = psi_y*t92
-                t94 = psi_z*t92
-                t95 = dpsi_x*e0
-                t96 = -Om_y*psi_z + Om_z*psi_y
-                t97 = e0*psi_x
-                t98 = -Om0_y*psi_z + Om0_z*psi_y
-                t99 = -Om0_y*dpsi_z + Om0_z*dpsi_y
-                t100 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                t101 = psi_x*t92
-                rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - 0.5*Om0_z*dpsi_y + (0.5)*Om_y*dpsi_z -
-                    0.5*Om_z*dpsi_y - dOm_x + (0.5)*dOm_y*psi_z - 0.5*dOm_z*psi_y + dpsi_y*e0*t83
-                    + dpsi_z*e0*t84 + e0*psi_y*t85 + e0*psi_z*t90 + e1*psi_y*t83*t91 +
-                    e1*psi_z*t84*t91 - t76*t77 - t76*t93 - t78*t79 - t78*t94 - t81*t82 - t86*t87))
-                rhs_y += (-alpha_r*((0.5)*Om0_z*dpsi_x + (0.5)*Om_z*dpsi_x - dOm_y +
-                    (0.5)*dOm_z*psi_x + dpsi_x*e0*t76 + dpsi_z*e0*t98 + e0*psi_x*t86 +
-                    e0*psi_z*t99 + e1*psi_x*t76*t91 + e1*psi_z*t91*t98 - t100*t82 - t101*t83 -
-                    t79*t96 - 0.5*t80 - t83*t95 - t85*t97 - 0.5*t88 - 0.5*t89 - t94*t96))
-                rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x + (0.5)*Om_x*dpsi_y -
-                    0.5*Om_y*dpsi_x + (0.5)*dOm_x*psi_y - 0.5*dOm_y*psi_x - dOm_z + dpsi_x*e0*t78
-                    + dpsi_y*e0*t96 + e0*psi_x*t81 + e0*psi_y*t100 + e1*psi_x*t78*t91 +
-                    e1*psi_y*t91*t96 - t101*t84 - t77*t98 - t84*t95 - t87*t99 - t90*t97 - t93*t98))
+                t68 = (0.5)*dpsi_y
+                t69 = (0.5)*psi_z
+                t70 = e0*psi_x
+                t71 = psi_y*t70
+                t72 = (0.5)*psi_y
+                t73 = psi_z*t70
+                t74 = Om0_x*psi_z - Om0_z*psi_x
+                t75 = Om0_x*dpsi_z - Om0_z*dpsi_x
+                t76 = -Om0_x*psi_y + Om0_y*psi_x
+                t77 = -Om0_x*dpsi_y + Om0_y*dpsi_x
+                t78 = psi_y*psi_y
+                t79 = e0*t78
+                t80 = psi_z*psi_z
+                t81 = e0*t80 - 1
+                t82 = 2*dpsi_x*psi_x
+                t83 = 2*dpsi_y*psi_y
+                t84 = 2*dpsi_z*psi_z
+                t85 = t82 + t83 + t84
+                t86 = e1*t85
+                t87 = (0.5)*dpsi_z
+                t88 = dpsi_x*e0
+                t89 = psi_x*t86
+                t90 = dpsi_y*t70 + psi_y*t88 + psi_y*t89
+                t91 = dpsi_z*t70 + psi_z*t88 + psi_z*t89
+                t92 = e0*t84 + t80*t86
+                t93 = e0*t83 + t78*t86
+                t94 = (0.5)*psi_x
+                t95 = e0*psi_y
+                t96 = psi_z*t95
+                t97 = -Om0_y*psi_z + Om0_z*psi_y
+                t98 = -Om0_y*dpsi_z + Om0_z*dpsi_y
+                t99 = psi_x*psi_x
+                t100 = e0*t99
+                t101 = (0.5)*dpsi_x
+                t102 = dpsi_y*e0
+                t103 = psi_y*t86
+                t104 = dpsi_z*t95 + psi_z*t102 + psi_z*t103
+                t105 = e0*t82 + t86*t99
+                rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - Om0_z*t68 - Om_x*(-t92 - t93) -
+                    Om_y*(-t87 + t90) - Om_z*(t68 + t91) - dOm_x*(-t79 - t81) - dOm_y*(-t69 + t71)
+                    - dOm_z*(t72 + t73) + dpsi_y*e0*t76 - dpsi_z*e0*t74 + e0*psi_y*t77 -
+                    e0*psi_z*t75 + e1*psi_y*t76*t85 - psi_z*t74*t86))
+                rhs_y += (-alpha_r*(-Om0_x*t87 + (0.5)*Om0_z*dpsi_x - Om_x*(t87 + t90) -
+                    Om_y*(-t105 - t92) - Om_z*(-t101 + t104) - dOm_x*(t69 + t71) - dOm_y*(-t100 -
+                    t81) - dOm_z*(-t94 + t96) + dpsi_z*e0*t97 + e0*psi_z*t98 + e1*psi_z*t85*t97 -
+                    t70*t77 - t76*t88 - t76*t89))
+                rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x - Om_x*(-t68 + t91) -
+                    Om_y*(t101 + t104) - Om_z*(-t105 - t93) - dOm_x*(-t72 + t73) - dOm_y*(t94 +
+                    t96) - dOm_z*(-t100 - t79 + 1) + dpsi_x*e0*t74 + e0*psi_x*t75 +
+                    e1*psi_x*t74*t85 - t102*t97 - t103*t97 - t95*t98))
             dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -683,18 +684,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                 dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                 dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
-                t102 = alpha*mass
-                t103 = X_z + u_z
-                t104 = X_y + u_y
-                t105 = X_x + u_x
-                dF_x += -df_x - dgamma_x*t102
-                dF_y += -df_y - dgamma_y*t102
-                dF_z += -df_z - dgamma_z*t102
-                dW_x += (df_y*t103 - df_z*t104 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y +
+                t106 = alpha*mass
+                t107 = X_z + u_z
+                t108 = X_y + u_y
+                t109 = X_x + u_x
+                dF_x += -df_x - dgamma_x*t106
+                dF_y += -df_y - dgamma_y*t106
+                dF_z += -df_z - dgamma_z*t106
+                dW_x += (df_y*t107 - df_z*t108 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y +
                     dvs_y*px_z - dvs_z*px_y)
-                dW_y += (-df_x*t103 + df_z*t105 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z - du_z*f_x -
+                dW_y += (-df_x*t107 + df_z*t109 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z - du_z*f_x -
                     dvs_x*px_z + dvs_z*px_x)
-                dW_z += (df_x*t104 - df_y*t105 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x +
+                dW_z += (df_x*t108 - df_y*t109 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x +
                     dvs_x*px_y - dvs_y*px_x)
             # differential: moment of gravity on the frame
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
@@ -702,12 +703,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
             dd_x, dd_y, dd_z = dd[0], dd[1], dd[2]
             dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-            t106 = d_y + mc_y
-            t107 = d_z + mc_z
-            t108 = d_x + mc_x
-            dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t107 - dgamma_z*t106
-            dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t107 + dgamma_z*t108
-            dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t106 - dgamma_y*t108
+            t110 = d_y + mc_y
+            t111 = d_z + mc_z
+            t112 = d_x + mc_x
+            dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t111 - dgamma_z*t110
+            dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t111 + dgamma_z*t112
+            dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t110 - dgamma_y*t112
             # differential: moments on the frame: elastic (30) and inertia (45)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -721,27 +722,27 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpw_x, dpw_y, dpw_z = dp[j3], dp[j3 + 1], dp[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t109 = -m_x*psi_y + m_y*psi_x
-                t110 = m_x*psi_z - m_z*psi_x
-                t111 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                t112 = dm_x*psi_z
-                t113 = dpsi_z*m_x
-                t114 = -dm_z*psi_x - dpsi_x*m_z + t112 + t113
-                t115 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t116 = e1*t115
-                t117 = -m_y*psi_z + m_z*psi_y
-                t118 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t109 -
-                    0.5*dpsi_y*m_z + dpsi_z*e0*t110 + (0.5)*dpsi_z*m_y - dpw_y*w_z + dpw_z*w_y +
-                    dw_y*pw_z - dw_z*pw_y - e0*psi_y*t111 + e0*psi_z*t114 + e1*psi_z*t110*t115 -
-                    psi_y*t109*t116)
-                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t109 + (0.5)*dpsi_x*m_z -
-                    dpsi_z*e0*t117 + dpw_x*w_z - dpw_z*w_x - dw_x*pw_z + dw_z*pw_x + e0*psi_x*t111
-                    - e0*psi_z*t118 + e1*psi_x*t109*t115 - psi_z*t116*t117 - 0.5*t112 - 0.5*t113)
-                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t110 -
-                    0.5*dpsi_x*m_y + dpsi_y*e0*t117 + (0.5)*dpsi_y*m_x - dpw_x*w_y + dpw_y*w_x +
-                    dw_x*pw_y - dw_y*pw_x - e0*psi_x*t114 + e0*psi_y*t118 + e1*psi_y*t115*t117 -
-                    psi_x*t110*t116)
+                t113 = -m_x*psi_y + m_y*psi_x
+                t114 = m_x*psi_z - m_z*psi_x
+                t115 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                t116 = dm_x*psi_z
+                t117 = dpsi_z*m_x
+                t118 = -dm_z*psi_x - dpsi_x*m_z + t116 + t117
+                t119 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t120 = e1*t119
+                t121 = -m_y*psi_z + m_z*psi_y
+                t122 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t113 -
+                    0.5*dpsi_y*m_z + dpsi_z*e0*t114 + (0.5)*dpsi_z*m_y - dpw_y*w_z + dpw_z*w_y +
+                    dw_y*pw_z - dw_z*pw_y - e0*psi_y*t115 + e0*psi_z*t118 + e1*psi_z*t114*t119 -
+                    psi_y*t113*t120)
+                dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t113 + (0.5)*dpsi_x*m_z -
+                    dpsi_z*e0*t121 + dpw_x*w_z - dpw_z*w_x - dw_x*pw_z + dw_z*pw_x + e0*psi_x*t115
+                    - e0*psi_z*t122 + e1*psi_x*t113*t119 - psi_z*t120*t121 - 0.5*t116 - 0.5*t117)
+                dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t114 -
+                    0.5*dpsi_x*m_y + dpsi_y*e0*t121 + (0.5)*dpsi_y*m_x - dpw_x*w_y + dpw_y*w_x +
+                    dw_x*pw_y - dw_y*pw_x - e0*psi_x*t118 + e0*psi_y*t122 + e1*psi_y*t119*t121 -
+                    psi_x*t114*t120)
             # differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
             for j in range(N_ROTATIONS):
@@ -751,33 +752,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t119 = dpsi_y*wp_z
-                t120 = dpsi_z*wp_y
-                t121 = psi_x*wp_y - psi_y*wp_x
-                t122 = e0*t121
-                t123 = dpsi_x*wp_y
-                t124 = dpsi_y*wp_x
-                t125 = e0*(t123 - t124)
-                t126 = -psi_x*wp_z + psi_z*wp_x
-                t127 = dpsi_x*wp_z
-                t128 = dpsi_z*wp_x - t127
-                t129 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                t130 = e1*t129
-                t131 = t121*t130
-                t132 = psi_y*wp_z - psi_z*wp_y
-                t133 = t119 - t120
-                rhs_x += (-alpha_r*(dpsi_y*t122 - dpsi_z*e0*t126 - e0*psi_z*t128 + psi_y*t125 +
-                    psi_y*t131 - psi_z*t126*t130 + (0.5)*t119 - 0.5*t120))
-                rhs_y += (-alpha_r*(-dpsi_x*t122 + dpsi_z*e0*t132 + (0.5)*dpsi_z*wp_x +
-                    e0*psi_z*t133 + e1*psi_z*t129*t132 - psi_x*t125 - psi_x*t131 - 0.5*t127))
-                rhs_z += (-alpha_r*(dpsi_x*e0*t126 - dpsi_y*e0*t132 + e0*psi_x*t128 -
-                    e0*psi_y*t133 + psi_x*t126*t130 - psi_y*t130*t132 + (0.5)*t123 - 0.5*t124))
-            t134 = dW_x + rhs_x
-            t135 = dW_y + rhs_y
-            t136 = dW_z + rhs_z
-            dwp_x = Bxx*t134 + Byx*t135 + Bzx*t136
-            dwp_y = Bxy*t134 + Byy*t135 + Bzy*t136
-            dwp_z = Bxz*t134 + Byz*t135 + Bzz*t136
+                t123 = dpsi_y*wp_z
+                t124 = dpsi_z*wp_y
+                t125 = psi_x*wp_y - psi_y*wp_x
+                t126 = e0*t125
+                t127 = dpsi_x*wp_y
+                t128 = dpsi_y*wp_x
+                t129 = e0*(t127 - t128)
+                t130 = -psi_x*wp_z + psi_z*wp_x
+                t131 = dpsi_x*wp_z
+                t132 = dpsi_z*wp_x - t131
+                t133 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                t134 = e1*t133
+                t135 = t125*t134
+                t136 = psi_y*wp_z - psi_z*wp_y
+                t137 = t123 - t124
+                rhs_x += (-alpha_r*(dpsi_y*t126 - dpsi_z*e0*t130 - e0*psi_z*t132 + psi_y*t129 +
+                    psi_y*t135 - psi_z*t130*t134 + (0.5)*t123 - 0.5*t124))
+                rhs_y += (-alpha_r*(-dpsi_x*t126 + dpsi_z*e0*t136 + (0.5)*dpsi_z*wp_x +
+                    e0*psi_z*t137 + e1*psi_z*t133*t136 - psi_x*t129 - psi_x*t135 - 0.5*t131))
+                rhs_z += (-alpha_r*(dpsi_x*e0*t130 - dpsi_y*e0*t136 + e0*psi_x*t132 -
+                    e0*psi_y*t137 + psi_x*t130*t134 - psi_y*t134*t136 + (0.5)*t127 - 0.5*t128))
+            t138 = dW_x + rhs_x
+            t139 = dW_y + rhs_y
+            t140 = dW_z + rhs_z
+            dwp_x = Bxx*t138 + Byx*t139 + Bzx*t140
+            dwp_y = Bxy*t138 + Byy*t139 + Bzy*t140
+            dwp_z = Bxz*t138 + Byz*t139 + Bzz*t140
             # differential: force on the nodes in frame axes, (30), (57)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -820,76 +821,59 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dpwd_x, dpwd_y, dpwd_z = dpd[j3], dpd[j3 + 1], dpd[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t137 = dm_y*psi_z
-                t138 = dpsi_z*m_y
-                t139 = -m_x*psi_y + m_y*psi_x
-                t140 = dpsi_y*e0
-                t141 = m_x*psi_z - m_z*psi_x
-                t142 = dpsi_z*e0
-                t143 = dm_x*psi_y
-                t144 = dpsi_y*m_x
-                t145 = dm_y*psi_x + dpsi_x*m_y - t143 - t144
-                t146 = e0*psi_y
-                t147 = dm_x*psi_z
-                t148 = dpsi_z*m_x
-                t149 = dm_z*psi_x
-                t150 = dpsi_x*m_z
-                t151 = t147 + t148 - t149 - t150
-                t152 = e0*psi_z
-                t153 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                t154 = psi_y*t153
-                t155 = psi_z*t153
-                t156 = (Om0_y*dpw_z - Om0_z*dpw_y + dOm0_y*pw_z - dOm0_z*pw_y + dpw_y*w_z -
+                t141 = (Om0_y*dpw_z - Om0_z*dpw_y + dOm0_y*pw_z - dOm0_z*pw_y + dpw_y*w_z -
                     dpw_z*w_y + dpwd_x - dw_y*pw_z + dw_z*pw_y)
-                t157 = (-Om0_x*dpw_z + Om0_z*dpw_x - dOm0_x*pw_z + dOm0_z*pw_x - dpw_x*w_z +
+                t142 = (-Om0_x*dpw_z + Om0_z*dpw_x - dOm0_x*pw_z + dOm0_z*pw_x - dpw_x*w_z +
                     dpw_z*w_x + dpwd_y + dw_x*pw_z - dw_z*pw_x)
-                t158 = (Om0_x*dpw_y - Om0_y*dpw_x + dOm0_x*pw_y - dOm0_y*pw_x + dpw_x*w_y -
+                t143 = (Om0_x*dpw_y - Om0_y*dpw_x + dOm0_x*pw_y - dOm0_y*pw_x + dpw_x*w_y -
                     dpw_y*w_x + dpwd_z - dw_x*pw_y + dw_y*pw_x)
-                t159 = Om0_x*pw_y - Om0_y*pw_x + pw_x*w_y - pw_y*w_x + pwd_z
-                t160 = -Om0_x*pw_z + Om0_z*pw_x - pw_x*w_z + pw_z*w_x + pwd_y
-                t161 = Om0_y*pw_z - Om0_z*pw_y + pw_y*w_z - pw_z*w_y + pwd_x
-                t162 = dpsi_y*wp_z
-                t163 = dpsi_z*wp_y
-                t164 = dwp_y*psi_z
-                t165 = dwp_z*psi_y
-                t166 = psi_x*wp_y - psi_y*wp_x
-                t167 = -psi_x*wp_z + psi_z*wp_x
-                t168 = dpsi_x*wp_y
-                t169 = dwp_y*psi_x
-                t170 = dpsi_y*wp_x
-                t171 = dwp_x*psi_y
-                t172 = t168 + t169 - t170 - t171
-                t173 = dpsi_x*wp_z
-                t174 = dwp_z*psi_x
-                t175 = dpsi_z*wp_x + dwp_x*psi_z - t173 - t174
-                t176 = -m_y*psi_z + m_z*psi_y
-                t177 = dpsi_x*e0
-                t178 = dm_z*psi_y + dpsi_y*m_z - t137 - t138
-                t179 = e0*psi_x
-                t180 = psi_x*t153
-                t181 = psi_y*wp_z - psi_z*wp_y
-                t182 = t162 - t163 - t164 + t165
-                dg[j3] = (Q_xx*t156 + Q_yx*t157 + Q_zx*t158 + alpha_r*(dwp_x + t140*t166 -
-                    t142*t167 + t146*t172 - t152*t175 + t154*t166 - t155*t167 - 0.5*t162 +
-                    (0.5)*t163 + (0.5)*t164 - 0.5*t165) + dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z +
-                    (0.5)*t137 + (0.5)*t138 + t139*t140 + t139*t154 - t141*t142 - t141*t155 +
-                    t145*t146 - t151*t152 + t159*(Q_xx*dth0_y - Q_yx*dth0_x + Q_zy*dth_z -
-                    Q_zz*dth_y) + t160*(-Q_xx*dth0_z + Q_yy*dth_z - Q_yz*dth_y + Q_zx*dth0_x) +
-                    t161*(Q_xy*dth_z - Q_xz*dth_y + Q_yx*dth0_z - Q_zx*dth0_y))
-                dg[j3 + 1] = (Q_xy*t156 + Q_yy*t157 + Q_zy*t158 + alpha_r*(-0.5*dpsi_z*wp_x -
-                    0.5*dwp_x*psi_z + dwp_y + t142*t181 + t152*t182 + t155*t181 - t166*t177 -
-                    t166*t180 - t172*t179 + (0.5)*t173 + (0.5)*t174) + dm_y - t139*t177 -
-                    t139*t180 + t142*t176 - t145*t179 - 0.5*t147 - 0.5*t148 + (0.5)*t149 +
-                    (0.5)*t150 + t152*t178 + t155*t176 + t159*(Q_xy*dth0_y - Q_yy*dth0_x -
-                    Q_zx*dth_z + Q_zz*dth_x) + t160*(-Q_xy*dth0_z - Q_yx*dth_z + Q_yz*dth_x +
-                    Q_zy*dth0_x) + t161*(-Q_xx*dth_z + Q_xz*dth_x + Q_yy*dth0_z - Q_zy*dth0_y))
-                dg[j3 + 2] = (Q_xz*t156 + Q_yz*t157 + Q_zz*t158 + alpha_r*(dwp_z - t140*t181 -
-                    t146*t182 - t154*t181 + t167*t177 + t167*t180 - 0.5*t168 - 0.5*t169 +
-                    (0.5)*t170 + (0.5)*t171 + t175*t179) - 0.5*dm_y*psi_x + dm_z - 0.5*dpsi_x*m_y
-                    - t140*t176 + t141*t177 + t141*t180 + (0.5)*t143 + (0.5)*t144 - t146*t178 +
-                    t151*t179 - t154*t176 + t159*(Q_xz*dth0_y - Q_yz*dth0_x + Q_zx*dth_y -
-                    Q_zy*dth_x) + t160*(-Q_xz*dth0_z + Q_yx*dth_y - Q_yy*dth_x + Q_zz*dth0_x) +
-                    t161*(Q_xx*dth_y - Q_xy*dth_x + Q_yz*dth0_z - Q_zz*dth0_y))
+                t144 = Om0_x*pw_y - Om0_y*pw_x + pw_x*w_y - pw_y*w_x + pwd_z
+                t145 = Om0_y*pw_z - Om0_z*pw_y + pw_y*w_z - pw_z*w_y + pwd_x
+                t146 = -Om0_x*pw_z + Om0_z*pw_x - pw_x*w_z + pw_z*w_x + pwd_y
+                t147 = alpha_r*wp_y + m_y
+                t148 = dpsi_z*t147
+                t149 = alpha_r*dwp_y + dm_y
+                t150 = psi_z*t149
+                t151 = alpha_r*wp_z + m_z
+                t152 = dpsi_y*t151
+                t153 = alpha_r*dwp_z + dm_z
+                t154 = psi_y*t153
+                t155 = alpha_r*wp_x + m_x
+                t156 = psi_x*t147 - psi_y*t155
+                t157 = e0*t156
+                t158 = dpsi_x*t147
+                t159 = psi_x*t149
+                t160 = dpsi_y*t155
+                t161 = alpha_r*dwp_x + dm_x
+                t162 = psi_y*t161
+                t163 = e0*(t158 + t159 - t160 - t162)
+                t164 = -psi_x*t151 + psi_z*t155
+                t165 = dpsi_z*e0
+                t166 = dpsi_x*t151
+                t167 = psi_x*t153
+                t168 = dpsi_z*t155 + psi_z*t161 - t166 - t167
+                t169 = e0*psi_z
+                t170 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                t171 = t156*t170
+                t172 = psi_z*t170
+                t173 = psi_y*t151 - psi_z*t147
+                t174 = -t148 - t150 + t152 + t154
+                dg[j3] = (Q_xx*t141 + Q_yx*t142 + Q_zx*t143 + dpsi_y*t157 + psi_y*t163 +
+                    psi_y*t171 + t144*(Q_xx*dth0_y - Q_yx*dth0_x + Q_zy*dth_z - Q_zz*dth_y) +
+                    t145*(Q_xy*dth_z - Q_xz*dth_y + Q_yx*dth0_z - Q_zx*dth0_y) +
+                    t146*(-Q_xx*dth0_z + Q_yy*dth_z - Q_yz*dth_y + Q_zx*dth0_x) + (0.5)*t148 +
+                    (0.5)*t150 - 0.5*t152 - 0.5*t154 + t161 - t164*t165 - t164*t172 - t168*t169)
+                dg[j3 + 1] = (Q_xy*t141 + Q_yy*t142 + Q_zy*t143 - dpsi_x*t157 - 0.5*dpsi_z*t155 -
+                    psi_x*t163 - psi_x*t171 - 0.5*psi_z*t161 + t144*(Q_xy*dth0_y - Q_yy*dth0_x -
+                    Q_zx*dth_z + Q_zz*dth_x) + t145*(-Q_xx*dth_z + Q_xz*dth_x + Q_yy*dth0_z -
+                    Q_zy*dth0_y) + t146*(-Q_xy*dth0_z - Q_yx*dth_z + Q_yz*dth_x + Q_zy*dth0_x) +
+                    t149 + t165*t173 + (0.5)*t166 + (0.5)*t167 + t169*t174 + t172*t173)
+                dg[j3 + 2] = (Q_xz*t141 + Q_yz*t142 + Q_zz*t143 + dpsi_x*e0*t164 - dpsi_y*e0*t173
+                    + e0*psi_x*t168 - e0*psi_y*t174 + psi_x*t164*t170 - psi_y*t170*t173 +
+                    t144*(Q_xz*dth0_y - Q_yz*dth0_x + Q_zx*dth_y - Q_zy*dth_x) + t145*(Q_xx*dth_y
+                    - Q_xy*dth_x + Q_yz*dth0_z - Q_zz*dth0_y) + t146*(-Q_xz*dth0_z + Q_yx*dth_y -
+                    Q_yy*dth_x + Q_zz*dth0_x) + t153 - 0.5*t158 - 0.5*t159 + (0.5)*t160 +
+                    (0.5)*t162)
             # differential: force of the internal modes
             for k in range(MODES, n):
                 dfm = ds[k]
@@ -985,143 +969,118 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdgt_x, bdgt_y, bdgt_z = bdg[j3], bdg[j3 + 1], bdg[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t183 = Om0_y*pw_z - Om0_z*pw_y + pw_y*w_z - pw_z*w_y + pwd_x
-                t184 = -Om0_x*pw_z + Om0_z*pw_x - pw_x*w_z + pw_z*w_x + pwd_y
-                t185 = Om0_x*pw_y - Om0_y*pw_x + pw_x*w_y - pw_y*w_x + pwd_z
-                t186 = Q_xz*t183 + Q_yz*t184 + Q_zz*t185
-                t187 = Q_xy*t183 + Q_yy*t184 + Q_zy*t185
-                t188 = Q_xx*t183 + Q_yx*t184 + Q_zx*t185
-                t189 = e0*psi_y
-                t190 = m_y*t189
-                t191 = e0*psi_z
-                t192 = m_z*t191
-                t193 = m_x*psi_y
-                t194 = m_y*psi_x - t193
-                t195 = 2*e1
-                t196 = psi_x*t195
-                t197 = psi_y*t196
-                t198 = t194*t197
-                t199 = m_x*psi_z
-                t200 = m_z*psi_x
-                t201 = t199 - t200
-                t202 = psi_z*t196
-                t203 = t201*t202
-                t204 = t189*wp_y
-                t205 = t191*wp_z
-                t206 = psi_x*wp_y
-                t207 = psi_y*wp_x
-                t208 = t206 - t207
-                t209 = t197*t208
-                t210 = psi_x*wp_z
-                t211 = psi_z*wp_x - t210
-                t212 = t202*t211
-                t213 = (0.5)*m_y
-                t214 = e0*t201
-                t215 = m_y*psi_z
-                t216 = m_z*psi_y - t215
-                t217 = psi_x*psi_x
-                t218 = t195*t217
-                t219 = (0.5)*wp_y
-                t220 = e0*t211
-                t221 = psi_y*wp_z
-                t222 = psi_z*wp_y
-                t223 = t221 - t222
-                t224 = (0.5)*m_z
-                t225 = e0*t194
-                t226 = (0.5)*wp_z
-                t227 = e0*t208
-                t228 = e0*psi_x
-                t229 = m_x*t228
-                t230 = psi_y*psi_z*t195
-                t231 = t216*t230
-                t232 = t228*wp_x
-                t233 = t223*t230
-                t234 = psi_y*psi_y
-                t235 = t195*t234
-                t236 = (0.5)*m_x
-                t237 = e0*t216
-                t238 = (0.5)*wp_x
-                t239 = e0*t223
-                t240 = psi_z*psi_z
-                t241 = t195*t240
-                t242 = (0.5)*psi_z
-                t243 = psi_x*t189
-                t244 = bdgt_y*(-t242 + t243)
-                t245 = (0.5)*psi_y
-                t246 = psi_x*t191
-                t247 = bdgt_z*(t245 + t246)
-                t248 = e0*t234
-                t249 = e0*t240 - 1
-                t250 = bdgt_x*(-t248 - t249)
-                t251 = bdgt_x*(t242 + t243)
-                t252 = (0.5)*psi_x
-                t253 = psi_z*t189
-                t254 = bdgt_z*(-t252 + t253)
-                t255 = e0*t217
-                t256 = bdgt_y*(-t249 - t255)
-                t257 = bdgt_x*(-t245 + t246)
-                t258 = bdgt_y*(t252 + t253)
-                t259 = bdgt_z*(-t248 - t255 + 1)
-                t260 = Q_yx*pw_z - Q_zx*pw_y
-                t261 = Q_yy*pw_z - Q_zy*pw_y
-                t262 = Q_yz*pw_z - Q_zz*pw_y
-                t263 = Q_xx*pw_z - Q_zx*pw_x
-                t264 = Q_xy*pw_z - Q_zy*pw_x
-                t265 = Q_xz*pw_z - Q_zz*pw_x
-                t266 = Q_xx*pw_y - Q_yx*pw_x
-                t267 = Q_xy*pw_y - Q_yy*pw_x
-                t268 = Q_xz*pw_y - Q_yz*pw_x
-                t269 = Om0_z - w_z
-                t270 = Om0_y - w_y
-                t271 = -t270
-                t272 = -t269
-                t273 = Om0_x - w_x
-                t274 = -t273
-                bdqe[j3] += bdgt_y*t186 - bdgt_z*t187
-                bdqe[j3 + 1] += -bdgt_x*t186 + bdgt_z*t188
-                bdqe[j3 + 2] += bdgt_x*t187 - bdgt_y*t188
-                bdth0_x += (bdgt_x*(-Q_yx*t185 + Q_zx*t184) + bdgt_y*(-Q_yy*t185 + Q_zy*t184) +
-                    bdgt_z*(-Q_yz*t185 + Q_zz*t184))
-                bdth0_y += (bdgt_x*(Q_xx*t185 - Q_zx*t183) + bdgt_y*(Q_xy*t185 - Q_zy*t183) +
-                    bdgt_z*(Q_xz*t185 - Q_zz*t183))
-                bdth0_z += (bdgt_x*(-Q_xx*t184 + Q_yx*t183) + bdgt_y*(-Q_xy*t184 + Q_yy*t183) +
-                    bdgt_z*(-Q_xz*t184 + Q_yz*t183))
-                bdy[j3] += (bdgt_x*(alpha_r*(t204 + t205 + t209 - t212) + t190 + t192 + t198 -
-                    t203) + bdgt_y*(alpha_r*(-e0*t206 + 2*e1*psi_x*psi_z*t223 - t208*t218 + t226 -
-                    t227) - e0*m_y*psi_x - t194*t218 + t202*t216 + t224 - t225) +
-                    bdgt_z*(alpha_r*(-e0*t210 + 2*e1*t211*t217 - t197*t223 - t219 + t220) -
-                    e0*t200 - t197*t216 + t201*t218 - t213 + t214))
-                bdy[j3 + 1] += (bdgt_x*(alpha_r*(-e0*t207 + 2*e1*t208*t234 - t211*t230 - t226 +
-                    t227) - e0*t193 + t194*t235 - t201*t230 - t224 + t225) + bdgt_y*(alpha_r*(t205
-                    - t209 + t232 + t233) + t192 - t198 + t229 + t231) + bdgt_z*(alpha_r*(-e0*t221
-                    + 2*e1*psi_x*psi_y*t211 - t223*t235 + t238 - t239) - e0*m_z*psi_y + t197*t201
-                    - t216*t235 + t236 - t237))
-                bdy[j3 + 2] += (bdgt_x*(alpha_r*(-e0*psi_z*wp_x + 2*e1*psi_y*psi_z*t208 -
-                    t211*t241 + t219 - t220) - e0*t199 + t194*t230 - t201*t241 + t213 - t214) +
-                    bdgt_y*(alpha_r*(-e0*t222 + 2*e1*t223*t240 - t202*t208 - t238 + t239) -
-                    e0*t215 - t194*t202 + t216*t241 - t236 + t237) + bdgt_z*(alpha_r*(t204 + t212
-                    + t232 - t233) + t190 + t203 + t229 - t231))
-                bds[j3] += t244 + t247 + t250
-                bds[j3 + 1] += t251 + t254 + t256
-                bds[j3 + 2] += t257 + t258 + t259
-                bdyd[j3] += bdgt_x*t260 + bdgt_y*t261 + bdgt_z*t262
-                bdyd[j3 + 1] += -bdgt_x*t263 - bdgt_y*t264 - bdgt_z*t265
-                bdyd[j3 + 2] += bdgt_x*t266 + bdgt_y*t267 + bdgt_z*t268
-                bdOm0_x += -bdgt_x*t260 - bdgt_y*t261 - bdgt_z*t262
-                bdOm0_y += bdgt_x*t263 + bdgt_y*t264 + bdgt_z*t265
-                bdOm0_z += -bdgt_x*t266 - bdgt_y*t267 - bdgt_z*t268
-                bdp[j3] += (bdgt_x*(Q_yx*t269 + Q_zx*t271) + bdgt_y*(Q_yy*t269 + Q_zy*t271) +
-                    bdgt_z*(Q_yz*t269 + Q_zz*t271))
-                bdp[j3 + 1] += (bdgt_x*(Q_xx*t272 + Q_zx*t273) + bdgt_y*(Q_xy*t272 + Q_zy*t273) +
-                    bdgt_z*(Q_xz*t272 + Q_zz*t273))
-                bdp[j3 + 2] += (bdgt_x*(Q_xx*t270 + Q_yx*t274) + bdgt_y*(Q_xy*t270 + Q_yy*t274) +
-                    bdgt_z*(Q_xz*t270 + Q_yz*t274))
+                t175 = Om0_y*pw_z - Om0_z*pw_y + pw_y*w_z - pw_z*w_y + pwd_x
+                t176 = -Om0_x*pw_z + Om0_z*pw_x - pw_x*w_z + pw_z*w_x + pwd_y
+                t177 = Om0_x*pw_y - Om0_y*pw_x + pw_x*w_y - pw_y*w_x + pwd_z
+                t178 = Q_xz*t175 + Q_yz*t176 + Q_zz*t177
+                t179 = Q_xy*t175 + Q_yy*t176 + Q_zy*t177
+                t180 = Q_xx*t175 + Q_yx*t176 + Q_zx*t177
+                t181 = alpha_r*wp_y
+                t182 = m_y + t181
+                t183 = e0*psi_y
+                t184 = alpha_r*wp_z
+                t185 = m_z + t184
+                t186 = -t185
+                t187 = psi_x*t182
+                t188 = alpha_r*wp_x
+                t189 = m_x + t188
+                t190 = -psi_y*t189 + t187
+                t191 = 2*e1
+                t192 = psi_x*t191
+                t193 = psi_y*t192
+                t194 = t190*t193
+                t195 = -psi_x*t185 + psi_z*t189
+                t196 = psi_z*t192
+                t197 = t195*t196
+                t198 = psi_x*psi_x
+                t199 = psi_y*t185
+                t200 = -psi_z*t182 + t199
+                t201 = -e0*t190 + (0.5)*m_z + (0.5)*t184
+                t202 = -e0*t195 + (0.5)*m_y + (0.5)*t181
+                t203 = -t189
+                t204 = e0*psi_x
+                t205 = psi_y*psi_z*t191
+                t206 = -t200*t205
+                t207 = psi_y*psi_y
+                t208 = -e0*t200 + (0.5)*m_x + (0.5)*t188
+                t209 = -t182
+                t210 = psi_z*psi_z
+                t211 = (0.5)*psi_z
+                t212 = psi_x*t183
+                t213 = (0.5)*psi_y
+                t214 = e0*psi_x*psi_z
+                t215 = e0*t207
+                t216 = e0*t210
+                t217 = t216 - 1
+                t218 = (0.5)*psi_x
+                t219 = psi_z*t183
+                t220 = e0*t198
+                t221 = Q_yx*pw_z - Q_zx*pw_y
+                t222 = Q_yy*pw_z - Q_zy*pw_y
+                t223 = Q_yz*pw_z - Q_zz*pw_y
+                t224 = Q_xx*pw_z - Q_zx*pw_x
+                t225 = Q_xy*pw_z - Q_zy*pw_x
+                t226 = Q_xz*pw_z - Q_zz*pw_x
+                t227 = Q_xx*pw_y - Q_yx*pw_x
+                t228 = Q_xy*pw_y - Q_yy*pw_x
+                t229 = Q_xz*pw_y - Q_yz*pw_x
+                t230 = Om0_z - w_z
+                t231 = Om0_y - w_y
+                t232 = -t231
+                t233 = -t230
+                t234 = Om0_x - w_x
+                t235 = -t234
+                t236 = alpha_r*t211
+                t237 = alpha_r*t212
+                t238 = alpha_r*t213
+                t239 = alpha_r*t214
+                t240 = alpha_r*t215
+                t241 = -alpha_r
+                t242 = alpha_r*t216 + t241
+                t243 = alpha_r*t218
+                t244 = alpha_r*t219
+                t245 = alpha_r*t220
+                bdqe[j3] += bdgt_y*t178 - bdgt_z*t179
+                bdqe[j3 + 1] += -bdgt_x*t178 + bdgt_z*t180
+                bdqe[j3 + 2] += bdgt_x*t179 - bdgt_y*t180
+                bdth0_x += (bdgt_x*(-Q_yx*t177 + Q_zx*t176) + bdgt_y*(-Q_yy*t177 + Q_zy*t176) +
+                    bdgt_z*(-Q_yz*t177 + Q_zz*t176))
+                bdth0_y += (bdgt_x*(Q_xx*t177 - Q_zx*t175) + bdgt_y*(Q_xy*t177 - Q_zy*t175) +
+                    bdgt_z*(Q_xz*t177 - Q_zz*t175))
+                bdth0_z += (bdgt_x*(-Q_xx*t176 + Q_yx*t175) + bdgt_y*(-Q_xy*t176 + Q_yy*t175) +
+                    bdgt_z*(-Q_xz*t176 + Q_yz*t175))
+                bdy[j3] += (bdgt_x*(-e0*psi_z*t186 + t182*t183 + t194 - t197) + bdgt_y*(-e0*t187 -
+                    t190*t191*t198 + t196*t200 + t201) + bdgt_z*(e0*psi_x*t186 + 2*e1*t195*t198 -
+                    t193*t200 - t202))
+                bdy[j3 + 1] += (bdgt_x*(e0*psi_y*t203 + 2*e1*t190*t207 - t195*t205 - t201) +
+                    bdgt_y*(e0*psi_z*t185 - t194 - t203*t204 - t206) + bdgt_z*(-e0*t199 -
+                    t191*t200*t207 + t193*t195 + t208))
+                bdy[j3 + 2] += (bdgt_x*(-e0*psi_z*t189 + t190*t205 - t191*t195*t210 + t202) +
+                    bdgt_y*(e0*psi_z*t209 + 2*e1*t200*t210 - t190*t196 - t208) +
+                    bdgt_z*(-t183*t209 + t189*t204 + t197 + t206))
+                bds[j3] += bdgt_x*(-t215 - t217) + bdgt_y*(-t211 + t212) + bdgt_z*(t213 + t214)
+                bds[j3 + 1] += bdgt_x*(t211 + t212) + bdgt_y*(-t217 - t220) + bdgt_z*(-t218 + t219)
+                bds[j3 + 2] += (bdgt_x*(-t213 + t214) + bdgt_y*(t218 + t219) + bdgt_z*(-t215 -
+                    t220 + 1))
+                bdyd[j3] += bdgt_x*t221 + bdgt_y*t222 + bdgt_z*t223
+                bdyd[j3 + 1] += -bdgt_x*t224 - bdgt_y*t225 - bdgt_z*t226
+                bdyd[j3 + 2] += bdgt_x*t227 + bdgt_y*t228 + bdgt_z*t229
+                bdOm0_x += -bdgt_x*t221 - bdgt_y*t222 - bdgt_z*t223
+                bdOm0_y += bdgt_x*t224 + bdgt_y*t225 + bdgt_z*t226
+                bdOm0_z += -bdgt_x*t227 - bdgt_y*t228 - bdgt_z*t229
+                bdp[j3] += (bdgt_x*(Q_yx*t230 + Q_zx*t232) + bdgt_y*(Q_yy*t230 + Q_zy*t232) +
+                    bdgt_z*(Q_yz*t230 + Q_zz*t232))
+                bdp[j3 + 1] += (bdgt_x*(Q_xx*t233 + Q_zx*t234) + bdgt_y*(Q_xy*t233 + Q_zy*t234) +
+                    bdgt_z*(Q_xz*t233 + Q_zz*t234))
+                bdp[j3 + 2] += (bdgt_x*(Q_xx*t231 + Q_yx*t235) + bdgt_y*(Q_xy*t231 + Q_yy*t235) +
+                    bdgt_z*(Q_xz*t231 + Q_yz*t235))
                 bdpd[j3] += Q_xx*bdgt_x + Q_xy*bdgt_y + Q_xz*bdgt_z
                 bdpd[j3 + 1] += Q_yx*bdgt_x + Q_yy*bdgt_y + Q_yz*bdgt_z
                 bdpd[j3 + 2] += Q_zx*bdgt_x + Q_zy*bdgt_y + Q_zz*bdgt_z
-                bdwp_x += alpha_r*t244 + alpha_r*t247 + alpha_r*t250
-                bdwp_y += alpha_r*t251 + alpha_r*t254 + alpha_r*t256
-                bdwp_z += alpha_r*t257 + alpha_r*t258 + alpha_r*t259
+                bdwp_x += bdgt_x*(-t240 - t242) + bdgt_y*(-t236 + t237) + bdgt_z*(t238 + t239)
+                bdwp_y += bdgt_x*(t236 + t237) + bdgt_y*(-t242 - t245) + bdgt_z*(-t243 + t244)
+                bdwp_z += (bdgt_x*(-t238 + t239) + bdgt_y*(t243 + t244) + bdgt_z*(-t240 - t241 -
+                    t245))
             # transposed: differential: force on the nodes, left in frame axes
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -1156,12 +1115,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdF_z += alpha*bdh_z
             # transposed: differential: B^T wp = W
             rhs_x = rhs_y = rhs_z = 0.0
-            t275 = bdwp_x + rhs_x
-            t276 = bdwp_y + rhs_y
-            t277 = bdwp_z + rhs_z
-            mdwp_x = Bxx*t275 + Bxy*t276 + Bxz*t277
-            mdwp_y = Byx*t275 + Byy*t276 + Byz*t277
-            mdwp_z = Bzx*t275 + Bzy*t276 + Bzz*t277
+            t246 = bdwp_x + rhs_x
+            t247 = bdwp_y + rhs_y
+            t248 = bdwp_z + rhs_z
+            mdwp_x = Bxx*t246 + Bxy*t247 + Bxz*t248
+            mdwp_y = Byx*t246 + Byy*t247 + Byz*t248
+            mdwp_z = Bzx*t246 + Bzy*t247 + Bzz*t248
             # transposed: differential: B^T wp = W
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -1169,41 +1128,41 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t278 = e0*psi_y*wp_y
-                t279 = e0*psi_z*wp_z
-                t280 = psi_x*wp_y
-                t281 = psi_y*wp_x
-                t282 = t280 - t281
-                t283 = 2*e1
-                t284 = psi_x*t283
-                t285 = psi_y*t284
-                t286 = t282*t285
-                t287 = psi_x*wp_z
-                t288 = psi_z*wp_x - t287
-                t289 = psi_z*t284
-                t290 = t288*t289
-                t291 = alpha_r*mdwp_x
-                t292 = psi_x*psi_x*t283
-                t293 = psi_y*wp_z
-                t294 = psi_z*wp_y
-                t295 = t293 - t294
-                t296 = e0*t288 + (0.5)*wp_y
-                t297 = alpha_r*mdwp_z
-                t298 = e0*t282 + (0.5)*wp_z
-                t299 = alpha_r*mdwp_y
-                t300 = e0*psi_x*wp_x
-                t301 = psi_y*psi_z*t283
-                t302 = t295*t301
-                t303 = psi_y*psi_y*t283
-                t304 = e0*t295 + (0.5)*wp_x
-                t305 = psi_z*psi_z*t283
-                bdy[j3] += (-t291*(t278 + t279 + t286 - t290) - t297*(-e0*t287 - t285*t295 +
-                    t288*t292 + t296) - t299*(-e0*t280 + 2*e1*psi_x*psi_z*t295 - t282*t292 - t298))
-                bdy[j3 + 1] += (-t291*(-e0*t281 + t282*t303 - t288*t301 + t298) - t297*(-e0*t293 +
-                    2*e1*psi_x*psi_y*t288 - t295*t303 - t304) - t299*(t279 - t286 + t300 + t302))
-                bdy[j3 + 2] += (-t291*(-e0*psi_z*wp_x + 2*e1*psi_y*psi_z*t282 - t288*t305 - t296)
-                    - t297*(t278 + t290 + t300 - t302) - t299*(-e0*t294 - t282*t289 + t295*t305 +
-                    t304))
+                t249 = e0*psi_y*wp_y
+                t250 = e0*psi_z*wp_z
+                t251 = psi_x*wp_y
+                t252 = psi_y*wp_x
+                t253 = t251 - t252
+                t254 = 2*e1
+                t255 = psi_x*t254
+                t256 = psi_y*t255
+                t257 = t253*t256
+                t258 = psi_x*wp_z
+                t259 = psi_z*wp_x - t258
+                t260 = psi_z*t255
+                t261 = t259*t260
+                t262 = alpha_r*mdwp_x
+                t263 = psi_x*psi_x*t254
+                t264 = psi_y*wp_z
+                t265 = psi_z*wp_y
+                t266 = t264 - t265
+                t267 = e0*t259 + (0.5)*wp_y
+                t268 = alpha_r*mdwp_z
+                t269 = e0*t253 + (0.5)*wp_z
+                t270 = alpha_r*mdwp_y
+                t271 = e0*psi_x*wp_x
+                t272 = psi_y*psi_z*t254
+                t273 = t266*t272
+                t274 = psi_y*psi_y*t254
+                t275 = e0*t266 + (0.5)*wp_x
+                t276 = psi_z*psi_z*t254
+                bdy[j3] += (-t262*(t249 + t250 + t257 - t261) - t268*(-e0*t258 - t256*t266 +
+                    t259*t263 + t267) - t270*(-e0*t251 + 2*e1*psi_x*psi_z*t266 - t253*t263 - t269))
+                bdy[j3 + 1] += (-t262*(-e0*t252 + t253*t274 - t259*t272 + t269) - t268*(-e0*t264 +
+                    2*e1*psi_x*psi_y*t259 - t266*t274 - t275) - t270*(t250 - t257 + t271 + t273))
+                bdy[j3 + 2] += (-t262*(-e0*psi_z*wp_x + 2*e1*psi_y*psi_z*t253 - t259*t276 - t267)
+                    - t268*(t249 + t261 + t271 - t273) - t270*(-e0*t265 - t253*t260 + t266*t276 +
+                    t275))
             # transposed: differential: B^T wp = W
             bdW_x += mdwp_x
             bdW_y += mdwp_y
@@ -1217,53 +1176,53 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t306 = e0*psi_y
-                t307 = m_y*t306
-                t308 = e0*psi_z
-                t309 = m_z*t308
-                t310 = -m_x*psi_y + m_y*psi_x
-                t311 = 2*e1
-                t312 = psi_x*t311
-                t313 = psi_y*t312
-                t314 = t310*t313
-                t315 = m_x*psi_z
-                t316 = -m_z*psi_x + t315
-                t317 = psi_z*t312
-                t318 = t316*t317
-                t319 = psi_x*psi_x
-                t320 = t311*t319
-                t321 = -m_y*psi_z + m_z*psi_y
-                t322 = e0*t310 + (0.5)*m_z
-                t323 = e0*t316 + (0.5)*m_y
-                t324 = e0*m_x*psi_x
-                t325 = psi_y*psi_z*t311
-                t326 = t321*t325
-                t327 = psi_y*psi_y
-                t328 = t311*t327
-                t329 = e0*t321 + (0.5)*m_x
-                t330 = psi_z*psi_z
-                t331 = t311*t330
-                t332 = (0.5)*psi_z
-                t333 = psi_x*t306
-                t334 = (0.5)*psi_y
-                t335 = psi_x*t308
-                t336 = e0*t327
-                t337 = e0*t330 - 1
-                t338 = (0.5)*psi_x
-                t339 = psi_z*t306
-                t340 = e0*t319
-                bdy[j3] += (bdW_x*(-t307 - t309 - t314 + t318) + bdW_y*(e0*m_y*psi_x + t310*t320 -
-                    t317*t321 + t322) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t321 - t316*t320 -
-                    t323))
-                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t316 - t310*t328 - t322) +
-                    bdW_y*(-t309 + t314 - t324 - t326) + bdW_z*(e0*m_z*psi_y - t313*t316 +
-                    t321*t328 + t329))
-                bdy[j3 + 2] += (bdW_x*(e0*t315 - t310*t325 + t316*t331 + t323) +
-                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t310 - t321*t331 - t329) + bdW_z*(-t307
-                    - t318 - t324 + t326))
-                bds[j3] += bdW_x*(t336 + t337) + bdW_y*(-t332 - t333) + bdW_z*(t334 - t335)
-                bds[j3 + 1] += bdW_x*(t332 - t333) + bdW_y*(t337 + t340) + bdW_z*(-t338 - t339)
-                bds[j3 + 2] += bdW_x*(-t334 - t335) + bdW_y*(t338 - t339) + bdW_z*(t336 + t340 - 1)
+                t277 = e0*psi_y
+                t278 = m_y*t277
+                t279 = e0*psi_z
+                t280 = m_z*t279
+                t281 = -m_x*psi_y + m_y*psi_x
+                t282 = 2*e1
+                t283 = psi_x*t282
+                t284 = psi_y*t283
+                t285 = t281*t284
+                t286 = m_x*psi_z
+                t287 = -m_z*psi_x + t286
+                t288 = psi_z*t283
+                t289 = t287*t288
+                t290 = psi_x*psi_x
+                t291 = t282*t290
+                t292 = -m_y*psi_z + m_z*psi_y
+                t293 = e0*t281 + (0.5)*m_z
+                t294 = e0*t287 + (0.5)*m_y
+                t295 = e0*m_x*psi_x
+                t296 = psi_y*psi_z*t282
+                t297 = t292*t296
+                t298 = psi_y*psi_y
+                t299 = t282*t298
+                t300 = e0*t292 + (0.5)*m_x
+                t301 = psi_z*psi_z
+                t302 = t282*t301
+                t303 = (0.5)*psi_z
+                t304 = psi_x*t277
+                t305 = (0.5)*psi_y
+                t306 = psi_x*t279
+                t307 = e0*t298
+                t308 = e0*t301 - 1
+                t309 = (0.5)*psi_x
+                t310 = psi_z*t277
+                t311 = e0*t290
+                bdy[j3] += (bdW_x*(-t278 - t280 - t285 + t289) + bdW_y*(e0*m_y*psi_x + t281*t291 -
+                    t288*t292 + t293) + bdW_z*(e0*m_z*psi_x + 2*e1*psi_x*psi_y*t292 - t287*t291 -
+                    t294))
+                bdy[j3 + 1] += (bdW_x*(e0*m_x*psi_y + 2*e1*psi_y*psi_z*t287 - t281*t299 - t293) +
+                    bdW_y*(-t280 + t285 - t295 - t297) + bdW_z*(e0*m_z*psi_y - t284*t287 +
+                    t292*t299 + t300))
+                bdy[j3 + 2] += (bdW_x*(e0*t286 - t281*t296 + t287*t302 + t294) +
+                    bdW_y*(e0*m_y*psi_z + 2*e1*psi_x*psi_z*t281 - t292*t302 - t300) + bdW_z*(-t278
+                    - t289 - t295 + t297))
+                bds[j3] += bdW_x*(t307 + t308) + bdW_y*(-t303 - t304) + bdW_z*(t305 - t306)
+                bds[j3 + 1] += bdW_x*(t303 - t304) + bdW_y*(t308 + t311) + bdW_z*(-t309 - t310)
+                bds[j3 + 2] += bdW_x*(-t305 - t306) + bdW_y*(t309 - t310) + bdW_z*(t307 + t311 - 1)
                 bdyd[j3] += -bdW_y*pw_z + bdW_z*pw_y
                 bdyd[j3 + 1] += bdW_x*pw_z - bdW_z*pw_x
                 bdyd[j3 + 2] += -bdW_x*pw_y + bdW_y*pw_x
@@ -1274,15 +1233,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             d_x, d_y, d_z = d[0], d[1], d[2]
             mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
-            t341 = d_y + mc_y
-            t342 = d_z + mc_z
-            t343 = d_x + mc_x
+            t312 = d_y + mc_y
+            t313 = d_z + mc_z
+            t314 = d_x + mc_x
             bdd[0] += bdW_y*gamma_z - bdW_z*gamma_y
             bdd[1] += -bdW_x*gamma_z + bdW_z*gamma_x
             bdd[2] += bdW_x*gamma_y - bdW_y*gamma_x
-            bdgamma[0] += -bdW_y*t342 + bdW_z*t341
-            bdgamma[1] += bdW_x*t342 - bdW_z*t343
-            bdgamma[2] += -bdW_x*t341 + bdW_y*t343
+            bdgamma[0] += -bdW_y*t313 + bdW_z*t312
+            bdgamma[1] += bdW_x*t313 - bdW_z*t314
+            bdgamma[2] += -bdW_x*t312 + bdW_y*t314
             # transposed: differential: forces on the frame: elastic (30) and inertia (57)
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -1293,16 +1252,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-                t344 = alpha*mass
-                t345 = X_y + u_y
-                t346 = X_z + u_z
-                t347 = X_x + u_x
-                bdgamma[0] += -bdF_x*t344
-                bdgamma[1] += -bdF_y*t344
-                bdgamma[2] += -bdF_z*t344
-                bds[i3] += -bdF_x - bdW_y*t346 + bdW_z*t345
-                bds[i3 + 1] += -bdF_y + bdW_x*t346 - bdW_z*t347
-                bds[i3 + 2] += -bdF_z - bdW_x*t345 + bdW_y*t347
+                t315 = alpha*mass
+                t316 = X_y + u_y
+                t317 = X_z + u_z
+                t318 = X_x + u_x
+                bdgamma[0] += -bdF_x*t315
+                bdgamma[1] += -bdF_y*t315
+                bdgamma[2] += -bdF_z*t315
+                bds[i3] += -bdF_x - bdW_y*t317 + bdW_z*t316
+                bds[i3 + 1] += -bdF_y + bdW_x*t317 - bdW_z*t318
+                bds[i3 + 2] += -bdF_z - bdW_x*t316 + bdW_y*t318
                 bdy[i3] += bdW_y*f_z - bdW_z*f_y
                 bdy[i3 + 1] += -bdW_x*f_z + bdW_z*f_x
                 bdy[i3 + 2] += bdW_x*f_y - bdW_y*f_x
@@ -1336,18 +1295,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Q[9*j + 8])
                 w_x, w_y, w_z = yd[j3], yd[j3 + 1], yd[j3 + 2]
                 bdwd_x, bdwd_y, bdwd_z = bdydd[j3], bdydd[j3 + 1], bdydd[j3 + 2]
-                t348 = A_x*Q_zx + A_y*Q_zy + A_z*Q_zz
-                t349 = A_x*Q_yx + A_y*Q_yy + A_z*Q_yz
-                t350 = A_x*Q_xx + A_y*Q_xy + A_z*Q_xz
+                t319 = A_x*Q_zx + A_y*Q_zy + A_z*Q_zz
+                t320 = A_x*Q_yx + A_y*Q_yy + A_z*Q_yz
+                t321 = A_x*Q_xx + A_y*Q_xy + A_z*Q_xz
                 bdqe[j3] += (bdwd_x*(A_y*Q_xz - A_z*Q_xy) + bdwd_y*(A_y*Q_yz - A_z*Q_yy) +
                     bdwd_z*(A_y*Q_zz - A_z*Q_zy))
                 bdqe[j3 + 1] += (bdwd_x*(-A_x*Q_xz + A_z*Q_xx) + bdwd_y*(-A_x*Q_yz + A_z*Q_yx) +
                     bdwd_z*(-A_x*Q_zz + A_z*Q_zx))
                 bdqe[j3 + 2] += (bdwd_x*(A_x*Q_xy - A_y*Q_xx) + bdwd_y*(A_x*Q_yy - A_y*Q_yx) +
                     bdwd_z*(A_x*Q_zy - A_y*Q_zx))
-                bdth0_x += bdwd_y*t348 - bdwd_z*t349
-                bdth0_y += -bdwd_x*t348 + bdwd_z*t350
-                bdth0_z += bdwd_x*t349 - bdwd_y*t350
+                bdth0_x += bdwd_y*t319 - bdwd_z*t320
+                bdth0_y += -bdwd_x*t319 + bdwd_z*t321
+                bdth0_z += bdwd_x*t320 - bdwd_y*t321
                 bdae[j3] += Q_xx*bdwd_x + Q_yx*bdwd_y + Q_zx*bdwd_z
                 bdae[j3 + 1] += Q_xy*bdwd_x + Q_yy*bdwd_y + Q_zy*bdwd_z
                 bdae[j3 + 2] += Q_xz*bdwd_x + Q_yz*bdwd_y + Q_zz*bdwd_z
@@ -1373,12 +1332,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdOm0_z += bdvsd_x*vs_y - bdvsd_y*vs_x
             # transposed: differential: B rate = sum alpha_j T^-1(psi_j) rate_j
             rhs_x = rhs_y = rhs_z = 0.0
-            t351 = bdOm0_x + rhs_x
-            t352 = bdOm0_y + rhs_y
-            t353 = bdOm0_z + rhs_z
-            mdOm0_x = Bxx*t351 + Byx*t352 + Bzx*t353
-            mdOm0_y = Bxy*t351 + Byy*t352 + Bzy*t353
-            mdOm0_z = Bxz*t351 + Byz*t352 + Bzz*t353
+            t322 = bdOm0_x + rhs_x
+            t323 = bdOm0_y + rhs_y
+            t324 = bdOm0_z + rhs_z
+            mdOm0_x = Bxx*t322 + Byx*t323 + Bzx*t324
+            mdOm0_y = Bxy*t322 + Byy*t323 + Bzy*t324
+            mdOm0_z = Bxz*t322 + Byz*t323 + Bzz*t324
             # transposed: differential: B rate = sum alpha_j T^-1(psi_j) rate_j
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -1387,70 +1346,84 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
                 e0 = e0s[j]
                 e1 = e1s[j]
-                t354 = (0.5)*psi_z
-                t355 = e0*psi_x
-                t356 = psi_y*t355
-                t357 = alpha_r*mdOm0_y
-                t358 = (0.5)*psi_y
-                t359 = psi_z*t355
-                t360 = alpha_r*mdOm0_z
-                t361 = psi_y*psi_y
-                t362 = e0*t361
-                t363 = psi_z*psi_z
-                t364 = e0*t363 - 1
-                t365 = alpha_r*mdOm0_x
-                t366 = (0.5)*psi_x
-                t367 = e0*psi_y
-                t368 = psi_z*t367
-                t369 = psi_x*psi_x
-                t370 = e0*t369
-                t371 = -Om_x*psi_y + Om_y*psi_x
-                t372 = 2*e1
-                t373 = psi_x*t372
-                t374 = psi_y*t373
-                t375 = t371*t374
-                t376 = Om0_x*psi_z
-                t377 = Om0_z*psi_x
-                t378 = t376 - t377
-                t379 = psi_z*t373
-                t380 = t378*t379
-                t381 = Om0_x*psi_y
-                t382 = Om0_y*psi_x - t381
-                t383 = t374*t382
-                t384 = Om_x*psi_z
-                t385 = -Om_z*psi_x + t384
-                t386 = t379*t385
-                t387 = e0*psi_z
-                t388 = Om0_z*t387 - Om_z*t387
-                t389 = Om0_y*t367 - Om_y*t367
-                t390 = t369*t372
-                t391 = -Om_y*psi_z + Om_z*psi_y
-                t392 = Om0_y*psi_z
-                t393 = Om0_z*psi_y - t392
-                t394 = (0.5)*Om0_z + (0.5)*Om_z + e0*t371 - e0*t382
-                t395 = (0.5)*Om0_y + (0.5)*Om_y - e0*t378 + e0*t385
-                t396 = psi_y*psi_z*t372
-                t397 = t391*t396
-                t398 = t393*t396
-                t399 = Om0_x*t355 - Om_x*t355
-                t400 = t361*t372
-                t401 = (0.5)*Om0_x + (0.5)*Om_x + e0*t391 - e0*t393
-                t402 = t363*t372
-                bdve[j3] += -t357*(-t354 - t356) - t360*(t358 - t359) - t365*(t362 + t364)
-                bdve[j3 + 1] += -t357*(t364 + t370) - t360*(-t366 - t368) - t365*(t354 - t356)
-                bdve[j3 + 2] += -t357*(t366 - t368) - t360*(t362 + t370 - 1) - t365*(-t358 - t359)
-                bdy[j3] += (-t357*(-Om0_y*e0*psi_x + Om_y*e0*psi_x + t371*t390 - t379*t391 +
-                    t379*t393 - t382*t390 + t394) - t360*(Om_z*e0*psi_x - e0*t377 +
-                    2*e1*psi_x*psi_y*t391 + 2*e1*t369*t378 - t374*t393 - t385*t390 - t395) -
-                    t365*(-t375 - t380 + t383 + t386 + t388 + t389))
-                bdy[j3 + 1] += (-t357*(t375 - t383 + t388 - t397 + t398 + t399) -
-                    t360*(-Om0_z*e0*psi_y + Om_z*e0*psi_y + t374*t378 - t374*t385 + t391*t400 -
-                    t393*t400 + t401) - t365*(Om_x*e0*psi_y - e0*t381 + 2*e1*psi_y*psi_z*t385 +
-                    2*e1*t361*t382 - t371*t400 - t378*t396 - t394))
-                bdy[j3 + 2] += (-t357*(Om_y*e0*psi_z - e0*t392 + 2*e1*psi_x*psi_z*t371 +
-                    2*e1*t363*t393 - t379*t382 - t391*t402 - t401) - t360*(t380 - t386 + t389 +
-                    t397 - t398 + t399) - t365*(-e0*t376 + e0*t384 - t371*t396 - t378*t402 +
-                    t382*t396 + t385*t402 + t395))
+                t325 = (0.5)*psi_z
+                t326 = e0*psi_y
+                t327 = psi_x*t326
+                t328 = alpha_r*mdOm0_y
+                t329 = (0.5)*psi_y
+                t330 = e0*psi_z
+                t331 = psi_x*t330
+                t332 = alpha_r*mdOm0_z
+                t333 = psi_y*psi_y
+                t334 = e0*t333
+                t335 = psi_z*psi_z
+                t336 = e0*t335 - 1
+                t337 = alpha_r*mdOm0_x
+                t338 = (0.5)*psi_x
+                t339 = psi_z*t326
+                t340 = psi_x*psi_x
+                t341 = e0*t340
+                t342 = -Om0_y*e0*psi_y
+                t343 = -Om0_z*e0*psi_z
+                t344 = 2*e1
+                t345 = t340*t344
+                t346 = psi_y*t345
+                t347 = t326 + t346
+                t348 = psi_z*t345
+                t349 = t330 + t348
+                t350 = -Om0_x*psi_y + Om0_y*psi_x
+                t351 = psi_x*t344
+                t352 = psi_y*t351
+                t353 = t350*t352
+                t354 = Om0_z*psi_x
+                t355 = Om0_x*psi_z - t354
+                t356 = psi_z*t351
+                t357 = t355*t356
+                t358 = t333*t351
+                t359 = t335*t351
+                t360 = (0.5)*Om0_y
+                t361 = psi_y*t356
+                t362 = t361 + 0.5
+                t363 = e0*t355
+                t364 = -Om0_y*psi_z + Om0_z*psi_y
+                t365 = e0*psi_x
+                t366 = psi_x*psi_x*psi_x*t344 + 2*t365
+                t367 = (0.5)*Om0_z
+                t368 = t361 - 0.5
+                t369 = e0*t350
+                t370 = -Om0_x*e0*psi_x
+                t371 = t358 + t365
+                t372 = t333*t344
+                t373 = psi_z*t372
+                t374 = t330 + t373
+                t375 = psi_y*psi_z*t344
+                t376 = t364*t375
+                t377 = t335*t344
+                t378 = psi_y*t377
+                t379 = psi_y*psi_y*psi_y*t344 + 2*t326
+                t380 = (0.5)*Om0_x
+                t381 = e0*t364
+                t382 = t359 + t365
+                t383 = t326 + t378
+                t384 = psi_z*psi_z*psi_z*t344 + 2*t330
+                bdve[j3] += -t328*(-t325 - t327) - t332*(t329 - t331) - t337*(t334 + t336)
+                bdve[j3 + 1] += -t328*(t336 + t341) - t332*(-t338 - t339) - t337*(t325 - t327)
+                bdve[j3 + 2] += -t328*(t338 - t339) - t332*(t334 + t341 - 1) - t337*(-t329 - t331)
+                bdy[j3] += (-t328*(-Om0_y*e0*psi_x - Om_x*t347 - Om_y*(-t359 - t366) - Om_z*t368 +
+                    2*e1*psi_x*psi_z*t364 - t345*t350 + t367 - t369) - t332*(-Om_x*t349 -
+                    Om_y*t362 - Om_z*(-t358 - t366) - e0*t354 + 2*e1*t340*t355 - t352*t364 - t360
+                    + t363) - t337*(-Om_x*(-t358 - t359) - Om_y*t347 - Om_z*t349 - t342 - t343 +
+                    t353 - t357))
+                bdy[j3 + 1] += (-t328*(-Om_x*t371 - Om_y*(-t346 - t378) - Om_z*t374 - t343 - t353
+                    - t370 + t376) - t332*(-Om0_z*t326 - Om_x*t368 - Om_y*t374 - Om_z*(-t346 -
+                    t379) + 2*e1*psi_x*psi_y*t355 - t364*t372 + t380 - t381) - t337*(-Om0_x*t326 -
+                    Om_x*(-t378 - t379) - Om_y*t371 - Om_z*t362 + 2*e1*t333*t350 - t355*t375 -
+                    t367 + t369))
+                bdy[j3 + 2] += (-t328*(-Om0_y*t330 - Om_x*t362 - Om_y*(-t348 - t384) - Om_z*t383 +
+                    2*e1*t335*t364 - t350*t356 - t380 + t381) - t332*(-Om_x*t382 - Om_y*t383 -
+                    Om_z*(-t348 - t373) - t342 + t357 - t370 - t376) - t337*(-Om0_x*t330 -
+                    Om_x*(-t373 - t384) - Om_y*t368 - Om_z*t382 + 2*e1*psi_y*psi_z*t350 -
+                    t355*t377 + t360 - t363))
             # transposed: differential: angular velocities in frame axes, (36)
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
@@ -1459,18 +1432,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7],
                     Q[9*j + 8])
                 bdw_x, bdw_y, bdw_z = bdyd[j3], bdyd[j3 + 1], bdyd[j3 + 2]
-                t403 = Om_x*Q_zx + Om_y*Q_zy + Om_z*Q_zz
-                t404 = Om_x*Q_yx + Om_y*Q_yy + Om_z*Q_yz
-                t405 = Om_x*Q_xx + Om_y*Q_xy + Om_z*Q_xz
+                t385 = Om_x*Q_zx + Om_y*Q_zy + Om_z*Q_zz
+                t386 = Om_x*Q_yx + Om_y*Q_yy + Om_z*Q_yz
+                t387 = Om_x*Q_xx + Om_y*Q_xy + Om_z*Q_xz
                 bdqe[j3] += (bdw_x*(Om_y*Q_xz - Om_z*Q_xy) + bdw_y*(Om_y*Q_yz - Om_z*Q_yy) +
                     bdw_z*(Om_y*Q_zz - Om_z*Q_zy))
                 bdqe[j3 + 1] += (bdw_x*(-Om_x*Q_xz + Om_z*Q_xx) + bdw_y*(-Om_x*Q_yz + Om_z*Q_yx) +
                     bdw_z*(-Om_x*Q_zz + Om_z*Q_zx))
                 bdqe[j3 + 2] += (bdw_x*(Om_x*Q_xy - Om_y*Q_xx) + bdw_y*(Om_x*Q_yy - Om_y*Q_yx) +
                     bdw_z*(Om_x*Q_zy - Om_y*Q_zx))
-                bdth0_x += bdw_y*t403 - bdw_z*t404
-                bdth0_y += -bdw_x*t403 + bdw_z*t405
-                bdth0_z += bdw_x*t404 - bdw_y*t405
+                bdth0_x += bdw_y*t385 - bdw_z*t386
+                bdth0_y += -bdw_x*t385 + bdw_z*t387
+                bdth0_z += bdw_x*t386 - bdw_y*t387
                 bdve[j3] += Q_xx*bdw_x + Q_yx*bdw_y + Q_zx*bdw_z
                 bdve[j3 + 1] += Q_xy*bdw_x + Q_yy*bdw_y + Q_zy*bdw_z
                 bdve[j3 + 2] += Q_xz*bdw_x + Q_yz*bdw_y + Q_zz*bdw_z
@@ -1526,43 +1499,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 bdpsi_x, bdpsi_y, bdpsi_z = bdy[j3], bdy[j3 + 1], bdy[j3 + 2]
                 e0 = e0s[j]
-                t406 = (0.5)*psi_z
-                t407 = e0*psi_x
-                t408 = psi_y*t407
-                t409 = t406 + t408
-                t410 = (0.5)*psi_y
-                t411 = psi_z*t407
-                t412 = -t410 + t411
-                t413 = e0*psi_y*psi_y
-                t414 = e0*psi_z*psi_z - 1
-                t415 = t413 + t414
-                t416 = -t406 + t408
-                t417 = (0.5)*psi_x
-                t418 = e0*psi_y*psi_z
-                t419 = t417 + t418
-                t420 = e0*psi_x*psi_x
-                t421 = t414 + t420
-                t422 = t410 + t411
-                t423 = -t417 + t418
-                t424 = t413 + t420 - 1
-                bdqe[j3] += -bdpsi_x*t415 + bdpsi_y*t409 + bdpsi_z*t412
-                bdqe[j3 + 1] += bdpsi_x*t416 - bdpsi_y*t421 + bdpsi_z*t419
-                bdqe[j3 + 2] += bdpsi_x*t422 + bdpsi_y*t423 - bdpsi_z*t424
-                bdth0_x += bdpsi_x*t415 - bdpsi_y*t416 - bdpsi_z*t422
-                bdth0_y += -bdpsi_x*t409 + bdpsi_y*t421 - bdpsi_z*t423
-                bdth0_z += -bdpsi_x*t412 - bdpsi_y*t419 + bdpsi_z*t424
+                t388 = (0.5)*psi_z
+                t389 = e0*psi_x
+                t390 = psi_y*t389
+                t391 = t388 + t390
+                t392 = (0.5)*psi_y
+                t393 = psi_z*t389
+                t394 = -t392 + t393
+                t395 = psi_y*psi_y
+                t396 = psi_z*psi_z
+                t397 = t395 + t396
+                t398 = -t388 + t390
+                t399 = (0.5)*psi_x
+                t400 = e0*psi_y*psi_z
+                t401 = t399 + t400
+                t402 = psi_x*psi_x
+                t403 = t396 + t402
+                t404 = t392 + t393
+                t405 = -t399 + t400
+                t406 = t395 + t402
+                bdqe[j3] += bdpsi_x*(-e0*t397 + 1) + bdpsi_y*t391 + bdpsi_z*t394
+                bdqe[j3 + 1] += bdpsi_x*t398 + bdpsi_y*(-e0*t403 + 1) + bdpsi_z*t401
+                bdqe[j3 + 2] += bdpsi_x*t404 + bdpsi_y*t405 + bdpsi_z*(-e0*t406 + 1)
+                bdth0_x += bdpsi_x*(e0*t397 - 1) - bdpsi_y*t398 - bdpsi_z*t404
+                bdth0_y += -bdpsi_x*t391 + bdpsi_y*(e0*t403 - 1) - bdpsi_z*t405
+                bdth0_z += -bdpsi_x*t394 - bdpsi_y*t401 + bdpsi_z*(e0*t406 - 1)
             # transposed: differential: displacement of the nodes in the frame, (11)
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                 bdu_x, bdu_y, bdu_z = bdy[i3], bdy[i3 + 1], bdy[i3 + 2]
-                t425 = X_z + u_z
-                t426 = X_y + u_y
-                t427 = X_x + u_x
-                bdth0_x += bdu_y*t425 - bdu_z*t426
-                bdth0_y += -bdu_x*t425 + bdu_z*t427
-                bdth0_z += bdu_x*t426 - bdu_y*t427
+                t407 = X_z + u_z
+                t408 = X_y + u_y
+                t409 = X_x + u_x
+                bdth0_x += bdu_y*t407 - bdu_z*t408
+                bdth0_y += -bdu_x*t407 + bdu_z*t409
+                bdth0_z += bdu_x*t408 - bdu_y*t409
                 bdqe[i3] += bdu_x
                 bdqe[i3 + 1] += bdu_y
                 bdqe[i3 + 2] += bdu_z
@@ -1571,34 +1544,34 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdx0_z += -bdu_z
             # transposed: B rate = sum alpha_j T^-1(psi_j) rate_j
             rhs_x = rhs_y = rhs_z = 0.0
-            t428 = bdth0_x + rhs_x
-            t429 = bdth0_y + rhs_y
-            t430 = bdth0_z + rhs_z
-            mdth0_x = Bxx*t428 + Byx*t429 + Bzx*t430
-            mdth0_y = Bxy*t428 + Byy*t429 + Bzy*t430
-            mdth0_z = Bxz*t428 + Byz*t429 + Bzz*t430
+            t410 = bdth0_x + rhs_x
+            t411 = bdth0_y + rhs_y
+            t412 = bdth0_z + rhs_z
+            mdth0_x = Bxx*t410 + Byx*t411 + Bzx*t412
+            mdth0_y = Bxy*t410 + Byy*t411 + Bzy*t412
+            mdth0_z = Bxz*t410 + Byz*t411 + Bzz*t412
             # transposed: B rate = sum alpha_j T^-1(psi_j) rate_j
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 alpha_r = alpha_rs[j]
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e0 = e0s[j]
-                t431 = (0.5)*psi_z
-                t432 = e0*psi_x
-                t433 = psi_y*t432
-                t434 = alpha_r*mdth0_y
-                t435 = (0.5)*psi_y
-                t436 = psi_z*t432
-                t437 = alpha_r*mdth0_z
-                t438 = e0*psi_y*psi_y
-                t439 = e0*psi_z*psi_z - 1
-                t440 = alpha_r*mdth0_x
-                t441 = (0.5)*psi_x
-                t442 = e0*psi_y*psi_z
-                t443 = e0*psi_x*psi_x
-                bdqe[j3] += -t434*(-t431 - t433) - t437*(t435 - t436) - t440*(t438 + t439)
-                bdqe[j3 + 1] += -t434*(t439 + t443) - t437*(-t441 - t442) - t440*(t431 - t433)
-                bdqe[j3 + 2] += -t434*(t441 - t442) - t437*(t438 + t443 - 1) - t440*(-t435 - t436)
+                t413 = (0.5)*psi_z
+                t414 = e0*psi_x
+                t415 = psi_y*t414
+                t416 = alpha_r*mdth0_y
+                t417 = (0.5)*psi_y
+                t418 = psi_z*t414
+                t419 = alpha_r*mdth0_z
+                t420 = e0*psi_y*psi_y
+                t421 = e0*psi_z*psi_z - 1
+                t422 = alpha_r*mdth0_x
+                t423 = (0.5)*psi_x
+                t424 = e0*psi_y*psi_z
+                t425 = e0*psi_x*psi_x
+                bdqe[j3] += -t416*(-t413 - t415) - t419*(t417 - t418) - t422*(t420 + t421)
+                bdqe[j3 + 1] += -t416*(t421 + t425) - t419*(-t423 - t424) - t422*(t413 - t415)
+                bdqe[j3 + 2] += -t416*(t423 - t424) - t419*(t420 + t425 - 1) - t422*(-t417 - t418)
             # transposed: origin of the frame, (14)
             for i in range(N_POSITIONS):
                 i3 = 3*i

@@ -73,8 +73,8 @@ WORK_ROWS = 122
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (586, 168, 543, 1),
-              "column": (150, 228, 1751, 3)}
+OPERATIONS = {"residual": (586, 168, 389, 1),
+              "column": (150, 228, 1302, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("sizes", (3,), "slaved coordinates, resultants of second order, damped or not"),
     Part("turn", ("entries",), "axes of the body in the frame: columns of a rotation"),
@@ -237,30 +237,35 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             e0 = e0s[j]
             t3 = e0*psi_y*psi_y
             t4 = e0*psi_z*psi_z - 1
-            t5 = (0.5)*psi_z
-            t6 = e0*psi_x
-            t7 = psi_y*t6
-            t8 = (0.5)*psi_y
-            t9 = psi_z*t6
-            t10 = e0*psi_x*psi_x
-            t11 = (0.5)*psi_x
-            t12 = e0*psi_z
-            t13 = psi_y*t12
-            t14 = -Om_x*psi_y + Om_y*psi_x
-            t15 = Om_x*psi_z - Om_z*psi_x
-            t16 = -Om_y*psi_z + Om_z*psi_y
-            B_00 += alpha_r*(-t3 - t4)
-            B_01 += alpha_r*(t5 + t7)
-            B_02 += alpha_r*(-t8 + t9)
-            B_10 += alpha_r*(-t5 + t7)
-            B_11 += alpha_r*(-t10 - t4)
-            B_12 += alpha_r*(t11 + t13)
-            B_20 += alpha_r*(t8 + t9)
-            B_21 += alpha_r*(-t11 + t13)
-            B_22 += alpha_r*(-t10 - t3 + 1)
-            rhs_x += -alpha_r*(-Om_x + (0.5)*Om_y*psi_z - Om_z*t8 - e0*psi_y*t14 + e0*psi_z*t15)
-            rhs_y += -alpha_r*(-Om_x*t5 - Om_y + (0.5)*Om_z*psi_x + e0*psi_x*t14 - t12*t16)
-            rhs_z += -alpha_r*((0.5)*Om_x*psi_y - Om_y*t11 - Om_z + e0*psi_y*t16 - t15*t6)
+            t5 = -t3 - t4
+            t6 = (0.5)*psi_z
+            t7 = e0*psi_x
+            t8 = psi_y*t7
+            t9 = t6 + t8
+            t10 = (0.5)*psi_y
+            t11 = psi_z*t7
+            t12 = -t10 + t11
+            t13 = -t6 + t8
+            t14 = e0*psi_x*psi_x
+            t15 = -t14 - t4
+            t16 = (0.5)*psi_x
+            t17 = e0*psi_y*psi_z
+            t18 = t16 + t17
+            t19 = t10 + t11
+            t20 = -t16 + t17
+            t21 = -t14 - t3 + 1
+            B_00 += alpha_r*t5
+            B_01 += alpha_r*t9
+            B_02 += alpha_r*t12
+            B_10 += alpha_r*t13
+            B_11 += alpha_r*t15
+            B_12 += alpha_r*t18
+            B_20 += alpha_r*t19
+            B_21 += alpha_r*t20
+            B_22 += alpha_r*t21
+            rhs_x += -alpha_r*(-Om_x*t5 - Om_y*t13 - Om_z*t19)
+            rhs_y += -alpha_r*(-Om_x*t9 - Om_y*t15 - Om_z*t20)
+            rhs_z += -alpha_r*(-Om_x*t12 - Om_y*t18 - Om_z*t21)
         Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
             B_12, B_20, B_21, B_22)
         Om0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
@@ -294,41 +299,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-            t17 = X_y + u_y
-            t18 = X_z + u_z
-            t19 = X_x + u_x
-            eta[i3] = -Om0_y*t18 + Om0_z*t17 - v0_x + vs_x
-            eta[i3 + 1] = Om0_x*t18 - Om0_z*t19 - v0_y + vs_y
-            eta[i3 + 2] = -Om0_x*t17 + Om0_y*t19 - v0_z + vs_z
+            t22 = X_y + u_y
+            t23 = X_z + u_z
+            t24 = X_x + u_x
+            eta[i3] = -Om0_y*t23 + Om0_z*t22 - v0_x + vs_x
+            eta[i3 + 1] = Om0_x*t23 - Om0_z*t24 - v0_y + vs_y
+            eta[i3 + 2] = -Om0_x*t22 + Om0_y*t24 - v0_z + vs_z
         # rates of the elastic rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
             e0 = e0s[j]
-            t20 = Om0_y*psi_z
-            t21 = Om_y*psi_z
-            t22 = Om0_x*psi_y
-            t23 = Om0_y*psi_x - t22
-            t24 = e0*psi_y
-            t25 = Om_x*psi_z
-            t26 = Om_z*psi_x
-            t27 = t25 - t26
-            t28 = e0*psi_z
-            t29 = Om_x*psi_y
-            t30 = Om_y*psi_x - t29
-            t31 = Om0_x*psi_z
-            t32 = Om0_z*psi_x
-            t33 = t31 - t32
-            t34 = e0*psi_x
-            t35 = Om_z*psi_y - t21
-            t36 = Om0_z*psi_y - t20
-            eta[j3] = (-Om0_x + (0.5)*Om0_z*psi_y + Om_x + (0.5)*Om_z*psi_y + e0*psi_y*t30 +
-                e0*psi_z*t33 - 0.5*t20 - 0.5*t21 - t23*t24 - t27*t28)
-            eta[j3 + 1] = (-Om0_y + Om_y + t23*t34 + (0.5)*t25 - 0.5*t26 + t28*t35 - t28*t36 -
-                t30*t34 + (0.5)*t31 - 0.5*t32)
-            eta[j3 + 2] = ((0.5)*Om0_y*psi_x - Om0_z + (0.5)*Om_y*psi_x + Om_z + e0*psi_x*t27 +
-                e0*psi_y*t36 - 0.5*t22 - t24*t35 - 0.5*t29 - t33*t34)
+            t25 = (0.5)*Om0_z + (0.5)*Om_z
+            t26 = Om0_y + Om_y
+            t27 = (0.5)*psi_z
+            t28 = -Om0_y + Om_y
+            t29 = -Om0_x + Om_x
+            t30 = psi_x*t28 - psi_y*t29
+            t31 = -Om0_z + Om_z
+            t32 = -psi_x*t31 + psi_z*t29
+            t33 = Om0_x + Om_x
+            t34 = psi_y*t31 - psi_z*t28
+            eta[j3] = -Om0_x + Om_x + e0*(psi_y*t30 - psi_z*t32) + psi_y*t25 - t26*t27
+            eta[j3 + 1] = -Om0_y + Om_y + e0*(-psi_x*t30 + psi_z*t34) - psi_x*t25 + t27*t33
+            eta[j3 + 2] = (-Om0_z + Om_z + e0*(psi_x*t32 - psi_y*t34) + (0.5)*psi_x*t26 -
+                0.5*psi_y*t33)
         # rates of the internal modes
         for k in range(MODES, n):
             vm = ve[k]
@@ -342,49 +338,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
             e0 = e0s[j]
             e1 = e1s[j]
-            t37 = A_y*psi_z
-            t38 = Om0_y*ep_z
-            t39 = Om_y*ep_z
-            t40 = -Om_x*psi_y + Om_y*psi_x
-            t41 = e0*ep_y
-            t42 = Om0_x*psi_z - Om0_z*psi_x
-            t43 = e0*ep_z
-            t44 = Om0_x*ep_z
-            t45 = Om0_z*ep_x
-            t46 = t44 - t45
-            t47 = e0*psi_z
-            t48 = -Om0_x*psi_y + Om0_y*psi_x
-            t49 = Om_x*psi_z - Om_z*psi_x
-            t50 = Om0_x*ep_y
-            t51 = Om0_y*ep_x - t50
-            t52 = e0*psi_y
-            t53 = A_x*psi_y
-            t54 = Om_x*ep_y
-            t55 = A_y*psi_x + Om_y*ep_x - t53 - t54
-            t56 = A_x*psi_z
-            t57 = Om_x*ep_z
-            t58 = A_z*psi_x
-            t59 = Om_z*ep_x
-            t60 = t56 + t57 - t58 - t59
-            t61 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
-            t62 = psi_y*t61
-            t63 = psi_z*t61
-            t64 = e0*ep_x
-            t65 = -Om_y*psi_z + Om_z*psi_y
-            t66 = e0*psi_x
-            t67 = -Om0_y*psi_z + Om0_z*psi_y
-            t68 = Om0_z*ep_y - t38
-            t69 = A_z*psi_y + Om_z*ep_y - t37 - t39
-            t70 = psi_x*t61
-            etad[j3] = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y + (0.5)*Om_z*ep_y - 0.5*t37 -
-                0.5*t38 - 0.5*t39 + t40*t41 + t40*t62 - t41*t48 + t42*t43 + t42*t63 - t43*t49 +
-                t46*t47 - t47*t60 - t48*t62 - t49*t63 - t51*t52 + t52*t55)
-            etad[j3 + 1] = (A_y - t40*t64 - t40*t70 + t43*t65 - t43*t67 + (0.5)*t44 - 0.5*t45 -
-                t47*t68 + t47*t69 + t48*t64 + t48*t70 + t51*t66 - t55*t66 + (0.5)*t56 + (0.5)*t57
-                - 0.5*t58 - 0.5*t59 + t63*t65 - t63*t67)
-            etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om_y*ep_x - t41*t65 +
-                t41*t67 - t42*t64 - t42*t70 - t46*t66 + t49*t64 + t49*t70 - 0.5*t50 + t52*t68 -
-                t52*t69 - 0.5*t53 - 0.5*t54 + t60*t66 - t62*t65 + t62*t67)
+            t35 = A_y*psi_z
+            t36 = (0.5)*Om0_z + (0.5)*Om_z
+            t37 = Om0_y + Om_y
+            t38 = (0.5)*ep_z
+            t39 = -Om0_y + Om_y
+            t40 = -Om0_x + Om_x
+            t41 = psi_x*t39 - psi_y*t40
+            t42 = -Om0_z + Om_z
+            t43 = -psi_x*t42 + psi_z*t40
+            t44 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
+            t45 = A_x*psi_y
+            t46 = A_y*psi_x + ep_x*t39 - ep_y*t40 - t45
+            t47 = A_x*psi_z
+            t48 = A_z*psi_x
+            t49 = -ep_x*t42 + ep_z*t40 + t47 - t48
+            t50 = Om0_x + Om_x
+            t51 = psi_y*t42 - psi_z*t39
+            t52 = A_z*psi_y + ep_y*t42 - ep_z*t39 - t35
+            etad[j3] = (A_x + (0.5)*A_z*psi_y + e0*(ep_y*t41 - ep_z*t43 + psi_y*t46 - psi_z*t49) +
+                ep_y*t36 - 0.5*t35 - t37*t38 + t44*(psi_y*t41 - psi_z*t43))
+            etad[j3 + 1] = (A_y + e0*(-ep_x*t41 + ep_z*t51 - psi_x*t46 + psi_z*t52) - ep_x*t36 +
+                t38*t50 + t44*(-psi_x*t41 + psi_z*t51) + (0.5)*t47 - 0.5*t48)
+            etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + e0*(ep_x*t43 - ep_y*t51 + psi_x*t49 -
+                psi_y*t52) + (0.5)*ep_x*t37 - 0.5*ep_y*t50 + t44*(psi_x*t43 - psi_y*t51) - 0.5*t45)
         # rate: B rate = sum alpha_j T^-1(psi_j) rate_j
         rhs_x = rhs_y = rhs_z = 0.0
         for j in range(N_ROTATIONS):
@@ -403,19 +380,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             epd_x, epd_y, epd_z = etad[j3], etad[j3 + 1], etad[j3 + 2]
             e0 = e0s[j]
-            t71 = (0.5)*psi_z
-            t72 = e0*psi_x
-            t73 = psi_y*t72
-            t74 = (0.5)*psi_y
-            t75 = psi_z*t72
-            t76 = e0*psi_y*psi_y
-            t77 = e0*psi_z*psi_z - 1
-            t78 = (0.5)*psi_x
-            t79 = e0*psi_y*psi_z
-            t80 = e0*psi_x*psi_x
-            etad[j3] = Om0d_x*(t76 + t77) + Om0d_y*(-t71 - t73) + Om0d_z*(t74 - t75) + epd_x
-            etad[j3 + 1] = Om0d_x*(t71 - t73) + Om0d_y*(t77 + t80) + Om0d_z*(-t78 - t79) + epd_y
-            etad[j3 + 2] = Om0d_x*(-t74 - t75) + Om0d_y*(t78 - t79) + Om0d_z*(t76 + t80 - 1) + epd_z
+            t53 = Om0d_y*psi_z
+            t54 = Om0d_z*psi_y
+            t55 = Om0d_x*psi_y
+            t56 = Om0d_y*psi_x
+            t57 = t55 - t56
+            t58 = Om0d_x*psi_z
+            t59 = Om0d_z*psi_x - t58
+            t60 = t53 - t54
+            etad[j3] = -Om0d_x + e0*(psi_y*t57 - psi_z*t59) + epd_x - 0.5*t53 + (0.5)*t54
+            etad[j3 + 1] = (-Om0d_y - 0.5*Om0d_z*psi_x + e0*(-psi_x*t57 + psi_z*t60) + epd_y +
+                (0.5)*t58)
+            etad[j3 + 2] = -Om0d_z + e0*(psi_x*t59 - psi_y*t60) + epd_z - 0.5*t55 + (0.5)*t56
         # rate: rates of the elastic displacements
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -424,15 +400,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-            t81 = X_y + u_y
-            t82 = X_z + u_z
-            t83 = X_x + u_x
+            t61 = X_y + u_y
+            t62 = X_z + u_z
+            t63 = X_x + u_x
             etad[i3] = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y +
-                Om0_z*vs_y - Om0d_y*t82 + Om0d_z*t81 - a0_x + acc_x)
+                Om0_z*vs_y - Om0d_y*t62 + Om0d_z*t61 - a0_x + acc_x)
             etad[i3 + 1] = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x -
-                Om0_z*vs_x + Om0d_x*t82 - Om0d_z*t83 - a0_y + acc_y)
+                Om0_z*vs_x + Om0d_x*t62 - Om0d_z*t63 - a0_y + acc_y)
             etad[i3 + 2] = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x +
-                Om0_y*vs_x - Om0d_x*t81 + Om0d_y*t83 - a0_z + acc_z)
+                Om0_y*vs_x - Om0d_x*t61 + Om0d_y*t63 - a0_z + acc_z)
         # rate: rates of the internal modes
         for k in range(MODES, n):
             am = ae[k]
@@ -515,12 +491,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
             turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
         gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
-        t84 = a0_x - gamma_x
-        t85 = a0_y - gamma_y
-        t86 = a0_z - gamma_z
-        zdd[N] = t84*turn_xx + t85*turn_yx + t86*turn_zx
-        zdd[N + 1] = t84*turn_xy + t85*turn_yy + t86*turn_zy
-        zdd[N + 2] = t84*turn_xz + t85*turn_yz + t86*turn_zz
+        t64 = a0_x - gamma_x
+        t65 = a0_y - gamma_y
+        t66 = a0_z - gamma_z
+        zdd[N] = t64*turn_xx + t65*turn_yx + t66*turn_zx
+        zdd[N + 1] = t64*turn_xy + t65*turn_yy + t66*turn_zy
+        zdd[N + 2] = t64*turn_xz + t65*turn_yz + t66*turn_zz
         zdd[N + 3] = Om0d_x*turn_xx + Om0d_y*turn_yx + Om0d_z*turn_zx
         zdd[N + 4] = Om0d_x*turn_xy + Om0d_y*turn_yy + Om0d_z*turn_zy
         zdd[N + 5] = Om0d_x*turn_xz + Om0d_y*turn_yz + Om0d_z*turn_zz
@@ -531,30 +507,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         felt_x, felt_y, felt_z = zdd[N], zdd[N + 1], zdd[N + 2]
         turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
         spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
-        t87 = spin_x*spin_x
-        t88 = spin_y*spin_y
-        t89 = spin_z*spin_z
-        t90 = spin_x*spin_y
-        t91 = spin_x*spin_z
-        t92 = spin_y*spin_z
+        t67 = spin_x*spin_x
+        t68 = spin_y*spin_y
+        t69 = spin_z*spin_z
+        t70 = spin_x*spin_y
+        t71 = spin_x*spin_z
+        t72 = spin_y*spin_z
         by_moment_columns[0] = felt_x
         by_moment_columns[1] = felt_y
         by_moment_columns[2] = felt_z
         by_moment_columns[3] = turning_x
         by_moment_columns[4] = turning_y
         by_moment_columns[5] = turning_z
-        by_moment_columns[6] = -0.5*t87
-        by_moment_columns[7] = -0.5*t88
-        by_moment_columns[8] = -0.5*t89
-        by_moment_columns[9] = -t90
-        by_moment_columns[10] = -t91
-        by_moment_columns[11] = -t92
-        by_products[0] = -t87
-        by_products[1] = -t88
-        by_products[2] = -t89
-        by_products[3] = -2*t90
-        by_products[4] = -2*t91
-        by_products[5] = -2*t92
+        by_moment_columns[6] = -0.5*t67
+        by_moment_columns[7] = -0.5*t68
+        by_moment_columns[8] = -0.5*t69
+        by_moment_columns[9] = -t70
+        by_moment_columns[10] = -t71
+        by_moment_columns[11] = -t72
+        by_products[0] = -t67
+        by_products[1] = -t68
+        by_products[2] = -t69
+        by_products[3] = -2*t70
+        by_products[4] = -2*t71
+        by_products[5] = -2*t72
         by_products[6] = turning_x
         by_products[7] = turning_y
         by_products[8] = turning_z
@@ -583,11 +559,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             lam_e = lam[e]
             along_e = along[e]
             twice_e = twice[e]
-            t93 = (0.5)*twice_e
-            t94 = 1/lam_e
-            by_E[e] = t93
-            by_Gy[e] = along_e + t93*t94
-            stiffened += t93*(along_e + (0.25)*t94*twice_e)
+            t73 = (0.5)*twice_e
+            t74 = 1/lam_e
+            by_E[e] = t73
+            by_Gy[e] = along_e + t73*t74
+            stiffened += t73*(along_e + (0.25)*t74*twice_e)
         # and of Sbar y
         by_Gy[resultants] = 1
         # forces of the resultants and their geometric stiffness, with Sbar y
@@ -599,30 +575,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
         spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
         mass = masses[0]
-        t95 = 2*sum_cd_z
-        t96 = 2*spin_z
-        t97 = spin_x*sum_c_y - spin_y*sum_c_x
-        t98 = -spin_x*sum_c_z + spin_z*sum_c_x
-        t99 = spin_y*sum_c_z - spin_z*sum_c_y
-        t100 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
-        t101 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
-        t102 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
-        local[N] = (felt_x*mass + spin_y*t95 + spin_y*t97 - spin_z*t98 - sum_c_y*turning_z +
-            sum_c_z*turning_y - sum_cd_y*t96 + sum_cdd_x)
-        local[N + 1] = (felt_y*mass - spin_x*t95 - spin_x*t97 + spin_z*t99 + sum_c_x*turning_z -
-            sum_c_z*turning_x + sum_cd_x*t96 + sum_cdd_y)
-        local[N + 2] = (felt_z*mass + 2*spin_x*sum_cd_y + spin_x*t98 - 2*spin_y*sum_cd_x -
-            spin_y*t99 - sum_c_x*turning_y + sum_c_y*turning_x + sum_cdd_z)
+        t75 = 2*sum_cd_z
+        t76 = 2*spin_z
+        t77 = spin_x*sum_c_y - spin_y*sum_c_x
+        t78 = -spin_x*sum_c_z + spin_z*sum_c_x
+        t79 = spin_y*sum_c_z - spin_z*sum_c_y
+        t80 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
+        t81 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
+        t82 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
+        local[N] = (felt_x*mass + spin_y*t75 + spin_y*t77 - spin_z*t78 - sum_c_y*turning_z +
+            sum_c_z*turning_y - sum_cd_y*t76 + sum_cdd_x)
+        local[N + 1] = (felt_y*mass - spin_x*t75 - spin_x*t77 + spin_z*t79 + sum_c_x*turning_z -
+            sum_c_z*turning_x + sum_cd_x*t76 + sum_cdd_y)
+        local[N + 2] = (felt_z*mass + 2*spin_x*sum_cd_y + spin_x*t78 - 2*spin_y*sum_cd_x -
+            spin_y*t79 - sum_c_x*turning_y + sum_c_y*turning_x + sum_cdd_z)
         local[N + 3] = (-felt_y*sum_c_z + felt_z*sum_c_y + spin_x*sum_Jd_xx + spin_y*sum_Jd_xy +
-            spin_y*sum_spun_z + spin_y*t100 + spin_z*sum_Jd_xz - spin_z*sum_spun_y - spin_z*t101 +
+            spin_y*sum_spun_z + spin_y*t80 + spin_z*sum_Jd_xz - spin_z*sum_spun_y - spin_z*t81 +
             sum_J_xx*turning_x + sum_J_xy*turning_y + sum_J_xz*turning_z + sum_accelerated_x +
             sum_coupled_x)
         local[N + 4] = (felt_x*sum_c_z - felt_z*sum_c_x + spin_x*sum_Jd_xy - spin_x*sum_spun_z -
-            spin_x*t100 + spin_y*sum_Jd_yy + spin_z*sum_Jd_yz + spin_z*sum_spun_x + spin_z*t102 +
+            spin_x*t80 + spin_y*sum_Jd_yy + spin_z*sum_Jd_yz + spin_z*sum_spun_x + spin_z*t82 +
             sum_J_xy*turning_x + sum_J_yy*turning_y + sum_J_yz*turning_z + sum_accelerated_y +
             sum_coupled_y)
         local[N + 5] = (-felt_x*sum_c_y + felt_y*sum_c_x + spin_x*sum_Jd_xz + spin_x*sum_spun_y +
-            spin_x*t101 + spin_y*sum_Jd_yz - spin_y*sum_spun_x - spin_y*t102 + spin_z*sum_Jd_zz +
+            spin_x*t81 + spin_y*sum_Jd_yz - spin_y*sum_spun_x - spin_y*t82 + spin_z*sum_Jd_zz +
             sum_J_xz*turning_x + sum_J_yz*turning_y + sum_J_zz*turning_z + sum_accelerated_z +
             sum_coupled_z)
         # forces conjugate to y
@@ -635,15 +611,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t103 = X_z + u_z
-            t104 = X_y + u_y
-            t105 = X_x + u_x
+            t83 = X_z + u_z
+            t84 = X_y + u_y
+            t85 = X_x + u_x
             F_x += -f_x
             F_y += -f_y
             F_z += -f_z
-            W_x += f_y*t103 - f_z*t104
-            W_y += -f_x*t103 + f_z*t105
-            W_z += f_x*t104 - f_y*t105
+            W_x += f_y*t83 - f_z*t84
+            W_y += -f_x*t83 + f_z*t85
+            W_z += f_x*t84 - f_y*t85
         # inertia and weight on the frame
         turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
             turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
@@ -661,21 +637,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t106 = -m_x*psi_y + m_y*psi_x
-            t107 = m_x*psi_z
-            t108 = -m_z*psi_x + t107
-            t109 = -m_y*psi_z + m_z*psi_y
-            W_x += -e0*psi_y*t106 + e0*psi_z*t108 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-            W_y += e0*psi_x*t106 - e0*psi_z*t109 - m_y + (0.5)*m_z*psi_x - 0.5*t107
-            W_z += -e0*psi_x*t108 + e0*psi_y*t109 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+            t86 = -m_x*psi_y + m_y*psi_x
+            t87 = m_x*psi_z
+            t88 = -m_z*psi_x + t87
+            t89 = -m_y*psi_z + m_z*psi_y
+            W_x += -e0*psi_y*t86 + e0*psi_z*t88 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+            W_y += e0*psi_x*t86 - e0*psi_z*t89 - m_y + (0.5)*m_z*psi_x - 0.5*t87
+            W_z += -e0*psi_x*t88 + e0*psi_y*t89 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
         # B^T wp = W
         rhs_x = rhs_y = rhs_z = 0.0
-        t110 = W_x + rhs_x
-        t111 = W_y + rhs_y
-        t112 = W_z + rhs_z
-        wp_x = Bxx*t110 + Byx*t111 + Bzx*t112
-        wp_y = Bxy*t110 + Byy*t111 + Bzy*t112
-        wp_z = Bxz*t110 + Byz*t111 + Bzz*t112
+        t90 = W_x + rhs_x
+        t91 = W_y + rhs_y
+        t92 = W_z + rhs_z
+        wp_x = Bxx*t90 + Byx*t91 + Bzx*t92
+        wp_y = Bxy*t90 + Byy*t91 + Bzy*t92
+        wp_z = Bxz*t90 + Byz*t91 + Bzz*t92
         # force on the nodes in frame axes, (30), (57)
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -698,30 +674,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t113 = m_y*psi_z
-            t114 = m_x*psi_y
-            t115 = m_y*psi_x - t114
-            t116 = e0*psi_y
-            t117 = m_x*psi_z
-            t118 = m_z*psi_x
-            t119 = t117 - t118
-            t120 = e0*psi_z
-            t121 = psi_y*wp_z
-            t122 = psi_z*wp_y
-            t123 = psi_x*wp_y
-            t124 = psi_y*wp_x
-            t125 = t123 - t124
-            t126 = psi_x*wp_z
-            t127 = psi_z*wp_x - t126
-            t128 = m_z*psi_y - t113
-            t129 = e0*psi_x
-            t130 = t121 - t122
-            g[j3] = (alpha_r*(t116*t125 - t120*t127 - 0.5*t121 + (0.5)*t122 + wp_x) + m_x -
-                0.5*m_z*psi_y + (0.5)*t113 + t115*t116 - t119*t120)
-            g[j3 + 1] = (alpha_r*(-0.5*psi_z*wp_x + t120*t130 - t125*t129 + (0.5)*t126 + wp_y) +
-                m_y - t115*t129 - 0.5*t117 + (0.5)*t118 + t120*t128)
-            g[j3 + 2] = (alpha_r*(-t116*t130 - 0.5*t123 + (0.5)*t124 + t127*t129 + wp_z) -
-                0.5*m_y*psi_x + m_z + (0.5)*t114 - t116*t128 + t119*t129)
+            t93 = alpha_r*wp_y + m_y
+            t94 = psi_z*t93
+            t95 = alpha_r*wp_z + m_z
+            t96 = psi_y*t95
+            t97 = psi_x*t93
+            t98 = alpha_r*wp_x + m_x
+            t99 = psi_y*t98
+            t100 = e0*(t97 - t99)
+            t101 = psi_x*t95
+            t102 = psi_z*t98 - t101
+            t103 = e0*psi_z
+            t104 = -t94 + t96
+            g[j3] = psi_y*t100 - t102*t103 + (0.5)*t94 - 0.5*t96 + t98
+            g[j3 + 1] = -psi_x*t100 - 0.5*psi_z*t98 + (0.5)*t101 + t103*t104 + t93
+            g[j3 + 2] = e0*psi_x*t102 - e0*psi_y*t104 + t95 - 0.5*t97 + (0.5)*t99
         # force of the internal modes
         for k in range(MODES, n):
             fm = s[k]
@@ -745,47 +712,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             moving = squares[0]
             elastic = squares[1]
-            t131 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
-            t132 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
-            t133 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
-            t134 = spin_x*sum_c_y - spin_y*sum_c_x + sum_cd_z
-            t135 = turn_xz*v0_x + turn_yz*v0_y + turn_zz*v0_z
-            t136 = -spin_x*sum_c_z + spin_z*sum_c_x + sum_cd_y
-            t137 = turn_xy*v0_x + turn_yy*v0_y + turn_zy*v0_z
-            t138 = spin_y*sum_c_z - spin_z*sum_c_y + sum_cd_x
-            t139 = turn_xx*v0_x + turn_yx*v0_y + turn_zx*v0_z
-            t140 = mass*x0_x
-            t141 = mass*x0_y
-            t142 = mass*x0_z
-            t143 = mass*t139 + t138
-            t144 = mass*t137 + t136
-            t145 = mass*t135 + t134
-            t146 = t143*turn_xx + t144*turn_xy + t145*turn_xz
-            t147 = t143*turn_yx + t144*turn_yy + t145*turn_yz
-            t148 = t143*turn_zx + t144*turn_zy + t145*turn_zz
-            t149 = R0_xx*t146 + R0_xy*t147 + R0_xz*t148
-            t150 = R0_yx*t146 + R0_yy*t147 + R0_yz*t148
-            t151 = R0_zx*t146 + R0_zy*t147 + R0_zz*t148
-            t152 = sum_c_y*t135 - sum_c_z*t137 + sum_spun_x + t131
-            t153 = -sum_c_x*t135 + sum_c_z*t139 + sum_spun_y + t132
-            t154 = sum_c_x*t137 - sum_c_y*t139 + sum_spun_z + t133
-            t155 = t152*turn_xx + t153*turn_xy + t154*turn_xz
-            t156 = t152*turn_yx + t153*turn_yy + t154*turn_yz
-            t157 = t152*turn_zx + t153*turn_zy + t154*turn_zz
-            kinetic = ((0.5)*mass*(t135*t135 + t137*t137 + t139*t139) + (0.5)*moving +
-                spin_x*sum_spun_x + (0.5)*spin_x*t131 + spin_y*sum_spun_y + (0.5)*spin_y*t132 +
-                spin_z*sum_spun_z + (0.5)*spin_z*t133 + t134*t135 + t136*t137 + t138*t139)
+            t105 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
+            t106 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
+            t107 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
+            t108 = spin_x*sum_c_y - spin_y*sum_c_x + sum_cd_z
+            t109 = turn_xz*v0_x + turn_yz*v0_y + turn_zz*v0_z
+            t110 = -spin_x*sum_c_z + spin_z*sum_c_x + sum_cd_y
+            t111 = turn_xy*v0_x + turn_yy*v0_y + turn_zy*v0_z
+            t112 = spin_y*sum_c_z - spin_z*sum_c_y + sum_cd_x
+            t113 = turn_xx*v0_x + turn_yx*v0_y + turn_zx*v0_z
+            t114 = mass*x0_x
+            t115 = mass*x0_y
+            t116 = mass*x0_z
+            t117 = mass*t113 + t112
+            t118 = mass*t111 + t110
+            t119 = mass*t109 + t108
+            t120 = t117*turn_xx + t118*turn_xy + t119*turn_xz
+            t121 = t117*turn_yx + t118*turn_yy + t119*turn_yz
+            t122 = t117*turn_zx + t118*turn_zy + t119*turn_zz
+            t123 = R0_xx*t120 + R0_xy*t121 + R0_xz*t122
+            t124 = R0_yx*t120 + R0_yy*t121 + R0_yz*t122
+            t125 = R0_zx*t120 + R0_zy*t121 + R0_zz*t122
+            t126 = sum_c_y*t109 - sum_c_z*t111 + sum_spun_x + t105
+            t127 = -sum_c_x*t109 + sum_c_z*t113 + sum_spun_y + t106
+            t128 = sum_c_x*t111 - sum_c_y*t113 + sum_spun_z + t107
+            t129 = t126*turn_xx + t127*turn_xy + t128*turn_xz
+            t130 = t126*turn_yx + t127*turn_yy + t128*turn_yz
+            t131 = t126*turn_zx + t127*turn_zy + t128*turn_zz
+            kinetic = ((0.5)*mass*(t109*t109 + t111*t111 + t113*t113) + (0.5)*moving +
+                spin_x*sum_spun_x + (0.5)*spin_x*t105 + spin_y*sum_spun_y + (0.5)*spin_y*t106 +
+                spin_z*sum_spun_z + (0.5)*spin_z*t107 + t108*t109 + t110*t111 + t112*t113)
             strain = (0.5)*elastic + stiffened
-            potential = (-gamma_x*(R0_xx*t140 + R0_yx*t141 + R0_zx*t142 + sum_c_x*turn_xx +
-                sum_c_y*turn_xy + sum_c_z*turn_xz) - gamma_y*(R0_xy*t140 + R0_yy*t141 + R0_zy*t142
-                + sum_c_x*turn_yx + sum_c_y*turn_yy + sum_c_z*turn_yz) - gamma_z*(R0_xz*t140 +
-                R0_yz*t141 + R0_zz*t142 + sum_c_x*turn_zx + sum_c_y*turn_zy + sum_c_z*turn_zz))
-            P_x = t149
-            P_y = t150
-            P_z = t151
-            H_x = R0_xx*t155 + R0_xy*t156 + R0_xz*t157 - t150*x0_z + t151*x0_y
-            H_y = R0_yx*t155 + R0_yy*t156 + R0_yz*t157 + t149*x0_z - t151*x0_x
-            H_z = R0_zx*t155 + R0_zy*t156 + R0_zz*t157 - t149*x0_y + t150*x0_x
+            potential = (-gamma_x*(R0_xx*t114 + R0_yx*t115 + R0_zx*t116 + sum_c_x*turn_xx +
+                sum_c_y*turn_xy + sum_c_z*turn_xz) - gamma_y*(R0_xy*t114 + R0_yy*t115 + R0_zy*t116
+                + sum_c_x*turn_yx + sum_c_y*turn_yy + sum_c_z*turn_yz) - gamma_z*(R0_xz*t114 +
+                R0_yz*t115 + R0_zz*t116 + sum_c_x*turn_zx + sum_c_y*turn_zy + sum_c_z*turn_zz))
+            P_x = t123
+            P_y = t124
+            P_z = t125
+            H_x = R0_xx*t129 + R0_xy*t130 + R0_xz*t131 - t124*x0_z + t125*x0_y
+            H_y = R0_yx*t129 + R0_yy*t130 + R0_yz*t131 + t123*x0_z - t125*x0_x
+            H_z = R0_zx*t129 + R0_zy*t130 + R0_zz*t131 - t123*x0_y + t124*x0_x
             energies[KINETIC] += kinetic
             energies[STRAIN] += strain
             energies[POTENTIAL] += potential
@@ -841,12 +808,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # factors of the local tangents
             turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
-            t158 = 2*c_geo*spin_x
+            t132 = 2*c_geo*spin_x
             by_couplings[0] = -c_geo*spin_x*spin_x
             by_couplings[1] = -c_geo*spin_y*spin_y
             by_couplings[2] = -c_geo*spin_z*spin_z
-            by_couplings[3] = -spin_y*t158
-            by_couplings[4] = -spin_z*t158
+            by_couplings[3] = -spin_y*t132
+            by_couplings[4] = -spin_z*t132
             by_couplings[5] = -2*c_geo*spin_y*spin_z
             by_couplings[6] = c_geo*turning_x
             by_couplings[7] = c_geo*turning_y
@@ -914,55 +881,55 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 row_jd_xx, row_jd_yy, row_jd_zz, row_jd_xy, row_jd_xz, row_jd_yz = (more[i],
                     more[hN + i], more[2*hN + i], more[3*hN + i], more[4*hN + i], more[5*hN + i])
                 row_wa_x, row_wa_y, row_wa_z = more[12*hN + i], more[13*hN + i], more[14*hN + i]
-                t159 = row_S1_x*spin_z
-                t160 = row_S1_z*spin_x
-                t161 = t159 - t160
-                t162 = row_S1_x*spin_y
-                t163 = row_S1_y*spin_x - t162
-                t164 = row_S1_y*spin_z
-                t165 = row_S1_z*spin_y - t164
-                t166 = 2*spin_x
-                t167 = 2*spin_y
-                t168 = 2*spin_z
-                t169 = row_h_xx + 2*row_j_xx
-                t170 = row_h_xy + 2*row_j_xy
-                t171 = row_h_xz + 2*row_j_xz
-                t172 = row_h_yz + 2*row_j_yz
-                t173 = row_h_zz + 2*row_j_zz
-                t174 = spin_x*t171 + spin_y*t172 + spin_z*t173
-                t175 = row_h_yy + 2*row_j_yy
-                t176 = spin_x*t170 + spin_y*t175 + spin_z*t172
-                t177 = spin_x*t169 + spin_y*t170 + spin_z*t171
-                t178 = row_g_z + row_u_z
-                t179 = row_g_y + row_u_y
-                t180 = row_g_x + row_u_x
-                Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t163 -
-                    spin_z*t161))
-                Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t163
-                    + spin_z*t165))
+                t133 = row_S1_x*spin_z
+                t134 = row_S1_z*spin_x
+                t135 = t133 - t134
+                t136 = row_S1_x*spin_y
+                t137 = row_S1_y*spin_x - t136
+                t138 = row_S1_y*spin_z
+                t139 = row_S1_z*spin_y - t138
+                t140 = 2*spin_x
+                t141 = 2*spin_y
+                t142 = 2*spin_z
+                t143 = row_h_xx + 2*row_j_xx
+                t144 = row_h_xy + 2*row_j_xy
+                t145 = row_h_xz + 2*row_j_xz
+                t146 = row_h_yz + 2*row_j_yz
+                t147 = row_h_zz + 2*row_j_zz
+                t148 = spin_x*t145 + spin_y*t146 + spin_z*t147
+                t149 = row_h_yy + 2*row_j_yy
+                t150 = spin_x*t144 + spin_y*t149 + spin_z*t146
+                t151 = spin_x*t143 + spin_y*t144 + spin_z*t145
+                t152 = row_g_z + row_u_z
+                t153 = row_g_y + row_u_y
+                t154 = row_g_x + row_u_x
+                Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t137 -
+                    spin_z*t135))
+                Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t137
+                    + spin_z*t139))
                 Lz[i*deep + N + 2] = (c_geo*(-row_S1_x*turning_y + row_S1_y*turning_x +
-                    spin_x*t161 - spin_y*t165))
-                Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t166 +
-                    row_jd_xy*t167 + row_jd_xz*t168 - row_w_y*spin_z + row_w_z*spin_y + row_wa_x +
-                    spin_y*t174 - spin_z*t176 + t169*turning_x + t170*turning_y + t171*turning_z))
-                Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t166 +
-                    row_jd_yy*t167 + row_jd_yz*t168 + row_w_x*spin_z - row_w_z*spin_x + row_wa_y -
-                    spin_x*t174 + spin_z*t177 + t170*turning_x + t172*turning_z + t175*turning_y))
-                Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t166 +
-                    row_jd_yz*t167 + row_jd_zz*t168 - row_w_x*spin_y + row_w_y*spin_x + row_wa_z +
-                    spin_x*t176 - spin_y*t177 + t171*turning_x + t172*turning_y + t173*turning_z))
-                Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t164
-                Lv[i*deep + N + 1] = 2*t159 - 2*t160
-                Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t162
-                Lv[i*deep + N + 3] = row_v_x + row_w_x + spin_y*t178 - spin_z*t179 + t177
-                Lv[i*deep + N + 4] = row_v_y + row_w_y - spin_x*t178 + spin_z*t180 + t176
-                Lv[i*deep + N + 5] = row_v_z + row_w_z + spin_x*t179 - spin_y*t180 + t174
+                    spin_x*t135 - spin_y*t139))
+                Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t140 +
+                    row_jd_xy*t141 + row_jd_xz*t142 - row_w_y*spin_z + row_w_z*spin_y + row_wa_x +
+                    spin_y*t148 - spin_z*t150 + t143*turning_x + t144*turning_y + t145*turning_z))
+                Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t140 +
+                    row_jd_yy*t141 + row_jd_yz*t142 + row_w_x*spin_z - row_w_z*spin_x + row_wa_y -
+                    spin_x*t148 + spin_z*t151 + t144*turning_x + t146*turning_z + t149*turning_y))
+                Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t140 +
+                    row_jd_yz*t141 + row_jd_zz*t142 - row_w_x*spin_y + row_w_y*spin_x + row_wa_z +
+                    spin_x*t150 - spin_y*t151 + t145*turning_x + t146*turning_y + t147*turning_z))
+                Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t138
+                Lv[i*deep + N + 1] = 2*t133 - 2*t134
+                Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t136
+                Lv[i*deep + N + 3] = row_v_x + row_w_x + spin_y*t152 - spin_z*t153 + t151
+                Lv[i*deep + N + 4] = row_v_y + row_w_y - spin_x*t152 + spin_z*t154 + t150
+                Lv[i*deep + N + 5] = row_v_z + row_w_z + spin_x*t153 - spin_y*t154 + t148
                 La[i*deep + N] = row_S1_x
                 La[i*deep + N + 1] = row_S1_y
                 La[i*deep + N + 2] = row_S1_z
-                La[i*deep + N + 3] = t180
-                La[i*deep + N + 4] = t179
-                La[i*deep + N + 5] = t178
+                La[i*deep + N + 3] = t154
+                La[i*deep + N + 4] = t153
+                La[i*deep + N + 5] = t152
             # local tangents: motion of the frame
             for i in range(N):
                 spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
@@ -982,14 +949,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     products[11*hN + i])
                 row_w_x, row_w_y, row_w_z = (products[12*hN + i], products[13*hN + i],
                     products[14*hN + i])
-                t181 = row_h_xy + 2*row_j_xy
-                t182 = row_h_xz + 2*row_j_xz
-                t183 = row_h_yz + 2*row_j_yz
-                Lv[N*deep + i] = (row_v_x - row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t181
-                    - spin_z*t182)
-                Lv[(N + 1)*deep + i] = (row_v_y - row_w_y - spin_x*t181 - spin_y*(row_h_yy +
-                    2*row_j_yy) - spin_z*t183)
-                Lv[(N + 2)*deep + i] = (row_v_z - row_w_z - spin_x*t182 - spin_y*t183 -
+                t155 = row_h_xy + 2*row_j_xy
+                t156 = row_h_xz + 2*row_j_xz
+                t157 = row_h_yz + 2*row_j_yz
+                Lv[N*deep + i] = (row_v_x - row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t155
+                    - spin_z*t156)
+                Lv[(N + 1)*deep + i] = (row_v_y - row_w_y - spin_x*t155 - spin_y*(row_h_yy +
+                    2*row_j_yy) - spin_z*t157)
+                Lv[(N + 2)*deep + i] = (row_v_z - row_w_z - spin_x*t156 - spin_y*t157 -
                     spin_z*(row_h_zz + 2*row_j_zz))
                 La[N*deep + i] = row_S1_x
                 La[(N + 1)*deep + i] = row_S1_y
@@ -1000,79 +967,79 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # local tangents: force on the frame by its motion
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             mass = masses[0]
-            t184 = spin_y*sum_c_y
-            t185 = spin_z*sum_c_z
-            t186 = 2*sum_cd_z
-            t187 = spin_x*sum_c_y
-            t188 = 2*sum_cd_y
-            t189 = spin_z*sum_c_x
-            t190 = spin_y*sum_J_xz
-            t191 = spin_z*sum_J_xy
-            t192 = spin_y*sum_J_yz
-            t193 = spin_x*sum_J_xz
-            t194 = spin_z*sum_J_zz + sum_spun_z
-            t195 = spin_z*sum_J_yz
-            t196 = spin_x*sum_J_xy
-            t197 = spin_y*sum_J_yy + sum_spun_y
-            t198 = spin_x*sum_c_x
-            t199 = 2*sum_cd_x
-            t200 = spin_y*sum_c_z
-            t201 = spin_x*sum_J_yz
-            t202 = spin_z*sum_J_xz
-            t203 = spin_y*sum_J_xy
-            t204 = spin_x*sum_J_xx + sum_spun_x
-            t205 = -sum_c_y
-            t206 = -sum_c_z
-            t207 = -sum_c_x
-            Lv[N*deep + N] = t184 + t185
-            Lv[N*deep + N + 1] = spin_y*sum_c_x - t186 - 2*t187
-            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t188 + t189
-            Lv[N*deep + N + 3] = sum_Jd_xx + t190 - t191
-            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t192 - 2*t193 - t194
-            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t195 + 2*t196 + t197
-            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t186 + t187
-            Lv[(N + 1)*deep + N + 1] = t185 + t198
-            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t199 - 2*t200
-            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t192 + t193 + t194
-            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t191 - t201
-            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t202 - 2*t203 - t204
-            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t188 - 2*t189
-            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t199 + t200
-            Lv[(N + 2)*deep + N + 2] = t184 + t198
-            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t195 - t196 - t197
-            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t202 + t203 + t204
-            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t190 + t201
+            t158 = spin_y*sum_c_y
+            t159 = spin_z*sum_c_z
+            t160 = 2*sum_cd_z
+            t161 = spin_x*sum_c_y
+            t162 = 2*sum_cd_y
+            t163 = spin_z*sum_c_x
+            t164 = spin_y*sum_J_xz
+            t165 = spin_z*sum_J_xy
+            t166 = spin_y*sum_J_yz
+            t167 = spin_x*sum_J_xz
+            t168 = spin_z*sum_J_zz + sum_spun_z
+            t169 = spin_z*sum_J_yz
+            t170 = spin_x*sum_J_xy
+            t171 = spin_y*sum_J_yy + sum_spun_y
+            t172 = spin_x*sum_c_x
+            t173 = 2*sum_cd_x
+            t174 = spin_y*sum_c_z
+            t175 = spin_x*sum_J_yz
+            t176 = spin_z*sum_J_xz
+            t177 = spin_y*sum_J_xy
+            t178 = spin_x*sum_J_xx + sum_spun_x
+            t179 = -sum_c_y
+            t180 = -sum_c_z
+            t181 = -sum_c_x
+            Lv[N*deep + N] = t158 + t159
+            Lv[N*deep + N + 1] = spin_y*sum_c_x - t160 - 2*t161
+            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t162 + t163
+            Lv[N*deep + N + 3] = sum_Jd_xx + t164 - t165
+            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t166 - 2*t167 - t168
+            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t169 + 2*t170 + t171
+            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t160 + t161
+            Lv[(N + 1)*deep + N + 1] = t159 + t172
+            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t173 - 2*t174
+            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t166 + t167 + t168
+            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t165 - t175
+            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t176 - 2*t177 - t178
+            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t162 - 2*t163
+            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t173 + t174
+            Lv[(N + 2)*deep + N + 2] = t158 + t172
+            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t169 - t170 - t171
+            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t176 + t177 + t178
+            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t164 + t175
             La[N*deep + N] = mass
             La[N*deep + N + 1] = 0.0
             La[N*deep + N + 2] = 0.0
             La[N*deep + N + 3] = 0.0
             La[N*deep + N + 4] = sum_c_z
-            La[N*deep + N + 5] = t205
+            La[N*deep + N + 5] = t179
             La[(N + 1)*deep + N] = 0.0
             La[(N + 1)*deep + N + 1] = mass
             La[(N + 1)*deep + N + 2] = 0.0
-            La[(N + 1)*deep + N + 3] = t206
+            La[(N + 1)*deep + N + 3] = t180
             La[(N + 1)*deep + N + 4] = 0.0
             La[(N + 1)*deep + N + 5] = sum_c_x
             La[(N + 2)*deep + N] = 0.0
             La[(N + 2)*deep + N + 1] = 0.0
             La[(N + 2)*deep + N + 2] = mass
             La[(N + 2)*deep + N + 3] = sum_c_y
-            La[(N + 2)*deep + N + 4] = t207
+            La[(N + 2)*deep + N + 4] = t181
             La[(N + 2)*deep + N + 5] = 0.0
             La[(N + 3)*deep + N] = 0.0
-            La[(N + 3)*deep + N + 1] = t206
+            La[(N + 3)*deep + N + 1] = t180
             La[(N + 3)*deep + N + 2] = sum_c_y
             La[(N + 3)*deep + N + 3] = sum_J_xx
             La[(N + 3)*deep + N + 4] = sum_J_xy
             La[(N + 3)*deep + N + 5] = sum_J_xz
             La[(N + 4)*deep + N] = sum_c_z
             La[(N + 4)*deep + N + 1] = 0.0
-            La[(N + 4)*deep + N + 2] = t207
+            La[(N + 4)*deep + N + 2] = t181
             La[(N + 4)*deep + N + 3] = sum_J_xy
             La[(N + 4)*deep + N + 4] = sum_J_yy
             La[(N + 4)*deep + N + 5] = sum_J_yz
-            La[(N + 5)*deep + N] = t205
+            La[(N + 5)*deep + N] = t179
             La[(N + 5)*deep + N + 1] = sum_c_x
             La[(N + 5)*deep + N + 2] = 0.0
             La[(N + 5)*deep + N + 3] = sum_J_xz
@@ -1110,16 +1077,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t208 = -dth_x*psi_y + dth_y*psi_x
-                    t209 = dth_x*psi_z
-                    t210 = -dth_z*psi_x + t209
-                    t211 = -dth_y*psi_z + dth_z*psi_y
+                    t182 = -dth_x*psi_y + dth_y*psi_x
+                    t183 = dth_x*psi_z
+                    t184 = -dth_z*psi_x + t183
+                    t185 = -dth_y*psi_z + dth_z*psi_y
                     rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y -
-                        e0*psi_y*t208 + e0*psi_z*t210))
-                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t208 - e0*psi_z*t211
-                        - 0.5*t209))
+                        e0*psi_y*t182 + e0*psi_z*t184))
+                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t182 - e0*psi_z*t185
+                        - 0.5*t183))
                     rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z -
-                        e0*psi_x*t210 + e0*psi_y*t211))
+                        e0*psi_x*t184 + e0*psi_y*t185))
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1129,43 +1096,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    t212 = X_y + u_y
-                    t213 = X_z + u_z
-                    t214 = X_x + u_x
-                    dy[i3] = -dth0_y*t213 + dth0_z*t212 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t213 - dth0_z*t214 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t212 + dth0_y*t214 - dx0_z + dx_z
+                    t186 = X_y + u_y
+                    t187 = X_z + u_z
+                    t188 = X_x + u_x
+                    dy[i3] = -dth0_y*t187 + dth0_z*t186 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t187 - dth0_z*t188 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t186 + dth0_y*t188 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t215 = dth0_y*psi_z
-                    t216 = dth_y*psi_z
-                    t217 = dth0_x*psi_y
-                    t218 = dth0_y*psi_x - t217
-                    t219 = e0*psi_y
-                    t220 = dth_x*psi_z
-                    t221 = dth_z*psi_x
-                    t222 = t220 - t221
-                    t223 = e0*psi_z
-                    t224 = dth_x*psi_y
-                    t225 = dth_y*psi_x - t224
-                    t226 = dth0_x*psi_z
-                    t227 = dth0_z*psi_x
-                    t228 = t226 - t227
-                    t229 = e0*psi_x
-                    t230 = dth_z*psi_y - t216
-                    t231 = dth0_z*psi_y - t215
-                    dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t225 + e0*psi_z*t228 - 0.5*t215 - 0.5*t216 - t218*t219 -
-                        t222*t223)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t218*t229 + (0.5)*t220 - 0.5*t221 + t223*t230
-                        - t223*t231 - t225*t229 + (0.5)*t226 - 0.5*t227)
-                    dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t222 + e0*psi_y*t231 - 0.5*t217 - t219*t230 - 0.5*t224 -
-                        t228*t229)
+                    t189 = (0.5)*dth0_z + (0.5)*dth_z
+                    t190 = dth0_y + dth_y
+                    t191 = (0.5)*psi_z
+                    t192 = -dth0_y + dth_y
+                    t193 = -dth0_x + dth_x
+                    t194 = psi_x*t192 - psi_y*t193
+                    t195 = -dth0_z + dth_z
+                    t196 = -psi_x*t195 + psi_z*t193
+                    t197 = dth0_x + dth_x
+                    t198 = psi_y*t195 - psi_z*t192
+                    dy[j3] = -dth0_x + dth_x + e0*(psi_y*t194 - psi_z*t196) + psi_y*t189 - t190*t191
+                    dy[j3 + 1] = (-dth0_y + dth_y + e0*(-psi_x*t194 + psi_z*t198) - psi_x*t189 +
+                        t191*t197)
+                    dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t196 - psi_y*t198) +
+                        (0.5)*psi_x*t190 - 0.5*psi_y*t197)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
@@ -1207,47 +1164,57 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t232 = -Om_x*psi_y + Om_y*psi_x
+                    t199 = (0.5)*dpsi_y
+                    t200 = (0.5)*psi_z
+                    t201 = e0*psi_x
+                    t202 = psi_y*t201
+                    t203 = (0.5)*psi_y
+                    t204 = psi_z*t201
+                    t205 = Om0_x*psi_z - Om0_z*psi_x
+                    t206 = Om0_x*dpsi_z - Om0_z*dpsi_x
+                    t207 = -Om0_x*psi_y + Om0_y*psi_x
+                    t208 = -Om0_x*dpsi_y + Om0_y*dpsi_x
+                    t209 = psi_y*psi_y
+                    t210 = e0*t209
+                    t211 = psi_z*psi_z
+                    t212 = e0*t211 - 1
+                    t213 = 2*dpsi_x*psi_x
+                    t214 = 2*dpsi_y*psi_y
+                    t215 = 2*dpsi_z*psi_z
+                    t216 = t213 + t214 + t215
+                    t217 = e1*t216
+                    t218 = (0.5)*dpsi_z
+                    t219 = dpsi_x*e0
+                    t220 = psi_x*t217
+                    t221 = dpsi_y*t201 + psi_y*t219 + psi_y*t220
+                    t222 = dpsi_z*t201 + psi_z*t219 + psi_z*t220
+                    t223 = e0*t215 + t211*t217
+                    t224 = e0*t214 + t209*t217
+                    t225 = (0.5)*psi_x
+                    t226 = e0*psi_y
+                    t227 = psi_z*t226
+                    t228 = -Om0_y*psi_z + Om0_z*psi_y
+                    t229 = -Om0_y*dpsi_z + Om0_z*dpsi_y
+                    t230 = psi_x*psi_x
+                    t231 = e0*t230
+                    t232 = (0.5)*dpsi_x
                     t233 = dpsi_y*e0
-                    t234 = Om0_x*psi_z - Om0_z*psi_x
-                    t235 = dpsi_z*e0
-                    t236 = Om0_x*dpsi_z
-                    t237 = -Om0_z*dpsi_x + t236
-                    t238 = e0*psi_z
-                    t239 = -Om0_x*psi_y + Om0_y*psi_x
-                    t240 = Om_x*psi_z - Om_z*psi_x
-                    t241 = -Om0_x*dpsi_y + Om0_y*dpsi_x
-                    t242 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t243 = e0*psi_y
-                    t244 = Om_x*dpsi_z
-                    t245 = dOm_x*psi_z
-                    t246 = -Om_z*dpsi_x - dOm_z*psi_x + t244 + t245
-                    t247 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t248 = e1*t247
-                    t249 = psi_y*t248
-                    t250 = psi_z*t248
-                    t251 = dpsi_x*e0
-                    t252 = -Om_y*psi_z + Om_z*psi_y
-                    t253 = e0*psi_x
-                    t254 = -Om0_y*psi_z + Om0_z*psi_y
-                    t255 = -Om0_y*dpsi_z + Om0_z*dpsi_y
-                    t256 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t257 = psi_x*t248
-                    rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - 0.5*Om0_z*dpsi_y + (0.5)*Om_y*dpsi_z
-                        - 0.5*Om_z*dpsi_y - dOm_x + (0.5)*dOm_y*psi_z - 0.5*dOm_z*psi_y +
-                        dpsi_y*e0*t239 + dpsi_z*e0*t240 + e0*psi_y*t241 + e0*psi_z*t246 +
-                        e1*psi_y*t239*t247 + e1*psi_z*t240*t247 - t232*t233 - t232*t249 -
-                        t234*t235 - t234*t250 - t237*t238 - t242*t243))
-                    rhs_y += (-alpha_r*((0.5)*Om0_z*dpsi_x + (0.5)*Om_z*dpsi_x - dOm_y +
-                        (0.5)*dOm_z*psi_x + dpsi_x*e0*t232 + dpsi_z*e0*t254 + e0*psi_x*t242 +
-                        e0*psi_z*t255 + e1*psi_x*t232*t247 + e1*psi_z*t247*t254 - t235*t252 -
-                        0.5*t236 - t238*t256 - t239*t251 - t239*t257 - t241*t253 - 0.5*t244 -
-                        0.5*t245 - t250*t252))
-                    rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x + (0.5)*Om_x*dpsi_y
-                        - 0.5*Om_y*dpsi_x + (0.5)*dOm_x*psi_y - 0.5*dOm_y*psi_x - dOm_z +
-                        dpsi_x*e0*t234 + dpsi_y*e0*t252 + e0*psi_x*t237 + e0*psi_y*t256 +
-                        e1*psi_x*t234*t247 + e1*psi_y*t247*t252 - t233*t254 - t240*t251 -
-                        t240*t257 - t243*t255 - t246*t253 - t249*t254))
+                    t234 = psi_y*t217
+                    t235 = dpsi_z*t226 + psi_z*t233 + psi_z*t234
+                    t236 = e0*t213 + t217*t230
+                    rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - Om0_z*t199 - Om_x*(-t223 - t224) -
+                        Om_y*(-t218 + t221) - Om_z*(t199 + t222) - dOm_x*(-t210 - t212) -
+                        dOm_y*(-t200 + t202) - dOm_z*(t203 + t204) + dpsi_y*e0*t207 -
+                        dpsi_z*e0*t205 + e0*psi_y*t208 - e0*psi_z*t206 + e1*psi_y*t207*t216 -
+                        psi_z*t205*t217))
+                    rhs_y += (-alpha_r*(-Om0_x*t218 + (0.5)*Om0_z*dpsi_x - Om_x*(t218 + t221) -
+                        Om_y*(-t223 - t236) - Om_z*(-t232 + t235) - dOm_x*(t200 + t202) -
+                        dOm_y*(-t212 - t231) - dOm_z*(-t225 + t227) + dpsi_z*e0*t228 +
+                        e0*psi_z*t229 + e1*psi_z*t216*t228 - t201*t208 - t207*t219 - t207*t220))
+                    rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x - Om_x*(-t199 +
+                        t222) - Om_y*(t232 + t235) - Om_z*(-t224 - t236) - dOm_x*(-t203 + t204) -
+                        dOm_y*(t225 + t227) - dOm_z*(-t210 - t231 + 1) + dpsi_x*e0*t205 +
+                        e0*psi_x*t206 + e1*psi_x*t205*t216 - t226*t229 - t228*t233 - t228*t234))
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1280,13 +1247,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t258 = X_y + u_y
-                    t259 = X_z + u_z
-                    t260 = X_x + u_x
-                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t259 + dOm0_z*t258 - dv0_x + dvs_x
-                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t259 - dOm0_z*t260 - dv0_y +
+                    t237 = X_y + u_y
+                    t238 = X_z + u_z
+                    t239 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t238 + dOm0_z*t237 - dv0_x + dvs_x
+                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t238 - dOm0_z*t239 - dv0_y +
                         dvs_y)
-                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t258 + dOm0_y*t260 - dv0_z +
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t237 + dOm0_y*t239 - dv0_z +
                         dvs_z)
                 # differential: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -1297,59 +1264,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t261 = Om0_y*dpsi_z
-                    t262 = Om_y*dpsi_z
-                    t263 = dOm0_y*psi_z
-                    t264 = dOm_y*psi_z
-                    t265 = -Om0_x*psi_y + Om0_y*psi_x
-                    t266 = dpsi_y*e0
-                    t267 = Om_x*psi_z - Om_z*psi_x
-                    t268 = dpsi_z*e0
-                    t269 = -Om_x*psi_y + Om_y*psi_x
-                    t270 = Om0_x*psi_z - Om0_z*psi_x
-                    t271 = Om0_x*dpsi_y
-                    t272 = dOm0_x*psi_y
-                    t273 = Om0_y*dpsi_x + dOm0_y*psi_x - t271 - t272
-                    t274 = e0*psi_y
-                    t275 = Om_x*dpsi_z
-                    t276 = dOm_x*psi_z
-                    t277 = Om_z*dpsi_x
-                    t278 = dOm_z*psi_x
-                    t279 = t275 + t276 - t277 - t278
-                    t280 = e0*psi_z
-                    t281 = Om_x*dpsi_y
-                    t282 = dOm_x*psi_y
-                    t283 = Om_y*dpsi_x + dOm_y*psi_x - t281 - t282
-                    t284 = Om0_x*dpsi_z
-                    t285 = dOm0_x*psi_z
-                    t286 = Om0_z*dpsi_x
-                    t287 = dOm0_z*psi_x
-                    t288 = t284 + t285 - t286 - t287
-                    t289 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t290 = e1*t289
-                    t291 = psi_y*t290
-                    t292 = psi_z*t290
-                    t293 = dpsi_x*e0
-                    t294 = -Om_y*psi_z + Om_z*psi_y
-                    t295 = -Om0_y*psi_z + Om0_z*psi_y
-                    t296 = e0*psi_x
-                    t297 = Om_z*dpsi_y + dOm_z*psi_y - t262 - t264
-                    t298 = Om0_z*dpsi_y + dOm0_z*psi_y - t261 - t263
-                    t299 = psi_x*t290
-                    deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x +
-                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t269 +
-                        dpsi_z*e0*t270 + e0*psi_y*t283 + e0*psi_z*t288 + e1*psi_y*t269*t289 +
-                        e1*psi_z*t270*t289 - 0.5*t261 - 0.5*t262 - 0.5*t263 - 0.5*t264 - t265*t266
-                        - t265*t291 - t267*t268 - t267*t292 - t273*t274 - t279*t280)
-                    deta[j3 + 1] = (-dOm0_y + dOm_y + t265*t293 + t265*t299 + t268*t294 -
-                        t268*t295 - t269*t293 - t269*t299 + t273*t296 + (0.5)*t275 + (0.5)*t276 -
-                        0.5*t277 - 0.5*t278 + t280*t297 - t280*t298 - t283*t296 + (0.5)*t284 +
-                        (0.5)*t285 - 0.5*t286 - 0.5*t287 + t292*t294 - t292*t295)
-                    deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t267 + dpsi_y*e0*t295 +
-                        e0*psi_x*t279 + e0*psi_y*t298 + e1*psi_x*t267*t289 + e1*psi_y*t289*t295 -
-                        t266*t294 - t270*t293 - t270*t299 - 0.5*t271 - 0.5*t272 - t274*t297 -
-                        0.5*t281 - 0.5*t282 - t288*t296 - t291*t294)
+                    t240 = (0.5)*Om0_z + (0.5)*Om_z
+                    t241 = Om0_y + Om_y
+                    t242 = (0.5)*dpsi_z
+                    t243 = (0.5)*dOm0_z + (0.5)*dOm_z
+                    t244 = dOm0_y + dOm_y
+                    t245 = (0.5)*psi_z
+                    t246 = -Om0_y + Om_y
+                    t247 = -Om0_x + Om_x
+                    t248 = psi_x*t246 - psi_y*t247
+                    t249 = -Om0_z + Om_z
+                    t250 = -psi_x*t249 + psi_z*t247
+                    t251 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t252 = -dOm0_y + dOm_y
+                    t253 = -dOm0_x + dOm_x
+                    t254 = dpsi_x*t246 - dpsi_y*t247 + psi_x*t252 - psi_y*t253
+                    t255 = -dOm0_z + dOm_z
+                    t256 = -dpsi_x*t249 + dpsi_z*t247 - psi_x*t255 + psi_z*t253
+                    t257 = Om0_x + Om_x
+                    t258 = dOm0_x + dOm_x
+                    t259 = psi_y*t249 - psi_z*t246
+                    t260 = dpsi_y*t249 - dpsi_z*t246 + psi_y*t255 - psi_z*t252
+                    deta[j3] = (-dOm0_x + dOm_x + dpsi_y*t240 + e0*(dpsi_y*t248 - dpsi_z*t250 +
+                        psi_y*t254 - psi_z*t256) + psi_y*t243 - t241*t242 - t244*t245 +
+                        t251*(psi_y*t248 - psi_z*t250))
+                    deta[j3 + 1] = (-dOm0_y + dOm_y - dpsi_x*t240 + e0*(-dpsi_x*t248 + dpsi_z*t259
+                        - psi_x*t254 + psi_z*t260) - psi_x*t243 + t242*t257 + t245*t258 +
+                        t251*(-psi_x*t248 + psi_z*t259))
+                    deta[j3 + 2] = (-dOm0_z + dOm_z + (0.5)*dpsi_x*t241 - 0.5*dpsi_y*t257 +
+                        e0*(dpsi_x*t250 - dpsi_y*t259 + psi_x*t256 - psi_y*t260) +
+                        (0.5)*psi_x*t244 - 0.5*psi_y*t258 + t251*(psi_x*t250 - psi_y*t259))
                 # differential: rates of the internal modes
                 for k in range(MODES, n):
                     dvm = dve[k]
@@ -1368,128 +1312,74 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     e0 = e0s[j]
                     e1 = e1s[j]
                     e2 = e2s[j]
-                    t300 = A_y*dpsi_z
-                    t301 = Om0_y*dep_z
-                    t302 = Om_y*dep_z
-                    t303 = dA_y*psi_z
-                    t304 = dOm0_y*ep_z
-                    t305 = dOm_y*ep_z
-                    t306 = -Om_x*psi_y + Om_y*psi_x
-                    t307 = dep_y*e0
-                    t308 = Om0_x*psi_z - Om0_z*psi_x
-                    t309 = dep_z*e0
-                    t310 = Om0_x*ep_z - Om0_z*ep_x
-                    t311 = dpsi_z*e0
-                    t312 = -Om0_x*psi_y + Om0_y*psi_x
-                    t313 = Om_x*psi_z - Om_z*psi_x
-                    t314 = -Om0_x*ep_y + Om0_y*ep_x
-                    t315 = dpsi_y*e0
-                    t316 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                    t317 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t318 = e0*ep_y
-                    t319 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                    t320 = e0*ep_z
-                    t321 = Om0_x*dep_z
-                    t322 = dOm0_x*ep_z
-                    t323 = Om0_z*dep_x
-                    t324 = dOm0_z*ep_x
-                    t325 = t321 + t322 - t323 - t324
-                    t326 = e0*psi_z
-                    t327 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                    t328 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                    t329 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                    t330 = Om0_x*dep_y
-                    t331 = dOm0_x*ep_y
-                    t332 = Om0_y*dep_x + dOm0_y*ep_x - t330 - t331
-                    t333 = e0*psi_y
-                    t334 = 2*psi_x
-                    t335 = 2*psi_y
-                    t336 = 2*psi_z
-                    t337 = ep_x*t334 + ep_y*t335 + ep_z*t336
-                    t338 = e1*t337
-                    t339 = dpsi_y*t338
-                    t340 = dpsi_z*t338
-                    t341 = dpsi_x*t334 + dpsi_y*t335 + dpsi_z*t336
-                    t342 = e1*t341
-                    t343 = ep_y*t342
-                    t344 = ep_z*t342
-                    t345 = psi_z*t342
-                    t346 = psi_y*t342
-                    t347 = psi_y*t338
-                    t348 = psi_z*t338
-                    t349 = A_x*dpsi_y
-                    t350 = Om_x*dep_y
-                    t351 = dA_x*psi_y
-                    t352 = dOm_x*ep_y
-                    t353 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t349 - t350 - t351
-                        - t352)
-                    t354 = A_x*dpsi_z
-                    t355 = Om_x*dep_z
-                    t356 = dA_x*psi_z
-                    t357 = dOm_x*ep_z
-                    t358 = A_z*dpsi_x
-                    t359 = Om_z*dep_x
-                    t360 = dA_z*psi_x
-                    t361 = dOm_z*ep_x
-                    t362 = t354 + t355 + t356 + t357 - t358 - t359 - t360 - t361
-                    t363 = (e1*(dep_x*t334 + dep_y*t335 + dep_z*t336 + 2*dpsi_x*ep_x +
+                    t261 = A_y*dpsi_z
+                    t262 = dA_y*psi_z
+                    t263 = (0.5)*Om0_z + (0.5)*Om_z
+                    t264 = Om0_y + Om_y
+                    t265 = (0.5)*dep_z
+                    t266 = (0.5)*dOm0_z + (0.5)*dOm_z
+                    t267 = dOm0_y + dOm_y
+                    t268 = (0.5)*ep_z
+                    t269 = -Om0_y + Om_y
+                    t270 = -Om0_x + Om_x
+                    t271 = psi_x*t269 - psi_y*t270
+                    t272 = -Om0_z + Om_z
+                    t273 = -psi_x*t272 + psi_z*t270
+                    t274 = psi_y*t271 - psi_z*t273
+                    t275 = 2*psi_x
+                    t276 = 2*psi_y
+                    t277 = 2*psi_z
+                    t278 = (e1*(dep_x*t275 + dep_y*t276 + dep_z*t277 + 2*dpsi_x*ep_x +
                         2*dpsi_y*ep_y + 2*dpsi_z*ep_z))
-                    t364 = psi_y*t306
-                    t365 = psi_z*t363
-                    t366 = t312*t363
-                    t367 = e2*t337*t341
-                    t368 = psi_z*t367
-                    t369 = t312*t367
-                    t370 = dep_x*e0
-                    t371 = -Om_y*psi_z + Om_z*psi_y
-                    t372 = dpsi_x*e0
-                    t373 = -Om0_y*psi_z + Om0_z*psi_y
-                    t374 = -Om0_y*ep_z + Om0_z*ep_y
-                    t375 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                    t376 = e0*ep_x
-                    t377 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t378 = e0*psi_x
-                    t379 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                    t380 = Om0_z*dep_y + dOm0_z*ep_y - t301 - t304
-                    t381 = dpsi_x*t338
-                    t382 = ep_x*t342
-                    t383 = psi_x*t342
-                    t384 = psi_x*t338
-                    t385 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t300 - t302 - t303
-                        - t305)
-                    t386 = psi_x*t363
-                    t387 = psi_x*t367
-                    t388 = psi_y*t363
-                    t389 = psi_y*t367
-                    detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om_z*dep_y + dA_x +
-                        (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y + (0.5)*dOm_z*ep_y - psi_y*t366 -
-                        psi_y*t369 - 0.5*t300 - 0.5*t301 - 0.5*t302 - 0.5*t303 - 0.5*t304 -
-                        0.5*t305 + t306*t307 + t306*t339 + t306*t343 - t307*t312 + t308*t309 +
-                        t308*t340 + t308*t344 + t308*t365 + t308*t368 - t309*t313 + t310*t311 +
-                        t310*t345 - t311*t327 - t312*t339 - t312*t343 - t313*t340 - t313*t344 -
-                        t313*t365 - t313*t368 - t314*t315 - t314*t346 + t315*t316 + t316*t346 +
-                        t317*t318 + t317*t347 - t318*t328 + t319*t320 + t319*t348 - t320*t329 +
-                        t325*t326 - t326*t362 - t327*t345 - t328*t347 - t329*t348 - t332*t333 +
-                        t333*t353 + t363*t364 + t364*t367)
-                    detad[j3 + 1] = (dA_y + psi_x*t366 + psi_x*t369 - t306*t370 - t306*t381 -
-                        t306*t382 - t306*t386 - t306*t387 + t309*t371 - t309*t373 - t311*t374 +
-                        t311*t375 + t312*t370 + t312*t381 + t312*t382 + t314*t372 + t314*t383 -
-                        t316*t372 - t316*t383 - t317*t376 - t317*t384 + t320*t377 - t320*t379 +
-                        (0.5)*t321 + (0.5)*t322 - 0.5*t323 - 0.5*t324 - t326*t380 + t326*t385 +
-                        t328*t376 + t328*t384 + t332*t378 + t340*t371 - t340*t373 + t344*t371 -
-                        t344*t373 - t345*t374 + t345*t375 + t348*t377 - t348*t379 - t353*t378 +
-                        (0.5)*t354 + (0.5)*t355 + (0.5)*t356 + (0.5)*t357 - 0.5*t358 - 0.5*t359 -
-                        0.5*t360 - 0.5*t361 + t365*t371 - t365*t373 + t368*t371 - t368*t373)
-                    detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om_y*dep_x +
-                        (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x + (0.5)*dOm_y*ep_x - t307*t371
-                        + t307*t373 - t308*t370 - t308*t381 - t308*t382 - t308*t386 - t308*t387 -
-                        t310*t372 - t310*t383 + t313*t370 + t313*t381 + t313*t382 + t313*t386 +
-                        t313*t387 + t315*t374 - t315*t375 - t318*t377 + t318*t379 - t319*t376 -
-                        t319*t384 - t325*t378 + t327*t372 + t327*t383 + t329*t376 + t329*t384 -
-                        0.5*t330 - 0.5*t331 + t333*t380 - t333*t385 - t339*t371 + t339*t373 -
-                        t343*t371 + t343*t373 + t346*t374 - t346*t375 - t347*t377 + t347*t379 -
-                        0.5*t349 - 0.5*t350 - 0.5*t351 - 0.5*t352 + t362*t378 - t371*t388 -
-                        t371*t389 + t373*t388 + t373*t389)
+                    t279 = dpsi_x*t275 + dpsi_y*t276 + dpsi_z*t277
+                    t280 = ep_x*t275 + ep_y*t276 + ep_z*t277
+                    t281 = e2*t279*t280
+                    t282 = -A_x*psi_y + A_y*psi_x + ep_x*t269 - ep_y*t270
+                    t283 = A_x*psi_z - A_z*psi_x - ep_x*t272 + ep_z*t270
+                    t284 = e1*t279
+                    t285 = -dOm0_y + dOm_y
+                    t286 = -dOm0_x + dOm_x
+                    t287 = dpsi_x*t269 - dpsi_y*t270 + psi_x*t285 - psi_y*t286
+                    t288 = -dOm0_z + dOm_z
+                    t289 = -dpsi_x*t272 + dpsi_z*t270 - psi_x*t288 + psi_z*t286
+                    t290 = e1*t280
+                    t291 = A_x*dpsi_y
+                    t292 = dA_x*psi_y
+                    t293 = (A_y*dpsi_x + dA_y*psi_x + dep_x*t269 - dep_y*t270 + ep_x*t285 -
+                        ep_y*t286 - t291 - t292)
+                    t294 = A_x*dpsi_z
+                    t295 = dA_x*psi_z
+                    t296 = A_z*dpsi_x
+                    t297 = dA_z*psi_x
+                    t298 = (-dep_x*t272 + dep_z*t270 - ep_x*t288 + ep_z*t286 + t294 + t295 - t296
+                        - t297)
+                    t299 = Om0_x + Om_x
+                    t300 = dOm0_x + dOm_x
+                    t301 = psi_y*t272 - psi_z*t269
+                    t302 = -psi_x*t271 + psi_z*t301
+                    t303 = -A_y*psi_z + A_z*psi_y + ep_y*t272 - ep_z*t269
+                    t304 = dpsi_y*t272 - dpsi_z*t269 + psi_y*t288 - psi_z*t285
+                    t305 = (A_z*dpsi_y + dA_z*psi_y + dep_y*t272 - dep_z*t269 + ep_y*t288 -
+                        ep_z*t285 - t261 - t262)
+                    t306 = psi_x*t273 - psi_y*t301
+                    detad[j3] = ((0.5)*A_z*dpsi_y + dA_x + (0.5)*dA_z*psi_y + dep_y*t263 +
+                        e0*(dep_y*t271 - dep_z*t273 + dpsi_y*t282 - dpsi_z*t283 + ep_y*t287 -
+                        ep_z*t289 + psi_y*t293 - psi_z*t298) + ep_y*t266 - 0.5*t261 - 0.5*t262 -
+                        t264*t265 - t267*t268 + t274*t278 + t274*t281 + t284*(ep_y*t271 -
+                        ep_z*t273 + psi_y*t282 - psi_z*t283) + t290*(dpsi_y*t271 - dpsi_z*t273 +
+                        psi_y*t287 - psi_z*t289))
+                    detad[j3 + 1] = (dA_y - dep_x*t263 + e0*(-dep_x*t271 + dep_z*t301 -
+                        dpsi_x*t282 + dpsi_z*t303 - ep_x*t287 + ep_z*t304 - psi_x*t293 +
+                        psi_z*t305) - ep_x*t266 + t265*t299 + t268*t300 + t278*t302 + t281*t302 +
+                        t284*(-ep_x*t271 + ep_z*t301 - psi_x*t282 + psi_z*t303) +
+                        t290*(-dpsi_x*t271 + dpsi_z*t301 - psi_x*t287 + psi_z*t304) + (0.5)*t294 +
+                        (0.5)*t295 - 0.5*t296 - 0.5*t297)
+                    detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*dA_y*psi_x + dA_z + (0.5)*dep_x*t264
+                        - 0.5*dep_y*t299 + e0*(dep_x*t273 - dep_y*t301 + dpsi_x*t283 - dpsi_y*t303
+                        + ep_x*t289 - ep_y*t304 + psi_x*t298 - psi_y*t305) + (0.5)*ep_x*t267 -
+                        0.5*ep_y*t300 + t278*t306 + t281*t306 + t284*(ep_x*t273 - ep_y*t301 +
+                        psi_x*t283 - psi_y*t303) + t290*(dpsi_x*t273 - dpsi_y*t301 + psi_x*t289 -
+                        psi_y*t304) - 0.5*t291 - 0.5*t292)
                 # differential: rate: B rate = sum alpha_j T^-1(psi_j) rate_j
                 rhs_x = rhs_y = rhs_z = 0.0
                 for j in range(N_ROTATIONS):
@@ -1500,31 +1390,31 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t390 = (0.5)*dpsi_z
-                    t391 = dpsi_x*e0
-                    t392 = e0*psi_x
-                    t393 = 2*dpsi_x*psi_x
-                    t394 = 2*dpsi_y*psi_y
-                    t395 = 2*dpsi_z*psi_z
-                    t396 = e1*(t393 + t394 + t395)
-                    t397 = psi_x*t396
-                    t398 = dpsi_y*t392 + psi_y*t391 + psi_y*t397
-                    t399 = Om0d_y*alpha_r
-                    t400 = (0.5)*dpsi_y
-                    t401 = dpsi_z*t392 + psi_z*t391 + psi_z*t397
-                    t402 = Om0d_z*alpha_r
-                    t403 = e0*t395 + psi_z*psi_z*t396
-                    t404 = e0*t394 + psi_y*psi_y*t396
-                    t405 = Om0d_x*alpha_r
-                    t406 = (0.5)*dpsi_x
-                    t407 = dpsi_y*e0*psi_z + dpsi_z*e0*psi_y + psi_y*psi_z*t396
-                    t408 = e0*t393 + psi_x*psi_x*t396
-                    rhs_x += (alpha_r*depd_x - t399*(t390 + t398) - t402*(-t400 + t401) -
-                        t405*(-t403 - t404))
-                    rhs_y += (alpha_r*depd_y - t399*(-t403 - t408) - t402*(t406 + t407) -
-                        t405*(-t390 + t398))
-                    rhs_z += (alpha_r*depd_z - t399*(-t406 + t407) - t402*(-t404 - t408) -
-                        t405*(t400 + t401))
+                    t307 = (0.5)*dpsi_z
+                    t308 = dpsi_x*e0
+                    t309 = e0*psi_x
+                    t310 = 2*dpsi_x*psi_x
+                    t311 = 2*dpsi_y*psi_y
+                    t312 = 2*dpsi_z*psi_z
+                    t313 = e1*(t310 + t311 + t312)
+                    t314 = psi_x*t313
+                    t315 = dpsi_y*t309 + psi_y*t308 + psi_y*t314
+                    t316 = Om0d_y*alpha_r
+                    t317 = (0.5)*dpsi_y
+                    t318 = dpsi_z*t309 + psi_z*t308 + psi_z*t314
+                    t319 = Om0d_z*alpha_r
+                    t320 = e0*t312 + psi_z*psi_z*t313
+                    t321 = e0*t311 + psi_y*psi_y*t313
+                    t322 = Om0d_x*alpha_r
+                    t323 = (0.5)*dpsi_x
+                    t324 = dpsi_y*e0*psi_z + dpsi_z*e0*psi_y + psi_y*psi_z*t313
+                    t325 = e0*t310 + psi_x*psi_x*t313
+                    rhs_x += (alpha_r*depd_x - t316*(t307 + t315) - t319*(-t317 + t318) -
+                        t322*(-t320 - t321))
+                    rhs_y += (alpha_r*depd_y - t316*(-t320 - t325) - t319*(t323 + t324) -
+                        t322*(-t307 + t315))
+                    rhs_z += (alpha_r*depd_z - t316*(-t323 + t324) - t319*(-t321 - t325) -
+                        t322*(t317 + t318))
                 dOm0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1536,44 +1426,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t409 = (0.5)*psi_z
-                    t410 = e0*psi_x
-                    t411 = psi_y*t410
-                    t412 = (0.5)*psi_y
-                    t413 = psi_z*t410
-                    t414 = psi_y*psi_y
-                    t415 = e0*t414
-                    t416 = psi_z*psi_z
-                    t417 = e0*t416 - 1
-                    t418 = (0.5)*dpsi_z
-                    t419 = dpsi_x*e0
-                    t420 = 2*dpsi_x*psi_x
-                    t421 = 2*dpsi_y*psi_y
-                    t422 = 2*dpsi_z*psi_z
-                    t423 = e1*(t420 + t421 + t422)
-                    t424 = psi_x*t423
-                    t425 = dpsi_y*t410 + psi_y*t419 + psi_y*t424
-                    t426 = (0.5)*dpsi_y
-                    t427 = dpsi_z*t410 + psi_z*t419 + psi_z*t424
-                    t428 = e0*t422 + t416*t423
-                    t429 = e0*t421 + t414*t423
-                    t430 = (0.5)*psi_x
-                    t431 = e0*psi_z
-                    t432 = psi_y*t431
-                    t433 = psi_x*psi_x
-                    t434 = e0*t433
-                    t435 = (0.5)*dpsi_x
-                    t436 = dpsi_y*t431 + dpsi_z*e0*psi_y + psi_y*psi_z*t423
-                    t437 = e0*t420 + t423*t433
-                    detad[j3] = (Om0d_x*(t428 + t429) + Om0d_y*(-t418 - t425) + Om0d_z*(t426 -
-                        t427) + dOm0d_x*(t415 + t417) + dOm0d_y*(-t409 - t411) + dOm0d_z*(t412 -
-                        t413) + depd_x)
-                    detad[j3 + 1] = (Om0d_x*(t418 - t425) + Om0d_y*(t428 + t437) + Om0d_z*(-t435 -
-                        t436) + dOm0d_x*(t409 - t411) + dOm0d_y*(t417 + t434) + dOm0d_z*(-t430 -
-                        t432) + depd_y)
-                    detad[j3 + 2] = (Om0d_x*(-t426 - t427) + Om0d_y*(t435 - t436) + Om0d_z*(t429 +
-                        t437) + dOm0d_x*(-t412 - t413) + dOm0d_y*(t430 - t432) + dOm0d_z*(t415 +
-                        t434 - 1) + depd_z)
+                    t326 = Om0d_y*dpsi_z
+                    t327 = Om0d_z*dpsi_y
+                    t328 = dOm0d_y*psi_z
+                    t329 = dOm0d_z*psi_y
+                    t330 = Om0d_x*psi_y - Om0d_y*psi_x
+                    t331 = -Om0d_x*psi_z + Om0d_z*psi_x
+                    t332 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t333 = Om0d_x*dpsi_y
+                    t334 = dOm0d_x*psi_y
+                    t335 = Om0d_y*dpsi_x
+                    t336 = dOm0d_y*psi_x
+                    t337 = t333 + t334 - t335 - t336
+                    t338 = Om0d_x*dpsi_z
+                    t339 = dOm0d_x*psi_z
+                    t340 = Om0d_z*dpsi_x + dOm0d_z*psi_x - t338 - t339
+                    t341 = Om0d_y*psi_z - Om0d_z*psi_y
+                    t342 = t326 - t327 + t328 - t329
+                    detad[j3] = (-dOm0d_x + depd_x + e0*(dpsi_y*t330 - dpsi_z*t331 + psi_y*t337 -
+                        psi_z*t340) - 0.5*t326 + (0.5)*t327 - 0.5*t328 + (0.5)*t329 +
+                        t332*(psi_y*t330 - psi_z*t331))
+                    detad[j3 + 1] = (-0.5*Om0d_z*dpsi_x - dOm0d_y - 0.5*dOm0d_z*psi_x + depd_y +
+                        e0*(-dpsi_x*t330 + dpsi_z*t341 - psi_x*t337 + psi_z*t342) +
+                        t332*(-psi_x*t330 + psi_z*t341) + (0.5)*t338 + (0.5)*t339)
+                    detad[j3 + 2] = (-dOm0d_z + depd_z + e0*(dpsi_x*t331 - dpsi_y*t341 +
+                        psi_x*t340 - psi_y*t342) + t332*(psi_x*t331 - psi_y*t341) - 0.5*t333 -
+                        0.5*t334 + (0.5)*t335 + (0.5)*t336)
                 # differential: rate: rates of the elastic displacements
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -1585,21 +1463,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                     dacc_x, dacc_y, dacc_z = dacc[i3], dacc[i3 + 1], dacc[i3 + 2]
                     deu_x, deu_y, deu_z = deta[i3], deta[i3 + 1], deta[i3 + 2]
-                    t438 = X_y + u_y
-                    t439 = X_z + u_z
-                    t440 = X_x + u_x
+                    t343 = X_y + u_y
+                    t344 = X_z + u_z
+                    t345 = X_x + u_x
                     detad[i3] = (-Om0_y*deu_z + Om0_y*dv0_z - Om0_y*dvs_z + Om0_z*deu_y -
                         Om0_z*dv0_y + Om0_z*dvs_y - Om0d_y*du_z + Om0d_z*du_y - dOm0_y*eu_z +
                         dOm0_y*v0_z - dOm0_y*vs_z + dOm0_z*eu_y - dOm0_z*v0_y + dOm0_z*vs_y -
-                        dOm0d_y*t439 + dOm0d_z*t438 - da0_x + dacc_x)
+                        dOm0d_y*t344 + dOm0d_z*t343 - da0_x + dacc_x)
                     detad[i3 + 1] = (Om0_x*deu_z - Om0_x*dv0_z + Om0_x*dvs_z - Om0_z*deu_x +
                         Om0_z*dv0_x - Om0_z*dvs_x + Om0d_x*du_z - Om0d_z*du_x + dOm0_x*eu_z -
                         dOm0_x*v0_z + dOm0_x*vs_z - dOm0_z*eu_x + dOm0_z*v0_x - dOm0_z*vs_x +
-                        dOm0d_x*t439 - dOm0d_z*t440 - da0_y + dacc_y)
+                        dOm0d_x*t344 - dOm0d_z*t345 - da0_y + dacc_y)
                     detad[i3 + 2] = (-Om0_x*deu_y + Om0_x*dv0_y - Om0_x*dvs_y + Om0_y*deu_x -
                         Om0_y*dv0_x + Om0_y*dvs_x - Om0d_x*du_y + Om0d_y*du_x - dOm0_x*eu_y +
                         dOm0_x*v0_y - dOm0_x*vs_y + dOm0_y*eu_x - dOm0_y*v0_x + dOm0_y*vs_x -
-                        dOm0d_x*t438 + dOm0d_y*t440 - da0_z + dacc_z)
+                        dOm0d_x*t343 + dOm0d_y*t345 - da0_z + dacc_z)
                 # differential: rate: rates of the internal modes
                 for k in range(MODES, n):
                     dam = dae[k]
@@ -1621,12 +1499,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7],
                     turn[8])
                 dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-                t441 = da0_x - dgamma_x
-                t442 = da0_y - dgamma_y
-                t443 = da0_z - dgamma_z
-                dzdd[N] = t441*turn_xx + t442*turn_yx + t443*turn_zx
-                dzdd[N + 1] = t441*turn_xy + t442*turn_yy + t443*turn_zy
-                dzdd[N + 2] = t441*turn_xz + t442*turn_yz + t443*turn_zz
+                t346 = da0_x - dgamma_x
+                t347 = da0_y - dgamma_y
+                t348 = da0_z - dgamma_z
+                dzdd[N] = t346*turn_xx + t347*turn_yx + t348*turn_zx
+                dzdd[N + 1] = t346*turn_xy + t347*turn_yy + t348*turn_zy
+                dzdd[N + 2] = t346*turn_xz + t347*turn_yz + t348*turn_zz
                 dzdd[N + 3] = dOm0d_x*turn_xx + dOm0d_y*turn_yx + dOm0d_z*turn_zx
                 dzdd[N + 4] = dOm0d_x*turn_xy + dOm0d_y*turn_yy + dOm0d_z*turn_zy
                 dzdd[N + 5] = dOm0d_x*turn_xz + dOm0d_y*turn_yz + dOm0d_z*turn_zz
@@ -1651,15 +1529,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t444 = X_z + u_z
-                    t445 = X_y + u_y
-                    t446 = X_x + u_x
+                    t349 = X_z + u_z
+                    t350 = X_y + u_y
+                    t351 = X_x + u_x
                     dF_x += -df_x
                     dF_y += -df_y
                     dF_z += -df_z
-                    dW_x += df_y*t444 - df_z*t445 - du_y*f_z + du_z*f_y
-                    dW_y += -df_x*t444 + df_z*t446 + du_x*f_z - du_z*f_x
-                    dW_z += df_x*t445 - df_y*t446 - du_x*f_y + du_y*f_x
+                    dW_x += df_y*t349 - df_z*t350 - du_y*f_z + du_z*f_y
+                    dW_y += -df_x*t349 + df_z*t351 + du_x*f_z - du_z*f_x
+                    dW_z += df_x*t350 - df_y*t351 - du_x*f_y + du_y*f_x
                 # differential: inertia and weight on the frame
                 turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                     turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7],
@@ -1681,25 +1559,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t447 = -m_x*psi_y + m_y*psi_x
-                    t448 = m_x*psi_z - m_z*psi_x
-                    t449 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t450 = dm_x*psi_z
-                    t451 = dpsi_z*m_x
-                    t452 = -dm_z*psi_x - dpsi_x*m_z + t450 + t451
-                    t453 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t454 = e1*t453
-                    t455 = -m_y*psi_z + m_z*psi_y
-                    t456 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t447 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t448 + (0.5)*dpsi_z*m_y - e0*psi_y*t449 +
-                        e0*psi_z*t452 + e1*psi_z*t448*t453 - psi_y*t447*t454)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t447 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t455 + e0*psi_x*t449 - e0*psi_z*t456 + e1*psi_x*t447*t453 -
-                        psi_z*t454*t455 - 0.5*t450 - 0.5*t451)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t448 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t455 + (0.5)*dpsi_y*m_x - e0*psi_x*t452 +
-                        e0*psi_y*t456 + e1*psi_y*t453*t455 - psi_x*t448*t454)
+                    t352 = -m_x*psi_y + m_y*psi_x
+                    t353 = m_x*psi_z - m_z*psi_x
+                    t354 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t355 = dm_x*psi_z
+                    t356 = dpsi_z*m_x
+                    t357 = -dm_z*psi_x - dpsi_x*m_z + t355 + t356
+                    t358 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t359 = e1*t358
+                    t360 = -m_y*psi_z + m_z*psi_y
+                    t361 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t352 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t353 + (0.5)*dpsi_z*m_y - e0*psi_y*t354 +
+                        e0*psi_z*t357 + e1*psi_z*t353*t358 - psi_y*t352*t359)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t352 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t360 + e0*psi_x*t354 - e0*psi_z*t361 + e1*psi_x*t352*t358 -
+                        psi_z*t359*t360 - 0.5*t355 - 0.5*t356)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t353 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t360 + (0.5)*dpsi_y*m_x - e0*psi_x*t357 +
+                        e0*psi_y*t361 + e1*psi_y*t358*t360 - psi_x*t353*t359)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for j in range(N_ROTATIONS):
@@ -1709,33 +1587,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t457 = dpsi_y*wp_z
-                    t458 = dpsi_z*wp_y
-                    t459 = psi_x*wp_y - psi_y*wp_x
-                    t460 = e0*t459
-                    t461 = dpsi_x*wp_y
-                    t462 = dpsi_y*wp_x
-                    t463 = e0*(t461 - t462)
-                    t464 = -psi_x*wp_z + psi_z*wp_x
-                    t465 = dpsi_x*wp_z
-                    t466 = dpsi_z*wp_x - t465
-                    t467 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t468 = e1*t467
-                    t469 = t459*t468
-                    t470 = psi_y*wp_z - psi_z*wp_y
-                    t471 = t457 - t458
-                    rhs_x += (-alpha_r*(dpsi_y*t460 - dpsi_z*e0*t464 - e0*psi_z*t466 + psi_y*t463
-                        + psi_y*t469 - psi_z*t464*t468 + (0.5)*t457 - 0.5*t458))
-                    rhs_y += (-alpha_r*(-dpsi_x*t460 + dpsi_z*e0*t470 + (0.5)*dpsi_z*wp_x +
-                        e0*psi_z*t471 + e1*psi_z*t467*t470 - psi_x*t463 - psi_x*t469 - 0.5*t465))
-                    rhs_z += (-alpha_r*(dpsi_x*e0*t464 - dpsi_y*e0*t470 + e0*psi_x*t466 -
-                        e0*psi_y*t471 + psi_x*t464*t468 - psi_y*t468*t470 + (0.5)*t461 - 0.5*t462))
-                t472 = dW_x + rhs_x
-                t473 = dW_y + rhs_y
-                t474 = dW_z + rhs_z
-                dwp_x = Bxx*t472 + Byx*t473 + Bzx*t474
-                dwp_y = Bxy*t472 + Byy*t473 + Bzy*t474
-                dwp_z = Bxz*t472 + Byz*t473 + Bzz*t474
+                    t362 = dpsi_y*wp_z
+                    t363 = dpsi_z*wp_y
+                    t364 = psi_x*wp_y - psi_y*wp_x
+                    t365 = e0*t364
+                    t366 = dpsi_x*wp_y
+                    t367 = dpsi_y*wp_x
+                    t368 = e0*(t366 - t367)
+                    t369 = -psi_x*wp_z + psi_z*wp_x
+                    t370 = dpsi_x*wp_z
+                    t371 = dpsi_z*wp_x - t370
+                    t372 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t373 = e1*t372
+                    t374 = t364*t373
+                    t375 = psi_y*wp_z - psi_z*wp_y
+                    t376 = t362 - t363
+                    rhs_x += (-alpha_r*(dpsi_y*t365 - dpsi_z*e0*t369 - e0*psi_z*t371 + psi_y*t368
+                        + psi_y*t374 - psi_z*t369*t373 + (0.5)*t362 - 0.5*t363))
+                    rhs_y += (-alpha_r*(-dpsi_x*t365 + dpsi_z*e0*t375 + (0.5)*dpsi_z*wp_x +
+                        e0*psi_z*t376 + e1*psi_z*t372*t375 - psi_x*t368 - psi_x*t374 - 0.5*t370))
+                    rhs_z += (-alpha_r*(dpsi_x*e0*t369 - dpsi_y*e0*t375 + e0*psi_x*t371 -
+                        e0*psi_y*t376 + psi_x*t369*t373 - psi_y*t373*t375 + (0.5)*t366 - 0.5*t367))
+                t377 = dW_x + rhs_x
+                t378 = dW_y + rhs_y
+                t379 = dW_z + rhs_z
+                dwp_x = Bxx*t377 + Byx*t378 + Bzx*t379
+                dwp_y = Bxy*t377 + Byy*t378 + Bzy*t379
+                dwp_z = Bxz*t377 + Byz*t378 + Bzz*t379
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -1762,58 +1640,42 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t475 = dm_y*psi_z
-                    t476 = dpsi_z*m_y
-                    t477 = -m_x*psi_y + m_y*psi_x
-                    t478 = dpsi_y*e0
-                    t479 = m_x*psi_z - m_z*psi_x
-                    t480 = dpsi_z*e0
-                    t481 = dm_x*psi_y
-                    t482 = dpsi_y*m_x
-                    t483 = dm_y*psi_x + dpsi_x*m_y - t481 - t482
-                    t484 = e0*psi_y
-                    t485 = dm_x*psi_z
-                    t486 = dpsi_z*m_x
-                    t487 = dm_z*psi_x
-                    t488 = dpsi_x*m_z
-                    t489 = t485 + t486 - t487 - t488
-                    t490 = e0*psi_z
-                    t491 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t492 = psi_y*t491
-                    t493 = psi_z*t491
-                    t494 = dpsi_y*wp_z
-                    t495 = dpsi_z*wp_y
-                    t496 = dwp_y*psi_z
-                    t497 = dwp_z*psi_y
-                    t498 = psi_x*wp_y - psi_y*wp_x
-                    t499 = -psi_x*wp_z + psi_z*wp_x
-                    t500 = dpsi_x*wp_y
-                    t501 = dwp_y*psi_x
-                    t502 = dpsi_y*wp_x
-                    t503 = dwp_x*psi_y
-                    t504 = t500 + t501 - t502 - t503
-                    t505 = dpsi_x*wp_z
-                    t506 = dwp_z*psi_x
-                    t507 = dpsi_z*wp_x + dwp_x*psi_z - t505 - t506
-                    t508 = -m_y*psi_z + m_z*psi_y
-                    t509 = dpsi_x*e0
-                    t510 = dm_z*psi_y + dpsi_y*m_z - t475 - t476
-                    t511 = e0*psi_x
-                    t512 = psi_x*t491
-                    t513 = psi_y*wp_z - psi_z*wp_y
-                    t514 = t494 - t495 - t496 + t497
-                    dg[j3] = (alpha_r*(dwp_x + t478*t498 - t480*t499 + t484*t504 - t490*t507 +
-                        t492*t498 - t493*t499 - 0.5*t494 + (0.5)*t495 + (0.5)*t496 - 0.5*t497) +
-                        dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + (0.5)*t475 + (0.5)*t476 +
-                        t477*t478 + t477*t492 - t479*t480 - t479*t493 + t483*t484 - t489*t490)
-                    dg[j3 + 1] = (alpha_r*(-0.5*dpsi_z*wp_x - 0.5*dwp_x*psi_z + dwp_y + t480*t513
-                        + t490*t514 + t493*t513 - t498*t509 - t498*t512 - t504*t511 + (0.5)*t505 +
-                        (0.5)*t506) + dm_y - t477*t509 - t477*t512 + t480*t508 - t483*t511 -
-                        0.5*t485 - 0.5*t486 + (0.5)*t487 + (0.5)*t488 + t490*t510 + t493*t508)
-                    dg[j3 + 2] = (alpha_r*(dwp_z - t478*t513 - t484*t514 - t492*t513 + t499*t509 +
-                        t499*t512 - 0.5*t500 - 0.5*t501 + (0.5)*t502 + (0.5)*t503 + t507*t511) -
-                        0.5*dm_y*psi_x + dm_z - 0.5*dpsi_x*m_y - t478*t508 + t479*t509 + t479*t512
-                        + (0.5)*t481 + (0.5)*t482 - t484*t510 + t489*t511 - t492*t508)
+                    t380 = alpha_r*wp_y + m_y
+                    t381 = dpsi_z*t380
+                    t382 = alpha_r*dwp_y + dm_y
+                    t383 = psi_z*t382
+                    t384 = alpha_r*wp_z + m_z
+                    t385 = dpsi_y*t384
+                    t386 = alpha_r*dwp_z + dm_z
+                    t387 = psi_y*t386
+                    t388 = alpha_r*wp_x + m_x
+                    t389 = psi_x*t380 - psi_y*t388
+                    t390 = e0*t389
+                    t391 = dpsi_x*t380
+                    t392 = psi_x*t382
+                    t393 = dpsi_y*t388
+                    t394 = alpha_r*dwp_x + dm_x
+                    t395 = psi_y*t394
+                    t396 = e0*(t391 + t392 - t393 - t395)
+                    t397 = -psi_x*t384 + psi_z*t388
+                    t398 = dpsi_z*e0
+                    t399 = dpsi_x*t384
+                    t400 = psi_x*t386
+                    t401 = dpsi_z*t388 + psi_z*t394 - t399 - t400
+                    t402 = e0*psi_z
+                    t403 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t404 = t389*t403
+                    t405 = psi_z*t403
+                    t406 = psi_y*t384 - psi_z*t380
+                    t407 = -t381 - t383 + t385 + t387
+                    dg[j3] = (dpsi_y*t390 + psi_y*t396 + psi_y*t404 + (0.5)*t381 + (0.5)*t383 -
+                        0.5*t385 - 0.5*t387 + t394 - t397*t398 - t397*t405 - t401*t402)
+                    dg[j3 + 1] = (-dpsi_x*t390 - 0.5*dpsi_z*t388 - psi_x*t396 - psi_x*t404 -
+                        0.5*psi_z*t394 + t382 + t398*t406 + (0.5)*t399 + (0.5)*t400 + t402*t407 +
+                        t405*t406)
+                    dg[j3 + 2] = (dpsi_x*e0*t397 - dpsi_y*e0*t406 + e0*psi_x*t401 - e0*psi_y*t407
+                        + psi_x*t397*t403 - psi_y*t403*t406 + t386 - 0.5*t391 - 0.5*t392 +
+                        (0.5)*t393 + (0.5)*t395)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

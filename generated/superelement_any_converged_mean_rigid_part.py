@@ -64,8 +64,8 @@ WORK_ROWS = 38
 WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (787, 168, 543, 2),
-              "column": (1161, 228, 1751, 2)}
+OPERATIONS = {"residual": (787, 168, 389, 2),
+              "column": (1161, 228, 1302, 2)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("columns", (1,), "columns of C: n of a damped body, else none"),
     Part("Jc", ("pairs",), "moments of inertia about the centre of mass, at rest"),
@@ -188,30 +188,35 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             e0 = e0s[j]
             t3 = e0*psi_y*psi_y
             t4 = e0*psi_z*psi_z - 1
-            t5 = (0.5)*psi_z
-            t6 = e0*psi_x
-            t7 = psi_y*t6
-            t8 = (0.5)*psi_y
-            t9 = psi_z*t6
-            t10 = e0*psi_x*psi_x
-            t11 = (0.5)*psi_x
-            t12 = e0*psi_z
-            t13 = psi_y*t12
-            t14 = -Om_x*psi_y + Om_y*psi_x
-            t15 = Om_x*psi_z - Om_z*psi_x
-            t16 = -Om_y*psi_z + Om_z*psi_y
-            B_00 += alpha_r*(-t3 - t4)
-            B_01 += alpha_r*(t5 + t7)
-            B_02 += alpha_r*(-t8 + t9)
-            B_10 += alpha_r*(-t5 + t7)
-            B_11 += alpha_r*(-t10 - t4)
-            B_12 += alpha_r*(t11 + t13)
-            B_20 += alpha_r*(t8 + t9)
-            B_21 += alpha_r*(-t11 + t13)
-            B_22 += alpha_r*(-t10 - t3 + 1)
-            rhs_x += -alpha_r*(-Om_x + (0.5)*Om_y*psi_z - Om_z*t8 - e0*psi_y*t14 + e0*psi_z*t15)
-            rhs_y += -alpha_r*(-Om_x*t5 - Om_y + (0.5)*Om_z*psi_x + e0*psi_x*t14 - t12*t16)
-            rhs_z += -alpha_r*((0.5)*Om_x*psi_y - Om_y*t11 - Om_z + e0*psi_y*t16 - t15*t6)
+            t5 = -t3 - t4
+            t6 = (0.5)*psi_z
+            t7 = e0*psi_x
+            t8 = psi_y*t7
+            t9 = t6 + t8
+            t10 = (0.5)*psi_y
+            t11 = psi_z*t7
+            t12 = -t10 + t11
+            t13 = -t6 + t8
+            t14 = e0*psi_x*psi_x
+            t15 = -t14 - t4
+            t16 = (0.5)*psi_x
+            t17 = e0*psi_y*psi_z
+            t18 = t16 + t17
+            t19 = t10 + t11
+            t20 = -t16 + t17
+            t21 = -t14 - t3 + 1
+            B_00 += alpha_r*t5
+            B_01 += alpha_r*t9
+            B_02 += alpha_r*t12
+            B_10 += alpha_r*t13
+            B_11 += alpha_r*t15
+            B_12 += alpha_r*t18
+            B_20 += alpha_r*t19
+            B_21 += alpha_r*t20
+            B_22 += alpha_r*t21
+            rhs_x += -alpha_r*(-Om_x*t5 - Om_y*t13 - Om_z*t19)
+            rhs_y += -alpha_r*(-Om_x*t9 - Om_y*t15 - Om_z*t20)
+            rhs_z += -alpha_r*(-Om_x*t12 - Om_y*t18 - Om_z*t21)
         Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
             B_12, B_20, B_21, B_22)
         Om0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
@@ -245,41 +250,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-            t17 = X_y + u_y
-            t18 = X_z + u_z
-            t19 = X_x + u_x
-            eta[i3] = -Om0_y*t18 + Om0_z*t17 - v0_x + vs_x
-            eta[i3 + 1] = Om0_x*t18 - Om0_z*t19 - v0_y + vs_y
-            eta[i3 + 2] = -Om0_x*t17 + Om0_y*t19 - v0_z + vs_z
+            t22 = X_y + u_y
+            t23 = X_z + u_z
+            t24 = X_x + u_x
+            eta[i3] = -Om0_y*t23 + Om0_z*t22 - v0_x + vs_x
+            eta[i3 + 1] = Om0_x*t23 - Om0_z*t24 - v0_y + vs_y
+            eta[i3 + 2] = -Om0_x*t22 + Om0_y*t24 - v0_z + vs_z
         # rates of the elastic rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
             e0 = e0s[j]
-            t20 = Om0_y*psi_z
-            t21 = Om_y*psi_z
-            t22 = Om0_x*psi_y
-            t23 = Om0_y*psi_x - t22
-            t24 = e0*psi_y
-            t25 = Om_x*psi_z
-            t26 = Om_z*psi_x
-            t27 = t25 - t26
-            t28 = e0*psi_z
-            t29 = Om_x*psi_y
-            t30 = Om_y*psi_x - t29
-            t31 = Om0_x*psi_z
-            t32 = Om0_z*psi_x
-            t33 = t31 - t32
-            t34 = e0*psi_x
-            t35 = Om_z*psi_y - t21
-            t36 = Om0_z*psi_y - t20
-            eta[j3] = (-Om0_x + (0.5)*Om0_z*psi_y + Om_x + (0.5)*Om_z*psi_y + e0*psi_y*t30 +
-                e0*psi_z*t33 - 0.5*t20 - 0.5*t21 - t23*t24 - t27*t28)
-            eta[j3 + 1] = (-Om0_y + Om_y + t23*t34 + (0.5)*t25 - 0.5*t26 + t28*t35 - t28*t36 -
-                t30*t34 + (0.5)*t31 - 0.5*t32)
-            eta[j3 + 2] = ((0.5)*Om0_y*psi_x - Om0_z + (0.5)*Om_y*psi_x + Om_z + e0*psi_x*t27 +
-                e0*psi_y*t36 - 0.5*t22 - t24*t35 - 0.5*t29 - t33*t34)
+            t25 = (0.5)*Om0_z + (0.5)*Om_z
+            t26 = Om0_y + Om_y
+            t27 = (0.5)*psi_z
+            t28 = -Om0_y + Om_y
+            t29 = -Om0_x + Om_x
+            t30 = psi_x*t28 - psi_y*t29
+            t31 = -Om0_z + Om_z
+            t32 = -psi_x*t31 + psi_z*t29
+            t33 = Om0_x + Om_x
+            t34 = psi_y*t31 - psi_z*t28
+            eta[j3] = -Om0_x + Om_x + e0*(psi_y*t30 - psi_z*t32) + psi_y*t25 - t26*t27
+            eta[j3 + 1] = -Om0_y + Om_y + e0*(-psi_x*t30 + psi_z*t34) - psi_x*t25 + t27*t33
+            eta[j3 + 2] = (-Om0_z + Om_z + e0*(psi_x*t32 - psi_y*t34) + (0.5)*psi_x*t26 -
+                0.5*psi_y*t33)
         # rates of the internal modes
         for k in range(MODES, n):
             vm = ve[k]
@@ -293,49 +289,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
             e0 = e0s[j]
             e1 = e1s[j]
-            t37 = A_y*psi_z
-            t38 = Om0_y*ep_z
-            t39 = Om_y*ep_z
-            t40 = -Om_x*psi_y + Om_y*psi_x
-            t41 = e0*ep_y
-            t42 = Om0_x*psi_z - Om0_z*psi_x
-            t43 = e0*ep_z
-            t44 = Om0_x*ep_z
-            t45 = Om0_z*ep_x
-            t46 = t44 - t45
-            t47 = e0*psi_z
-            t48 = -Om0_x*psi_y + Om0_y*psi_x
-            t49 = Om_x*psi_z - Om_z*psi_x
-            t50 = Om0_x*ep_y
-            t51 = Om0_y*ep_x - t50
-            t52 = e0*psi_y
-            t53 = A_x*psi_y
-            t54 = Om_x*ep_y
-            t55 = A_y*psi_x + Om_y*ep_x - t53 - t54
-            t56 = A_x*psi_z
-            t57 = Om_x*ep_z
-            t58 = A_z*psi_x
-            t59 = Om_z*ep_x
-            t60 = t56 + t57 - t58 - t59
-            t61 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
-            t62 = psi_y*t61
-            t63 = psi_z*t61
-            t64 = e0*ep_x
-            t65 = -Om_y*psi_z + Om_z*psi_y
-            t66 = e0*psi_x
-            t67 = -Om0_y*psi_z + Om0_z*psi_y
-            t68 = Om0_z*ep_y - t38
-            t69 = A_z*psi_y + Om_z*ep_y - t37 - t39
-            t70 = psi_x*t61
-            etad[j3] = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y + (0.5)*Om_z*ep_y - 0.5*t37 -
-                0.5*t38 - 0.5*t39 + t40*t41 + t40*t62 - t41*t48 + t42*t43 + t42*t63 - t43*t49 +
-                t46*t47 - t47*t60 - t48*t62 - t49*t63 - t51*t52 + t52*t55)
-            etad[j3 + 1] = (A_y - t40*t64 - t40*t70 + t43*t65 - t43*t67 + (0.5)*t44 - 0.5*t45 -
-                t47*t68 + t47*t69 + t48*t64 + t48*t70 + t51*t66 - t55*t66 + (0.5)*t56 + (0.5)*t57
-                - 0.5*t58 - 0.5*t59 + t63*t65 - t63*t67)
-            etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om_y*ep_x - t41*t65 +
-                t41*t67 - t42*t64 - t42*t70 - t46*t66 + t49*t64 + t49*t70 - 0.5*t50 + t52*t68 -
-                t52*t69 - 0.5*t53 - 0.5*t54 + t60*t66 - t62*t65 + t62*t67)
+            t35 = A_y*psi_z
+            t36 = (0.5)*Om0_z + (0.5)*Om_z
+            t37 = Om0_y + Om_y
+            t38 = (0.5)*ep_z
+            t39 = -Om0_y + Om_y
+            t40 = -Om0_x + Om_x
+            t41 = psi_x*t39 - psi_y*t40
+            t42 = -Om0_z + Om_z
+            t43 = -psi_x*t42 + psi_z*t40
+            t44 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
+            t45 = A_x*psi_y
+            t46 = A_y*psi_x + ep_x*t39 - ep_y*t40 - t45
+            t47 = A_x*psi_z
+            t48 = A_z*psi_x
+            t49 = -ep_x*t42 + ep_z*t40 + t47 - t48
+            t50 = Om0_x + Om_x
+            t51 = psi_y*t42 - psi_z*t39
+            t52 = A_z*psi_y + ep_y*t42 - ep_z*t39 - t35
+            etad[j3] = (A_x + (0.5)*A_z*psi_y + e0*(ep_y*t41 - ep_z*t43 + psi_y*t46 - psi_z*t49) +
+                ep_y*t36 - 0.5*t35 - t37*t38 + t44*(psi_y*t41 - psi_z*t43))
+            etad[j3 + 1] = (A_y + e0*(-ep_x*t41 + ep_z*t51 - psi_x*t46 + psi_z*t52) - ep_x*t36 +
+                t38*t50 + t44*(-psi_x*t41 + psi_z*t51) + (0.5)*t47 - 0.5*t48)
+            etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + e0*(ep_x*t43 - ep_y*t51 + psi_x*t49 -
+                psi_y*t52) + (0.5)*ep_x*t37 - 0.5*ep_y*t50 + t44*(psi_x*t43 - psi_y*t51) - 0.5*t45)
         # rate: B rate = sum alpha_j T^-1(psi_j) rate_j
         rhs_x = rhs_y = rhs_z = 0.0
         for j in range(N_ROTATIONS):
@@ -354,19 +331,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             epd_x, epd_y, epd_z = etad[j3], etad[j3 + 1], etad[j3 + 2]
             e0 = e0s[j]
-            t71 = (0.5)*psi_z
-            t72 = e0*psi_x
-            t73 = psi_y*t72
-            t74 = (0.5)*psi_y
-            t75 = psi_z*t72
-            t76 = e0*psi_y*psi_y
-            t77 = e0*psi_z*psi_z - 1
-            t78 = (0.5)*psi_x
-            t79 = e0*psi_y*psi_z
-            t80 = e0*psi_x*psi_x
-            etad[j3] = Om0d_x*(t76 + t77) + Om0d_y*(-t71 - t73) + Om0d_z*(t74 - t75) + epd_x
-            etad[j3 + 1] = Om0d_x*(t71 - t73) + Om0d_y*(t77 + t80) + Om0d_z*(-t78 - t79) + epd_y
-            etad[j3 + 2] = Om0d_x*(-t74 - t75) + Om0d_y*(t78 - t79) + Om0d_z*(t76 + t80 - 1) + epd_z
+            t53 = Om0d_y*psi_z
+            t54 = Om0d_z*psi_y
+            t55 = Om0d_x*psi_y
+            t56 = Om0d_y*psi_x
+            t57 = t55 - t56
+            t58 = Om0d_x*psi_z
+            t59 = Om0d_z*psi_x - t58
+            t60 = t53 - t54
+            etad[j3] = -Om0d_x + e0*(psi_y*t57 - psi_z*t59) + epd_x - 0.5*t53 + (0.5)*t54
+            etad[j3 + 1] = (-Om0d_y - 0.5*Om0d_z*psi_x + e0*(-psi_x*t57 + psi_z*t60) + epd_y +
+                (0.5)*t58)
+            etad[j3 + 2] = -Om0d_z + e0*(psi_x*t59 - psi_y*t60) + epd_z - 0.5*t55 + (0.5)*t56
         # rate: rates of the elastic displacements
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -375,15 +351,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-            t81 = X_y + u_y
-            t82 = X_z + u_z
-            t83 = X_x + u_x
+            t61 = X_y + u_y
+            t62 = X_z + u_z
+            t63 = X_x + u_x
             etad[i3] = (-Om0_y*eu_z + Om0_y*v0_z - Om0_y*vs_z + Om0_z*eu_y - Om0_z*v0_y +
-                Om0_z*vs_y - Om0d_y*t82 + Om0d_z*t81 - a0_x + acc_x)
+                Om0_z*vs_y - Om0d_y*t62 + Om0d_z*t61 - a0_x + acc_x)
             etad[i3 + 1] = (Om0_x*eu_z - Om0_x*v0_z + Om0_x*vs_z - Om0_z*eu_x + Om0_z*v0_x -
-                Om0_z*vs_x + Om0d_x*t82 - Om0d_z*t83 - a0_y + acc_y)
+                Om0_z*vs_x + Om0d_x*t62 - Om0d_z*t63 - a0_y + acc_y)
             etad[i3 + 2] = (-Om0_x*eu_y + Om0_x*v0_y - Om0_x*vs_y + Om0_y*eu_x - Om0_y*v0_x +
-                Om0_y*vs_x - Om0d_x*t81 + Om0d_y*t83 - a0_z + acc_z)
+                Om0_y*vs_x - Om0d_x*t61 + Om0d_y*t63 - a0_z + acc_z)
         # rate: rates of the internal modes
         for k in range(MODES, n):
             am = ae[k]
@@ -413,55 +389,55 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # angular velocity of the rigid part
         angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
         angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
-        t84 = -Om0_y*angle0_z + Om0_z*angle0_y
-        t85 = angle0_y*angle1_z - angle0_z*angle1_y
-        t86 = -Om0_x*angle0_y + Om0_y*angle0_x
-        t87 = Om0_x*angle0_z - Om0_z*angle0_x
-        t88 = angle0_x*angle1_y - angle0_y*angle1_x
-        t89 = -angle0_x*angle1_z + angle0_z*angle1_x
-        wc_x = (Om0_x + angle1_x - r1*t84 - r2*t85 + r2*(angle0_y*t86 - angle0_z*t87) +
-            r3*(angle0_y*t88 - angle0_z*t89))
-        wc_y = (Om0_y + angle1_y - r1*t87 - r2*t89 + r2*(-angle0_x*t86 + angle0_z*t84) +
-            r3*(-angle0_x*t88 + angle0_z*t85))
-        wc_z = (Om0_z + angle1_z - r1*t86 - r2*t88 + r2*(angle0_x*t87 - angle0_y*t84) +
-            r3*(angle0_x*t89 - angle0_y*t85))
+        t64 = -Om0_y*angle0_z + Om0_z*angle0_y
+        t65 = angle0_y*angle1_z - angle0_z*angle1_y
+        t66 = -Om0_x*angle0_y + Om0_y*angle0_x
+        t67 = Om0_x*angle0_z - Om0_z*angle0_x
+        t68 = angle0_x*angle1_y - angle0_y*angle1_x
+        t69 = -angle0_x*angle1_z + angle0_z*angle1_x
+        wc_x = (Om0_x + angle1_x - r1*t64 - r2*t65 + r2*(angle0_y*t66 - angle0_z*t67) +
+            r3*(angle0_y*t68 - angle0_z*t69))
+        wc_y = (Om0_y + angle1_y - r1*t67 - r2*t69 + r2*(-angle0_x*t66 + angle0_z*t64) +
+            r3*(-angle0_x*t68 + angle0_z*t65))
+        wc_z = (Om0_z + angle1_z - r1*t66 - r2*t68 + r2*(angle0_x*t67 - angle0_y*t64) +
+            r3*(angle0_x*t69 - angle0_y*t65))
         # its rate
         angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
         angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
         angle2_x, angle2_y, angle2_z = rigid2[3], rigid2[4], rigid2[5]
-        t90 = -Om0d_y*angle0_z + Om0d_z*angle0_y
-        t91 = angle0_y*angle2_z - angle0_z*angle2_y
-        t92 = -Om0d_x*angle0_y + Om0d_y*angle0_x
-        t93 = Om0d_x*angle0_z - Om0d_z*angle0_x
-        t94 = angle0_x*angle2_y - angle0_y*angle2_x
-        t95 = -angle0_x*angle2_z + angle0_z*angle2_x
-        t96 = angle0_x*angle1_y - angle0_y*angle1_x
-        t97 = -angle0_x*angle1_z + angle0_z*angle1_x
-        t98 = angle0_y*angle1_z - angle0_z*angle1_y
-        t99 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
-        t100 = t99*(-r3 + 2*r4)
-        t101 = angle0_y*t96 - angle0_z*t97
-        t102 = t99*(-r4 + 3*r5)
-        t103 = Om0_x*angle0_z - Om0_z*angle0_x
-        t104 = -Om0_x*angle0_y + Om0_y*angle0_x
-        t105 = -Om0_y*angle0_z + Om0_z*angle0_y
-        t106 = Om0_y - r1*t103 + r2*(-angle0_x*t104 + angle0_z*t105)
-        t107 = angle0_x*t97 - angle0_y*t98
-        t108 = angle1_z - r2*t96 + r3*t107
-        t109 = -angle0_x*t96 + angle0_z*t98
-        t110 = angle1_y - r2*t97 + r3*t109
-        t111 = Om0_z - r1*t104 + r2*(angle0_x*t103 - angle0_y*t105)
-        t112 = angle1_x - r2*t98 + r3*t101
-        t113 = Om0_x - r1*t105 + r2*(angle0_y*t104 - angle0_z*t103)
-        wcd_x = (Om0d_x + angle2_x - r1*t90 - r2*t91 + r2*(angle0_y*t92 - angle0_z*t93) +
-            r3*(angle0_y*t94 - angle0_z*t95) + r3*(angle1_y*t96 - angle1_z*t97) - t100*t98 +
-            t101*t102 + t106*t108 - t110*t111)
-        wcd_y = (Om0d_y + angle2_y - r1*t93 - r2*t95 + r2*(-angle0_x*t92 + angle0_z*t90) +
-            r3*(-angle0_x*t94 + angle0_z*t91) + r3*(-angle1_x*t96 + angle1_z*t98) - t100*t97 +
-            t102*t109 - t108*t113 + t111*t112)
-        wcd_z = (Om0d_z + angle2_z - r1*t92 - r2*t94 + r2*(angle0_x*t93 - angle0_y*t90) +
-            r3*(angle0_x*t95 - angle0_y*t91) + r3*(angle1_x*t97 - angle1_y*t98) - t100*t96 +
-            t102*t107 - t106*t112 + t110*t113)
+        t70 = -Om0d_y*angle0_z + Om0d_z*angle0_y
+        t71 = angle0_y*angle2_z - angle0_z*angle2_y
+        t72 = -Om0d_x*angle0_y + Om0d_y*angle0_x
+        t73 = Om0d_x*angle0_z - Om0d_z*angle0_x
+        t74 = angle0_x*angle2_y - angle0_y*angle2_x
+        t75 = -angle0_x*angle2_z + angle0_z*angle2_x
+        t76 = angle0_x*angle1_y - angle0_y*angle1_x
+        t77 = -angle0_x*angle1_z + angle0_z*angle1_x
+        t78 = angle0_y*angle1_z - angle0_z*angle1_y
+        t79 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
+        t80 = t79*(-r3 + 2*r4)
+        t81 = angle0_y*t76 - angle0_z*t77
+        t82 = t79*(-r4 + 3*r5)
+        t83 = Om0_x*angle0_z - Om0_z*angle0_x
+        t84 = -Om0_x*angle0_y + Om0_y*angle0_x
+        t85 = -Om0_y*angle0_z + Om0_z*angle0_y
+        t86 = Om0_y - r1*t83 + r2*(-angle0_x*t84 + angle0_z*t85)
+        t87 = angle0_x*t77 - angle0_y*t78
+        t88 = angle1_z - r2*t76 + r3*t87
+        t89 = -angle0_x*t76 + angle0_z*t78
+        t90 = angle1_y - r2*t77 + r3*t89
+        t91 = Om0_z - r1*t84 + r2*(angle0_x*t83 - angle0_y*t85)
+        t92 = angle1_x - r2*t78 + r3*t81
+        t93 = Om0_x - r1*t85 + r2*(angle0_y*t84 - angle0_z*t83)
+        wcd_x = (Om0d_x + angle2_x - r1*t70 - r2*t71 + r2*(angle0_y*t72 - angle0_z*t73) +
+            r3*(angle0_y*t74 - angle0_z*t75) + r3*(angle1_y*t76 - angle1_z*t77) - t78*t80 +
+            t81*t82 + t86*t88 - t90*t91)
+        wcd_y = (Om0d_y + angle2_y - r1*t73 - r2*t75 + r2*(-angle0_x*t72 + angle0_z*t70) +
+            r3*(-angle0_x*t74 + angle0_z*t71) + r3*(-angle1_x*t76 + angle1_z*t78) - t77*t80 +
+            t82*t89 - t88*t93 + t91*t92)
+        wcd_z = (Om0d_z + angle2_z - r1*t72 - r2*t74 + r2*(angle0_x*t73 - angle0_y*t70) +
+            r3*(angle0_x*t75 - angle0_y*t71) + r3*(angle1_x*t77 - angle1_y*t78) - t76*t80 +
+            t82*t87 - t86*t92 + t90*t93)
         # rate of its momentum and of the moment of it
         first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
         first1_x, first1_y, first1_z = rigid1[0], rigid1[1], rigid1[2]
@@ -470,26 +446,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         mass = masses[0]
         gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
         Jc_xx, Jc_yy, Jc_zz, Jc_xy, Jc_xz, Jc_yz = Jc[0], Jc[1], Jc[2], Jc[3], Jc[4], Jc[5]
-        t114 = 2*first1_z
-        t115 = 2*Om0_z
-        t116 = first0_z + mc_z
-        t117 = first0_y + mc_y
-        t118 = first0_x + mc_x
-        t119 = Om0_x*t117 - Om0_y*t118
-        t120 = -Om0_x*t116 + Om0_z*t118
-        t121 = Om0_y*t116 - Om0_z*t117
-        t122 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
-        t123 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
-        t124 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
-        Rt_x = (Om0_y*t114 + Om0_y*t119 - Om0_z*t120 + Om0d_y*t116 - Om0d_z*t117 - first1_y*t115 +
+        t94 = 2*first1_z
+        t95 = 2*Om0_z
+        t96 = first0_z + mc_z
+        t97 = first0_y + mc_y
+        t98 = first0_x + mc_x
+        t99 = Om0_x*t97 - Om0_y*t98
+        t100 = -Om0_x*t96 + Om0_z*t98
+        t101 = Om0_y*t96 - Om0_z*t97
+        t102 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
+        t103 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
+        t104 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
+        Rt_x = (Om0_y*t94 + Om0_y*t99 - Om0_z*t100 + Om0d_y*t96 - Om0d_z*t97 - first1_y*t95 +
             first2_x + mass*(a0_x - gamma_x))
-        Rt_y = (-Om0_x*t114 - Om0_x*t119 + Om0_z*t121 - Om0d_x*t116 + Om0d_z*t118 + first1_x*t115
-            + first2_y + mass*(a0_y - gamma_y))
-        Rt_z = (2*Om0_x*first1_y + Om0_x*t120 - 2*Om0_y*first1_x - Om0_y*t121 + Om0d_x*t117 -
-            Om0d_y*t118 + first2_z + mass*(a0_z - gamma_z))
-        Mc_x = Jc_xx*wcd_x + Jc_xy*wcd_y + Jc_xz*wcd_z + t122*wc_y - t123*wc_z
-        Mc_y = Jc_xy*wcd_x + Jc_yy*wcd_y + Jc_yz*wcd_z - t122*wc_x + t124*wc_z
-        Mc_z = Jc_xz*wcd_x + Jc_yz*wcd_y + Jc_zz*wcd_z + t123*wc_x - t124*wc_y
+        Rt_y = (-Om0_x*t94 - Om0_x*t99 + Om0_z*t101 - Om0d_x*t96 + Om0d_z*t98 + first1_x*t95 +
+            first2_y + mass*(a0_y - gamma_y))
+        Rt_z = (2*Om0_x*first1_y + Om0_x*t100 - 2*Om0_y*first1_x - Om0_y*t101 + Om0d_x*t97 -
+            Om0d_y*t98 + first2_z + mass*(a0_z - gamma_z))
+        Mc_x = Jc_xx*wcd_x + Jc_xy*wcd_y + Jc_xz*wcd_z + t102*wc_y - t103*wc_z
+        Mc_y = Jc_xy*wcd_x + Jc_yy*wcd_y + Jc_yz*wcd_z - t102*wc_x + t104*wc_z
+        Mc_z = Jc_xz*wcd_x + Jc_yz*wcd_y + Jc_zz*wcd_z + t103*wc_x - t104*wc_y
         # moment on the frame, forces on the first moment and mean rotation
         first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
         angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
@@ -498,25 +474,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
         mass = masses[0]
         Jc_xx, Jc_yy, Jc_zz, Jc_xy, Jc_xz, Jc_yz = Jc[0], Jc[1], Jc[2], Jc[3], Jc[4], Jc[5]
-        t125 = -Mc_y*angle0_z + Mc_z*angle0_y
-        t126 = 1/mass
-        t127 = first0_y + mc_y
-        t128 = first0_z + mc_z
-        t129 = -Mc_x*angle0_y + Mc_y*angle0_x
-        t130 = Mc_x*angle0_z - Mc_z*angle0_x
-        t131 = angle0_y*t129 - angle0_z*t130
-        t132 = first0_x + mc_x
-        t133 = -angle0_x*t129 + angle0_z*t125
-        t134 = angle0_x*t130 - angle0_y*t125
-        Rr_x = Mc_x + r1*t125 + r2*t131 + t126*(-Rt_y*t128 + Rt_z*t127)
-        Rr_y = Mc_y + r1*t130 + r2*t133 + t126*(Rt_x*t128 - Rt_z*t132)
-        Rr_z = Mc_z + r1*t129 + r2*t134 + t126*(-Rt_x*t127 + Rt_y*t132)
-        carried[0] = t126*(Rt_x - first2_x)
-        carried[1] = t126*(Rt_y - first2_y)
-        carried[2] = t126*(Rt_z - first2_z)
-        carried[3] = -Jc_xx*angle2_x - Jc_xy*angle2_y - Jc_xz*angle2_z + Mc_x + r2*t125 + r3*t131
-        carried[4] = -Jc_xy*angle2_x - Jc_yy*angle2_y - Jc_yz*angle2_z + Mc_y + r2*t130 + r3*t133
-        carried[5] = -Jc_xz*angle2_x - Jc_yz*angle2_y - Jc_zz*angle2_z + Mc_z + r2*t129 + r3*t134
+        t105 = -Mc_y*angle0_z + Mc_z*angle0_y
+        t106 = 1/mass
+        t107 = first0_y + mc_y
+        t108 = first0_z + mc_z
+        t109 = -Mc_x*angle0_y + Mc_y*angle0_x
+        t110 = Mc_x*angle0_z - Mc_z*angle0_x
+        t111 = angle0_y*t109 - angle0_z*t110
+        t112 = first0_x + mc_x
+        t113 = -angle0_x*t109 + angle0_z*t105
+        t114 = angle0_x*t110 - angle0_y*t105
+        Rr_x = Mc_x + r1*t105 + r2*t111 + t106*(-Rt_y*t108 + Rt_z*t107)
+        Rr_y = Mc_y + r1*t110 + r2*t113 + t106*(Rt_x*t108 - Rt_z*t112)
+        Rr_z = Mc_z + r1*t109 + r2*t114 + t106*(-Rt_x*t107 + Rt_y*t112)
+        carried[0] = t106*(Rt_x - first2_x)
+        carried[1] = t106*(Rt_y - first2_y)
+        carried[2] = t106*(Rt_z - first2_z)
+        carried[3] = -Jc_xx*angle2_x - Jc_xy*angle2_y - Jc_xz*angle2_z + Mc_x + r2*t105 + r3*t111
+        carried[4] = -Jc_xy*angle2_x - Jc_yy*angle2_y - Jc_yz*angle2_z + Mc_y + r2*t110 + r3*t113
+        carried[5] = -Jc_xz*angle2_x - Jc_yz*angle2_y - Jc_zz*angle2_z + Mc_z + r2*t109 + r3*t114
         # forces of the rigid part, conjugate to y
         add_block_times(rigid_columns, carried, s, n, 6, padded(n))
         # damping force, Cbar ydot
@@ -529,15 +505,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t135 = X_z + u_z
-            t136 = X_y + u_y
-            t137 = X_x + u_x
+            t115 = X_z + u_z
+            t116 = X_y + u_y
+            t117 = X_x + u_x
             F_x += -f_x
             F_y += -f_y
             F_z += -f_z
-            W_x += f_y*t135 - f_z*t136
-            W_y += -f_x*t135 + f_z*t137
-            W_z += f_x*t136 - f_y*t137
+            W_x += f_y*t115 - f_z*t116
+            W_y += -f_x*t115 + f_z*t117
+            W_z += f_x*t116 - f_y*t117
         # inertia and weight on the frame
         F_x += Rt_x
         F_y += Rt_y
@@ -551,21 +527,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t138 = -m_x*psi_y + m_y*psi_x
-            t139 = m_x*psi_z
-            t140 = -m_z*psi_x + t139
-            t141 = -m_y*psi_z + m_z*psi_y
-            W_x += -e0*psi_y*t138 + e0*psi_z*t140 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-            W_y += e0*psi_x*t138 - e0*psi_z*t141 - m_y + (0.5)*m_z*psi_x - 0.5*t139
-            W_z += -e0*psi_x*t140 + e0*psi_y*t141 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+            t118 = -m_x*psi_y + m_y*psi_x
+            t119 = m_x*psi_z
+            t120 = -m_z*psi_x + t119
+            t121 = -m_y*psi_z + m_z*psi_y
+            W_x += -e0*psi_y*t118 + e0*psi_z*t120 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+            W_y += e0*psi_x*t118 - e0*psi_z*t121 - m_y + (0.5)*m_z*psi_x - 0.5*t119
+            W_z += -e0*psi_x*t120 + e0*psi_y*t121 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
         # B^T wp = W
         rhs_x = rhs_y = rhs_z = 0.0
-        t142 = W_x + rhs_x
-        t143 = W_y + rhs_y
-        t144 = W_z + rhs_z
-        wp_x = Bxx*t142 + Byx*t143 + Bzx*t144
-        wp_y = Bxy*t142 + Byy*t143 + Bzy*t144
-        wp_z = Bxz*t142 + Byz*t143 + Bzz*t144
+        t122 = W_x + rhs_x
+        t123 = W_y + rhs_y
+        t124 = W_z + rhs_z
+        wp_x = Bxx*t122 + Byx*t123 + Bzx*t124
+        wp_y = Bxy*t122 + Byy*t123 + Bzy*t124
+        wp_z = Bxz*t122 + Byz*t123 + Bzz*t124
         # force on the nodes in frame axes, (30), (57)
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -588,30 +564,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t145 = m_y*psi_z
-            t146 = m_x*psi_y
-            t147 = m_y*psi_x - t146
-            t148 = e0*psi_y
-            t149 = m_x*psi_z
-            t150 = m_z*psi_x
-            t151 = t149 - t150
-            t152 = e0*psi_z
-            t153 = psi_y*wp_z
-            t154 = psi_z*wp_y
-            t155 = psi_x*wp_y
-            t156 = psi_y*wp_x
-            t157 = t155 - t156
-            t158 = psi_x*wp_z
-            t159 = psi_z*wp_x - t158
-            t160 = m_z*psi_y - t145
-            t161 = e0*psi_x
-            t162 = t153 - t154
-            g[j3] = (alpha_r*(t148*t157 - t152*t159 - 0.5*t153 + (0.5)*t154 + wp_x) + m_x -
-                0.5*m_z*psi_y + (0.5)*t145 + t147*t148 - t151*t152)
-            g[j3 + 1] = (alpha_r*(-0.5*psi_z*wp_x + t152*t162 - t157*t161 + (0.5)*t158 + wp_y) +
-                m_y - t147*t161 - 0.5*t149 + (0.5)*t150 + t152*t160)
-            g[j3 + 2] = (alpha_r*(-t148*t162 - 0.5*t155 + (0.5)*t156 + t159*t161 + wp_z) -
-                0.5*m_y*psi_x + m_z + (0.5)*t146 - t148*t160 + t151*t161)
+            t125 = alpha_r*wp_y + m_y
+            t126 = psi_z*t125
+            t127 = alpha_r*wp_z + m_z
+            t128 = psi_y*t127
+            t129 = psi_x*t125
+            t130 = alpha_r*wp_x + m_x
+            t131 = psi_y*t130
+            t132 = e0*(t129 - t131)
+            t133 = psi_x*t127
+            t134 = psi_z*t130 - t133
+            t135 = e0*psi_z
+            t136 = -t126 + t128
+            g[j3] = psi_y*t132 + (0.5)*t126 - 0.5*t128 + t130 - t134*t135
+            g[j3 + 1] = -psi_x*t132 - 0.5*psi_z*t130 + t125 + (0.5)*t133 + t135*t136
+            g[j3 + 2] = e0*psi_x*t134 - e0*psi_y*t136 + t127 - 0.5*t129 + (0.5)*t131
         # force of the internal modes
         for k in range(MODES, n):
             fm = s[k]
@@ -640,47 +607,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             Jc_xx, Jc_yy, Jc_zz, Jc_xy, Jc_xz, Jc_yz = Jc[0], Jc[1], Jc[2], Jc[3], Jc[4], Jc[5]
             moving = squares[0]
             elastic = squares[1]
-            t163 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
-            t164 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
-            t165 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
-            t166 = 1/mass
-            t167 = first0_y + mc_y
-            t168 = first0_x + mc_x
-            t169 = Om0_x*t167 - Om0_y*t168 + first1_z + mass*v0_z
-            t170 = first0_z + mc_z
-            t171 = -Om0_x*t170 + Om0_z*t168 + first1_y + mass*v0_y
-            t172 = Om0_y*t170 - Om0_z*t167 + first1_x + mass*v0_x
-            t173 = mass*x0_x
-            t174 = mass*x0_y
-            t175 = mass*x0_z
-            t176 = R0_xx*t172 + R0_xy*t171 + R0_xz*t169
-            t177 = R0_yx*t172 + R0_yy*t171 + R0_yz*t169
-            t178 = R0_zx*t172 + R0_zy*t171 + R0_zz*t169
-            t179 = angle0_y*t165 - angle0_z*t164
-            t180 = angle0_x*t164 - angle0_y*t163
-            t181 = -angle0_x*t165 + angle0_z*t163
-            t182 = (r1*t179 + r2*(angle0_y*t180 - angle0_z*t181) + t163 + t166*(t167*t169 -
-                t170*t171))
-            t183 = (r1*t181 + r2*(-angle0_x*t180 + angle0_z*t179) + t164 + t166*(-t168*t169 +
-                t170*t172))
-            t184 = (r1*t180 + r2*(angle0_x*t181 - angle0_y*t179) + t165 + t166*(-t167*t172 +
-                t168*t171))
+            t137 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
+            t138 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
+            t139 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
+            t140 = 1/mass
+            t141 = first0_y + mc_y
+            t142 = first0_x + mc_x
+            t143 = Om0_x*t141 - Om0_y*t142 + first1_z + mass*v0_z
+            t144 = first0_z + mc_z
+            t145 = -Om0_x*t144 + Om0_z*t142 + first1_y + mass*v0_y
+            t146 = Om0_y*t144 - Om0_z*t141 + first1_x + mass*v0_x
+            t147 = mass*x0_x
+            t148 = mass*x0_y
+            t149 = mass*x0_z
+            t150 = R0_xx*t146 + R0_xy*t145 + R0_xz*t143
+            t151 = R0_yx*t146 + R0_yy*t145 + R0_yz*t143
+            t152 = R0_zx*t146 + R0_zy*t145 + R0_zz*t143
+            t153 = angle0_y*t139 - angle0_z*t138
+            t154 = angle0_x*t138 - angle0_y*t137
+            t155 = -angle0_x*t139 + angle0_z*t137
+            t156 = (r1*t153 + r2*(angle0_y*t154 - angle0_z*t155) + t137 + t140*(t141*t143 -
+                t144*t145))
+            t157 = (r1*t155 + r2*(-angle0_x*t154 + angle0_z*t153) + t138 + t140*(-t142*t143 +
+                t144*t146))
+            t158 = (r1*t154 + r2*(angle0_x*t155 - angle0_y*t153) + t139 + t140*(-t141*t146 +
+                t142*t145))
             kinetic = (-0.5*angle1_x*(Jc_xx*angle1_x + Jc_xy*angle1_y + Jc_xz*angle1_z) -
                 0.5*angle1_y*(Jc_xy*angle1_x + Jc_yy*angle1_y + Jc_yz*angle1_z) -
                 0.5*angle1_z*(Jc_xz*angle1_x + Jc_yz*angle1_y + Jc_zz*angle1_z) + (0.5)*moving +
-                (0.5)*t163*wc_x + (0.5)*t164*wc_y + (0.5)*t165*wc_z +
-                (0.5)*t166*(-first1_x*first1_x - first1_y*first1_y - first1_z*first1_z + t169*t169
-                + t171*t171 + t172*t172))
+                (0.5)*t137*wc_x + (0.5)*t138*wc_y + (0.5)*t139*wc_z +
+                (0.5)*t140*(-first1_x*first1_x - first1_y*first1_y - first1_z*first1_z + t143*t143
+                + t145*t145 + t146*t146))
             strain = (0.5)*elastic
-            potential = (-gamma_x*(R0_xx*t173 + R0_yx*t174 + R0_zx*t175 + t168) -
-                gamma_y*(R0_xy*t173 + R0_yy*t174 + R0_zy*t175 + t167) - gamma_z*(R0_xz*t173 +
-                R0_yz*t174 + R0_zz*t175 + t170))
-            P_x = t176
-            P_y = t177
-            P_z = t178
-            H_x = R0_xx*t182 + R0_xy*t183 + R0_xz*t184 - t177*x0_z + t178*x0_y
-            H_y = R0_yx*t182 + R0_yy*t183 + R0_yz*t184 + t176*x0_z - t178*x0_x
-            H_z = R0_zx*t182 + R0_zy*t183 + R0_zz*t184 - t176*x0_y + t177*x0_x
+            potential = (-gamma_x*(R0_xx*t147 + R0_yx*t148 + R0_zx*t149 + t142) -
+                gamma_y*(R0_xy*t147 + R0_yy*t148 + R0_zy*t149 + t141) - gamma_z*(R0_xz*t147 +
+                R0_yz*t148 + R0_zz*t149 + t144))
+            P_x = t150
+            P_y = t151
+            P_z = t152
+            H_x = R0_xx*t156 + R0_xy*t157 + R0_xz*t158 - t151*x0_z + t152*x0_y
+            H_y = R0_yx*t156 + R0_yy*t157 + R0_yz*t158 + t150*x0_z - t152*x0_x
+            H_z = R0_zx*t156 + R0_zy*t157 + R0_zz*t158 - t150*x0_y + t151*x0_x
             energies[KINETIC] += kinetic
             energies[STRAIN] += strain
             energies[POTENTIAL] += potential
@@ -752,16 +719,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t185 = -dth_x*psi_y + dth_y*psi_x
-                    t186 = dth_x*psi_z
-                    t187 = -dth_z*psi_x + t186
-                    t188 = -dth_y*psi_z + dth_z*psi_y
+                    t159 = -dth_x*psi_y + dth_y*psi_x
+                    t160 = dth_x*psi_z
+                    t161 = -dth_z*psi_x + t160
+                    t162 = -dth_y*psi_z + dth_z*psi_y
                     rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y -
-                        e0*psi_y*t185 + e0*psi_z*t187))
-                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t185 - e0*psi_z*t188
-                        - 0.5*t186))
+                        e0*psi_y*t159 + e0*psi_z*t161))
+                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t159 - e0*psi_z*t162
+                        - 0.5*t160))
                     rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z -
-                        e0*psi_x*t187 + e0*psi_y*t188))
+                        e0*psi_x*t161 + e0*psi_y*t162))
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -771,43 +738,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    t189 = X_y + u_y
-                    t190 = X_z + u_z
-                    t191 = X_x + u_x
-                    dy[i3] = -dth0_y*t190 + dth0_z*t189 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t190 - dth0_z*t191 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t189 + dth0_y*t191 - dx0_z + dx_z
+                    t163 = X_y + u_y
+                    t164 = X_z + u_z
+                    t165 = X_x + u_x
+                    dy[i3] = -dth0_y*t164 + dth0_z*t163 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t164 - dth0_z*t165 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t163 + dth0_y*t165 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t192 = dth0_y*psi_z
-                    t193 = dth_y*psi_z
-                    t194 = dth0_x*psi_y
-                    t195 = dth0_y*psi_x - t194
-                    t196 = e0*psi_y
-                    t197 = dth_x*psi_z
-                    t198 = dth_z*psi_x
-                    t199 = t197 - t198
-                    t200 = e0*psi_z
-                    t201 = dth_x*psi_y
-                    t202 = dth_y*psi_x - t201
-                    t203 = dth0_x*psi_z
-                    t204 = dth0_z*psi_x
-                    t205 = t203 - t204
-                    t206 = e0*psi_x
-                    t207 = dth_z*psi_y - t193
-                    t208 = dth0_z*psi_y - t192
-                    dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t202 + e0*psi_z*t205 - 0.5*t192 - 0.5*t193 - t195*t196 -
-                        t199*t200)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t195*t206 + (0.5)*t197 - 0.5*t198 + t200*t207
-                        - t200*t208 - t202*t206 + (0.5)*t203 - 0.5*t204)
-                    dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t199 + e0*psi_y*t208 - 0.5*t194 - t196*t207 - 0.5*t201 -
-                        t205*t206)
+                    t166 = (0.5)*dth0_z + (0.5)*dth_z
+                    t167 = dth0_y + dth_y
+                    t168 = (0.5)*psi_z
+                    t169 = -dth0_y + dth_y
+                    t170 = -dth0_x + dth_x
+                    t171 = psi_x*t169 - psi_y*t170
+                    t172 = -dth0_z + dth_z
+                    t173 = -psi_x*t172 + psi_z*t170
+                    t174 = dth0_x + dth_x
+                    t175 = psi_y*t172 - psi_z*t169
+                    dy[j3] = -dth0_x + dth_x + e0*(psi_y*t171 - psi_z*t173) + psi_y*t166 - t167*t168
+                    dy[j3 + 1] = (-dth0_y + dth_y + e0*(-psi_x*t171 + psi_z*t175) - psi_x*t166 +
+                        t168*t174)
+                    dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t173 - psi_y*t175) +
+                        (0.5)*psi_x*t167 - 0.5*psi_y*t174)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
@@ -845,47 +802,57 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t209 = -Om_x*psi_y + Om_y*psi_x
+                    t176 = (0.5)*dpsi_y
+                    t177 = (0.5)*psi_z
+                    t178 = e0*psi_x
+                    t179 = psi_y*t178
+                    t180 = (0.5)*psi_y
+                    t181 = psi_z*t178
+                    t182 = Om0_x*psi_z - Om0_z*psi_x
+                    t183 = Om0_x*dpsi_z - Om0_z*dpsi_x
+                    t184 = -Om0_x*psi_y + Om0_y*psi_x
+                    t185 = -Om0_x*dpsi_y + Om0_y*dpsi_x
+                    t186 = psi_y*psi_y
+                    t187 = e0*t186
+                    t188 = psi_z*psi_z
+                    t189 = e0*t188 - 1
+                    t190 = 2*dpsi_x*psi_x
+                    t191 = 2*dpsi_y*psi_y
+                    t192 = 2*dpsi_z*psi_z
+                    t193 = t190 + t191 + t192
+                    t194 = e1*t193
+                    t195 = (0.5)*dpsi_z
+                    t196 = dpsi_x*e0
+                    t197 = psi_x*t194
+                    t198 = dpsi_y*t178 + psi_y*t196 + psi_y*t197
+                    t199 = dpsi_z*t178 + psi_z*t196 + psi_z*t197
+                    t200 = e0*t192 + t188*t194
+                    t201 = e0*t191 + t186*t194
+                    t202 = (0.5)*psi_x
+                    t203 = e0*psi_y
+                    t204 = psi_z*t203
+                    t205 = -Om0_y*psi_z + Om0_z*psi_y
+                    t206 = -Om0_y*dpsi_z + Om0_z*dpsi_y
+                    t207 = psi_x*psi_x
+                    t208 = e0*t207
+                    t209 = (0.5)*dpsi_x
                     t210 = dpsi_y*e0
-                    t211 = Om0_x*psi_z - Om0_z*psi_x
-                    t212 = dpsi_z*e0
-                    t213 = Om0_x*dpsi_z
-                    t214 = -Om0_z*dpsi_x + t213
-                    t215 = e0*psi_z
-                    t216 = -Om0_x*psi_y + Om0_y*psi_x
-                    t217 = Om_x*psi_z - Om_z*psi_x
-                    t218 = -Om0_x*dpsi_y + Om0_y*dpsi_x
-                    t219 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t220 = e0*psi_y
-                    t221 = Om_x*dpsi_z
-                    t222 = dOm_x*psi_z
-                    t223 = -Om_z*dpsi_x - dOm_z*psi_x + t221 + t222
-                    t224 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t225 = e1*t224
-                    t226 = psi_y*t225
-                    t227 = psi_z*t225
-                    t228 = dpsi_x*e0
-                    t229 = -Om_y*psi_z + Om_z*psi_y
-                    t230 = e0*psi_x
-                    t231 = -Om0_y*psi_z + Om0_z*psi_y
-                    t232 = -Om0_y*dpsi_z + Om0_z*dpsi_y
-                    t233 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t234 = psi_x*t225
-                    rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - 0.5*Om0_z*dpsi_y + (0.5)*Om_y*dpsi_z
-                        - 0.5*Om_z*dpsi_y - dOm_x + (0.5)*dOm_y*psi_z - 0.5*dOm_z*psi_y +
-                        dpsi_y*e0*t216 + dpsi_z*e0*t217 + e0*psi_y*t218 + e0*psi_z*t223 +
-                        e1*psi_y*t216*t224 + e1*psi_z*t217*t224 - t209*t210 - t209*t226 -
-                        t211*t212 - t211*t227 - t214*t215 - t219*t220))
-                    rhs_y += (-alpha_r*((0.5)*Om0_z*dpsi_x + (0.5)*Om_z*dpsi_x - dOm_y +
-                        (0.5)*dOm_z*psi_x + dpsi_x*e0*t209 + dpsi_z*e0*t231 + e0*psi_x*t219 +
-                        e0*psi_z*t232 + e1*psi_x*t209*t224 + e1*psi_z*t224*t231 - t212*t229 -
-                        0.5*t213 - t215*t233 - t216*t228 - t216*t234 - t218*t230 - 0.5*t221 -
-                        0.5*t222 - t227*t229))
-                    rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x + (0.5)*Om_x*dpsi_y
-                        - 0.5*Om_y*dpsi_x + (0.5)*dOm_x*psi_y - 0.5*dOm_y*psi_x - dOm_z +
-                        dpsi_x*e0*t211 + dpsi_y*e0*t229 + e0*psi_x*t214 + e0*psi_y*t233 +
-                        e1*psi_x*t211*t224 + e1*psi_y*t224*t229 - t210*t231 - t217*t228 -
-                        t217*t234 - t220*t232 - t223*t230 - t226*t231))
+                    t211 = psi_y*t194
+                    t212 = dpsi_z*t203 + psi_z*t210 + psi_z*t211
+                    t213 = e0*t190 + t194*t207
+                    rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - Om0_z*t176 - Om_x*(-t200 - t201) -
+                        Om_y*(-t195 + t198) - Om_z*(t176 + t199) - dOm_x*(-t187 - t189) -
+                        dOm_y*(-t177 + t179) - dOm_z*(t180 + t181) + dpsi_y*e0*t184 -
+                        dpsi_z*e0*t182 + e0*psi_y*t185 - e0*psi_z*t183 + e1*psi_y*t184*t193 -
+                        psi_z*t182*t194))
+                    rhs_y += (-alpha_r*(-Om0_x*t195 + (0.5)*Om0_z*dpsi_x - Om_x*(t195 + t198) -
+                        Om_y*(-t200 - t213) - Om_z*(-t209 + t212) - dOm_x*(t177 + t179) -
+                        dOm_y*(-t189 - t208) - dOm_z*(-t202 + t204) + dpsi_z*e0*t205 +
+                        e0*psi_z*t206 + e1*psi_z*t193*t205 - t178*t185 - t184*t196 - t184*t197))
+                    rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x - Om_x*(-t176 +
+                        t199) - Om_y*(t209 + t212) - Om_z*(-t201 - t213) - dOm_x*(-t180 + t181) -
+                        dOm_y*(t202 + t204) - dOm_z*(-t187 - t208 + 1) + dpsi_x*e0*t182 +
+                        e0*psi_x*t183 + e1*psi_x*t182*t193 - t203*t206 - t205*t210 - t205*t211))
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -918,13 +885,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t235 = X_y + u_y
-                    t236 = X_z + u_z
-                    t237 = X_x + u_x
-                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t236 + dOm0_z*t235 - dv0_x + dvs_x
-                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t236 - dOm0_z*t237 - dv0_y +
+                    t214 = X_y + u_y
+                    t215 = X_z + u_z
+                    t216 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t215 + dOm0_z*t214 - dv0_x + dvs_x
+                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t215 - dOm0_z*t216 - dv0_y +
                         dvs_y)
-                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t235 + dOm0_y*t237 - dv0_z +
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t214 + dOm0_y*t216 - dv0_z +
                         dvs_z)
                 # differential: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -935,59 +902,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t238 = Om0_y*dpsi_z
-                    t239 = Om_y*dpsi_z
-                    t240 = dOm0_y*psi_z
-                    t241 = dOm_y*psi_z
-                    t242 = -Om0_x*psi_y + Om0_y*psi_x
-                    t243 = dpsi_y*e0
-                    t244 = Om_x*psi_z - Om_z*psi_x
-                    t245 = dpsi_z*e0
-                    t246 = -Om_x*psi_y + Om_y*psi_x
-                    t247 = Om0_x*psi_z - Om0_z*psi_x
-                    t248 = Om0_x*dpsi_y
-                    t249 = dOm0_x*psi_y
-                    t250 = Om0_y*dpsi_x + dOm0_y*psi_x - t248 - t249
-                    t251 = e0*psi_y
-                    t252 = Om_x*dpsi_z
-                    t253 = dOm_x*psi_z
-                    t254 = Om_z*dpsi_x
-                    t255 = dOm_z*psi_x
-                    t256 = t252 + t253 - t254 - t255
-                    t257 = e0*psi_z
-                    t258 = Om_x*dpsi_y
-                    t259 = dOm_x*psi_y
-                    t260 = Om_y*dpsi_x + dOm_y*psi_x - t258 - t259
-                    t261 = Om0_x*dpsi_z
-                    t262 = dOm0_x*psi_z
-                    t263 = Om0_z*dpsi_x
-                    t264 = dOm0_z*psi_x
-                    t265 = t261 + t262 - t263 - t264
-                    t266 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t267 = e1*t266
-                    t268 = psi_y*t267
-                    t269 = psi_z*t267
-                    t270 = dpsi_x*e0
-                    t271 = -Om_y*psi_z + Om_z*psi_y
-                    t272 = -Om0_y*psi_z + Om0_z*psi_y
-                    t273 = e0*psi_x
-                    t274 = Om_z*dpsi_y + dOm_z*psi_y - t239 - t241
-                    t275 = Om0_z*dpsi_y + dOm0_z*psi_y - t238 - t240
-                    t276 = psi_x*t267
-                    deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x +
-                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t246 +
-                        dpsi_z*e0*t247 + e0*psi_y*t260 + e0*psi_z*t265 + e1*psi_y*t246*t266 +
-                        e1*psi_z*t247*t266 - 0.5*t238 - 0.5*t239 - 0.5*t240 - 0.5*t241 - t242*t243
-                        - t242*t268 - t244*t245 - t244*t269 - t250*t251 - t256*t257)
-                    deta[j3 + 1] = (-dOm0_y + dOm_y + t242*t270 + t242*t276 + t245*t271 -
-                        t245*t272 - t246*t270 - t246*t276 + t250*t273 + (0.5)*t252 + (0.5)*t253 -
-                        0.5*t254 - 0.5*t255 + t257*t274 - t257*t275 - t260*t273 + (0.5)*t261 +
-                        (0.5)*t262 - 0.5*t263 - 0.5*t264 + t269*t271 - t269*t272)
-                    deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t244 + dpsi_y*e0*t272 +
-                        e0*psi_x*t256 + e0*psi_y*t275 + e1*psi_x*t244*t266 + e1*psi_y*t266*t272 -
-                        t243*t271 - t247*t270 - t247*t276 - 0.5*t248 - 0.5*t249 - t251*t274 -
-                        0.5*t258 - 0.5*t259 - t265*t273 - t268*t271)
+                    t217 = (0.5)*Om0_z + (0.5)*Om_z
+                    t218 = Om0_y + Om_y
+                    t219 = (0.5)*dpsi_z
+                    t220 = (0.5)*dOm0_z + (0.5)*dOm_z
+                    t221 = dOm0_y + dOm_y
+                    t222 = (0.5)*psi_z
+                    t223 = -Om0_y + Om_y
+                    t224 = -Om0_x + Om_x
+                    t225 = psi_x*t223 - psi_y*t224
+                    t226 = -Om0_z + Om_z
+                    t227 = -psi_x*t226 + psi_z*t224
+                    t228 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t229 = -dOm0_y + dOm_y
+                    t230 = -dOm0_x + dOm_x
+                    t231 = dpsi_x*t223 - dpsi_y*t224 + psi_x*t229 - psi_y*t230
+                    t232 = -dOm0_z + dOm_z
+                    t233 = -dpsi_x*t226 + dpsi_z*t224 - psi_x*t232 + psi_z*t230
+                    t234 = Om0_x + Om_x
+                    t235 = dOm0_x + dOm_x
+                    t236 = psi_y*t226 - psi_z*t223
+                    t237 = dpsi_y*t226 - dpsi_z*t223 + psi_y*t232 - psi_z*t229
+                    deta[j3] = (-dOm0_x + dOm_x + dpsi_y*t217 + e0*(dpsi_y*t225 - dpsi_z*t227 +
+                        psi_y*t231 - psi_z*t233) + psi_y*t220 - t218*t219 - t221*t222 +
+                        t228*(psi_y*t225 - psi_z*t227))
+                    deta[j3 + 1] = (-dOm0_y + dOm_y - dpsi_x*t217 + e0*(-dpsi_x*t225 + dpsi_z*t236
+                        - psi_x*t231 + psi_z*t237) - psi_x*t220 + t219*t234 + t222*t235 +
+                        t228*(-psi_x*t225 + psi_z*t236))
+                    deta[j3 + 2] = (-dOm0_z + dOm_z + (0.5)*dpsi_x*t218 - 0.5*dpsi_y*t234 +
+                        e0*(dpsi_x*t227 - dpsi_y*t236 + psi_x*t233 - psi_y*t237) +
+                        (0.5)*psi_x*t221 - 0.5*psi_y*t235 + t228*(psi_x*t227 - psi_y*t236))
                 # differential: rates of the internal modes
                 for k in range(MODES, n):
                     dvm = dve[k]
@@ -1006,128 +950,74 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     e0 = e0s[j]
                     e1 = e1s[j]
                     e2 = e2s[j]
-                    t277 = A_y*dpsi_z
-                    t278 = Om0_y*dep_z
-                    t279 = Om_y*dep_z
-                    t280 = dA_y*psi_z
-                    t281 = dOm0_y*ep_z
-                    t282 = dOm_y*ep_z
-                    t283 = -Om_x*psi_y + Om_y*psi_x
-                    t284 = dep_y*e0
-                    t285 = Om0_x*psi_z - Om0_z*psi_x
-                    t286 = dep_z*e0
-                    t287 = Om0_x*ep_z - Om0_z*ep_x
-                    t288 = dpsi_z*e0
-                    t289 = -Om0_x*psi_y + Om0_y*psi_x
-                    t290 = Om_x*psi_z - Om_z*psi_x
-                    t291 = -Om0_x*ep_y + Om0_y*ep_x
-                    t292 = dpsi_y*e0
-                    t293 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                    t294 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t295 = e0*ep_y
-                    t296 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                    t297 = e0*ep_z
-                    t298 = Om0_x*dep_z
-                    t299 = dOm0_x*ep_z
-                    t300 = Om0_z*dep_x
-                    t301 = dOm0_z*ep_x
-                    t302 = t298 + t299 - t300 - t301
-                    t303 = e0*psi_z
-                    t304 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                    t305 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                    t306 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                    t307 = Om0_x*dep_y
-                    t308 = dOm0_x*ep_y
-                    t309 = Om0_y*dep_x + dOm0_y*ep_x - t307 - t308
-                    t310 = e0*psi_y
-                    t311 = 2*psi_x
-                    t312 = 2*psi_y
-                    t313 = 2*psi_z
-                    t314 = ep_x*t311 + ep_y*t312 + ep_z*t313
-                    t315 = e1*t314
-                    t316 = dpsi_y*t315
-                    t317 = dpsi_z*t315
-                    t318 = dpsi_x*t311 + dpsi_y*t312 + dpsi_z*t313
-                    t319 = e1*t318
-                    t320 = ep_y*t319
-                    t321 = ep_z*t319
-                    t322 = psi_z*t319
-                    t323 = psi_y*t319
-                    t324 = psi_y*t315
-                    t325 = psi_z*t315
-                    t326 = A_x*dpsi_y
-                    t327 = Om_x*dep_y
-                    t328 = dA_x*psi_y
-                    t329 = dOm_x*ep_y
-                    t330 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t326 - t327 - t328
-                        - t329)
-                    t331 = A_x*dpsi_z
-                    t332 = Om_x*dep_z
-                    t333 = dA_x*psi_z
-                    t334 = dOm_x*ep_z
-                    t335 = A_z*dpsi_x
-                    t336 = Om_z*dep_x
-                    t337 = dA_z*psi_x
-                    t338 = dOm_z*ep_x
-                    t339 = t331 + t332 + t333 + t334 - t335 - t336 - t337 - t338
-                    t340 = (e1*(dep_x*t311 + dep_y*t312 + dep_z*t313 + 2*dpsi_x*ep_x +
+                    t238 = A_y*dpsi_z
+                    t239 = dA_y*psi_z
+                    t240 = (0.5)*Om0_z + (0.5)*Om_z
+                    t241 = Om0_y + Om_y
+                    t242 = (0.5)*dep_z
+                    t243 = (0.5)*dOm0_z + (0.5)*dOm_z
+                    t244 = dOm0_y + dOm_y
+                    t245 = (0.5)*ep_z
+                    t246 = -Om0_y + Om_y
+                    t247 = -Om0_x + Om_x
+                    t248 = psi_x*t246 - psi_y*t247
+                    t249 = -Om0_z + Om_z
+                    t250 = -psi_x*t249 + psi_z*t247
+                    t251 = psi_y*t248 - psi_z*t250
+                    t252 = 2*psi_x
+                    t253 = 2*psi_y
+                    t254 = 2*psi_z
+                    t255 = (e1*(dep_x*t252 + dep_y*t253 + dep_z*t254 + 2*dpsi_x*ep_x +
                         2*dpsi_y*ep_y + 2*dpsi_z*ep_z))
-                    t341 = psi_y*t283
-                    t342 = psi_z*t340
-                    t343 = t289*t340
-                    t344 = e2*t314*t318
-                    t345 = psi_z*t344
-                    t346 = t289*t344
-                    t347 = dep_x*e0
-                    t348 = -Om_y*psi_z + Om_z*psi_y
-                    t349 = dpsi_x*e0
-                    t350 = -Om0_y*psi_z + Om0_z*psi_y
-                    t351 = -Om0_y*ep_z + Om0_z*ep_y
-                    t352 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                    t353 = e0*ep_x
-                    t354 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t355 = e0*psi_x
-                    t356 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                    t357 = Om0_z*dep_y + dOm0_z*ep_y - t278 - t281
-                    t358 = dpsi_x*t315
-                    t359 = ep_x*t319
-                    t360 = psi_x*t319
-                    t361 = psi_x*t315
-                    t362 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t277 - t279 - t280
-                        - t282)
-                    t363 = psi_x*t340
-                    t364 = psi_x*t344
-                    t365 = psi_y*t340
-                    t366 = psi_y*t344
-                    detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om_z*dep_y + dA_x +
-                        (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y + (0.5)*dOm_z*ep_y - psi_y*t343 -
-                        psi_y*t346 - 0.5*t277 - 0.5*t278 - 0.5*t279 - 0.5*t280 - 0.5*t281 -
-                        0.5*t282 + t283*t284 + t283*t316 + t283*t320 - t284*t289 + t285*t286 +
-                        t285*t317 + t285*t321 + t285*t342 + t285*t345 - t286*t290 + t287*t288 +
-                        t287*t322 - t288*t304 - t289*t316 - t289*t320 - t290*t317 - t290*t321 -
-                        t290*t342 - t290*t345 - t291*t292 - t291*t323 + t292*t293 + t293*t323 +
-                        t294*t295 + t294*t324 - t295*t305 + t296*t297 + t296*t325 - t297*t306 +
-                        t302*t303 - t303*t339 - t304*t322 - t305*t324 - t306*t325 - t309*t310 +
-                        t310*t330 + t340*t341 + t341*t344)
-                    detad[j3 + 1] = (dA_y + psi_x*t343 + psi_x*t346 - t283*t347 - t283*t358 -
-                        t283*t359 - t283*t363 - t283*t364 + t286*t348 - t286*t350 - t288*t351 +
-                        t288*t352 + t289*t347 + t289*t358 + t289*t359 + t291*t349 + t291*t360 -
-                        t293*t349 - t293*t360 - t294*t353 - t294*t361 + t297*t354 - t297*t356 +
-                        (0.5)*t298 + (0.5)*t299 - 0.5*t300 - 0.5*t301 - t303*t357 + t303*t362 +
-                        t305*t353 + t305*t361 + t309*t355 + t317*t348 - t317*t350 + t321*t348 -
-                        t321*t350 - t322*t351 + t322*t352 + t325*t354 - t325*t356 - t330*t355 +
-                        (0.5)*t331 + (0.5)*t332 + (0.5)*t333 + (0.5)*t334 - 0.5*t335 - 0.5*t336 -
-                        0.5*t337 - 0.5*t338 + t342*t348 - t342*t350 + t345*t348 - t345*t350)
-                    detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om_y*dep_x +
-                        (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x + (0.5)*dOm_y*ep_x - t284*t348
-                        + t284*t350 - t285*t347 - t285*t358 - t285*t359 - t285*t363 - t285*t364 -
-                        t287*t349 - t287*t360 + t290*t347 + t290*t358 + t290*t359 + t290*t363 +
-                        t290*t364 + t292*t351 - t292*t352 - t295*t354 + t295*t356 - t296*t353 -
-                        t296*t361 - t302*t355 + t304*t349 + t304*t360 + t306*t353 + t306*t361 -
-                        0.5*t307 - 0.5*t308 + t310*t357 - t310*t362 - t316*t348 + t316*t350 -
-                        t320*t348 + t320*t350 + t323*t351 - t323*t352 - t324*t354 + t324*t356 -
-                        0.5*t326 - 0.5*t327 - 0.5*t328 - 0.5*t329 + t339*t355 - t348*t365 -
-                        t348*t366 + t350*t365 + t350*t366)
+                    t256 = dpsi_x*t252 + dpsi_y*t253 + dpsi_z*t254
+                    t257 = ep_x*t252 + ep_y*t253 + ep_z*t254
+                    t258 = e2*t256*t257
+                    t259 = -A_x*psi_y + A_y*psi_x + ep_x*t246 - ep_y*t247
+                    t260 = A_x*psi_z - A_z*psi_x - ep_x*t249 + ep_z*t247
+                    t261 = e1*t256
+                    t262 = -dOm0_y + dOm_y
+                    t263 = -dOm0_x + dOm_x
+                    t264 = dpsi_x*t246 - dpsi_y*t247 + psi_x*t262 - psi_y*t263
+                    t265 = -dOm0_z + dOm_z
+                    t266 = -dpsi_x*t249 + dpsi_z*t247 - psi_x*t265 + psi_z*t263
+                    t267 = e1*t257
+                    t268 = A_x*dpsi_y
+                    t269 = dA_x*psi_y
+                    t270 = (A_y*dpsi_x + dA_y*psi_x + dep_x*t246 - dep_y*t247 + ep_x*t262 -
+                        ep_y*t263 - t268 - t269)
+                    t271 = A_x*dpsi_z
+                    t272 = dA_x*psi_z
+                    t273 = A_z*dpsi_x
+                    t274 = dA_z*psi_x
+                    t275 = (-dep_x*t249 + dep_z*t247 - ep_x*t265 + ep_z*t263 + t271 + t272 - t273
+                        - t274)
+                    t276 = Om0_x + Om_x
+                    t277 = dOm0_x + dOm_x
+                    t278 = psi_y*t249 - psi_z*t246
+                    t279 = -psi_x*t248 + psi_z*t278
+                    t280 = -A_y*psi_z + A_z*psi_y + ep_y*t249 - ep_z*t246
+                    t281 = dpsi_y*t249 - dpsi_z*t246 + psi_y*t265 - psi_z*t262
+                    t282 = (A_z*dpsi_y + dA_z*psi_y + dep_y*t249 - dep_z*t246 + ep_y*t265 -
+                        ep_z*t262 - t238 - t239)
+                    t283 = psi_x*t250 - psi_y*t278
+                    detad[j3] = ((0.5)*A_z*dpsi_y + dA_x + (0.5)*dA_z*psi_y + dep_y*t240 +
+                        e0*(dep_y*t248 - dep_z*t250 + dpsi_y*t259 - dpsi_z*t260 + ep_y*t264 -
+                        ep_z*t266 + psi_y*t270 - psi_z*t275) + ep_y*t243 - 0.5*t238 - 0.5*t239 -
+                        t241*t242 - t244*t245 + t251*t255 + t251*t258 + t261*(ep_y*t248 -
+                        ep_z*t250 + psi_y*t259 - psi_z*t260) + t267*(dpsi_y*t248 - dpsi_z*t250 +
+                        psi_y*t264 - psi_z*t266))
+                    detad[j3 + 1] = (dA_y - dep_x*t240 + e0*(-dep_x*t248 + dep_z*t278 -
+                        dpsi_x*t259 + dpsi_z*t280 - ep_x*t264 + ep_z*t281 - psi_x*t270 +
+                        psi_z*t282) - ep_x*t243 + t242*t276 + t245*t277 + t255*t279 + t258*t279 +
+                        t261*(-ep_x*t248 + ep_z*t278 - psi_x*t259 + psi_z*t280) +
+                        t267*(-dpsi_x*t248 + dpsi_z*t278 - psi_x*t264 + psi_z*t281) + (0.5)*t271 +
+                        (0.5)*t272 - 0.5*t273 - 0.5*t274)
+                    detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*dA_y*psi_x + dA_z + (0.5)*dep_x*t241
+                        - 0.5*dep_y*t276 + e0*(dep_x*t250 - dep_y*t278 + dpsi_x*t260 - dpsi_y*t280
+                        + ep_x*t266 - ep_y*t281 + psi_x*t275 - psi_y*t282) + (0.5)*ep_x*t244 -
+                        0.5*ep_y*t277 + t255*t283 + t258*t283 + t261*(ep_x*t250 - ep_y*t278 +
+                        psi_x*t260 - psi_y*t280) + t267*(dpsi_x*t250 - dpsi_y*t278 + psi_x*t266 -
+                        psi_y*t281) - 0.5*t268 - 0.5*t269)
                 # differential: rate: B rate = sum alpha_j T^-1(psi_j) rate_j
                 rhs_x = rhs_y = rhs_z = 0.0
                 for j in range(N_ROTATIONS):
@@ -1138,31 +1028,31 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t367 = (0.5)*dpsi_z
-                    t368 = dpsi_x*e0
-                    t369 = e0*psi_x
-                    t370 = 2*dpsi_x*psi_x
-                    t371 = 2*dpsi_y*psi_y
-                    t372 = 2*dpsi_z*psi_z
-                    t373 = e1*(t370 + t371 + t372)
-                    t374 = psi_x*t373
-                    t375 = dpsi_y*t369 + psi_y*t368 + psi_y*t374
-                    t376 = Om0d_y*alpha_r
-                    t377 = (0.5)*dpsi_y
-                    t378 = dpsi_z*t369 + psi_z*t368 + psi_z*t374
-                    t379 = Om0d_z*alpha_r
-                    t380 = e0*t372 + psi_z*psi_z*t373
-                    t381 = e0*t371 + psi_y*psi_y*t373
-                    t382 = Om0d_x*alpha_r
-                    t383 = (0.5)*dpsi_x
-                    t384 = dpsi_y*e0*psi_z + dpsi_z*e0*psi_y + psi_y*psi_z*t373
-                    t385 = e0*t370 + psi_x*psi_x*t373
-                    rhs_x += (alpha_r*depd_x - t376*(t367 + t375) - t379*(-t377 + t378) -
-                        t382*(-t380 - t381))
-                    rhs_y += (alpha_r*depd_y - t376*(-t380 - t385) - t379*(t383 + t384) -
-                        t382*(-t367 + t375))
-                    rhs_z += (alpha_r*depd_z - t376*(-t383 + t384) - t379*(-t381 - t385) -
-                        t382*(t377 + t378))
+                    t284 = (0.5)*dpsi_z
+                    t285 = dpsi_x*e0
+                    t286 = e0*psi_x
+                    t287 = 2*dpsi_x*psi_x
+                    t288 = 2*dpsi_y*psi_y
+                    t289 = 2*dpsi_z*psi_z
+                    t290 = e1*(t287 + t288 + t289)
+                    t291 = psi_x*t290
+                    t292 = dpsi_y*t286 + psi_y*t285 + psi_y*t291
+                    t293 = Om0d_y*alpha_r
+                    t294 = (0.5)*dpsi_y
+                    t295 = dpsi_z*t286 + psi_z*t285 + psi_z*t291
+                    t296 = Om0d_z*alpha_r
+                    t297 = e0*t289 + psi_z*psi_z*t290
+                    t298 = e0*t288 + psi_y*psi_y*t290
+                    t299 = Om0d_x*alpha_r
+                    t300 = (0.5)*dpsi_x
+                    t301 = dpsi_y*e0*psi_z + dpsi_z*e0*psi_y + psi_y*psi_z*t290
+                    t302 = e0*t287 + psi_x*psi_x*t290
+                    rhs_x += (alpha_r*depd_x - t293*(t284 + t292) - t296*(-t294 + t295) -
+                        t299*(-t297 - t298))
+                    rhs_y += (alpha_r*depd_y - t293*(-t297 - t302) - t296*(t300 + t301) -
+                        t299*(-t284 + t292))
+                    rhs_z += (alpha_r*depd_z - t293*(-t300 + t301) - t296*(-t298 - t302) -
+                        t299*(t294 + t295))
                 dOm0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1174,44 +1064,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t386 = (0.5)*psi_z
-                    t387 = e0*psi_x
-                    t388 = psi_y*t387
-                    t389 = (0.5)*psi_y
-                    t390 = psi_z*t387
-                    t391 = psi_y*psi_y
-                    t392 = e0*t391
-                    t393 = psi_z*psi_z
-                    t394 = e0*t393 - 1
-                    t395 = (0.5)*dpsi_z
-                    t396 = dpsi_x*e0
-                    t397 = 2*dpsi_x*psi_x
-                    t398 = 2*dpsi_y*psi_y
-                    t399 = 2*dpsi_z*psi_z
-                    t400 = e1*(t397 + t398 + t399)
-                    t401 = psi_x*t400
-                    t402 = dpsi_y*t387 + psi_y*t396 + psi_y*t401
-                    t403 = (0.5)*dpsi_y
-                    t404 = dpsi_z*t387 + psi_z*t396 + psi_z*t401
-                    t405 = e0*t399 + t393*t400
-                    t406 = e0*t398 + t391*t400
-                    t407 = (0.5)*psi_x
-                    t408 = e0*psi_z
-                    t409 = psi_y*t408
-                    t410 = psi_x*psi_x
-                    t411 = e0*t410
-                    t412 = (0.5)*dpsi_x
-                    t413 = dpsi_y*t408 + dpsi_z*e0*psi_y + psi_y*psi_z*t400
-                    t414 = e0*t397 + t400*t410
-                    detad[j3] = (Om0d_x*(t405 + t406) + Om0d_y*(-t395 - t402) + Om0d_z*(t403 -
-                        t404) + dOm0d_x*(t392 + t394) + dOm0d_y*(-t386 - t388) + dOm0d_z*(t389 -
-                        t390) + depd_x)
-                    detad[j3 + 1] = (Om0d_x*(t395 - t402) + Om0d_y*(t405 + t414) + Om0d_z*(-t412 -
-                        t413) + dOm0d_x*(t386 - t388) + dOm0d_y*(t394 + t411) + dOm0d_z*(-t407 -
-                        t409) + depd_y)
-                    detad[j3 + 2] = (Om0d_x*(-t403 - t404) + Om0d_y*(t412 - t413) + Om0d_z*(t406 +
-                        t414) + dOm0d_x*(-t389 - t390) + dOm0d_y*(t407 - t409) + dOm0d_z*(t392 +
-                        t411 - 1) + depd_z)
+                    t303 = Om0d_y*dpsi_z
+                    t304 = Om0d_z*dpsi_y
+                    t305 = dOm0d_y*psi_z
+                    t306 = dOm0d_z*psi_y
+                    t307 = Om0d_x*psi_y - Om0d_y*psi_x
+                    t308 = -Om0d_x*psi_z + Om0d_z*psi_x
+                    t309 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t310 = Om0d_x*dpsi_y
+                    t311 = dOm0d_x*psi_y
+                    t312 = Om0d_y*dpsi_x
+                    t313 = dOm0d_y*psi_x
+                    t314 = t310 + t311 - t312 - t313
+                    t315 = Om0d_x*dpsi_z
+                    t316 = dOm0d_x*psi_z
+                    t317 = Om0d_z*dpsi_x + dOm0d_z*psi_x - t315 - t316
+                    t318 = Om0d_y*psi_z - Om0d_z*psi_y
+                    t319 = t303 - t304 + t305 - t306
+                    detad[j3] = (-dOm0d_x + depd_x + e0*(dpsi_y*t307 - dpsi_z*t308 + psi_y*t314 -
+                        psi_z*t317) - 0.5*t303 + (0.5)*t304 - 0.5*t305 + (0.5)*t306 +
+                        t309*(psi_y*t307 - psi_z*t308))
+                    detad[j3 + 1] = (-0.5*Om0d_z*dpsi_x - dOm0d_y - 0.5*dOm0d_z*psi_x + depd_y +
+                        e0*(-dpsi_x*t307 + dpsi_z*t318 - psi_x*t314 + psi_z*t319) +
+                        t309*(-psi_x*t307 + psi_z*t318) + (0.5)*t315 + (0.5)*t316)
+                    detad[j3 + 2] = (-dOm0d_z + depd_z + e0*(dpsi_x*t308 - dpsi_y*t318 +
+                        psi_x*t317 - psi_y*t319) + t309*(psi_x*t308 - psi_y*t318) - 0.5*t310 -
+                        0.5*t311 + (0.5)*t312 + (0.5)*t313)
                 # differential: rate: rates of the elastic displacements
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -1223,21 +1101,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                     dacc_x, dacc_y, dacc_z = dacc[i3], dacc[i3 + 1], dacc[i3 + 2]
                     deu_x, deu_y, deu_z = deta[i3], deta[i3 + 1], deta[i3 + 2]
-                    t415 = X_y + u_y
-                    t416 = X_z + u_z
-                    t417 = X_x + u_x
+                    t320 = X_y + u_y
+                    t321 = X_z + u_z
+                    t322 = X_x + u_x
                     detad[i3] = (-Om0_y*deu_z + Om0_y*dv0_z - Om0_y*dvs_z + Om0_z*deu_y -
                         Om0_z*dv0_y + Om0_z*dvs_y - Om0d_y*du_z + Om0d_z*du_y - dOm0_y*eu_z +
                         dOm0_y*v0_z - dOm0_y*vs_z + dOm0_z*eu_y - dOm0_z*v0_y + dOm0_z*vs_y -
-                        dOm0d_y*t416 + dOm0d_z*t415 - da0_x + dacc_x)
+                        dOm0d_y*t321 + dOm0d_z*t320 - da0_x + dacc_x)
                     detad[i3 + 1] = (Om0_x*deu_z - Om0_x*dv0_z + Om0_x*dvs_z - Om0_z*deu_x +
                         Om0_z*dv0_x - Om0_z*dvs_x + Om0d_x*du_z - Om0d_z*du_x + dOm0_x*eu_z -
                         dOm0_x*v0_z + dOm0_x*vs_z - dOm0_z*eu_x + dOm0_z*v0_x - dOm0_z*vs_x +
-                        dOm0d_x*t416 - dOm0d_z*t417 - da0_y + dacc_y)
+                        dOm0d_x*t321 - dOm0d_z*t322 - da0_y + dacc_y)
                     detad[i3 + 2] = (-Om0_x*deu_y + Om0_x*dv0_y - Om0_x*dvs_y + Om0_y*deu_x -
                         Om0_y*dv0_x + Om0_y*dvs_x - Om0d_x*du_y + Om0d_y*du_x - dOm0_x*eu_y +
                         dOm0_x*v0_y - dOm0_x*vs_y + dOm0_y*eu_x - dOm0_y*v0_x + dOm0_y*vs_x -
-                        dOm0d_x*t415 + dOm0d_y*t417 - da0_z + dacc_z)
+                        dOm0d_x*t320 + dOm0d_y*t322 - da0_z + dacc_z)
                 # differential: rate: rates of the internal modes
                 for k in range(MODES, n):
                     dam = dae[k]
@@ -1263,41 +1141,41 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
                 dangle0_x, dangle0_y, dangle0_z = drigid0[3], drigid0[4], drigid0[5]
                 dangle1_x, dangle1_y, dangle1_z = drigid1[3], drigid1[4], drigid1[5]
-                t418 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
-                t419 = (angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z +
+                t323 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
+                t324 = (angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z +
                     angle1_z*dangle0_y)
-                t420 = angle0_y*angle1_z - angle0_z*angle1_y
-                t421 = (0.5)*r3
-                t422 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
-                t423 = t422*(r4 - t421)
-                t424 = -Om0_y*angle0_z + Om0_z*angle0_y
-                t425 = t422*(-0.5*r2 + t421)
-                t426 = -Om0_x*angle0_y + Om0_y*angle0_x
-                t427 = Om0_x*angle0_z - Om0_z*angle0_x
-                t428 = angle0_x*angle1_y - angle0_y*angle1_x
-                t429 = -angle0_x*angle1_z + angle0_z*angle1_x
-                t430 = t422*(-0.5*r4 + (1.5)*r5)
-                t431 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
-                t432 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
-                t433 = (angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y +
+                t325 = angle0_y*angle1_z - angle0_z*angle1_y
+                t326 = (0.5)*r3
+                t327 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
+                t328 = t327*(r4 - t326)
+                t329 = -Om0_y*angle0_z + Om0_z*angle0_y
+                t330 = t327*(-0.5*r2 + t326)
+                t331 = -Om0_x*angle0_y + Om0_y*angle0_x
+                t332 = Om0_x*angle0_z - Om0_z*angle0_x
+                t333 = angle0_x*angle1_y - angle0_y*angle1_x
+                t334 = -angle0_x*angle1_z + angle0_z*angle1_x
+                t335 = t327*(-0.5*r4 + (1.5)*r5)
+                t336 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
+                t337 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
+                t338 = (angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y +
                     angle1_y*dangle0_x)
-                t434 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
+                t339 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
                     angle1_z*dangle0_x)
-                dwc_x = (dOm0_x + dangle1_x - r1*t418 - r2*t419 + r2*(angle0_y*t431 -
-                    angle0_z*t432 + dangle0_y*t426 - dangle0_z*t427) + r3*(angle0_y*t433 -
-                    angle0_z*t434 + dangle0_y*t428 - dangle0_z*t429) - t420*t423 +
-                    t423*(angle0_y*t426 - angle0_z*t427) - t424*t425 + t430*(angle0_y*t428 -
-                    angle0_z*t429))
-                dwc_y = (dOm0_y + dangle1_y - r1*t432 - r2*t434 + r2*(-angle0_x*t431 +
-                    angle0_z*t418 - dangle0_x*t426 + dangle0_z*t424) + r3*(-angle0_x*t433 +
-                    angle0_z*t419 - dangle0_x*t428 + dangle0_z*t420) - t423*t429 +
-                    t423*(-angle0_x*t426 + angle0_z*t424) - t425*t427 + t430*(-angle0_x*t428 +
-                    angle0_z*t420))
-                dwc_z = (dOm0_z + dangle1_z - r1*t431 - r2*t433 + r2*(angle0_x*t432 -
-                    angle0_y*t418 + dangle0_x*t427 - dangle0_y*t424) + r3*(angle0_x*t434 -
-                    angle0_y*t419 + dangle0_x*t429 - dangle0_y*t420) - t423*t428 +
-                    t423*(angle0_x*t427 - angle0_y*t424) - t425*t426 + t430*(angle0_x*t429 -
-                    angle0_y*t420))
+                dwc_x = (dOm0_x + dangle1_x - r1*t323 - r2*t324 + r2*(angle0_y*t336 -
+                    angle0_z*t337 + dangle0_y*t331 - dangle0_z*t332) + r3*(angle0_y*t338 -
+                    angle0_z*t339 + dangle0_y*t333 - dangle0_z*t334) - t325*t328 +
+                    t328*(angle0_y*t331 - angle0_z*t332) - t329*t330 + t335*(angle0_y*t333 -
+                    angle0_z*t334))
+                dwc_y = (dOm0_y + dangle1_y - r1*t337 - r2*t339 + r2*(-angle0_x*t336 +
+                    angle0_z*t323 - dangle0_x*t331 + dangle0_z*t329) + r3*(-angle0_x*t338 +
+                    angle0_z*t324 - dangle0_x*t333 + dangle0_z*t325) - t328*t334 +
+                    t328*(-angle0_x*t331 + angle0_z*t329) - t330*t332 + t335*(-angle0_x*t333 +
+                    angle0_z*t325))
+                dwc_z = (dOm0_z + dangle1_z - r1*t336 - r2*t338 + r2*(angle0_x*t337 -
+                    angle0_y*t323 + dangle0_x*t332 - dangle0_y*t329) + r3*(angle0_x*t339 -
+                    angle0_y*t324 + dangle0_x*t334 - dangle0_y*t325) - t328*t333 +
+                    t328*(angle0_x*t332 - angle0_y*t329) - t330*t331 + t335*(angle0_x*t334 -
+                    angle0_y*t325))
                 # differential: its rate
                 angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
                 angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
@@ -1305,102 +1183,102 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dangle0_x, dangle0_y, dangle0_z = drigid0[3], drigid0[4], drigid0[5]
                 dangle1_x, dangle1_y, dangle1_z = drigid1[3], drigid1[4], drigid1[5]
                 dangle2_x, dangle2_y, dangle2_z = drigid2[3], drigid2[4], drigid2[5]
-                t435 = -Om0d_y*dangle0_z + Om0d_z*dangle0_y + angle0_y*dOm0d_z - angle0_z*dOm0d_y
-                t436 = (angle0_y*dangle2_z - angle0_z*dangle2_y - angle2_y*dangle0_z +
+                t340 = -Om0d_y*dangle0_z + Om0d_z*dangle0_y + angle0_y*dOm0d_z - angle0_z*dOm0d_y
+                t341 = (angle0_y*dangle2_z - angle0_z*dangle2_y - angle2_y*dangle0_z +
                     angle2_z*dangle0_y)
-                t437 = angle0_y*angle2_z - angle0_z*angle2_y
-                t438 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
-                t439 = (0.5)*r3
-                t440 = t438*(r4 - t439)
-                t441 = -Om0d_y*angle0_z + Om0d_z*angle0_y
-                t442 = -0.5*r2 + t439
-                t443 = t438*t442
-                t444 = (angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z +
+                t342 = angle0_y*angle2_z - angle0_z*angle2_y
+                t343 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
+                t344 = (0.5)*r3
+                t345 = t343*(r4 - t344)
+                t346 = -Om0d_y*angle0_z + Om0d_z*angle0_y
+                t347 = -0.5*r2 + t344
+                t348 = t343*t347
+                t349 = (angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z +
                     angle1_z*dangle0_y)
-                t445 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
-                t446 = -r3 + 2*r4
-                t447 = t445*t446
-                t448 = angle0_y*angle1_z - angle0_z*angle1_y
-                t449 = (angle0_x*dangle1_x + angle0_y*dangle1_y + angle0_z*dangle1_z +
+                t350 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
+                t351 = -r3 + 2*r4
+                t352 = t350*t351
+                t353 = angle0_y*angle1_z - angle0_z*angle1_y
+                t354 = (angle0_x*dangle1_x + angle0_y*dangle1_y + angle0_z*dangle1_z +
                     angle1_x*dangle0_x + angle1_y*dangle0_y + angle1_z*dangle0_z)
-                t450 = t446*t449
-                t451 = -Om0d_x*angle0_y + Om0d_y*angle0_x
-                t452 = Om0d_x*angle0_z - Om0d_z*angle0_x
-                t453 = angle0_x*angle2_y - angle0_y*angle2_x
-                t454 = -angle0_x*angle2_z + angle0_z*angle2_x
-                t455 = t438*(-0.5*r4 + (1.5)*r5)
-                t456 = angle0_x*angle1_y - angle0_y*angle1_x
-                t457 = -angle0_x*angle1_z + angle0_z*angle1_x
-                t458 = angle0_y*t456 - angle0_z*t457
-                t459 = -r4 + 3*r5
-                t460 = t449*t459
-                t461 = -Om0d_x*dangle0_y + Om0d_y*dangle0_x + angle0_x*dOm0d_y - angle0_y*dOm0d_x
-                t462 = Om0d_x*dangle0_z - Om0d_z*dangle0_x - angle0_x*dOm0d_z + angle0_z*dOm0d_x
-                t463 = (angle0_x*dangle2_y - angle0_y*dangle2_x - angle2_x*dangle0_y +
+                t355 = t351*t354
+                t356 = -Om0d_x*angle0_y + Om0d_y*angle0_x
+                t357 = Om0d_x*angle0_z - Om0d_z*angle0_x
+                t358 = angle0_x*angle2_y - angle0_y*angle2_x
+                t359 = -angle0_x*angle2_z + angle0_z*angle2_x
+                t360 = t343*(-0.5*r4 + (1.5)*r5)
+                t361 = angle0_x*angle1_y - angle0_y*angle1_x
+                t362 = -angle0_x*angle1_z + angle0_z*angle1_x
+                t363 = angle0_y*t361 - angle0_z*t362
+                t364 = -r4 + 3*r5
+                t365 = t354*t364
+                t366 = -Om0d_x*dangle0_y + Om0d_y*dangle0_x + angle0_x*dOm0d_y - angle0_y*dOm0d_x
+                t367 = Om0d_x*dangle0_z - Om0d_z*dangle0_x - angle0_x*dOm0d_z + angle0_z*dOm0d_x
+                t368 = (angle0_x*dangle2_y - angle0_y*dangle2_x - angle2_x*dangle0_y +
                     angle2_y*dangle0_x)
-                t464 = (-angle0_x*dangle2_z + angle0_z*dangle2_x + angle2_x*dangle0_z -
+                t369 = (-angle0_x*dangle2_z + angle0_z*dangle2_x + angle2_x*dangle0_z -
                     angle2_z*dangle0_x)
-                t465 = (angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y +
+                t370 = (angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y +
                     angle1_y*dangle0_x)
-                t466 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
+                t371 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
                     angle1_z*dangle0_x)
-                t467 = -0.5*r5 + 2*r6
-                t468 = t445*(2*t438*t467 - t455)
-                t469 = angle0_y*t465 - angle0_z*t466 + dangle0_y*t456 - dangle0_z*t457
-                t470 = t445*t459
-                t471 = t445*(-t438*t467 + 3*t438*(-0.5*r6 + (2.5)*r7))
-                t472 = Om0_x*angle0_z - Om0_z*angle0_x
-                t473 = -Om0_x*angle0_y + Om0_y*angle0_x
-                t474 = -Om0_y*angle0_z + Om0_z*angle0_y
-                t475 = -angle0_x*t473 + angle0_z*t474
-                t476 = Om0_y - r1*t472 + r2*t475
-                t477 = angle0_x*t457 - angle0_y*t448
-                t478 = angle0_x*t466 - angle0_y*t444 + dangle0_x*t457 - dangle0_y*t448
-                t479 = dangle1_z - r2*t465 + r3*t478 - t440*t456 + t455*t477
-                t480 = angle1_z - r2*t456 + r3*t477
-                t481 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
-                t482 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
-                t483 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
-                t484 = (dOm0_y - r1*t481 + r2*(-angle0_x*t482 + angle0_z*t483 - dangle0_x*t473 +
-                    dangle0_z*t474) + t440*t475 - t443*t472)
-                t485 = angle0_x*t472 - angle0_y*t474
-                t486 = Om0_z - r1*t473 + r2*t485
-                t487 = -angle0_x*t456 + angle0_z*t448
-                t488 = -angle0_x*t465 + angle0_z*t444 - dangle0_x*t456 + dangle0_z*t448
-                t489 = dangle1_y - r2*t466 + r3*t488 - t440*t457 + t455*t487
-                t490 = angle1_y - r2*t457 + r3*t487
-                t491 = (dOm0_z - r1*t482 + r2*(angle0_x*t481 - angle0_y*t483 + dangle0_x*t472 -
-                    dangle0_y*t474) - t438*t442*t473 + t440*t485)
-                t492 = dangle1_x - r2*t444 + r3*t469 - t440*t448 + t455*t458
-                t493 = angle1_x - r2*t448 + r3*t458
-                t494 = angle0_y*t473 - angle0_z*t472
-                t495 = Om0_x - r1*t474 + r2*t494
-                t496 = (dOm0_x - r1*t483 + r2*(angle0_y*t482 - angle0_z*t481 + dangle0_y*t473 -
-                    dangle0_z*t472) - t438*t442*t474 + t440*t494)
-                dwcd_x = (dOm0d_x + dangle2_x - r1*t435 - r2*t436 + r2*(angle0_y*t461 -
-                    angle0_z*t462 + dangle0_y*t451 - dangle0_z*t452) + r3*(angle0_y*t463 -
-                    angle0_z*t464 + dangle0_y*t453 - dangle0_z*t454) + r3*(angle1_y*t465 -
-                    angle1_z*t466 + dangle1_y*t456 - dangle1_z*t457) - t437*t440 +
-                    t440*(angle0_y*t451 - angle0_z*t452) - t441*t443 - t444*t447 - t448*t450 -
-                    t448*t468 + t455*(angle0_y*t453 - angle0_z*t454) + t455*(angle1_y*t456 -
-                    angle1_z*t457) + t458*t460 + t458*t471 + t469*t470 + t476*t479 + t480*t484 -
-                    t486*t489 - t490*t491)
-                dwcd_y = (dOm0d_y + dangle2_y - r1*t462 - r2*t464 + r2*(-angle0_x*t461 +
-                    angle0_z*t435 - dangle0_x*t451 + dangle0_z*t441) + r3*(-angle0_x*t463 +
-                    angle0_z*t436 - dangle0_x*t453 + dangle0_z*t437) + r3*(-angle1_x*t465 +
-                    angle1_z*t444 - dangle1_x*t456 + dangle1_z*t448) - t440*t454 +
-                    t440*(-angle0_x*t451 + angle0_z*t441) - t443*t452 - t447*t466 - t450*t457 +
-                    t455*(-angle0_x*t453 + angle0_z*t437) + t455*(-angle1_x*t456 + angle1_z*t448)
-                    - t457*t468 + t460*t487 + t470*t488 + t471*t487 - t479*t495 - t480*t496 +
-                    t486*t492 + t491*t493)
-                dwcd_z = (dOm0d_z + dangle2_z - r1*t461 - r2*t463 + r2*(angle0_x*t462 -
-                    angle0_y*t435 + dangle0_x*t452 - dangle0_y*t441) + r3*(angle0_x*t464 -
-                    angle0_y*t436 + dangle0_x*t454 - dangle0_y*t437) + r3*(angle1_x*t466 -
-                    angle1_y*t444 + dangle1_x*t457 - dangle1_y*t448) - t440*t453 +
-                    t440*(angle0_x*t452 - angle0_y*t441) - t443*t451 - t447*t465 - t450*t456 +
-                    t455*(angle0_x*t454 - angle0_y*t437) + t455*(angle1_x*t457 - angle1_y*t448) -
-                    t456*t468 + t460*t477 + t470*t478 + t471*t477 - t476*t492 - t484*t493 +
-                    t489*t495 + t490*t496)
+                t372 = -0.5*r5 + 2*r6
+                t373 = t350*(2*t343*t372 - t360)
+                t374 = angle0_y*t370 - angle0_z*t371 + dangle0_y*t361 - dangle0_z*t362
+                t375 = t350*t364
+                t376 = t350*(-t343*t372 + 3*t343*(-0.5*r6 + (2.5)*r7))
+                t377 = Om0_x*angle0_z - Om0_z*angle0_x
+                t378 = -Om0_x*angle0_y + Om0_y*angle0_x
+                t379 = -Om0_y*angle0_z + Om0_z*angle0_y
+                t380 = -angle0_x*t378 + angle0_z*t379
+                t381 = Om0_y - r1*t377 + r2*t380
+                t382 = angle0_x*t362 - angle0_y*t353
+                t383 = angle0_x*t371 - angle0_y*t349 + dangle0_x*t362 - dangle0_y*t353
+                t384 = dangle1_z - r2*t370 + r3*t383 - t345*t361 + t360*t382
+                t385 = angle1_z - r2*t361 + r3*t382
+                t386 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
+                t387 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
+                t388 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
+                t389 = (dOm0_y - r1*t386 + r2*(-angle0_x*t387 + angle0_z*t388 - dangle0_x*t378 +
+                    dangle0_z*t379) + t345*t380 - t348*t377)
+                t390 = angle0_x*t377 - angle0_y*t379
+                t391 = Om0_z - r1*t378 + r2*t390
+                t392 = -angle0_x*t361 + angle0_z*t353
+                t393 = -angle0_x*t370 + angle0_z*t349 - dangle0_x*t361 + dangle0_z*t353
+                t394 = dangle1_y - r2*t371 + r3*t393 - t345*t362 + t360*t392
+                t395 = angle1_y - r2*t362 + r3*t392
+                t396 = (dOm0_z - r1*t387 + r2*(angle0_x*t386 - angle0_y*t388 + dangle0_x*t377 -
+                    dangle0_y*t379) - t343*t347*t378 + t345*t390)
+                t397 = dangle1_x - r2*t349 + r3*t374 - t345*t353 + t360*t363
+                t398 = angle1_x - r2*t353 + r3*t363
+                t399 = angle0_y*t378 - angle0_z*t377
+                t400 = Om0_x - r1*t379 + r2*t399
+                t401 = (dOm0_x - r1*t388 + r2*(angle0_y*t387 - angle0_z*t386 + dangle0_y*t378 -
+                    dangle0_z*t377) - t343*t347*t379 + t345*t399)
+                dwcd_x = (dOm0d_x + dangle2_x - r1*t340 - r2*t341 + r2*(angle0_y*t366 -
+                    angle0_z*t367 + dangle0_y*t356 - dangle0_z*t357) + r3*(angle0_y*t368 -
+                    angle0_z*t369 + dangle0_y*t358 - dangle0_z*t359) + r3*(angle1_y*t370 -
+                    angle1_z*t371 + dangle1_y*t361 - dangle1_z*t362) - t342*t345 +
+                    t345*(angle0_y*t356 - angle0_z*t357) - t346*t348 - t349*t352 - t353*t355 -
+                    t353*t373 + t360*(angle0_y*t358 - angle0_z*t359) + t360*(angle1_y*t361 -
+                    angle1_z*t362) + t363*t365 + t363*t376 + t374*t375 + t381*t384 + t385*t389 -
+                    t391*t394 - t395*t396)
+                dwcd_y = (dOm0d_y + dangle2_y - r1*t367 - r2*t369 + r2*(-angle0_x*t366 +
+                    angle0_z*t340 - dangle0_x*t356 + dangle0_z*t346) + r3*(-angle0_x*t368 +
+                    angle0_z*t341 - dangle0_x*t358 + dangle0_z*t342) + r3*(-angle1_x*t370 +
+                    angle1_z*t349 - dangle1_x*t361 + dangle1_z*t353) - t345*t359 +
+                    t345*(-angle0_x*t356 + angle0_z*t346) - t348*t357 - t352*t371 - t355*t362 +
+                    t360*(-angle0_x*t358 + angle0_z*t342) + t360*(-angle1_x*t361 + angle1_z*t353)
+                    - t362*t373 + t365*t392 + t375*t393 + t376*t392 - t384*t400 - t385*t401 +
+                    t391*t397 + t396*t398)
+                dwcd_z = (dOm0d_z + dangle2_z - r1*t366 - r2*t368 + r2*(angle0_x*t367 -
+                    angle0_y*t340 + dangle0_x*t357 - dangle0_y*t346) + r3*(angle0_x*t369 -
+                    angle0_y*t341 + dangle0_x*t359 - dangle0_y*t342) + r3*(angle1_x*t371 -
+                    angle1_y*t349 + dangle1_x*t362 - dangle1_y*t353) - t345*t358 +
+                    t345*(angle0_x*t357 - angle0_y*t346) - t348*t356 - t352*t370 - t355*t361 +
+                    t360*(angle0_x*t359 - angle0_y*t342) + t360*(angle1_x*t362 - angle1_y*t353) -
+                    t361*t373 + t365*t382 + t375*t383 + t376*t382 - t381*t397 - t389*t398 +
+                    t394*t400 + t395*t401)
                 # differential: rate of its momentum and of the moment of it
                 first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
                 first1_x, first1_y, first1_z = rigid1[0], rigid1[1], rigid1[2]
@@ -1411,43 +1289,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dfirst0_x, dfirst0_y, dfirst0_z = drigid0[0], drigid0[1], drigid0[2]
                 dfirst1_x, dfirst1_y, dfirst1_z = drigid1[0], drigid1[1], drigid1[2]
                 dfirst2_x, dfirst2_y, dfirst2_z = drigid2[0], drigid2[1], drigid2[2]
-                t497 = 2*dfirst1_z
-                t498 = 2*Om0_z
-                t499 = 2*first1_z
-                t500 = 2*dOm0_z
-                t501 = first0_z + mc_z
-                t502 = first0_y + mc_y
-                t503 = first0_x + mc_x
-                t504 = Om0_x*t502 - Om0_y*t503
-                t505 = -Om0_x*t501 + Om0_z*t503
-                t506 = Om0_x*dfirst0_y - Om0_y*dfirst0_x + dOm0_x*t502 - dOm0_y*t503
-                t507 = -Om0_x*dfirst0_z + Om0_z*dfirst0_x - dOm0_x*t501 + dOm0_z*t503
-                t508 = Om0_y*t501 - Om0_z*t502
-                t509 = Om0_y*dfirst0_z - Om0_z*dfirst0_y + dOm0_y*t501 - dOm0_z*t502
-                t510 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
-                t511 = Jc_xz*dwc_x + Jc_yz*dwc_y + Jc_zz*dwc_z
-                t512 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
-                t513 = Jc_xy*dwc_x + Jc_yy*dwc_y + Jc_yz*dwc_z
-                t514 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
-                t515 = Jc_xx*dwc_x + Jc_xy*dwc_y + Jc_xz*dwc_z
-                dRt_x = (Om0_y*t497 + Om0_y*t506 - Om0_z*t507 + Om0d_y*dfirst0_z -
-                    Om0d_z*dfirst0_y + dOm0_y*t499 + dOm0_y*t504 - dOm0_z*t505 + dOm0d_y*t501 -
-                    dOm0d_z*t502 - dfirst1_y*t498 + dfirst2_x - first1_y*t500 + mass*(da0_x -
+                t402 = 2*dfirst1_z
+                t403 = 2*Om0_z
+                t404 = 2*first1_z
+                t405 = 2*dOm0_z
+                t406 = first0_z + mc_z
+                t407 = first0_y + mc_y
+                t408 = first0_x + mc_x
+                t409 = Om0_x*t407 - Om0_y*t408
+                t410 = -Om0_x*t406 + Om0_z*t408
+                t411 = Om0_x*dfirst0_y - Om0_y*dfirst0_x + dOm0_x*t407 - dOm0_y*t408
+                t412 = -Om0_x*dfirst0_z + Om0_z*dfirst0_x - dOm0_x*t406 + dOm0_z*t408
+                t413 = Om0_y*t406 - Om0_z*t407
+                t414 = Om0_y*dfirst0_z - Om0_z*dfirst0_y + dOm0_y*t406 - dOm0_z*t407
+                t415 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
+                t416 = Jc_xz*dwc_x + Jc_yz*dwc_y + Jc_zz*dwc_z
+                t417 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
+                t418 = Jc_xy*dwc_x + Jc_yy*dwc_y + Jc_yz*dwc_z
+                t419 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
+                t420 = Jc_xx*dwc_x + Jc_xy*dwc_y + Jc_xz*dwc_z
+                dRt_x = (Om0_y*t402 + Om0_y*t411 - Om0_z*t412 + Om0d_y*dfirst0_z -
+                    Om0d_z*dfirst0_y + dOm0_y*t404 + dOm0_y*t409 - dOm0_z*t410 + dOm0d_y*t406 -
+                    dOm0d_z*t407 - dfirst1_y*t403 + dfirst2_x - first1_y*t405 + mass*(da0_x -
                     dgamma_x))
-                dRt_y = (-Om0_x*t497 - Om0_x*t506 + Om0_z*t509 - Om0d_x*dfirst0_z +
-                    Om0d_z*dfirst0_x - dOm0_x*t499 - dOm0_x*t504 + dOm0_z*t508 - dOm0d_x*t501 +
-                    dOm0d_z*t503 + dfirst1_x*t498 + dfirst2_y + first1_x*t500 + mass*(da0_y -
+                dRt_y = (-Om0_x*t402 - Om0_x*t411 + Om0_z*t414 - Om0d_x*dfirst0_z +
+                    Om0d_z*dfirst0_x - dOm0_x*t404 - dOm0_x*t409 + dOm0_z*t413 - dOm0d_x*t406 +
+                    dOm0d_z*t408 + dfirst1_x*t403 + dfirst2_y + first1_x*t405 + mass*(da0_y -
                     dgamma_y))
-                dRt_z = (2*Om0_x*dfirst1_y + Om0_x*t507 - 2*Om0_y*dfirst1_x - Om0_y*t509 +
-                    Om0d_x*dfirst0_y - Om0d_y*dfirst0_x + 2*dOm0_x*first1_y + dOm0_x*t505 -
-                    2*dOm0_y*first1_x - dOm0_y*t508 + dOm0d_x*t502 - dOm0d_y*t503 + dfirst2_z +
+                dRt_z = (2*Om0_x*dfirst1_y + Om0_x*t412 - 2*Om0_y*dfirst1_x - Om0_y*t414 +
+                    Om0d_x*dfirst0_y - Om0d_y*dfirst0_x + 2*dOm0_x*first1_y + dOm0_x*t410 -
+                    2*dOm0_y*first1_x - dOm0_y*t413 + dOm0d_x*t407 - dOm0d_y*t408 + dfirst2_z +
                     mass*(da0_z - dgamma_z))
-                dMc_x = (Jc_xx*dwcd_x + Jc_xy*dwcd_y + Jc_xz*dwcd_z + dwc_y*t510 - dwc_z*t512 +
-                    t511*wc_y - t513*wc_z)
-                dMc_y = (Jc_xy*dwcd_x + Jc_yy*dwcd_y + Jc_yz*dwcd_z - dwc_x*t510 + dwc_z*t514 -
-                    t511*wc_x + t515*wc_z)
-                dMc_z = (Jc_xz*dwcd_x + Jc_yz*dwcd_y + Jc_zz*dwcd_z + dwc_x*t512 - dwc_y*t514 +
-                    t513*wc_x - t515*wc_y)
+                dMc_x = (Jc_xx*dwcd_x + Jc_xy*dwcd_y + Jc_xz*dwcd_z + dwc_y*t415 - dwc_z*t417 +
+                    t416*wc_y - t418*wc_z)
+                dMc_y = (Jc_xy*dwcd_x + Jc_yy*dwcd_y + Jc_yz*dwcd_z - dwc_x*t415 + dwc_z*t419 -
+                    t416*wc_x + t420*wc_z)
+                dMc_z = (Jc_xz*dwcd_x + Jc_yz*dwcd_y + Jc_zz*dwcd_z + dwc_x*t417 - dwc_y*t419 +
+                    t418*wc_x - t420*wc_y)
                 # differential: moment on the frame, forces on the first moment and mean rotation
                 first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
                 angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
@@ -1458,42 +1336,42 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dangle0_x, dangle0_y, dangle0_z = drigid0[3], drigid0[4], drigid0[5]
                 dfirst2_x, dfirst2_y, dfirst2_z = drigid2[0], drigid2[1], drigid2[2]
                 dangle2_x, dangle2_y, dangle2_z = drigid2[3], drigid2[4], drigid2[5]
-                t516 = -Mc_y*dangle0_z + Mc_z*dangle0_y + angle0_y*dMc_z - angle0_z*dMc_y
-                t517 = 1/mass
-                t518 = first0_y + mc_y
-                t519 = first0_z + mc_z
-                t520 = -Mc_y*angle0_z + Mc_z*angle0_y
-                t521 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
-                t522 = (0.5)*r3
-                t523 = t521*(-0.5*r2 + t522)
-                t524 = -Mc_x*angle0_y + Mc_y*angle0_x
-                t525 = Mc_x*angle0_z - Mc_z*angle0_x
-                t526 = angle0_y*t524 - angle0_z*t525
-                t527 = t521*(r4 - t522)
-                t528 = -Mc_x*dangle0_y + Mc_y*dangle0_x + angle0_x*dMc_y - angle0_y*dMc_x
-                t529 = Mc_x*dangle0_z - Mc_z*dangle0_x - angle0_x*dMc_z + angle0_z*dMc_x
-                t530 = angle0_y*t528 - angle0_z*t529 + dangle0_y*t524 - dangle0_z*t525
-                t531 = first0_x + mc_x
-                t532 = -angle0_x*t524 + angle0_z*t520
-                t533 = -angle0_x*t528 + angle0_z*t516 - dangle0_x*t524 + dangle0_z*t520
-                t534 = angle0_x*t525 - angle0_y*t520
-                t535 = angle0_x*t529 - angle0_y*t516 + dangle0_x*t525 - dangle0_y*t520
-                t536 = t521*(-0.5*r4 + (1.5)*r5)
-                dRr_x = (dMc_x + r1*t516 + r2*t530 + t517*(-Rt_y*dfirst0_z + Rt_z*dfirst0_y -
-                    dRt_y*t519 + dRt_z*t518) + t520*t523 + t526*t527)
-                dRr_y = (dMc_y + r1*t529 + r2*t533 + t517*(Rt_x*dfirst0_z - Rt_z*dfirst0_x +
-                    dRt_x*t519 - dRt_z*t531) + t523*t525 + t527*t532)
-                dRr_z = (dMc_z + r1*t528 + r2*t535 + t517*(-Rt_x*dfirst0_y + Rt_y*dfirst0_x -
-                    dRt_x*t518 + dRt_y*t531) + t523*t524 + t527*t534)
-                dcarried[0] = t517*(dRt_x - dfirst2_x)
-                dcarried[1] = t517*(dRt_y - dfirst2_y)
-                dcarried[2] = t517*(dRt_z - dfirst2_z)
+                t421 = -Mc_y*dangle0_z + Mc_z*dangle0_y + angle0_y*dMc_z - angle0_z*dMc_y
+                t422 = 1/mass
+                t423 = first0_y + mc_y
+                t424 = first0_z + mc_z
+                t425 = -Mc_y*angle0_z + Mc_z*angle0_y
+                t426 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
+                t427 = (0.5)*r3
+                t428 = t426*(-0.5*r2 + t427)
+                t429 = -Mc_x*angle0_y + Mc_y*angle0_x
+                t430 = Mc_x*angle0_z - Mc_z*angle0_x
+                t431 = angle0_y*t429 - angle0_z*t430
+                t432 = t426*(r4 - t427)
+                t433 = -Mc_x*dangle0_y + Mc_y*dangle0_x + angle0_x*dMc_y - angle0_y*dMc_x
+                t434 = Mc_x*dangle0_z - Mc_z*dangle0_x - angle0_x*dMc_z + angle0_z*dMc_x
+                t435 = angle0_y*t433 - angle0_z*t434 + dangle0_y*t429 - dangle0_z*t430
+                t436 = first0_x + mc_x
+                t437 = -angle0_x*t429 + angle0_z*t425
+                t438 = -angle0_x*t433 + angle0_z*t421 - dangle0_x*t429 + dangle0_z*t425
+                t439 = angle0_x*t430 - angle0_y*t425
+                t440 = angle0_x*t434 - angle0_y*t421 + dangle0_x*t430 - dangle0_y*t425
+                t441 = t426*(-0.5*r4 + (1.5)*r5)
+                dRr_x = (dMc_x + r1*t421 + r2*t435 + t422*(-Rt_y*dfirst0_z + Rt_z*dfirst0_y -
+                    dRt_y*t424 + dRt_z*t423) + t425*t428 + t431*t432)
+                dRr_y = (dMc_y + r1*t434 + r2*t438 + t422*(Rt_x*dfirst0_z - Rt_z*dfirst0_x +
+                    dRt_x*t424 - dRt_z*t436) + t428*t430 + t432*t437)
+                dRr_z = (dMc_z + r1*t433 + r2*t440 + t422*(-Rt_x*dfirst0_y + Rt_y*dfirst0_x -
+                    dRt_x*t423 + dRt_y*t436) + t428*t429 + t432*t439)
+                dcarried[0] = t422*(dRt_x - dfirst2_x)
+                dcarried[1] = t422*(dRt_y - dfirst2_y)
+                dcarried[2] = t422*(dRt_z - dfirst2_z)
                 dcarried[3] = (-Jc_xx*dangle2_x - Jc_xy*dangle2_y - Jc_xz*dangle2_z + dMc_x +
-                    r2*t516 + r3*t530 + t520*t527 + t526*t536)
+                    r2*t421 + r3*t435 + t425*t432 + t431*t441)
                 dcarried[4] = (-Jc_xy*dangle2_x - Jc_yy*dangle2_y - Jc_yz*dangle2_z + dMc_y +
-                    r2*t529 + r3*t533 + t525*t527 + t532*t536)
+                    r2*t434 + r3*t438 + t430*t432 + t437*t441)
                 dcarried[5] = (-Jc_xz*dangle2_x - Jc_yz*dangle2_y - Jc_zz*dangle2_z + dMc_z +
-                    r2*t528 + r3*t535 + t524*t527 + t534*t536)
+                    r2*t433 + r3*t440 + t429*t432 + t439*t441)
                 # forces of the rigid part, conjugate to y
                 add_block_times(rigid_columns, dcarried, ds, n, 6, padded(n))
                 # damping force, Cbar ydot
@@ -1508,15 +1386,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t537 = X_z + u_z
-                    t538 = X_y + u_y
-                    t539 = X_x + u_x
+                    t442 = X_z + u_z
+                    t443 = X_y + u_y
+                    t444 = X_x + u_x
                     dF_x += -df_x
                     dF_y += -df_y
                     dF_z += -df_z
-                    dW_x += df_y*t537 - df_z*t538 - du_y*f_z + du_z*f_y
-                    dW_y += -df_x*t537 + df_z*t539 + du_x*f_z - du_z*f_x
-                    dW_z += df_x*t538 - df_y*t539 - du_x*f_y + du_y*f_x
+                    dW_x += df_y*t442 - df_z*t443 - du_y*f_z + du_z*f_y
+                    dW_y += -df_x*t442 + df_z*t444 + du_x*f_z - du_z*f_x
+                    dW_z += df_x*t443 - df_y*t444 - du_x*f_y + du_y*f_x
                 # differential: inertia and weight on the frame
                 dF_x += dRt_x
                 dF_y += dRt_y
@@ -1533,25 +1411,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t540 = -m_x*psi_y + m_y*psi_x
-                    t541 = m_x*psi_z - m_z*psi_x
-                    t542 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t543 = dm_x*psi_z
-                    t544 = dpsi_z*m_x
-                    t545 = -dm_z*psi_x - dpsi_x*m_z + t543 + t544
-                    t546 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t547 = e1*t546
-                    t548 = -m_y*psi_z + m_z*psi_y
-                    t549 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t540 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t541 + (0.5)*dpsi_z*m_y - e0*psi_y*t542 +
-                        e0*psi_z*t545 + e1*psi_z*t541*t546 - psi_y*t540*t547)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t540 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t548 + e0*psi_x*t542 - e0*psi_z*t549 + e1*psi_x*t540*t546 -
-                        psi_z*t547*t548 - 0.5*t543 - 0.5*t544)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t541 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t548 + (0.5)*dpsi_y*m_x - e0*psi_x*t545 +
-                        e0*psi_y*t549 + e1*psi_y*t546*t548 - psi_x*t541*t547)
+                    t445 = -m_x*psi_y + m_y*psi_x
+                    t446 = m_x*psi_z - m_z*psi_x
+                    t447 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t448 = dm_x*psi_z
+                    t449 = dpsi_z*m_x
+                    t450 = -dm_z*psi_x - dpsi_x*m_z + t448 + t449
+                    t451 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t452 = e1*t451
+                    t453 = -m_y*psi_z + m_z*psi_y
+                    t454 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t445 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t446 + (0.5)*dpsi_z*m_y - e0*psi_y*t447 +
+                        e0*psi_z*t450 + e1*psi_z*t446*t451 - psi_y*t445*t452)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t445 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t453 + e0*psi_x*t447 - e0*psi_z*t454 + e1*psi_x*t445*t451 -
+                        psi_z*t452*t453 - 0.5*t448 - 0.5*t449)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t446 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t453 + (0.5)*dpsi_y*m_x - e0*psi_x*t450 +
+                        e0*psi_y*t454 + e1*psi_y*t451*t453 - psi_x*t446*t452)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for j in range(N_ROTATIONS):
@@ -1561,33 +1439,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t550 = dpsi_y*wp_z
-                    t551 = dpsi_z*wp_y
-                    t552 = psi_x*wp_y - psi_y*wp_x
-                    t553 = e0*t552
-                    t554 = dpsi_x*wp_y
-                    t555 = dpsi_y*wp_x
-                    t556 = e0*(t554 - t555)
-                    t557 = -psi_x*wp_z + psi_z*wp_x
-                    t558 = dpsi_x*wp_z
-                    t559 = dpsi_z*wp_x - t558
-                    t560 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t561 = e1*t560
-                    t562 = t552*t561
-                    t563 = psi_y*wp_z - psi_z*wp_y
-                    t564 = t550 - t551
-                    rhs_x += (-alpha_r*(dpsi_y*t553 - dpsi_z*e0*t557 - e0*psi_z*t559 + psi_y*t556
-                        + psi_y*t562 - psi_z*t557*t561 + (0.5)*t550 - 0.5*t551))
-                    rhs_y += (-alpha_r*(-dpsi_x*t553 + dpsi_z*e0*t563 + (0.5)*dpsi_z*wp_x +
-                        e0*psi_z*t564 + e1*psi_z*t560*t563 - psi_x*t556 - psi_x*t562 - 0.5*t558))
-                    rhs_z += (-alpha_r*(dpsi_x*e0*t557 - dpsi_y*e0*t563 + e0*psi_x*t559 -
-                        e0*psi_y*t564 + psi_x*t557*t561 - psi_y*t561*t563 + (0.5)*t554 - 0.5*t555))
-                t565 = dW_x + rhs_x
-                t566 = dW_y + rhs_y
-                t567 = dW_z + rhs_z
-                dwp_x = Bxx*t565 + Byx*t566 + Bzx*t567
-                dwp_y = Bxy*t565 + Byy*t566 + Bzy*t567
-                dwp_z = Bxz*t565 + Byz*t566 + Bzz*t567
+                    t455 = dpsi_y*wp_z
+                    t456 = dpsi_z*wp_y
+                    t457 = psi_x*wp_y - psi_y*wp_x
+                    t458 = e0*t457
+                    t459 = dpsi_x*wp_y
+                    t460 = dpsi_y*wp_x
+                    t461 = e0*(t459 - t460)
+                    t462 = -psi_x*wp_z + psi_z*wp_x
+                    t463 = dpsi_x*wp_z
+                    t464 = dpsi_z*wp_x - t463
+                    t465 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t466 = e1*t465
+                    t467 = t457*t466
+                    t468 = psi_y*wp_z - psi_z*wp_y
+                    t469 = t455 - t456
+                    rhs_x += (-alpha_r*(dpsi_y*t458 - dpsi_z*e0*t462 - e0*psi_z*t464 + psi_y*t461
+                        + psi_y*t467 - psi_z*t462*t466 + (0.5)*t455 - 0.5*t456))
+                    rhs_y += (-alpha_r*(-dpsi_x*t458 + dpsi_z*e0*t468 + (0.5)*dpsi_z*wp_x +
+                        e0*psi_z*t469 + e1*psi_z*t465*t468 - psi_x*t461 - psi_x*t467 - 0.5*t463))
+                    rhs_z += (-alpha_r*(dpsi_x*e0*t462 - dpsi_y*e0*t468 + e0*psi_x*t464 -
+                        e0*psi_y*t469 + psi_x*t462*t466 - psi_y*t466*t468 + (0.5)*t459 - 0.5*t460))
+                t470 = dW_x + rhs_x
+                t471 = dW_y + rhs_y
+                t472 = dW_z + rhs_z
+                dwp_x = Bxx*t470 + Byx*t471 + Bzx*t472
+                dwp_y = Bxy*t470 + Byy*t471 + Bzy*t472
+                dwp_z = Bxz*t470 + Byz*t471 + Bzz*t472
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -1614,58 +1492,42 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t568 = dm_y*psi_z
-                    t569 = dpsi_z*m_y
-                    t570 = -m_x*psi_y + m_y*psi_x
-                    t571 = dpsi_y*e0
-                    t572 = m_x*psi_z - m_z*psi_x
-                    t573 = dpsi_z*e0
-                    t574 = dm_x*psi_y
-                    t575 = dpsi_y*m_x
-                    t576 = dm_y*psi_x + dpsi_x*m_y - t574 - t575
-                    t577 = e0*psi_y
-                    t578 = dm_x*psi_z
-                    t579 = dpsi_z*m_x
-                    t580 = dm_z*psi_x
-                    t581 = dpsi_x*m_z
-                    t582 = t578 + t579 - t580 - t581
-                    t583 = e0*psi_z
-                    t584 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t585 = psi_y*t584
-                    t586 = psi_z*t584
-                    t587 = dpsi_y*wp_z
-                    t588 = dpsi_z*wp_y
-                    t589 = dwp_y*psi_z
-                    t590 = dwp_z*psi_y
-                    t591 = psi_x*wp_y - psi_y*wp_x
-                    t592 = -psi_x*wp_z + psi_z*wp_x
-                    t593 = dpsi_x*wp_y
-                    t594 = dwp_y*psi_x
-                    t595 = dpsi_y*wp_x
-                    t596 = dwp_x*psi_y
-                    t597 = t593 + t594 - t595 - t596
-                    t598 = dpsi_x*wp_z
-                    t599 = dwp_z*psi_x
-                    t600 = dpsi_z*wp_x + dwp_x*psi_z - t598 - t599
-                    t601 = -m_y*psi_z + m_z*psi_y
-                    t602 = dpsi_x*e0
-                    t603 = dm_z*psi_y + dpsi_y*m_z - t568 - t569
-                    t604 = e0*psi_x
-                    t605 = psi_x*t584
-                    t606 = psi_y*wp_z - psi_z*wp_y
-                    t607 = t587 - t588 - t589 + t590
-                    dg[j3] = (alpha_r*(dwp_x + t571*t591 - t573*t592 + t577*t597 - t583*t600 +
-                        t585*t591 - t586*t592 - 0.5*t587 + (0.5)*t588 + (0.5)*t589 - 0.5*t590) +
-                        dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + (0.5)*t568 + (0.5)*t569 +
-                        t570*t571 + t570*t585 - t572*t573 - t572*t586 + t576*t577 - t582*t583)
-                    dg[j3 + 1] = (alpha_r*(-0.5*dpsi_z*wp_x - 0.5*dwp_x*psi_z + dwp_y + t573*t606
-                        + t583*t607 + t586*t606 - t591*t602 - t591*t605 - t597*t604 + (0.5)*t598 +
-                        (0.5)*t599) + dm_y - t570*t602 - t570*t605 + t573*t601 - t576*t604 -
-                        0.5*t578 - 0.5*t579 + (0.5)*t580 + (0.5)*t581 + t583*t603 + t586*t601)
-                    dg[j3 + 2] = (alpha_r*(dwp_z - t571*t606 - t577*t607 - t585*t606 + t592*t602 +
-                        t592*t605 - 0.5*t593 - 0.5*t594 + (0.5)*t595 + (0.5)*t596 + t600*t604) -
-                        0.5*dm_y*psi_x + dm_z - 0.5*dpsi_x*m_y - t571*t601 + t572*t602 + t572*t605
-                        + (0.5)*t574 + (0.5)*t575 - t577*t603 + t582*t604 - t585*t601)
+                    t473 = alpha_r*wp_y + m_y
+                    t474 = dpsi_z*t473
+                    t475 = alpha_r*dwp_y + dm_y
+                    t476 = psi_z*t475
+                    t477 = alpha_r*wp_z + m_z
+                    t478 = dpsi_y*t477
+                    t479 = alpha_r*dwp_z + dm_z
+                    t480 = psi_y*t479
+                    t481 = alpha_r*wp_x + m_x
+                    t482 = psi_x*t473 - psi_y*t481
+                    t483 = e0*t482
+                    t484 = dpsi_x*t473
+                    t485 = psi_x*t475
+                    t486 = dpsi_y*t481
+                    t487 = alpha_r*dwp_x + dm_x
+                    t488 = psi_y*t487
+                    t489 = e0*(t484 + t485 - t486 - t488)
+                    t490 = -psi_x*t477 + psi_z*t481
+                    t491 = dpsi_z*e0
+                    t492 = dpsi_x*t477
+                    t493 = psi_x*t479
+                    t494 = dpsi_z*t481 + psi_z*t487 - t492 - t493
+                    t495 = e0*psi_z
+                    t496 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t497 = t482*t496
+                    t498 = psi_z*t496
+                    t499 = psi_y*t477 - psi_z*t473
+                    t500 = -t474 - t476 + t478 + t480
+                    dg[j3] = (dpsi_y*t483 + psi_y*t489 + psi_y*t497 + (0.5)*t474 + (0.5)*t476 -
+                        0.5*t478 - 0.5*t480 + t487 - t490*t491 - t490*t498 - t494*t495)
+                    dg[j3 + 1] = (-dpsi_x*t483 - 0.5*dpsi_z*t481 - psi_x*t489 - psi_x*t497 -
+                        0.5*psi_z*t487 + t475 + t491*t499 + (0.5)*t492 + (0.5)*t493 + t495*t500 +
+                        t498*t499)
+                    dg[j3 + 2] = (dpsi_x*e0*t490 - dpsi_y*e0*t499 + e0*psi_x*t494 - e0*psi_y*t500
+                        + psi_x*t490*t496 - psi_y*t496*t499 + t479 - 0.5*t484 - 0.5*t485 +
+                        (0.5)*t486 + (0.5)*t488)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

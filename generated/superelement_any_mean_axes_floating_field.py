@@ -73,8 +73,8 @@ WORK_ROWS = 122
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (986, 276, 624, 1),
-              "column": (150, 405, 1864, 3)}
+OPERATIONS = {"residual": (986, 276, 489, 1),
+              "column": (150, 405, 1412, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("Gam", ("n", "turns"), "mean rotation of y, a column for each coordinate"),
     Part("sizes", (3,), "slaved coordinates, resultants of second order, damped or not"),
@@ -374,29 +374,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
             e0 = e0s[j]
-            t42 = Om0_y*psi_z
-            t43 = Om_y*psi_z
-            t44 = Om0_x*psi_y
-            t45 = Om0_y*psi_x - t44
-            t46 = e0*psi_y
-            t47 = Om_x*psi_z
-            t48 = Om_z*psi_x
-            t49 = t47 - t48
-            t50 = e0*psi_z
-            t51 = Om_x*psi_y
-            t52 = Om_y*psi_x - t51
-            t53 = Om0_x*psi_z
-            t54 = Om0_z*psi_x
-            t55 = t53 - t54
-            t56 = e0*psi_x
-            t57 = Om_z*psi_y - t43
-            t58 = Om0_z*psi_y - t42
-            eta[j3] = (-Om0_x + (0.5)*Om0_z*psi_y + Om_x + (0.5)*Om_z*psi_y + e0*psi_y*t52 +
-                e0*psi_z*t55 - 0.5*t42 - 0.5*t43 - t45*t46 - t49*t50)
-            eta[j3 + 1] = (-Om0_y + Om_y + t45*t56 + (0.5)*t47 - 0.5*t48 + t50*t57 - t50*t58 -
-                t52*t56 + (0.5)*t53 - 0.5*t54)
-            eta[j3 + 2] = ((0.5)*Om0_y*psi_x - Om0_z + (0.5)*Om_y*psi_x + Om_z + e0*psi_x*t49 +
-                e0*psi_y*t58 - 0.5*t44 - t46*t57 - 0.5*t51 - t55*t56)
+            t42 = (0.5)*Om0_z + (0.5)*Om_z
+            t43 = Om0_y + Om_y
+            t44 = (0.5)*psi_z
+            t45 = -Om0_y + Om_y
+            t46 = -Om0_x + Om_x
+            t47 = psi_x*t45 - psi_y*t46
+            t48 = -Om0_z + Om_z
+            t49 = -psi_x*t48 + psi_z*t46
+            t50 = Om0_x + Om_x
+            t51 = psi_y*t48 - psi_z*t45
+            eta[j3] = -Om0_x + Om_x + e0*(psi_y*t47 - psi_z*t49) + psi_y*t42 - t43*t44
+            eta[j3 + 1] = -Om0_y + Om_y + e0*(-psi_x*t47 + psi_z*t51) - psi_x*t42 + t44*t50
+            eta[j3 + 2] = (-Om0_z + Om_z + e0*(psi_x*t49 - psi_y*t51) + (0.5)*psi_x*t43 -
+                0.5*psi_y*t50)
         # rates of the internal modes
         for k in range(MODES, n):
             vm = ve[k]
@@ -422,49 +413,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
             e0 = e0s[j]
             e1 = e1s[j]
-            t59 = A_y*psi_z
-            t60 = Om0_y*ep_z
-            t61 = Om_y*ep_z
-            t62 = -Om_x*psi_y + Om_y*psi_x
-            t63 = e0*ep_y
-            t64 = Om0_x*psi_z - Om0_z*psi_x
-            t65 = e0*ep_z
-            t66 = Om0_x*ep_z
-            t67 = Om0_z*ep_x
-            t68 = t66 - t67
-            t69 = e0*psi_z
-            t70 = -Om0_x*psi_y + Om0_y*psi_x
-            t71 = Om_x*psi_z - Om_z*psi_x
-            t72 = Om0_x*ep_y
-            t73 = Om0_y*ep_x - t72
-            t74 = e0*psi_y
-            t75 = A_x*psi_y
-            t76 = Om_x*ep_y
-            t77 = A_y*psi_x + Om_y*ep_x - t75 - t76
-            t78 = A_x*psi_z
-            t79 = Om_x*ep_z
-            t80 = A_z*psi_x
-            t81 = Om_z*ep_x
-            t82 = t78 + t79 - t80 - t81
-            t83 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
-            t84 = psi_y*t83
-            t85 = psi_z*t83
-            t86 = e0*ep_x
-            t87 = -Om_y*psi_z + Om_z*psi_y
-            t88 = e0*psi_x
-            t89 = -Om0_y*psi_z + Om0_z*psi_y
-            t90 = Om0_z*ep_y - t60
-            t91 = A_z*psi_y + Om_z*ep_y - t59 - t61
-            t92 = psi_x*t83
-            etad[j3] = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y + (0.5)*Om_z*ep_y - 0.5*t59 -
-                0.5*t60 - 0.5*t61 + t62*t63 + t62*t84 - t63*t70 + t64*t65 + t64*t85 - t65*t71 +
-                t68*t69 - t69*t82 - t70*t84 - t71*t85 - t73*t74 + t74*t77)
-            etad[j3 + 1] = (A_y - t62*t86 - t62*t92 + t65*t87 - t65*t89 + (0.5)*t66 - 0.5*t67 -
-                t69*t90 + t69*t91 + t70*t86 + t70*t92 + t73*t88 - t77*t88 + (0.5)*t78 + (0.5)*t79
-                - 0.5*t80 - 0.5*t81 + t85*t87 - t85*t89)
-            etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om_y*ep_x - t63*t87 +
-                t63*t89 - t64*t86 - t64*t92 - t68*t88 + t71*t86 + t71*t92 - 0.5*t72 + t74*t90 -
-                t74*t91 - 0.5*t75 - 0.5*t76 + t82*t88 - t84*t87 + t84*t89)
+            t52 = A_y*psi_z
+            t53 = (0.5)*Om0_z + (0.5)*Om_z
+            t54 = Om0_y + Om_y
+            t55 = (0.5)*ep_z
+            t56 = -Om0_y + Om_y
+            t57 = -Om0_x + Om_x
+            t58 = psi_x*t56 - psi_y*t57
+            t59 = -Om0_z + Om_z
+            t60 = -psi_x*t59 + psi_z*t57
+            t61 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
+            t62 = A_x*psi_y
+            t63 = A_y*psi_x + ep_x*t56 - ep_y*t57 - t62
+            t64 = A_x*psi_z
+            t65 = A_z*psi_x
+            t66 = -ep_x*t59 + ep_z*t57 + t64 - t65
+            t67 = Om0_x + Om_x
+            t68 = psi_y*t59 - psi_z*t56
+            t69 = A_z*psi_y + ep_y*t59 - ep_z*t56 - t52
+            etad[j3] = (A_x + (0.5)*A_z*psi_y + e0*(ep_y*t58 - ep_z*t60 + psi_y*t63 - psi_z*t66) +
+                ep_y*t53 - 0.5*t52 - t54*t55 + t61*(psi_y*t58 - psi_z*t60))
+            etad[j3 + 1] = (A_y + e0*(-ep_x*t58 + ep_z*t68 - psi_x*t63 + psi_z*t69) - ep_x*t53 +
+                t55*t67 + t61*(-psi_x*t58 + psi_z*t68) + (0.5)*t64 - 0.5*t65)
+            etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + e0*(ep_x*t60 - ep_y*t68 + psi_x*t66 -
+                psi_y*t69) + (0.5)*ep_x*t54 - 0.5*ep_y*t67 + t61*(psi_x*t60 - psi_y*t68) - 0.5*t62)
         # rate: rates of the internal modes
         for k in range(MODES, n):
             am = ae[k]
@@ -510,32 +482,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             epd_x, epd_y, epd_z = etad[j3], etad[j3 + 1], etad[j3 + 2]
             e0 = e0s[j]
-            t93 = (0.5)*psi_z
-            t94 = e0*psi_x
-            t95 = psi_y*t94
-            t96 = (0.5)*psi_y
-            t97 = psi_z*t94
-            t98 = e0*psi_y*psi_y
-            t99 = e0*psi_z*psi_z - 1
-            t100 = (0.5)*psi_x
-            t101 = e0*psi_y*psi_z
-            t102 = e0*psi_x*psi_x
-            etad[j3] = Om0d_x*(t98 + t99) + Om0d_y*(-t93 - t95) + Om0d_z*(t96 - t97) + epd_x
-            etad[j3 + 1] = Om0d_x*(t93 - t95) + Om0d_y*(t102 + t99) + Om0d_z*(-t100 - t101) + epd_y
-            etad[j3 + 2] = (Om0d_x*(-t96 - t97) + Om0d_y*(t100 - t101) + Om0d_z*(t102 + t98 - 1) +
-                epd_z)
+            t70 = Om0d_y*psi_z
+            t71 = Om0d_z*psi_y
+            t72 = Om0d_x*psi_y
+            t73 = Om0d_y*psi_x
+            t74 = t72 - t73
+            t75 = Om0d_x*psi_z
+            t76 = Om0d_z*psi_x - t75
+            t77 = t70 - t71
+            etad[j3] = -Om0d_x + e0*(psi_y*t74 - psi_z*t76) + epd_x - 0.5*t70 + (0.5)*t71
+            etad[j3 + 1] = (-Om0d_y - 0.5*Om0d_z*psi_x + e0*(-psi_x*t74 + psi_z*t77) + epd_y +
+                (0.5)*t75)
+            etad[j3 + 2] = -Om0d_z + e0*(psi_x*t76 - psi_y*t77) + epd_z - 0.5*t72 + (0.5)*t73
         # rate: rates of the elastic displacements
         for i in range(N_POSITIONS):
             i3 = 3*i
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             eud_x, eud_y, eud_z = etad[i3], etad[i3 + 1], etad[i3 + 2]
-            t103 = X_y + u_y
-            t104 = X_z + u_z
-            t105 = X_x + u_x
-            etad[i3] = -Om0d_y*t104 + Om0d_z*t103 + eud_x
-            etad[i3 + 1] = Om0d_x*t104 - Om0d_z*t105 + eud_y
-            etad[i3 + 2] = -Om0d_x*t103 + Om0d_y*t105 + eud_z
+            t78 = X_y + u_y
+            t79 = X_z + u_z
+            t80 = X_x + u_x
+            etad[i3] = -Om0d_y*t79 + Om0d_z*t78 + eud_x
+            etad[i3 + 1] = Om0d_x*t79 - Om0d_z*t80 + eud_y
+            etad[i3 + 2] = -Om0d_x*t78 + Om0d_y*t80 + eud_z
         # gravity in frame axes
         field_x, field_y, field_z = field[0], field[1], field[2]
         gamma[0] = R0_xx*field_x + R0_yx*field_y + R0_zx*field_z
@@ -614,12 +584,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
             turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
         gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
-        t106 = a0_x - gamma_x
-        t107 = a0_y - gamma_y
-        t108 = a0_z - gamma_z
-        zdd[N] = t106*turn_xx + t107*turn_yx + t108*turn_zx
-        zdd[N + 1] = t106*turn_xy + t107*turn_yy + t108*turn_zy
-        zdd[N + 2] = t106*turn_xz + t107*turn_yz + t108*turn_zz
+        t81 = a0_x - gamma_x
+        t82 = a0_y - gamma_y
+        t83 = a0_z - gamma_z
+        zdd[N] = t81*turn_xx + t82*turn_yx + t83*turn_zx
+        zdd[N + 1] = t81*turn_xy + t82*turn_yy + t83*turn_zy
+        zdd[N + 2] = t81*turn_xz + t82*turn_yz + t83*turn_zz
         zdd[N + 3] = Om0d_x*turn_xx + Om0d_y*turn_yx + Om0d_z*turn_zx
         zdd[N + 4] = Om0d_x*turn_xy + Om0d_y*turn_yy + Om0d_z*turn_zy
         zdd[N + 5] = Om0d_x*turn_xz + Om0d_y*turn_yz + Om0d_z*turn_zz
@@ -630,30 +600,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         felt_x, felt_y, felt_z = zdd[N], zdd[N + 1], zdd[N + 2]
         turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
         spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
-        t109 = spin_x*spin_x
-        t110 = spin_y*spin_y
-        t111 = spin_z*spin_z
-        t112 = spin_x*spin_y
-        t113 = spin_x*spin_z
-        t114 = spin_y*spin_z
+        t84 = spin_x*spin_x
+        t85 = spin_y*spin_y
+        t86 = spin_z*spin_z
+        t87 = spin_x*spin_y
+        t88 = spin_x*spin_z
+        t89 = spin_y*spin_z
         by_moment_columns[0] = felt_x
         by_moment_columns[1] = felt_y
         by_moment_columns[2] = felt_z
         by_moment_columns[3] = turning_x
         by_moment_columns[4] = turning_y
         by_moment_columns[5] = turning_z
-        by_moment_columns[6] = -0.5*t109
-        by_moment_columns[7] = -0.5*t110
-        by_moment_columns[8] = -0.5*t111
-        by_moment_columns[9] = -t112
-        by_moment_columns[10] = -t113
-        by_moment_columns[11] = -t114
-        by_products[0] = -t109
-        by_products[1] = -t110
-        by_products[2] = -t111
-        by_products[3] = -2*t112
-        by_products[4] = -2*t113
-        by_products[5] = -2*t114
+        by_moment_columns[6] = -0.5*t84
+        by_moment_columns[7] = -0.5*t85
+        by_moment_columns[8] = -0.5*t86
+        by_moment_columns[9] = -t87
+        by_moment_columns[10] = -t88
+        by_moment_columns[11] = -t89
+        by_products[0] = -t84
+        by_products[1] = -t85
+        by_products[2] = -t86
+        by_products[3] = -2*t87
+        by_products[4] = -2*t88
+        by_products[5] = -2*t89
         by_products[6] = turning_x
         by_products[7] = turning_y
         by_products[8] = turning_z
@@ -682,11 +652,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             lam_e = lam[e]
             along_e = along[e]
             twice_e = twice[e]
-            t115 = (0.5)*twice_e
-            t116 = 1/lam_e
-            by_E[e] = t115
-            by_Gy[e] = along_e + t115*t116
-            stiffened += t115*(along_e + (0.25)*t116*twice_e)
+            t90 = (0.5)*twice_e
+            t91 = 1/lam_e
+            by_E[e] = t90
+            by_Gy[e] = along_e + t90*t91
+            stiffened += t90*(along_e + (0.25)*t91*twice_e)
         # and of Sbar y
         by_Gy[resultants] = 1
         # forces of the resultants and their geometric stiffness, with Sbar y
@@ -698,30 +668,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
         spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
         mass = masses[0]
-        t117 = 2*sum_cd_z
-        t118 = 2*spin_z
-        t119 = spin_x*sum_c_y - spin_y*sum_c_x
-        t120 = -spin_x*sum_c_z + spin_z*sum_c_x
-        t121 = spin_y*sum_c_z - spin_z*sum_c_y
-        t122 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
-        t123 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
-        t124 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
-        local[N] = (felt_x*mass + spin_y*t117 + spin_y*t119 - spin_z*t120 - sum_c_y*turning_z +
-            sum_c_z*turning_y - sum_cd_y*t118 + sum_cdd_x)
-        local[N + 1] = (felt_y*mass - spin_x*t117 - spin_x*t119 + spin_z*t121 + sum_c_x*turning_z
-            - sum_c_z*turning_x + sum_cd_x*t118 + sum_cdd_y)
-        local[N + 2] = (felt_z*mass + 2*spin_x*sum_cd_y + spin_x*t120 - 2*spin_y*sum_cd_x -
-            spin_y*t121 - sum_c_x*turning_y + sum_c_y*turning_x + sum_cdd_z)
+        t92 = 2*sum_cd_z
+        t93 = 2*spin_z
+        t94 = spin_x*sum_c_y - spin_y*sum_c_x
+        t95 = -spin_x*sum_c_z + spin_z*sum_c_x
+        t96 = spin_y*sum_c_z - spin_z*sum_c_y
+        t97 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
+        t98 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
+        t99 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
+        local[N] = (felt_x*mass + spin_y*t92 + spin_y*t94 - spin_z*t95 - sum_c_y*turning_z +
+            sum_c_z*turning_y - sum_cd_y*t93 + sum_cdd_x)
+        local[N + 1] = (felt_y*mass - spin_x*t92 - spin_x*t94 + spin_z*t96 + sum_c_x*turning_z -
+            sum_c_z*turning_x + sum_cd_x*t93 + sum_cdd_y)
+        local[N + 2] = (felt_z*mass + 2*spin_x*sum_cd_y + spin_x*t95 - 2*spin_y*sum_cd_x -
+            spin_y*t96 - sum_c_x*turning_y + sum_c_y*turning_x + sum_cdd_z)
         local[N + 3] = (-felt_y*sum_c_z + felt_z*sum_c_y + spin_x*sum_Jd_xx + spin_y*sum_Jd_xy +
-            spin_y*sum_spun_z + spin_y*t122 + spin_z*sum_Jd_xz - spin_z*sum_spun_y - spin_z*t123 +
+            spin_y*sum_spun_z + spin_y*t97 + spin_z*sum_Jd_xz - spin_z*sum_spun_y - spin_z*t98 +
             sum_J_xx*turning_x + sum_J_xy*turning_y + sum_J_xz*turning_z + sum_accelerated_x +
             sum_coupled_x)
         local[N + 4] = (felt_x*sum_c_z - felt_z*sum_c_x + spin_x*sum_Jd_xy - spin_x*sum_spun_z -
-            spin_x*t122 + spin_y*sum_Jd_yy + spin_z*sum_Jd_yz + spin_z*sum_spun_x + spin_z*t124 +
+            spin_x*t97 + spin_y*sum_Jd_yy + spin_z*sum_Jd_yz + spin_z*sum_spun_x + spin_z*t99 +
             sum_J_xy*turning_x + sum_J_yy*turning_y + sum_J_yz*turning_z + sum_accelerated_y +
             sum_coupled_y)
         local[N + 5] = (-felt_x*sum_c_y + felt_y*sum_c_x + spin_x*sum_Jd_xz + spin_x*sum_spun_y +
-            spin_x*t123 + spin_y*sum_Jd_yz - spin_y*sum_spun_x - spin_y*t124 + spin_z*sum_Jd_zz +
+            spin_x*t98 + spin_y*sum_Jd_yz - spin_y*sum_spun_x - spin_y*t99 + spin_z*sum_Jd_zz +
             sum_J_xz*turning_x + sum_J_yz*turning_y + sum_J_zz*turning_z + sum_accelerated_z +
             sum_coupled_z)
         # forces conjugate to y
@@ -734,15 +704,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t125 = X_z + u_z
-            t126 = X_y + u_y
-            t127 = X_x + u_x
+            t100 = X_z + u_z
+            t101 = X_y + u_y
+            t102 = X_x + u_x
             F_x += -f_x
             F_y += -f_y
             F_z += -f_z
-            W_x += f_y*t125 - f_z*t126
-            W_y += -f_x*t125 + f_z*t127
-            W_z += f_x*t126 - f_y*t127
+            W_x += f_y*t100 - f_z*t101
+            W_y += -f_x*t100 + f_z*t102
+            W_z += f_x*t101 - f_y*t102
         # inertia and weight on the frame
         turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
             turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
@@ -760,21 +730,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t128 = -m_x*psi_y + m_y*psi_x
-            t129 = m_x*psi_z
-            t130 = -m_z*psi_x + t129
-            t131 = -m_y*psi_z + m_z*psi_y
-            W_x += -e0*psi_y*t128 + e0*psi_z*t130 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-            W_y += e0*psi_x*t128 - e0*psi_z*t131 - m_y + (0.5)*m_z*psi_x - 0.5*t129
-            W_z += -e0*psi_x*t130 + e0*psi_y*t131 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+            t103 = -m_x*psi_y + m_y*psi_x
+            t104 = m_x*psi_z
+            t105 = -m_z*psi_x + t104
+            t106 = -m_y*psi_z + m_z*psi_y
+            W_x += -e0*psi_y*t103 + e0*psi_z*t105 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+            W_y += e0*psi_x*t103 - e0*psi_z*t106 - m_y + (0.5)*m_z*psi_x - 0.5*t104
+            W_z += -e0*psi_x*t105 + e0*psi_y*t106 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
         # B^T wp = W
         rhs_x = rhs_y = rhs_z = 0.0
-        t132 = W_x + rhs_x
-        t133 = W_y + rhs_y
-        t134 = W_z + rhs_z
-        wp_x = Bxx*t132 + Byx*t133 + Bzx*t134
-        wp_y = Bxy*t132 + Byy*t133 + Bzy*t134
-        wp_z = Bxz*t132 + Byz*t133 + Bzz*t134
+        t107 = W_x + rhs_x
+        t108 = W_y + rhs_y
+        t109 = W_z + rhs_z
+        wp_x = Bxx*t107 + Byx*t108 + Bzx*t109
+        wp_y = Bxy*t107 + Byy*t108 + Bzy*t109
+        wp_z = Bxz*t107 + Byz*t108 + Bzz*t109
         # force on the origin, through the frame
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -823,28 +793,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Gam[3*(j3 + 2) + 1], Gam[3*(j3 + 2) + 2])
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t135 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z
-            t136 = psi_z*t135
-            t137 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z
-            t138 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z
-            t139 = psi_y*t138
-            t140 = psi_x*t135 - t139
-            t141 = e0*psi_y
-            t142 = m_x*psi_z
-            t143 = -m_z*psi_x + t142
-            t144 = e0*psi_z
-            t145 = -m_x*psi_y + m_y*psi_x
-            t146 = psi_x*t137
-            t147 = psi_z*t138 - t146
-            t148 = e0*psi_x
-            t149 = psi_y*t137 - t136
-            t150 = -m_y*psi_z + m_z*psi_y
-            g[j3] = (e0*psi_y*t145 + e0*psi_z*t147 + m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y +
-                (0.5)*psi_y*t137 - 0.5*t136 - t138 - t140*t141 - t143*t144)
-            g[j3 + 1] = (e0*psi_x*t140 + e0*psi_z*t150 + m_y + (0.5)*m_z*psi_x + (0.5)*psi_z*t138
-                - t135 - 0.5*t142 - t144*t149 - t145*t148 - 0.5*t146)
-            g[j3 + 2] = (e0*psi_x*t143 + e0*psi_y*t149 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x + m_z +
-                (0.5)*psi_x*t135 - t137 - 0.5*t139 - t141*t150 - t147*t148)
+            t110 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z - m_z
+            t111 = -t110
+            t112 = psi_y*t111
+            t113 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z - m_y
+            t114 = -t113
+            t115 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z - m_x
+            t116 = -t115
+            t117 = -psi_x*t111 + psi_z*t116
+            t118 = psi_x*t114
+            t119 = -psi_y*t116 + t118
+            t120 = -psi_z*t114 + t112
+            g[j3] = e0*psi_y*t119 - e0*psi_z*t117 + (0.5)*psi_z*t114 - 0.5*t112 - t115
+            g[j3 + 1] = -e0*psi_x*t119 + e0*psi_z*t120 + (0.5)*psi_x*t111 - 0.5*psi_z*t116 - t113
+            g[j3 + 2] = e0*psi_x*t117 - e0*psi_y*t120 + (0.5)*psi_y*t116 - t110 - 0.5*t118
         # force of the internal modes
         for k in range(MODES, n):
             Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
@@ -869,47 +831,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             moving = squares[0]
             elastic = squares[1]
-            t151 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
-            t152 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
-            t153 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
-            t154 = spin_x*sum_c_y - spin_y*sum_c_x + sum_cd_z
-            t155 = turn_xz*v0_x + turn_yz*v0_y + turn_zz*v0_z
-            t156 = -spin_x*sum_c_z + spin_z*sum_c_x + sum_cd_y
-            t157 = turn_xy*v0_x + turn_yy*v0_y + turn_zy*v0_z
-            t158 = spin_y*sum_c_z - spin_z*sum_c_y + sum_cd_x
-            t159 = turn_xx*v0_x + turn_yx*v0_y + turn_zx*v0_z
-            t160 = mass*x0_x
-            t161 = mass*x0_y
-            t162 = mass*x0_z
-            t163 = mass*t159 + t158
-            t164 = mass*t157 + t156
-            t165 = mass*t155 + t154
-            t166 = t163*turn_xx + t164*turn_xy + t165*turn_xz
-            t167 = t163*turn_yx + t164*turn_yy + t165*turn_yz
-            t168 = t163*turn_zx + t164*turn_zy + t165*turn_zz
-            t169 = R0_xx*t166 + R0_xy*t167 + R0_xz*t168
-            t170 = R0_yx*t166 + R0_yy*t167 + R0_yz*t168
-            t171 = R0_zx*t166 + R0_zy*t167 + R0_zz*t168
-            t172 = sum_c_y*t155 - sum_c_z*t157 + sum_spun_x + t151
-            t173 = -sum_c_x*t155 + sum_c_z*t159 + sum_spun_y + t152
-            t174 = sum_c_x*t157 - sum_c_y*t159 + sum_spun_z + t153
-            t175 = t172*turn_xx + t173*turn_xy + t174*turn_xz
-            t176 = t172*turn_yx + t173*turn_yy + t174*turn_yz
-            t177 = t172*turn_zx + t173*turn_zy + t174*turn_zz
-            kinetic = ((0.5)*mass*(t155*t155 + t157*t157 + t159*t159) + (0.5)*moving +
-                spin_x*sum_spun_x + (0.5)*spin_x*t151 + spin_y*sum_spun_y + (0.5)*spin_y*t152 +
-                spin_z*sum_spun_z + (0.5)*spin_z*t153 + t154*t155 + t156*t157 + t158*t159)
+            t121 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
+            t122 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
+            t123 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
+            t124 = spin_x*sum_c_y - spin_y*sum_c_x + sum_cd_z
+            t125 = turn_xz*v0_x + turn_yz*v0_y + turn_zz*v0_z
+            t126 = -spin_x*sum_c_z + spin_z*sum_c_x + sum_cd_y
+            t127 = turn_xy*v0_x + turn_yy*v0_y + turn_zy*v0_z
+            t128 = spin_y*sum_c_z - spin_z*sum_c_y + sum_cd_x
+            t129 = turn_xx*v0_x + turn_yx*v0_y + turn_zx*v0_z
+            t130 = mass*x0_x
+            t131 = mass*x0_y
+            t132 = mass*x0_z
+            t133 = mass*t129 + t128
+            t134 = mass*t127 + t126
+            t135 = mass*t125 + t124
+            t136 = t133*turn_xx + t134*turn_xy + t135*turn_xz
+            t137 = t133*turn_yx + t134*turn_yy + t135*turn_yz
+            t138 = t133*turn_zx + t134*turn_zy + t135*turn_zz
+            t139 = R0_xx*t136 + R0_xy*t137 + R0_xz*t138
+            t140 = R0_yx*t136 + R0_yy*t137 + R0_yz*t138
+            t141 = R0_zx*t136 + R0_zy*t137 + R0_zz*t138
+            t142 = sum_c_y*t125 - sum_c_z*t127 + sum_spun_x + t121
+            t143 = -sum_c_x*t125 + sum_c_z*t129 + sum_spun_y + t122
+            t144 = sum_c_x*t127 - sum_c_y*t129 + sum_spun_z + t123
+            t145 = t142*turn_xx + t143*turn_xy + t144*turn_xz
+            t146 = t142*turn_yx + t143*turn_yy + t144*turn_yz
+            t147 = t142*turn_zx + t143*turn_zy + t144*turn_zz
+            kinetic = ((0.5)*mass*(t125*t125 + t127*t127 + t129*t129) + (0.5)*moving +
+                spin_x*sum_spun_x + (0.5)*spin_x*t121 + spin_y*sum_spun_y + (0.5)*spin_y*t122 +
+                spin_z*sum_spun_z + (0.5)*spin_z*t123 + t124*t125 + t126*t127 + t128*t129)
             strain = (0.5)*elastic + stiffened
-            potential = (-gamma_x*(R0_xx*t160 + R0_yx*t161 + R0_zx*t162 + sum_c_x*turn_xx +
-                sum_c_y*turn_xy + sum_c_z*turn_xz) - gamma_y*(R0_xy*t160 + R0_yy*t161 + R0_zy*t162
-                + sum_c_x*turn_yx + sum_c_y*turn_yy + sum_c_z*turn_yz) - gamma_z*(R0_xz*t160 +
-                R0_yz*t161 + R0_zz*t162 + sum_c_x*turn_zx + sum_c_y*turn_zy + sum_c_z*turn_zz))
-            P_x = t169
-            P_y = t170
-            P_z = t171
-            H_x = R0_xx*t175 + R0_xy*t176 + R0_xz*t177 - t170*x0_z + t171*x0_y
-            H_y = R0_yx*t175 + R0_yy*t176 + R0_yz*t177 + t169*x0_z - t171*x0_x
-            H_z = R0_zx*t175 + R0_zy*t176 + R0_zz*t177 - t169*x0_y + t170*x0_x
+            potential = (-gamma_x*(R0_xx*t130 + R0_yx*t131 + R0_zx*t132 + sum_c_x*turn_xx +
+                sum_c_y*turn_xy + sum_c_z*turn_xz) - gamma_y*(R0_xy*t130 + R0_yy*t131 + R0_zy*t132
+                + sum_c_x*turn_yx + sum_c_y*turn_yy + sum_c_z*turn_yz) - gamma_z*(R0_xz*t130 +
+                R0_yz*t131 + R0_zz*t132 + sum_c_x*turn_zx + sum_c_y*turn_zy + sum_c_z*turn_zz))
+            P_x = t139
+            P_y = t140
+            P_z = t141
+            H_x = R0_xx*t145 + R0_xy*t146 + R0_xz*t147 - t140*x0_z + t141*x0_y
+            H_y = R0_yx*t145 + R0_yy*t146 + R0_yz*t147 + t139*x0_z - t141*x0_x
+            H_z = R0_zx*t145 + R0_zy*t146 + R0_zz*t147 - t139*x0_y + t140*x0_x
             energies[KINETIC] += kinetic
             energies[STRAIN] += strain
             energies[POTENTIAL] += potential
@@ -965,12 +927,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # factors of the local tangents
             turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
-            t178 = 2*c_geo*spin_x
+            t148 = 2*c_geo*spin_x
             by_couplings[0] = -c_geo*spin_x*spin_x
             by_couplings[1] = -c_geo*spin_y*spin_y
             by_couplings[2] = -c_geo*spin_z*spin_z
-            by_couplings[3] = -spin_y*t178
-            by_couplings[4] = -spin_z*t178
+            by_couplings[3] = -spin_y*t148
+            by_couplings[4] = -spin_z*t148
             by_couplings[5] = -2*c_geo*spin_y*spin_z
             by_couplings[6] = c_geo*turning_x
             by_couplings[7] = c_geo*turning_y
@@ -1038,55 +1000,55 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 row_jd_xx, row_jd_yy, row_jd_zz, row_jd_xy, row_jd_xz, row_jd_yz = (more[i],
                     more[hN + i], more[2*hN + i], more[3*hN + i], more[4*hN + i], more[5*hN + i])
                 row_wa_x, row_wa_y, row_wa_z = more[12*hN + i], more[13*hN + i], more[14*hN + i]
-                t179 = row_S1_x*spin_z
-                t180 = row_S1_z*spin_x
-                t181 = t179 - t180
-                t182 = row_S1_x*spin_y
-                t183 = row_S1_y*spin_x - t182
-                t184 = row_S1_y*spin_z
-                t185 = row_S1_z*spin_y - t184
-                t186 = 2*spin_x
-                t187 = 2*spin_y
-                t188 = 2*spin_z
-                t189 = row_h_xx + 2*row_j_xx
-                t190 = row_h_xy + 2*row_j_xy
-                t191 = row_h_xz + 2*row_j_xz
-                t192 = row_h_yz + 2*row_j_yz
-                t193 = row_h_zz + 2*row_j_zz
-                t194 = spin_x*t191 + spin_y*t192 + spin_z*t193
-                t195 = row_h_yy + 2*row_j_yy
-                t196 = spin_x*t190 + spin_y*t195 + spin_z*t192
-                t197 = spin_x*t189 + spin_y*t190 + spin_z*t191
-                t198 = row_g_z + row_u_z
-                t199 = row_g_y + row_u_y
-                t200 = row_g_x + row_u_x
-                Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t183 -
-                    spin_z*t181))
-                Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t183
-                    + spin_z*t185))
+                t149 = row_S1_x*spin_z
+                t150 = row_S1_z*spin_x
+                t151 = t149 - t150
+                t152 = row_S1_x*spin_y
+                t153 = row_S1_y*spin_x - t152
+                t154 = row_S1_y*spin_z
+                t155 = row_S1_z*spin_y - t154
+                t156 = 2*spin_x
+                t157 = 2*spin_y
+                t158 = 2*spin_z
+                t159 = row_h_xx + 2*row_j_xx
+                t160 = row_h_xy + 2*row_j_xy
+                t161 = row_h_xz + 2*row_j_xz
+                t162 = row_h_yz + 2*row_j_yz
+                t163 = row_h_zz + 2*row_j_zz
+                t164 = spin_x*t161 + spin_y*t162 + spin_z*t163
+                t165 = row_h_yy + 2*row_j_yy
+                t166 = spin_x*t160 + spin_y*t165 + spin_z*t162
+                t167 = spin_x*t159 + spin_y*t160 + spin_z*t161
+                t168 = row_g_z + row_u_z
+                t169 = row_g_y + row_u_y
+                t170 = row_g_x + row_u_x
+                Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t153 -
+                    spin_z*t151))
+                Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t153
+                    + spin_z*t155))
                 Lz[i*deep + N + 2] = (c_geo*(-row_S1_x*turning_y + row_S1_y*turning_x +
-                    spin_x*t181 - spin_y*t185))
-                Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t186 +
-                    row_jd_xy*t187 + row_jd_xz*t188 - row_w_y*spin_z + row_w_z*spin_y + row_wa_x +
-                    spin_y*t194 - spin_z*t196 + t189*turning_x + t190*turning_y + t191*turning_z))
-                Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t186 +
-                    row_jd_yy*t187 + row_jd_yz*t188 + row_w_x*spin_z - row_w_z*spin_x + row_wa_y -
-                    spin_x*t194 + spin_z*t197 + t190*turning_x + t192*turning_z + t195*turning_y))
-                Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t186 +
-                    row_jd_yz*t187 + row_jd_zz*t188 - row_w_x*spin_y + row_w_y*spin_x + row_wa_z +
-                    spin_x*t196 - spin_y*t197 + t191*turning_x + t192*turning_y + t193*turning_z))
-                Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t184
-                Lv[i*deep + N + 1] = 2*t179 - 2*t180
-                Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t182
-                Lv[i*deep + N + 3] = row_v_x + row_w_x + spin_y*t198 - spin_z*t199 + t197
-                Lv[i*deep + N + 4] = row_v_y + row_w_y - spin_x*t198 + spin_z*t200 + t196
-                Lv[i*deep + N + 5] = row_v_z + row_w_z + spin_x*t199 - spin_y*t200 + t194
+                    spin_x*t151 - spin_y*t155))
+                Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t156 +
+                    row_jd_xy*t157 + row_jd_xz*t158 - row_w_y*spin_z + row_w_z*spin_y + row_wa_x +
+                    spin_y*t164 - spin_z*t166 + t159*turning_x + t160*turning_y + t161*turning_z))
+                Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t156 +
+                    row_jd_yy*t157 + row_jd_yz*t158 + row_w_x*spin_z - row_w_z*spin_x + row_wa_y -
+                    spin_x*t164 + spin_z*t167 + t160*turning_x + t162*turning_z + t165*turning_y))
+                Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t156 +
+                    row_jd_yz*t157 + row_jd_zz*t158 - row_w_x*spin_y + row_w_y*spin_x + row_wa_z +
+                    spin_x*t166 - spin_y*t167 + t161*turning_x + t162*turning_y + t163*turning_z))
+                Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t154
+                Lv[i*deep + N + 1] = 2*t149 - 2*t150
+                Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t152
+                Lv[i*deep + N + 3] = row_v_x + row_w_x + spin_y*t168 - spin_z*t169 + t167
+                Lv[i*deep + N + 4] = row_v_y + row_w_y - spin_x*t168 + spin_z*t170 + t166
+                Lv[i*deep + N + 5] = row_v_z + row_w_z + spin_x*t169 - spin_y*t170 + t164
                 La[i*deep + N] = row_S1_x
                 La[i*deep + N + 1] = row_S1_y
                 La[i*deep + N + 2] = row_S1_z
-                La[i*deep + N + 3] = t200
-                La[i*deep + N + 4] = t199
-                La[i*deep + N + 5] = t198
+                La[i*deep + N + 3] = t170
+                La[i*deep + N + 4] = t169
+                La[i*deep + N + 5] = t168
             # local tangents: motion of the frame
             for i in range(N):
                 spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
@@ -1106,14 +1068,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     products[11*hN + i])
                 row_w_x, row_w_y, row_w_z = (products[12*hN + i], products[13*hN + i],
                     products[14*hN + i])
-                t201 = row_h_xy + 2*row_j_xy
-                t202 = row_h_xz + 2*row_j_xz
-                t203 = row_h_yz + 2*row_j_yz
-                Lv[N*deep + i] = (row_v_x - row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t201
-                    - spin_z*t202)
-                Lv[(N + 1)*deep + i] = (row_v_y - row_w_y - spin_x*t201 - spin_y*(row_h_yy +
-                    2*row_j_yy) - spin_z*t203)
-                Lv[(N + 2)*deep + i] = (row_v_z - row_w_z - spin_x*t202 - spin_y*t203 -
+                t171 = row_h_xy + 2*row_j_xy
+                t172 = row_h_xz + 2*row_j_xz
+                t173 = row_h_yz + 2*row_j_yz
+                Lv[N*deep + i] = (row_v_x - row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t171
+                    - spin_z*t172)
+                Lv[(N + 1)*deep + i] = (row_v_y - row_w_y - spin_x*t171 - spin_y*(row_h_yy +
+                    2*row_j_yy) - spin_z*t173)
+                Lv[(N + 2)*deep + i] = (row_v_z - row_w_z - spin_x*t172 - spin_y*t173 -
                     spin_z*(row_h_zz + 2*row_j_zz))
                 La[N*deep + i] = row_S1_x
                 La[(N + 1)*deep + i] = row_S1_y
@@ -1124,79 +1086,79 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # local tangents: force on the frame by its motion
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             mass = masses[0]
-            t204 = spin_y*sum_c_y
-            t205 = spin_z*sum_c_z
-            t206 = 2*sum_cd_z
-            t207 = spin_x*sum_c_y
-            t208 = 2*sum_cd_y
-            t209 = spin_z*sum_c_x
-            t210 = spin_y*sum_J_xz
-            t211 = spin_z*sum_J_xy
-            t212 = spin_y*sum_J_yz
-            t213 = spin_x*sum_J_xz
-            t214 = spin_z*sum_J_zz + sum_spun_z
-            t215 = spin_z*sum_J_yz
-            t216 = spin_x*sum_J_xy
-            t217 = spin_y*sum_J_yy + sum_spun_y
-            t218 = spin_x*sum_c_x
-            t219 = 2*sum_cd_x
-            t220 = spin_y*sum_c_z
-            t221 = spin_x*sum_J_yz
-            t222 = spin_z*sum_J_xz
-            t223 = spin_y*sum_J_xy
-            t224 = spin_x*sum_J_xx + sum_spun_x
-            t225 = -sum_c_y
-            t226 = -sum_c_z
-            t227 = -sum_c_x
-            Lv[N*deep + N] = t204 + t205
-            Lv[N*deep + N + 1] = spin_y*sum_c_x - t206 - 2*t207
-            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t208 + t209
-            Lv[N*deep + N + 3] = sum_Jd_xx + t210 - t211
-            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t212 - 2*t213 - t214
-            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t215 + 2*t216 + t217
-            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t206 + t207
-            Lv[(N + 1)*deep + N + 1] = t205 + t218
-            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t219 - 2*t220
-            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t212 + t213 + t214
-            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t211 - t221
-            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t222 - 2*t223 - t224
-            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t208 - 2*t209
-            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t219 + t220
-            Lv[(N + 2)*deep + N + 2] = t204 + t218
-            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t215 - t216 - t217
-            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t222 + t223 + t224
-            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t210 + t221
+            t174 = spin_y*sum_c_y
+            t175 = spin_z*sum_c_z
+            t176 = 2*sum_cd_z
+            t177 = spin_x*sum_c_y
+            t178 = 2*sum_cd_y
+            t179 = spin_z*sum_c_x
+            t180 = spin_y*sum_J_xz
+            t181 = spin_z*sum_J_xy
+            t182 = spin_y*sum_J_yz
+            t183 = spin_x*sum_J_xz
+            t184 = spin_z*sum_J_zz + sum_spun_z
+            t185 = spin_z*sum_J_yz
+            t186 = spin_x*sum_J_xy
+            t187 = spin_y*sum_J_yy + sum_spun_y
+            t188 = spin_x*sum_c_x
+            t189 = 2*sum_cd_x
+            t190 = spin_y*sum_c_z
+            t191 = spin_x*sum_J_yz
+            t192 = spin_z*sum_J_xz
+            t193 = spin_y*sum_J_xy
+            t194 = spin_x*sum_J_xx + sum_spun_x
+            t195 = -sum_c_y
+            t196 = -sum_c_z
+            t197 = -sum_c_x
+            Lv[N*deep + N] = t174 + t175
+            Lv[N*deep + N + 1] = spin_y*sum_c_x - t176 - 2*t177
+            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t178 + t179
+            Lv[N*deep + N + 3] = sum_Jd_xx + t180 - t181
+            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t182 - 2*t183 - t184
+            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t185 + 2*t186 + t187
+            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t176 + t177
+            Lv[(N + 1)*deep + N + 1] = t175 + t188
+            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t189 - 2*t190
+            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t182 + t183 + t184
+            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t181 - t191
+            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t192 - 2*t193 - t194
+            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t178 - 2*t179
+            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t189 + t190
+            Lv[(N + 2)*deep + N + 2] = t174 + t188
+            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t185 - t186 - t187
+            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t192 + t193 + t194
+            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t180 + t191
             La[N*deep + N] = mass
             La[N*deep + N + 1] = 0.0
             La[N*deep + N + 2] = 0.0
             La[N*deep + N + 3] = 0.0
             La[N*deep + N + 4] = sum_c_z
-            La[N*deep + N + 5] = t225
+            La[N*deep + N + 5] = t195
             La[(N + 1)*deep + N] = 0.0
             La[(N + 1)*deep + N + 1] = mass
             La[(N + 1)*deep + N + 2] = 0.0
-            La[(N + 1)*deep + N + 3] = t226
+            La[(N + 1)*deep + N + 3] = t196
             La[(N + 1)*deep + N + 4] = 0.0
             La[(N + 1)*deep + N + 5] = sum_c_x
             La[(N + 2)*deep + N] = 0.0
             La[(N + 2)*deep + N + 1] = 0.0
             La[(N + 2)*deep + N + 2] = mass
             La[(N + 2)*deep + N + 3] = sum_c_y
-            La[(N + 2)*deep + N + 4] = t227
+            La[(N + 2)*deep + N + 4] = t197
             La[(N + 2)*deep + N + 5] = 0.0
             La[(N + 3)*deep + N] = 0.0
-            La[(N + 3)*deep + N + 1] = t226
+            La[(N + 3)*deep + N + 1] = t196
             La[(N + 3)*deep + N + 2] = sum_c_y
             La[(N + 3)*deep + N + 3] = sum_J_xx
             La[(N + 3)*deep + N + 4] = sum_J_xy
             La[(N + 3)*deep + N + 5] = sum_J_xz
             La[(N + 4)*deep + N] = sum_c_z
             La[(N + 4)*deep + N + 1] = 0.0
-            La[(N + 4)*deep + N + 2] = t227
+            La[(N + 4)*deep + N + 2] = t197
             La[(N + 4)*deep + N + 3] = sum_J_xy
             La[(N + 4)*deep + N + 4] = sum_J_yy
             La[(N + 4)*deep + N + 5] = sum_J_yz
-            La[(N + 5)*deep + N] = t225
+            La[(N + 5)*deep + N] = t195
             La[(N + 5)*deep + N + 1] = sum_c_x
             La[(N + 5)*deep + N + 2] = 0.0
             La[(N + 5)*deep + N + 3] = sum_J_xz
@@ -1237,12 +1199,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gam_positionz_x, Gam_positionz_y, Gam_positionz_z = (Gam[3*(i3 + 2)],
                         Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t228 = -dx0_x + dx_x
-                    t229 = -dx0_y + dx_y
-                    t230 = -dx0_z + dx_z
-                    rhs_x += -Gam_positionx_x*t228 - Gam_positiony_x*t229 - Gam_positionz_x*t230
-                    rhs_y += -Gam_positionx_y*t228 - Gam_positiony_y*t229 - Gam_positionz_y*t230
-                    rhs_z += -Gam_positionx_z*t228 - Gam_positiony_z*t229 - Gam_positionz_z*t230
+                    t198 = -dx0_x + dx_x
+                    t199 = -dx0_y + dx_y
+                    t200 = -dx0_z + dx_z
+                    rhs_x += -Gam_positionx_x*t198 - Gam_positiony_x*t199 - Gam_positionz_x*t200
+                    rhs_y += -Gam_positionx_y*t198 - Gam_positiony_y*t199 - Gam_positionz_y*t200
+                    rhs_z += -Gam_positionx_z*t198 - Gam_positiony_z*t199 - Gam_positionz_z*t200
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
@@ -1254,20 +1216,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         Gam[3*(j3 + 2) + 1], Gam[3*(j3 + 2) + 2])
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t231 = dth_y*psi_z
-                    t232 = dth_x*psi_y
-                    t233 = e0*(dth_y*psi_x - t232)
-                    t234 = dth_x*psi_z
-                    t235 = dth_z*psi_x
-                    t236 = t234 - t235
-                    t237 = e0*psi_z
-                    t238 = dth_x + (0.5)*dth_z*psi_y + psi_y*t233 - 0.5*t231 - t236*t237
-                    t239 = dth_z*psi_y - t231
-                    t240 = dth_y - psi_x*t233 + (0.5)*t234 - 0.5*t235 + t237*t239
-                    t241 = (0.5)*dth_y*psi_x + dth_z + e0*psi_x*t236 - e0*psi_y*t239 - 0.5*t232
-                    rhs_x += -Gam_rotationx_x*t238 - Gam_rotationy_x*t240 - Gam_rotationz_x*t241
-                    rhs_y += -Gam_rotationx_y*t238 - Gam_rotationy_y*t240 - Gam_rotationz_y*t241
-                    rhs_z += -Gam_rotationx_z*t238 - Gam_rotationy_z*t240 - Gam_rotationz_z*t241
+                    t201 = dth_y*psi_z
+                    t202 = dth_x*psi_y
+                    t203 = e0*(dth_y*psi_x - t202)
+                    t204 = dth_x*psi_z
+                    t205 = dth_z*psi_x
+                    t206 = t204 - t205
+                    t207 = e0*psi_z
+                    t208 = dth_x + (0.5)*dth_z*psi_y + psi_y*t203 - 0.5*t201 - t206*t207
+                    t209 = dth_z*psi_y - t201
+                    t210 = dth_y - psi_x*t203 + (0.5)*t204 - 0.5*t205 + t207*t209
+                    t211 = (0.5)*dth_y*psi_x + dth_z + e0*psi_x*t206 - e0*psi_y*t209 - 0.5*t202
+                    rhs_x += -Gam_rotationx_x*t208 - Gam_rotationy_x*t210 - Gam_rotationz_x*t211
+                    rhs_y += -Gam_rotationx_y*t208 - Gam_rotationy_y*t210 - Gam_rotationz_y*t211
+                    rhs_z += -Gam_rotationx_z*t208 - Gam_rotationy_z*t210 - Gam_rotationz_z*t211
                 for k in range(MODES, n):
                     Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
                     dqm = dqe[k]
@@ -1283,43 +1245,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t242 = X_y + u_y
-                    t243 = X_z + u_z
-                    t244 = X_x + u_x
-                    dy[i3] = -dth0_y*t243 + dth0_z*t242 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t243 - dth0_z*t244 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t242 + dth0_y*t244 - dx0_z + dx_z
+                    t212 = X_y + u_y
+                    t213 = X_z + u_z
+                    t214 = X_x + u_x
+                    dy[i3] = -dth0_y*t213 + dth0_z*t212 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t213 - dth0_z*t214 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t212 + dth0_y*t214 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t245 = dth0_y*psi_z
-                    t246 = dth_y*psi_z
-                    t247 = dth0_x*psi_y
-                    t248 = dth0_y*psi_x - t247
-                    t249 = e0*psi_y
-                    t250 = dth_x*psi_z
-                    t251 = dth_z*psi_x
-                    t252 = t250 - t251
-                    t253 = e0*psi_z
-                    t254 = dth_x*psi_y
-                    t255 = dth_y*psi_x - t254
-                    t256 = dth0_x*psi_z
-                    t257 = dth0_z*psi_x
-                    t258 = t256 - t257
-                    t259 = e0*psi_x
-                    t260 = dth_z*psi_y - t246
-                    t261 = dth0_z*psi_y - t245
-                    dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t255 + e0*psi_z*t258 - 0.5*t245 - 0.5*t246 - t248*t249 -
-                        t252*t253)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t248*t259 + (0.5)*t250 - 0.5*t251 + t253*t260
-                        - t253*t261 - t255*t259 + (0.5)*t256 - 0.5*t257)
-                    dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t252 + e0*psi_y*t261 - 0.5*t247 - t249*t260 - 0.5*t254 -
-                        t258*t259)
+                    t215 = (0.5)*dth0_z + (0.5)*dth_z
+                    t216 = dth0_y + dth_y
+                    t217 = (0.5)*psi_z
+                    t218 = -dth0_y + dth_y
+                    t219 = -dth0_x + dth_x
+                    t220 = psi_x*t218 - psi_y*t219
+                    t221 = -dth0_z + dth_z
+                    t222 = -psi_x*t221 + psi_z*t219
+                    t223 = dth0_x + dth_x
+                    t224 = psi_y*t221 - psi_z*t218
+                    dy[j3] = -dth0_x + dth_x + e0*(psi_y*t220 - psi_z*t222) + psi_y*t215 - t216*t217
+                    dy[j3 + 1] = (-dth0_y + dth_y + e0*(-psi_x*t220 + psi_z*t224) - psi_x*t215 +
+                        t217*t223)
+                    dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t222 - psi_y*t224) +
+                        (0.5)*psi_x*t216 - 0.5*psi_y*t223)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
@@ -1371,12 +1323,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t262 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
-                    t263 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
-                    t264 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
-                    rhs_x += -Gam_positionx_x*t262 - Gam_positiony_x*t263 - Gam_positionz_x*t264
-                    rhs_y += -Gam_positionx_y*t262 - Gam_positiony_y*t263 - Gam_positionz_y*t264
-                    rhs_z += -Gam_positionx_z*t262 - Gam_positiony_z*t263 - Gam_positionz_z*t264
+                    t225 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
+                    t226 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
+                    t227 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
+                    rhs_x += -Gam_positionx_x*t225 - Gam_positiony_x*t226 - Gam_positionz_x*t227
+                    rhs_y += -Gam_positionx_y*t225 - Gam_positiony_y*t226 - Gam_positionz_y*t227
+                    rhs_z += -Gam_positionx_z*t225 - Gam_positiony_z*t226 - Gam_positionz_z*t227
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
@@ -1391,55 +1343,55 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t265 = Om0_y*dpsi_z
-                    t266 = Om_y*dpsi_z
-                    t267 = dOm_y*psi_z
-                    t268 = -Om_x*psi_y + Om_y*psi_x
-                    t269 = dpsi_y*e0
-                    t270 = Om0_x*psi_z - Om0_z*psi_x
-                    t271 = dpsi_z*e0
-                    t272 = Om0_x*dpsi_z
-                    t273 = Om0_z*dpsi_x
-                    t274 = t272 - t273
-                    t275 = e0*psi_z
-                    t276 = -Om0_x*psi_y + Om0_y*psi_x
-                    t277 = Om_x*psi_z - Om_z*psi_x
-                    t278 = Om0_x*dpsi_y
-                    t279 = Om0_y*dpsi_x - t278
-                    t280 = e0*psi_y
-                    t281 = Om_x*dpsi_y
-                    t282 = dOm_x*psi_y
-                    t283 = Om_y*dpsi_x + dOm_y*psi_x - t281 - t282
-                    t284 = Om_x*dpsi_z
-                    t285 = dOm_x*psi_z
-                    t286 = Om_z*dpsi_x
-                    t287 = dOm_z*psi_x
-                    t288 = t284 + t285 - t286 - t287
-                    t289 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t290 = psi_y*t289
-                    t291 = psi_z*t289
-                    t292 = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y + dOm_x + (0.5)*dOm_z*psi_y -
-                        0.5*t265 - 0.5*t266 - 0.5*t267 + t268*t269 + t268*t290 - t269*t276 +
-                        t270*t271 + t270*t291 - t271*t277 + t274*t275 - t275*t288 - t276*t290 -
-                        t277*t291 - t279*t280 + t280*t283)
-                    t293 = dpsi_x*e0
-                    t294 = -Om_y*psi_z + Om_z*psi_y
-                    t295 = e0*psi_x
-                    t296 = -Om0_y*psi_z + Om0_z*psi_y
-                    t297 = Om0_z*dpsi_y - t265
-                    t298 = Om_z*dpsi_y + dOm_z*psi_y - t266 - t267
-                    t299 = psi_x*t289
-                    t300 = (dOm_y - t268*t293 - t268*t299 + t271*t294 - t271*t296 + (0.5)*t272 -
-                        0.5*t273 - t275*t297 + t275*t298 + t276*t293 + t276*t299 + t279*t295 -
-                        t283*t295 + (0.5)*t284 + (0.5)*t285 - 0.5*t286 - 0.5*t287 + t291*t294 -
-                        t291*t296)
-                    t301 = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm_y*psi_x + dOm_z -
-                        t269*t294 + t269*t296 - t270*t293 - t270*t299 - t274*t295 + t277*t293 +
-                        t277*t299 - 0.5*t278 + t280*t297 - t280*t298 - 0.5*t281 - 0.5*t282 +
-                        t288*t295 - t290*t294 + t290*t296)
-                    rhs_x += -Gam_rotationx_x*t292 - Gam_rotationy_x*t300 - Gam_rotationz_x*t301
-                    rhs_y += -Gam_rotationx_y*t292 - Gam_rotationy_y*t300 - Gam_rotationz_y*t301
-                    rhs_z += -Gam_rotationx_z*t292 - Gam_rotationy_z*t300 - Gam_rotationz_z*t301
+                    t228 = Om0_y*dpsi_z
+                    t229 = Om_y*dpsi_z
+                    t230 = dOm_y*psi_z
+                    t231 = -Om_x*psi_y + Om_y*psi_x
+                    t232 = dpsi_y*e0
+                    t233 = Om0_x*psi_z - Om0_z*psi_x
+                    t234 = dpsi_z*e0
+                    t235 = Om0_x*dpsi_z
+                    t236 = Om0_z*dpsi_x
+                    t237 = t235 - t236
+                    t238 = e0*psi_z
+                    t239 = -Om0_x*psi_y + Om0_y*psi_x
+                    t240 = Om_x*psi_z - Om_z*psi_x
+                    t241 = Om0_x*dpsi_y
+                    t242 = Om0_y*dpsi_x - t241
+                    t243 = e0*psi_y
+                    t244 = Om_x*dpsi_y
+                    t245 = dOm_x*psi_y
+                    t246 = Om_y*dpsi_x + dOm_y*psi_x - t244 - t245
+                    t247 = Om_x*dpsi_z
+                    t248 = dOm_x*psi_z
+                    t249 = Om_z*dpsi_x
+                    t250 = dOm_z*psi_x
+                    t251 = t247 + t248 - t249 - t250
+                    t252 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t253 = psi_y*t252
+                    t254 = psi_z*t252
+                    t255 = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y + dOm_x + (0.5)*dOm_z*psi_y -
+                        0.5*t228 - 0.5*t229 - 0.5*t230 + t231*t232 + t231*t253 - t232*t239 +
+                        t233*t234 + t233*t254 - t234*t240 + t237*t238 - t238*t251 - t239*t253 -
+                        t240*t254 - t242*t243 + t243*t246)
+                    t256 = dpsi_x*e0
+                    t257 = -Om_y*psi_z + Om_z*psi_y
+                    t258 = e0*psi_x
+                    t259 = -Om0_y*psi_z + Om0_z*psi_y
+                    t260 = Om0_z*dpsi_y - t228
+                    t261 = Om_z*dpsi_y + dOm_z*psi_y - t229 - t230
+                    t262 = psi_x*t252
+                    t263 = (dOm_y - t231*t256 - t231*t262 + t234*t257 - t234*t259 + (0.5)*t235 -
+                        0.5*t236 - t238*t260 + t238*t261 + t239*t256 + t239*t262 + t242*t258 -
+                        t246*t258 + (0.5)*t247 + (0.5)*t248 - 0.5*t249 - 0.5*t250 + t254*t257 -
+                        t254*t259)
+                    t264 = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm_y*psi_x + dOm_z -
+                        t232*t257 + t232*t259 - t233*t256 - t233*t262 - t237*t258 + t240*t256 +
+                        t240*t262 - 0.5*t241 + t243*t260 - t243*t261 - 0.5*t244 - 0.5*t245 +
+                        t251*t258 - t253*t257 + t253*t259)
+                    rhs_x += -Gam_rotationx_x*t255 - Gam_rotationy_x*t263 - Gam_rotationz_x*t264
+                    rhs_y += -Gam_rotationx_y*t255 - Gam_rotationy_y*t263 - Gam_rotationz_y*t264
+                    rhs_z += -Gam_rotationx_z*t255 - Gam_rotationy_z*t263 - Gam_rotationz_z*t264
                 for k in range(MODES, n):
                     Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
                     dvm = dve[k]
@@ -1478,13 +1430,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t302 = X_y + u_y
-                    t303 = X_z + u_z
-                    t304 = X_x + u_x
-                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t303 + dOm0_z*t302 - dv0_x + dvs_x
-                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t303 - dOm0_z*t304 - dv0_y +
+                    t265 = X_y + u_y
+                    t266 = X_z + u_z
+                    t267 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t266 + dOm0_z*t265 - dv0_x + dvs_x
+                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t266 - dOm0_z*t267 - dv0_y +
                         dvs_y)
-                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t302 + dOm0_y*t304 - dv0_z +
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t265 + dOm0_y*t267 - dv0_z +
                         dvs_z)
                 # differential: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -1495,59 +1447,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t305 = Om0_y*dpsi_z
-                    t306 = Om_y*dpsi_z
-                    t307 = dOm0_y*psi_z
-                    t308 = dOm_y*psi_z
-                    t309 = -Om0_x*psi_y + Om0_y*psi_x
-                    t310 = dpsi_y*e0
-                    t311 = Om_x*psi_z - Om_z*psi_x
-                    t312 = dpsi_z*e0
-                    t313 = -Om_x*psi_y + Om_y*psi_x
-                    t314 = Om0_x*psi_z - Om0_z*psi_x
-                    t315 = Om0_x*dpsi_y
-                    t316 = dOm0_x*psi_y
-                    t317 = Om0_y*dpsi_x + dOm0_y*psi_x - t315 - t316
-                    t318 = e0*psi_y
-                    t319 = Om_x*dpsi_z
-                    t320 = dOm_x*psi_z
-                    t321 = Om_z*dpsi_x
-                    t322 = dOm_z*psi_x
-                    t323 = t319 + t320 - t321 - t322
-                    t324 = e0*psi_z
-                    t325 = Om_x*dpsi_y
-                    t326 = dOm_x*psi_y
-                    t327 = Om_y*dpsi_x + dOm_y*psi_x - t325 - t326
-                    t328 = Om0_x*dpsi_z
-                    t329 = dOm0_x*psi_z
-                    t330 = Om0_z*dpsi_x
-                    t331 = dOm0_z*psi_x
-                    t332 = t328 + t329 - t330 - t331
-                    t333 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t334 = e1*t333
-                    t335 = psi_y*t334
-                    t336 = psi_z*t334
-                    t337 = dpsi_x*e0
-                    t338 = -Om_y*psi_z + Om_z*psi_y
-                    t339 = -Om0_y*psi_z + Om0_z*psi_y
-                    t340 = e0*psi_x
-                    t341 = Om_z*dpsi_y + dOm_z*psi_y - t306 - t308
-                    t342 = Om0_z*dpsi_y + dOm0_z*psi_y - t305 - t307
-                    t343 = psi_x*t334
-                    deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x +
-                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t313 +
-                        dpsi_z*e0*t314 + e0*psi_y*t327 + e0*psi_z*t332 + e1*psi_y*t313*t333 +
-                        e1*psi_z*t314*t333 - 0.5*t305 - 0.5*t306 - 0.5*t307 - 0.5*t308 - t309*t310
-                        - t309*t335 - t311*t312 - t311*t336 - t317*t318 - t323*t324)
-                    deta[j3 + 1] = (-dOm0_y + dOm_y + t309*t337 + t309*t343 + t312*t338 -
-                        t312*t339 - t313*t337 - t313*t343 + t317*t340 + (0.5)*t319 + (0.5)*t320 -
-                        0.5*t321 - 0.5*t322 + t324*t341 - t324*t342 - t327*t340 + (0.5)*t328 +
-                        (0.5)*t329 - 0.5*t330 - 0.5*t331 + t336*t338 - t336*t339)
-                    deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t311 + dpsi_y*e0*t339 +
-                        e0*psi_x*t323 + e0*psi_y*t342 + e1*psi_x*t311*t333 + e1*psi_y*t333*t339 -
-                        t310*t338 - t314*t337 - t314*t343 - 0.5*t315 - 0.5*t316 - t318*t341 -
-                        0.5*t325 - 0.5*t326 - t332*t340 - t335*t338)
+                    t268 = (0.5)*Om0_z + (0.5)*Om_z
+                    t269 = Om0_y + Om_y
+                    t270 = (0.5)*dpsi_z
+                    t271 = (0.5)*dOm0_z + (0.5)*dOm_z
+                    t272 = dOm0_y + dOm_y
+                    t273 = (0.5)*psi_z
+                    t274 = -Om0_y + Om_y
+                    t275 = -Om0_x + Om_x
+                    t276 = psi_x*t274 - psi_y*t275
+                    t277 = -Om0_z + Om_z
+                    t278 = -psi_x*t277 + psi_z*t275
+                    t279 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t280 = -dOm0_y + dOm_y
+                    t281 = -dOm0_x + dOm_x
+                    t282 = dpsi_x*t274 - dpsi_y*t275 + psi_x*t280 - psi_y*t281
+                    t283 = -dOm0_z + dOm_z
+                    t284 = -dpsi_x*t277 + dpsi_z*t275 - psi_x*t283 + psi_z*t281
+                    t285 = Om0_x + Om_x
+                    t286 = dOm0_x + dOm_x
+                    t287 = psi_y*t277 - psi_z*t274
+                    t288 = dpsi_y*t277 - dpsi_z*t274 + psi_y*t283 - psi_z*t280
+                    deta[j3] = (-dOm0_x + dOm_x + dpsi_y*t268 + e0*(dpsi_y*t276 - dpsi_z*t278 +
+                        psi_y*t282 - psi_z*t284) + psi_y*t271 - t269*t270 - t272*t273 +
+                        t279*(psi_y*t276 - psi_z*t278))
+                    deta[j3 + 1] = (-dOm0_y + dOm_y - dpsi_x*t268 + e0*(-dpsi_x*t276 + dpsi_z*t287
+                        - psi_x*t282 + psi_z*t288) - psi_x*t271 + t270*t285 + t273*t286 +
+                        t279*(-psi_x*t276 + psi_z*t287))
+                    deta[j3 + 2] = (-dOm0_z + dOm_z + (0.5)*dpsi_x*t269 - 0.5*dpsi_y*t285 +
+                        e0*(dpsi_x*t278 - dpsi_y*t287 + psi_x*t284 - psi_y*t288) +
+                        (0.5)*psi_x*t272 - 0.5*psi_y*t286 + t279*(psi_x*t278 - psi_y*t287))
                 # differential: rates of the internal modes
                 for k in range(MODES, n):
                     dvm = dve[k]
@@ -1583,128 +1512,74 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     e0 = e0s[j]
                     e1 = e1s[j]
                     e2 = e2s[j]
-                    t344 = A_y*dpsi_z
-                    t345 = Om0_y*dep_z
-                    t346 = Om_y*dep_z
-                    t347 = dA_y*psi_z
-                    t348 = dOm0_y*ep_z
-                    t349 = dOm_y*ep_z
-                    t350 = -Om_x*psi_y + Om_y*psi_x
-                    t351 = dep_y*e0
-                    t352 = Om0_x*psi_z - Om0_z*psi_x
-                    t353 = dep_z*e0
-                    t354 = Om0_x*ep_z - Om0_z*ep_x
-                    t355 = dpsi_z*e0
-                    t356 = -Om0_x*psi_y + Om0_y*psi_x
-                    t357 = Om_x*psi_z - Om_z*psi_x
-                    t358 = -Om0_x*ep_y + Om0_y*ep_x
-                    t359 = dpsi_y*e0
-                    t360 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                    t361 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t362 = e0*ep_y
-                    t363 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                    t364 = e0*ep_z
-                    t365 = Om0_x*dep_z
-                    t366 = dOm0_x*ep_z
-                    t367 = Om0_z*dep_x
-                    t368 = dOm0_z*ep_x
-                    t369 = t365 + t366 - t367 - t368
-                    t370 = e0*psi_z
-                    t371 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                    t372 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                    t373 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                    t374 = Om0_x*dep_y
-                    t375 = dOm0_x*ep_y
-                    t376 = Om0_y*dep_x + dOm0_y*ep_x - t374 - t375
-                    t377 = e0*psi_y
-                    t378 = 2*psi_x
-                    t379 = 2*psi_y
-                    t380 = 2*psi_z
-                    t381 = ep_x*t378 + ep_y*t379 + ep_z*t380
-                    t382 = e1*t381
-                    t383 = dpsi_y*t382
-                    t384 = dpsi_z*t382
-                    t385 = dpsi_x*t378 + dpsi_y*t379 + dpsi_z*t380
-                    t386 = e1*t385
-                    t387 = ep_y*t386
-                    t388 = ep_z*t386
-                    t389 = psi_z*t386
-                    t390 = psi_y*t386
-                    t391 = psi_y*t382
-                    t392 = psi_z*t382
-                    t393 = A_x*dpsi_y
-                    t394 = Om_x*dep_y
-                    t395 = dA_x*psi_y
-                    t396 = dOm_x*ep_y
-                    t397 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t393 - t394 - t395
-                        - t396)
-                    t398 = A_x*dpsi_z
-                    t399 = Om_x*dep_z
-                    t400 = dA_x*psi_z
-                    t401 = dOm_x*ep_z
-                    t402 = A_z*dpsi_x
-                    t403 = Om_z*dep_x
-                    t404 = dA_z*psi_x
-                    t405 = dOm_z*ep_x
-                    t406 = t398 + t399 + t400 + t401 - t402 - t403 - t404 - t405
-                    t407 = (e1*(dep_x*t378 + dep_y*t379 + dep_z*t380 + 2*dpsi_x*ep_x +
+                    t289 = A_y*dpsi_z
+                    t290 = dA_y*psi_z
+                    t291 = (0.5)*Om0_z + (0.5)*Om_z
+                    t292 = Om0_y + Om_y
+                    t293 = (0.5)*dep_z
+                    t294 = (0.5)*dOm0_z + (0.5)*dOm_z
+                    t295 = dOm0_y + dOm_y
+                    t296 = (0.5)*ep_z
+                    t297 = -Om0_y + Om_y
+                    t298 = -Om0_x + Om_x
+                    t299 = psi_x*t297 - psi_y*t298
+                    t300 = -Om0_z + Om_z
+                    t301 = -psi_x*t300 + psi_z*t298
+                    t302 = psi_y*t299 - psi_z*t301
+                    t303 = 2*psi_x
+                    t304 = 2*psi_y
+                    t305 = 2*psi_z
+                    t306 = (e1*(dep_x*t303 + dep_y*t304 + dep_z*t305 + 2*dpsi_x*ep_x +
                         2*dpsi_y*ep_y + 2*dpsi_z*ep_z))
-                    t408 = psi_y*t350
-                    t409 = psi_z*t407
-                    t410 = t356*t407
-                    t411 = e2*t381*t385
-                    t412 = psi_z*t411
-                    t413 = t356*t411
-                    t414 = dep_x*e0
-                    t415 = -Om_y*psi_z + Om_z*psi_y
-                    t416 = dpsi_x*e0
-                    t417 = -Om0_y*psi_z + Om0_z*psi_y
-                    t418 = -Om0_y*ep_z + Om0_z*ep_y
-                    t419 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                    t420 = e0*ep_x
-                    t421 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t422 = e0*psi_x
-                    t423 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                    t424 = Om0_z*dep_y + dOm0_z*ep_y - t345 - t348
-                    t425 = dpsi_x*t382
-                    t426 = ep_x*t386
-                    t427 = psi_x*t386
-                    t428 = psi_x*t382
-                    t429 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t344 - t346 - t347
-                        - t349)
-                    t430 = psi_x*t407
-                    t431 = psi_x*t411
-                    t432 = psi_y*t407
-                    t433 = psi_y*t411
-                    detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om_z*dep_y + dA_x +
-                        (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y + (0.5)*dOm_z*ep_y - psi_y*t410 -
-                        psi_y*t413 - 0.5*t344 - 0.5*t345 - 0.5*t346 - 0.5*t347 - 0.5*t348 -
-                        0.5*t349 + t350*t351 + t350*t383 + t350*t387 - t351*t356 + t352*t353 +
-                        t352*t384 + t352*t388 + t352*t409 + t352*t412 - t353*t357 + t354*t355 +
-                        t354*t389 - t355*t371 - t356*t383 - t356*t387 - t357*t384 - t357*t388 -
-                        t357*t409 - t357*t412 - t358*t359 - t358*t390 + t359*t360 + t360*t390 +
-                        t361*t362 + t361*t391 - t362*t372 + t363*t364 + t363*t392 - t364*t373 +
-                        t369*t370 - t370*t406 - t371*t389 - t372*t391 - t373*t392 - t376*t377 +
-                        t377*t397 + t407*t408 + t408*t411)
-                    detad[j3 + 1] = (dA_y + psi_x*t410 + psi_x*t413 - t350*t414 - t350*t425 -
-                        t350*t426 - t350*t430 - t350*t431 + t353*t415 - t353*t417 - t355*t418 +
-                        t355*t419 + t356*t414 + t356*t425 + t356*t426 + t358*t416 + t358*t427 -
-                        t360*t416 - t360*t427 - t361*t420 - t361*t428 + t364*t421 - t364*t423 +
-                        (0.5)*t365 + (0.5)*t366 - 0.5*t367 - 0.5*t368 - t370*t424 + t370*t429 +
-                        t372*t420 + t372*t428 + t376*t422 + t384*t415 - t384*t417 + t388*t415 -
-                        t388*t417 - t389*t418 + t389*t419 + t392*t421 - t392*t423 - t397*t422 +
-                        (0.5)*t398 + (0.5)*t399 + (0.5)*t400 + (0.5)*t401 - 0.5*t402 - 0.5*t403 -
-                        0.5*t404 - 0.5*t405 + t409*t415 - t409*t417 + t412*t415 - t412*t417)
-                    detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om_y*dep_x +
-                        (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x + (0.5)*dOm_y*ep_x - t351*t415
-                        + t351*t417 - t352*t414 - t352*t425 - t352*t426 - t352*t430 - t352*t431 -
-                        t354*t416 - t354*t427 + t357*t414 + t357*t425 + t357*t426 + t357*t430 +
-                        t357*t431 + t359*t418 - t359*t419 - t362*t421 + t362*t423 - t363*t420 -
-                        t363*t428 - t369*t422 + t371*t416 + t371*t427 + t373*t420 + t373*t428 -
-                        0.5*t374 - 0.5*t375 + t377*t424 - t377*t429 - t383*t415 + t383*t417 -
-                        t387*t415 + t387*t417 + t390*t418 - t390*t419 - t391*t421 + t391*t423 -
-                        0.5*t393 - 0.5*t394 - 0.5*t395 - 0.5*t396 + t406*t422 - t415*t432 -
-                        t415*t433 + t417*t432 + t417*t433)
+                    t307 = dpsi_x*t303 + dpsi_y*t304 + dpsi_z*t305
+                    t308 = ep_x*t303 + ep_y*t304 + ep_z*t305
+                    t309 = e2*t307*t308
+                    t310 = -A_x*psi_y + A_y*psi_x + ep_x*t297 - ep_y*t298
+                    t311 = A_x*psi_z - A_z*psi_x - ep_x*t300 + ep_z*t298
+                    t312 = e1*t307
+                    t313 = -dOm0_y + dOm_y
+                    t314 = -dOm0_x + dOm_x
+                    t315 = dpsi_x*t297 - dpsi_y*t298 + psi_x*t313 - psi_y*t314
+                    t316 = -dOm0_z + dOm_z
+                    t317 = -dpsi_x*t300 + dpsi_z*t298 - psi_x*t316 + psi_z*t314
+                    t318 = e1*t308
+                    t319 = A_x*dpsi_y
+                    t320 = dA_x*psi_y
+                    t321 = (A_y*dpsi_x + dA_y*psi_x + dep_x*t297 - dep_y*t298 + ep_x*t313 -
+                        ep_y*t314 - t319 - t320)
+                    t322 = A_x*dpsi_z
+                    t323 = dA_x*psi_z
+                    t324 = A_z*dpsi_x
+                    t325 = dA_z*psi_x
+                    t326 = (-dep_x*t300 + dep_z*t298 - ep_x*t316 + ep_z*t314 + t322 + t323 - t324
+                        - t325)
+                    t327 = Om0_x + Om_x
+                    t328 = dOm0_x + dOm_x
+                    t329 = psi_y*t300 - psi_z*t297
+                    t330 = -psi_x*t299 + psi_z*t329
+                    t331 = -A_y*psi_z + A_z*psi_y + ep_y*t300 - ep_z*t297
+                    t332 = dpsi_y*t300 - dpsi_z*t297 + psi_y*t316 - psi_z*t313
+                    t333 = (A_z*dpsi_y + dA_z*psi_y + dep_y*t300 - dep_z*t297 + ep_y*t316 -
+                        ep_z*t313 - t289 - t290)
+                    t334 = psi_x*t301 - psi_y*t329
+                    detad[j3] = ((0.5)*A_z*dpsi_y + dA_x + (0.5)*dA_z*psi_y + dep_y*t291 +
+                        e0*(dep_y*t299 - dep_z*t301 + dpsi_y*t310 - dpsi_z*t311 + ep_y*t315 -
+                        ep_z*t317 + psi_y*t321 - psi_z*t326) + ep_y*t294 - 0.5*t289 - 0.5*t290 -
+                        t292*t293 - t295*t296 + t302*t306 + t302*t309 + t312*(ep_y*t299 -
+                        ep_z*t301 + psi_y*t310 - psi_z*t311) + t318*(dpsi_y*t299 - dpsi_z*t301 +
+                        psi_y*t315 - psi_z*t317))
+                    detad[j3 + 1] = (dA_y - dep_x*t291 + e0*(-dep_x*t299 + dep_z*t329 -
+                        dpsi_x*t310 + dpsi_z*t331 - ep_x*t315 + ep_z*t332 - psi_x*t321 +
+                        psi_z*t333) - ep_x*t294 + t293*t327 + t296*t328 + t306*t330 + t309*t330 +
+                        t312*(-ep_x*t299 + ep_z*t329 - psi_x*t310 + psi_z*t331) +
+                        t318*(-dpsi_x*t299 + dpsi_z*t329 - psi_x*t315 + psi_z*t332) + (0.5)*t322 +
+                        (0.5)*t323 - 0.5*t324 - 0.5*t325)
+                    detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*dA_y*psi_x + dA_z + (0.5)*dep_x*t292
+                        - 0.5*dep_y*t327 + e0*(dep_x*t301 - dep_y*t329 + dpsi_x*t311 - dpsi_y*t331
+                        + ep_x*t317 - ep_y*t332 + psi_x*t326 - psi_y*t333) + (0.5)*ep_x*t295 -
+                        0.5*ep_y*t328 + t306*t334 + t309*t334 + t312*(ep_x*t301 - ep_y*t329 +
+                        psi_x*t311 - psi_y*t331) + t318*(dpsi_x*t301 - dpsi_y*t329 + psi_x*t317 -
+                        psi_y*t332) - 0.5*t319 - 0.5*t320)
                 # differential: rate: rates of the internal modes
                 for k in range(MODES, n):
                     dam = dae[k]
@@ -1749,49 +1624,49 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t434 = (0.5)*dpsi_z
-                    t435 = dpsi_x*e0
-                    t436 = e0*psi_x
-                    t437 = 2*dpsi_x*psi_x
-                    t438 = 2*dpsi_y*psi_y
-                    t439 = 2*dpsi_z*psi_z
-                    t440 = e1*(t437 + t438 + t439)
-                    t441 = psi_x*t440
-                    t442 = dpsi_y*t436 + psi_y*t435 + psi_y*t441
-                    t443 = t434 - t442
-                    t444 = (0.5)*dpsi_y
-                    t445 = dpsi_z*t436 + psi_z*t435 + psi_z*t441
-                    t446 = -t444 - t445
-                    t447 = e0*t439 + psi_z*psi_z*t440
-                    t448 = e0*t438 + psi_y*psi_y*t440
-                    t449 = t447 + t448
-                    t450 = -t434 - t442
-                    t451 = (0.5)*dpsi_x
-                    t452 = dpsi_y*e0*psi_z + dpsi_z*e0*psi_y + psi_y*psi_z*t440
-                    t453 = t451 - t452
-                    t454 = e0*t437 + psi_x*psi_x*t440
-                    t455 = t447 + t454
-                    t456 = t444 - t445
-                    t457 = -t451 - t452
-                    t458 = t448 + t454
+                    t335 = (0.5)*dpsi_z
+                    t336 = dpsi_x*e0
+                    t337 = e0*psi_x
+                    t338 = 2*dpsi_x*psi_x
+                    t339 = 2*dpsi_y*psi_y
+                    t340 = 2*dpsi_z*psi_z
+                    t341 = e1*(t338 + t339 + t340)
+                    t342 = psi_x*t341
+                    t343 = dpsi_y*t337 + psi_y*t336 + psi_y*t342
+                    t344 = t335 - t343
+                    t345 = (0.5)*dpsi_y
+                    t346 = dpsi_z*t337 + psi_z*t336 + psi_z*t342
+                    t347 = -t345 - t346
+                    t348 = e0*t340 + psi_z*psi_z*t341
+                    t349 = e0*t339 + psi_y*psi_y*t341
+                    t350 = t348 + t349
+                    t351 = -t335 - t343
+                    t352 = (0.5)*dpsi_x
+                    t353 = dpsi_y*e0*psi_z + dpsi_z*e0*psi_y + psi_y*psi_z*t341
+                    t354 = t352 - t353
+                    t355 = e0*t338 + psi_x*psi_x*t341
+                    t356 = t348 + t355
+                    t357 = t345 - t346
+                    t358 = -t352 - t353
+                    t359 = t349 + t355
                     rhs_x += (-Gam_rotationx_x*depd_x - Gam_rotationy_x*depd_y -
-                        Gam_rotationz_x*depd_z - Om0d_x*(Gam_rotationx_x*t449 +
-                        Gam_rotationy_x*t443 + Gam_rotationz_x*t446) -
-                        Om0d_y*(Gam_rotationx_x*t450 + Gam_rotationy_x*t455 +
-                        Gam_rotationz_x*t453) - Om0d_z*(Gam_rotationx_x*t456 +
-                        Gam_rotationy_x*t457 + Gam_rotationz_x*t458))
+                        Gam_rotationz_x*depd_z - Om0d_x*(Gam_rotationx_x*t350 +
+                        Gam_rotationy_x*t344 + Gam_rotationz_x*t347) -
+                        Om0d_y*(Gam_rotationx_x*t351 + Gam_rotationy_x*t356 +
+                        Gam_rotationz_x*t354) - Om0d_z*(Gam_rotationx_x*t357 +
+                        Gam_rotationy_x*t358 + Gam_rotationz_x*t359))
                     rhs_y += (-Gam_rotationx_y*depd_x - Gam_rotationy_y*depd_y -
-                        Gam_rotationz_y*depd_z - Om0d_x*(Gam_rotationx_y*t449 +
-                        Gam_rotationy_y*t443 + Gam_rotationz_y*t446) -
-                        Om0d_y*(Gam_rotationx_y*t450 + Gam_rotationy_y*t455 +
-                        Gam_rotationz_y*t453) - Om0d_z*(Gam_rotationx_y*t456 +
-                        Gam_rotationy_y*t457 + Gam_rotationz_y*t458))
+                        Gam_rotationz_y*depd_z - Om0d_x*(Gam_rotationx_y*t350 +
+                        Gam_rotationy_y*t344 + Gam_rotationz_y*t347) -
+                        Om0d_y*(Gam_rotationx_y*t351 + Gam_rotationy_y*t356 +
+                        Gam_rotationz_y*t354) - Om0d_z*(Gam_rotationx_y*t357 +
+                        Gam_rotationy_y*t358 + Gam_rotationz_y*t359))
                     rhs_z += (-Gam_rotationx_z*depd_x - Gam_rotationy_z*depd_y -
-                        Gam_rotationz_z*depd_z - Om0d_x*(Gam_rotationx_z*t449 +
-                        Gam_rotationy_z*t443 + Gam_rotationz_z*t446) -
-                        Om0d_y*(Gam_rotationx_z*t450 + Gam_rotationy_z*t455 +
-                        Gam_rotationz_z*t453) - Om0d_z*(Gam_rotationx_z*t456 +
-                        Gam_rotationy_z*t457 + Gam_rotationz_z*t458))
+                        Gam_rotationz_z*depd_z - Om0d_x*(Gam_rotationx_z*t350 +
+                        Gam_rotationy_z*t344 + Gam_rotationz_z*t347) -
+                        Om0d_y*(Gam_rotationx_z*t351 + Gam_rotationy_z*t356 +
+                        Gam_rotationz_z*t354) - Om0d_z*(Gam_rotationx_z*t357 +
+                        Gam_rotationy_z*t358 + Gam_rotationz_z*t359))
                 for k in range(MODES, n):
                     Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
                     demd = detad[k]
@@ -1809,44 +1684,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     depd_x, depd_y, depd_z = detad[j3], detad[j3 + 1], detad[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t459 = (0.5)*psi_z
-                    t460 = e0*psi_x
-                    t461 = psi_y*t460
-                    t462 = (0.5)*psi_y
-                    t463 = psi_z*t460
-                    t464 = psi_y*psi_y
-                    t465 = e0*t464
-                    t466 = psi_z*psi_z
-                    t467 = e0*t466 - 1
-                    t468 = (0.5)*dpsi_z
-                    t469 = dpsi_x*e0
-                    t470 = 2*dpsi_x*psi_x
-                    t471 = 2*dpsi_y*psi_y
-                    t472 = 2*dpsi_z*psi_z
-                    t473 = e1*(t470 + t471 + t472)
-                    t474 = psi_x*t473
-                    t475 = dpsi_y*t460 + psi_y*t469 + psi_y*t474
-                    t476 = (0.5)*dpsi_y
-                    t477 = dpsi_z*t460 + psi_z*t469 + psi_z*t474
-                    t478 = e0*t472 + t466*t473
-                    t479 = e0*t471 + t464*t473
-                    t480 = (0.5)*psi_x
-                    t481 = e0*psi_z
-                    t482 = psi_y*t481
-                    t483 = psi_x*psi_x
-                    t484 = e0*t483
-                    t485 = (0.5)*dpsi_x
-                    t486 = dpsi_y*t481 + dpsi_z*e0*psi_y + psi_y*psi_z*t473
-                    t487 = e0*t470 + t473*t483
-                    detad[j3] = (Om0d_x*(t478 + t479) + Om0d_y*(-t468 - t475) + Om0d_z*(t476 -
-                        t477) + dOm0d_x*(t465 + t467) + dOm0d_y*(-t459 - t461) + dOm0d_z*(t462 -
-                        t463) + depd_x)
-                    detad[j3 + 1] = (Om0d_x*(t468 - t475) + Om0d_y*(t478 + t487) + Om0d_z*(-t485 -
-                        t486) + dOm0d_x*(t459 - t461) + dOm0d_y*(t467 + t484) + dOm0d_z*(-t480 -
-                        t482) + depd_y)
-                    detad[j3 + 2] = (Om0d_x*(-t476 - t477) + Om0d_y*(t485 - t486) + Om0d_z*(t479 +
-                        t487) + dOm0d_x*(-t462 - t463) + dOm0d_y*(t480 - t482) + dOm0d_z*(t465 +
-                        t484 - 1) + depd_z)
+                    t360 = Om0d_y*dpsi_z
+                    t361 = Om0d_z*dpsi_y
+                    t362 = dOm0d_y*psi_z
+                    t363 = dOm0d_z*psi_y
+                    t364 = Om0d_x*psi_y - Om0d_y*psi_x
+                    t365 = -Om0d_x*psi_z + Om0d_z*psi_x
+                    t366 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t367 = Om0d_x*dpsi_y
+                    t368 = dOm0d_x*psi_y
+                    t369 = Om0d_y*dpsi_x
+                    t370 = dOm0d_y*psi_x
+                    t371 = t367 + t368 - t369 - t370
+                    t372 = Om0d_x*dpsi_z
+                    t373 = dOm0d_x*psi_z
+                    t374 = Om0d_z*dpsi_x + dOm0d_z*psi_x - t372 - t373
+                    t375 = Om0d_y*psi_z - Om0d_z*psi_y
+                    t376 = t360 - t361 + t362 - t363
+                    detad[j3] = (-dOm0d_x + depd_x + e0*(dpsi_y*t364 - dpsi_z*t365 + psi_y*t371 -
+                        psi_z*t374) - 0.5*t360 + (0.5)*t361 - 0.5*t362 + (0.5)*t363 +
+                        t366*(psi_y*t364 - psi_z*t365))
+                    detad[j3 + 1] = (-0.5*Om0d_z*dpsi_x - dOm0d_y - 0.5*dOm0d_z*psi_x + depd_y +
+                        e0*(-dpsi_x*t364 + dpsi_z*t375 - psi_x*t371 + psi_z*t376) +
+                        t366*(-psi_x*t364 + psi_z*t375) + (0.5)*t372 + (0.5)*t373)
+                    detad[j3 + 2] = (-dOm0d_z + depd_z + e0*(dpsi_x*t365 - dpsi_y*t375 +
+                        psi_x*t374 - psi_y*t376) + t366*(psi_x*t365 - psi_y*t375) - 0.5*t367 -
+                        0.5*t368 + (0.5)*t369 + (0.5)*t370)
                 # differential: rate: rates of the elastic displacements
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -1854,12 +1717,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     deud_x, deud_y, deud_z = detad[i3], detad[i3 + 1], detad[i3 + 2]
-                    t488 = X_y + u_y
-                    t489 = X_z + u_z
-                    t490 = X_x + u_x
-                    detad[i3] = -Om0d_y*du_z + Om0d_z*du_y - dOm0d_y*t489 + dOm0d_z*t488 + deud_x
-                    detad[i3 + 1] = Om0d_x*du_z - Om0d_z*du_x + dOm0d_x*t489 - dOm0d_z*t490 + deud_y
-                    detad[i3 + 2] = (-Om0d_x*du_y + Om0d_y*du_x - dOm0d_x*t488 + dOm0d_y*t490 +
+                    t377 = X_y + u_y
+                    t378 = X_z + u_z
+                    t379 = X_x + u_x
+                    detad[i3] = -Om0d_y*du_z + Om0d_z*du_y - dOm0d_y*t378 + dOm0d_z*t377 + deud_x
+                    detad[i3 + 1] = Om0d_x*du_z - Om0d_z*du_x + dOm0d_x*t378 - dOm0d_z*t379 + deud_y
+                    detad[i3 + 2] = (-Om0d_x*du_y + Om0d_y*du_x - dOm0d_x*t377 + dOm0d_y*t379 +
                         deud_z)
                 # differential: gravity in frame axes
                 gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
@@ -1878,12 +1741,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7],
                     turn[8])
                 dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-                t491 = da0_x - dgamma_x
-                t492 = da0_y - dgamma_y
-                t493 = da0_z - dgamma_z
-                dzdd[N] = t491*turn_xx + t492*turn_yx + t493*turn_zx
-                dzdd[N + 1] = t491*turn_xy + t492*turn_yy + t493*turn_zy
-                dzdd[N + 2] = t491*turn_xz + t492*turn_yz + t493*turn_zz
+                t380 = da0_x - dgamma_x
+                t381 = da0_y - dgamma_y
+                t382 = da0_z - dgamma_z
+                dzdd[N] = t380*turn_xx + t381*turn_yx + t382*turn_zx
+                dzdd[N + 1] = t380*turn_xy + t381*turn_yy + t382*turn_zy
+                dzdd[N + 2] = t380*turn_xz + t381*turn_yz + t382*turn_zz
                 dzdd[N + 3] = dOm0d_x*turn_xx + dOm0d_y*turn_yx + dOm0d_z*turn_zx
                 dzdd[N + 4] = dOm0d_x*turn_xy + dOm0d_y*turn_yy + dOm0d_z*turn_zy
                 dzdd[N + 5] = dOm0d_x*turn_xz + dOm0d_y*turn_yz + dOm0d_z*turn_zz
@@ -1908,15 +1771,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t494 = X_z + u_z
-                    t495 = X_y + u_y
-                    t496 = X_x + u_x
+                    t383 = X_z + u_z
+                    t384 = X_y + u_y
+                    t385 = X_x + u_x
                     dF_x += -df_x
                     dF_y += -df_y
                     dF_z += -df_z
-                    dW_x += df_y*t494 - df_z*t495 - du_y*f_z + du_z*f_y
-                    dW_y += -df_x*t494 + df_z*t496 + du_x*f_z - du_z*f_x
-                    dW_z += df_x*t495 - df_y*t496 - du_x*f_y + du_y*f_x
+                    dW_x += df_y*t383 - df_z*t384 - du_y*f_z + du_z*f_y
+                    dW_y += -df_x*t383 + df_z*t385 + du_x*f_z - du_z*f_x
+                    dW_z += df_x*t384 - df_y*t385 - du_x*f_y + du_y*f_x
                 # differential: inertia and weight on the frame
                 turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                     turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7],
@@ -1938,25 +1801,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t497 = -m_x*psi_y + m_y*psi_x
-                    t498 = m_x*psi_z - m_z*psi_x
-                    t499 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t500 = dm_x*psi_z
-                    t501 = dpsi_z*m_x
-                    t502 = -dm_z*psi_x - dpsi_x*m_z + t500 + t501
-                    t503 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t504 = e1*t503
-                    t505 = -m_y*psi_z + m_z*psi_y
-                    t506 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t497 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t498 + (0.5)*dpsi_z*m_y - e0*psi_y*t499 +
-                        e0*psi_z*t502 + e1*psi_z*t498*t503 - psi_y*t497*t504)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t497 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t505 + e0*psi_x*t499 - e0*psi_z*t506 + e1*psi_x*t497*t503 -
-                        psi_z*t504*t505 - 0.5*t500 - 0.5*t501)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t498 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t505 + (0.5)*dpsi_y*m_x - e0*psi_x*t502 +
-                        e0*psi_y*t506 + e1*psi_y*t503*t505 - psi_x*t498*t504)
+                    t386 = -m_x*psi_y + m_y*psi_x
+                    t387 = m_x*psi_z - m_z*psi_x
+                    t388 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t389 = dm_x*psi_z
+                    t390 = dpsi_z*m_x
+                    t391 = -dm_z*psi_x - dpsi_x*m_z + t389 + t390
+                    t392 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t393 = e1*t392
+                    t394 = -m_y*psi_z + m_z*psi_y
+                    t395 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t386 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t387 + (0.5)*dpsi_z*m_y - e0*psi_y*t388 +
+                        e0*psi_z*t391 + e1*psi_z*t387*t392 - psi_y*t386*t393)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t386 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t394 + e0*psi_x*t388 - e0*psi_z*t395 + e1*psi_x*t386*t392 -
+                        psi_z*t393*t394 - 0.5*t389 - 0.5*t390)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t387 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t394 + (0.5)*dpsi_y*m_x - e0*psi_x*t391 +
+                        e0*psi_y*t395 + e1*psi_y*t392*t394 - psi_x*t387*t393)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for i in range(N_POSITIONS):
@@ -1968,12 +1831,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gam_positionz_x, Gam_positionz_y, Gam_positionz_z = (Gam[3*(i3 + 2)],
                         Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    t507 = Gam_positiony_x*wp_x + Gam_positiony_y*wp_y + Gam_positiony_z*wp_z
-                    t508 = Gam_positionz_x*wp_x + Gam_positionz_y*wp_y + Gam_positionz_z*wp_z
-                    t509 = Gam_positionx_x*wp_x + Gam_positionx_y*wp_y + Gam_positionx_z*wp_z
-                    rhs_x += du_y*t508 - du_z*t507
-                    rhs_y += -du_x*t508 + du_z*t509
-                    rhs_z += du_x*t507 - du_y*t509
+                    t396 = Gam_positiony_x*wp_x + Gam_positiony_y*wp_y + Gam_positiony_z*wp_z
+                    t397 = Gam_positionz_x*wp_x + Gam_positionz_y*wp_y + Gam_positionz_z*wp_z
+                    t398 = Gam_positionx_x*wp_x + Gam_positionx_y*wp_y + Gam_positionx_z*wp_z
+                    rhs_x += du_y*t397 - du_z*t396
+                    rhs_y += -du_x*t397 + du_z*t398
+                    rhs_z += du_x*t396 - du_y*t398
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
@@ -1986,36 +1849,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t510 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z
-                    t511 = dpsi_y*t510
-                    t512 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z
-                    t513 = dpsi_z*t512
-                    t514 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z
-                    t515 = psi_x*t512 - psi_y*t514
-                    t516 = e0*t515
-                    t517 = dpsi_x*t512
-                    t518 = dpsi_y*t514
-                    t519 = e0*(t517 - t518)
-                    t520 = -psi_x*t510 + psi_z*t514
-                    t521 = dpsi_x*t510
-                    t522 = dpsi_z*t514 - t521
-                    t523 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t524 = e1*t523
-                    t525 = t515*t524
-                    t526 = psi_y*t510 - psi_z*t512
-                    t527 = t511 - t513
-                    rhs_x += (dpsi_y*t516 - dpsi_z*e0*t520 - e0*psi_z*t522 + psi_y*t519 +
-                        psi_y*t525 - psi_z*t520*t524 + (0.5)*t511 - 0.5*t513)
-                    rhs_y += (-dpsi_x*t516 + dpsi_z*e0*t526 + (0.5)*dpsi_z*t514 + e0*psi_z*t527 +
-                        e1*psi_z*t523*t526 - psi_x*t519 - psi_x*t525 - 0.5*t521)
-                    rhs_z += (dpsi_x*e0*t520 - dpsi_y*e0*t526 + e0*psi_x*t522 - e0*psi_y*t527 +
-                        psi_x*t520*t524 - psi_y*t524*t526 + (0.5)*t517 - 0.5*t518)
-                t528 = dW_x + rhs_x
-                t529 = dW_y + rhs_y
-                t530 = dW_z + rhs_z
-                dwp_x = Bxx*t528 + Byx*t529 + Bzx*t530
-                dwp_y = Bxy*t528 + Byy*t529 + Bzy*t530
-                dwp_z = Bxz*t528 + Byz*t529 + Bzz*t530
+                    t399 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z
+                    t400 = dpsi_y*t399
+                    t401 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z
+                    t402 = dpsi_z*t401
+                    t403 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z
+                    t404 = psi_x*t401 - psi_y*t403
+                    t405 = e0*t404
+                    t406 = dpsi_x*t401
+                    t407 = dpsi_y*t403
+                    t408 = e0*(t406 - t407)
+                    t409 = -psi_x*t399 + psi_z*t403
+                    t410 = dpsi_x*t399
+                    t411 = dpsi_z*t403 - t410
+                    t412 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t413 = e1*t412
+                    t414 = t404*t413
+                    t415 = psi_y*t399 - psi_z*t401
+                    t416 = t400 - t402
+                    rhs_x += (dpsi_y*t405 - dpsi_z*e0*t409 - e0*psi_z*t411 + psi_y*t408 +
+                        psi_y*t414 - psi_z*t409*t413 + (0.5)*t400 - 0.5*t402)
+                    rhs_y += (-dpsi_x*t405 + dpsi_z*e0*t415 + (0.5)*dpsi_z*t403 + e0*psi_z*t416 +
+                        e1*psi_z*t412*t415 - psi_x*t408 - psi_x*t414 - 0.5*t410)
+                    rhs_z += (dpsi_x*e0*t409 - dpsi_y*e0*t415 + e0*psi_x*t411 - e0*psi_y*t416 +
+                        psi_x*t409*t413 - psi_y*t413*t415 + (0.5)*t406 - 0.5*t407)
+                t417 = dW_x + rhs_x
+                t418 = dW_y + rhs_y
+                t419 = dW_z + rhs_z
+                dwp_x = Bxx*t417 + Byx*t418 + Bzx*t419
+                dwp_y = Bxy*t417 + Byy*t418 + Bzy*t419
+                dwp_z = Bxz*t417 + Byz*t418 + Bzz*t419
                 # differential: force on the origin, through the frame
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -2068,58 +1931,39 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t531 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z
-                    t532 = dpsi_z*t531
-                    t533 = Gam_rotationy_x*dwp_x + Gam_rotationy_y*dwp_y + Gam_rotationy_z*dwp_z
-                    t534 = psi_z*t533
-                    t535 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z
-                    t536 = Gam_rotationz_x*dwp_x + Gam_rotationz_y*dwp_y + Gam_rotationz_z*dwp_z
-                    t537 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z
-                    t538 = psi_x*t531 - psi_y*t537
-                    t539 = dpsi_y*e0
-                    t540 = m_x*psi_z - m_z*psi_x
-                    t541 = dpsi_z*e0
-                    t542 = dpsi_y*t537
-                    t543 = Gam_rotationx_x*dwp_x + Gam_rotationx_y*dwp_y + Gam_rotationx_z*dwp_z
-                    t544 = psi_y*t543
-                    t545 = dpsi_x*t531 + psi_x*t533 - t542 - t544
-                    t546 = e0*psi_y
-                    t547 = dm_x*psi_z
-                    t548 = dpsi_z*m_x
-                    t549 = -dm_z*psi_x - dpsi_x*m_z + t547 + t548
-                    t550 = e0*psi_z
-                    t551 = -m_x*psi_y + m_y*psi_x
-                    t552 = -psi_x*t535 + psi_z*t537
-                    t553 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t554 = dpsi_x*t535
-                    t555 = psi_x*t536
-                    t556 = dpsi_z*t537 + psi_z*t543 - t554 - t555
-                    t557 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t558 = e1*t557
-                    t559 = psi_y*t558
-                    t560 = psi_z*t558
-                    t561 = dpsi_x*e0
-                    t562 = psi_y*t535 - psi_z*t531
-                    t563 = e0*psi_x
-                    t564 = dpsi_y*t535 + psi_y*t536 - t532 - t534
-                    t565 = -m_y*psi_z + m_z*psi_y
-                    t566 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    t567 = psi_x*t558
-                    dg[j3] = (dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y + dpsi_y*e0*t551 -
-                        0.5*dpsi_y*m_z + (0.5)*dpsi_y*t535 + dpsi_z*e0*t552 + (0.5)*dpsi_z*m_y +
-                        e0*psi_y*t553 + e0*psi_z*t556 + e1*psi_y*t551*t557 + e1*psi_z*t552*t557 +
-                        (0.5)*psi_y*t536 - 0.5*t532 - 0.5*t534 - t538*t539 - t538*t559 - t540*t541
-                        - t540*t560 - t543 - t545*t546 - t549*t550)
-                    dg[j3 + 1] = (dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t538 + (0.5)*dpsi_x*m_z +
-                        dpsi_z*e0*t565 + (0.5)*dpsi_z*t537 + e0*psi_x*t545 + e0*psi_z*t566 +
-                        e1*psi_x*t538*t557 + e1*psi_z*t557*t565 + (0.5)*psi_z*t543 - t533 -
-                        t541*t562 - 0.5*t547 - 0.5*t548 - t550*t564 - t551*t561 - t551*t567 -
-                        t553*t563 - 0.5*t554 - 0.5*t555 - t560*t562)
-                    dg[j3 + 2] = ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t540 -
-                        0.5*dpsi_x*m_y + (0.5)*dpsi_x*t531 + dpsi_y*e0*t562 + (0.5)*dpsi_y*m_x +
-                        e0*psi_x*t549 + e0*psi_y*t564 + e1*psi_x*t540*t557 + e1*psi_y*t557*t562 +
-                        (0.5)*psi_x*t533 - t536 - t539*t565 - 0.5*t542 - 0.5*t544 - t546*t566 -
-                        t552*t561 - t552*t567 - t556*t563 - t559*t565)
+                    t420 = -Gam_rotationz_x*wp_x - Gam_rotationz_y*wp_y - Gam_rotationz_z*wp_z + m_z
+                    t421 = dpsi_y*t420
+                    t422 = (Gam_rotationz_x*dwp_x + Gam_rotationz_y*dwp_y + Gam_rotationz_z*dwp_z
+                        - dm_z)
+                    t423 = -t422
+                    t424 = psi_y*t423
+                    t425 = -Gam_rotationy_x*wp_x - Gam_rotationy_y*wp_y - Gam_rotationy_z*wp_z + m_y
+                    t426 = (Gam_rotationy_x*dwp_x + Gam_rotationy_y*dwp_y + Gam_rotationy_z*dwp_z
+                        - dm_y)
+                    t427 = -t426
+                    t428 = -Gam_rotationx_x*wp_x - Gam_rotationx_y*wp_y - Gam_rotationx_z*wp_z + m_x
+                    t429 = -psi_x*t420 + psi_z*t428
+                    t430 = (Gam_rotationx_x*dwp_x + Gam_rotationx_y*dwp_y + Gam_rotationx_z*dwp_z
+                        - dm_x)
+                    t431 = -t430
+                    t432 = -dpsi_x*t420 + dpsi_z*t428 - psi_x*t423 + psi_z*t431
+                    t433 = psi_x*t425 - psi_y*t428
+                    t434 = dpsi_x*t425
+                    t435 = psi_x*t427
+                    t436 = -dpsi_y*t428 - psi_y*t431 + t434 + t435
+                    t437 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t438 = e1*t437
+                    t439 = psi_y*t420 - psi_z*t425
+                    t440 = -dpsi_z*t425 - psi_z*t427 + t421 + t424
+                    dg[j3] = (dpsi_y*e0*t433 - dpsi_z*e0*t429 + (0.5)*dpsi_z*t425 + e0*psi_y*t436
+                        - e0*psi_z*t432 + e1*psi_y*t433*t437 + (0.5)*psi_z*t427 - psi_z*t429*t438
+                        - 0.5*t421 - 0.5*t424 - t430)
+                    dg[j3 + 1] = (-dpsi_x*e0*t433 + (0.5)*dpsi_x*t420 + dpsi_z*e0*t439 -
+                        0.5*dpsi_z*t428 - e0*psi_x*t436 + e0*psi_z*t440 + e1*psi_z*t437*t439 +
+                        (0.5)*psi_x*t423 - psi_x*t433*t438 - 0.5*psi_z*t431 - t426)
+                    dg[j3 + 2] = (dpsi_x*e0*t429 - dpsi_y*e0*t439 + (0.5)*dpsi_y*t428 +
+                        e0*psi_x*t432 - e0*psi_y*t440 + e1*psi_x*t429*t437 + (0.5)*psi_y*t431 -
+                        psi_y*t438*t439 - t422 - 0.5*t434 - 0.5*t435)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]

@@ -51,7 +51,7 @@ WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
 OPERATIONS = {"residual": (337, 136, 153, 3),
-              "column": (77, 172, 362, 3)}
+              "column": (77, 172, 332, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
 
 
@@ -469,29 +469,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t37 = dth0_y*psi_z
-                    t38 = dth_y*psi_z
-                    t39 = dth0_x*psi_y
-                    t40 = dth0_y*psi_x - t39
-                    t41 = e0*psi_y
-                    t42 = dth_x*psi_z
-                    t43 = dth_z*psi_x
-                    t44 = t42 - t43
-                    t45 = e0*psi_z
-                    t46 = dth_x*psi_y
-                    t47 = dth_y*psi_x - t46
-                    t48 = dth0_x*psi_z
-                    t49 = dth0_z*psi_x
-                    t50 = t48 - t49
-                    t51 = e0*psi_x
-                    t52 = dth_z*psi_y - t38
-                    t53 = dth0_z*psi_y - t37
-                    dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t47 + e0*psi_z*t50 - 0.5*t37 - 0.5*t38 - t40*t41 - t44*t45)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t40*t51 + (0.5)*t42 - 0.5*t43 + t45*t52 -
-                        t45*t53 - t47*t51 + (0.5)*t48 - 0.5*t49)
-                    dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t44 + e0*psi_y*t53 - 0.5*t39 - t41*t52 - 0.5*t46 - t50*t51)
+                    t37 = (0.5)*dth0_z + (0.5)*dth_z
+                    t38 = dth0_y + dth_y
+                    t39 = (0.5)*psi_z
+                    t40 = -dth0_y + dth_y
+                    t41 = -dth0_x + dth_x
+                    t42 = psi_x*t40 - psi_y*t41
+                    t43 = -dth0_z + dth_z
+                    t44 = -psi_x*t43 + psi_z*t41
+                    t45 = dth0_x + dth_x
+                    t46 = psi_y*t43 - psi_z*t40
+                    dy[j3] = -dth0_x + dth_x + e0*(psi_y*t42 - psi_z*t44) + psi_y*t37 - t38*t39
+                    dy[j3 + 1] = -dth0_y + dth_y + e0*(-psi_x*t42 + psi_z*t46) - psi_x*t37 + t39*t45
+                    dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t44 - psi_y*t46) + (0.5)*psi_x*t38 -
+                        0.5*psi_y*t45)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
@@ -511,18 +502,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     beta_x, beta_y, beta_z = beta[j3], beta[j3 + 1], beta[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     b0 = b0s[j]
-                    t54 = beta_y*dth_z
-                    t55 = beta_z*dth_y
-                    t56 = beta_x*dth_y
-                    t57 = beta_y*dth_x
-                    t58 = b0*(t56 - t57)
-                    t59 = beta_x*dth_z
-                    t60 = beta_z*dth_x - t59
-                    t61 = b0*beta_z
-                    t62 = t54 - t55
-                    dbeta[j3] = beta_y*t58 + dth_x + (0.5)*t54 - 0.5*t55 - t60*t61
-                    dbeta[j3 + 1] = -beta_x*t58 + (0.5)*beta_z*dth_x + dth_y - 0.5*t59 + t61*t62
-                    dbeta[j3 + 2] = b0*beta_x*t60 - b0*beta_y*t62 + dth_z + (0.5)*t56 - 0.5*t57
+                    t47 = beta_y*dth_z
+                    t48 = beta_z*dth_y
+                    t49 = beta_x*dth_y
+                    t50 = beta_y*dth_x
+                    t51 = b0*(t49 - t50)
+                    t52 = beta_x*dth_z
+                    t53 = beta_z*dth_x - t52
+                    t54 = b0*beta_z
+                    t55 = t47 - t48
+                    dbeta[j3] = beta_y*t51 + dth_x + (0.5)*t47 - 0.5*t48 - t53*t54
+                    dbeta[j3 + 1] = -beta_x*t51 + (0.5)*beta_z*dth_x + dth_y - 0.5*t52 + t54*t55
+                    dbeta[j3 + 2] = b0*beta_x*t53 - b0*beta_y*t55 + dth_z + (0.5)*t49 - 0.5*t50
                 # variation of their mean, (18)
                 dbeta0_x = dbeta0_y = dbeta0_z = 0.0
                 for j in range(N_ROTATIONS):
@@ -531,20 +522,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     beta_x, beta_y, beta_z = beta[j3], beta[j3 + 1], beta[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     b0 = b0s[j]
-                    t63 = beta_y*dth_z
-                    t64 = beta_z*dth_y
-                    t65 = beta_x*dth_y
-                    t66 = beta_y*dth_x
-                    t67 = b0*(t65 - t66)
-                    t68 = beta_x*dth_z
-                    t69 = beta_z*dth_x - t68
-                    t70 = b0*beta_z
-                    t71 = t63 - t64
-                    dbeta0_x += alpha_r*(beta_y*t67 + dth_x + (0.5)*t63 - 0.5*t64 - t69*t70)
-                    dbeta0_y += (alpha_r*(-beta_x*t67 + (0.5)*beta_z*dth_x + dth_y - 0.5*t68 +
-                        t70*t71))
-                    dbeta0_z += (alpha_r*(b0*beta_x*t69 - b0*beta_y*t71 + dth_z + (0.5)*t65 -
-                        0.5*t66))
+                    t56 = beta_y*dth_z
+                    t57 = beta_z*dth_y
+                    t58 = beta_x*dth_y
+                    t59 = beta_y*dth_x
+                    t60 = b0*(t58 - t59)
+                    t61 = beta_x*dth_z
+                    t62 = beta_z*dth_x - t61
+                    t63 = b0*beta_z
+                    t64 = t56 - t57
+                    dbeta0_x += alpha_r*(beta_y*t60 + dth_x + (0.5)*t56 - 0.5*t57 - t62*t63)
+                    dbeta0_y += (alpha_r*(-beta_x*t60 + (0.5)*beta_z*dth_x + dth_y - 0.5*t61 +
+                        t63*t64))
+                    dbeta0_z += (alpha_r*(b0*beta_x*t62 - b0*beta_y*t64 + dth_z + (0.5)*t58 -
+                        0.5*t59))
                 # differential: gravity in frame axes
                 gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
                 dgamma[0] = -dth0_y*gamma_z + dth0_z*gamma_y
@@ -586,12 +577,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
                     dOm_x, dOm_y, dOm_z = dve[j3], dve[j3 + 1], dve[j3 + 2]
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
-                    t72 = (0.5)*dpsi_z
-                    t73 = (0.5)*Om_z
-                    t74 = (0.5)*psi_z
-                    t75 = (0.5)*dOm_z
-                    dOm0_x += alpha_r*(-Om_y*t72 + dOm_x - dOm_y*t74 + dpsi_y*t73 + psi_y*t75)
-                    dOm0_y += alpha_r*(Om_x*t72 + dOm_x*t74 + dOm_y - dpsi_x*t73 - psi_x*t75)
+                    t65 = (0.5)*dpsi_z
+                    t66 = (0.5)*Om_z
+                    t67 = (0.5)*psi_z
+                    t68 = (0.5)*dOm_z
+                    dOm0_x += alpha_r*(-Om_y*t65 + dOm_x - dOm_y*t67 + dpsi_y*t66 + psi_y*t68)
+                    dOm0_y += alpha_r*(Om_x*t65 + dOm_x*t67 + dOm_y - dpsi_x*t66 - psi_x*t68)
                     dOm0_z += (alpha_r*(-0.5*Om_x*dpsi_y + (0.5)*Om_y*dpsi_x - 0.5*dOm_x*psi_y +
                         (0.5)*dOm_y*psi_x + dOm_z))
                 # differential: local accelerations of the nodes, (46), (58)
@@ -639,18 +630,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                     dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
-                    t76 = alpha*mass
-                    t77 = X_z + u_z
-                    t78 = X_y + u_y
-                    t79 = X_x + u_x
-                    dF_x += -df_x - dgamma_x*t76
-                    dF_y += -df_y - dgamma_y*t76
-                    dF_z += -df_z - dgamma_z*t76
-                    dW_x += (df_y*t77 - df_z*t78 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y +
+                    t69 = alpha*mass
+                    t70 = X_z + u_z
+                    t71 = X_y + u_y
+                    t72 = X_x + u_x
+                    dF_x += -df_x - dgamma_x*t69
+                    dF_y += -df_y - dgamma_y*t69
+                    dF_z += -df_z - dgamma_z*t69
+                    dW_x += (df_y*t70 - df_z*t71 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y +
                         dvs_y*px_z - dvs_z*px_y)
-                    dW_y += (-df_x*t77 + df_z*t79 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z - du_z*f_x
+                    dW_y += (-df_x*t70 + df_z*t72 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z - du_z*f_x
                         - dvs_x*px_z + dvs_z*px_x)
-                    dW_z += (df_x*t78 - df_y*t79 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x +
+                    dW_z += (df_x*t71 - df_y*t72 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x +
                         dvs_x*px_y - dvs_y*px_x)
                 # differential: moment of gravity on the frame
                 gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
@@ -658,12 +649,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
                 dd_x, dd_y, dd_z = dd[0], dd[1], dd[2]
                 dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-                t80 = d_y + mc_y
-                t81 = d_z + mc_z
-                t82 = d_x + mc_x
-                dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t81 - dgamma_z*t80
-                dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t81 + dgamma_z*t82
-                dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t80 - dgamma_y*t82
+                t73 = d_y + mc_y
+                t74 = d_z + mc_z
+                t75 = d_x + mc_x
+                dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t74 - dgamma_z*t73
+                dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t74 + dgamma_z*t75
+                dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t73 - dgamma_y*t75
                 # differential: moments on the frame: elastic (30) and inertia (45)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -679,10 +670,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
-                    t83 = (0.5)*psi_z
-                    t84 = (0.5)*dpsi_z
-                    dMs_x += dm_y*t83 - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + m_y*t84
-                    dMs_y += -dm_x*t83 + (0.5)*dm_z*psi_x + (0.5)*dpsi_x*m_z - m_x*t84
+                    t76 = (0.5)*psi_z
+                    t77 = (0.5)*dpsi_z
+                    dMs_x += dm_y*t76 - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + m_y*t77
+                    dMs_y += -dm_x*t76 + (0.5)*dm_z*psi_x + (0.5)*dpsi_x*m_z - m_x*t77
                     dMs_z += (0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - 0.5*dpsi_x*m_y + (0.5)*dpsi_y*m_x
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
@@ -719,21 +710,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     dpw_x, dpw_y, dpw_z = dp[j3], dp[j3 + 1], dp[j3 + 2]
                     dpwd_x, dpwd_y, dpwd_z = dpd[j3], dpd[j3 + 1], dpd[j3 + 2]
-                    t85 = (0.5)*psi_z
-                    t86 = (0.5)*psi_y
-                    t87 = (0.5)*dpsi_y
-                    t88 = (0.5)*dpsi_z
-                    t89 = (0.5)*psi_x
-                    t90 = (0.5)*dpsi_x
-                    dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + alpha_r*dMs_x + alpha_r*(W_y*t88 - W_z*t87
-                        + dW_x + dW_y*t85 - dW_z*t86) + dOm_y*pw_z - dOm_z*pw_y + dm_x + dm_y*t85
-                        - dm_z*t86 + dpwd_x + m_y*t88 - m_z*t87)
-                    dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x + alpha_r*dMs_y + alpha_r*(-W_x*t88 +
-                        W_z*t90 - dW_x*t85 + dW_y + dW_z*t89) - dOm_x*pw_z + dOm_z*pw_x - dm_x*t85
-                        + dm_y + dm_z*t89 + dpwd_y - m_x*t88 + m_z*t90)
-                    dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + alpha_r*dMs_z + alpha_r*(W_x*t87 -
-                        W_y*t90 + dW_x*t86 - dW_y*t89 + dW_z) + dOm_x*pw_y - dOm_y*pw_x + dm_x*t86
-                        - dm_y*t89 + dm_z + dpwd_z + m_x*t87 - m_y*t90)
+                    t78 = (0.5)*psi_z
+                    t79 = (0.5)*psi_y
+                    t80 = (0.5)*dpsi_y
+                    t81 = (0.5)*dpsi_z
+                    t82 = (0.5)*psi_x
+                    t83 = (0.5)*dpsi_x
+                    dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + alpha_r*dMs_x + alpha_r*(W_y*t81 - W_z*t80
+                        + dW_x + dW_y*t78 - dW_z*t79) + dOm_y*pw_z - dOm_z*pw_y + dm_x + dm_y*t78
+                        - dm_z*t79 + dpwd_x + m_y*t81 - m_z*t80)
+                    dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x + alpha_r*dMs_y + alpha_r*(-W_x*t81 +
+                        W_z*t83 - dW_x*t78 + dW_y + dW_z*t82) - dOm_x*pw_z + dOm_z*pw_x - dm_x*t78
+                        + dm_y + dm_z*t82 + dpwd_y - m_x*t81 + m_z*t83)
+                    dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + alpha_r*dMs_z + alpha_r*(W_x*t80 -
+                        W_y*t83 + dW_x*t79 - dW_y*t82 + dW_z) + dOm_x*pw_y - dOm_y*pw_x + dm_x*t79
+                        - dm_y*t82 + dm_z + dpwd_z + m_x*t80 - m_y*t83)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

@@ -77,8 +77,8 @@ WORK_ROWS = 122
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (746, 263, 410, 1),
-              "column": (150, 381, 1229, 3)}
+OPERATIONS = {"residual": (746, 263, 290, 1),
+              "column": (150, 381, 771, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("sizes", (3,), "slaved coordinates, resultants of second order, damped or not"),
     Part("turn", ("entries",), "axes of the body in the frame: columns of a rotation"),
@@ -321,29 +321,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
             e0 = e0s[j]
-            t18 = Om0_y*psi_z
-            t19 = Om_y*psi_z
-            t20 = Om0_x*psi_y
-            t21 = Om0_y*psi_x - t20
-            t22 = e0*psi_y
-            t23 = Om_x*psi_z
-            t24 = Om_z*psi_x
-            t25 = t23 - t24
-            t26 = e0*psi_z
-            t27 = Om_x*psi_y
-            t28 = Om_y*psi_x - t27
-            t29 = Om0_x*psi_z
-            t30 = Om0_z*psi_x
-            t31 = t29 - t30
-            t32 = e0*psi_x
-            t33 = Om_z*psi_y - t19
-            t34 = Om0_z*psi_y - t18
-            eta[j3] = (-Om0_x + (0.5)*Om0_z*psi_y + Om_x + (0.5)*Om_z*psi_y + e0*psi_y*t28 +
-                e0*psi_z*t31 - 0.5*t18 - 0.5*t19 - t21*t22 - t25*t26)
-            eta[j3 + 1] = (-Om0_y + Om_y + t21*t32 + (0.5)*t23 - 0.5*t24 + t26*t33 - t26*t34 -
-                t28*t32 + (0.5)*t29 - 0.5*t30)
-            eta[j3 + 2] = ((0.5)*Om0_y*psi_x - Om0_z + (0.5)*Om_y*psi_x + Om_z + e0*psi_x*t25 +
-                e0*psi_y*t34 - 0.5*t20 - t22*t33 - 0.5*t27 - t31*t32)
+            t18 = (0.5)*Om0_z + (0.5)*Om_z
+            t19 = Om0_y + Om_y
+            t20 = (0.5)*psi_z
+            t21 = -Om0_y + Om_y
+            t22 = -Om0_x + Om_x
+            t23 = psi_x*t21 - psi_y*t22
+            t24 = -Om0_z + Om_z
+            t25 = -psi_x*t24 + psi_z*t22
+            t26 = Om0_x + Om_x
+            t27 = psi_y*t24 - psi_z*t21
+            eta[j3] = -Om0_x + Om_x + e0*(psi_y*t23 - psi_z*t25) + psi_y*t18 - t19*t20
+            eta[j3 + 1] = -Om0_y + Om_y + e0*(-psi_x*t23 + psi_z*t27) - psi_x*t18 + t20*t26
+            eta[j3 + 2] = (-Om0_z + Om_z + e0*(psi_x*t25 - psi_y*t27) + (0.5)*psi_x*t19 -
+                0.5*psi_y*t26)
         # rates of the internal modes
         for k in range(MODES, n):
             vm = ve[k]
@@ -367,9 +358,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             fit = fits[i]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             eud_x, eud_y, eud_z = etad[i3], etad[i3 + 1], etad[i3 + 2]
-            t35 = eud_z*fit
-            rhs_x += -X_y*t35 + X_z*eud_y*fit
-            rhs_y += X_x*t35 - X_z*eud_x*fit
+            t28 = eud_z*fit
+            rhs_x += -X_y*t28 + X_z*eud_y*fit
+            rhs_y += X_x*t28 - X_z*eud_x*fit
             rhs_z += -X_x*eud_y*fit + X_y*eud_x*fit
         Om0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
         Om0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
@@ -380,12 +371,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             eud_x, eud_y, eud_z = etad[i3], etad[i3 + 1], etad[i3 + 2]
-            t36 = X_y + u_y
-            t37 = X_z + u_z
-            t38 = X_x + u_x
-            etad[i3] = -Om0d_y*t37 + Om0d_z*t36 + eud_x
-            etad[i3 + 1] = Om0d_x*t37 - Om0d_z*t38 + eud_y
-            etad[i3 + 2] = -Om0d_x*t36 + Om0d_y*t38 + eud_z
+            t29 = X_y + u_y
+            t30 = X_z + u_z
+            t31 = X_x + u_x
+            etad[i3] = -Om0d_y*t30 + Om0d_z*t29 + eud_x
+            etad[i3 + 1] = Om0d_x*t30 - Om0d_z*t31 + eud_y
+            etad[i3 + 2] = -Om0d_x*t29 + Om0d_y*t31 + eud_z
         # rate: rates of the elastic rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
@@ -395,56 +386,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
             e0 = e0s[j]
             e1 = e1s[j]
-            t39 = A_y*psi_z
-            t40 = Om0_y*ep_z
-            t41 = Om0d_y*psi_z
-            t42 = Om_y*ep_z
-            t43 = -Om_x*psi_y + Om_y*psi_x
-            t44 = e0*ep_y
-            t45 = Om0_x*psi_z - Om0_z*psi_x
-            t46 = e0*ep_z
-            t47 = -Om0_x*psi_y + Om0_y*psi_x
-            t48 = Om_x*psi_z - Om_z*psi_x
-            t49 = A_x*psi_y
-            t50 = Om_x*ep_y
-            t51 = A_y*psi_x + Om_y*ep_x - t49 - t50
-            t52 = e0*psi_y
-            t53 = Om0_x*ep_z
-            t54 = Om0d_x*psi_z
-            t55 = Om0_z*ep_x
-            t56 = Om0d_z*psi_x
-            t57 = t53 + t54 - t55 - t56
-            t58 = e0*psi_z
-            t59 = Om0_x*ep_y
-            t60 = Om0d_x*psi_y
-            t61 = Om0_y*ep_x + Om0d_y*psi_x - t59 - t60
-            t62 = A_x*psi_z
-            t63 = Om_x*ep_z
-            t64 = A_z*psi_x
-            t65 = Om_z*ep_x
-            t66 = t62 + t63 - t64 - t65
-            t67 = 2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z
-            t68 = e1*t67
-            t69 = psi_y*t68
-            t70 = psi_z*t68
-            t71 = e0*ep_x
-            t72 = -Om_y*psi_z + Om_z*psi_y
-            t73 = -Om0_y*psi_z + Om0_z*psi_y
-            t74 = e0*psi_x
-            t75 = A_z*psi_y + Om_z*ep_y - t39 - t42
-            t76 = Om0_z*ep_y + Om0d_z*psi_y - t40 - t41
-            t77 = psi_x*t68
-            etad[j3] = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y - Om0d_x + (0.5)*Om0d_z*psi_y +
-                (0.5)*Om_z*ep_y - 0.5*t39 - 0.5*t40 - 0.5*t41 - 0.5*t42 + t43*t44 + t43*t69 -
-                t44*t47 + t45*t46 + t45*t70 - t46*t48 - t47*t69 - t48*t70 + t51*t52 - t52*t61 +
-                t57*t58 - t58*t66)
-            etad[j3 + 1] = (A_y - Om0d_y - t43*t71 - t43*t77 + t46*t72 - t46*t73 + t47*t71 +
-                t47*t77 - t51*t74 + (0.5)*t53 + (0.5)*t54 - 0.5*t55 - 0.5*t56 + t58*t75 - t58*t76
-                + t61*t74 + (0.5)*t62 + (0.5)*t63 - 0.5*t64 - 0.5*t65 + t70*t72 - t70*t73)
-            etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om0d_y*psi_x - Om0d_z
-                + (0.5)*Om_y*ep_x + e0*ep_x*t48 + e0*ep_y*t73 + e0*psi_x*t66 + e0*psi_y*t76 +
-                e1*psi_x*t48*t67 + e1*psi_y*t67*t73 - t44*t72 - t45*t71 - t45*t77 - 0.5*t49 -
-                0.5*t50 - t52*t75 - t57*t74 - 0.5*t59 - 0.5*t60 - t69*t72)
+            t32 = -Om0_y + Om_y
+            t33 = -Om0_x + Om_x
+            t34 = psi_x*t32 - psi_y*t33
+            t35 = -Om0_z + Om_z
+            t36 = -psi_x*t35 + psi_z*t33
+            t37 = A_y - Om0d_y
+            t38 = A_x - Om0d_x
+            t39 = ep_x*t32 - ep_y*t33 + psi_x*t37 - psi_y*t38
+            t40 = A_z - Om0d_z
+            t41 = -ep_x*t35 + ep_z*t33 - psi_x*t40 + psi_z*t38
+            t42 = (0.5)*Om0_z + (0.5)*Om_z
+            t43 = (0.5)*A_z + (0.5)*Om0d_z
+            t44 = Om0_y + Om_y
+            t45 = (0.5)*ep_z
+            t46 = A_y + Om0d_y
+            t47 = (0.5)*psi_z
+            t48 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
+            t49 = psi_y*t35 - psi_z*t32
+            t50 = ep_y*t35 - ep_z*t32 + psi_y*t40 - psi_z*t37
+            t51 = Om0_x + Om_x
+            t52 = A_x + Om0d_x
+            etad[j3] = (e0*(ep_y*t34 - ep_z*t36 + psi_y*t39 - psi_z*t41) + ep_y*t42 + psi_y*t43 +
+                t38 - t44*t45 - t46*t47 + t48*(psi_y*t34 - psi_z*t36))
+            etad[j3 + 1] = (e0*(-ep_x*t34 + ep_z*t49 - psi_x*t39 + psi_z*t50) - ep_x*t42 -
+                psi_x*t43 + t37 + t45*t51 + t47*t52 + t48*(-psi_x*t34 + psi_z*t49))
+            etad[j3 + 2] = (e0*(ep_x*t36 - ep_y*t49 + psi_x*t41 - psi_y*t50) + (0.5)*ep_x*t44 -
+                0.5*ep_y*t51 + (0.5)*psi_x*t46 - 0.5*psi_y*t52 + t40 + t48*(psi_x*t36 - psi_y*t49))
         # rate: rates of the internal modes
         for k in range(MODES, n):
             am = ae[k]
@@ -527,12 +495,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
             turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
         gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
-        t78 = a0_x - gamma_x
-        t79 = a0_y - gamma_y
-        t80 = a0_z - gamma_z
-        zdd[N] = t78*turn_xx + t79*turn_yx + t80*turn_zx
-        zdd[N + 1] = t78*turn_xy + t79*turn_yy + t80*turn_zy
-        zdd[N + 2] = t78*turn_xz + t79*turn_yz + t80*turn_zz
+        t53 = a0_x - gamma_x
+        t54 = a0_y - gamma_y
+        t55 = a0_z - gamma_z
+        zdd[N] = t53*turn_xx + t54*turn_yx + t55*turn_zx
+        zdd[N + 1] = t53*turn_xy + t54*turn_yy + t55*turn_zy
+        zdd[N + 2] = t53*turn_xz + t54*turn_yz + t55*turn_zz
         zdd[N + 3] = Om0d_x*turn_xx + Om0d_y*turn_yx + Om0d_z*turn_zx
         zdd[N + 4] = Om0d_x*turn_xy + Om0d_y*turn_yy + Om0d_z*turn_zy
         zdd[N + 5] = Om0d_x*turn_xz + Om0d_y*turn_yz + Om0d_z*turn_zz
@@ -543,30 +511,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         felt_x, felt_y, felt_z = zdd[N], zdd[N + 1], zdd[N + 2]
         turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
         spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
-        t81 = spin_x*spin_x
-        t82 = spin_y*spin_y
-        t83 = spin_z*spin_z
-        t84 = spin_x*spin_y
-        t85 = spin_x*spin_z
-        t86 = spin_y*spin_z
+        t56 = spin_x*spin_x
+        t57 = spin_y*spin_y
+        t58 = spin_z*spin_z
+        t59 = spin_x*spin_y
+        t60 = spin_x*spin_z
+        t61 = spin_y*spin_z
         by_moment_columns[0] = felt_x
         by_moment_columns[1] = felt_y
         by_moment_columns[2] = felt_z
         by_moment_columns[3] = turning_x
         by_moment_columns[4] = turning_y
         by_moment_columns[5] = turning_z
-        by_moment_columns[6] = -0.5*t81
-        by_moment_columns[7] = -0.5*t82
-        by_moment_columns[8] = -0.5*t83
-        by_moment_columns[9] = -t84
-        by_moment_columns[10] = -t85
-        by_moment_columns[11] = -t86
-        by_products[0] = -t81
-        by_products[1] = -t82
-        by_products[2] = -t83
-        by_products[3] = -2*t84
-        by_products[4] = -2*t85
-        by_products[5] = -2*t86
+        by_moment_columns[6] = -0.5*t56
+        by_moment_columns[7] = -0.5*t57
+        by_moment_columns[8] = -0.5*t58
+        by_moment_columns[9] = -t59
+        by_moment_columns[10] = -t60
+        by_moment_columns[11] = -t61
+        by_products[0] = -t56
+        by_products[1] = -t57
+        by_products[2] = -t58
+        by_products[3] = -2*t59
+        by_products[4] = -2*t60
+        by_products[5] = -2*t61
         by_products[6] = turning_x
         by_products[7] = turning_y
         by_products[8] = turning_z
@@ -595,11 +563,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             lam_e = lam[e]
             along_e = along[e]
             twice_e = twice[e]
-            t87 = (0.5)*twice_e
-            t88 = 1/lam_e
-            by_E[e] = t87
-            by_Gy[e] = along_e + t87*t88
-            stiffened += t87*(along_e + (0.25)*t88*twice_e)
+            t62 = (0.5)*twice_e
+            t63 = 1/lam_e
+            by_E[e] = t62
+            by_Gy[e] = along_e + t62*t63
+            stiffened += t62*(along_e + (0.25)*t63*twice_e)
         # and of Sbar y
         by_Gy[resultants] = 1
         # forces of the resultants and their geometric stiffness, with Sbar y
@@ -611,30 +579,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
         spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
         mass = masses[0]
-        t89 = 2*sum_cd_z
-        t90 = 2*spin_z
-        t91 = spin_x*sum_c_y - spin_y*sum_c_x
-        t92 = -spin_x*sum_c_z + spin_z*sum_c_x
-        t93 = spin_y*sum_c_z - spin_z*sum_c_y
-        t94 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
-        t95 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
-        t96 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
-        local[N] = (felt_x*mass + spin_y*t89 + spin_y*t91 - spin_z*t92 - sum_c_y*turning_z +
-            sum_c_z*turning_y - sum_cd_y*t90 + sum_cdd_x)
-        local[N + 1] = (felt_y*mass - spin_x*t89 - spin_x*t91 + spin_z*t93 + sum_c_x*turning_z -
-            sum_c_z*turning_x + sum_cd_x*t90 + sum_cdd_y)
-        local[N + 2] = (felt_z*mass + 2*spin_x*sum_cd_y + spin_x*t92 - 2*spin_y*sum_cd_x -
-            spin_y*t93 - sum_c_x*turning_y + sum_c_y*turning_x + sum_cdd_z)
+        t64 = 2*sum_cd_z
+        t65 = 2*spin_z
+        t66 = spin_x*sum_c_y - spin_y*sum_c_x
+        t67 = -spin_x*sum_c_z + spin_z*sum_c_x
+        t68 = spin_y*sum_c_z - spin_z*sum_c_y
+        t69 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
+        t70 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
+        t71 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
+        local[N] = (felt_x*mass + spin_y*t64 + spin_y*t66 - spin_z*t67 - sum_c_y*turning_z +
+            sum_c_z*turning_y - sum_cd_y*t65 + sum_cdd_x)
+        local[N + 1] = (felt_y*mass - spin_x*t64 - spin_x*t66 + spin_z*t68 + sum_c_x*turning_z -
+            sum_c_z*turning_x + sum_cd_x*t65 + sum_cdd_y)
+        local[N + 2] = (felt_z*mass + 2*spin_x*sum_cd_y + spin_x*t67 - 2*spin_y*sum_cd_x -
+            spin_y*t68 - sum_c_x*turning_y + sum_c_y*turning_x + sum_cdd_z)
         local[N + 3] = (-felt_y*sum_c_z + felt_z*sum_c_y + spin_x*sum_Jd_xx + spin_y*sum_Jd_xy +
-            spin_y*sum_spun_z + spin_y*t94 + spin_z*sum_Jd_xz - spin_z*sum_spun_y - spin_z*t95 +
+            spin_y*sum_spun_z + spin_y*t69 + spin_z*sum_Jd_xz - spin_z*sum_spun_y - spin_z*t70 +
             sum_J_xx*turning_x + sum_J_xy*turning_y + sum_J_xz*turning_z + sum_accelerated_x +
             sum_coupled_x)
         local[N + 4] = (felt_x*sum_c_z - felt_z*sum_c_x + spin_x*sum_Jd_xy - spin_x*sum_spun_z -
-            spin_x*t94 + spin_y*sum_Jd_yy + spin_z*sum_Jd_yz + spin_z*sum_spun_x + spin_z*t96 +
+            spin_x*t69 + spin_y*sum_Jd_yy + spin_z*sum_Jd_yz + spin_z*sum_spun_x + spin_z*t71 +
             sum_J_xy*turning_x + sum_J_yy*turning_y + sum_J_yz*turning_z + sum_accelerated_y +
             sum_coupled_y)
         local[N + 5] = (-felt_x*sum_c_y + felt_y*sum_c_x + spin_x*sum_Jd_xz + spin_x*sum_spun_y +
-            spin_x*t95 + spin_y*sum_Jd_yz - spin_y*sum_spun_x - spin_y*t96 + spin_z*sum_Jd_zz +
+            spin_x*t70 + spin_y*sum_Jd_yz - spin_y*sum_spun_x - spin_y*t71 + spin_z*sum_Jd_zz +
             sum_J_xz*turning_x + sum_J_yz*turning_y + sum_J_zz*turning_z + sum_accelerated_z +
             sum_coupled_z)
         # forces conjugate to y
@@ -647,15 +615,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t97 = X_z + u_z
-            t98 = X_y + u_y
-            t99 = X_x + u_x
+            t72 = X_z + u_z
+            t73 = X_y + u_y
+            t74 = X_x + u_x
             F_x += -f_x
             F_y += -f_y
             F_z += -f_z
-            W_x += f_y*t97 - f_z*t98
-            W_y += -f_x*t97 + f_z*t99
-            W_z += f_x*t98 - f_y*t99
+            W_x += f_y*t72 - f_z*t73
+            W_y += -f_x*t72 + f_z*t74
+            W_z += f_x*t73 - f_y*t74
         # inertia and weight on the frame
         turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
             turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7], turn[8])
@@ -673,29 +641,29 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t100 = -m_x*psi_y + m_y*psi_x
-            t101 = m_x*psi_z
-            t102 = -m_z*psi_x + t101
-            t103 = -m_y*psi_z + m_z*psi_y
-            W_x += -e0*psi_y*t100 + e0*psi_z*t102 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-            W_y += e0*psi_x*t100 - e0*psi_z*t103 - m_y + (0.5)*m_z*psi_x - 0.5*t101
-            W_z += -e0*psi_x*t102 + e0*psi_y*t103 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+            t75 = -m_x*psi_y + m_y*psi_x
+            t76 = m_x*psi_z
+            t77 = -m_z*psi_x + t76
+            t78 = -m_y*psi_z + m_z*psi_y
+            W_x += -e0*psi_y*t75 + e0*psi_z*t77 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+            W_y += e0*psi_x*t75 - e0*psi_z*t78 - m_y + (0.5)*m_z*psi_x - 0.5*t76
+            W_z += -e0*psi_x*t77 + e0*psi_y*t78 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
         # B^T wp = W
         rhs_x = rhs_y = rhs_z = 0.0
-        t104 = W_x + rhs_x
-        t105 = W_y + rhs_y
-        t106 = W_z + rhs_z
-        wp_x = Bxx*t104 + Byx*t105 + Bzx*t106
-        wp_y = Bxy*t104 + Byy*t105 + Bzy*t106
-        wp_z = Bxz*t104 + Byz*t105 + Bzz*t106
+        t79 = W_x + rhs_x
+        t80 = W_y + rhs_y
+        t81 = W_z + rhs_z
+        wp_x = Bxx*t79 + Byx*t80 + Bzx*t81
+        wp_y = Bxy*t79 + Byy*t80 + Bzy*t81
+        wp_z = Bxz*t79 + Byz*t80 + Bzz*t81
         # force on the origin, through the frame
         for i in range(N_POSITIONS):
             i3 = 3*i
             fit = fits[i]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-            t107 = fit*wp_z
-            F_x += -X_y*t107 + X_z*fit*wp_y
-            F_y += X_x*t107 - X_z*fit*wp_x
+            t82 = fit*wp_z
+            F_x += -X_y*t82 + X_z*fit*wp_y
+            F_y += X_x*t82 - X_z*fit*wp_x
             F_z += -X_x*fit*wp_y + X_y*fit*wp_x
         # force on the nodes in frame axes, (30), (57)
         for i in range(N_POSITIONS):
@@ -704,10 +672,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             alpha = alphas[i]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t108 = fit*wp_z
-            t109 = X_z*fit
-            h[i3] = F_x*alpha + X_y*t108 + f_x - t109*wp_y
-            h[i3 + 1] = F_y*alpha - X_x*t108 + f_y + t109*wp_x
+            t83 = fit*wp_z
+            t84 = X_z*fit
+            h[i3] = F_x*alpha + X_y*t83 + f_x - t84*wp_y
+            h[i3 + 1] = F_y*alpha - X_x*t83 + f_y + t84*wp_x
             h[i3 + 2] = F_z*alpha + X_x*fit*wp_y - X_y*fit*wp_x + f_z
         # force on the nodes
         for i in range(N_POSITIONS):
@@ -722,17 +690,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t110 = m_y*psi_z
-            t111 = m_x*psi_y
-            t112 = e0*(m_y*psi_x - t111)
-            t113 = m_x*psi_z
-            t114 = m_z*psi_x
-            t115 = t113 - t114
-            t116 = e0*psi_z
-            t117 = m_z*psi_y - t110
-            g[j3] = m_x - 0.5*m_z*psi_y + psi_y*t112 + (0.5)*t110 - t115*t116
-            g[j3 + 1] = m_y - psi_x*t112 - 0.5*t113 + (0.5)*t114 + t116*t117
-            g[j3 + 2] = e0*psi_x*t115 - e0*psi_y*t117 - 0.5*m_y*psi_x + m_z + (0.5)*t111
+            t85 = m_y*psi_z
+            t86 = m_x*psi_y
+            t87 = e0*(m_y*psi_x - t86)
+            t88 = m_x*psi_z
+            t89 = m_z*psi_x
+            t90 = t88 - t89
+            t91 = e0*psi_z
+            t92 = m_z*psi_y - t85
+            g[j3] = m_x - 0.5*m_z*psi_y + psi_y*t87 + (0.5)*t85 - t90*t91
+            g[j3 + 1] = m_y - psi_x*t87 - 0.5*t88 + (0.5)*t89 + t91*t92
+            g[j3 + 2] = e0*psi_x*t90 - e0*psi_y*t92 - 0.5*m_y*psi_x + m_z + (0.5)*t86
         # force of the internal modes
         for k in range(MODES, n):
             fm = s[k]
@@ -756,47 +724,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             moving = squares[0]
             elastic = squares[1]
-            t118 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
-            t119 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
-            t120 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
-            t121 = spin_x*sum_c_y - spin_y*sum_c_x + sum_cd_z
-            t122 = turn_xz*v0_x + turn_yz*v0_y + turn_zz*v0_z
-            t123 = -spin_x*sum_c_z + spin_z*sum_c_x + sum_cd_y
-            t124 = turn_xy*v0_x + turn_yy*v0_y + turn_zy*v0_z
-            t125 = spin_y*sum_c_z - spin_z*sum_c_y + sum_cd_x
-            t126 = turn_xx*v0_x + turn_yx*v0_y + turn_zx*v0_z
-            t127 = mass*x0_x
-            t128 = mass*x0_y
-            t129 = mass*x0_z
-            t130 = mass*t126 + t125
-            t131 = mass*t124 + t123
-            t132 = mass*t122 + t121
-            t133 = t130*turn_xx + t131*turn_xy + t132*turn_xz
-            t134 = t130*turn_yx + t131*turn_yy + t132*turn_yz
-            t135 = t130*turn_zx + t131*turn_zy + t132*turn_zz
-            t136 = R0_xx*t133 + R0_xy*t134 + R0_xz*t135
-            t137 = R0_yx*t133 + R0_yy*t134 + R0_yz*t135
-            t138 = R0_zx*t133 + R0_zy*t134 + R0_zz*t135
-            t139 = sum_c_y*t122 - sum_c_z*t124 + sum_spun_x + t118
-            t140 = -sum_c_x*t122 + sum_c_z*t126 + sum_spun_y + t119
-            t141 = sum_c_x*t124 - sum_c_y*t126 + sum_spun_z + t120
-            t142 = t139*turn_xx + t140*turn_xy + t141*turn_xz
-            t143 = t139*turn_yx + t140*turn_yy + t141*turn_yz
-            t144 = t139*turn_zx + t140*turn_zy + t141*turn_zz
-            kinetic = ((0.5)*mass*(t122*t122 + t124*t124 + t126*t126) + (0.5)*moving +
-                spin_x*sum_spun_x + (0.5)*spin_x*t118 + spin_y*sum_spun_y + (0.5)*spin_y*t119 +
-                spin_z*sum_spun_z + (0.5)*spin_z*t120 + t121*t122 + t123*t124 + t125*t126)
+            t93 = spin_x*sum_J_xx + spin_y*sum_J_xy + spin_z*sum_J_xz
+            t94 = spin_x*sum_J_xy + spin_y*sum_J_yy + spin_z*sum_J_yz
+            t95 = spin_x*sum_J_xz + spin_y*sum_J_yz + spin_z*sum_J_zz
+            t96 = spin_x*sum_c_y - spin_y*sum_c_x + sum_cd_z
+            t97 = turn_xz*v0_x + turn_yz*v0_y + turn_zz*v0_z
+            t98 = -spin_x*sum_c_z + spin_z*sum_c_x + sum_cd_y
+            t99 = turn_xy*v0_x + turn_yy*v0_y + turn_zy*v0_z
+            t100 = spin_y*sum_c_z - spin_z*sum_c_y + sum_cd_x
+            t101 = turn_xx*v0_x + turn_yx*v0_y + turn_zx*v0_z
+            t102 = mass*x0_x
+            t103 = mass*x0_y
+            t104 = mass*x0_z
+            t105 = mass*t101 + t100
+            t106 = mass*t99 + t98
+            t107 = mass*t97 + t96
+            t108 = t105*turn_xx + t106*turn_xy + t107*turn_xz
+            t109 = t105*turn_yx + t106*turn_yy + t107*turn_yz
+            t110 = t105*turn_zx + t106*turn_zy + t107*turn_zz
+            t111 = R0_xx*t108 + R0_xy*t109 + R0_xz*t110
+            t112 = R0_yx*t108 + R0_yy*t109 + R0_yz*t110
+            t113 = R0_zx*t108 + R0_zy*t109 + R0_zz*t110
+            t114 = sum_c_y*t97 - sum_c_z*t99 + sum_spun_x + t93
+            t115 = -sum_c_x*t97 + sum_c_z*t101 + sum_spun_y + t94
+            t116 = sum_c_x*t99 - sum_c_y*t101 + sum_spun_z + t95
+            t117 = t114*turn_xx + t115*turn_xy + t116*turn_xz
+            t118 = t114*turn_yx + t115*turn_yy + t116*turn_yz
+            t119 = t114*turn_zx + t115*turn_zy + t116*turn_zz
+            kinetic = ((0.5)*mass*(t101*t101 + t97*t97 + t99*t99) + (0.5)*moving +
+                spin_x*sum_spun_x + (0.5)*spin_x*t93 + spin_y*sum_spun_y + (0.5)*spin_y*t94 +
+                spin_z*sum_spun_z + (0.5)*spin_z*t95 + t100*t101 + t96*t97 + t98*t99)
             strain = (0.5)*elastic + stiffened
-            potential = (-gamma_x*(R0_xx*t127 + R0_yx*t128 + R0_zx*t129 + sum_c_x*turn_xx +
-                sum_c_y*turn_xy + sum_c_z*turn_xz) - gamma_y*(R0_xy*t127 + R0_yy*t128 + R0_zy*t129
-                + sum_c_x*turn_yx + sum_c_y*turn_yy + sum_c_z*turn_yz) - gamma_z*(R0_xz*t127 +
-                R0_yz*t128 + R0_zz*t129 + sum_c_x*turn_zx + sum_c_y*turn_zy + sum_c_z*turn_zz))
-            P_x = t136
-            P_y = t137
-            P_z = t138
-            H_x = R0_xx*t142 + R0_xy*t143 + R0_xz*t144 - t137*x0_z + t138*x0_y
-            H_y = R0_yx*t142 + R0_yy*t143 + R0_yz*t144 + t136*x0_z - t138*x0_x
-            H_z = R0_zx*t142 + R0_zy*t143 + R0_zz*t144 - t136*x0_y + t137*x0_x
+            potential = (-gamma_x*(R0_xx*t102 + R0_yx*t103 + R0_zx*t104 + sum_c_x*turn_xx +
+                sum_c_y*turn_xy + sum_c_z*turn_xz) - gamma_y*(R0_xy*t102 + R0_yy*t103 + R0_zy*t104
+                + sum_c_x*turn_yx + sum_c_y*turn_yy + sum_c_z*turn_yz) - gamma_z*(R0_xz*t102 +
+                R0_yz*t103 + R0_zz*t104 + sum_c_x*turn_zx + sum_c_y*turn_zy + sum_c_z*turn_zz))
+            P_x = t111
+            P_y = t112
+            P_z = t113
+            H_x = R0_xx*t117 + R0_xy*t118 + R0_xz*t119 - t112*x0_z + t113*x0_y
+            H_y = R0_yx*t117 + R0_yy*t118 + R0_yz*t119 + t111*x0_z - t113*x0_x
+            H_z = R0_zx*t117 + R0_zy*t118 + R0_zz*t119 - t111*x0_y + t112*x0_x
             energies[KINETIC] += kinetic
             energies[STRAIN] += strain
             energies[POTENTIAL] += potential
@@ -852,12 +820,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # factors of the local tangents
             turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
-            t145 = 2*c_geo*spin_x
+            t120 = 2*c_geo*spin_x
             by_couplings[0] = -c_geo*spin_x*spin_x
             by_couplings[1] = -c_geo*spin_y*spin_y
             by_couplings[2] = -c_geo*spin_z*spin_z
-            by_couplings[3] = -spin_y*t145
-            by_couplings[4] = -spin_z*t145
+            by_couplings[3] = -spin_y*t120
+            by_couplings[4] = -spin_z*t120
             by_couplings[5] = -2*c_geo*spin_y*spin_z
             by_couplings[6] = c_geo*turning_x
             by_couplings[7] = c_geo*turning_y
@@ -925,55 +893,55 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 row_jd_xx, row_jd_yy, row_jd_zz, row_jd_xy, row_jd_xz, row_jd_yz = (more[i],
                     more[hN + i], more[2*hN + i], more[3*hN + i], more[4*hN + i], more[5*hN + i])
                 row_wa_x, row_wa_y, row_wa_z = more[12*hN + i], more[13*hN + i], more[14*hN + i]
-                t146 = row_S1_x*spin_z
-                t147 = row_S1_z*spin_x
-                t148 = t146 - t147
-                t149 = row_S1_x*spin_y
-                t150 = row_S1_y*spin_x - t149
-                t151 = row_S1_y*spin_z
-                t152 = row_S1_z*spin_y - t151
-                t153 = 2*spin_x
-                t154 = 2*spin_y
-                t155 = 2*spin_z
-                t156 = row_h_xx + 2*row_j_xx
-                t157 = row_h_xy + 2*row_j_xy
-                t158 = row_h_xz + 2*row_j_xz
-                t159 = row_h_yz + 2*row_j_yz
-                t160 = row_h_zz + 2*row_j_zz
-                t161 = spin_x*t158 + spin_y*t159 + spin_z*t160
-                t162 = row_h_yy + 2*row_j_yy
-                t163 = spin_x*t157 + spin_y*t162 + spin_z*t159
-                t164 = spin_x*t156 + spin_y*t157 + spin_z*t158
-                t165 = row_g_z + row_u_z
-                t166 = row_g_y + row_u_y
-                t167 = row_g_x + row_u_x
-                Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t150 -
-                    spin_z*t148))
-                Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t150
-                    + spin_z*t152))
+                t121 = row_S1_x*spin_z
+                t122 = row_S1_z*spin_x
+                t123 = t121 - t122
+                t124 = row_S1_x*spin_y
+                t125 = row_S1_y*spin_x - t124
+                t126 = row_S1_y*spin_z
+                t127 = row_S1_z*spin_y - t126
+                t128 = 2*spin_x
+                t129 = 2*spin_y
+                t130 = 2*spin_z
+                t131 = row_h_xx + 2*row_j_xx
+                t132 = row_h_xy + 2*row_j_xy
+                t133 = row_h_xz + 2*row_j_xz
+                t134 = row_h_yz + 2*row_j_yz
+                t135 = row_h_zz + 2*row_j_zz
+                t136 = spin_x*t133 + spin_y*t134 + spin_z*t135
+                t137 = row_h_yy + 2*row_j_yy
+                t138 = spin_x*t132 + spin_y*t137 + spin_z*t134
+                t139 = spin_x*t131 + spin_y*t132 + spin_z*t133
+                t140 = row_g_z + row_u_z
+                t141 = row_g_y + row_u_y
+                t142 = row_g_x + row_u_x
+                Lz[i*deep + N] = (c_geo*(-row_S1_y*turning_z + row_S1_z*turning_y + spin_y*t125 -
+                    spin_z*t123))
+                Lz[i*deep + N + 1] = (c_geo*(row_S1_x*turning_z - row_S1_z*turning_x - spin_x*t125
+                    + spin_z*t127))
                 Lz[i*deep + N + 2] = (c_geo*(-row_S1_x*turning_y + row_S1_y*turning_x +
-                    spin_x*t148 - spin_y*t152))
-                Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t153 +
-                    row_jd_xy*t154 + row_jd_xz*t155 - row_w_y*spin_z + row_w_z*spin_y + row_wa_x +
-                    spin_y*t161 - spin_z*t163 + t156*turning_x + t157*turning_y + t158*turning_z))
-                Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t153 +
-                    row_jd_yy*t154 + row_jd_yz*t155 + row_w_x*spin_z - row_w_z*spin_x + row_wa_y -
-                    spin_x*t161 + spin_z*t164 + t157*turning_x + t159*turning_z + t162*turning_y))
-                Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t153 +
-                    row_jd_yz*t154 + row_jd_zz*t155 - row_w_x*spin_y + row_w_y*spin_x + row_wa_z +
-                    spin_x*t163 - spin_y*t164 + t158*turning_x + t159*turning_y + t160*turning_z))
-                Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t151
-                Lv[i*deep + N + 1] = 2*t146 - 2*t147
-                Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t149
-                Lv[i*deep + N + 3] = row_v_x + row_w_x + spin_y*t165 - spin_z*t166 + t164
-                Lv[i*deep + N + 4] = row_v_y + row_w_y - spin_x*t165 + spin_z*t167 + t163
-                Lv[i*deep + N + 5] = row_v_z + row_w_z + spin_x*t166 - spin_y*t167 + t161
+                    spin_x*t123 - spin_y*t127))
+                Lz[i*deep + N + 3] = (c_geo*(-felt_y*row_S1_z + felt_z*row_S1_y + row_jd_xx*t128 +
+                    row_jd_xy*t129 + row_jd_xz*t130 - row_w_y*spin_z + row_w_z*spin_y + row_wa_x +
+                    spin_y*t136 - spin_z*t138 + t131*turning_x + t132*turning_y + t133*turning_z))
+                Lz[i*deep + N + 4] = (c_geo*(felt_x*row_S1_z - felt_z*row_S1_x + row_jd_xy*t128 +
+                    row_jd_yy*t129 + row_jd_yz*t130 + row_w_x*spin_z - row_w_z*spin_x + row_wa_y -
+                    spin_x*t136 + spin_z*t139 + t132*turning_x + t134*turning_z + t137*turning_y))
+                Lz[i*deep + N + 5] = (c_geo*(-felt_x*row_S1_y + felt_y*row_S1_x + row_jd_xz*t128 +
+                    row_jd_yz*t129 + row_jd_zz*t130 - row_w_x*spin_y + row_w_y*spin_x + row_wa_z +
+                    spin_x*t138 - spin_y*t139 + t133*turning_x + t134*turning_y + t135*turning_z))
+                Lv[i*deep + N] = 2*row_S1_z*spin_y - 2*t126
+                Lv[i*deep + N + 1] = 2*t121 - 2*t122
+                Lv[i*deep + N + 2] = 2*row_S1_y*spin_x - 2*t124
+                Lv[i*deep + N + 3] = row_v_x + row_w_x + spin_y*t140 - spin_z*t141 + t139
+                Lv[i*deep + N + 4] = row_v_y + row_w_y - spin_x*t140 + spin_z*t142 + t138
+                Lv[i*deep + N + 5] = row_v_z + row_w_z + spin_x*t141 - spin_y*t142 + t136
                 La[i*deep + N] = row_S1_x
                 La[i*deep + N + 1] = row_S1_y
                 La[i*deep + N + 2] = row_S1_z
-                La[i*deep + N + 3] = t167
-                La[i*deep + N + 4] = t166
-                La[i*deep + N + 5] = t165
+                La[i*deep + N + 3] = t142
+                La[i*deep + N + 4] = t141
+                La[i*deep + N + 5] = t140
             # local tangents: motion of the frame
             for i in range(N):
                 spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
@@ -993,14 +961,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     products[11*hN + i])
                 row_w_x, row_w_y, row_w_z = (products[12*hN + i], products[13*hN + i],
                     products[14*hN + i])
-                t168 = row_h_xy + 2*row_j_xy
-                t169 = row_h_xz + 2*row_j_xz
-                t170 = row_h_yz + 2*row_j_yz
-                Lv[N*deep + i] = (row_v_x - row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t168
-                    - spin_z*t169)
-                Lv[(N + 1)*deep + i] = (row_v_y - row_w_y - spin_x*t168 - spin_y*(row_h_yy +
-                    2*row_j_yy) - spin_z*t170)
-                Lv[(N + 2)*deep + i] = (row_v_z - row_w_z - spin_x*t169 - spin_y*t170 -
+                t143 = row_h_xy + 2*row_j_xy
+                t144 = row_h_xz + 2*row_j_xz
+                t145 = row_h_yz + 2*row_j_yz
+                Lv[N*deep + i] = (row_v_x - row_w_x - spin_x*(row_h_xx + 2*row_j_xx) - spin_y*t143
+                    - spin_z*t144)
+                Lv[(N + 1)*deep + i] = (row_v_y - row_w_y - spin_x*t143 - spin_y*(row_h_yy +
+                    2*row_j_yy) - spin_z*t145)
+                Lv[(N + 2)*deep + i] = (row_v_z - row_w_z - spin_x*t144 - spin_y*t145 -
                     spin_z*(row_h_zz + 2*row_j_zz))
                 La[N*deep + i] = row_S1_x
                 La[(N + 1)*deep + i] = row_S1_y
@@ -1011,79 +979,79 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # local tangents: force on the frame by its motion
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
             mass = masses[0]
-            t171 = spin_y*sum_c_y
-            t172 = spin_z*sum_c_z
-            t173 = 2*sum_cd_z
-            t174 = spin_x*sum_c_y
-            t175 = 2*sum_cd_y
-            t176 = spin_z*sum_c_x
-            t177 = spin_y*sum_J_xz
-            t178 = spin_z*sum_J_xy
-            t179 = spin_y*sum_J_yz
-            t180 = spin_x*sum_J_xz
-            t181 = spin_z*sum_J_zz + sum_spun_z
-            t182 = spin_z*sum_J_yz
-            t183 = spin_x*sum_J_xy
-            t184 = spin_y*sum_J_yy + sum_spun_y
-            t185 = spin_x*sum_c_x
-            t186 = 2*sum_cd_x
-            t187 = spin_y*sum_c_z
-            t188 = spin_x*sum_J_yz
-            t189 = spin_z*sum_J_xz
-            t190 = spin_y*sum_J_xy
-            t191 = spin_x*sum_J_xx + sum_spun_x
-            t192 = -sum_c_y
-            t193 = -sum_c_z
-            t194 = -sum_c_x
-            Lv[N*deep + N] = t171 + t172
-            Lv[N*deep + N + 1] = spin_y*sum_c_x - t173 - 2*t174
-            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t175 + t176
-            Lv[N*deep + N + 3] = sum_Jd_xx + t177 - t178
-            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t179 - 2*t180 - t181
-            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t182 + 2*t183 + t184
-            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t173 + t174
-            Lv[(N + 1)*deep + N + 1] = t172 + t185
-            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t186 - 2*t187
-            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t179 + t180 + t181
-            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t178 - t188
-            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t189 - 2*t190 - t191
-            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t175 - 2*t176
-            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t186 + t187
-            Lv[(N + 2)*deep + N + 2] = t171 + t185
-            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t182 - t183 - t184
-            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t189 + t190 + t191
-            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t177 + t188
+            t146 = spin_y*sum_c_y
+            t147 = spin_z*sum_c_z
+            t148 = 2*sum_cd_z
+            t149 = spin_x*sum_c_y
+            t150 = 2*sum_cd_y
+            t151 = spin_z*sum_c_x
+            t152 = spin_y*sum_J_xz
+            t153 = spin_z*sum_J_xy
+            t154 = spin_y*sum_J_yz
+            t155 = spin_x*sum_J_xz
+            t156 = spin_z*sum_J_zz + sum_spun_z
+            t157 = spin_z*sum_J_yz
+            t158 = spin_x*sum_J_xy
+            t159 = spin_y*sum_J_yy + sum_spun_y
+            t160 = spin_x*sum_c_x
+            t161 = 2*sum_cd_x
+            t162 = spin_y*sum_c_z
+            t163 = spin_x*sum_J_yz
+            t164 = spin_z*sum_J_xz
+            t165 = spin_y*sum_J_xy
+            t166 = spin_x*sum_J_xx + sum_spun_x
+            t167 = -sum_c_y
+            t168 = -sum_c_z
+            t169 = -sum_c_x
+            Lv[N*deep + N] = t146 + t147
+            Lv[N*deep + N + 1] = spin_y*sum_c_x - t148 - 2*t149
+            Lv[N*deep + N + 2] = -2*spin_x*sum_c_z + t150 + t151
+            Lv[N*deep + N + 3] = sum_Jd_xx + t152 - t153
+            Lv[N*deep + N + 4] = spin_z*sum_J_xx + sum_Jd_xy - t154 - 2*t155 - t156
+            Lv[N*deep + N + 5] = -spin_y*sum_J_xx + sum_Jd_xz + t157 + 2*t158 + t159
+            Lv[(N + 1)*deep + N] = -2*spin_y*sum_c_x + t148 + t149
+            Lv[(N + 1)*deep + N + 1] = t147 + t160
+            Lv[(N + 1)*deep + N + 2] = spin_z*sum_c_y - t161 - 2*t162
+            Lv[(N + 1)*deep + N + 3] = -spin_z*sum_J_yy + sum_Jd_xy + 2*t154 + t155 + t156
+            Lv[(N + 1)*deep + N + 4] = sum_Jd_yy + t153 - t163
+            Lv[(N + 1)*deep + N + 5] = spin_x*sum_J_yy + sum_Jd_yz - t164 - 2*t165 - t166
+            Lv[(N + 2)*deep + N] = spin_x*sum_c_z - t150 - 2*t151
+            Lv[(N + 2)*deep + N + 1] = -2*spin_z*sum_c_y + t161 + t162
+            Lv[(N + 2)*deep + N + 2] = t146 + t160
+            Lv[(N + 2)*deep + N + 3] = spin_y*sum_J_zz + sum_Jd_xz - 2*t157 - t158 - t159
+            Lv[(N + 2)*deep + N + 4] = -spin_x*sum_J_zz + sum_Jd_yz + 2*t164 + t165 + t166
+            Lv[(N + 2)*deep + N + 5] = sum_Jd_zz - t152 + t163
             La[N*deep + N] = mass
             La[N*deep + N + 1] = 0.0
             La[N*deep + N + 2] = 0.0
             La[N*deep + N + 3] = 0.0
             La[N*deep + N + 4] = sum_c_z
-            La[N*deep + N + 5] = t192
+            La[N*deep + N + 5] = t167
             La[(N + 1)*deep + N] = 0.0
             La[(N + 1)*deep + N + 1] = mass
             La[(N + 1)*deep + N + 2] = 0.0
-            La[(N + 1)*deep + N + 3] = t193
+            La[(N + 1)*deep + N + 3] = t168
             La[(N + 1)*deep + N + 4] = 0.0
             La[(N + 1)*deep + N + 5] = sum_c_x
             La[(N + 2)*deep + N] = 0.0
             La[(N + 2)*deep + N + 1] = 0.0
             La[(N + 2)*deep + N + 2] = mass
             La[(N + 2)*deep + N + 3] = sum_c_y
-            La[(N + 2)*deep + N + 4] = t194
+            La[(N + 2)*deep + N + 4] = t169
             La[(N + 2)*deep + N + 5] = 0.0
             La[(N + 3)*deep + N] = 0.0
-            La[(N + 3)*deep + N + 1] = t193
+            La[(N + 3)*deep + N + 1] = t168
             La[(N + 3)*deep + N + 2] = sum_c_y
             La[(N + 3)*deep + N + 3] = sum_J_xx
             La[(N + 3)*deep + N + 4] = sum_J_xy
             La[(N + 3)*deep + N + 5] = sum_J_xz
             La[(N + 4)*deep + N] = sum_c_z
             La[(N + 4)*deep + N + 1] = 0.0
-            La[(N + 4)*deep + N + 2] = t194
+            La[(N + 4)*deep + N + 2] = t169
             La[(N + 4)*deep + N + 3] = sum_J_xy
             La[(N + 4)*deep + N + 4] = sum_J_yy
             La[(N + 4)*deep + N + 5] = sum_J_yz
-            La[(N + 5)*deep + N] = t192
+            La[(N + 5)*deep + N] = t167
             La[(N + 5)*deep + N + 1] = sum_c_x
             La[(N + 5)*deep + N + 2] = 0.0
             La[(N + 5)*deep + N + 3] = sum_J_xz
@@ -1120,12 +1088,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t195 = -dx0_z + dx_z
-                    t196 = -dx0_y + dx_y
-                    t197 = -dx0_x + dx_x
-                    rhs_x += -fit*(X_y*t195 - X_z*t196)
-                    rhs_y += -fit*(-X_x*t195 + X_z*t197)
-                    rhs_z += -fit*(X_x*t196 - X_y*t197)
+                    t170 = -dx0_z + dx_z
+                    t171 = -dx0_y + dx_y
+                    t172 = -dx0_x + dx_x
+                    rhs_x += -fit*(X_y*t170 - X_z*t171)
+                    rhs_y += -fit*(-X_x*t170 + X_z*t172)
+                    rhs_z += -fit*(X_x*t171 - X_y*t172)
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1135,43 +1103,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t198 = X_y + u_y
-                    t199 = X_z + u_z
-                    t200 = X_x + u_x
-                    dy[i3] = -dth0_y*t199 + dth0_z*t198 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t199 - dth0_z*t200 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t198 + dth0_y*t200 - dx0_z + dx_z
+                    t173 = X_y + u_y
+                    t174 = X_z + u_z
+                    t175 = X_x + u_x
+                    dy[i3] = -dth0_y*t174 + dth0_z*t173 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t174 - dth0_z*t175 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t173 + dth0_y*t175 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t201 = dth0_y*psi_z
-                    t202 = dth_y*psi_z
-                    t203 = dth0_x*psi_y
-                    t204 = dth0_y*psi_x - t203
-                    t205 = e0*psi_y
-                    t206 = dth_x*psi_z
-                    t207 = dth_z*psi_x
-                    t208 = t206 - t207
-                    t209 = e0*psi_z
-                    t210 = dth_x*psi_y
-                    t211 = dth_y*psi_x - t210
-                    t212 = dth0_x*psi_z
-                    t213 = dth0_z*psi_x
-                    t214 = t212 - t213
-                    t215 = e0*psi_x
-                    t216 = dth_z*psi_y - t202
-                    t217 = dth0_z*psi_y - t201
-                    dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t211 + e0*psi_z*t214 - 0.5*t201 - 0.5*t202 - t204*t205 -
-                        t208*t209)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t204*t215 + (0.5)*t206 - 0.5*t207 + t209*t216
-                        - t209*t217 - t211*t215 + (0.5)*t212 - 0.5*t213)
-                    dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t208 + e0*psi_y*t217 - 0.5*t203 - t205*t216 - 0.5*t210 -
-                        t214*t215)
+                    t176 = (0.5)*dth0_z + (0.5)*dth_z
+                    t177 = dth0_y + dth_y
+                    t178 = (0.5)*psi_z
+                    t179 = -dth0_y + dth_y
+                    t180 = -dth0_x + dth_x
+                    t181 = psi_x*t179 - psi_y*t180
+                    t182 = -dth0_z + dth_z
+                    t183 = -psi_x*t182 + psi_z*t180
+                    t184 = dth0_x + dth_x
+                    t185 = psi_y*t182 - psi_z*t179
+                    dy[j3] = -dth0_x + dth_x + e0*(psi_y*t181 - psi_z*t183) + psi_y*t176 - t177*t178
+                    dy[j3 + 1] = (-dth0_y + dth_y + e0*(-psi_x*t181 + psi_z*t185) - psi_x*t176 +
+                        t178*t184)
+                    dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t183 - psi_y*t185) +
+                        (0.5)*psi_x*t177 - 0.5*psi_y*t184)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
@@ -1219,12 +1177,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t218 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
-                    t219 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
-                    t220 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
-                    rhs_x += -fit*(X_y*t218 - X_z*t219)
-                    rhs_y += -fit*(-X_x*t218 + X_z*t220)
-                    rhs_z += -fit*(X_x*t219 - X_y*t220)
+                    t186 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
+                    t187 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
+                    t188 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
+                    rhs_x += -fit*(X_y*t186 - X_z*t187)
+                    rhs_y += -fit*(-X_x*t186 + X_z*t188)
+                    rhs_z += -fit*(X_x*t187 - X_y*t188)
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1257,13 +1215,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t221 = X_y + u_y
-                    t222 = X_z + u_z
-                    t223 = X_x + u_x
-                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t222 + dOm0_z*t221 - dv0_x + dvs_x
-                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t222 - dOm0_z*t223 - dv0_y +
+                    t189 = X_y + u_y
+                    t190 = X_z + u_z
+                    t191 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t190 + dOm0_z*t189 - dv0_x + dvs_x
+                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t190 - dOm0_z*t191 - dv0_y +
                         dvs_y)
-                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t221 + dOm0_y*t223 - dv0_z +
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t189 + dOm0_y*t191 - dv0_z +
                         dvs_z)
                 # differential: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -1274,59 +1232,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t224 = Om0_y*dpsi_z
-                    t225 = Om_y*dpsi_z
-                    t226 = dOm0_y*psi_z
-                    t227 = dOm_y*psi_z
-                    t228 = -Om0_x*psi_y + Om0_y*psi_x
-                    t229 = dpsi_y*e0
-                    t230 = Om_x*psi_z - Om_z*psi_x
-                    t231 = dpsi_z*e0
-                    t232 = -Om_x*psi_y + Om_y*psi_x
-                    t233 = Om0_x*psi_z - Om0_z*psi_x
-                    t234 = Om0_x*dpsi_y
-                    t235 = dOm0_x*psi_y
-                    t236 = Om0_y*dpsi_x + dOm0_y*psi_x - t234 - t235
-                    t237 = e0*psi_y
-                    t238 = Om_x*dpsi_z
-                    t239 = dOm_x*psi_z
-                    t240 = Om_z*dpsi_x
-                    t241 = dOm_z*psi_x
-                    t242 = t238 + t239 - t240 - t241
-                    t243 = e0*psi_z
-                    t244 = Om_x*dpsi_y
-                    t245 = dOm_x*psi_y
-                    t246 = Om_y*dpsi_x + dOm_y*psi_x - t244 - t245
-                    t247 = Om0_x*dpsi_z
-                    t248 = dOm0_x*psi_z
-                    t249 = Om0_z*dpsi_x
-                    t250 = dOm0_z*psi_x
-                    t251 = t247 + t248 - t249 - t250
-                    t252 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t253 = e1*t252
-                    t254 = psi_y*t253
-                    t255 = psi_z*t253
-                    t256 = dpsi_x*e0
-                    t257 = -Om_y*psi_z + Om_z*psi_y
-                    t258 = -Om0_y*psi_z + Om0_z*psi_y
-                    t259 = e0*psi_x
-                    t260 = Om_z*dpsi_y + dOm_z*psi_y - t225 - t227
-                    t261 = Om0_z*dpsi_y + dOm0_z*psi_y - t224 - t226
-                    t262 = psi_x*t253
-                    deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x +
-                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t232 +
-                        dpsi_z*e0*t233 + e0*psi_y*t246 + e0*psi_z*t251 + e1*psi_y*t232*t252 +
-                        e1*psi_z*t233*t252 - 0.5*t224 - 0.5*t225 - 0.5*t226 - 0.5*t227 - t228*t229
-                        - t228*t254 - t230*t231 - t230*t255 - t236*t237 - t242*t243)
-                    deta[j3 + 1] = (-dOm0_y + dOm_y + t228*t256 + t228*t262 + t231*t257 -
-                        t231*t258 - t232*t256 - t232*t262 + t236*t259 + (0.5)*t238 + (0.5)*t239 -
-                        0.5*t240 - 0.5*t241 + t243*t260 - t243*t261 - t246*t259 + (0.5)*t247 +
-                        (0.5)*t248 - 0.5*t249 - 0.5*t250 + t255*t257 - t255*t258)
-                    deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t230 + dpsi_y*e0*t258 +
-                        e0*psi_x*t242 + e0*psi_y*t261 + e1*psi_x*t230*t252 + e1*psi_y*t252*t258 -
-                        t229*t257 - t233*t256 - t233*t262 - 0.5*t234 - 0.5*t235 - t237*t260 -
-                        0.5*t244 - 0.5*t245 - t251*t259 - t254*t257)
+                    t192 = (0.5)*Om0_z + (0.5)*Om_z
+                    t193 = Om0_y + Om_y
+                    t194 = (0.5)*dpsi_z
+                    t195 = (0.5)*dOm0_z + (0.5)*dOm_z
+                    t196 = dOm0_y + dOm_y
+                    t197 = (0.5)*psi_z
+                    t198 = -Om0_y + Om_y
+                    t199 = -Om0_x + Om_x
+                    t200 = psi_x*t198 - psi_y*t199
+                    t201 = -Om0_z + Om_z
+                    t202 = -psi_x*t201 + psi_z*t199
+                    t203 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t204 = -dOm0_y + dOm_y
+                    t205 = -dOm0_x + dOm_x
+                    t206 = dpsi_x*t198 - dpsi_y*t199 + psi_x*t204 - psi_y*t205
+                    t207 = -dOm0_z + dOm_z
+                    t208 = -dpsi_x*t201 + dpsi_z*t199 - psi_x*t207 + psi_z*t205
+                    t209 = Om0_x + Om_x
+                    t210 = dOm0_x + dOm_x
+                    t211 = psi_y*t201 - psi_z*t198
+                    t212 = dpsi_y*t201 - dpsi_z*t198 + psi_y*t207 - psi_z*t204
+                    deta[j3] = (-dOm0_x + dOm_x + dpsi_y*t192 + e0*(dpsi_y*t200 - dpsi_z*t202 +
+                        psi_y*t206 - psi_z*t208) + psi_y*t195 - t193*t194 - t196*t197 +
+                        t203*(psi_y*t200 - psi_z*t202))
+                    deta[j3 + 1] = (-dOm0_y + dOm_y - dpsi_x*t192 + e0*(-dpsi_x*t200 + dpsi_z*t211
+                        - psi_x*t206 + psi_z*t212) - psi_x*t195 + t194*t209 + t197*t210 +
+                        t203*(-psi_x*t200 + psi_z*t211))
+                    deta[j3 + 2] = (-dOm0_z + dOm_z + (0.5)*dpsi_x*t193 - 0.5*dpsi_y*t209 +
+                        e0*(dpsi_x*t202 - dpsi_y*t211 + psi_x*t208 - psi_y*t212) +
+                        (0.5)*psi_x*t196 - 0.5*psi_y*t210 + t203*(psi_x*t202 - psi_y*t211))
                 # differential: rates of the internal modes
                 for k in range(MODES, n):
                     dvm = dve[k]
@@ -1356,21 +1291,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     deud_x, deud_y, deud_z = detad[i3], detad[i3 + 1], detad[i3 + 2]
-                    t263 = Om0d_y*fit
-                    t264 = X_y*t263
-                    t265 = X_z*fit
-                    t266 = Om0d_z*t265
-                    t267 = X_y*du_y
-                    t268 = X_z*du_z
-                    t269 = Om0d_x*fit
-                    t270 = X_x*t269
-                    t271 = X_x*du_x
-                    rhs_x += (-X_y*deud_z*fit + X_z*deud_y*fit - du_x*t264 - du_x*t266 -
-                        t269*(-t267 - t268))
-                    rhs_y += (X_x*deud_z*fit - deud_x*t265 - du_y*t266 - du_y*t270 - t263*(-t268 -
-                        t271))
-                    rhs_z += (-Om0d_z*fit*(-t267 - t271) - X_x*deud_y*fit + X_y*deud_x*fit -
-                        du_z*t264 - du_z*t270)
+                    t213 = Om0d_y*fit
+                    t214 = X_y*t213
+                    t215 = X_z*fit
+                    t216 = Om0d_z*t215
+                    t217 = X_y*du_y
+                    t218 = X_z*du_z
+                    t219 = Om0d_x*fit
+                    t220 = X_x*t219
+                    t221 = X_x*du_x
+                    rhs_x += (-X_y*deud_z*fit + X_z*deud_y*fit - du_x*t214 - du_x*t216 -
+                        t219*(-t217 - t218))
+                    rhs_y += (X_x*deud_z*fit - deud_x*t215 - du_y*t216 - du_y*t220 - t213*(-t218 -
+                        t221))
+                    rhs_z += (-Om0d_z*fit*(-t217 - t221) - X_x*deud_y*fit + X_y*deud_x*fit -
+                        du_z*t214 - du_z*t220)
                 dOm0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1381,12 +1316,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     deud_x, deud_y, deud_z = detad[i3], detad[i3 + 1], detad[i3 + 2]
-                    t272 = X_y + u_y
-                    t273 = X_z + u_z
-                    t274 = X_x + u_x
-                    detad[i3] = -Om0d_y*du_z + Om0d_z*du_y - dOm0d_y*t273 + dOm0d_z*t272 + deud_x
-                    detad[i3 + 1] = Om0d_x*du_z - Om0d_z*du_x + dOm0d_x*t273 - dOm0d_z*t274 + deud_y
-                    detad[i3 + 2] = (-Om0d_x*du_y + Om0d_y*du_x - dOm0d_x*t272 + dOm0d_y*t274 +
+                    t222 = X_y + u_y
+                    t223 = X_z + u_z
+                    t224 = X_x + u_x
+                    detad[i3] = -Om0d_y*du_z + Om0d_z*du_y - dOm0d_y*t223 + dOm0d_z*t222 + deud_x
+                    detad[i3 + 1] = Om0d_x*du_z - Om0d_z*du_x + dOm0d_x*t223 - dOm0d_z*t224 + deud_y
+                    detad[i3 + 2] = (-Om0d_x*du_y + Om0d_y*du_x - dOm0d_x*t222 + dOm0d_y*t224 +
                         deud_z)
                 # differential: rate: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -1402,144 +1337,80 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     e0 = e0s[j]
                     e1 = e1s[j]
                     e2 = e2s[j]
-                    t275 = A_y*dpsi_z
-                    t276 = Om0_y*dep_z
-                    t277 = Om0d_y*dpsi_z
-                    t278 = Om_y*dep_z
-                    t279 = dA_y*psi_z
-                    t280 = dOm0_y*ep_z
-                    t281 = dOm0d_y*psi_z
-                    t282 = dOm_y*ep_z
-                    t283 = -Om0_x*psi_y + Om0_y*psi_x
-                    t284 = dep_y*e0
-                    t285 = Om_x*psi_z - Om_z*psi_x
-                    t286 = dep_z*e0
-                    t287 = -Om_x*psi_y + Om_y*psi_x
-                    t288 = Om0_x*psi_z - Om0_z*psi_x
-                    t289 = -Om0_x*ep_y + Om0_y*ep_x - Om0d_x*psi_y + Om0d_y*psi_x
-                    t290 = dpsi_y*e0
-                    t291 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                    t292 = dpsi_z*e0
-                    t293 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                    t294 = e0*ep_y
-                    t295 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                    t296 = e0*ep_z
-                    t297 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                    t298 = Om0_x*ep_z - Om0_z*ep_x + Om0d_x*psi_z - Om0d_z*psi_x
-                    t299 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t300 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                    t301 = 2*psi_x
-                    t302 = 2*psi_y
-                    t303 = 2*psi_z
-                    t304 = ep_x*t301 + ep_y*t302 + ep_z*t303
-                    t305 = e1*t304
-                    t306 = dpsi_y*t305
-                    t307 = dpsi_z*t305
-                    t308 = dpsi_x*t301 + dpsi_y*t302 + dpsi_z*t303
-                    t309 = e1*t308
-                    t310 = ep_y*t309
-                    t311 = ep_z*t309
-                    t312 = psi_y*t309
-                    t313 = psi_y*t305
-                    t314 = psi_z*t309
-                    t315 = psi_z*t305
-                    t316 = Om0_x*dep_y
-                    t317 = Om0d_x*dpsi_y
-                    t318 = dOm0_x*ep_y
-                    t319 = dOm0d_x*psi_y
-                    t320 = (Om0_y*dep_x + Om0d_y*dpsi_x + dOm0_y*ep_x + dOm0d_y*psi_x - t316 -
-                        t317 - t318 - t319)
-                    t321 = e0*psi_y
-                    t322 = A_x*dpsi_z
-                    t323 = Om_x*dep_z
-                    t324 = dA_x*psi_z
-                    t325 = dOm_x*ep_z
-                    t326 = A_z*dpsi_x
-                    t327 = Om_z*dep_x
-                    t328 = dA_z*psi_x
-                    t329 = dOm_z*ep_x
-                    t330 = t322 + t323 + t324 + t325 - t326 - t327 - t328 - t329
-                    t331 = e0*psi_z
-                    t332 = A_x*dpsi_y
-                    t333 = Om_x*dep_y
-                    t334 = dA_x*psi_y
-                    t335 = dOm_x*ep_y
-                    t336 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t332 - t333 - t334
-                        - t335)
-                    t337 = Om0_x*dep_z
-                    t338 = Om0d_x*dpsi_z
-                    t339 = dOm0_x*ep_z
-                    t340 = dOm0d_x*psi_z
-                    t341 = Om0_z*dep_x
-                    t342 = Om0d_z*dpsi_x
-                    t343 = dOm0_z*ep_x
-                    t344 = dOm0d_z*psi_x
-                    t345 = t337 + t338 + t339 + t340 - t341 - t342 - t343 - t344
-                    t346 = (dep_x*t301 + dep_y*t302 + dep_z*t303 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
-                        2*dpsi_z*ep_z)
-                    t347 = e1*t346
-                    t348 = t283*t347
-                    t349 = psi_z*t347
-                    t350 = e2*t304*t308
-                    t351 = t283*t350
-                    t352 = psi_z*t350
-                    t353 = dep_x*e0
-                    t354 = -Om_y*psi_z + Om_z*psi_y
-                    t355 = -Om0_y*psi_z + Om0_z*psi_y
-                    t356 = dpsi_x*e0
-                    t357 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                    t358 = e0*ep_x
-                    t359 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t360 = -Om0_y*ep_z + Om0_z*ep_y - Om0d_y*psi_z + Om0d_z*psi_y
-                    t361 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                    t362 = dpsi_x*t305
-                    t363 = ep_x*t309
-                    t364 = psi_x*t309
-                    t365 = psi_x*t305
-                    t366 = e0*psi_x
-                    t367 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t275 - t278 - t279
-                        - t282)
-                    t368 = (Om0_z*dep_y + Om0d_z*dpsi_y + dOm0_z*ep_y + dOm0d_z*psi_y - t276 -
-                        t277 - t280 - t281)
-                    t369 = psi_x*t347
-                    t370 = psi_x*t350
-                    detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om0d_z*dpsi_y +
-                        (0.5)*Om_z*dep_y + dA_x + (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y - dOm0d_x +
-                        (0.5)*dOm0d_z*psi_y + (0.5)*dOm_z*ep_y + dep_y*e0*t287 + dep_z*e0*t288 +
-                        dpsi_y*e0*t297 + dpsi_y*e1*t287*t304 + dpsi_z*e0*t298 +
-                        dpsi_z*e1*t288*t304 + e0*ep_y*t299 + e0*ep_z*t300 + e0*psi_y*t336 +
-                        e0*psi_z*t345 + e1*ep_y*t287*t308 + e1*ep_z*t288*t308 + e1*psi_y*t287*t346
-                        + e1*psi_y*t297*t308 + e1*psi_y*t299*t304 + e1*psi_z*t288*t346 +
-                        e1*psi_z*t298*t308 + e1*psi_z*t300*t304 + e2*psi_y*t287*t304*t308 +
-                        e2*psi_z*t288*t304*t308 - psi_y*t348 - psi_y*t351 - 0.5*t275 - 0.5*t276 -
-                        0.5*t277 - 0.5*t278 - 0.5*t279 - 0.5*t280 - 0.5*t281 - 0.5*t282 -
-                        t283*t284 - t283*t306 - t283*t310 - t285*t286 - t285*t307 - t285*t311 -
-                        t285*t349 - t285*t352 - t289*t290 - t289*t312 - t291*t292 - t291*t314 -
-                        t293*t294 - t293*t313 - t295*t296 - t295*t315 - t320*t321 - t330*t331)
-                    detad[j3 + 1] = (dA_y - dOm0d_y + psi_x*t348 + psi_x*t351 + t283*t353 +
-                        t283*t362 + t283*t363 + t286*t354 - t286*t355 - t287*t353 - t287*t362 -
-                        t287*t363 - t287*t369 - t287*t370 + t289*t356 + t289*t364 + t292*t357 -
-                        t292*t360 + t293*t358 + t293*t365 + t296*t359 - t296*t361 - t297*t356 -
-                        t297*t364 - t299*t358 - t299*t365 + t307*t354 - t307*t355 + t311*t354 -
-                        t311*t355 + t314*t357 - t314*t360 + t315*t359 - t315*t361 + t320*t366 +
-                        (0.5)*t322 + (0.5)*t323 + (0.5)*t324 + (0.5)*t325 - 0.5*t326 - 0.5*t327 -
-                        0.5*t328 - 0.5*t329 + t331*t367 - t331*t368 - t336*t366 + (0.5)*t337 +
-                        (0.5)*t338 + (0.5)*t339 + (0.5)*t340 - 0.5*t341 - 0.5*t342 - 0.5*t343 -
-                        0.5*t344 + t349*t354 - t349*t355 + t352*t354 - t352*t355)
-                    detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om0d_y*dpsi_x +
-                        (0.5)*Om_y*dep_x + (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x +
-                        (0.5)*dOm0d_y*psi_x - dOm0d_z + (0.5)*dOm_y*ep_x + dep_x*e0*t285 +
-                        dep_y*e0*t355 + dpsi_x*e0*t291 + dpsi_x*e1*t285*t304 + dpsi_y*e0*t360 +
-                        dpsi_y*e1*t304*t355 + e0*ep_x*t295 + e0*ep_y*t361 + e0*psi_x*t330 +
-                        e0*psi_y*t368 + e1*ep_x*t285*t308 + e1*ep_y*t308*t355 + e1*psi_x*t285*t346
-                        + e1*psi_x*t291*t308 + e1*psi_x*t295*t304 + e1*psi_y*t304*t361 +
-                        e1*psi_y*t308*t360 + e1*psi_y*t346*t355 + e2*psi_x*t285*t304*t308 +
-                        e2*psi_y*t304*t308*t355 - psi_y*t347*t354 - psi_y*t350*t354 - t284*t354 -
-                        t288*t353 - t288*t362 - t288*t363 - t288*t369 - t288*t370 - t290*t357 -
-                        t294*t359 - t298*t356 - t298*t364 - t300*t358 - t300*t365 - t306*t354 -
-                        t310*t354 - t312*t357 - t313*t359 - 0.5*t316 - 0.5*t317 - 0.5*t318 -
-                        0.5*t319 - t321*t367 - 0.5*t332 - 0.5*t333 - 0.5*t334 - 0.5*t335 -
-                        t345*t366)
+                    t225 = -Om0_y + Om_y
+                    t226 = -Om0_x + Om_x
+                    t227 = psi_x*t225 - psi_y*t226
+                    t228 = -Om0_z + Om_z
+                    t229 = -psi_x*t228 + psi_z*t226
+                    t230 = A_y - Om0d_y
+                    t231 = A_x - Om0d_x
+                    t232 = ep_x*t225 - ep_y*t226 + psi_x*t230 - psi_y*t231
+                    t233 = -dOm0_y + dOm_y
+                    t234 = -dOm0_x + dOm_x
+                    t235 = dpsi_x*t225 - dpsi_y*t226 + psi_x*t233 - psi_y*t234
+                    t236 = A_z - Om0d_z
+                    t237 = -ep_x*t228 + ep_z*t226 - psi_x*t236 + psi_z*t231
+                    t238 = -dOm0_z + dOm_z
+                    t239 = -dpsi_x*t228 + dpsi_z*t226 - psi_x*t238 + psi_z*t234
+                    t240 = dA_y - dOm0d_y
+                    t241 = dA_x - dOm0d_x
+                    t242 = (dep_x*t225 - dep_y*t226 + dpsi_x*t230 - dpsi_y*t231 + ep_x*t233 -
+                        ep_y*t234 + psi_x*t240 - psi_y*t241)
+                    t243 = dA_z - dOm0d_z
+                    t244 = (-dep_x*t228 + dep_z*t226 - dpsi_x*t236 + dpsi_z*t231 - ep_x*t238 +
+                        ep_z*t234 - psi_x*t243 + psi_z*t241)
+                    t245 = (0.5)*Om0_z + (0.5)*Om_z
+                    t246 = (0.5)*A_z + (0.5)*Om0d_z
+                    t247 = (0.5)*dOm0_z + (0.5)*dOm_z
+                    t248 = (0.5)*dA_z + (0.5)*dOm0d_z
+                    t249 = Om0_y + Om_y
+                    t250 = (0.5)*dep_z
+                    t251 = A_y + Om0d_y
+                    t252 = (0.5)*dpsi_z
+                    t253 = dOm0_y + dOm_y
+                    t254 = (0.5)*ep_z
+                    t255 = dA_y + dOm0d_y
+                    t256 = (0.5)*psi_z
+                    t257 = psi_y*t227 - psi_z*t229
+                    t258 = 2*psi_x
+                    t259 = 2*psi_y
+                    t260 = 2*psi_z
+                    t261 = (e1*(dep_x*t258 + dep_y*t259 + dep_z*t260 + 2*dpsi_x*ep_x +
+                        2*dpsi_y*ep_y + 2*dpsi_z*ep_z))
+                    t262 = dpsi_x*t258 + dpsi_y*t259 + dpsi_z*t260
+                    t263 = e1*t262
+                    t264 = ep_x*t258 + ep_y*t259 + ep_z*t260
+                    t265 = e1*t264
+                    t266 = e2*t262*t264
+                    t267 = psi_y*t228 - psi_z*t225
+                    t268 = ep_y*t228 - ep_z*t225 + psi_y*t236 - psi_z*t230
+                    t269 = dpsi_y*t228 - dpsi_z*t225 + psi_y*t238 - psi_z*t233
+                    t270 = (dep_y*t228 - dep_z*t225 + dpsi_y*t236 - dpsi_z*t230 + ep_y*t238 -
+                        ep_z*t233 + psi_y*t243 - psi_z*t240)
+                    t271 = Om0_x + Om_x
+                    t272 = A_x + Om0d_x
+                    t273 = dOm0_x + dOm_x
+                    t274 = dA_x + dOm0d_x
+                    t275 = -psi_x*t227 + psi_z*t267
+                    t276 = psi_x*t229 - psi_y*t267
+                    detad[j3] = (dep_y*t245 + dpsi_y*t246 + e0*(dep_y*t227 - dep_z*t229 +
+                        dpsi_y*t232 - dpsi_z*t237 + ep_y*t235 - ep_z*t239 + psi_y*t242 -
+                        psi_z*t244) + ep_y*t247 + psi_y*t248 + t241 - t249*t250 - t251*t252 -
+                        t253*t254 - t255*t256 + t257*t261 + t257*t266 + t263*(ep_y*t227 -
+                        ep_z*t229 + psi_y*t232 - psi_z*t237) + t265*(dpsi_y*t227 - dpsi_z*t229 +
+                        psi_y*t235 - psi_z*t239))
+                    detad[j3 + 1] = (-dep_x*t245 - dpsi_x*t246 + e0*(-dep_x*t227 + dep_z*t267 -
+                        dpsi_x*t232 + dpsi_z*t268 - ep_x*t235 + ep_z*t269 - psi_x*t242 +
+                        psi_z*t270) - ep_x*t247 - psi_x*t248 + t240 + t250*t271 + t252*t272 +
+                        t254*t273 + t256*t274 + t261*t275 + t263*(-ep_x*t227 + ep_z*t267 -
+                        psi_x*t232 + psi_z*t268) + t265*(-dpsi_x*t227 + dpsi_z*t267 - psi_x*t235 +
+                        psi_z*t269) + t266*t275)
+                    detad[j3 + 2] = ((0.5)*dep_x*t249 - 0.5*dep_y*t271 + (0.5)*dpsi_x*t251 -
+                        0.5*dpsi_y*t272 + e0*(dep_x*t229 - dep_y*t267 + dpsi_x*t237 - dpsi_y*t268
+                        + ep_x*t239 - ep_y*t269 + psi_x*t244 - psi_y*t270) + (0.5)*ep_x*t253 -
+                        0.5*ep_y*t273 + (0.5)*psi_x*t255 - 0.5*psi_y*t274 + t243 + t261*t276 +
+                        t263*(ep_x*t229 - ep_y*t267 + psi_x*t237 - psi_y*t268) + t265*(dpsi_x*t229
+                        - dpsi_y*t267 + psi_x*t239 - psi_y*t269) + t266*t276)
                 # differential: rate: rates of the internal modes
                 for k in range(MODES, n):
                     dam = dae[k]
@@ -1561,12 +1432,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7],
                     turn[8])
                 dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-                t371 = da0_x - dgamma_x
-                t372 = da0_y - dgamma_y
-                t373 = da0_z - dgamma_z
-                dzdd[N] = t371*turn_xx + t372*turn_yx + t373*turn_zx
-                dzdd[N + 1] = t371*turn_xy + t372*turn_yy + t373*turn_zy
-                dzdd[N + 2] = t371*turn_xz + t372*turn_yz + t373*turn_zz
+                t277 = da0_x - dgamma_x
+                t278 = da0_y - dgamma_y
+                t279 = da0_z - dgamma_z
+                dzdd[N] = t277*turn_xx + t278*turn_yx + t279*turn_zx
+                dzdd[N + 1] = t277*turn_xy + t278*turn_yy + t279*turn_zy
+                dzdd[N + 2] = t277*turn_xz + t278*turn_yz + t279*turn_zz
                 dzdd[N + 3] = dOm0d_x*turn_xx + dOm0d_y*turn_yx + dOm0d_z*turn_zx
                 dzdd[N + 4] = dOm0d_x*turn_xy + dOm0d_y*turn_yy + dOm0d_z*turn_zy
                 dzdd[N + 5] = dOm0d_x*turn_xz + dOm0d_y*turn_yz + dOm0d_z*turn_zz
@@ -1591,15 +1462,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t374 = X_z + u_z
-                    t375 = X_y + u_y
-                    t376 = X_x + u_x
+                    t280 = X_z + u_z
+                    t281 = X_y + u_y
+                    t282 = X_x + u_x
                     dF_x += -df_x
                     dF_y += -df_y
                     dF_z += -df_z
-                    dW_x += df_y*t374 - df_z*t375 - du_y*f_z + du_z*f_y
-                    dW_y += -df_x*t374 + df_z*t376 + du_x*f_z - du_z*f_x
-                    dW_z += df_x*t375 - df_y*t376 - du_x*f_y + du_y*f_x
+                    dW_x += df_y*t280 - df_z*t281 - du_y*f_z + du_z*f_y
+                    dW_y += -df_x*t280 + df_z*t282 + du_x*f_z - du_z*f_x
+                    dW_z += df_x*t281 - df_y*t282 - du_x*f_y + du_y*f_x
                 # differential: inertia and weight on the frame
                 turn_xx, turn_xy, turn_xz, turn_yx, turn_yy, turn_yz, turn_zx, turn_zy, turn_zz = (
                     turn[0], turn[1], turn[2], turn[3], turn[4], turn[5], turn[6], turn[7],
@@ -1621,25 +1492,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t377 = -m_x*psi_y + m_y*psi_x
-                    t378 = m_x*psi_z - m_z*psi_x
-                    t379 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t380 = dm_x*psi_z
-                    t381 = dpsi_z*m_x
-                    t382 = -dm_z*psi_x - dpsi_x*m_z + t380 + t381
-                    t383 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t384 = e1*t383
-                    t385 = -m_y*psi_z + m_z*psi_y
-                    t386 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t377 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t378 + (0.5)*dpsi_z*m_y - e0*psi_y*t379 +
-                        e0*psi_z*t382 + e1*psi_z*t378*t383 - psi_y*t377*t384)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t377 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t385 + e0*psi_x*t379 - e0*psi_z*t386 + e1*psi_x*t377*t383 -
-                        psi_z*t384*t385 - 0.5*t380 - 0.5*t381)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t378 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t385 + (0.5)*dpsi_y*m_x - e0*psi_x*t382 +
-                        e0*psi_y*t386 + e1*psi_y*t383*t385 - psi_x*t378*t384)
+                    t283 = -m_x*psi_y + m_y*psi_x
+                    t284 = m_x*psi_z - m_z*psi_x
+                    t285 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t286 = dm_x*psi_z
+                    t287 = dpsi_z*m_x
+                    t288 = -dm_z*psi_x - dpsi_x*m_z + t286 + t287
+                    t289 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t290 = e1*t289
+                    t291 = -m_y*psi_z + m_z*psi_y
+                    t292 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t283 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t284 + (0.5)*dpsi_z*m_y - e0*psi_y*t285 +
+                        e0*psi_z*t288 + e1*psi_z*t284*t289 - psi_y*t283*t290)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t283 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t291 + e0*psi_x*t285 - e0*psi_z*t292 + e1*psi_x*t283*t289 -
+                        psi_z*t290*t291 - 0.5*t286 - 0.5*t287)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t284 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t291 + (0.5)*dpsi_y*m_x - e0*psi_x*t288 +
+                        e0*psi_y*t292 + e1*psi_y*t289*t291 - psi_x*t284*t290)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for i in range(N_POSITIONS):
@@ -1647,26 +1518,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    t387 = X_x*wp_y - X_y*wp_x
-                    t388 = -X_x*wp_z + X_z*wp_x
-                    t389 = X_y*wp_z - X_z*wp_y
-                    rhs_x += -fit*(du_y*t387 - du_z*t388)
-                    rhs_y += -fit*(-du_x*t387 + du_z*t389)
-                    rhs_z += -fit*(du_x*t388 - du_y*t389)
-                t390 = dW_x + rhs_x
-                t391 = dW_y + rhs_y
-                t392 = dW_z + rhs_z
-                dwp_x = Bxx*t390 + Byx*t391 + Bzx*t392
-                dwp_y = Bxy*t390 + Byy*t391 + Bzy*t392
-                dwp_z = Bxz*t390 + Byz*t391 + Bzz*t392
+                    t293 = X_x*wp_y - X_y*wp_x
+                    t294 = -X_x*wp_z + X_z*wp_x
+                    t295 = X_y*wp_z - X_z*wp_y
+                    rhs_x += -fit*(du_y*t293 - du_z*t294)
+                    rhs_y += -fit*(-du_x*t293 + du_z*t295)
+                    rhs_z += -fit*(du_x*t294 - du_y*t295)
+                t296 = dW_x + rhs_x
+                t297 = dW_y + rhs_y
+                t298 = dW_z + rhs_z
+                dwp_x = Bxx*t296 + Byx*t297 + Bzx*t298
+                dwp_y = Bxy*t296 + Byy*t297 + Bzy*t298
+                dwp_z = Bxz*t296 + Byz*t297 + Bzz*t298
                 # differential: force on the origin, through the frame
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    t393 = dwp_z*fit
-                    dF_x += -X_y*t393 + X_z*dwp_y*fit
-                    dF_y += X_x*t393 - X_z*dwp_x*fit
+                    t299 = dwp_z*fit
+                    dF_x += -X_y*t299 + X_z*dwp_y*fit
+                    dF_y += X_x*t299 - X_z*dwp_x*fit
                     dF_z += -X_x*dwp_y*fit + X_y*dwp_x*fit
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
@@ -1675,10 +1546,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     alpha = alphas[i]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t394 = dwp_z*fit
-                    t395 = X_z*fit
-                    dh[i3] = X_y*t394 + alpha*dF_x + df_x - dwp_y*t395
-                    dh[i3 + 1] = -X_x*t394 + alpha*dF_y + df_y + dwp_x*t395
+                    t300 = dwp_z*fit
+                    t301 = X_z*fit
+                    dh[i3] = X_y*t300 + alpha*dF_x + df_x - dwp_y*t301
+                    dh[i3 + 1] = -X_x*t300 + alpha*dF_y + df_y + dwp_x*t301
                     dh[i3 + 2] = X_x*dwp_y*fit - X_y*dwp_x*fit + alpha*dF_z + df_z
                 # differential: force on the nodes, left in frame axes
                 for i in range(N_POSITIONS):
@@ -1697,33 +1568,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t396 = dm_y*psi_z
-                    t397 = dpsi_z*m_y
-                    t398 = -m_x*psi_y + m_y*psi_x
-                    t399 = e0*t398
-                    t400 = m_x*psi_z - m_z*psi_x
-                    t401 = dpsi_z*e0
-                    t402 = dm_x*psi_y
-                    t403 = dpsi_y*m_x
-                    t404 = e0*(dm_y*psi_x + dpsi_x*m_y - t402 - t403)
-                    t405 = dm_x*psi_z
-                    t406 = dpsi_z*m_x
-                    t407 = dm_z*psi_x
-                    t408 = dpsi_x*m_z
-                    t409 = t405 + t406 - t407 - t408
-                    t410 = e0*psi_z
-                    t411 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t412 = t398*t411
-                    t413 = psi_z*t411
-                    t414 = -m_y*psi_z + m_z*psi_y
-                    t415 = dm_z*psi_y + dpsi_y*m_z - t396 - t397
-                    dg[j3] = (dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t399 + psi_y*t404 +
-                        psi_y*t412 + (0.5)*t396 + (0.5)*t397 - t400*t401 - t400*t413 - t409*t410)
-                    dg[j3 + 1] = (dm_y - dpsi_x*t399 - psi_x*t404 - psi_x*t412 + t401*t414 -
-                        0.5*t405 - 0.5*t406 + (0.5)*t407 + (0.5)*t408 + t410*t415 + t413*t414)
-                    dg[j3 + 2] = (-0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t400 - 0.5*dpsi_x*m_y -
-                        dpsi_y*e0*t414 + e0*psi_x*t409 - e0*psi_y*t415 + psi_x*t400*t411 -
-                        psi_y*t411*t414 + (0.5)*t402 + (0.5)*t403)
+                    t302 = dm_y*psi_z
+                    t303 = dpsi_z*m_y
+                    t304 = -m_x*psi_y + m_y*psi_x
+                    t305 = e0*t304
+                    t306 = m_x*psi_z - m_z*psi_x
+                    t307 = dpsi_z*e0
+                    t308 = dm_x*psi_y
+                    t309 = dpsi_y*m_x
+                    t310 = e0*(dm_y*psi_x + dpsi_x*m_y - t308 - t309)
+                    t311 = dm_x*psi_z
+                    t312 = dpsi_z*m_x
+                    t313 = dm_z*psi_x
+                    t314 = dpsi_x*m_z
+                    t315 = t311 + t312 - t313 - t314
+                    t316 = e0*psi_z
+                    t317 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t318 = t304*t317
+                    t319 = psi_z*t317
+                    t320 = -m_y*psi_z + m_z*psi_y
+                    t321 = dm_z*psi_y + dpsi_y*m_z - t302 - t303
+                    dg[j3] = (dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t305 + psi_y*t310 +
+                        psi_y*t318 + (0.5)*t302 + (0.5)*t303 - t306*t307 - t306*t319 - t315*t316)
+                    dg[j3 + 1] = (dm_y - dpsi_x*t305 - psi_x*t310 - psi_x*t318 + t307*t320 -
+                        0.5*t311 - 0.5*t312 + (0.5)*t313 + (0.5)*t314 + t316*t321 + t319*t320)
+                    dg[j3 + 2] = (-0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t306 - 0.5*dpsi_x*m_y -
+                        dpsi_y*e0*t320 + e0*psi_x*t315 - e0*psi_y*t321 + psi_x*t306*t317 -
+                        psi_y*t317*t320 + (0.5)*t308 + (0.5)*t309)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

@@ -65,8 +65,8 @@ WORK_ROWS = 38
 WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (947, 263, 410, 2),
-              "column": (1161, 381, 1229, 2)}
+OPERATIONS = {"residual": (947, 263, 290, 2),
+              "column": (1161, 381, 771, 2)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + (
     Part("columns", (1,), "columns of C: n of a damped body, else none"),
     Part("Jc", ("pairs",), "moments of inertia about the centre of mass, at rest"),
@@ -269,29 +269,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
             e0 = e0s[j]
-            t18 = Om0_y*psi_z
-            t19 = Om_y*psi_z
-            t20 = Om0_x*psi_y
-            t21 = Om0_y*psi_x - t20
-            t22 = e0*psi_y
-            t23 = Om_x*psi_z
-            t24 = Om_z*psi_x
-            t25 = t23 - t24
-            t26 = e0*psi_z
-            t27 = Om_x*psi_y
-            t28 = Om_y*psi_x - t27
-            t29 = Om0_x*psi_z
-            t30 = Om0_z*psi_x
-            t31 = t29 - t30
-            t32 = e0*psi_x
-            t33 = Om_z*psi_y - t19
-            t34 = Om0_z*psi_y - t18
-            eta[j3] = (-Om0_x + (0.5)*Om0_z*psi_y + Om_x + (0.5)*Om_z*psi_y + e0*psi_y*t28 +
-                e0*psi_z*t31 - 0.5*t18 - 0.5*t19 - t21*t22 - t25*t26)
-            eta[j3 + 1] = (-Om0_y + Om_y + t21*t32 + (0.5)*t23 - 0.5*t24 + t26*t33 - t26*t34 -
-                t28*t32 + (0.5)*t29 - 0.5*t30)
-            eta[j3 + 2] = ((0.5)*Om0_y*psi_x - Om0_z + (0.5)*Om_y*psi_x + Om_z + e0*psi_x*t25 +
-                e0*psi_y*t34 - 0.5*t20 - t22*t33 - 0.5*t27 - t31*t32)
+            t18 = (0.5)*Om0_z + (0.5)*Om_z
+            t19 = Om0_y + Om_y
+            t20 = (0.5)*psi_z
+            t21 = -Om0_y + Om_y
+            t22 = -Om0_x + Om_x
+            t23 = psi_x*t21 - psi_y*t22
+            t24 = -Om0_z + Om_z
+            t25 = -psi_x*t24 + psi_z*t22
+            t26 = Om0_x + Om_x
+            t27 = psi_y*t24 - psi_z*t21
+            eta[j3] = -Om0_x + Om_x + e0*(psi_y*t23 - psi_z*t25) + psi_y*t18 - t19*t20
+            eta[j3 + 1] = -Om0_y + Om_y + e0*(-psi_x*t23 + psi_z*t27) - psi_x*t18 + t20*t26
+            eta[j3 + 2] = (-Om0_z + Om_z + e0*(psi_x*t25 - psi_y*t27) + (0.5)*psi_x*t19 -
+                0.5*psi_y*t26)
         # rates of the internal modes
         for k in range(MODES, n):
             vm = ve[k]
@@ -315,9 +306,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             fit = fits[i]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             eud_x, eud_y, eud_z = etad[i3], etad[i3 + 1], etad[i3 + 2]
-            t35 = eud_z*fit
-            rhs_x += -X_y*t35 + X_z*eud_y*fit
-            rhs_y += X_x*t35 - X_z*eud_x*fit
+            t28 = eud_z*fit
+            rhs_x += -X_y*t28 + X_z*eud_y*fit
+            rhs_y += X_x*t28 - X_z*eud_x*fit
             rhs_z += -X_x*eud_y*fit + X_y*eud_x*fit
         Om0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
         Om0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
@@ -328,12 +319,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             eud_x, eud_y, eud_z = etad[i3], etad[i3 + 1], etad[i3 + 2]
-            t36 = X_y + u_y
-            t37 = X_z + u_z
-            t38 = X_x + u_x
-            etad[i3] = -Om0d_y*t37 + Om0d_z*t36 + eud_x
-            etad[i3 + 1] = Om0d_x*t37 - Om0d_z*t38 + eud_y
-            etad[i3 + 2] = -Om0d_x*t36 + Om0d_y*t38 + eud_z
+            t29 = X_y + u_y
+            t30 = X_z + u_z
+            t31 = X_x + u_x
+            etad[i3] = -Om0d_y*t30 + Om0d_z*t29 + eud_x
+            etad[i3 + 1] = Om0d_x*t30 - Om0d_z*t31 + eud_y
+            etad[i3 + 2] = -Om0d_x*t29 + Om0d_y*t31 + eud_z
         # rate: rates of the elastic rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
@@ -343,56 +334,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             A_x, A_y, A_z = ae[j3], ae[j3 + 1], ae[j3 + 2]
             e0 = e0s[j]
             e1 = e1s[j]
-            t39 = A_y*psi_z
-            t40 = Om0_y*ep_z
-            t41 = Om0d_y*psi_z
-            t42 = Om_y*ep_z
-            t43 = -Om_x*psi_y + Om_y*psi_x
-            t44 = e0*ep_y
-            t45 = Om0_x*psi_z - Om0_z*psi_x
-            t46 = e0*ep_z
-            t47 = -Om0_x*psi_y + Om0_y*psi_x
-            t48 = Om_x*psi_z - Om_z*psi_x
-            t49 = A_x*psi_y
-            t50 = Om_x*ep_y
-            t51 = A_y*psi_x + Om_y*ep_x - t49 - t50
-            t52 = e0*psi_y
-            t53 = Om0_x*ep_z
-            t54 = Om0d_x*psi_z
-            t55 = Om0_z*ep_x
-            t56 = Om0d_z*psi_x
-            t57 = t53 + t54 - t55 - t56
-            t58 = e0*psi_z
-            t59 = Om0_x*ep_y
-            t60 = Om0d_x*psi_y
-            t61 = Om0_y*ep_x + Om0d_y*psi_x - t59 - t60
-            t62 = A_x*psi_z
-            t63 = Om_x*ep_z
-            t64 = A_z*psi_x
-            t65 = Om_z*ep_x
-            t66 = t62 + t63 - t64 - t65
-            t67 = 2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z
-            t68 = e1*t67
-            t69 = psi_y*t68
-            t70 = psi_z*t68
-            t71 = e0*ep_x
-            t72 = -Om_y*psi_z + Om_z*psi_y
-            t73 = -Om0_y*psi_z + Om0_z*psi_y
-            t74 = e0*psi_x
-            t75 = A_z*psi_y + Om_z*ep_y - t39 - t42
-            t76 = Om0_z*ep_y + Om0d_z*psi_y - t40 - t41
-            t77 = psi_x*t68
-            etad[j3] = (A_x + (0.5)*A_z*psi_y + (0.5)*Om0_z*ep_y - Om0d_x + (0.5)*Om0d_z*psi_y +
-                (0.5)*Om_z*ep_y - 0.5*t39 - 0.5*t40 - 0.5*t41 - 0.5*t42 + t43*t44 + t43*t69 -
-                t44*t47 + t45*t46 + t45*t70 - t46*t48 - t47*t69 - t48*t70 + t51*t52 - t52*t61 +
-                t57*t58 - t58*t66)
-            etad[j3 + 1] = (A_y - Om0d_y - t43*t71 - t43*t77 + t46*t72 - t46*t73 + t47*t71 +
-                t47*t77 - t51*t74 + (0.5)*t53 + (0.5)*t54 - 0.5*t55 - 0.5*t56 + t58*t75 - t58*t76
-                + t61*t74 + (0.5)*t62 + (0.5)*t63 - 0.5*t64 - 0.5*t65 + t70*t72 - t70*t73)
-            etad[j3 + 2] = ((0.5)*A_y*psi_x + A_z + (0.5)*Om0_y*ep_x + (0.5)*Om0d_y*psi_x - Om0d_z
-                + (0.5)*Om_y*ep_x + e0*ep_x*t48 + e0*ep_y*t73 + e0*psi_x*t66 + e0*psi_y*t76 +
-                e1*psi_x*t48*t67 + e1*psi_y*t67*t73 - t44*t72 - t45*t71 - t45*t77 - 0.5*t49 -
-                0.5*t50 - t52*t75 - t57*t74 - 0.5*t59 - 0.5*t60 - t69*t72)
+            t32 = -Om0_y + Om_y
+            t33 = -Om0_x + Om_x
+            t34 = psi_x*t32 - psi_y*t33
+            t35 = -Om0_z + Om_z
+            t36 = -psi_x*t35 + psi_z*t33
+            t37 = A_y - Om0d_y
+            t38 = A_x - Om0d_x
+            t39 = ep_x*t32 - ep_y*t33 + psi_x*t37 - psi_y*t38
+            t40 = A_z - Om0d_z
+            t41 = -ep_x*t35 + ep_z*t33 - psi_x*t40 + psi_z*t38
+            t42 = (0.5)*Om0_z + (0.5)*Om_z
+            t43 = (0.5)*A_z + (0.5)*Om0d_z
+            t44 = Om0_y + Om_y
+            t45 = (0.5)*ep_z
+            t46 = A_y + Om0d_y
+            t47 = (0.5)*psi_z
+            t48 = e1*(2*ep_x*psi_x + 2*ep_y*psi_y + 2*ep_z*psi_z)
+            t49 = psi_y*t35 - psi_z*t32
+            t50 = ep_y*t35 - ep_z*t32 + psi_y*t40 - psi_z*t37
+            t51 = Om0_x + Om_x
+            t52 = A_x + Om0d_x
+            etad[j3] = (e0*(ep_y*t34 - ep_z*t36 + psi_y*t39 - psi_z*t41) + ep_y*t42 + psi_y*t43 +
+                t38 - t44*t45 - t46*t47 + t48*(psi_y*t34 - psi_z*t36))
+            etad[j3 + 1] = (e0*(-ep_x*t34 + ep_z*t49 - psi_x*t39 + psi_z*t50) - ep_x*t42 -
+                psi_x*t43 + t37 + t45*t51 + t47*t52 + t48*(-psi_x*t34 + psi_z*t49))
+            etad[j3 + 2] = (e0*(ep_x*t36 - ep_y*t49 + psi_x*t41 - psi_y*t50) + (0.5)*ep_x*t44 -
+                0.5*ep_y*t51 + (0.5)*psi_x*t46 - 0.5*psi_y*t52 + t40 + t48*(psi_x*t36 - psi_y*t49))
         # rate: rates of the internal modes
         for k in range(MODES, n):
             am = ae[k]
@@ -422,55 +390,55 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # angular velocity of the rigid part
         angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
         angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
-        t78 = -Om0_y*angle0_z + Om0_z*angle0_y
-        t79 = angle0_y*angle1_z - angle0_z*angle1_y
-        t80 = -Om0_x*angle0_y + Om0_y*angle0_x
-        t81 = Om0_x*angle0_z - Om0_z*angle0_x
-        t82 = angle0_x*angle1_y - angle0_y*angle1_x
-        t83 = -angle0_x*angle1_z + angle0_z*angle1_x
-        wc_x = (Om0_x + angle1_x - r1*t78 - r2*t79 + r2*(angle0_y*t80 - angle0_z*t81) +
-            r3*(angle0_y*t82 - angle0_z*t83))
-        wc_y = (Om0_y + angle1_y - r1*t81 - r2*t83 + r2*(-angle0_x*t80 + angle0_z*t78) +
-            r3*(-angle0_x*t82 + angle0_z*t79))
-        wc_z = (Om0_z + angle1_z - r1*t80 - r2*t82 + r2*(angle0_x*t81 - angle0_y*t78) +
-            r3*(angle0_x*t83 - angle0_y*t79))
+        t53 = -Om0_y*angle0_z + Om0_z*angle0_y
+        t54 = angle0_y*angle1_z - angle0_z*angle1_y
+        t55 = -Om0_x*angle0_y + Om0_y*angle0_x
+        t56 = Om0_x*angle0_z - Om0_z*angle0_x
+        t57 = angle0_x*angle1_y - angle0_y*angle1_x
+        t58 = -angle0_x*angle1_z + angle0_z*angle1_x
+        wc_x = (Om0_x + angle1_x - r1*t53 - r2*t54 + r2*(angle0_y*t55 - angle0_z*t56) +
+            r3*(angle0_y*t57 - angle0_z*t58))
+        wc_y = (Om0_y + angle1_y - r1*t56 - r2*t58 + r2*(-angle0_x*t55 + angle0_z*t53) +
+            r3*(-angle0_x*t57 + angle0_z*t54))
+        wc_z = (Om0_z + angle1_z - r1*t55 - r2*t57 + r2*(angle0_x*t56 - angle0_y*t53) +
+            r3*(angle0_x*t58 - angle0_y*t54))
         # its rate
         angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
         angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
         angle2_x, angle2_y, angle2_z = rigid2[3], rigid2[4], rigid2[5]
-        t84 = -Om0d_y*angle0_z + Om0d_z*angle0_y
-        t85 = angle0_y*angle2_z - angle0_z*angle2_y
-        t86 = -Om0d_x*angle0_y + Om0d_y*angle0_x
-        t87 = Om0d_x*angle0_z - Om0d_z*angle0_x
-        t88 = angle0_x*angle2_y - angle0_y*angle2_x
-        t89 = -angle0_x*angle2_z + angle0_z*angle2_x
-        t90 = angle0_x*angle1_y - angle0_y*angle1_x
-        t91 = -angle0_x*angle1_z + angle0_z*angle1_x
-        t92 = angle0_y*angle1_z - angle0_z*angle1_y
-        t93 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
-        t94 = t93*(-r3 + 2*r4)
-        t95 = angle0_y*t90 - angle0_z*t91
-        t96 = t93*(-r4 + 3*r5)
-        t97 = Om0_x*angle0_z - Om0_z*angle0_x
-        t98 = -Om0_x*angle0_y + Om0_y*angle0_x
-        t99 = -Om0_y*angle0_z + Om0_z*angle0_y
-        t100 = Om0_y - r1*t97 + r2*(-angle0_x*t98 + angle0_z*t99)
-        t101 = angle0_x*t91 - angle0_y*t92
-        t102 = angle1_z - r2*t90 + r3*t101
-        t103 = -angle0_x*t90 + angle0_z*t92
-        t104 = angle1_y - r2*t91 + r3*t103
-        t105 = Om0_z - r1*t98 + r2*(angle0_x*t97 - angle0_y*t99)
-        t106 = angle1_x - r2*t92 + r3*t95
-        t107 = Om0_x - r1*t99 + r2*(angle0_y*t98 - angle0_z*t97)
-        wcd_x = (Om0d_x + angle2_x - r1*t84 - r2*t85 + r2*(angle0_y*t86 - angle0_z*t87) +
-            r3*(angle0_y*t88 - angle0_z*t89) + r3*(angle1_y*t90 - angle1_z*t91) + t100*t102 -
-            t104*t105 - t92*t94 + t95*t96)
-        wcd_y = (Om0d_y + angle2_y - r1*t87 - r2*t89 + r2*(-angle0_x*t86 + angle0_z*t84) +
-            r3*(-angle0_x*t88 + angle0_z*t85) + r3*(-angle1_x*t90 + angle1_z*t92) - t102*t107 +
-            t103*t96 + t105*t106 - t91*t94)
-        wcd_z = (Om0d_z + angle2_z - r1*t86 - r2*t88 + r2*(angle0_x*t87 - angle0_y*t84) +
-            r3*(angle0_x*t89 - angle0_y*t85) + r3*(angle1_x*t91 - angle1_y*t92) - t100*t106 +
-            t101*t96 + t104*t107 - t90*t94)
+        t59 = -Om0d_y*angle0_z + Om0d_z*angle0_y
+        t60 = angle0_y*angle2_z - angle0_z*angle2_y
+        t61 = -Om0d_x*angle0_y + Om0d_y*angle0_x
+        t62 = Om0d_x*angle0_z - Om0d_z*angle0_x
+        t63 = angle0_x*angle2_y - angle0_y*angle2_x
+        t64 = -angle0_x*angle2_z + angle0_z*angle2_x
+        t65 = angle0_x*angle1_y - angle0_y*angle1_x
+        t66 = -angle0_x*angle1_z + angle0_z*angle1_x
+        t67 = angle0_y*angle1_z - angle0_z*angle1_y
+        t68 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
+        t69 = t68*(-r3 + 2*r4)
+        t70 = angle0_y*t65 - angle0_z*t66
+        t71 = t68*(-r4 + 3*r5)
+        t72 = Om0_x*angle0_z - Om0_z*angle0_x
+        t73 = -Om0_x*angle0_y + Om0_y*angle0_x
+        t74 = -Om0_y*angle0_z + Om0_z*angle0_y
+        t75 = Om0_y - r1*t72 + r2*(-angle0_x*t73 + angle0_z*t74)
+        t76 = angle0_x*t66 - angle0_y*t67
+        t77 = angle1_z - r2*t65 + r3*t76
+        t78 = -angle0_x*t65 + angle0_z*t67
+        t79 = angle1_y - r2*t66 + r3*t78
+        t80 = Om0_z - r1*t73 + r2*(angle0_x*t72 - angle0_y*t74)
+        t81 = angle1_x - r2*t67 + r3*t70
+        t82 = Om0_x - r1*t74 + r2*(angle0_y*t73 - angle0_z*t72)
+        wcd_x = (Om0d_x + angle2_x - r1*t59 - r2*t60 + r2*(angle0_y*t61 - angle0_z*t62) +
+            r3*(angle0_y*t63 - angle0_z*t64) + r3*(angle1_y*t65 - angle1_z*t66) - t67*t69 +
+            t70*t71 + t75*t77 - t79*t80)
+        wcd_y = (Om0d_y + angle2_y - r1*t62 - r2*t64 + r2*(-angle0_x*t61 + angle0_z*t59) +
+            r3*(-angle0_x*t63 + angle0_z*t60) + r3*(-angle1_x*t65 + angle1_z*t67) - t66*t69 +
+            t71*t78 - t77*t82 + t80*t81)
+        wcd_z = (Om0d_z + angle2_z - r1*t61 - r2*t63 + r2*(angle0_x*t62 - angle0_y*t59) +
+            r3*(angle0_x*t64 - angle0_y*t60) + r3*(angle1_x*t66 - angle1_y*t67) - t65*t69 +
+            t71*t76 - t75*t81 + t79*t82)
         # rate of its momentum and of the moment of it
         first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
         first1_x, first1_y, first1_z = rigid1[0], rigid1[1], rigid1[2]
@@ -479,26 +447,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         mass = masses[0]
         gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
         Jc_xx, Jc_yy, Jc_zz, Jc_xy, Jc_xz, Jc_yz = Jc[0], Jc[1], Jc[2], Jc[3], Jc[4], Jc[5]
-        t108 = 2*first1_z
-        t109 = 2*Om0_z
-        t110 = first0_z + mc_z
-        t111 = first0_y + mc_y
-        t112 = first0_x + mc_x
-        t113 = Om0_x*t111 - Om0_y*t112
-        t114 = -Om0_x*t110 + Om0_z*t112
-        t115 = Om0_y*t110 - Om0_z*t111
-        t116 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
-        t117 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
-        t118 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
-        Rt_x = (Om0_y*t108 + Om0_y*t113 - Om0_z*t114 + Om0d_y*t110 - Om0d_z*t111 - first1_y*t109 +
+        t83 = 2*first1_z
+        t84 = 2*Om0_z
+        t85 = first0_z + mc_z
+        t86 = first0_y + mc_y
+        t87 = first0_x + mc_x
+        t88 = Om0_x*t86 - Om0_y*t87
+        t89 = -Om0_x*t85 + Om0_z*t87
+        t90 = Om0_y*t85 - Om0_z*t86
+        t91 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
+        t92 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
+        t93 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
+        Rt_x = (Om0_y*t83 + Om0_y*t88 - Om0_z*t89 + Om0d_y*t85 - Om0d_z*t86 - first1_y*t84 +
             first2_x + mass*(a0_x - gamma_x))
-        Rt_y = (-Om0_x*t108 - Om0_x*t113 + Om0_z*t115 - Om0d_x*t110 + Om0d_z*t112 + first1_x*t109
-            + first2_y + mass*(a0_y - gamma_y))
-        Rt_z = (2*Om0_x*first1_y + Om0_x*t114 - 2*Om0_y*first1_x - Om0_y*t115 + Om0d_x*t111 -
-            Om0d_y*t112 + first2_z + mass*(a0_z - gamma_z))
-        Mc_x = Jc_xx*wcd_x + Jc_xy*wcd_y + Jc_xz*wcd_z + t116*wc_y - t117*wc_z
-        Mc_y = Jc_xy*wcd_x + Jc_yy*wcd_y + Jc_yz*wcd_z - t116*wc_x + t118*wc_z
-        Mc_z = Jc_xz*wcd_x + Jc_yz*wcd_y + Jc_zz*wcd_z + t117*wc_x - t118*wc_y
+        Rt_y = (-Om0_x*t83 - Om0_x*t88 + Om0_z*t90 - Om0d_x*t85 + Om0d_z*t87 + first1_x*t84 +
+            first2_y + mass*(a0_y - gamma_y))
+        Rt_z = (2*Om0_x*first1_y + Om0_x*t89 - 2*Om0_y*first1_x - Om0_y*t90 + Om0d_x*t86 -
+            Om0d_y*t87 + first2_z + mass*(a0_z - gamma_z))
+        Mc_x = Jc_xx*wcd_x + Jc_xy*wcd_y + Jc_xz*wcd_z + t91*wc_y - t92*wc_z
+        Mc_y = Jc_xy*wcd_x + Jc_yy*wcd_y + Jc_yz*wcd_z - t91*wc_x + t93*wc_z
+        Mc_z = Jc_xz*wcd_x + Jc_yz*wcd_y + Jc_zz*wcd_z + t92*wc_x - t93*wc_y
         # moment on the frame, forces on the first moment and mean rotation
         first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
         angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
@@ -507,25 +475,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
         mass = masses[0]
         Jc_xx, Jc_yy, Jc_zz, Jc_xy, Jc_xz, Jc_yz = Jc[0], Jc[1], Jc[2], Jc[3], Jc[4], Jc[5]
-        t119 = -Mc_y*angle0_z + Mc_z*angle0_y
-        t120 = 1/mass
-        t121 = first0_y + mc_y
-        t122 = first0_z + mc_z
-        t123 = -Mc_x*angle0_y + Mc_y*angle0_x
-        t124 = Mc_x*angle0_z - Mc_z*angle0_x
-        t125 = angle0_y*t123 - angle0_z*t124
-        t126 = first0_x + mc_x
-        t127 = -angle0_x*t123 + angle0_z*t119
-        t128 = angle0_x*t124 - angle0_y*t119
-        Rr_x = Mc_x + r1*t119 + r2*t125 + t120*(-Rt_y*t122 + Rt_z*t121)
-        Rr_y = Mc_y + r1*t124 + r2*t127 + t120*(Rt_x*t122 - Rt_z*t126)
-        Rr_z = Mc_z + r1*t123 + r2*t128 + t120*(-Rt_x*t121 + Rt_y*t126)
-        carried[0] = t120*(Rt_x - first2_x)
-        carried[1] = t120*(Rt_y - first2_y)
-        carried[2] = t120*(Rt_z - first2_z)
-        carried[3] = -Jc_xx*angle2_x - Jc_xy*angle2_y - Jc_xz*angle2_z + Mc_x + r2*t119 + r3*t125
-        carried[4] = -Jc_xy*angle2_x - Jc_yy*angle2_y - Jc_yz*angle2_z + Mc_y + r2*t124 + r3*t127
-        carried[5] = -Jc_xz*angle2_x - Jc_yz*angle2_y - Jc_zz*angle2_z + Mc_z + r2*t123 + r3*t128
+        t94 = -Mc_y*angle0_z + Mc_z*angle0_y
+        t95 = 1/mass
+        t96 = first0_y + mc_y
+        t97 = first0_z + mc_z
+        t98 = -Mc_x*angle0_y + Mc_y*angle0_x
+        t99 = Mc_x*angle0_z - Mc_z*angle0_x
+        t100 = angle0_y*t98 - angle0_z*t99
+        t101 = first0_x + mc_x
+        t102 = -angle0_x*t98 + angle0_z*t94
+        t103 = angle0_x*t99 - angle0_y*t94
+        Rr_x = Mc_x + r1*t94 + r2*t100 + t95*(-Rt_y*t97 + Rt_z*t96)
+        Rr_y = Mc_y + r1*t99 + r2*t102 + t95*(Rt_x*t97 - Rt_z*t101)
+        Rr_z = Mc_z + r1*t98 + r2*t103 + t95*(-Rt_x*t96 + Rt_y*t101)
+        carried[0] = t95*(Rt_x - first2_x)
+        carried[1] = t95*(Rt_y - first2_y)
+        carried[2] = t95*(Rt_z - first2_z)
+        carried[3] = -Jc_xx*angle2_x - Jc_xy*angle2_y - Jc_xz*angle2_z + Mc_x + r2*t94 + r3*t100
+        carried[4] = -Jc_xy*angle2_x - Jc_yy*angle2_y - Jc_yz*angle2_z + Mc_y + r2*t99 + r3*t102
+        carried[5] = -Jc_xz*angle2_x - Jc_yz*angle2_y - Jc_zz*angle2_z + Mc_z + r2*t98 + r3*t103
         # forces of the rigid part, conjugate to y
         add_block_times(rigid_columns, carried, s, n, 6, padded(n))
         # damping force, Cbar ydot
@@ -538,15 +506,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t129 = X_z + u_z
-            t130 = X_y + u_y
-            t131 = X_x + u_x
+            t104 = X_z + u_z
+            t105 = X_y + u_y
+            t106 = X_x + u_x
             F_x += -f_x
             F_y += -f_y
             F_z += -f_z
-            W_x += f_y*t129 - f_z*t130
-            W_y += -f_x*t129 + f_z*t131
-            W_z += f_x*t130 - f_y*t131
+            W_x += f_y*t104 - f_z*t105
+            W_y += -f_x*t104 + f_z*t106
+            W_z += f_x*t105 - f_y*t106
         # inertia and weight on the frame
         F_x += Rt_x
         F_y += Rt_y
@@ -560,29 +528,29 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t132 = -m_x*psi_y + m_y*psi_x
-            t133 = m_x*psi_z
-            t134 = -m_z*psi_x + t133
-            t135 = -m_y*psi_z + m_z*psi_y
-            W_x += -e0*psi_y*t132 + e0*psi_z*t134 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-            W_y += e0*psi_x*t132 - e0*psi_z*t135 - m_y + (0.5)*m_z*psi_x - 0.5*t133
-            W_z += -e0*psi_x*t134 + e0*psi_y*t135 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+            t107 = -m_x*psi_y + m_y*psi_x
+            t108 = m_x*psi_z
+            t109 = -m_z*psi_x + t108
+            t110 = -m_y*psi_z + m_z*psi_y
+            W_x += -e0*psi_y*t107 + e0*psi_z*t109 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+            W_y += e0*psi_x*t107 - e0*psi_z*t110 - m_y + (0.5)*m_z*psi_x - 0.5*t108
+            W_z += -e0*psi_x*t109 + e0*psi_y*t110 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
         # B^T wp = W
         rhs_x = rhs_y = rhs_z = 0.0
-        t136 = W_x + rhs_x
-        t137 = W_y + rhs_y
-        t138 = W_z + rhs_z
-        wp_x = Bxx*t136 + Byx*t137 + Bzx*t138
-        wp_y = Bxy*t136 + Byy*t137 + Bzy*t138
-        wp_z = Bxz*t136 + Byz*t137 + Bzz*t138
+        t111 = W_x + rhs_x
+        t112 = W_y + rhs_y
+        t113 = W_z + rhs_z
+        wp_x = Bxx*t111 + Byx*t112 + Bzx*t113
+        wp_y = Bxy*t111 + Byy*t112 + Bzy*t113
+        wp_z = Bxz*t111 + Byz*t112 + Bzz*t113
         # force on the origin, through the frame
         for i in range(N_POSITIONS):
             i3 = 3*i
             fit = fits[i]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-            t139 = fit*wp_z
-            F_x += -X_y*t139 + X_z*fit*wp_y
-            F_y += X_x*t139 - X_z*fit*wp_x
+            t114 = fit*wp_z
+            F_x += -X_y*t114 + X_z*fit*wp_y
+            F_y += X_x*t114 - X_z*fit*wp_x
             F_z += -X_x*fit*wp_y + X_y*fit*wp_x
         # force on the nodes in frame axes, (30), (57)
         for i in range(N_POSITIONS):
@@ -591,10 +559,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             alpha = alphas[i]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t140 = fit*wp_z
-            t141 = X_z*fit
-            h[i3] = F_x*alpha + X_y*t140 + f_x - t141*wp_y
-            h[i3 + 1] = F_y*alpha - X_x*t140 + f_y + t141*wp_x
+            t115 = fit*wp_z
+            t116 = X_z*fit
+            h[i3] = F_x*alpha + X_y*t115 + f_x - t116*wp_y
+            h[i3 + 1] = F_y*alpha - X_x*t115 + f_y + t116*wp_x
             h[i3 + 2] = F_z*alpha + X_x*fit*wp_y - X_y*fit*wp_x + f_z
         # force on the nodes
         for i in range(N_POSITIONS):
@@ -609,17 +577,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t142 = m_y*psi_z
-            t143 = m_x*psi_y
-            t144 = e0*(m_y*psi_x - t143)
-            t145 = m_x*psi_z
-            t146 = m_z*psi_x
-            t147 = t145 - t146
-            t148 = e0*psi_z
-            t149 = m_z*psi_y - t142
-            g[j3] = m_x - 0.5*m_z*psi_y + psi_y*t144 + (0.5)*t142 - t147*t148
-            g[j3 + 1] = m_y - psi_x*t144 - 0.5*t145 + (0.5)*t146 + t148*t149
-            g[j3 + 2] = e0*psi_x*t147 - e0*psi_y*t149 - 0.5*m_y*psi_x + m_z + (0.5)*t143
+            t117 = m_y*psi_z
+            t118 = m_x*psi_y
+            t119 = e0*(m_y*psi_x - t118)
+            t120 = m_x*psi_z
+            t121 = m_z*psi_x
+            t122 = t120 - t121
+            t123 = e0*psi_z
+            t124 = m_z*psi_y - t117
+            g[j3] = m_x - 0.5*m_z*psi_y + psi_y*t119 + (0.5)*t117 - t122*t123
+            g[j3 + 1] = m_y - psi_x*t119 - 0.5*t120 + (0.5)*t121 + t123*t124
+            g[j3 + 2] = e0*psi_x*t122 - e0*psi_y*t124 - 0.5*m_y*psi_x + m_z + (0.5)*t118
         # force of the internal modes
         for k in range(MODES, n):
             fm = s[k]
@@ -648,47 +616,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             Jc_xx, Jc_yy, Jc_zz, Jc_xy, Jc_xz, Jc_yz = Jc[0], Jc[1], Jc[2], Jc[3], Jc[4], Jc[5]
             moving = squares[0]
             elastic = squares[1]
-            t150 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
-            t151 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
-            t152 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
-            t153 = 1/mass
-            t154 = first0_y + mc_y
-            t155 = first0_x + mc_x
-            t156 = Om0_x*t154 - Om0_y*t155 + first1_z + mass*v0_z
-            t157 = first0_z + mc_z
-            t158 = -Om0_x*t157 + Om0_z*t155 + first1_y + mass*v0_y
-            t159 = Om0_y*t157 - Om0_z*t154 + first1_x + mass*v0_x
-            t160 = mass*x0_x
-            t161 = mass*x0_y
-            t162 = mass*x0_z
-            t163 = R0_xx*t159 + R0_xy*t158 + R0_xz*t156
-            t164 = R0_yx*t159 + R0_yy*t158 + R0_yz*t156
-            t165 = R0_zx*t159 + R0_zy*t158 + R0_zz*t156
-            t166 = angle0_y*t152 - angle0_z*t151
-            t167 = angle0_x*t151 - angle0_y*t150
-            t168 = -angle0_x*t152 + angle0_z*t150
-            t169 = (r1*t166 + r2*(angle0_y*t167 - angle0_z*t168) + t150 + t153*(t154*t156 -
-                t157*t158))
-            t170 = (r1*t168 + r2*(-angle0_x*t167 + angle0_z*t166) + t151 + t153*(-t155*t156 +
-                t157*t159))
-            t171 = (r1*t167 + r2*(angle0_x*t168 - angle0_y*t166) + t152 + t153*(-t154*t159 +
-                t155*t158))
+            t125 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
+            t126 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
+            t127 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
+            t128 = 1/mass
+            t129 = first0_y + mc_y
+            t130 = first0_x + mc_x
+            t131 = Om0_x*t129 - Om0_y*t130 + first1_z + mass*v0_z
+            t132 = first0_z + mc_z
+            t133 = -Om0_x*t132 + Om0_z*t130 + first1_y + mass*v0_y
+            t134 = Om0_y*t132 - Om0_z*t129 + first1_x + mass*v0_x
+            t135 = mass*x0_x
+            t136 = mass*x0_y
+            t137 = mass*x0_z
+            t138 = R0_xx*t134 + R0_xy*t133 + R0_xz*t131
+            t139 = R0_yx*t134 + R0_yy*t133 + R0_yz*t131
+            t140 = R0_zx*t134 + R0_zy*t133 + R0_zz*t131
+            t141 = angle0_y*t127 - angle0_z*t126
+            t142 = angle0_x*t126 - angle0_y*t125
+            t143 = -angle0_x*t127 + angle0_z*t125
+            t144 = (r1*t141 + r2*(angle0_y*t142 - angle0_z*t143) + t125 + t128*(t129*t131 -
+                t132*t133))
+            t145 = (r1*t143 + r2*(-angle0_x*t142 + angle0_z*t141) + t126 + t128*(-t130*t131 +
+                t132*t134))
+            t146 = (r1*t142 + r2*(angle0_x*t143 - angle0_y*t141) + t127 + t128*(-t129*t134 +
+                t130*t133))
             kinetic = (-0.5*angle1_x*(Jc_xx*angle1_x + Jc_xy*angle1_y + Jc_xz*angle1_z) -
                 0.5*angle1_y*(Jc_xy*angle1_x + Jc_yy*angle1_y + Jc_yz*angle1_z) -
                 0.5*angle1_z*(Jc_xz*angle1_x + Jc_yz*angle1_y + Jc_zz*angle1_z) + (0.5)*moving +
-                (0.5)*t150*wc_x + (0.5)*t151*wc_y + (0.5)*t152*wc_z +
-                (0.5)*t153*(-first1_x*first1_x - first1_y*first1_y - first1_z*first1_z + t156*t156
-                + t158*t158 + t159*t159))
+                (0.5)*t125*wc_x + (0.5)*t126*wc_y + (0.5)*t127*wc_z +
+                (0.5)*t128*(-first1_x*first1_x - first1_y*first1_y - first1_z*first1_z + t131*t131
+                + t133*t133 + t134*t134))
             strain = (0.5)*elastic
-            potential = (-gamma_x*(R0_xx*t160 + R0_yx*t161 + R0_zx*t162 + t155) -
-                gamma_y*(R0_xy*t160 + R0_yy*t161 + R0_zy*t162 + t154) - gamma_z*(R0_xz*t160 +
-                R0_yz*t161 + R0_zz*t162 + t157))
-            P_x = t163
-            P_y = t164
-            P_z = t165
-            H_x = R0_xx*t169 + R0_xy*t170 + R0_xz*t171 - t164*x0_z + t165*x0_y
-            H_y = R0_yx*t169 + R0_yy*t170 + R0_yz*t171 + t163*x0_z - t165*x0_x
-            H_z = R0_zx*t169 + R0_zy*t170 + R0_zz*t171 - t163*x0_y + t164*x0_x
+            potential = (-gamma_x*(R0_xx*t135 + R0_yx*t136 + R0_zx*t137 + t130) -
+                gamma_y*(R0_xy*t135 + R0_yy*t136 + R0_zy*t137 + t129) - gamma_z*(R0_xz*t135 +
+                R0_yz*t136 + R0_zz*t137 + t132))
+            P_x = t138
+            P_y = t139
+            P_z = t140
+            H_x = R0_xx*t144 + R0_xy*t145 + R0_xz*t146 - t139*x0_z + t140*x0_y
+            H_y = R0_yx*t144 + R0_yy*t145 + R0_yz*t146 + t138*x0_z - t140*x0_x
+            H_z = R0_zx*t144 + R0_zy*t145 + R0_zz*t146 - t138*x0_y + t139*x0_x
             energies[KINETIC] += kinetic
             energies[STRAIN] += strain
             energies[POTENTIAL] += potential
@@ -759,12 +727,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t172 = -dx0_z + dx_z
-                    t173 = -dx0_y + dx_y
-                    t174 = -dx0_x + dx_x
-                    rhs_x += -fit*(X_y*t172 - X_z*t173)
-                    rhs_y += -fit*(-X_x*t172 + X_z*t174)
-                    rhs_z += -fit*(X_x*t173 - X_y*t174)
+                    t147 = -dx0_z + dx_z
+                    t148 = -dx0_y + dx_y
+                    t149 = -dx0_x + dx_x
+                    rhs_x += -fit*(X_y*t147 - X_z*t148)
+                    rhs_y += -fit*(-X_x*t147 + X_z*t149)
+                    rhs_z += -fit*(X_x*t148 - X_y*t149)
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -774,43 +742,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t175 = X_y + u_y
-                    t176 = X_z + u_z
-                    t177 = X_x + u_x
-                    dy[i3] = -dth0_y*t176 + dth0_z*t175 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t176 - dth0_z*t177 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t175 + dth0_y*t177 - dx0_z + dx_z
+                    t150 = X_y + u_y
+                    t151 = X_z + u_z
+                    t152 = X_x + u_x
+                    dy[i3] = -dth0_y*t151 + dth0_z*t150 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t151 - dth0_z*t152 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t150 + dth0_y*t152 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t178 = dth0_y*psi_z
-                    t179 = dth_y*psi_z
-                    t180 = dth0_x*psi_y
-                    t181 = dth0_y*psi_x - t180
-                    t182 = e0*psi_y
-                    t183 = dth_x*psi_z
-                    t184 = dth_z*psi_x
-                    t185 = t183 - t184
-                    t186 = e0*psi_z
-                    t187 = dth_x*psi_y
-                    t188 = dth_y*psi_x - t187
-                    t189 = dth0_x*psi_z
-                    t190 = dth0_z*psi_x
-                    t191 = t189 - t190
-                    t192 = e0*psi_x
-                    t193 = dth_z*psi_y - t179
-                    t194 = dth0_z*psi_y - t178
-                    dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t188 + e0*psi_z*t191 - 0.5*t178 - 0.5*t179 - t181*t182 -
-                        t185*t186)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t181*t192 + (0.5)*t183 - 0.5*t184 + t186*t193
-                        - t186*t194 - t188*t192 + (0.5)*t189 - 0.5*t190)
-                    dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t185 + e0*psi_y*t194 - 0.5*t180 - t182*t193 - 0.5*t187 -
-                        t191*t192)
+                    t153 = (0.5)*dth0_z + (0.5)*dth_z
+                    t154 = dth0_y + dth_y
+                    t155 = (0.5)*psi_z
+                    t156 = -dth0_y + dth_y
+                    t157 = -dth0_x + dth_x
+                    t158 = psi_x*t156 - psi_y*t157
+                    t159 = -dth0_z + dth_z
+                    t160 = -psi_x*t159 + psi_z*t157
+                    t161 = dth0_x + dth_x
+                    t162 = psi_y*t159 - psi_z*t156
+                    dy[j3] = -dth0_x + dth_x + e0*(psi_y*t158 - psi_z*t160) + psi_y*t153 - t154*t155
+                    dy[j3 + 1] = (-dth0_y + dth_y + e0*(-psi_x*t158 + psi_z*t162) - psi_x*t153 +
+                        t155*t161)
+                    dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t160 - psi_y*t162) +
+                        (0.5)*psi_x*t154 - 0.5*psi_y*t161)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
@@ -854,12 +812,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t195 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
-                    t196 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
-                    t197 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
-                    rhs_x += -fit*(X_y*t195 - X_z*t196)
-                    rhs_y += -fit*(-X_x*t195 + X_z*t197)
-                    rhs_z += -fit*(X_x*t196 - X_y*t197)
+                    t163 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
+                    t164 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
+                    t165 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
+                    rhs_x += -fit*(X_y*t163 - X_z*t164)
+                    rhs_y += -fit*(-X_x*t163 + X_z*t165)
+                    rhs_z += -fit*(X_x*t164 - X_y*t165)
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -892,13 +850,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t198 = X_y + u_y
-                    t199 = X_z + u_z
-                    t200 = X_x + u_x
-                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t199 + dOm0_z*t198 - dv0_x + dvs_x
-                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t199 - dOm0_z*t200 - dv0_y +
+                    t166 = X_y + u_y
+                    t167 = X_z + u_z
+                    t168 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t167 + dOm0_z*t166 - dv0_x + dvs_x
+                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t167 - dOm0_z*t168 - dv0_y +
                         dvs_y)
-                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t198 + dOm0_y*t200 - dv0_z +
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t166 + dOm0_y*t168 - dv0_z +
                         dvs_z)
                 # differential: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -909,59 +867,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t201 = Om0_y*dpsi_z
-                    t202 = Om_y*dpsi_z
-                    t203 = dOm0_y*psi_z
-                    t204 = dOm_y*psi_z
-                    t205 = -Om0_x*psi_y + Om0_y*psi_x
-                    t206 = dpsi_y*e0
-                    t207 = Om_x*psi_z - Om_z*psi_x
-                    t208 = dpsi_z*e0
-                    t209 = -Om_x*psi_y + Om_y*psi_x
-                    t210 = Om0_x*psi_z - Om0_z*psi_x
-                    t211 = Om0_x*dpsi_y
-                    t212 = dOm0_x*psi_y
-                    t213 = Om0_y*dpsi_x + dOm0_y*psi_x - t211 - t212
-                    t214 = e0*psi_y
-                    t215 = Om_x*dpsi_z
-                    t216 = dOm_x*psi_z
-                    t217 = Om_z*dpsi_x
-                    t218 = dOm_z*psi_x
-                    t219 = t215 + t216 - t217 - t218
-                    t220 = e0*psi_z
-                    t221 = Om_x*dpsi_y
-                    t222 = dOm_x*psi_y
-                    t223 = Om_y*dpsi_x + dOm_y*psi_x - t221 - t222
-                    t224 = Om0_x*dpsi_z
-                    t225 = dOm0_x*psi_z
-                    t226 = Om0_z*dpsi_x
-                    t227 = dOm0_z*psi_x
-                    t228 = t224 + t225 - t226 - t227
-                    t229 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t230 = e1*t229
-                    t231 = psi_y*t230
-                    t232 = psi_z*t230
-                    t233 = dpsi_x*e0
-                    t234 = -Om_y*psi_z + Om_z*psi_y
-                    t235 = -Om0_y*psi_z + Om0_z*psi_y
-                    t236 = e0*psi_x
-                    t237 = Om_z*dpsi_y + dOm_z*psi_y - t202 - t204
-                    t238 = Om0_z*dpsi_y + dOm0_z*psi_y - t201 - t203
-                    t239 = psi_x*t230
-                    deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x +
-                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t209 +
-                        dpsi_z*e0*t210 + e0*psi_y*t223 + e0*psi_z*t228 + e1*psi_y*t209*t229 +
-                        e1*psi_z*t210*t229 - 0.5*t201 - 0.5*t202 - 0.5*t203 - 0.5*t204 - t205*t206
-                        - t205*t231 - t207*t208 - t207*t232 - t213*t214 - t219*t220)
-                    deta[j3 + 1] = (-dOm0_y + dOm_y + t205*t233 + t205*t239 + t208*t234 -
-                        t208*t235 - t209*t233 - t209*t239 + t213*t236 + (0.5)*t215 + (0.5)*t216 -
-                        0.5*t217 - 0.5*t218 + t220*t237 - t220*t238 - t223*t236 + (0.5)*t224 +
-                        (0.5)*t225 - 0.5*t226 - 0.5*t227 + t232*t234 - t232*t235)
-                    deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t207 + dpsi_y*e0*t235 +
-                        e0*psi_x*t219 + e0*psi_y*t238 + e1*psi_x*t207*t229 + e1*psi_y*t229*t235 -
-                        t206*t234 - t210*t233 - t210*t239 - 0.5*t211 - 0.5*t212 - t214*t237 -
-                        0.5*t221 - 0.5*t222 - t228*t236 - t231*t234)
+                    t169 = (0.5)*Om0_z + (0.5)*Om_z
+                    t170 = Om0_y + Om_y
+                    t171 = (0.5)*dpsi_z
+                    t172 = (0.5)*dOm0_z + (0.5)*dOm_z
+                    t173 = dOm0_y + dOm_y
+                    t174 = (0.5)*psi_z
+                    t175 = -Om0_y + Om_y
+                    t176 = -Om0_x + Om_x
+                    t177 = psi_x*t175 - psi_y*t176
+                    t178 = -Om0_z + Om_z
+                    t179 = -psi_x*t178 + psi_z*t176
+                    t180 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t181 = -dOm0_y + dOm_y
+                    t182 = -dOm0_x + dOm_x
+                    t183 = dpsi_x*t175 - dpsi_y*t176 + psi_x*t181 - psi_y*t182
+                    t184 = -dOm0_z + dOm_z
+                    t185 = -dpsi_x*t178 + dpsi_z*t176 - psi_x*t184 + psi_z*t182
+                    t186 = Om0_x + Om_x
+                    t187 = dOm0_x + dOm_x
+                    t188 = psi_y*t178 - psi_z*t175
+                    t189 = dpsi_y*t178 - dpsi_z*t175 + psi_y*t184 - psi_z*t181
+                    deta[j3] = (-dOm0_x + dOm_x + dpsi_y*t169 + e0*(dpsi_y*t177 - dpsi_z*t179 +
+                        psi_y*t183 - psi_z*t185) + psi_y*t172 - t170*t171 - t173*t174 +
+                        t180*(psi_y*t177 - psi_z*t179))
+                    deta[j3 + 1] = (-dOm0_y + dOm_y - dpsi_x*t169 + e0*(-dpsi_x*t177 + dpsi_z*t188
+                        - psi_x*t183 + psi_z*t189) - psi_x*t172 + t171*t186 + t174*t187 +
+                        t180*(-psi_x*t177 + psi_z*t188))
+                    deta[j3 + 2] = (-dOm0_z + dOm_z + (0.5)*dpsi_x*t170 - 0.5*dpsi_y*t186 +
+                        e0*(dpsi_x*t179 - dpsi_y*t188 + psi_x*t185 - psi_y*t189) +
+                        (0.5)*psi_x*t173 - 0.5*psi_y*t187 + t180*(psi_x*t179 - psi_y*t188))
                 # differential: rates of the internal modes
                 for k in range(MODES, n):
                     dvm = dve[k]
@@ -991,21 +926,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     deud_x, deud_y, deud_z = detad[i3], detad[i3 + 1], detad[i3 + 2]
-                    t240 = Om0d_y*fit
-                    t241 = X_y*t240
-                    t242 = X_z*fit
-                    t243 = Om0d_z*t242
-                    t244 = X_y*du_y
-                    t245 = X_z*du_z
-                    t246 = Om0d_x*fit
-                    t247 = X_x*t246
-                    t248 = X_x*du_x
-                    rhs_x += (-X_y*deud_z*fit + X_z*deud_y*fit - du_x*t241 - du_x*t243 -
-                        t246*(-t244 - t245))
-                    rhs_y += (X_x*deud_z*fit - deud_x*t242 - du_y*t243 - du_y*t247 - t240*(-t245 -
-                        t248))
-                    rhs_z += (-Om0d_z*fit*(-t244 - t248) - X_x*deud_y*fit + X_y*deud_x*fit -
-                        du_z*t241 - du_z*t247)
+                    t190 = Om0d_y*fit
+                    t191 = X_y*t190
+                    t192 = X_z*fit
+                    t193 = Om0d_z*t192
+                    t194 = X_y*du_y
+                    t195 = X_z*du_z
+                    t196 = Om0d_x*fit
+                    t197 = X_x*t196
+                    t198 = X_x*du_x
+                    rhs_x += (-X_y*deud_z*fit + X_z*deud_y*fit - du_x*t191 - du_x*t193 -
+                        t196*(-t194 - t195))
+                    rhs_y += (X_x*deud_z*fit - deud_x*t192 - du_y*t193 - du_y*t197 - t190*(-t195 -
+                        t198))
+                    rhs_z += (-Om0d_z*fit*(-t194 - t198) - X_x*deud_y*fit + X_y*deud_x*fit -
+                        du_z*t191 - du_z*t197)
                 dOm0d_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0d_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0d_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1016,12 +951,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     deud_x, deud_y, deud_z = detad[i3], detad[i3 + 1], detad[i3 + 2]
-                    t249 = X_y + u_y
-                    t250 = X_z + u_z
-                    t251 = X_x + u_x
-                    detad[i3] = -Om0d_y*du_z + Om0d_z*du_y - dOm0d_y*t250 + dOm0d_z*t249 + deud_x
-                    detad[i3 + 1] = Om0d_x*du_z - Om0d_z*du_x + dOm0d_x*t250 - dOm0d_z*t251 + deud_y
-                    detad[i3 + 2] = (-Om0d_x*du_y + Om0d_y*du_x - dOm0d_x*t249 + dOm0d_y*t251 +
+                    t199 = X_y + u_y
+                    t200 = X_z + u_z
+                    t201 = X_x + u_x
+                    detad[i3] = -Om0d_y*du_z + Om0d_z*du_y - dOm0d_y*t200 + dOm0d_z*t199 + deud_x
+                    detad[i3 + 1] = Om0d_x*du_z - Om0d_z*du_x + dOm0d_x*t200 - dOm0d_z*t201 + deud_y
+                    detad[i3 + 2] = (-Om0d_x*du_y + Om0d_y*du_x - dOm0d_x*t199 + dOm0d_y*t201 +
                         deud_z)
                 # differential: rate: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -1037,144 +972,80 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     e0 = e0s[j]
                     e1 = e1s[j]
                     e2 = e2s[j]
-                    t252 = A_y*dpsi_z
-                    t253 = Om0_y*dep_z
-                    t254 = Om0d_y*dpsi_z
-                    t255 = Om_y*dep_z
-                    t256 = dA_y*psi_z
-                    t257 = dOm0_y*ep_z
-                    t258 = dOm0d_y*psi_z
-                    t259 = dOm_y*ep_z
-                    t260 = -Om0_x*psi_y + Om0_y*psi_x
-                    t261 = dep_y*e0
-                    t262 = Om_x*psi_z - Om_z*psi_x
-                    t263 = dep_z*e0
-                    t264 = -Om_x*psi_y + Om_y*psi_x
-                    t265 = Om0_x*psi_z - Om0_z*psi_x
-                    t266 = -Om0_x*ep_y + Om0_y*ep_x - Om0d_x*psi_y + Om0d_y*psi_x
-                    t267 = dpsi_y*e0
-                    t268 = A_x*psi_z - A_z*psi_x + Om_x*ep_z - Om_z*ep_x
-                    t269 = dpsi_z*e0
-                    t270 = -Om0_x*dpsi_y + Om0_y*dpsi_x - dOm0_x*psi_y + dOm0_y*psi_x
-                    t271 = e0*ep_y
-                    t272 = Om_x*dpsi_z - Om_z*dpsi_x + dOm_x*psi_z - dOm_z*psi_x
-                    t273 = e0*ep_z
-                    t274 = -A_x*psi_y + A_y*psi_x - Om_x*ep_y + Om_y*ep_x
-                    t275 = Om0_x*ep_z - Om0_z*ep_x + Om0d_x*psi_z - Om0d_z*psi_x
-                    t276 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t277 = Om0_x*dpsi_z - Om0_z*dpsi_x + dOm0_x*psi_z - dOm0_z*psi_x
-                    t278 = 2*psi_x
-                    t279 = 2*psi_y
-                    t280 = 2*psi_z
-                    t281 = ep_x*t278 + ep_y*t279 + ep_z*t280
-                    t282 = e1*t281
-                    t283 = dpsi_y*t282
-                    t284 = dpsi_z*t282
-                    t285 = dpsi_x*t278 + dpsi_y*t279 + dpsi_z*t280
-                    t286 = e1*t285
-                    t287 = ep_y*t286
-                    t288 = ep_z*t286
-                    t289 = psi_y*t286
-                    t290 = psi_y*t282
-                    t291 = psi_z*t286
-                    t292 = psi_z*t282
-                    t293 = Om0_x*dep_y
-                    t294 = Om0d_x*dpsi_y
-                    t295 = dOm0_x*ep_y
-                    t296 = dOm0d_x*psi_y
-                    t297 = (Om0_y*dep_x + Om0d_y*dpsi_x + dOm0_y*ep_x + dOm0d_y*psi_x - t293 -
-                        t294 - t295 - t296)
-                    t298 = e0*psi_y
-                    t299 = A_x*dpsi_z
-                    t300 = Om_x*dep_z
-                    t301 = dA_x*psi_z
-                    t302 = dOm_x*ep_z
-                    t303 = A_z*dpsi_x
-                    t304 = Om_z*dep_x
-                    t305 = dA_z*psi_x
-                    t306 = dOm_z*ep_x
-                    t307 = t299 + t300 + t301 + t302 - t303 - t304 - t305 - t306
-                    t308 = e0*psi_z
-                    t309 = A_x*dpsi_y
-                    t310 = Om_x*dep_y
-                    t311 = dA_x*psi_y
-                    t312 = dOm_x*ep_y
-                    t313 = (A_y*dpsi_x + Om_y*dep_x + dA_y*psi_x + dOm_y*ep_x - t309 - t310 - t311
-                        - t312)
-                    t314 = Om0_x*dep_z
-                    t315 = Om0d_x*dpsi_z
-                    t316 = dOm0_x*ep_z
-                    t317 = dOm0d_x*psi_z
-                    t318 = Om0_z*dep_x
-                    t319 = Om0d_z*dpsi_x
-                    t320 = dOm0_z*ep_x
-                    t321 = dOm0d_z*psi_x
-                    t322 = t314 + t315 + t316 + t317 - t318 - t319 - t320 - t321
-                    t323 = (dep_x*t278 + dep_y*t279 + dep_z*t280 + 2*dpsi_x*ep_x + 2*dpsi_y*ep_y +
-                        2*dpsi_z*ep_z)
-                    t324 = e1*t323
-                    t325 = t260*t324
-                    t326 = psi_z*t324
-                    t327 = e2*t281*t285
-                    t328 = t260*t327
-                    t329 = psi_z*t327
-                    t330 = dep_x*e0
-                    t331 = -Om_y*psi_z + Om_z*psi_y
-                    t332 = -Om0_y*psi_z + Om0_z*psi_y
-                    t333 = dpsi_x*e0
-                    t334 = -A_y*psi_z + A_z*psi_y - Om_y*ep_z + Om_z*ep_y
-                    t335 = e0*ep_x
-                    t336 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t337 = -Om0_y*ep_z + Om0_z*ep_y - Om0d_y*psi_z + Om0d_z*psi_y
-                    t338 = -Om0_y*dpsi_z + Om0_z*dpsi_y - dOm0_y*psi_z + dOm0_z*psi_y
-                    t339 = dpsi_x*t282
-                    t340 = ep_x*t286
-                    t341 = psi_x*t286
-                    t342 = psi_x*t282
-                    t343 = e0*psi_x
-                    t344 = (A_z*dpsi_y + Om_z*dep_y + dA_z*psi_y + dOm_z*ep_y - t252 - t255 - t256
-                        - t259)
-                    t345 = (Om0_z*dep_y + Om0d_z*dpsi_y + dOm0_z*ep_y + dOm0d_z*psi_y - t253 -
-                        t254 - t257 - t258)
-                    t346 = psi_x*t324
-                    t347 = psi_x*t327
-                    detad[j3] = ((0.5)*A_z*dpsi_y + (0.5)*Om0_z*dep_y + (0.5)*Om0d_z*dpsi_y +
-                        (0.5)*Om_z*dep_y + dA_x + (0.5)*dA_z*psi_y + (0.5)*dOm0_z*ep_y - dOm0d_x +
-                        (0.5)*dOm0d_z*psi_y + (0.5)*dOm_z*ep_y + dep_y*e0*t264 + dep_z*e0*t265 +
-                        dpsi_y*e0*t274 + dpsi_y*e1*t264*t281 + dpsi_z*e0*t275 +
-                        dpsi_z*e1*t265*t281 + e0*ep_y*t276 + e0*ep_z*t277 + e0*psi_y*t313 +
-                        e0*psi_z*t322 + e1*ep_y*t264*t285 + e1*ep_z*t265*t285 + e1*psi_y*t264*t323
-                        + e1*psi_y*t274*t285 + e1*psi_y*t276*t281 + e1*psi_z*t265*t323 +
-                        e1*psi_z*t275*t285 + e1*psi_z*t277*t281 + e2*psi_y*t264*t281*t285 +
-                        e2*psi_z*t265*t281*t285 - psi_y*t325 - psi_y*t328 - 0.5*t252 - 0.5*t253 -
-                        0.5*t254 - 0.5*t255 - 0.5*t256 - 0.5*t257 - 0.5*t258 - 0.5*t259 -
-                        t260*t261 - t260*t283 - t260*t287 - t262*t263 - t262*t284 - t262*t288 -
-                        t262*t326 - t262*t329 - t266*t267 - t266*t289 - t268*t269 - t268*t291 -
-                        t270*t271 - t270*t290 - t272*t273 - t272*t292 - t297*t298 - t307*t308)
-                    detad[j3 + 1] = (dA_y - dOm0d_y + psi_x*t325 + psi_x*t328 + t260*t330 +
-                        t260*t339 + t260*t340 + t263*t331 - t263*t332 - t264*t330 - t264*t339 -
-                        t264*t340 - t264*t346 - t264*t347 + t266*t333 + t266*t341 + t269*t334 -
-                        t269*t337 + t270*t335 + t270*t342 + t273*t336 - t273*t338 - t274*t333 -
-                        t274*t341 - t276*t335 - t276*t342 + t284*t331 - t284*t332 + t288*t331 -
-                        t288*t332 + t291*t334 - t291*t337 + t292*t336 - t292*t338 + t297*t343 +
-                        (0.5)*t299 + (0.5)*t300 + (0.5)*t301 + (0.5)*t302 - 0.5*t303 - 0.5*t304 -
-                        0.5*t305 - 0.5*t306 + t308*t344 - t308*t345 - t313*t343 + (0.5)*t314 +
-                        (0.5)*t315 + (0.5)*t316 + (0.5)*t317 - 0.5*t318 - 0.5*t319 - 0.5*t320 -
-                        0.5*t321 + t326*t331 - t326*t332 + t329*t331 - t329*t332)
-                    detad[j3 + 2] = ((0.5)*A_y*dpsi_x + (0.5)*Om0_y*dep_x + (0.5)*Om0d_y*dpsi_x +
-                        (0.5)*Om_y*dep_x + (0.5)*dA_y*psi_x + dA_z + (0.5)*dOm0_y*ep_x +
-                        (0.5)*dOm0d_y*psi_x - dOm0d_z + (0.5)*dOm_y*ep_x + dep_x*e0*t262 +
-                        dep_y*e0*t332 + dpsi_x*e0*t268 + dpsi_x*e1*t262*t281 + dpsi_y*e0*t337 +
-                        dpsi_y*e1*t281*t332 + e0*ep_x*t272 + e0*ep_y*t338 + e0*psi_x*t307 +
-                        e0*psi_y*t345 + e1*ep_x*t262*t285 + e1*ep_y*t285*t332 + e1*psi_x*t262*t323
-                        + e1*psi_x*t268*t285 + e1*psi_x*t272*t281 + e1*psi_y*t281*t338 +
-                        e1*psi_y*t285*t337 + e1*psi_y*t323*t332 + e2*psi_x*t262*t281*t285 +
-                        e2*psi_y*t281*t285*t332 - psi_y*t324*t331 - psi_y*t327*t331 - t261*t331 -
-                        t265*t330 - t265*t339 - t265*t340 - t265*t346 - t265*t347 - t267*t334 -
-                        t271*t336 - t275*t333 - t275*t341 - t277*t335 - t277*t342 - t283*t331 -
-                        t287*t331 - t289*t334 - t290*t336 - 0.5*t293 - 0.5*t294 - 0.5*t295 -
-                        0.5*t296 - t298*t344 - 0.5*t309 - 0.5*t310 - 0.5*t311 - 0.5*t312 -
-                        t322*t343)
+                    t202 = -Om0_y + Om_y
+                    t203 = -Om0_x + Om_x
+                    t204 = psi_x*t202 - psi_y*t203
+                    t205 = -Om0_z + Om_z
+                    t206 = -psi_x*t205 + psi_z*t203
+                    t207 = A_y - Om0d_y
+                    t208 = A_x - Om0d_x
+                    t209 = ep_x*t202 - ep_y*t203 + psi_x*t207 - psi_y*t208
+                    t210 = -dOm0_y + dOm_y
+                    t211 = -dOm0_x + dOm_x
+                    t212 = dpsi_x*t202 - dpsi_y*t203 + psi_x*t210 - psi_y*t211
+                    t213 = A_z - Om0d_z
+                    t214 = -ep_x*t205 + ep_z*t203 - psi_x*t213 + psi_z*t208
+                    t215 = -dOm0_z + dOm_z
+                    t216 = -dpsi_x*t205 + dpsi_z*t203 - psi_x*t215 + psi_z*t211
+                    t217 = dA_y - dOm0d_y
+                    t218 = dA_x - dOm0d_x
+                    t219 = (dep_x*t202 - dep_y*t203 + dpsi_x*t207 - dpsi_y*t208 + ep_x*t210 -
+                        ep_y*t211 + psi_x*t217 - psi_y*t218)
+                    t220 = dA_z - dOm0d_z
+                    t221 = (-dep_x*t205 + dep_z*t203 - dpsi_x*t213 + dpsi_z*t208 - ep_x*t215 +
+                        ep_z*t211 - psi_x*t220 + psi_z*t218)
+                    t222 = (0.5)*Om0_z + (0.5)*Om_z
+                    t223 = (0.5)*A_z + (0.5)*Om0d_z
+                    t224 = (0.5)*dOm0_z + (0.5)*dOm_z
+                    t225 = (0.5)*dA_z + (0.5)*dOm0d_z
+                    t226 = Om0_y + Om_y
+                    t227 = (0.5)*dep_z
+                    t228 = A_y + Om0d_y
+                    t229 = (0.5)*dpsi_z
+                    t230 = dOm0_y + dOm_y
+                    t231 = (0.5)*ep_z
+                    t232 = dA_y + dOm0d_y
+                    t233 = (0.5)*psi_z
+                    t234 = psi_y*t204 - psi_z*t206
+                    t235 = 2*psi_x
+                    t236 = 2*psi_y
+                    t237 = 2*psi_z
+                    t238 = (e1*(dep_x*t235 + dep_y*t236 + dep_z*t237 + 2*dpsi_x*ep_x +
+                        2*dpsi_y*ep_y + 2*dpsi_z*ep_z))
+                    t239 = dpsi_x*t235 + dpsi_y*t236 + dpsi_z*t237
+                    t240 = e1*t239
+                    t241 = ep_x*t235 + ep_y*t236 + ep_z*t237
+                    t242 = e1*t241
+                    t243 = e2*t239*t241
+                    t244 = psi_y*t205 - psi_z*t202
+                    t245 = ep_y*t205 - ep_z*t202 + psi_y*t213 - psi_z*t207
+                    t246 = dpsi_y*t205 - dpsi_z*t202 + psi_y*t215 - psi_z*t210
+                    t247 = (dep_y*t205 - dep_z*t202 + dpsi_y*t213 - dpsi_z*t207 + ep_y*t215 -
+                        ep_z*t210 + psi_y*t220 - psi_z*t217)
+                    t248 = Om0_x + Om_x
+                    t249 = A_x + Om0d_x
+                    t250 = dOm0_x + dOm_x
+                    t251 = dA_x + dOm0d_x
+                    t252 = -psi_x*t204 + psi_z*t244
+                    t253 = psi_x*t206 - psi_y*t244
+                    detad[j3] = (dep_y*t222 + dpsi_y*t223 + e0*(dep_y*t204 - dep_z*t206 +
+                        dpsi_y*t209 - dpsi_z*t214 + ep_y*t212 - ep_z*t216 + psi_y*t219 -
+                        psi_z*t221) + ep_y*t224 + psi_y*t225 + t218 - t226*t227 - t228*t229 -
+                        t230*t231 - t232*t233 + t234*t238 + t234*t243 + t240*(ep_y*t204 -
+                        ep_z*t206 + psi_y*t209 - psi_z*t214) + t242*(dpsi_y*t204 - dpsi_z*t206 +
+                        psi_y*t212 - psi_z*t216))
+                    detad[j3 + 1] = (-dep_x*t222 - dpsi_x*t223 + e0*(-dep_x*t204 + dep_z*t244 -
+                        dpsi_x*t209 + dpsi_z*t245 - ep_x*t212 + ep_z*t246 - psi_x*t219 +
+                        psi_z*t247) - ep_x*t224 - psi_x*t225 + t217 + t227*t248 + t229*t249 +
+                        t231*t250 + t233*t251 + t238*t252 + t240*(-ep_x*t204 + ep_z*t244 -
+                        psi_x*t209 + psi_z*t245) + t242*(-dpsi_x*t204 + dpsi_z*t244 - psi_x*t212 +
+                        psi_z*t246) + t243*t252)
+                    detad[j3 + 2] = ((0.5)*dep_x*t226 - 0.5*dep_y*t248 + (0.5)*dpsi_x*t228 -
+                        0.5*dpsi_y*t249 + e0*(dep_x*t206 - dep_y*t244 + dpsi_x*t214 - dpsi_y*t245
+                        + ep_x*t216 - ep_y*t246 + psi_x*t221 - psi_y*t247) + (0.5)*ep_x*t230 -
+                        0.5*ep_y*t250 + (0.5)*psi_x*t232 - 0.5*psi_y*t251 + t220 + t238*t253 +
+                        t240*(ep_x*t206 - ep_y*t244 + psi_x*t214 - psi_y*t245) + t242*(dpsi_x*t206
+                        - dpsi_y*t244 + psi_x*t216 - psi_y*t246) + t243*t253)
                 # differential: rate: rates of the internal modes
                 for k in range(MODES, n):
                     dam = dae[k]
@@ -1200,41 +1071,41 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
                 dangle0_x, dangle0_y, dangle0_z = drigid0[3], drigid0[4], drigid0[5]
                 dangle1_x, dangle1_y, dangle1_z = drigid1[3], drigid1[4], drigid1[5]
-                t348 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
-                t349 = (angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z +
+                t254 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
+                t255 = (angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z +
                     angle1_z*dangle0_y)
-                t350 = angle0_y*angle1_z - angle0_z*angle1_y
-                t351 = (0.5)*r3
-                t352 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
-                t353 = t352*(r4 - t351)
-                t354 = -Om0_y*angle0_z + Om0_z*angle0_y
-                t355 = t352*(-0.5*r2 + t351)
-                t356 = -Om0_x*angle0_y + Om0_y*angle0_x
-                t357 = Om0_x*angle0_z - Om0_z*angle0_x
-                t358 = angle0_x*angle1_y - angle0_y*angle1_x
-                t359 = -angle0_x*angle1_z + angle0_z*angle1_x
-                t360 = t352*(-0.5*r4 + (1.5)*r5)
-                t361 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
-                t362 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
-                t363 = (angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y +
+                t256 = angle0_y*angle1_z - angle0_z*angle1_y
+                t257 = (0.5)*r3
+                t258 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
+                t259 = t258*(r4 - t257)
+                t260 = -Om0_y*angle0_z + Om0_z*angle0_y
+                t261 = t258*(-0.5*r2 + t257)
+                t262 = -Om0_x*angle0_y + Om0_y*angle0_x
+                t263 = Om0_x*angle0_z - Om0_z*angle0_x
+                t264 = angle0_x*angle1_y - angle0_y*angle1_x
+                t265 = -angle0_x*angle1_z + angle0_z*angle1_x
+                t266 = t258*(-0.5*r4 + (1.5)*r5)
+                t267 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
+                t268 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
+                t269 = (angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y +
                     angle1_y*dangle0_x)
-                t364 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
+                t270 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
                     angle1_z*dangle0_x)
-                dwc_x = (dOm0_x + dangle1_x - r1*t348 - r2*t349 + r2*(angle0_y*t361 -
-                    angle0_z*t362 + dangle0_y*t356 - dangle0_z*t357) + r3*(angle0_y*t363 -
-                    angle0_z*t364 + dangle0_y*t358 - dangle0_z*t359) - t350*t353 +
-                    t353*(angle0_y*t356 - angle0_z*t357) - t354*t355 + t360*(angle0_y*t358 -
-                    angle0_z*t359))
-                dwc_y = (dOm0_y + dangle1_y - r1*t362 - r2*t364 + r2*(-angle0_x*t361 +
-                    angle0_z*t348 - dangle0_x*t356 + dangle0_z*t354) + r3*(-angle0_x*t363 +
-                    angle0_z*t349 - dangle0_x*t358 + dangle0_z*t350) - t353*t359 +
-                    t353*(-angle0_x*t356 + angle0_z*t354) - t355*t357 + t360*(-angle0_x*t358 +
-                    angle0_z*t350))
-                dwc_z = (dOm0_z + dangle1_z - r1*t361 - r2*t363 + r2*(angle0_x*t362 -
-                    angle0_y*t348 + dangle0_x*t357 - dangle0_y*t354) + r3*(angle0_x*t364 -
-                    angle0_y*t349 + dangle0_x*t359 - dangle0_y*t350) - t353*t358 +
-                    t353*(angle0_x*t357 - angle0_y*t354) - t355*t356 + t360*(angle0_x*t359 -
-                    angle0_y*t350))
+                dwc_x = (dOm0_x + dangle1_x - r1*t254 - r2*t255 + r2*(angle0_y*t267 -
+                    angle0_z*t268 + dangle0_y*t262 - dangle0_z*t263) + r3*(angle0_y*t269 -
+                    angle0_z*t270 + dangle0_y*t264 - dangle0_z*t265) - t256*t259 +
+                    t259*(angle0_y*t262 - angle0_z*t263) - t260*t261 + t266*(angle0_y*t264 -
+                    angle0_z*t265))
+                dwc_y = (dOm0_y + dangle1_y - r1*t268 - r2*t270 + r2*(-angle0_x*t267 +
+                    angle0_z*t254 - dangle0_x*t262 + dangle0_z*t260) + r3*(-angle0_x*t269 +
+                    angle0_z*t255 - dangle0_x*t264 + dangle0_z*t256) - t259*t265 +
+                    t259*(-angle0_x*t262 + angle0_z*t260) - t261*t263 + t266*(-angle0_x*t264 +
+                    angle0_z*t256))
+                dwc_z = (dOm0_z + dangle1_z - r1*t267 - r2*t269 + r2*(angle0_x*t268 -
+                    angle0_y*t254 + dangle0_x*t263 - dangle0_y*t260) + r3*(angle0_x*t270 -
+                    angle0_y*t255 + dangle0_x*t265 - dangle0_y*t256) - t259*t264 +
+                    t259*(angle0_x*t263 - angle0_y*t260) - t261*t262 + t266*(angle0_x*t265 -
+                    angle0_y*t256))
                 # differential: its rate
                 angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
                 angle1_x, angle1_y, angle1_z = rigid1[3], rigid1[4], rigid1[5]
@@ -1242,102 +1113,102 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dangle0_x, dangle0_y, dangle0_z = drigid0[3], drigid0[4], drigid0[5]
                 dangle1_x, dangle1_y, dangle1_z = drigid1[3], drigid1[4], drigid1[5]
                 dangle2_x, dangle2_y, dangle2_z = drigid2[3], drigid2[4], drigid2[5]
-                t365 = -Om0d_y*dangle0_z + Om0d_z*dangle0_y + angle0_y*dOm0d_z - angle0_z*dOm0d_y
-                t366 = (angle0_y*dangle2_z - angle0_z*dangle2_y - angle2_y*dangle0_z +
+                t271 = -Om0d_y*dangle0_z + Om0d_z*dangle0_y + angle0_y*dOm0d_z - angle0_z*dOm0d_y
+                t272 = (angle0_y*dangle2_z - angle0_z*dangle2_y - angle2_y*dangle0_z +
                     angle2_z*dangle0_y)
-                t367 = angle0_y*angle2_z - angle0_z*angle2_y
-                t368 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
-                t369 = (0.5)*r3
-                t370 = t368*(r4 - t369)
-                t371 = -Om0d_y*angle0_z + Om0d_z*angle0_y
-                t372 = -0.5*r2 + t369
-                t373 = t368*t372
-                t374 = (angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z +
+                t273 = angle0_y*angle2_z - angle0_z*angle2_y
+                t274 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
+                t275 = (0.5)*r3
+                t276 = t274*(r4 - t275)
+                t277 = -Om0d_y*angle0_z + Om0d_z*angle0_y
+                t278 = -0.5*r2 + t275
+                t279 = t274*t278
+                t280 = (angle0_y*dangle1_z - angle0_z*dangle1_y - angle1_y*dangle0_z +
                     angle1_z*dangle0_y)
-                t375 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
-                t376 = -r3 + 2*r4
-                t377 = t375*t376
-                t378 = angle0_y*angle1_z - angle0_z*angle1_y
-                t379 = (angle0_x*dangle1_x + angle0_y*dangle1_y + angle0_z*dangle1_z +
+                t281 = angle0_x*angle1_x + angle0_y*angle1_y + angle0_z*angle1_z
+                t282 = -r3 + 2*r4
+                t283 = t281*t282
+                t284 = angle0_y*angle1_z - angle0_z*angle1_y
+                t285 = (angle0_x*dangle1_x + angle0_y*dangle1_y + angle0_z*dangle1_z +
                     angle1_x*dangle0_x + angle1_y*dangle0_y + angle1_z*dangle0_z)
-                t380 = t376*t379
-                t381 = -Om0d_x*angle0_y + Om0d_y*angle0_x
-                t382 = Om0d_x*angle0_z - Om0d_z*angle0_x
-                t383 = angle0_x*angle2_y - angle0_y*angle2_x
-                t384 = -angle0_x*angle2_z + angle0_z*angle2_x
-                t385 = t368*(-0.5*r4 + (1.5)*r5)
-                t386 = angle0_x*angle1_y - angle0_y*angle1_x
-                t387 = -angle0_x*angle1_z + angle0_z*angle1_x
-                t388 = angle0_y*t386 - angle0_z*t387
-                t389 = -r4 + 3*r5
-                t390 = t379*t389
-                t391 = -Om0d_x*dangle0_y + Om0d_y*dangle0_x + angle0_x*dOm0d_y - angle0_y*dOm0d_x
-                t392 = Om0d_x*dangle0_z - Om0d_z*dangle0_x - angle0_x*dOm0d_z + angle0_z*dOm0d_x
-                t393 = (angle0_x*dangle2_y - angle0_y*dangle2_x - angle2_x*dangle0_y +
+                t286 = t282*t285
+                t287 = -Om0d_x*angle0_y + Om0d_y*angle0_x
+                t288 = Om0d_x*angle0_z - Om0d_z*angle0_x
+                t289 = angle0_x*angle2_y - angle0_y*angle2_x
+                t290 = -angle0_x*angle2_z + angle0_z*angle2_x
+                t291 = t274*(-0.5*r4 + (1.5)*r5)
+                t292 = angle0_x*angle1_y - angle0_y*angle1_x
+                t293 = -angle0_x*angle1_z + angle0_z*angle1_x
+                t294 = angle0_y*t292 - angle0_z*t293
+                t295 = -r4 + 3*r5
+                t296 = t285*t295
+                t297 = -Om0d_x*dangle0_y + Om0d_y*dangle0_x + angle0_x*dOm0d_y - angle0_y*dOm0d_x
+                t298 = Om0d_x*dangle0_z - Om0d_z*dangle0_x - angle0_x*dOm0d_z + angle0_z*dOm0d_x
+                t299 = (angle0_x*dangle2_y - angle0_y*dangle2_x - angle2_x*dangle0_y +
                     angle2_y*dangle0_x)
-                t394 = (-angle0_x*dangle2_z + angle0_z*dangle2_x + angle2_x*dangle0_z -
+                t300 = (-angle0_x*dangle2_z + angle0_z*dangle2_x + angle2_x*dangle0_z -
                     angle2_z*dangle0_x)
-                t395 = (angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y +
+                t301 = (angle0_x*dangle1_y - angle0_y*dangle1_x - angle1_x*dangle0_y +
                     angle1_y*dangle0_x)
-                t396 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
+                t302 = (-angle0_x*dangle1_z + angle0_z*dangle1_x + angle1_x*dangle0_z -
                     angle1_z*dangle0_x)
-                t397 = -0.5*r5 + 2*r6
-                t398 = t375*(2*t368*t397 - t385)
-                t399 = angle0_y*t395 - angle0_z*t396 + dangle0_y*t386 - dangle0_z*t387
-                t400 = t375*t389
-                t401 = t375*(-t368*t397 + 3*t368*(-0.5*r6 + (2.5)*r7))
-                t402 = Om0_x*angle0_z - Om0_z*angle0_x
-                t403 = -Om0_x*angle0_y + Om0_y*angle0_x
-                t404 = -Om0_y*angle0_z + Om0_z*angle0_y
-                t405 = -angle0_x*t403 + angle0_z*t404
-                t406 = Om0_y - r1*t402 + r2*t405
-                t407 = angle0_x*t387 - angle0_y*t378
-                t408 = angle0_x*t396 - angle0_y*t374 + dangle0_x*t387 - dangle0_y*t378
-                t409 = dangle1_z - r2*t395 + r3*t408 - t370*t386 + t385*t407
-                t410 = angle1_z - r2*t386 + r3*t407
-                t411 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
-                t412 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
-                t413 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
-                t414 = (dOm0_y - r1*t411 + r2*(-angle0_x*t412 + angle0_z*t413 - dangle0_x*t403 +
-                    dangle0_z*t404) + t370*t405 - t373*t402)
-                t415 = angle0_x*t402 - angle0_y*t404
-                t416 = Om0_z - r1*t403 + r2*t415
-                t417 = -angle0_x*t386 + angle0_z*t378
-                t418 = -angle0_x*t395 + angle0_z*t374 - dangle0_x*t386 + dangle0_z*t378
-                t419 = dangle1_y - r2*t396 + r3*t418 - t370*t387 + t385*t417
-                t420 = angle1_y - r2*t387 + r3*t417
-                t421 = (dOm0_z - r1*t412 + r2*(angle0_x*t411 - angle0_y*t413 + dangle0_x*t402 -
-                    dangle0_y*t404) - t368*t372*t403 + t370*t415)
-                t422 = dangle1_x - r2*t374 + r3*t399 - t370*t378 + t385*t388
-                t423 = angle1_x - r2*t378 + r3*t388
-                t424 = angle0_y*t403 - angle0_z*t402
-                t425 = Om0_x - r1*t404 + r2*t424
-                t426 = (dOm0_x - r1*t413 + r2*(angle0_y*t412 - angle0_z*t411 + dangle0_y*t403 -
-                    dangle0_z*t402) - t368*t372*t404 + t370*t424)
-                dwcd_x = (dOm0d_x + dangle2_x - r1*t365 - r2*t366 + r2*(angle0_y*t391 -
-                    angle0_z*t392 + dangle0_y*t381 - dangle0_z*t382) + r3*(angle0_y*t393 -
-                    angle0_z*t394 + dangle0_y*t383 - dangle0_z*t384) + r3*(angle1_y*t395 -
-                    angle1_z*t396 + dangle1_y*t386 - dangle1_z*t387) - t367*t370 +
-                    t370*(angle0_y*t381 - angle0_z*t382) - t371*t373 - t374*t377 - t378*t380 -
-                    t378*t398 + t385*(angle0_y*t383 - angle0_z*t384) + t385*(angle1_y*t386 -
-                    angle1_z*t387) + t388*t390 + t388*t401 + t399*t400 + t406*t409 + t410*t414 -
-                    t416*t419 - t420*t421)
-                dwcd_y = (dOm0d_y + dangle2_y - r1*t392 - r2*t394 + r2*(-angle0_x*t391 +
-                    angle0_z*t365 - dangle0_x*t381 + dangle0_z*t371) + r3*(-angle0_x*t393 +
-                    angle0_z*t366 - dangle0_x*t383 + dangle0_z*t367) + r3*(-angle1_x*t395 +
-                    angle1_z*t374 - dangle1_x*t386 + dangle1_z*t378) - t370*t384 +
-                    t370*(-angle0_x*t381 + angle0_z*t371) - t373*t382 - t377*t396 - t380*t387 +
-                    t385*(-angle0_x*t383 + angle0_z*t367) + t385*(-angle1_x*t386 + angle1_z*t378)
-                    - t387*t398 + t390*t417 + t400*t418 + t401*t417 - t409*t425 - t410*t426 +
-                    t416*t422 + t421*t423)
-                dwcd_z = (dOm0d_z + dangle2_z - r1*t391 - r2*t393 + r2*(angle0_x*t392 -
-                    angle0_y*t365 + dangle0_x*t382 - dangle0_y*t371) + r3*(angle0_x*t394 -
-                    angle0_y*t366 + dangle0_x*t384 - dangle0_y*t367) + r3*(angle1_x*t396 -
-                    angle1_y*t374 + dangle1_x*t387 - dangle1_y*t378) - t370*t383 +
-                    t370*(angle0_x*t382 - angle0_y*t371) - t373*t381 - t377*t395 - t380*t386 +
-                    t385*(angle0_x*t384 - angle0_y*t367) + t385*(angle1_x*t387 - angle1_y*t378) -
-                    t386*t398 + t390*t407 + t400*t408 + t401*t407 - t406*t422 - t414*t423 +
-                    t419*t425 + t420*t426)
+                t303 = -0.5*r5 + 2*r6
+                t304 = t281*(2*t274*t303 - t291)
+                t305 = angle0_y*t301 - angle0_z*t302 + dangle0_y*t292 - dangle0_z*t293
+                t306 = t281*t295
+                t307 = t281*(-t274*t303 + 3*t274*(-0.5*r6 + (2.5)*r7))
+                t308 = Om0_x*angle0_z - Om0_z*angle0_x
+                t309 = -Om0_x*angle0_y + Om0_y*angle0_x
+                t310 = -Om0_y*angle0_z + Om0_z*angle0_y
+                t311 = -angle0_x*t309 + angle0_z*t310
+                t312 = Om0_y - r1*t308 + r2*t311
+                t313 = angle0_x*t293 - angle0_y*t284
+                t314 = angle0_x*t302 - angle0_y*t280 + dangle0_x*t293 - dangle0_y*t284
+                t315 = dangle1_z - r2*t301 + r3*t314 - t276*t292 + t291*t313
+                t316 = angle1_z - r2*t292 + r3*t313
+                t317 = Om0_x*dangle0_z - Om0_z*dangle0_x - angle0_x*dOm0_z + angle0_z*dOm0_x
+                t318 = -Om0_x*dangle0_y + Om0_y*dangle0_x + angle0_x*dOm0_y - angle0_y*dOm0_x
+                t319 = -Om0_y*dangle0_z + Om0_z*dangle0_y + angle0_y*dOm0_z - angle0_z*dOm0_y
+                t320 = (dOm0_y - r1*t317 + r2*(-angle0_x*t318 + angle0_z*t319 - dangle0_x*t309 +
+                    dangle0_z*t310) + t276*t311 - t279*t308)
+                t321 = angle0_x*t308 - angle0_y*t310
+                t322 = Om0_z - r1*t309 + r2*t321
+                t323 = -angle0_x*t292 + angle0_z*t284
+                t324 = -angle0_x*t301 + angle0_z*t280 - dangle0_x*t292 + dangle0_z*t284
+                t325 = dangle1_y - r2*t302 + r3*t324 - t276*t293 + t291*t323
+                t326 = angle1_y - r2*t293 + r3*t323
+                t327 = (dOm0_z - r1*t318 + r2*(angle0_x*t317 - angle0_y*t319 + dangle0_x*t308 -
+                    dangle0_y*t310) - t274*t278*t309 + t276*t321)
+                t328 = dangle1_x - r2*t280 + r3*t305 - t276*t284 + t291*t294
+                t329 = angle1_x - r2*t284 + r3*t294
+                t330 = angle0_y*t309 - angle0_z*t308
+                t331 = Om0_x - r1*t310 + r2*t330
+                t332 = (dOm0_x - r1*t319 + r2*(angle0_y*t318 - angle0_z*t317 + dangle0_y*t309 -
+                    dangle0_z*t308) - t274*t278*t310 + t276*t330)
+                dwcd_x = (dOm0d_x + dangle2_x - r1*t271 - r2*t272 + r2*(angle0_y*t297 -
+                    angle0_z*t298 + dangle0_y*t287 - dangle0_z*t288) + r3*(angle0_y*t299 -
+                    angle0_z*t300 + dangle0_y*t289 - dangle0_z*t290) + r3*(angle1_y*t301 -
+                    angle1_z*t302 + dangle1_y*t292 - dangle1_z*t293) - t273*t276 +
+                    t276*(angle0_y*t287 - angle0_z*t288) - t277*t279 - t280*t283 - t284*t286 -
+                    t284*t304 + t291*(angle0_y*t289 - angle0_z*t290) + t291*(angle1_y*t292 -
+                    angle1_z*t293) + t294*t296 + t294*t307 + t305*t306 + t312*t315 + t316*t320 -
+                    t322*t325 - t326*t327)
+                dwcd_y = (dOm0d_y + dangle2_y - r1*t298 - r2*t300 + r2*(-angle0_x*t297 +
+                    angle0_z*t271 - dangle0_x*t287 + dangle0_z*t277) + r3*(-angle0_x*t299 +
+                    angle0_z*t272 - dangle0_x*t289 + dangle0_z*t273) + r3*(-angle1_x*t301 +
+                    angle1_z*t280 - dangle1_x*t292 + dangle1_z*t284) - t276*t290 +
+                    t276*(-angle0_x*t287 + angle0_z*t277) - t279*t288 - t283*t302 - t286*t293 +
+                    t291*(-angle0_x*t289 + angle0_z*t273) + t291*(-angle1_x*t292 + angle1_z*t284)
+                    - t293*t304 + t296*t323 + t306*t324 + t307*t323 - t315*t331 - t316*t332 +
+                    t322*t328 + t327*t329)
+                dwcd_z = (dOm0d_z + dangle2_z - r1*t297 - r2*t299 + r2*(angle0_x*t298 -
+                    angle0_y*t271 + dangle0_x*t288 - dangle0_y*t277) + r3*(angle0_x*t300 -
+                    angle0_y*t272 + dangle0_x*t290 - dangle0_y*t273) + r3*(angle1_x*t302 -
+                    angle1_y*t280 + dangle1_x*t293 - dangle1_y*t284) - t276*t289 +
+                    t276*(angle0_x*t288 - angle0_y*t277) - t279*t287 - t283*t301 - t286*t292 +
+                    t291*(angle0_x*t290 - angle0_y*t273) + t291*(angle1_x*t293 - angle1_y*t284) -
+                    t292*t304 + t296*t313 + t306*t314 + t307*t313 - t312*t328 - t320*t329 +
+                    t325*t331 + t326*t332)
                 # differential: rate of its momentum and of the moment of it
                 first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
                 first1_x, first1_y, first1_z = rigid1[0], rigid1[1], rigid1[2]
@@ -1348,43 +1219,43 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dfirst0_x, dfirst0_y, dfirst0_z = drigid0[0], drigid0[1], drigid0[2]
                 dfirst1_x, dfirst1_y, dfirst1_z = drigid1[0], drigid1[1], drigid1[2]
                 dfirst2_x, dfirst2_y, dfirst2_z = drigid2[0], drigid2[1], drigid2[2]
-                t427 = 2*dfirst1_z
-                t428 = 2*Om0_z
-                t429 = 2*first1_z
-                t430 = 2*dOm0_z
-                t431 = first0_z + mc_z
-                t432 = first0_y + mc_y
-                t433 = first0_x + mc_x
-                t434 = Om0_x*t432 - Om0_y*t433
-                t435 = -Om0_x*t431 + Om0_z*t433
-                t436 = Om0_x*dfirst0_y - Om0_y*dfirst0_x + dOm0_x*t432 - dOm0_y*t433
-                t437 = -Om0_x*dfirst0_z + Om0_z*dfirst0_x - dOm0_x*t431 + dOm0_z*t433
-                t438 = Om0_y*t431 - Om0_z*t432
-                t439 = Om0_y*dfirst0_z - Om0_z*dfirst0_y + dOm0_y*t431 - dOm0_z*t432
-                t440 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
-                t441 = Jc_xz*dwc_x + Jc_yz*dwc_y + Jc_zz*dwc_z
-                t442 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
-                t443 = Jc_xy*dwc_x + Jc_yy*dwc_y + Jc_yz*dwc_z
-                t444 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
-                t445 = Jc_xx*dwc_x + Jc_xy*dwc_y + Jc_xz*dwc_z
-                dRt_x = (Om0_y*t427 + Om0_y*t436 - Om0_z*t437 + Om0d_y*dfirst0_z -
-                    Om0d_z*dfirst0_y + dOm0_y*t429 + dOm0_y*t434 - dOm0_z*t435 + dOm0d_y*t431 -
-                    dOm0d_z*t432 - dfirst1_y*t428 + dfirst2_x - first1_y*t430 + mass*(da0_x -
+                t333 = 2*dfirst1_z
+                t334 = 2*Om0_z
+                t335 = 2*first1_z
+                t336 = 2*dOm0_z
+                t337 = first0_z + mc_z
+                t338 = first0_y + mc_y
+                t339 = first0_x + mc_x
+                t340 = Om0_x*t338 - Om0_y*t339
+                t341 = -Om0_x*t337 + Om0_z*t339
+                t342 = Om0_x*dfirst0_y - Om0_y*dfirst0_x + dOm0_x*t338 - dOm0_y*t339
+                t343 = -Om0_x*dfirst0_z + Om0_z*dfirst0_x - dOm0_x*t337 + dOm0_z*t339
+                t344 = Om0_y*t337 - Om0_z*t338
+                t345 = Om0_y*dfirst0_z - Om0_z*dfirst0_y + dOm0_y*t337 - dOm0_z*t338
+                t346 = Jc_xz*wc_x + Jc_yz*wc_y + Jc_zz*wc_z
+                t347 = Jc_xz*dwc_x + Jc_yz*dwc_y + Jc_zz*dwc_z
+                t348 = Jc_xy*wc_x + Jc_yy*wc_y + Jc_yz*wc_z
+                t349 = Jc_xy*dwc_x + Jc_yy*dwc_y + Jc_yz*dwc_z
+                t350 = Jc_xx*wc_x + Jc_xy*wc_y + Jc_xz*wc_z
+                t351 = Jc_xx*dwc_x + Jc_xy*dwc_y + Jc_xz*dwc_z
+                dRt_x = (Om0_y*t333 + Om0_y*t342 - Om0_z*t343 + Om0d_y*dfirst0_z -
+                    Om0d_z*dfirst0_y + dOm0_y*t335 + dOm0_y*t340 - dOm0_z*t341 + dOm0d_y*t337 -
+                    dOm0d_z*t338 - dfirst1_y*t334 + dfirst2_x - first1_y*t336 + mass*(da0_x -
                     dgamma_x))
-                dRt_y = (-Om0_x*t427 - Om0_x*t436 + Om0_z*t439 - Om0d_x*dfirst0_z +
-                    Om0d_z*dfirst0_x - dOm0_x*t429 - dOm0_x*t434 + dOm0_z*t438 - dOm0d_x*t431 +
-                    dOm0d_z*t433 + dfirst1_x*t428 + dfirst2_y + first1_x*t430 + mass*(da0_y -
+                dRt_y = (-Om0_x*t333 - Om0_x*t342 + Om0_z*t345 - Om0d_x*dfirst0_z +
+                    Om0d_z*dfirst0_x - dOm0_x*t335 - dOm0_x*t340 + dOm0_z*t344 - dOm0d_x*t337 +
+                    dOm0d_z*t339 + dfirst1_x*t334 + dfirst2_y + first1_x*t336 + mass*(da0_y -
                     dgamma_y))
-                dRt_z = (2*Om0_x*dfirst1_y + Om0_x*t437 - 2*Om0_y*dfirst1_x - Om0_y*t439 +
-                    Om0d_x*dfirst0_y - Om0d_y*dfirst0_x + 2*dOm0_x*first1_y + dOm0_x*t435 -
-                    2*dOm0_y*first1_x - dOm0_y*t438 + dOm0d_x*t432 - dOm0d_y*t433 + dfirst2_z +
+                dRt_z = (2*Om0_x*dfirst1_y + Om0_x*t343 - 2*Om0_y*dfirst1_x - Om0_y*t345 +
+                    Om0d_x*dfirst0_y - Om0d_y*dfirst0_x + 2*dOm0_x*first1_y + dOm0_x*t341 -
+                    2*dOm0_y*first1_x - dOm0_y*t344 + dOm0d_x*t338 - dOm0d_y*t339 + dfirst2_z +
                     mass*(da0_z - dgamma_z))
-                dMc_x = (Jc_xx*dwcd_x + Jc_xy*dwcd_y + Jc_xz*dwcd_z + dwc_y*t440 - dwc_z*t442 +
-                    t441*wc_y - t443*wc_z)
-                dMc_y = (Jc_xy*dwcd_x + Jc_yy*dwcd_y + Jc_yz*dwcd_z - dwc_x*t440 + dwc_z*t444 -
-                    t441*wc_x + t445*wc_z)
-                dMc_z = (Jc_xz*dwcd_x + Jc_yz*dwcd_y + Jc_zz*dwcd_z + dwc_x*t442 - dwc_y*t444 +
-                    t443*wc_x - t445*wc_y)
+                dMc_x = (Jc_xx*dwcd_x + Jc_xy*dwcd_y + Jc_xz*dwcd_z + dwc_y*t346 - dwc_z*t348 +
+                    t347*wc_y - t349*wc_z)
+                dMc_y = (Jc_xy*dwcd_x + Jc_yy*dwcd_y + Jc_yz*dwcd_z - dwc_x*t346 + dwc_z*t350 -
+                    t347*wc_x + t351*wc_z)
+                dMc_z = (Jc_xz*dwcd_x + Jc_yz*dwcd_y + Jc_zz*dwcd_z + dwc_x*t348 - dwc_y*t350 +
+                    t349*wc_x - t351*wc_y)
                 # differential: moment on the frame, forces on the first moment and mean rotation
                 first0_x, first0_y, first0_z = rigid0[0], rigid0[1], rigid0[2]
                 angle0_x, angle0_y, angle0_z = rigid0[3], rigid0[4], rigid0[5]
@@ -1395,42 +1266,42 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dangle0_x, dangle0_y, dangle0_z = drigid0[3], drigid0[4], drigid0[5]
                 dfirst2_x, dfirst2_y, dfirst2_z = drigid2[0], drigid2[1], drigid2[2]
                 dangle2_x, dangle2_y, dangle2_z = drigid2[3], drigid2[4], drigid2[5]
-                t446 = -Mc_y*dangle0_z + Mc_z*dangle0_y + angle0_y*dMc_z - angle0_z*dMc_y
-                t447 = 1/mass
-                t448 = first0_y + mc_y
-                t449 = first0_z + mc_z
-                t450 = -Mc_y*angle0_z + Mc_z*angle0_y
-                t451 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
-                t452 = (0.5)*r3
-                t453 = t451*(-0.5*r2 + t452)
-                t454 = -Mc_x*angle0_y + Mc_y*angle0_x
-                t455 = Mc_x*angle0_z - Mc_z*angle0_x
-                t456 = angle0_y*t454 - angle0_z*t455
-                t457 = t451*(r4 - t452)
-                t458 = -Mc_x*dangle0_y + Mc_y*dangle0_x + angle0_x*dMc_y - angle0_y*dMc_x
-                t459 = Mc_x*dangle0_z - Mc_z*dangle0_x - angle0_x*dMc_z + angle0_z*dMc_x
-                t460 = angle0_y*t458 - angle0_z*t459 + dangle0_y*t454 - dangle0_z*t455
-                t461 = first0_x + mc_x
-                t462 = -angle0_x*t454 + angle0_z*t450
-                t463 = -angle0_x*t458 + angle0_z*t446 - dangle0_x*t454 + dangle0_z*t450
-                t464 = angle0_x*t455 - angle0_y*t450
-                t465 = angle0_x*t459 - angle0_y*t446 + dangle0_x*t455 - dangle0_y*t450
-                t466 = t451*(-0.5*r4 + (1.5)*r5)
-                dRr_x = (dMc_x + r1*t446 + r2*t460 + t447*(-Rt_y*dfirst0_z + Rt_z*dfirst0_y -
-                    dRt_y*t449 + dRt_z*t448) + t450*t453 + t456*t457)
-                dRr_y = (dMc_y + r1*t459 + r2*t463 + t447*(Rt_x*dfirst0_z - Rt_z*dfirst0_x +
-                    dRt_x*t449 - dRt_z*t461) + t453*t455 + t457*t462)
-                dRr_z = (dMc_z + r1*t458 + r2*t465 + t447*(-Rt_x*dfirst0_y + Rt_y*dfirst0_x -
-                    dRt_x*t448 + dRt_y*t461) + t453*t454 + t457*t464)
-                dcarried[0] = t447*(dRt_x - dfirst2_x)
-                dcarried[1] = t447*(dRt_y - dfirst2_y)
-                dcarried[2] = t447*(dRt_z - dfirst2_z)
+                t352 = -Mc_y*dangle0_z + Mc_z*dangle0_y + angle0_y*dMc_z - angle0_z*dMc_y
+                t353 = 1/mass
+                t354 = first0_y + mc_y
+                t355 = first0_z + mc_z
+                t356 = -Mc_y*angle0_z + Mc_z*angle0_y
+                t357 = 2*angle0_x*dangle0_x + 2*angle0_y*dangle0_y + 2*angle0_z*dangle0_z
+                t358 = (0.5)*r3
+                t359 = t357*(-0.5*r2 + t358)
+                t360 = -Mc_x*angle0_y + Mc_y*angle0_x
+                t361 = Mc_x*angle0_z - Mc_z*angle0_x
+                t362 = angle0_y*t360 - angle0_z*t361
+                t363 = t357*(r4 - t358)
+                t364 = -Mc_x*dangle0_y + Mc_y*dangle0_x + angle0_x*dMc_y - angle0_y*dMc_x
+                t365 = Mc_x*dangle0_z - Mc_z*dangle0_x - angle0_x*dMc_z + angle0_z*dMc_x
+                t366 = angle0_y*t364 - angle0_z*t365 + dangle0_y*t360 - dangle0_z*t361
+                t367 = first0_x + mc_x
+                t368 = -angle0_x*t360 + angle0_z*t356
+                t369 = -angle0_x*t364 + angle0_z*t352 - dangle0_x*t360 + dangle0_z*t356
+                t370 = angle0_x*t361 - angle0_y*t356
+                t371 = angle0_x*t365 - angle0_y*t352 + dangle0_x*t361 - dangle0_y*t356
+                t372 = t357*(-0.5*r4 + (1.5)*r5)
+                dRr_x = (dMc_x + r1*t352 + r2*t366 + t353*(-Rt_y*dfirst0_z + Rt_z*dfirst0_y -
+                    dRt_y*t355 + dRt_z*t354) + t356*t359 + t362*t363)
+                dRr_y = (dMc_y + r1*t365 + r2*t369 + t353*(Rt_x*dfirst0_z - Rt_z*dfirst0_x +
+                    dRt_x*t355 - dRt_z*t367) + t359*t361 + t363*t368)
+                dRr_z = (dMc_z + r1*t364 + r2*t371 + t353*(-Rt_x*dfirst0_y + Rt_y*dfirst0_x -
+                    dRt_x*t354 + dRt_y*t367) + t359*t360 + t363*t370)
+                dcarried[0] = t353*(dRt_x - dfirst2_x)
+                dcarried[1] = t353*(dRt_y - dfirst2_y)
+                dcarried[2] = t353*(dRt_z - dfirst2_z)
                 dcarried[3] = (-Jc_xx*dangle2_x - Jc_xy*dangle2_y - Jc_xz*dangle2_z + dMc_x +
-                    r2*t446 + r3*t460 + t450*t457 + t456*t466)
+                    r2*t352 + r3*t366 + t356*t363 + t362*t372)
                 dcarried[4] = (-Jc_xy*dangle2_x - Jc_yy*dangle2_y - Jc_yz*dangle2_z + dMc_y +
-                    r2*t459 + r3*t463 + t455*t457 + t462*t466)
+                    r2*t365 + r3*t369 + t361*t363 + t368*t372)
                 dcarried[5] = (-Jc_xz*dangle2_x - Jc_yz*dangle2_y - Jc_zz*dangle2_z + dMc_z +
-                    r2*t458 + r3*t465 + t454*t457 + t464*t466)
+                    r2*t364 + r3*t371 + t360*t363 + t370*t372)
                 # forces of the rigid part, conjugate to y
                 add_block_times(rigid_columns, dcarried, ds, n, 6, padded(n))
                 # damping force, Cbar ydot
@@ -1445,15 +1316,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t467 = X_z + u_z
-                    t468 = X_y + u_y
-                    t469 = X_x + u_x
+                    t373 = X_z + u_z
+                    t374 = X_y + u_y
+                    t375 = X_x + u_x
                     dF_x += -df_x
                     dF_y += -df_y
                     dF_z += -df_z
-                    dW_x += df_y*t467 - df_z*t468 - du_y*f_z + du_z*f_y
-                    dW_y += -df_x*t467 + df_z*t469 + du_x*f_z - du_z*f_x
-                    dW_z += df_x*t468 - df_y*t469 - du_x*f_y + du_y*f_x
+                    dW_x += df_y*t373 - df_z*t374 - du_y*f_z + du_z*f_y
+                    dW_y += -df_x*t373 + df_z*t375 + du_x*f_z - du_z*f_x
+                    dW_z += df_x*t374 - df_y*t375 - du_x*f_y + du_y*f_x
                 # differential: inertia and weight on the frame
                 dF_x += dRt_x
                 dF_y += dRt_y
@@ -1470,25 +1341,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t470 = -m_x*psi_y + m_y*psi_x
-                    t471 = m_x*psi_z - m_z*psi_x
-                    t472 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t473 = dm_x*psi_z
-                    t474 = dpsi_z*m_x
-                    t475 = -dm_z*psi_x - dpsi_x*m_z + t473 + t474
-                    t476 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t477 = e1*t476
-                    t478 = -m_y*psi_z + m_z*psi_y
-                    t479 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t470 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t471 + (0.5)*dpsi_z*m_y - e0*psi_y*t472 +
-                        e0*psi_z*t475 + e1*psi_z*t471*t476 - psi_y*t470*t477)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t470 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t478 + e0*psi_x*t472 - e0*psi_z*t479 + e1*psi_x*t470*t476 -
-                        psi_z*t477*t478 - 0.5*t473 - 0.5*t474)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t471 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t478 + (0.5)*dpsi_y*m_x - e0*psi_x*t475 +
-                        e0*psi_y*t479 + e1*psi_y*t476*t478 - psi_x*t471*t477)
+                    t376 = -m_x*psi_y + m_y*psi_x
+                    t377 = m_x*psi_z - m_z*psi_x
+                    t378 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t379 = dm_x*psi_z
+                    t380 = dpsi_z*m_x
+                    t381 = -dm_z*psi_x - dpsi_x*m_z + t379 + t380
+                    t382 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t383 = e1*t382
+                    t384 = -m_y*psi_z + m_z*psi_y
+                    t385 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t376 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t377 + (0.5)*dpsi_z*m_y - e0*psi_y*t378 +
+                        e0*psi_z*t381 + e1*psi_z*t377*t382 - psi_y*t376*t383)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t376 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t384 + e0*psi_x*t378 - e0*psi_z*t385 + e1*psi_x*t376*t382 -
+                        psi_z*t383*t384 - 0.5*t379 - 0.5*t380)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t377 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t384 + (0.5)*dpsi_y*m_x - e0*psi_x*t381 +
+                        e0*psi_y*t385 + e1*psi_y*t382*t384 - psi_x*t377*t383)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for i in range(N_POSITIONS):
@@ -1496,26 +1367,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    t480 = X_x*wp_y - X_y*wp_x
-                    t481 = -X_x*wp_z + X_z*wp_x
-                    t482 = X_y*wp_z - X_z*wp_y
-                    rhs_x += -fit*(du_y*t480 - du_z*t481)
-                    rhs_y += -fit*(-du_x*t480 + du_z*t482)
-                    rhs_z += -fit*(du_x*t481 - du_y*t482)
-                t483 = dW_x + rhs_x
-                t484 = dW_y + rhs_y
-                t485 = dW_z + rhs_z
-                dwp_x = Bxx*t483 + Byx*t484 + Bzx*t485
-                dwp_y = Bxy*t483 + Byy*t484 + Bzy*t485
-                dwp_z = Bxz*t483 + Byz*t484 + Bzz*t485
+                    t386 = X_x*wp_y - X_y*wp_x
+                    t387 = -X_x*wp_z + X_z*wp_x
+                    t388 = X_y*wp_z - X_z*wp_y
+                    rhs_x += -fit*(du_y*t386 - du_z*t387)
+                    rhs_y += -fit*(-du_x*t386 + du_z*t388)
+                    rhs_z += -fit*(du_x*t387 - du_y*t388)
+                t389 = dW_x + rhs_x
+                t390 = dW_y + rhs_y
+                t391 = dW_z + rhs_z
+                dwp_x = Bxx*t389 + Byx*t390 + Bzx*t391
+                dwp_y = Bxy*t389 + Byy*t390 + Bzy*t391
+                dwp_z = Bxz*t389 + Byz*t390 + Bzz*t391
                 # differential: force on the origin, through the frame
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    t486 = dwp_z*fit
-                    dF_x += -X_y*t486 + X_z*dwp_y*fit
-                    dF_y += X_x*t486 - X_z*dwp_x*fit
+                    t392 = dwp_z*fit
+                    dF_x += -X_y*t392 + X_z*dwp_y*fit
+                    dF_y += X_x*t392 - X_z*dwp_x*fit
                     dF_z += -X_x*dwp_y*fit + X_y*dwp_x*fit
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
@@ -1524,10 +1395,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     alpha = alphas[i]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t487 = dwp_z*fit
-                    t488 = X_z*fit
-                    dh[i3] = X_y*t487 + alpha*dF_x + df_x - dwp_y*t488
-                    dh[i3 + 1] = -X_x*t487 + alpha*dF_y + df_y + dwp_x*t488
+                    t393 = dwp_z*fit
+                    t394 = X_z*fit
+                    dh[i3] = X_y*t393 + alpha*dF_x + df_x - dwp_y*t394
+                    dh[i3 + 1] = -X_x*t393 + alpha*dF_y + df_y + dwp_x*t394
                     dh[i3 + 2] = X_x*dwp_y*fit - X_y*dwp_x*fit + alpha*dF_z + df_z
                 # differential: force on the nodes, left in frame axes
                 for i in range(N_POSITIONS):
@@ -1546,33 +1417,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t489 = dm_y*psi_z
-                    t490 = dpsi_z*m_y
-                    t491 = -m_x*psi_y + m_y*psi_x
-                    t492 = e0*t491
-                    t493 = m_x*psi_z - m_z*psi_x
-                    t494 = dpsi_z*e0
-                    t495 = dm_x*psi_y
-                    t496 = dpsi_y*m_x
-                    t497 = e0*(dm_y*psi_x + dpsi_x*m_y - t495 - t496)
-                    t498 = dm_x*psi_z
-                    t499 = dpsi_z*m_x
-                    t500 = dm_z*psi_x
-                    t501 = dpsi_x*m_z
-                    t502 = t498 + t499 - t500 - t501
-                    t503 = e0*psi_z
-                    t504 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t505 = t491*t504
-                    t506 = psi_z*t504
-                    t507 = -m_y*psi_z + m_z*psi_y
-                    t508 = dm_z*psi_y + dpsi_y*m_z - t489 - t490
-                    dg[j3] = (dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t492 + psi_y*t497 +
-                        psi_y*t505 + (0.5)*t489 + (0.5)*t490 - t493*t494 - t493*t506 - t502*t503)
-                    dg[j3 + 1] = (dm_y - dpsi_x*t492 - psi_x*t497 - psi_x*t505 + t494*t507 -
-                        0.5*t498 - 0.5*t499 + (0.5)*t500 + (0.5)*t501 + t503*t508 + t506*t507)
-                    dg[j3 + 2] = (-0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t493 - 0.5*dpsi_x*m_y -
-                        dpsi_y*e0*t507 + e0*psi_x*t502 - e0*psi_y*t508 + psi_x*t493*t504 -
-                        psi_y*t504*t507 + (0.5)*t495 + (0.5)*t496)
+                    t395 = dm_y*psi_z
+                    t396 = dpsi_z*m_y
+                    t397 = -m_x*psi_y + m_y*psi_x
+                    t398 = e0*t397
+                    t399 = m_x*psi_z - m_z*psi_x
+                    t400 = dpsi_z*e0
+                    t401 = dm_x*psi_y
+                    t402 = dpsi_y*m_x
+                    t403 = e0*(dm_y*psi_x + dpsi_x*m_y - t401 - t402)
+                    t404 = dm_x*psi_z
+                    t405 = dpsi_z*m_x
+                    t406 = dm_z*psi_x
+                    t407 = dpsi_x*m_z
+                    t408 = t404 + t405 - t406 - t407
+                    t409 = e0*psi_z
+                    t410 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t411 = t397*t410
+                    t412 = psi_z*t410
+                    t413 = -m_y*psi_z + m_z*psi_y
+                    t414 = dm_z*psi_y + dpsi_y*m_z - t395 - t396
+                    dg[j3] = (dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t398 + psi_y*t403 +
+                        psi_y*t411 + (0.5)*t395 + (0.5)*t396 - t399*t400 - t399*t412 - t408*t409)
+                    dg[j3 + 1] = (dm_y - dpsi_x*t398 - psi_x*t403 - psi_x*t411 + t400*t413 -
+                        0.5*t404 - 0.5*t405 + (0.5)*t406 + (0.5)*t407 + t409*t414 + t412*t413)
+                    dg[j3 + 2] = (-0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t399 - 0.5*dpsi_x*m_y -
+                        dpsi_y*e0*t413 + e0*psi_x*t408 - e0*psi_y*t414 + psi_x*t399*t410 -
+                        psi_y*t410*t413 + (0.5)*t401 + (0.5)*t402)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

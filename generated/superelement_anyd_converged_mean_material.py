@@ -53,8 +53,8 @@ WORK_ROWS = 35
 WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (300, 157, 329, 4),
-              "column": (81, 205, 1036, 4)}
+OPERATIONS = {"residual": (300, 157, 243, 4),
+              "column": (81, 205, 810, 4)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + DAMPING_CONSTANTS
 
 
@@ -170,30 +170,35 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             e0 = e0s[j]
             t3 = e0*psi_y*psi_y
             t4 = e0*psi_z*psi_z - 1
-            t5 = (0.5)*psi_z
-            t6 = e0*psi_x
-            t7 = psi_y*t6
-            t8 = (0.5)*psi_y
-            t9 = psi_z*t6
-            t10 = e0*psi_x*psi_x
-            t11 = (0.5)*psi_x
-            t12 = e0*psi_z
-            t13 = psi_y*t12
-            t14 = -Om_x*psi_y + Om_y*psi_x
-            t15 = Om_x*psi_z - Om_z*psi_x
-            t16 = -Om_y*psi_z + Om_z*psi_y
-            B_00 += alpha_r*(-t3 - t4)
-            B_01 += alpha_r*(t5 + t7)
-            B_02 += alpha_r*(-t8 + t9)
-            B_10 += alpha_r*(-t5 + t7)
-            B_11 += alpha_r*(-t10 - t4)
-            B_12 += alpha_r*(t11 + t13)
-            B_20 += alpha_r*(t8 + t9)
-            B_21 += alpha_r*(-t11 + t13)
-            B_22 += alpha_r*(-t10 - t3 + 1)
-            rhs_x += -alpha_r*(-Om_x + (0.5)*Om_y*psi_z - Om_z*t8 - e0*psi_y*t14 + e0*psi_z*t15)
-            rhs_y += -alpha_r*(-Om_x*t5 - Om_y + (0.5)*Om_z*psi_x + e0*psi_x*t14 - t12*t16)
-            rhs_z += -alpha_r*((0.5)*Om_x*psi_y - Om_y*t11 - Om_z + e0*psi_y*t16 - t15*t6)
+            t5 = -t3 - t4
+            t6 = (0.5)*psi_z
+            t7 = e0*psi_x
+            t8 = psi_y*t7
+            t9 = t6 + t8
+            t10 = (0.5)*psi_y
+            t11 = psi_z*t7
+            t12 = -t10 + t11
+            t13 = -t6 + t8
+            t14 = e0*psi_x*psi_x
+            t15 = -t14 - t4
+            t16 = (0.5)*psi_x
+            t17 = e0*psi_y*psi_z
+            t18 = t16 + t17
+            t19 = t10 + t11
+            t20 = -t16 + t17
+            t21 = -t14 - t3 + 1
+            B_00 += alpha_r*t5
+            B_01 += alpha_r*t9
+            B_02 += alpha_r*t12
+            B_10 += alpha_r*t13
+            B_11 += alpha_r*t15
+            B_12 += alpha_r*t18
+            B_20 += alpha_r*t19
+            B_21 += alpha_r*t20
+            B_22 += alpha_r*t21
+            rhs_x += -alpha_r*(-Om_x*t5 - Om_y*t13 - Om_z*t19)
+            rhs_y += -alpha_r*(-Om_x*t9 - Om_y*t15 - Om_z*t20)
+            rhs_z += -alpha_r*(-Om_x*t12 - Om_y*t18 - Om_z*t21)
         Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
             B_12, B_20, B_21, B_22)
         Om0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
@@ -252,41 +257,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             vs_x, vs_y, vs_z = yd[i3], yd[i3 + 1], yd[i3 + 2]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-            t17 = X_y + u_y
-            t18 = X_z + u_z
-            t19 = X_x + u_x
-            eta[i3] = -Om0_y*t18 + Om0_z*t17 - v0_x + vs_x
-            eta[i3 + 1] = Om0_x*t18 - Om0_z*t19 - v0_y + vs_y
-            eta[i3 + 2] = -Om0_x*t17 + Om0_y*t19 - v0_z + vs_z
+            t22 = X_y + u_y
+            t23 = X_z + u_z
+            t24 = X_x + u_x
+            eta[i3] = -Om0_y*t23 + Om0_z*t22 - v0_x + vs_x
+            eta[i3 + 1] = Om0_x*t23 - Om0_z*t24 - v0_y + vs_y
+            eta[i3 + 2] = -Om0_x*t22 + Om0_y*t24 - v0_z + vs_z
         # rates of the elastic rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
             e0 = e0s[j]
-            t20 = Om0_y*psi_z
-            t21 = Om_y*psi_z
-            t22 = Om0_x*psi_y
-            t23 = Om0_y*psi_x - t22
-            t24 = e0*psi_y
-            t25 = Om_x*psi_z
-            t26 = Om_z*psi_x
-            t27 = t25 - t26
-            t28 = e0*psi_z
-            t29 = Om_x*psi_y
-            t30 = Om_y*psi_x - t29
-            t31 = Om0_x*psi_z
-            t32 = Om0_z*psi_x
-            t33 = t31 - t32
-            t34 = e0*psi_x
-            t35 = Om_z*psi_y - t21
-            t36 = Om0_z*psi_y - t20
-            eta[j3] = (-Om0_x + (0.5)*Om0_z*psi_y + Om_x + (0.5)*Om_z*psi_y + e0*psi_y*t30 +
-                e0*psi_z*t33 - 0.5*t20 - 0.5*t21 - t23*t24 - t27*t28)
-            eta[j3 + 1] = (-Om0_y + Om_y + t23*t34 + (0.5)*t25 - 0.5*t26 + t28*t35 - t28*t36 -
-                t30*t34 + (0.5)*t31 - 0.5*t32)
-            eta[j3 + 2] = ((0.5)*Om0_y*psi_x - Om0_z + (0.5)*Om_y*psi_x + Om_z + e0*psi_x*t27 +
-                e0*psi_y*t36 - 0.5*t22 - t24*t35 - 0.5*t29 - t33*t34)
+            t25 = (0.5)*Om0_z + (0.5)*Om_z
+            t26 = Om0_y + Om_y
+            t27 = (0.5)*psi_z
+            t28 = -Om0_y + Om_y
+            t29 = -Om0_x + Om_x
+            t30 = psi_x*t28 - psi_y*t29
+            t31 = -Om0_z + Om_z
+            t32 = -psi_x*t31 + psi_z*t29
+            t33 = Om0_x + Om_x
+            t34 = psi_y*t31 - psi_z*t28
+            eta[j3] = -Om0_x + Om_x + e0*(psi_y*t30 - psi_z*t32) + psi_y*t25 - t26*t27
+            eta[j3 + 1] = -Om0_y + Om_y + e0*(-psi_x*t30 + psi_z*t34) - psi_x*t25 + t27*t33
+            eta[j3 + 2] = (-Om0_z + Om_z + e0*(psi_x*t32 - psi_y*t34) + (0.5)*psi_x*t26 -
+                0.5*psi_y*t33)
         # rates of the internal modes
         for k in range(MODES, n):
             vm = ve[k]
@@ -313,47 +309,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t37 = alpha*mass
-            t38 = X_z + u_z
-            t39 = X_y + u_y
-            t40 = X_x + u_x
-            F_x += -f_x - gamma_x*t37
-            F_y += -f_y - gamma_y*t37
-            F_z += -f_z - gamma_z*t37
-            W_x += f_y*t38 - f_z*t39 - px_y*vs_z + px_z*vs_y
-            W_y += -f_x*t38 + f_z*t40 + px_x*vs_z - px_z*vs_x
-            W_z += f_x*t39 - f_y*t40 - px_x*vs_y + px_y*vs_x
+            t35 = alpha*mass
+            t36 = X_z + u_z
+            t37 = X_y + u_y
+            t38 = X_x + u_x
+            F_x += -f_x - gamma_x*t35
+            F_y += -f_y - gamma_y*t35
+            F_z += -f_z - gamma_z*t35
+            W_x += f_y*t36 - f_z*t37 - px_y*vs_z + px_z*vs_y
+            W_y += -f_x*t36 + f_z*t38 + px_x*vs_z - px_z*vs_x
+            W_z += f_x*t37 - f_y*t38 - px_x*vs_y + px_y*vs_x
         # moment of gravity on the frame
         gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
         d_x, d_y, d_z = d[0], d[1], d[2]
         mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
-        t41 = d_z + mc_z
-        t42 = d_y + mc_y
-        t43 = d_x + mc_x
-        W_x += gamma_y*t41 - gamma_z*t42
-        W_y += -gamma_x*t41 + gamma_z*t43
-        W_z += gamma_x*t42 - gamma_y*t43
+        t39 = d_z + mc_z
+        t40 = d_y + mc_y
+        t41 = d_x + mc_x
+        W_x += gamma_y*t39 - gamma_z*t40
+        W_y += -gamma_x*t39 + gamma_z*t41
+        W_z += gamma_x*t40 - gamma_y*t41
         # moments on the frame: elastic (30) and inertia (45)
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t44 = -m_x*psi_y + m_y*psi_x
-            t45 = m_x*psi_z
-            t46 = -m_z*psi_x + t45
-            t47 = -m_y*psi_z + m_z*psi_y
-            W_x += -e0*psi_y*t44 + e0*psi_z*t46 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-            W_y += e0*psi_x*t44 - e0*psi_z*t47 - m_y + (0.5)*m_z*psi_x - 0.5*t45
-            W_z += -e0*psi_x*t46 + e0*psi_y*t47 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+            t42 = -m_x*psi_y + m_y*psi_x
+            t43 = m_x*psi_z
+            t44 = -m_z*psi_x + t43
+            t45 = -m_y*psi_z + m_z*psi_y
+            W_x += -e0*psi_y*t42 + e0*psi_z*t44 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+            W_y += e0*psi_x*t42 - e0*psi_z*t45 - m_y + (0.5)*m_z*psi_x - 0.5*t43
+            W_z += -e0*psi_x*t44 + e0*psi_y*t45 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
         # B^T wp = W
         rhs_x = rhs_y = rhs_z = 0.0
-        t48 = W_x + rhs_x
-        t49 = W_y + rhs_y
-        t50 = W_z + rhs_z
-        wp_x = Bxx*t48 + Byx*t49 + Bzx*t50
-        wp_y = Bxy*t48 + Byy*t49 + Bzy*t50
-        wp_z = Bxz*t48 + Byz*t49 + Bzz*t50
+        t46 = W_x + rhs_x
+        t47 = W_y + rhs_y
+        t48 = W_z + rhs_z
+        wp_x = Bxx*t46 + Byx*t47 + Bzx*t48
+        wp_y = Bxy*t46 + Byy*t47 + Bzy*t48
+        wp_z = Bxz*t46 + Byz*t47 + Bzz*t48
         # force on the nodes in frame axes, (30), (57)
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -381,30 +377,23 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             pwd_x, pwd_y, pwd_z = pd[j3], pd[j3 + 1], pd[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t51 = m_y*psi_z
-            t52 = m_x*psi_y
-            t53 = m_y*psi_x - t52
-            t54 = e0*psi_y
-            t55 = m_x*psi_z
-            t56 = m_z*psi_x
-            t57 = t55 - t56
-            t58 = e0*psi_z
-            t59 = psi_y*wp_z
-            t60 = psi_z*wp_y
-            t61 = psi_x*wp_y
-            t62 = psi_y*wp_x
-            t63 = t61 - t62
-            t64 = psi_x*wp_z
-            t65 = psi_z*wp_x - t64
-            t66 = m_z*psi_y - t51
-            t67 = e0*psi_x
-            t68 = t59 - t60
-            g[j3] = (Om_y*pw_z - Om_z*pw_y + alpha_r*(t54*t63 - t58*t65 - 0.5*t59 + (0.5)*t60 +
-                wp_x) + m_x - 0.5*m_z*psi_y + pwd_x + (0.5)*t51 + t53*t54 - t57*t58)
-            g[j3 + 1] = (-Om_x*pw_z + Om_z*pw_x + alpha_r*(-0.5*psi_z*wp_x + t58*t68 - t63*t67 +
-                (0.5)*t64 + wp_y) + m_y + pwd_y - t53*t67 - 0.5*t55 + (0.5)*t56 + t58*t66)
-            g[j3 + 2] = (Om_x*pw_y - Om_y*pw_x + alpha_r*(-t54*t68 - 0.5*t61 + (0.5)*t62 + t65*t67
-                + wp_z) - 0.5*m_y*psi_x + m_z + pwd_z + (0.5)*t52 - t54*t66 + t57*t67)
+            t49 = alpha_r*wp_y + m_y
+            t50 = psi_z*t49
+            t51 = alpha_r*wp_z + m_z
+            t52 = psi_y*t51
+            t53 = psi_x*t49
+            t54 = alpha_r*wp_x + m_x
+            t55 = psi_y*t54
+            t56 = e0*(t53 - t55)
+            t57 = psi_x*t51
+            t58 = psi_z*t54 - t57
+            t59 = e0*psi_z
+            t60 = -t50 + t52
+            g[j3] = Om_y*pw_z - Om_z*pw_y + psi_y*t56 + pwd_x + (0.5)*t50 - 0.5*t52 + t54 - t58*t59
+            g[j3 + 1] = (-Om_x*pw_z + Om_z*pw_x - psi_x*t56 - 0.5*psi_z*t54 + pwd_y + t49 +
+                (0.5)*t57 + t59*t60)
+            g[j3 + 2] = (Om_x*pw_y - Om_y*pw_x + e0*psi_x*t58 - e0*psi_y*t60 + pwd_z + t51 -
+                0.5*t53 + (0.5)*t55)
         # force of the internal modes
         for k in range(MODES, n):
             fm = s[k]
@@ -519,16 +508,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t69 = -dth_x*psi_y + dth_y*psi_x
-                    t70 = dth_x*psi_z
-                    t71 = -dth_z*psi_x + t70
-                    t72 = -dth_y*psi_z + dth_z*psi_y
+                    t61 = -dth_x*psi_y + dth_y*psi_x
+                    t62 = dth_x*psi_z
+                    t63 = -dth_z*psi_x + t62
+                    t64 = -dth_y*psi_z + dth_z*psi_y
                     rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y -
-                        e0*psi_y*t69 + e0*psi_z*t71))
-                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t69 - e0*psi_z*t72 -
-                        0.5*t70))
-                    rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t71
-                        + e0*psi_y*t72))
+                        e0*psi_y*t61 + e0*psi_z*t63))
+                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t61 - e0*psi_z*t64 -
+                        0.5*t62))
+                    rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t63
+                        + e0*psi_y*t64))
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -538,41 +527,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-                    t73 = X_y + u_y
-                    t74 = X_z + u_z
-                    t75 = X_x + u_x
-                    dy[i3] = -dth0_y*t74 + dth0_z*t73 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t74 - dth0_z*t75 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t73 + dth0_y*t75 - dx0_z + dx_z
+                    t65 = X_y + u_y
+                    t66 = X_z + u_z
+                    t67 = X_x + u_x
+                    dy[i3] = -dth0_y*t66 + dth0_z*t65 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t66 - dth0_z*t67 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t65 + dth0_y*t67 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t76 = dth0_y*psi_z
-                    t77 = dth_y*psi_z
-                    t78 = dth0_x*psi_y
-                    t79 = dth0_y*psi_x - t78
-                    t80 = e0*psi_y
-                    t81 = dth_x*psi_z
-                    t82 = dth_z*psi_x
-                    t83 = t81 - t82
-                    t84 = e0*psi_z
-                    t85 = dth_x*psi_y
-                    t86 = dth_y*psi_x - t85
-                    t87 = dth0_x*psi_z
-                    t88 = dth0_z*psi_x
-                    t89 = t87 - t88
-                    t90 = e0*psi_x
-                    t91 = dth_z*psi_y - t77
-                    t92 = dth0_z*psi_y - t76
-                    dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t86 + e0*psi_z*t89 - 0.5*t76 - 0.5*t77 - t79*t80 - t83*t84)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t79*t90 + (0.5)*t81 - 0.5*t82 + t84*t91 -
-                        t84*t92 - t86*t90 + (0.5)*t87 - 0.5*t88)
-                    dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t83 + e0*psi_y*t92 - 0.5*t78 - t80*t91 - 0.5*t85 - t89*t90)
+                    t68 = (0.5)*dth0_z + (0.5)*dth_z
+                    t69 = dth0_y + dth_y
+                    t70 = (0.5)*psi_z
+                    t71 = -dth0_y + dth_y
+                    t72 = -dth0_x + dth_x
+                    t73 = psi_x*t71 - psi_y*t72
+                    t74 = -dth0_z + dth_z
+                    t75 = -psi_x*t74 + psi_z*t72
+                    t76 = dth0_x + dth_x
+                    t77 = psi_y*t74 - psi_z*t71
+                    dy[j3] = -dth0_x + dth_x + e0*(psi_y*t73 - psi_z*t75) + psi_y*t68 - t69*t70
+                    dy[j3 + 1] = -dth0_y + dth_y + e0*(-psi_x*t73 + psi_z*t77) - psi_x*t68 + t70*t76
+                    dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t75 - psi_y*t77) + (0.5)*psi_x*t69 -
+                        0.5*psi_y*t76)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
@@ -629,47 +609,56 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t93 = -Om_x*psi_y + Om_y*psi_x
-                    t94 = dpsi_y*e0
-                    t95 = Om0_x*psi_z - Om0_z*psi_x
-                    t96 = dpsi_z*e0
-                    t97 = Om0_x*dpsi_z
-                    t98 = -Om0_z*dpsi_x + t97
-                    t99 = e0*psi_z
-                    t100 = -Om0_x*psi_y + Om0_y*psi_x
-                    t101 = Om_x*psi_z - Om_z*psi_x
-                    t102 = -Om0_x*dpsi_y + Om0_y*dpsi_x
-                    t103 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t104 = e0*psi_y
-                    t105 = Om_x*dpsi_z
-                    t106 = dOm_x*psi_z
-                    t107 = -Om_z*dpsi_x - dOm_z*psi_x + t105 + t106
-                    t108 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t109 = e1*t108
-                    t110 = psi_y*t109
-                    t111 = psi_z*t109
-                    t112 = dpsi_x*e0
-                    t113 = -Om_y*psi_z + Om_z*psi_y
-                    t114 = e0*psi_x
-                    t115 = -Om0_y*psi_z + Om0_z*psi_y
-                    t116 = -Om0_y*dpsi_z + Om0_z*dpsi_y
-                    t117 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t118 = psi_x*t109
-                    rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - 0.5*Om0_z*dpsi_y + (0.5)*Om_y*dpsi_z
-                        - 0.5*Om_z*dpsi_y - dOm_x + (0.5)*dOm_y*psi_z - 0.5*dOm_z*psi_y +
-                        dpsi_y*e0*t100 + dpsi_z*e0*t101 + e0*psi_y*t102 + e0*psi_z*t107 +
-                        e1*psi_y*t100*t108 + e1*psi_z*t101*t108 - t103*t104 - t110*t93 - t111*t95
-                        - t93*t94 - t95*t96 - t98*t99))
-                    rhs_y += (-alpha_r*((0.5)*Om0_z*dpsi_x + (0.5)*Om_z*dpsi_x - dOm_y +
-                        (0.5)*dOm_z*psi_x + dpsi_x*e0*t93 + dpsi_z*e0*t115 + e0*psi_x*t103 +
-                        e0*psi_z*t116 + e1*psi_x*t108*t93 + e1*psi_z*t108*t115 - t100*t112 -
-                        t100*t118 - t102*t114 - 0.5*t105 - 0.5*t106 - t111*t113 - t113*t96 -
-                        t117*t99 - 0.5*t97))
-                    rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x + (0.5)*Om_x*dpsi_y
-                        - 0.5*Om_y*dpsi_x + (0.5)*dOm_x*psi_y - 0.5*dOm_y*psi_x - dOm_z +
-                        dpsi_x*e0*t95 + dpsi_y*e0*t113 + e0*psi_x*t98 + e0*psi_y*t117 +
-                        e1*psi_x*t108*t95 + e1*psi_y*t108*t113 - t101*t112 - t101*t118 - t104*t116
-                        - t107*t114 - t110*t115 - t115*t94))
+                    t78 = (0.5)*dpsi_y
+                    t79 = (0.5)*psi_z
+                    t80 = e0*psi_x
+                    t81 = psi_y*t80
+                    t82 = (0.5)*psi_y
+                    t83 = psi_z*t80
+                    t84 = Om0_x*psi_z - Om0_z*psi_x
+                    t85 = Om0_x*dpsi_z - Om0_z*dpsi_x
+                    t86 = -Om0_x*psi_y + Om0_y*psi_x
+                    t87 = -Om0_x*dpsi_y + Om0_y*dpsi_x
+                    t88 = psi_y*psi_y
+                    t89 = e0*t88
+                    t90 = psi_z*psi_z
+                    t91 = e0*t90 - 1
+                    t92 = 2*dpsi_x*psi_x
+                    t93 = 2*dpsi_y*psi_y
+                    t94 = 2*dpsi_z*psi_z
+                    t95 = t92 + t93 + t94
+                    t96 = e1*t95
+                    t97 = (0.5)*dpsi_z
+                    t98 = dpsi_x*e0
+                    t99 = psi_x*t96
+                    t100 = dpsi_y*t80 + psi_y*t98 + psi_y*t99
+                    t101 = dpsi_z*t80 + psi_z*t98 + psi_z*t99
+                    t102 = e0*t94 + t90*t96
+                    t103 = e0*t93 + t88*t96
+                    t104 = (0.5)*psi_x
+                    t105 = e0*psi_y
+                    t106 = psi_z*t105
+                    t107 = -Om0_y*psi_z + Om0_z*psi_y
+                    t108 = -Om0_y*dpsi_z + Om0_z*dpsi_y
+                    t109 = psi_x*psi_x
+                    t110 = e0*t109
+                    t111 = (0.5)*dpsi_x
+                    t112 = dpsi_y*e0
+                    t113 = psi_y*t96
+                    t114 = dpsi_z*t105 + psi_z*t112 + psi_z*t113
+                    t115 = e0*t92 + t109*t96
+                    rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - Om0_z*t78 - Om_x*(-t102 - t103) -
+                        Om_y*(t100 - t97) - Om_z*(t101 + t78) - dOm_x*(-t89 - t91) - dOm_y*(-t79 +
+                        t81) - dOm_z*(t82 + t83) + dpsi_y*e0*t86 - dpsi_z*e0*t84 + e0*psi_y*t87 -
+                        e0*psi_z*t85 + e1*psi_y*t86*t95 - psi_z*t84*t96))
+                    rhs_y += (-alpha_r*(-Om0_x*t97 + (0.5)*Om0_z*dpsi_x - Om_x*(t100 + t97) -
+                        Om_y*(-t102 - t115) - Om_z*(-t111 + t114) - dOm_x*(t79 + t81) -
+                        dOm_y*(-t110 - t91) - dOm_z*(-t104 + t106) + dpsi_z*e0*t107 +
+                        e0*psi_z*t108 + e1*psi_z*t107*t95 - t80*t87 - t86*t98 - t86*t99))
+                    rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x - Om_x*(t101 - t78)
+                        - Om_y*(t111 + t114) - Om_z*(-t103 - t115) - dOm_x*(-t82 + t83) -
+                        dOm_y*(t104 + t106) - dOm_z*(-t110 - t89 + 1) + dpsi_x*e0*t84 +
+                        e0*psi_x*t85 + e1*psi_x*t84*t95 - t105*t108 - t107*t112 - t107*t113))
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -714,13 +703,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t119 = X_y + u_y
-                    t120 = X_z + u_z
-                    t121 = X_x + u_x
-                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t120 + dOm0_z*t119 - dv0_x + dvs_x
-                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t120 - dOm0_z*t121 - dv0_y +
+                    t116 = X_y + u_y
+                    t117 = X_z + u_z
+                    t118 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t117 + dOm0_z*t116 - dv0_x + dvs_x
+                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t117 - dOm0_z*t118 - dv0_y +
                         dvs_y)
-                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t119 + dOm0_y*t121 - dv0_z +
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t116 + dOm0_y*t118 - dv0_z +
                         dvs_z)
                 # differential: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -731,59 +720,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t122 = Om0_y*dpsi_z
-                    t123 = Om_y*dpsi_z
-                    t124 = dOm0_y*psi_z
-                    t125 = dOm_y*psi_z
-                    t126 = -Om0_x*psi_y + Om0_y*psi_x
-                    t127 = dpsi_y*e0
-                    t128 = Om_x*psi_z - Om_z*psi_x
-                    t129 = dpsi_z*e0
-                    t130 = -Om_x*psi_y + Om_y*psi_x
-                    t131 = Om0_x*psi_z - Om0_z*psi_x
-                    t132 = Om0_x*dpsi_y
-                    t133 = dOm0_x*psi_y
-                    t134 = Om0_y*dpsi_x + dOm0_y*psi_x - t132 - t133
-                    t135 = e0*psi_y
-                    t136 = Om_x*dpsi_z
-                    t137 = dOm_x*psi_z
-                    t138 = Om_z*dpsi_x
-                    t139 = dOm_z*psi_x
-                    t140 = t136 + t137 - t138 - t139
-                    t141 = e0*psi_z
-                    t142 = Om_x*dpsi_y
-                    t143 = dOm_x*psi_y
-                    t144 = Om_y*dpsi_x + dOm_y*psi_x - t142 - t143
-                    t145 = Om0_x*dpsi_z
-                    t146 = dOm0_x*psi_z
-                    t147 = Om0_z*dpsi_x
-                    t148 = dOm0_z*psi_x
-                    t149 = t145 + t146 - t147 - t148
-                    t150 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t151 = e1*t150
-                    t152 = psi_y*t151
-                    t153 = psi_z*t151
-                    t154 = dpsi_x*e0
-                    t155 = -Om_y*psi_z + Om_z*psi_y
-                    t156 = -Om0_y*psi_z + Om0_z*psi_y
-                    t157 = e0*psi_x
-                    t158 = Om_z*dpsi_y + dOm_z*psi_y - t123 - t125
-                    t159 = Om0_z*dpsi_y + dOm0_z*psi_y - t122 - t124
-                    t160 = psi_x*t151
-                    deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x +
-                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t130 +
-                        dpsi_z*e0*t131 + e0*psi_y*t144 + e0*psi_z*t149 + e1*psi_y*t130*t150 +
-                        e1*psi_z*t131*t150 - 0.5*t122 - 0.5*t123 - 0.5*t124 - 0.5*t125 - t126*t127
-                        - t126*t152 - t128*t129 - t128*t153 - t134*t135 - t140*t141)
-                    deta[j3 + 1] = (-dOm0_y + dOm_y + t126*t154 + t126*t160 + t129*t155 -
-                        t129*t156 - t130*t154 - t130*t160 + t134*t157 + (0.5)*t136 + (0.5)*t137 -
-                        0.5*t138 - 0.5*t139 + t141*t158 - t141*t159 - t144*t157 + (0.5)*t145 +
-                        (0.5)*t146 - 0.5*t147 - 0.5*t148 + t153*t155 - t153*t156)
-                    deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t128 + dpsi_y*e0*t156 +
-                        e0*psi_x*t140 + e0*psi_y*t159 + e1*psi_x*t128*t150 + e1*psi_y*t150*t156 -
-                        t127*t155 - t131*t154 - t131*t160 - 0.5*t132 - 0.5*t133 - t135*t158 -
-                        0.5*t142 - 0.5*t143 - t149*t157 - t152*t155)
+                    t119 = (0.5)*Om0_z + (0.5)*Om_z
+                    t120 = Om0_y + Om_y
+                    t121 = (0.5)*dpsi_z
+                    t122 = (0.5)*dOm0_z + (0.5)*dOm_z
+                    t123 = dOm0_y + dOm_y
+                    t124 = (0.5)*psi_z
+                    t125 = -Om0_y + Om_y
+                    t126 = -Om0_x + Om_x
+                    t127 = psi_x*t125 - psi_y*t126
+                    t128 = -Om0_z + Om_z
+                    t129 = -psi_x*t128 + psi_z*t126
+                    t130 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t131 = -dOm0_y + dOm_y
+                    t132 = -dOm0_x + dOm_x
+                    t133 = dpsi_x*t125 - dpsi_y*t126 + psi_x*t131 - psi_y*t132
+                    t134 = -dOm0_z + dOm_z
+                    t135 = -dpsi_x*t128 + dpsi_z*t126 - psi_x*t134 + psi_z*t132
+                    t136 = Om0_x + Om_x
+                    t137 = dOm0_x + dOm_x
+                    t138 = psi_y*t128 - psi_z*t125
+                    t139 = dpsi_y*t128 - dpsi_z*t125 + psi_y*t134 - psi_z*t131
+                    deta[j3] = (-dOm0_x + dOm_x + dpsi_y*t119 + e0*(dpsi_y*t127 - dpsi_z*t129 +
+                        psi_y*t133 - psi_z*t135) + psi_y*t122 - t120*t121 - t123*t124 +
+                        t130*(psi_y*t127 - psi_z*t129))
+                    deta[j3 + 1] = (-dOm0_y + dOm_y - dpsi_x*t119 + e0*(-dpsi_x*t127 + dpsi_z*t138
+                        - psi_x*t133 + psi_z*t139) - psi_x*t122 + t121*t136 + t124*t137 +
+                        t130*(-psi_x*t127 + psi_z*t138))
+                    deta[j3 + 2] = (-dOm0_z + dOm_z + (0.5)*dpsi_x*t120 - 0.5*dpsi_y*t136 +
+                        e0*(dpsi_x*t129 - dpsi_y*t138 + psi_x*t135 - psi_y*t139) +
+                        (0.5)*psi_x*t123 - 0.5*psi_y*t137 + t130*(psi_x*t129 - psi_y*t138))
                 # differential: rates of the internal modes
                 for k in range(MODES, n):
                     dvm = dve[k]
@@ -814,18 +780,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                     dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
-                    t161 = alpha*mass
-                    t162 = X_z + u_z
-                    t163 = X_y + u_y
-                    t164 = X_x + u_x
-                    dF_x += -df_x - dgamma_x*t161
-                    dF_y += -df_y - dgamma_y*t161
-                    dF_z += -df_z - dgamma_z*t161
-                    dW_x += (df_y*t162 - df_z*t163 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y
+                    t140 = alpha*mass
+                    t141 = X_z + u_z
+                    t142 = X_y + u_y
+                    t143 = X_x + u_x
+                    dF_x += -df_x - dgamma_x*t140
+                    dF_y += -df_y - dgamma_y*t140
+                    dF_z += -df_z - dgamma_z*t140
+                    dW_x += (df_y*t141 - df_z*t142 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y
                         + dvs_y*px_z - dvs_z*px_y)
-                    dW_y += (-df_x*t162 + df_z*t164 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z -
+                    dW_y += (-df_x*t141 + df_z*t143 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z -
                         du_z*f_x - dvs_x*px_z + dvs_z*px_x)
-                    dW_z += (df_x*t163 - df_y*t164 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x
+                    dW_z += (df_x*t142 - df_y*t143 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x
                         + dvs_x*px_y - dvs_y*px_x)
                 # differential: moment of gravity on the frame
                 gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
@@ -833,12 +799,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
                 dd_x, dd_y, dd_z = dd[0], dd[1], dd[2]
                 dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-                t165 = d_y + mc_y
-                t166 = d_z + mc_z
-                t167 = d_x + mc_x
-                dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t166 - dgamma_z*t165
-                dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t166 + dgamma_z*t167
-                dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t165 - dgamma_y*t167
+                t144 = d_y + mc_y
+                t145 = d_z + mc_z
+                t146 = d_x + mc_x
+                dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t145 - dgamma_z*t144
+                dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t145 + dgamma_z*t146
+                dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t144 - dgamma_y*t146
                 # differential: moments on the frame: elastic (30) and inertia (45)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -848,25 +814,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t168 = -m_x*psi_y + m_y*psi_x
-                    t169 = m_x*psi_z - m_z*psi_x
-                    t170 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t171 = dm_x*psi_z
-                    t172 = dpsi_z*m_x
-                    t173 = -dm_z*psi_x - dpsi_x*m_z + t171 + t172
-                    t174 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t175 = e1*t174
-                    t176 = -m_y*psi_z + m_z*psi_y
-                    t177 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t168 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t169 + (0.5)*dpsi_z*m_y - e0*psi_y*t170 +
-                        e0*psi_z*t173 + e1*psi_z*t169*t174 - psi_y*t168*t175)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t168 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t176 + e0*psi_x*t170 - e0*psi_z*t177 + e1*psi_x*t168*t174 -
-                        psi_z*t175*t176 - 0.5*t171 - 0.5*t172)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t169 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t176 + (0.5)*dpsi_y*m_x - e0*psi_x*t173 +
-                        e0*psi_y*t177 + e1*psi_y*t174*t176 - psi_x*t169*t175)
+                    t147 = -m_x*psi_y + m_y*psi_x
+                    t148 = m_x*psi_z - m_z*psi_x
+                    t149 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t150 = dm_x*psi_z
+                    t151 = dpsi_z*m_x
+                    t152 = -dm_z*psi_x - dpsi_x*m_z + t150 + t151
+                    t153 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t154 = e1*t153
+                    t155 = -m_y*psi_z + m_z*psi_y
+                    t156 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t147 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t148 + (0.5)*dpsi_z*m_y - e0*psi_y*t149 +
+                        e0*psi_z*t152 + e1*psi_z*t148*t153 - psi_y*t147*t154)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t147 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t155 + e0*psi_x*t149 - e0*psi_z*t156 + e1*psi_x*t147*t153 -
+                        psi_z*t154*t155 - 0.5*t150 - 0.5*t151)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t148 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t155 + (0.5)*dpsi_y*m_x - e0*psi_x*t152 +
+                        e0*psi_y*t156 + e1*psi_y*t153*t155 - psi_x*t148*t154)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for j in range(N_ROTATIONS):
@@ -876,33 +842,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t178 = dpsi_y*wp_z
-                    t179 = dpsi_z*wp_y
-                    t180 = psi_x*wp_y - psi_y*wp_x
-                    t181 = e0*t180
-                    t182 = dpsi_x*wp_y
-                    t183 = dpsi_y*wp_x
-                    t184 = e0*(t182 - t183)
-                    t185 = -psi_x*wp_z + psi_z*wp_x
-                    t186 = dpsi_x*wp_z
-                    t187 = dpsi_z*wp_x - t186
-                    t188 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t189 = e1*t188
-                    t190 = t180*t189
-                    t191 = psi_y*wp_z - psi_z*wp_y
-                    t192 = t178 - t179
-                    rhs_x += (-alpha_r*(dpsi_y*t181 - dpsi_z*e0*t185 - e0*psi_z*t187 + psi_y*t184
-                        + psi_y*t190 - psi_z*t185*t189 + (0.5)*t178 - 0.5*t179))
-                    rhs_y += (-alpha_r*(-dpsi_x*t181 + dpsi_z*e0*t191 + (0.5)*dpsi_z*wp_x +
-                        e0*psi_z*t192 + e1*psi_z*t188*t191 - psi_x*t184 - psi_x*t190 - 0.5*t186))
-                    rhs_z += (-alpha_r*(dpsi_x*e0*t185 - dpsi_y*e0*t191 + e0*psi_x*t187 -
-                        e0*psi_y*t192 + psi_x*t185*t189 - psi_y*t189*t191 + (0.5)*t182 - 0.5*t183))
-                t193 = dW_x + rhs_x
-                t194 = dW_y + rhs_y
-                t195 = dW_z + rhs_z
-                dwp_x = Bxx*t193 + Byx*t194 + Bzx*t195
-                dwp_y = Bxy*t193 + Byy*t194 + Bzy*t195
-                dwp_z = Bxz*t193 + Byz*t194 + Bzz*t195
+                    t157 = dpsi_y*wp_z
+                    t158 = dpsi_z*wp_y
+                    t159 = psi_x*wp_y - psi_y*wp_x
+                    t160 = e0*t159
+                    t161 = dpsi_x*wp_y
+                    t162 = dpsi_y*wp_x
+                    t163 = e0*(t161 - t162)
+                    t164 = -psi_x*wp_z + psi_z*wp_x
+                    t165 = dpsi_x*wp_z
+                    t166 = dpsi_z*wp_x - t165
+                    t167 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t168 = e1*t167
+                    t169 = t159*t168
+                    t170 = psi_y*wp_z - psi_z*wp_y
+                    t171 = t157 - t158
+                    rhs_x += (-alpha_r*(dpsi_y*t160 - dpsi_z*e0*t164 - e0*psi_z*t166 + psi_y*t163
+                        + psi_y*t169 - psi_z*t164*t168 + (0.5)*t157 - 0.5*t158))
+                    rhs_y += (-alpha_r*(-dpsi_x*t160 + dpsi_z*e0*t170 + (0.5)*dpsi_z*wp_x +
+                        e0*psi_z*t171 + e1*psi_z*t167*t170 - psi_x*t163 - psi_x*t169 - 0.5*t165))
+                    rhs_z += (-alpha_r*(dpsi_x*e0*t164 - dpsi_y*e0*t170 + e0*psi_x*t166 -
+                        e0*psi_y*t171 + psi_x*t164*t168 - psi_y*t168*t170 + (0.5)*t161 - 0.5*t162))
+                t172 = dW_x + rhs_x
+                t173 = dW_y + rhs_y
+                t174 = dW_z + rhs_z
+                dwp_x = Bxx*t172 + Byx*t173 + Bzx*t174
+                dwp_y = Bxy*t172 + Byy*t173 + Bzy*t174
+                dwp_z = Bxz*t172 + Byz*t173 + Bzz*t174
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -940,61 +906,44 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpwd_x, dpwd_y, dpwd_z = dpd[j3], dpd[j3 + 1], dpd[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t196 = dm_y*psi_z
-                    t197 = dpsi_z*m_y
-                    t198 = -m_x*psi_y + m_y*psi_x
-                    t199 = dpsi_y*e0
-                    t200 = m_x*psi_z - m_z*psi_x
-                    t201 = dpsi_z*e0
-                    t202 = dm_x*psi_y
-                    t203 = dpsi_y*m_x
-                    t204 = dm_y*psi_x + dpsi_x*m_y - t202 - t203
-                    t205 = e0*psi_y
-                    t206 = dm_x*psi_z
-                    t207 = dpsi_z*m_x
-                    t208 = dm_z*psi_x
-                    t209 = dpsi_x*m_z
-                    t210 = t206 + t207 - t208 - t209
-                    t211 = e0*psi_z
-                    t212 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t213 = psi_y*t212
-                    t214 = psi_z*t212
-                    t215 = dpsi_y*wp_z
-                    t216 = dpsi_z*wp_y
-                    t217 = dwp_y*psi_z
-                    t218 = dwp_z*psi_y
-                    t219 = psi_x*wp_y - psi_y*wp_x
-                    t220 = -psi_x*wp_z + psi_z*wp_x
-                    t221 = dpsi_x*wp_y
-                    t222 = dwp_y*psi_x
-                    t223 = dpsi_y*wp_x
-                    t224 = dwp_x*psi_y
-                    t225 = t221 + t222 - t223 - t224
-                    t226 = dpsi_x*wp_z
-                    t227 = dwp_z*psi_x
-                    t228 = dpsi_z*wp_x + dwp_x*psi_z - t226 - t227
-                    t229 = -m_y*psi_z + m_z*psi_y
-                    t230 = dpsi_x*e0
-                    t231 = dm_z*psi_y + dpsi_y*m_z - t196 - t197
-                    t232 = e0*psi_x
-                    t233 = psi_x*t212
-                    t234 = psi_y*wp_z - psi_z*wp_y
-                    t235 = t215 - t216 - t217 + t218
-                    dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + alpha_r*(dwp_x + t199*t219 - t201*t220 +
-                        t205*t225 - t211*t228 + t213*t219 - t214*t220 - 0.5*t215 + (0.5)*t216 +
-                        (0.5)*t217 - 0.5*t218) + dOm_y*pw_z - dOm_z*pw_y + dm_x - 0.5*dm_z*psi_y -
-                        0.5*dpsi_y*m_z + dpwd_x + (0.5)*t196 + (0.5)*t197 + t198*t199 + t198*t213
-                        - t200*t201 - t200*t214 + t204*t205 - t210*t211)
-                    dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x + alpha_r*(-0.5*dpsi_z*wp_x -
-                        0.5*dwp_x*psi_z + dwp_y + t201*t234 + t211*t235 + t214*t234 - t219*t230 -
-                        t219*t233 - t225*t232 + (0.5)*t226 + (0.5)*t227) - dOm_x*pw_z + dOm_z*pw_x
-                        + dm_y + dpwd_y - t198*t230 - t198*t233 + t201*t229 - t204*t232 - 0.5*t206
-                        - 0.5*t207 + (0.5)*t208 + (0.5)*t209 + t211*t231 + t214*t229)
-                    dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + alpha_r*(dwp_z - t199*t234 - t205*t235
-                        - t213*t234 + t220*t230 + t220*t233 - 0.5*t221 - 0.5*t222 + (0.5)*t223 +
-                        (0.5)*t224 + t228*t232) + dOm_x*pw_y - dOm_y*pw_x - 0.5*dm_y*psi_x + dm_z
-                        - 0.5*dpsi_x*m_y + dpwd_z - t199*t229 + t200*t230 + t200*t233 + (0.5)*t202
-                        + (0.5)*t203 - t205*t231 + t210*t232 - t213*t229)
+                    t175 = alpha_r*wp_y + m_y
+                    t176 = dpsi_z*t175
+                    t177 = alpha_r*dwp_y + dm_y
+                    t178 = psi_z*t177
+                    t179 = alpha_r*wp_z + m_z
+                    t180 = dpsi_y*t179
+                    t181 = alpha_r*dwp_z + dm_z
+                    t182 = psi_y*t181
+                    t183 = alpha_r*wp_x + m_x
+                    t184 = psi_x*t175 - psi_y*t183
+                    t185 = e0*t184
+                    t186 = dpsi_x*t175
+                    t187 = psi_x*t177
+                    t188 = dpsi_y*t183
+                    t189 = alpha_r*dwp_x + dm_x
+                    t190 = psi_y*t189
+                    t191 = e0*(t186 + t187 - t188 - t190)
+                    t192 = -psi_x*t179 + psi_z*t183
+                    t193 = dpsi_z*e0
+                    t194 = dpsi_x*t179
+                    t195 = psi_x*t181
+                    t196 = dpsi_z*t183 + psi_z*t189 - t194 - t195
+                    t197 = e0*psi_z
+                    t198 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t199 = t184*t198
+                    t200 = psi_z*t198
+                    t201 = psi_y*t179 - psi_z*t175
+                    t202 = -t176 - t178 + t180 + t182
+                    dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + dOm_y*pw_z - dOm_z*pw_y + dpsi_y*t185 +
+                        dpwd_x + psi_y*t191 + psi_y*t199 + (0.5)*t176 + (0.5)*t178 - 0.5*t180 -
+                        0.5*t182 + t189 - t192*t193 - t192*t200 - t196*t197)
+                    dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x - dOm_x*pw_z + dOm_z*pw_x - dpsi_x*t185
+                        - 0.5*dpsi_z*t183 + dpwd_y - psi_x*t191 - psi_x*t199 - 0.5*psi_z*t189 +
+                        t177 + t193*t201 + (0.5)*t194 + (0.5)*t195 + t197*t202 + t200*t201)
+                    dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + dOm_x*pw_y - dOm_y*pw_x +
+                        dpsi_x*e0*t192 - dpsi_y*e0*t201 + dpwd_z + e0*psi_x*t196 - e0*psi_y*t202 +
+                        psi_x*t192*t198 - psi_y*t198*t201 + t181 - 0.5*t186 - 0.5*t187 +
+                        (0.5)*t188 + (0.5)*t190)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

@@ -53,8 +53,8 @@ WORK_ROWS = 35
 WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (460, 238, 208, 4),
-              "column": (81, 310, 577, 4)}
+OPERATIONS = {"residual": (460, 238, 178, 4),
+              "column": (81, 310, 452, 4)}
 CONSTANTS = SUPERELEMENT_CONSTANTS + DAMPING_CONSTANTS
 
 
@@ -275,29 +275,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             Om_x, Om_y, Om_z = ve[j3], ve[j3 + 1], ve[j3 + 2]
             e0 = e0s[j]
-            t18 = Om0_y*psi_z
-            t19 = Om_y*psi_z
-            t20 = Om0_x*psi_y
-            t21 = Om0_y*psi_x - t20
-            t22 = e0*psi_y
-            t23 = Om_x*psi_z
-            t24 = Om_z*psi_x
-            t25 = t23 - t24
-            t26 = e0*psi_z
-            t27 = Om_x*psi_y
-            t28 = Om_y*psi_x - t27
-            t29 = Om0_x*psi_z
-            t30 = Om0_z*psi_x
-            t31 = t29 - t30
-            t32 = e0*psi_x
-            t33 = Om_z*psi_y - t19
-            t34 = Om0_z*psi_y - t18
-            eta[j3] = (-Om0_x + (0.5)*Om0_z*psi_y + Om_x + (0.5)*Om_z*psi_y + e0*psi_y*t28 +
-                e0*psi_z*t31 - 0.5*t18 - 0.5*t19 - t21*t22 - t25*t26)
-            eta[j3 + 1] = (-Om0_y + Om_y + t21*t32 + (0.5)*t23 - 0.5*t24 + t26*t33 - t26*t34 -
-                t28*t32 + (0.5)*t29 - 0.5*t30)
-            eta[j3 + 2] = ((0.5)*Om0_y*psi_x - Om0_z + (0.5)*Om_y*psi_x + Om_z + e0*psi_x*t25 +
-                e0*psi_y*t34 - 0.5*t20 - t22*t33 - 0.5*t27 - t31*t32)
+            t18 = (0.5)*Om0_z + (0.5)*Om_z
+            t19 = Om0_y + Om_y
+            t20 = (0.5)*psi_z
+            t21 = -Om0_y + Om_y
+            t22 = -Om0_x + Om_x
+            t23 = psi_x*t21 - psi_y*t22
+            t24 = -Om0_z + Om_z
+            t25 = -psi_x*t24 + psi_z*t22
+            t26 = Om0_x + Om_x
+            t27 = psi_y*t24 - psi_z*t21
+            eta[j3] = -Om0_x + Om_x + e0*(psi_y*t23 - psi_z*t25) + psi_y*t18 - t19*t20
+            eta[j3 + 1] = -Om0_y + Om_y + e0*(-psi_x*t23 + psi_z*t27) - psi_x*t18 + t20*t26
+            eta[j3 + 2] = (-Om0_z + Om_z + e0*(psi_x*t25 - psi_y*t27) + (0.5)*psi_x*t19 -
+                0.5*psi_y*t26)
         # rates of the internal modes
         for k in range(MODES, n):
             vm = ve[k]
@@ -324,55 +315,55 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
             mass = masses[0]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t35 = alpha*mass
-            t36 = X_z + u_z
-            t37 = X_y + u_y
-            t38 = X_x + u_x
-            F_x += -f_x - gamma_x*t35
-            F_y += -f_y - gamma_y*t35
-            F_z += -f_z - gamma_z*t35
-            W_x += f_y*t36 - f_z*t37 - px_y*vs_z + px_z*vs_y
-            W_y += -f_x*t36 + f_z*t38 + px_x*vs_z - px_z*vs_x
-            W_z += f_x*t37 - f_y*t38 - px_x*vs_y + px_y*vs_x
+            t28 = alpha*mass
+            t29 = X_z + u_z
+            t30 = X_y + u_y
+            t31 = X_x + u_x
+            F_x += -f_x - gamma_x*t28
+            F_y += -f_y - gamma_y*t28
+            F_z += -f_z - gamma_z*t28
+            W_x += f_y*t29 - f_z*t30 - px_y*vs_z + px_z*vs_y
+            W_y += -f_x*t29 + f_z*t31 + px_x*vs_z - px_z*vs_x
+            W_z += f_x*t30 - f_y*t31 - px_x*vs_y + px_y*vs_x
         # moment of gravity on the frame
         gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
         d_x, d_y, d_z = d[0], d[1], d[2]
         mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
-        t39 = d_z + mc_z
-        t40 = d_y + mc_y
-        t41 = d_x + mc_x
-        W_x += gamma_y*t39 - gamma_z*t40
-        W_y += -gamma_x*t39 + gamma_z*t41
-        W_z += gamma_x*t40 - gamma_y*t41
+        t32 = d_z + mc_z
+        t33 = d_y + mc_y
+        t34 = d_x + mc_x
+        W_x += gamma_y*t32 - gamma_z*t33
+        W_y += -gamma_x*t32 + gamma_z*t34
+        W_z += gamma_x*t33 - gamma_y*t34
         # moments on the frame: elastic (30) and inertia (45)
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t42 = -m_x*psi_y + m_y*psi_x
-            t43 = m_x*psi_z
-            t44 = -m_z*psi_x + t43
-            t45 = -m_y*psi_z + m_z*psi_y
-            W_x += -e0*psi_y*t42 + e0*psi_z*t44 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-            W_y += e0*psi_x*t42 - e0*psi_z*t45 - m_y + (0.5)*m_z*psi_x - 0.5*t43
-            W_z += -e0*psi_x*t44 + e0*psi_y*t45 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+            t35 = -m_x*psi_y + m_y*psi_x
+            t36 = m_x*psi_z
+            t37 = -m_z*psi_x + t36
+            t38 = -m_y*psi_z + m_z*psi_y
+            W_x += -e0*psi_y*t35 + e0*psi_z*t37 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+            W_y += e0*psi_x*t35 - e0*psi_z*t38 - m_y + (0.5)*m_z*psi_x - 0.5*t36
+            W_z += -e0*psi_x*t37 + e0*psi_y*t38 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
         # B^T wp = W
         rhs_x = rhs_y = rhs_z = 0.0
-        t46 = W_x + rhs_x
-        t47 = W_y + rhs_y
-        t48 = W_z + rhs_z
-        wp_x = Bxx*t46 + Byx*t47 + Bzx*t48
-        wp_y = Bxy*t46 + Byy*t47 + Bzy*t48
-        wp_z = Bxz*t46 + Byz*t47 + Bzz*t48
+        t39 = W_x + rhs_x
+        t40 = W_y + rhs_y
+        t41 = W_z + rhs_z
+        wp_x = Bxx*t39 + Byx*t40 + Bzx*t41
+        wp_y = Bxy*t39 + Byy*t40 + Bzy*t41
+        wp_z = Bxz*t39 + Byz*t40 + Bzz*t41
         # force on the origin, through the frame
         for i in range(N_POSITIONS):
             i3 = 3*i
             fit = fits[i]
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-            t49 = fit*wp_z
-            F_x += -X_y*t49 + X_z*fit*wp_y
-            F_y += X_x*t49 - X_z*fit*wp_x
+            t42 = fit*wp_z
+            F_x += -X_y*t42 + X_z*fit*wp_y
+            F_y += X_x*t42 - X_z*fit*wp_x
             F_z += -X_x*fit*wp_y + X_y*fit*wp_x
         # force on the nodes in frame axes, (30), (57)
         for i in range(N_POSITIONS):
@@ -383,10 +374,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             px_x, px_y, px_z = p[i3], p[i3 + 1], p[i3 + 2]
             pxd_x, pxd_y, pxd_z = pd[i3], pd[i3 + 1], pd[i3 + 2]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t50 = fit*wp_z
-            t51 = X_z*fit
-            h[i3] = F_x*alpha + Om0_y*px_z - Om0_z*px_y + X_y*t50 + f_x + pxd_x - t51*wp_y
-            h[i3 + 1] = F_y*alpha - Om0_x*px_z + Om0_z*px_x - X_x*t50 + f_y + pxd_y + t51*wp_x
+            t43 = fit*wp_z
+            t44 = X_z*fit
+            h[i3] = F_x*alpha + Om0_y*px_z - Om0_z*px_y + X_y*t43 + f_x + pxd_x - t44*wp_y
+            h[i3 + 1] = F_y*alpha - Om0_x*px_z + Om0_z*px_x - X_x*t43 + f_y + pxd_y + t44*wp_x
             h[i3 + 2] = (F_z*alpha + Om0_x*px_y - Om0_y*px_x + X_x*fit*wp_y - X_y*fit*wp_x + f_z +
                 pxd_z)
         # force on the nodes
@@ -405,20 +396,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             pwd_x, pwd_y, pwd_z = pd[j3], pd[j3 + 1], pd[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t52 = m_y*psi_z
-            t53 = m_x*psi_y
-            t54 = e0*(m_y*psi_x - t53)
-            t55 = m_x*psi_z
-            t56 = m_z*psi_x
-            t57 = t55 - t56
-            t58 = e0*psi_z
-            t59 = m_z*psi_y - t52
-            g[j3] = (Om_y*pw_z - Om_z*pw_y + m_x - 0.5*m_z*psi_y + psi_y*t54 + pwd_x + (0.5)*t52 -
-                t57*t58)
-            g[j3 + 1] = (-Om_x*pw_z + Om_z*pw_x + m_y - psi_x*t54 + pwd_y - 0.5*t55 + (0.5)*t56 +
-                t58*t59)
-            g[j3 + 2] = (Om_x*pw_y - Om_y*pw_x + e0*psi_x*t57 - e0*psi_y*t59 - 0.5*m_y*psi_x + m_z
-                + pwd_z + (0.5)*t53)
+            t45 = m_y*psi_z
+            t46 = m_x*psi_y
+            t47 = e0*(m_y*psi_x - t46)
+            t48 = m_x*psi_z
+            t49 = m_z*psi_x
+            t50 = t48 - t49
+            t51 = e0*psi_z
+            t52 = m_z*psi_y - t45
+            g[j3] = (Om_y*pw_z - Om_z*pw_y + m_x - 0.5*m_z*psi_y + psi_y*t47 + pwd_x + (0.5)*t45 -
+                t50*t51)
+            g[j3 + 1] = (-Om_x*pw_z + Om_z*pw_x + m_y - psi_x*t47 + pwd_y - 0.5*t48 + (0.5)*t49 +
+                t51*t52)
+            g[j3 + 2] = (Om_x*pw_y - Om_y*pw_x + e0*psi_x*t50 - e0*psi_y*t52 - 0.5*m_y*psi_x + m_z
+                + pwd_z + (0.5)*t46)
         # force of the internal modes
         for k in range(MODES, n):
             fm = s[k]
@@ -532,12 +523,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t60 = -dx0_z + dx_z
-                    t61 = -dx0_y + dx_y
-                    t62 = -dx0_x + dx_x
-                    rhs_x += -fit*(X_y*t60 - X_z*t61)
-                    rhs_y += -fit*(-X_x*t60 + X_z*t62)
-                    rhs_z += -fit*(X_x*t61 - X_y*t62)
+                    t53 = -dx0_z + dx_z
+                    t54 = -dx0_y + dx_y
+                    t55 = -dx0_x + dx_x
+                    rhs_x += -fit*(X_y*t53 - X_z*t54)
+                    rhs_y += -fit*(-X_x*t53 + X_z*t55)
+                    rhs_z += -fit*(X_x*t54 - X_y*t55)
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -547,41 +538,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t63 = X_y + u_y
-                    t64 = X_z + u_z
-                    t65 = X_x + u_x
-                    dy[i3] = -dth0_y*t64 + dth0_z*t63 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t64 - dth0_z*t65 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t63 + dth0_y*t65 - dx0_z + dx_z
+                    t56 = X_y + u_y
+                    t57 = X_z + u_z
+                    t58 = X_x + u_x
+                    dy[i3] = -dth0_y*t57 + dth0_z*t56 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t57 - dth0_z*t58 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t56 + dth0_y*t58 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t66 = dth0_y*psi_z
-                    t67 = dth_y*psi_z
-                    t68 = dth0_x*psi_y
-                    t69 = dth0_y*psi_x - t68
-                    t70 = e0*psi_y
-                    t71 = dth_x*psi_z
-                    t72 = dth_z*psi_x
-                    t73 = t71 - t72
-                    t74 = e0*psi_z
-                    t75 = dth_x*psi_y
-                    t76 = dth_y*psi_x - t75
-                    t77 = dth0_x*psi_z
-                    t78 = dth0_z*psi_x
-                    t79 = t77 - t78
-                    t80 = e0*psi_x
-                    t81 = dth_z*psi_y - t67
-                    t82 = dth0_z*psi_y - t66
-                    dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t76 + e0*psi_z*t79 - 0.5*t66 - 0.5*t67 - t69*t70 - t73*t74)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t69*t80 + (0.5)*t71 - 0.5*t72 + t74*t81 -
-                        t74*t82 - t76*t80 + (0.5)*t77 - 0.5*t78)
-                    dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t73 + e0*psi_y*t82 - 0.5*t68 - t70*t81 - 0.5*t75 - t79*t80)
+                    t59 = (0.5)*dth0_z + (0.5)*dth_z
+                    t60 = dth0_y + dth_y
+                    t61 = (0.5)*psi_z
+                    t62 = -dth0_y + dth_y
+                    t63 = -dth0_x + dth_x
+                    t64 = psi_x*t62 - psi_y*t63
+                    t65 = -dth0_z + dth_z
+                    t66 = -psi_x*t65 + psi_z*t63
+                    t67 = dth0_x + dth_x
+                    t68 = psi_y*t65 - psi_z*t62
+                    dy[j3] = -dth0_x + dth_x + e0*(psi_y*t64 - psi_z*t66) + psi_y*t59 - t60*t61
+                    dy[j3 + 1] = -dth0_y + dth_y + e0*(-psi_x*t64 + psi_z*t68) - psi_x*t59 + t61*t67
+                    dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t66 - psi_y*t68) + (0.5)*psi_x*t60 -
+                        0.5*psi_y*t67)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
@@ -644,12 +626,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t83 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
-                    t84 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
-                    t85 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
-                    rhs_x += -fit*(X_y*t83 - X_z*t84)
-                    rhs_y += -fit*(-X_x*t83 + X_z*t85)
-                    rhs_z += -fit*(X_x*t84 - X_y*t85)
+                    t69 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
+                    t70 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
+                    t71 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
+                    rhs_x += -fit*(X_y*t69 - X_z*t70)
+                    rhs_y += -fit*(-X_x*t69 + X_z*t71)
+                    rhs_z += -fit*(X_x*t70 - X_y*t71)
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -694,12 +676,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t86 = X_y + u_y
-                    t87 = X_z + u_z
-                    t88 = X_x + u_x
-                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t87 + dOm0_z*t86 - dv0_x + dvs_x
-                    deta[i3 + 1] = Om0_x*du_z - Om0_z*du_x + dOm0_x*t87 - dOm0_z*t88 - dv0_y + dvs_y
-                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t86 + dOm0_y*t88 - dv0_z +
+                    t72 = X_y + u_y
+                    t73 = X_z + u_z
+                    t74 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t73 + dOm0_z*t72 - dv0_x + dvs_x
+                    deta[i3 + 1] = Om0_x*du_z - Om0_z*du_x + dOm0_x*t73 - dOm0_z*t74 - dv0_y + dvs_y
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t72 + dOm0_y*t74 - dv0_z +
                         dvs_z)
                 # differential: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -710,59 +692,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t89 = Om0_y*dpsi_z
-                    t90 = Om_y*dpsi_z
-                    t91 = dOm0_y*psi_z
-                    t92 = dOm_y*psi_z
-                    t93 = -Om0_x*psi_y + Om0_y*psi_x
-                    t94 = dpsi_y*e0
-                    t95 = Om_x*psi_z - Om_z*psi_x
-                    t96 = dpsi_z*e0
-                    t97 = -Om_x*psi_y + Om_y*psi_x
-                    t98 = Om0_x*psi_z - Om0_z*psi_x
-                    t99 = Om0_x*dpsi_y
-                    t100 = dOm0_x*psi_y
-                    t101 = Om0_y*dpsi_x + dOm0_y*psi_x - t100 - t99
-                    t102 = e0*psi_y
-                    t103 = Om_x*dpsi_z
-                    t104 = dOm_x*psi_z
-                    t105 = Om_z*dpsi_x
-                    t106 = dOm_z*psi_x
-                    t107 = t103 + t104 - t105 - t106
-                    t108 = e0*psi_z
-                    t109 = Om_x*dpsi_y
-                    t110 = dOm_x*psi_y
-                    t111 = Om_y*dpsi_x + dOm_y*psi_x - t109 - t110
-                    t112 = Om0_x*dpsi_z
-                    t113 = dOm0_x*psi_z
-                    t114 = Om0_z*dpsi_x
-                    t115 = dOm0_z*psi_x
-                    t116 = t112 + t113 - t114 - t115
-                    t117 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t118 = e1*t117
-                    t119 = psi_y*t118
-                    t120 = psi_z*t118
-                    t121 = dpsi_x*e0
-                    t122 = -Om_y*psi_z + Om_z*psi_y
-                    t123 = -Om0_y*psi_z + Om0_z*psi_y
-                    t124 = e0*psi_x
-                    t125 = Om_z*dpsi_y + dOm_z*psi_y - t90 - t92
-                    t126 = Om0_z*dpsi_y + dOm0_z*psi_y - t89 - t91
-                    t127 = psi_x*t118
-                    deta[j3] = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y - dOm0_x +
-                        (0.5)*dOm0_z*psi_y + dOm_x + (0.5)*dOm_z*psi_y + dpsi_y*e0*t97 +
-                        dpsi_z*e0*t98 + e0*psi_y*t111 + e0*psi_z*t116 + e1*psi_y*t117*t97 +
-                        e1*psi_z*t117*t98 - t101*t102 - t107*t108 - t119*t93 - t120*t95 - 0.5*t89
-                        - 0.5*t90 - 0.5*t91 - 0.5*t92 - t93*t94 - t95*t96)
-                    deta[j3 + 1] = (-dOm0_y + dOm_y + t101*t124 + (0.5)*t103 + (0.5)*t104 -
-                        0.5*t105 - 0.5*t106 + t108*t125 - t108*t126 - t111*t124 + (0.5)*t112 +
-                        (0.5)*t113 - 0.5*t114 - 0.5*t115 + t120*t122 - t120*t123 + t121*t93 -
-                        t121*t97 + t122*t96 - t123*t96 + t127*t93 - t127*t97)
-                    deta[j3 + 2] = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm0_y*psi_x -
-                        dOm0_z + (0.5)*dOm_y*psi_x + dOm_z + dpsi_x*e0*t95 + dpsi_y*e0*t123 +
-                        e0*psi_x*t107 + e0*psi_y*t126 + e1*psi_x*t117*t95 + e1*psi_y*t117*t123 -
-                        0.5*t100 - t102*t125 - 0.5*t109 - 0.5*t110 - t116*t124 - t119*t122 -
-                        t121*t98 - t122*t94 - t127*t98 - 0.5*t99)
+                    t75 = (0.5)*Om0_z + (0.5)*Om_z
+                    t76 = Om0_y + Om_y
+                    t77 = (0.5)*dpsi_z
+                    t78 = (0.5)*dOm0_z + (0.5)*dOm_z
+                    t79 = dOm0_y + dOm_y
+                    t80 = (0.5)*psi_z
+                    t81 = -Om0_y + Om_y
+                    t82 = -Om0_x + Om_x
+                    t83 = psi_x*t81 - psi_y*t82
+                    t84 = -Om0_z + Om_z
+                    t85 = -psi_x*t84 + psi_z*t82
+                    t86 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t87 = -dOm0_y + dOm_y
+                    t88 = -dOm0_x + dOm_x
+                    t89 = dpsi_x*t81 - dpsi_y*t82 + psi_x*t87 - psi_y*t88
+                    t90 = -dOm0_z + dOm_z
+                    t91 = -dpsi_x*t84 + dpsi_z*t82 - psi_x*t90 + psi_z*t88
+                    t92 = Om0_x + Om_x
+                    t93 = dOm0_x + dOm_x
+                    t94 = psi_y*t84 - psi_z*t81
+                    t95 = dpsi_y*t84 - dpsi_z*t81 + psi_y*t90 - psi_z*t87
+                    deta[j3] = (-dOm0_x + dOm_x + dpsi_y*t75 + e0*(dpsi_y*t83 - dpsi_z*t85 +
+                        psi_y*t89 - psi_z*t91) + psi_y*t78 - t76*t77 - t79*t80 + t86*(psi_y*t83 -
+                        psi_z*t85))
+                    deta[j3 + 1] = (-dOm0_y + dOm_y - dpsi_x*t75 + e0*(-dpsi_x*t83 + dpsi_z*t94 -
+                        psi_x*t89 + psi_z*t95) - psi_x*t78 + t77*t92 + t80*t93 + t86*(-psi_x*t83 +
+                        psi_z*t94))
+                    deta[j3 + 2] = (-dOm0_z + dOm_z + (0.5)*dpsi_x*t76 - 0.5*dpsi_y*t92 +
+                        e0*(dpsi_x*t85 - dpsi_y*t94 + psi_x*t91 - psi_y*t95) + (0.5)*psi_x*t79 -
+                        0.5*psi_y*t93 + t86*(psi_x*t85 - psi_y*t94))
                 # differential: rates of the internal modes
                 for k in range(MODES, n):
                     dvm = dve[k]
@@ -793,31 +752,31 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                     dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
-                    t128 = alpha*mass
-                    t129 = X_z + u_z
-                    t130 = X_y + u_y
-                    t131 = X_x + u_x
-                    dF_x += -df_x - dgamma_x*t128
-                    dF_y += -df_y - dgamma_y*t128
-                    dF_z += -df_z - dgamma_z*t128
-                    dW_x += (df_y*t129 - df_z*t130 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y
-                        + dvs_y*px_z - dvs_z*px_y)
-                    dW_y += (-df_x*t129 + df_z*t131 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z -
-                        du_z*f_x - dvs_x*px_z + dvs_z*px_x)
-                    dW_z += (df_x*t130 - df_y*t131 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x
-                        + dvs_x*px_y - dvs_y*px_x)
+                    t96 = alpha*mass
+                    t97 = X_z + u_z
+                    t98 = X_y + u_y
+                    t99 = X_x + u_x
+                    dF_x += -df_x - dgamma_x*t96
+                    dF_y += -df_y - dgamma_y*t96
+                    dF_z += -df_z - dgamma_z*t96
+                    dW_x += (df_y*t97 - df_z*t98 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y +
+                        dvs_y*px_z - dvs_z*px_y)
+                    dW_y += (-df_x*t97 + df_z*t99 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z - du_z*f_x
+                        - dvs_x*px_z + dvs_z*px_x)
+                    dW_z += (df_x*t98 - df_y*t99 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x +
+                        dvs_x*px_y - dvs_y*px_x)
                 # differential: moment of gravity on the frame
                 gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
                 d_x, d_y, d_z = d[0], d[1], d[2]
                 mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
                 dd_x, dd_y, dd_z = dd[0], dd[1], dd[2]
                 dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-                t132 = d_y + mc_y
-                t133 = d_z + mc_z
-                t134 = d_x + mc_x
-                dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t133 - dgamma_z*t132
-                dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t133 + dgamma_z*t134
-                dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t132 - dgamma_y*t134
+                t100 = d_y + mc_y
+                t101 = d_z + mc_z
+                t102 = d_x + mc_x
+                dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t101 - dgamma_z*t100
+                dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t101 + dgamma_z*t102
+                dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t100 - dgamma_y*t102
                 # differential: moments on the frame: elastic (30) and inertia (45)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -827,25 +786,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t135 = -m_x*psi_y + m_y*psi_x
-                    t136 = m_x*psi_z - m_z*psi_x
-                    t137 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t138 = dm_x*psi_z
-                    t139 = dpsi_z*m_x
-                    t140 = -dm_z*psi_x - dpsi_x*m_z + t138 + t139
-                    t141 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t142 = e1*t141
-                    t143 = -m_y*psi_z + m_z*psi_y
-                    t144 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t135 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t136 + (0.5)*dpsi_z*m_y - e0*psi_y*t137 +
-                        e0*psi_z*t140 + e1*psi_z*t136*t141 - psi_y*t135*t142)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t135 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t143 + e0*psi_x*t137 - e0*psi_z*t144 + e1*psi_x*t135*t141 -
-                        psi_z*t142*t143 - 0.5*t138 - 0.5*t139)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t136 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t143 + (0.5)*dpsi_y*m_x - e0*psi_x*t140 +
-                        e0*psi_y*t144 + e1*psi_y*t141*t143 - psi_x*t136*t142)
+                    t103 = -m_x*psi_y + m_y*psi_x
+                    t104 = m_x*psi_z - m_z*psi_x
+                    t105 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t106 = dm_x*psi_z
+                    t107 = dpsi_z*m_x
+                    t108 = -dm_z*psi_x - dpsi_x*m_z + t106 + t107
+                    t109 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t110 = e1*t109
+                    t111 = -m_y*psi_z + m_z*psi_y
+                    t112 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t103 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t104 + (0.5)*dpsi_z*m_y - e0*psi_y*t105 +
+                        e0*psi_z*t108 + e1*psi_z*t104*t109 - psi_y*t103*t110)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t103 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t111 + e0*psi_x*t105 - e0*psi_z*t112 + e1*psi_x*t103*t109 -
+                        psi_z*t110*t111 - 0.5*t106 - 0.5*t107)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t104 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t111 + (0.5)*dpsi_y*m_x - e0*psi_x*t108 +
+                        e0*psi_y*t112 + e1*psi_y*t109*t111 - psi_x*t104*t110)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for i in range(N_POSITIONS):
@@ -853,26 +812,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    t145 = X_x*wp_y - X_y*wp_x
-                    t146 = -X_x*wp_z + X_z*wp_x
-                    t147 = X_y*wp_z - X_z*wp_y
-                    rhs_x += -fit*(du_y*t145 - du_z*t146)
-                    rhs_y += -fit*(-du_x*t145 + du_z*t147)
-                    rhs_z += -fit*(du_x*t146 - du_y*t147)
-                t148 = dW_x + rhs_x
-                t149 = dW_y + rhs_y
-                t150 = dW_z + rhs_z
-                dwp_x = Bxx*t148 + Byx*t149 + Bzx*t150
-                dwp_y = Bxy*t148 + Byy*t149 + Bzy*t150
-                dwp_z = Bxz*t148 + Byz*t149 + Bzz*t150
+                    t113 = X_x*wp_y - X_y*wp_x
+                    t114 = -X_x*wp_z + X_z*wp_x
+                    t115 = X_y*wp_z - X_z*wp_y
+                    rhs_x += -fit*(du_y*t113 - du_z*t114)
+                    rhs_y += -fit*(-du_x*t113 + du_z*t115)
+                    rhs_z += -fit*(du_x*t114 - du_y*t115)
+                t116 = dW_x + rhs_x
+                t117 = dW_y + rhs_y
+                t118 = dW_z + rhs_z
+                dwp_x = Bxx*t116 + Byx*t117 + Bzx*t118
+                dwp_y = Bxy*t116 + Byy*t117 + Bzy*t118
+                dwp_z = Bxz*t116 + Byz*t117 + Bzz*t118
                 # differential: force on the origin, through the frame
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    t151 = dwp_z*fit
-                    dF_x += -X_y*t151 + X_z*dwp_y*fit
-                    dF_y += X_x*t151 - X_z*dwp_x*fit
+                    t119 = dwp_z*fit
+                    dF_x += -X_y*t119 + X_z*dwp_y*fit
+                    dF_y += X_x*t119 - X_z*dwp_x*fit
                     dF_z += -X_x*dwp_y*fit + X_y*dwp_x*fit
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
@@ -884,12 +843,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                     dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
                     dpxd_x, dpxd_y, dpxd_z = dpd[i3], dpd[i3 + 1], dpd[i3 + 2]
-                    t152 = dwp_z*fit
-                    t153 = X_z*fit
-                    dh[i3] = (Om0_y*dpx_z - Om0_z*dpx_y + X_y*t152 + alpha*dF_x + dOm0_y*px_z -
-                        dOm0_z*px_y + df_x + dpxd_x - dwp_y*t153)
-                    dh[i3 + 1] = (-Om0_x*dpx_z + Om0_z*dpx_x - X_x*t152 + alpha*dF_y - dOm0_x*px_z
-                        + dOm0_z*px_x + df_y + dpxd_y + dwp_x*t153)
+                    t120 = dwp_z*fit
+                    t121 = X_z*fit
+                    dh[i3] = (Om0_y*dpx_z - Om0_z*dpx_y + X_y*t120 + alpha*dF_x + dOm0_y*px_z -
+                        dOm0_z*px_y + df_x + dpxd_x - dwp_y*t121)
+                    dh[i3 + 1] = (-Om0_x*dpx_z + Om0_z*dpx_x - X_x*t120 + alpha*dF_y - dOm0_x*px_z
+                        + dOm0_z*px_x + df_y + dpxd_y + dwp_x*t121)
                     dh[i3 + 2] = (Om0_x*dpx_y - Om0_y*dpx_x + X_x*dwp_y*fit - X_y*dwp_x*fit +
                         alpha*dF_z + dOm0_x*px_y - dOm0_y*px_x + df_z + dpxd_z)
                 # differential: force on the nodes, left in frame axes
@@ -914,36 +873,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpwd_x, dpwd_y, dpwd_z = dpd[j3], dpd[j3 + 1], dpd[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t154 = dm_y*psi_z
-                    t155 = dpsi_z*m_y
-                    t156 = -m_x*psi_y + m_y*psi_x
-                    t157 = e0*t156
-                    t158 = m_x*psi_z - m_z*psi_x
-                    t159 = dpsi_z*e0
-                    t160 = dm_x*psi_y
-                    t161 = dpsi_y*m_x
-                    t162 = e0*(dm_y*psi_x + dpsi_x*m_y - t160 - t161)
-                    t163 = dm_x*psi_z
-                    t164 = dpsi_z*m_x
-                    t165 = dm_z*psi_x
-                    t166 = dpsi_x*m_z
-                    t167 = t163 + t164 - t165 - t166
-                    t168 = e0*psi_z
-                    t169 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t170 = t156*t169
-                    t171 = psi_z*t169
-                    t172 = -m_y*psi_z + m_z*psi_y
-                    t173 = dm_z*psi_y + dpsi_y*m_z - t154 - t155
+                    t122 = dm_y*psi_z
+                    t123 = dpsi_z*m_y
+                    t124 = -m_x*psi_y + m_y*psi_x
+                    t125 = e0*t124
+                    t126 = m_x*psi_z - m_z*psi_x
+                    t127 = dpsi_z*e0
+                    t128 = dm_x*psi_y
+                    t129 = dpsi_y*m_x
+                    t130 = e0*(dm_y*psi_x + dpsi_x*m_y - t128 - t129)
+                    t131 = dm_x*psi_z
+                    t132 = dpsi_z*m_x
+                    t133 = dm_z*psi_x
+                    t134 = dpsi_x*m_z
+                    t135 = t131 + t132 - t133 - t134
+                    t136 = e0*psi_z
+                    t137 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t138 = t124*t137
+                    t139 = psi_z*t137
+                    t140 = -m_y*psi_z + m_z*psi_y
+                    t141 = dm_z*psi_y + dpsi_y*m_z - t122 - t123
                     dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + dOm_y*pw_z - dOm_z*pw_y + dm_x -
-                        0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t157 + dpwd_x + psi_y*t162 +
-                        psi_y*t170 + (0.5)*t154 + (0.5)*t155 - t158*t159 - t158*t171 - t167*t168)
+                        0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t125 + dpwd_x + psi_y*t130 +
+                        psi_y*t138 + (0.5)*t122 + (0.5)*t123 - t126*t127 - t126*t139 - t135*t136)
                     dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x - dOm_x*pw_z + dOm_z*pw_x + dm_y -
-                        dpsi_x*t157 + dpwd_y - psi_x*t162 - psi_x*t170 + t159*t172 - 0.5*t163 -
-                        0.5*t164 + (0.5)*t165 + (0.5)*t166 + t168*t173 + t171*t172)
+                        dpsi_x*t125 + dpwd_y - psi_x*t130 - psi_x*t138 + t127*t140 - 0.5*t131 -
+                        0.5*t132 + (0.5)*t133 + (0.5)*t134 + t136*t141 + t139*t140)
                     dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + dOm_x*pw_y - dOm_y*pw_x -
-                        0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t158 - 0.5*dpsi_x*m_y - dpsi_y*e0*t172 +
-                        dpwd_z + e0*psi_x*t167 - e0*psi_y*t173 + psi_x*t158*t169 - psi_y*t169*t172
-                        + (0.5)*t160 + (0.5)*t161)
+                        0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t126 - 0.5*dpsi_x*m_y - dpsi_y*e0*t140 +
+                        dpwd_z + e0*psi_x*t135 - e0*psi_y*t141 + psi_x*t126*t137 - psi_y*t137*t140
+                        + (0.5)*t128 + (0.5)*t129)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

@@ -48,8 +48,8 @@ WORK_ROWS = 32
 WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (300, 136, 375, 3),
-              "column": (81, 172, 1195, 3)}
+OPERATIONS = {"residual": (300, 136, 319, 3),
+              "column": (81, 172, 1064, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
 
 
@@ -175,30 +175,35 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             e0 = e0s[j]
             t3 = e0*psi_y*psi_y
             t4 = e0*psi_z*psi_z - 1
-            t5 = (0.5)*psi_z
-            t6 = e0*psi_x
-            t7 = psi_y*t6
-            t8 = (0.5)*psi_y
-            t9 = psi_z*t6
-            t10 = e0*psi_x*psi_x
-            t11 = (0.5)*psi_x
-            t12 = e0*psi_z
-            t13 = psi_y*t12
-            t14 = -Om_x*psi_y + Om_y*psi_x
-            t15 = Om_x*psi_z - Om_z*psi_x
-            t16 = -Om_y*psi_z + Om_z*psi_y
-            B_00 += alpha_r*(-t3 - t4)
-            B_01 += alpha_r*(t5 + t7)
-            B_02 += alpha_r*(-t8 + t9)
-            B_10 += alpha_r*(-t5 + t7)
-            B_11 += alpha_r*(-t10 - t4)
-            B_12 += alpha_r*(t11 + t13)
-            B_20 += alpha_r*(t8 + t9)
-            B_21 += alpha_r*(-t11 + t13)
-            B_22 += alpha_r*(-t10 - t3 + 1)
-            rhs_x += -alpha_r*(-Om_x + (0.5)*Om_y*psi_z - Om_z*t8 - e0*psi_y*t14 + e0*psi_z*t15)
-            rhs_y += -alpha_r*(-Om_x*t5 - Om_y + (0.5)*Om_z*psi_x + e0*psi_x*t14 - t12*t16)
-            rhs_z += -alpha_r*((0.5)*Om_x*psi_y - Om_y*t11 - Om_z + e0*psi_y*t16 - t15*t6)
+            t5 = -t3 - t4
+            t6 = (0.5)*psi_z
+            t7 = e0*psi_x
+            t8 = psi_y*t7
+            t9 = t6 + t8
+            t10 = (0.5)*psi_y
+            t11 = psi_z*t7
+            t12 = -t10 + t11
+            t13 = -t6 + t8
+            t14 = e0*psi_x*psi_x
+            t15 = -t14 - t4
+            t16 = (0.5)*psi_x
+            t17 = e0*psi_y*psi_z
+            t18 = t16 + t17
+            t19 = t10 + t11
+            t20 = -t16 + t17
+            t21 = -t14 - t3 + 1
+            B_00 += alpha_r*t5
+            B_01 += alpha_r*t9
+            B_02 += alpha_r*t12
+            B_10 += alpha_r*t13
+            B_11 += alpha_r*t15
+            B_12 += alpha_r*t18
+            B_20 += alpha_r*t19
+            B_21 += alpha_r*t20
+            B_22 += alpha_r*t21
+            rhs_x += -alpha_r*(-Om_x*t5 - Om_y*t13 - Om_z*t19)
+            rhs_y += -alpha_r*(-Om_x*t9 - Om_y*t15 - Om_z*t20)
+            rhs_z += -alpha_r*(-Om_x*t12 - Om_y*t18 - Om_z*t21)
         Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
             B_12, B_20, B_21, B_22)
         Om0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
@@ -261,26 +266,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t17 = alpha*mass
-            t18 = X_z + u_z
-            t19 = X_y + u_y
-            t20 = X_x + u_x
-            F_x += -f_x - gamma_x*t17
-            F_y += -f_y - gamma_y*t17
-            F_z += -f_z - gamma_z*t17
-            W_x += f_y*t18 - f_z*t19 - px_y*vs_z + px_z*vs_y
-            W_y += -f_x*t18 + f_z*t20 + px_x*vs_z - px_z*vs_x
-            W_z += f_x*t19 - f_y*t20 - px_x*vs_y + px_y*vs_x
+            t22 = alpha*mass
+            t23 = X_z + u_z
+            t24 = X_y + u_y
+            t25 = X_x + u_x
+            F_x += -f_x - gamma_x*t22
+            F_y += -f_y - gamma_y*t22
+            F_z += -f_z - gamma_z*t22
+            W_x += f_y*t23 - f_z*t24 - px_y*vs_z + px_z*vs_y
+            W_y += -f_x*t23 + f_z*t25 + px_x*vs_z - px_z*vs_x
+            W_z += f_x*t24 - f_y*t25 - px_x*vs_y + px_y*vs_x
         # moment of gravity on the frame
         gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
         d_x, d_y, d_z = d[0], d[1], d[2]
         mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
-        t21 = d_z + mc_z
-        t22 = d_y + mc_y
-        t23 = d_x + mc_x
-        W_x += gamma_y*t21 - gamma_z*t22
-        W_y += -gamma_x*t21 + gamma_z*t23
-        W_z += gamma_x*t22 - gamma_y*t23
+        t26 = d_z + mc_z
+        t27 = d_y + mc_y
+        t28 = d_x + mc_x
+        W_x += gamma_y*t26 - gamma_z*t27
+        W_y += -gamma_x*t26 + gamma_z*t28
+        W_z += gamma_x*t27 - gamma_y*t28
         # moments on the frame: elastic (30) and inertia (45)
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
@@ -289,24 +294,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             pw_x, pw_y, pw_z = p[j3], p[j3 + 1], p[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t24 = -m_x*psi_y + m_y*psi_x
-            t25 = m_x*psi_z
-            t26 = -m_z*psi_x + t25
-            t27 = -m_y*psi_z + m_z*psi_y
-            W_x += (-e0*psi_y*t24 + e0*psi_z*t26 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y -
+            t29 = -m_x*psi_y + m_y*psi_x
+            t30 = m_x*psi_z
+            t31 = -m_z*psi_x + t30
+            t32 = -m_y*psi_z + m_z*psi_y
+            W_x += (-e0*psi_y*t29 + e0*psi_z*t31 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y -
                 pw_y*w_z + pw_z*w_y)
-            W_y += (e0*psi_x*t24 - e0*psi_z*t27 - m_y + (0.5)*m_z*psi_x + pw_x*w_z - pw_z*w_x -
-                0.5*t25)
-            W_z += (-e0*psi_x*t26 + e0*psi_y*t27 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z -
+            W_y += (e0*psi_x*t29 - e0*psi_z*t32 - m_y + (0.5)*m_z*psi_x + pw_x*w_z - pw_z*w_x -
+                0.5*t30)
+            W_z += (-e0*psi_x*t31 + e0*psi_y*t32 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z -
                 pw_x*w_y + pw_y*w_x)
         # B^T wp = W
         rhs_x = rhs_y = rhs_z = 0.0
-        t28 = W_x + rhs_x
-        t29 = W_y + rhs_y
-        t30 = W_z + rhs_z
-        wp_x = Bxx*t28 + Byx*t29 + Bzx*t30
-        wp_y = Bxy*t28 + Byy*t29 + Bzy*t30
-        wp_z = Bxz*t28 + Byz*t29 + Bzz*t30
+        t33 = W_x + rhs_x
+        t34 = W_y + rhs_y
+        t35 = W_z + rhs_z
+        wp_x = Bxx*t33 + Byx*t34 + Bzx*t35
+        wp_y = Bxy*t33 + Byy*t34 + Bzy*t35
+        wp_z = Bxz*t33 + Byz*t34 + Bzz*t35
         # force on the nodes in frame axes, (30), (57)
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -336,33 +341,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             pwd_x, pwd_y, pwd_z = pd[j3], pd[j3 + 1], pd[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t31 = m_y*psi_z
-            t32 = m_x*psi_y
-            t33 = m_y*psi_x - t32
-            t34 = e0*psi_y
-            t35 = m_x*psi_z
-            t36 = m_z*psi_x
-            t37 = t35 - t36
-            t38 = e0*psi_z
-            t39 = Om0_y*pw_z - Om0_z*pw_y + pw_y*w_z - pw_z*w_y + pwd_x
-            t40 = -Om0_x*pw_z + Om0_z*pw_x - pw_x*w_z + pw_z*w_x + pwd_y
-            t41 = Om0_x*pw_y - Om0_y*pw_x + pw_x*w_y - pw_y*w_x + pwd_z
-            t42 = psi_y*wp_z
-            t43 = psi_z*wp_y
-            t44 = psi_x*wp_y
-            t45 = psi_y*wp_x
-            t46 = t44 - t45
-            t47 = psi_x*wp_z
-            t48 = psi_z*wp_x - t47
-            t49 = m_z*psi_y - t31
-            t50 = e0*psi_x
-            t51 = t42 - t43
-            g[j3] = (Q_xx*t39 + Q_yx*t40 + Q_zx*t41 + alpha_r*(t34*t46 - t38*t48 - 0.5*t42 +
-                (0.5)*t43 + wp_x) + m_x - 0.5*m_z*psi_y + (0.5)*t31 + t33*t34 - t37*t38)
-            g[j3 + 1] = (Q_xy*t39 + Q_yy*t40 + Q_zy*t41 + alpha_r*(-0.5*psi_z*wp_x + t38*t51 -
-                t46*t50 + (0.5)*t47 + wp_y) + m_y - t33*t50 - 0.5*t35 + (0.5)*t36 + t38*t49)
-            g[j3 + 2] = (Q_xz*t39 + Q_yz*t40 + Q_zz*t41 + alpha_r*(-t34*t51 - 0.5*t44 + (0.5)*t45
-                + t48*t50 + wp_z) - 0.5*m_y*psi_x + m_z + (0.5)*t32 - t34*t49 + t37*t50)
+            t36 = Om0_y*pw_z - Om0_z*pw_y + pw_y*w_z - pw_z*w_y + pwd_x
+            t37 = -Om0_x*pw_z + Om0_z*pw_x - pw_x*w_z + pw_z*w_x + pwd_y
+            t38 = Om0_x*pw_y - Om0_y*pw_x + pw_x*w_y - pw_y*w_x + pwd_z
+            t39 = alpha_r*wp_y + m_y
+            t40 = psi_z*t39
+            t41 = alpha_r*wp_z + m_z
+            t42 = psi_y*t41
+            t43 = psi_x*t39
+            t44 = alpha_r*wp_x + m_x
+            t45 = psi_y*t44
+            t46 = e0*(t43 - t45)
+            t47 = psi_x*t41
+            t48 = psi_z*t44 - t47
+            t49 = e0*psi_z
+            t50 = -t40 + t42
+            g[j3] = Q_xx*t36 + Q_yx*t37 + Q_zx*t38 + psi_y*t46 + (0.5)*t40 - 0.5*t42 + t44 - t48*t49
+            g[j3 + 1] = (Q_xy*t36 + Q_yy*t37 + Q_zy*t38 - psi_x*t46 - 0.5*psi_z*t44 + t39 +
+                (0.5)*t47 + t49*t50)
+            g[j3 + 2] = (Q_xz*t36 + Q_yz*t37 + Q_zz*t38 + e0*psi_x*t48 - e0*psi_y*t50 + t41 -
+                0.5*t43 + (0.5)*t45)
         # force of the internal modes
         for k in range(MODES, n):
             fm = s[k]
@@ -409,12 +407,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = (R[9*nodes[j]],
                     R[9*nodes[j] + 1], R[9*nodes[j] + 2], R[9*nodes[j] + 3], R[9*nodes[j] + 4],
                     R[9*nodes[j] + 5], R[9*nodes[j] + 6], R[9*nodes[j] + 7], R[9*nodes[j] + 8])
-                t52 = Q_xx*pw_x + Q_yx*pw_y + Q_zx*pw_z
-                t53 = Q_xy*pw_x + Q_yy*pw_y + Q_zy*pw_z
-                t54 = Q_xz*pw_x + Q_yz*pw_y + Q_zz*pw_z
-                H_x += R_xx*t52 + R_xy*t53 + R_xz*t54
-                H_y += R_yx*t52 + R_yy*t53 + R_yz*t54
-                H_z += R_zx*t52 + R_zy*t53 + R_zz*t54
+                t51 = Q_xx*pw_x + Q_yx*pw_y + Q_zx*pw_z
+                t52 = Q_xy*pw_x + Q_yy*pw_y + Q_zy*pw_z
+                t53 = Q_xz*pw_x + Q_yz*pw_y + Q_zz*pw_z
+                H_x += R_xx*t51 + R_xy*t52 + R_xz*t53
+                H_y += R_yx*t51 + R_yy*t52 + R_yz*t53
+                H_z += R_zx*t51 + R_zy*t52 + R_zz*t53
             energies[KINETIC] += kinetic
             energies[STRAIN] += strain
             energies[POTENTIAL] += potential
@@ -476,16 +474,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t55 = -dth_x*psi_y + dth_y*psi_x
-                    t56 = dth_x*psi_z
-                    t57 = -dth_z*psi_x + t56
-                    t58 = -dth_y*psi_z + dth_z*psi_y
+                    t54 = -dth_x*psi_y + dth_y*psi_x
+                    t55 = dth_x*psi_z
+                    t56 = -dth_z*psi_x + t55
+                    t57 = -dth_y*psi_z + dth_z*psi_y
                     rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y -
-                        e0*psi_y*t55 + e0*psi_z*t57))
-                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t55 - e0*psi_z*t58 -
-                        0.5*t56))
-                    rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t57
-                        + e0*psi_y*t58))
+                        e0*psi_y*t54 + e0*psi_z*t56))
+                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t54 - e0*psi_z*t57 -
+                        0.5*t55))
+                    rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t56
+                        + e0*psi_y*t57))
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -495,41 +493,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-                    t59 = X_y + u_y
-                    t60 = X_z + u_z
-                    t61 = X_x + u_x
-                    dy[i3] = -dth0_y*t60 + dth0_z*t59 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t60 - dth0_z*t61 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t59 + dth0_y*t61 - dx0_z + dx_z
+                    t58 = X_y + u_y
+                    t59 = X_z + u_z
+                    t60 = X_x + u_x
+                    dy[i3] = -dth0_y*t59 + dth0_z*t58 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t59 - dth0_z*t60 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t58 + dth0_y*t60 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t62 = dth0_y*psi_z
-                    t63 = dth_y*psi_z
-                    t64 = dth0_x*psi_y
-                    t65 = dth0_y*psi_x - t64
-                    t66 = e0*psi_y
-                    t67 = dth_x*psi_z
-                    t68 = dth_z*psi_x
-                    t69 = t67 - t68
-                    t70 = e0*psi_z
-                    t71 = dth_x*psi_y
-                    t72 = dth_y*psi_x - t71
-                    t73 = dth0_x*psi_z
-                    t74 = dth0_z*psi_x
-                    t75 = t73 - t74
-                    t76 = e0*psi_x
-                    t77 = dth_z*psi_y - t63
-                    t78 = dth0_z*psi_y - t62
-                    dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t72 + e0*psi_z*t75 - 0.5*t62 - 0.5*t63 - t65*t66 - t69*t70)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t65*t76 + (0.5)*t67 - 0.5*t68 + t70*t77 -
-                        t70*t78 - t72*t76 + (0.5)*t73 - 0.5*t74)
-                    dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t69 + e0*psi_y*t78 - 0.5*t64 - t66*t77 - 0.5*t71 - t75*t76)
+                    t61 = (0.5)*dth0_z + (0.5)*dth_z
+                    t62 = dth0_y + dth_y
+                    t63 = (0.5)*psi_z
+                    t64 = -dth0_y + dth_y
+                    t65 = -dth0_x + dth_x
+                    t66 = psi_x*t64 - psi_y*t65
+                    t67 = -dth0_z + dth_z
+                    t68 = -psi_x*t67 + psi_z*t65
+                    t69 = dth0_x + dth_x
+                    t70 = psi_y*t67 - psi_z*t64
+                    dy[j3] = -dth0_x + dth_x + e0*(psi_y*t66 - psi_z*t68) + psi_y*t61 - t62*t63
+                    dy[j3 + 1] = -dth0_y + dth_y + e0*(-psi_x*t66 + psi_z*t70) - psi_x*t61 + t63*t69
+                    dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t68 - psi_y*t70) + (0.5)*psi_x*t62 -
+                        0.5*psi_y*t69)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
@@ -600,46 +589,56 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t79 = -Om_x*psi_y + Om_y*psi_x
-                    t80 = dpsi_y*e0
-                    t81 = Om0_x*psi_z - Om0_z*psi_x
-                    t82 = dpsi_z*e0
-                    t83 = Om0_x*dpsi_z
-                    t84 = -Om0_z*dpsi_x + t83
-                    t85 = e0*psi_z
-                    t86 = -Om0_x*psi_y + Om0_y*psi_x
-                    t87 = Om_x*psi_z - Om_z*psi_x
-                    t88 = -Om0_x*dpsi_y + Om0_y*dpsi_x
-                    t89 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t90 = e0*psi_y
-                    t91 = Om_x*dpsi_z
-                    t92 = dOm_x*psi_z
-                    t93 = -Om_z*dpsi_x - dOm_z*psi_x + t91 + t92
-                    t94 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t95 = e1*t94
-                    t96 = psi_y*t95
-                    t97 = psi_z*t95
-                    t98 = dpsi_x*e0
-                    t99 = -Om_y*psi_z + Om_z*psi_y
-                    t100 = e0*psi_x
-                    t101 = -Om0_y*psi_z + Om0_z*psi_y
-                    t102 = -Om0_y*dpsi_z + Om0_z*dpsi_y
-                    t103 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t104 = psi_x*t95
-                    rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - 0.5*Om0_z*dpsi_y + (0.5)*Om_y*dpsi_z
-                        - 0.5*Om_z*dpsi_y - dOm_x + (0.5)*dOm_y*psi_z - 0.5*dOm_z*psi_y +
-                        dpsi_y*e0*t86 + dpsi_z*e0*t87 + e0*psi_y*t88 + e0*psi_z*t93 +
-                        e1*psi_y*t86*t94 + e1*psi_z*t87*t94 - t79*t80 - t79*t96 - t81*t82 -
-                        t81*t97 - t84*t85 - t89*t90))
-                    rhs_y += (-alpha_r*((0.5)*Om0_z*dpsi_x + (0.5)*Om_z*dpsi_x - dOm_y +
-                        (0.5)*dOm_z*psi_x + dpsi_x*e0*t79 + dpsi_z*e0*t101 + e0*psi_x*t89 +
-                        e0*psi_z*t102 + e1*psi_x*t79*t94 + e1*psi_z*t101*t94 - t100*t88 - t103*t85
-                        - t104*t86 - t82*t99 - 0.5*t83 - t86*t98 - 0.5*t91 - 0.5*t92 - t97*t99))
-                    rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x + (0.5)*Om_x*dpsi_y
-                        - 0.5*Om_y*dpsi_x + (0.5)*dOm_x*psi_y - 0.5*dOm_y*psi_x - dOm_z +
-                        dpsi_x*e0*t81 + dpsi_y*e0*t99 + e0*psi_x*t84 + e0*psi_y*t103 +
-                        e1*psi_x*t81*t94 + e1*psi_y*t94*t99 - t100*t93 - t101*t80 - t101*t96 -
-                        t102*t90 - t104*t87 - t87*t98))
+                    t71 = (0.5)*dpsi_y
+                    t72 = (0.5)*psi_z
+                    t73 = e0*psi_x
+                    t74 = psi_y*t73
+                    t75 = (0.5)*psi_y
+                    t76 = psi_z*t73
+                    t77 = Om0_x*psi_z - Om0_z*psi_x
+                    t78 = Om0_x*dpsi_z - Om0_z*dpsi_x
+                    t79 = -Om0_x*psi_y + Om0_y*psi_x
+                    t80 = -Om0_x*dpsi_y + Om0_y*dpsi_x
+                    t81 = psi_y*psi_y
+                    t82 = e0*t81
+                    t83 = psi_z*psi_z
+                    t84 = e0*t83 - 1
+                    t85 = 2*dpsi_x*psi_x
+                    t86 = 2*dpsi_y*psi_y
+                    t87 = 2*dpsi_z*psi_z
+                    t88 = t85 + t86 + t87
+                    t89 = e1*t88
+                    t90 = (0.5)*dpsi_z
+                    t91 = dpsi_x*e0
+                    t92 = psi_x*t89
+                    t93 = dpsi_y*t73 + psi_y*t91 + psi_y*t92
+                    t94 = dpsi_z*t73 + psi_z*t91 + psi_z*t92
+                    t95 = e0*t87 + t83*t89
+                    t96 = e0*t86 + t81*t89
+                    t97 = (0.5)*psi_x
+                    t98 = e0*psi_y
+                    t99 = psi_z*t98
+                    t100 = -Om0_y*psi_z + Om0_z*psi_y
+                    t101 = -Om0_y*dpsi_z + Om0_z*dpsi_y
+                    t102 = psi_x*psi_x
+                    t103 = e0*t102
+                    t104 = (0.5)*dpsi_x
+                    t105 = dpsi_y*e0
+                    t106 = psi_y*t89
+                    t107 = dpsi_z*t98 + psi_z*t105 + psi_z*t106
+                    t108 = e0*t85 + t102*t89
+                    rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - Om0_z*t71 - Om_x*(-t95 - t96) -
+                        Om_y*(-t90 + t93) - Om_z*(t71 + t94) - dOm_x*(-t82 - t84) - dOm_y*(-t72 +
+                        t74) - dOm_z*(t75 + t76) + dpsi_y*e0*t79 - dpsi_z*e0*t77 + e0*psi_y*t80 -
+                        e0*psi_z*t78 + e1*psi_y*t79*t88 - psi_z*t77*t89))
+                    rhs_y += (-alpha_r*(-Om0_x*t90 + (0.5)*Om0_z*dpsi_x - Om_x*(t90 + t93) -
+                        Om_y*(-t108 - t95) - Om_z*(-t104 + t107) - dOm_x*(t72 + t74) -
+                        dOm_y*(-t103 - t84) - dOm_z*(-t97 + t99) + dpsi_z*e0*t100 + e0*psi_z*t101
+                        + e1*psi_z*t100*t88 - t73*t80 - t79*t91 - t79*t92))
+                    rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x - Om_x*(-t71 + t94)
+                        - Om_y*(t104 + t107) - Om_z*(-t108 - t96) - dOm_x*(-t75 + t76) -
+                        dOm_y*(t97 + t99) - dOm_z*(-t103 - t82 + 1) + dpsi_x*e0*t77 + e0*psi_x*t78
+                        + e1*psi_x*t77*t88 - t100*t105 - t100*t106 - t101*t98))
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -704,18 +703,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                     dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
-                    t105 = alpha*mass
-                    t106 = X_z + u_z
-                    t107 = X_y + u_y
-                    t108 = X_x + u_x
-                    dF_x += -df_x - dgamma_x*t105
-                    dF_y += -df_y - dgamma_y*t105
-                    dF_z += -df_z - dgamma_z*t105
-                    dW_x += (df_y*t106 - df_z*t107 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y
+                    t109 = alpha*mass
+                    t110 = X_z + u_z
+                    t111 = X_y + u_y
+                    t112 = X_x + u_x
+                    dF_x += -df_x - dgamma_x*t109
+                    dF_y += -df_y - dgamma_y*t109
+                    dF_z += -df_z - dgamma_z*t109
+                    dW_x += (df_y*t110 - df_z*t111 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y
                         + dvs_y*px_z - dvs_z*px_y)
-                    dW_y += (-df_x*t106 + df_z*t108 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z -
+                    dW_y += (-df_x*t110 + df_z*t112 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z -
                         du_z*f_x - dvs_x*px_z + dvs_z*px_x)
-                    dW_z += (df_x*t107 - df_y*t108 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x
+                    dW_z += (df_x*t111 - df_y*t112 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x
                         + dvs_x*px_y - dvs_y*px_x)
                 # differential: moment of gravity on the frame
                 gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
@@ -723,12 +722,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
                 dd_x, dd_y, dd_z = dd[0], dd[1], dd[2]
                 dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-                t109 = d_y + mc_y
-                t110 = d_z + mc_z
-                t111 = d_x + mc_x
-                dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t110 - dgamma_z*t109
-                dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t110 + dgamma_z*t111
-                dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t109 - dgamma_y*t111
+                t113 = d_y + mc_y
+                t114 = d_z + mc_z
+                t115 = d_x + mc_x
+                dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t114 - dgamma_z*t113
+                dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t114 + dgamma_z*t115
+                dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t113 - dgamma_y*t115
                 # differential: moments on the frame: elastic (30) and inertia (45)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -742,28 +741,28 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpw_x, dpw_y, dpw_z = dp[j3], dp[j3 + 1], dp[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t112 = -m_x*psi_y + m_y*psi_x
-                    t113 = m_x*psi_z - m_z*psi_x
-                    t114 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t115 = dm_x*psi_z
-                    t116 = dpsi_z*m_x
-                    t117 = -dm_z*psi_x - dpsi_x*m_z + t115 + t116
-                    t118 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t119 = e1*t118
-                    t120 = -m_y*psi_z + m_z*psi_y
-                    t121 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t112 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t113 + (0.5)*dpsi_z*m_y - dpw_y*w_z + dpw_z*w_y
-                        + dw_y*pw_z - dw_z*pw_y - e0*psi_y*t114 + e0*psi_z*t117 +
-                        e1*psi_z*t113*t118 - psi_y*t112*t119)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t112 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t120 + dpw_x*w_z - dpw_z*w_x - dw_x*pw_z + dw_z*pw_x +
-                        e0*psi_x*t114 - e0*psi_z*t121 + e1*psi_x*t112*t118 - psi_z*t119*t120 -
-                        0.5*t115 - 0.5*t116)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t113 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t120 + (0.5)*dpsi_y*m_x - dpw_x*w_y + dpw_y*w_x
-                        + dw_x*pw_y - dw_y*pw_x - e0*psi_x*t117 + e0*psi_y*t121 +
-                        e1*psi_y*t118*t120 - psi_x*t113*t119)
+                    t116 = -m_x*psi_y + m_y*psi_x
+                    t117 = m_x*psi_z - m_z*psi_x
+                    t118 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t119 = dm_x*psi_z
+                    t120 = dpsi_z*m_x
+                    t121 = -dm_z*psi_x - dpsi_x*m_z + t119 + t120
+                    t122 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t123 = e1*t122
+                    t124 = -m_y*psi_z + m_z*psi_y
+                    t125 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t116 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t117 + (0.5)*dpsi_z*m_y - dpw_y*w_z + dpw_z*w_y
+                        + dw_y*pw_z - dw_z*pw_y - e0*psi_y*t118 + e0*psi_z*t121 +
+                        e1*psi_z*t117*t122 - psi_y*t116*t123)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t116 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t124 + dpw_x*w_z - dpw_z*w_x - dw_x*pw_z + dw_z*pw_x +
+                        e0*psi_x*t118 - e0*psi_z*t125 + e1*psi_x*t116*t122 - psi_z*t123*t124 -
+                        0.5*t119 - 0.5*t120)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t117 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t124 + (0.5)*dpsi_y*m_x - dpw_x*w_y + dpw_y*w_x
+                        + dw_x*pw_y - dw_y*pw_x - e0*psi_x*t121 + e0*psi_y*t125 +
+                        e1*psi_y*t122*t124 - psi_x*t117*t123)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for j in range(N_ROTATIONS):
@@ -773,33 +772,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t122 = dpsi_y*wp_z
-                    t123 = dpsi_z*wp_y
-                    t124 = psi_x*wp_y - psi_y*wp_x
-                    t125 = e0*t124
-                    t126 = dpsi_x*wp_y
-                    t127 = dpsi_y*wp_x
-                    t128 = e0*(t126 - t127)
-                    t129 = -psi_x*wp_z + psi_z*wp_x
-                    t130 = dpsi_x*wp_z
-                    t131 = dpsi_z*wp_x - t130
-                    t132 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t133 = e1*t132
-                    t134 = t124*t133
-                    t135 = psi_y*wp_z - psi_z*wp_y
-                    t136 = t122 - t123
-                    rhs_x += (-alpha_r*(dpsi_y*t125 - dpsi_z*e0*t129 - e0*psi_z*t131 + psi_y*t128
-                        + psi_y*t134 - psi_z*t129*t133 + (0.5)*t122 - 0.5*t123))
-                    rhs_y += (-alpha_r*(-dpsi_x*t125 + dpsi_z*e0*t135 + (0.5)*dpsi_z*wp_x +
-                        e0*psi_z*t136 + e1*psi_z*t132*t135 - psi_x*t128 - psi_x*t134 - 0.5*t130))
-                    rhs_z += (-alpha_r*(dpsi_x*e0*t129 - dpsi_y*e0*t135 + e0*psi_x*t131 -
-                        e0*psi_y*t136 + psi_x*t129*t133 - psi_y*t133*t135 + (0.5)*t126 - 0.5*t127))
-                t137 = dW_x + rhs_x
-                t138 = dW_y + rhs_y
-                t139 = dW_z + rhs_z
-                dwp_x = Bxx*t137 + Byx*t138 + Bzx*t139
-                dwp_y = Bxy*t137 + Byy*t138 + Bzy*t139
-                dwp_z = Bxz*t137 + Byz*t138 + Bzz*t139
+                    t126 = dpsi_y*wp_z
+                    t127 = dpsi_z*wp_y
+                    t128 = psi_x*wp_y - psi_y*wp_x
+                    t129 = e0*t128
+                    t130 = dpsi_x*wp_y
+                    t131 = dpsi_y*wp_x
+                    t132 = e0*(t130 - t131)
+                    t133 = -psi_x*wp_z + psi_z*wp_x
+                    t134 = dpsi_x*wp_z
+                    t135 = dpsi_z*wp_x - t134
+                    t136 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t137 = e1*t136
+                    t138 = t128*t137
+                    t139 = psi_y*wp_z - psi_z*wp_y
+                    t140 = t126 - t127
+                    rhs_x += (-alpha_r*(dpsi_y*t129 - dpsi_z*e0*t133 - e0*psi_z*t135 + psi_y*t132
+                        + psi_y*t138 - psi_z*t133*t137 + (0.5)*t126 - 0.5*t127))
+                    rhs_y += (-alpha_r*(-dpsi_x*t129 + dpsi_z*e0*t139 + (0.5)*dpsi_z*wp_x +
+                        e0*psi_z*t140 + e1*psi_z*t136*t139 - psi_x*t132 - psi_x*t138 - 0.5*t134))
+                    rhs_z += (-alpha_r*(dpsi_x*e0*t133 - dpsi_y*e0*t139 + e0*psi_x*t135 -
+                        e0*psi_y*t140 + psi_x*t133*t137 - psi_y*t137*t139 + (0.5)*t130 - 0.5*t131))
+                t141 = dW_x + rhs_x
+                t142 = dW_y + rhs_y
+                t143 = dW_z + rhs_z
+                dwp_x = Bxx*t141 + Byx*t142 + Bzx*t143
+                dwp_y = Bxy*t141 + Byy*t142 + Bzy*t143
+                dwp_z = Bxz*t141 + Byz*t142 + Bzz*t143
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -842,78 +841,61 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpwd_x, dpwd_y, dpwd_z = dpd[j3], dpd[j3 + 1], dpd[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t140 = dm_y*psi_z
-                    t141 = dpsi_z*m_y
-                    t142 = -m_x*psi_y + m_y*psi_x
-                    t143 = dpsi_y*e0
-                    t144 = m_x*psi_z - m_z*psi_x
-                    t145 = dpsi_z*e0
-                    t146 = dm_x*psi_y
-                    t147 = dpsi_y*m_x
-                    t148 = dm_y*psi_x + dpsi_x*m_y - t146 - t147
-                    t149 = e0*psi_y
-                    t150 = dm_x*psi_z
-                    t151 = dpsi_z*m_x
-                    t152 = dm_z*psi_x
-                    t153 = dpsi_x*m_z
-                    t154 = t150 + t151 - t152 - t153
-                    t155 = e0*psi_z
-                    t156 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t157 = psi_y*t156
-                    t158 = psi_z*t156
-                    t159 = (Om0_y*dpw_z - Om0_z*dpw_y + dOm0_y*pw_z - dOm0_z*pw_y + dpw_y*w_z -
+                    t144 = (Om0_y*dpw_z - Om0_z*dpw_y + dOm0_y*pw_z - dOm0_z*pw_y + dpw_y*w_z -
                         dpw_z*w_y + dpwd_x - dw_y*pw_z + dw_z*pw_y)
-                    t160 = (-Om0_x*dpw_z + Om0_z*dpw_x - dOm0_x*pw_z + dOm0_z*pw_x - dpw_x*w_z +
+                    t145 = (-Om0_x*dpw_z + Om0_z*dpw_x - dOm0_x*pw_z + dOm0_z*pw_x - dpw_x*w_z +
                         dpw_z*w_x + dpwd_y + dw_x*pw_z - dw_z*pw_x)
-                    t161 = (Om0_x*dpw_y - Om0_y*dpw_x + dOm0_x*pw_y - dOm0_y*pw_x + dpw_x*w_y -
+                    t146 = (Om0_x*dpw_y - Om0_y*dpw_x + dOm0_x*pw_y - dOm0_y*pw_x + dpw_x*w_y -
                         dpw_y*w_x + dpwd_z - dw_x*pw_y + dw_y*pw_x)
-                    t162 = Om0_x*pw_y - Om0_y*pw_x + pw_x*w_y - pw_y*w_x + pwd_z
-                    t163 = -Om0_x*pw_z + Om0_z*pw_x - pw_x*w_z + pw_z*w_x + pwd_y
-                    t164 = Om0_y*pw_z - Om0_z*pw_y + pw_y*w_z - pw_z*w_y + pwd_x
-                    t165 = dpsi_y*wp_z
-                    t166 = dpsi_z*wp_y
-                    t167 = dwp_y*psi_z
-                    t168 = dwp_z*psi_y
-                    t169 = psi_x*wp_y - psi_y*wp_x
-                    t170 = -psi_x*wp_z + psi_z*wp_x
-                    t171 = dpsi_x*wp_y
-                    t172 = dwp_y*psi_x
-                    t173 = dpsi_y*wp_x
-                    t174 = dwp_x*psi_y
-                    t175 = t171 + t172 - t173 - t174
-                    t176 = dpsi_x*wp_z
-                    t177 = dwp_z*psi_x
-                    t178 = dpsi_z*wp_x + dwp_x*psi_z - t176 - t177
-                    t179 = -m_y*psi_z + m_z*psi_y
-                    t180 = dpsi_x*e0
-                    t181 = dm_z*psi_y + dpsi_y*m_z - t140 - t141
-                    t182 = e0*psi_x
-                    t183 = psi_x*t156
-                    t184 = psi_y*wp_z - psi_z*wp_y
-                    t185 = t165 - t166 - t167 + t168
-                    dg[j3] = (Q_xx*t159 + Q_yx*t160 + Q_zx*t161 + alpha_r*(dwp_x + t143*t169 -
-                        t145*t170 + t149*t175 - t155*t178 + t157*t169 - t158*t170 - 0.5*t165 +
-                        (0.5)*t166 + (0.5)*t167 - 0.5*t168) + dm_x - 0.5*dm_z*psi_y -
-                        0.5*dpsi_y*m_z + (0.5)*t140 + (0.5)*t141 + t142*t143 + t142*t157 -
-                        t144*t145 - t144*t158 + t148*t149 - t154*t155 + t162*(Q_xx*dth0_y -
-                        Q_yx*dth0_x + Q_zy*dth_z - Q_zz*dth_y) + t163*(-Q_xx*dth0_z + Q_yy*dth_z -
-                        Q_yz*dth_y + Q_zx*dth0_x) + t164*(Q_xy*dth_z - Q_xz*dth_y + Q_yx*dth0_z -
-                        Q_zx*dth0_y))
-                    dg[j3 + 1] = (Q_xy*t159 + Q_yy*t160 + Q_zy*t161 + alpha_r*(-0.5*dpsi_z*wp_x -
-                        0.5*dwp_x*psi_z + dwp_y + t145*t184 + t155*t185 + t158*t184 - t169*t180 -
-                        t169*t183 - t175*t182 + (0.5)*t176 + (0.5)*t177) + dm_y - t142*t180 -
-                        t142*t183 + t145*t179 - t148*t182 - 0.5*t150 - 0.5*t151 + (0.5)*t152 +
-                        (0.5)*t153 + t155*t181 + t158*t179 + t162*(Q_xy*dth0_y - Q_yy*dth0_x -
-                        Q_zx*dth_z + Q_zz*dth_x) + t163*(-Q_xy*dth0_z - Q_yx*dth_z + Q_yz*dth_x +
-                        Q_zy*dth0_x) + t164*(-Q_xx*dth_z + Q_xz*dth_x + Q_yy*dth0_z - Q_zy*dth0_y))
-                    dg[j3 + 2] = (Q_xz*t159 + Q_yz*t160 + Q_zz*t161 + alpha_r*(dwp_z - t143*t184 -
-                        t149*t185 - t157*t184 + t170*t180 + t170*t183 - 0.5*t171 - 0.5*t172 +
-                        (0.5)*t173 + (0.5)*t174 + t178*t182) - 0.5*dm_y*psi_x + dm_z -
-                        0.5*dpsi_x*m_y - t143*t179 + t144*t180 + t144*t183 + (0.5)*t146 +
-                        (0.5)*t147 - t149*t181 + t154*t182 - t157*t179 + t162*(Q_xz*dth0_y -
-                        Q_yz*dth0_x + Q_zx*dth_y - Q_zy*dth_x) + t163*(-Q_xz*dth0_z + Q_yx*dth_y -
-                        Q_yy*dth_x + Q_zz*dth0_x) + t164*(Q_xx*dth_y - Q_xy*dth_x + Q_yz*dth0_z -
-                        Q_zz*dth0_y))
+                    t147 = Om0_x*pw_y - Om0_y*pw_x + pw_x*w_y - pw_y*w_x + pwd_z
+                    t148 = Om0_y*pw_z - Om0_z*pw_y + pw_y*w_z - pw_z*w_y + pwd_x
+                    t149 = -Om0_x*pw_z + Om0_z*pw_x - pw_x*w_z + pw_z*w_x + pwd_y
+                    t150 = alpha_r*wp_y + m_y
+                    t151 = dpsi_z*t150
+                    t152 = alpha_r*dwp_y + dm_y
+                    t153 = psi_z*t152
+                    t154 = alpha_r*wp_z + m_z
+                    t155 = dpsi_y*t154
+                    t156 = alpha_r*dwp_z + dm_z
+                    t157 = psi_y*t156
+                    t158 = alpha_r*wp_x + m_x
+                    t159 = psi_x*t150 - psi_y*t158
+                    t160 = e0*t159
+                    t161 = dpsi_x*t150
+                    t162 = psi_x*t152
+                    t163 = dpsi_y*t158
+                    t164 = alpha_r*dwp_x + dm_x
+                    t165 = psi_y*t164
+                    t166 = e0*(t161 + t162 - t163 - t165)
+                    t167 = -psi_x*t154 + psi_z*t158
+                    t168 = dpsi_z*e0
+                    t169 = dpsi_x*t154
+                    t170 = psi_x*t156
+                    t171 = dpsi_z*t158 + psi_z*t164 - t169 - t170
+                    t172 = e0*psi_z
+                    t173 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t174 = t159*t173
+                    t175 = psi_z*t173
+                    t176 = psi_y*t154 - psi_z*t150
+                    t177 = -t151 - t153 + t155 + t157
+                    dg[j3] = (Q_xx*t144 + Q_yx*t145 + Q_zx*t146 + dpsi_y*t160 + psi_y*t166 +
+                        psi_y*t174 + t147*(Q_xx*dth0_y - Q_yx*dth0_x + Q_zy*dth_z - Q_zz*dth_y) +
+                        t148*(Q_xy*dth_z - Q_xz*dth_y + Q_yx*dth0_z - Q_zx*dth0_y) +
+                        t149*(-Q_xx*dth0_z + Q_yy*dth_z - Q_yz*dth_y + Q_zx*dth0_x) + (0.5)*t151 +
+                        (0.5)*t153 - 0.5*t155 - 0.5*t157 + t164 - t167*t168 - t167*t175 -
+                        t171*t172)
+                    dg[j3 + 1] = (Q_xy*t144 + Q_yy*t145 + Q_zy*t146 - dpsi_x*t160 -
+                        0.5*dpsi_z*t158 - psi_x*t166 - psi_x*t174 - 0.5*psi_z*t164 +
+                        t147*(Q_xy*dth0_y - Q_yy*dth0_x - Q_zx*dth_z + Q_zz*dth_x) +
+                        t148*(-Q_xx*dth_z + Q_xz*dth_x + Q_yy*dth0_z - Q_zy*dth0_y) +
+                        t149*(-Q_xy*dth0_z - Q_yx*dth_z + Q_yz*dth_x + Q_zy*dth0_x) + t152 +
+                        t168*t176 + (0.5)*t169 + (0.5)*t170 + t172*t177 + t175*t176)
+                    dg[j3 + 2] = (Q_xz*t144 + Q_yz*t145 + Q_zz*t146 + dpsi_x*e0*t167 -
+                        dpsi_y*e0*t176 + e0*psi_x*t171 - e0*psi_y*t177 + psi_x*t167*t173 -
+                        psi_y*t173*t176 + t147*(Q_xz*dth0_y - Q_yz*dth0_x + Q_zx*dth_y -
+                        Q_zy*dth_x) + t148*(Q_xx*dth_y - Q_xy*dth_x + Q_yz*dth0_z - Q_zz*dth0_y) +
+                        t149*(-Q_xz*dth0_z + Q_yx*dth_y - Q_yy*dth_x + Q_zz*dth0_x) + t156 -
+                        0.5*t161 - 0.5*t162 + (0.5)*t163 + (0.5)*t165)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

@@ -48,8 +48,8 @@ WORK_ROWS = 31
 WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
-OPERATIONS = {"residual": (300, 136, 249, 3),
-              "column": (81, 172, 811, 3)}
+OPERATIONS = {"residual": (300, 136, 193, 3),
+              "column": (81, 172, 680, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
 
 
@@ -158,30 +158,35 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             e0 = e0s[j]
             t3 = e0*psi_y*psi_y
             t4 = e0*psi_z*psi_z - 1
-            t5 = (0.5)*psi_z
-            t6 = e0*psi_x
-            t7 = psi_y*t6
-            t8 = (0.5)*psi_y
-            t9 = psi_z*t6
-            t10 = e0*psi_x*psi_x
-            t11 = (0.5)*psi_x
-            t12 = e0*psi_z
-            t13 = psi_y*t12
-            t14 = -Om_x*psi_y + Om_y*psi_x
-            t15 = Om_x*psi_z - Om_z*psi_x
-            t16 = -Om_y*psi_z + Om_z*psi_y
-            B_00 += alpha_r*(-t3 - t4)
-            B_01 += alpha_r*(t5 + t7)
-            B_02 += alpha_r*(-t8 + t9)
-            B_10 += alpha_r*(-t5 + t7)
-            B_11 += alpha_r*(-t10 - t4)
-            B_12 += alpha_r*(t11 + t13)
-            B_20 += alpha_r*(t8 + t9)
-            B_21 += alpha_r*(-t11 + t13)
-            B_22 += alpha_r*(-t10 - t3 + 1)
-            rhs_x += -alpha_r*(-Om_x + (0.5)*Om_y*psi_z - Om_z*t8 - e0*psi_y*t14 + e0*psi_z*t15)
-            rhs_y += -alpha_r*(-Om_x*t5 - Om_y + (0.5)*Om_z*psi_x + e0*psi_x*t14 - t12*t16)
-            rhs_z += -alpha_r*((0.5)*Om_x*psi_y - Om_y*t11 - Om_z + e0*psi_y*t16 - t15*t6)
+            t5 = -t3 - t4
+            t6 = (0.5)*psi_z
+            t7 = e0*psi_x
+            t8 = psi_y*t7
+            t9 = t6 + t8
+            t10 = (0.5)*psi_y
+            t11 = psi_z*t7
+            t12 = -t10 + t11
+            t13 = -t6 + t8
+            t14 = e0*psi_x*psi_x
+            t15 = -t14 - t4
+            t16 = (0.5)*psi_x
+            t17 = e0*psi_y*psi_z
+            t18 = t16 + t17
+            t19 = t10 + t11
+            t20 = -t16 + t17
+            t21 = -t14 - t3 + 1
+            B_00 += alpha_r*t5
+            B_01 += alpha_r*t9
+            B_02 += alpha_r*t12
+            B_10 += alpha_r*t13
+            B_11 += alpha_r*t15
+            B_12 += alpha_r*t18
+            B_20 += alpha_r*t19
+            B_21 += alpha_r*t20
+            B_22 += alpha_r*t21
+            rhs_x += -alpha_r*(-Om_x*t5 - Om_y*t13 - Om_z*t19)
+            rhs_y += -alpha_r*(-Om_x*t9 - Om_y*t15 - Om_z*t20)
+            rhs_z += -alpha_r*(-Om_x*t12 - Om_y*t18 - Om_z*t21)
         Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
             B_12, B_20, B_21, B_22)
         Om0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
@@ -241,47 +246,47 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
             u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
             f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
-            t17 = alpha*mass
-            t18 = X_z + u_z
-            t19 = X_y + u_y
-            t20 = X_x + u_x
-            F_x += -f_x - gamma_x*t17
-            F_y += -f_y - gamma_y*t17
-            F_z += -f_z - gamma_z*t17
-            W_x += f_y*t18 - f_z*t19 - px_y*vs_z + px_z*vs_y
-            W_y += -f_x*t18 + f_z*t20 + px_x*vs_z - px_z*vs_x
-            W_z += f_x*t19 - f_y*t20 - px_x*vs_y + px_y*vs_x
+            t22 = alpha*mass
+            t23 = X_z + u_z
+            t24 = X_y + u_y
+            t25 = X_x + u_x
+            F_x += -f_x - gamma_x*t22
+            F_y += -f_y - gamma_y*t22
+            F_z += -f_z - gamma_z*t22
+            W_x += f_y*t23 - f_z*t24 - px_y*vs_z + px_z*vs_y
+            W_y += -f_x*t23 + f_z*t25 + px_x*vs_z - px_z*vs_x
+            W_z += f_x*t24 - f_y*t25 - px_x*vs_y + px_y*vs_x
         # moment of gravity on the frame
         gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
         d_x, d_y, d_z = d[0], d[1], d[2]
         mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
-        t21 = d_z + mc_z
-        t22 = d_y + mc_y
-        t23 = d_x + mc_x
-        W_x += gamma_y*t21 - gamma_z*t22
-        W_y += -gamma_x*t21 + gamma_z*t23
-        W_z += gamma_x*t22 - gamma_y*t23
+        t26 = d_z + mc_z
+        t27 = d_y + mc_y
+        t28 = d_x + mc_x
+        W_x += gamma_y*t26 - gamma_z*t27
+        W_y += -gamma_x*t26 + gamma_z*t28
+        W_z += gamma_x*t27 - gamma_y*t28
         # moments on the frame: elastic (30) and inertia (45)
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
             psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t24 = -m_x*psi_y + m_y*psi_x
-            t25 = m_x*psi_z
-            t26 = -m_z*psi_x + t25
-            t27 = -m_y*psi_z + m_z*psi_y
-            W_x += -e0*psi_y*t24 + e0*psi_z*t26 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
-            W_y += e0*psi_x*t24 - e0*psi_z*t27 - m_y + (0.5)*m_z*psi_x - 0.5*t25
-            W_z += -e0*psi_x*t26 + e0*psi_y*t27 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
+            t29 = -m_x*psi_y + m_y*psi_x
+            t30 = m_x*psi_z
+            t31 = -m_z*psi_x + t30
+            t32 = -m_y*psi_z + m_z*psi_y
+            W_x += -e0*psi_y*t29 + e0*psi_z*t31 - m_x + (0.5)*m_y*psi_z - 0.5*m_z*psi_y
+            W_y += e0*psi_x*t29 - e0*psi_z*t32 - m_y + (0.5)*m_z*psi_x - 0.5*t30
+            W_z += -e0*psi_x*t31 + e0*psi_y*t32 + (0.5)*m_x*psi_y - 0.5*m_y*psi_x - m_z
         # B^T wp = W
         rhs_x = rhs_y = rhs_z = 0.0
-        t28 = W_x + rhs_x
-        t29 = W_y + rhs_y
-        t30 = W_z + rhs_z
-        wp_x = Bxx*t28 + Byx*t29 + Bzx*t30
-        wp_y = Bxy*t28 + Byy*t29 + Bzy*t30
-        wp_z = Bxz*t28 + Byz*t29 + Bzz*t30
+        t33 = W_x + rhs_x
+        t34 = W_y + rhs_y
+        t35 = W_z + rhs_z
+        wp_x = Bxx*t33 + Byx*t34 + Bzx*t35
+        wp_y = Bxy*t33 + Byy*t34 + Bzy*t35
+        wp_z = Bxz*t33 + Byz*t34 + Bzz*t35
         # force on the nodes in frame axes, (30), (57)
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -309,30 +314,23 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             pwd_x, pwd_y, pwd_z = pd[j3], pd[j3 + 1], pd[j3 + 2]
             m_x, m_y, m_z = s[j3], s[j3 + 1], s[j3 + 2]
             e0 = e0s[j]
-            t31 = m_y*psi_z
-            t32 = m_x*psi_y
-            t33 = m_y*psi_x - t32
-            t34 = e0*psi_y
-            t35 = m_x*psi_z
-            t36 = m_z*psi_x
-            t37 = t35 - t36
-            t38 = e0*psi_z
-            t39 = psi_y*wp_z
-            t40 = psi_z*wp_y
-            t41 = psi_x*wp_y
-            t42 = psi_y*wp_x
-            t43 = t41 - t42
-            t44 = psi_x*wp_z
-            t45 = psi_z*wp_x - t44
-            t46 = m_z*psi_y - t31
-            t47 = e0*psi_x
-            t48 = t39 - t40
-            g[j3] = (Om_y*pw_z - Om_z*pw_y + alpha_r*(t34*t43 - t38*t45 - 0.5*t39 + (0.5)*t40 +
-                wp_x) + m_x - 0.5*m_z*psi_y + pwd_x + (0.5)*t31 + t33*t34 - t37*t38)
-            g[j3 + 1] = (-Om_x*pw_z + Om_z*pw_x + alpha_r*(-0.5*psi_z*wp_x + t38*t48 - t43*t47 +
-                (0.5)*t44 + wp_y) + m_y + pwd_y - t33*t47 - 0.5*t35 + (0.5)*t36 + t38*t46)
-            g[j3 + 2] = (Om_x*pw_y - Om_y*pw_x + alpha_r*(-t34*t48 - 0.5*t41 + (0.5)*t42 + t45*t47
-                + wp_z) - 0.5*m_y*psi_x + m_z + pwd_z + (0.5)*t32 - t34*t46 + t37*t47)
+            t36 = alpha_r*wp_y + m_y
+            t37 = psi_z*t36
+            t38 = alpha_r*wp_z + m_z
+            t39 = psi_y*t38
+            t40 = psi_x*t36
+            t41 = alpha_r*wp_x + m_x
+            t42 = psi_y*t41
+            t43 = e0*(t40 - t42)
+            t44 = psi_x*t38
+            t45 = psi_z*t41 - t44
+            t46 = e0*psi_z
+            t47 = -t37 + t39
+            g[j3] = Om_y*pw_z - Om_z*pw_y + psi_y*t43 + pwd_x + (0.5)*t37 - 0.5*t39 + t41 - t45*t46
+            g[j3 + 1] = (-Om_x*pw_z + Om_z*pw_x - psi_x*t43 - 0.5*psi_z*t41 + pwd_y + t36 +
+                (0.5)*t44 + t46*t47)
+            g[j3 + 2] = (Om_x*pw_y - Om_y*pw_x + e0*psi_x*t45 - e0*psi_y*t47 + pwd_z + t38 -
+                0.5*t40 + (0.5)*t42)
         # force of the internal modes
         for k in range(MODES, n):
             fm = s[k]
@@ -440,16 +438,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t49 = -dth_x*psi_y + dth_y*psi_x
-                    t50 = dth_x*psi_z
-                    t51 = -dth_z*psi_x + t50
-                    t52 = -dth_y*psi_z + dth_z*psi_y
+                    t48 = -dth_x*psi_y + dth_y*psi_x
+                    t49 = dth_x*psi_z
+                    t50 = -dth_z*psi_x + t49
+                    t51 = -dth_y*psi_z + dth_z*psi_y
                     rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y -
-                        e0*psi_y*t49 + e0*psi_z*t51))
-                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t49 - e0*psi_z*t52 -
-                        0.5*t50))
-                    rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t51
-                        + e0*psi_y*t52))
+                        e0*psi_y*t48 + e0*psi_z*t50))
+                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t48 - e0*psi_z*t51 -
+                        0.5*t49))
+                    rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t50
+                        + e0*psi_y*t51))
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -459,41 +457,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-                    t53 = X_y + u_y
-                    t54 = X_z + u_z
-                    t55 = X_x + u_x
-                    dy[i3] = -dth0_y*t54 + dth0_z*t53 - dx0_x + dx_x
-                    dy[i3 + 1] = dth0_x*t54 - dth0_z*t55 - dx0_y + dx_y
-                    dy[i3 + 2] = -dth0_x*t53 + dth0_y*t55 - dx0_z + dx_z
+                    t52 = X_y + u_y
+                    t53 = X_z + u_z
+                    t54 = X_x + u_x
+                    dy[i3] = -dth0_y*t53 + dth0_z*t52 - dx0_x + dx_x
+                    dy[i3 + 1] = dth0_x*t53 - dth0_z*t54 - dx0_y + dx_y
+                    dy[i3 + 2] = -dth0_x*t52 + dth0_y*t54 - dx0_z + dx_z
                 # variation of the elastic rotations, (17)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t56 = dth0_y*psi_z
-                    t57 = dth_y*psi_z
-                    t58 = dth0_x*psi_y
-                    t59 = dth0_y*psi_x - t58
-                    t60 = e0*psi_y
-                    t61 = dth_x*psi_z
-                    t62 = dth_z*psi_x
-                    t63 = t61 - t62
-                    t64 = e0*psi_z
-                    t65 = dth_x*psi_y
-                    t66 = dth_y*psi_x - t65
-                    t67 = dth0_x*psi_z
-                    t68 = dth0_z*psi_x
-                    t69 = t67 - t68
-                    t70 = e0*psi_x
-                    t71 = dth_z*psi_y - t57
-                    t72 = dth0_z*psi_y - t56
-                    dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t66 + e0*psi_z*t69 - 0.5*t56 - 0.5*t57 - t59*t60 - t63*t64)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t59*t70 + (0.5)*t61 - 0.5*t62 + t64*t71 -
-                        t64*t72 - t66*t70 + (0.5)*t67 - 0.5*t68)
-                    dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t63 + e0*psi_y*t72 - 0.5*t58 - t60*t71 - 0.5*t65 - t69*t70)
+                    t55 = (0.5)*dth0_z + (0.5)*dth_z
+                    t56 = dth0_y + dth_y
+                    t57 = (0.5)*psi_z
+                    t58 = -dth0_y + dth_y
+                    t59 = -dth0_x + dth_x
+                    t60 = psi_x*t58 - psi_y*t59
+                    t61 = -dth0_z + dth_z
+                    t62 = -psi_x*t61 + psi_z*t59
+                    t63 = dth0_x + dth_x
+                    t64 = psi_y*t61 - psi_z*t58
+                    dy[j3] = -dth0_x + dth_x + e0*(psi_y*t60 - psi_z*t62) + psi_y*t55 - t56*t57
+                    dy[j3 + 1] = -dth0_y + dth_y + e0*(-psi_x*t60 + psi_z*t64) - psi_x*t55 + t57*t63
+                    dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t62 - psi_y*t64) + (0.5)*psi_x*t56 -
+                        0.5*psi_y*t63)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
@@ -550,46 +539,56 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t73 = -Om_x*psi_y + Om_y*psi_x
-                    t74 = dpsi_y*e0
-                    t75 = Om0_x*psi_z - Om0_z*psi_x
-                    t76 = dpsi_z*e0
-                    t77 = Om0_x*dpsi_z
-                    t78 = -Om0_z*dpsi_x + t77
-                    t79 = e0*psi_z
-                    t80 = -Om0_x*psi_y + Om0_y*psi_x
-                    t81 = Om_x*psi_z - Om_z*psi_x
-                    t82 = -Om0_x*dpsi_y + Om0_y*dpsi_x
-                    t83 = -Om_x*dpsi_y + Om_y*dpsi_x - dOm_x*psi_y + dOm_y*psi_x
-                    t84 = e0*psi_y
-                    t85 = Om_x*dpsi_z
-                    t86 = dOm_x*psi_z
-                    t87 = -Om_z*dpsi_x - dOm_z*psi_x + t85 + t86
-                    t88 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t89 = e1*t88
-                    t90 = psi_y*t89
-                    t91 = psi_z*t89
-                    t92 = dpsi_x*e0
-                    t93 = -Om_y*psi_z + Om_z*psi_y
-                    t94 = e0*psi_x
-                    t95 = -Om0_y*psi_z + Om0_z*psi_y
-                    t96 = -Om0_y*dpsi_z + Om0_z*dpsi_y
-                    t97 = -Om_y*dpsi_z + Om_z*dpsi_y - dOm_y*psi_z + dOm_z*psi_y
-                    t98 = psi_x*t89
-                    rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - 0.5*Om0_z*dpsi_y + (0.5)*Om_y*dpsi_z
-                        - 0.5*Om_z*dpsi_y - dOm_x + (0.5)*dOm_y*psi_z - 0.5*dOm_z*psi_y +
-                        dpsi_y*e0*t80 + dpsi_z*e0*t81 + e0*psi_y*t82 + e0*psi_z*t87 +
-                        e1*psi_y*t80*t88 + e1*psi_z*t81*t88 - t73*t74 - t73*t90 - t75*t76 -
-                        t75*t91 - t78*t79 - t83*t84))
-                    rhs_y += (-alpha_r*((0.5)*Om0_z*dpsi_x + (0.5)*Om_z*dpsi_x - dOm_y +
-                        (0.5)*dOm_z*psi_x + dpsi_x*e0*t73 + dpsi_z*e0*t95 + e0*psi_x*t83 +
-                        e0*psi_z*t96 + e1*psi_x*t73*t88 + e1*psi_z*t88*t95 - t76*t93 - 0.5*t77 -
-                        t79*t97 - t80*t92 - t80*t98 - t82*t94 - 0.5*t85 - 0.5*t86 - t91*t93))
-                    rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x + (0.5)*Om_x*dpsi_y
-                        - 0.5*Om_y*dpsi_x + (0.5)*dOm_x*psi_y - 0.5*dOm_y*psi_x - dOm_z +
-                        dpsi_x*e0*t75 + dpsi_y*e0*t93 + e0*psi_x*t78 + e0*psi_y*t97 +
-                        e1*psi_x*t75*t88 + e1*psi_y*t88*t93 - t74*t95 - t81*t92 - t81*t98 -
-                        t84*t96 - t87*t94 - t90*t95))
+                    t65 = (0.5)*dpsi_y
+                    t66 = (0.5)*psi_z
+                    t67 = e0*psi_x
+                    t68 = psi_y*t67
+                    t69 = (0.5)*psi_y
+                    t70 = psi_z*t67
+                    t71 = Om0_x*psi_z - Om0_z*psi_x
+                    t72 = Om0_x*dpsi_z - Om0_z*dpsi_x
+                    t73 = -Om0_x*psi_y + Om0_y*psi_x
+                    t74 = -Om0_x*dpsi_y + Om0_y*dpsi_x
+                    t75 = psi_y*psi_y
+                    t76 = e0*t75
+                    t77 = psi_z*psi_z
+                    t78 = e0*t77 - 1
+                    t79 = 2*dpsi_x*psi_x
+                    t80 = 2*dpsi_y*psi_y
+                    t81 = 2*dpsi_z*psi_z
+                    t82 = t79 + t80 + t81
+                    t83 = e1*t82
+                    t84 = (0.5)*dpsi_z
+                    t85 = dpsi_x*e0
+                    t86 = psi_x*t83
+                    t87 = dpsi_y*t67 + psi_y*t85 + psi_y*t86
+                    t88 = dpsi_z*t67 + psi_z*t85 + psi_z*t86
+                    t89 = e0*t81 + t77*t83
+                    t90 = e0*t80 + t75*t83
+                    t91 = (0.5)*psi_x
+                    t92 = e0*psi_y
+                    t93 = psi_z*t92
+                    t94 = -Om0_y*psi_z + Om0_z*psi_y
+                    t95 = -Om0_y*dpsi_z + Om0_z*dpsi_y
+                    t96 = psi_x*psi_x
+                    t97 = e0*t96
+                    t98 = (0.5)*dpsi_x
+                    t99 = dpsi_y*e0
+                    t100 = psi_y*t83
+                    t101 = dpsi_z*t92 + psi_z*t100 + psi_z*t99
+                    t102 = e0*t79 + t83*t96
+                    rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - Om0_z*t65 - Om_x*(-t89 - t90) -
+                        Om_y*(-t84 + t87) - Om_z*(t65 + t88) - dOm_x*(-t76 - t78) - dOm_y*(-t66 +
+                        t68) - dOm_z*(t69 + t70) + dpsi_y*e0*t73 - dpsi_z*e0*t71 + e0*psi_y*t74 -
+                        e0*psi_z*t72 + e1*psi_y*t73*t82 - psi_z*t71*t83))
+                    rhs_y += (-alpha_r*(-Om0_x*t84 + (0.5)*Om0_z*dpsi_x - Om_x*(t84 + t87) -
+                        Om_y*(-t102 - t89) - Om_z*(t101 - t98) - dOm_x*(t66 + t68) - dOm_y*(-t78 -
+                        t97) - dOm_z*(-t91 + t93) + dpsi_z*e0*t94 + e0*psi_z*t95 +
+                        e1*psi_z*t82*t94 - t67*t74 - t73*t85 - t73*t86))
+                    rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x - Om_x*(-t65 + t88)
+                        - Om_y*(t101 + t98) - Om_z*(-t102 - t90) - dOm_x*(-t69 + t70) - dOm_y*(t91
+                        + t93) - dOm_z*(-t76 - t97 + 1) + dpsi_x*e0*t71 + e0*psi_x*t72 +
+                        e1*psi_x*t71*t82 - t100*t94 - t92*t95 - t94*t99))
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -638,18 +637,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                     dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
-                    t99 = alpha*mass
-                    t100 = X_z + u_z
-                    t101 = X_y + u_y
-                    t102 = X_x + u_x
-                    dF_x += -df_x - dgamma_x*t99
-                    dF_y += -df_y - dgamma_y*t99
-                    dF_z += -df_z - dgamma_z*t99
-                    dW_x += (df_y*t100 - df_z*t101 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y
+                    t103 = alpha*mass
+                    t104 = X_z + u_z
+                    t105 = X_y + u_y
+                    t106 = X_x + u_x
+                    dF_x += -df_x - dgamma_x*t103
+                    dF_y += -df_y - dgamma_y*t103
+                    dF_z += -df_z - dgamma_z*t103
+                    dW_x += (df_y*t104 - df_z*t105 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y
                         + dvs_y*px_z - dvs_z*px_y)
-                    dW_y += (-df_x*t100 + df_z*t102 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z -
+                    dW_y += (-df_x*t104 + df_z*t106 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z -
                         du_z*f_x - dvs_x*px_z + dvs_z*px_x)
-                    dW_z += (df_x*t101 - df_y*t102 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x
+                    dW_z += (df_x*t105 - df_y*t106 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x
                         + dvs_x*px_y - dvs_y*px_x)
                 # differential: moment of gravity on the frame
                 gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
@@ -657,12 +656,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
                 dd_x, dd_y, dd_z = dd[0], dd[1], dd[2]
                 dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-                t103 = d_y + mc_y
-                t104 = d_z + mc_z
-                t105 = d_x + mc_x
-                dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t104 - dgamma_z*t103
-                dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t104 + dgamma_z*t105
-                dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t103 - dgamma_y*t105
+                t107 = d_y + mc_y
+                t108 = d_z + mc_z
+                t109 = d_x + mc_x
+                dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t108 - dgamma_z*t107
+                dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t108 + dgamma_z*t109
+                dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t107 - dgamma_y*t109
                 # differential: moments on the frame: elastic (30) and inertia (45)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -672,25 +671,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t106 = -m_x*psi_y + m_y*psi_x
-                    t107 = m_x*psi_z - m_z*psi_x
-                    t108 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t109 = dm_x*psi_z
-                    t110 = dpsi_z*m_x
-                    t111 = -dm_z*psi_x - dpsi_x*m_z + t109 + t110
-                    t112 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t113 = e1*t112
-                    t114 = -m_y*psi_z + m_z*psi_y
-                    t115 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t106 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t107 + (0.5)*dpsi_z*m_y - e0*psi_y*t108 +
-                        e0*psi_z*t111 + e1*psi_z*t107*t112 - psi_y*t106*t113)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t106 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t114 + e0*psi_x*t108 - e0*psi_z*t115 + e1*psi_x*t106*t112 -
-                        psi_z*t113*t114 - 0.5*t109 - 0.5*t110)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t107 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t114 + (0.5)*dpsi_y*m_x - e0*psi_x*t111 +
-                        e0*psi_y*t115 + e1*psi_y*t112*t114 - psi_x*t107*t113)
+                    t110 = -m_x*psi_y + m_y*psi_x
+                    t111 = m_x*psi_z - m_z*psi_x
+                    t112 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t113 = dm_x*psi_z
+                    t114 = dpsi_z*m_x
+                    t115 = -dm_z*psi_x - dpsi_x*m_z + t113 + t114
+                    t116 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t117 = e1*t116
+                    t118 = -m_y*psi_z + m_z*psi_y
+                    t119 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t110 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t111 + (0.5)*dpsi_z*m_y - e0*psi_y*t112 +
+                        e0*psi_z*t115 + e1*psi_z*t111*t116 - psi_y*t110*t117)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t110 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t118 + e0*psi_x*t112 - e0*psi_z*t119 + e1*psi_x*t110*t116 -
+                        psi_z*t117*t118 - 0.5*t113 - 0.5*t114)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t111 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t118 + (0.5)*dpsi_y*m_x - e0*psi_x*t115 +
+                        e0*psi_y*t119 + e1*psi_y*t116*t118 - psi_x*t111*t117)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for j in range(N_ROTATIONS):
@@ -700,33 +699,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t116 = dpsi_y*wp_z
-                    t117 = dpsi_z*wp_y
-                    t118 = psi_x*wp_y - psi_y*wp_x
-                    t119 = e0*t118
-                    t120 = dpsi_x*wp_y
-                    t121 = dpsi_y*wp_x
-                    t122 = e0*(t120 - t121)
-                    t123 = -psi_x*wp_z + psi_z*wp_x
-                    t124 = dpsi_x*wp_z
-                    t125 = dpsi_z*wp_x - t124
-                    t126 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t127 = e1*t126
-                    t128 = t118*t127
-                    t129 = psi_y*wp_z - psi_z*wp_y
-                    t130 = t116 - t117
-                    rhs_x += (-alpha_r*(dpsi_y*t119 - dpsi_z*e0*t123 - e0*psi_z*t125 + psi_y*t122
-                        + psi_y*t128 - psi_z*t123*t127 + (0.5)*t116 - 0.5*t117))
-                    rhs_y += (-alpha_r*(-dpsi_x*t119 + dpsi_z*e0*t129 + (0.5)*dpsi_z*wp_x +
-                        e0*psi_z*t130 + e1*psi_z*t126*t129 - psi_x*t122 - psi_x*t128 - 0.5*t124))
-                    rhs_z += (-alpha_r*(dpsi_x*e0*t123 - dpsi_y*e0*t129 + e0*psi_x*t125 -
-                        e0*psi_y*t130 + psi_x*t123*t127 - psi_y*t127*t129 + (0.5)*t120 - 0.5*t121))
-                t131 = dW_x + rhs_x
-                t132 = dW_y + rhs_y
-                t133 = dW_z + rhs_z
-                dwp_x = Bxx*t131 + Byx*t132 + Bzx*t133
-                dwp_y = Bxy*t131 + Byy*t132 + Bzy*t133
-                dwp_z = Bxz*t131 + Byz*t132 + Bzz*t133
+                    t120 = dpsi_y*wp_z
+                    t121 = dpsi_z*wp_y
+                    t122 = psi_x*wp_y - psi_y*wp_x
+                    t123 = e0*t122
+                    t124 = dpsi_x*wp_y
+                    t125 = dpsi_y*wp_x
+                    t126 = e0*(t124 - t125)
+                    t127 = -psi_x*wp_z + psi_z*wp_x
+                    t128 = dpsi_x*wp_z
+                    t129 = dpsi_z*wp_x - t128
+                    t130 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t131 = e1*t130
+                    t132 = t122*t131
+                    t133 = psi_y*wp_z - psi_z*wp_y
+                    t134 = t120 - t121
+                    rhs_x += (-alpha_r*(dpsi_y*t123 - dpsi_z*e0*t127 - e0*psi_z*t129 + psi_y*t126
+                        + psi_y*t132 - psi_z*t127*t131 + (0.5)*t120 - 0.5*t121))
+                    rhs_y += (-alpha_r*(-dpsi_x*t123 + dpsi_z*e0*t133 + (0.5)*dpsi_z*wp_x +
+                        e0*psi_z*t134 + e1*psi_z*t130*t133 - psi_x*t126 - psi_x*t132 - 0.5*t128))
+                    rhs_z += (-alpha_r*(dpsi_x*e0*t127 - dpsi_y*e0*t133 + e0*psi_x*t129 -
+                        e0*psi_y*t134 + psi_x*t127*t131 - psi_y*t131*t133 + (0.5)*t124 - 0.5*t125))
+                t135 = dW_x + rhs_x
+                t136 = dW_y + rhs_y
+                t137 = dW_z + rhs_z
+                dwp_x = Bxx*t135 + Byx*t136 + Bzx*t137
+                dwp_y = Bxy*t135 + Byy*t136 + Bzy*t137
+                dwp_z = Bxz*t135 + Byz*t136 + Bzz*t137
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -764,61 +763,44 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpwd_x, dpwd_y, dpwd_z = dpd[j3], dpd[j3 + 1], dpd[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t134 = dm_y*psi_z
-                    t135 = dpsi_z*m_y
-                    t136 = -m_x*psi_y + m_y*psi_x
-                    t137 = dpsi_y*e0
-                    t138 = m_x*psi_z - m_z*psi_x
-                    t139 = dpsi_z*e0
-                    t140 = dm_x*psi_y
-                    t141 = dpsi_y*m_x
-                    t142 = dm_y*psi_x + dpsi_x*m_y - t140 - t141
-                    t143 = e0*psi_y
-                    t144 = dm_x*psi_z
-                    t145 = dpsi_z*m_x
-                    t146 = dm_z*psi_x
-                    t147 = dpsi_x*m_z
-                    t148 = t144 + t145 - t146 - t147
-                    t149 = e0*psi_z
-                    t150 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t151 = psi_y*t150
-                    t152 = psi_z*t150
-                    t153 = dpsi_y*wp_z
-                    t154 = dpsi_z*wp_y
-                    t155 = dwp_y*psi_z
-                    t156 = dwp_z*psi_y
-                    t157 = psi_x*wp_y - psi_y*wp_x
-                    t158 = -psi_x*wp_z + psi_z*wp_x
-                    t159 = dpsi_x*wp_y
-                    t160 = dwp_y*psi_x
-                    t161 = dpsi_y*wp_x
-                    t162 = dwp_x*psi_y
-                    t163 = t159 + t160 - t161 - t162
-                    t164 = dpsi_x*wp_z
-                    t165 = dwp_z*psi_x
-                    t166 = dpsi_z*wp_x + dwp_x*psi_z - t164 - t165
-                    t167 = -m_y*psi_z + m_z*psi_y
-                    t168 = dpsi_x*e0
-                    t169 = dm_z*psi_y + dpsi_y*m_z - t134 - t135
-                    t170 = e0*psi_x
-                    t171 = psi_x*t150
-                    t172 = psi_y*wp_z - psi_z*wp_y
-                    t173 = t153 - t154 - t155 + t156
-                    dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + alpha_r*(dwp_x + t137*t157 - t139*t158 +
-                        t143*t163 - t149*t166 + t151*t157 - t152*t158 - 0.5*t153 + (0.5)*t154 +
-                        (0.5)*t155 - 0.5*t156) + dOm_y*pw_z - dOm_z*pw_y + dm_x - 0.5*dm_z*psi_y -
-                        0.5*dpsi_y*m_z + dpwd_x + (0.5)*t134 + (0.5)*t135 + t136*t137 + t136*t151
-                        - t138*t139 - t138*t152 + t142*t143 - t148*t149)
-                    dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x + alpha_r*(-0.5*dpsi_z*wp_x -
-                        0.5*dwp_x*psi_z + dwp_y + t139*t172 + t149*t173 + t152*t172 - t157*t168 -
-                        t157*t171 - t163*t170 + (0.5)*t164 + (0.5)*t165) - dOm_x*pw_z + dOm_z*pw_x
-                        + dm_y + dpwd_y - t136*t168 - t136*t171 + t139*t167 - t142*t170 - 0.5*t144
-                        - 0.5*t145 + (0.5)*t146 + (0.5)*t147 + t149*t169 + t152*t167)
-                    dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + alpha_r*(dwp_z - t137*t172 - t143*t173
-                        - t151*t172 + t158*t168 + t158*t171 - 0.5*t159 - 0.5*t160 + (0.5)*t161 +
-                        (0.5)*t162 + t166*t170) + dOm_x*pw_y - dOm_y*pw_x - 0.5*dm_y*psi_x + dm_z
-                        - 0.5*dpsi_x*m_y + dpwd_z - t137*t167 + t138*t168 + t138*t171 + (0.5)*t140
-                        + (0.5)*t141 - t143*t169 + t148*t170 - t151*t167)
+                    t138 = alpha_r*wp_y + m_y
+                    t139 = dpsi_z*t138
+                    t140 = alpha_r*dwp_y + dm_y
+                    t141 = psi_z*t140
+                    t142 = alpha_r*wp_z + m_z
+                    t143 = dpsi_y*t142
+                    t144 = alpha_r*dwp_z + dm_z
+                    t145 = psi_y*t144
+                    t146 = alpha_r*wp_x + m_x
+                    t147 = psi_x*t138 - psi_y*t146
+                    t148 = e0*t147
+                    t149 = dpsi_x*t138
+                    t150 = psi_x*t140
+                    t151 = dpsi_y*t146
+                    t152 = alpha_r*dwp_x + dm_x
+                    t153 = psi_y*t152
+                    t154 = e0*(t149 + t150 - t151 - t153)
+                    t155 = -psi_x*t142 + psi_z*t146
+                    t156 = dpsi_z*e0
+                    t157 = dpsi_x*t142
+                    t158 = psi_x*t144
+                    t159 = dpsi_z*t146 + psi_z*t152 - t157 - t158
+                    t160 = e0*psi_z
+                    t161 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t162 = t147*t161
+                    t163 = psi_z*t161
+                    t164 = psi_y*t142 - psi_z*t138
+                    t165 = -t139 - t141 + t143 + t145
+                    dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + dOm_y*pw_z - dOm_z*pw_y + dpsi_y*t148 +
+                        dpwd_x + psi_y*t154 + psi_y*t162 + (0.5)*t139 + (0.5)*t141 - 0.5*t143 -
+                        0.5*t145 + t152 - t155*t156 - t155*t163 - t159*t160)
+                    dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x - dOm_x*pw_z + dOm_z*pw_x - dpsi_x*t148
+                        - 0.5*dpsi_z*t146 + dpwd_y - psi_x*t154 - psi_x*t162 - 0.5*psi_z*t152 +
+                        t140 + t156*t164 + (0.5)*t157 + (0.5)*t158 + t160*t165 + t163*t164)
+                    dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + dOm_x*pw_y - dOm_y*pw_x +
+                        dpsi_x*e0*t155 - dpsi_y*e0*t164 + dpwd_z + e0*psi_x*t159 - e0*psi_y*t165 +
+                        psi_x*t155*t161 - psi_y*t161*t164 + t144 - 0.5*t149 - 0.5*t150 +
+                        (0.5)*t151 + (0.5)*t153)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

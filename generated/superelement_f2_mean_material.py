@@ -49,7 +49,7 @@ WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
 OPERATIONS = {"residual": (425, 136, 247, 3),
-              "column": (337, 172, 709, 3)}
+              "column": (337, 172, 679, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
 
 
@@ -511,29 +511,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t78 = dth0_y*psi_z
-                    t79 = dth_y*psi_z
-                    t80 = dth0_x*psi_y
-                    t81 = dth0_y*psi_x - t80
-                    t82 = e0*psi_y
-                    t83 = dth_x*psi_z
-                    t84 = dth_z*psi_x
-                    t85 = t83 - t84
-                    t86 = e0*psi_z
-                    t87 = dth_x*psi_y
-                    t88 = dth_y*psi_x - t87
-                    t89 = dth0_x*psi_z
-                    t90 = dth0_z*psi_x
-                    t91 = t89 - t90
-                    t92 = e0*psi_x
-                    t93 = dth_z*psi_y - t79
-                    t94 = dth0_z*psi_y - t78
-                    dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t88 + e0*psi_z*t91 - 0.5*t78 - 0.5*t79 - t81*t82 - t85*t86)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t81*t92 + (0.5)*t83 - 0.5*t84 + t86*t93 -
-                        t86*t94 - t88*t92 + (0.5)*t89 - 0.5*t90)
-                    dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t85 + e0*psi_y*t94 - 0.5*t80 - t82*t93 - 0.5*t87 - t91*t92)
+                    t78 = (0.5)*dth0_z + (0.5)*dth_z
+                    t79 = dth0_y + dth_y
+                    t80 = (0.5)*psi_z
+                    t81 = -dth0_y + dth_y
+                    t82 = -dth0_x + dth_x
+                    t83 = psi_x*t81 - psi_y*t82
+                    t84 = -dth0_z + dth_z
+                    t85 = -psi_x*t84 + psi_z*t82
+                    t86 = dth0_x + dth_x
+                    t87 = psi_y*t84 - psi_z*t81
+                    dy[j3] = -dth0_x + dth_x + e0*(psi_y*t83 - psi_z*t85) + psi_y*t78 - t79*t80
+                    dy[j3 + 1] = -dth0_y + dth_y + e0*(-psi_x*t83 + psi_z*t87) - psi_x*t78 + t80*t86
+                    dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t85 - psi_y*t87) + (0.5)*psi_x*t79 -
+                        0.5*psi_y*t86)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
@@ -553,18 +544,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     beta_x, beta_y, beta_z = beta[j3], beta[j3 + 1], beta[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     b0 = b0s[j]
-                    t95 = beta_y*dth_z
-                    t96 = beta_z*dth_y
-                    t97 = beta_x*dth_y
-                    t98 = beta_y*dth_x
-                    t99 = b0*(t97 - t98)
-                    t100 = beta_x*dth_z
-                    t101 = beta_z*dth_x - t100
-                    t102 = b0*beta_z
-                    t103 = t95 - t96
-                    dbeta[j3] = beta_y*t99 + dth_x - t101*t102 + (0.5)*t95 - 0.5*t96
-                    dbeta[j3 + 1] = -beta_x*t99 + (0.5)*beta_z*dth_x + dth_y - 0.5*t100 + t102*t103
-                    dbeta[j3 + 2] = b0*beta_x*t101 - b0*beta_y*t103 + dth_z + (0.5)*t97 - 0.5*t98
+                    t88 = beta_y*dth_z
+                    t89 = beta_z*dth_y
+                    t90 = beta_x*dth_y
+                    t91 = beta_y*dth_x
+                    t92 = b0*(t90 - t91)
+                    t93 = beta_x*dth_z
+                    t94 = beta_z*dth_x - t93
+                    t95 = b0*beta_z
+                    t96 = t88 - t89
+                    dbeta[j3] = beta_y*t92 + dth_x + (0.5)*t88 - 0.5*t89 - t94*t95
+                    dbeta[j3 + 1] = -beta_x*t92 + (0.5)*beta_z*dth_x + dth_y - 0.5*t93 + t95*t96
+                    dbeta[j3 + 2] = b0*beta_x*t94 - b0*beta_y*t96 + dth_z + (0.5)*t90 - 0.5*t91
                 # variation of their mean, (18)
                 dbeta0_x = dbeta0_y = dbeta0_z = 0.0
                 for j in range(N_ROTATIONS):
@@ -573,20 +564,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     beta_x, beta_y, beta_z = beta[j3], beta[j3 + 1], beta[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     b0 = b0s[j]
-                    t104 = beta_y*dth_z
-                    t105 = beta_z*dth_y
-                    t106 = beta_x*dth_y
-                    t107 = beta_y*dth_x
-                    t108 = b0*(t106 - t107)
-                    t109 = beta_x*dth_z
-                    t110 = beta_z*dth_x - t109
-                    t111 = b0*beta_z
-                    t112 = t104 - t105
-                    dbeta0_x += alpha_r*(beta_y*t108 + dth_x + (0.5)*t104 - 0.5*t105 - t110*t111)
-                    dbeta0_y += (alpha_r*(-beta_x*t108 + (0.5)*beta_z*dth_x + dth_y - 0.5*t109 +
-                        t111*t112))
-                    dbeta0_z += (alpha_r*(b0*beta_x*t110 - b0*beta_y*t112 + dth_z + (0.5)*t106 -
-                        0.5*t107))
+                    t97 = beta_y*dth_z
+                    t98 = beta_z*dth_y
+                    t99 = beta_x*dth_y
+                    t100 = beta_y*dth_x
+                    t101 = b0*(-t100 + t99)
+                    t102 = beta_x*dth_z
+                    t103 = beta_z*dth_x - t102
+                    t104 = b0*beta_z
+                    t105 = t97 - t98
+                    dbeta0_x += alpha_r*(beta_y*t101 + dth_x - t103*t104 + (0.5)*t97 - 0.5*t98)
+                    dbeta0_y += (alpha_r*(-beta_x*t101 + (0.5)*beta_z*dth_x + dth_y - 0.5*t102 +
+                        t104*t105))
+                    dbeta0_z += (alpha_r*(b0*beta_x*t103 - b0*beta_y*t105 + dth_z - 0.5*t100 +
+                        (0.5)*t99))
                 # differential: gravity in frame axes
                 gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
                 dgamma[0] = -dth0_y*gamma_z + dth0_z*gamma_y
@@ -630,78 +621,78 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dOm_x, dOm_y, dOm_z = dve[j3], dve[j3 + 1], dve[j3 + 2]
                     b0 = b0s[j]
                     b1 = b1s[j]
-                    t113 = Om_y*dbeta_z
-                    t114 = beta_z*dOm_y
-                    t115 = -Om_x*beta_y + Om_y*beta_x
-                    t116 = b0*t115
-                    t117 = Om_x*beta_z - Om_z*beta_x
-                    t118 = b0*dbeta_z
-                    t119 = Om_x*dbeta_y
-                    t120 = beta_y*dOm_x
-                    t121 = b0*(Om_y*dbeta_x + beta_x*dOm_y - t119 - t120)
-                    t122 = Om_x*dbeta_z
-                    t123 = beta_z*dOm_x
-                    t124 = Om_z*dbeta_x
-                    t125 = beta_x*dOm_z
-                    t126 = t122 + t123 - t124 - t125
-                    t127 = b0*beta_z
-                    t128 = b1*(2*beta_x*dbeta_x + 2*beta_y*dbeta_y + 2*beta_z*dbeta_z)
-                    t129 = t115*t128
-                    t130 = beta_z*t128
-                    t131 = -Om_y*beta_z + Om_z*beta_y
-                    t132 = Om_z*dbeta_y + beta_y*dOm_z - t113 - t114
-                    dmean_x += (alpha_r*((0.5)*Om_z*dbeta_y + (0.5)*beta_y*dOm_z + beta_y*t121 +
-                        beta_y*t129 + dOm_x + dbeta_y*t116 - 0.5*t113 - 0.5*t114 - t117*t118 -
-                        t117*t130 - t126*t127))
-                    dmean_y += (alpha_r*(-beta_x*t121 - beta_x*t129 + dOm_y - dbeta_x*t116 +
-                        t118*t131 + (0.5)*t122 + (0.5)*t123 - 0.5*t124 - 0.5*t125 + t127*t132 +
-                        t130*t131))
-                    dmean_z += (alpha_r*((0.5)*Om_y*dbeta_x + b0*beta_x*t126 - b0*beta_y*t132 +
-                        b0*dbeta_x*t117 - b0*dbeta_y*t131 + (0.5)*beta_x*dOm_y + beta_x*t117*t128
-                        - beta_y*t128*t131 + dOm_z - 0.5*t119 - 0.5*t120))
+                    t106 = Om_y*dbeta_z
+                    t107 = beta_z*dOm_y
+                    t108 = -Om_x*beta_y + Om_y*beta_x
+                    t109 = b0*t108
+                    t110 = Om_x*beta_z - Om_z*beta_x
+                    t111 = b0*dbeta_z
+                    t112 = Om_x*dbeta_y
+                    t113 = beta_y*dOm_x
+                    t114 = b0*(Om_y*dbeta_x + beta_x*dOm_y - t112 - t113)
+                    t115 = Om_x*dbeta_z
+                    t116 = beta_z*dOm_x
+                    t117 = Om_z*dbeta_x
+                    t118 = beta_x*dOm_z
+                    t119 = t115 + t116 - t117 - t118
+                    t120 = b0*beta_z
+                    t121 = b1*(2*beta_x*dbeta_x + 2*beta_y*dbeta_y + 2*beta_z*dbeta_z)
+                    t122 = t108*t121
+                    t123 = beta_z*t121
+                    t124 = -Om_y*beta_z + Om_z*beta_y
+                    t125 = Om_z*dbeta_y + beta_y*dOm_z - t106 - t107
+                    dmean_x += (alpha_r*((0.5)*Om_z*dbeta_y + (0.5)*beta_y*dOm_z + beta_y*t114 +
+                        beta_y*t122 + dOm_x + dbeta_y*t109 - 0.5*t106 - 0.5*t107 - t110*t111 -
+                        t110*t123 - t119*t120))
+                    dmean_y += (alpha_r*(-beta_x*t114 - beta_x*t122 + dOm_y - dbeta_x*t109 +
+                        t111*t124 + (0.5)*t115 + (0.5)*t116 - 0.5*t117 - 0.5*t118 + t120*t125 +
+                        t123*t124))
+                    dmean_z += (alpha_r*((0.5)*Om_y*dbeta_x + b0*beta_x*t119 - b0*beta_y*t125 +
+                        b0*dbeta_x*t110 - b0*dbeta_y*t124 + (0.5)*beta_x*dOm_y + beta_x*t110*t121
+                        - beta_y*t121*t124 + dOm_z - 0.5*t112 - 0.5*t113))
                 # differential: rate of the frame, (19)
-                t133 = beta0_z*c2
-                t134 = beta0_x*c3
-                t135 = beta0_y*t134
-                t136 = beta0_y*c2
-                t137 = beta0_z*t134
-                t138 = beta0_y*beta0_y
-                t139 = c3*t138
-                t140 = beta0_z*beta0_z
-                t141 = c3*t140 - 1
-                t142 = c2*dbeta0_z
-                t143 = 2*dbeta0_x
-                t144 = 2*beta0_y*dbeta0_y
-                t145 = 2*beta0_z*dbeta0_z
-                t146 = beta0_x*t143 + t144 + t145
-                t147 = t146*(-0.5*c3 + c4)
-                t148 = beta0_z*t147
-                t149 = c3*dbeta0_x
-                t150 = t146*(-0.5*c4 + (1.5)*c5)
-                t151 = beta0_x*t150
-                t152 = beta0_y*t149 + beta0_y*t151 + dbeta0_y*t134
-                t153 = c2*dbeta0_y
-                t154 = beta0_y*t147
-                t155 = beta0_z*t149 + beta0_z*t151 + dbeta0_z*t134
-                t156 = c3*t145 + t140*t150
-                t157 = c3*t144 + t138*t150
-                t158 = beta0_x*c2
-                t159 = beta0_y*c3
-                t160 = beta0_x*beta0_x
-                t161 = c3*t160
-                t162 = c2*dbeta0_x
-                t163 = beta0_x*t147
-                t164 = beta0_y*beta0_z*t150 + beta0_z*c3*dbeta0_y + dbeta0_z*t159
-                t165 = t134*t143 + t150*t160
-                dOm0_x = (dmean_x*(-t139 - t141) + dmean_y*(t133 + t135) + dmean_z*(-t136 + t137)
-                    + mean_x*(-t156 - t157) + mean_y*(t142 + t148 + t152) + mean_z*(-t153 - t154 +
-                    t155))
-                dOm0_y = (dmean_x*(-t133 + t135) + dmean_y*(-t141 - t161) + dmean_z*(beta0_z*t159
-                    + t158) + mean_x*(-t142 - t148 + t152) + mean_y*(-t156 - t165) + mean_z*(t162
-                    + t163 + t164))
-                dOm0_z = (dmean_x*(t136 + t137) + dmean_y*(beta0_y*beta0_z*c3 - t158) +
-                    dmean_z*(-t139 - t161 + 1) + mean_x*(t153 + t154 + t155) + mean_y*(-t162 -
-                    t163 + t164) + mean_z*(-t157 - t165))
+                t126 = beta0_z*c2
+                t127 = beta0_x*c3
+                t128 = beta0_y*t127
+                t129 = beta0_y*c2
+                t130 = beta0_z*t127
+                t131 = beta0_y*beta0_y
+                t132 = c3*t131
+                t133 = beta0_z*beta0_z
+                t134 = c3*t133 - 1
+                t135 = c2*dbeta0_z
+                t136 = 2*dbeta0_x
+                t137 = 2*beta0_y*dbeta0_y
+                t138 = 2*beta0_z*dbeta0_z
+                t139 = beta0_x*t136 + t137 + t138
+                t140 = t139*(-0.5*c3 + c4)
+                t141 = beta0_z*t140
+                t142 = c3*dbeta0_x
+                t143 = t139*(-0.5*c4 + (1.5)*c5)
+                t144 = beta0_x*t143
+                t145 = beta0_y*t142 + beta0_y*t144 + dbeta0_y*t127
+                t146 = c2*dbeta0_y
+                t147 = beta0_y*t140
+                t148 = beta0_z*t142 + beta0_z*t144 + dbeta0_z*t127
+                t149 = c3*t138 + t133*t143
+                t150 = c3*t137 + t131*t143
+                t151 = beta0_x*c2
+                t152 = beta0_y*c3
+                t153 = beta0_x*beta0_x
+                t154 = c3*t153
+                t155 = c2*dbeta0_x
+                t156 = beta0_x*t140
+                t157 = beta0_y*beta0_z*t143 + beta0_z*c3*dbeta0_y + dbeta0_z*t152
+                t158 = t127*t136 + t143*t153
+                dOm0_x = (dmean_x*(-t132 - t134) + dmean_y*(t126 + t128) + dmean_z*(-t129 + t130)
+                    + mean_x*(-t149 - t150) + mean_y*(t135 + t141 + t145) + mean_z*(-t146 - t147 +
+                    t148))
+                dOm0_y = (dmean_x*(-t126 + t128) + dmean_y*(-t134 - t154) + dmean_z*(beta0_z*t152
+                    + t151) + mean_x*(-t135 - t141 + t145) + mean_y*(-t149 - t158) + mean_z*(t155
+                    + t156 + t157))
+                dOm0_z = (dmean_x*(t129 + t130) + dmean_y*(beta0_y*beta0_z*c3 - t151) +
+                    dmean_z*(-t132 - t154 + 1) + mean_x*(t146 + t147 + t148) + mean_y*(-t155 -
+                    t156 + t157) + mean_z*(-t150 - t158))
                 # differential: local accelerations of the nodes, (46), (58)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -747,18 +738,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                     dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
-                    t166 = alpha*mass
-                    t167 = X_z + u_z
-                    t168 = X_y + u_y
-                    t169 = X_x + u_x
-                    dF_x += -df_x - dgamma_x*t166
-                    dF_y += -df_y - dgamma_y*t166
-                    dF_z += -df_z - dgamma_z*t166
-                    dW_x += (df_y*t167 - df_z*t168 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y
+                    t159 = alpha*mass
+                    t160 = X_z + u_z
+                    t161 = X_y + u_y
+                    t162 = X_x + u_x
+                    dF_x += -df_x - dgamma_x*t159
+                    dF_y += -df_y - dgamma_y*t159
+                    dF_z += -df_z - dgamma_z*t159
+                    dW_x += (df_y*t160 - df_z*t161 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y
                         + dvs_y*px_z - dvs_z*px_y)
-                    dW_y += (-df_x*t167 + df_z*t169 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z -
+                    dW_y += (-df_x*t160 + df_z*t162 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z -
                         du_z*f_x - dvs_x*px_z + dvs_z*px_x)
-                    dW_z += (df_x*t168 - df_y*t169 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x
+                    dW_z += (df_x*t161 - df_y*t162 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x
                         + dvs_x*px_y - dvs_y*px_x)
                 # differential: moment of gravity on the frame
                 gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
@@ -766,12 +757,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
                 dd_x, dd_y, dd_z = dd[0], dd[1], dd[2]
                 dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-                t170 = d_y + mc_y
-                t171 = d_z + mc_z
-                t172 = d_x + mc_x
-                dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t171 - dgamma_z*t170
-                dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t171 + dgamma_z*t172
-                dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t170 - dgamma_y*t172
+                t163 = d_y + mc_y
+                t164 = d_z + mc_z
+                t165 = d_x + mc_x
+                dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t164 - dgamma_z*t163
+                dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t164 + dgamma_z*t165
+                dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t163 - dgamma_y*t165
                 # differential: moments on the frame: elastic (30) and inertia (45)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -781,65 +772,65 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t173 = -m_x*psi_y + m_y*psi_x
-                    t174 = m_x*psi_z - m_z*psi_x
-                    t175 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t176 = dm_x*psi_z
-                    t177 = dpsi_z*m_x
-                    t178 = -dm_z*psi_x - dpsi_x*m_z + t176 + t177
-                    t179 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t180 = e1*t179
-                    t181 = -m_y*psi_z + m_z*psi_y
-                    t182 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t173 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t174 + (0.5)*dpsi_z*m_y - e0*psi_y*t175 +
-                        e0*psi_z*t178 + e1*psi_z*t174*t179 - psi_y*t173*t180)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t173 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t181 + e0*psi_x*t175 - e0*psi_z*t182 + e1*psi_x*t173*t179 -
-                        psi_z*t180*t181 - 0.5*t176 - 0.5*t177)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t174 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t181 + (0.5)*dpsi_y*m_x - e0*psi_x*t178 +
-                        e0*psi_y*t182 + e1*psi_y*t179*t181 - psi_x*t174*t180)
+                    t166 = -m_x*psi_y + m_y*psi_x
+                    t167 = m_x*psi_z - m_z*psi_x
+                    t168 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t169 = dm_x*psi_z
+                    t170 = dpsi_z*m_x
+                    t171 = -dm_z*psi_x - dpsi_x*m_z + t169 + t170
+                    t172 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t173 = e1*t172
+                    t174 = -m_y*psi_z + m_z*psi_y
+                    t175 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t166 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t167 + (0.5)*dpsi_z*m_y - e0*psi_y*t168 +
+                        e0*psi_z*t171 + e1*psi_z*t167*t172 - psi_y*t166*t173)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t166 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t174 + e0*psi_x*t168 - e0*psi_z*t175 + e1*psi_x*t166*t172 -
+                        psi_z*t173*t174 - 0.5*t169 - 0.5*t170)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t167 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t174 + (0.5)*dpsi_y*m_x - e0*psi_x*t171 +
+                        e0*psi_y*t175 + e1*psi_y*t172*t174 - psi_x*t167*t173)
                 # differential: moment on the frame, pulled back to the mean increment
-                t183 = beta0_y*c2
-                t184 = beta0_x*c3
-                t185 = beta0_z*t184
-                t186 = beta0_z*c2
-                t187 = beta0_y*t184
-                t188 = beta0_y*beta0_y
-                t189 = c3*t188
-                t190 = beta0_z*beta0_z
-                t191 = c3*t190 - 1
-                t192 = c2*dbeta0_y
-                t193 = 2*beta0_x*dbeta0_x
-                t194 = 2*beta0_y*dbeta0_y
-                t195 = 2*beta0_z*dbeta0_z
-                t196 = t193 + t194 + t195
-                t197 = t196*(-0.5*c3 + c4)
-                t198 = beta0_y*t197
-                t199 = c3*dbeta0_x
-                t200 = t196*(-0.5*c4 + (1.5)*c5)
-                t201 = beta0_x*t200
-                t202 = beta0_z*t199 + beta0_z*t201 + dbeta0_z*t184
-                t203 = c2*dbeta0_z
-                t204 = beta0_z*t197
-                t205 = beta0_y*t199 + beta0_y*t201 + dbeta0_y*t184
-                t206 = c3*t195 + t190*t200
-                t207 = c3*t194 + t188*t200
-                t208 = beta0_x*c2
-                t209 = beta0_x*beta0_x
-                t210 = c3*t209
-                t211 = c2*dbeta0_x
-                t212 = beta0_x*t197
-                t213 = beta0_y*c3
-                t214 = beta0_y*beta0_z*t200 + beta0_z*c3*dbeta0_y + dbeta0_z*t213
-                t215 = c3*t193 + t200*t209
-                dwp_x = (W_x*(-t206 - t207) + W_y*(-t203 - t204 + t205) + W_z*(t192 + t198 + t202)
-                    + dW_x*(-t189 - t191) + dW_y*(-t186 + t187) + dW_z*(t183 + t185))
-                dwp_y = (W_x*(t203 + t204 + t205) + W_y*(-t206 - t215) + W_z*(-t211 - t212 + t214)
-                    + dW_x*(t186 + t187) + dW_y*(-t191 - t210) + dW_z*(beta0_y*beta0_z*c3 - t208))
-                dwp_z = (W_x*(-t192 - t198 + t202) + W_y*(t211 + t212 + t214) + W_z*(-t207 - t215)
-                    + dW_x*(-t183 + t185) + dW_y*(beta0_z*t213 + t208) + dW_z*(-t189 - t210 + 1))
+                t176 = beta0_y*c2
+                t177 = beta0_x*c3
+                t178 = beta0_z*t177
+                t179 = beta0_z*c2
+                t180 = beta0_y*t177
+                t181 = beta0_y*beta0_y
+                t182 = c3*t181
+                t183 = beta0_z*beta0_z
+                t184 = c3*t183 - 1
+                t185 = c2*dbeta0_y
+                t186 = 2*beta0_x*dbeta0_x
+                t187 = 2*beta0_y*dbeta0_y
+                t188 = 2*beta0_z*dbeta0_z
+                t189 = t186 + t187 + t188
+                t190 = t189*(-0.5*c3 + c4)
+                t191 = beta0_y*t190
+                t192 = c3*dbeta0_x
+                t193 = t189*(-0.5*c4 + (1.5)*c5)
+                t194 = beta0_x*t193
+                t195 = beta0_z*t192 + beta0_z*t194 + dbeta0_z*t177
+                t196 = c2*dbeta0_z
+                t197 = beta0_z*t190
+                t198 = beta0_y*t192 + beta0_y*t194 + dbeta0_y*t177
+                t199 = c3*t188 + t183*t193
+                t200 = c3*t187 + t181*t193
+                t201 = beta0_x*c2
+                t202 = beta0_x*beta0_x
+                t203 = c3*t202
+                t204 = c2*dbeta0_x
+                t205 = beta0_x*t190
+                t206 = beta0_y*c3
+                t207 = beta0_y*beta0_z*t193 + beta0_z*c3*dbeta0_y + dbeta0_z*t206
+                t208 = c3*t186 + t193*t202
+                dwp_x = (W_x*(-t199 - t200) + W_y*(-t196 - t197 + t198) + W_z*(t185 + t191 + t195)
+                    + dW_x*(-t182 - t184) + dW_y*(-t179 + t180) + dW_z*(t176 + t178))
+                dwp_y = (W_x*(t196 + t197 + t198) + W_y*(-t199 - t208) + W_z*(-t204 - t205 + t207)
+                    + dW_x*(t179 + t180) + dW_y*(-t184 - t203) + dW_z*(beta0_y*beta0_z*c3 - t201))
+                dwp_z = (W_x*(-t185 - t191 + t195) + W_y*(t204 + t205 + t207) + W_z*(-t200 - t208)
+                    + dW_x*(-t176 + t178) + dW_y*(beta0_z*t206 + t201) + dW_z*(-t182 - t203 + 1))
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -881,64 +872,64 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     e1 = e1s[j]
                     b0 = b0s[j]
                     b1 = b1s[j]
-                    t216 = dm_y*psi_z
-                    t217 = dpsi_z*m_y
-                    t218 = -m_x*psi_y + m_y*psi_x
-                    t219 = e0*t218
-                    t220 = m_x*psi_z - m_z*psi_x
-                    t221 = dpsi_z*e0
-                    t222 = dm_x*psi_y
-                    t223 = dpsi_y*m_x
-                    t224 = e0*(dm_y*psi_x + dpsi_x*m_y - t222 - t223)
-                    t225 = dm_x*psi_z
-                    t226 = dpsi_z*m_x
-                    t227 = dm_z*psi_x
-                    t228 = dpsi_x*m_z
-                    t229 = t225 + t226 - t227 - t228
-                    t230 = e0*psi_z
-                    t231 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t232 = t218*t231
-                    t233 = psi_z*t231
-                    t234 = beta_y*dwp_z
-                    t235 = beta_z*dwp_y
-                    t236 = dbeta_y*wp_z
-                    t237 = dbeta_z*wp_y
-                    t238 = beta_x*wp_y - beta_y*wp_x
-                    t239 = b0*t238
-                    t240 = -beta_x*wp_z + beta_z*wp_x
-                    t241 = b0*dbeta_z
-                    t242 = beta_x*dwp_y
-                    t243 = dbeta_x*wp_y
-                    t244 = beta_y*dwp_x
-                    t245 = dbeta_y*wp_x
-                    t246 = b0*(t242 + t243 - t244 - t245)
-                    t247 = beta_x*dwp_z
-                    t248 = dbeta_x*wp_z
-                    t249 = beta_z*dwp_x + dbeta_z*wp_x - t247 - t248
-                    t250 = b0*beta_z
-                    t251 = b1*(2*beta_x*dbeta_x + 2*beta_y*dbeta_y + 2*beta_z*dbeta_z)
-                    t252 = t238*t251
-                    t253 = beta_z*t251
-                    t254 = -m_y*psi_z + m_z*psi_y
-                    t255 = dm_z*psi_y + dpsi_y*m_z - t216 - t217
-                    t256 = beta_y*wp_z - beta_z*wp_y
-                    t257 = t234 - t235 + t236 - t237
-                    dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + alpha_r*(beta_y*t246 + beta_y*t252 +
-                        dbeta_y*t239 + dwp_x - 0.5*t234 + (0.5)*t235 - 0.5*t236 + (0.5)*t237 -
-                        t240*t241 - t240*t253 - t249*t250) + dOm_y*pw_z - dOm_z*pw_y + dm_x -
-                        0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t219 + dpwd_x + psi_y*t224 +
-                        psi_y*t232 + (0.5)*t216 + (0.5)*t217 - t220*t221 - t220*t233 - t229*t230)
-                    dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x + alpha_r*(-beta_x*t246 - beta_x*t252 -
-                        0.5*beta_z*dwp_x - dbeta_x*t239 - 0.5*dbeta_z*wp_x + dwp_y + t241*t256 +
-                        (0.5)*t247 + (0.5)*t248 + t250*t257 + t253*t256) - dOm_x*pw_z + dOm_z*pw_x
-                        + dm_y - dpsi_x*t219 + dpwd_y - psi_x*t224 - psi_x*t232 + t221*t254 -
-                        0.5*t225 - 0.5*t226 + (0.5)*t227 + (0.5)*t228 + t230*t255 + t233*t254)
-                    dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + alpha_r*(b0*beta_x*t249 -
-                        b0*beta_y*t257 + b0*dbeta_x*t240 - b0*dbeta_y*t256 + beta_x*t240*t251 -
-                        beta_y*t251*t256 + dwp_z - 0.5*t242 - 0.5*t243 + (0.5)*t244 + (0.5)*t245)
-                        + dOm_x*pw_y - dOm_y*pw_x - 0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t220 -
-                        0.5*dpsi_x*m_y - dpsi_y*e0*t254 + dpwd_z + e0*psi_x*t229 - e0*psi_y*t255 +
-                        psi_x*t220*t231 - psi_y*t231*t254 + (0.5)*t222 + (0.5)*t223)
+                    t209 = dm_y*psi_z
+                    t210 = dpsi_z*m_y
+                    t211 = -m_x*psi_y + m_y*psi_x
+                    t212 = e0*t211
+                    t213 = m_x*psi_z - m_z*psi_x
+                    t214 = dpsi_z*e0
+                    t215 = dm_x*psi_y
+                    t216 = dpsi_y*m_x
+                    t217 = e0*(dm_y*psi_x + dpsi_x*m_y - t215 - t216)
+                    t218 = dm_x*psi_z
+                    t219 = dpsi_z*m_x
+                    t220 = dm_z*psi_x
+                    t221 = dpsi_x*m_z
+                    t222 = t218 + t219 - t220 - t221
+                    t223 = e0*psi_z
+                    t224 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t225 = t211*t224
+                    t226 = psi_z*t224
+                    t227 = beta_y*dwp_z
+                    t228 = beta_z*dwp_y
+                    t229 = dbeta_y*wp_z
+                    t230 = dbeta_z*wp_y
+                    t231 = beta_x*wp_y - beta_y*wp_x
+                    t232 = b0*t231
+                    t233 = -beta_x*wp_z + beta_z*wp_x
+                    t234 = b0*dbeta_z
+                    t235 = beta_x*dwp_y
+                    t236 = dbeta_x*wp_y
+                    t237 = beta_y*dwp_x
+                    t238 = dbeta_y*wp_x
+                    t239 = b0*(t235 + t236 - t237 - t238)
+                    t240 = beta_x*dwp_z
+                    t241 = dbeta_x*wp_z
+                    t242 = beta_z*dwp_x + dbeta_z*wp_x - t240 - t241
+                    t243 = b0*beta_z
+                    t244 = b1*(2*beta_x*dbeta_x + 2*beta_y*dbeta_y + 2*beta_z*dbeta_z)
+                    t245 = t231*t244
+                    t246 = beta_z*t244
+                    t247 = -m_y*psi_z + m_z*psi_y
+                    t248 = dm_z*psi_y + dpsi_y*m_z - t209 - t210
+                    t249 = beta_y*wp_z - beta_z*wp_y
+                    t250 = t227 - t228 + t229 - t230
+                    dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + alpha_r*(beta_y*t239 + beta_y*t245 +
+                        dbeta_y*t232 + dwp_x - 0.5*t227 + (0.5)*t228 - 0.5*t229 + (0.5)*t230 -
+                        t233*t234 - t233*t246 - t242*t243) + dOm_y*pw_z - dOm_z*pw_y + dm_x -
+                        0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t212 + dpwd_x + psi_y*t217 +
+                        psi_y*t225 + (0.5)*t209 + (0.5)*t210 - t213*t214 - t213*t226 - t222*t223)
+                    dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x + alpha_r*(-beta_x*t239 - beta_x*t245 -
+                        0.5*beta_z*dwp_x - dbeta_x*t232 - 0.5*dbeta_z*wp_x + dwp_y + t234*t249 +
+                        (0.5)*t240 + (0.5)*t241 + t243*t250 + t246*t249) - dOm_x*pw_z + dOm_z*pw_x
+                        + dm_y - dpsi_x*t212 + dpwd_y - psi_x*t217 - psi_x*t225 + t214*t247 -
+                        0.5*t218 - 0.5*t219 + (0.5)*t220 + (0.5)*t221 + t223*t248 + t226*t247)
+                    dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + alpha_r*(b0*beta_x*t242 -
+                        b0*beta_y*t250 + b0*dbeta_x*t233 - b0*dbeta_y*t249 + beta_x*t233*t244 -
+                        beta_y*t244*t249 + dwp_z - 0.5*t235 - 0.5*t236 + (0.5)*t237 + (0.5)*t238)
+                        + dOm_x*pw_y - dOm_y*pw_x - 0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t213 -
+                        0.5*dpsi_x*m_y - dpsi_y*e0*t247 + dpwd_z + e0*psi_x*t222 - e0*psi_y*t248 +
+                        psi_x*t213*t224 - psi_y*t224*t247 + (0.5)*t215 + (0.5)*t216)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

@@ -49,7 +49,7 @@ WORK_SQUARES = 0
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
 OPERATIONS = {"residual": (460, 217, 128, 3),
-              "column": (81, 277, 352, 3)}
+              "column": (81, 277, 322, 3)}
 CONSTANTS = SUPERELEMENT_CONSTANTS
 
 
@@ -480,29 +480,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t46 = dth0_y*psi_z
-                    t47 = dth_y*psi_z
-                    t48 = dth0_x*psi_y
-                    t49 = dth0_y*psi_x - t48
-                    t50 = e0*psi_y
-                    t51 = dth_x*psi_z
-                    t52 = dth_z*psi_x
-                    t53 = t51 - t52
-                    t54 = e0*psi_z
-                    t55 = dth_x*psi_y
-                    t56 = dth_y*psi_x - t55
-                    t57 = dth0_x*psi_z
-                    t58 = dth0_z*psi_x
-                    t59 = t57 - t58
-                    t60 = e0*psi_x
-                    t61 = dth_z*psi_y - t47
-                    t62 = dth0_z*psi_y - t46
-                    dy[j3] = (-dth0_x + (0.5)*dth0_z*psi_y + dth_x + (0.5)*dth_z*psi_y +
-                        e0*psi_y*t56 + e0*psi_z*t59 - 0.5*t46 - 0.5*t47 - t49*t50 - t53*t54)
-                    dy[j3 + 1] = (-dth0_y + dth_y + t49*t60 + (0.5)*t51 - 0.5*t52 + t54*t61 -
-                        t54*t62 - t56*t60 + (0.5)*t57 - 0.5*t58)
-                    dy[j3 + 2] = ((0.5)*dth0_y*psi_x - dth0_z + (0.5)*dth_y*psi_x + dth_z +
-                        e0*psi_x*t53 + e0*psi_y*t62 - 0.5*t48 - t50*t61 - 0.5*t55 - t59*t60)
+                    t46 = (0.5)*dth0_z + (0.5)*dth_z
+                    t47 = dth0_y + dth_y
+                    t48 = (0.5)*psi_z
+                    t49 = -dth0_y + dth_y
+                    t50 = -dth0_x + dth_x
+                    t51 = psi_x*t49 - psi_y*t50
+                    t52 = -dth0_z + dth_z
+                    t53 = -psi_x*t52 + psi_z*t50
+                    t54 = dth0_x + dth_x
+                    t55 = psi_y*t52 - psi_z*t49
+                    dy[j3] = -dth0_x + dth_x + e0*(psi_y*t51 - psi_z*t53) + psi_y*t46 - t47*t48
+                    dy[j3 + 1] = -dth0_y + dth_y + e0*(-psi_x*t51 + psi_z*t55) - psi_x*t46 + t48*t54
+                    dy[j3 + 2] = (-dth0_z + dth_z + e0*(psi_x*t53 - psi_y*t55) + (0.5)*psi_x*t47 -
+                        0.5*psi_y*t54)
                 # differential: internal modes
                 for k in range(MODES, n):
                     dqm = dqe[k]
@@ -565,12 +556,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t63 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
-                    t64 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
-                    t65 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
-                    rhs_x += -fit*(X_y*t63 - X_z*t64)
-                    rhs_y += -fit*(-X_x*t63 + X_z*t65)
-                    rhs_z += -fit*(X_x*t64 - X_y*t65)
+                    t56 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
+                    t57 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
+                    t58 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
+                    rhs_x += -fit*(X_y*t56 - X_z*t57)
+                    rhs_y += -fit*(-X_x*t56 + X_z*t58)
+                    rhs_z += -fit*(X_x*t57 - X_y*t58)
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -619,18 +610,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
                     dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
-                    t66 = alpha*mass
-                    t67 = X_z + u_z
-                    t68 = X_y + u_y
-                    t69 = X_x + u_x
-                    dF_x += -df_x - dgamma_x*t66
-                    dF_y += -df_y - dgamma_y*t66
-                    dF_z += -df_z - dgamma_z*t66
-                    dW_x += (df_y*t67 - df_z*t68 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y +
+                    t59 = alpha*mass
+                    t60 = X_z + u_z
+                    t61 = X_y + u_y
+                    t62 = X_x + u_x
+                    dF_x += -df_x - dgamma_x*t59
+                    dF_y += -df_y - dgamma_y*t59
+                    dF_z += -df_z - dgamma_z*t59
+                    dW_x += (df_y*t60 - df_z*t61 - dpx_y*vs_z + dpx_z*vs_y - du_y*f_z + du_z*f_y +
                         dvs_y*px_z - dvs_z*px_y)
-                    dW_y += (-df_x*t67 + df_z*t69 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z - du_z*f_x
+                    dW_y += (-df_x*t60 + df_z*t62 + dpx_x*vs_z - dpx_z*vs_x + du_x*f_z - du_z*f_x
                         - dvs_x*px_z + dvs_z*px_x)
-                    dW_z += (df_x*t68 - df_y*t69 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x +
+                    dW_z += (df_x*t61 - df_y*t62 - dpx_x*vs_y + dpx_y*vs_x - du_x*f_y + du_y*f_x +
                         dvs_x*px_y - dvs_y*px_x)
                 # differential: moment of gravity on the frame
                 gamma_x, gamma_y, gamma_z = gamma[0], gamma[1], gamma[2]
@@ -638,12 +629,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 mc_x, mc_y, mc_z = mc[0], mc[1], mc[2]
                 dd_x, dd_y, dd_z = dd[0], dd[1], dd[2]
                 dgamma_x, dgamma_y, dgamma_z = dgamma[0], dgamma[1], dgamma[2]
-                t70 = d_y + mc_y
-                t71 = d_z + mc_z
-                t72 = d_x + mc_x
-                dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t71 - dgamma_z*t70
-                dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t71 + dgamma_z*t72
-                dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t70 - dgamma_y*t72
+                t63 = d_y + mc_y
+                t64 = d_z + mc_z
+                t65 = d_x + mc_x
+                dW_x += -dd_y*gamma_z + dd_z*gamma_y + dgamma_y*t64 - dgamma_z*t63
+                dW_y += dd_x*gamma_z - dd_z*gamma_x - dgamma_x*t64 + dgamma_z*t65
+                dW_z += -dd_x*gamma_y + dd_y*gamma_x + dgamma_x*t63 - dgamma_y*t65
                 # differential: moments on the frame: elastic (30) and inertia (45)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -653,25 +644,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t73 = -m_x*psi_y + m_y*psi_x
-                    t74 = m_x*psi_z - m_z*psi_x
-                    t75 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t76 = dm_x*psi_z
-                    t77 = dpsi_z*m_x
-                    t78 = -dm_z*psi_x - dpsi_x*m_z + t76 + t77
-                    t79 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t80 = e1*t79
-                    t81 = -m_y*psi_z + m_z*psi_y
-                    t82 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t73 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t74 + (0.5)*dpsi_z*m_y - e0*psi_y*t75 +
-                        e0*psi_z*t78 + e1*psi_z*t74*t79 - psi_y*t73*t80)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t73 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t81 + e0*psi_x*t75 - e0*psi_z*t82 + e1*psi_x*t73*t79 -
-                        psi_z*t80*t81 - 0.5*t76 - 0.5*t77)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t74 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t81 + (0.5)*dpsi_y*m_x - e0*psi_x*t78 +
-                        e0*psi_y*t82 + e1*psi_y*t79*t81 - psi_x*t74*t80)
+                    t66 = -m_x*psi_y + m_y*psi_x
+                    t67 = m_x*psi_z - m_z*psi_x
+                    t68 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t69 = dm_x*psi_z
+                    t70 = dpsi_z*m_x
+                    t71 = -dm_z*psi_x - dpsi_x*m_z + t69 + t70
+                    t72 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t73 = e1*t72
+                    t74 = -m_y*psi_z + m_z*psi_y
+                    t75 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t66 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t67 + (0.5)*dpsi_z*m_y - e0*psi_y*t68 +
+                        e0*psi_z*t71 + e1*psi_z*t67*t72 - psi_y*t66*t73)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t66 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t74 + e0*psi_x*t68 - e0*psi_z*t75 + e1*psi_x*t66*t72 -
+                        psi_z*t73*t74 - 0.5*t69 - 0.5*t70)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t67 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t74 + (0.5)*dpsi_y*m_x - e0*psi_x*t71 +
+                        e0*psi_y*t75 + e1*psi_y*t72*t74 - psi_x*t67*t73)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for i in range(N_POSITIONS):
@@ -679,26 +670,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    t83 = X_x*wp_y - X_y*wp_x
-                    t84 = -X_x*wp_z + X_z*wp_x
-                    t85 = X_y*wp_z - X_z*wp_y
-                    rhs_x += -fit*(du_y*t83 - du_z*t84)
-                    rhs_y += -fit*(-du_x*t83 + du_z*t85)
-                    rhs_z += -fit*(du_x*t84 - du_y*t85)
-                t86 = dW_x + rhs_x
-                t87 = dW_y + rhs_y
-                t88 = dW_z + rhs_z
-                dwp_x = Bxx*t86 + Byx*t87 + Bzx*t88
-                dwp_y = Bxy*t86 + Byy*t87 + Bzy*t88
-                dwp_z = Bxz*t86 + Byz*t87 + Bzz*t88
+                    t76 = X_x*wp_y - X_y*wp_x
+                    t77 = -X_x*wp_z + X_z*wp_x
+                    t78 = X_y*wp_z - X_z*wp_y
+                    rhs_x += -fit*(du_y*t76 - du_z*t77)
+                    rhs_y += -fit*(-du_x*t76 + du_z*t78)
+                    rhs_z += -fit*(du_x*t77 - du_y*t78)
+                t79 = dW_x + rhs_x
+                t80 = dW_y + rhs_y
+                t81 = dW_z + rhs_z
+                dwp_x = Bxx*t79 + Byx*t80 + Bzx*t81
+                dwp_y = Bxy*t79 + Byy*t80 + Bzy*t81
+                dwp_z = Bxz*t79 + Byz*t80 + Bzz*t81
                 # differential: force on the origin, through the frame
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    t89 = dwp_z*fit
-                    dF_x += -X_y*t89 + X_z*dwp_y*fit
-                    dF_y += X_x*t89 - X_z*dwp_x*fit
+                    t82 = dwp_z*fit
+                    dF_x += -X_y*t82 + X_z*dwp_y*fit
+                    dF_y += X_x*t82 - X_z*dwp_x*fit
                     dF_z += -X_x*dwp_y*fit + X_y*dwp_x*fit
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
@@ -710,12 +701,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
                     dpx_x, dpx_y, dpx_z = dp[i3], dp[i3 + 1], dp[i3 + 2]
                     dpxd_x, dpxd_y, dpxd_z = dpd[i3], dpd[i3 + 1], dpd[i3 + 2]
-                    t90 = dwp_z*fit
-                    t91 = X_z*fit
-                    dh[i3] = (Om0_y*dpx_z - Om0_z*dpx_y + X_y*t90 + alpha*dF_x + dOm0_y*px_z -
-                        dOm0_z*px_y + df_x + dpxd_x - dwp_y*t91)
-                    dh[i3 + 1] = (-Om0_x*dpx_z + Om0_z*dpx_x - X_x*t90 + alpha*dF_y - dOm0_x*px_z
-                        + dOm0_z*px_x + df_y + dpxd_y + dwp_x*t91)
+                    t83 = dwp_z*fit
+                    t84 = X_z*fit
+                    dh[i3] = (Om0_y*dpx_z - Om0_z*dpx_y + X_y*t83 + alpha*dF_x + dOm0_y*px_z -
+                        dOm0_z*px_y + df_x + dpxd_x - dwp_y*t84)
+                    dh[i3 + 1] = (-Om0_x*dpx_z + Om0_z*dpx_x - X_x*t83 + alpha*dF_y - dOm0_x*px_z
+                        + dOm0_z*px_x + df_y + dpxd_y + dwp_x*t84)
                     dh[i3 + 2] = (Om0_x*dpx_y - Om0_y*dpx_x + X_x*dwp_y*fit - X_y*dwp_x*fit +
                         alpha*dF_z + dOm0_x*px_y - dOm0_y*px_x + df_z + dpxd_z)
                 # differential: force on the nodes, left in frame axes
@@ -740,36 +731,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpwd_x, dpwd_y, dpwd_z = dpd[j3], dpd[j3 + 1], dpd[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t92 = dm_y*psi_z
-                    t93 = dpsi_z*m_y
-                    t94 = -m_x*psi_y + m_y*psi_x
-                    t95 = e0*t94
-                    t96 = m_x*psi_z - m_z*psi_x
-                    t97 = dpsi_z*e0
-                    t98 = dm_x*psi_y
-                    t99 = dpsi_y*m_x
-                    t100 = e0*(dm_y*psi_x + dpsi_x*m_y - t98 - t99)
-                    t101 = dm_x*psi_z
-                    t102 = dpsi_z*m_x
-                    t103 = dm_z*psi_x
-                    t104 = dpsi_x*m_z
-                    t105 = t101 + t102 - t103 - t104
-                    t106 = e0*psi_z
-                    t107 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t108 = t107*t94
-                    t109 = psi_z*t107
-                    t110 = -m_y*psi_z + m_z*psi_y
-                    t111 = dm_z*psi_y + dpsi_y*m_z - t92 - t93
+                    t85 = dm_y*psi_z
+                    t86 = dpsi_z*m_y
+                    t87 = -m_x*psi_y + m_y*psi_x
+                    t88 = e0*t87
+                    t89 = m_x*psi_z - m_z*psi_x
+                    t90 = dpsi_z*e0
+                    t91 = dm_x*psi_y
+                    t92 = dpsi_y*m_x
+                    t93 = e0*(dm_y*psi_x + dpsi_x*m_y - t91 - t92)
+                    t94 = dm_x*psi_z
+                    t95 = dpsi_z*m_x
+                    t96 = dm_z*psi_x
+                    t97 = dpsi_x*m_z
+                    t98 = t94 + t95 - t96 - t97
+                    t99 = e0*psi_z
+                    t100 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t101 = t100*t87
+                    t102 = psi_z*t100
+                    t103 = -m_y*psi_z + m_z*psi_y
+                    t104 = dm_z*psi_y + dpsi_y*m_z - t85 - t86
                     dg[j3] = (Om_y*dpw_z - Om_z*dpw_y + dOm_y*pw_z - dOm_z*pw_y + dm_x -
-                        0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t95 + dpwd_x + psi_y*t100 +
-                        psi_y*t108 - t105*t106 - t109*t96 + (0.5)*t92 + (0.5)*t93 - t96*t97)
+                        0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t88 + dpwd_x + psi_y*t101 +
+                        psi_y*t93 - t102*t89 + (0.5)*t85 + (0.5)*t86 - t89*t90 - t98*t99)
                     dg[j3 + 1] = (-Om_x*dpw_z + Om_z*dpw_x - dOm_x*pw_z + dOm_z*pw_x + dm_y -
-                        dpsi_x*t95 + dpwd_y - psi_x*t100 - psi_x*t108 - 0.5*t101 - 0.5*t102 +
-                        (0.5)*t103 + (0.5)*t104 + t106*t111 + t109*t110 + t110*t97)
+                        dpsi_x*t88 + dpwd_y - psi_x*t101 - psi_x*t93 + t102*t103 + t103*t90 +
+                        t104*t99 - 0.5*t94 - 0.5*t95 + (0.5)*t96 + (0.5)*t97)
                     dg[j3 + 2] = (Om_x*dpw_y - Om_y*dpw_x + dOm_x*pw_y - dOm_y*pw_x -
-                        0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t96 - 0.5*dpsi_x*m_y - dpsi_y*e0*t110 +
-                        dpwd_z + e0*psi_x*t105 - e0*psi_y*t111 + psi_x*t107*t96 - psi_y*t107*t110
-                        + (0.5)*t98 + (0.5)*t99)
+                        0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t89 - 0.5*dpsi_x*m_y - dpsi_y*e0*t103 +
+                        dpwd_z + e0*psi_x*t98 - e0*psi_y*t104 + psi_x*t100*t89 - psi_y*t100*t103 +
+                        (0.5)*t91 + (0.5)*t92)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

@@ -13,10 +13,9 @@ from sebody.derive.symbolic.rotations import (
     cross,
     exp,
     inverse_tangent,
-    inverse_tangent_times,
-    inverse_tangent_transposed_times,
     skew,
     tangent,
+    tangent_inverse,
 )
 from sebody.derive.symbolic.variation import Rules, along, check_same, differential, rotating
 
@@ -68,12 +67,20 @@ def elastic_rotation_variation(q: Quantities) -> sp.Matrix:
     ``T(psi) dpsi``. Shortened with ``T^-1(psi) exp(-psi) = T^-T(psi)``.
     """
     psi, dth, dth0 = q.psi.symbols, q.dth.symbols, q.dth0.symbols
-    short = inverse_tangent_times(psi, dth) - inverse_tangent_transposed_times(psi, dth0)
+    short = difference_of_rates(psi, dth, dth0)
     rotated = exp(psi) * skew(dth) - skew(dth0) * exp(psi)
     chain = differential(exp(psi), along(psi, short))
     check_same("variation of the elastic rotation (17)", chain.reshape(9, 1), rotated.reshape(9, 1))
     check_same("inverse of the tangent operator", inverse_tangent(psi) * tangent(psi), sp.eye(3))
     return short
+
+
+def difference_of_rates(psi: sp.Matrix, of: sp.Matrix, frame: sp.Matrix) -> sp.Matrix:
+    """``T^-1(psi) of - T^-T(psi) frame``, in cross products of difference and sum."""
+    difference, total = of - frame, of + frame
+    once = cross(psi, difference)
+    return (difference + cross(psi, total) / 2
+            + tangent_inverse(0, psi.dot(psi)) * cross(psi, once))
 
 
 def angular_velocity_variation(space: Space) -> sp.Matrix:

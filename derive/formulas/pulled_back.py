@@ -32,6 +32,9 @@ def forces_on_unknowns(q: Quantities, frame: Frame, share: sp.Matrix, on_frame: 
     on_mean = [Stage("moment on the mean of the variations, (20)", "rotation",
                      adds=((q.Ms, work.mean),))] if work.mean else []
     of_mean = q.alpha_r.symbols[0] * q.Ms.symbols if work.mean else sp.zeros(3, 1)
+    # one map for the sum of what is conjugate to psi_j
+    of_psi = work.rotation.xreplace({m: m + more for m, more in zip(q.m.symbols, frame.on_psi,
+                                                                    strict=True) if more != 0})
     return (
         Stage("forces on the frame: elastic (30) and inertia (57)", "position",
               adds=((q.F, work.origin + alpha * share),
@@ -45,7 +48,7 @@ def forces_on_unknowns(q: Quantities, frame: Frame, share: sp.Matrix, on_frame: 
                      + alpha * q.F.symbols),)),
         Stage("force on the nodes", "position", sets=((q.gx, R0 * h),), role=Role.NODE_FORCE),
         Stage("moment on the nodes, (30), (57)", "rotation",
-              sets=((q.gt, work.rotation + inertia.rotation + frame.rotation + of_mean),)),
+              sets=((q.gt, of_psi + inertia.rotation + frame.rotation + of_mean),)),
         Stage("force of the internal modes", "mode",
               sets=((q.gm, q.fm.symbols + frame.mode + (
                   q.pmd.symbols if inertia.products else sp.zeros(1, 1))),)),)

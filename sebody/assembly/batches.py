@@ -20,16 +20,18 @@ from sebody.assembly.contracts import (
 )
 from sebody.assembly.controller_rows import ActuatorRow, law_constants, law_counts, law_row
 from sebody.assembly.equal_bodies import (
-    FEWEST,
     behind_row,
-    evaluated_together,
+    constants_key,
     kernel_together,
-    likeness,
+    lanes_exist,
+    many_alike,
+    turn_row,
 )
 from sebody.assembly.floating import floating_constants, frame_conditions
 from sebody.assembly.numbering import Numbering, coordinates
 from sebody.assembly.rigid_part_constants import rigid_part_constants
 from sebody.contract.counts import CACHE_LINE, whole_vectors
+from sebody.contract.equal_row import NOT_TURNED
 from sebody.contract.layout import AT_POSITIONS, AT_ROTATIONS
 from sebody.engine.offsets import at_cache_lines
 from sebody.generated.options import INERTIA_OPTIONS
@@ -133,19 +135,12 @@ def make_batches(model: Mechanism, numbering: Numbering) -> Batches:
 def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants) -> list[Batch]:
     batches: dict[tuple, Batch] = {}
     known: dict[tuple, tuple[int, int]] = {}
-    together = evaluated_together(model) if numbering.free >= FEWEST else set()
+    turns: dict[int, int] = {}      # by places of constants
+    many, eight = many_alike(model), lanes_exist()
     for frame, body in enumerate(model.bodies.values()):
         kernel = load(body.kernel)
         check_superelement(body, kernel)
-        key = likeness(body)
-        how = key[1:]
-        if key not in known:
-            rows = _rows.setdefault(body.reduced, {})
-            if how not in rows:
-                rows[how] = constants_row(body.name, kernel, counts_of(body),
-                                          superelement_constants(body))
-            known[key] = constants.add(rows[how]), _full(body, kernel)
-        at_constants, full = known[key]
+        at_constants, full = _constants_of(body, known, constants)
         unknowns = [c for t in (*body.positions, *body.rotations)
                     for c in coordinates(numbering, t)]
         first = numbering.modes[body.name]
@@ -153,12 +148,32 @@ def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants)
         row = index_row(body.name, kernel, unknowns, constants=at_constants, frame=frame,
                         port=numbering.ports.get(body, 0), positions=len(body.positions),
                         nodes=[numbering.rotations.get(t, 0) for t in body.rotations])
-        if key in together:
-            _append(batches, kernel_together(), frame, row + behind_row(body), unknowns, body, full,
-                    at_constants)
+        common, turn = at_constants, NOT_TURNED
+        if body.name in many and many[body.name].turned:
+            common, _ = _constants_of(many[body.name].model, known, constants)
+            if at_constants not in turns:
+                turns[at_constants] = constants.add(turn_row(body))
+            turn = turns[at_constants]
+        if body.name in many and eight:
+            _append(batches, kernel_together(), frame, row + behind_row(body, common, turn),
+                    unknowns, body, full, common)
         else:
             _append(batches, kernel, frame, row, unknowns, body, full)
     return list(batches.values())
+
+
+def _constants_of(body: Superelement, known: dict[tuple, tuple[int, int]],
+                  constants: _Constants) -> tuple[int, int]:
+    """Where the constants of a superelement begin, and beyond which row a matrix is diagonal."""
+    key = constants_key(body)
+    if key not in known:
+        kernel, how = load(body.kernel), key[1:]
+        rows = _rows.setdefault(body.reduced, {})
+        if how not in rows:
+            rows[how] = constants_row(body.name, kernel, counts_of(body),
+                                      superelement_constants(body))
+        known[key] = constants.add(rows[how]), _full(body, kernel)
+    return known[key]
 
 
 def _element_batches(numbering: Numbering, constants: _Constants, elements: Iterable[Element],

@@ -19,6 +19,8 @@ from sebody.reduction.invariants import InertiaInvariants
 # of zeros, and true entries begin at 1e-8.
 ROUNDING = 1e-9
 STIFF = 1e-13           # the same of a stiffness: strains are small differences of large forces
+CLEAR = 0.43            # of a unit vector: its largest component is more; no usual sine or cosine
+SUMMED = 8 * 2.2e-16    # of what a sum would be if all its terms had one sign
 COUPLED = 1e-6          # less than this part of what they can be leaves coordinates apart
 
 
@@ -36,7 +38,11 @@ def body_axes(invariants: InertiaInvariants, counts: Counts) -> NDArray:
 
 
 def _candidates(i: InertiaInvariants) -> Iterator[NDArray]:
-    """Those of the frame, principal axes, and axes along the motion of the modes."""
+    """Those of the frame, axes along the motion of the modes, and principal axes.
+
+    The last two are the same for a beam, whose principal axes across it have more rounding, as its
+    moments of inertia about them are nearly equal.
+    """
     D = len(i.c0)
     yield np.eye(D)
     centre = i.c0 / i.mass
@@ -46,7 +52,7 @@ def _candidates(i: InertiaInvariants) -> Iterator[NDArray]:
         return
     principal = np.linalg.eigh(i.J0 - i.mass * (centre @ centre * np.eye(3)
                                                 - np.outer(centre, centre)))[1]
-    yield principal * np.linalg.det(principal)
+    principal = _signed(principal)
     others = _directions(np.vstack([i.S1.T, i.g.T]))
     for along in principal.T:
         for other in others:
@@ -55,6 +61,16 @@ def _candidates(i: InertiaInvariants) -> Iterator[NDArray]:
             if size > 0.5:
                 across /= size
                 yield np.column_stack([along, across, _cross(along, across)])
+    yield principal * np.linalg.det(principal)
+
+
+def _signed(axes: NDArray) -> NDArray:
+    """The same columns, each with a sign that does not depend on rounding.
+
+    A body of another mass has the same axes then, and its constants are in proportion.
+    """
+    first = (np.abs(axes) > CLEAR).argmax(axis=0)
+    return axes * np.sign(axes[first, range(axes.shape[1])])
 
 
 def _cross(a: NDArray, b: NDArray) -> list[float]:
@@ -116,9 +132,18 @@ def without_rounding(values: InertiaInvariants, of_stresses: float) -> InertiaIn
         Ghat=np.array(Ghat).reshape(i.Ghat.shape))
 
 
-def stiff_without_rounding(stiffness: NDArray) -> NDArray:
-    """The same of a stiffness or damping."""
-    return _cleared(stiffness, STIFF)
+def stiff_of(stiffness: NDArray, basis: NDArray) -> NDArray:
+    """A stiffness or damping on other coordinates, with zeros where sums leave but rounding.
+
+    Parameters
+    ----------
+    stiffness : (n, n)
+    basis : (n, m)
+        What the other coordinates move.
+    """
+    made, size = basis.T @ stiffness @ basis, np.abs(basis)
+    rounding = SUMMED * (size.T @ np.abs(stiffness) @ size)
+    return _cleared(np.where(np.abs(made) > rounding, made, 0.0), STIFF)
 
 
 def _cleared(matrix: NDArray, limit: float) -> NDArray:

@@ -3,45 +3,82 @@
 Which are depends on the model and on the way to compile, never on what was compiled before.
 """
 
-from collections import Counter
 from collections.abc import Iterable
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from sebody.compiler.choice import why_no_lanes
 from sebody.contract.counts import scratch_size
-from sebody.contract.equal_row import BEHIND, OWN, room
+from sebody.contract.equal_row import BEHIND, OWN, TURN, room
 from sebody.engine.system import System
+from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.loader import load
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Superelement
 
-FEWEST = 64     # equal bodies from which on a kernel for eight is worth compiling
-FRAME = "converged_mean"    # of bodies that gain by it as measured; others are taken one by one
+FEWEST = 8      # equal bodies from which on eight at a time take less time than one by one
+# squares of their coordinates, summed: kernels take seconds to compile, and short ones gain less
+WORTH_IT, WORTH_SHORT = 2_000, 8_000
+DIGITS = 12     # of frame weights, which rotations change by rounding
 
 
-def likeness(body: Superelement) -> tuple:
-    """What equal bodies have in common: their kernel and all constants it reads."""
+def constants_key(body: Superelement) -> tuple:
+    """What the constants depend on that the kernel of a superelement reads."""
     return (body.reduced, body.kernel, body.stiffening, tuple(body.alpha), tuple(body.alpha_r))
 
 
-def many_alike(model: Mechanism) -> set[tuple]:
-    """The likenesses of bodies that are as many as a kernel for eight is worth compiling for."""
+def likeness(body: Superelement) -> tuple:
+    """What equal bodies have in common, however they are oriented at the start."""
+    weights = (tuple(np.round(a, DIGITS).tolist()) for a in (body.alpha, body.alpha_r))
+    return (body.reduced.unrotated[0], body.kernel, body.stiffening, *weights)
+
+
+class Group(NamedTuple):
+    """Equal bodies, as many as a kernel for eight is worth compiling for."""
+
+    kernel: str
+    model: Superelement         # whose constants they have, as it is or rotated
+    turned: bool                # whether they are oriented differently
+
+
+def many_alike(model: Mechanism) -> dict[str, Group]:
+    """The group of each of the bodies, by name, that belong to one."""
     if len(model.bodies) < FEWEST:
-        return set()
-    counts = Counter(likeness(body) for body in model.bodies.values() if body.frame == FRAME)
-    return {like for like, count in counts.items() if count >= FEWEST}
+        return {}
+    alike: dict[tuple, list[Superelement]] = {}
+    for body in model.bodies.values():
+        alike.setdefault(likeness(body), []).append(body)
+    groups: dict[str, Group] = {}
+    for bodies in alike.values():
+        first = bodies[0]
+        worth_it = WORTH_IT if INERTIA_OPTIONS[first.inertia].rates else WORTH_SHORT
+        if len(bodies) >= FEWEST and len(bodies) * len(first.reduced.mass) ** 2 >= worth_it:
+            turned = any(body.reduced is not first.reduced for body in bodies)
+            common = replace(first, reduced=first.reduced.unrotated[0]) if turned else first
+            groups |= dict.fromkeys((body.name for body in bodies),
+                                    Group(first.kernel, common, turned))
+    return groups
 
 
-def evaluated_together(model: Mechanism) -> set[tuple]:
-    """The likenesses of bodies that are evaluated eight at a time."""
-    return set() if why_no_lanes() else many_alike(model)
+def lanes_exist() -> bool:
+    """Whether bodies can be evaluated eight at a time at all."""
+    return not why_no_lanes()
+
+
+def evaluated_together(model: Mechanism) -> dict[str, Group]:
+    """The groups of bodies that are evaluated eight at a time, by the names of bodies."""
+    return many_alike(model) if lanes_exist() else {}
 
 
 def kernels_together(models: Iterable[Mechanism]) -> set[str]:
     """Names of kernels that models need for eight bodies at a time."""
-    return {kernel for model in models for _, kernel, *_ in evaluated_together(model)}
+    return {group.kernel for model in models for group in evaluated_together(model).values()}
 
 
 def kernel_together() -> ModuleType:
@@ -54,34 +91,47 @@ def compile_together(name: str) -> None:
     from sebody.kernels.lanes.kernel import address_in_lanes
 
     kernel_together()
-    address_in_lanes(load(name), shared=True)
+    address_in_lanes(load(name), (), matrices=True)
 
 
 def is_compiled_together(path: Path) -> bool:
     """Whether the kernel of a file was compiled for eight bodies; the file is not imported."""
     from sebody.kernels.lanes.kernel import is_compiled
 
-    return is_compiled(path, shared=True)
+    return is_compiled(path, (), matrices=True)
 
 
-def behind_row(body: Superelement) -> list[int]:
-    """What index rows of equal bodies end with."""
+def behind_row(body: Superelement, common: int, turn: int) -> list[int]:
+    """What index rows of equal bodies end with.
+
+    Parameters
+    ----------
+    common, turn : int
+        Where the constants that they have in common begin, and the row TURN of this one.
+    """
     from sebody.kernels.lanes.kernel import address_in_lanes  # only where lanes are used
 
     kernel = load(body.kernel)
-    return [kernel.kernel.address, address_in_lanes(kernel, shared=True),
-            0 if kernel.PLANAR else len(body.rotations)]
+    return [kernel.kernel.address, address_in_lanes(kernel, (), matrices=True),
+            2 if kernel.PLANAR else 3, common, turn]
+
+
+def turn_row(body: Superelement) -> NDArray:
+    """The row TURN of a body."""
+    rotation, whole = body.reduced.unrotated[1], np.eye(3)
+    whole[:len(rotation), :len(rotation)] = rotation
+    return TURN.pack({}, {"rotation": whole.ravel(),
+                          "angle": np.arctan2(whole[1, 0], whole[0, 0])})
 
 
 def room_of(model: Mechanism) -> int:
     """Scratch memory for eight of the equal bodies of a model, the same on every machine."""
-    many, sizes = many_alike(model), [0]
-    for body in {likeness(body): body for body in model.bodies.values()}.values():
-        if likeness(body) in many:
-            kernel, rotations = load(body.kernel), len(body.rotations)
-            n = len(body.reduced.stiffness)
-            sizes.append(room(n, rotations, scratch_size(
-                kernel.WORK_ROWS, kernel.WORK_SQUARES, n, rotations)))
+    sizes = [0]
+    for group in {id(group): group for group in many_alike(model).values()}.values():
+        kernel, rotations = load(group.kernel), len(group.model.rotations)
+        n = len(group.model.reduced.stiffness)
+        sizes.append(room(n, rotations, scratch_size(
+            kernel.WORK_ROWS, kernel.WORK_SQUARES, n, rotations)))
     return max(sizes)
 
 

@@ -11,7 +11,7 @@ from sebody.assembly.body_axes import (
     body_axes,
     grouped,
     of_coordinates,
-    stiff_without_rounding,
+    stiff_of,
     without_rounding,
 )
 from sebody.contract.counts import Counts, first_rotation
@@ -19,6 +19,8 @@ from sebody.errors import InputError
 from sebody.generated.options import CONDITIONS
 from sebody.kernels.packed import pack, pack_couplings
 from sebody.reduction.invariants import InertiaInvariants
+
+TIE = 1e-6      # by how much the coordinates of equal nodes differ in the choice between them
 
 
 class Free(NamedTuple):
@@ -35,7 +37,6 @@ class Free(NamedTuple):
         whole[:bound_free, :bound] = self.axes
         whole[bound_free:, bound:] = np.eye(n - bound)
         return whole[self.order]
-
 
 def floating_constants(invariants: InertiaInvariants, stiffness: NDArray, conditions: NDArray,
                        counts: Counts, damping: NDArray | None = None,
@@ -63,8 +64,7 @@ def floating_constants(invariants: InertiaInvariants, stiffness: NDArray, condit
     of_z = by.T @ basis
     inertia = without_rounding(_restricted(invariants.rotated(turn.T, by), basis),
                                of_stresses)
-    S, C = (None if A is None else stiff_without_rounding(of_z.T @ A @ of_z)
-            for A in (stiffness, damping))
+    S, C = (None if A is None else stiff_of(A, of_z) for A in (stiffness, damping))
     order = grouped(inertia.Mbar, S)
     coordinates = coordinates._replace(order=order)
     inertia = _restricted(inertia, np.eye(len(order))[:, order])
@@ -156,7 +156,8 @@ def determining(conditions: NDArray, bound: int) -> tuple[NDArray, NDArray]:
     """
     count, n = conditions.shape
     scale = np.abs(conditions).max(axis=1, keepdims=True)
-    others = qr((conditions / scale)[:, :bound], mode="r", pivoting=True)[1][:count]
+    first = 1.0 - TIE * np.arange(bound)        # of coordinates that determine as well as another
+    others = qr((conditions / scale)[:, :bound] * first, mode="r", pivoting=True)[1][:count]
     free = np.setdiff1d(np.arange(n), others)
     basis = np.zeros((n, n - count))
     basis[free, np.arange(n - count)] = 1.0

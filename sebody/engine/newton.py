@@ -22,6 +22,7 @@ from sebody.engine.state import (
     NEW_MATRIX,
     ROTATED,
 )
+from sebody.kernels.abi import pointer_to
 
 MAX_ITERATIONS = 12     # of a step
 SLOWEST = 0.95          # contraction rate assumed where none is known, and upper bound of estimates
@@ -121,17 +122,24 @@ def subtract(system, state, scheme, n):
     to_body_axes(system, state.frames, state.correction, True)
     if scheme.stabilized:
         to_body_axes(system, state.frames, state.shift, True)
-    to_a, to_v = state.coefficients[C_MASS], state.coefficients[C_DAMPING]
-    to_aux = 1 / (scheme.beta * h * h)
-    for i in range(n):
-        d = state.correction[i]
-        moving = d * (1.0 - system.is_multiplier[i])
-        state.dq[i] -= d + state.shift[i]
-        state.q[i] -= d + state.shift[i]
-        state.v[i] -= to_v * moving
-        state.a[i] -= to_a * moving
-        state.aux[i] -= to_aux * moving
+    _subtract_from_all(n, pointer_to(state.correction), pointer_to(state.shift),
+                       pointer_to(system.is_multiplier), state.coefficients[C_DAMPING],
+                       state.coefficients[C_MASS], 1 / (scheme.beta * h * h), pointer_to(state.dq),
+                       pointer_to(state.q), pointer_to(state.v), pointer_to(state.a),
+                       pointer_to(state.aux))
     update_rotations(system, state)
+
+
+@compiled(forceinline=True, apart=True)
+def _subtract_from_all(n, correction, shift, is_multiplier, to_v, to_a, to_aux, dq, q, v, a, aux):
+    for i in range(n):
+        d, s = correction[i], shift[i]
+        moving = d * (1.0 - is_multiplier[i])
+        dq[i] -= d + s
+        q[i] -= d + s
+        v[i] -= to_v * moving
+        a[i] -= to_a * moving
+        aux[i] -= to_aux * moving
 
 
 @compiled(forceinline=True)
@@ -140,7 +148,7 @@ def _verdict(system, state, norm, left_norm, target):
     clock, control = state.clock, state.control
     iteration, last, rate = control.iteration, clock.last_norm, clock.contraction
     if iteration == 0:
-        clock.span = np.log(norm / target)
+        clock.span = norm / target
     if iteration > 0 and last > 0.0:
         rate = norm / last
         clock.contraction = rate
@@ -256,7 +264,9 @@ def watch_age(state):
         clock.baseline_contraction = min(clock.baseline_contraction,
                                           max(clock.contraction, FASTEST))
         return
-    needed = 1.0 + max(clock.span, 0.0) / -np.log(clock.baseline_contraction)
-    clock.excess += max(control.iteration - np.ceil(needed), 0.0)
+    needed, left = 1, clock.span        # one, and one for every factor that is left
+    while needed < control.iteration and left > 1.0:
+        needed, left = needed + 1, left * clock.baseline_contraction
+    clock.excess += control.iteration - needed
     if clock.excess > REFACTORIZATION_COST:
         control.wanted = EVALUATED

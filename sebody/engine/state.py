@@ -236,7 +236,7 @@ CLOCK = np.dtype([(name, np.float64) for name in (
     "contraction",           # rate of the last two corrections, carried over to the next step
     "factor_step",           # step length of the last matrix with new element matrices
     "floor",                 # norm that rounding of positions leaves
-    "span",                  # logarithm of the first correction's norm over its target
+    "span",                  # the first correction's norm over its target
     "baseline_contraction",  # best rate of the first steps with new element matrices
     "excess",                # iterations since then that the baseline rate would have saved
     "acceleration_norm",     # largest norm of beta h^2 a so far, slowly forgotten

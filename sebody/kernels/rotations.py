@@ -27,6 +27,12 @@ def stumpff(k, s):
     return total
 
 
+@compiled(forceinline=True)
+def polynomial(x, x2, a, b, c, d, e, f, g, h):
+    """``a + b x + ... + h x^7`` by pairs (Estrin): each product waits for three, not for seven."""
+    return (a + b * x + x2 * (c + d * x)) + x2 * x2 * (e + f * x + x2 * (g + h * x))
+
+
 @compiled
 def stumpff_23(s):
     """``c_2, c_3``: nested series for small arguments, closed forms where these are exact."""
@@ -36,10 +42,11 @@ def stumpff_23(s):
 @compiled
 def stumpff_23_small(s):
     """`stumpff_23` by nested series."""
-    c2 = 1 / 2 - s * (1 / 24 - s * (1 / 720 - s * (1 / 40320 - s * (
-        1 / 3628800 - s * (1 / 479001600 - s * (1 / 87178291200))))))
-    c3 = 1 / 6 - s * (1 / 120 - s * (1 / 5040 - s * (1 / 362880 - s * (
-        1 / 39916800 - s * (1 / 6227020800 - s * (1 / 1307674368000))))))
+    s2 = s * s
+    c2 = polynomial(-s, s2, 1 / 2, 1 / 24, 1 / 720, 1 / 40320, 1 / 3628800, 1 / 479001600,
+                    1 / 87178291200, 1 / 20922789888000)
+    c3 = polynomial(-s, s2, 1 / 6, 1 / 120, 1 / 5040, 1 / 362880, 1 / 39916800, 1 / 6227020800,
+                    1 / 1307674368000, 1 / 355687428096000)
     return c2, c3
 
 
@@ -62,12 +69,25 @@ def stumpff_2345(s):
 def stumpff_1_to_7(s):
     """``c_1`` to ``c_7``: the last two from series, the others by ``c_k = 1/k! - s c_k+2``."""
     if s < SMALL:
-        c6 = 1 / 720 - s * (1 / 40320 - s * (1 / 3628800 - s * (1 / 479001600 - s * (
-            1 / 87178291200 - s * (1 / 20922789888000)))))
-        c7 = 1 / 5040 - s * (1 / 362880 - s * (1 / 39916800 - s * (1 / 6227020800 - s * (
-            1 / 1307674368000 - s * (1 / 355687428096000)))))
+        c6, c7 = stumpff_67_small(s)
     else:
         c6, c7 = stumpff(6, s), stumpff(7, s)
+    return stumpff_before_67(s, c6, c7)
+
+
+@compiled
+def stumpff_67_small(s):
+    """``c_6, c_7`` by nested series."""
+    c6 = 1 / 720 - s * (1 / 40320 - s * (1 / 3628800 - s * (1 / 479001600 - s * (
+        1 / 87178291200 - s * (1 / 20922789888000)))))
+    c7 = 1 / 5040 - s * (1 / 362880 - s * (1 / 39916800 - s * (1 / 6227020800 - s * (
+        1 / 1307674368000 - s * (1 / 355687428096000)))))
+    return c6, c7
+
+
+@compiled
+def stumpff_before_67(s, c6, c7):
+    """All of `stumpff_1_to_7`, of the last two."""
     c4, c5 = 1 / 24 - s * c6, 1 / 120 - s * c7
     c2, c3 = 1 / 2 - s * c4, 1 / 6 - s * c5
     return 1 - s * c3, c2, c3, c4, c5, c6, c7
@@ -82,11 +102,12 @@ def inverse_tangent_coefficients(s):
 @compiled
 def inverse_tangent_small(s):
     """`inverse_tangent_coefficients` by series in Bernoulli numbers, B_2k / (2k)!."""
-    e = 1 / 12 + s * (1 / 720 + s * (1 / 30240 + s * (1 / 1209600 + s * (
-        1 / 47900160 + s * (691 / 1307674368000 + s * (
-            1 / 74724249600 + s * (3617 / 10670622842880000)))))))
-    d = 1 / 720 + s * (1 / 15120 + s * (1 / 403200 + s * (1 / 11975040 + s * (
-        691 / 261534873600 + s * (1 / 12454041600 + s * (25319 / 10670622842880000))))))
+    s2 = s * s
+    e = polynomial(s, s2, 1 / 12, 1 / 720, 1 / 30240, 1 / 1209600, 1 / 47900160,
+                   691 / 1307674368000, 1 / 74724249600, 3617 / 10670622842880000)
+    d = polynomial(s, s2, 1 / 720, 1 / 15120, 1 / 403200, 1 / 11975040, 691 / 261534873600,
+                   1 / 12454041600, 25319 / 10670622842880000,
+                   8 * 43867 / 5109094217170944000)
     return e, d
 
 
@@ -138,7 +159,7 @@ def tangent_operator(x, y, z):
             c2 * y + c3 * x * z, c3 * y * z - c2 * x, 1 - c3 * (x * x + y * y))
 
 
-@compiled
+@compiled(forceinline=True)
 def exp_map(x, y, z):
     """Rotation matrix of a rotation vector, row by row."""
     s = x * x + y * y + z * z
@@ -149,7 +170,7 @@ def exp_map(x, y, z):
             c2 * x * z - c1 * y, c2 * y * z + c1 * x, 1 - c2 * (x * x + y * y))
 
 
-@compiled
+@compiled(forceinline=True)
 def log_map(xx, xy, xz, yx, yy, yz, zx, zy, zz):
     """Rotation vector of a rotation matrix less than `NEAR_PI` from half a turn, and its cosine."""
     x, y, z = 0.5 * (zy - yz), 0.5 * (xz - zx), 0.5 * (yx - xy)
@@ -165,11 +186,13 @@ def log_map(xx, xy, xz, yx, yy, yz, zx, zy, zz):
 @compiled
 def angle_by_sine_small(s2):
     """``t / sin t`` in powers of ``sin^2 t``."""
-    return 1 + s2 * (1 / 6 + s2 * (3 / 40 + s2 * (5 / 112 + s2 * (35 / 1152 + s2 * (
-        63 / 2816 + s2 * (231 / 13312 + s2 * (143 / 10240 + s2 * (6435 / 557056 + s2 * (
-            12155 / 1245184 + s2 * (46189 / 5505024 + s2 * (
-                88179 / 12058624 + s2 * (676039 / 104857600 + s2 * (
-                    1300075 / 226492416)))))))))))))
+    s4 = s2 * s2
+    s8 = s4 * s4
+    return (polynomial(s2, s4, 1.0, 1 / 6, 3 / 40, 5 / 112, 35 / 1152, 63 / 2816, 231 / 13312,
+                       143 / 10240)
+            + s8 * s8 * polynomial(s2, s4, 6435 / 557056, 12155 / 1245184, 46189 / 5505024,
+                                   88179 / 12058624, 676039 / 104857600, 1300075 / 226492416,
+                                   5014575 / 973078528, 9694845 / 2080374784))
 
 
 @compiled
@@ -179,7 +202,7 @@ def angle_by_sine_large(s2, cosine):
     return math.atan2(sine, cosine) / sine
 
 
-@compiled
+@compiled(forceinline=True)
 def rotated(R, first, x, y, z):
     """``R exp(psi)`` of the rotation that begins at `first` of R, row by row."""
     a, b, c, d, e, f, g, h, i = exp_map(x, y, z)
@@ -198,7 +221,7 @@ def rotate(R, first, x, y, z, out, to):
      out[to + 7], out[to + 8]) = rotated(R, first, x, y, z)
 
 
-@compiled
+@compiled(forceinline=True)
 def relative_log(A, first, B, second):
     """Rotation vector and cosine of ``A^T B`` of two stored rotations."""
     a0, a1, a2, a3, a4, a5, a6, a7, a8 = (

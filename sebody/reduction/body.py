@@ -32,6 +32,9 @@ _rotated: WeakKeyDictionary[ReducedBody, WeakValueDictionary[bytes, ReducedBody]
     WeakKeyDictionary())
 
 
+ORTHONORMAL = 1e-14     # defect of a rotation up to which it is one but for rounding
+
+
 def _read_only(array: NDArray) -> NDArray:
     """The array itself, refusing changes: what is computed of a body once stays true."""
     array.flags.writeable = False
@@ -93,6 +96,8 @@ class ReducedBody:
     missing: Mapping[str, str] = field(default_factory=dict)
     materials: tuple[Material, ...] = ()
     units: str = ""
+    # of a rotated body what it was made of, and the rotation; `replace` does not take it over
+    _made_of: tuple[ReducedBody, NDArray] | None = field(default=None, init=False, repr=False)
 
     def __post_init__(self) -> None:
         coordinates = inputs.reals(self.coordinates, "coordinates",
@@ -315,7 +320,16 @@ class ReducedBody:
         body = known.get(rotation.tobytes())
         if body is None:
             body = known[rotation.tobytes()] = self._rotated(rotation)
+            original, before = self.unrotated
+            turn = rotation @ before
+            if np.abs(turn.T @ turn - np.eye(len(turn))).max() < ORTHONORMAL:
+                object.__setattr__(body, "_made_of", (original, _read_only(turn)))
         return body
+
+    @property
+    def unrotated(self) -> tuple[ReducedBody, NDArray]:
+        """The body this one is by a rotation, and the rotation; itself if `rotated` made it not."""
+        return self._made_of or (self, np.eye(self.coordinates.shape[1]))
 
     def _rotated(self, rotation: NDArray) -> ReducedBody:
         angles = len(self.rotation_nodes)

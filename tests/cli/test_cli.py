@@ -10,6 +10,7 @@ import pytest
 from pages import all_pages
 
 from sebody import catalogue, errors, simulate
+from sebody.assembly import equal_bodies
 from sebody.catalogue import scenes
 from sebody.cli import run, scene_arguments
 from sebody.cli.entry import main
@@ -201,16 +202,21 @@ def test_check_of_all_kernels_prints_what_fails(capsys, monkeypatch):
 def test_warm_compiles_kernels_and_loop(capsys, monkeypatch):
     asked = []
 
-    def compile_missing(kernels, parts, report):
-        asked.extend([*kernels, *parts])
+    def compile_missing(kernels, parts, report, together):
+        asked.extend([*kernels, *parts, *together])
         report("element_force", 0.4)
-    monkeypatch.setattr(catalogue, "kernel_files", lambda: ["element_force", "element_torque"])
+    kernels = ["element_force", "superelement_f2_converged_mean_material"]
+    monkeypatch.setattr(catalogue, "kernel_files", lambda: kernels)
     monkeypatch.setattr(first_run, "compile_missing", compile_missing)
+    eight = []
+    monkeypatch.setattr(equal_bodies, "lanes_exist", lambda: True)
+    monkeypatch.setattr(equal_bodies, "compile_together", eight.append)
     assert main(["warm"]) == 0
     out = capsys.readouterr().out
-    assert {"element_force", "element_torque", "loop", "reactions"} <= set(asked)
+    assert {*kernels, "loop", "reactions"} <= set(asked) and asked.count(kernels[1]) == 2
+    assert eight == kernels[1:]
     assert re.search(r"^  element_force +0\.4 s$", out, re.M)
-    assert "2 kernels and the time loop are compiled" in out
+    assert "2 kernels and the time loop are compiled, 1 kernel also for eight equal bodies" in out
 
 
 class Terminal(io.StringIO):

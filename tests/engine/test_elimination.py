@@ -10,6 +10,7 @@ from scipy.sparse.linalg import spsolve
 from sebody import Simulation, generalized_alpha
 from sebody.assembly import build as assembly
 from sebody.assembly import elimination_pattern
+from sebody.assembly.equal_bodies import evaluate_alone
 from sebody.contract.counts import LANES
 from sebody.contract.layout import RESIDUAL
 from sebody.engine import elimination
@@ -97,8 +98,9 @@ def test_bodies_on_whole_blocks_are_less_work(monkeypatch):
 
 
 def test_elements_that_do_not_move_keep_their_forces():
-    run = Simulation(chain.build(links=12).model, 0.01).run_to(0.3)
-    system, now, n = run.system, run.state, run.numbering.free
+    run = Simulation(chain.build(links=12).model, 0.01)
+    evaluate_alone(run.model, run.system)       # eight at a time are rounded otherwise than two
+    system, now, n = run.run_to(0.3).system, run.state, run.numbering.free
     assert assemble(RESIDUAL, RESIDUAL, system, now, now.residual) == 0
     moved = run.numbering.names.index("joint 5.position[0]")
     now.last_change[:] = 0.0

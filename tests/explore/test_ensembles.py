@@ -95,6 +95,31 @@ def test_numbers_and_stiffness_change_by_copies_rotations_by_building(free):
     assert set(VARIED) - set(linear) == {"tip.rotation"}
 
 
+@pytest.mark.parametrize("joint, own", [("implicit", False), ("explicit", True), ("slider", True)])
+def test_a_joint_with_the_ground_takes_its_body_along(joint, own):
+    """A pendulum whose hinge is elsewhere swings there, in the same way."""
+    made, shift = Model(), np.array([0.3, -0.2, 0.5])
+    node = made.node("node", (1.0, 2.0, 3.0))
+    made.rigid_body("bob", node, 2.0, np.diag((0.1, 0.2, 0.3)), TURN @ (0.7, 0.1, 0) + node.point)
+    axis = TURN @ (0, 0.6, 0.8)
+    if joint == "slider":
+        made.slider(node, axis, name="hinge")
+    else:
+        made.revolute(node, axis, name="hinge", explicit=own)
+    made.gravity((0.0, -3.0, 9.0))
+    given = {"hinge.position": node.point + np.outer((0, 1), shift)}
+    many = Ensemble(made, H)
+    if own:     # a position of its own, which has to fit
+        alone = many.run(given, T_END, {"way": "node.position"})
+        assert "violates 'hinge' by" in alone.failures[1]
+        given["node.position"] = given["hinge.position"]
+    found = many.run(given, T_END, {"way": "node.position", "turn": "node.rotation"})
+    assert not found.failures
+    np.testing.assert_allclose(found["way"][1], found["way"][0] + shift, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(found["turn"][1], found["turn"][0], rtol=0, atol=1e-12)
+    assert np.abs(found["turn"][0][-1] - np.eye(3)).max() > 1e-4
+
+
 def test_several_parameters_together_with_a_joint(hinged):
     rng = np.random.default_rng(3)
     parameters = {"motor.amplitude": rng.uniform(0.5, 1.5, 6),

@@ -107,6 +107,15 @@ def test_bits_do_not_depend_on_company_order_or_threads(beam, small):
         assert_same(part, whole, some)
 
 
+def test_bits_of_long_runs_do_not_depend_on_company(beam, small):
+    """Over 500 steps members turn the fitted prediction on and off, each at other times."""
+    given = parameters()
+    whole = beam.run(given, 1.0, OUTPUTS)
+    for run in range(RUNS):
+        alone = beam.run({name: v[run:run + 1] for name, v in given.items()}, 1.0, OUTPUTS)
+        assert_same(alone, whole, slice(run, run + 1))
+
+
 def test_what_is_made_together_does_not_depend_on_the_parts_asked_for(beam, monkeypatch):
     """A part of a sweep is made as all of it is, an ensemble by its own steps."""
     monkeypatch.setattr(ensemble, "WORTH_IT", 100 * T_END / H)

@@ -11,6 +11,7 @@ from in_plane import (
     SQUARE,
     TURN,
     H,
+    X,
     Y,
     Z,
     assert_same,
@@ -19,6 +20,7 @@ from in_plane import (
     reduced,
     wind,
 )
+from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, simulate
 from sebody.fem import frame as beams
@@ -177,3 +179,22 @@ def test_bodies_of_a_single_element_are_planar_too():
     # to the tolerance of Newton's iteration, 1e-6 of the motion
     np.testing.assert_allclose(arms[1], arms[0], rtol=1e-5)
     assert energies[1] == pytest.approx(energies[0], rel=1e-4)
+
+
+def test_links_that_differ_by_a_rotation_in_the_plane_are_one_planar_body():
+    """Loads and modes turn with them: of two links one has the load, and the other is mirrored."""
+    model, body = Model(), reduced(at(0, 0, 0), at(40, 0, 0), 2)
+    model.gravity(-9810.0 * Y)
+    last = model.node("base", at(0, 0, 0))
+    model.revolute(last, axis=Z)
+    for k, angle in enumerate((0.0, 0.7, 2.9)):
+        turn = TURN @ Rotation.from_rotvec((0.0, 0.0, angle)).as_matrix() @ TURN.T
+        end = model.node(f"end {k}", last.point + 40.0 * turn @ X)
+        model.superelement(f"link {k}", body, [end, last], rotation=turn)
+        if k < 2:
+            last = model.node(f"begin {k}", end.point, at=end)
+            model.revolute(end, axis=Z, to=last)
+    model.body_load("link 1", "wind", wind)
+    made, _ = planar(model)
+    assert len({one.reduced.unrotated[0] for one in made.bodies.values()}) == 1
+    assert_same(model, made, ("end 2.position", "end 1.velocity", "energy.strain"))

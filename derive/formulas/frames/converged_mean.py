@@ -19,6 +19,7 @@ from sebody.derive.formulas.frames.frame import (
 from sebody.derive.formulas.kinematics import elastic_rotation_variation
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.symbolic.rotations import (
+    inverse_tangent,
     inverse_tangent_times,
     inverse_tangent_transposed_times,
 )
@@ -30,9 +31,10 @@ def converged_mean(q: Quantities) -> Frame:
     alpha, psi = q.alpha_r.symbols[0], q.psi.symbols
     variation = elastic_rotation_variation(q)
 
-    def equation(rate: Quantity, of: Quantity) -> sp.Matrix:
-        short = alpha * (inverse_tangent_transposed_times(psi, rate.symbols)
-                         - inverse_tangent_times(psi, of.symbols))
+    def equation(rate: Quantity, of: Quantity, invert: bool = False) -> sp.Matrix:
+        turned = (inverse_tangent(psi) * of.symbols if invert else
+                  inverse_tangent_times(psi, of.symbols))
+        short = alpha * (inverse_tangent_transposed_times(psi, rate.symbols) - turned)
         swap = dict(zip([*q.dth.symbols, *q.dth0.symbols], [*of.symbols, *rate.symbols],
                         strict=True))
         check_same("variation of the converged mean", short, -alpha * variation.subs(swap))
@@ -40,7 +42,7 @@ def converged_mean(q: Quantities) -> Frame:
 
     def angular_rate(rate: Quantity, of: Quantity, invert: bool) -> Solve:
         return Solve("B rate = sum alpha_j T^-1(psi_j) rate_j", rate,
-                     (Sum("rotation", equation(rate, of)),), sp.zeros(3, 1), "B",
+                     (Sum("rotation", equation(rate, of, invert)),), sp.zeros(3, 1), "B",
                      invert=invert, weight=alpha)
 
     wp = q.wp.symbols
@@ -53,7 +55,7 @@ def converged_mean(q: Quantities) -> Frame:
         variation=(angular_rate(q.dth0, q.dth, False),),
         pull=(pulled_back(q, (Sum("rotation", alpha * inverse_tangent_times(psi, wp)),),
                           (Sum("rotation", equation(q.wp, q.dth)),), alpha),),
-        work=virtual_work, position=sp.zeros(3, 1), origin=sp.zeros(3, 1), rotation=back,
+        work=virtual_work, position=sp.zeros(3, 1), origin=sp.zeros(3, 1), on_psi=alpha * wp,
         conditions=(condition(q),))
 
 

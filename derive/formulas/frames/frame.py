@@ -41,8 +41,9 @@ class Frame(NamedTuple):
     work: Callable[[Quantities], VirtualWork]   # of the elastic forces, as rotations vary with it
     position: sp.Matrix             # force of wp on R0^T delta x_i
     origin: sp.Matrix               # force of wp on R0^T delta x_0, summed over positions
-    rotation: sp.Matrix             # force of wp on delta Theta_j
+    rotation: sp.Matrix = sp.zeros(3, 1)    # force of wp on delta Theta_j
     mode: sp.Matrix = sp.zeros(1, 1)    # force of wp on the variation of an internal mode
+    on_psi: sp.Matrix = sp.zeros(3, 1)      # of wp on delta psi_j, pulled back with elastic ones
     differentials: tuple[Stage, ...] = ()   # of what `locate` computes, once dth0 is known
     # its parts by what carries them add up to zero: linear, and of the sign of the equation in
     # `velocity`; none of a frame without one

@@ -80,8 +80,8 @@ def mean_axes(q: Quantities) -> Frame:
             Sum("rotation", -inverse_tangent_times(psi, moments[1])))
     own = equation(q.dth0, q.dx, q.dx0, q.dth, dm)
     on_x, on_rotation, on_mode = (wp.dot(part.summand) for part in own)
-    rotation = -inverse_tangent_transposed_times(psi, moments[1])
-    check_same("moment pulled back by the mean axes", rotation,
+    check_same("moment pulled back by the mean axes",
+               -inverse_tangent_transposed_times(psi, moments[1]),
                -conjugate_to(on_rotation, q.dth.symbols))
     return Frame(
         locate=(_search(q), *inverse_tangent_values(q, q.psi, (q.e0, q.e1))),
@@ -89,7 +89,7 @@ def mean_axes(q: Quantities) -> Frame:
         variation=(angular_rate(q.dth0, q.dx, q.dx0, q.dth, dm, False),),
         pull=(pulled_back(q, back, equation(q.wp, q.dx, q.dx0, q.dth, dm)),),
         work=virtual_work, position=-conjugate_to(on_x, q.dx.symbols),
-        origin=-conjugate_to(on_x, q.dx0.symbols), rotation=rotation,
+        origin=-conjugate_to(on_x, q.dx0.symbols), on_psi=-moments[1],
         mode=-conjugate_to(on_mode, dm.kept), conditions=conditions)
 
 

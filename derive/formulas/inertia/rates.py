@@ -62,16 +62,19 @@ def _accelerations(q: Quantities, frame: Frame, rules: Rules, stages: list[Stage
                               "rate")
     rate, Om0d = solves[0], q.Om0d
     turning = sp.Matrix(Om0d.kept)
+    rated = set().union(*(sp.sympify(rate).free_symbols for rate in rules.values()))
     before, sums, after = [], [], list(stages)
     for (of, weight, _), part in zip(frame.conditions, rate.sums, strict=True):
         target = getattr(q, SECOND[RATES[of.name]])
         closing = next(stage for stage in stages if stage.sets[0][0] is target)
         value = closing.sets[0][1]
         stored = sp.Matrix(target.symbols[:value.rows])
-        by_turning = value.jacobian(turning) * turning
+        # without rates what is left is the part of the frame, factored
+        by_turning = value.xreplace(dict.fromkeys(rated - set(turning), sp.S.Zero))
         equation = solve_matrix(rate, part) * Om0d.symbols
         check_same("rate of the frame's equation", weight * value,
                    differential(part.summand, rules))
+        check_same("the part of the frame", by_turning, value.jacobian(turning) * turning)
         check_same("the part of the frame in it", weight * by_turning, equation)
         after.remove(closing)
         sums.append(Sum(part.over, equation + weight * stored))

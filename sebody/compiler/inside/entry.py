@@ -16,7 +16,7 @@ from sebody.compiler.inside.names import (
     cpu_target,
     normalize_signature,
 )
-from sebody.compiler.inside.pipeline import KernelPasses
+from sebody.compiler.inside.pipeline import KernelPasses, PartPasses
 
 __all__ = ["SLOWER", "address", "code_of", "compile_for", "function", "function_code",
            "guarded", "is_compiled", "is_kept", "kernel", "kernel_code", "part_of_callers",
@@ -73,7 +73,7 @@ def function_code(function: Function, kinds: tuple[types.Type, ...]) -> Code:
 
 def kernel_code(function: Callable, signature, options: dict) -> Code:
     """See `sebody.compiler.plain.kernel_code`."""
-    made = CFunc(function, normalize_signature(signature), {}, options, KernelPasses)
+    made = CFunc(function, normalize_signature(signature), {}, options, PartPasses)
     made.compile()
     return code_of(made)
 

@@ -353,8 +353,17 @@ def _int(x):
 
 
 @intrinsic
-def bits_of_lanes(typingctx, pointer):
-    """Pointer to the numbers of lanes, one after the other."""
+def as_lanes(typingctx, pointer):
+    """Pointer to numbers, eight of each kind one after the other, as one to lanes."""
     def codegen(context, builder, sig, args):
-        return builder.bitcast(args[0], _FLOAT.as_pointer())
-    return types.CPointer(types.float64)(types.CPointer(lanes)), codegen
+        return builder.bitcast(args[0], VECTOR.as_pointer())
+    return types.CPointer(lanes)(types.CPointer(types.float64)), codegen
+
+
+@intrinsic
+def lanes_at(typingctx, pointer):
+    """Pointer to lanes, whose address is the bits of a number."""
+    def codegen(context, builder, sig, args):
+        address = builder.load(builder.bitcast(args[0], _WORD.as_pointer()))
+        return builder.inttoptr(address, VECTOR.as_pointer())
+    return types.CPointer(lanes)(types.CPointer(types.float64)), codegen

@@ -61,9 +61,10 @@ ATTRIBUTES = {
     CompileResult: ("_reduce",),
     JITCodeLibrary: ("_ensure_finalized", "_finalize_dynamic_globals", "_finalize_final_module",
                      "_get_compiled_object", "_get_module_for_linking", "_optimize_final_module",
-                     "_set_compiled_object", "enable_object_caching", "finalize",
-                     "get_pointer_to_function", "serialize_using_object_code"),
-    Lower: ("_cast_var", "lower_binop", "lower_getitem", "lower_inst"),
+                     "_set_compiled_object", "add_ir_module", "create_ir_module",
+                     "enable_object_caching", "finalize", "get_pointer_to_function",
+                     "serialize_using_object_code"),
+    Lower: ("_cast_var", "create_cfunc_wrapper", "lower_binop", "lower_getitem", "lower_inst"),
     BaseContext: ("resolve_function_type", "resolve_setitem", "resolve_value_type"),
     NullCache: ("load_overload", "save_overload"),
 }

@@ -36,26 +36,13 @@ class Scratch(Arrays):
     """What an iteration keeps of members that need not be evaluated again.
 
     ==================  ============================================================================
-    g                   forces of an evaluation, where another one follows for other members
-    frames, found       frames before an evaluation, and those it found
-    T                   tangent operators before an evaluation
-    J                   element matrices of bodies, where bodies are coupled that rotate
-    dense               (n, n) matrix that is inverted
-    projected           (n, n) where constraints are redundant: its inverse without their share
-    factors             of a large matrix, where another one is factorized for other members
+    frames              frames before an evaluation
     moved               (elements,) one where a member's element is evaluated, else zero
     unmoved             forces of the elements that have not moved
     ==================  ============================================================================
     """
 
-    g: NDArray
     frames: NDArray
-    found: NDArray
-    T: NDArray
-    J: NDArray
-    dense: NDArray
-    projected: NDArray
-    factors: NDArray
     moved: NDArray
     unmoved: NDArray
 

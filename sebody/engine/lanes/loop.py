@@ -9,9 +9,9 @@ others go on. A member that the loop would have to cut the step for, or to ask P
 
 
 from sebody.compiler.decorators import compiled
-from sebody.compiler.inside.lanes import every, some, spread, where
-from sebody.contract.layout import RECORD_ITERATIONS, RECORD_T, RESIDUAL, TANGENT
-from sebody.engine.evaluate import run_kernels, set_tangent_operators, sum_forces, to_body_axes
+from sebody.compiler.inside.lanes import some, spread, where
+from sebody.contract.layout import RECORD_ITERATIONS, RECORD_T, RESIDUAL
+from sebody.engine.evaluate import run_kernels, sum_forces, to_body_axes
 from sebody.engine.lanes.growth import grows
 from sebody.engine.lanes.matrix import factorize
 from sebody.engine.lanes.moved import find_moved, keep_unmoved, run_moved
@@ -31,7 +31,7 @@ from sebody.kernels.abi import at, pointer_to
 
 
 @compiled(nogil=True)
-def advance(system, state, scratch, record, scheme, last_grid, dense):
+def advance(system, state, scratch, alone, record, scheme, last_grid, dense):
     """Run until `last_grid`, or until no member is left that has not given up."""
     control = state.control
     if control.steps == 0:
@@ -43,7 +43,7 @@ def advance(system, state, scratch, record, scheme, last_grid, dense):
         if system.corners.size > 0:
             choose_part(system, state)
         _begin_step(system, state, scheme)
-        _iterate(system, state, scratch, scheme, running, dense)
+        _iterate(system, state, scratch, alone, scheme, running, dense)
         add_work(system, state, state.clock.current_step)
         control.reason = where(grows(system, state, scratch) & (control.reason == 0.0), spread(1.0),
                                control.reason)
@@ -65,7 +65,7 @@ def _begin_step(system, state, scheme):
 
 
 @compiled(forceinline=True)
-def _iterate(system, state, scratch, scheme, active, dense):
+def _iterate(system, state, scratch, alone, scheme, active, dense):
     """Newton's iteration of a step, until every member has converged or given up."""
     control = state.control
     n = system.diagonal.size
@@ -76,10 +76,14 @@ def _iterate(system, state, scratch, scheme, active, dense):
         moved = (not dense and iteration > 1 and system.links.dependent.shape[0] == 0)
         if moved:
             find_moved(system, state, scratch, active, wanted)
-        _evaluate(system, state, scratch, active, wanted, evaluated, moved)
-        to_body_axes(system, state.frames, state.residual, False)
+        _evaluate(system, state, scratch, active, moved)
         if some(wanted):
-            active = active & ~factorize(system, state, scratch, dense, wanted, evaluated)
+            if system.links.dependent.shape[0] > 0:
+                for i in range(state.residual.size):
+                    state.forces[i] = state.residual[i]
+            active = active & ~factorize(system, state, alone, scratch.frames, dense, wanted,
+                                         evaluated)
+        to_body_axes(system, state.frames, state.residual, False)
         solve(system, state, dense)
         for i in range(n):
             state.correction[i] = where(active, state.correction[i], spread(0.0))
@@ -88,69 +92,20 @@ def _iterate(system, state, scratch, scheme, active, dense):
 
 
 @compiled(forceinline=True)
-def _evaluate(system, state, scratch, active, wanted, evaluated, moved):
-    """Evaluate forces, and the element matrices that members want.
-
-    Those that want their matrix rotated keep the matrices of the bodies. Members that have
-    converged keep their frames.
-    """
-    bodies, batches = system.first_joint[0], system.address.size
-    frames, T, J, old_J = state.frames, state.T, state.J, scratch.J
-    if some(evaluated):
-        for k in range(T.size):
-            scratch.T[k] = T[k]
-        set_tangent_operators(system, state)
-        for k in range(T.size):
-            T[k] = where(evaluated, T[k], scratch.T[k])
-        if system.linked[0] == 1:
-            for k in range(old_J.size):
-                old_J[k] = J[k]
+def _evaluate(system, state, scratch, active, moved):
+    """Evaluate forces; members that have converged keep their frames."""
+    frames, begun = state.frames, scratch.frames
     for k in range(frames.size):
-        scratch.frames[k] = frames[k]
-    _evaluate_part(system, state, scratch, active, evaluated, 0, bodies, moved)
-    _evaluate_part(system, state, scratch, active, wanted, bodies, batches, moved)
+        begun[k] = frames[k]
+    batches = system.address.size
     if moved:
+        run_moved(system, state, scratch, 0, batches)
         keep_unmoved(system, state, scratch)
+    else:
+        run_kernels(RESIDUAL, 0, batches, system, state)
     for k in range(frames.size):
-        frames[k] = where(active, frames[k], scratch.frames[k])
-    if some(evaluated) and system.linked[0] == 1:
-        for k in range(old_J.size):
-            J[k] = where(evaluated, J[k], old_J[k])
+        frames[k] = where(active, frames[k], begun[k])
     sum_forces(system, state, state.residual)
-    if some(wanted) and system.links.dependent.shape[0] > 0:
-        for i in range(state.residual.size):
-            state.forces[i] = state.residual[i]
-
-
-@compiled
-def _evaluate_part(system, state, scratch, active, wanted, first, last, moved):
-    """Evaluate some batches, with matrices where they are wanted.
-
-    Forces beside matrices are rounded differently from forces alone, so members that want no matrix
-    have theirs evaluated alone.
-    """
-    frames, begun, g, kept = state.frames, scratch.frames, state.g, scratch.g
-    if some(wanted):
-        run_kernels(TANGENT, first, last, system, state)
-    if every(wanted | ~active):
-        return
-    if not some(wanted):
-        if moved:
-            run_moved(system, state, scratch, first, last)
-        else:
-            run_kernels(RESIDUAL, first, last, system, state)
-        return
-    for k in range(system.at_g[first], system.at_g[last]):
-        kept[k] = g[k]
-    of_bodies = frames.size if first == 0 else 0        # others do not change them
-    for k in range(of_bodies):
-        scratch.found[k] = frames[k]
-        frames[k] = begun[k]
-    run_kernels(RESIDUAL, first, last, system, state)
-    for k in range(system.at_g[first], system.at_g[last]):
-        g[k] = where(wanted, kept[k], g[k])
-    for k in range(of_bodies):
-        frames[k] = where(wanted, scratch.found[k], frames[k])
 
 
 @compiled(forceinline=True)

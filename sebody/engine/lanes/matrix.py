@@ -1,49 +1,68 @@
-"""Matrices of eight members: sums, scales and inverses, see `sebody.engine.matrix`."""
+"""Matrices of eight members: each is made alone, by the functions of single runs.
 
-import math
+Members want matrices at different times. A matrix made alone costs an eighth of eight made
+together, so it pays for each that is not wanted, and its bits do not depend on the other members.
+"""
+
+from dataclasses import dataclass
+
+from numpy.typing import NDArray
 
 from sebody.compiler.decorators import compiled
-from sebody.compiler.inside.lanes import every, some, spread, where
-from sebody.contract.layout import C_MASS
-from sebody.engine.lanes.elimination import eliminate_large
+from sebody.compiler.inside.lanes import chosen_in, number_of, spread, where, with_number
+from sebody.contract.counts import MEMBERS
+from sebody.contract.layout import OK, TANGENT
+from sebody.engine.arrays import Arrays
+from sebody.engine.calls import call_refactorize
+from sebody.engine.evaluate import run_kernels, set_tangent_operators
 from sebody.engine.lanes.newton import GAVE_UP
-from sebody.engine.lanes.regularization import (
-    project_inverse,
-    regularize,
-    spread_multipliers,
-)
-from sebody.engine.matrix import ROUNDING, THIN, sum_matrices
-from sebody.engine.regularization import WEAKEST
-from sebody.engine.state import KEPT
-from sebody.kernels.abi import at, pointer_to
+from sebody.engine.state import EVALUATED, KEPT, ROTATED, State
+from sebody.engine.system import System
 
-SMALL_PIVOT = 1e-9      # relative to the scaled matrix, whose diagonal is one
+
+@dataclass(frozen=True, eq=False)
+class Alone(Arrays):
+    """A single run, which gets the numbers of a member while its matrix is made.
+
+    ==================  ============================================================================
+    system, state       of the run
+    floats              (size,) its numbers
+    numbers             (size, members) those of all members
+    taken, returned     places in both: of what matrices depend on, of what is made with them
+    J                   (members, size) element matrices of bodies, where they are rotated later
+    ==================  ============================================================================
+    """
+
+    system: System
+    state: State
+    floats: NDArray
+    numbers: NDArray
+    taken: NDArray
+    returned: NDArray
+    J: NDArray
 
 
 @compiled
-def factorize(system, state, scratch, dense, wanted, evaluated):
-    """Sum and factorize the matrices of some members, or invert small ones (dense).
+def factorize(system, state, alone, begun, dense, wanted, evaluated):
+    """Make the matrices of some members; returns those that give up.
 
-    Returns the members that give up, because their matrices would need row exchanges. `evaluated`
-    are those whose element matrices are all new: their scales are, too.
+    Parameters
+    ----------
+    begun : (9 b,)
+        Frames before the iterate was evaluated.
+    wanted, evaluated : mask
+        Members that want a matrix, and those among them whose bodies' matrices are to be new.
     """
-    control, clock = state.control, state.clock
-    zero = spread(0.0)
-    if not dense and not every(wanted):
-        for k in range(state.matrix.size):
-            scratch.factors[k] = state.matrix[k]
-    sum_matrices(system, state, state.forces)
-    if some(evaluated):
-        _equilibrate(system, state, evaluated)
+    control, clock, zero = state.control, state.clock, spread(0.0)
     control.regularized = system.regularized[0]
-    if control.regularized == 1:
-        regularize(system, state, wanted)
-    if dense:
-        failed = wanted & ~_invert(system, state, scratch, wanted, evaluated)
-    else:
-        failed = wanted & ~eliminate_large(system, state, scratch.factors, wanted)
-        if control.regularized == 1 and some(evaluated):
-            spread_multipliers(system, state, pointer_to(state.inverse), False, evaluated)
+    bad = zero
+    for member in range(MEMBERS):
+        if chosen_in(wanted, member):
+            kind = EVALUATED if chosen_in(evaluated, member) else ROTATED
+            if not _factorize_one(state, alone, begun, dense, member, kind):
+                bad = with_number(bad, member, 1.0)
+            clock.floor = with_number(clock.floor, member, alone.state.clock.floor)
+    failed = bad > 0.0
     clock.factor_step = clock.current_step
     clock.baseline_contraction = where(evaluated, spread(0.5), clock.baseline_contraction)
     clock.excess = where(evaluated, zero, clock.excess)
@@ -57,75 +76,31 @@ def factorize(system, state, scratch, dense, wanted, evaluated):
     return failed
 
 
-@compiled(forceinline=True)
-def _equilibrate(system, state, wanted):
-    """Scales of the members that want a matrix, and what rounding leaves of their positions."""
-    n, mass = system.diagonal.size, state.coefficients[C_MASS]
-    sums = state.correction
-    for i in range(n):
-        sums[i] = spread(0.0)
-        if system.is_multiplier[i] == 0.0:
-            diagonal = max(abs(state.matrix[system.diagonal[i]]), THIN * mass * system.inertias[i])
-            state.scale[i] = where(wanted, 1.0 / math.sqrt(diagonal), state.scale[i])
-    for k in range(system.rows.size):
-        if (system.is_multiplier[system.rows[k]] > 0.0
-                and system.is_multiplier[system.columns[k]] == 0.0):
-            entry = state.matrix[k] * state.scale[system.columns[k]]
-            sums[system.rows[k]] += entry * entry
-    floor = spread(0.0)
-    for i in range(n):
-        if system.is_multiplier[i] > 0.0:
-            scale = where(sums[i] > 0.0, 1.0 / math.sqrt(sums[i]), spread(1.0))
-            state.scale[i] = where(wanted, scale, state.scale[i])
-        state.weight[i] = where(wanted, 1.0 / state.scale[i], state.weight[i])
-        size = max(system.magnitude[i], abs(state.q[i])) * state.weight[i]
-        floor += where(system.magnitude[i] > 0.0, size * size, spread(0.0))
-    state.clock.floor = where(wanted, ROUNDING * math.sqrt(floor), state.clock.floor)
-
-
 @compiled
-def _invert(system, state, scratch, wanted, evaluated):
-    """Invert the scaled matrices by Gauss-Jordan elimination without exchanges.
-
-    Multipliers come after the unknowns they act on, whose part of the matrix is dominated by
-    masses. Returns the members whose pivots are large enough.
-    """
-    n, regularized = system.diagonal.size, state.control.regularized == 1
-    A = pointer_to(scratch.dense)
-    size = inverse_size = spread(0.0)
-    for j in range(n):
-        for i in range(n):
-            entry = state.scale[i] * state.matrix[j * n + i] * state.scale[j]
-            A[j * n + i] = entry
-            size += abs(entry)
-    good = size < 1e300
-    for k in range(n):
-        own = at(A, k * n)
-        good = good & (abs(own[k]) > SMALL_PIVOT)
-        factor = 1.0 / own[k]
-        own[k] = 1.0
-        for j in range(n):
-            own[j] = own[j] * factor
-        for i in range(n):
-            if i != k:
-                row = at(A, i * n)
-                factor = row[k]
-                row[k] = 0.0
-                for j in range(n):
-                    row[j] = row[j] - factor * own[j]
-    for j in range(n):
-        if system.is_multiplier[j] > 0.0 and not regularized:
-            good = good & ~(WEAKEST * abs(A[j * n + j]) > 1.0)
-        for i in range(n):
-            inverse_size += abs(A[j * n + i])
-    good = good & (size * inverse_size < 1e16 * n)
-    if regularized:
-        if some(evaluated):
-            spread_multipliers(system, state, A, True, evaluated)
-        project_inverse(system, state, A, pointer_to(scratch.projected), n)
-    whole, inverse = every(wanted), state.inverse
-    for j in range(n):
-        for i in range(n):
-            entry = state.scale[i] * A[j * n + i] * state.scale[j]
-            inverse[j, i] = entry if whole else where(wanted, entry, inverse[j, i])
-    return good
+def _factorize_one(state, alone, begun, dense, member, wanted):
+    """Make the matrix of a member; False if that needs row exchanges, or the matrix is singular."""
+    system, one, floats, numbers = alone.system, alone.state, alone.floats, alone.numbers
+    for k in range(alone.taken.size):
+        floats[alone.taken[k]] = numbers[alone.taken[k], member]
+    one.clock.floor = number_of(state.clock.floor, member)
+    first, kept = system.first_joint[0], alone.J.shape[1]
+    if wanted == EVALUATED:
+        first = 0
+        set_tangent_operators(system, one)
+        for k in range(begun.size):
+            one.frames[k] = number_of(begun[k], member)
+    else:
+        for k in range(kept):
+            one.J[k] = alone.J[member, k]
+    if run_kernels(TANGENT, first, system.address.size, system, one) != OK:
+        return False
+    if wanted == EVALUATED:
+        for k in range(kept):
+            alone.J[member, k] = one.J[k]
+    made = call_refactorize(system.routines[0], system, one, wanted, dense)
+    if (not made or (not dense and one.control.pivoted == 1)
+            or one.control.regularized != state.control.regularized):
+        return False
+    for k in range(alone.returned.size):
+        numbers[alone.returned[k], member] = floats[alone.returned[k]]
+    return True

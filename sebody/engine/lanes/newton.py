@@ -48,7 +48,7 @@ def correct(system, state, scheme, active, iteration, mixed):
     clock.target = target
     rate, last = clock.contraction, clock.last_norm
     if iteration == 0:
-        clock.span = where(active, norm / target, clock.span)     # of which the loop has the log
+        clock.span = where(active, norm / target, clock.span)
     else:
         rate = where(active & (last > 0.0), norm / last, rate)
         clock.contraction = rate

@@ -37,6 +37,20 @@ def stumpff_23(s):
     return c2, c3
 
 
+@in_lanes_of(rotations.stumpff_1_to_7)
+def stumpff_1_to_7(s):
+    """See `rotations.stumpff_1_to_7`."""
+    c6, c7 = rotations.stumpff_67_small(s)
+    small = s < SMALL
+    if not every(small):
+        for member in range(MEMBERS):
+            if not chosen_in(small, member):
+                own = number_of(s, member)
+                c6 = with_number(c6, member, rotations.stumpff(6, own))
+                c7 = with_number(c7, member, rotations.stumpff(7, own))
+    return rotations.stumpff_before_67(s, c6, c7)
+
+
 @in_lanes_of(rotations.inverse_tangent_coefficients)
 def inverse_tangent_coefficients(s):
     """See `rotations.inverse_tangent_coefficients`."""

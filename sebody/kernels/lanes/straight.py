@@ -7,6 +7,7 @@ all members share are constants of the code: eight bytes are read in place of 64
 """
 
 from functools import cache
+from itertools import groupby
 
 import numpy as np
 from llvmlite import binding, ir
@@ -19,6 +20,7 @@ from sebody.kernels.packed import COUPLED, NARROW, WIDE, strips
 # lane of the first number of a row that has the address of its straight code, where there is some;
 # the number of groups stands in all others
 AT_ADDRESS = 1
+AT_LANES = 2        # of what the first number of a shared row points to: address of its lanes
 MOST_GROUPS = 1 << 20       # of a row; a larger number is an address
 # place of an entry, vector and place of its factor, place of its sum; its value, if all members
 # share it
@@ -53,14 +55,15 @@ def address_of(entries: Entries) -> int:
     function = ir.Function(module, kind, "straight")
     builder = ir.IRBuilder(function.append_basic_block())
     A, *vectors, out = function.args
-    sums: dict[int, ir.Value] = {}
+    out.add_attribute("noalias")        # of what is read
     shared = _Shared(module, builder, entries)
-    for place, vector, column, to, value in entries:
-        total = sums.get(to) or _read(builder, out, to)
-        entry = _read(builder, A, place) if value is None else shared.next()
-        product = builder.fmul(entry, _read(builder, vectors[vector], column), flags=("contract",))
-        sums[to] = builder.fadd(total, product, flags=("contract",))
-    for to, total in sums.items():
+    for to, terms in groupby(entries, key=lambda entry: entry[3]):
+        total = _read(builder, out, to)
+        for place, vector, column, _, value in terms:
+            entry = _read(builder, A, place) if value is None else shared.next()
+            product = builder.fmul(entry, _read(builder, vectors[vector], column),
+                                   flags=("contract",))
+            total = builder.fadd(total, product, flags=("contract",))
         builder.store(total, builder.gep(out, [ir.IntType(64)(to)]))
     builder.ret_void()
     return _compiled(module)
@@ -75,11 +78,15 @@ class _Shared:
         self._values = ir.GlobalVariable(module, kind, "shared")
         self._values.initializer = ir.Constant(kind, values)
         self._values.linkage = "internal"       # not a constant: LLVM would write out eight of each
+        # hidden from LLVM, which would write out the whole address of each value
+        address = self._values.type
+        self._first = builder.asm(ir.FunctionType(address, [address]), "", "=r,0", [self._values],
+                                  False)
         self._builder, self._next = builder, 0
 
     def next(self) -> ir.Value:
         """The next value, in all lanes."""
-        place = self._builder.gep(self._values, [ir.IntType(32)(0), ir.IntType(32)(self._next)])
+        place = self._builder.gep(self._first, [ir.IntType(32)(0), ir.IntType(32)(self._next)])
         self._next += 1
         return same(self._builder, self._builder.load(place))
 
@@ -113,15 +120,18 @@ def write_address(row: NDArray, varied: NDArray, lanes: NDArray) -> None:
     lanes.view(np.int64)[0, AT_ADDRESS] = address_of(entries_of(row, varied))
 
 
-def write_shared_address(row: NDArray) -> NDArray:
-    """The same of a row that all members share: it points to what is returned, and to be kept.
+def write_shared_address(row: NDArray, varied: NDArray, lanes: NDArray) -> NDArray:
+    """The same of a row that members share but for some entries, which are read from lanes.
+
+    Its first number is replaced by the address of what is returned, and to be kept: the number
+    itself, and addresses of straight code and of the lanes.
 
     Parameters
     ----------
-    row : (size,)
-        As of `packed.pack`.
+    row, varied, lanes : ndarray
+        As of `write_address`.
     """
     own = row.view(np.int64)
-    found = np.array([own[0], address_of(entries_of(row, np.zeros(len(row), dtype=bool)))])
+    found = np.array([own[0], address_of(entries_of(row, varied)), lanes.ctypes.data])
     own[0] = found.ctypes.data
     return found

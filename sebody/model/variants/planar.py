@@ -17,11 +17,12 @@ from sebody.model.parts import Connection, Element, Superelement
 from sebody.model.plane import Plane
 from sebody.model.variants.copying import Variant, checked, load_name, unknowns
 from sebody.model.variants.flat_beams import flat_beams
+from sebody.model.variants.flat_bodies import flat_bodies
 from sebody.model.variants.flat_contacts import flat_point_contact
 from sebody.model.variants.flat_control import add_control
 from sebody.model.variants.flat_elements import check_joints, flat_element, flat_joint
 from sebody.model.variants.flattening import Flattening
-from sebody.reduction.plane import PlanarBody, planar_body
+from sebody.reduction.plane import PlanarBody
 from sebody.reduction.summary import place
 
 _SAME = 1e-9            # relative: directions and loads that differ by rounding
@@ -157,8 +158,7 @@ class _Flat(NamedTuple):
         for load in model.loads:
             if load.pressed_by is not None:
                 on_nodes[load][0].pressed_by = joints[load.pressed_by]
-        bodies = {name: planar_body(body.reduced, flat.plane.axes, f"superelement {name!r}")
-                  for name, body in model.bodies.items()}
+        bodies = flat_bodies(model, flat.plane.axes)
         rates = {name: _rates(body, bodies[name]) for name, body in model.bodies.items()}
         for load in model.loads:
             if load.mode is not None:
