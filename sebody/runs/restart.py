@@ -35,7 +35,7 @@ from sebody.runs.simulation import Simulation
 from sebody.runs.steps import MOST_STEPS
 from sebody.runs.tolerance import Tolerance
 
-VERSION = 5
+VERSION = 6
 TARGET = "restart file", (".npz",)      # see `files.check_target`
 SETTINGS = {"h", "every", "seconds", "scheme", "tolerance", "model"}
 OF_START = "regularized", "massless", "inertias", "massless_axes"  # of the system
