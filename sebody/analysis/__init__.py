@@ -19,12 +19,14 @@ if TYPE_CHECKING:
         soft_maximum,
     )
     from sebody.gradients.calibration import Calibration, calibrate
-    from sebody.gradients.contributions import Contribution, Contributions, contributions
+    from sebody.gradients.contributions import contributions
     from sebody.gradients.designs import Design, sections
     from sebody.gradients.functions import ValueAndGradient
     from sebody.gradients.gradient import Gradient, gradient
+    from sebody.gradients.height_stresses import BeamStress
     from sebody.gradients.many import Gradients, gradients
-    from sebody.gradients.sizing import BeamStress, Sizing, size_heights
+    from sebody.gradients.ranking import Contribution, Contributions
+    from sebody.gradients.sizing import Sizing, size_heights
     from sebody.limits.watch import spin_limit
     from sebody.runs.restart import resume, save_state
     from sebody.runs.statics import equilibrium

@@ -91,14 +91,14 @@ def compile_together(name: str) -> None:
     from sebody.kernels.lanes.kernel import address_in_lanes
 
     kernel_together()
-    address_in_lanes(load(name), shared=True)
+    address_in_lanes(load(name), (), matrices=True)
 
 
 def is_compiled_together(path: Path) -> bool:
     """Whether the kernel of a file was compiled for eight bodies; the file is not imported."""
     from sebody.kernels.lanes.kernel import is_compiled
 
-    return is_compiled(path, shared=True)
+    return is_compiled(path, (), matrices=True)
 
 
 def behind_row(body: Superelement, common: int, turn: int) -> list[int]:
@@ -112,7 +112,7 @@ def behind_row(body: Superelement, common: int, turn: int) -> list[int]:
     from sebody.kernels.lanes.kernel import address_in_lanes  # only where lanes are used
 
     kernel = load(body.kernel)
-    return [kernel.kernel.address, address_in_lanes(kernel, shared=True),
+    return [kernel.kernel.address, address_in_lanes(kernel, (), matrices=True),
             2 if kernel.PLANAR else 3, common, turn]
 
 

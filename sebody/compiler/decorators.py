@@ -25,9 +25,13 @@ def compiled(function: Callable | None = None, **options) -> Callable:
     Functions of ``kernels/`` contract products and sums as the kernels that call them do, others
     do not. The choice is explicit because otherwise Numba takes it from the first caller that is
     compiled, and results would depend on what was run before.
+
+    With `apart`, pointers among the arguments lead to memory of their own, so that a loop over them
+    may be compiled to vector instructions; of the fast way alone.
     """
     if function is None:
         return partial(compiled, **options)
+    function.apart = options.pop("apart", False)
     rounding = CONTRACT if in_room(function, KERNELS) else False
     options = {"error_model": "numpy", "fastmath": rounding} | options
     return way().function(function, options, function_hash(function))

@@ -22,6 +22,7 @@ from sebody.engine.state import (
     NEW_MATRIX,
     ROTATED,
 )
+from sebody.kernels.abi import pointer_to
 
 MAX_ITERATIONS = 12     # of a step
 SLOWEST = 0.95          # contraction rate assumed where none is known, and upper bound of estimates
@@ -121,17 +122,24 @@ def subtract(system, state, scheme, n):
     to_body_axes(system, state.frames, state.correction, True)
     if scheme.stabilized:
         to_body_axes(system, state.frames, state.shift, True)
-    to_a, to_v = state.coefficients[C_MASS], state.coefficients[C_DAMPING]
-    to_aux = 1 / (scheme.beta * h * h)
-    for i in range(n):
-        d = state.correction[i]
-        moving = d * (1.0 - system.is_multiplier[i])
-        state.dq[i] -= d + state.shift[i]
-        state.q[i] -= d + state.shift[i]
-        state.v[i] -= to_v * moving
-        state.a[i] -= to_a * moving
-        state.aux[i] -= to_aux * moving
+    _subtract_from_all(n, pointer_to(state.correction), pointer_to(state.shift),
+                       pointer_to(system.is_multiplier), state.coefficients[C_DAMPING],
+                       state.coefficients[C_MASS], 1 / (scheme.beta * h * h), pointer_to(state.dq),
+                       pointer_to(state.q), pointer_to(state.v), pointer_to(state.a),
+                       pointer_to(state.aux))
     update_rotations(system, state)
+
+
+@compiled(forceinline=True, apart=True)
+def _subtract_from_all(n, correction, shift, is_multiplier, to_v, to_a, to_aux, dq, q, v, a, aux):
+    for i in range(n):
+        d, s = correction[i], shift[i]
+        moving = d * (1.0 - is_multiplier[i])
+        dq[i] -= d + s
+        q[i] -= d + s
+        v[i] -= to_v * moving
+        a[i] -= to_a * moving
+        aux[i] -= to_aux * moving
 
 
 @compiled(forceinline=True)

@@ -29,14 +29,15 @@ SETTLING = 24           # first ones of a period, whose corrections do not count
 TRIED_AGAIN = 16        # periods after which what has saved less is tried again
 WORTH = 0.2             # corrections of a step that the fit has to save
 
-# State.fit, in this order: products of the last changes, equations, right side and coefficients of
-# the fit, scratch memory for its elimination, and numbers by name
+# State.fit, in this order: products of the changes that are kept, equations, right side and
+# coefficients of the fit, scratch memory for its elimination, and numbers by name
 _EQUATIONS = ROWS * ROWS
 _RIGHT = _EQUATIONS + ORDER * ORDER
 _COEFFICIENTS = _RIGHT + ORDER
 _FACTORS = _COEFFICIENTS + ORDER
+_SOLUTION = _FACTORS + ORDER * ORDER
 LAST, BEFORE, FITTED, _ON, _AGE, _SUM, _WITH, _WITHOUT = range(
-    _FACTORS + ORDER * ORDER, _FACTORS + ORDER * ORDER + 8)
+    _SOLUTION + ORDER, _SOLUTION + ORDER + 8)
 FIT = _WITHOUT + 1      # its size
 
 
@@ -110,12 +111,11 @@ def _compare_periods(fit, corrections, steps):
         zero = 0.0 * mean
         better = either(fit[_WITH] + WORTH < fit[_WITHOUT], zero + 1.0, zero)
         period = steps // PERIOD
-        if period < 2:
-            better = zero + period          # the first one without the fit, the second one with it
+        if period < 3:      # the second one without the fit, the third one with it: the first steps
+            better = zero + period // 2     # of a motion are no measure
         elif period % TRIED_AGAIN == 0:
             better = 1.0 - better
-        # a fit begins with nothing: in lanes it went on without being used, if others had one
-        fit[_AGE] = either(on, fit[_AGE] * better, zero)
+        fit[_AGE] = fit[_AGE] * better
         fit[_ON], fit[_SUM] = better, zero
     elif within > SETTLING:
         fit[_SUM] += corrections
@@ -123,49 +123,66 @@ def _compare_periods(fit, corrections, steps):
 
 @compiled
 def _fit_anew(system, state, steps):
-    """Products of the last changes, coefficients of least squares, and the change they predict."""
-    n, fit = system.diagonal.size, pointer_to(state.fit)
+    """Products of the last changes, coefficients of least squares, and the change they predict.
+
+    In lanes nothing of this changes for members without the fit.
+    """
+    n, fit, on = system.diagonal.size, pointer_to(state.fit), state.fit[_ON] > 0.0
     weighted, fitted = pointer_to(state.correction), pointer_to(state.fitted)
-    for i in range(ORDER, 0, -1):
-        for j in range(ORDER, 0, -1):
-            fit[ROWS * i + j] = fit[ROWS * (i - 1) + j - 1]
-    for j in range(ROWS):
-        change, total = row(state, steps - j), 0.0 * fit[0]
+    now = steps % ROWS
+    for j in range(0, ROWS, 3):         # three at a time: the weighted change is read once for them
+        a, b, c = row(state, steps - j), row(state, steps - j - 1), row(state, steps - j - 2)
+        of_a = of_b = of_c = 0.0 * fit[0]
         for i in range(n):
-            total += weighted[i] * change[i]
-        fit[j] = fit[ROWS * j] = total
-    zero = 0.0 * fit[_AGE]
-    for j in range(ORDER):
-        fit[_COEFFICIENTS + j] = either(fit[_AGE] > 0.0, fit[_COEFFICIENTS + j], zero)
-    _add_equations(fit)
+            w = weighted[i]
+            of_a += w * a[i]
+            of_b += w * b[i]
+            of_c += w * c[i]
+        _put_product(fit, now, (steps - j) % ROWS, of_a)
+        _put_product(fit, now, (steps - j - 1) % ROWS, of_b)
+        _put_product(fit, now, (steps - j - 2) % ROWS, of_c)
+    _add_equations(fit, steps)
     if steps % REFITTED == 0:
         _solve(fit)
+    c0, c1, c2, c3 = (fit[_COEFFICIENTS], fit[_COEFFICIENTS + 1], fit[_COEFFICIENTS + 2],
+                      fit[_COEFFICIENTS + 3])
+    c4, c5, c6, c7 = (fit[_COEFFICIENTS + 4], fit[_COEFFICIENTS + 5], fit[_COEFFICIENTS + 6],
+                      fit[_COEFFICIENTS + 7])
+    d0, d1, d2, d3 = (row(state, steps), row(state, steps - 1), row(state, steps - 2),
+                      row(state, steps - 3))
+    d4, d5, d6, d7 = (row(state, steps - 4), row(state, steps - 5), row(state, steps - 6),
+                      row(state, steps - 7))
     for i in range(n):
-        fitted[i] = fit[_COEFFICIENTS] * row(state, steps)[i]
-    for j in range(1, ORDER):
-        change, c = row(state, steps - j), fit[_COEFFICIENTS + j]
-        for i in range(n):
-            fitted[i] += c * change[i]
+        total = c0 * d0[i] + c1 * d1[i] + c2 * d2[i] + c3 * d3[i]
+        total = total + c4 * d4[i] + c5 * d5[i] + c6 * d6[i] + c7 * d7[i]
+        fitted[i] = either(on, total, fitted[i])
 
 
 @compiled
-def _add_equations(fit):
-    """Add those of the last step to the equations of the fit, of which half is kept."""
+def _put_product(fit, i, j, product):
+    """Keep the product of two changes, by their rows."""
+    fit[ROWS * i + j] = fit[ROWS * j + i] = product
+
+
+@compiled
+def _add_equations(fit, steps):
+    """Add those of the last step to the equations of the fit, of which a part is kept."""
     zero = 0.0 * fit[_AGE]
     older = either(fit[_AGE] > 0.0, zero + FORGET, zero)
-    fit[_AGE] = fit[_AGE] + 1.0
+    fit[_AGE] = fit[_AGE] + fit[_ON]
     counts = either(fit[_AGE] > ROWS, zero + 1.0, zero)     # before that, products are missing
     for i in range(ORDER):
+        own = at(fit, ROWS * ((steps - i - 1) % ROWS))
         for j in range(i, ORDER):
             k = _EQUATIONS + ORDER * i + j
-            fit[k] = older * fit[k] + counts * fit[ROWS * (i + 1) + j + 1]
-        fit[_RIGHT + i] = older * fit[_RIGHT + i] + counts * fit[i + 1]
+            fit[k] = older * fit[k] + counts * own[(steps - j - 1) % ROWS]
+        fit[_RIGHT + i] = older * fit[_RIGHT + i] + counts * own[steps % ROWS]
 
 
 @compiled
 def _solve(fit):
     """Coefficients of least squares: elimination of a positive matrix."""
-    A, x = at(fit, _FACTORS), at(fit, _COEFFICIENTS)
+    A, x = at(fit, _FACTORS), at(fit, _SOLUTION)
     size = 0.0 * fit[0] + TINY
     for i in range(ORDER):
         for j in range(i, ORDER):
@@ -182,7 +199,9 @@ def _solve(fit):
                 A[ORDER * i + j] -= factor * A[ORDER * k + j]
             x[i] -= factor * x[k]
         A[ORDER * k + k] = pivot
+    on = fit[_ON] > 0.0
     for k in range(ORDER - 1, -1, -1):
         for j in range(k + 1, ORDER):
             x[k] -= A[ORDER * k + j] * x[j]
         x[k] *= A[ORDER * k + k]
+        fit[_COEFFICIENTS + k] = either(on, x[k], fit[_COEFFICIENTS + k])

@@ -70,30 +70,41 @@ def predict(system, state, scheme, follow, offset):
     for i in range(state.frames.size):
         state.frames_old[i] = state.frames[i]
     alpha_m, beta, gamma = scheme.alpha_m, scheme.beta, scheme.gamma
-    to_a = 1.0 / (1.0 - scheme.alpha_f)
     state.clock.aux_step = h
     steps, fitted = state.control.steps + ROWS, pointer_to(state.fitted)
     last, before = row(state, steps), row(state, steps - 1)
     of_last, of_before, of_fitted = (follow * state.fit[LAST], follow * state.fit[BEFORE],
                                      follow * state.fit[FITTED])
-    for i in range(state.dq.size):
-        q, v, a, aux = state.q[i], state.v[i], state.a[i], state.aux[i]
-        change = of_last * last[i] + of_before * before[i] + of_fitted * fitted[i]
-        multiplier = system.is_multiplier[i] * change
-        change -= multiplier
-        if offset != 1.0:
-            aux = a + offset * (aux - a)
-        state.q_old[i], state.v_old[i], state.a_old[i], state.aux_old[i] = q, v, a, aux
-        state.dq[i] = h * v + h * h * (0.5 * aux + beta * change) + multiplier
-        state.q[i] = q + state.dq[i]
-        state.v[i] = v + h * (aux + gamma * change)
-        state.a[i] = to_a * (aux + (1.0 - alpha_m) * change - scheme.alpha_f * a)
-        state.aux[i] = aux + change
+    _predict_all(state.dq.size, pointer_to(state.q), pointer_to(state.v), pointer_to(state.a),
+                 pointer_to(state.aux), pointer_to(state.dq), pointer_to(state.q_old),
+                 pointer_to(state.v_old), pointer_to(state.a_old), pointer_to(state.aux_old),
+                 last, before, fitted, pointer_to(system.is_multiplier), of_last, of_before,
+                 of_fitted, offset, h, alpha_m, scheme.alpha_f, beta, gamma)
     copy(state.loads, state.loads_old)
     set_loads_beside(system, state.frames, state.loads, state.clock.end, state.clock.beside)
     set_coefficients(state, scheme, h)
     move_prescribed(system, state)
     update_rotations(system, state)
+
+
+@compiled(forceinline=True, apart=True)
+def _predict_all(n, q, v, a, aux, dq, q_old, v_old, a_old, aux_old, last, before, fitted,
+                 is_multiplier, of_last, of_before, of_fitted, offset, h, alpha_m, alpha_f, beta,
+                 gamma):
+    to_a = 1.0 / (1.0 - alpha_f)
+    for i in range(n):
+        x, y, z, b = q[i], v[i], a[i], aux[i]
+        change = of_last * last[i] + of_before * before[i] + of_fitted * fitted[i]
+        multiplier = is_multiplier[i] * change
+        change -= multiplier
+        b = b if offset == 1.0 else z + offset * (b - z)
+        q_old[i], v_old[i], a_old[i], aux_old[i] = x, y, z, b
+        increment = h * y + h * h * (0.5 * b + beta * change) + multiplier
+        dq[i] = increment
+        q[i] = x + increment
+        v[i] = y + h * (b + gamma * change)
+        a[i] = to_a * (b + (1.0 - alpha_m) * change - alpha_f * z)
+        aux[i] = b + change
 
 
 @compiled(forceinline=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from warnings import WarningMessage, catch_warnings, simplefilter, warn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -108,11 +109,17 @@ def calibrate(model: Model, h: float, measured: Mapping[str, ArrayLike],
         raise InputError(f"{count} measured numbers cannot determine {len(point.base)} parameters: "
                          "give more measurements or fewer parameters")
     fit = _Fit(model, h, data, point, fitting(scheme))
-    bounds = np.array([(-np.inf if c.handle.least is None else c.handle.least) if
-                       c.handle.above is None else c.handle.above for c in point.columns])
-    found = least_squares(fit.residuals, point.base, fit.jacobian, x_scale="jac",
-                          bounds=(bounds, np.inf), xtol=1e-10, ftol=1e-12, gtol=1e-12)
-    return fit.judged(found.x)
+    bounds = np.array([[next((b for b in (c.handle.above, c.handle.least) if b is not None),
+                             -np.inf) for c in point.columns],
+                       [np.inf if c.handle.most is None else c.handle.most
+                        for c in point.columns]])
+    try:
+        found = least_squares(fit.residuals, point.base, fit.jacobian, x_scale="jac",
+                              bounds=bounds, xtol=1e-10, ftol=1e-12, gtol=1e-12)
+        return fit.judged(found.x)
+    finally:
+        for one in fit.said:
+            warn(one.message, one.category, stacklevel=2)
 
 
 @dataclass(frozen=True)
@@ -151,6 +158,7 @@ class _Fit:
         last = max(one.times.max() for one in data.values())
         self.t_end = h * max(1, int(np.ceil(last / h * (1 - EPS) - 1e-9)))
         self.runs, self._x = 0, None
+        self.said: list[WarningMessage] = []
 
     def residuals(self, x: NDArray) -> NDArray:
         self._look(x)
@@ -165,7 +173,8 @@ class _Fit:
     def _look(self, x: NDArray) -> None:
         if self._x is not None and np.array_equal(x, self._x):
             return
-        with self.point.at(x) as columns:
+        with self.point.at(x) as columns, catch_warnings(record=True) as self.said:
+            simplefilter("always")      # those of the last run are said when the fit ends
             self._values, self._slopes = self._followed(columns)
         self._x, self.runs = x.copy(), self.runs + 1
 

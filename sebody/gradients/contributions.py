@@ -5,19 +5,17 @@ by one run and one sweep for all, and their options, by a run each.
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from pathlib import Path
+from collections.abc import Iterable
 from typing import NamedTuple, cast
 from warnings import catch_warnings, simplefilter
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.engine.state import Scheme
 from sebody.errors import InputError, LimitWarning
 from sebody.gradients.gradient import Differentiated, fitting
+from sebody.gradients.ranking import Contributions, ranked
 from sebody.gradients.responses import Histories, linearized
 from sebody.gradients.simplifications import Amplitude, Deformation, Motion
 from sebody.gradients.support import refuse_laws, refuse_model, refuse_scheme
@@ -27,9 +25,6 @@ from sebody.runs.simulation import Simulation, simulate
 from sebody.runs.steps import whole_steps
 from sebody.small_motion.moved_states import ADDED_UP, UNMOVED
 from sebody.spelling import unknown
-from sebody.tabular import text
-
-LARGE = 0.3         # of a quantity's largest change: beyond, estimates say that a change is large
 
 
 class Options(NamedTuple):
@@ -46,118 +41,6 @@ class Simplification(NamedTuple):
     change: str
     motions: tuple[Motion, ...] = ()
     options: Options | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class Contribution:
-    """How much some quantities change if a body is simplified.
-
-    Attributes
-    ----------
-    body, change : str
-    sizes : (quantities,)
-        Largest change of each at any time, relative to its largest change from the start.
-    times : (quantities,)
-        When [time].
-    """
-
-    body: str
-    change: str
-    sizes: NDArray
-    times: NDArray
-
-    @property
-    def large(self) -> bool:
-        """Whether the change is so large that an estimate of first order tells its size alone."""
-        return bool(self.sizes.max() > LARGE)
-
-
-@dataclass(frozen=True, eq=False)
-class Contributions:
-    """What parts of a model contribute to some quantities.
-
-    Attributes
-    ----------
-    quantities : tuple of str
-    t : (n,)
-        Times [time].
-    values : dict of str to (n, ...)
-        Histories of the quantities in the full model.
-    rows : tuple of Contribution
-        All simplifications, those of the largest effect first.
-    changes : dict of str to (n, ..., rows)
-        How each quantity changes over time, in the order of the rows; see `history`.
-    by_step : (quantities,)
-        What half the step changes of the full model, relative as the changes are. Errors by the
-        step of a simplified model differ from those of the full one by about as much, which
-        estimates do not have: they are good where they are larger.
-    seconds, run_seconds : float
-        Time that all of it took, and the run of the full model in it.
-    """
-
-    quantities: tuple[str, ...]
-    t: NDArray
-    values: dict[str, NDArray]
-    rows: tuple[Contribution, ...]
-    changes: dict[str, NDArray]
-    by_step: NDArray
-    seconds: float = 0.0
-    run_seconds: float = 0.0
-
-    def __repr__(self) -> str:
-        return (f"<Contributions of {len(self.rows)} simplifications to "
-                f"{', '.join(self.quantities)}>")
-
-    def history(self, quantity: str, body: str, change: str) -> NDArray:
-        """Change of a quantity over time by a simplification: of the simplified model less the full
-        one, (n, ...).
-
-        Raises
-        ------
-        InputError
-            Names that it does not have.
-        """
-        if quantity not in self.changes:
-            raise unknown("quantity", quantity, self.quantities, "there are", "there is none")
-        k = next((k for k, one in enumerate(self.rows) if (one.body, one.change) == (body, change)),
-                 None)
-        if k is None:
-            raise unknown("simplification", f"{body}: {change}",
-                          [f"{one.body}: {one.change}" for one in self.rows], "there are",
-                          "there is none")
-        return self.changes[quantity][..., k]
-
-    def table(self) -> str:
-        """A line for each simplification, those of the largest effect first."""
-        heads = ["body", "change", *(head for name in self.quantities for head in (name, "at t"))]
-        lines = [[one.body, one.change, *(cell for size, t, step in zip(
-            one.sizes, one.times, self.by_step, strict=True) for cell in (
-                f"{size:.2g}{_remark(size, step)}", f"{t:.4g}"))]
-            for one in self.rows]
-        lines.append(["", "half the step", *(cell for step in self.by_step for cell in (
-            f"{step:.2g}", ""))])
-        return text("largest change of each quantity, relative to its largest change from the "
-                    "start", heads, lines)
-
-    def __str__(self) -> str:
-        return self.table()
-
-    def save_picture(self, path: str | Path) -> Path:
-        """Bars of the largest contributions, and histories of four; PNG.
-
-        Raises
-        ------
-        InputError
-            A picture that cannot be made.
-        """
-        from sebody.gradients.picture import draw
-
-        return draw(self, path)
-
-
-def _remark(size: float, step: float) -> str:
-    """What a change is that is told by first order but roughly."""
-    return " (large)" if size > LARGE else " (below the step)" if size < step else ""
 
 
 def contributions(model: Model, h: float, t_end: float, quantities: str | Iterable[str],
@@ -216,7 +99,8 @@ def contributions(model: Model, h: float, t_end: float, quantities: str | Iterab
     for j, simpler in enumerate(each):
         if simpler.options is not None:
             _measure(model, simpler, h, t_end, scheme, values, changes, j)
-    rows, order = _ranked(names, each, one.history.times, values, changes)
+    rows, order = ranked(names, [(simpler.body, simpler.change) for simpler in each],
+                         one.history.times, values, changes)
     with catch_warnings():
         simplefilter("ignore", LimitWarning)    # said of the run above
         finer = simulate(model, h / 2, t_end, scheme=scheme, output_every=2)
@@ -291,19 +175,3 @@ def amplitudes(run: Simulation, body: str) -> list[Motion]:
     """Those of all modes of a superelement."""
     first, total = run.numbering.modes.get(body, 0), run.numbering.total
     return [Amplitude(first + k, total) for k in range(run.model.bodies[body].reduced.modes)]
-
-
-def _ranked(names: Sequence[str], each: Sequence[Simplification], t: NDArray,
-            values: dict[str, NDArray], changes: dict[str, NDArray]
-            ) -> tuple[tuple[Contribution, ...], list[int]]:
-    """All simplifications by their largest effect on any quantity, and their places."""
-    sizes, times = np.zeros((2, len(names), len(each)))
-    for k, name in enumerate(names):
-        whole = np.abs(values[name] - values[name][0]).max()
-        if whole == 0:
-            raise InputError(f"quantity {name!r} does not change: give one that the motion changes")
-        own = np.abs(changes[name]).reshape(len(t), -1, len(each)).max(axis=1) / whole
-        sizes[k], times[k] = own.max(axis=0), t[own.argmax(axis=0)]
-    order = [int(j) for j in np.argsort(-sizes.max(axis=0), kind="stable")]
-    return tuple(Contribution(each[j].body, each[j].change, sizes[:, j], times[:, j])
-                 for j in order), order

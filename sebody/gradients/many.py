@@ -28,6 +28,7 @@ from sebody.gradients.products import Products
 from sebody.gradients.support import refuse_model, refuse_run
 from sebody.model.model import Model
 from sebody.model.variants.copying import copied
+from sebody.runs.failures import KEPT
 from sebody.runs.progress import showing
 from sebody.runs.simulation import Simulation
 from sebody.runs.steps import whole_steps
@@ -251,7 +252,7 @@ class _Work:
         try:
             found = self.one(member, run)
         except (InputError, SimulationError) as error:      # of this run
-            self.many.failures[run] = str(error)
+            self.many.failures[run] = str(error).replace(f"; {KEPT}", "")   # here they are not
             return
         self.many.value[run], self.many.matrix[run] = found.value, found.matrix
         self.many.growth[run] = found.growth

@@ -62,7 +62,8 @@ class Point:
         for name, value in found.items():
             handle = self._handles[name]
             for bound, wrong, wanted in ((handle.least, np.less, "at least"),
-                                         (handle.above, np.less_equal, "above")):
+                                         (handle.above, np.less_equal, "above"),
+                                         (handle.most, np.greater, "at most")):
                 if bound is not None and wrong(value, bound).any():
                     raise InputError(f"{name} is {inputs.shown(value)}: it must be {wanted} "
                                      f"{bound:g}; give the optimizer bounds")

@@ -60,6 +60,7 @@ def test_a_run_that_fails_keeps_its_reason(found):
     values = VALUES | {"torque.amplitude": np.array([0.5, 1e12, 2.0, 1.0])}
     many = gradients(differentiated.hinged(), H, T_END, OBJECTIVES, PARAMETERS, values, threads=2)
     assert list(many.failures) == [1] and "t = " in many.failures[1]
+    assert "kept" not in many.failures[1]       # of a gradient nothing is
     assert np.isnan(many.value[1]).all() and np.isnan(many.matrix[1]).all()
     assert np.array_equal(many.matrix[2:], found.matrix[2:])
     with pytest.raises(InputError, match=r"run 1 has no gradient: .*t = "):

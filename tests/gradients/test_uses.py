@@ -50,6 +50,16 @@ def test_wrong_measurements(rows, parameters, words):
         calibrate(scenes.hinged("b", modes=2), 0.005, rows, parameters)
 
 
+def test_warnings_of_all_runs_are_said_once_and_name_the_line_of_the_caller():
+    m = scenes.hinged("b", modes=2)
+    with pytest.warns(LimitWarning) as said:
+        found = calibrate(m, 0.005, {"tip.position": measured(0.0)["tip.position"][:20]},
+                          ["beam.mass"], scheme=generalized_alpha(tolerance=1e-10, index=2))
+    assert found.runs > 2
+    assert [one.filename for one in said if "index 2" in str(one.message)] == [__file__]
+    assert len({str(one.message) for one in said}) == len(said)
+
+
 def test_deviations_are_a_dict():
     with pytest.raises(InputError, match="deviations is 3: give a dict"):
         calibrate(scenes.hinged("b", modes=2), 0.005, {"tip.position.x": [[0.0, 1.0]]},

@@ -116,7 +116,7 @@ def test_packed_products(straight, shared):
     if shared == 1.0:
         packed = numbers_of_all(row[:, 0].copy())
     if straight and shared == 1.0:
-        kept = write_shared_address(packed.rows[0])
+        kept = write_shared_address(packed.rows[0], np.zeros(len(row), dtype=bool), row)
         assert packed.rows[0, :1].view(np.int64) == kept.ctypes.data
     elif straight:
         write_address(row[:, 0].copy(), np.ptp(row, axis=1) > 0.0, packed.values)

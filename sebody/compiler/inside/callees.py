@@ -91,6 +91,7 @@ class _CalleeLowering(_EntryLowering):
         # kernels are slower by a twentieth where their products are not optimized on their own
         library.optimized = in_room(state.func_id.func, KERNELS)
         state.library, flags = library, state.flags
+        flags.noalias = getattr(state.func_id.func, "apart", False)
         flags.no_cpython_wrapper = flags.no_cfunc_wrapper = flags.no_compile = True
         super().run_pass(state)
         lowered, key = state["cr"], object()

@@ -8,23 +8,27 @@ from sebody.compiler.inside.names import CFunc, normalize_signature
 from sebody.compiler.inside.pipeline import KernelPasses
 
 
-class _Own(FunctionCache):
-    kind = "lanes"
-
-
-class _Shared(FunctionCache):
-    kind = "shared"
+class _Cache(FunctionCache):
+    def __init__(self, function: Callable, made_from: str, kind: str):
+        super().__init__(function, made_from)
+        self.kind = kind
 
 
 def kernel_in_lanes(function: Callable, signature, options: dict, made_from: str,
-                    shared: bool) -> CFunc:
-    """A kernel of a signature with lanes; the attribute `address` is that of its machine code."""
+                    kind: str) -> CFunc:
+    """A kernel of a signature with lanes; the attribute `address` is that of its machine code.
+
+    Parameters
+    ----------
+    kind : str
+        Of versions of the kernel, in the names of files.
+    """
     made = CFunc(function, normalize_signature(signature), {}, options, KernelPasses)
-    made._cache = (_Shared if shared else _Own)(function, made_from)
+    made._cache = _Cache(function, made_from, kind)
     made.compile()
     return made
 
 
-def is_kept_in_lanes(path: Path, made_from: str, shared: bool) -> bool:
+def is_kept_in_lanes(path: Path, made_from: str, kind: str) -> bool:
     """Whether the kernel of a file was compiled for lanes; the file is not imported."""
-    return is_kept(path, "kernel", made_from, (_Shared if shared else _Own).kind)
+    return is_kept(path, "kernel", made_from, kind)

@@ -358,3 +358,12 @@ def as_lanes(typingctx, pointer):
     def codegen(context, builder, sig, args):
         return builder.bitcast(args[0], VECTOR.as_pointer())
     return types.CPointer(lanes)(types.CPointer(types.float64)), codegen
+
+
+@intrinsic
+def lanes_at(typingctx, pointer):
+    """Pointer to lanes, whose address is the bits of a number."""
+    def codegen(context, builder, sig, args):
+        address = builder.load(builder.bitcast(args[0], _WORD.as_pointer()))
+        return builder.inttoptr(address, VECTOR.as_pointer())
+    return types.CPointer(lanes)(types.CPointer(types.float64)), codegen

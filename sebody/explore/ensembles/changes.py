@@ -1,7 +1,7 @@
 """Changes of a model that is built: how each quantity of a part is set and put back."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,26 +9,12 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.model.contacts import SLOW
-from sebody.model.control_parts import Controller
-from sebody.model.history_rows import rows_of
-from sebody.model.impacts import LEAST, damping_of, restitution_of
 from sebody.model.model import Model
-from sebody.model.parts import DofBlock, Element, Joint, Motion, Node, Superelement
-from sebody.model.time_functions import TimeFunction, time_function
+from sebody.model.parts import DofBlock, Element, Joint, Node, Superelement
 from sebody.model.variants.copying import exchange
 from sebody.reduction import ReducedBody
 from sebody.reduction.scaling import scaled
 
-# what can be varied of springs, and the constant of their kernels
-OF_SPRINGS = {"stiffness": "k", "damping": "c", "cubic": "k3", "length": "length", "rest": "rest",
-              "turning_stiffness": "kt", "turning_damping": "ct"}
-SIGNED = {"rest"}       # of these, what may be negative
-# what can be varied of contacts, stops, gears and friction: constants of their kernels, and those
-# of them that may be negative
-OF_CONTACTS = ("coefficient", "static", "radius", "preload", "bristle", "stiffness", "exponent",
-               "lower", "upper", "ratio", "level", "size")
-SIGNED_LIMITS = {"lower", "upper", "ratio", "level"}
 MOTION, BODIES, LOADS = "motion", "bodies", "loads"     # what a change has an effect on
 
 
@@ -93,7 +79,7 @@ class Handle:
         return found
 
 
-def _attribute(owner: object, attribute: str, touches: str, base: NDArray | None = None,
+def attribute_of(owner: object, attribute: str, touches: str, base: NDArray | None = None,
                made: Callable[[NDArray], Any] = np.array, **bounds: float) -> Handle:
     """Handle of an attribute that is replaced by ``made(value)``."""
     before = getattr(owner, attribute)
@@ -102,9 +88,22 @@ def _attribute(owner: object, attribute: str, touches: str, base: NDArray | None
                   lambda: setattr(owner, attribute, before), touches, **bounds)
 
 
+def constants_of(element: Element, made: Callable[[NDArray], dict], touches: str,
+               base: NDArray, **bounds: float) -> Handle:
+    """Handle of some constants of an element; other handles may have set others."""
+    before = element.constants
+
+    def assign(value: NDArray) -> None:
+        element.constants = {**element.constants, **made(value)}
+
+    def put_back() -> None:
+        element.constants = before
+    return Handle(base, assign, put_back, touches, **bounds)
+
+
 def gravity(model: Model) -> Handle:
     """Acceleration of free fall."""
-    return _attribute(model, "gravity_field", LOADS)
+    return attribute_of(model, "gravity_field", LOADS)
 
 
 # nodes and joints
@@ -112,12 +111,12 @@ def gravity(model: Model) -> Handle:
 
 def position(model: Model, node: Node, name: str) -> Handle:
     """Initial position."""
-    return _attribute(_dof_block(node, "position", name), "start", MOTION)
+    return attribute_of(_dof_block(node, "position", name), "start", MOTION)
 
 
 def rotation(model: Model, node: Node, name: str) -> Handle:
     """Initial rotation."""
-    return _attribute(_dof_block(node, "rotation", name), "start", MOTION)
+    return attribute_of(_dof_block(node, "rotation", name), "start", MOTION)
 
 
 def velocity(model: Model, node: Node, name: str) -> Handle:
@@ -138,14 +137,14 @@ def joint_position(model: Model, joint: Joint, name: str) -> Handle:
                          "follows from its bodies: vary positions of nodes, or build the model "
                          "anew")
     if any(fixed in one.dof_blocks for one in joint.constraints):
-        return _attribute(fixed, "start", MOTION)
+        return attribute_of(fixed, "start", MOTION)
     for one in joint.constraints:
         if one.kind.endswith("coincident_ground"):
-            return _constants(one, lambda place: {"c": place}, MOTION,
+            return constants_of(one, lambda place: {"c": place}, MOTION,
                               np.array(one.constants["c"], dtype=float))
     if joint.kind == "drive" or own is None or not own.fixed:
         raise InputError(f"{name}: {joint.name!r} holds no position: vary that of its node")
-    return _attribute(own, "start", MOTION)     # the joint has no equations for it
+    return attribute_of(own, "start", MOTION)     # the joint has no equations for it
 
 
 def _dof_block(node: Node, kind: str, name: str) -> DofBlock:
@@ -219,138 +218,5 @@ def _check_like(name: str, value: ReducedBody, base: ReducedBody) -> None:
 def rigid_mass(model: Model, body: Element, name: str) -> Handle:
     """Factor of the mass and inertia of a rigid body."""
     before = body.constants
-    return _constants(body, lambda factor: {k: factor * np.asarray(v) for k, v in before.items()},
+    return constants_of(body, lambda factor: {k: factor * np.asarray(v) for k, v in before.items()},
                       BODIES, np.array(1.0), above=0.0)
-
-
-# loads, springs and drives
-
-
-def _constants(element: Element, made: Callable[[NDArray], dict], touches: str,
-               base: NDArray, **bounds: float) -> Handle:
-    """Handle of some constants of an element; other handles may have set others."""
-    before = element.constants
-
-    def assign(value: NDArray) -> None:
-        element.constants = {**element.constants, **made(value)}
-
-    def put_back() -> None:
-        element.constants = before
-    return Handle(base, assign, put_back, touches, **bounds)
-
-
-def law_parameters(model: Model, controller: Controller, name: str) -> Handle:
-    """Handle of the numbers of a controller's law; infinite ones, such as limits, stay."""
-    numbers = np.array(controller.parameters, dtype=float)
-    finite = np.isfinite(numbers)
-    if not finite.any():
-        raise InputError(f"{name}: the law of {controller.name!r} has no parameters")
-
-    def assign(value: NDArray) -> None:
-        changed = numbers.copy()
-        changed[finite] = value
-        model.controllers[controller.name] = replace(controller, parameters=changed)
-
-    def put_back() -> None:
-        model.controllers[controller.name] = controller
-    return Handle(numbers[finite], assign, put_back, LOADS)
-
-
-def load_amplitude(model: Model, load: Element, name: str) -> Handle:
-    """Factor of a force, torque or mode force."""
-    direction = next((c for c in ("d", "factor") if c in load.constants), None)
-    if direction is None:
-        raise InputError(f"{name}: {load.name!r} is not a force or torque: it has no amplitude")
-    before = np.array(load.constants[direction], dtype=float)
-    return _constants(load, lambda factor: {direction: factor * before}, LOADS, np.array(1.0))
-
-
-def spring_constant(quantity: str) -> Callable[[Model, Element, str], Handle]:
-    """Handle of a constant of springs and dampers."""
-    constant = OF_SPRINGS[quantity]
-
-    def make(model: Model, spring: Element, name: str) -> Handle:
-        if constant not in spring.constants:
-            raise InputError(f"{name}: {spring.name!r} has no {quantity}")
-        bound = {} if quantity in SIGNED else {"least": 0.0}
-        return _constants(spring, lambda value: {constant: value}, LOADS,
-                          np.array(spring.constants[constant], dtype=float), **bound)
-    return make
-
-
-def contact_constant(constant: str) -> Callable[[Model, Element, str], Handle]:
-    """Handle of a constant of contacts and friction; break-away stays in proportion to sliding."""
-    def make(model: Model, contact: Element, name: str) -> Handle:
-        if constant not in contact.constants or not np.isfinite(contact.constants[constant]):
-            raise InputError(f"{name}: {contact.name!r} has no {constant}")
-        base = np.array(contact.constants[constant], dtype=float)
-        bound = {} if constant in SIGNED_LIMITS else {"least": 0.0}
-        if constant != "coefficient":
-            return _constants(contact, lambda value: {constant: value}, LOADS, base, **bound)
-        more = float(contact.constants["static"]) / float(base) if base > 0 else 1.0
-        return _constants(contact, lambda value: {"coefficient": value, "static": more * value},
-                          LOADS, base, **bound)
-    return make
-
-
-def restitution(model: Model, contact: Element, name: str) -> Handle:
-    """Handle of the restitution of a contact, stop or gear, at the speed it was given for."""
-    if "damping" not in contact.constants or "slow" not in contact.constants:
-        raise InputError(f"{name}: {contact.name!r} has no restitution")
-    v = contact.number("slow") / SLOW
-    base = np.array(restitution_of(contact.number("damping"), v))
-    return _constants(contact, lambda e: {"damping": damping_of(float(e), v, name)}, LOADS, base,
-                      least=LEAST, most=1.0)
-
-
-def backlash(model: Model, gear: Element, name: str) -> Handle:
-    """Handle of the play of a pair of gears."""
-    if "ratio" not in gear.constants:
-        raise InputError(f"{name}: {gear.name!r} is no gear")
-    return _constants(gear, lambda play: {"lower": -play / 2, "upper": play / 2}, LOADS,
-                      np.array(2.0 * float(gear.constants["upper"])), least=0.0)
-
-
-def load_table(model: Model, load: Element, name: str) -> Handle:
-    """Values of a load's table, at its times."""
-    if load.time_function is None:
-        raise InputError(f"{name}: {load.name!r} has no time function")
-    return _table(load, name, LOADS)
-
-
-def _table(element: Element, name: str, touches: str) -> Handle:
-    before = element.time_function
-    rows = None if before.functions or before.waves else rows_of(before.times, before.pieces)
-    if rows is None or len(rows) < 2:
-        raise InputError(f"{name}: the time function of {element.name!r} is not a table of values: "
-                         "vary the amplitude instead")
-
-    def made(values: NDArray) -> TimeFunction:
-        # the corners of the table as built: runs that have the same ones begin with a copy
-        return replace(time_function(np.column_stack([rows[:, 0], values])), corners=before.corners)
-    return _attribute(element, "time_function", touches, rows[:, 1], made)
-
-
-def drive_amplitude(model: Model, drive: Joint | tuple[DofBlock, Motion], name: str) -> Handle:
-    """Factor of a prescribed motion."""
-    motion = drive if isinstance(drive, Joint) else drive[1]
-    before = motion.time_function
-    if before.functions:
-        raise InputError(f"{name}: the motion of {motion.name!r} is a function of time: give a "
-                         "table or a ready profile to vary its amplitude")
-
-    def made(factor: NDArray) -> TimeFunction:
-        f = float(factor)
-        return replace(before, pieces=tuple(tuple(f * c for c in p) for p in before.pieces),
-                       waves=tuple((f * A, w, p) for A, w, p in before.waves))
-    if isinstance(drive, Joint):
-        return _attribute(drive.constraints[0], "time_function", MOTION, np.array(1.0), made)
-    dof_block, motions = drive[0], list(drive[0].motions)
-
-    def assign(value: NDArray) -> None:
-        dof_block.motions = [motion._replace(time_function=made(value)) if m is motion else m
-                           for m in dof_block.motions]
-
-    def put_back() -> None:
-        dof_block.motions = motions
-    return Handle(np.array(1.0), assign, put_back, MOTION)

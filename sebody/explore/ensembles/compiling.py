@@ -15,7 +15,7 @@ from sebody.engine.lanes import loop
 from sebody.engine.lanes.arrays import Columns, Scratch, empty, in_lanes
 from sebody.engine.lanes.matrix import Alone
 from sebody.engine.offsets import Offsets
-from sebody.kernels.lanes.kernel import address_in_lanes, is_compiled
+from sebody.kernels.lanes.kernel import Own, address_in_lanes, is_compiled
 from sebody.kernels.loader import find, load
 from sebody.runs.first_run import SECONDS_A_LETTER, smallest
 from sebody.runs.schemes import generalized_alpha
@@ -25,27 +25,27 @@ LOOP_SECONDS = 7.0              # of one processor
 _lock = Lock()
 
 
-def prepare(kernels: Iterable[tuple[str, bool]]) -> None:
+def prepare(kernels: Iterable[tuple[str, Own]]) -> None:
     """Compile kernels and the loop for lanes where the cache lacks them; a line says so.
 
     Parameters
     ----------
-    kernels : iterable of (str, bool)
-        Names, and whether constants are those of all members.
+    kernels : iterable of (str, parts)
+        Names, and which constants are lanes.
     """
     with _lock:
-        missing = [(name, shared) for name, shared in sorted(set(kernels))
-                   if not is_compiled(find(name), shared)]
-        jobs = [Job(Task(f"{name} in lanes", f"{__name__}:compile_kernel", (name, shared)),
-                    SECONDS_A_LETTER * find(name).stat().st_size) for name, shared in missing]
+        missing = [(name, own) for name, own in dict.fromkeys(kernels)
+                   if not is_compiled(find(name), own)]
+        jobs = [Job(Task(f"{name} in lanes", f"{__name__}:compile_kernel", (name, own)),
+                    SECONDS_A_LETTER * find(name).stat().st_size) for name, own in missing]
         if not way().is_compiled(loop.advance):
             jobs.append(Job(Task("loop in lanes", f"{__name__}:compile_loop"), LOOP_SECONDS))
         compile_apart(jobs, "what makes eight runs at a time", Path(loop.__file__))
 
 
-def compile_kernel(name: str, shared: bool) -> None:
+def compile_kernel(name: str, own: Own) -> None:
     """Compile a kernel for lanes here, or find it in the cache."""
-    address_in_lanes(load(name), shared)
+    address_in_lanes(load(name), own)
 
 
 def compile_loop() -> None:

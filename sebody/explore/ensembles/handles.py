@@ -25,7 +25,7 @@ from typing import Any, NamedTuple
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.explore.ensembles import changes
+from sebody.explore.ensembles import changes, load_changes
 from sebody.explore.ensembles.changes import Handle
 from sebody.model.model import Model
 from sebody.spelling import unknown
@@ -74,7 +74,8 @@ def handles(model: Model) -> Iterable[str]:
 
 
 def _springs(model: Model) -> dict[str, Any]:
-    return {e.name: e for e in model.loads if e.constants.keys() & set(changes.OF_SPRINGS.values())}
+    constants = set(load_changes.OF_SPRINGS.values())
+    return {e.name: e for e in model.loads if e.constants.keys() & constants}
 
 
 def _contacts(model: Model) -> dict[str, Any]:
@@ -94,17 +95,19 @@ KINDS = (
         "stiffness": changes.body_factor("stiffness"), "mass": changes.body_factor("mass"),
         "damping": changes.body_factor("damping"), "reduced": changes.whole_body}),
     Kind("rigid body", lambda model: model.rigid_bodies, {"mass": changes.rigid_mass}),
-    Kind("drive", _drives, {"amplitude": changes.drive_amplitude}),
+    Kind("drive", _drives, {"amplitude": load_changes.drive_amplitude}),
     Kind("joint", lambda model: {j.name: j for j in model.joints}, {
         "position": changes.joint_position}),
-    Kind("spring", _springs, {quantity: changes.spring_constant(quantity)
-                              for quantity in changes.OF_SPRINGS}),
+    Kind("spring", _springs, {quantity: load_changes.spring_constant(quantity)
+                              for quantity in load_changes.OF_SPRINGS}),
     Kind("contact, stop or friction", _contacts, {
-        **{constant: changes.contact_constant(constant) for constant in changes.OF_CONTACTS},
-        "restitution": changes.restitution, "backlash": changes.backlash}),
-    Kind("controller", lambda model: model.controllers, {"parameters": changes.law_parameters}),
+        **{constant: load_changes.contact_constant(constant)
+           for constant in load_changes.OF_CONTACTS},
+        "restitution": load_changes.restitution, "backlash": load_changes.backlash}),
+    Kind("controller", lambda model: model.controllers, {
+        "parameters": load_changes.law_parameters}),
     Kind("load", lambda model: {e.name: e for e in model.loads if e.law is None}, {
-        "amplitude": changes.load_amplitude, "table": changes.load_table}),
+        "amplitude": load_changes.load_amplitude, "table": load_changes.load_table}),
 )
 
 

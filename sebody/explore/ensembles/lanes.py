@@ -15,8 +15,9 @@ from sebody.explore.ensembles.member import Copies, Course, Form
 from sebody.explore.ensembles.outputs import Folds, Output
 from sebody.explore.ensembles.shared_constants import (
     kernels_of_batches,
+    own_parts,
+    own_places,
     packed_rows,
-    shared_rows,
     varied_numbers,
 )
 from sebody.explore.ensembles.start_values import Image
@@ -57,10 +58,9 @@ class Lanes:
         image, one = copies.image, copies.image.template
         buffer = empty(image.offsets.size)
         self._numbers = numbers(buffer)
-        self._flat = self._numbers.reshape(-1)
-        shared = shared_rows(image)
-        self.system = _with_kernels(in_lanes(one.system, image.offsets, buffer), image, shared)
-        self._pointed = self._write_constants(shared)
+        self.system = in_lanes(one.system, image.offsets, buffer)
+        self._shared, self._pointed = self._write_constants()
+        self.system = _with_kernels(self.system, image, self._shared)
         self.state = in_lanes(one.state, image.offsets, buffer)
         self._scratch = Scratch(frames=empty(one.state.frames.size),
                                 moved=empty(one.state.moved.size),
@@ -84,32 +84,32 @@ class Lanes:
                        if one.kind != "history" and forms[one.quantity].columns is not None}
         self.courses, self.ended = [], False
 
-    def _write_constants(self, shared: Mapping[int, Mapping[int, int]]) -> list[NDArray]:
-        """Constants that members share, one behind the other, and straight code of all.
+    def _write_constants(self) -> tuple[NDArray, list[NDArray]]:
+        """Write straight code of all bodies.
 
         Returns
         -------
-        list
-            Arrays that constants point to.
+        shared : ndarray
+            Constants of the model as built, for bodies whose constants members share.
+        pointed : list
+            Arrays that these constants point to.
         """
         image = self.copies.image
-        first, flat = image.offsets.of(image.template.system.constants).start, self._flat
-        for rows in shared.values():
-            for start, size in rows.items():
-                own = slice(first + start, first + start + size)
-                flat[MEMBERS * own.start:][:size] = image.floats[own]
+        first, shared = image.offsets.of(image.template.system.constants), own_parts(image)
         varied, kept = varied_numbers(image), {}
         floats = np.where(varied & (image.floats == 0.0), 1.0, image.floats)    # zero in some alone
+        numbers_of_all = floats[first].copy()
         for batch, place in packed_rows(image):
+            given = floats[place], varied[place], self._numbers[place]
             if batch not in shared:
-                write_address(floats[place], varied[place], self._numbers[place])
-                continue
-            size, row = place.stop - place.start, max(
-                start for start in shared[batch] if first + start <= place.start)
-            begin = MEMBERS * (first + row) + place.start - first - row
-            if begin not in kept:       # bodies that are alike have one row
-                kept[begin] = write_shared_address(flat[begin:begin + size])
-        return list(kept.values())
+                write_address(*given)
+            elif place.start not in kept:       # bodies that are alike have one row
+                own = numbers_of_all[place.start - first.start:place.stop - first.start]
+                kept[place.start] = write_shared_address(own, *given[1:])
+        for place in own_places(image):
+            numbers_of_all[place.start - first.start:][:1].view(np.int64)[0] = (
+                self._numbers[place].ctypes.data)
+        return numbers_of_all, list(kept.values())
 
     def _own_places(self) -> NDArray:
         """Places in the buffer of what members begin with: parameters, and their state."""
@@ -130,7 +130,8 @@ class Lanes:
         factors = state.inverse if self.copies.dense else state.matrix
         bodies = int(system.at_J[system.first_joint[0]]) if system.linked[0] == 1 else 0
         return Alone(self.copies.system, self.copies.state, self.copies.floats, self._numbers,
-                     taken=_places(image, *taken), returned=_places(image, *made, factors, of_parameters=False),
+                     taken=_places(image, *taken),
+                     returned=_places(image, *made, factors, of_parameters=False),
                      J=np.zeros((MEMBERS, bodies)))
 
     def begin(self, changes: NDArray) -> NDArray:
@@ -225,14 +226,15 @@ def _columns(forms: Mapping[str, Form], count: int) -> NDArray:
     return np.unique(np.concatenate([[RECORD_T], *(form.columns for form in forms.values())]))
 
 
-def _with_kernels(system: System, image: Image, shared: Mapping[int, Mapping[int, int]]) -> System:
-    """A system that calls kernels for lanes; rows that members share lie one behind the other."""
+def _with_kernels(system: System, image: Image, constants: NDArray) -> System:
+    """A system that calls kernels for lanes; of bodies that share constants, with these."""
     members = {name: getattr(system, name) for name in System.__annotations__}
     members["address"] = np.array([address_in_lanes(load(name), own)
                                    for name, own in kernels_of_batches(image)])
     members["index"] = system.index.copy()
-    for b in shared:
+    away = (constants.ctypes.data - system.constants.ctypes.data) // constants.itemsize
+    for b in own_parts(image):
         first, stride = int(system.at_index[b]), int(system.stride[b])
         end = first + stride * int(system.count[b])
-        members["index"][first + AT_CONSTANTS:end:stride] *= MEMBERS
+        members["index"][first + AT_CONSTANTS:end:stride] += away
     return System(**members)

@@ -1,10 +1,13 @@
 """Which constants of bodies all members of an ensemble share, and how lanes hold them.
 
-A kernel for lanes reads eight numbers of a constant, 64 bytes. Of bodies that no parameter changes
-another version of the kernel reads one number for all members.
+A kernel for lanes reads eight numbers of a constant, 64 bytes. Of bodies whose constants no
+parameter changes another version of the kernel reads one number for all members. Where a parameter
+changes few of them, these are lanes: entries of packed matrices, which straight code reads, and
+some parts, whose first number among the shared ones is the address of the lanes.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +19,9 @@ from sebody.explore.ensembles.choice import kernels_of
 from sebody.explore.ensembles.start_values import Image
 from sebody.kernels.loader import load
 
+MOST_PARTS = 4      # of a body's constants that parameters change; if more, all are lanes
+Own = tuple[str, ...] | None    # names of parts; None: all
+
 
 class Packed(NamedTuple):
     """A row of packed matrices among the constants of a body."""
@@ -24,37 +30,40 @@ class Packed(NamedTuple):
     place: slice        # in the buffer of all numbers
 
 
-def kernels_of_batches(image: Image) -> list[tuple[str, bool]]:
-    """The kernel of each batch of elements, and whether its constants are shared."""
+def kernels_of_batches(image: Image) -> list[tuple[str, Own]]:
+    """The kernel of each batch of elements, and which of its constants are lanes."""
     names = {load(name).kernel.address: name for name in kernels_of(image.template.model)}
-    shared = shared_rows(image)
-    return [(names[address], b in shared)
+    own = own_parts(image)
+    return [(names[address], own.get(b))
             for b, address in enumerate(image.template.system.address.tolist())]
 
 
-def shared_rows(image: Image) -> dict[int, dict[int, int]]:
-    """Of batches of bodies that no parameter changes, the sizes of rows of constants by place."""
-    system, found = image.template.system, {}
-    varied = varied_numbers(image)
-    first = image.offsets.of(system.constants).start
-    for b in range(int(system.first_joint[0])):
-        rows = {int(index[AT_CONSTANTS]): _row(image, index)[0] for index in rows_of(image, b)}
-        others = {int(index[AT_CONSTANTS]) for other in range(len(system.address)) if other != b
-                  for index in rows_of(image, other)}
-        if not others.intersection(rows) and not any(
-                varied[first + start:first + start + size].any() for start, size in rows.items()):
-            found[b] = rows
+def own_parts(image: Image) -> dict[int, Own]:
+    """Of batches of bodies that share constants, the parts of which members have their own."""
+    varied, found = varied_numbers(image), {}
+    for packed in packed_rows(image):
+        varied[packed.place] = False
+    for b in range(int(image.template.system.first_joint[0])):
+        parts = {name for index in rows_of(image, b) for name, place in _parts(
+            image, index, _read_parts).items() if varied[place].any()}
+        if len(parts) <= MOST_PARTS:
+            found[b] = tuple(sorted(parts))
     return found
+
+
+def own_places(image: Image) -> Iterator[slice]:
+    """Where these parts are in the buffer of all numbers."""
+    for b, names in own_parts(image).items():
+        for index in rows_of(image, b):
+            yield from _parts(image, index, lambda kernel, names=names: names).values()
 
 
 def packed_rows(image: Image) -> Iterator[Packed]:
     """The packed matrices of all bodies."""
-    system = image.template.system
-    for b in range(int(system.first_joint[0])):
+    for b in range(int(image.template.system.first_joint[0])):
         for index in rows_of(image, b):
-            first = image.offsets.of(system.constants).start + int(index[AT_CONSTANTS])
-            for place in _row(image, index)[1]:
-                yield Packed(b, slice(first + place.start, first + place.stop))
+            yield from (Packed(b, place)
+                        for place in _parts(image, index, _packed_parts).values())
 
 
 def varied_numbers(image: Image) -> NDArray:
@@ -72,10 +81,28 @@ def rows_of(image: Image, batch: int) -> NDArray:
     return system.index[first:first + size].reshape(count, -1)
 
 
-def _row(image: Image, index: NDArray) -> tuple[int, list[slice]]:
-    """Size of the constants of a body, and where the packed matrices are among them."""
+def _parts(image: Image, index: NDArray, chosen: Callable) -> dict[str, slice]:
+    """Where some parts of the constants of a body are in the buffer of all numbers.
+
+    Parameters
+    ----------
+    chosen : callable
+        Names of the parts, from a kernel's module.
+    """
     body = list(image.template.model.bodies.values())[index[AT_FRAME]]
-    counts, row = counts_of(body), Row("constants", load(body.kernel).CONSTANTS)
-    places = row.slices(counts)
-    return row.size(counts), [places[part.name] for part in row.parts
-                              if part.packed and part.size(counts)]
+    kernel = load(body.kernel)
+    counts, row = counts_of(body), Row("constants", kernel.CONSTANTS)
+    names, places = chosen(kernel), row.slices(counts)
+    first = image.offsets.of(image.template.system.constants).start + int(index[AT_CONSTANTS])
+    return {part.name: slice(first + places[part.name].start, first + places[part.name].stop)
+            for part in row.parts if part.name in names and part.size(counts)}
+
+
+def _packed_parts(kernel: ModuleType) -> set[str]:
+    return {part.name for part in kernel.CONSTANTS if part.packed}
+
+
+def _read_parts(kernel: ModuleType) -> frozenset[str]:
+    from sebody.kernels.lanes.text import read_parts  # imports the lanes
+
+    return read_parts(kernel)

@@ -1,4 +1,4 @@
-"""Kernels compiled for lanes, from the text they have."""
+"""Kernels compiled for lanes, from the text they have, for ensembles without matrices."""
 
 from functools import cache
 from pathlib import Path
@@ -12,6 +12,7 @@ from sebody.compiler.inside.lanes import lanes
 from sebody.compiler.sources import kernel_hash
 from sebody.contract.layout import ARGUMENTS
 from sebody.kernels.lanes import frame_search, packed_products, products, rotations
+from sebody.kernels.lanes.text import kernel_text
 
 # imported: puts in place what kernels call
 CALLED = frame_search, packed_products, products, rotations
@@ -19,22 +20,34 @@ CALLED = frame_search, packed_products, products, rotations
 _POINTERS = {"int64": types.CPointer(types.int64), "float64": types.CPointer(lanes)}
 
 
+Own = tuple[str, ...] | None     # parts of the constants in lanes; None: all of them
+
+
 @cache
-def address_in_lanes(module: ModuleType, shared: bool = False) -> int:
+def address_in_lanes(module: ModuleType, own: Own = None, matrices: bool = False) -> int:
     """Address of a kernel for lanes; compiled, or read from the cache, where it is asked for.
 
     Parameters
     ----------
-    shared : bool
-        Whether constants of elements are numbers that all members share.
+    own : tuple of str or None
+        The parts of the constants that are lanes; all others are numbers that members share.
+        None: all constants are lanes.
+    matrices : bool
+        Whether it has matrices, too: those of an ensemble's members are made one by one.
     """
-    return kernel_in_lanes(module.kernel.__wrapped__, _signature(shared), OF_KERNELS,
-                           kernel_hash(Path(module.__file__)), shared).address
+    return kernel_in_lanes(kernel_text(module, own or (), matrices), _signature(own is not None),
+                           OF_KERNELS, kernel_hash(Path(module.__file__)),
+                           _kind(own, matrices)).address
 
 
-def is_compiled(path: Path, shared: bool = False) -> bool:
+def is_compiled(path: Path, own: Own = None, matrices: bool = False) -> bool:
     """Whether the kernel in a file was compiled for lanes; the file is not imported."""
-    return is_kept_in_lanes(path, kernel_hash(path), shared)
+    return is_kept_in_lanes(path, kernel_hash(path), _kind(own, matrices))
+
+
+def _kind(own: Own, matrices: bool) -> str:
+    return "-".join(filter(None, ("lanes" if own is None else "shared", *(own or ()),
+                                  "matrices" * matrices)))
 
 
 def _signature(shared: bool) -> types.Type:

@@ -10,7 +10,7 @@ from sebody.contract.counts import LANES
 from sebody.kernels import packed_strips
 from sebody.kernels.instructions import WORD, call, in_lanes, short_loop, whole_vectors
 from sebody.kernels.lanes.products import NOTHING, across, behind, fused, read, write
-from sebody.kernels.lanes.straight import AT_ADDRESS, MOST_GROUPS
+from sebody.kernels.lanes.straight import AT_ADDRESS, AT_LANES, MOST_GROUPS
 from sebody.kernels.packed import COUPLED, MIRRORED, NARROW, PRODUCTS, WIDE, WIDTHS
 from sebody.kernels.packed_strips import Groups
 
@@ -38,14 +38,22 @@ class _Groups(Groups):
         return builder.select(self._points(own), apart, self._words)
 
     def straight(self):
-        """Address of straight code, and whether there is some."""
+        """Whether there is straight code."""
         builder, own = self.builder, self.builder.load(self._words)
-        if self._shared:
-            address = builder.load(builder.gep(self._apart, [builder.select(
-                self._points(own), WORD(AT_ADDRESS), WORD(0))]))
-            return address, self._points(own)
-        address = builder.load(builder.gep(self._words, [WORD(AT_ADDRESS)]))
-        return address, builder.icmp_signed("!=", address, own)
+        return self._points(own) if self._shared else builder.icmp_signed(
+            "!=", self._word(AT_ADDRESS), own)
+
+    def of_straight(self):
+        """Address of straight code, and of the entries it reads."""
+        if not self._shared:
+            return self._word(AT_ADDRESS), self._words
+        return self._word(AT_ADDRESS), self.builder.inttoptr(self._word(AT_LANES),
+                                                             VECTOR.as_pointer())
+
+    def _word(self, place):
+        """A word of the row, or of the array it points to."""
+        return self.builder.load(self.builder.gep(self._apart if self._shared else self._words,
+                                                  [WORD(place)]))
 
     def _points(self, own):
         return self.builder.icmp_signed(">", own, WORD(MOST_GROUPS))
@@ -86,11 +94,12 @@ def _clear(builder, out, count):
 
 def _straight_or(builder, matrices, x, y, out, by_strips):
     """Straight code if there is some, see `straight`."""
-    address, is_straight = _Groups(builder, matrices).straight()
-    with builder.if_else(is_straight) as (straight, others):
+    groups = _Groups(builder, matrices)
+    with builder.if_else(groups.straight()) as (straight, others):
         with straight:
             kind = ir.FunctionType(ir.VoidType(), [VECTOR.as_pointer()] * 4)
-            own = builder.bitcast(matrices, VECTOR.as_pointer())
+            address, own = groups.of_straight()
+            own = builder.bitcast(own, VECTOR.as_pointer())
             builder.call(builder.inttoptr(address, kind.as_pointer()), (own, x, y, out))
         with others:
             by_strips()

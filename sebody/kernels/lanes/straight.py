@@ -20,6 +20,7 @@ from sebody.kernels.packed import COUPLED, NARROW, WIDE, strips
 # lane of the first number of a row that has the address of its straight code, where there is some;
 # the number of groups stands in all others
 AT_ADDRESS = 1
+AT_LANES = 2        # of what the first number of a shared row points to: address of its lanes
 MOST_GROUPS = 1 << 20       # of a row; a larger number is an address
 # place of an entry, vector and place of its factor, place of its sum; its value, if all members
 # share it
@@ -119,15 +120,18 @@ def write_address(row: NDArray, varied: NDArray, lanes: NDArray) -> None:
     lanes.view(np.int64)[0, AT_ADDRESS] = address_of(entries_of(row, varied))
 
 
-def write_shared_address(row: NDArray) -> NDArray:
-    """The same of a row that all members share: it points to what is returned, and to be kept.
+def write_shared_address(row: NDArray, varied: NDArray, lanes: NDArray) -> NDArray:
+    """The same of a row that members share but for some entries, which are read from lanes.
+
+    Its first number is replaced by the address of what is returned, and to be kept: the number
+    itself, and addresses of straight code and of the lanes.
 
     Parameters
     ----------
-    row : (size,)
-        As of `packed.pack`.
+    row, varied, lanes : ndarray
+        As of `write_address`.
     """
     own = row.view(np.int64)
-    found = np.array([own[0], address_of(entries_of(row, np.zeros(len(row), dtype=bool)))])
+    found = np.array([own[0], address_of(entries_of(row, varied)), lanes.ctypes.data])
     own[0] = found.ctypes.data
     return found
