@@ -6,9 +6,11 @@ changes few of them, these are lanes: entries of packed matrices, which straight
 some parts, whose first number among the shared ones is the address of the lanes.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator
 from types import ModuleType
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +21,10 @@ from sebody.explore.ensembles.choice import kernels_of
 from sebody.explore.ensembles.start_values import Image
 from sebody.kernels.loader import load
 
+if TYPE_CHECKING:
+    from sebody.kernels.lanes.kernel import Own
+
 MOST_PARTS = 4      # of a body's constants that parameters change; if more, all are lanes
-Own = tuple[str, ...] | None    # names of parts; None: all
 
 
 class Packed(NamedTuple):
