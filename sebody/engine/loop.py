@@ -22,7 +22,13 @@ from sebody.engine.evaluate import (
 from sebody.engine.growth import grows
 from sebody.engine.guard import contact_too_fast
 from sebody.engine.matrix import solve
-from sebody.engine.newton import apply_correction, begin_with_matrix, count_matrix, want_matrix
+from sebody.engine.newton import (
+    apply_correction,
+    begin_with_matrix,
+    count_matrix,
+    take_shift,
+    want_matrix,
+)
 from sebody.engine.state import (
     BEGIN,
     CHUNK,
@@ -64,6 +70,12 @@ from sebody.engine.vectors import swap
 from sebody.engine.work import add_work, take_back_work
 
 
+@compiled
+def lead(scheme):
+    """By how much auxiliary accelerations of a restart are ahead of the state, in steps."""
+    return scheme.alpha_m - scheme.alpha_f if scheme.stabilized else 0.0
+
+
 @compiled(nogil=True)
 def advance(system, state, record, scheme, last_grid, chunk, dense):
     """Run until `last_grid`, for at most `chunk` steps, or until the caller factorizes or solves.
@@ -72,7 +84,7 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
     """
     control = state.control
     mixed = not dense and not scheme.stabilized
-    lead = scheme.alpha_m - scheme.alpha_f if scheme.stabilized else 0.0
+    ahead = lead(scheme)
     steps = 0
     reason = np.int64(NO_REASON)
     while True:
@@ -90,7 +102,7 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
                     0.0 <= state.memory[NEXT] <= state.clock.time + NEAR * state.clock.step):
                 code = call_sample(system.routines[2], system, state)
             if code == DONE and control.restart != 0:
-                code = call_restart(system.routines[1], system, state, lead, dense)
+                code = call_restart(system.routines[1], system, state, ahead, dense)
             if code != DONE:
                 return code
             if control.due == 1:
@@ -133,7 +145,7 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
                 return SOLVE
             solve(system, state, dense)     # the only call: with two calls it would not be inlined
         if control.phase == PROJECTED:
-            _take_shift(system, state)
+            take_shift(system, state)
             control.phase = READY
             continue
         verdict = apply_correction(system, state, scheme, mixed)
@@ -196,11 +208,3 @@ def _conclude(system, state, record, scheme, verdict):
             return SLOW if verdict == GIVE_UP else GAP
         back(state)         # perhaps because of the old matrix: repeat the step with a new one
     return NO_REASON
-
-
-@compiled(forceinline=True)
-def _take_shift(system, state):
-    """Take the correction for the constraints as a shift of positions; the rates are next."""
-    swap(state.residual, state.constraint_residuals)
-    for i in range(system.diagonal.size):
-        state.shift[i] = state.correction[i] * (1.0 - system.is_multiplier[i])

@@ -12,7 +12,7 @@ from sebody.compiler.decorators import compiled
 from sebody.compiler.inside.lanes import bits_of, every, some, spread, where
 from sebody.contract.layout import RECORD_ITERATIONS, RECORD_T, RESIDUAL
 from sebody.contract.member_row import RUNNING
-from sebody.engine.evaluate import run_kernels, sum_forces, to_body_axes
+from sebody.engine.evaluate import run_kernels, sum_forces, take_rates, to_body_axes
 from sebody.engine.lanes.apart import (
     APART,
     CUT,
@@ -31,10 +31,12 @@ from sebody.engine.lanes.matrix import factorize
 from sebody.engine.lanes.moved import find_moved, keep_unmoved, run_moved
 from sebody.engine.lanes.newton import begin_with_matrix, correct, watch_age
 from sebody.engine.matrix import solve
+from sebody.engine.newton import take_shift
 from sebody.engine.prediction import look_back
 from sebody.engine.state import EVALUATED, KEPT, ROTATED
 from sebody.engine.step import MEMORY, ORTHOGONAL, orthogonalize, predict
 from sebody.engine.step_control import set_end
+from sebody.engine.vectors import swap
 from sebody.engine.work import add_work
 from sebody.kernels.abi import at, pointer_to
 
@@ -96,12 +98,12 @@ def _begin_step(system, state, scheme):
 def _iterate(system, state, scratch, alone, scheme, active, dense):
     """Newton's iteration of a step, until every member has converged or given up."""
     control = state.control
-    n = system.diagonal.size
+    mixed = not dense and not scheme.stabilized
     iteration = 0
     while some(active):
         evaluated = active & (control.wanted == float(EVALUATED))
         wanted = evaluated | (active & (control.wanted == float(ROTATED)))
-        moved = (not dense and iteration > 1 and system.links.dependent.shape[0] == 0)
+        moved = mixed and iteration > 1 and system.links.dependent.shape[0] == 0
         if moved:
             find_moved(system, state, scratch, active, wanted)
         _evaluate(system, state, scratch, active, moved)
@@ -111,12 +113,29 @@ def _iterate(system, state, scratch, alone, scheme, active, dense):
                     state.forces[i] = state.residual[i]
             active = active & ~factorize(system, state, alone, scratch.frames, dense, wanted,
                                          evaluated)
+        if scheme.stabilized:
+            take_rates(system, state)
         to_body_axes(system, state.frames, state.residual, False)
-        solve(system, state, dense)
-        for i in range(n):
-            state.correction[i] = where(active, state.correction[i], spread(0.0))
-        active = correct(system, state, scheme, active, iteration, not dense)
+        _solve(system, state, active, scheme.stabilized, dense)
+        active = correct(system, state, scheme, active, iteration, mixed)
         iteration += 1
+
+
+@compiled(forceinline=True)
+def _solve(system, state, active, stabilized, dense):
+    """Solve for the corrections of the active members; with index 2 for shifts of positions first.
+    """
+    shifts = stabilized
+    while True:
+        if shifts:
+            swap(state.residual, state.constraint_residuals)
+        solve(system, state, dense)
+        for i in range(system.diagonal.size):
+            state.correction[i] = where(active, state.correction[i], spread(0.0))
+        if not shifts:
+            return
+        take_shift(system, state)
+        shifts = False
 
 
 @compiled(forceinline=True)

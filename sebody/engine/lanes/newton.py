@@ -67,7 +67,7 @@ def correct(system, state, scheme, active, iteration, mixed):
     if some(done):
         failed = failed | (done & _strayed(system, state, scheme))
         if regularized:
-            failed = failed | (done & leaves_gap(system, state, norm))
+            failed = failed | (done & leaves_gap(system, state, norm, scheme.stabilized))
     left = active & ~done & ~failed
     if some(left):
         if iteration >= MAX_ITERATIONS - 1:

@@ -29,7 +29,6 @@ class Fact(NamedTuple):
 
 FACTS = (
     Fact("motions without mass", lambda one: bool(one.system.massless[0])),
-    Fact("constraints that hold for velocities, too", lambda one: one.scheme.stabilized),
     Fact("sensors, controllers or inputs", lambda one: bool(
         one.system.control.periods.size or one.system.control.inputs.size
         or (one.system.functions[:, 0] == INPUT).any())),

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.contract.layout import RECORD_T
-from sebody.engine.loop import advance
+from sebody.engine.loop import advance, lead
 from sebody.engine.offsets import Offsets
 from sebody.engine.scalars import numbers_of, record
 from sebody.engine.state import (
@@ -32,6 +32,7 @@ from sebody.runs.sampling import Sampling
 from sebody.runs.simulation import Simulation
 
 MOST_NUMBERS = 2_000_000    # of recorded states at a time in a thread: 16 MB
+MOST_STEPS = 1_000_000_000  # in one call of the loop
 CHUNK = 0.2                 # seconds in the loop until a thread looks whether it is to stop
 Stop = Callable[[], bool]
 
@@ -102,8 +103,8 @@ class Copies:
         lanes : (size, members)
             Gets it.
         """
-        codes = beginning.begin_together(self.system, self.state, self._given, changes, self.dense,
-                                         places, lanes)
+        codes = beginning.begin_together(self.system, self.state, self._given, changes,
+                                         lead(self.scheme), self.dense, places, lanes)
         return codes == DONE
 
     def _kept_places(self) -> NDArray:
@@ -206,6 +207,7 @@ class Course:
             if code in (DONE, FAILED) or stop():
                 return code
             chunk = max(1, int(chunk * min(8.0, CHUNK / max(time.perf_counter() - began, 1e-9))))
+            chunk = min(chunk, MOST_STEPS)
 
     def take(self, rows: NDArray) -> None:
         """Read the outputs of recorded states."""

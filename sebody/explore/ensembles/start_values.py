@@ -76,7 +76,6 @@ class Image:
                     or one.held or any("teeth" in own for own in tuned)
                     or (tuned and (touched & {BODIES, MOTION}
                                    or any(name.endswith(OF_BRISTLES) for name in handles)))
-                    or one.scheme.stabilized
                     or (one.system.regularized[0] and one.system.massless_axes.any())
                     or ((constrained or one.begun) and MOTION in touched)
                     or (one.start.changed and touched & {BODIES, MOTION}))
