@@ -121,6 +121,8 @@ class State(Arrays):
     scale                 (N, padded) of the unknowns: the scaled matrix has a unit diagonal
     weight                (N,) one over `scale`: norms of corrections are weighted by these
     inverse               (n, padded n) inverse of a small matrix, scales included, by columns
+    spare                 factors of accelerations beside those of the steps, where inputs are
+                          set at samples: see `kept_factors`
     regularization            (N,) R + L of a regularized matrix, see `sebody.engine.regularization`
     constraint_columns    entries `System.constraint_columns` of the matrix, before elimination
     projected, pulled     (N,) scratch memory of projections
@@ -185,6 +187,7 @@ class State(Arrays):
     scale: NDArray
     weight: NDArray
     inverse: NDArray
+    spare: NDArray
     regularization: NDArray
     constraint_columns: NDArray
     projected: NDArray

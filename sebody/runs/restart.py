@@ -35,7 +35,7 @@ from sebody.runs.simulation import Simulation
 from sebody.runs.steps import MOST_STEPS
 from sebody.runs.tolerance import Tolerance
 
-VERSION = 5
+VERSION = 6
 TARGET = "restart file", (".npz",)      # see `files.check_target`
 SETTINGS = {"h", "every", "seconds", "scheme", "tolerance", "model"}
 OF_START = "regularized", "massless", "inertias", "massless_axes"  # of the system
@@ -45,7 +45,8 @@ OFF = 1e-6          # of a step, by which rounding may put a time off
 MOST = {"phase": SOLVED, "unit": FINEST, "level": FINEST.bit_length(), "wanted": EVALUATED,
         "reason": max(REASONS), "pivoted": 1, "adaptive": 1, "secant": 1, "regularized": 1,
         "meets": JUMP, "split": 1, "inside": 1, "restart": AHEAD, "due": 1}
-FINITE = ("rows", "now", "aux", "q_old", "R_old", "v_old", "a_old", "aux_old")
+FINITE = ("rows", "now", "aux", "q_old", "R_old", "v_old", "a_old", "aux_old", "changes", "fitted",
+          "fit")
 
 
 def save_state(run: Simulation, path: str | Path) -> Path:

@@ -77,6 +77,8 @@ class Simulation:
         The state that was given to start from.
     start : Start
         Initial velocities that were solved for, redundant constraints.
+    held : bool
+        Whether friction holds something at rest at the start.
 
     Raises
     ------
@@ -123,7 +125,7 @@ class Simulation:
                 self.watch.say(key, message)
         self.tolerance = tolerance
         self._accelerate()
-        hold(model, self.system, self.numbering, self.state, self._accelerate_again)
+        self.held = hold(model, self.system, self.numbering, self.state, self._accelerate_again)
         if tolerance is not None:
             self._choose_steps(tolerance)
         self.sampling.check(self.h, tolerance is None)

@@ -55,7 +55,7 @@ def run_moved(system, state, scratch, first_batch, last_batch):
 
 @compiled
 def keep_unmoved(system, state, scratch):
-    """Put back the forces and frames of elements that have not moved."""
+    """Put back forces, frames and kept numbers of elements that have not moved."""
     g, first, bodies = state.g, 0, system.first_joint[0]
     for b in range(system.address.size):
         width, stride = system.width[b], system.stride[b]
@@ -64,8 +64,8 @@ def keep_unmoved(system, state, scratch):
             start = system.at_g[b] + width * element
             for k in range(start, start + width):
                 g[k] = where(moved, g[k], scratch.unmoved[k])
-            if b < bodies:
-                frame = 9 * system.index[system.at_index[b] + stride * element + AT_FRAME]
-                for k in range(frame, frame + 9):
-                    state.frames[k] = where(moved, state.frames[k], scratch.frames[k])
+            place = system.index[system.at_index[b] + stride * element + AT_FRAME]
+            kept, size = (9 * place, 9) if b < bodies else (place, scratch.kept[b])
+            for k in range(kept, kept + size):
+                state.frames[k] = where(moved, state.frames[k], scratch.frames[k])
         first += system.count[b]
