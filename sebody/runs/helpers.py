@@ -49,5 +49,6 @@ def helping(system: System, state: State) -> Iterator[None]:
 def _help(system: System, state: State, thread: int) -> None:
     """Do pieces of the loop's work until it ends; sleep while there are none."""
     share = _SHARE(int(system.routines[3]))
-    while not share(system._address, state._address, HELP, thread):
+    groups = (vars(system)["_address"], vars(state)["_address"])    # as compiled code gets them
+    while not share(*groups, HELP, thread):
         time.sleep(REST)
