@@ -23,6 +23,7 @@ class Beginning(Arrays):
     slots               (k,) places of the numbers that depend on parameters
     ends                (k + 1,) where the slopes of each begin and end
     components, slopes  by which component of the parameters, and how much
+    kept                places of what elements keep, as of the last accepted state
     control, clock,     scalars and flags of the thread, and below those of the model as built
     guard, moved
     ==================  ============================================================================
@@ -34,6 +35,7 @@ class Beginning(Arrays):
     ends: NDArray
     components: NDArray
     slopes: NDArray
+    kept: NDArray
     control: NDArray
     clock: NDArray
     guard: NDArray
@@ -78,6 +80,8 @@ def end(state, given):
     for i in range(given.control.size):
         given.control[i] = given.control_built[i]
     copy(state.frames, state.frames_old)
+    for k in given.kept:        # the first step is the first that changes these
+        given.floats[k] = given.model[k]
     copy(state.aux, state.aux_old)
 
 

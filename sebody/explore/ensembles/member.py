@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from sebody.contract.layout import RECORD_T
 from sebody.engine.loop import advance
+from sebody.engine.offsets import Offsets
 from sebody.engine.scalars import numbers_of, record
 from sebody.engine.state import (
     DONE,
@@ -42,13 +43,12 @@ class Copies:
         one = image.template
         self.image, self.dense = image, one.dense
         self.floats = image.floats.copy()
-        self.system: System = image.offsets.packed(one.system, self.floats)
-        state = image.offsets.packed(one.state, self.floats)
-        self.state: State = _with_own_integers(state)
-        self._given = self._beginning()
+        self.system, self.state = arrays_of_run(one.system, one.state, image.offsets,
+                                                self.floats)
         self.exchanges = RowExchanges(self.system, self.state)
         self.sampling = Sampling(one.model, one.numbering, self.system, self.state)
         self.model, self.numbering, self.scheme = one.model, one.numbering, one.scheme
+        self._given = self._beginning()
         self._record: Record | None = None
         self.none = Record.of(self.state, 0)
 
@@ -106,6 +106,12 @@ class Copies:
                                          places, lanes)
         return codes == DONE
 
+    def _kept_places(self) -> NDArray:
+        """Places of what elements keep in `State.frames_old`, in the buffer of all numbers."""
+        places = [k for own in self.numbering.memories.values() for k in own]
+        first = self.image.offsets.of(self.image.template.state.frames_old).start
+        return first + np.array(places, dtype=np.int64)
+
     def _beginning(self) -> beginning.Beginning:
         """What runs begin with; scalars and flags are not in `floats`."""
         lines, state = self.image.lines, self.state
@@ -115,7 +121,14 @@ class Copies:
             model=self.image.floats, floats=self.floats, slots=lines.slots.astype(np.int64),
             ends=lines.slopes.indptr.astype(np.int64),
             components=lines.slopes.indices.astype(np.int64), slopes=lines.slopes.data,
+            kept=self._kept_places(),
             **whole, **{f"{name}_built": own.copy() for name, own in whole.items()})
+
+
+def arrays_of_run(system: System, state: State, offsets: Offsets, floats: NDArray
+                  ) -> tuple[System, State]:
+    """System and state of a run, with its numbers in a buffer that gets those given."""
+    return (offsets.packed(system, floats), _with_own_integers(offsets.packed(state, floats)))
 
 
 def _with_own_integers(state: State) -> State:
