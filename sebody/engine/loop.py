@@ -9,12 +9,13 @@ import numpy as np
 
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import OK, RESIDUAL, TANGENT
-from sebody.engine.calls import call_refactorize, call_restart, call_sample
+from sebody.engine.calls import call_refactorize, call_restart, call_sample, call_share
 from sebody.engine.control_data import NEXT
 from sebody.engine.evaluate import (
-    assemble,
-    assemble_moved,
+    run_elements,
+    run_moved,
     set_tangent_operators,
+    sum_forces,
     take_rates,
     to_body_axes,
 )
@@ -45,6 +46,7 @@ from sebody.engine.state import (
     PROJECT,
     PROJECTED,
     READY,
+    SHARE_MOVED,
     SLOW,
     SOLVE,
     SOLVED,
@@ -60,8 +62,6 @@ from sebody.engine.step_control import (
 )
 from sebody.engine.vectors import swap
 from sebody.engine.work import add_work, take_back_work
-
-UNMOVED = 0.03          # share of the tolerance that elements may move and keep their forces
 
 
 @compiled(nogil=True)
@@ -145,15 +145,20 @@ def _evaluate(system, state, scheme, wanted, mixed):
     """Evaluate forces and wanted element matrices of the iterate; returns the kernels' status."""
     if wanted == EVALUATED:
         set_tangent_operators(system, state)
-    if (wanted == KEPT and state.control.iteration > 1 and mixed
-            and system.links.dependent.shape[0] == 0
-            and system.control.flowing.size == 0):      # which push what has not moved
-        status = assemble_moved(system, state, UNMOVED * state.clock.target)
+    of_moved = (wanted == KEPT and state.control.iteration > 1 and mixed
+                and system.links.dependent.shape[0] == 0
+                and system.control.flowing.size == 0)       # which push what has not moved
+    if system.routines[3] != 0:
+        status = call_share(system.routines[3], system, state,
+                            SHARE_MOVED if of_moved else wanted, 0)
+    elif of_moved:
+        status = run_moved(system, state)
     else:
-        status = assemble(TANGENT if wanted == EVALUATED else RESIDUAL,
-                          RESIDUAL if wanted == KEPT else TANGENT, system, state, state.residual)
+        status = run_elements(TANGENT if wanted == EVALUATED else RESIDUAL,
+                              RESIDUAL if wanted == KEPT else TANGENT, system, state)
     if status != OK:
         return status
+    sum_forces(system, state, state.residual)
     if wanted != KEPT and system.links.dependent.shape[0] > 0:
         for i in range(state.residual.size):
             state.forces[i] = state.residual[i]

@@ -99,9 +99,10 @@ def packed_products_of(packed, x, out, factors, total, count, height):
     add_packed(pointer_to(packed.rows), pointer_to(factors.rows), pointer_to(total.rows), height)
 
 
-@pytest.mark.parametrize("straight, shared", [(False, 0.0), (True, 0.0), (True, 0.5),
-                                              (False, 1.0), (True, 1.0)])
-def test_packed_products(straight, shared):
+@pytest.mark.parametrize("straight, shared, row_of_all", [
+    (False, 0.0, False), (True, 0.0, False), (True, 0.5, False), (False, 1.0, True),
+    (True, 1.0, True), (True, 0.5, True)])
+def test_packed_products(straight, shared, row_of_all):
     """By strips and as straight code; members differ in entries, perhaps some, not in zeros."""
     rng, shape = np.random.default_rng(3), (3, 10, 9)
     count, rows, columns = shape
@@ -112,11 +113,11 @@ def test_packed_products(straight, shared):
     stacks[:, same] = stacks[0, same]
     row = np.array([pack(stack, shape) for stack in stacks]).T
     assert len(row) == packed_size(*shape)
-    packed = Given.of(row)
-    if shared == 1.0:
+    packed = lanes = Given.of(row)
+    if row_of_all:
         packed = numbers_of_all(row[:, 0].copy())
-    if straight and shared == 1.0:
-        kept = write_shared_address(packed.rows[0], np.zeros(len(row), dtype=bool), row)
+    if straight and row_of_all:         # entries that members have of their own stay in lanes
+        kept = write_shared_address(packed.rows[0], np.ptp(row, axis=1) > 0.0, lanes.values)
         assert packed.rows[0, :1].view(np.int64) == kept.ctypes.data
     elif straight:
         write_address(row[:, 0].copy(), np.ptp(row, axis=1) > 0.0, packed.values)
@@ -128,6 +129,8 @@ def test_packed_products(straight, shared):
     packed_products_of(packed, Given.of(x), out, Given.of(factors), total, count * height, height)
     found = out.values.reshape(count, height, MEMBERS)[:, :rows]
     np.testing.assert_allclose(found, np.einsum("mkrc,cm->krm", stacks, x[:columns]), atol=1e-13)
+    if row_of_all and shared < 1.0:     # matrices of members are not made from such rows
+        return
     found = total.values.reshape(-1, height, MEMBERS)[:columns, :rows]
     np.testing.assert_allclose(found, np.einsum("mkrc,km->crm", stacks, factors), atol=1e-13)
 

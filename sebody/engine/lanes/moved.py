@@ -7,8 +7,8 @@ in a member, and keeps its forces and its frame in all others.
 from sebody.compiler.decorators import compiled
 from sebody.compiler.inside.lanes import some, spread, where
 from sebody.contract.layout import AT_FRAME, RESIDUAL
-from sebody.engine.evaluate import run_part
-from sebody.engine.loop import UNMOVED
+from sebody.engine.evaluate import limit_of_moved, run_part
+from sebody.kernels.abi import pointer_to
 
 
 @compiled
@@ -18,8 +18,7 @@ def find_moved(system, state, scratch, active, wanted):
     All elements count as moved where members want matrices. Forces are remembered.
     """
     k, first, yes, no = 0, 0, spread(1.0), spread(0.0)
-    limit = UNMOVED * state.clock.target
-    limit = limit * limit / float(state.moved.size)
+    limit = limit_of_moved(state)
     for b in range(system.address.size):
         for element in range(system.count[b]):
             size = no
@@ -48,7 +47,8 @@ def run_moved(system, state, scratch, first_batch, last_batch):
                 end = begin + 1
                 while end < system.count[b] and some(scratch.moved[first + end] > 0.0):
                     end += 1
-                run_part(RESIDUAL, b, begin, end - begin, system, state)
+                run_part(RESIDUAL, b, begin, end - begin, system, state,
+                         pointer_to(state.work))
                 begin = end
         first += system.count[b]
 

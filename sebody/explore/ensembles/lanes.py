@@ -204,12 +204,13 @@ class Lanes:
         for name in ("control", "clock", "guard"):
             record = getattr(self.state, name)
             fill(record, getattr(self.copies.state, name))
-            self._begun[name] = record.base.copy()
+            own = record.base.view(np.uint8)        # bytes: names one by one take long
+            self._begun[name] = own, own.copy()
 
     def _begin_records(self) -> None:
         """Set scalars and counters to those of a member that has begun, the same for all."""
-        for name, begun in self._begun.items():
-            getattr(self.state, name).base[...] = begun
+        for own, begun in self._begun.values():
+            own[...] = begun
 
     @property
     def time(self) -> float:
