@@ -1,8 +1,9 @@
-"""Members whose step is cut go alone for some steps of the grid, and come back.
+"""Members with a rejected step go alone for some steps of the grid, and come back.
 
-A step is cut where Newton's iteration fails, at impacts, where energy grows and where loads jump.
-Then the numbers of the member are copied to the arrays of a single run, and the scalar loop makes
-the steps of the grid that the others make in lanes, until it is back at the length of theirs.
+Steps are rejected where Newton's iteration fails, at impacts and where energy grows; where loads
+jump, members go alone, too. Then the numbers of the member are copied to the arrays of a single
+run, and the scalar loop makes the steps of the grid that the others make in lanes, until it is back
+at the length of theirs.
 So a member makes the steps it would make alone.
 """
 

@@ -3,8 +3,8 @@
 Predictions, forces, matrices and corrections are the functions of the loop, compiled for lanes.
 What a member does next follows from its own numbers alone, so results do not depend on which
 members are run together: a member that has converged, or keeps its matrix, keeps its numbers while
-others go on. Members whose step is cut go alone until they can come back, see `engine.lanes.apart`.
-One that would have to ask Python gives up, and is run alone from its start.
+others go on. Members with a rejected step go alone until they can come back, see
+`engine.lanes.apart`. One that would have to ask Python gives up, and is run alone from its start.
 """
 
 
