@@ -9,6 +9,7 @@ from sebody.assembly.numbering import Numbering, record_counts, stretch
 from sebody.contract.counts import LANES, whole_vectors
 from sebody.contract.layout import COEFFICIENTS, ENERGIES, FIELD
 from sebody.engine.growth import new_guard
+from sebody.engine.kept_factors import spare
 from sebody.engine.newton import SLOWEST
 from sebody.engine.offsets import at_cache_lines
 from sebody.engine.prediction import FIT, ROWS
@@ -66,6 +67,7 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
         error_weights=zeros(total), expansion=zeros(_expansion_size(system)),
         matrix=zeros(system.rows.size + 1), scale=np.ones(total + LANES), weight=zeros(total),
         inverse=zeros((n, whole_vectors(n)) if dense else (1, 1)),
+        spare=spare(system, n, dense),
         regularization=zeros(total), constraint_columns=zeros(system.constraint_columns.size),
         projected=zeros(total),
         pulled=zeros(total),

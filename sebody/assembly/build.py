@@ -8,14 +8,16 @@ from sebody.assembly.batches import Batches, make_batches, starts
 from sebody.assembly.contracts import check_joints
 from sebody.assembly.control import control_arrays
 from sebody.assembly.equal_bodies import room_of
+from sebody.assembly.independent_parts import FEWEST
 from sebody.assembly.links import Ends, link_ends
 from sebody.assembly.numbering import Numbering, number, stretch
 from sebody.assembly.ports import port_arrays
 from sebody.assembly.structure import Structure, indices
-from sebody.contract.counts import scratch_size
+from sebody.contract.counts import LANES, scratch_size
 from sebody.contract.law_row import scratch
 from sebody.contract.layout import AT_CONSTANTS
 from sebody.engine.links import Links
+from sebody.engine.mailbox import Shared
 from sebody.engine.system import System
 from sebody.errors import InputError
 from sebody.kernels.loader import element_kernel, load
@@ -26,8 +28,8 @@ from sebody.model.parts import Element
 DENSE_LIMIT = 24        # unknowns above which elimination by blocks is faster than an inverse
 
 
-def build(model: Mechanism) -> tuple[System, Numbering]:
-    """Flat arrays of a model.
+def build(model: Mechanism, threads: int = 1) -> tuple[System, Numbering]:
+    """Flat arrays of a model; of a large one also what some threads need to share its steps.
 
     Raises
     ------
@@ -47,13 +49,16 @@ def build(model: Mechanism) -> tuple[System, Numbering]:
     own = indices(_structure(model, numbering, batches, ends))
     ports = port_arrays(numbering.time_functions, numbering.prescribed, numbering.jumps,
                         numbering.memory.inputs)
+    slots = own.system["slot_unknowns"].size
     system = System(
+        shared=Shared.of(threads if numbering.free >= FEWEST else 1, work_size(model),
+                         LANES * slots, int(own.system["width"].max()) ** 2),
         **own.system, **ports, links=Links(arm_vectors=vectors, **own.links),
         control=control_arrays(model, numbering, ports["table_at"]),
         address=np.array([batch.kernel.kernel.address for batch in batches.all]),
         index=np.array([i for batch in batches.all for row in batch.rows for i in row]),
         constants=batches.constants, rotation_at=_rotation_starts(numbering),
-        routines=np.zeros(3, dtype=np.int64),
+        routines=np.zeros(4, dtype=np.int64),
         dimension=np.array([model.dimension]), part=_parts(model, numbering),
         inertias=np.zeros(numbering.total), massless_axes=np.zeros(numbering.total),
         magnitude=_magnitude(model, numbering),

@@ -4,8 +4,9 @@ Multipliers follow unknowns they act on, so that no pivot is zero: as a rule all
 branch of a mechanism those of the body towards its end are enough. Take a body that only one joint
 holds, or only one is left when the joints of its own branches are counted out: the equations of
 this joint are independent on the body alone, and no other equation that is eliminated earlier acts
-on its unknowns there. So the multipliers go with the body, and those of many joints on one hub do
-not wait for the hub, which would couple every one with every other.
+on its unknowns there. So the multipliers go with the body where the other one is a hub: those of
+many joints on one hub do not wait for it, which would couple every one with every other. In a plain
+chain they wait for both bodies: they are fewer than the rotations that they couple.
 """
 
 from collections.abc import Iterable, Mapping
@@ -85,6 +86,7 @@ def _awaited(model: Mechanism, parts: list[Part], owners: Owners) -> dict[Elemen
     for number, bodies in enumerate(of_joint):
         for k in bodies:
             of_part[k].add(number)
+    hubs = {k for k, held in enumerate(of_part) if len(held) > 2}
     ends = [k for k, held in enumerate(of_part) if len(held) == 1]
     while ends:
         end = ends.pop()
@@ -93,7 +95,7 @@ def _awaited(model: Mechanism, parts: list[Part], owners: Owners) -> dict[Elemen
             continue
         side = _side(joints[number], end, owners)
         if side is not None:
-            awaited |= side
+            awaited |= side if hubs & of_joint[number] else {}
             for k in of_joint[number]:
                 of_part[k].discard(number)
                 if len(of_part[k]) == 1:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.assembly.independent_parts import Parts
 from sebody.contract.counts import LANES
 from sebody.engine.elimination import BLOCK
 
@@ -22,26 +23,55 @@ class Pattern(NamedTuple):
         """Number of products of blocks in an elimination."""
         return int(((self.starts[1:] - self.diagonal - 1) ** 2).sum())
 
+    def before(self, row: int) -> NDArray:
+        """Of every column, the first block that is in a block row or below it, or the end."""
+        return self.starts[:-1] + np.add.reduceat(self.rows < row, self.starts[:-1], dtype=int)
 
-def best_slots(row: NDArray, column: NDArray, groups: NDArray, n: int) -> tuple[NDArray, Pattern]:
-    """Slots of n unknowns: contiguous, or each group from a new block on if that is cheaper."""
+
+def best_slots(row: NDArray, column: NDArray, groups: NDArray, n: int,
+               parts: Parts | None = None) -> tuple[NDArray, Pattern]:
+    """Slots of n unknowns: contiguous, or each group from a new block on if that is cheaper.
+
+    The unknowns of `parts` come first, each part from a new block on.
+    """
     groups = np.unique(groups[groups < n])
-    padding = np.zeros(n, dtype=np.int64)
-    padding[groups[1:]] = -np.diff(groups) % LANES
-    choices = [np.arange(n), np.arange(n) + np.cumsum(padding)]
-    patterns = [block_pattern(slot[row], slot[column], slot[-1] + 1) for slot in choices]
+    order = np.arange(n) if parts is None else parts.order
+    place = np.empty(n, dtype=np.int64)
+    place[order] = np.arange(n)
+    firsts = np.zeros(0, dtype=np.int64) if parts is None else parts.firsts
+    padded = [_padded(n, firsts), _padded(n, np.union1d(place[groups], firsts))]
+    choices = [slots[place] for slots in padded]
+    patterns = [block_pattern(slot[row], slot[column], slot.max() + 1) for slot in choices]
     best = int(patterns[1].products < patterns[0].products)
     return choices[best], patterns[best]
 
 
-def block_pattern(row: NDArray, column: NDArray, n: int) -> Pattern:
-    """Pattern of a structurally symmetric n x n matrix with its fill.
+def _padded(n: int, firsts: NDArray) -> NDArray:
+    """Slots of n unknowns in their order; those numbered `firsts` begin a block."""
+    padding = np.zeros(n, dtype=np.int64)
+    firsts = firsts[(firsts > 0) & (firsts < n)]
+    padding[firsts] = -np.diff(firsts, prepend=0) % LANES
+    return np.arange(n) + np.cumsum(padding)
 
-    Fill: the blocks that a column has below the diagonal are added to its parent in the
+
+def block_pattern(row: NDArray, column: NDArray, n: int) -> Pattern:
+    """Pattern of a structurally symmetric n x n matrix with its fill, in blocks."""
+    across = -(-n // LANES)
+    below = filled(row // LANES, column // LANES, across)
+    i = np.array([i for rows in below for i in rows], dtype=np.int64)
+    j = np.repeat(np.arange(across), [len(rows) for rows in below])
+    keys = np.sort(np.concatenate([np.arange(across) * (across + 1), j * across + i,
+                                   i * across + j]))
+    return Pattern(np.searchsorted(keys // across, np.arange(across + 1)), keys % across,
+                   np.searchsorted(keys, np.arange(across) * (across + 1)))
+
+
+def filled(i: NDArray, j: NDArray, across: int) -> list[set[int]]:
+    """Rows below the diagonal in every column of a structurally symmetric matrix, with its fill.
+
+    Fill: the rows that a column has below the diagonal are added to its parent in the
     elimination tree, the column of the first of them.
     """
-    across = -(-n // LANES)
-    i, j = row // LANES, column // LANES
     j, i = np.divmod(np.unique((j * across + i)[i > j]), across)
     firsts, i = np.searchsorted(j, np.arange(across + 1)).tolist(), i.tolist()
     below = [set(i[first:end]) for first, end in pairwise(firsts)]
@@ -50,12 +80,7 @@ def block_pattern(row: NDArray, column: NDArray, n: int) -> Pattern:
             parent = min(rows)
             below[parent] |= rows
             below[parent].discard(parent)
-    i = np.array([i for rows in below for i in rows], dtype=np.int64)
-    j = np.repeat(np.arange(across), [len(rows) for rows in below])
-    keys = np.sort(np.concatenate([np.arange(across) * (across + 1), j * across + i,
-                                   i * across + j]))
-    return Pattern(np.searchsorted(keys // across, np.arange(across + 1)), keys % across,
-                   np.searchsorted(keys, np.arange(across) * (across + 1)))
+    return below
 
 
 def entries(pattern: Pattern, row: NDArray, column: NDArray) -> NDArray:

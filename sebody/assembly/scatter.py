@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly import elimination_pattern
 from sebody.assembly.batches import Shape
+from sebody.assembly.independent_parts import FEWEST, Parts, independent_parts, whole
 from sebody.contract.counts import LANES
 
 
@@ -43,14 +44,16 @@ def dense_layout(row: NDArray, column: NDArray, n: int) -> tuple[NDArray, dict[s
     none = np.zeros(0, dtype=np.int64)
     return np.where((row < n) & (column < n), column * n + row, n * n), {
         "rows": rows, "columns": columns, "diagonal": np.arange(n) * (n + 1), "padding": none,
-        "block_starts": none, "block_rows": none, "block_diagonal": none, "slot_unknowns": none}
+        "block_starts": none, "block_rows": none, "block_diagonal": none, "slot_unknowns": none,
+        "part_blocks": np.zeros(1, dtype=np.int64), "block_ends": none}
 
 
 def sparse_layout(row: NDArray, column: NDArray, n: int,
                   groups: NDArray) -> tuple[NDArray, dict[str, NDArray]]:
     """The same as `dense_layout`, in the blocks of an elimination; `groups` as in `Numbering`."""
     free = (row < n) & (column < n)
-    slot, pattern = elimination_pattern.best_slots(row[free], column[free], groups, n)
+    parts = _parts(row[free], column[free], n, groups)
+    slot, pattern = elimination_pattern.best_slots(row[free], column[free], groups, n, parts)
     slots = LANES * len(pattern.diagonal)
     unknowns = np.full(slots, n)
     unknowns[slot] = np.arange(n)
@@ -58,8 +61,20 @@ def sparse_layout(row: NDArray, column: NDArray, n: int,
     entries = np.full(len(row), len(rows))
     entries[free] = elimination_pattern.entries(pattern, slot[row[free]], slot[column[free]])
     diagonal = elimination_pattern.entries(pattern, np.arange(slots), np.arange(slots))
+    firsts = slot[parts.order[parts.firsts]] // LANES
     return entries, {
         "rows": unknowns[rows].astype(np.int32), "columns": unknowns[columns].astype(np.int32),
         "diagonal": diagonal[slot], "padding": diagonal[unknowns == n],
         "block_starts": pattern.starts, "block_rows": pattern.rows,
-        "block_diagonal": pattern.diagonal, "slot_unknowns": unknowns}
+        "block_diagonal": pattern.diagonal, "slot_unknowns": unknowns, "part_blocks": firsts,
+        "block_ends": pattern.before(int(firsts[-1]))}
+
+
+def _parts(row: NDArray, column: NDArray, n: int, groups: NDArray) -> Parts:
+    """The parts of a large elimination."""
+    if n < FEWEST:
+        return whole(n)
+    groups = np.union1d(groups[groups < n], 0)
+    of = np.repeat(np.arange(len(groups)), np.diff(groups, append=n))
+    return independent_parts(elimination_pattern.filled(of[row], of[column], len(groups)),
+                             groups, n)

@@ -57,6 +57,7 @@ def indices(of: Structure) -> Indices:
     own_entries, linked_entries = entries[:len(own_row)], entries[len(own_row):]
     kept = np.flatnonzero(own_entries < len(matrix["rows"]))
     places, to, table = summands(of.shapes, blocks, links["elements"], kept, own_entries[kept])
+    order, first_summands = _by_parts(of, matrix, links["elements"], table)
     first_load = sum(len(s.unknowns) * s.width ** 2 for s in of.shapes[:of.first_power])
     linked = of.coupling or bool((blocks[:, 0] < first_load).any())
     arms = len(linked_entries) - len(of.ends.arms) * of.ends.rotation_size**2
@@ -65,9 +66,32 @@ def indices(of: Structure) -> Indices:
          "is_multiplier": is_multiplier,
          "constraint_columns": _constraint_columns(matrix, is_multiplier, of.free),
          "rotated": rotated,
-         "rotated_blocks": blocks, "summands": table, "linked": np.array([int(linked)]),
+         "rotated_blocks": blocks, "summands": table[order], "linked": np.array([int(linked)]),
+         "part_summands": first_summands,
          "first_joint": np.array([of.first_joint]), "first_power": np.array([of.first_power])},
         {**links, "entries": linked_entries[:arms], "arm_entries": linked_entries[arms:]})
+
+
+def _by_parts(of: Structure, matrix: dict[str, NDArray], linked: NDArray,
+              table: NDArray) -> tuple[NDArray, NDArray]:
+    """Elements by the part of the elimination they are in, the rest behind; where each begins."""
+    parts = len(matrix["part_blocks"]) - 1
+    of_unknown = np.full(of.total, parts)
+    slots = np.flatnonzero(matrix["slot_unknowns"] < of.free)
+    of_unknown[matrix["slot_unknowns"][slots]] = np.searchsorted(
+        matrix["part_blocks"], slots // LANES, side="right") - 1
+    of_unknown[of.free:] = -1           # fixed: in none
+    of_element = [_part([int(of_unknown[u]) for u in row], parts)
+                  for shape in of.shapes for row in shape.unknowns]
+    found = np.where(table[:, 4] >= 0, parts, of_element)      # of rigid links: the rest
+    return (np.argsort(found, kind="stable"),
+            np.searchsorted(np.sort(found), np.arange(parts + 1)))
+
+
+def _part(parts: list[int], rest: int) -> int:
+    """The part that all free unknowns of an element are in, else the rest."""
+    own = {part for part in parts if part >= 0}
+    return own.pop() if len(own) == 1 else rest
 
 
 def _batch_arrays(shapes: Iterable[Shape]) -> dict[str, NDArray]:

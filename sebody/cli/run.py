@@ -43,6 +43,8 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
                         help="continue from a saved state, with its step, scheme and accuracy")
     parser.add_argument("--rho", type=float, metavar="R",
                         help="spectral radius of generalized-alpha at infinity (default 0.9)")
+    parser.add_argument("--threads", type=int, default=1, metavar="N",
+                        help="threads that share the steps of a large model (default 1)")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE",
                         dest="changes", help="change a parameter of the scene; may be repeated")
     return parser
@@ -109,12 +111,12 @@ def _simulation(scene: "Scene", options: argparse.Namespace,
     from sebody.runs.simulation import Simulation
 
     if options.resume:
-        return resume(scene.model, options.resume)
+        return resume(scene.model, options.resume, options.threads)
     index = 3 if options.index is None else options.index
     return Simulation(scene.model, _step(scene, options),
                       generalized_alpha(_rho(options), index=index),
                       1 if options.every is None else options.every,
-                      start=start)
+                      start=start, threads=options.threads)
 
 
 def _within(scene: "Scene", options: argparse.Namespace, t_end: float,
@@ -125,7 +127,8 @@ def _within(scene: "Scene", options: argparse.Namespace, t_end: float,
 
     index = 2 if options.index is None else options.index
     return simulate_within(scene.model, _step(scene, options), t_end, Tolerance(options.accuracy),
-                           generalized_alpha(_rho(options), index=index), progress, start)
+                           generalized_alpha(_rho(options), index=index), progress, start,
+                           options.threads)
 
 
 def _start(scene: "Scene", options: argparse.Namespace) -> "Result | None":

@@ -15,22 +15,25 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 
 def run(options: argparse.Namespace) -> int:
     """Compile, and print how long it takes."""
-    from sebody.assembly.equal_bodies import compile_together, lanes_exist
     from sebody.catalogue import kernel_files
-    from sebody.contract.names import SUPERELEMENT
     from sebody.kernels.loader import load
-    from sebody.runs.first_run import PARTS, compile_missing, compile_part
+    from sebody.runs.first_run import (
+        PARTS,
+        compile_missing,
+        compile_of_eight,
+        compile_part,
+        of_bodies,
+    )
     from sebody.tabular import counted
 
     began, names = time.perf_counter(), list(kernel_files())
-    together = [name for name in names if name.startswith(SUPERELEMENT)] if lanes_exist() else []
+    together = of_bodies(names)
     compile_missing(names, PARTS,
                     lambda name, seconds: print(f"  {name:60} {seconds:6.1f} s", flush=True),
                     together)
     for name in names:          # what was not worth a process, or failed in one
         load(name)
-    for name in together:
-        compile_together(name)
+    compile_of_eight(together)
     for name in PARTS:
         compile_part(name)
     print(f"{len(names)} kernels and the time loop are compiled, "

@@ -28,6 +28,12 @@ def call_sample(typingctx, address, system, state):
     return types.int64(types.int64, system, state), _call
 
 
+@intrinsic
+def call_share(typingctx, address, system, state, task, thread):
+    """Call `sebody.engine.sharing.share` at its address."""
+    return types.int64(types.int64, system, state, types.int64, types.int64), _call
+
+
 def _call(context, builder, sig, args):
     kinds = [context.get_value_type(kind) for kind in sig.args[1:]]
     function = ir.FunctionType(context.get_value_type(sig.return_type), kinds)

@@ -20,13 +20,13 @@ SMALL_PIVOT = 1e-11     # relative to the scaled matrix, whose diagonal is one
 
 
 @compiled
-def eliminate(across, starts, rows, diagonal, unknowns, matrix, column, scale):
-    """Factorize in place: L with unit diagonal blocks, U with inverted ones.
+def eliminate(first_column, end_column, starts, rows, diagonal, unknowns, matrix, column, scale):
+    """Factorize some columns of blocks in place: L with unit diagonal blocks, U with inverted ones.
 
-    All arguments but the first are pointers; `column` is scratch memory for one column of blocks,
-    `scale` the scales of the unknowns. Returns False at a small pivot.
+    All arguments but the first two are pointers; `column` is scratch memory for one column of
+    blocks, `scale` the scales of the unknowns. Returns False at a small pivot.
     """
-    for j in range(across):
+    for j in range(first_column, end_column):
         first, middle, end = starts[j], diagonal[j], starts[j + 1]
         for p in range(first, end):
             source, target = at(matrix, BLOCK * p), at(column, BLOCK * rows[p])
@@ -81,13 +81,21 @@ def invert_block(D, inverse, unknowns, scale):
 
 
 @compiled
-def substitute(across, starts, rows, diagonal, factors, x):
-    """Solve in place with the factors; x is in the order of the slots."""
-    for j in range(across):
-        for p in range(diagonal[j] + 1, starts[j + 1]):
+def substitute(first, end, ends, rows, diagonal, factors, x):
+    """Solve for some columns of blocks with L, in place; x is in the order of the slots.
+
+    `ends` has the end of the blocks of every column that are used.
+    """
+    for j in range(first, end):
+        for p in range(diagonal[j] + 1, ends[j]):
             subtract_block_times(at(x, LANES * rows[p]), at(factors, BLOCK * p), at(x, LANES * j))
-    for k in range(across):
-        j = across - 1 - k
+
+
+@compiled
+def substitute_back(first, end, starts, rows, diagonal, factors, x):
+    """The same with U."""
+    for k in range(end - first):
+        j = end - 1 - k
         y, inverse = at(x, LANES * j), at(factors, BLOCK * diagonal[j])
         a, b, c, d = y[0], y[1], y[2], y[3]
         for i in range(LANES):
@@ -97,15 +105,73 @@ def substitute(across, starts, rows, diagonal, factors, x):
 
 
 @compiled
+def eliminate_columns(first, end, system, state, column):
+    """Factorize some columns of blocks of `State.matrix`; `column` is scratch memory."""
+    return eliminate(first, end, pointer_to(system.block_starts), pointer_to(system.block_rows),
+                     pointer_to(system.block_diagonal), pointer_to(system.slot_unknowns),
+                     pointer_to(state.matrix), column, pointer_to(state.scale))
+
+
+@compiled
 def solve(system, state, right, x):
     """Solve for all unknowns with the factors in `State.matrix`; `x` may be `right`."""
-    n, unknowns, slots = (system.diagonal.size, pointer_to(system.slot_unknowns),
-                          pointer_to(state.solution))
-    for slot in range(system.slot_unknowns.size):
-        slots[slot] = right[unknowns[slot]] if unknowns[slot] < n else 0.0
-    substitute(system.block_diagonal.size, pointer_to(system.block_starts),
-               pointer_to(system.block_rows), pointer_to(system.block_diagonal),
-               pointer_to(state.matrix), slots)
-    for slot in range(system.slot_unknowns.size):
-        if unknowns[slot] < n:
+    across, starts, slots = (system.block_diagonal.size, pointer_to(system.block_starts),
+                             pointer_to(state.solution))
+    _take(system, state, right, 0, across)
+    substitute(0, across, at(starts, 1), pointer_to(system.block_rows),
+               pointer_to(system.block_diagonal), pointer_to(state.matrix), slots)
+    substitute_back(0, across, starts, pointer_to(system.block_rows),
+                    pointer_to(system.block_diagonal), pointer_to(state.matrix), slots)
+    _put(system, state, x, 0, across)
+
+
+@compiled
+def _take(system, state, right, first, end):
+    """Put the right side into the slots of some columns."""
+    unknowns, slots = pointer_to(system.slot_unknowns), pointer_to(state.solution)
+    for slot in range(LANES * first, LANES * end):
+        slots[slot] = right[unknowns[slot]] if unknowns[slot] < system.diagonal.size else 0.0
+
+
+@compiled
+def _put(system, state, x, first, end):
+    """Put the solution in the slots of some columns where its unknowns are."""
+    unknowns, slots = pointer_to(system.slot_unknowns), pointer_to(state.solution)
+    for slot in range(LANES * first, LANES * end):
+        if unknowns[slot] < system.diagonal.size:
             x[unknowns[slot]] = slots[slot]
+
+
+@compiled
+def begin_part(system, state, first, end):
+    """Begin to solve for the correction: a part, without what it adds to the rest."""
+    _take(system, state, state.residual, first, end)
+    substitute(first, end, pointer_to(system.block_ends), pointer_to(system.block_rows),
+               pointer_to(system.block_diagonal), pointer_to(state.matrix),
+               pointer_to(state.solution))
+
+
+@compiled
+def solve_rest(system, state):
+    """Solve for the correction in the rest, once all parts have begun."""
+    rest, across = system.part_blocks[system.part_blocks.size - 1], system.block_diagonal.size
+    starts, rows, slots = (pointer_to(system.block_starts), pointer_to(system.block_rows),
+                           pointer_to(state.solution))
+    factors = pointer_to(state.matrix)
+    _take(system, state, state.residual, rest, across)
+    for j in range(rest):
+        for p in range(system.block_ends[j], starts[j + 1]):
+            subtract_block_times(at(slots, LANES * rows[p]), at(factors, BLOCK * p),
+                                 at(slots, LANES * j))
+    substitute(rest, across, at(starts, 1), rows, pointer_to(system.block_diagonal), factors, slots)
+    substitute_back(rest, across, starts, rows, pointer_to(system.block_diagonal), factors, slots)
+    _put(system, state, state.correction, rest, across)
+
+
+@compiled
+def end_part(system, state, first, end):
+    """Solve for the correction in a part, once the rest is known."""
+    substitute_back(first, end, pointer_to(system.block_starts), pointer_to(system.block_rows),
+                    pointer_to(system.block_diagonal), pointer_to(state.matrix),
+                    pointer_to(state.solution))
+    _put(system, state, state.correction, first, end)

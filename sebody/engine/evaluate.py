@@ -12,6 +12,9 @@ from sebody.engine.load_amplitudes import time_function_at
 from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
 from sebody.kernels.rotations import rotate, tangent_operator
 
+SHARE = 64              # elements of a batch that are evaluated at a time, eights of equal bodies
+UNMOVED = 0.03          # share of the tolerance that elements may move and keep their forces
+
 
 @intrinsic
 def _call_function(typingctx, address, t):
@@ -25,15 +28,17 @@ def _call_function(typingctx, address, t):
 def run_kernels(task, first, last, system, state):
     """Evaluate batches; returns the status of the first element that fails."""
     for b in range(first, last):
-        status = run_part(task, b, 0, system.count[b], system, state)
-        if status != OK:
-            return status
+        for begin in range(0, system.count[b], SHARE):
+            status = run_part(task, b, begin, min(SHARE, system.count[b] - begin), system, state,
+                              pointer_to(state.work))
+            if status != OK:
+                return status
     return OK
 
 
 @compiled(forceinline=True)
-def run_part(task, b, first, count, system, state):
-    """Evaluate some elements of a batch."""
+def run_part(task, b, first, count, system, state, work):
+    """Evaluate some elements of a batch; `work` is scratch memory."""
     index, g, J = pointer_to(system.index), pointer_to(state.g), pointer_to(state.J)
     stride, width = system.stride[b], system.width[b]
     return call_kernel(
@@ -42,7 +47,7 @@ def run_part(task, b, first, count, system, state):
                   constants=system.constants, q=state.q, R=state.R, v=state.v, a=state.a,
                   references=state.frames_old, frames=state.frames, T=state.T, loads=state.loads,
                   coefficients=state.coefficients, forces=at(g, system.at_g[b] + first * width),
-                  matrices=at(J, system.at_J[b] + first * width * width), work=state.work,
+                  matrices=at(J, system.at_J[b] + first * width * width), work=work,
                   energies=state.energy))
 
 
@@ -119,17 +124,23 @@ def set_tangent_operators(system, state):
 
 
 @compiled(forceinline=True)
+def run_elements(of_bodies, of_others, system, state):
+    """Evaluate the elements; kernels of superelements are given one task, all others another."""
+    bodies, batches = system.first_joint[0], system.address.size
+    status = run_kernels(of_bodies, 0, bodies, system, state)
+    if status != OK:
+        return status
+    return run_kernels(of_others, bodies, batches, system, state)
+
+
+@compiled(forceinline=True)
 def assemble(of_bodies, of_others, system, state, residual):
     """Evaluate the elements and sum their forces in `residual`; `matrix` sums their matrices.
 
     Kernels of superelements are given one task, all others another one: VELOCITY and ACCELERATION
     of the constraints are combined with the RESIDUAL of the superelements.
     """
-    bodies, batches = system.first_joint[0], system.address.size
-    status = run_kernels(of_bodies, 0, bodies, system, state)
-    if status != OK:
-        return status
-    status = run_kernels(of_others, bodies, batches, system, state)
+    status = run_elements(of_bodies, of_others, system, state)
     if status != OK:
         return status
     sum_forces(system, state, residual)
@@ -149,50 +160,52 @@ def sum_forces(system, state, residual):
 
 
 @compiled
-def _find_moved(system, state, limit):
-    """Find the elements that the last correction moved; all others move less than `limit`."""
-    k = first = 0
-    limit *= limit / state.moved.size
-    for b in range(system.address.size):
-        for element in range(system.count[b]):
-            size = 0.0
-            for _ in range(system.width[b]):
-                i = system.g_unknown[k]
-                change = state.last_change[i] * state.weight[i]
-                size += change * change
-                k += 1
-            state.moved[first + element] = size > limit
-        first += system.count[b]
+def limit_of_moved(state):
+    """The square of what an element may move and keep its forces: a share of the tolerance."""
+    limit = UNMOVED * state.clock.target
+    return limit * limit / float(state.moved.size)
 
 
 @compiled
-def _run_moved(system, state):
-    """Evaluate the forces of the elements that moved; the others keep theirs."""
-    first = 0                   # element of the batch in `moved`
+def run_moved(system, state):
+    """Evaluate the forces of the elements that the last correction moved; others keep theirs."""
+    before, limit = 0, limit_of_moved(state)
     for b in range(system.address.size):
-        begin = 0
-        while begin < system.count[b]:
-            if not state.moved[first + begin]:
-                begin += 1
-                continue
-            end = begin + 1
-            while end < system.count[b] and state.moved[first + end]:
-                end += 1
-            status = run_part(RESIDUAL, b, begin, end - begin, system, state)
+        for first in range(0, system.count[b], SHARE):
+            status = run_moved_share(system, state, b, first, min(SHARE, system.count[b] - first),
+                                     before, limit, pointer_to(state.work))
             if status != OK:
                 return status
-            begin = end
-        first += system.count[b]
+        before += system.count[b]
     return OK
 
 
 @compiled
-def assemble_moved(system, state, limit):
-    """Sum the element forces; elements that all together moved less than `limit` keep theirs."""
-    _find_moved(system, state, limit)
-    status = _run_moved(system, state)
-    sum_forces(system, state, state.residual)
-    return status
+def run_moved_share(system, state, b, first, count, before, limit, work):
+    """The same for some elements of a batch, which `before` elements of other batches precede."""
+    unknowns, moved = pointer_to(system.g_unknown), state.moved
+    k = system.at_g[b] + first * system.width[b]
+    for element in range(first, first + count):
+        size = 0.0
+        for _ in range(system.width[b]):
+            i = unknowns[k]
+            change = state.last_change[i] * state.weight[i]
+            size += change * change
+            k += 1
+        moved[before + element] = size > limit
+    begin, last = first, first + count
+    while begin < last:
+        if not moved[before + begin]:
+            begin += 1
+            continue
+        end = begin + 1
+        while end < last and moved[before + end]:
+            end += 1
+        status = run_part(RESIDUAL, b, begin, end - begin, system, state, work)
+        if status != OK:
+            return status
+        begin = end
+    return OK
 
 
 @compiled

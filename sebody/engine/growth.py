@@ -73,11 +73,11 @@ def grows(system, state):
         guard.supplied += abs(state.works[k] - state.works_old[k])
     guard.wait -= 1.0
     cut = state.control.level > guard.halved      # Newton's iteration has not converged
-    return (cut or guard.wait <= 0.0) and _judge(system, state)
+    return (cut or guard.wait <= 0.0) and judge(system, state)
 
 
 @compiled
-def _judge(system, state):
+def judge(system, state):
     """Look at the energies; whether the step is to be rejected."""
     guard = state.guard
     strain, kinetic = guard.most_strain, guard.most_kinetic

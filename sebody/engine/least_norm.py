@@ -70,12 +70,10 @@ def take_least_norm(system, state, rows, norms, dense):
 def _factorize(system, state, norms, dense):
     """Factors of constraints, W and D; scaled by W and D, small ones as an inverse."""
     n = system.diagonal.size
-    bodies = 0
-    for b in range(system.first_joint[0]):
-        bodies += system.count[b]
     clear_matrix(system, state)
-    for element in range(bodies, system.summands.shape[0]):
-        sum_element(system, state, element)
+    for k in range(system.summands.shape[0]):
+        if system.summands[k, 0] >= system.at_J[system.first_joint[0]]:     # no body
+            sum_element(system, state, k, pointer_to(state.rotated_matrix))
     for i in range(n):
         state.scale[i] = 1.0 / np.sqrt(norms[i])
         state.regularization[i] = -REGULARIZATION * norms[i] * system.is_multiplier[i]
@@ -83,11 +81,8 @@ def _factorize(system, state, norms, dense):
                                              if system.is_multiplier[i] > 0.0
                                              else norms[i])
     if not dense:
-        elimination.eliminate(
-            system.block_diagonal.size, pointer_to(system.block_starts),
-            pointer_to(system.block_rows), pointer_to(system.block_diagonal),
-            pointer_to(system.slot_unknowns), pointer_to(state.matrix), pointer_to(state.column),
-            pointer_to(state.scale))
+        elimination.eliminate_columns(0, system.block_diagonal.size, system, state,
+                                      pointer_to(state.column))
         return
     scaled = np.empty((n, n))
     for j in range(n):

@@ -9,19 +9,26 @@ import numpy as np
 
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import OK, RESIDUAL, TANGENT
-from sebody.engine.calls import call_refactorize, call_restart, call_sample
+from sebody.engine.calls import call_refactorize, call_restart, call_sample, call_share
 from sebody.engine.control_data import NEXT
 from sebody.engine.evaluate import (
-    assemble,
-    assemble_moved,
+    run_elements,
+    run_moved,
     set_tangent_operators,
+    sum_forces,
     take_rates,
     to_body_axes,
 )
 from sebody.engine.growth import grows
 from sebody.engine.guard import contact_too_fast
 from sebody.engine.matrix import solve
-from sebody.engine.newton import apply_correction, begin_with_matrix, count_matrix, want_matrix
+from sebody.engine.newton import (
+    apply_correction,
+    begin_with_matrix,
+    count_matrix,
+    take_shift,
+    want_matrix,
+)
 from sebody.engine.state import (
     BEGIN,
     CHUNK,
@@ -45,6 +52,7 @@ from sebody.engine.state import (
     PROJECT,
     PROJECTED,
     READY,
+    SHARE_MOVED,
     SLOW,
     SOLVE,
     SOLVED,
@@ -61,7 +69,11 @@ from sebody.engine.step_control import (
 from sebody.engine.vectors import swap
 from sebody.engine.work import add_work, take_back_work
 
-UNMOVED = 0.03          # share of the tolerance that elements may move and keep their forces
+
+@compiled
+def lead(scheme):
+    """By how much auxiliary accelerations of a restart are ahead of the state, in steps."""
+    return scheme.alpha_m - scheme.alpha_f if scheme.stabilized else 0.0
 
 
 @compiled(nogil=True)
@@ -72,7 +84,7 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
     """
     control = state.control
     mixed = not dense and not scheme.stabilized
-    lead = scheme.alpha_m - scheme.alpha_f if scheme.stabilized else 0.0
+    ahead = lead(scheme)
     steps = 0
     reason = np.int64(NO_REASON)
     while True:
@@ -90,7 +102,7 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
                     0.0 <= state.memory[NEXT] <= state.clock.time + NEAR * state.clock.step):
                 code = call_sample(system.routines[2], system, state)
             if code == DONE and control.restart != 0:
-                code = call_restart(system.routines[1], system, state, lead, dense)
+                code = call_restart(system.routines[1], system, state, ahead, dense)
             if code != DONE:
                 return code
             if control.due == 1:
@@ -133,7 +145,7 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
                 return SOLVE
             solve(system, state, dense)     # the only call: with two calls it would not be inlined
         if control.phase == PROJECTED:
-            _take_shift(system, state)
+            take_shift(system, state)
             control.phase = READY
             continue
         verdict = apply_correction(system, state, scheme, mixed)
@@ -145,15 +157,20 @@ def _evaluate(system, state, scheme, wanted, mixed):
     """Evaluate forces and wanted element matrices of the iterate; returns the kernels' status."""
     if wanted == EVALUATED:
         set_tangent_operators(system, state)
-    if (wanted == KEPT and state.control.iteration > 1 and mixed
-            and system.links.dependent.shape[0] == 0
-            and system.control.flowing.size == 0):      # which push what has not moved
-        status = assemble_moved(system, state, UNMOVED * state.clock.target)
+    of_moved = (wanted == KEPT and state.control.iteration > 1 and mixed
+                and system.links.dependent.shape[0] == 0
+                and system.control.flowing.size == 0)       # which push what has not moved
+    if system.routines[3] != 0:
+        status = call_share(system.routines[3], system, state,
+                            SHARE_MOVED if of_moved else wanted, 0)
+    elif of_moved:
+        status = run_moved(system, state)
     else:
-        status = assemble(TANGENT if wanted == EVALUATED else RESIDUAL,
-                          RESIDUAL if wanted == KEPT else TANGENT, system, state, state.residual)
+        status = run_elements(TANGENT if wanted == EVALUATED else RESIDUAL,
+                              RESIDUAL if wanted == KEPT else TANGENT, system, state)
     if status != OK:
         return status
+    sum_forces(system, state, state.residual)
     if wanted != KEPT and system.links.dependent.shape[0] > 0:
         for i in range(state.residual.size):
             state.forces[i] = state.residual[i]
@@ -191,11 +208,3 @@ def _conclude(system, state, record, scheme, verdict):
             return SLOW if verdict == GIVE_UP else GAP
         back(state)         # perhaps because of the old matrix: repeat the step with a new one
     return NO_REASON
-
-
-@compiled(forceinline=True)
-def _take_shift(system, state):
-    """Take the correction for the constraints as a shift of positions; the rates are next."""
-    swap(state.residual, state.constraint_residuals)
-    for i in range(system.diagonal.size):
-        state.shift[i] = state.correction[i] * (1.0 - system.is_multiplier[i])

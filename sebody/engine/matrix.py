@@ -3,8 +3,11 @@
 import numpy as np
 
 from sebody.compiler.decorators import compiled
-from sebody.contract.layout import C_MASS, C_STIFFNESS
+from sebody.contract.counts import LANES
+from sebody.contract.layout import C_MASS, C_STIFFNESS, OK
 from sebody.engine import elimination
+from sebody.engine.calls import call_share
+from sebody.engine.elimination import BLOCK
 from sebody.engine.inverse import invert
 from sebody.engine.links import add_expanded, add_second_order
 from sebody.engine.regularization import (
@@ -16,7 +19,7 @@ from sebody.engine.regularization import (
     regularize,
     spread,
 )
-from sebody.engine.state import EVALUATED
+from sebody.engine.state import EVALUATED, SHARE_FACTORS, SHARE_SOLUTION, SHARE_SUM
 from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.dense import columns_times
 
@@ -28,9 +31,12 @@ THIN = 1e-6             # smallest moment of inertia that scales its axis, relat
 @compiled
 def sum_matrices(system, state, forces):
     """Sum the element matrices, which are not changed; links need the forces, too."""
-    clear_matrix(system, state)
-    for element in range(system.summands.shape[0]):
-        sum_element(system, state, element)
+    if system.routines[3] != 0:
+        call_share(system.routines[3], system, state, SHARE_SUM, 0)
+    else:
+        clear_matrix(system, state)
+        for k in range(system.summands.shape[0]):
+            sum_element(system, state, k, pointer_to(state.rotated_matrix))
     if system.links.elements.shape[0] > 0:
         add_second_order(system.links, state.coefficients[C_STIFFNESS], state.q, state.R, state.T,
                          state.turns, forces, state.matrix)
@@ -46,18 +52,38 @@ def clear_matrix(system, state):
 
 
 @compiled
-def sum_element(system, state, element):
-    """Add an element matrix, its positions rotated to the axes they are solved for in."""
-    summand = at(pointer_to(system.summands), SUMMAND * element)
+def sum_columns(system, state, first, end, part, J):
+    """Some columns of blocks, those of a part of the elimination; J as in `sum_element`."""
+    starts, across = pointer_to(system.block_starts), system.block_diagonal.size
+    for k in range(BLOCK * starts[first],
+                   BLOCK * starts[end] if end < across else state.matrix.size):
+        state.matrix[k] = 0.0
+    for slot in range(LANES * first, LANES * end):
+        if system.slot_unknowns[slot] == system.diagonal.size:
+            state.matrix[BLOCK * system.block_diagonal[slot // LANES]
+                         + (LANES + 1) * (slot % LANES)] = 1.0
+    last = system.part_summands.size - 1
+    for k in range(system.part_summands[part],
+                   system.part_summands[part + 1] if part < last else system.summands.shape[0]):
+        sum_element(system, state, k, J)
+
+
+@compiled
+def sum_element(system, state, k, J):
+    """Add an element matrix, its positions rotated to the axes they are solved for in.
+
+    `J` is scratch memory for a matrix of one element, which is number k of `System.summands`.
+    """
+    summand = at(pointer_to(system.summands), SUMMAND * k)
     start, width, first_rotated, end_rotated, linked, first, end, shift = (
         summand[0], summand[1], summand[2], summand[3], summand[4], summand[5], summand[6],
         summand[7])
-    own, J = at(pointer_to(state.J), start), pointer_to(state.rotated_matrix)
+    own = at(pointer_to(state.J), start)
     if first_rotated < end_rotated or linked >= 0:
-        for k in range(width * width):
-            J[k] = own[k]
-        for k in range(first_rotated, end_rotated):
-            _rotate_block(system.rotated_blocks[k], system.dimension[0], J, state.frames)
+        for i in range(width * width):
+            J[i] = own[i]
+        for r in range(first_rotated, end_rotated):
+            _rotate_block(system.rotated_blocks[r], system.dimension[0], J, state.frames)
         own = J
     if linked >= 0:
         add_expanded(system.links, linked, J, state.frames, state.q, state.R, state.T,
@@ -65,8 +91,8 @@ def sum_element(system, state, element):
         return
     matrix, places, entries = (at(pointer_to(state.matrix), shift), pointer_to(system.J_place),
                                pointer_to(system.J_entry))
-    for k in range(first, end):
-        matrix[entries[k]] += own[places[k]]
+    for i in range(first, end):
+        matrix[entries[i]] += own[places[i]]
 
 
 @compiled(forceinline=True)
@@ -179,10 +205,11 @@ def refactorize(system, state, wanted, dense):
         return invert_dense(system, state, n, True, wanted)
     if regularized:
         regularize(system, state, REGULARIZATION)
-    done = elimination.eliminate(
-        system.block_diagonal.size, pointer_to(system.block_starts), pointer_to(system.block_rows),
-        pointer_to(system.block_diagonal), pointer_to(system.slot_unknowns),
-        pointer_to(state.matrix), pointer_to(state.column), pointer_to(state.scale))
+    if system.routines[3] != 0:
+        done = call_share(system.routines[3], system, state, SHARE_FACTORS, 0) == OK
+    else:
+        done = elimination.eliminate_columns(0, system.block_diagonal.size, system, state,
+                                             pointer_to(state.column))
     state.control.pivoted = 0 if done else 1
     if not done:
         sum_matrices(system, state, state.forces)
@@ -201,6 +228,9 @@ def solve(system, state, dense):
         columns_times(pointer_to(state.inverse), pointer_to(state.residual),
                       pointer_to(state.correction), n, n)
     else:
-        elimination.solve(system, state, state.residual, state.correction)
+        if system.routines[3] != 0:
+            call_share(system.routines[3], system, state, SHARE_SOLUTION, 0)
+        else:
+            elimination.solve(system, state, state.residual, state.correction)
         if state.control.regularized == 1:
             project(system, state)

@@ -22,6 +22,7 @@ from sebody.engine.state import (
     NEW_MATRIX,
     ROTATED,
 )
+from sebody.engine.vectors import swap
 from sebody.kernels.abi import pointer_to
 
 MAX_ITERATIONS = 12     # of a step
@@ -113,6 +114,14 @@ def norms(system, state, n):
         size += x * x * state.weight[i] * state.weight[i]
         accelerations += z * z
     return math.sqrt(norm), math.sqrt(size), math.sqrt(accelerations)
+
+
+@compiled(forceinline=True)
+def take_shift(system, state):
+    """Take the correction for the constraints as a shift of positions; the rates are next."""
+    swap(state.residual, state.constraint_residuals)
+    for i in range(system.diagonal.size):
+        state.shift[i] = state.correction[i] * (1.0 - system.is_multiplier[i])
 
 
 @compiled(forceinline=True)

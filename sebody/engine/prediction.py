@@ -36,9 +36,9 @@ _RIGHT = _EQUATIONS + ORDER * ORDER
 _COEFFICIENTS = _RIGHT + ORDER
 _FACTORS = _COEFFICIENTS + ORDER
 _SOLUTION = _FACTORS + ORDER * ORDER
-LAST, BEFORE, FITTED, _ON, _AGE, _SUM, _WITH, _WITHOUT = range(
+LAST, BEFORE, FITTED, ON, AGE, SUM, WITH, WITHOUT = range(
     _SOLUTION + ORDER, _SOLUTION + ORDER + 8)
-FIT = _WITHOUT + 1      # its size
+FIT = WITHOUT + 1      # its size
 
 
 @compiled
@@ -51,6 +51,18 @@ def either(condition, a, b):
 def any_positive(x):
     """Whether a number is positive; in lanes, that of any member."""
     return x > 0.0
+
+
+@compiled
+def ring_place(steps, grid):
+    """Where changes of the step under way are in the ring; in lanes by those of the grid."""
+    return steps + ROWS
+
+
+@compiled
+def refitted(on, steps):
+    """`on` if coefficients are solved for anew after so many steps, else zero."""
+    return on if steps % REFITTED == 0 else 0.0
 
 
 @compiled
@@ -67,11 +79,12 @@ def look_back(system, state, of_accelerations):
     `State.fit` gets the shares LAST, BEFORE and FITTED of the last two changes and of
     `State.fitted` in the prediction.
     """
-    fit, steps = pointer_to(state.fit), state.control.steps + ROWS
-    _compare_periods(fit, state.control.iteration, state.control.steps)
+    fit = pointer_to(state.fit)
+    steps = ring_place(state.control.steps, state.control.grid)
+    compare_periods(fit, state.control.iteration, state.control.steps)
     now, last, before = row(state, steps), row(state, steps - 1), row(state, steps - 2)
     weighted, fitted = pointer_to(state.correction), pointer_to(state.fitted)
-    of_none = of_line = of_parabola = of_fit = 0.0 * fit[_ON]
+    of_none = of_line = of_parabola = of_fit = 0.0 * fit[ON]
     for i in range(system.diagonal.size):
         constraint = system.is_multiplier[i]
         w = state.weight[i] * (constraint + (1.0 - constraint) * of_accelerations)
@@ -90,35 +103,35 @@ def look_back(system, state, of_accelerations):
     least = either(straight, of_line, of_none)
     bent = of_parabola < BETTER * least
     least = either(bent, of_parabola, least)
-    begun = either(fit[_AGE] > 0.0, of_fit, least)
-    best = either(fit[_ON] > 0.0, begun, least) < BETTER * least
+    begun = either(fit[AGE] > 0.0, of_fit, least)
+    best = either(fit[ON] > 0.0, begun, least) < BETTER * least
     fit[LAST] = either(best, zero, either(bent, zero + 2.0, either(straight, zero + 1.0, zero)))
     fit[BEFORE] = either(best, zero, either(bent, zero - 1.0, zero))
     fit[FITTED] = either(best, zero + 1.0, zero)
-    if any_positive(fit[_ON]):
+    if any_positive(fit[ON]):
         _fit_anew(system, state, steps)
 
 
 @compiled
-def _compare_periods(fit, corrections, steps):
+def compare_periods(fit, corrections, steps):
     """Count the corrections of the last step; begin a period with the fit or without it."""
     within = steps % PERIOD
     if within == 0:
-        mean = fit[_SUM] / (PERIOD - SETTLING)
-        on = fit[_ON] > 0.0
-        fit[_WITH] = either(on, mean, fit[_WITH])
-        fit[_WITHOUT] = either(on, fit[_WITHOUT], mean)
+        mean = fit[SUM] / (PERIOD - SETTLING)
+        on = fit[ON] > 0.0
+        fit[WITH] = either(on, mean, fit[WITH])
+        fit[WITHOUT] = either(on, fit[WITHOUT], mean)
         zero = 0.0 * mean
-        better = either(fit[_WITH] + WORTH < fit[_WITHOUT], zero + 1.0, zero)
+        better = either(fit[WITH] + WORTH < fit[WITHOUT], zero + 1.0, zero)
         period = steps // PERIOD
         if period < 3:      # the second one without the fit, the third one with it: the first steps
             better = zero + period // 2     # of a motion are no measure
         elif period % TRIED_AGAIN == 0:
             better = 1.0 - better
-        fit[_AGE] = fit[_AGE] * better
-        fit[_ON], fit[_SUM] = better, zero
+        fit[AGE] = fit[AGE] * better
+        fit[ON], fit[SUM] = better, zero
     elif within > SETTLING:
-        fit[_SUM] += corrections
+        fit[SUM] += corrections
 
 
 @compiled
@@ -127,7 +140,7 @@ def _fit_anew(system, state, steps):
 
     In lanes nothing of this changes for members without the fit.
     """
-    n, fit, on = system.diagonal.size, pointer_to(state.fit), state.fit[_ON] > 0.0
+    n, fit, on = system.diagonal.size, pointer_to(state.fit), state.fit[ON] > 0.0
     weighted, fitted = pointer_to(state.correction), pointer_to(state.fitted)
     now = steps % ROWS
     for j in range(0, ROWS, 3):         # three at a time: the weighted change is read once for them
@@ -142,8 +155,9 @@ def _fit_anew(system, state, steps):
         _put_product(fit, now, (steps - j - 1) % ROWS, of_b)
         _put_product(fit, now, (steps - j - 2) % ROWS, of_c)
     _add_equations(fit, steps)
-    if steps % REFITTED == 0:
-        _solve(fit)
+    due = refitted(fit[ON], state.control.steps)
+    if any_positive(due):
+        _solve(fit, due)
     c0, c1, c2, c3 = (fit[_COEFFICIENTS], fit[_COEFFICIENTS + 1], fit[_COEFFICIENTS + 2],
                       fit[_COEFFICIENTS + 3])
     c4, c5, c6, c7 = (fit[_COEFFICIENTS + 4], fit[_COEFFICIENTS + 5], fit[_COEFFICIENTS + 6],
@@ -167,10 +181,10 @@ def _put_product(fit, i, j, product):
 @compiled
 def _add_equations(fit, steps):
     """Add those of the last step to the equations of the fit, of which a part is kept."""
-    zero = 0.0 * fit[_AGE]
-    older = either(fit[_AGE] > 0.0, zero + FORGET, zero)
-    fit[_AGE] = fit[_AGE] + fit[_ON]
-    counts = either(fit[_AGE] > ROWS, zero + 1.0, zero)     # before that, products are missing
+    zero = 0.0 * fit[AGE]
+    older = either(fit[AGE] > 0.0, zero + FORGET, zero)
+    fit[AGE] = fit[AGE] + fit[ON]
+    counts = either(fit[AGE] > ROWS, zero + 1.0, zero)     # before that, products are missing
     for i in range(ORDER):
         own = at(fit, ROWS * ((steps - i - 1) % ROWS))
         for j in range(i, ORDER):
@@ -180,7 +194,7 @@ def _add_equations(fit, steps):
 
 
 @compiled
-def _solve(fit):
+def _solve(fit, due):
     """Coefficients of least squares: elimination of a positive matrix."""
     A, x = at(fit, _FACTORS), at(fit, _SOLUTION)
     size = 0.0 * fit[0] + TINY
@@ -199,9 +213,8 @@ def _solve(fit):
                 A[ORDER * i + j] -= factor * A[ORDER * k + j]
             x[i] -= factor * x[k]
         A[ORDER * k + k] = pivot
-    on = fit[_ON] > 0.0
     for k in range(ORDER - 1, -1, -1):
         for j in range(k + 1, ORDER):
             x[k] -= A[ORDER * k + j] * x[j]
         x[k] *= A[ORDER * k + k]
-        fit[_COEFFICIENTS + k] = either(on, x[k], fit[_COEFFICIENTS + k])
+        fit[_COEFFICIENTS + k] = either(due > 0.0, x[k], fit[_COEFFICIENTS + k])

@@ -33,9 +33,10 @@ from sebody.engine.evaluate import (
     to_body_axes,
     update_rotations,
 )
+from sebody.engine.kept_factors import exchange, give_back, keep_matrices_of_bodies
 from sebody.engine.links import place_dependent
 from sebody.engine.matrix import solve
-from sebody.engine.newton import SLOWEST
+from sebody.engine.newton import FASTEST, REFACTORIZATION_COST
 from sebody.engine.state import (
     AHEAD,
     ASKED,
@@ -84,13 +85,13 @@ def restart(system, state, lead, dense):
     control = state.control
     while True:
         if control.phase == BEGIN:
-            _begin(system, state)
+            _begin(system, state, lead)
             control.phase = ITERATE
         if control.phase == ITERATE:
             wanted = control.wanted
             status = _evaluate(system, state, wanted)
             if status != OK:
-                return _fail(state, status)
+                return _fail(system, state, status)
             control.phase = FACTORED
             if wanted != KEPT:
                 if not _factorize(system, state, dense):
@@ -106,7 +107,7 @@ def restart(system, state, lead, dense):
             return _end(system, state)
         verdict = _correct(system, state)
         if verdict == FAILED:
-            return _fail(state, NO_START)
+            return _fail(system, state, NO_START)
         if verdict == DONE:
             if lead == 0.0:
                 copy(state.a, state.aux)
@@ -129,7 +130,7 @@ def _factorize(system, state, dense):
 
 
 @compiled
-def _begin(system, state):
+def _begin(system, state, lead):
     """Set the loads after the jump and the coefficients of masses and constraints."""
     clock, control, c = state.clock, state.control, state.coefficients
     set_loads_beside(system, state.frames, state.loads, clock.time, -clock.beside)
@@ -142,7 +143,8 @@ def _begin(system, state):
     c[C_MASS], c[C_DAMPING], c[C_STIFFNESS], c[C_GEO], c[C_CONSTRAINT] = 1.0, 0.0, 0.0, 1.0, 1.0
     for i in range(state.T.size):       # the unknowns are accelerations, not increments
         state.T[i] = 1.0 if i % 9 % 4 == 0 else 0.0
-    control.wanted, control.restart = EVALUATED, ASKED
+    control.restart = ASKED
+    exchange(system, state, lead)
     control.fresh = control.iteration = 0
     clock.last_norm = 0.0
 
@@ -151,6 +153,8 @@ def _begin(system, state):
 def _evaluate(system, state, wanted):
     """Evaluate forces and the constraints' second rates; returns the kernels' status."""
     bodies, batches = system.first_joint[0], system.address.size
+    if wanted != KEPT:
+        keep_matrices_of_bodies(system, state)
     status = run_kernels(RESIDUAL if wanted == KEPT else TANGENT, 0, bodies, system, state)
     if status == OK and wanted != KEPT:
         status = run_kernels(TANGENT, bodies, batches, system, state)
@@ -189,13 +193,15 @@ def _correct(system, state):
     stays = rate > HARDLY
     none = (max(ACCURATE, ROUNDED if stays else 0.0) * size
             + (STIFF if stays else 1.0) * _rounding(system, state))
-    if norm <= none:
+    if norm <= none or (control.fresh == 0 and 0.0 < rate < POOR and
+                        max(rate, FASTEST) / (1.0 - rate) * norm <= none):
         # what the corrections of a regularized matrix leave is a contradiction, or a force on
         # something without mass
         gap = (control.regularized == 1 and system.massless[0] == 0
                and np.sqrt(left) > n * norm + CONTRADICTION * size)
         return FAILED if gap else DONE
-    if rate > POOR:
+    if rate > POOR or (control.fresh == 0 and rate > 0.0 and
+                       np.log(none / norm) / np.log(rate) > REFACTORIZATION_COST):
         control.wanted = EVALUATED
     ended = control.iteration >= MOST_CORRECTIONS or (rate > POOR
                                                        and control.fresh >= MOST_MATRICES)
@@ -259,15 +265,17 @@ def _end(system, state):
     """Let the next step begin from here."""
     control = state.control
     set_acting(system, state)
-    control.wanted, control.pivoted, control.fresh = EVALUATED, 0, 0
+    give_back(system, state)
+    control.pivoted, control.fresh = 0, 1       # nothing is predicted, see `step.begin_step`
     control.restart, control.phase = 0, BEGIN
-    state.clock.contraction = SLOWEST      # nothing is known of the next step
     return DONE
 
 
 @compiled
-def _fail(state, reason):
+def _fail(system, state, reason):
     """Give up: a later call begins anew."""
     control = state.control
+    give_back(system, state)
     control.reason, control.phase, control.restart = reason, BEGIN, ASKED
+    control.wanted = EVALUATED
     return FAILED

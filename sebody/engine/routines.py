@@ -11,22 +11,27 @@ from sebody.compiler.choice import way
 from sebody.engine.control import sample
 from sebody.engine.matrix import refactorize
 from sebody.engine.restart import restart
+from sebody.engine.sharing import share
 
-RETURNS = {refactorize: types.boolean, restart: types.int64, sample: types.int64}
+RETURNS = {refactorize: types.boolean, restart: types.int64, sample: types.int64,
+           share: types.int64}
 RESTARTED = types.float64, types.boolean        # what `restart` is given beside system and state
 REFACTORIZED = types.int64, types.boolean
+SHARED = types.int64, types.int64
 
 
 def addresses(system, state) -> NDArray:
-    """Addresses of `refactorize`, `restart` and `sample` for a system and a state, (3,).
+    """Addresses of `refactorize`, `restart`, `sample` and `share` for a system and a state, (4,).
 
-    The functions are compiled if needed; `sample` for models with controllers or sensors alone.
+    The functions are compiled if needed; `sample` for models with controllers or sensors alone,
+    `share` for several threads.
     """
     kinds = typeof(system), typeof(state)
     return np.array([_address(refactorize, *kinds, *REFACTORIZED),
                      _address(restart, *kinds, *RESTARTED),
                      _address(sample, *kinds) if system.control.periods.size
-                     or system.control.inputs.size else 0])
+                     or system.control.inputs.size else 0,
+                     _address(share, *kinds, *SHARED) if system.shared.mail.size else 0])
 
 
 def compile_routine(function: Callable, kinds: tuple[types.Type, ...]) -> None:

@@ -16,6 +16,9 @@ BEGIN, ITERATE, FACTORED, PROJECT, PROJECTED, READY, SOLVED = range(7)
 # what an iteration needs: the factors as they are; factors of a matrix in which the bodies' old
 # element matrices are rotated with them and all others are new; or of new element matrices only
 KEPT, ROTATED, EVALUATED = range(3)
+# tasks of threads, see `engine.sharing`: forces, of KEPT to EVALUATED or of elements that moved
+SHARE_MOVED, SHARE_SUM, SHARE_FACTORS, SHARE_SOLUTION, SHARE_BACK, HELP = range(
+    EVALUATED + 1, EVALUATED + 7)
 CONVERGED, GO_ON, NEW_MATRIX, GIVE_UP, LEAVES_GAP = range(5)    # verdicts after a correction
 # why a step failed: answers of kernels keep their numbers, further reasons follow
 NO_REASON = OK
@@ -118,6 +121,8 @@ class State(Arrays):
     scale                 (N, padded) of the unknowns: the scaled matrix has a unit diagonal
     weight                (N,) one over `scale`: norms of corrections are weighted by these
     inverse               (n, padded n) inverse of a small matrix, scales included, by columns
+    spare                 factors of accelerations beside those of the steps, where inputs are
+                          set at samples: see `kept_factors`
     regularization            (N,) R + L of a regularized matrix, see `sebody.engine.regularization`
     constraint_columns    entries `System.constraint_columns` of the matrix, before elimination
     projected, pulled     (N,) scratch memory of projections
@@ -182,6 +187,7 @@ class State(Arrays):
     scale: NDArray
     weight: NDArray
     inverse: NDArray
+    spare: NDArray
     regularization: NDArray
     constraint_columns: NDArray
     projected: NDArray

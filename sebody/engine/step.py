@@ -17,7 +17,7 @@ from sebody.contract.layout import (
 )
 from sebody.engine.evaluate import move_prescribed, set_loads_beside, update_rotations
 from sebody.engine.newton import SLOWEST, watch_age
-from sebody.engine.prediction import BEFORE, FITTED, LAST, ROWS, look_back, row
+from sebody.engine.prediction import BEFORE, FITTED, LAST, look_back, ring_place, row
 from sebody.engine.state import (
     ASKED,
     BEGIN,
@@ -71,7 +71,8 @@ def predict(system, state, scheme, follow, offset):
         state.frames_old[i] = state.frames[i]
     alpha_m, beta, gamma = scheme.alpha_m, scheme.beta, scheme.gamma
     state.clock.aux_step = h
-    steps, fitted = state.control.steps + ROWS, pointer_to(state.fitted)
+    steps = ring_place(state.control.steps, state.control.grid)
+    fitted = pointer_to(state.fitted)
     last, before = row(state, steps), row(state, steps - 1)
     of_last, of_before, of_fitted = (follow * state.fit[LAST], follow * state.fit[BEFORE],
                                      follow * state.fit[FITTED])

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from sebody.engine.arrays import Arrays
 from sebody.engine.control_data import Control
 from sebody.engine.links import Links
+from sebody.engine.mailbox import Shared
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +41,10 @@ class System(Arrays):
     ------------------------------------------------------------------------------------------------
     rows, columns       of every stored entry
     diagonal            (n,) entry on the diagonal of each unknown
+    part_blocks         (parts + 1,) first column of blocks of every part of the elimination that
+                        does not wait for others, then of the rest, see `engine.sharing`
+    block_ends          of every column of blocks, the first block that is in a row of the rest
+    part_summands       (parts + 1,) the same in `summands`
     constraint_columns  entries in columns of multipliers, without their diagonal
     padding             entries with ones: the diagonal of free slots
     block_starts        pattern of the blocks, see `sebody.engine.elimination`; empty for a small
@@ -66,7 +71,7 @@ class System(Arrays):
                         the matrix
     summands            (elements, 8) start and width of the element matrix, first and last + 1 row
                         of `rotated_blocks`, row of `Links.elements` or -1, first and last + 1 of
-                        `J_place`, first entry of the matrix
+                        `J_place`, first entry of the matrix; by parts of the elimination
     linked              (1,) 1 where bodies that rotate against each other are coupled
     ------------------  ----------------------------------------------------------------------------
     power ports
@@ -85,11 +90,12 @@ class System(Arrays):
     ------------------------------------------------------------------------------------------------
     links               rigid links
     control             sensors, controllers and inputs
+    shared              mail and scratch memory of threads; empty for one thread
     regularized         (1,) 1 where constraints are redundant or something without mass can move
     massless            (1,) 1 where a motion has stiffness and no mass: Python solves for
                         accelerations
     damped              (1,) 1 where a superelement has structural damping
-    routines            (3,) addresses of `refactorize`, `restart` and `sample`: see
+    routines            (4,) addresses of `refactorize`, `restart`, `sample` and `share`: see
                         `engine.routines`
     guarded             places in `State.frames` of the rates of contacts, followed by the speeds of
                         their impacts, see `sebody.engine.guard`
@@ -119,6 +125,9 @@ class System(Arrays):
     block_rows: NDArray
     block_diagonal: NDArray
     slot_unknowns: NDArray
+    part_blocks: NDArray
+    block_ends: NDArray
+    part_summands: NDArray
     is_multiplier: NDArray
     rotation_at: NDArray
     rotated: NDArray
@@ -140,6 +149,7 @@ class System(Arrays):
     prescribed_factor: NDArray
     links: Links
     control: Control
+    shared: Shared
     regularized: NDArray
     massless: NDArray
     damped: NDArray

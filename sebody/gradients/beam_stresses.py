@@ -142,8 +142,8 @@ class StressedBeam:
                 if event in wanted:
                     found[:, wanted[event]] = state
         forward(one.course, residuals, none, none, see)
-        return coefficients, sum(by @ of for by, of in zip(self._by_motion(events), found,
-                                                           strict=True))
+        return coefficients, np.sum([by @ of for by, of in zip(
+            self._by_motion(events), found, strict=True)], axis=0)
 
     def _directions(self) -> tuple[NDArray, NDArray]:
         """Independent changes of stiffness and mass, as rows of constants."""
@@ -203,7 +203,8 @@ class StressedBeam:
             linear.at(history.rows[event], history.ends[event], history.besides[event])
             G, _, W, U = linear.followers.motion(linear.state, dense=True)
             found.append((q @ G + a @ U, a @ W, a @ G))
-        return tuple(np.array(each) for each in zip(*found, strict=True))
+        q, v, a = (np.array(each) for each in zip(*found, strict=True))
+        return q, v, a
 
     def _differences(self, states: NDArray, what: str) -> NDArray:
         """Derivatives by all coordinates of the beam, or by their accelerations."""
@@ -212,13 +213,13 @@ class StressedBeam:
         places, moved = [], []
         for own, number in [*self._blocks(), (self._modes(), None)]:
             for axis, c in enumerate(range(own.start, own.stop)):
-                turned = what == "q" and number is not None and not planar
+                matrix = number if what == "q" and not planar else None
                 size = 1.0 if what == "a" else TURN if number is not None else (
                     TURN * self.held.beam.length)
                 for at, weight in zip(STEPS, WEIGHTS, strict=True):
                     rows = states.copy()
-                    if turned:
-                        first = parts["R"].start + 9 * number
+                    if matrix is not None:
+                        first = parts["R"].start + 9 * matrix
                         R = rows[:, first:first + 9].reshape(-1, 3, 3)
                         rows[:, first:first + 9] = (R @ rotations.matrices(
                             at * size * np.eye(3)[axis])).reshape(-1, 9)
@@ -245,7 +246,9 @@ class ConstantRows:
     """
 
     def __init__(self, part: Superelement):
-        self.part, self.kernel, n = part, load(part.kernel), len(part.reduced.stiffness)
+        kernel, n = load(part.kernel), len(part.reduced.stiffness)
+        assert kernel is not None       # the part has been simulated
+        self.part, self.kernel = part, kernel
         places = Row("constants", self.kernel.CONSTANTS).slices(counts_of(part))
         self.full = [places["full"].start] if "full" in places else []
         i, j = np.triu_indices(n)

@@ -157,7 +157,8 @@ class _Fit:
         self.model, self.h, self.data, self.point, self.scheme = model, h, data, point, scheme
         last = max(one.times.max() for one in data.values())
         self.t_end = h * max(1, int(np.ceil(last / h * (1 - EPS) - 1e-9)))
-        self.runs, self._x = 0, None
+        self.runs = 0
+        self._x: NDArray | None = None
         self.said: list[WarningMessage] = []
 
     def residuals(self, x: NDArray) -> NDArray:

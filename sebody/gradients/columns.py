@@ -86,11 +86,12 @@ class Columns(Arrays):
     def of(cls, m: int, n: int, k: int, places: NDArray, tolerance: float) -> "Columns":
         """All zero."""
         r = len(places)
-        return cls(*(np.zeros(shape) for shape in (
+        zeros = [np.zeros(shape) for shape in (
             (4, m, n), (m, k), (m, k), (m, n), (m, k), (m, n), (m, k), (3, m, n), (3, m, n),
-            (3, m, n), (3, m, n), (m, n), (m, n), (n, n), (3, n, n), (n, n), n, n, n, n, n, n)),
-            np.ascontiguousarray(places, dtype=np.int64), np.zeros((r, 9)), np.zeros((r, 9)),
-            np.zeros(5, dtype=np.int64), np.array([tolerance]), np.ones(1), np.zeros(1))
+            (3, m, n), (3, m, n), (m, n), (m, n), (n, n), (3, n, n), (n, n), n, n, n, n, n, n)]
+        others = [np.ascontiguousarray(places, dtype=np.int64), np.zeros((r, 9)), np.zeros((r, 9)),
+                  np.zeros(5, dtype=np.int64), np.array([tolerance]), np.ones(1), np.zeros(1)]
+        return cls(*zeros, *others)
 
 
 @compiled

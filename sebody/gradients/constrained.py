@@ -92,8 +92,8 @@ class Sweep:
             E = linear.followers.motion(linear.state, linear.dense).G.T @ whole
         else:
             E = whole[:linear.free]
-        return Lost(whole, E, *(one[:, None] for one in others),
-                    np.cumsum([0, *(one.E.shape[1] for one in found)]))
+        e, rate, second = (one[:, None] for one in others)
+        return Lost(whole, E, e, rate, second, np.cumsum([0, *(one.E.shape[1] for one in found)]))
 
     def _forces(self, lost: Lost, mu: NDArray) -> NDArray:
         """Forces of constraints on the bodies that are rigid."""

@@ -35,7 +35,7 @@ from sebody.runs.tolerance import Tolerance, given
 
 CONVERGED = 1e-10       # of Newton's iteration: errors of gradients are a hundred times that
 CHAOTIC = 1e6           # growth from which a run warns
-MODES = "adjoint", "forward"
+MODES: tuple[Literal["adjoint", "forward"], ...] = "adjoint", "forward"
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ from sebody.compiler.decorators import compiled
 from sebody.contract.layout import ACCELERATION, OK, RESIDUAL
 from sebody.engine.evaluate import assemble, move_prescribed, set_loads, set_loads_beside
 from sebody.engine.links import place_dependent
-from sebody.engine.state import REASONS
+from sebody.engine.state import REASONS, State
 from sebody.errors import InputError
 from sebody.gradients.course import Course
 from sebody.gradients.history import RESTART, History
@@ -202,7 +202,7 @@ class HeldResiduals:
         if status != OK:
             raise InputError(f"the start cannot be evaluated: {REASONS[status]}")
 
-    def turned(self, state) -> NDArray:
+    def turned(self, state: State) -> NDArray:
         """Motion from the start of the run to that of a changed model: of rotations a vector."""
         q, R, *_ = self.places
         n = self.free

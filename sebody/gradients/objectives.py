@@ -169,9 +169,10 @@ class Seen:
 
     def at(self, event: int) -> Bars | None:
         """Derivatives of all objectives by the state that an event leaves."""
-        k = self.place.get(event)
-        found = None
-        for one in self.looked if k is not None else ():
+        k, found = self.place.get(event), None
+        if k is None:
+            return None
+        for one in self.looked:
             if not one.seeds[k].any():
                 continue
             found = found or Bars(*(np.zeros((self.free, len(self.whole.value))) for _ in range(3)))

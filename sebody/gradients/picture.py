@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sebody.files import replacing
 from sebody.pictures.plots import ACCENT, PALE, STYLE
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 MOST = 12           # bars of a quantity
 LINES = 4           # histories of a quantity
@@ -37,7 +40,7 @@ def draw(found: Any, path: str | Path) -> Path:
     return path
 
 
-def _bars(axis, bars: list[tuple[str, float]], name: str) -> None:
+def _bars(axis: Axes, bars: list[tuple[str, float]], name: str) -> None:
     labels, sizes = zip(*reversed(bars), strict=True)
     colors = [f"C{k}" if k < LINES else PALE for k in reversed(range(len(bars)))]
     axis.barh(labels, np.maximum(sizes, LEAST * max(sizes)), color=colors)
@@ -47,7 +50,7 @@ def _bars(axis, bars: list[tuple[str, float]], name: str) -> None:
     axis.grid(False, axis="y")
 
 
-def _histories(axis, found: Any, name: str, order: list[int]) -> None:
+def _histories(axis: Axes, found: Any, name: str, order: list[int]) -> None:
     """Sizes over time, in the colours of their bars."""
     for k, (width, j) in enumerate(zip(np.linspace(1.8, 0.8, LINES), order, strict=False)):
         size = np.linalg.norm(found.changes[name][..., j].reshape(len(found.t), -1), axis=1)

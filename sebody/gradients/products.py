@@ -36,6 +36,7 @@ from sebody.gradients.element_products import PARTS, ROWS, run_element
 from sebody.gradients.link_products import add_levers, place_motion, place_weights, pull_back_bars
 from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.loader import element_kernel_name, load, products_kernel_name
+from sebody.model.parts import Superelement
 from sebody.runs.first_run import compile_missing
 from sebody.runs.simulation import Simulation
 
@@ -102,10 +103,10 @@ class Products(Arrays):
 
 def _kernels(run: Simulation) -> list[str]:
     """Names of the kernels of all batches."""
-    model, system, found = run.model, run.system, [""] * run.system.address.size
+    system, found = run.system, [""] * run.system.address.size
     for owner, first in run.numbering.forces_at.items():
         b = int(np.searchsorted(system.at_g, first, side="right")) - 1
-        found[b] = owner.kernel if owner in model.bodies.values() else element_kernel_name(
+        found[b] = owner.kernel if isinstance(owner, Superelement) else element_kernel_name(
             owner.kind)
     return found
 

@@ -1,5 +1,7 @@
 """Recursions over stretches of steps by products, and the inverses that these ask for."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -50,7 +52,7 @@ class Refined:
         self.missing: dict[float, NDArray] = {}
         self.next = -1          # event that follows those that were passed
 
-    def begin(self, motion: tuple[NDArray, ...]) -> None:
+    def begin(self, motion: Sequence[NDArray]) -> None:
         """Columns as of `sweeps.Motion`."""
         for own, given in zip(self._carried, motion, strict=True):
             own[:] = given.T

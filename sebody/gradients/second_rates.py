@@ -28,7 +28,7 @@ def second_rates(linear: Linear, fixed: NDArray) -> tuple[NDArray, NDArray]:
     turning = {int(first) + k: (r, k) for r, first in enumerate(system.rotation_at)
                for k in range(3)}
     speed = max(float(np.abs(state.v).max(initial=0.0)), 1.0)
-    for i in np.flatnonzero(~fixed):
+    for i in np.flatnonzero(~fixed).tolist():
         size = STEP * max(float(system.magnitude[i]), float(np.abs(state.q[:n]).max()) * 1e-3
                           ) if i not in turning else STEP
         for found, by, step in ((by_motion, "motion", size or STEP), (by_rates, "rates", speed)):

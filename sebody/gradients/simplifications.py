@@ -78,11 +78,12 @@ class Deformation:
         self.planar, self.total = reduced.planar, numbering.total
         self.points = reduced.coordinates - reduced.coordinates.mean(axis=0)
         self.size = max(float(np.abs(self.points).max()), np.finfo(float).tiny)
-        self.positions = {k: coordinates(numbering, nodes[k].position)
-                          for k in reduced.position_nodes}
-        self.turns = {k: (coordinates(numbering, nodes[k].rotation),
-                          0 if self.planar else numbering.rotations[nodes[k].rotation])
-                      for k in reduced.rotation_nodes}
+        self.positions = {k: coordinates(numbering, one) for k in reduced.position_nodes
+                          if (one := nodes[k].position) is not None}
+        self.turns = {k: (coordinates(numbering, one),
+                          0 if self.planar else numbering.rotations[one])
+                      for k in reduced.rotation_nodes
+                      if (one := nodes[k].rotation) is not None}
         first = numbering.modes.get(body.name, 0)
         self.modes = list(range(first, first + reduced.modes))
         self.own = [*(i for own in self.positions.values() for i in own),
@@ -106,8 +107,8 @@ class Deformation:
         R = {k: state.R[9 * r:9 * r + 9].reshape(3, 3) for k, (_, r) in self.turns.items()}
         middle, centre = np.mean(list(x.values()), axis=0), self.points[list(x)].mean(axis=0)
         arms = {k: self.points[k] - centre for k in self.positions}
-        axes = _nearest(sum(R.values()) if R else sum(
-            np.outer(x[k] - middle, arms[k]) for k in x))
+        axes = _nearest(np.sum(list(R.values()) if R else [
+            np.outer(x[k] - middle, arms[k]) for k in x], axis=0))
         d, T = [], []
         for k in x:
             d.append(x[k] - middle - axes @ arms[k])
@@ -125,7 +126,7 @@ class Deformation:
         if angles:
             angle = float(np.mean(list(angles.values())))
         else:
-            A = sum(np.outer(x[k] - middle, arms[k]) for k in x)
+            A = np.sum([np.outer(x[k] - middle, arms[k]) for k in x], axis=0)
             angle = float(np.arctan2(A[1, 0] - A[0, 1], A[0, 0] + A[1, 1]))
         c, s = np.cos(angle), np.sin(angle)
         axes, d, T = np.array([[c, -s], [s, c]]), [], []
@@ -134,8 +135,8 @@ class Deformation:
             p = x[k] - middle
             T.append(np.column_stack([np.eye(2), [-p[1], p[0]]]))
         for own in angles.values():
-            d.append([own - angle])
-            T.append([[0.0, 0.0, 1.0]])
+            d.append(np.array([own - angle]))
+            T.append(np.array([[0.0, 0.0, 1.0]]))
         return self._with_modes(state, d, T, 3, x, middle)
 
     def _with_modes(self, state: State, d: list, T: list, rigid: int, x: dict, middle: NDArray

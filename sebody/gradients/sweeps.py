@@ -98,6 +98,7 @@ def _halves(y: NDArray, moving: NDArray) -> tuple[NDArray, NDArray]:
 def _over_step(course: Course, event: Event, slopes: NDArray, now: Motion) -> Motion:
     """(8) to (10)."""
     (M, C, K), moving, (xi, v, a, aux, *kept) = event.parts, course.moving, now
+    assert event.turns is not None      # which restarts do not have
     c = Coefficients.of(course.scheme, float(course.history.steps[event.number]))
     offset = course.history.offsets[event.number]
     aux = (1 - offset) * a + offset * aux
@@ -197,6 +198,7 @@ def _joined(course: Course, y: NDArray, shift: NDArray) -> NDArray:
 def _back_over_step(course: Course, event: Event, bars: Motion) -> tuple[NDArray, Motion]:
     """(11) to (15)."""
     (M, C, K), moving, (X, V, A, U, *kept) = event.parts, course.moving, bars
+    assert event.turns is not None
     c = Coefficients.of(course.scheme, float(course.history.steps[event.number]))
     offset, turned = course.history.offsets[event.number], event.turns.turned_back(X)
     w = event.factors.solve(-_joined(course, turned + moving * (c.cd * V + c.cm * A + c.cu * U),

@@ -133,7 +133,7 @@ def save_body(body: ReducedBody, path: str | Path, names: tuple[str, ...] | None
 def body_parts(body: ReducedBody) -> dict[str, Any]:
     """Arguments of a body but for its units."""
     return {one.name: getattr(body, one.name) for one in fields(ReducedBody)
-            if one.name != "units"}
+            if one.init and one.name != "units"}
 
 
 def lean(file: BodyFile) -> BodyFile:

@@ -86,6 +86,14 @@ def load(name: str) -> ModuleType | None:
         return module
 
 
+def takes_one_member(name: str) -> bool:
+    """Whether lanes evaluate a kernel member by member: one that keeps numbers, or is by hand.
+
+    Those that choose by their numbers all keep some.
+    """
+    return name in BY_HAND or bool(getattr(load(name), "MEMORY", ()))
+
+
 def superelement_kernel_name(layout: str, frame: str, inertia: str, modes: int,
                              damped: bool = False) -> str:
     """Name of the fastest kernel there is for a layout, frame and inertia option.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,11 +27,12 @@ MOST_TICKS = 5          # of the longest axis of a path
 FLAT = 0.03             # share of the motion below which motion out of the plane is not drawn
 INK, ACCENT, PALE = "#1f2a44", "#c8452d", "#9aa5b8"
 COMPONENTS = tuple(zip(AXES, "xyz", strict=True))
-STYLE = {"font.size": 9, "axes.spines.top": False, "axes.spines.right": False,
-         "axes.edgecolor": PALE, "axes.labelcolor": INK, "axes.titlecolor": INK,
-         "axes.titlesize": 10, "axes.titlelocation": "left", "xtick.color": INK,
-         "ytick.color": INK, "axes.grid": True, "grid.color": "#e6e9ef", "grid.linewidth": 0.8,
-         "legend.frameon": False, "axes.axisbelow": True}
+STYLE: dict[Any, Any] = {       # as matplotlib has it
+    "font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.edgecolor": PALE,
+    "axes.labelcolor": INK, "axes.titlecolor": INK, "axes.titlesize": 10,
+    "axes.titlelocation": "left", "xtick.color": INK, "ytick.color": INK, "axes.grid": True,
+    "grid.color": "#e6e9ef", "grid.linewidth": 0.8, "legend.frameon": False,
+    "axes.axisbelow": True}
 
 
 def check_picture(path: str | Path) -> None:

@@ -30,7 +30,7 @@ HOPELESS = 0.5      # two refinements must reduce the difference of runs by this
 def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance | None = None,
                     scheme: Scheme | None = None,
                     progress: Callable[[float], None] | bool | None = None,
-                    start: Result | None = None) -> Result:
+                    start: Result | None = None, threads: int = 1) -> Result:
     """Run a model so that its error in time is within a tolerance; steps are chosen.
 
     The run is repeated with a finer local tolerance until the difference of the last two runs shows
@@ -46,7 +46,7 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
         Output grid [time].
     tolerance : Tolerance
         Allowed error of the run, by default 1e-3 of the characteristic length and 1e-3 rad.
-    scheme, progress, start
+    scheme, progress, start, threads
         As for `Simulation` and its `run_to`; a bar counts the runs.
 
     Returns
@@ -66,13 +66,14 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
     wanted = given(tolerance) or Tolerance()
     wanted.check_reachable(extent(model))
     with showing(progress, t_end) as show:
-        return _refined(model, h, t_end, wanted, scheme, show, start)
+        return _refined(model, h, t_end, wanted, scheme, show, start, threads)
 
 
 def _refined(model: Model, h: float, t_end: float, wanted: Tolerance, scheme: Scheme | None,
-             progress: Callable[[float], None] | None, start: Result | None) -> Result:
+             progress: Callable[[float], None] | None, start: Result | None,
+             threads: int) -> Result:
     """The run that is within the tolerance `wanted`, after coarser ones."""
-    runs = _Runs(model, h, t_end, wanted, scheme, progress, start)
+    runs = _Runs(model, h, t_end, wanted, scheme, progress, start, threads)
     coarse = min(FIRST, COARSE / max(wanted.relative, 1e-300))
     before, share = runs.run(coarse), coarse / REFINED**3
     differences: list[float] = []
@@ -111,6 +112,7 @@ class _Runs:
     scheme: Scheme | None
     progress: Callable[[float], None] | None
     start: Result | None
+    threads: int
     finest: Result | None = None
     seconds: float = 0.0
 
@@ -121,7 +123,7 @@ class _Runs:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", LimitWarning)
                 one = Simulation(self.model, self.h, self.scheme, tolerance=local,
-                                 start=self.start)
+                                 start=self.start, threads=self.threads)
                 result = one.run_to(self.t_end, self.progress).result()
         except KeyboardInterrupt as stop:
             if self.finest is None:

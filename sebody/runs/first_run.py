@@ -16,12 +16,18 @@ from numba import typeof
 from sebody.assembly.allocation import allocate
 from sebody.assembly.build import build
 from sebody.assembly.contracts import check_joints
-from sebody.assembly.equal_bodies import is_compiled_together, kernels_together
+from sebody.assembly.equal_bodies import (
+    compile_together,
+    is_compiled_together,
+    kernels_together,
+    lanes_exist,
+)
 from sebody.assembly.motions import motion_kernel
 from sebody.compiler.choice import way
 from sebody.compiler.decorators import is_compiled
 from sebody.compiler.first_run import Job, compile_apart
 from sebody.compiler.workers import Task
+from sebody.contract.names import SUPERELEMENT
 from sebody.engine import evaluate, links, loop, matrix, newton, restart, step, step_control
 from sebody.engine.routines import compile_routine
 from sebody.engine.state import Record, State
@@ -127,6 +133,17 @@ def compile_missing(kernels: Iterable[str], parts: Iterable[str] = (),
             Job(Task(_of_eight(name), "sebody.assembly.equal_bodies:compile_together", (name,),
                      (name,)), OF_EIGHT * _seconds(path)) for name, path in of_eight.items()]
         compile_apart(jobs, " and ".join(what), Path(loop.__file__), report)
+
+
+def compile_of_eight(kernels: Iterable[str]) -> None:
+    """Compile kernels for eight bodies here, or find them in the cache."""
+    for name in kernels:
+        compile_together(name)
+
+
+def of_bodies(kernels: Iterable[str]) -> list[str]:
+    """Those of some kernels that can be compiled for eight bodies at a time."""
+    return [name for name in kernels if name.startswith(SUPERELEMENT)] if lanes_exist() else []
 
 
 def _of_eight(kernel: str) -> str:

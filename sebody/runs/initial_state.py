@@ -65,13 +65,18 @@ def begin(model: Mechanism, system: System, numbering: Numbering, state: State) 
 
 
 def hold(model: Mechanism, system: System, numbering: Numbering, state: State,
-         solve_again: Callable[[], None]) -> None:
+         solve_again: Callable[[], None]) -> bool:
     """Bend the bristles of joints at rest as far as what they hold needs.
 
     Parameters
     ----------
     solve_again : callable
         Solves for accelerations and multipliers, as `begin` asks for.
+
+    Returns
+    -------
+    bool
+        Whether there are such joints.
     """
     bristles = LoadedBristles(model, system, numbering, state)
     if bristles.held:
@@ -79,6 +84,7 @@ def hold(model: Mechanism, system: System, numbering: Numbering, state: State,
         masses = _masses(system, state)
         state.coefficients[:], state.now[:] = loaded, now
         bristles.load(masses, solve_again)
+    return bool(bristles.held)
 
 
 def _check_accelerations(system: System, numbering: Numbering, state: State,

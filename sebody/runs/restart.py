@@ -35,7 +35,7 @@ from sebody.runs.simulation import Simulation
 from sebody.runs.steps import MOST_STEPS
 from sebody.runs.tolerance import Tolerance
 
-VERSION = 5
+VERSION = 6
 TARGET = "restart file", (".npz",)      # see `files.check_target`
 SETTINGS = {"h", "every", "seconds", "scheme", "tolerance", "model"}
 OF_START = "regularized", "massless", "inertias", "massless_axes"  # of the system
@@ -45,7 +45,8 @@ OFF = 1e-6          # of a step, by which rounding may put a time off
 MOST = {"phase": SOLVED, "unit": FINEST, "level": FINEST.bit_length(), "wanted": EVALUATED,
         "reason": max(REASONS), "pivoted": 1, "adaptive": 1, "secant": 1, "regularized": 1,
         "meets": JUMP, "split": 1, "inside": 1, "restart": AHEAD, "due": 1}
-FINITE = ("rows", "now", "aux", "q_old", "R_old", "v_old", "a_old", "aux_old")
+FINITE = ("rows", "now", "aux", "q_old", "R_old", "v_old", "a_old", "aux_old", "changes", "fitted",
+          "fit")
 
 
 def save_state(run: Simulation, path: str | Path) -> Path:
@@ -73,8 +74,10 @@ def save_state(run: Simulation, path: str | Path) -> Path:
     return path
 
 
-def resume(model: Model, path: str | Path) -> Simulation:
+def resume(model: Model, path: str | Path, threads: int = 1) -> Simulation:
     """The simulation of a file, to be continued with `run_to`; `model` is built as it was.
+
+    The run may continue with another number of `threads`.
 
     Raises
     ------
@@ -84,7 +87,7 @@ def resume(model: Model, path: str | Path) -> Simulation:
     file = f"{TARGET[0]} {path}"
     with opened(path, TARGET[0], REMEDY, TARGET[1]) as reader:
         settings = _settings(file, json_of(reader, "settings"), reader.headers)
-        run = _begun(file, model, settings)
+        run = _begun(file, model, settings, threads)
         table = Table(file, REPEAT, _members(run), {"width": run.rows.stretches[0].shape[1]})
         try:
             arrays = table.read(reader, others=["settings"])
@@ -119,7 +122,7 @@ def _settings(file: str, settings: Any, headers: Mapping[str, Header]) -> dict:
     return settings
 
 
-def _begun(file: str, model: Model, settings: dict) -> Simulation:
+def _begun(file: str, model: Model, settings: dict, threads: int) -> Simulation:
     """A simulation with the settings of a file, at its start."""
     inputs.instance(model, "model", Model, "give a sebody.Model")
     for name, kind in (("scheme", list), ("model", str), ("tolerance", list | None)):
@@ -129,7 +132,7 @@ def _begun(file: str, model: Model, settings: dict) -> Simulation:
     try:
         tolerance = settings["tolerance"] and Tolerance(*settings["tolerance"])
         run = Simulation(model, settings["h"], Scheme(*settings["scheme"]), settings["every"],
-                         tolerance)
+                         tolerance, threads=threads)
     except TypeError as error:      # too many numbers of the scheme or the tolerance, or too few
         raise InputError(f"{file} has an unknown scheme {settings['scheme']} or tolerance "
                          f"{settings['tolerance']}: {REPEAT}") from error

@@ -27,6 +27,7 @@ from sebody.runs import user_faults
 from sebody.runs.failures import explained
 from sebody.runs.first_run import prepare
 from sebody.runs.given_start import take
+from sebody.runs.helpers import TOO_SMALL, checked_threads, helping
 from sebody.runs.initial_state import begin, hold
 from sebody.runs.initial_velocities import refuse_contradicted
 from sebody.runs.progress import showing
@@ -65,6 +66,10 @@ class Simulation:
     start : Result, optional
         State to start from in place of the model as built: of an `equilibrium`, at which nothing
         rings, or the end of a run. Initial velocities that the model gives stay.
+    threads : int
+        Threads that share the steps of a large model, at most as many as there are free cores.
+        Results are the same for any number of them, bit for bit. Models with less than 1000
+        unknowns are too small to share: a warning says so.
 
     Attributes
     ----------
@@ -72,6 +77,8 @@ class Simulation:
         The state that was given to start from.
     start : Start
         Initial velocities that were solved for, redundant constraints.
+    held : bool
+        Whether friction holds something at rest at the start.
 
     Raises
     ------
@@ -83,7 +90,7 @@ class Simulation:
 
     def __init__(self, model: Model, h: float, scheme: Scheme | None = None,
                  output_every: int = 1, tolerance: Tolerance | None = None,
-                 start: Result | None = None):
+                 start: Result | None = None, threads: int = 1):
         self.model = inputs.instance(model, "model", Model, "give a sebody.Model")
         self.h = inputs.number(h, "the time step", above=0)
         self.every = inputs.integer(output_every, "output_every", least=1, most=int(MOST_STEPS),
@@ -91,15 +98,18 @@ class Simulation:
         if scheme is not None:
             checked(scheme)
         tolerance = given(tolerance)
+        threads = checked_threads(threads)
         user_faults.refuse_changed(model)
         prepare([model])
-        self.system, self.numbering = build(model)
+        self.system, self.numbering = build(model, threads)
         self.scheme = self._fitting(scheme, tolerance is not None)
         self.dense = not self.system.slot_unknowns.size     # no elimination by blocks
         self.state = allocate(model, self.system, self.numbering, self.h, self.dense)
         self.rows = RecordedRows(self.state, self.every)
         self.watch = Watch()
         self.watch.start(model.bodies, self.scheme, bool(self.numbering.multipliers))
+        if threads > 1 and not self.system.shared.mail.size:
+            self.watch.say("threads", TOO_SMALL.format(threads, self.numbering.free))
         self.seconds = 0.0
         self.failure = ""
         self.exchanges = RowExchanges(self.system, self.state)
@@ -115,7 +125,7 @@ class Simulation:
                 self.watch.say(key, message)
         self.tolerance = tolerance
         self._accelerate()
-        hold(model, self.system, self.numbering, self.state, self._accelerate_again)
+        self.held = hold(model, self.system, self.numbering, self.state, self._accelerate_again)
         if tolerance is not None:
             self._choose_steps(tolerance)
         self.sampling.check(self.h, tolerance is None)
@@ -176,7 +186,7 @@ class Simulation:
         self.sampling.stop_at(t_end)
         code = CHUNK
         try:
-            with showing(progress, t_end) as show:
+            with showing(progress, t_end) as show, helping(self.system, self.state):
                 code = self._advance(record, last, t_end, show)
         except KeyboardInterrupt:
             pass                        # the rows come first
@@ -334,7 +344,8 @@ def _default(index: int) -> Scheme:
 
 def simulate(model: Model, h: float, t_end: float, scheme: Scheme | None = None,
              output_every: int = 1, progress: Callable[[float], None] | bool | None = None,
-             tolerance: Tolerance | None = None, start: Result | None = None) -> Result:
+             tolerance: Tolerance | None = None, start: Result | None = None,
+             threads: int = 1) -> Result:
     """Run a model from 0 to `t_end`; see `Simulation` for the arguments and exceptions."""
-    run = Simulation(model, h, scheme, output_every, tolerance, start)
+    run = Simulation(model, h, scheme, output_every, tolerance, start, threads)
     return run.run_to(t_end, progress).result()

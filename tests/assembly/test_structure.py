@@ -19,7 +19,7 @@ INDICES = [f.name for f in fields(System) if f.name not in (
     "address", "index", "constants", "rotation_at", "dimension", "part", "inertias",
     "massless_axes", "magnitude", "table_at", "table_times", "table_pieces", "corners", "jumps",
     "functions", "prescribed", "prescribed_factor", "links", "control", "regularized",
-    "massless", "damped", "guarded", "routines")]
+    "massless", "damped", "guarded", "routines", "shared")]
 OF_LINKS = [f.name for f in fields(Links) if f.name != "arm_vectors"]
 CHANGES = {
     "support of another node": {"support": 1}, "another support": {"fixed": True},

@@ -306,5 +306,10 @@ def test_row_exchanges_are_compared_with_superlu(monkeypatch, capsys):
 
 def test_chains_are_compared_with_links_one_by_one():
     """In a few steps both ways differ by rounding."""
-    row = imported("bench_chain").measure(64, "default", pairs=1, until=0.03)
+    row = imported("bench_chain").measure(16, "default", pairs=1, until=0.03, curved=True)
     assert row["together"] > 0.0 and row["ratio"] > 0.0 and row["deviation"] < 1e-11
+
+
+def test_chains_are_compared_with_several_threads():
+    row = imported("bench_chain").measure_threads(70, "B", pairs=1, threads=2, until=0.05)
+    assert row["one"] > 0.0 and row["several"] > 0.0 and row["ratio"] > 0.0 and row["same"]

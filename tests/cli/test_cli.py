@@ -10,7 +10,6 @@ import pytest
 from pages import all_pages
 
 from sebody import catalogue, errors, simulate
-from sebody.assembly import equal_bodies
 from sebody.catalogue import scenes
 from sebody.cli import run, scene_arguments
 from sebody.cli.entry import main
@@ -209,8 +208,8 @@ def test_warm_compiles_kernels_and_loop(capsys, monkeypatch):
     monkeypatch.setattr(catalogue, "kernel_files", lambda: kernels)
     monkeypatch.setattr(first_run, "compile_missing", compile_missing)
     eight = []
-    monkeypatch.setattr(equal_bodies, "lanes_exist", lambda: True)
-    monkeypatch.setattr(equal_bodies, "compile_together", eight.append)
+    monkeypatch.setattr(first_run, "lanes_exist", lambda: True)
+    monkeypatch.setattr(first_run, "compile_together", eight.append)
     assert main(["warm"]) == 0
     out = capsys.readouterr().out
     assert {*kernels, "loop", "reactions"} <= set(asked) and asked.count(kernels[1]) == 2

@@ -5,7 +5,8 @@ import re
 from numba import njit, types
 
 from sebody.compiler.decorators import compiled
-from sebody.compiler.inside.pipeline import KernelPasses
+from sebody.compiler.inside.names import CFunc, normalize_signature
+from sebody.compiler.inside.pipeline import KernelPasses, PartPasses
 from sebody.engine.elimination import eliminate
 from sebody.kernels.frame_search import converged_mean
 
@@ -48,3 +49,52 @@ def test_loops_of_kernels_are_short():
     assert "vector.body" in plain and "vector.body" not in text
     assert text.count('"llvm.loop.unroll.runtime.disable"') == 1
     assert len(set(re.findall(r"!llvm.loop !(\d+)", text))) == 2
+
+
+def test_a_kernel_is_a_c_function():
+    """Not what a C function calls with its arguments copied; exports take in both."""
+    numbers = types.CPointer(types.float64)
+    signature = types.int64(types.int64, numbers, numbers)
+
+    def defined(passes):
+        made = CFunc(negated, normalize_signature(signature), {}, {}, passes)
+        made.compile()
+        names = re.findall(r"^define .*@([^(]*)\(", made.inspect_llvm(), re.MULTILINE)
+        return ["cfunc." in name for name in names if "negated" in name]
+    assert defined(KernelPasses) == [True]
+    assert sorted(defined(PartPasses)) == [False, True]
+
+
+def negated(count, x, y):
+    for i in range(count):
+        y[i] = -x[i]
+    return count
+
+
+@compiled(forceinline=True)
+def scaled(count, x, y):
+    for i in range(count):
+        y[i] = 2.0 * x[i]
+
+
+@compiled(forceinline=True, apart=True)
+def scaled_apart(count, x, y):
+    for i in range(count):
+        y[i] = 2.0 * x[i]
+
+
+def test_arrays_that_are_apart():
+    """LLVM is told, inside callers, too; otherwise it compares ends of arrays, if they are few."""
+    numbers = types.CPointer(types.float64)
+    signature = types.int64, numbers, numbers
+
+    @njit(signature)
+    def caller(count, x, y):
+        scaled(count, x, y)
+
+    @njit(signature)
+    def caller_apart(count, x, y):
+        scaled_apart(count, x, y)
+    plain, told = ("".join(one.inspect_llvm().values()) for one in (caller, caller_apart))
+    assert "vector.body" in plain and "alias.scope" not in plain
+    assert "vector.body" in told and "alias.scope" in told

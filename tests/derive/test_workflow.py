@@ -88,7 +88,7 @@ def near_half_a_turn():
 
 @njit
 def factors(starts, rows, diagonal, unknowns, matrix, column, scale):
-    return eliminate(2, pointer_to(starts), pointer_to(rows), pointer_to(diagonal),
+    return eliminate(0, 2, pointer_to(starts), pointer_to(rows), pointer_to(diagonal),
                      pointer_to(unknowns), pointer_to(matrix), pointer_to(column),
                      pointer_to(scale))
 

@@ -14,8 +14,8 @@ from sebody.assembly.equal_bodies import evaluate_alone
 from sebody.contract.counts import LANES
 from sebody.contract.layout import RESIDUAL
 from sebody.engine import elimination
-from sebody.engine.evaluate import assemble, assemble_moved
-from sebody.kernels.abi import pointer_to
+from sebody.engine.evaluate import UNMOVED, assemble, run_moved, sum_forces
+from sebody.kernels.abi import at, pointer_to
 from sebody.scenes import chain
 
 
@@ -23,16 +23,18 @@ from sebody.scenes import chain
 def factorized(pattern, matrix, column, scale):
     unknowns = np.arange(LANES * pattern.diagonal.size)
     return elimination.eliminate(
-        pattern.diagonal.size, pointer_to(pattern.starts), pointer_to(pattern.rows),
+        0, pattern.diagonal.size, pointer_to(pattern.starts), pointer_to(pattern.rows),
         pointer_to(pattern.diagonal), pointer_to(unknowns), pointer_to(matrix), pointer_to(column),
         pointer_to(scale))
 
 
 @njit
 def substituted(pattern, factors, x):
-    elimination.substitute(pattern.diagonal.size, pointer_to(pattern.starts),
-                           pointer_to(pattern.rows), pointer_to(pattern.diagonal),
-                           pointer_to(factors), pointer_to(x))
+    across, starts = pattern.diagonal.size, pointer_to(pattern.starts)
+    elimination.substitute(0, across, at(starts, 1), pointer_to(pattern.rows),
+                           pointer_to(pattern.diagonal), pointer_to(factors), pointer_to(x))
+    elimination.substitute_back(0, across, starts, pointer_to(pattern.rows),
+                                pointer_to(pattern.diagonal), pointer_to(factors), pointer_to(x))
 
 
 def system(n, seed, links):
@@ -91,7 +93,7 @@ def test_bodies_on_whole_blocks_are_less_work(monkeypatch):
         return best(*arguments)
     monkeypatch.setattr(elimination_pattern, "best_slots", spy)
     Simulation(chain.build(links=12).model, 0.01)
-    (row, column, groups, n), = asked
+    (row, column, groups, n, _), = asked
     _, pattern = best(row, column, groups, n)
     plain = elimination_pattern.block_pattern(row, column, n)
     assert pattern.products < 0.6 * plain.products
@@ -107,14 +109,17 @@ def test_elements_that_do_not_move_keep_their_forces():
     now.last_change[moved] = 1e-3
     now.q[moved] -= 1e-3
     limit = 1e-6 * now.weight[:n].min()
-    assert assemble_moved(system, now, limit) == 0
+    now.clock.target = limit / UNMOVED
+    assert run_moved(system, now) == 0
+    sum_forces(system, now, now.residual)
     assert now.moved.sum() == 2             # the links on both sides; the joint is on rotations
     residual = now.residual.copy()
     assert assemble(RESIDUAL, RESIDUAL, system, now, now.residual) == 0
     assert np.array_equal(residual, now.residual)
     now.last_change[moved] = 1e-3 * limit / now.weight[moved]
     now.q[moved] += 1e-3
-    assert assemble_moved(system, now, limit) == 0
+    assert run_moved(system, now) == 0
+    sum_forces(system, now, now.residual)
     assert not now.moved.any() and np.array_equal(residual, now.residual)
 
 

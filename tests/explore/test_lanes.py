@@ -2,23 +2,17 @@
 
 import numpy as np
 import pytest
+from lane_models import linkage, single, turned_beam
 from scipy.integrate import solve_ivp
-from scipy.spatial.transform import Rotation
 
-from sebody import Model, generalized_alpha, simulate
+from sebody import Model
 from sebody.analysis import Ensemble, at_time, final, maximum
 from sebody.catalogue import builder
 from sebody.compiler.choice import way
 from sebody.explore.ensembles import ensemble
-from sebody.explore.ensembles.handles import handle
 from sebody.explore.ensembles.work import alike
-from sebody.fem import Section, straight_beam
-from sebody.reduction import craig_bampton
 
 H, T_END = 2e-3, 0.06
-TURN = Rotation.from_rotvec((0.4, -0.7, 0.5)).as_matrix()
-SECTION = Section(area=9.0, inertia_y=6.75, inertia_z=5.1, torsion=11.387, youngs_modulus=2.1e6,
-                  poisson_ratio=0.3, density=7.8e-3)
 RUNS = 11       # one group of eight, and one that is not full
 OUTPUTS = {"end": final("tip.position"), "most": maximum("tip.velocity"), "course": "tip.position",
            "late": at_time("tip.velocity", 0.041)}
@@ -33,22 +27,6 @@ def small(monkeypatch):
     monkeypatch.setattr(ensemble, "WORTH_IT", 0)
 
 
-def turned_beam() -> Model:
-    """A beam on a turned hinge far from the origin, with gravity, a tip mass and a motor."""
-    end = np.array([3.0, -2.0, 1.0]) + TURN @ (100.0, 0, 0)
-    body = craig_bampton(straight_beam((3.0, -2.0, 1.0), end, SECTION, elements=6),
-                         [(0, "full"), (6, "full")], modes=4)
-    made = Model()
-    base, tip = (made.node(name, point) for name, point in zip(("base", "tip"), body.coordinates,
-                                                               strict=True))
-    made.superelement("beam", body, [base, tip], inertia="material")
-    made.point_mass("weight", tip, 0.5)
-    made.gravity((0.0, -3.0, 9.0))
-    made.revolute(base, axis=TURN @ (0, 0, 1), name="hinge")
-    made.torque(base, TURN @ (0, 0, 1), [(0, 0), (0.01, 9e3), (0.02, 2e3)], name="motor")
-    return made
-
-
 @pytest.fixture(scope="module")
 def beam() -> Ensemble:
     return Ensemble(turned_beam(), H)
@@ -58,18 +36,6 @@ def parameters(runs: int = RUNS, seed: int = 3) -> dict:
     rng = np.random.default_rng(seed)
     return {"beam.stiffness": rng.uniform(0.6, 1.6, runs), "weight.mass": rng.uniform(0.3, 3, runs),
             "motor.amplitude": rng.uniform(-1.0, 2.0, runs)}
-
-
-def single(model: Model, values: dict, h: float, t_end: float):
-    """The run of a model with some quantities set, by `simulate`."""
-    handles = [handle(model, name) for name in values]
-    for one, value in zip(handles, values.values(), strict=True):
-        one.set(np.asarray(value, dtype=float))
-    try:
-        return simulate(model, h, t_end)
-    finally:
-        for one in handles:
-            one.reset()
 
 
 def assert_same(found, other, runs=slice(None)):
@@ -189,30 +155,6 @@ def test_neighbours_are_alike():
     assert within < 0.3         # by chance (8 - 1) / (8 + 1)
 
 
-def linkage() -> Model:
-    """A planar crank, coupler of option C and rocker in general position, driven by a torque."""
-    made = Model(planar=True)
-    crank = made.node("crank", (0.3, -0.1))
-    made.fix(crank, "position")
-    made.rigid_body("wheel", crank, 1.3, 0.05, (0.35, -0.06))
-    pin = made.attach("pin", (0.55, 0.2), crank)
-    foot = made.node("foot", pin.point, at=pin)
-    tip = made.node("tip", (1.6, 0.9))
-    section = Section(area=4e-4, inertia_y=1.4e-8, inertia_z=1.4e-8, torsion=2.2e-8,
-                      youngs_modulus=7e10, poisson_ratio=0.3, density=2.7e3)
-    made.beam("rod", (foot, tip), section, elements=4, bodies=1, modes=2)
-    rocker = made.node("rocker", (1.8, -0.2))
-    made.fix(rocker, "position")
-    made.rigid_body("arm", rocker, 0.8, 0.09, (1.7, 0.3))
-    made.spherical(made.attach("elbow", tip.point, rocker), tip)
-    wall = made.node("wall", (2.5, 1.5))
-    made.fix(wall)
-    made.spring(tip, wall, stiffness=30.0, damping=0.4, name="spring")
-    made.torque(crank, 1.0, [(0, 0.5), (0.1, 2.0)], name="motor")
-    made.gravity((0.4, -9.81))
-    return made
-
-
 def test_coupled_and_linked_bodies(small):
     """A four-bar: multipliers, rigid links, matrices that are rotated, packed products of option C.
 
@@ -237,7 +179,6 @@ def test_coupled_and_linked_bodies(small):
 
 @pytest.mark.parametrize("scene, options, scheme, reason", [
     ("stick-slip", {}, None, "friction"), ("flexible-arm", {}, None, "sensors, controllers"),
-    ("heavy-top", {"explicit": True}, generalized_alpha(index=2), "velocities"),
     ("chain", {"links": 64}, None, "equal bodies")])
 def test_the_ensemble_says_why_its_runs_are_made_one_by_one(scene, options, scheme, reason, small):
     """By facts of the model; its runs are those of the scalar loop."""

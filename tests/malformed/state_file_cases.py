@@ -35,6 +35,8 @@ RESTART = {
         "v_old", 2, np.nan)),
     "infinite acceleration": Packed("holds numbers in aux that are not finite", entry(
         "aux", 0, np.inf)),
+    **{f"NaN in {name}": Packed(f"holds numbers in {name} that are not finite", entry(
+        name, 1, np.nan)) for name in ("changes", "fitted", "fit")},
     "a velocity too few": Packed("is of another model", member("v_old", lambda old: old[:-1])),
     "texts for velocities": Packed("in v_old, in place of real numbers", member(
         "v_old", lambda old: old.astype(str))),

@@ -211,6 +211,14 @@ def chosen_in(typingctx, chosen, member):
     return types.boolean(mask, types.int64), codegen
 
 
+@intrinsic
+def bits_of(typingctx, chosen):
+    """A mask as a whole number, one bit for each lane."""
+    def codegen(context, builder, sig, args):
+        return builder.zext(builder.bitcast(args[0], _ALL), _WORD)
+    return types.int64(mask), codegen
+
+
 # lanes
 
 

@@ -15,7 +15,7 @@ from sebody.compiler.inside.lanes import NUMPY_KIND
 from sebody.contract.counts import MEMBERS
 from sebody.engine.arrays import Arrays
 from sebody.engine.offsets import Offsets
-from sebody.engine.state import State
+from sebody.engine.state import Record, State
 from sebody.engine.system import System
 
 # floats that are the same for all members: times, and what branches are taken by
@@ -24,7 +24,7 @@ OWN_GROUPS = {"control"}        # of a system: the same for all
 # scalars of all members together; the other ones of the records are lanes
 TIMES = {"time", "step", "current_step", "factor_step", "aux_step", "chosen", "end", "beside",
          "largest_error"}
-WHOLE = {"phase", "grid", "unit", "level", "steps", "recorded", "pivoted", "adaptive", "corner",
+WHOLE = {"phase", "grid", "unit", "level", "recorded", "pivoted", "adaptive", "corner",
          "meets", "split", "inside", "restart", "due", "held", "regularized", "cuts", "rejected"}
 _ALIGNED = 64       # bytes of a vector
 
@@ -39,12 +39,59 @@ class Scratch(Arrays):
     frames              frames before an evaluation
     moved               (elements,) one where a member's element is evaluated, else zero
     unmoved             forces of the elements that have not moved
+    table               of elements that are evaluated member by member: see `member_row`
+    kept                (B,) numbers that an element of each batch keeps, if it is one of them
     ==================  ============================================================================
     """
 
     frames: NDArray
     moved: NDArray
     unmoved: NDArray
+    table: NDArray
+    kept: NDArray
+
+
+@dataclass(frozen=True, eq=False)
+class Apart(Arrays):
+    """Arrays of members that are alone for a while, see `engine.lanes.apart`.
+
+    =======================  =======================================================================
+    places                   numbers that members take with them, in the buffer of all numbers
+    lanes                    (size, members) that buffer in lanes
+    numbers                  (members, size) the same of every member alone
+    now                      (1,) where `State.now` begins in it
+    changes                  (2,) the same of `State.changes` and `State.fit`
+    control, clock, guard    (members, scalars) the records of every member
+    ..._words                (scalars, 2) place of each in the record in lanes; 1 if each member has
+                             its own there, else 0
+    ..._in_lanes             the records in lanes as floats, and `control` as whole numbers, too
+    addresses                (members, 2) of system and state of every member
+    system, state            those of the first; their types are those of all
+    record                   which nothing is written to
+    routine                  (1,) address of `engine.loop.advance`
+    =======================  =======================================================================
+    """
+
+    places: NDArray
+    lanes: NDArray
+    numbers: NDArray
+    now: NDArray
+    changes: NDArray
+    control: NDArray
+    clock: NDArray
+    guard: NDArray
+    control_words: NDArray
+    clock_words: NDArray
+    guard_words: NDArray
+    control_in_lanes: NDArray
+    whole_in_lanes: NDArray
+    clock_in_lanes: NDArray
+    guard_in_lanes: NDArray
+    addresses: NDArray
+    system: System
+    state: State
+    record: Record
+    routine: NDArray
 
 
 @dataclass(frozen=True, eq=False)

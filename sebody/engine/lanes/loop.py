@@ -3,51 +3,81 @@
 Predictions, forces, matrices and corrections are the functions of the loop, compiled for lanes.
 What a member does next follows from its own numbers alone, so results do not depend on which
 members are run together: a member that has converged, or keeps its matrix, keeps its numbers while
-others go on. A member that the loop would have to cut the step for, or to ask Python, gives up: its
-`control.reason` is set, and it is run alone from its start.
+others go on. Members whose step is cut go alone until they can come back, see `engine.lanes.apart`.
+One that would have to ask Python gives up, and is run alone from its start.
 """
 
 
 from sebody.compiler.decorators import compiled
-from sebody.compiler.inside.lanes import some, spread, where
+from sebody.compiler.inside.lanes import bits_of, every, some, spread, where
 from sebody.contract.layout import RECORD_ITERATIONS, RECORD_T, RESIDUAL
-from sebody.engine.evaluate import run_kernels, sum_forces, to_body_axes
+from sebody.contract.member_row import RUNNING
+from sebody.engine.evaluate import run_kernels, sum_forces, take_rates, to_body_axes
+from sebody.engine.lanes.apart import (
+    APART,
+    CUT,
+    GAVE_UP,
+    JUDGED,
+    JUMPS,
+    RUNS,
+    jump_is_ahead,
+    run_apart,
+    show,
+    take_apart,
+)
 from sebody.engine.lanes.growth import grows
+from sebody.engine.lanes.guard import contact_too_fast
 from sebody.engine.lanes.matrix import factorize
 from sebody.engine.lanes.moved import find_moved, keep_unmoved, run_moved
 from sebody.engine.lanes.newton import begin_with_matrix, correct, watch_age
 from sebody.engine.matrix import solve
+from sebody.engine.newton import take_shift
 from sebody.engine.prediction import look_back
 from sebody.engine.state import EVALUATED, KEPT, ROTATED
-from sebody.engine.step import (
-    MEMORY,
-    ORTHOGONAL,
-    orthogonalize,
-    predict,
-)
-from sebody.engine.step_control import choose_part, set_end
+from sebody.engine.step import MEMORY, ORTHOGONAL, orthogonalize, predict
+from sebody.engine.step_control import set_end
+from sebody.engine.vectors import swap
 from sebody.engine.work import add_work
 from sebody.kernels.abi import at, pointer_to
 
 
 @compiled(nogil=True)
-def advance(system, state, scratch, alone, record, scheme, last_grid, dense):
+def advance(system, state, scratch, alone, apart, record, scheme, last_grid, dense):
     """Run until `last_grid`, or until no member is left that has not given up."""
     control = state.control
-    if control.steps == 0:
-        _write(state, record)
+    if control.grid == 0:
+        _write(state, apart, record)
     while control.grid < last_grid:
-        running = control.reason == 0.0
-        if not some(running):
+        if every(control.reason == GAVE_UP):
             return
-        if system.corners.size > 0:
-            choose_part(system, state)
-        _begin_step(system, state, scheme)
-        _iterate(system, state, scratch, alone, scheme, running, dense)
-        add_work(system, state, state.clock.current_step)
-        control.reason = where(grows(system, state, scratch) & (control.reason == 0.0), spread(1.0),
+        if system.corners.size > 0 and jump_is_ahead(system, state):
+            control.reason = where(control.reason == RUNS, spread(JUMPS), control.reason)
+        running = control.reason == RUNS
+        if some(running):
+            _begin_step(system, state, scheme)
+            _iterate(system, state, scratch, alone, scheme, running, dense)
+            _look_at_step(system, state, scratch)
+        if some(control.reason > APART):
+            take_apart(state, apart, alone.J)
+        _accept(system, state)
+        if some(control.reason == APART):
+            run_apart(state, apart, alone.J, scheme, dense)
+        if control.grid % record.every[0] == 0:
+            _write(state, apart, record)
+
+
+@compiled(forceinline=True)
+def _look_at_step(system, state, scratch):
+    """Find members whose step is rejected though it has converged; add works."""
+    control = state.control
+    running = control.reason == RUNS
+    if system.guarded.size > 0:
+        control.reason = where(running & contact_too_fast(system, state), spread(CUT),
                                control.reason)
-        _accept(system, state, record)
+        running = control.reason == RUNS
+    scratch.table[RUNNING] = bits_of(running)
+    add_work(system, state, state.clock.current_step)
+    control.reason = where(grows(system, state, scratch, running), spread(JUDGED), control.reason)
 
 
 @compiled(forceinline=True)
@@ -55,7 +85,7 @@ def _begin_step(system, state, scheme):
     control, clock = state.control, state.clock
     set_end(system, state)
     offset = clock.current_step / clock.aux_step
-    if control.steps > 0:
+    if control.grid > 0:
         look_back(system, state, scheme.beta * clock.current_step * clock.current_step)
     kept = (control.fresh == 0.0) & (control.wanted == float(KEPT))
     predict(system, state, scheme, where(kept, spread(1.0), spread(0.0)), offset)
@@ -68,12 +98,12 @@ def _begin_step(system, state, scheme):
 def _iterate(system, state, scratch, alone, scheme, active, dense):
     """Newton's iteration of a step, until every member has converged or given up."""
     control = state.control
-    n = system.diagonal.size
+    mixed = not dense and not scheme.stabilized
     iteration = 0
     while some(active):
         evaluated = active & (control.wanted == float(EVALUATED))
         wanted = evaluated | (active & (control.wanted == float(ROTATED)))
-        moved = (not dense and iteration > 1 and system.links.dependent.shape[0] == 0)
+        moved = mixed and iteration > 1 and system.links.dependent.shape[0] == 0
         if moved:
             find_moved(system, state, scratch, active, wanted)
         _evaluate(system, state, scratch, active, moved)
@@ -83,12 +113,29 @@ def _iterate(system, state, scratch, alone, scheme, active, dense):
                     state.forces[i] = state.residual[i]
             active = active & ~factorize(system, state, alone, scratch.frames, dense, wanted,
                                          evaluated)
+        if scheme.stabilized:
+            take_rates(system, state)
         to_body_axes(system, state.frames, state.residual, False)
-        solve(system, state, dense)
-        for i in range(n):
-            state.correction[i] = where(active, state.correction[i], spread(0.0))
-        active = correct(system, state, scheme, active, iteration, not dense)
+        _solve(system, state, active, scheme.stabilized, dense)
+        active = correct(system, state, scheme, active, iteration, mixed)
         iteration += 1
+
+
+@compiled(forceinline=True)
+def _solve(system, state, active, stabilized, dense):
+    """Solve for the corrections of the active members; with index 2 for shifts of positions first.
+    """
+    shifts = stabilized
+    while True:
+        if shifts:
+            swap(state.residual, state.constraint_residuals)
+        solve(system, state, dense)
+        for i in range(system.diagonal.size):
+            state.correction[i] = where(active, state.correction[i], spread(0.0))
+        if not shifts:
+            return
+        take_shift(system, state)
+        shifts = False
 
 
 @compiled(forceinline=True)
@@ -98,6 +145,7 @@ def _evaluate(system, state, scratch, active, moved):
     for k in range(frames.size):
         begun[k] = frames[k]
     batches = system.address.size
+    scratch.table[RUNNING] = bits_of(active)
     if moved:
         run_moved(system, state, scratch, 0, batches)
         keep_unmoved(system, state, scratch)
@@ -109,26 +157,26 @@ def _evaluate(system, state, scratch, active, moved):
 
 
 @compiled(forceinline=True)
-def _accept(system, state, record):
-    """End a step: orthogonal rotations, output."""
+def _accept(system, state):
+    """End a step: orthogonal rotations."""
     clock, control = state.clock, state.control
-    if control.steps % ORTHOGONAL == 0:
+    if control.grid % ORTHOGONAL == 0:
         for r in range(system.rotation_at.size):
             orthogonalize(at(pointer_to(state.R), 9 * r))
     watch_age(state)
     control.back_off = where(control.fresh == 0.0, spread(0.0), control.back_off)
     clock.acceleration_norm *= MEMORY
-    control.steps += 1
+    control.steps += 1.0
     control.grid += 1
     clock.time = control.grid * clock.step
-    if control.grid % record.every[0] == 0:
-        _write(state, record)
 
 
 @compiled(forceinline=True)
-def _write(state, record):
+def _write(state, apart, record):
     """Store the numbers of the accepted state that are asked for."""
     row = state.control.recorded
+    if some(state.control.reason == APART):
+        show(state, apart, record.places)
     state.now[RECORD_T] = spread(state.clock.time)
     state.now[RECORD_ITERATIONS] = state.control.iterations
     for k in range(record.places.size):

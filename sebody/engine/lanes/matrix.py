@@ -15,7 +15,7 @@ from sebody.contract.layout import OK, TANGENT
 from sebody.engine.arrays import Arrays
 from sebody.engine.calls import call_refactorize
 from sebody.engine.evaluate import run_kernels, set_tangent_operators
-from sebody.engine.lanes.newton import GAVE_UP
+from sebody.engine.lanes.apart import CUT, GAVE_UP, RUNS
 from sebody.engine.state import EVALUATED, KEPT, ROTATED, State
 from sebody.engine.system import System
 
@@ -44,7 +44,7 @@ class Alone(Arrays):
 
 @compiled
 def factorize(system, state, alone, begun, dense, wanted, evaluated):
-    """Make the matrices of some members; returns those that give up.
+    """Make the matrices of some members; returns those that leave.
 
     Parameters
     ----------
@@ -55,14 +55,14 @@ def factorize(system, state, alone, begun, dense, wanted, evaluated):
     """
     control, clock, zero = state.control, state.clock, spread(0.0)
     control.regularized = system.regularized[0]
-    bad = zero
+    found = zero
     for member in range(MEMBERS):
         if chosen_in(wanted, member):
             kind = EVALUATED if chosen_in(evaluated, member) else ROTATED
-            if not _factorize_one(state, alone, begun, dense, member, kind):
-                bad = with_number(bad, member, 1.0)
+            found = with_number(found, member,
+                                _factorize_one(state, alone, begun, dense, member, kind))
             clock.floor = with_number(clock.floor, member, alone.state.clock.floor)
-    failed = bad > 0.0
+    failed = found != RUNS
     clock.factor_step = clock.current_step
     clock.baseline_contraction = where(evaluated, spread(0.5), clock.baseline_contraction)
     clock.excess = where(evaluated, zero, clock.excess)
@@ -72,13 +72,16 @@ def factorize(system, state, alone, begun, dense, wanted, evaluated):
     control.secant = where(wanted, zero, control.secant)
     control.fresh += one
     control.matrices += one
-    control.reason = where(failed, spread(GAVE_UP), control.reason)
+    control.reason = where(failed, found, control.reason)
     return failed
 
 
 @compiled
 def _factorize_one(state, alone, begun, dense, member, wanted):
-    """Make the matrix of a member; False if that needs row exchanges, or the matrix is singular."""
+    """Make the matrix of a member; returns whether it goes on, or why it leaves.
+
+    It gives up where a run alone needs row exchanges.
+    """
     system, one, floats, numbers = alone.system, alone.state, alone.floats, alone.numbers
     for k in range(alone.taken.size):
         floats[alone.taken[k]] = numbers[alone.taken[k], member]
@@ -93,14 +96,16 @@ def _factorize_one(state, alone, begun, dense, member, wanted):
         for k in range(kept):
             one.J[k] = alone.J[member, k]
     if run_kernels(TANGENT, first, system.address.size, system, one) != OK:
-        return False
+        return CUT
     if wanted == EVALUATED:
         for k in range(kept):
             alone.J[member, k] = one.J[k]
     made = call_refactorize(system.routines[0], system, one, wanted, dense)
-    if (not made or (not dense and one.control.pivoted == 1)
+    if not made:
+        return CUT
+    if ((not dense and one.control.pivoted == 1)
             or one.control.regularized != state.control.regularized):
-        return False
+        return GAVE_UP
     for k in range(alone.returned.size):
         numbers[alone.returned[k], member] = floats[alone.returned[k]]
-    return True
+    return RUNS

@@ -7,8 +7,8 @@ in a member, and keeps its forces and its frame in all others.
 from sebody.compiler.decorators import compiled
 from sebody.compiler.inside.lanes import some, spread, where
 from sebody.contract.layout import AT_FRAME, RESIDUAL
-from sebody.engine.evaluate import run_part
-from sebody.engine.loop import UNMOVED
+from sebody.engine.evaluate import limit_of_moved, run_part
+from sebody.kernels.abi import pointer_to
 
 
 @compiled
@@ -18,8 +18,7 @@ def find_moved(system, state, scratch, active, wanted):
     All elements count as moved where members want matrices. Forces are remembered.
     """
     k, first, yes, no = 0, 0, spread(1.0), spread(0.0)
-    limit = UNMOVED * state.clock.target
-    limit = limit * limit / float(state.moved.size)
+    limit = limit_of_moved(state)
     for b in range(system.address.size):
         for element in range(system.count[b]):
             size = no
@@ -48,14 +47,15 @@ def run_moved(system, state, scratch, first_batch, last_batch):
                 end = begin + 1
                 while end < system.count[b] and some(scratch.moved[first + end] > 0.0):
                     end += 1
-                run_part(RESIDUAL, b, begin, end - begin, system, state)
+                run_part(RESIDUAL, b, begin, end - begin, system, state,
+                         pointer_to(state.work))
                 begin = end
         first += system.count[b]
 
 
 @compiled
 def keep_unmoved(system, state, scratch):
-    """Put back the forces and frames of elements that have not moved."""
+    """Put back forces, frames and kept numbers of elements that have not moved."""
     g, first, bodies = state.g, 0, system.first_joint[0]
     for b in range(system.address.size):
         width, stride = system.width[b], system.stride[b]
@@ -64,8 +64,8 @@ def keep_unmoved(system, state, scratch):
             start = system.at_g[b] + width * element
             for k in range(start, start + width):
                 g[k] = where(moved, g[k], scratch.unmoved[k])
-            if b < bodies:
-                frame = 9 * system.index[system.at_index[b] + stride * element + AT_FRAME]
-                for k in range(frame, frame + 9):
-                    state.frames[k] = where(moved, state.frames[k], scratch.frames[k])
+            place = system.index[system.at_index[b] + stride * element + AT_FRAME]
+            kept, size = (9 * place, 9) if b < bodies else (place, scratch.kept[b])
+            for k in range(kept, kept + size):
+                state.frames[k] = where(moved, state.frames[k], scratch.frames[k])
         first += system.count[b]

@@ -4,6 +4,7 @@ import math
 
 from sebody.compiler.decorators import compiled
 from sebody.compiler.inside.lanes import some, spread, where
+from sebody.engine.lanes.apart import AGAIN, CUT
 from sebody.engine.lanes.regularization import leaves_gap
 from sebody.engine.newton import (
     ACCELERATION_TOLERANCE,
@@ -28,7 +29,6 @@ from sebody.engine.regularization import regularized_norms
 from sebody.engine.state import EVALUATED, KEPT, ROTATED
 
 HUGE = 1e300            # a norm above this is no number, or as good as none
-GAVE_UP = 1.0           # reason of a member that is to be run alone
 
 
 @compiled(forceinline=True)
@@ -38,7 +38,8 @@ def correct(system, state, scheme, active, iteration, mixed):
     n, regularized = system.diagonal.size, control.regularized == 1
     norm, size, accelerations = (regularized_norms(system, state, n) if regularized else
                                  norms(system, state, n))
-    failed = active & ~(norm < HUGE)
+    none = active & ~(norm < HUGE)
+    failed = none
     left_norm = accelerate(system, state, active, norm) if mixed else norm
     subtract(system, state, scheme, n)
     accelerations = max(scheme.beta * h * h * accelerations, clock.acceleration_norm)
@@ -66,14 +67,15 @@ def correct(system, state, scheme, active, iteration, mixed):
     if some(done):
         failed = failed | (done & _strayed(system, state, scheme))
         if regularized:
-            failed = failed | (done & leaves_gap(system, state, norm))
+            failed = failed | (done & leaves_gap(system, state, norm, scheme.stabilized))
     left = active & ~done & ~failed
     if some(left):
         if iteration >= MAX_ITERATIONS - 1:
             failed = failed | left
         if iteration > 0:
             _want_matrices(system, state, left, rate, norm, target, iteration)
-    control.reason = where(failed, spread(GAVE_UP), control.reason)
+    shorter = none | (control.fresh > 0.0)
+    control.reason = where(failed, where(shorter, spread(CUT), spread(AGAIN)), control.reason)
     return left & ~failed
 
 

@@ -9,10 +9,12 @@ from sebody.engine.newton import WIDEST_GAP
 
 
 @compiled
-def leaves_gap(system, state, norm):
+def leaves_gap(system, state, norm, stabilized):
     """Which members keep a residual that no correction removes."""
     n, left = system.diagonal.size, spread(0.0)
     for i in range(n):
         residual = state.residual[i]
+        if stabilized:
+            residual += state.constraint_residuals[i]
         left += residual * residual * state.scale[i] * state.scale[i]
     return math.sqrt(left) > n * norm + WIDEST_GAP / ROUNDING * state.clock.floor

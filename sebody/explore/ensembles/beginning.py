@@ -9,6 +9,7 @@ from sebody.compiler.decorators import compiled
 from sebody.engine.arrays import Arrays
 from sebody.engine.calls import call_restart
 from sebody.engine.evaluate import move_prescribed, set_loads
+from sebody.engine.kept_factors import VALID
 from sebody.engine.links import place_dependent
 from sebody.engine.state import ASKED, DONE
 from sebody.engine.vectors import copy
@@ -23,6 +24,7 @@ class Beginning(Arrays):
     slots               (k,) places of the numbers that depend on parameters
     ends                (k + 1,) where the slopes of each begin and end
     components, slopes  by which component of the parameters, and how much
+    kept                places of what elements keep, as of the last accepted state
     control, clock,     scalars and flags of the thread, and below those of the model as built
     guard, moved
     ==================  ============================================================================
@@ -34,6 +36,7 @@ class Beginning(Arrays):
     ends: NDArray
     components: NDArray
     slopes: NDArray
+    kept: NDArray
     control: NDArray
     clock: NDArray
     guard: NDArray
@@ -65,6 +68,8 @@ def begin(system, state, given, change):
         given.moved[i] = given.moved_built[i]
     copy(given.clock_built, given.clock)
     copy(given.guard_built, given.guard)
+    if state.spare.size > 0:
+        state.spare[VALID] = 0.0        # these factors are of the model as built
     set_loads(system, state.frames, state.loads, 0.0)
     copy(state.loads, state.loads_old)
     move_prescribed(system, state)
@@ -78,17 +83,21 @@ def end(state, given):
     for i in range(given.control.size):
         given.control[i] = given.control_built[i]
     copy(state.frames, state.frames_old)
+    for k in given.kept:        # the first step is the first that changes these
+        given.floats[k] = given.model[k]
     copy(state.aux, state.aux_old)
 
 
 @compiled(nogil=True)
-def begin_together(system, state, given, changes, dense, places, lanes):
+def begin_together(system, state, given, changes, lead, dense, places, lanes):
     """Begin runs one after the other; those that have begun are members of lanes.
 
     Parameters
     ----------
     changes : (runs, components)
         As of `begin`.
+    lead : float
+        As of `engine.restart`.
     places : (k,)
         What members begin with in the buffer of all numbers.
     lanes : (size, members)
@@ -101,7 +110,7 @@ def begin_together(system, state, given, changes, dense, places, lanes):
     member, codes = 0, np.empty(changes.shape[0], np.int64)
     for run in range(changes.shape[0]):
         begin(system, state, given, changes[run])
-        codes[run] = call_restart(system.routines[1], system, state, 0.0, dense)
+        codes[run] = call_restart(system.routines[1], system, state, lead, dense)
         if codes[run] == DONE:
             end(state, given)
             for k in range(places.size):

@@ -13,13 +13,11 @@ from sebody.assembly.equal_bodies import evaluated_together
 from sebody.compiler import choice
 from sebody.contract.layout import INPUT
 from sebody.explore.ensembles.start_values import Image
-from sebody.kernels.loader import BY_HAND, element_kernel_name
+from sebody.kernels.loader import element_kernel_name
 from sebody.model.model import Model
 from sebody.runs.simulation import Simulation
 
 WORTH_IT = 500_000      # steps of all runs together, a second or more one by one
-# of elements that choose by their numbers, parts of the names of kernels
-CHOOSING = ("stop", "friction", "play", "point_on_", "sphere_on_", "contact")
 
 
 class Fact(NamedTuple):
@@ -31,20 +29,16 @@ class Fact(NamedTuple):
 
 FACTS = (
     Fact("motions without mass", lambda one: bool(one.system.massless[0])),
-    Fact("constraints that hold for velocities, too", lambda one: one.scheme.stabilized),
     Fact("sensors, controllers or inputs", lambda one: bool(
         one.system.control.periods.size or one.system.control.inputs.size
         or (one.system.functions[:, 0] == INPUT).any())),
-    Fact("forces or laws of users", lambda one: any(
-        name in BY_HAND for name in kernels_of(one.model))),
-    Fact("contacts, stops or friction", lambda one: any(
-        part in name for part in CHOOSING for name in kernels_of(one.model))),
-    Fact("elements that keep numbers from step to step",
-         lambda one: one.state.frames.size > 9 * len(one.model.bodies)),
+    Fact("friction that holds something at the start", lambda one: one.held),
+    Fact("elements that keep numbers, as contacts and friction, among rigid bodies alone",
+         lambda one: not one.model.bodies and bool(one.numbering.memories)),
+    Fact("gears whose teeth are as stiff as the step allows",
+         lambda one: any("teeth" in load.tuned for load in one.model.loads)),
     Fact("equal bodies, of which each run evaluates eight at a time",
          lambda one: bool(evaluated_together(one.model))),
-    Fact("loads at whose jumps accelerations are solved for anew",
-         lambda one: bool(one.system.jumps.any())),
 )
 
 

@@ -1,7 +1,6 @@
 """What the first ensemble in lanes compiles, side by side in several processes."""
 
 from collections.abc import Iterable
-from dataclasses import fields
 from pathlib import Path
 from threading import Lock
 
@@ -12,11 +11,11 @@ from sebody.compiler.choice import way
 from sebody.compiler.first_run import Job, compile_apart
 from sebody.compiler.workers import Task
 from sebody.engine.lanes import loop
-from sebody.engine.lanes.arrays import Columns, Scratch, empty, in_lanes
+from sebody.engine.lanes.arrays import Columns, Scratch, empty, in_lanes, numbers
 from sebody.engine.lanes.matrix import Alone
 from sebody.engine.offsets import Offsets
-from sebody.kernels.lanes.kernel import Own, address_in_lanes, is_compiled
-from sebody.kernels.loader import find, load
+from sebody.explore.ensembles.apart import new_apart
+from sebody.kernels.lanes.kernel import Own, address_in_lanes, is_compiled, module_in_lanes
 from sebody.runs.first_run import SECONDS_A_LETTER, smallest
 from sebody.runs.schemes import generalized_alpha
 
@@ -34,10 +33,10 @@ def prepare(kernels: Iterable[tuple[str, Own]]) -> None:
         Names, and which constants are lanes.
     """
     with _lock:
-        missing = [(name, own) for name, own in dict.fromkeys(kernels)
-                   if not is_compiled(find(name), own)]
+        asked = {(Path(module_in_lanes(name).__file__), own): name for name, own in kernels}
         jobs = [Job(Task(f"{name} in lanes", f"{__name__}:compile_kernel", (name, own)),
-                    SECONDS_A_LETTER * find(name).stat().st_size) for name, own in missing]
+                    SECONDS_A_LETTER * path.stat().st_size)
+                for (path, own), name in asked.items() if not is_compiled(path, own)]
         if not way().is_compiled(loop.advance):
             jobs.append(Job(Task("loop in lanes", f"{__name__}:compile_loop"), LOOP_SECONDS))
         compile_apart(jobs, "what makes eight runs at a time", Path(loop.__file__))
@@ -45,7 +44,7 @@ def prepare(kernels: Iterable[tuple[str, Own]]) -> None:
 
 def compile_kernel(name: str, own: Own) -> None:
     """Compile a kernel for lanes here, or find it in the cache."""
-    address_in_lanes(load(name), own)
+    address_in_lanes(module_in_lanes(name), own)
 
 
 def compile_loop() -> None:
@@ -53,10 +52,12 @@ def compile_loop() -> None:
     system, state = smallest()
     offsets = Offsets(system, state)
     buffer = empty(offsets.size)
-    scratch = Scratch(**{one.name: empty(1) for one in fields(Scratch)})
     room, places = np.zeros((1, 1)), np.zeros(1, dtype=np.int64)
+    scratch = Scratch(empty(1), empty(1), empty(1), places, places)
     alone = Alone(system, state, room[0], room, places, places, room)
     columns = Columns(places, empty(1, 1), places)
-    given = (in_lanes(system, offsets, buffer), in_lanes(state, offsets, buffer), scratch, alone,
-             columns, generalized_alpha())
+    of_members = in_lanes(state, offsets, buffer)
+    apart, _ = new_apart((system, state), offsets, places[:0], numbers(buffer), of_members, 0)
+    given = (in_lanes(system, offsets, buffer), of_members, scratch, alone, apart, columns,
+             generalized_alpha())
     way().compile_for(loop.advance, (*map(typeof, given), types.int64, types.boolean))

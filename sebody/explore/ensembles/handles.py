@@ -5,7 +5,8 @@
 ``<node>.velocity``         initial velocity; it counts as given, others are fitted to it
 ``<node>.rotation``         initial rotation against the model as built, a vector, planar an angle
 ``<node>.angular_velocity``
-``<joint>.position``        of a joint with the ground: where it holds its node [length]
+``<joint>.position``        of a joint with the ground: where it holds its node [length]; a node
+                            whose position is unknown begins there by its own parameter
 ``<body>.stiffness``        factor, of a superelement's stiffness and of its geometric stiffness
 ``<body>.mass``             factor, of a superelement or rigid body with its inertia
 ``<body>.damping``          factor, of a superelement that has damping

@@ -8,10 +8,13 @@ from numpy.typing import NDArray
 from sebody.contract.counts import MEMBERS
 from sebody.contract.layout import AT_CONSTANTS, RECORD_T
 from sebody.engine.lanes import loop
+from sebody.engine.lanes.apart import GAVE_UP, RUNS
 from sebody.engine.lanes.arrays import Columns, Scratch, empty, fill, in_lanes, numbers
 from sebody.engine.lanes.matrix import Alone
 from sebody.engine.system import System
+from sebody.explore.ensembles.apart import address_of_loop, new_apart
 from sebody.explore.ensembles.member import Copies, Course, Form
+from sebody.explore.ensembles.member_rows import Rows, new_table, with_places
 from sebody.explore.ensembles.outputs import Folds, Output
 from sebody.explore.ensembles.shared_constants import (
     kernels_of_batches,
@@ -21,13 +24,11 @@ from sebody.explore.ensembles.shared_constants import (
     varied_numbers,
 )
 from sebody.explore.ensembles.start_values import Image
-from sebody.kernels.lanes.kernel import address_in_lanes
+from sebody.kernels.lanes.kernel import address_in_lanes, module_in_lanes
 from sebody.kernels.lanes.straight import write_address, write_shared_address
-from sebody.kernels.loader import load
 
 MOST_NUMBERS = 8_000        # of recorded states at a time: they stay in the processor's cache
 MOST_STEPS = 20_000         # until a thread looks whether it is to stop: tenths of a second
-ALONE = 1.0         # reason of a lane without a member
 
 
 class Lanes:
@@ -60,11 +61,16 @@ class Lanes:
         self._numbers = numbers(buffer)
         self.system = in_lanes(one.system, image.offsets, buffer)
         self._shared, self._pointed = self._write_constants()
-        self.system = _with_kernels(self.system, image, self._shared)
+        table = new_table(buffer, copies.floats, one.state.energy.size)
+        rows = with_places(image, table)
+        self.system = _with_kernels(self.system, image, self._shared, rows)
         self.state = in_lanes(one.state, image.offsets, buffer)
         self._scratch = Scratch(frames=empty(one.state.frames.size),
                                 moved=empty(one.state.moved.size),
-                                unmoved=empty(one.state.g.size))
+                                unmoved=empty(one.state.g.size), table=table, kept=rows.kept)
+        self._apart, self._runs_apart = new_apart(
+            (one.system, one.state), image.offsets, image.lines.slots, self._numbers, self.state,
+            address_of_loop(one.system, one.state, copies.scheme))
         self._alone = self._matrices_alone()
         self._places = self._own_places()
         columns = _columns(forms, one.state.now.size)
@@ -165,19 +171,19 @@ class Lanes:
                         for member in range(count)]
         if count < MEMBERS:         # lanes without a member: another one's numbers
             self._numbers[self._places, count:] = self._numbers[self._places, :1]
-        state.control["reason"] = np.where(np.arange(MEMBERS) < count, 0.0, ALONE)
+        state.control["reason"] = np.where(np.arange(MEMBERS) < count, RUNS, GAVE_UP)
         every, reached = int(self._record.every[0]), 0
         while reached < self._last:
             reached = min(self._last, (reached // every + self._stretch) * every,
                           reached + MOST_STEPS)
             state.control["recorded"] = 0
-            loop.advance(self.system, state, self._scratch, self._alone, self._record,
+            loop.advance(self.system, state, self._scratch, self._alone, self._apart, self._record,
                          self.copies.scheme, reached, self.copies.dense)
-            self._take_outputs(np.flatnonzero(state.control["reason"][:count] == 0.0))
+            self._take_outputs(np.flatnonzero(state.control["reason"][:count] != GAVE_UP))
             if reached < self._last and stop():
                 break
         self.ended = reached == self._last
-        return state.control["reason"][:count] != 0.0
+        return state.control["reason"][:count] == GAVE_UP
 
     def _take_outputs(self, members: NDArray) -> None:
         """Take in recorded states: folds of all members together, all else of each."""
@@ -227,15 +233,15 @@ def _columns(forms: Mapping[str, Form], count: int) -> NDArray:
     return np.unique(np.concatenate([[RECORD_T], *(form.columns for form in forms.values())]))
 
 
-def _with_kernels(system: System, image: Image, constants: NDArray) -> System:
+def _with_kernels(system: System, image: Image, constants: NDArray, rows: Rows) -> System:
     """A system that calls kernels for lanes; of bodies that share constants, with these."""
     members = {name: getattr(system, name) for name in System.__annotations__}
-    members["address"] = np.array([address_in_lanes(load(name), own)
+    members["address"] = np.array([address_in_lanes(module_in_lanes(name), own)
                                    for name, own in kernels_of_batches(image)])
-    members["index"] = system.index.copy()
+    members |= {"index": rows.index, "at_index": rows.at_index, "stride": rows.stride}
     away = (constants.ctypes.data - system.constants.ctypes.data) // constants.itemsize
     for b in own_parts(image):
-        first, stride = int(system.at_index[b]), int(system.stride[b])
+        first, stride = int(rows.at_index[b]), int(rows.stride[b])
         end = first + stride * int(system.count[b])
         members["index"][first + AT_CONSTANTS:end:stride] += away
     return System(**members)

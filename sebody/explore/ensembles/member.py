@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.contract.layout import RECORD_T
-from sebody.engine.loop import advance
+from sebody.engine.loop import advance, lead
+from sebody.engine.offsets import Offsets
 from sebody.engine.scalars import numbers_of, record
 from sebody.engine.state import (
     DONE,
@@ -31,6 +32,7 @@ from sebody.runs.sampling import Sampling
 from sebody.runs.simulation import Simulation
 
 MOST_NUMBERS = 2_000_000    # of recorded states at a time in a thread: 16 MB
+MOST_STEPS = 1_000_000_000  # in one call of the loop
 CHUNK = 0.2                 # seconds in the loop until a thread looks whether it is to stop
 Stop = Callable[[], bool]
 
@@ -42,13 +44,12 @@ class Copies:
         one = image.template
         self.image, self.dense = image, one.dense
         self.floats = image.floats.copy()
-        self.system: System = image.offsets.packed(one.system, self.floats)
-        state = image.offsets.packed(one.state, self.floats)
-        self.state: State = _with_own_integers(state)
-        self._given = self._beginning()
+        self.system, self.state = arrays_of_run(one.system, one.state, image.offsets,
+                                                self.floats)
         self.exchanges = RowExchanges(self.system, self.state)
         self.sampling = Sampling(one.model, one.numbering, self.system, self.state)
         self.model, self.numbering, self.scheme = one.model, one.numbering, one.scheme
+        self._given = self._beginning()
         self._record: Record | None = None
         self.none = Record.of(self.state, 0)
 
@@ -102,9 +103,15 @@ class Copies:
         lanes : (size, members)
             Gets it.
         """
-        codes = beginning.begin_together(self.system, self.state, self._given, changes, self.dense,
-                                         places, lanes)
+        codes = beginning.begin_together(self.system, self.state, self._given, changes,
+                                         lead(self.scheme), self.dense, places, lanes)
         return codes == DONE
+
+    def _kept_places(self) -> NDArray:
+        """Places of what elements keep in `State.frames_old`, in the buffer of all numbers."""
+        places = [k for own in self.numbering.memories.values() for k in own]
+        first = self.image.offsets.of(self.image.template.state.frames_old).start
+        return first + np.array(places, dtype=np.int64)
 
     def _beginning(self) -> beginning.Beginning:
         """What runs begin with; scalars and flags are not in `floats`."""
@@ -115,7 +122,14 @@ class Copies:
             model=self.image.floats, floats=self.floats, slots=lines.slots.astype(np.int64),
             ends=lines.slopes.indptr.astype(np.int64),
             components=lines.slopes.indices.astype(np.int64), slopes=lines.slopes.data,
+            kept=self._kept_places(),
             **whole, **{f"{name}_built": own.copy() for name, own in whole.items()})
+
+
+def arrays_of_run(system: System, state: State, offsets: Offsets, floats: NDArray
+                  ) -> tuple[System, State]:
+    """System and state of a run, with its numbers in a buffer that gets those given."""
+    return (offsets.packed(system, floats), _with_own_integers(offsets.packed(state, floats)))
 
 
 def _with_own_integers(state: State) -> State:
@@ -193,6 +207,7 @@ class Course:
             if code in (DONE, FAILED) or stop():
                 return code
             chunk = max(1, int(chunk * min(8.0, CHUNK / max(time.perf_counter() - began, 1e-9))))
+            chunk = min(chunk, MOST_STEPS)
 
     def take(self, rows: NDArray) -> None:
         """Read the outputs of recorded states."""

@@ -22,6 +22,8 @@ from sebody.errors import InputError
 from sebody.explore.ensembles.changes import BODIES, MOTION, Handle
 from sebody.runs.simulation import Simulation
 
+# what the stiffness of bristles, or that they hold something at the start, may follow from
+OF_BRISTLES = ".bristle", ".radius", ".level", ".size", ".ratio"
 LINEAR = 1e-12      # largest deviation from a line, relative to the largest of the numbers compared
 
 
@@ -69,9 +71,11 @@ class Image:
         one = self.template
         constrained = bool(one.numbering.multipliers) or bool(one.system.prescribed.size)
         touched = {handle.touches for handle in handles.values()}
+        tuned = [load.tuned for load in one.model.loads if load.tuned]
         return not (any(handle.whole for handle in handles.values())
-                    or any(load.tuned for load in one.model.loads)      # bristles are loaded
-                    or one.scheme.stabilized
+                    or one.held or any("teeth" in own for own in tuned)
+                    or (tuned and (touched & {BODIES, MOTION}
+                                   or any(name.endswith(OF_BRISTLES) for name in handles)))
                     or (one.system.regularized[0] and one.system.massless_axes.any())
                     or ((constrained or one.begun) and MOTION in touched)
                     or (one.start.changed and touched & {BODIES, MOTION}))

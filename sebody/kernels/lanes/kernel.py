@@ -11,8 +11,15 @@ from sebody.compiler.inside.lane_kernels import is_kept_in_lanes, kernel_in_lane
 from sebody.compiler.inside.lanes import lanes
 from sebody.compiler.sources import kernel_hash
 from sebody.contract.layout import ARGUMENTS
-from sebody.kernels.lanes import frame_search, packed_products, products, rotations
+from sebody.kernels.lanes import (
+    frame_search,
+    member_by_member,
+    packed_products,
+    products,
+    rotations,
+)
 from sebody.kernels.lanes.text import kernel_text
+from sebody.kernels.loader import load, takes_one_member
 
 # imported: puts in place what kernels call
 CALLED = frame_search, packed_products, products, rotations
@@ -21,6 +28,11 @@ _POINTERS = {"int64": types.CPointer(types.int64), "float64": types.CPointer(lan
 
 
 Own = tuple[str, ...] | None     # parts of the constants in lanes; None: all of them
+
+
+def module_in_lanes(name: str) -> ModuleType:
+    """The kernel that lanes call in the place of one of some name."""
+    return member_by_member if takes_one_member(name) else load(name)
 
 
 @cache
@@ -35,9 +47,9 @@ def address_in_lanes(module: ModuleType, own: Own = None, matrices: bool = False
     matrices : bool
         Whether it has matrices, too: those of an ensemble's members are made one by one.
     """
-    return kernel_in_lanes(kernel_text(module, own or (), matrices), _signature(own is not None),
-                           OF_KERNELS, kernel_hash(Path(module.__file__)),
-                           _kind(own, matrices)).address
+    text = module.kernel if module is member_by_member else kernel_text(module, own or (), matrices)
+    return kernel_in_lanes(text, _signature(own is not None), OF_KERNELS,
+                           kernel_hash(Path(module.__file__)), _kind(own, matrices)).address
 
 
 def is_compiled(path: Path, own: Own = None, matrices: bool = False) -> bool:

@@ -1,0 +1,93 @@
+"""Arrays for members in lanes that go on alone for a while."""
+
+from dataclasses import fields
+
+import numpy as np
+from numba import typeof, types
+from numpy.typing import NDArray
+
+from sebody.compiler.choice import way
+from sebody.contract.counts import MEMBERS
+from sebody.engine import loop
+from sebody.engine.lanes.arrays import SHARED, Apart
+from sebody.engine.offsets import Offsets
+from sebody.engine.scalars import numbers_of, record
+from sebody.engine.state import Record, Scheme, State
+from sebody.engine.system import System
+from sebody.explore.ensembles.member import arrays_of_run
+
+NEVER = 2**62       # grid steps between records of members that are alone
+RECORDS = "control", "clock", "guard"
+
+
+def new_apart(of: tuple[System, State], offsets: Offsets, slots: NDArray, lanes: NDArray,
+              in_lanes: State, routine: int) -> tuple[Apart, list]:
+    """Arrays of eight members, and what keeps them alive.
+
+    Parameters
+    ----------
+    of : tuple
+        System and state of the model as built.
+    slots : (k,)
+        Places of numbers that parameters change in the buffer of all numbers.
+    lanes : (size, members)
+        This buffer in lanes.
+    in_lanes : State
+        The state in lanes.
+    routine : int
+        Address of the loop for numbers.
+    """
+    one = of[1]
+    numbers = np.zeros((MEMBERS, offsets.size))
+    scalars = {name: np.tile(numbers_of(getattr(one, name)), (MEMBERS, 1)) for name in RECORDS}
+    runs = []
+    for k, own in enumerate(numbers):
+        system, state = arrays_of_run(*of, offsets, own)
+        records = {name: record(getattr(one, name).dtype, rows[k])
+                   for name, rows in scalars.items()}
+        runs.append((system, _with(state, records)))
+    unwritten = Record.of(one, 0, NEVER)
+    return Apart(
+        places=_places(one, offsets, slots), lanes=lanes, numbers=numbers,
+        now=np.array([offsets.of(one.now).start]),
+        changes=np.array([offsets.of(one.changes).start, offsets.of(one.fit).start]), **scalars,
+        **{f"{name}_words": _words(getattr(in_lanes, name)) for name in RECORDS},
+        **{f"{name}_in_lanes": _memory(getattr(in_lanes, name), np.float64) for name in RECORDS},
+        whole_in_lanes=_memory(in_lanes.control, np.int64),
+        addresses=np.array([[group._address for group in run] for run in runs]),
+        system=runs[0][0], state=runs[0][1], record=unwritten,
+        routine=np.array([routine])), runs
+
+
+def _with(state: State, others: dict[str, np.record]) -> State:
+    """A state with other records of scalars."""
+    return State(**{one.name: others.get(one.name, getattr(state, one.name))
+                    for one in fields(State)})
+
+
+def _places(state: State, offsets: Offsets, slots: NDArray) -> NDArray:
+    """Places of what a member takes with it: parameters, and its state without scratch memory."""
+    left = {"J", "g", "changes", "kept", "work", "expansion", "rotated_matrix", "column"} | SHARED
+    parts = [offsets.of(value) for one in fields(State) if one.name not in left
+             and isinstance(value := getattr(state, one.name), np.ndarray)
+             and value.dtype == np.float64 and value.size]
+    return np.unique(np.concatenate([slots.astype(np.int64), *(
+        np.arange(part.start, part.stop) for part in parts)]))
+
+
+def _words(in_lanes: np.record) -> NDArray:
+    """Of the scalars of a record in lanes their places, and 1 where members have their own."""
+    return np.array([(offset // 8, own.subdtype is not None)
+                     for own, offset in in_lanes.dtype.fields.values()], dtype=np.int64)
+
+
+def _memory(in_lanes: np.record, kind: type) -> NDArray:
+    """The memory of a record as numbers of one kind."""
+    return in_lanes.base.view(np.ndarray).view(kind)
+
+
+def address_of_loop(system: System, state: State, scheme: Scheme) -> int:
+    """Address of the loop for numbers, which runs one by one have compiled."""
+    kinds = (*map(typeof, (system, state, Record.of(state, 0), scheme)), types.int64, types.int64,
+             types.boolean)
+    return way().address(loop.advance, types.int64, kinds)

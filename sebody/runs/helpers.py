@@ -1,0 +1,54 @@
+"""Threads that help the loop with the steps of a large model, see `sebody.engine.sharing`."""
+
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from ctypes import CFUNCTYPE, c_int64, c_void_p
+
+from sebody import inputs
+from sebody.assembly.independent_parts import FEWEST
+from sebody.engine.mailbox import ENDED
+from sebody.engine.state import HELP, State
+from sebody.engine.system import System
+
+MOST = 64               # threads
+TOO_SMALL = ("threads = {} is not used: threads share the steps of models with "
+             f"{FEWEST} unknowns or more, this one has {{}}")
+REST = 1e-4             # seconds after which a helper that found no work looks again
+_SHARE = CFUNCTYPE(c_int64, c_void_p, c_void_p, c_int64, c_int64)   # without the lock of Python
+
+
+def checked_threads(threads: int) -> int:
+    """The number of threads that is asked for."""
+    return inputs.integer(threads, "threads", least=1, most=MOST,
+                          remedy="give the number of cores that may share a step")
+
+
+@contextmanager
+def helping(system: System, state: State) -> Iterator[None]:
+    """Threads that help whatever calls the loop meanwhile; they end with it, however it ends."""
+    mail = system.shared.mail
+    if not mail.size:
+        yield
+        return
+    mail[ENDED] = 0
+    threads = [threading.Thread(target=_help, args=(system, state, k), daemon=True)
+               for k in range(1, len(system.shared.work))]
+    try:
+        for thread in threads:
+            thread.start()
+        yield
+    finally:
+        mail[ENDED] = 1
+        for thread in threads:
+            if thread.ident is not None:
+                thread.join()
+
+
+def _help(system: System, state: State, thread: int) -> None:
+    """Do pieces of the loop's work until it ends; sleep while there are none."""
+    share = _SHARE(int(system.routines[3]))
+    groups = (vars(system)["_address"], vars(state)["_address"])    # as compiled code gets them
+    while not share(*groups, HELP, thread):
+        time.sleep(REST)
