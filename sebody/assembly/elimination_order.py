@@ -40,7 +40,7 @@ def elimination_order(model: Mechanism) -> tuple[list[Part], dict[Element, set[D
     -------
     parts : list of Part
     awaited : dict
-        id of a constraint -> ids of its DOF blocks that are numbered before its multipliers.
+        Of every constraint the DOF blocks that are numbered before its multipliers.
     """
     parts = [_part(b.name, [*b.rotations, *b.positions], b.reduced.modes)
              for b in model.bodies.values()]

@@ -34,7 +34,7 @@ def constants_key(body: Superelement) -> tuple:
 
 
 def likeness(body: Superelement) -> tuple:
-    """What equal bodies have in common, however they are oriented at the start."""
+    """What equal bodies have in common, however each of them is oriented at the start."""
     weights = (tuple(np.round(a, DIGITS).tolist()) for a in (body.alpha, body.alpha_r))
     return (body.reduced.unrotated[0], body.kernel, body.stiffening, *weights)
 

@@ -9,8 +9,8 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     return commands.add_parser(
         "warm", help="compile all shipped kernels, also for eight equal bodies, and the time loop",
         description="Compile the time loop and all shipped kernels, those of bodies also for eight "
-        "equal bodies at a time. Ensembles, sweeps and gradients compile what they need beyond "
-        "that when they are first run.")
+        "equal bodies at a time. Ensembles, sweeps, gradients and runs that threads share compile "
+        "what they need beyond that when they are first run.")
 
 
 def run(options: argparse.Namespace) -> int:

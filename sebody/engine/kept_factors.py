@@ -2,8 +2,8 @@
 
 Where controllers set inputs, accelerations are solved for anew at every sample. The inverse of the
 steps is set aside meanwhile, and that of the accelerations between samples: both are used as long
-as they converge. Of small models alone, whose matrices need no regularization; other models
-factorize at the sample and after it.
+as corrections converge with them. Only small models whose matrices need no regularization keep two;
+all others factorize at the sample and after it.
 """
 
 import numpy as np

@@ -1,8 +1,8 @@
-"""Pieces of work that threads share: posted by the loop, taken by whichever thread is free.
+"""Tasks that threads share piece by piece: posted by the loop, done by whichever thread is free.
 
-One word tells which work is open and how many of its pieces were taken. A thread takes the next
-one by an exchange of this word, which fails if another thread was faster or the work is over. So
-nothing waits for a thread that is not running: the others take its pieces.
+One word holds the number of the task and how many of its pieces were taken. A thread takes the next
+piece by an atomic exchange of this word, which fails if another thread was faster or the task is
+over. So nothing waits for a thread that is not running: the others take its pieces.
 """
 
 import ctypes
@@ -25,8 +25,8 @@ from sebody.kernels.abi import at
 # words of the mailbox; what threads write to often is in lines of its own
 OPEN, DONE, FAILED, ENDED, TASK, COUNT, OWNER, YIELD = 0, 16, 32, 48, 64, 65, 66, 67
 WORDS = 80
-_TAKEN = 32             # bits of OPEN that count the pieces taken, below the number of the work
-_NONE = (1 << _TAKEN) - 1           # where no work is open
+_TAKEN = 32             # bits of OPEN that count the pieces taken, below the number of the task
+_NONE = (1 << _TAKEN) - 1           # where no task is open
 NO_FAILURE = (1 << 62)
 STATUS = 8              # bits of a status in FAILED, below the piece it is of
 TRIES = 4000            # looks at a word before other threads of the machine get their turn
@@ -150,18 +150,21 @@ def address_of(typingctx, pointer):
 
 @compiled
 def post(mail, owner, task, count):
-    """Open a work of so many pieces, on the arrays of an owner; the last one is over."""
+    """Open a task of so many pieces, on the arrays of an owner, once the last task is over."""
     number = load(at(mail, OPEN)) >> _TAKEN
-    # no piece is taken while the words below are written: the work of this number has none
+    # No piece is taken while the words below are written: what has this number has no pieces. A
+    # thread that sees the new owner or count sees this, too, because each of them is a `store`.
     store(at(mail, OPEN), ((number + 1) << _TAKEN) + _NONE)
-    mail[OWNER], mail[TASK], mail[COUNT], mail[FAILED] = owner, task, count, NO_FAILURE
+    mail[TASK], mail[FAILED] = task, NO_FAILURE
+    store(at(mail, OWNER), owner)
+    store(at(mail, COUNT), count)
     store(at(mail, DONE), 0)
     store(at(mail, OPEN), (number + 2) << _TAKEN)
 
 
 @compiled
 def take(mail, owner):
-    """Take the next piece of the open work, if it is on the arrays of this owner; or -1."""
+    """Take the next piece of the open task, if it is on the arrays of this owner; or -1."""
     while True:
         word = load(at(mail, OPEN))
         piece = word & _NONE

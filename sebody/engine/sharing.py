@@ -80,7 +80,7 @@ def _do_together(system, state, task):
 
 @compiled
 def _serve(system, state, thread):
-    """Do pieces of what the loop posts; others may post work on another state meanwhile."""
+    """Do pieces of what the loop posts, not of what is posted on another state meanwhile."""
     mail, owner = pointer_to(system.shared.mail), address_of(pointer_to(state.matrix))
     tries = 0
     while tries < LAST_TRIES and load(at(mail, ENDED)) == 0:

@@ -44,7 +44,7 @@ class System(Arrays):
     part_blocks         (parts + 1,) first column of blocks of every part of the elimination that
                         does not wait for others, then of the rest, see `engine.sharing`
     block_ends          of every column of blocks, the first block that is in a row of the rest
-    part_summands       (parts + 1,) the same in `summands`
+    part_summands       (parts + 1,) first row of `summands` of every part, then of the rest
     constraint_columns  entries in columns of multipliers, without their diagonal
     padding             entries with ones: the diagonal of free slots
     block_starts        pattern of the blocks, see `sebody.engine.elimination`; empty for a small

@@ -5,7 +5,8 @@ bodies are gathered, and forces, frames and matrices put back. There is one row 
 lanes: bodies have the same constants, but for how they are oriented at the start; see
 `sebody.kernels.lanes.turned_bodies`. Up to `ALONE` bodies left over are evaluated one by one;
 more are filled up to eight with repeats of the last. If one of eight has no frame, they and all
-that follow are evaluated one by one: their kernel tells why. Other tasks are done one by one, too.
+that follow are evaluated one by one: their own kernel tells why. In other tasks all bodies are
+evaluated one by one.
 """
 
 from llvmlite import ir

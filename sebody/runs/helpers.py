@@ -16,7 +16,7 @@ MOST = 64               # threads
 TOO_SMALL = ("threads = {} is not used: threads share the steps of models with "
              f"{FEWEST} unknowns or more, this one has {{}}")
 REST = 1e-4             # seconds after which a helper that found no work looks again
-_SHARE = CFUNCTYPE(c_int64, c_void_p, c_void_p, c_int64, c_int64)   # without the lock of Python
+_SHARE = CFUNCTYPE(c_int64, c_void_p, c_void_p, c_int64, c_int64)   # releases Python's lock
 
 
 def checked_threads(threads: int) -> int:

@@ -4,7 +4,7 @@ Times, the grid and all whole numbers are the same for all members. Of the recor
 depends on the motion is lanes; counters of theirs are floats in lanes.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from typing import TypeVar
 
@@ -163,7 +163,7 @@ def _record(scalars: np.record) -> np.record:
     return made
 
 
-def fill(record: np.record, scalars: np.record, names: Iterable[str] | None = None) -> None:
+def fill(record: np.record, scalars: np.record) -> None:
     """Set the scalars of a record of lanes, the same for all members."""
-    for name in names or scalars.dtype.names:
+    for name in scalars.dtype.names:
         record[name] = scalars[name]

@@ -7,7 +7,6 @@ others go on. Members with a rejected step go alone until they can come back, se
 `engine.lanes.apart`. One that would have to ask Python gives up, and is run alone from its start.
 """
 
-
 from sebody.compiler.decorators import compiled
 from sebody.compiler.inside.lanes import bits_of, every, some, spread, where
 from sebody.contract.layout import RECORD_ITERATIONS, RECORD_T, RESIDUAL
@@ -123,8 +122,7 @@ def _iterate(system, state, scratch, alone, scheme, active, dense):
 
 @compiled(forceinline=True)
 def _solve(system, state, active, stabilized, dense):
-    """Solve for the corrections of the active members; with index 2 for shifts of positions first.
-    """
+    """Solve for corrections of the active members, with index 2 for shifts of positions first."""
     shifts = stabilized
     while True:
         if shifts:

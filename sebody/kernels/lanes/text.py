@@ -1,7 +1,7 @@
 """Texts of kernels as they are compiled for lanes.
 
-Matrices of an ensemble's members are made one by one, so what a kernel does for them is left out:
-most of it.
+Matrices of an ensemble's members are made one by one, so what a kernel does for matrices, most of
+its text, is left out for ensembles. Kernels for equal bodies of a model keep it.
 """
 
 import ast

@@ -1,10 +1,10 @@
-"""Equal bodies of which each is oriented otherwise at the start, in the axes of one of them.
+"""Equal bodies that are oriented differently at the start, in the axes of one of them.
 
-Let a body be the one whose constants are known, rotated by Q. It moves as that one does on nodes
+Rotated by Q, a body moves as the original, whose constants are known, does on nodes that were
 rotated by Q before: their rotations are R Q, and what is in the axes of a node, such as angular
 velocities and moments, has the components Q^T w there. Positions, forces on them and internal modes
-stay what they are, but for the matrix, whose positions are in the axes of the frame. In a plane the
-angles of the nodes are larger by that of Q.
+are the same; in the matrix, where positions are in the axes of the frame, they are rotated, too. In
+a plane the angles of the nodes are larger by that of Q.
 """
 
 from sebody.compiler.decorators import compiled
