@@ -16,6 +16,8 @@
 ``<drive>.amplitude``       factor of a motion given by a table or profile
 ``<spring>.stiffness``      and damping, cubic, length, rest, turning_stiffness, turning_damping:
                             the value itself
+``<contact>.stiffness``     and other constants of contacts, stops, gears and friction, as they have
+                            them: `load_changes.OF_CONTACTS`, restitution, backlash
 ``<controller>.parameters`` numbers of its law, in their order, but for infinite limits
 ``gravity``                 acceleration of free fall, (3,), planar (2,) [length/time^2]
 ==========================  ========================================================================
