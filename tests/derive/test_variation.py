@@ -172,8 +172,8 @@ def test_wrong_hand_form_of_velocities(monkeypatch, fresh):
 
 def test_wrong_variation_of_the_elastic_rotation(monkeypatch, fresh):
     """T^-1 in place of T^-T on the frame's variation in (17)."""
-    monkeypatch.setattr(kinematics, "inverse_tangent_transposed_times",
-                        rotations.inverse_tangent_times)
+    monkeypatch.setattr(kinematics, "difference_of_rates", lambda psi, of, frame:
+                        rotations.inverse_tangent_times(psi, of - frame))
     with pytest.raises(DerivationError, match=r"variation of the elastic rotation \(17\)"):
         derive()
 

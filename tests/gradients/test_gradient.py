@@ -200,7 +200,11 @@ def test_stresses():
     found = gradient(*run, objectives, parameters, scheme=EXACT)
     expected = scenes.differences(*run, objectives, parameters)
     large = np.abs(expected).max(axis=1) > 1e-6 * np.abs(expected).max()
-    assert (np.abs(found.matrix - expected) / rows(expected))[large].max() < 1e-5
+    apart = np.abs(found.matrix - expected) / rows(expected)
+    # another fibre takes over near by, so the stress is differentiated by steps of 3e-5 in place of
+    # 1e-3, whose rounding is 30 times that of section forces at least
+    assert apart[0].max() < 1e-4
+    assert apart[1:][large[1:]].max() < 1e-5
     with pytest.raises(InputError, match="von_mises' has no derivative at t.*section forces"):
         gradient(*run, {"stress": soft_maximum("beam.node0.von_mises")}, parameters)
 

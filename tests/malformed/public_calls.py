@@ -1,7 +1,7 @@
 """Right calls of what users import: any argument may be replaced by a thing of a wrong kind."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -210,7 +210,8 @@ REDUCTION = {
         "coordinates": [X, Y], "centre_of_mass": (1.0, 0.0, 0.0)}),
     "body_weights": Call(reduction.body_weights, lambda: {"body": beam_body()}),
     "ReducedBody": Call(reduction.ReducedBody, lambda: {
-        name: getattr(beam_body(), name) for name in reduction.ReducedBody.__dataclass_fields__}),
+        one.name: getattr(beam_body(), one.name) for one in fields(reduction.ReducedBody)
+        if one.init}),
     "damped": Call(lambda **a: beam_body().damped(**a), lambda: {
         "ratio": 0.1, "mass": 0.0, "stiffness": 0.0}),
     "rotated": Call(lambda **a: beam_body().rotated(**a), lambda: {"rotation": np.eye(2)}),
