@@ -37,7 +37,10 @@ def helping(system: System, state: State) -> Iterator[None]:
                for k in range(1, len(system.shared.work))]
     try:
         for thread in threads:
-            thread.start()
+            try:
+                thread.start()
+            except RuntimeError:        # the system gives no more: the loop does what is left
+                break
         yield
     finally:
         mail[ENDED] = 1

@@ -155,6 +155,14 @@ def test_helpers_that_never_come_are_not_waited_for(monkeypatch):
     assert np.array_equal(rows(MODELS["chain"](), 2)[0], rows(MODELS["chain"](), 1)[0])
 
 
+def test_a_system_without_more_threads_has_the_loop_do_the_work(monkeypatch):
+    def start(thread):
+        raise RuntimeError("can't start new thread")
+    expected = rows(MODELS["chain"](), 1)[0]
+    monkeypatch.setattr(threading.Thread, "start", start)
+    assert np.array_equal(rows(MODELS["chain"](), 2)[0], expected)
+
+
 def test_helpers_leave_other_states_alone():
     """What is evaluated in another state during a run is not theirs, nor do they forget their own.
     """
