@@ -33,7 +33,7 @@ def flat_bodies(model: Mechanism, axes: NDArray) -> dict[str, PlanarBody]:
         own, known = axes.T @ rotation, made.setdefault(original, [])
         turns = ((flat, _turn(own, other)) for other, flat in known)
         flat, turn = next((one for one in turns if one[1] is not None), (None, None))
-        if flat is None:
+        if flat is None or turn is None:
             found[name] = planar_body(body.reduced, axes, f"superelement {name!r}")
             known.append((own, found[name]))
         elif np.abs(turn - np.eye(2)).max() < _SAME:
