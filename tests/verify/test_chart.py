@@ -206,6 +206,13 @@ def test_chart_writes_table_and_picture(tmp_path, monkeypatch, capsys):
     assert errors["2 nonlinear beams, step x 1"] < errors["1 nonlinear beam, step x 4"]
 
 
+def test_an_advised_model_in_the_plane_is_compared_in_space(monkeypatch):
+    monkeypatch.setattr(peer, "available", lambda: False)
+    monkeypatch.setattr(chart, "variants", lambda scene: [])
+    study = chart.measure("hinged-beam")
+    assert "planar" in study.choice.label and study.choice.error < 1e-2
+
+
 def test_any_scene_has_a_chart(tmp_path, capsys):
     """Of two links in a file: as rich as they can be is the reference, the tip is compared."""
     file, table = tmp_path / "links.py", tmp_path / "links.csv"

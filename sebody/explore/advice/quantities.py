@@ -107,7 +107,7 @@ class Quantities:
         InputError
             A quantity does not exist.
         """
-        histories = [self.places.history(result, name, _history) for name in self.histories]
+        histories = [self.places.history(result, name, history_in_space) for name in self.histories]
         return Values([measure.filtered(history, h, grid) for measure, history in zip(
             self.measures, histories, strict=True)],
             frequencies if frequencies is not None else self._frequencies(result), self.measures)
@@ -131,8 +131,8 @@ class Quantities:
         return [float(flexible[k - 1]) for k in self.numbers]
 
 
-def _history(result: Result, name: str) -> NDArray:
-    """A history as the spatial model has it."""
+def history_in_space(result: Result, name: str) -> NDArray:
+    """A history as the spatial model has it that a planar one was made of."""
     plane = result.model.plane
     if plane is None:
         return np.asarray(result[name])

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sebody.errors import SimulationError
+from sebody.explore.advice.quantities import history_in_space
 from sebody.files import check_target, replacing
 from sebody.runs.first_run import prepare
 from sebody.runs.simulation import Simulation
@@ -71,7 +72,7 @@ def _points(scene: str, chosen: list[Variant], exact: Reference, found: Advised)
             continue
         kept.append((one, result))
         runs.append(lambda one=one: processor_seconds(one.begin(), one.t_end))
-    return [Point(one.family, one.label, _error(result[SCENES[scene]], exact),
+    return [Point(one.family, one.label, _error(history_in_space(result, SCENES[scene]), exact),
                   times.quickest / one.t_end, result.numbering.free, one.h,
                   result.iterations_per_step, times.slowest / one.t_end)
             for (one, result), times in zip(kept, repeated(runs), strict=True)]
