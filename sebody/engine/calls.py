@@ -2,12 +2,20 @@
 
 What a compiled function calls by name is compiled again as a part of it. Factorizations and
 restarts are called seldom and are long: by address the loop is compiled without them, and beside
-them. `sebody.engine.routines` has the addresses.
+them. `sebody.engine.routines` has the addresses. The loop itself is called so for members that
+leave their lanes.
 """
 
 from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
+
+
+@intrinsic
+def call_advance(typingctx, address, system, state, record, scheme, last_grid, chunk, dense):
+    """Call `sebody.engine.loop.advance` at its address."""
+    return types.int64(types.int64, system, state, record, scheme, types.int64, types.int64,
+                       types.boolean), _call
 
 
 @intrinsic

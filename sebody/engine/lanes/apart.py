@@ -8,13 +8,13 @@ So a member makes the steps it would make alone.
 """
 
 import numpy as np
-from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
 from sebody.compiler.decorators import compiled
 from sebody.compiler.inside.lanes import number_of, with_number
 from sebody.contract.counts import MEMBERS
+from sebody.engine.calls import call_advance
 from sebody.engine.growth import judge
 from sebody.engine.prediction import ROWS
 from sebody.engine.state import DONE, EVALUATED
@@ -35,17 +35,6 @@ def _group_at(typingctx, group, address):
     def codegen(context, builder, sig, args):
         return builder.inttoptr(args[1], context.get_value_type(sig.return_type))
     return group(group, types.int64), codegen
-
-
-@intrinsic
-def _call_advance(typingctx, address, system, state, record, scheme, last_grid, chunk, dense):
-    """Call `sebody.engine.loop.advance` at its address."""
-    def codegen(context, builder, sig, args):
-        kinds = [context.get_value_type(kind) for kind in sig.args[1:]]
-        function = ir.FunctionType(context.get_value_type(sig.return_type), kinds)
-        return builder.call(builder.inttoptr(args[0], function.as_pointer()), args[1:])
-    return types.int64(types.int64, system, state, record, scheme, types.int64, types.int64,
-                       types.boolean), codegen
 
 
 @compiled
@@ -99,8 +88,8 @@ def run_apart(state, apart, J, scheme, dense):
             continue
         system, own = (_group_at(apart.system, apart.addresses[member, 0]),
                        _group_at(apart.state, apart.addresses[member, 1]))
-        code = _call_advance(apart.routine[0], system, own, apart.record, scheme, control.grid,
-                             _ANY, dense)
+        code = call_advance(apart.routine[0], system, own, apart.record, scheme, control.grid,
+                            _ANY, dense)
         if code != DONE:
             control.reason = with_number(control.reason, member, GAVE_UP)
         elif own.control.regularized != control.regularized:

@@ -142,13 +142,12 @@ def _evaluate(system, state, scratch, active, moved):
     frames, begun = state.frames, scratch.frames
     for k in range(frames.size):
         begun[k] = frames[k]
-    batches = system.address.size
     scratch.table[RUNNING] = bits_of(active)
     if moved:
-        run_moved(system, state, scratch, 0, batches)
+        run_moved(system, state, scratch)
         keep_unmoved(system, state, scratch)
     else:
-        run_kernels(RESIDUAL, 0, batches, system, state)
+        run_kernels(RESIDUAL, 0, system.address.size, system, state)
     for k in range(frames.size):
         frames[k] = where(active, frames[k], begun[k])
     sum_forces(system, state, state.residual)

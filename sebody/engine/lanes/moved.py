@@ -34,22 +34,20 @@ def find_moved(system, state, scratch, active, wanted):
 
 
 @compiled
-def run_moved(system, state, scratch, first_batch, last_batch):
-    """Evaluate the forces of the elements of some batches that moved in a member."""
+def run_moved(system, state, scratch):
+    """Evaluate the forces of the elements that moved in a member."""
     first = 0
-    for b in range(last_batch):
-        if b >= first_batch:
-            begin = 0
-            while begin < system.count[b]:
-                if not some(scratch.moved[first + begin] > 0.0):
-                    begin += 1
-                    continue
-                end = begin + 1
-                while end < system.count[b] and some(scratch.moved[first + end] > 0.0):
-                    end += 1
-                run_part(RESIDUAL, b, begin, end - begin, system, state,
-                         pointer_to(state.work))
-                begin = end
+    for b in range(system.address.size):
+        begin = 0
+        while begin < system.count[b]:
+            if not some(scratch.moved[first + begin] > 0.0):
+                begin += 1
+                continue
+            end = begin + 1
+            while end < system.count[b] and some(scratch.moved[first + end] > 0.0):
+                end += 1
+            run_part(RESIDUAL, b, begin, end - begin, system, state, pointer_to(state.work))
+            begin = end
         first += system.count[b]
 
 
