@@ -8,7 +8,8 @@ from sebody.contract.counts import LETTERS, first_mode, first_rotation, layout_n
 from sebody.contract.names import ANY, layout_variant
 from sebody.contract.traits import FrameTraits, InertiaTraits
 
-PATTERN = re.compile(rf"(planar-)?(?:{ANY}|(?=[ftr])(f\d+)?(t\d+)?(r\d+)?(?:m(\d+)(?:s(\d+)e(\d+))?)?)(d)?")
+PINNED = r"(?:m(\d+)(?:s(\d+)e(\d+))?)?"
+PATTERN = re.compile(rf"(planar-)?(?:{ANY}|(?=[ftr])(f\d+)?(t\d+)?(r\d+)?{PINNED})(d)?")
 NUMBERS = "no", "one", "two", "three", "four", "five", "six"
 
 

@@ -129,7 +129,8 @@ def products_kernel_name(kernel: str) -> str | None:
         own = products_name(kernel)
         return own if find(own) else None
     module = load(kernel)
-    layout, damped = re.sub(r"m\d+(s\d+e\d+)?", "", module.LAYOUT).removesuffix("d"), module.DAMPED is True
+    layout = re.sub(r"m\d+(s\d+e\d+)?", "", module.LAYOUT).removesuffix("d")
+    damped = module.DAMPED is True
     for variant in (layout, general_layout(layout)):
         name = products_name(superelement_name(layout_variant(variant, None, damped), module.FRAME,
                                                module.INERTIA))
