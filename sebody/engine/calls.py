@@ -25,6 +25,12 @@ def call_refactorize(typingctx, address, system, state, wanted, dense):
 
 
 @intrinsic
+def call_refactorize_together(typingctx, address, system, state, together):
+    """Call `sebody.engine.lanes.together.refactorize` at its address."""
+    return types.int64(types.int64, system, state, together), _call
+
+
+@intrinsic
 def call_restart(typingctx, address, system, state, lead, dense):
     """Call `sebody.engine.restart.restart` at its address."""
     return types.int64(types.int64, system, state, types.float64, types.boolean), _call

@@ -41,7 +41,7 @@ from sebody.kernels.abi import at, pointer_to
 
 
 @compiled(nogil=True)
-def advance(system, state, scratch, alone, apart, record, scheme, last_grid, dense):
+def advance(system, state, scratch, alone, together, apart, record, scheme, last_grid, dense):
     """Run until `last_grid`, or until no member is left that has not given up."""
     control = state.control
     if control.grid == 0:
@@ -54,7 +54,7 @@ def advance(system, state, scratch, alone, apart, record, scheme, last_grid, den
         running = control.reason == RUNS
         if some(running):
             _begin_step(system, state, scheme)
-            _iterate(system, state, scratch, alone, scheme, running, dense)
+            _iterate(system, state, scratch, alone, together, scheme, running, dense)
             _look_at_step(system, state, scratch)
         if some(control.reason > APART):
             take_apart(state, apart, alone.J)
@@ -94,7 +94,7 @@ def _begin_step(system, state, scheme):
 
 
 @compiled(forceinline=True)
-def _iterate(system, state, scratch, alone, scheme, active, dense):
+def _iterate(system, state, scratch, alone, together, scheme, active, dense):
     """Newton's iteration of a step, until every member has converged or given up."""
     control = state.control
     mixed = not dense and not scheme.stabilized
@@ -110,8 +110,8 @@ def _iterate(system, state, scratch, alone, scheme, active, dense):
             if system.links.dependent.shape[0] > 0:
                 for i in range(state.residual.size):
                     state.forces[i] = state.residual[i]
-            active = active & ~factorize(system, state, alone, scratch.frames, dense, wanted,
-                                         evaluated)
+            active = active & ~factorize(system, state, alone, together, scratch.frames, dense,
+                                         wanted, evaluated)
         if scheme.stabilized:
             take_rates(system, state)
         to_body_axes(system, state.frames, state.residual, False)

@@ -29,7 +29,8 @@ def new_apart(of: tuple[System, State], offsets: Offsets, slots: NDArray, lanes:
     of : tuple
         System and state of the model as built.
     slots : (k,)
-        Places of numbers that parameters change in the buffer of all numbers.
+        Places of numbers in the buffer of all numbers that members take with them beside their
+        state: those that parameters change.
     lanes : (size, members)
         This buffer in lanes.
     in_lanes : State

@@ -13,7 +13,7 @@ from sebody.assembly.equal_bodies import evaluated_together
 from sebody.compiler import choice
 from sebody.contract.layout import INPUT
 from sebody.explore.ensembles.start_values import Image
-from sebody.kernels.loader import element_kernel_name
+from sebody.kernels.loader import element_kernel_name, takes_one_member
 from sebody.model.model import Model
 from sebody.runs.simulation import Simulation
 
@@ -56,6 +56,16 @@ def why_one_by_one(template: Simulation) -> str:
         if fact.holds(template):
             return fact.reason
     return ""
+
+
+def matrices_at_once(template: Simulation) -> bool:
+    """Whether matrices of eight members are made at once: members want them in nearly every step.
+
+    So they do in large models of bodies that rotate against each other.
+    """
+    return (not template.dense and template.system.linked[0] == 1
+            and template.system.regularized[0] == 0
+            and not any(takes_one_member(name) for name in kernels_of(template.model)))
 
 
 def can_be_together(image: Image) -> bool:
