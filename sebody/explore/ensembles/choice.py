@@ -63,8 +63,8 @@ def matrices_at_once(template: Simulation) -> bool:
 
     So they do in large models of bodies that rotate against each other.
     """
-    return (not template.dense and template.system.linked[0] == 1
-            and template.system.regularized[0] == 0
+    system = template.system
+    return (not template.dense and bool(system.linked[0]) and not system.regularized[0]
             and not any(takes_one_member(name) for name in kernels_of(template.model)))
 
 
