@@ -8,6 +8,7 @@ from sebody import Model, generalized_alpha, simulate
 from sebody.analysis import Ensemble, final, maximum
 from sebody.compiler.choice import way
 from sebody.explore.ensembles import ensemble
+from sebody.explore.ensembles.choice import matrices_at_once
 from sebody.explore.ensembles.handles import handle
 from sebody.fem import Section, straight_beam
 from sebody.reduction import craig_bampton
@@ -111,6 +112,7 @@ def test_members_equal_single_runs(build, index, monkeypatch):
                "energy": final("energy.strain")}
     scheme = generalized_alpha(index=index)
     many = Ensemble(made, h, scheme)
+    assert matrices_at_once(many._template) == (build is chain)
     found = many.run(given, steps * h, outputs)
     assert found.in_lanes == RUNS and not found.failures
     for runs in (slice(None, None, -1), slice(4, 5)):
