@@ -43,6 +43,12 @@ def call_sample(typingctx, address, system, state):
 
 
 @intrinsic
+def call_samples(typingctx, address, system, state, scratch, alone, apart, dense):
+    """Call `sebody.engine.lanes.samples.sample` at its address."""
+    return types.int64(types.int64, system, state, scratch, alone, apart, types.boolean), _call
+
+
+@intrinsic
 def call_share(typingctx, address, system, state, task, thread):
     """Call `sebody.engine.sharing.share` at its address."""
     return types.int64(types.int64, system, state, types.int64, types.int64), _call

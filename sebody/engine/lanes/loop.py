@@ -11,6 +11,8 @@ from sebody.compiler.decorators import compiled
 from sebody.compiler.inside.lanes import bits_of, every, some, spread, where
 from sebody.contract.layout import RECORD_ITERATIONS, RECORD_T, RESIDUAL
 from sebody.contract.member_row import RUNNING
+from sebody.engine.calls import call_samples
+from sebody.engine.control_data import NEXT
 from sebody.engine.evaluate import run_kernels, sum_forces, take_rates, to_body_axes
 from sebody.engine.lanes.apart import (
     APART,
@@ -34,7 +36,7 @@ from sebody.engine.newton import take_shift
 from sebody.engine.prediction import look_back
 from sebody.engine.state import EVALUATED, KEPT, ROTATED
 from sebody.engine.step import MEMORY, ORTHOGONAL, orthogonalize, predict
-from sebody.engine.step_control import set_end
+from sebody.engine.step_control import NEAR, set_end
 from sebody.engine.vectors import swap
 from sebody.engine.work import add_work
 from sebody.kernels.abi import at, pointer_to
@@ -59,6 +61,8 @@ def advance(system, state, scratch, alone, together, apart, record, scheme, last
         if some(control.reason > APART):
             take_apart(state, apart, alone.J)
         _accept(system, state)
+        if 0.0 <= state.memory[NEXT] <= state.clock.time + NEAR * state.clock.step:
+            call_samples(apart.routines[1], system, state, scratch, alone, apart, dense)
         if some(control.reason == APART):
             run_apart(state, apart, alone.J, scheme, dense)
         if control.grid % record.every[0] == 0:

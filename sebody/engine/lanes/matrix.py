@@ -66,8 +66,8 @@ def factorize(system, state, alone, together, begun, dense, wanted, evaluated):
         for member in range(MEMBERS):
             if chosen_in(wanted, member):
                 kind = EVALUATED if chosen_in(evaluated, member) else ROTATED
-                found = with_number(found, member,
-                                    _factorize_one(state, alone, begun, dense, member, kind))
+                why = _factorize_one(state, alone, begun, dense, member, kind, True)
+                found = with_number(found, member, why)
                 clock.floor = with_number(clock.floor, member, alone.state.clock.floor)
     failed = found != RUNS
     clock.factor_step = clock.current_step
@@ -97,7 +97,22 @@ def _factorize_all(system, state, together, wanted, evaluated):
 
 
 @compiled
-def _factorize_one(state, alone, begun, dense, member, wanted):
+def factorize_masses(state, alone, begun, dense, wanted):
+    """Make the matrices of masses and constraints of some members; returns those that have them.
+
+    Matrices of bodies that belong to the steps are kept.
+    """
+    clock, made = state.clock, spread(0.0)
+    for member in range(MEMBERS):
+        if chosen_in(wanted, member):
+            if _factorize_one(state, alone, begun, dense, member, EVALUATED, False) == RUNS:
+                made = with_number(made, member, 1.0)
+            clock.floor = with_number(clock.floor, member, alone.state.clock.floor)
+    return made > 0.0
+
+
+@compiled
+def _factorize_one(state, alone, begun, dense, member, wanted, of_step):
     """Make the matrix of a member; returns whether it goes on, or why it leaves.
 
     It gives up where a run alone needs row exchanges.
@@ -109,7 +124,8 @@ def _factorize_one(state, alone, begun, dense, member, wanted):
     first, kept = system.first_joint[0], alone.J.shape[1]
     if wanted == EVALUATED:
         first = 0
-        set_tangent_operators(system, one)
+        if of_step:
+            set_tangent_operators(system, one)
         for k in range(begun.size):
             one.frames[k] = number_of(begun[k], member)
     else:
@@ -117,7 +133,7 @@ def _factorize_one(state, alone, begun, dense, member, wanted):
             one.J[k] = alone.J[member, k]
     if run_kernels(TANGENT, first, system.address.size, system, one) != OK:
         return CUT
-    if wanted == EVALUATED:
+    if wanted == EVALUATED and of_step:
         for k in range(kept):
             alone.J[member, k] = one.J[k]
     made = call_refactorize(system.routines[0], system, one, wanted, dense)

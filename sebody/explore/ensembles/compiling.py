@@ -58,7 +58,7 @@ def compile_loop() -> None:
     offsets = Offsets(system, state)
     buffer = empty(offsets.size)
     room, places = np.zeros((1, 1)), np.zeros(1, dtype=np.int64)
-    scratch = Scratch(empty(1), empty(1), empty(1), places, places)
+    scratch = Scratch(*(empty(1) for _ in range(4)), places, places)
     alone = Alone(system, state, room[0], room, places, places, room)
     columns = Columns(places, empty(1, 1), places)
     members = in_lanes(system, offsets, buffer), in_lanes(state, offsets, buffer)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from sebody.contract.counts import MEMBERS
 from sebody.contract.layout import AT_CONSTANTS, RECORD_T
-from sebody.engine.lanes import loop
+from sebody.engine.lanes import loop, samples
 from sebody.engine.lanes.apart import GAVE_UP, RUNS
 from sebody.engine.lanes.arrays import Columns, Scratch, empty, fill, in_lanes, numbers
 from sebody.engine.system import System
@@ -66,7 +66,7 @@ class Lanes:
         self.system = _with_kernels(self.system, image, self._shared, rows)
         self.state = in_lanes(one.state, image.offsets, buffer)
         self._scratch = Scratch(frames=empty(one.state.frames.size),
-                                moved=empty(one.state.moved.size),
+                                T=empty(one.state.T.size), moved=empty(one.state.moved.size),
                                 unmoved=empty(one.state.g.size), table=table, kept=rows.kept)
         own = np.concatenate([image.lines.slots.astype(np.int64), carried(image)])
         self._apart, self._runs_apart = new_apart(
@@ -74,6 +74,9 @@ class Lanes:
             address_of_loop(one.system, one.state, copies.scheme))
         self._alone = alone(copies, self._numbers)
         self._together = together(image, self.system, self.state, self._scratch.frames)
+        if copies.sampling.samples:
+            self._apart.routines[1] = samples.address((self.system, self.state, self._scratch,
+                                                       self._alone, self._apart))
         self._places = self._own_places()
         columns = _columns(forms, one.state.now.size)
         self._forms = {name: form if form.columns is None else form._replace(
@@ -125,7 +128,7 @@ class Lanes:
         return places(image, state.now, state.aux, state.changes, state.fitted, state.fit,
                        state.q_start, state.loads, state.loads_old, state.acting,
                        state.coefficients, state.frames_old, state.q_old, state.aux_old,
-                       state.last_correction, state.last_change)
+                       state.last_correction, state.last_change, state.spare, state.memory)
 
     def begin(self, changes: NDArray) -> NDArray:
         """Begin some runs, one in a lane; returns which have begun. The others are to be run alone.
@@ -158,6 +161,7 @@ class Lanes:
                         for member in range(count)]
         if count < MEMBERS:         # lanes without a member: another one's numbers
             self._numbers[self._places, count:] = self._numbers[self._places, :1]
+        self._begin_samples()
         state.control["reason"] = np.where(np.arange(MEMBERS) < count, RUNS, GAVE_UP)
         every, reached = int(self._record.every[0]), 0
         while reached < self._last:
@@ -193,6 +197,15 @@ class Lanes:
             fill(record, getattr(self.copies.state, name))
             own = record.base.view(np.uint8)        # bytes: names one by one take long
             self._begun[name] = own, own.copy()
+
+    def _begin_samples(self) -> None:
+        """Give members the arrays that samples are made with: counts, queues, parameters."""
+        image, memory = self.copies.image, self.copies.image.template.state.memory
+        if self._apart.routines[1]:
+            own = image.offsets.of(memory)
+            taken = np.concatenate([image.lines.slots, np.arange(own.start, own.stop)])
+            self._apart.numbers[:, taken] = self._numbers[taken].T
+            self.state.memory[:] = self._apart.numbers[0, own]
 
     def _begin_records(self) -> None:
         """Set scalars and counters to those of a member that has begun, the same for all."""
