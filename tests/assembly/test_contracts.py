@@ -7,7 +7,7 @@ import pytest
 
 from sebody import InputError, Model, Simulation, simulate
 from sebody.assembly import contracts
-from sebody.assembly.batches import superelement_constants
+from sebody.assembly.body_constants import superelement_constants
 from sebody.assembly.build import build
 from sebody.contract.layout import INDEX, Row
 from sebody.fem import Section, straight_beam

@@ -7,7 +7,7 @@ import pytest
 
 from sebody import InputError, Model, Result, SimulationError, simulate
 from sebody.results import save_picture
-from sebody.results.quantities import OF_MODEL, OWNERS
+from sebody.results.owners import OF_MODEL, OWNERS
 from sebody.scenes import four_bar, heavy_top, hinged_beam, squeezer
 
 
