@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 
 from sebody.errors import InputError
 from sebody.explore.ensembles.changes import LOADS, MOTION, Handle, attribute_of, constants_of
-from sebody.model.contacts import SLOW
 from sebody.model.control_parts import Controller
+from sebody.model.histories import time_function
 from sebody.model.history_rows import rows_of
-from sebody.model.impacts import LEAST, damping_of, restitution_of
+from sebody.model.impacts import LEAST, SLOW, damping_of, restitution_of
 from sebody.model.model import Model
 from sebody.model.parts import DofBlock, Element, Joint, Motion
-from sebody.model.time_functions import TimeFunction, time_function
+from sebody.model.time_functions import TimeFunction
 
 # what can be varied of springs, and the constant of their kernels
 OF_SPRINGS = {"stiffness": "k", "damping": "c", "cubic": "k3", "length": "length", "rest": "rest",
