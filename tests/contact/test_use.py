@@ -4,7 +4,17 @@ import numpy as np
 import pytest
 from contact_models import G, anchored, bar, block
 
-from sebody import InputError, Model, Result, SimulationError, plane, ramp, rest_to_rest, simulate, sphere
+from sebody import (
+    InputError,
+    Model,
+    Result,
+    SimulationError,
+    plane,
+    ramp,
+    rest_to_rest,
+    simulate,
+    sphere,
+)
 from sebody.analysis import Ensemble, equilibrium, final, linearize
 from sebody.explore.sweep import Distribution, sweep
 from sebody.model.impacts import damping_of, restitution_of
