@@ -23,15 +23,14 @@ from sebody.results.recording import Recording
 from sebody.runs.simulation import Simulation
 
 QUANTITIES = "stress", "von_mises"
-TIE = 1e-6      # of the largest stress: which of closer fibres decides, Newton's rest may change
-ALIKE = 1e-9    # of the largest derivative: fibres whose stresses change alike
+ALIKE = 1e-9    # of the largest stress: closer ones are equal but for rounding
 
 
 class NodeStress:
     """The stress at an FE node, a component of it, or its von Mises stress.
 
-    Where fibres are stressed alike in all recorded states, as by symmetry, the derivative is the
-    mean of theirs: that of changes which keep the symmetry.
+    Where several fibres are stressed most, as by symmetry, the derivative is the mean of theirs:
+    that of changes which keep the symmetry.
 
     Parameters
     ----------
@@ -55,17 +54,12 @@ class NodeStress:
     def at(self, k: int, event: int) -> Rows:
         """Derivatives in a recorded state."""
         rows, own = self.smooth.at(k, event), self.deciding[k]
-        found = self._by_fibre(k, own, rows)
-        near = np.flatnonzero(self.sizes[k] >= (1.0 - TIE) * self.sizes[k, own])
-        others = [self._by_fibre(k, int(fibre), rows) for fibre in near if fibre != own]
-        apart = [max(np.abs(a - b).max(initial=0.0) for a, b in zip(one, found, strict=True))
-                 for one in others]
-        largest = max(np.abs(a).max(initial=0.0) for a in found)
-        if max(apart, default=0.0) <= ALIKE * largest:
-            return found
-        if not all(self._always_alike(own, int(fibre)) for fibre in near):
+        alike = np.flatnonzero(self.sizes[k] >= (1.0 - ALIKE) * self.sizes[k, own])
+        apart = np.abs(self.stresses[k, alike] - self.stresses[k, own]).max()
+        if not self.whole.endswith("von_mises") and apart > ALIKE * self.sizes[k, own]:
             raise self._not_smooth(k)
-        return Rows(*(np.mean(parts, axis=0) for parts in zip(found, *others, strict=True)))
+        each = [self._by_fibre(k, int(fibre), rows) for fibre in alike]
+        return Rows(*(np.mean(parts, axis=0) for parts in zip(*each, strict=True)))
 
     def values(self, recording: Recording) -> NDArray:
         """The quantity by the fibres that decide in the run, in the same states of another model.
@@ -110,19 +104,10 @@ class NodeStress:
         rows = np.eye(6)
         return rows if self.component is None else rows[[STRESS.index(self.component)]]
 
-    def _always_alike(self, one: int, other: int) -> bool:
-        """Whether two fibres give the same value in all recorded states."""
-        largest = self.sizes.max()
-        apart = np.abs(self.sizes[:, one] - self.sizes[:, other]).max()
-        if not self.whole.endswith("von_mises"):
-            apart = np.abs(self.stresses[:, one] - self.stresses[:, other]).max()
-        return bool(apart <= TIE * largest)
-
     def _not_smooth(self, k: int) -> InputError:
         return InputError(f"quantity {self.quantity!r} has no derivative at t = {self.t[k]:.6g}: "
-                          "it is zero there, or two fibres of the section are stressed alike, of "
-                          "which one takes over from the other; give its parts, such as section "
-                          "forces, or another time")
+                          "the stress is zero there, or differs between fibres of a section that "
+                          "are stressed alike; give section forces, or another time")
 
 
 def node_stress(run: Simulation, quantity: str, linear: Linear, history: History
