@@ -1,5 +1,6 @@
 """Many runs in threads: each equals the run of a model with the same numbers."""
 
+import differentiated
 import numpy as np
 import pytest
 from scipy.integrate import trapezoid
@@ -88,6 +89,16 @@ def test_a_run_equals_that_of_a_model_with_the_same_numbers(free, name):
         assert np.abs(found[output][1] - expected[quantity]).max() < 1e-10 * scale
     as_built = single(free.model, {})
     assert np.abs(as_built["tip.position"] - expected["tip.position"]).max() > 1e-6
+
+
+def test_section_forces_know_the_gravity_of_their_run():
+    """They contain the static response to weight and inertia of what the modes leave out."""
+    made, quantity = differentiated.hinged(modes=2), "beam.node2.section_forces"
+    value = np.array([4.0, 1.0, -2.0])
+    found = Ensemble(made, 0.005).run({"gravity": value[None]}, 0.02, {"sections": quantity})
+    made.gravity(value)
+    expected = Simulation(made, 0.005).run_to(0.02).result()[quantity]
+    assert np.abs(found["sections"][0] - expected).max() < 1e-9 * np.abs(expected).max()
 
 
 def test_numbers_and_stiffness_change_by_copies_rotations_by_building(free):

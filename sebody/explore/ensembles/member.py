@@ -310,4 +310,5 @@ class _States(Recording):
     def _refuse(self) -> NDArray:
         raise _NeedsElements
 
-    energies = forces = balance = powers = constraint_residuals = counters = property(_refuse)
+    energies = forces = balance = powers = constraint_residuals = counters = gravity = property(
+        _refuse)
