@@ -47,7 +47,7 @@ def gearing(points: NDArray, axes: NDArray, ratio: float, size: float) -> Gearin
     ratio : float
         Rate about the first axis over that about the second.
     size : float
-        Extent of the model [length].
+        Characteristic length of the model [length].
     """
     e, f = axes
     across = np.cross(e, f)
