@@ -1,8 +1,8 @@
 """Bristles of friction: stiffness from the mass they hold, and the force they carry at the start.
 
 A bristle that is much stiffer than ``m/h^2`` makes steps of the length h fail, one that is much
-softer gives way. Its stiffness is ``m/h^2`` unless it is given, where m is the least mass that resists a
-force along it, ``1/(B M^-1 B^T)`` with the joints as they are.
+softer gives way. Its stiffness is ``m/h^2`` unless it is given, where m is the least mass that
+resists a force along it, ``1/(B M^-1 B^T)`` with the joints as they are.
 
 At the start bristles of joints at rest must carry what holds them: unloaded ones would give way.
 Their forces are those at which nothing that they hold is accelerated, found by Newton's iteration,
