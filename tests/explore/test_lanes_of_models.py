@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lane_models import assert_bits_in_other_company
+from lane_models import assert_bits_in_other_company, single
 from scipy.spatial.transform import Rotation
 
 from sebody import Model, generalized_alpha, piecewise, simulate
@@ -203,10 +203,7 @@ def test_controlled_members_equal_single_runs(build, monkeypatch):
     assert found.in_lanes == RUNS and not found.failures
     assert_bits_in_other_company(many, given, STEPS * H, outputs, found)
     for run in (0, 8):
-        alone = build()
-        for name, values in given.items():
-            handle(alone, name).set(np.asarray(values[run], dtype=float))
-        result = simulate(alone, H, STEPS * H)
+        result = single(made, {name: v[run] for name, v in given.items()}, H, STEPS * H)
         for name, quantity in (("course", "tip.position"), ("motor", "motor.value")):
             size = np.abs(result[quantity]).max()
             assert size > 0.0
