@@ -193,9 +193,9 @@ def _alone(stack: NDArray, before: int = 0, vector: int = 0, behind: int = 0) ->
     """
     stack = stack.copy()
     rows = stack.shape[1]
-    for first, width in _pieces(stack):
+    for first, width, own in _pieces(stack):
         columns = stack[:, :, first:first + width]
-        begin = [(k, i) for k, filled in enumerate((columns != 0.0).any(axis=2))
+        begin = [(k, i) for k, filled in enumerate((stack[:, :, own] != 0.0).any(axis=2))
                  for i in _covered(filled)]
         heads = [n for k, i in begin for n in ((before + k) * rows + i, before + k, i)]
         if behind:
@@ -205,15 +205,17 @@ def _alone(stack: NDArray, before: int = 0, vector: int = 0, behind: int = 0) ->
                         _taken(columns, begin))
 
 
-def _pieces(stack: NDArray) -> list[tuple[int, int]]:
-    """First columns and widths of groups, which begin where the filled rows change."""
+def _pieces(stack: NDArray) -> Iterator[tuple[int, int, slice]]:
+    """First columns and widths of groups, which begin where the filled rows change.
+
+    With the columns whose entries all belong to a group: it may reach into those of the next one.
+    """
     filled = (stack != 0.0).reshape(-1, stack.shape[2])
     columns = filled.shape[1]
     common, either = ((one(filled[:, 1:], filled[:, :-1])).sum(axis=0)
                       for one in (np.logical_and, np.logical_or))
     changes = [*(1 + np.flatnonzero(2 * common < either)).tolist(), columns]
-    empty = ~filled.any(axis=0)
-    found, first = [], 0
+    empty, first = ~filled.any(axis=0), 0
     while first < columns:
         if empty[first]:
             first += 1
@@ -221,9 +223,9 @@ def _pieces(stack: NDArray) -> list[tuple[int, int]]:
         end = next(change for change in changes if change >= min(first + NARROW, columns))
         while first < end:
             width = WIDE if end - first > NARROW and columns >= WIDE else NARROW
-            found.append((min(first, columns - width), width))
-            first += width
-    return found
+            own = slice(first, min(first + width, end))
+            yield min(first, columns - width), width, own
+            first = own.stop
 
 
 def _covered(filled: NDArray) -> list[int]:
@@ -267,10 +269,10 @@ def _coupled(stack: NDArray, before: int) -> Iterator[Group]:
 def _runs(stack: NDArray, below: bool) -> Iterator[tuple[int, int, int, list[int]]]:
     """Matrix, first column, width, and first rows of strips, where there are many of these."""
     for k, matrix in enumerate(stack):
-        for first, width in _pieces(matrix[None]):
+        for first, width, own in _pieces(matrix[None]):
             begin = (first + width) * below
-            own = (matrix[begin:, first:first + width] != 0.0).any(axis=1)
-            rows = [begin + row for row in _covered(own)] if len(own) else []
+            filled = (matrix[begin:, own] != 0.0).any(axis=1)
+            rows = [begin + row for row in _covered(filled)] if len(filled) >= LANES else []
             if len(rows) >= MANY:
                 yield k, first, width, rows
 
