@@ -19,7 +19,8 @@ A row has at most the size that matrices without zeros would take; it begins wit
 the bits of floats:
 
 ========  ==========================================================================================
-8         number of groups of each kind: by use, first narrow ones, then wide ones
+6         number of groups of each kind: by use, first narrow ones, then wide ones; those that are
+          used twice are wide
 5 each    first column, vector, number of strips, where their heads and entries begin
 3 each    head of a strip: place of its product in the stack of all products, matrix, first row
 2, 3 ...  heads of BOTH: how far the products of the second vector are behind those of the first
@@ -39,9 +40,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody.contract.counts import CACHE_LINE, LANES, packed_size, whole_vectors
 
-ONCE, BOTH, MIRRORED, COUPLED = USES = range(4)     # of groups, in the order of a row
-WIDTHS = NARROW, WIDE = 4, 8    # columns of a strip
-KINDS = tuple((use, width) for use in USES for width in WIDTHS)
+ONCE, BOTH, MIRRORED, COUPLED = range(4)    # uses of groups
+NARROW, WIDE = 4, 8     # columns of a strip
+KINDS = ((ONCE, NARROW), (ONCE, WIDE), (BOTH, NARROW), (BOTH, WIDE), (MIRRORED, WIDE),
+         (COUPLED, WIDE))
 BEGIN, GROUP, HEAD = len(KINDS), 5, 3   # whole numbers of a row, of a group and of a strip
 BEHIND = 2              # of a group of both vectors
 PRODUCTS = 3            # of a group that is used twice
@@ -229,13 +231,19 @@ def _pieces(stack: NDArray) -> Iterator[tuple[int, int, slice]]:
 
 
 def _covered(filled: NDArray) -> list[int]:
-    """Where strips begin, as few as possible, that cover what is filled of rows."""
+    """Where strips begin, as few as possible, that cover what is filled of rows.
+
+    At whole vectors if these are not more: numbers are read by whole vectors afterwards, which
+    must not wait for parts that are written last.
+    """
+    rows = np.flatnonzero(filled).tolist()
     found, end, last = [], 0, len(filled) - LANES
-    for row in np.flatnonzero(filled).tolist():
+    for row in rows:
         if row >= end:
             found.append(min(row, last))
             end = row + LANES
-    return found
+    whole = sorted({row - row % LANES for row in rows})
+    return whole if len(whole) <= len(found) else found
 
 
 def _taken(columns: NDArray, begin: list[tuple[int, int]]) -> NDArray:
@@ -253,33 +261,33 @@ def _taken(columns: NDArray, begin: list[tuple[int, int]]) -> NDArray:
 
 def _mirrored(stack: NDArray) -> Iterator[Group]:
     """Takes strips below the diagonal out of symmetric matrices, and what mirrors them."""
-    for k, first, width, rows in _runs(stack, below=True):
-        yield _used_twice(stack, MIRRORED, k, first, width, rows, (k, k, k))
+    for k, first, rows in _runs(stack, below=True):
+        yield _used_twice(stack, MIRRORED, k, first, rows, (k, k, k))
         for row in rows:
-            stack[k, first:first + width, row:row + LANES] = 0.0
+            stack[k, first:first + WIDE, row:row + LANES] = 0.0
 
 
 def _coupled(stack: NDArray, before: int) -> Iterator[Group]:
     """Takes strips out of matrices that multiply both vectors, and their transposes the second."""
-    for k, first, width, rows in _runs(stack, below=False):
+    for k, first, rows in _runs(stack, below=False):
         products = before + k, before + len(stack) + k, before + 2 * len(stack) + k
-        yield _used_twice(stack, COUPLED, k, first, width, rows, products)
+        yield _used_twice(stack, COUPLED, k, first, rows, products)
 
 
-def _runs(stack: NDArray, below: bool) -> Iterator[tuple[int, int, int, list[int]]]:
-    """Matrix, first column, width, and first rows of strips, where there are many of these."""
+def _runs(stack: NDArray, below: bool) -> Iterator[tuple[int, int, list[int]]]:
+    """Matrix, first column, and first rows of wide strips, where there are many of these."""
     for k, matrix in enumerate(stack):
         for first, width, own in _pieces(matrix[None]):
             begin = (first + width) * below
             filled = (matrix[begin:, own] != 0.0).any(axis=1)
             rows = [begin + row for row in _covered(filled)] if len(filled) >= LANES else []
-            if len(rows) >= MANY:
-                yield k, first, width, rows
+            if width == WIDE and len(rows) >= MANY:
+                yield k, first, rows
 
 
-def _used_twice(stack: NDArray, use: int, k: int, first: int, width: int, rows: list[int],
+def _used_twice(stack: NDArray, use: int, k: int, first: int, rows: list[int],
                 products: tuple[int, ...]) -> Group:
     """Takes strips out of a matrix."""
     height = stack.shape[1]
-    entries = _taken(stack[:, :, first:first + width], [(k, row) for row in rows])
+    entries = _taken(stack[:, :, first:first + WIDE], [(k, row) for row in rows])
     return Group(use, first, 0, (*(height * p for p in products), *products, *rows), entries)

@@ -32,7 +32,6 @@ from sebody.kernels.packed import (
     MIRRORED,
     ONCE,
     PRODUCTS,
-    WIDTHS,
 )
 
 _CLEARED = 8        # vectors at a time
@@ -59,15 +58,14 @@ class Groups:
     def each(self, writers: dict[int, Callable[["Groups"], None]]) -> None:
         """Go through the groups; in their order, writers of instructions for each use."""
         builder, done = self.builder, WORD(0)
-        for use, write in writers.items():
-            for width in WIDTHS:
-                end = builder.add(done, self.count(KINDS.index((use, width))))
+        for kind, (use, self.width) in enumerate(KINDS):
+            if use in writers:
+                end = builder.add(done, self.count(kind))
                 with short_loop(builder, done, end) as group:
                     place = builder.add(builder.mul(group, WORD(GROUP)), WORD(BEGIN))
                     self.first, self.vector, self.strips, self.heads, self.begin = (
                         self.at(builder.add(place, WORD(k))) for k in range(GROUP))
-                    self.width = width
-                    write(self)
+                    writers[use](self)
                 done = end
 
     def head(self, k: int, strip: ir.Value | None = None, size: int = HEAD) -> ir.Value:
