@@ -212,8 +212,8 @@ def _pieces(stack: NDArray) -> Iterator[tuple[int, int, slice]]:
 
     With the columns whose entries all belong to a group: it may reach into those of the next one.
     """
-    filled = (stack != 0.0).reshape(-1, stack.shape[2])
-    columns = filled.shape[1]
+    columns = stack.shape[2]
+    filled = (stack != 0.0).reshape(-1, LANES, columns).any(axis=1)
     common, either = ((one(filled[:, 1:], filled[:, :-1])).sum(axis=0)
                       for one in (np.logical_and, np.logical_or))
     changes = [*(1 + np.flatnonzero(2 * common < either)).tolist(), columns]

@@ -104,7 +104,7 @@ def test_products_and_sums(shape, filled):
     assert not sums[:, height:].any()
 
 
-@pytest.mark.parametrize("N, filled, many", [(5, 1.0, False), (18, 0.3, False), (42, 0.05, True),
+@pytest.mark.parametrize("N, filled, many", [(5, 1.0, False), (18, 0.3, True), (42, 0.05, True),
                                              (61, 0.9, True)])
 def test_symmetric_matrices_and_couplings(N, filled, many):
     """Of large matrices strips are used twice; of small ones, and where few have entries, once."""
