@@ -230,20 +230,20 @@ def _pieces(stack: NDArray) -> Iterator[tuple[int, int, slice]]:
             first = own.stop
 
 
-def _covered(filled: NDArray) -> list[int]:
-    """Where strips begin, as few as possible, that cover what is filled of rows.
+def _covered(filled: NDArray, first: int = 0) -> list[int]:
+    """Where strips begin, as few as possible, that cover what is filled of rows from `first` on.
 
     At whole vectors if these are not more: numbers are read by whole vectors afterwards, which
     must not wait for parts that are written last.
     """
-    rows = np.flatnonzero(filled).tolist()
+    rows = [row for row in np.flatnonzero(filled).tolist() if row >= first]
     found, end, last = [], 0, len(filled) - LANES
-    for row in rows:
+    for row in rows if last >= first else ():
         if row >= end:
             found.append(min(row, last))
             end = row + LANES
     whole = sorted({row - row % LANES for row in rows})
-    return whole if len(whole) <= len(found) else found
+    return whole if len(whole) <= len(found) and min(whole, default=0) >= first else found
 
 
 def _taken(columns: NDArray, begin: list[tuple[int, int]]) -> NDArray:
@@ -278,9 +278,7 @@ def _runs(stack: NDArray, below: bool) -> Iterator[tuple[int, int, list[int]]]:
     """Matrix, first column, and first rows of wide strips, where there are many of these."""
     for k, matrix in enumerate(stack):
         for first, width, own in _pieces(matrix[None]):
-            begin = (first + width) * below
-            filled = (matrix[begin:, own] != 0.0).any(axis=1)
-            rows = [begin + row for row in _covered(filled)] if len(filled) >= LANES else []
+            rows = _covered((matrix[:, own] != 0.0).any(axis=1), (first + width) * below)
             if width == WIDE and len(rows) >= MANY:
                 yield k, first, rows
 

@@ -104,13 +104,16 @@ def test_products_and_sums(shape, filled):
     assert not sums[:, height:].any()
 
 
-@pytest.mark.parametrize("N, filled, many", [(5, 1.0, False), (18, 0.3, True), (42, 0.05, True),
-                                             (61, 0.9, True)])
-def test_symmetric_matrices_and_couplings(N, filled, many):
+@pytest.mark.parametrize("N, filled, zeros, many", [
+    (5, 1.0, 0, False), (18, 0.3, 0, True), (42, 0.05, 0, True), (61, 0.9, 0, True),
+    (42, 0.9, 3, True), (35, 1.0, 6, True)])
+def test_symmetric_matrices_and_couplings(N, filled, zeros, many):
     """Of large matrices strips are used twice; of small ones, and where few have entries, once."""
     random = np.random.default_rng(N)
     S, C = stack((3, N, N), filled, 3), stack((2, N, N), filled, 4)
     S += S.transpose(0, 2, 1)
+    for matrices in (S, C):
+        matrices[:, :zeros] = matrices[:, :, :zeros] = 0.0
     row, couplings = pack(S, S.shape, symmetric=True), pack_couplings(S, C)
     every = np.concatenate([S, C, C, C.transpose(0, 2, 1)])
     for packed, stored in ((row, S), (couplings, every)):
