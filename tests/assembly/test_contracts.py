@@ -7,13 +7,13 @@ import pytest
 
 from sebody import InputError, Model, Simulation, simulate
 from sebody.assembly import contracts
-from sebody.assembly.batches import superelement_constants
+from sebody.assembly.body_constants import superelement_constants
 from sebody.assembly.build import build
 from sebody.contract.layout import INDEX, Row
 from sebody.fem import Section, straight_beam
 from sebody.kernels.loader import element_kernel, load
+from sebody.model.histories import time_function
 from sebody.model.parts import Attachment, Element, Joint
-from sebody.model.time_functions import time_function
 from sebody.reduction import ReducedBody, craig_bampton
 from sebody.scenes import hinged_beam
 
@@ -161,6 +161,19 @@ def test_superelements_that_do_not_fit_their_kernel(kernel, message):
     model = beam()
     model.element("beam").kernel = kernel
     with pytest.raises(InputError, match=message):
+        build(model)
+
+
+def test_a_superelement_with_less_of_second_order_than_its_kernel():
+    """Without stiffening a beam has nothing of second order, and a kernel for any number."""
+    model = Model()
+    ends = model.node("base", (0, 0, 0)), model.node("tip", (1.0, 0, 0))
+    model.beam("beam", ends, SECTION, 4, bodies=1, modes=4, stiffening=False)
+    body = model.element("beam")
+    assert body.kernel == "superelement_f2_converged_mean_floating_field"
+    body.kernel = "superelement_f2m4s2e1_converged_mean_floating_field"
+    with pytest.raises(InputError, match="it has 0 slaved coordinates and the kernel 2; it has 0 "
+                                         "stress resultants and the kernel 1"):
         build(model)
 
 
