@@ -197,8 +197,10 @@ def _alone(stack: NDArray, before: int = 0, vector: int = 0, behind: int = 0) ->
     rows = stack.shape[1]
     for first, width, own in _pieces(stack):
         columns = stack[:, :, first:first + width]
-        begin = [(k, i) for k, filled in enumerate((stack[:, :, own] != 0.0).any(axis=2))
-                 for i in _covered(filled)]
+        filled: dict[int, list[int]] = {}
+        for k, i in np.argwhere((stack[:, :, own] != 0.0).any(axis=2)).tolist():
+            filled.setdefault(k, []).append(i)
+        begin = [(k, i) for k, of_one in filled.items() for i in _covered(of_one, rows)]
         heads = [n for k, i in begin for n in ((before + k) * rows + i, before + k, i)]
         if behind:
             heads = [behind * rows, behind, *heads]
@@ -230,14 +232,13 @@ def _pieces(stack: NDArray) -> Iterator[tuple[int, int, slice]]:
             first = own.stop
 
 
-def _covered(filled: NDArray, first: int = 0) -> list[int]:
-    """Where strips begin, as few as possible, that cover what is filled of rows from `first` on.
+def _covered(rows: list[int], height: int, first: int = 0) -> list[int]:
+    """Where strips begin, as few as possible, that cover some rows, none before the first.
 
     At whole vectors if these are not more: numbers are read by whole vectors afterwards, which
     must not wait for parts that are written last.
     """
-    rows = [row for row in np.flatnonzero(filled).tolist() if row >= first]
-    found, end, last = [], 0, len(filled) - LANES
+    found, end, last = [], 0, height - LANES
     for row in rows if last >= first else ():
         if row >= end:
             found.append(min(row, last))
@@ -276,9 +277,13 @@ def _coupled(stack: NDArray, before: int) -> Iterator[Group]:
 
 def _runs(stack: NDArray, below: bool) -> Iterator[tuple[int, int, list[int]]]:
     """Matrix, first column, and first rows of wide strips, where there are many of these."""
-    for k, matrix in enumerate(stack):
-        for first, width, own in _pieces(matrix[None]):
-            rows = _covered((matrix[:, own] != 0.0).any(axis=1), (first + width) * below)
+    height, columns = stack.shape[1:]
+    filled = (stack != 0.0).reshape(len(stack), -1, LANES, columns).any(axis=2).sum(axis=1)
+    for k in np.flatnonzero((filled >= MANY).any(axis=1)).tolist():
+        for first, width, own in _pieces(stack[k:k + 1]):
+            begin = (first + width) * below
+            found = np.flatnonzero((stack[k, begin:, own] != 0.0).any(axis=1))
+            rows = _covered((begin + found).tolist(), height, begin)
             if width == WIDE and len(rows) >= MANY:
                 yield k, first, rows
 
