@@ -149,15 +149,19 @@ def subtract_product(builder, C, A, B):
             write(builder, total, C, behind(builder, column, i))
 
 
-@in_lanes(dense.write_subtract_block_times)
-def subtract_block_times(builder, y, A, x):
-    """Of `subtract_block_times`."""
+@in_lanes(dense.write_subtract_blocks_times)
+def subtract_blocks_times(builder, y, rows, A, x, first, end):
+    """Of `subtract_blocks_times`."""
     factors = [read(builder, x, WORD(k)) for k in range(LANES)]
-    for i in range(LANES):
-        total = read(builder, y, WORD(i))
-        for k, factor in enumerate(factors):
-            total = _subtracted(builder, total, read(builder, A, WORD(LANES * k + i)), factor)
-        write(builder, total, y, WORD(i))
+    with short_loop(builder, first, end) as p:
+        place = builder.mul(builder.load(builder.gep(rows, [p])), WORD(LANES))
+        begin = builder.mul(p, WORD(LANES * LANES))
+        for i in range(LANES):
+            total = read(builder, y, behind(builder, place, i))
+            for k, factor in enumerate(factors):
+                entry = read(builder, A, behind(builder, begin, LANES * k + i))
+                total = _subtracted(builder, total, entry, factor)
+            write(builder, total, y, behind(builder, place, i))
 
 
 @in_lanes(dense.write_more_columns)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from sebody.compiler.inside.lanes import VECTOR, same
 from sebody.contract.counts import LANES, MEMBERS
-from sebody.kernels.packed import COUPLED, NARROW, WIDE, strips
+from sebody.kernels.packed import strips
 
 # lane of the first number of a row that has the address of its straight code, where there is some;
 # the number of groups stands in all others
@@ -34,17 +34,13 @@ KEPT = 16           # codes that are kept when their ensembles are gone
 def entries_of(row: NDArray, varied: NDArray) -> Entries:
     """The entries of a row of packed matrices that are not zero, by their sums."""
     found = []
-    for kind, vector, places, _, below, first, at, entries in strips(row):
+    for uses, below, first, at, entries in strips(row):
         for i, k in np.argwhere(entries).tolist():
             place = at + LANES * k + i
             value = None if varied[place] else float(row[place])
-            if kind in (NARROW, WIDE):
-                found.append((place, vector, first + k, places[0] + i, value))
-                continue
-            coupled = kind == COUPLED
-            found += [(place, y, first + k, places[y] + below + i, value)
-                      for y in range(1 + coupled)]
-            found.append((place, int(coupled), below + i, places[-1] + first + k, value))
+            for use in uses:
+                column, to = (below + i, k) if use.transposed else (first + k, i)
+                found.append((place, use.vector, column, use.place + to, value))
     return tuple(sorted(found, key=lambda entry: entry[3::-1]))
 
 
