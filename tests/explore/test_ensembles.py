@@ -300,6 +300,21 @@ def test_bad_input_is_refused_before_the_first_run(hinged, case):
         hinged.run(parameters, **arguments)
 
 
+def test_stops_and_friction_have_no_amplitude():
+    """Their axis is a constant of the same name as the direction of a force."""
+    made = Model()
+    made.rigid_body("bar", made.node("pin", (1.0, 2.0, 0.5)), 1.0, (0.1, 0.1, 0.1), (1.5, 2.0, 0.5))
+    made.revolute("pin", axis=TURN @ (0, 0, 1), name="hinge")
+    made.stop("hinge", upper=0.1, stiffness=1e4, name="buffer")
+    made.friction("hinge", coefficient=0.1, radius=0.1, name="rub")
+    made.force("pin", (1, 0, 0), 2.0, name="push")
+    offered = [name for name in Ensemble(made, H).parameters if "amplitude" in name]
+    assert offered == ["push.amplitude"]
+    for name in ("buffer", "rub"):
+        with pytest.raises(InputError, match=f"'{name}' is not a force or torque"):
+            handle(made, f"{name}.amplitude")
+
+
 def test_the_model_is_left_as_it_was(hinged):
     before = single(hinged.model, {})["tip.position"]
     hinged.run({name: [VARIED[name]] for name in ("beam.mass", "motor.table", "gravity")}, T_END,

@@ -61,7 +61,7 @@ SCENES = {
         "upper.mass", "ball.mass", "spring.stiffness", "torque.table"]),
     "rigid-part inertia": (lambda: scenes.hinged("d", modes=2), 0.005, 0.1, {
         "tip": final("tip.position")}, ["torque.amplitude", "beam.stiffness", "beam.mass"]),
-    "material inertia": (lambda: scenes.hinged("b", modes=2), 0.005, 0.1, {
+    "frame on one node": (lambda: scenes.hinged("b", frame="node", modes=2), 0.005, 0.1, {
         "tip": final("tip.position")}, ["torque.amplitude", "beam.stiffness", "beam.mass"]),
     "mean axes": (lambda: scenes.hinged(frame="mean_axes", modes=2), 0.005, 0.1, {
         "tip": final("tip.position")}, ["torque.amplitude", "beam.stiffness", "beam.mass"]),

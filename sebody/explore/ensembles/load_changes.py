@@ -47,7 +47,7 @@ def law_parameters(model: Model, controller: Controller, name: str) -> Handle:
 def load_amplitude(model: Model, load: Element, name: str) -> Handle:
     """Factor of a force, torque or mode force."""
     direction = next((c for c in ("d", "factor") if c in load.constants), None)
-    if direction is None:
+    if direction is None or load.time_function is None:     # stops and friction have an axis d
         raise InputError(f"{name}: {load.name!r} is not a force or torque: it has no amplitude")
     before = np.array(load.constants[direction], dtype=float)
     return constants_of(load, lambda factor: {direction: factor * before}, LOADS, np.array(1.0))

@@ -3,10 +3,12 @@
 Matrices of option C are mostly zeros. Where the same few bodies serve thousands of runs, code for
 the entries that are there takes a third of the instructions of strips, and no list is read. It is
 compiled for a pattern of zeros, in hundredths of a second, when an ensemble begins. Entries that
-all members share are constants of the code: eight bytes are read in place of 64.
+all members share are constants of the code: eight bytes are read in place of 64. The code of a row
+takes some megabytes: it is freed once nobody keeps it, and the last ones are kept for the next
+ensemble.
 """
 
-from functools import cache
+from functools import lru_cache
 from itertools import groupby
 
 import numpy as np
@@ -26,7 +28,7 @@ MOST_GROUPS = 1 << 20       # of a row; a larger number is an address
 # share it
 Entries = tuple[tuple[int, int, int, int, float | None], ...]
 
-_engines = []       # own the code
+KEPT = 16           # codes that are kept when their ensembles are gone
 
 
 def entries_of(row: NDArray, varied: NDArray) -> Entries:
@@ -46,9 +48,33 @@ def entries_of(row: NDArray, varied: NDArray) -> Entries:
     return tuple(sorted(found, key=lambda entry: entry[3::-1]))
 
 
-@cache
-def address_of(entries: Entries) -> int:
-    """Address of a function of a row, two vectors and products, to which it adds."""
+class Straight:
+    """Straight code of a row: a function of the row, two vectors and products, to which it adds.
+
+    Attributes
+    ----------
+    address : int
+        Of the function, for as long as this object lives.
+    """
+
+    def __init__(self, entries: Entries):
+        triple, features = binding.get_process_triple(), binding.get_host_cpu_features().flatten()
+        target = binding.Target.from_triple(triple).create_target_machine(
+            cpu=binding.get_host_cpu_name(), features=features, opt=2)
+        module = binding.parse_assembly(str(_function(entries)))
+        self._engine = binding.create_mcjit_compiler(module, target)
+        self._engine.finalize_object()
+        self.address = self._engine.get_function_address("straight")
+        self._engine.remove_module(module)      # what it was made of takes more than the code
+
+
+@lru_cache(maxsize=KEPT)
+def straight_code(entries: Entries) -> Straight:
+    """The code for some entries, of an earlier ensemble if that is still kept."""
+    return Straight(entries)
+
+
+def _function(entries: Entries) -> ir.Module:
     kind = ir.FunctionType(ir.VoidType(), [VECTOR.as_pointer()] * 4)
     module = ir.Module("straight")
     module.triple = binding.get_process_triple()
@@ -66,7 +92,7 @@ def address_of(entries: Entries) -> int:
             total = builder.fadd(total, product, flags=("contract",))
         builder.store(total, builder.gep(out, [ir.IntType(64)(to)]))
     builder.ret_void()
-    return _compiled(module)
+    return module
 
 
 class _Shared:
@@ -95,17 +121,10 @@ def _read(builder, pointer, place):
     return builder.load(builder.gep(pointer, [ir.IntType(64)(place)]))
 
 
-def _compiled(module: ir.Module) -> int:
-    target = binding.Target.from_triple(module.triple).create_target_machine(
-        cpu=binding.get_host_cpu_name(), features=binding.get_host_cpu_features().flatten(), opt=2)
-    engine = binding.create_mcjit_compiler(binding.parse_assembly(str(module)), target)
-    engine.finalize_object()
-    _engines.append(engine)
-    return engine.get_function_address("straight")
-
-
-def write_address(row: NDArray, varied: NDArray, lanes: NDArray) -> None:
+def write_address(row: NDArray, varied: NDArray, lanes: NDArray) -> Straight:
     """Compile straight code of a row of packed matrices, and put its address into lanes.
+
+    What is returned is to be kept.
 
     Parameters
     ----------
@@ -117,21 +136,24 @@ def write_address(row: NDArray, varied: NDArray, lanes: NDArray) -> None:
         The same in lanes.
     """
     assert lanes.shape == (len(row), MEMBERS)
-    lanes.view(np.int64)[0, AT_ADDRESS] = address_of(entries_of(row, varied))
+    code = straight_code(entries_of(row, varied))
+    lanes.view(np.int64)[0, AT_ADDRESS] = code.address
+    return code
 
 
-def write_shared_address(row: NDArray, varied: NDArray, lanes: NDArray) -> NDArray:
+def write_shared_address(row: NDArray, varied: NDArray, lanes: NDArray
+                         ) -> tuple[NDArray, Straight]:
     """The same of a row that members share but for some entries, which are read from lanes.
 
-    Its first number is replaced by the address of what is returned, and to be kept: the number
-    itself, and addresses of straight code and of the lanes.
+    Its first number is replaced by the address of an array: the number itself, and addresses of
+    straight code and of the lanes. This array and the code are returned, and to be kept.
 
     Parameters
     ----------
     row, varied, lanes : ndarray
         As of `write_address`.
     """
-    own = row.view(np.int64)
-    found = np.array([own[0], address_of(entries_of(row, varied)), lanes.ctypes.data])
+    own, code = row.view(np.int64), straight_code(entries_of(row, varied))
+    found = np.array([own[0], code.address, lanes.ctypes.data])
     own[0] = found.ctypes.data
-    return found
+    return found, code
