@@ -47,8 +47,6 @@ class Lanes:
 
     Attributes
     ----------
-    courses : list of Course
-        Outputs of the members that were run last.
     ended : bool
         Whether these were run to their end; False if they were stopped before.
     """
@@ -81,14 +79,15 @@ class Lanes:
         self._record = Columns(places=columns, rows=empty(*rows), every=np.array([one.every]))
         self._rows = np.empty(rows)
         self._last, self._begun = last, {}
-        self._outputs = outputs
         self._changes: NDArray          # of the members that have begun
         self._evaluated = not all(form.kinematic for form in forms.values())
         self._folds = {name: Folds(one, forms[one.quantity].shape,
                                    self._forms[one.quantity].columns, MEMBERS)
                        for name, one in outputs.items()
                        if one.kind != "history" and forms[one.quantity].columns is not None}
-        self.courses, self.ended = [], False
+        self._others = {name: one for name, one in outputs.items() if name not in self._folds}
+        self._courses: list[Course] = []
+        self.ended = False
 
     def _write_constants(self) -> tuple[NDArray, list[NDArray]]:
         """Write straight code of all bodies.
@@ -166,9 +165,8 @@ class Lanes:
         self._begin_records()
         for folds in self._folds.values():
             folds.begin()
-        self.courses = [Course(self.copies, int(self._record.every[0]), self._outputs, self._forms,
-                               {name: folds.members[member] for name, folds in self._folds.items()})
-                        for member in range(count)]
+        self._courses = [Course(self.copies, int(self._record.every[0]), self._others, self._forms)
+                         for _ in range(count if self._others else 0)]
         if count < MEMBERS:         # lanes without a member: another one's numbers
             self._numbers[self._places, count:] = self._numbers[self._places, :1]
         state.control["reason"] = np.where(np.arange(MEMBERS) < count, RUNS, GAVE_UP)
@@ -191,12 +189,20 @@ class Lanes:
         t = table[:len(rows), 0, 0].copy()
         for folds in self._folds.values():
             folds.add(t, table, members)
-        if len(self._folds) < len(self._outputs):
+        if self._others:
             for member in members:
                 if self._evaluated:         # quantities of elements: with the member's constants
                     self.copies.begin(self._changes[member])
                 loop.rows_of(table, member, rows)
-                self.courses[member].take(rows)
+                self._courses[member].take(rows)
+
+    def write(self, members: NDArray, runs: NDArray, values: Mapping[str, NDArray]) -> None:
+        """Write the outputs of some members that were run last to those of all runs."""
+        for name, folds in self._folds.items():
+            folds.write(members, runs, values[name])
+        if self._others:
+            for member, run in zip(members, runs, strict=True):
+                self._courses[member].write(run, values)
 
     def _keep_begun(self) -> None:
         """Keep the scalars and counters of a member that has begun; failed starts have others."""

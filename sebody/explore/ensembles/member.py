@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -162,16 +162,12 @@ class Course:
         What is kept.
     forms : mapping
         Of every quantity.
-    folds : mapping, optional
-        Of outputs that are taken in with those of other runs.
     """
 
     def __init__(self, run: Copies | Simulation, every: int, outputs: Mapping[str, Output],
-                 forms: Mapping[str, Form], folds: Mapping[str, Fold] | None = None):
+                 forms: Mapping[str, Form]):
         self.run, self.every, self.outputs, self.forms = run, every, outputs, forms
-        self._apart = folds or {}
-        self.folds = {name: self._apart[name] if name in self._apart else
-                      Fold(o, forms[o.quantity].shape) for name, o in outputs.items()
+        self.folds = {name: Fold(o, forms[o.quantity].shape) for name, o in outputs.items()
                       if o.kind != "history"}
         self.histories: dict[str, list[NDArray]] = {name: [] for name, o in outputs.items()
                                                     if o.kind == "history"}
@@ -215,8 +211,6 @@ class Course:
             return
         t, found = rows[:, RECORD_T].copy(), {}
         for name, output in self.outputs.items():
-            if name in self._apart:
-                continue
             quantity = output.quantity
             form = self.forms[quantity]
             if form.columns is not None:
@@ -237,10 +231,14 @@ class Course:
         return Recording(run.model, run.numbering, None if kinematic else run.system,
                          None if kinematic else run.state, rows, 0.0)
 
-    def values(self) -> dict[str, Any]:
-        """What the outputs are; None of those without a value."""
-        return {name: self.folds[name].value() if name in self.folds
-                else np.concatenate(self.histories[name]) for name in self.outputs}
+    def write(self, run: int, values: Mapping[str, NDArray]) -> None:
+        """Write the outputs to those of all runs, where there are values."""
+        for name, fold in self.folds.items():
+            if (value := fold.value()) is not None:
+                values[name][run] = value
+        for name, parts in self.histories.items():
+            history = np.concatenate(parts)
+            values[name][run, :len(history)] = history
 
 
 def forms(simulation: Simulation, outputs: Mapping[str, Output]) -> dict[str, Form]:
