@@ -6,6 +6,8 @@ compiled for a pattern of zeros, in hundredths of a second, when an ensemble beg
 all members share are constants of the code: eight bytes are read in place of 64.
 """
 
+from __future__ import annotations
+
 from functools import cache
 from itertools import groupby
 
@@ -15,17 +17,19 @@ from numpy.typing import NDArray
 
 from sebody.compiler.inside.lanes import VECTOR, same
 from sebody.contract.counts import LANES, MEMBERS
+from sebody.kernels.instructions import WORD, short_loop
 from sebody.kernels.packed import COUPLED, NARROW, WIDE, strips
 
-# lane of the first number of a row that has the address of its straight code, where there is some;
-# the number of groups stands in all others
-AT_ADDRESS = 1
+# lanes of the first number of a row that have the addresses of its straight code, where there is
+# some: of what writes products, and of what adds to them; the number of groups stands in all others
+AT_ADDRESS, AT_MORE = 1, 3
 AT_LANES = 2        # of what the first number of a shared row points to: address of its lanes
 MOST_GROUPS = 1 << 20       # of a row; a larger number is an address
 # place of an entry, vector and place of its factor, place of its sum; its value, if all members
 # share it
 Entries = tuple[tuple[int, int, int, int, float | None], ...]
 
+_NAMES = {"straight": False, "more": True}       # of functions, and whether they add
 _engines = []       # own the code
 
 
@@ -47,65 +51,86 @@ def entries_of(row: NDArray, varied: NDArray) -> Entries:
 
 
 @cache
-def address_of(entries: Entries) -> int:
-    """Address of a function of a row, two vectors and products, to which it adds."""
-    kind = ir.FunctionType(ir.VoidType(), [VECTOR.as_pointer()] * 4)
+def addresses_of(entries: Entries) -> tuple[int, int]:
+    """Addresses of functions of a row, two vectors, products, and how many of these there are.
+
+    The first one writes products, zeros where no entry is; the second one adds to them.
+    """
     module = ir.Module("straight")
     module.triple = binding.get_process_triple()
-    function = ir.Function(module, kind, "straight")
-    builder = ir.IRBuilder(function.append_basic_block())
-    A, *vectors, out = function.args
-    out.add_attribute("noalias")        # of what is read
-    shared = _Shared(module, builder, entries)
-    for to, terms in groupby(entries, key=lambda entry: entry[3]):
-        total = _read(builder, out, to)
-        for place, vector, column, _, value in terms:
-            entry = _read(builder, A, place) if value is None else shared.next()
-            product = builder.fmul(entry, _read(builder, vectors[vector], column),
-                                   flags=("contract",))
-            total = builder.fadd(total, product, flags=("contract",))
-        builder.store(total, builder.gep(out, [ir.IntType(64)(to)]))
-    builder.ret_void()
+    shared = _Shared(module, entries)
+    for name, adds in _NAMES.items():
+        _write(module, name, shared, entries, adds)
     return _compiled(module)
+
+
+def _write(module: ir.Module, name: str, shared: _Shared, entries: Entries, adds: bool) -> None:
+    pointer = VECTOR.as_pointer()
+    kind = ir.FunctionType(ir.VoidType(), [*[pointer] * 4, WORD])
+    function = ir.Function(module, kind, name)
+    builder = ir.IRBuilder(function.append_basic_block())
+    A, *vectors, out, count = function.args
+    out.add_attribute("noalias")        # of what is read
+    # read once, before all sums: factors stay in registers, where entries are what is read
+    factors = {one: _read(builder, vectors[one[0]], one[1])
+               for one in sorted({entry[1:3] for entry in entries})}
+    first, last, zeros = shared.place(builder), 0, ir.Constant(VECTOR, [0.0] * VECTOR.count)
+    for to, terms in groupby(entries, key=lambda entry: entry[3]):
+        for unused in range(last, to if not adds else last):
+            builder.store(zeros, builder.gep(out, [WORD(unused)]))
+        total, last = _read(builder, out, to) if adds else None, to + 1
+        for place, vector, column, _, value in terms:
+            entry = _read(builder, A, place) if value is None else shared.next(builder, first)
+            product = builder.fmul(entry, factors[vector, column], flags=("contract",))
+            total = product if total is None else builder.fadd(total, product, flags=("contract",))
+        builder.store(total, builder.gep(out, [WORD(to)]))
+    if not adds:
+        with short_loop(builder, WORD(last), count) as place:
+            builder.store(zeros, builder.gep(out, [place]))
+    builder.ret_void()
 
 
 class _Shared:
     """Values that all members share, one after the other."""
 
-    def __init__(self, module: ir.Module, builder: ir.IRBuilder, entries: Entries):
+    def __init__(self, module: ir.Module, entries: Entries):
         values = [entry[-1] for entry in entries if entry[-1] is not None]
         kind = ir.ArrayType(ir.DoubleType(), len(values))
         self._values = ir.GlobalVariable(module, kind, "shared")
         self._values.initializer = ir.Constant(kind, values)
         self._values.linkage = "internal"       # not a constant: LLVM would write out eight of each
-        # hidden from LLVM, which would write out the whole address of each value
-        address = self._values.type
-        self._first = builder.asm(ir.FunctionType(address, [address]), "", "=r,0", [self._values],
-                                  False)
-        self._builder, self._next = builder, 0
+        self._next = 0
 
-    def next(self) -> ir.Value:
+    def place(self, builder: ir.IRBuilder) -> ir.Value:
+        """Where they are in a function that reads all of them.
+
+        Hidden from LLVM, which would write out the whole address of each value.
+        """
+        self._next, address = 0, self._values.type
+        return builder.asm(ir.FunctionType(address, [address]), "", "=r,0", [self._values], False)
+
+    def next(self, builder: ir.IRBuilder, first: ir.Value) -> ir.Value:
         """The next value, in all lanes."""
-        place = self._builder.gep(self._first, [ir.IntType(32)(0), ir.IntType(32)(self._next)])
+        place = builder.gep(first, [ir.IntType(32)(0), ir.IntType(32)(self._next)])
         self._next += 1
-        return same(self._builder, self._builder.load(place))
+        return same(builder, builder.load(place))
 
 
 def _read(builder, pointer, place):
-    return builder.load(builder.gep(pointer, [ir.IntType(64)(place)]))
+    return builder.load(builder.gep(pointer, [WORD(place)]))
 
 
-def _compiled(module: ir.Module) -> int:
+def _compiled(module: ir.Module) -> tuple[int, int]:
     target = binding.Target.from_triple(module.triple).create_target_machine(
         cpu=binding.get_host_cpu_name(), features=binding.get_host_cpu_features().flatten(), opt=2)
     engine = binding.create_mcjit_compiler(binding.parse_assembly(str(module)), target)
     engine.finalize_object()
     _engines.append(engine)
-    return engine.get_function_address("straight")
+    return tuple(engine.get_function_address(name) for name in _NAMES)
 
 
 def write_address(row: NDArray, varied: NDArray, lanes: NDArray) -> None:
-    """Compile straight code of a row of packed matrices, and put its address into lanes.
+    """Compile straight code of a row of packed matrices, and put its addresses into lanes.
 
     Parameters
     ----------
@@ -117,7 +142,7 @@ def write_address(row: NDArray, varied: NDArray, lanes: NDArray) -> None:
         The same in lanes.
     """
     assert lanes.shape == (len(row), MEMBERS)
-    lanes.view(np.int64)[0, AT_ADDRESS] = address_of(entries_of(row, varied))
+    lanes.view(np.int64)[0, [AT_ADDRESS, AT_MORE]] = addresses_of(entries_of(row, varied))
 
 
 def write_shared_address(row: NDArray, varied: NDArray, lanes: NDArray) -> NDArray:
@@ -132,6 +157,7 @@ def write_shared_address(row: NDArray, varied: NDArray, lanes: NDArray) -> NDArr
         As of `write_address`.
     """
     own = row.view(np.int64)
-    found = np.array([own[0], address_of(entries_of(row, varied)), lanes.ctypes.data])
+    address, more = addresses_of(entries_of(row, varied))
+    found = np.array([own[0], address, lanes.ctypes.data, more])
     own[0] = found.ctypes.data
     return found
