@@ -143,8 +143,8 @@ def _begin(system, state, lead):
     c[C_MASS], c[C_DAMPING], c[C_STIFFNESS], c[C_GEO], c[C_CONSTRAINT] = 1.0, 0.0, 0.0, 1.0, 1.0
     for i in range(state.T.size):       # the unknowns are accelerations, not increments
         state.T[i] = 1.0 if i % 9 % 4 == 0 else 0.0
-    control.restart = ASKED
     exchange(system, state, lead)
+    control.restart = ASKED
     control.fresh = control.iteration = 0
     clock.last_norm = 0.0
 

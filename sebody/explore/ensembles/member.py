@@ -12,7 +12,9 @@ from sebody.engine.loop import advance, lead
 from sebody.engine.offsets import Offsets
 from sebody.engine.scalars import numbers_of, record
 from sebody.engine.state import (
+    ASKED,
     DONE,
+    FACTORS_KEPT,
     FAILED,
     READ,
     REASONS,
@@ -113,13 +115,26 @@ class Copies:
         first = self.image.offsets.of(self.image.template.state.frames_old).start
         return first + np.array(places, dtype=np.int64)
 
+    def _copied(self) -> NDArray:
+        """First and last places of the numbers that runs change, in the buffer of all numbers.
+
+        Neither constants nor the scratch memory of kernels, which are the most.
+        """
+        one, offsets = self.image.template, self.image.offsets
+        left = sorted((own.start, own.stop) for own in map(
+            offsets.of, (one.system.constants, one.state.work)))
+        ends = [0, *(end for part in left for end in part), offsets.size]
+        return np.array(ends, dtype=np.int64).reshape(-1, 2)
+
     def _beginning(self) -> beginning.Beginning:
         """What runs begin with; scalars and flags are not in `floats`."""
         lines, state = self.image.lines, self.state
         whole = {name: numbers_of(getattr(state, name)) for name in ("control", "clock", "guard")}
         whole["moved"] = state.moved
         return beginning.Beginning(
-            model=self.image.floats, floats=self.floats, slots=lines.slots.astype(np.int64),
+            model=self.image.floats, floats=self.floats, copied=self._copied(),
+            restart=np.array([FACTORS_KEPT if self.image.factored else ASKED]),
+            slots=lines.slots.astype(np.int64),
             ends=lines.slopes.indptr.astype(np.int64),
             components=lines.slopes.indices.astype(np.int64), slopes=lines.slopes.data,
             kept=self._kept_places(),
