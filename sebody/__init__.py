@@ -13,10 +13,10 @@ if TYPE_CHECKING:
         SimulationError,
         WriteError,
     )
+    from sebody.model.histories import with_corners
     from sebody.model.model import Model
     from sebody.model.profiles import harmonic, piecewise, ramp, rest_to_rest, spline, trapezoidal
     from sebody.model.surfaces import cylinder, plane, sphere
-    from sebody.model.time_functions import with_corners
     from sebody.results.result import Result
     from sebody.runs.accuracy import simulate_within
     from sebody.runs.schemes import generalized_alpha, hht

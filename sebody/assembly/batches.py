@@ -7,9 +7,9 @@ from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from sebody.assembly.body_axes import ROUNDING
+from sebody.assembly.body_constants import frame_constants, full_rows, superelement_constants
 from sebody.assembly.contracts import (
     check_element,
     check_superelement,
@@ -27,21 +27,16 @@ from sebody.assembly.equal_bodies import (
     many_alike,
     turn_row,
 )
-from sebody.assembly.floating import floating_constants, frame_conditions
 from sebody.assembly.numbering import Numbering, coordinates
-from sebody.assembly.rigid_part_constants import rigid_part_constants
-from sebody.contract.counts import CACHE_LINE, whole_vectors
+from sebody.contract.counts import CACHE_LINE
 from sebody.contract.equal_row import NOT_TURNED
 from sebody.contract.layout import AT_POSITIONS, AT_ROTATIONS
 from sebody.engine.offsets import at_cache_lines
-from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.loader import element_kernel, load
 from sebody.model.body_points import point_constants
-from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Superelement
 from sebody.reduction import ReducedBody
-from sebody.reduction.mean_rotation import mean_rotation
 
 # rows of constants of every body that is still in use: the next run of its model needs them again
 _rows: WeakKeyDictionary[ReducedBody, dict[tuple, NDArray]] = WeakKeyDictionary()
@@ -172,7 +167,7 @@ def _constants_of(body: Superelement, known: dict[tuple, tuple[int, int]],
         if how not in rows:
             rows[how] = constants_row(body.name, kernel, counts_of(body),
                                       superelement_constants(body))
-        known[key] = constants.add(rows[how]), _full(body, kernel)
+        known[key] = constants.add(rows[how]), full_rows(body, kernel)
     return known[key]
 
 
@@ -271,60 +266,6 @@ def _kept_at(numbering: Numbering, element: Element, otherwise: int) -> int:
     """Where the numbers begin that an element keeps from step to step."""
     own = numbering.memories.get(element)
     return otherwise if own is None else own[0]
-
-
-def superelement_constants(body: Superelement) -> dict[str, ArrayLike]:
-    """Values of the constants that the kernel of a superelement reads, by name."""
-    reduced = body.reduced
-    origin = body.alpha @ reduced.coordinates[list(reduced.position_nodes)]
-    of_translations = reduced.mass @ reduced.rigid_modes[:, :len(origin)]
-    option = INERTIA_OPTIONS[body.inertia]
-    damping = {} if option.rates or reduced.damping is None else {"C": reduced.damping}
-    values = frame_constants(body) | {
-        "S": reduced.stiffness, "M": reduced.mass, "mass_columns": of_translations,
-        "mass_rows": of_translations.T,
-        "mc": reduced.total_mass * (reduced.centre_of_mass - origin),
-        "full": [_filled(body)], "masses": [reduced.total_mass], **damping}
-    if not option.rates:
-        return values
-    if not option.field:
-        return values | rigid_part_constants(reduced)
-    counts = counts_of(body)
-    frame = FRAMES[body.frame]
-    invariants = body.invariants.about(origin)
-    if not frame.traits.needs_rotations:
-        invariants = invariants.rigidly_followed
-    return values | floating_constants(invariants, reduced.stiffness,
-                                       frame_conditions(frame.kernel, counts, values), counts,
-                                       reduced.damping, ROUNDING)
-
-
-def frame_constants(body: Superelement) -> dict[str, ArrayLike]:
-    """Values of what places the frame of a superelement, by name."""
-    points = body.reduced.coordinates[list(body.reduced.position_nodes)]
-    of_modes = {"Gam": mean_rotation(body.reduced).T} if FRAMES[body.frame].traits.modes else {}
-    return {"alphas": body.alpha, "fits": np.full(len(points), 1.0 / len(points)),
-            "alpha_rs": body.alpha_r, "X": points - body.alpha @ points} | of_modes
-
-
-def _filled(body: Superelement) -> int:
-    """Leading rows and columns, in whole vectors, beyond which S, M and C are diagonal.
-
-    All rows if there is a single entry off the diagonal between internal modes.
-    """
-    reduced = body.reduced
-    matrices = [A for A in (reduced.stiffness, reduced.mass, reduced.damping) if A is not None]
-    n, filled = len(reduced.mass), whole_vectors(len(reduced.mass) - reduced.modes)
-    inner = [matrix[filled:, filled:] for matrix in matrices]
-    diagonal = all(np.count_nonzero(A) == np.count_nonzero(np.diag(A)) for A in inner)
-    return filled if filled < n and diagonal else n
-
-
-def _full(body: Superelement, kernel: ModuleType) -> int:
-    """Leading rows and columns beyond which the element matrix is diagonal."""
-    # modes that move the frame act on each other through it
-    apart = INERTIA_OPTIONS[kernel.INERTIA].modes_apart and not FRAMES[body.frame].traits.modes
-    return _filled(body) if apart else len(body.reduced.mass)
 
 
 def starts(sizes: Iterable[int]) -> NDArray:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.batches import frame_constants
+from sebody.assembly.body_constants import frame_constants
 from sebody.assembly.contracts import constants_row, frame_counts, index_row
 from sebody.assembly.numbering import Numbering, coordinates
 from sebody.contract.counts import Counts, scratch_size

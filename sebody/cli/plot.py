@@ -27,7 +27,7 @@ def run(options: argparse.Namespace) -> int:
     """Read the results and draw."""
     check_picture(options.output)
     from sebody.pictures.drawing import plot
-    from sebody.results.result import OUTPUT
+    from sebody.results.saving import OUTPUT
 
     others = [word for word in options.words if word.endswith(OUTPUT[1])]
     check_distinct({"--output": options.output, "RESULT": Path(options.result)})

@@ -178,7 +178,7 @@ def _written(options: argparse.Namespace, scene: "Scene", simulation: "Simulatio
 def _check(options: argparse.Namespace, scene: "Scene") -> None:
     """Refuse before the run what cannot be written, and options that contradict others."""
     from sebody.files import check_target
-    from sebody.results.result import check_output
+    from sebody.results.saving import check_output
     from sebody.runs.restart import TARGET
 
     if options.output:

@@ -20,9 +20,14 @@ VALUE, SINCE, FROM = range(3)       # its numbers in State.frames
 @compiled
 def input_at(pieces, row, kept, at, t):
     """Force or torque of an input at a time."""
-    value, begun = kept[at + VALUE], kept[at + FROM]
-    lag, fastest = pieces[row, LAG], pieces[row, RATE]
-    passed, gap = max(t - kept[at + SINCE], 0.0), value - begun
+    return follow(kept[at + VALUE], kept[at + FROM], pieces[row, LAG], pieces[row, RATE],
+                  max(t - kept[at + SINCE], 0.0))
+
+
+@compiled
+def follow(value, begun, lag, fastest, passed):
+    """What an actuator makes of a value, a time after it was set."""
+    gap = value - begun
     if fastest > 0.0 and abs(gap) > fastest * lag:
         ramp = (abs(gap) - fastest * lag) / fastest
         change = np.copysign(fastest, gap)

@@ -7,6 +7,7 @@ takes a minute. Members are read without reference counts, which cost as much as
 from ctypes import addressof, c_char
 from dataclasses import fields
 from functools import cache
+from hashlib import sha256
 
 import numpy as np
 from llvmlite import ir
@@ -69,7 +70,9 @@ class View(types.Type):
         self.members = members
         # one text: Numba hashes the key of a type thousands of times, and texts only once
         self._key = " ".join([name, sources, *(f"{own}: {kind.key}" for own, kind in members)])
-        super().__init__(f"View({name})")
+        # groups of numbers and of lanes have one name, and code of both is in one program: Numba
+        # tells the compiled functions apart by the names of the types of their arguments
+        super().__init__(f"View({name}{sha256(self._key.encode()).hexdigest()[:8]})")
 
     @property
     def key(self) -> str:

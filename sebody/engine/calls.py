@@ -25,6 +25,12 @@ def call_refactorize(typingctx, address, system, state, wanted, dense):
 
 
 @intrinsic
+def call_refactorize_together(typingctx, address, system, state, together):
+    """Call `sebody.engine.lanes.together.refactorize` at its address."""
+    return types.int64(types.int64, system, state, together), _call
+
+
+@intrinsic
 def call_restart(typingctx, address, system, state, lead, dense):
     """Call `sebody.engine.restart.restart` at its address."""
     return types.int64(types.int64, system, state, types.float64, types.boolean), _call
@@ -34,6 +40,12 @@ def call_restart(typingctx, address, system, state, lead, dense):
 def call_sample(typingctx, address, system, state):
     """Call `sebody.engine.control.sample` at its address."""
     return types.int64(types.int64, system, state), _call
+
+
+@intrinsic
+def call_samples(typingctx, address, system, state, scratch, alone, apart, dense):
+    """Call `sebody.engine.lanes.samples.sample` at its address."""
+    return types.int64(types.int64, system, state, scratch, alone, apart, types.boolean), _call
 
 
 @intrinsic

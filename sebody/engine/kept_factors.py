@@ -42,7 +42,7 @@ def exchange(system, state, lead):
     if (spare.size == 0 or lead != 0.0 or system.massless[0] == 1 or control.regularized == 1
             or system.regularized[0] == 1):
         return
-    _swap(system, state)
+    swap_factors(system, state)
     spare[ASIDE], spare[WANTED] = 1.0, wanted
     if spare[VALID] == 1.0:
         control.wanted = KEPT
@@ -66,7 +66,7 @@ def give_back(system, state):
     if spare.size == 0 or spare[ASIDE] == 0.0:
         state.clock.contraction = SLOWEST       # nothing is known of the next step
         return
-    _swap(system, state)
+    swap_factors(system, state)
     spare[ASIDE] = 0.0
     if control.regularized == 1:                # which neither is then
         control.regularized, spare[VALID] = 0, 0.0
@@ -84,7 +84,7 @@ def give_back(system, state):
 
 
 @compiled
-def _swap(system, state):
+def swap_factors(system, state):
     """Exchange the factors in use and the others, with scales and what belongs to these."""
     n, spare, at = system.diagonal.size, state.spare, FIRST
     spare[FLOOR], state.clock.floor = state.clock.floor, spare[FLOOR]

@@ -131,8 +131,19 @@ def _factorize(system, state, dense):
 
 @compiled
 def _begin(system, state, lead):
+    """Set what belongs to accelerations; choose the factors to begin with."""
+    control = state.control
+    set_masses(system, state)
+    exchange(system, state, lead)
+    control.restart = ASKED
+    control.fresh = control.iteration = 0
+    state.clock.last_norm = 0.0
+
+
+@compiled
+def set_masses(system, state):
     """Set the loads after the jump and the coefficients of masses and constraints."""
-    clock, control, c = state.clock, state.control, state.coefficients
+    clock, c = state.clock, state.coefficients
     set_loads_beside(system, state.frames, state.loads, clock.time, -clock.beside)
     for k in range(system.prescribed.shape[0]):
         state.a[system.prescribed[k, 0]] = 0.0
@@ -143,10 +154,6 @@ def _begin(system, state, lead):
     c[C_MASS], c[C_DAMPING], c[C_STIFFNESS], c[C_GEO], c[C_CONSTRAINT] = 1.0, 0.0, 0.0, 1.0, 1.0
     for i in range(state.T.size):       # the unknowns are accelerations, not increments
         state.T[i] = 1.0 if i % 9 % 4 == 0 else 0.0
-    exchange(system, state, lead)
-    control.restart = ASKED
-    control.fresh = control.iteration = 0
-    clock.last_norm = 0.0
 
 
 @compiled

@@ -17,10 +17,11 @@ from sebody.errors import InputError
 from sebody.export.image import Image
 from sebody.kernels.loader import element_kernel
 from sebody.model.controllers import continuous, sampled
+from sebody.model.histories import input_history
 from sebody.model.mechanism import Mechanism
 from sebody.model.model import Model
 from sebody.model.parts import Element, Motion
-from sebody.model.time_functions import TimeFunction, input_history
+from sebody.model.time_functions import TimeFunction
 from sebody.model.variants.copying import copied
 from sebody.spelling import unknown
 

@@ -12,7 +12,8 @@ from sebody.fem.beam_stress import BeamStress
 from sebody.fem.layout import PLANAR, SPATIAL
 from sebody.fem.mass_field import MassField
 from sebody.fem.materials import Material
-from sebody.fem.model import FEModel, assemble
+from sebody.fem.matrices import assemble
+from sebody.fem.model import FEModel
 from sebody.fem.section import StiffnessSection
 from sebody.vectors import skew
 

@@ -11,7 +11,8 @@ from scipy import sparse
 from sebody import inputs, memory
 from sebody.fem.layout import SOLID
 from sebody.fem.materials import Material
-from sebody.fem.model import FEModel, assemble
+from sebody.fem.matrices import assemble
+from sebody.fem.model import FEModel
 from sebody.fem.stress import SolidStress, elasticity
 
 _CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))[:, ::-1]  # x runs fastest

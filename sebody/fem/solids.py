@@ -12,7 +12,7 @@ from scipy import sparse
 
 from sebody.errors import InputError
 from sebody.fem.isoparametric import slopes_at
-from sebody.fem.model import assemble
+from sebody.fem.matrices import assemble
 
 TETRAHEDRON_EDGES = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]   # middles of tetra10
 

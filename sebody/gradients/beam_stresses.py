@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.batches import superelement_constants
+from sebody.assembly.body_constants import superelement_constants
 from sebody.assembly.contracts import constants_row, counts_of
 from sebody.contract.layout import Row
 from sebody.gradients.gradient import Differentiated

@@ -15,6 +15,7 @@ from sebody.engine.state import Scheme
 from sebody.errors import InputError
 from sebody.explore.ensembles.outputs import at_time
 from sebody.gradients.gradient import Differentiated, fitting, stacked
+from sebody.gradients.node_stresses import history_of
 from sebody.gradients.objectives import checked, sensor_of
 from sebody.gradients.parameters import Column
 from sebody.gradients.point import Point
@@ -188,8 +189,9 @@ class _Fit:
             for name, values in histories.items()}
 
         def flat(made: Simulation, rows: NDArray) -> NDArray:
-            return np.concatenate([values.ravel() for values in self._histories(
-                made, rows).values()])
+            recording = Recording(made.model, made.numbering, made.system, made.state, rows, 0.0)
+            return np.concatenate([history_of(sensor, recording, name).ravel()
+                                   for name, sensor in sensors.items()])
         slopes = Slopes(self.model, one.run, one.history, flat, one.course)
         each = [slopes.of(column) for column in columns]
         explicit = np.stack([slope.objectives for slope in each], axis=1)

@@ -21,6 +21,7 @@ from sebody.explore.ensembles.member import forms
 from sebody.explore.ensembles.outputs import Fold, Output, outputs_of
 from sebody.gradients.history import History
 from sebody.gradients.linear import Linear
+from sebody.gradients.node_stresses import history_of, node_stress
 from sebody.gradients.segments import Segments
 from sebody.gradients.sensors import Coordinates, Evaluated, Sensor, rotation_vector
 from sebody.gradients.sweeps import Bars
@@ -198,8 +199,8 @@ class Seen:
         Of a model with other numbers, the motion being that of rows.
         """
         recording = Recording(made.model, made.numbering, made.system, made.state, rows, 0.0)
-        return np.concatenate([np.einsum("kcm,kc->m", seen.seeds, _history(
-            recording, one.quantity).reshape(len(rows), -1)) for one, seen in zip(
+        return np.concatenate([np.einsum("kcm,kc->m", seen.seeds, history_of(
+            seen.sensor, recording, one.quantity).reshape(len(rows), -1)) for one, seen in zip(
                 self.whole.outputs.values(), self.looked, strict=True)])
 
 
@@ -225,6 +226,8 @@ def sensor_of(run: Simulation, quantity: str, shape: tuple[int, ...], linear: Li
     if found is None:
         if (vector := rotation_vector(run, quantity, linear, history)) is not None:
             return vector
+        if (stress := node_stress(run, quantity, linear, history)) is not None:
+            return stress
         return Evaluated(run, quantity, int(np.prod(shape, initial=1.0)), linear, history)
     return Coordinates(*found, linear, history)
 

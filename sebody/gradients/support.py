@@ -4,10 +4,10 @@ from warnings import warn
 
 from sebody.engine.state import Scheme
 from sebody.errors import InputError, LimitWarning
-from sebody.generated.options import FRAMES
 from sebody.gradients.laws import remembering
 from sebody.gradients.linear import DENSE
 from sebody.kernels.loader import element_kernel_name, products_kernel_name
+from sebody.model.frames import FRAMES
 from sebody.model.model import Model
 from sebody.runs.simulation import Simulation
 
@@ -33,9 +33,9 @@ def refuse_model(model: Model) -> None:
                              "derivatives: give derivatives= with it, or use an Ensemble with "
                              "values on both sides")
     for body in model.bodies.values():
-        if FRAMES[body.frame].incremental:
+        if FRAMES[body.frame].traits.incremental:
             exact = ", ".join(name for name, frame in FRAMES.items()
-                              if not frame.incremental)
+                              if not frame.traits.incremental)
             raise InputError(f"superelement {body.name!r}: frame {body.frame!r} depends on the "
                              "steps that led to a state, and its forces are not differentiated by "
                              f"those: use one of {exact}")

@@ -12,7 +12,8 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.isoparametric import reference_nodes
 from sebody.fem.materials import uniform_material
-from sebody.fem.model import FEModel, fe_matrix
+from sebody.fem.matrices import fe_matrix
+from sebody.fem.model import FEModel
 from sebody.fem.solids import SolidPrestress, knows
 from sebody.fem.stress import elasticity, solid_stress
 

@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh, null_space
 
-from sebody.assembly.batches import frame_constants
+from sebody.assembly.body_constants import frame_constants
 from sebody.assembly.contracts import frame_counts
 from sebody.assembly.floating import frame_conditions
 from sebody.assembly.rigid_part_constants import rigid_part_constants

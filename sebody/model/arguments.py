@@ -1,4 +1,4 @@
-"""Checks of input: nodes, vectors, names."""
+"""Checks of input: nodes, joints, vectors, names."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -139,3 +139,11 @@ def _described(element: Superelement | Element | Joint | Motion) -> str:
     return element.kind.replace("_", " ") if isinstance(element, Element) else (
         type(element).__name__.lower())
 
+
+
+def known_joint(model: Mechanism, joint: object, what: str) -> Joint:
+    """A joint of this model."""
+    element = model.element(joint) if isinstance(joint, str) else joint
+    if not isinstance(element, Joint) or element not in model.joints:
+        raise inputs.refusal(what, joint, "give a joint of the model or its name")
+    return element

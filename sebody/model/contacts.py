@@ -1,4 +1,4 @@
-"""Contacts, stops and gears of a model."""
+"""Contacts and stops of a model."""
 
 from __future__ import annotations
 
@@ -8,18 +8,17 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.contract.names import body_contact_kind
 from sebody.errors import InputError
-from sebody.model.arguments import chosen_name, direction, dof_block, known, vector
+from sebody.model.arguments import chosen_name, direction, dof_block, known, known_joint, vector
 from sebody.model.body_points import body_point, start_place
 from sebody.model.frames import FRAMES
 from sebody.model.frictions import Dry, checked_friction, turning
-from sebody.model.impacts import damping_of
+from sebody.model.impacts import impact_constants
 from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import ground
 from sebody.model.parts import BodyPoint, Element, Joint, Node, positions, rotations
 from sebody.model.surfaces import Surface
 
 DEEP = 0.1          # of its radius, or of the model: a start in deeper contact is refused
-SLOW = 1e-3         # of the given speed: the steps of slower impacts are not looked at
 TURNS = ("revolute",)
 SLIDES = ("prismatic", "slider", "cylindrical")
 
@@ -69,60 +68,10 @@ def stop(model: Mechanism, of: Joint | str | tuple[Node | str, Node | str],
     if not low <= start <= high:
         raise InputError(f"{what}: it starts at {start:g}, beyond the limits {low:g} and "
                          f"{high:g}: a start inside the stop would be an impact of unknown speed")
-    constants = _impact(what, restitution, at_speed, stiffness, exponent)
+    constants = impact_constants(what, restitution, at_speed, stiffness, exponent)
     name = chosen_name(model, name, what.replace("'", ""))
     made = Element(name, model.kind_of(kind), attachments,
                    constants | own | {"lower": low, "upper": high})
-    model.loads.append(made)
-    return made
-
-
-def gear(model: Mechanism, first: Joint | str, second: Joint | str, ratio: float,
-         backlash: float = 0.0, stiffness: float | None = None, restitution: float = 0.5,
-         at_speed: float = 1.0, exponent: float = 1.0, name: str | None = None) -> Element:
-    """A pair of gears on two revolute joints: ``angle of first = ratio x angle of second``.
-
-    The teeth are elastic: beyond half the backlash on either side the angle
-    ``first - ratio second`` is pushed back by ``k d^n (1 + c d')``. Both angles are zero at the
-    start.
-
-    Parameters
-    ----------
-    first, second : Joint or str
-        Revolute joints.
-    ratio : float
-        Turns of the first for one turn of the second; negative where they turn against each other.
-    backlash : float
-        Whole play, as an angle of the first [rad].
-    stiffness : float, optional
-        k of the teeth, moment on the first per angle^n of it. By default the stiffest that steps of
-        the run's length follow.
-
-    Raises
-    ------
-    InputError
-        Joints that are not revolute, a ratio of zero, or negative play.
-    """
-    joints = [_joint(model, one, "gear") for one in (first, second)]
-    what = f"gear of {joints[0].name!r} and {joints[1].name!r}"
-    for one in joints:
-        if one.kind not in TURNS:
-            raise InputError(f"{what}: {one.name!r} is a {one.kind}: give revolute joints")
-    if joints[0] is joints[1]:
-        raise InputError(f"{what}: give two joints")
-    ratio = inputs.number(ratio, f"{what}: ratio")
-    if ratio == 0:
-        raise InputError(f"{what}: ratio is 0: give the turns of the first for one of the second")
-    play = inputs.number(backlash, f"{what}: backlash", least=0)
-    tuned = {} if stiffness is not None else {"teeth": 1.0}
-    constants = _impact(what, restitution, at_speed, 1.0 if tuned else stiffness, exponent)
-    own: dict[str, float | NDArray] = {"ratio": ratio, "lower": -play / 2, "upper": play / 2}
-    for k, one in enumerate(joints, 1):
-        if not model.planar:
-            own |= {f"{key}{k}": value for key, value in turning(one.own_axes).items()}
-    attachments = tuple(p for one in joints for p in rotations(one.node, one.to))
-    name = chosen_name(model, name, what.replace("'", ""))
-    made = Element(name, model.kind_of("gear_play"), attachments, constants | own, tuned=tuned)
     model.loads.append(made)
     return made
 
@@ -162,7 +111,7 @@ def contact(model: Mechanism, node: Node | str, on: Surface, radius: float = 0.0
         that make no sense.
     """
     if point := body_point(model, node, "contact"):
-        return _inside(model, point, str(node), on, radius, _impact(
+        return _inside(model, point, str(node), on, radius, impact_constants(
             f"contact of {node!r}", restitution, at_speed, stiffness, exponent), checked_friction(
                 f"contact of {node!r}", friction, static, bristle, damping, speed, "friction"),
             name)
@@ -182,7 +131,7 @@ def contact(model: Mechanism, node: Node | str, on: Surface, radius: float = 0.0
         raise InputError(f"{what}: node {a.name!r} has no rotation, so a sphere about it cannot "
                          "roll: make it with keeps='full', or give a point, radius=0")
     dof_block(b, "rotation")
-    constants = _impact(what, restitution, at_speed, stiffness, exponent)
+    constants = impact_constants(what, restitution, at_speed, stiffness, exponent)
     dry = checked_friction(what, friction, static, bristle, damping, speed, "friction")
     name = chosen_name(model, name, what.replace("'", ""))
     kind = f"{'sphere' if r > 0 else 'point'}_on_{on.kind}"
@@ -221,23 +170,6 @@ def _inside(model: Mechanism, point: BodyPoint, called: str, on: Surface, radius
     return made
 
 
-def _impact(what: str, restitution: float, at_speed: float, stiffness: float | None,
-            exponent: float) -> dict[str, float | NDArray]:
-    """Constants of the contact law."""
-    if stiffness is None:
-        raise InputError(f"{what}: give stiffness=, the force at a depth of one")
-    return {"stiffness": inputs.number(stiffness, f"{what}: stiffness", above=0),
-            "exponent": inputs.number(exponent, f"{what}: exponent", least=1),
-            "damping": damping_of(restitution, at_speed, what), "slow": SLOW * at_speed}
-
-
-def _joint(model: Mechanism, joint: object, what: str) -> Joint:
-    element = model.element(joint) if isinstance(joint, str) else joint
-    if not isinstance(element, Joint) or element not in model.joints:
-        raise inputs.refusal(what, joint, "give a joint of the model or its name")
-    return element
-
-
 def _measured(model: Mechanism, of: object) -> tuple[str, str, tuple, dict, float]:
     """What a stop measures: in words, its kernel, places and constants, and its value now."""
     if isinstance(of, tuple | list):
@@ -248,7 +180,7 @@ def _measured(model: Mechanism, of: object) -> tuple[str, str, tuple, dict, floa
             raise InputError(f"stop: node {a.name!r} is given twice: give two nodes")
         return (f"stop of {a.name!r} and {b.name!r}", "distance_stop", positions(a, b), {},
                 float(np.linalg.norm(b.point - a.point)))
-    joint = _joint(model, of, "stop")
+    joint = known_joint(model, of, "stop")
     what = f"stop of {joint.name!r}"
     kind = joint.constraints[0].kind.removeprefix("planar_") if joint.kind == "drive" else ""
     if joint.kind in TURNS or kind == "turn_drive":

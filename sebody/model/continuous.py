@@ -12,11 +12,11 @@ from sebody.errors import InputError
 from sebody.model.actuators import SLIDES, TURNS
 from sebody.model.arguments import chosen_name
 from sebody.model.control_parts import Controller
+from sebody.model.histories import clock
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Attachment, DofBlock, Element, LawParts, Node
 from sebody.model.parts import positions as at_positions
 from sebody.model.parts import rotations as at_rotations
-from sebody.model.time_functions import clock
 
 KIND = "continuous"     # of the element
 MEASURED = ("position, velocity, rotation and angular velocity of nodes, modes of bodies and their "

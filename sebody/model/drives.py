@@ -16,6 +16,7 @@ from sebody.model.arguments import (
     turning_axes,
     vector,
 )
+from sebody.model.histories import Source
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import pair
 from sebody.model.parts import (
@@ -29,7 +30,6 @@ from sebody.model.parts import (
     rotations,
 )
 from sebody.model.sharing import hold
-from sebody.model.time_functions import Source
 
 
 def drive_angle(model: Mechanism, node: Node | str, motion: Source,

@@ -1,11 +1,13 @@
 """Constants of Hunt and Crossley's contact law: damping from the restitution at a speed."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
 
 LEAST = 1e-2        # smallest restitution: with less the damping grows without bounds
+SLOW = 1e-3         # of the given speed: the steps of slower impacts are not looked at
 
 
 def damping_of(restitution: float, at_speed: float, what: str) -> float:
@@ -46,3 +48,19 @@ def restitution_of(damping: float, at_speed: float) -> float:
 
     loss = y - np.log1p(y)              # with c v e = 1 - exp(-z) it is z + exp(-z) - 1
     return -np.expm1(-brentq(lambda z: z + np.expm1(-z) - loss, 0.0, loss + 1.0, xtol=1e-15)) / y
+
+
+def impact_constants(what: str, restitution: float, at_speed: float, stiffness: float | None,
+                     exponent: float) -> dict[str, float | NDArray]:
+    """Constants of the law of a contact, a stop or teeth.
+
+    Raises
+    ------
+    InputError
+        No stiffness, or numbers out of range.
+    """
+    if stiffness is None:
+        raise InputError(f"{what}: give stiffness=, the force at a depth of one")
+    return {"stiffness": inputs.number(stiffness, f"{what}: stiffness", above=0),
+            "exponent": inputs.number(exponent, f"{what}: exponent", least=1),
+            "damping": damping_of(restitution, at_speed, what), "slow": SLOW * at_speed}

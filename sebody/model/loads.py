@@ -12,9 +12,10 @@ from sebody.errors import InputError
 from sebody.model.arguments import chosen_name, dof_block, known, rotation_vector, vector
 from sebody.model.frames import FRAMES
 from sebody.model.functions import compiled_force
+from sebody.model.histories import clock, time_function
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement, positions, rotations
-from sebody.model.time_functions import TimeFunction, clock, time_function
+from sebody.model.time_functions import TimeFunction
 from sebody.spelling import offered, unknown
 
 

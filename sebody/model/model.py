@@ -15,6 +15,7 @@ from sebody.model import (
     controllers,
     drives,
     frictions,
+    gears,
     joints,
     loads,
     nodes,
@@ -98,5 +99,5 @@ class Model(Mechanism):
 
     friction = atomic(frictions.friction)
     stop = atomic(contacts.stop)
-    gear = atomic(contacts.gear)
+    gear = atomic(gears.gear)
     contact = atomic(contacts.contact)

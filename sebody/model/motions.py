@@ -9,14 +9,9 @@ from sebody.compiler.user_functions import UserFunction
 from sebody.errors import InputError
 from sebody.model.derivatives import rates_of
 from sebody.model.functions import compiled_history
+from sebody.model.histories import Source, is_function_with_rates, spline_of
 from sebody.model.history_rows import table
-from sebody.model.time_functions import (
-    MOTION,
-    Source,
-    TimeFunction,
-    is_function_with_rates,
-    spline_of,
-)
+from sebody.model.time_functions import MOTION, TimeFunction
 
 SAMPLES = (0.137, 0.61, 1.13, 2.71)     # times at which rates given by a user are tested
 

@@ -15,7 +15,8 @@ from numpy.typing import ArrayLike
 
 from sebody.errors import InputError
 from sebody.inputs import array, items, number, shown
-from sebody.model.time_functions import COEFFICIENTS, TimeFunction, of_cubics, same_waves, spline_of
+from sebody.model.histories import of_cubics, spline_of
+from sebody.model.time_functions import COEFFICIENTS, TimeFunction, same_waves
 
 SHORTEST = 1e-9     # time at constant speed, relative to that of the rise, which is left out
 

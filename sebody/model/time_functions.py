@@ -1,7 +1,8 @@
 """Time functions of loads and drives: pieces of formulas, or functions of a user.
 
 A time function of pieces is on each interval a polynomial of at most degree five plus a harmonic:
-see `TimeFunction`. Loads need the value alone, drives its first two derivatives, too.
+see `TimeFunction`. Loads need the value alone, drives its first two derivatives, too. What users
+give is made into one by `sebody.model.histories`.
 """
 
 from __future__ import annotations
@@ -10,28 +11,20 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 from math import cos, sin
-from numbers import Number
-from typing import TypeAlias, TypeGuard
 
 import numpy as np
 from numba import njit
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from sebody import inputs
 from sebody.compiler.user_functions import UserFunction, compile_history
 from sebody.contract.layout import CLOCK, INPUT
-from sebody.model.functions import compilable, compiled_history
-from sebody.model.history_rows import linear, table
+from sebody.model.functions import compilable
 
 LOAD, MOTION = "time function of a load", "motion of a drive"
 COEFFICIENTS = 6        # most of a polynomial
 SMALL = 1e-9            # jump of a value or rate, relative to its size, that is rounding
 NEAR = 1e-8             # distance at which a function is looked at beside a corner, relative to it
 STEEP = 10.0            # a jump exceeds the changes beside it by this factor
-
-FunctionWithRates: TypeAlias = tuple[
-    Callable[[float], float], Callable[[float], float], Callable[[float], float]]
-Source: TypeAlias = "ArrayLike | Callable[[float], float] | FunctionWithRates | TimeFunction | None"
 
 
 @dataclass(frozen=True)
@@ -193,93 +186,6 @@ def _with_rates(coefficients: Sequence[float], x: float) -> NDArray:
     return np.array([value, rate, 2.0 * half])
 
 
-def time_function(source: Source) -> TimeFunction:
-    """A time function from None (1), a number, a table, a Python function or a ready profile.
-
-    A table ``[(t, value), ...]`` is interpolated linearly and keeps its end values outside; two
-    rows of one time are a jump. A function is compiled, of a tuple of a function and its rates the
-    function.
-
-    Raises
-    ------
-    InputError
-        A table whose times decrease or that is not finite, or a function Numba cannot compile.
-    """
-    if source is None:
-        return TimeFunction()
-    if isinstance(source, Number):
-        return TimeFunction(pieces=((inputs.number(source, LOAD),),))
-    if isinstance(source, TimeFunction):
-        return source
-    if is_function_with_rates(source):
-        source = source[0]
-    if callable(source):
-        return TimeFunction(functions=(compiled_history(source, LOAD),))
-    times, pieces, corners = linear(*table(source, LOAD, jumping=True))
-    return TimeFunction(times, pieces, corners=corners)
-
-
-def with_corners(function: Callable[[float], float] | FunctionWithRates,
-                 corners: Sequence[float]) -> TimeFunction:
-    """A function of time and the times at which it is not smooth: steps meet them.
-
-    Variable steps end at all of them. Fixed ones do where accelerations jump, at a jump of a load
-    or of a drive's second rate.
-
-    Parameters
-    ----------
-    function : callable, or tuple of three
-        A function, or for a drive the function and its first two rates.
-
-    Raises
-    ------
-    InputError
-        A function Numba cannot compile, or times that are no numbers.
-    """
-    times = corners_of(corners)
-    given = function if is_function_with_rates(function) else (function,)
-    checked = [inputs.function(one, "function", "give a function of time") for one in given]
-    return TimeFunction(functions=tuple(compiled_history(one, LOAD) for one in checked),
-                        corners=times)
-
-
-def input_history(start: float, lag: float, rate: float, limits: tuple[float, float] | tuple[()]
-                  ) -> TimeFunction:
-    """The time function of an input: what is set during a run; `rate` 0 stands for any."""
-    return TimeFunction(pieces=((start, lag, rate),), is_input=True, limits=limits)
-
-
-def corners_of(given: Sequence[float]) -> tuple[float, ...]:
-    """Times of corners, ascending.
-
-    Raises
-    ------
-    InputError
-        Times that are no numbers.
-    """
-    remedy = f"corners are {inputs.shown(given)}: give a list of times"
-    return tuple(np.unique(inputs.vector(given, "corners", remedy=remedy)).tolist())
-
-
-def clock(corners: Sequence[float] = ()) -> TimeFunction:
-    """A time function whose value is the time itself, with corners of what depends on it."""
-    return TimeFunction((0.0,), ((0.0, 1.0),), corners=corners_of(corners), is_time=True)
-
-
-def spline_of(times: NDArray, values: NDArray, rates: tuple[float, float]) -> TimeFunction:
-    """A cubic spline with these rates at its ends, constant outside."""
-    from scipy.interpolate import CubicSpline  # takes 0.2 s to import
-
-    spline = CubicSpline(times, values, bc_type=((1, rates[0]), (1, rates[1])))
-    return of_cubics(times, spline.c, values[-1])
-
-
-def of_cubics(times: NDArray, coefficients: NDArray, last: float) -> TimeFunction:
-    """A time function of SciPy's cubics (4, intervals), highest power first, then constant."""
-    return TimeFunction(tuple(times.tolist()), (*map(tuple, coefficients[::-1].T.tolist()),
-                                           (float(last),)))
-
-
 def same_waves(parts: Sequence[TimeFunction]) -> tuple[tuple[float, float, float], ...]:
     """Harmonics of all pieces of some time functions, zeros where one has none."""
     if not any(part.waves for part in parts):
@@ -287,10 +193,6 @@ def same_waves(parts: Sequence[TimeFunction]) -> tuple[tuple[float, float, float
     none = (0.0, 0.0, 0.0)
     return tuple(wave for part in parts
                  for wave, _ in zip_longest(part.waves, part.pieces, fillvalue=none))
-
-
-def is_function_with_rates(source: object) -> TypeGuard[FunctionWithRates]:
-    return isinstance(source, tuple) and len(source) == 3 and all(map(callable, source))
 
 
 def _less(function: UserFunction, value: float) -> UserFunction:

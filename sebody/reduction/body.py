@@ -22,7 +22,7 @@ from sebody.reduction.loads import named_vectors
 from sebody.reduction.missing import checked_missing, lacks, sentences
 from sebody.reduction.recovery import Recovery
 from sebody.reduction.recovery_checks import check_recovery
-from sebody.reduction.rigid_motions import rigid_motions, strainless_coordinates
+from sebody.reduction.rigid_motions import first_moment, rigid_motions, strainless_coordinates
 from sebody.reduction.summary import mode_lines, place
 from sebody.tabular import counted
 from sebody.units import parsed_units
@@ -117,17 +117,13 @@ class ReducedBody:
         if not all(isinstance(note, str) for note in notes):
             raise inputs.refusal("notes", self.notes, remedy)
         object.__setattr__(self, "notes", tuple(notes))
-        for name in ("stiffness", "mass"):
-            matrix = inputs.reals(getattr(self, name), name, "give a matrix of real numbers")
-            checks.check_matrix(name, matrix, names, coordinates)
-            self._store(name, (matrix + matrix.T) / 2)
+        for name in ("stiffness", "mass", "damping"):
+            if (matrix := getattr(self, name)) is not None or name != "damping":
+                self._store(name, checks.symmetric_matrix(matrix, name, names, coordinates))
         rigid = self.rigid_modes_about(coordinates.mean(axis=0))
         checks.check_stiffness(self.stiffness, rigid, names)
         checks.check_mass(self.mass, rigid, names)
         if self.damping is not None:
-            damping = inputs.reals(self.damping, "damping", "give a matrix of real numbers")
-            checks.check_matrix("damping", damping, names, coordinates)
-            self._store("damping", (damping + damping.T) / 2)
             checks.check_damping(self.damping, rigid, names)
         if self.invariants is not None:
             inputs.instance(self.invariants, "invariants", InertiaInvariants,
@@ -185,15 +181,8 @@ class ReducedBody:
         """Centre of mass in the FE axes, (3,), planar (2,) [length]."""
         # About the nodes' mean, so that a body far from the origin loses no digits.
         middle = self.coordinates.mean(axis=0)
-        modes = self.rigid_modes_about(middle)
-        dimension = self.coordinates.shape[1]
-        moment = modes[:, :dimension].T @ self.mass @ modes[:, dimension:]
-        if self.planar:
-            return _read_only(middle + np.array([moment[1, 0], -moment[0, 0]]) / self.total_mass)
-        # e_i . (e_k x c) = epsilon_ikl c_l: the moment is -skew(c) times the mass.
-        skew = (moment - moment.T) / 2
-        moments = np.array([skew[1, 2], skew[2, 0], skew[0, 1]])
-        return _read_only(middle + moments / self.total_mass)
+        first = first_moment(self.mass, self.rigid_modes_about(middle))
+        return _read_only(middle + first / self.total_mass)
 
     @property
     def lacks(self) -> dict[str, str]:

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody import inputs
 from sebody.errors import InputError
 
 KEEPS = ("full", "translation", "rotation")
@@ -60,8 +61,25 @@ def coordinate_names(keeps: tuple[str, ...], dimension: int, modes: int,
     )
 
 
-def check_matrix(name: str, matrix: NDArray, names: list[str], coordinates: NDArray) -> None:
-    """Raise InputError unless `matrix` has the layout's size and is finite and symmetric."""
+def symmetric_matrix(value: object, name: str, names: list[str], coordinates: NDArray) -> NDArray:
+    """A reduced matrix without the rounding by which it is not symmetric.
+
+    Parameters
+    ----------
+    value : (n, n)
+    name : str
+        Of the matrix, for the message.
+    names : list of str
+        Of the coordinates.
+    coordinates : (n_nodes, 3), planar (n_nodes, 2)
+        Boundary nodes.
+
+    Raises
+    ------
+    InputError
+        No real numbers, another size than the layout's, entries that are not finite or symmetric.
+    """
+    matrix = inputs.reals(value, name, "give a matrix of real numbers")
     size = len(names)
     if matrix.shape != (size, size):
         raise InputError(
@@ -82,6 +100,7 @@ def check_matrix(name: str, matrix: NDArray, names: list[str], coordinates: NDAr
             f"{name}[{j}, {i}] = {matrix[j, i]:.6g} ({names[i]}, {names[j]}); "
             "export both triangles or mirror one"
         )
+    return (matrix + matrix.T) / 2
 
 
 def asymmetry(matrix: NDArray, names: list[str], coordinates: NDArray) -> NDArray:

@@ -13,7 +13,8 @@ from scipy import sparse
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.fem.model import FEModel, fe_matrix
+from sebody.fem.matrices import fe_matrix
+from sebody.fem.model import FEModel
 from sebody.reduction.accuracy import Accuracy
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.boundary import Items

@@ -37,6 +37,24 @@ def rigid_motions(coordinates: NDArray, keeps: tuple[str, ...], size: int,
     return np.vstack([positions, rotations, internal])
 
 
+def first_moment(mass: NDArray, modes: NDArray) -> NDArray:
+    """The first moment of the mass about a point, (3,), planar (2,) [mass length].
+
+    Parameters
+    ----------
+    mass : (n, n)
+    modes : (n, 6), planar (n, 3)
+        Rigid motions about the point.
+    """
+    dimension = 2 if modes.shape[1] == 3 else 3
+    moment = modes[:, :dimension].T @ mass @ modes[:, dimension:]
+    if dimension == 2:
+        return np.array([moment[1, 0], -moment[0, 0]])
+    # e_i . (e_k x c) = epsilon_ikl c_l: the moment is -skew(c) times the mass.
+    skew = (moment - moment.T) / 2
+    return np.array([skew[1, 2], skew[2, 0], skew[0, 1]])
+
+
 def strainless_coordinates(keeps: tuple[str, ...], dimension: int) -> NDArray:
     """Boundary coordinates (k,) that move a free body as a whole: it resists none of them.
 

@@ -6,7 +6,7 @@ functions are left out: what they gave is in the recorded states.
 """
 
 import json
-from dataclasses import fields, is_dataclass
+from dataclasses import is_dataclass
 from types import ModuleType
 from typing import Any
 
@@ -19,7 +19,7 @@ from sebody.fem import materials
 from sebody.model import mechanism, parts, time_functions
 from sebody.model.mechanism import Mechanism
 from sebody.reduction import invariants, recovery
-from sebody.results.saved_checks import check_numbering, check_part, check_tuple
+from sebody.results.saved_checks import check_numbering, check_part, check_tuple, fields_in_files
 
 
 def _kinds(*modules: ModuleType) -> dict[str, type]:
@@ -91,8 +91,8 @@ class _Writer:
         if id(value) not in self._places:
             place = self._places[id(value)] = len(self.parts)
             self.parts.append([])           # parts may contain each other
-            self.parts[place] = [kind, {f.name: self.of(getattr(value, f.name))
-                                        for f in fields(KINDS[kind])}]
+            self.parts[place] = [kind, {name: self.of(getattr(value, name))
+                                        for name in fields_in_files(KINDS[kind])}]
         return self._places[id(value)]
 
     def _array(self, value: NDArray) -> list:

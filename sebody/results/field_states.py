@@ -139,7 +139,7 @@ class FieldStates:
         if static not in self._stresses:
             loads = load_amplitudes(self._recording, self._body, self.motion) if static else None
             self._stresses[static] = Stresses(self._body, self.motion,
-                                              self._recording.model.gravity_field, loads)
+                                              self._recording.gravity, loads)
         return self._stresses[static]
 
     def number(self, place: int) -> int:

@@ -1,7 +1,7 @@
 """The grammar of quantities, in one place: the meaning of ``tip.position.y`` everywhere.
 
 =======================  =========================================================================
-``tip.position``         a quantity, by the tables of `sebody.results.quantities`
+``tip.position``         a quantity, by the tables of `sebody.results.owners`
 ``tip.position.y``       a component: x, y, z of vectors, xx, xy, ... of rotation matrices and
                          stresses, 0, 1, ... of everything else
 ``tip.position.norm``    the length of a vector

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.numbering import Numbering, record_counts
-from sebody.contract.layout import ENERGIES, RECORD
+from sebody.contract.layout import ENERGIES, FIELD, RECORD
 from sebody.engine.scalars import numbers_of
 from sebody.engine.state import State
 from sebody.engine.system import System
@@ -68,6 +68,13 @@ class Recording:
         """System and last state of a run in this process; read from a file, there are none."""
         assert self.system is not None and self.state is not None
         return self.system, self.state
+
+    @property
+    def gravity(self) -> NDArray:
+        """Acceleration of free fall in this run, which an ensemble may vary, (D,)."""
+        if self.state is None:
+            return self.model.gravity_field
+        return self.state.coefficients[FIELD:FIELD + self.model.dimension]
 
     @cached_property
     def unique_rows(self) -> NDArray:

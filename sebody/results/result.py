@@ -6,15 +6,13 @@ from collections.abc import Iterable, Iterator
 from functools import cached_property
 from pathlib import Path
 
-import numpy as np
 from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.engine.scalars import record
 from sebody.engine.state import CONTROL
-from sebody.files import check_target, replacing
 from sebody.model.summary import table
-from sebody.results import dataframes, hdf5, naming, quantities
+from sebody.results import dataframes, naming, quantities
 from sebody.results.advice import kernels_that_pay
 from sebody.results.cautions import cautions
 from sebody.results.contact_quantities import normal_forces
@@ -24,12 +22,10 @@ from sebody.results.hot_spots import HotSpots, hot_spots
 from sebody.results.least_norm import arm
 from sebody.results.quantities import saved
 from sebody.results.recording import Recording
-from sebody.results.saving import packed, unpacked
-from sebody.results.units import unit
+from sebody.results.saving import unpacked, write
 from sebody.results.vtk_series import save_vtk
 from sebody.units import Units, parsed_units
 
-OUTPUT = "output file", (".npz", hdf5.SUFFIX)    # what is saved, see `files.check_target`
 LABELS = 21             # columns of the labels of a summary
 
 
@@ -194,17 +190,7 @@ class Result(Recording):
         WriteError
             Writing fails; an older file is unchanged.
         """
-        path = check_output(path)
-        members = self.arrays() | packed(self, self.advice)
-        with replacing(path, OUTPUT[0]) as file:
-            if path.suffix == hdf5.SUFFIX:
-                hdf5.write(file, members, {name: unit(name, self.units) for name in self.arrays()},
-                           {"title": "results of a run", "superelements": ", ".join(
-                               self.model.bodies), "nodes": ", ".join(self.model.nodes)})
-            else:
-                # stubs of NumPy take the members for its argument allow_pickle, too
-                np.savez_compressed(file, **members)     # type: ignore[arg-type]
-        return path
+        return write(self, self.arrays(), self.advice, path)
 
     def save_vtk(self, path: str | Path, every: int = 1) -> Path:
         """Write a series .pvd of VTK files, which ParaView opens (extra ``vtk``).
@@ -303,20 +289,6 @@ class Result(Recording):
         lines += [f"caution              {text}" for text in self.cautions]
         lines += [f"WARNING              {message}" for message in self.warnings]
         return "\n".join(lines + ([f"FAILED               {self.failure}"] if self.failure else []))
-
-
-def check_output(path: str | Path) -> Path:
-    """The path of a file of results, refused before anything is computed for it.
-
-    Raises
-    ------
-    InputError
-        See `check_target`; h5py is missing.
-    """
-    path = check_target(path, *OUTPUT)
-    if path.suffix == hdf5.SUFFIX:
-        hdf5.check_installed()
-    return path
 
 
 def _vector(values: NDArray) -> str:

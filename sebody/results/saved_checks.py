@@ -46,7 +46,7 @@ def check_part(part: Any, values: Mapping[str, Any]) -> None:
         They are.
     """
     kind: type = type(part)
-    wanted = {one.name for one in fields(kind)}
+    wanted = set(fields_in_files(kind))
     if set(values) != wanted:
         odd = sorted(set(values) ^ wanted)[0]
         raise ValueError(f"a {kind.__name__} {'lacks' if odd in wanted else 'has'} {odd}")
@@ -55,6 +55,14 @@ def check_part(part: Any, values: Mapping[str, Any]) -> None:
             raise ValueError(f"a {kind.__name__} has {inputs.shown(values[name])} for its {name}")
     if isinstance(part, ReducedBody):
         _check_body(part)
+
+
+def fields_in_files(kind: type) -> list[str]:
+    """Names of the fields of a dataclass that files hold: all but private ones.
+
+    These serve the making of runs, such as the body that a rotated one was made of.
+    """
+    return [one.name for one in fields(kind) if not one.name.startswith("_")]
 
 
 def check_notes(notes: Mapping[str, Any]) -> None:
@@ -93,7 +101,7 @@ def check_tuple(kind: type[NamedTuple], values: list) -> None:
 @cache
 def _hints(kind: type) -> dict[str, Any]:
     hints = get_type_hints(kind)
-    return {one.name: hints[one.name] for one in fields(kind)}
+    return {name: hints[name] for name in fields_in_files(kind)}
 
 
 def _fits(value: Any, hint: Any) -> bool:

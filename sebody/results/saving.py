@@ -16,16 +16,21 @@ from sebody.assembly.numbering import Numbering
 from sebody.contract.layout import RECORD_T
 from sebody.engine.state import CONTROL
 from sebody.errors import InputError
+from sebody.files import check_target, replacing
 from sebody.files.array_files import json_of, opened
 from sebody.files.checksums import changed, checksums
 from sebody.files.members import Member, Table
 from sebody.files.reading import existing
 from sebody.model.mechanism import Mechanism
+from sebody.results import hdf5
 from sebody.results.description import described, restored
 from sebody.results.postprocessing import Forces
 from sebody.results.recording import EVALUATED, Recording, Start
 from sebody.results.saved_checks import check_notes, member_lengths
+from sebody.results.units import unit
+from sebody.units import parsed_units
 
+OUTPUT = "output file", (".npz", hdf5.SUFFIX)    # what is saved, see `files.check_target`
 VERSION = 4
 OWN = "sebody/"         # beginning of the names of members that are no named histories
 NOTES = "seconds", "failure", "warnings", "error", "all_seconds"        # members of a Recording
@@ -38,6 +43,37 @@ MEMBERS = {"rows": Member(("states", "width")), "elements": Member(("states", "f
            "counters": Member((len(CONTROL.names or ()),), "i", least=0),
            "energies": Member(("states", "energies")), "powers": Member(("states", "ports")),
            "constraint_residuals": Member(("states", 2))}
+
+
+def check_output(path: str | Path) -> Path:
+    """The path of a file of results, refused before anything is computed for it.
+
+    Raises
+    ------
+    InputError
+        See `check_target`; h5py is missing.
+    """
+    path = check_target(path, *OUTPUT)
+    if path.suffix == hdf5.SUFFIX:
+        hdf5.check_installed()
+    return path
+
+
+def write(recording: Recording, histories: dict[str, NDArray], advice: dict[str, list[str]],
+          path: str | Path) -> Path:
+    """Write a file of named histories and of the recording; see `Result.save`."""
+    path = check_output(path)
+    members = histories | packed(recording, advice)
+    with replacing(path, OUTPUT[0]) as file:
+        if path.suffix == hdf5.SUFFIX:
+            model, units = recording.model, parsed_units(recording.model.units)
+            hdf5.write(file, members, {name: unit(name, units) for name in histories},
+                       {"title": "results of a run", "superelements": ", ".join(model.bodies),
+                        "nodes": ", ".join(model.nodes)})
+        else:
+            # stubs of NumPy take the members for its argument allow_pickle, too
+            np.savez_compressed(file, **members)     # type: ignore[arg-type]
+    return path
 
 
 def packed(recording: Recording, advice: dict[str, list[str]]) -> dict[str, NDArray]:

@@ -163,6 +163,22 @@ class Stresses:
         return np.stack([self._history(row) for row in whole], axis=1) if len(whole) else (
             np.zeros((len(self._amplitudes[0]), 0, 6)))
 
+    def fibres_by_section_forces(self, node: int) -> NDArray | None:
+        """What unit section forces cause in all fibres at a node, (fibres, 6, ends * 6).
+
+        Fibres and ends of elements are in the order of `fibres_of_node` and
+        `section_forces_of_node`. None where the stress is that of solid elements.
+        """
+        if any((one.nodes == node).any() for one in (*self._solids, *self._modes)):
+            return None
+        fibres = [one.fibres[e] for one in self._beams for e in np.nonzero(one.nodes == node)[0]]
+        whole = np.zeros((sum(map(len, fibres)), 6, 6 * len(fibres)))
+        first = 0
+        for k, own in enumerate(fibres):
+            whole[first:first + len(own), [0, 5, 4], 6 * k:6 * k + 6] = own
+            first += len(own)
+        return whole
+
     def section_forces_of_node(self, node: int) -> NDArray:
         """Section forces over time of the element ends at a node, (n, ends, 6)."""
         rows = [row for values in self._at_ends(node, "section_forces") for row in values]

@@ -1,7 +1,10 @@
 """Time integration schemes: generalized-alpha and HHT."""
 
+from functools import cache
+
 from sebody import inputs
 from sebody.engine.state import Scheme
+from sebody.errors import InputError
 
 
 def generalized_alpha(rho: float = 0.9, tolerance: float = 1e-8, tangent: str = "consistent",
@@ -56,6 +59,33 @@ def checked(scheme: Scheme) -> Scheme:
         inputs.number(getattr(scheme, name), f"scheme: {name}", remedy=remedy, **bounds)
     inputs.flag(scheme.stabilized, "scheme: stabilized")
     return scheme
+
+
+def fitting(scheme: Scheme | None, constrained: bool, variable: bool) -> Scheme:
+    """The given scheme, `checked`, or by default one that suits the steps and the constraints.
+
+    Parameters
+    ----------
+    constrained, variable : bool
+        Whether there are constraints, and whether steps are chosen by a tolerance.
+
+    Raises
+    ------
+    InputError
+        Variable steps with constraints of index 3.
+    """
+    if scheme is None:
+        return _default(2 if constrained and variable else 3)
+    if variable and constrained and not scheme.stabilized:
+        raise InputError("with constraints of index 3 errors grow where the step changes: give "
+                         "generalized_alpha(index=2), or a fixed step")
+    return scheme if constrained else scheme._replace(stabilized=False)
+
+
+@cache
+def _default(index: int) -> Scheme:
+    """The scheme of constraints of an index, with its checks made once."""
+    return generalized_alpha(index=index)
 
 
 _BOUNDS = {"alpha_m": {"least": -1, "below": 1}, "alpha_f": {"least": 0, "below": 1},

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +11,6 @@ from numpy.typing import NDArray
 from sebody import inputs
 from sebody.assembly.allocation import allocate
 from sebody.assembly.build import build
-from sebody.assembly.numbering import placed, rotational
 from sebody.engine.loop import advance
 from sebody.engine.routines import addresses
 from sebody.engine.state import ASKED, CHUNK, DONE, FAILED, REASONS, Record, Scheme, State
@@ -35,12 +33,12 @@ from sebody.runs.pulses import unseen, untold
 from sebody.runs.recorded_rows import RecordedRows
 from sebody.runs.row_exchanges import RowExchanges
 from sebody.runs.sampling import Sampling
-from sebody.runs.schemes import checked, generalized_alpha
+from sebody.runs.schemes import checked, fitting
 from sebody.runs.start_remarks import start_remarks
 from sebody.runs.steps import MOST_STEPS, OFF_GRID, last_step
 from sebody.runs.tolerance import UNSIZED, Tolerance, given
+from sebody.runs.variable_steps import FIRST_STEP, begin_steps
 
-FIRST_STEP = 1e-3       # of the output grid: first step if nothing is accelerated at the start
 LOOK = 0.2              # seconds in the loop until it returns to Python, which sees Ctrl-C then
 FIRST_CHUNK = 1         # steps before the first return
 GROWTH = 8.0            # largest factor from one chunk of steps to the next
@@ -102,7 +100,7 @@ class Simulation:
         user_faults.refuse_changed(model)
         prepare([model])
         self.system, self.numbering = build(model, threads)
-        self.scheme = self._fitting(scheme, tolerance is not None)
+        self.scheme = fitting(scheme, bool(self.numbering.multipliers), tolerance is not None)
         self.dense = not self.system.slot_unknowns.size     # no elimination by blocks
         self.state = allocate(model, self.system, self.numbering, self.h, self.dense)
         self.rows = RecordedRows(self.state, self.every)
@@ -126,8 +124,9 @@ class Simulation:
         self.tolerance = tolerance
         self._accelerate()
         self.held = hold(model, self.system, self.numbering, self.state, self._accelerate_again)
-        if tolerance is not None:
-            self._choose_steps(tolerance)
+        if tolerance is not None and not begin_steps(
+                model, self.system, self.numbering, self.state, self.h, tolerance):
+            self.watch.say("unsized", UNSIZED)
         self.sampling.check(self.h, tolerance is None)
         if self.sampling.begin():
             self._accelerate()
@@ -283,30 +282,6 @@ class Simulation:
                             tuple(self.watch.messages))
         return results
 
-    def _fitting(self, scheme: Scheme | None, variable: bool) -> Scheme:
-        """The given scheme, or by default one that suits the steps and the constraints."""
-        constrained = bool(self.numbering.multipliers)
-        if scheme is None:
-            return _default(2 if constrained and variable else 3)
-        if variable and constrained and not scheme.stabilized:
-            raise InputError("with constraints of index 3 errors grow where the step changes: give "
-                             "generalized_alpha(index=2), or a fixed step")
-        return scheme if constrained else scheme._replace(stabilized=False)
-
-    def _choose_steps(self, tolerance: Tolerance) -> None:
-        """Switch on variable steps; the first step is short against the accelerations."""
-        n, state = self.numbering.free, self.state
-        coordinates = np.flatnonzero(placed(self.model, self.numbering)[:n])
-        sizes = self.system.magnitude[coordinates]
-        if tolerance.position == 0.0 and not np.all(sizes):
-            self.watch.say("unsized", UNSIZED)
-        state.error_weights[coordinates] = 1.0 / tolerance.allowed(
-            sizes, rotational(self.model, self.numbering)[coordinates])
-        bend = np.abs(state.a[:n] * state.error_weights[:n]).max()
-        state.clock.chosen = min(self.h, 0.1 / np.sqrt(bend)) if bend > 0 else FIRST_STEP * self.h
-        state.clock.largest_error = 0.0
-        state.control.adaptive = 1
-
     def _accelerate_again(self) -> None:
         """Solve for them once more, after a change of what elements keep."""
         self.state.control.restart = ASKED
@@ -334,12 +309,6 @@ class Simulation:
                              "joints at t = 0")
         state.control.matrices = 0
         state.aux_old[:] = state.aux
-
-
-@cache
-def _default(index: int) -> Scheme:
-    """The scheme of constraints of an index, with its checks made once."""
-    return generalized_alpha(index=index)
 
 
 def simulate(model: Model, h: float, t_end: float, scheme: Scheme | None = None,

@@ -70,12 +70,22 @@ def _mobility(row: NDArray, solve: Callable[[NDArray], NDArray], system: System,
               free: int) -> float:
     """Acceleration along a direction by a unit force along it.
 
-    What a drive moves does not give way: it gets the mobility of its parts alone.
+    What a drive moves does not give way: it gets the mobility of its parts alone; what is held, or
+    moved as a node, gets that of a typical inertia of the model, as its parts are not known.
     """
     own = row[:free] != 0.0
     alone = float((row[:free][own]**2 / np.maximum(system.inertias[:free][own], 1e-300)).sum())
     mobility = float(response(row, solve, system, state, free) @ row)
-    return mobility if mobility > STILL * alone else max(alone, 1e-300)
+    if mobility > STILL * alone:
+        return mobility
+    return alone if alone > 0.0 else _typical_mobility(row, system, free)
+
+
+def _typical_mobility(row: NDArray, system: System, free: int) -> float:
+    """Mobility along a direction without unknowns, were the model's largest inertia there."""
+    size = np.where(system.magnitude > 0.0, system.magnitude, 1.0)
+    inertia = (system.inertias[:free] * size[:free]**2).max(initial=0.0) or 1.0
+    return float(((row * size[:len(row)])**2).max() / inertia) or 1.0
 
 
 def response(row: NDArray, solve: Callable[[NDArray], NDArray], system: System, state: State,

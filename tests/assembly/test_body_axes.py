@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from sebody.assembly.batches import superelement_constants
+from sebody.assembly.body_constants import superelement_constants
 from sebody.explore.ensembles.handles import handle
 from sebody.fem import rectangle
 from sebody.model.model import Model

@@ -7,13 +7,13 @@ import pytest
 
 from sebody import InputError, Model, Simulation, simulate
 from sebody.assembly import contracts
-from sebody.assembly.batches import superelement_constants
+from sebody.assembly.body_constants import superelement_constants
 from sebody.assembly.build import build
 from sebody.contract.layout import INDEX, Row
 from sebody.fem import Section, straight_beam
 from sebody.kernels.loader import element_kernel, load
+from sebody.model.histories import time_function
 from sebody.model.parts import Attachment, Element, Joint
-from sebody.model.time_functions import time_function
 from sebody.reduction import ReducedBody, craig_bampton
 from sebody.scenes import hinged_beam
 

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model
 from sebody.assembly import contracts
-from sebody.assembly.batches import superelement_constants
+from sebody.assembly.body_constants import superelement_constants
 from sebody.assembly.floating import determining, floating_constants, frame_conditions
 from sebody.contract.counts import floating_counts, superelement_counts
 from sebody.contract.layout import ENERGY, KINETIC, RESIDUAL, STRAIN

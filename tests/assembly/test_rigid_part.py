@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from sebody import Model
 from sebody.assembly import contracts
-from sebody.assembly.batches import superelement_constants
+from sebody.assembly.body_constants import superelement_constants
 from sebody.assembly.rigid_part_constants import rigid_part_constants
 from sebody.contract.layout import ENERGY, KINETIC, STRAIN
 from sebody.fem import StiffnessSection, frame, planar_beam, straight_beam

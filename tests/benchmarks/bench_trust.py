@@ -25,12 +25,13 @@ from sebody.analysis import equilibrium
 from sebody.errors import SebodyError
 from sebody.explore.advice.changes import Choice, Step
 from sebody.explore.advice.estimates import expected
+from sebody.explore.advice.first_runs import LONGER, run_first
 from sebody.explore.advice.forms import Form, alike
 from sebody.explore.advice.limits import include, refusal
 from sebody.explore.advice.quantities import Quantities, Values, compared
 from sebody.explore.advice.reference import Reference, reference
 from sebody.explore.advice.report import conclusion
-from sebody.explore.advice.runner import FINER, LONGER, Laboratory
+from sebody.explore.advice.runner import FINER, Laboratory
 from sebody.explore.advice.runs import Runs
 from sebody.explore.advice.search import Search
 from sebody.files import replacing
@@ -100,7 +101,7 @@ def laboratory(scene: AdviceScene, tolerance: float) -> Laboratory:
     wanted.check(model, scene.h)
     lab = Laboratory(model, wanted, Runs(wanted, scene.h, scene.t_end, None,
                                          scene.start is not None), tolerance)
-    lab.start()
+    run_first(lab)
     include(lab)
     return lab
 

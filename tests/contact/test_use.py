@@ -4,7 +4,17 @@ import numpy as np
 import pytest
 from contact_models import G, anchored, bar, block
 
-from sebody import InputError, Model, Result, SimulationError, plane, simulate, sphere
+from sebody import (
+    InputError,
+    Model,
+    Result,
+    SimulationError,
+    plane,
+    ramp,
+    rest_to_rest,
+    simulate,
+    sphere,
+)
 from sebody.analysis import Ensemble, equilibrium, final, linearize
 from sebody.explore.sweep import Distribution, sweep
 from sebody.model.impacts import damping_of, restitution_of
@@ -36,6 +46,25 @@ def test_equilibrium_on_a_surface():
     assert found["floor.normal_force"][-1] == pytest.approx(G, rel=1e-9)
     result = simulate(model, 1e-3, 0.2, start=found)
     assert np.ptp(result["ball.position"], axis=0).max() < 1e-12
+
+
+@pytest.mark.parametrize("held", [True, False])
+def test_a_held_or_moved_point_has_forces(held):
+    """No mass is known that resists: forces and works were no numbers, without a word."""
+    model = Model(planar=True)
+    model.rigid_body("body", model.node("ball", (0.0, 0.1)), 1.0, 0.004)
+    tool = model.node("tool", (2.0, 1e-3), keeps="translation")
+    if held:
+        model.fix(tool, "position")
+    else:
+        model.move(tool, (1, 0), ramp(0.5))
+        model.move(tool, (0, 1), rest_to_rest(-3e-3, 0.05))
+    model.contact(tool, on=plane((0.0, 1.0)), stiffness=1e5, friction=0.3, name="cut")
+    result = simulate(model, 1e-3, 0.1)
+    normal = 0.0 if held else 1e5 * 2e-3**1.5
+    assert result["cut.force"][-1] == pytest.approx([-0.3 * normal, normal], rel=1e-6)
+    # the friction works all the way but the last bend of its bristle
+    assert np.isfinite(result["cut.work"]).all() and result.energy_balance() < 1e-2
 
 
 def test_equilibrium_sticks_or_slides():

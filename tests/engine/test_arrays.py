@@ -75,6 +75,8 @@ def test_types_are_those_numba_gives_to_the_arrays():
         assert dict(own["inner"].members) == {"places": typeof(one.inner.places),
                                               "table": typeof(one.inner.table)}
     assert len({one._numba_type_ for one in found}) == 3
+    # Numba names compiled functions by these: code of one type must not stand for that of another
+    assert len({one._numba_type_.name for one in found}) == 3
 
 
 def test_arrays_that_cannot_be_written_are_no_members():

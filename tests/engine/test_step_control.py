@@ -16,6 +16,7 @@ from sebody.engine import loop
 from sebody.engine.state import (
     Record,
 )
+from sebody.runs import simulation
 from sebody.runs.accuracy import difference, simulate_within
 from sebody.runs.tolerance import Tolerance
 from sebody.scenes import (
@@ -87,7 +88,7 @@ def test_index_3_does_not_allow_changing_steps(monkeypatch):
     scheme = generalized_alpha(tolerance=1e-12, index=2)
     monkeypatch.setitem(globals(), "STRICT", scheme)
     stable = errors(explicit, 0.3, (400,), attitude)[0]
-    monkeypatch.setattr(Simulation, "_fitting", lambda run, given, variable: given)
+    monkeypatch.setattr(simulation, "fitting", lambda given, constrained, variable: given)
     monkeypatch.setitem(globals(), "STRICT", scheme._replace(stabilized=False))
     assert errors(explicit, 0.3, (400,), attitude)[0] > 100 * stable
 

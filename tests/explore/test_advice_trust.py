@@ -10,7 +10,7 @@ from sebody.cli.entry import main
 from sebody.explore.advice import Advice
 from sebody.explore.advice.loads import missed
 from sebody.fem import Section
-from sebody.model.time_functions import time_function
+from sebody.model.histories import time_function
 
 ROOT, TIP = np.array([12.0, 9.0]), np.array([50.0, 2.0])
 

@@ -1,5 +1,6 @@
 """Many runs in threads: each equals the run of a model with the same numbers."""
 
+import differentiated
 import numpy as np
 import pytest
 from scipy.integrate import trapezoid
@@ -88,6 +89,16 @@ def test_a_run_equals_that_of_a_model_with_the_same_numbers(free, name):
         assert np.abs(found[output][1] - expected[quantity]).max() < 1e-10 * scale
     as_built = single(free.model, {})
     assert np.abs(as_built["tip.position"] - expected["tip.position"]).max() > 1e-6
+
+
+def test_section_forces_know_the_gravity_of_their_run():
+    """They contain the static response to weight and inertia of what the modes leave out."""
+    made, quantity = differentiated.hinged(modes=2), "beam.node2.section_forces"
+    value = np.array([4.0, 1.0, -2.0])
+    found = Ensemble(made, 0.005).run({"gravity": value[None]}, 0.02, {"sections": quantity})
+    made.gravity(value)
+    expected = Simulation(made, 0.005).run_to(0.02).result()[quantity]
+    assert np.abs(found["sections"][0] - expected).max() < 1e-9 * np.abs(expected).max()
 
 
 def test_numbers_and_stiffness_change_by_copies_rotations_by_building(free):
@@ -287,6 +298,21 @@ def test_bad_input_is_refused_before_the_first_run(hinged, case):
     arguments = {"t_end": T_END, "outputs": {"end": final("tip.position")}} | others
     with pytest.raises(InputError, match=message):
         hinged.run(parameters, **arguments)
+
+
+def test_stops_and_friction_have_no_amplitude():
+    """Their axis is a constant of the same name as the direction of a force."""
+    made = Model()
+    made.rigid_body("bar", made.node("pin", (1.0, 2.0, 0.5)), 1.0, (0.1, 0.1, 0.1), (1.5, 2.0, 0.5))
+    made.revolute("pin", axis=TURN @ (0, 0, 1), name="hinge")
+    made.stop("hinge", upper=0.1, stiffness=1e4, name="buffer")
+    made.friction("hinge", coefficient=0.1, radius=0.1, name="rub")
+    made.force("pin", (1, 0, 0), 2.0, name="push")
+    offered = [name for name in Ensemble(made, H).parameters if "amplitude" in name]
+    assert offered == ["push.amplitude"]
+    for name in ("buffer", "rub"):
+        with pytest.raises(InputError, match=f"'{name}' is not a force or torque"):
+            handle(made, f"{name}.amplitude")
 
 
 def test_the_model_is_left_as_it_was(hinged):

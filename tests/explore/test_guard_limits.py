@@ -17,7 +17,7 @@ from sebody.explore.advice.guards import (
 from sebody.explore.advice.loads import missed
 from sebody.explore.advice.quantities import Values
 from sebody.explore.advice.reference import Reference
-from sebody.model.time_functions import time_function
+from sebody.model.histories import time_function
 
 H, GRID, T_END = 0.00927, 0.01, 1.0
 UNREAD = None   # the worst place of a reference, which these guards do not need

@@ -5,7 +5,7 @@ import pytest
 from lane_models import linkage, single, turned_beam
 from scipy.integrate import solve_ivp
 
-from sebody import Model
+from sebody import Model, generalized_alpha
 from sebody.analysis import Ensemble, at_time, final, maximum
 from sebody.catalogue import builder
 from sebody.compiler.choice import way
@@ -178,7 +178,8 @@ def test_coupled_and_linked_bodies(small):
 
 
 @pytest.mark.parametrize("scene, options, scheme, reason", [
-    ("stick-slip", {}, None, "friction"), ("flexible-arm", {}, None, "sensors, controllers"),
+    ("stick-slip", {}, None, "friction"),
+    ("pole-on-cart", {}, generalized_alpha(index=2), "controllers with index 2"),
     ("chain", {"links": 64}, None, "equal bodies")])
 def test_the_ensemble_says_why_its_runs_are_made_one_by_one(scene, options, scheme, reason, small):
     """By facts of the model; its runs are those of the scalar loop."""

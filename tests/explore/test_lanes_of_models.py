@@ -4,19 +4,23 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from sebody import Model, generalized_alpha, simulate
+from sebody import Model, generalized_alpha, piecewise, simulate
 from sebody.analysis import Ensemble, final, maximum
 from sebody.compiler.choice import way
+from sebody.control import pid
 from sebody.explore.ensembles import ensemble
+from sebody.explore.ensembles.choice import matrices_at_once
 from sebody.explore.ensembles.handles import handle
 from sebody.fem import Section, straight_beam
-from sebody.reduction import craig_bampton
+from sebody.reduction import craig_bampton, reduce
 
 TURN = Rotation.from_rotvec((0.4, -0.7, 0.5)).as_matrix()
 FOOT = np.array([3.0, -2.0, 1.0])
 SECTION = Section(area=9.0, inertia_y=6.75, inertia_z=5.1, torsion=11.387, youngs_modulus=2.1e6,
                   poisson_ratio=0.3, density=7.8e-3)
 RUNS = 9        # one group of eight, and one run
+H, STEPS = 1e-3, 60
+AXIS = TURN @ (0, 0, 1)
 
 pytestmark = pytest.mark.skipif(
     way().__name__.endswith("plain"), reason="the plain way makes runs one by one")
@@ -93,37 +97,115 @@ def redundant(modes: int | None = None) -> Model:
     return made
 
 
+def hinged(method: str) -> Model:
+    """A beam of four modes on a turned hinge."""
+    body = reduce(straight_beam(place(0, 0, 0), place(100.0, 0, 0), SECTION, elements=6),
+                  [(0, "full"), (6, "full")], 4, method)
+    made = Model()
+    base, tip = (made.node(name, point) for name, point in zip(("base", "tip"), body.coordinates,
+                                                               strict=True))
+    made.superelement("beam", body, [base, tip], inertia="material")
+    made.revolute(base, axis=TURN @ (0, 0, 1), name="hinge")
+    made.force(tip, TURN @ (0, 1, 1), [(0, 0), (0.02, 1e4), (0.05, -3e3)], name="load")
+    made.gravity((0.0, -400.0, 900.0))
+    return made
+
+
+def massless() -> Model:
+    """MacNeal's modes: the tip follows by stiffness without mass."""
+    return hinged("macneal")
+
+
 def stiff(made: Model) -> list[str]:
     return [f"{name}.stiffness" for name in made.bodies]
 
 
 @pytest.mark.parametrize(("build", "index"), [
     (chain, 3), (many_modes, 3), (redundant, 3), (lambda: redundant(16), 3),
-    (chain, 2), (redundant, 2)])
+    (chain, 2), (redundant, 2), (massless, 3), (massless, 2)])
 def test_members_equal_single_runs(build, index, monkeypatch):
     """Stiffness, loads and gravity vary; alone and backwards the bits are the same."""
     monkeypatch.setattr(ensemble, "WORTH_IT", 0)
-    rng, made, h, steps = np.random.default_rng(3), build(), 1e-3, 60
+    rng, made = np.random.default_rng(3), build()
     given = {name: rng.uniform(0.7, 1.5, RUNS) for name in stiff(made)}
     given |= {"load.amplitude": rng.uniform(-1, 2, RUNS), "gravity": rng.uniform(-900, 900,
                                                                                (RUNS, 3))}
     outputs = {"course": "tip.position", "most": maximum("tip.velocity"),
                "energy": final("energy.strain")}
     scheme = generalized_alpha(index=index)
-    many = Ensemble(made, h, scheme)
-    found = many.run(given, steps * h, outputs)
+    many = Ensemble(made, H, scheme)
+    assert matrices_at_once(many._template) == (build is chain)
+    found = many.run(given, STEPS * H, outputs)
     assert found.in_lanes == RUNS and not found.failures
     for runs in (slice(None, None, -1), slice(4, 5)):
-        other = many.run({name: v[runs] for name, v in given.items()}, steps * h, outputs)
+        other = many.run({name: v[runs] for name, v in given.items()}, STEPS * H, outputs)
         for name, values in other.values.items():
             np.testing.assert_array_equal(values, found.values[name][runs])
     for run in (0, 8):
         alone = build()
         for name, values in given.items():
             handle(alone, name).set(np.asarray(values[run], dtype=float))
-        result = simulate(alone, h, steps * h, scheme)
+        result = simulate(alone, H, STEPS * H, scheme)
         size = np.abs(result["tip.position"]).max()
         assert np.abs(found["course"][run] - result["tip.position"]).max() < 1e-10 * size
         speed = np.abs(result["tip.velocity"]).max()
         assert np.abs(found["most"][run] - result["tip.velocity"].max(axis=0)).max() < 1e-8 * speed
         assert found["energy"][run] == pytest.approx(result["energy.strain"][-1], rel=1e-6)
+
+
+def controlled(made: Model, node: str, joint: str, gain: float) -> Model:
+    """A slow and noisy sensor, a late one, a motor with a lag and a limit, and a load that jumps.
+
+    The motor of `joint` follows a PID of every third step, which acts late; one without a lag
+    turns `node` at every second step, by a signal of the first one's.
+    """
+    made.sensor("late", f"{joint}.angle", rate=1.0 / (2 * H), delay=2, bias=1e-3, noise=1e-4,
+                seed=5)
+    made.actuator("motor", joint=joint, lag=2.5e-3, rate=400.0 * gain, limit=6.0 * gain)
+    made.actuator("wheel", node=node, direction=AXIS, what="torque")
+    made.controller("pid", pid(kp=gain, ki=9.0 * gain, kd=0.02 * gain, reference=0.1),
+                    ["late"], ["motor"], 3 * H, delay=2 / 3)
+    made.controller("damper", pid(kp=0.05 * gain), ["tip.velocity.y"], ["wheel"], 2 * H)
+    made.torque(node, AXIS, piecewise((0.0, 0.4 * gain), (0.0217, -gain)), name="jump")
+    return made
+
+
+def of_chain() -> Model:
+    """Eliminated: factorized at every sample and after it."""
+    return controlled(chain(), "end 1", "hinge 0", 1e4)
+
+
+def of_loop() -> Model:
+    """Redundant and dense: regularized, so factorized likewise."""
+    return controlled(redundant(), "left", "foot 0", 2e6)
+
+
+def of_beam() -> Model:
+    """Dense: both factors are kept between samples."""
+    return controlled(hinged("craig-bampton"), "base", "hinge", 4e3)
+
+
+@pytest.mark.parametrize("build", [of_chain, of_loop, of_beam])
+def test_controlled_members_equal_single_runs(build, monkeypatch):
+    """Gravity and loads vary; alone and backwards the bits are the same."""
+    monkeypatch.setattr(ensemble, "WORTH_IT", 0)
+    rng, made = np.random.default_rng(4), build()
+    given = {"load.amplitude": rng.uniform(-1, 2, RUNS), "gravity": rng.uniform(-900, 900,
+                                                                               (RUNS, 3))}
+    outputs = {"course": "tip.position", "motor": "motor.value", "end": final("tip.velocity")}
+    many = Ensemble(made, H)
+    found = many.run(given, STEPS * H, outputs)
+    assert found.in_lanes == RUNS and not found.failures
+    for runs in (slice(None, None, -1), slice(4, 5)):
+        other = many.run({name: v[runs] for name, v in given.items()}, STEPS * H, outputs)
+        for name, values in other.values.items():
+            np.testing.assert_array_equal(values, found.values[name][runs])
+    for run in (0, 8):
+        alone = build()
+        for name, values in given.items():
+            handle(alone, name).set(np.asarray(values[run], dtype=float))
+        result = simulate(alone, H, STEPS * H)
+        for name, quantity in (("course", "tip.position"), ("motor", "motor.value")):
+            size = np.abs(result[quantity]).max()
+            assert size > 0.0
+            assert np.abs(found[name][run] - result[quantity]).max() < 1e-10 * size

@@ -190,7 +190,7 @@ def test_three_features_at_once(tmp_path):
         slave.fmu.doStep(currentCommunicationPoint=k * H, communicationStepSize=H)
     model = arm()
     pull, = (load for load in model.loads if load.name == "a pull")
-    from sebody.model.time_functions import time_function
+    from sebody.model.histories import time_function
 
     pull.time_function = time_function(0.5)
     model.controllers["loop"].parameters[0] = 9.0

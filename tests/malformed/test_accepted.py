@@ -15,7 +15,7 @@ from sebody import InputError, Model, Simulation, Tolerance, generalized_alpha, 
 from sebody.analysis import equilibrium, resume, save_state, vibrations
 from sebody.fem import FEModel, Section, frame, hexahedral_block, straight_beam
 from sebody.reduction import ReducedBody, craig_bampton
-from sebody.results.quantities import OF_MODEL
+from sebody.results.owners import OF_MODEL
 
 ACCEPTED = {
     "point of integers": lambda m: m.node("new", [1, 2, 3]),

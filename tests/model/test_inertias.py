@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from sebody import InputError, Model
-from sebody.assembly.batches import make_batches, superelement_constants
+from sebody.assembly.batches import make_batches
+from sebody.assembly.body_constants import superelement_constants
 from sebody.assembly.numbering import number
 from sebody.fem import FEModel, Section, frame, straight_beam
 from sebody.reduction import craig_bampton

@@ -8,8 +8,9 @@ from scipy.interpolate import CubicSpline
 
 from sebody import InputError, Model, Simulation, simulate
 from sebody.engine import evaluate
+from sebody.model.histories import time_function, with_corners
 from sebody.model.motions import motion
-from sebody.model.time_functions import TimeFunction, time_function, with_corners
+from sebody.model.time_functions import TimeFunction
 from sebody.scenes.hinged_beam import build
 
 TABLE = [(0.0, 0.0), (0.05, 1.0e4), (0.15, -2.0e3)]

@@ -10,7 +10,7 @@ from numba import njit
 
 from sebody import InputError, Model, Simulation, simulate, with_corners
 from sebody.analysis import Ensemble, equilibrium
-from sebody.model.time_functions import time_function
+from sebody.model.histories import time_function
 from sebody.runs.fingerprint import described
 
 gain = 2.0

@@ -21,8 +21,8 @@ from sebody import (
     with_corners,
 )
 from sebody.engine.evaluate import set_loads
+from sebody.model.histories import time_function
 from sebody.model.motions import motion
-from sebody.model.time_functions import time_function
 
 t = sp.Symbol("t")
 u = (t - sp.Rational(1, 4)) / 2

@@ -4,11 +4,14 @@ import json
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, Result, SimulationError, simulate
+from sebody.assembly.build import build
 from sebody.results import save_picture
-from sebody.results.quantities import OF_MODEL, OWNERS
-from sebody.scenes import four_bar, heavy_top, hinged_beam, squeezer
+from sebody.results.description import described, restored
+from sebody.results.owners import OF_MODEL, OWNERS
+from sebody.scenes import chain, four_bar, heavy_top, hinged_beam, squeezer
 
 
 def drag(t, positions, velocities, force):
@@ -66,6 +69,24 @@ def test_a_result_from_a_file_knows_what_the_saved_one_knew(scene, tmp_path):
     with np.load(path) as first, np.load(loaded.save(tmp_path / "again.npz")) as second:
         assert first.files == second.files
         assert [n for n in first.files if not np.array_equal(first[n], second[n])] == []
+
+
+def test_a_file_holds_rotated_bodies_alone():
+    """The body that they were made of serves runs, and a model from a file cannot be run."""
+    body, model = chain.link_body(1, elements=4), Model()
+    for k, angle in enumerate((0.4, -0.7)):
+        turn = Rotation.from_rotvec([0.1, angle, 0.3]).as_matrix()
+        ends = [model.node(f"{end} {k}", (0.2, 0.1, k) + x * turn[:, 0])
+                for x, end in enumerate(("start", "end"))]
+        model.superelement(f"link {k}", body, ends, rotation=turn)
+    assert all(one.reduced.unrotated[0] is body for one in model.bodies.values())
+    text, numbers = described(model, build(model)[1])
+    parts = json.loads(text)
+    assert [kind for kind, _ in parts["parts"]].count("ReducedBody") == 2
+    made = restored(parts, numbers)[0]
+    for name, one in model.bodies.items():
+        found = made.bodies[name].reduced
+        assert np.array_equal(found.mass, one.reduced.mass) and found.unrotated[0] is found
 
 
 def test_failure_estimate_and_picture(tmp_path):

@@ -7,7 +7,7 @@ import pytest
 
 from sebody import InputError, Model, Simulation, SimulationError, generalized_alpha
 from sebody.engine.scalars import numbers_of
-from sebody.model.time_functions import time_function
+from sebody.model.histories import time_function
 from sebody.scenes.hinged_beam import build
 
 

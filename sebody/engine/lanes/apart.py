@@ -30,7 +30,7 @@ _ANY = 2**62        # steps in one call
 
 
 @intrinsic
-def _group_at(typingctx, group, address):
+def group_at(typingctx, group, address):
     """The group at an address, of the type of another one."""
     def codegen(context, builder, sig, args):
         return builder.inttoptr(args[1], context.get_value_type(sig.return_type))
@@ -61,8 +61,8 @@ def take_apart(state, apart, J):
         reason = number_of(control.reason, member)
         if reason <= APART:
             continue
-        system, own = (_group_at(apart.system, apart.addresses[member, 0]),
-                       _group_at(apart.state, apart.addresses[member, 1]))
+        system, own = (group_at(apart.system, apart.addresses[member, 0]),
+                       group_at(apart.state, apart.addresses[member, 1]))
         _copy_to(state, apart, member)
         for k in range(J.shape[1]):
             own.J[k] = J[member, k]
@@ -86,9 +86,9 @@ def run_apart(state, apart, J, scheme, dense):
     for member in range(MEMBERS):
         if number_of(control.reason, member) != APART:
             continue
-        system, own = (_group_at(apart.system, apart.addresses[member, 0]),
-                       _group_at(apart.state, apart.addresses[member, 1]))
-        code = call_advance(apart.routine[0], system, own, apart.record, scheme, control.grid,
+        system, own = (group_at(apart.system, apart.addresses[member, 0]),
+                       group_at(apart.state, apart.addresses[member, 1]))
+        code = call_advance(apart.routines[0], system, own, apart.record, scheme, control.grid,
                             _ANY, dense)
         if code != DONE:
             control.reason = with_number(control.reason, member, GAVE_UP)
@@ -107,7 +107,7 @@ def show(state, apart, places):
     control, first = state.control, apart.now[0]
     for member in range(MEMBERS):
         if number_of(control.reason, member) == APART:
-            own = _group_at(apart.state, apart.addresses[member, 1])
+            own = group_at(apart.state, apart.addresses[member, 1])
             for k in places:
                 apart.lanes[first + k, member] = own.now[k]
             control.iterations = with_number(control.iterations, member,
@@ -126,7 +126,7 @@ def _copy_to(state, apart, member):
                                     else apart.whole_in_lanes[place])
     _take_floats(apart.clock_words, apart.clock[member], apart.clock_in_lanes, member)
     _take_floats(apart.guard_words, apart.guard[member], apart.guard_in_lanes, member)
-    own = _group_at(apart.state, apart.addresses[member, 1])
+    own = group_at(apart.state, apart.addresses[member, 1])
     _turn_ring(state, apart, own, member, True)
 
 

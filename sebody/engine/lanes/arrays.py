@@ -37,6 +37,7 @@ class Scratch(Arrays):
 
     ==================  ============================================================================
     frames              frames before an evaluation
+    T                   tangent operators before accelerations are solved for
     moved               (elements,) one where a member's element is evaluated, else zero
     unmoved             forces of the elements that have not moved
     table               of elements that are evaluated member by member: see `member_row`
@@ -45,6 +46,7 @@ class Scratch(Arrays):
     """
 
     frames: NDArray
+    T: NDArray
     moved: NDArray
     unmoved: NDArray
     table: NDArray
@@ -68,7 +70,7 @@ class Apart(Arrays):
     addresses                (members, 2) of system and state of every member
     system, state            those of the first; their types are those of all
     record                   which nothing is written to
-    routine                  (1,) address of `engine.loop.advance`
+    routines                 (2,) addresses of `engine.loop.advance` and `lanes.samples.sample`
     =======================  =======================================================================
     """
 
@@ -91,7 +93,7 @@ class Apart(Arrays):
     system: System
     state: State
     record: Record
-    routine: NDArray
+    routines: NDArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,6 +147,8 @@ def in_lanes(group: Group, offsets: Offsets, buffer: NDArray) -> Group:
             made[one.name] = value if one.name in OWN_GROUPS else in_lanes(value, offsets, buffer)
         elif isinstance(value, np.record):
             made[one.name] = _record(value)
+        elif one.name == "memory":      # which holds the time of the next sample
+            made[one.name] = value.copy()
         elif value.dtype != np.float64 or one.name in SHARED:
             made[one.name] = value
         else:

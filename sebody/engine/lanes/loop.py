@@ -11,6 +11,8 @@ from sebody.compiler.decorators import compiled
 from sebody.compiler.inside.lanes import bits_of, every, some, spread, where
 from sebody.contract.layout import RECORD_ITERATIONS, RECORD_T, RESIDUAL
 from sebody.contract.member_row import RUNNING
+from sebody.engine.calls import call_samples
+from sebody.engine.control_data import NEXT
 from sebody.engine.evaluate import run_kernels, sum_forces, take_rates, to_body_axes
 from sebody.engine.lanes.apart import (
     APART,
@@ -34,14 +36,14 @@ from sebody.engine.newton import take_shift
 from sebody.engine.prediction import look_back
 from sebody.engine.state import EVALUATED, KEPT, ROTATED
 from sebody.engine.step import MEMORY, ORTHOGONAL, orthogonalize, predict
-from sebody.engine.step_control import set_end
+from sebody.engine.step_control import NEAR, set_end
 from sebody.engine.vectors import swap
 from sebody.engine.work import add_work
 from sebody.kernels.abi import at, pointer_to
 
 
 @compiled(nogil=True)
-def advance(system, state, scratch, alone, apart, record, scheme, last_grid, dense):
+def advance(system, state, scratch, alone, together, apart, record, scheme, last_grid, dense):
     """Run until `last_grid`, or until no member is left that has not given up."""
     control = state.control
     if control.grid == 0:
@@ -54,11 +56,13 @@ def advance(system, state, scratch, alone, apart, record, scheme, last_grid, den
         running = control.reason == RUNS
         if some(running):
             _begin_step(system, state, scheme)
-            _iterate(system, state, scratch, alone, scheme, running, dense)
+            _iterate(system, state, scratch, alone, together, scheme, running, dense)
             _look_at_step(system, state, scratch)
         if some(control.reason > APART):
             take_apart(state, apart, alone.J)
         _accept(system, state)
+        if 0.0 <= state.memory[NEXT] <= state.clock.time + NEAR * state.clock.step:
+            call_samples(apart.routines[1], system, state, scratch, alone, apart, dense)
         if some(control.reason == APART):
             run_apart(state, apart, alone.J, scheme, dense)
         if control.grid % record.every[0] == 0:
@@ -94,7 +98,7 @@ def _begin_step(system, state, scheme):
 
 
 @compiled(forceinline=True)
-def _iterate(system, state, scratch, alone, scheme, active, dense):
+def _iterate(system, state, scratch, alone, together, scheme, active, dense):
     """Newton's iteration of a step, until every member has converged or given up."""
     control = state.control
     mixed = not dense and not scheme.stabilized
@@ -110,8 +114,8 @@ def _iterate(system, state, scratch, alone, scheme, active, dense):
             if system.links.dependent.shape[0] > 0:
                 for i in range(state.residual.size):
                     state.forces[i] = state.residual[i]
-            active = active & ~factorize(system, state, alone, scratch.frames, dense, wanted,
-                                         evaluated)
+            active = active & ~factorize(system, state, alone, together, scratch.frames, dense,
+                                         wanted, evaluated)
         if scheme.stabilized:
             take_rates(system, state)
         to_body_axes(system, state.frames, state.residual, False)

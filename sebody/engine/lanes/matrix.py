@@ -1,9 +1,11 @@
-"""Matrices of eight members: each is made alone, by the functions of single runs.
+"""Matrices of eight members: each is made alone, by the functions of single runs, or all at once.
 
 Members want matrices at different times. A matrix made alone costs an eighth of eight made
-together, so it pays for each that is not wanted, and its bits do not depend on the other members.
+together, so it pays for each that is not wanted. Large models of bodies that rotate against each
+other want one in nearly every step: see `sebody.engine.lanes.together`.
 """
 
+import math
 from dataclasses import dataclass
 
 from numpy.typing import NDArray
@@ -13,9 +15,11 @@ from sebody.compiler.inside.lanes import chosen_in, number_of, spread, where, wi
 from sebody.contract.counts import MEMBERS
 from sebody.contract.layout import OK, TANGENT
 from sebody.engine.arrays import Arrays
-from sebody.engine.calls import call_refactorize
+from sebody.engine.calls import call_refactorize, call_refactorize_together
 from sebody.engine.evaluate import run_kernels, set_tangent_operators
 from sebody.engine.lanes.apart import CUT, GAVE_UP, RUNS
+from sebody.engine.lanes.together import EVALUATED as NEW_BODIES
+from sebody.engine.lanes.together import MADE, WANTED
 from sebody.engine.state import EVALUATED, KEPT, ROTATED, State
 from sebody.engine.system import System
 
@@ -43,7 +47,7 @@ class Alone(Arrays):
 
 
 @compiled
-def factorize(system, state, alone, begun, dense, wanted, evaluated):
+def factorize(system, state, alone, together, begun, dense, wanted, evaluated):
     """Make the matrices of some members; returns those that leave.
 
     Parameters
@@ -56,12 +60,15 @@ def factorize(system, state, alone, begun, dense, wanted, evaluated):
     control, clock, zero = state.control, state.clock, spread(0.0)
     control.regularized = system.regularized[0]
     found = zero
-    for member in range(MEMBERS):
-        if chosen_in(wanted, member):
-            kind = EVALUATED if chosen_in(evaluated, member) else ROTATED
-            found = with_number(found, member,
-                                _factorize_one(state, alone, begun, dense, member, kind))
-            clock.floor = with_number(clock.floor, member, alone.state.clock.floor)
+    if together.routine[0] != 0:
+        found = _factorize_all(system, state, together, wanted, evaluated)
+    else:
+        for member in range(MEMBERS):
+            if chosen_in(wanted, member):
+                kind = EVALUATED if chosen_in(evaluated, member) else ROTATED
+                why = _factorize_one(state, alone, begun, dense, member, kind, True)
+                found = with_number(found, member, why)
+                clock.floor = with_number(clock.floor, member, alone.state.clock.floor)
     failed = found != RUNS
     clock.factor_step = clock.current_step
     clock.baseline_contraction = where(evaluated, spread(0.5), clock.baseline_contraction)
@@ -76,8 +83,36 @@ def factorize(system, state, alone, begun, dense, wanted, evaluated):
     return failed
 
 
+@compiled(forceinline=True)
+def _factorize_all(system, state, together, wanted, evaluated):
+    """Make the matrices of all members; returns whether each goes on, or why it leaves."""
+    asked, zero, one = together.asked, spread(0.0), spread(1.0)
+    asked[WANTED], asked[NEW_BODIES] = where(wanted, one, zero), where(evaluated, one, zero)
+    call_refactorize_together(together.routine[0], system, state, together)
+    size = zero
+    for i in range(state.residual.size):
+        size = size + abs(state.residual[i])
+    small = where(size < math.inf, spread(GAVE_UP), spread(CUT))
+    return where(wanted & (asked[MADE] == 0.0), small, spread(RUNS))
+
+
 @compiled
-def _factorize_one(state, alone, begun, dense, member, wanted):
+def factorize_masses(state, alone, begun, dense, wanted):
+    """Make the matrices of masses and constraints of some members; returns those that have them.
+
+    Matrices of bodies that belong to the steps are kept.
+    """
+    clock, made = state.clock, spread(0.0)
+    for member in range(MEMBERS):
+        if chosen_in(wanted, member):
+            if _factorize_one(state, alone, begun, dense, member, EVALUATED, False) == RUNS:
+                made = with_number(made, member, 1.0)
+            clock.floor = with_number(clock.floor, member, alone.state.clock.floor)
+    return made > 0.0
+
+
+@compiled
+def _factorize_one(state, alone, begun, dense, member, wanted, of_step):
     """Make the matrix of a member; returns whether it goes on, or why it leaves.
 
     It gives up where a run alone needs row exchanges.
@@ -89,7 +124,8 @@ def _factorize_one(state, alone, begun, dense, member, wanted):
     first, kept = system.first_joint[0], alone.J.shape[1]
     if wanted == EVALUATED:
         first = 0
-        set_tangent_operators(system, one)
+        if of_step:
+            set_tangent_operators(system, one)
         for k in range(begun.size):
             one.frames[k] = number_of(begun[k], member)
     else:
@@ -97,7 +133,7 @@ def _factorize_one(state, alone, begun, dense, member, wanted):
             one.J[k] = alone.J[member, k]
     if run_kernels(TANGENT, first, system.address.size, system, one) != OK:
         return CUT
-    if wanted == EVALUATED:
+    if wanted == EVALUATED and of_step:
         for k in range(kept):
             alone.J[member, k] = one.J[k]
     made = call_refactorize(system.routines[0], system, one, wanted, dense)

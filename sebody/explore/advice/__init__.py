@@ -6,6 +6,7 @@ import numpy as np
 
 from sebody import inputs
 from sebody.errors import InputError
+from sebody.explore.advice.first_runs import run_first
 from sebody.explore.advice.limits import include, refusal
 from sebody.explore.advice.measures import absolute
 from sebody.explore.advice.outcome import Advice, Reason, Trial, Unreached
@@ -88,7 +89,7 @@ def advise(model: Model, h: float | None, t_end: float, quantities: str | Iterab
     with showing(progress, t_end) as show:
         lab = Laboratory(model, wanted, Runs(wanted, h, t_end, show, start is not None),
                          limit, limit if own else None)
-        lab.start()
+        run_first(lab)
         include(lab)
         search = Search(lab, budget)
         try:

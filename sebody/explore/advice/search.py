@@ -9,10 +9,11 @@ from sebody.explore.advice.changes import Choice, Step
 from sebody.explore.advice.combinations import combinations
 from sebody.explore.advice.cost import of_form
 from sebody.explore.advice.estimates import expected, least
+from sebody.explore.advice.first_runs import LONGER, MISSED
 from sebody.explore.advice.forms import Form, Part, alike
 from sebody.explore.advice.indicators.activity import activity
 from sebody.explore.advice.reference import ORDER_FACTOR
-from sebody.explore.advice.runner import FINER, LONGER, MISSED, Laboratory, Tried
+from sebody.explore.advice.runner import FINER, Laboratory, Tried
 
 MOST_ALONE = 12             # forms of a part that are tried alone
 APART = 0.5                 # of the budget, that all of them may take

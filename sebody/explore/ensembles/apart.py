@@ -29,7 +29,8 @@ def new_apart(of: tuple[System, State], offsets: Offsets, slots: NDArray, lanes:
     of : tuple
         System and state of the model as built.
     slots : (k,)
-        Places of numbers that parameters change in the buffer of all numbers.
+        Places of numbers in the buffer of all numbers that members take with them beside their
+        state: those that parameters change.
     lanes : (size, members)
         This buffer in lanes.
     in_lanes : State
@@ -56,7 +57,7 @@ def new_apart(of: tuple[System, State], offsets: Offsets, slots: NDArray, lanes:
         whole_in_lanes=_memory(in_lanes.control, np.int64),
         addresses=np.array([[group._address for group in run] for run in runs]),
         system=runs[0][0], state=runs[0][1], record=unwritten,
-        routine=np.array([routine])), runs
+        routines=np.array([routine, 0])), runs
 
 
 def _with(state: State, others: dict[str, np.record]) -> State:

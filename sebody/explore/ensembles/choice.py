@@ -11,9 +11,8 @@ import numpy as np
 
 from sebody.assembly.equal_bodies import evaluated_together
 from sebody.compiler import choice
-from sebody.contract.layout import INPUT
 from sebody.explore.ensembles.start_values import Image
-from sebody.kernels.loader import element_kernel_name
+from sebody.kernels.loader import element_kernel_name, takes_one_member
 from sebody.model.model import Model
 from sebody.runs.simulation import Simulation
 
@@ -28,10 +27,11 @@ class Fact(NamedTuple):
 
 
 FACTS = (
-    Fact("motions without mass", lambda one: bool(one.system.massless[0])),
-    Fact("sensors, controllers or inputs", lambda one: bool(
-        one.system.control.periods.size or one.system.control.inputs.size
-        or (one.system.functions[:, 0] == INPUT).any())),
+    Fact("sensors that Python reads", lambda one: bool(one.system.control.outside[0])),
+    Fact("continuous controllers", lambda one: bool(one.system.control.flowing.size)),
+    Fact("controllers with index 2 or motions without mass", lambda one: bool(
+        one.system.control.periods.size
+        and (one.scheme.stabilized or one.system.massless[0]))),
     Fact("friction that holds something at the start", lambda one: one.held),
     Fact("elements that keep numbers, as contacts and friction, among rigid bodies alone",
          lambda one: not one.model.bodies and bool(one.numbering.memories)),
@@ -56,6 +56,17 @@ def why_one_by_one(template: Simulation) -> str:
         if fact.holds(template):
             return fact.reason
     return ""
+
+
+def matrices_at_once(template: Simulation) -> bool:
+    """Whether matrices of eight members are made at once: members want them in nearly every step.
+
+    So they do in large models of bodies that rotate against each other.
+    """
+    system = template.system
+    return (not template.dense and bool(system.linked[0]) and not system.regularized[0]
+            and not system.control.periods.size
+            and not any(takes_one_member(name) for name in kernels_of(template.model)))
 
 
 def can_be_together(image: Image) -> bool:

@@ -13,38 +13,43 @@ from sebody.compiler.workers import Task
 from sebody.engine.lanes import loop
 from sebody.engine.lanes.arrays import Columns, Scratch, empty, in_lanes, numbers
 from sebody.engine.lanes.matrix import Alone
+from sebody.engine.lanes.together import refactorize
 from sebody.engine.offsets import Offsets
 from sebody.explore.ensembles.apart import new_apart
+from sebody.explore.ensembles.matrices import address_together, new_together
 from sebody.kernels.lanes.kernel import Own, address_in_lanes, is_compiled, module_in_lanes
 from sebody.runs.first_run import SECONDS_A_LETTER, smallest
 from sebody.runs.schemes import generalized_alpha
 
-LOOP_SECONDS = 7.0              # of one processor
+LOOP_SECONDS, MATRICES_SECONDS = 7.0, 3.0       # of one processor
 
 _lock = Lock()
 
 
-def prepare(kernels: Iterable[tuple[str, Own]]) -> None:
+def prepare(kernels: Iterable[tuple[str, Own, bool]]) -> None:
     """Compile kernels and the loop for lanes where the cache lacks them; a line says so.
 
     Parameters
     ----------
-    kernels : iterable of (str, parts)
-        Names, and which constants are lanes.
+    kernels : iterable of (str, parts, bool)
+        Names, which constants are lanes, and whether matrices are made in lanes, too.
     """
     with _lock:
-        asked = {(Path(module_in_lanes(name).__file__), own): name for name, own in kernels}
-        jobs = [Job(Task(f"{name} in lanes", f"{__name__}:compile_kernel", (name, own)),
+        asked = {(Path(module_in_lanes(name).__file__), *how): name for name, *how in kernels}
+        jobs = [Job(Task(f"{name} in lanes", f"{__name__}:compile_kernel", (name, *how)),
                     SECONDS_A_LETTER * path.stat().st_size)
-                for (path, own), name in asked.items() if not is_compiled(path, own)]
+                for (path, *how), name in asked.items() if not is_compiled(path, *how)]
         if not way().is_compiled(loop.advance):
             jobs.append(Job(Task("loop in lanes", f"{__name__}:compile_loop"), LOOP_SECONDS))
+        if any(matrices for *_, matrices in asked) and not way().is_compiled(refactorize):
+            jobs.append(Job(Task("matrices in lanes", f"{__name__}:compile_matrices"),
+                            MATRICES_SECONDS))
         compile_apart(jobs, "what makes eight runs at a time", Path(loop.__file__))
 
 
-def compile_kernel(name: str, own: Own) -> None:
+def compile_kernel(name: str, own: Own, matrices: bool) -> None:
     """Compile a kernel for lanes here, or find it in the cache."""
-    address_in_lanes(module_in_lanes(name), own)
+    address_in_lanes(module_in_lanes(name), own, matrices)
 
 
 def compile_loop() -> None:
@@ -53,11 +58,20 @@ def compile_loop() -> None:
     offsets = Offsets(system, state)
     buffer = empty(offsets.size)
     room, places = np.zeros((1, 1)), np.zeros(1, dtype=np.int64)
-    scratch = Scratch(empty(1), empty(1), empty(1), places, places)
+    scratch = Scratch(*(empty(1) for _ in range(4)), places, places)
     alone = Alone(system, state, room[0], room, places, places, room)
     columns = Columns(places, empty(1, 1), places)
-    of_members = in_lanes(state, offsets, buffer)
-    apart, _ = new_apart((system, state), offsets, places[:0], numbers(buffer), of_members, 0)
-    given = (in_lanes(system, offsets, buffer), of_members, scratch, alone, apart, columns,
+    members = in_lanes(system, offsets, buffer), in_lanes(state, offsets, buffer)
+    apart, _ = new_apart((system, state), offsets, places[:0], numbers(buffer), members[1], 0)
+    given = (*members, scratch, alone, new_together(members[1], empty(1)), apart, columns,
              generalized_alpha())
     way().compile_for(loop.advance, (*map(typeof, given), types.int64, types.boolean))
+
+
+def compile_matrices() -> None:
+    """The same of what makes the matrices of eight members at once."""
+    system, state = smallest()
+    offsets = Offsets(system, state)
+    buffer = empty(offsets.size)
+    system, state = in_lanes(system, offsets, buffer), in_lanes(state, offsets, buffer)
+    address_together(system, state, new_together(state, empty(1)))

@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 
 from sebody.contract.counts import MEMBERS
 from sebody.contract.layout import AT_CONSTANTS, RECORD_T
-from sebody.engine.lanes import loop
+from sebody.engine.lanes import loop, samples
 from sebody.engine.lanes.apart import GAVE_UP, RUNS
 from sebody.engine.lanes.arrays import Columns, Scratch, empty, fill, in_lanes, numbers
-from sebody.engine.lanes.matrix import Alone
 from sebody.engine.system import System
 from sebody.explore.ensembles.apart import address_of_loop, new_apart
+from sebody.explore.ensembles.matrices import alone, carried, places, together
 from sebody.explore.ensembles.member import Copies, Course, Form
 from sebody.explore.ensembles.member_rows import Rows, new_table, with_places
 from sebody.explore.ensembles.outputs import Folds, Output
@@ -64,12 +64,17 @@ class Lanes:
         self.system = _with_kernels(self.system, image, self._shared, rows)
         self.state = in_lanes(one.state, image.offsets, buffer)
         self._scratch = Scratch(frames=empty(one.state.frames.size),
-                                moved=empty(one.state.moved.size),
+                                T=empty(one.state.T.size), moved=empty(one.state.moved.size),
                                 unmoved=empty(one.state.g.size), table=table, kept=rows.kept)
+        own = np.concatenate([image.lines.slots.astype(np.int64), carried(image)])
         self._apart, self._runs_apart = new_apart(
-            (one.system, one.state), image.offsets, image.lines.slots, self._numbers, self.state,
+            (one.system, one.state), image.offsets, own, self._numbers, self.state,
             address_of_loop(one.system, one.state, copies.scheme))
-        self._alone = self._matrices_alone()
+        self._alone = alone(copies, self._numbers)
+        self._together = together(image, self.system, self.state, self._scratch.frames)
+        if copies.sampling.samples:
+            self._apart.routines[1] = samples.address((self.system, self.state, self._scratch,
+                                                       self._alone, self._apart))
         self._places = self._own_places()
         columns = _columns(forms, one.state.now.size)
         self._forms = {name: form if form.columns is None else form._replace(
@@ -119,25 +124,10 @@ class Lanes:
     def _own_places(self) -> NDArray:
         """Places in the buffer of what members begin with: parameters, and their state."""
         image, state = self.copies.image, self.copies.image.template.state
-        return _places(image, state.now, state.aux, state.changes, state.fitted, state.fit,
+        return places(image, state.now, state.aux, state.changes, state.fitted, state.fit,
                        state.q_start, state.loads, state.loads_old, state.acting,
                        state.coefficients, state.frames_old, state.q_old, state.aux_old,
-                       state.last_correction, state.last_change)
-
-    def _matrices_alone(self) -> Alone:
-        """The single run of the thread, and what it shares with a member for a matrix."""
-        image, system, state = (self.copies.image, self.copies.image.template.system,
-                                self.copies.image.template.state)
-        made = (state.scale, state.weight, state.T, state.regularization, state.constraint_columns,
-                state.q, state.dq)
-        taken = (*made, state.v, state.a, state.R, state.R_old, state.frames, state.frames_old,
-                 state.turns, state.loads, state.coefficients, state.forces)
-        factors = state.inverse if self.copies.dense else state.matrix
-        bodies = int(system.at_J[system.first_joint[0]]) if system.linked[0] == 1 else 0
-        return Alone(self.copies.system, self.copies.state, self.copies.floats, self._numbers,
-                     taken=_places(image, *taken),
-                     returned=_places(image, *made, factors, of_parameters=False),
-                     J=np.zeros((MEMBERS, bodies)))
+                       state.last_correction, state.last_change, state.spare, state.memory)
 
     def begin(self, changes: NDArray) -> NDArray:
         """Begin some runs, one in a lane; returns which have begun. The others are to be run alone.
@@ -169,14 +159,15 @@ class Lanes:
                          for _ in range(count if self._others else 0)]
         if count < MEMBERS:         # lanes without a member: another one's numbers
             self._numbers[self._places, count:] = self._numbers[self._places, :1]
+        self._begin_samples()
         state.control["reason"] = np.where(np.arange(MEMBERS) < count, RUNS, GAVE_UP)
         every, reached = int(self._record.every[0]), 0
         while reached < self._last:
             reached = min(self._last, (reached // every + self._stretch) * every,
                           reached + MOST_STEPS)
             state.control["recorded"] = 0
-            loop.advance(self.system, state, self._scratch, self._alone, self._apart, self._record,
-                         self.copies.scheme, reached, self.copies.dense)
+            loop.advance(self.system, state, self._scratch, self._alone, self._together,
+                         self._apart, self._record, self.copies.scheme, reached, self.copies.dense)
             self._take_outputs(np.flatnonzero(state.control["reason"][:count] != GAVE_UP))
             if reached < self._last and stop():
                 break
@@ -213,6 +204,15 @@ class Lanes:
             own = record.base.view(np.uint8)        # bytes: names one by one take long
             self._begun[name] = own, own.copy()
 
+    def _begin_samples(self) -> None:
+        """Give members the arrays that samples are made with: counts, queues, parameters."""
+        image, memory = self.copies.image, self.copies.image.template.state.memory
+        if self._apart.routines[1]:
+            own = image.offsets.of(memory)
+            taken = np.concatenate([image.lines.slots, np.arange(own.start, own.stop)])
+            self._apart.numbers[:, taken] = self._numbers[taken].T
+            self.state.memory[:] = self._apart.numbers[0, own]
+
     def _begin_records(self) -> None:
         """Set scalars and counters to those of a member that has begun, the same for all."""
         for own, begun in self._begun.values():
@@ -222,14 +222,6 @@ class Lanes:
     def time(self) -> float:
         """Time reached."""
         return float(self.state.clock["time"])
-
-
-def _places(image: Image, *parts: NDArray, of_parameters: bool = True) -> NDArray:
-    """Places of some arrays in the buffer of all numbers, and of all that parameters change."""
-    slices = map(image.offsets.of, parts)
-    return np.unique(np.concatenate([image.lines.slots.astype(np.int64) if of_parameters else [],
-                                     *(np.arange(own.start, own.stop) for own in slices)])
-                     ).astype(np.int64)
 
 
 def _columns(forms: Mapping[str, Form], count: int) -> NDArray:
@@ -242,8 +234,8 @@ def _columns(forms: Mapping[str, Form], count: int) -> NDArray:
 def _with_kernels(system: System, image: Image, constants: NDArray, rows: Rows) -> System:
     """A system that calls kernels for lanes; of bodies that share constants, with these."""
     members = {name: getattr(system, name) for name in System.__annotations__}
-    members["address"] = np.array([address_in_lanes(module_in_lanes(name), own)
-                                   for name, own in kernels_of_batches(image)])
+    members["address"] = np.array([address_in_lanes(module_in_lanes(name), own, matrices)
+                                   for name, own, matrices in kernels_of_batches(image)])
     members |= {"index": rows.index, "at_index": rows.at_index, "stride": rows.stride}
     away = (constants.ctypes.data - system.constants.ctypes.data) // constants.itemsize
     for b in own_parts(image):

@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 
 from sebody.errors import InputError
 from sebody.explore.ensembles.changes import LOADS, MOTION, Handle, attribute_of, constants_of
-from sebody.model.contacts import SLOW
 from sebody.model.control_parts import Controller
+from sebody.model.histories import time_function
 from sebody.model.history_rows import rows_of
-from sebody.model.impacts import LEAST, damping_of, restitution_of
+from sebody.model.impacts import LEAST, SLOW, damping_of, restitution_of
 from sebody.model.model import Model
 from sebody.model.parts import DofBlock, Element, Joint, Motion
-from sebody.model.time_functions import TimeFunction, time_function
+from sebody.model.time_functions import TimeFunction
 
 # what can be varied of springs, and the constant of their kernels
 OF_SPRINGS = {"stiffness": "k", "damping": "c", "cubic": "k3", "length": "length", "rest": "rest",
@@ -47,7 +47,7 @@ def law_parameters(model: Model, controller: Controller, name: str) -> Handle:
 def load_amplitude(model: Model, load: Element, name: str) -> Handle:
     """Factor of a force, torque or mode force."""
     direction = next((c for c in ("d", "factor") if c in load.constants), None)
-    if direction is None:
+    if direction is None or load.time_function is None:     # stops and friction have an axis d
         raise InputError(f"{name}: {load.name!r} is not a force or torque: it has no amplitude")
     before = np.array(load.constants[direction], dtype=float)
     return constants_of(load, lambda factor: {direction: factor * before}, LOADS, np.array(1.0))

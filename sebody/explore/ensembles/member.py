@@ -14,10 +14,12 @@ from sebody.engine.scalars import numbers_of, record
 from sebody.engine.state import (
     ASKED,
     DONE,
+    FACTOR,
     FACTORS_KEPT,
     FAILED,
     READ,
     REASONS,
+    SOLVE,
     Record,
     State,
 )
@@ -77,14 +79,14 @@ class Copies:
         """
         system, state, sampled = self.system, self.state, False
         beginning.begin(system, state, self._given, change)
-        code = advance(system, state, self.none, self.scheme, 0, 0, self.dense)
+        code = self._advance_start()
         while code in (DONE, READ) and self.sampling.samples:
             if code == DONE and not sampled:
                 sampled = self.sampling.begin()
             elif code == DONE:
                 break
             self.sampling.serve()
-            code = advance(system, state, self.none, self.scheme, 0, 0, self.dense)
+            code = self._advance_start()
         if code == FAILED and system.regularized[0]:
             return False        # where constraints contradict each other, and Python can tell which
         if code == FAILED:
@@ -92,6 +94,14 @@ class Copies:
                              f"{REASONS[int(state.control.reason)]}")
         beginning.end(state, self._given)
         return code == DONE
+
+    def _advance_start(self) -> int:
+        """Go on with a start; factorizations with row exchanges are made here."""
+        while True:
+            self.exchanges.serve()
+            code = advance(self.system, self.state, self.none, self.scheme, 0, 0, self.dense)
+            if code not in (FACTOR, SOLVE):
+                return code
 
     def begin_together(self, changes: NDArray, places: NDArray, lanes: NDArray) -> NDArray:
         """Begin some runs, those that have begun in lanes; returns which these are.
@@ -105,9 +115,23 @@ class Copies:
         lanes : (size, members)
             Gets it.
         """
+        if self.system.massless[0] or self.sampling.samples:    # row exchanges, or Python samples
+            return self._begin_each(changes, places, lanes)
         codes = beginning.begin_together(self.system, self.state, self._given, changes,
                                          lead(self.scheme), self.dense, places, lanes)
         return codes == DONE
+
+    def _begin_each(self, changes: NDArray, places: NDArray, lanes: NDArray) -> NDArray:
+        """The same, run by run."""
+        begun = np.zeros(len(changes), dtype=bool)
+        for run, change in enumerate(changes):
+            try:
+                begun[run] = self.begin(change)
+            except InputError:      # said where the run is made alone
+                continue
+            if begun[run]:
+                lanes[places, begun.sum() - 1] = self.floats[places]
+        return begun
 
     def _kept_places(self) -> NDArray:
         """Places of what elements keep in `State.frames_old`, in the buffer of all numbers."""
@@ -299,4 +323,5 @@ class _States(Recording):
     def _refuse(self) -> NDArray:
         raise _NeedsElements
 
-    energies = forces = balance = powers = constraint_residuals = counters = property(_refuse)
+    energies = forces = balance = powers = constraint_residuals = counters = gravity = property(
+        _refuse)

@@ -33,7 +33,7 @@ def with_places(image: Image, table: NDArray) -> Rows:
     rows, kept = [], np.zeros(len(system.address), dtype=np.int64)
     starts = np.unique([row[AT_CONSTANTS] for b in range(len(system.address))
                         for row in rows_of(image, b)] + [system.constants.size])
-    for b, (name, _) in enumerate(kernels_of_batches(image)):
+    for b, (name, *_) in enumerate(kernels_of_batches(image)):
         own = rows_of(image, b)
         if takes_one_member(name):
             kept[b] = len(load(name).MEMORY)

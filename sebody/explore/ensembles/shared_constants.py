@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.contracts import counts_of
 from sebody.contract.layout import AT_CONSTANTS, AT_FRAME, Row
-from sebody.explore.ensembles.choice import kernels_of
+from sebody.explore.ensembles.choice import kernels_of, matrices_at_once
 from sebody.explore.ensembles.start_values import Image
 from sebody.kernels.loader import load
 
@@ -34,11 +34,11 @@ class Packed(NamedTuple):
     place: slice        # in the buffer of all numbers
 
 
-def kernels_of_batches(image: Image) -> list[tuple[str, Own]]:
-    """The kernel of each batch of elements, and which of its constants are lanes."""
+def kernels_of_batches(image: Image) -> list[tuple[str, Own, bool]]:
+    """The kernel of each batch of elements, which of its constants are lanes, whether matrices."""
     names = {load(name).kernel.address: name for name in kernels_of(image.template.model)}
-    own = own_parts(image)
-    return [(names[address], own.get(b))
+    own, matrices = own_parts(image), matrices_at_once(image.template)
+    return [(names[address], own.get(b), matrices)
             for b, address in enumerate(image.template.system.address.tolist())]
 
 

@@ -139,7 +139,8 @@ class Image:
         """
         one = self.template
         system, numbering = build(one.model)
-        system.routines[:], system.regularized[:] = one.system.routines, one.system.regularized
+        for name in ("routines", "regularized", "massless"):
+            getattr(system, name)[:] = getattr(one.system, name)
         state = allocate(one.model, system, numbering, one.h, one.dense)
         if not (_alike(system, one.system) and _alike(state, one.state, sizes_only=True)):
             return None

@@ -1,6 +1,6 @@
 """Kernels compiled for lanes from their own text: for ensembles, or for equal bodies of a model.
 
-Those for ensembles leave out what they do for matrices, see `sebody.kernels.lanes.text`.
+Those for most ensembles leave out what they do for matrices, see `sebody.kernels.lanes.text`.
 """
 
 from functools import cache
@@ -48,7 +48,7 @@ def address_in_lanes(module: ModuleType, own: Own = None, matrices: bool = False
         The parts of the constants that are lanes; all others are numbers that members share.
         None: all constants are lanes.
     matrices : bool
-        Whether it makes matrices, too, as equal bodies of a model need it.
+        Whether it makes matrices, too, as equal bodies of a model and some ensembles need it.
     """
     text = module.kernel if module is member_by_member else kernel_text(module, own or (), matrices)
     return kernel_in_lanes(text, _signature(own is not None), OF_KERNELS,

@@ -1,7 +1,7 @@
 """Texts of kernels as they are compiled for lanes.
 
-Matrices of an ensemble's members are made one by one, so what a kernel does for matrices, most of
-its text, is left out for ensembles. Kernels for equal bodies of a model keep it.
+Most ensembles make matrices one by one: what a kernel does for matrices, most of its text, is left
+out for these. Kernels for matrices of eight members, or of equal bodies of a model, keep it.
 """
 
 import ast

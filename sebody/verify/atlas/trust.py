@@ -8,8 +8,8 @@ from sebody.explore.advice import Advice, advise
 from sebody.explore.advice.loads import SEEN, missed
 from sebody.explore.advice.steady import steady_frequencies
 from sebody.fem import Section
+from sebody.model.histories import time_function
 from sebody.model.model import Model
-from sebody.model.time_functions import time_function
 from sebody.runs.simulation import Simulation, simulate
 from sebody.runs.statics import equilibrium
 from sebody.small_motion.linearization import modes, vibrations

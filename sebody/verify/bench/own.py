@@ -3,7 +3,7 @@
 import statistics
 from typing import TYPE_CHECKING, NamedTuple
 
-from sebody.assembly.batches import superelement_constants
+from sebody.assembly.body_constants import superelement_constants
 from sebody.catalogue import builder
 from sebody.engine.system import System
 from sebody.kernels.loader import element_kernel, load

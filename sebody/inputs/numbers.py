@@ -1,43 +1,16 @@
-"""Checks of what users give: types, shapes, finiteness, ranges and names, the same everywhere.
+"""Checks of numbers, arrays and rotations."""
 
-Every function returns the value in the form the program works with, or raises `InputError` with a
-message that names the argument (`what`), shows the value and says what to give instead.
-"""
-
-import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from numbers import Real
-from pathlib import Path
-from stat import S_ISDIR
-from types import UnionType
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody.errors import InputError
+from sebody.inputs.refusals import refusal
 
-LONGEST_NAME = 200      # characters: names are parts of lines that are printed
-LONGEST_TEXT = 2000     # of titles and the like
-LONGEST_SHOWN = 60      # characters of a value in a message
 ORTHOGONAL = 1e-12      # largest entry of ``R^T R - I`` of a rotation matrix
-
-Kind = TypeVar("Kind")
-
-
-def shown(value: object) -> str:
-    """A value as messages show it: on one line, and not long."""
-    try:
-        text = repr(value.tolist() if isinstance(value, np.generic | np.ndarray) else value)
-    except Exception:       # of whatever class a user passes by mistake
-        text = f"of class {type(value).__name__}"
-    text = " ".join(text.split())
-    return text if len(text) <= LONGEST_SHOWN else text[:LONGEST_SHOWN - 3] + "..."
-
-
-def refusal(what: str, value: object, remedy: str) -> InputError:
-    """The exception for a value that cannot be used."""
-    return InputError(f"{what} is {shown(value)}: {remedy}")
 
 
 def number(value: Any, what: str, *, least: float | None = None, above: float | None = None,
@@ -144,149 +117,6 @@ def rotation(value: ArrayLike, what: str, dimension: int = 3) -> NDArray:
         raise InputError(f"{what} must be a proper rotation matrix of shape ({dimension}, "
                          f"{dimension}): orthonormalise it")
     return R
-
-
-def flag(value: Any, what: str) -> bool:
-    """True or False; numbers and texts are neither."""
-    if not isinstance(value, bool | np.bool_):
-        raise refusal(what, value, "give True or False")
-    return bool(value)
-
-
-def name(value: Any, what: str) -> str:
-    """A name of something: a text of visible characters that is not empty.
-
-    Raises
-    ------
-    InputError
-        Anything else, or more than `LONGEST_NAME` characters.
-    """
-    if not (isinstance(value, str) and value.strip() and value.isprintable()):
-        raise refusal(what, value, "give a text that is not empty")
-    if len(value) > LONGEST_NAME:
-        raise refusal(what, value, f"it has {len(value)} characters, give at most {LONGEST_NAME}")
-    return str(value)
-
-
-def text(value: Any, what: str) -> str:
-    """A text of visible characters on one line, perhaps empty.
-
-    Raises
-    ------
-    InputError
-        Anything else, or more than `LONGEST_TEXT` characters.
-    """
-    if not (isinstance(value, str) and value.isprintable()):
-        raise refusal(what, value, "give a text of one line")
-    if len(value) > LONGEST_TEXT:
-        raise refusal(what, value, f"it has {len(value)} characters, give at most {LONGEST_TEXT}")
-    return str(value)
-
-
-def mapping(value: Any, what: str, remedy: str) -> dict:
-    """What a dict or other mapping holds.
-
-    Raises
-    ------
-    InputError
-        Anything else, an empty text or list included.
-    """
-    if not isinstance(value, Mapping):
-        raise refusal(what, value, remedy)
-    return dict(value)
-
-
-def choice(value: Any, what: str, options: Iterable[Kind], remedy: str | None = None) -> Kind:
-    """One of some options, which are texts or numbers.
-
-    Raises
-    ------
-    InputError
-        Anything else; the message names the options.
-    """
-    options = list(options)
-    for option in options:
-        same_kind = isinstance(value, str) == isinstance(option, str)
-        if same_kind and not isinstance(value, bool) and np.ndim(value) == 0 and value == option:
-            return option
-    if remedy:
-        raise refusal(what, value, remedy)
-    *most, last = map(repr, options)
-    listed = f"{', '.join(most)} or {last}" if most else last
-    raise InputError(f"{what} {shown(value)} is unknown: use {listed}")
-
-
-def function(value: Any, what: str, remedy: str) -> Callable:
-    """Something that can be called.
-
-    Raises
-    ------
-    InputError
-        Anything else.
-    """
-    if not callable(value):
-        raise refusal(what, value, remedy)
-    return value
-
-
-def instance(value: Any, what: str, kind: type[Kind] | UnionType, remedy: str) -> Kind:
-    """An object of a class of this package, or of one of several.
-
-    Raises
-    ------
-    InputError
-        Anything else, the class itself included.
-    """
-    if not isinstance(value, kind):
-        raise refusal(what, value, remedy)
-    return value
-
-
-def items(value: Any, what: str, remedy: str) -> list:
-    """What a list, tuple or other iterable holds; a text is none.
-
-    Raises
-    ------
-    InputError
-        Anything that cannot be iterated.
-    """
-    if isinstance(value, str | bytes) or not isinstance(value, Iterable) or (
-            isinstance(value, np.ndarray) and not value.ndim):
-        raise refusal(what, value, remedy)
-    return list(value)
-
-
-def path(value: Any, what: str, suffixes: Sequence[str] = ()) -> Path:
-    """The path of a file, which need not exist.
-
-    Parameters
-    ----------
-    what : str
-        What the file is, for the message.
-    suffixes : sequence of str
-        Endings it may have; any by default.
-
-    Raises
-    ------
-    InputError
-        No path, another ending, a folder, or a name that no file can have.
-    """
-    if not (isinstance(value, str | os.PathLike) and isinstance(os.fspath(value), str)
-            and os.fspath(value).strip()):
-        raise refusal(what, value, "give the path of a file")
-    file = Path(value)
-    if suffixes and file.suffix not in suffixes:
-        raise InputError(f"{what} {file} must end in {', '.join(suffixes)}")
-    try:
-        is_folder = S_ISDIR(os.stat(file).st_mode)
-    except (FileNotFoundError, NotADirectoryError):     # files to be written: `check_target`
-        return file
-    except (OSError, ValueError) as error:      # too long, a loop of links, a zero character
-        raise InputError(f"{what} {shown(str(file))} cannot be a file ({error}): give another "
-                         "path") from error
-    if is_folder:
-        raise InputError(f"{what} {file} is a folder: give the path of a file")
-    return file
 
 
 def reals(value: Any, what: str, remedy: str) -> NDArray:

@@ -1,0 +1,173 @@
+"""Accelerations and multipliers solved anew for some of eight members: `sebody.engine.restart`.
+
+The others keep their numbers. Members that would have to ask Python, or find no accelerations, give
+up. Both inverses are kept where single runs keep both, see `sebody.engine.kept_factors`.
+"""
+
+import math
+
+from sebody.compiler.decorators import compiled
+from sebody.compiler.inside.lanes import bits_of, some, spread, where
+from sebody.contract.layout import ACCELERATION, RESIDUAL
+from sebody.contract.member_row import RUNNING
+from sebody.engine.evaluate import run_kernels, sum_forces, to_body_axes
+from sebody.engine.kept_factors import EXCESS, FEWEST, VALID, swap_factors
+from sebody.engine.lanes.apart import GAVE_UP
+from sebody.engine.lanes.matrix import factorize_masses
+from sebody.engine.links import place_dependent
+from sebody.engine.matrix import solve
+from sebody.engine.newton import FASTEST, REFACTORIZATION_COST, SLOWEST
+from sebody.engine.restart import (
+    ACCURATE,
+    CONTRADICTION,
+    HARDLY,
+    MOST_CORRECTIONS,
+    MOST_MATRICES,
+    POOR,
+    ROUNDED,
+    STIFF,
+    SUMMANDS,
+    set_masses,
+)
+from sebody.engine.state import EVALUATED, KEPT
+from sebody.engine.vectors import copy
+from sebody.engine.work import set_acting
+
+HUGE = 1e300            # a norm above this is no number, or as good as none
+
+
+@compiled
+def restart(system, state, scratch, alone, active, dense):
+    """Solve for accelerations and multipliers of the active members, at the time reached."""
+    control, clock, spare = state.control, state.clock, state.spare
+    keeps = spare.size > 0 and system.regularized[0] == 0
+    before, corrections, fresh = control.wanted, control.iteration, control.fresh
+    copy(state.now, state.kept)
+    copy(state.loads, state.loads_old)
+    copy(state.T, scratch.T)
+    control.regularized = system.regularized[0]
+    set_masses(system, state)
+    control.wanted = where(active, spread(float(EVALUATED)), spread(float(KEPT)))
+    if keeps:
+        swap_factors(system, state)
+        control.wanted = where(spare[VALID] == 1.0, spread(float(KEPT)), control.wanted)
+    control.fresh = control.iteration = clock.last_norm = spread(0.0)
+    going = active
+    while some(going):
+        evaluated = going & (control.wanted == float(EVALUATED))
+        _evaluate(system, state, scratch, going)
+        if some(evaluated):
+            failed = evaluated & ~factorize_masses(state, alone, scratch.frames, dense, evaluated)
+            one = where(evaluated, spread(1.0), spread(0.0))
+            control.wanted = where(evaluated, spread(float(KEPT)), control.wanted)
+            control.fresh += one
+            control.matrices += one
+            control.reason = where(failed, spread(GAVE_UP), control.reason)
+            going = going & ~failed
+        solve(system, state, dense)
+        for i in range(system.diagonal.size):
+            state.correction[i] = where(going, state.correction[i], spread(0.0))
+        going = _correct(system, state, going)
+    if keeps:
+        swap_factors(system, state)
+        _count_excess(state, active)
+        control.wanted = before
+    else:
+        control.wanted = where(active, spread(float(EVALUATED)), before)
+        clock.contraction = where(active, spread(SLOWEST), clock.contraction)
+    control.iteration = where(active, control.iteration, corrections)
+    control.fresh = where(active, spread(1.0), fresh)
+    _keep_the_others(system, state, scratch, active)
+
+
+@compiled
+def _evaluate(system, state, scratch, going):
+    """Evaluate forces and the constraints' second rates."""
+    bodies, batches = system.first_joint[0], system.address.size
+    frames = state.frames
+    copy(frames, scratch.frames)
+    scratch.table[RUNNING] = bits_of(going)
+    run_kernels(RESIDUAL, 0, bodies, system, state)
+    run_kernels(ACCELERATION, bodies, batches, system, state)
+    for k in range(frames.size):
+        frames[k] = where(going, frames[k], scratch.frames[k])
+    sum_forces(system, state, state.residual)
+    to_body_axes(system, state.frames, state.residual, False)
+
+
+@compiled
+def _correct(system, state, going):
+    """Subtract corrections; returns the members that go on."""
+    control, clock, n = state.control, state.clock, system.diagonal.size
+    norm = size = left = speed = spread(0.0)
+    for i in range(n):
+        d, r = state.correction[i] * state.weight[i], state.residual[i] * state.scale[i]
+        x = (state.q[i] if system.is_multiplier[i] > 0.0 else state.a[i]) * state.weight[i]
+        norm += d * d
+        size += x * x
+        left += r * r
+    norm = math.sqrt(norm)
+    to_body_axes(system, state.frames, state.correction, True)
+    for i in range(n):
+        if system.is_multiplier[i] > 0.0:
+            state.q[i] -= state.correction[i]
+        else:
+            state.a[i] -= state.correction[i]
+    place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
+    size = max(math.sqrt(size), norm)
+    rate = where(control.iteration > 0.0, norm / clock.last_norm, spread(0.0))
+    clock.last_norm = where(going, norm, clock.last_norm)
+    control.iteration += where(going, spread(1.0), spread(0.0))
+    for i in range(state.v.size):
+        own = abs(state.v[i]) / system.magnitude[i]
+        speed = where(system.magnitude[i] > 0.0, max(speed, own), speed)
+    h = clock.current_step
+    rounding = clock.floor * (1.0 / (h * h) + SUMMANDS * speed * speed)
+    stays = rate > HARDLY
+    none = (where(stays, spread(ROUNDED), spread(ACCURATE)) * size
+            + where(stays, spread(STIFF), spread(1.0)) * rounding)
+    old = (control.fresh == 0.0) & (rate > 0.0)
+    done = going & ((norm <= none) | (old & (rate < POOR) & (
+        max(rate, spread(FASTEST)) / (1.0 - rate) * norm <= none)))
+    failed = going & ~(norm < HUGE)
+    if control.regularized == 1:
+        failed = failed | (done & (math.sqrt(left) > n * norm + CONTRADICTION * size))
+    rest = going & ~done & ~failed
+    # as many corrections as new factors cost leave more than rounding
+    many = norm
+    for _ in range(int(REFACTORIZATION_COST)):
+        many = many * rate
+    poor = rest & ((rate > POOR) | (old & (many > none)))
+    control.wanted = where(poor, spread(float(EVALUATED)), control.wanted)
+    failed = failed | (rest & ((control.iteration >= float(MOST_CORRECTIONS)) | (
+        (rate > POOR) & (control.fresh >= float(MOST_MATRICES)))))
+    control.reason = where(failed, spread(GAVE_UP), control.reason)
+    return rest & ~failed
+
+
+@compiled
+def _count_excess(state, active):
+    """Count corrections beyond those with new factors, see `kept_factors.give_back`."""
+    control, spare = state.control, state.spare
+    more = spare[EXCESS] + max(control.iteration - float(FEWEST), spread(0.0))
+    excess = where(control.fresh > 0.0, spread(0.0), more)
+    spare[EXCESS] = where(active, excess, spare[EXCESS])
+    spare[VALID] = where(active, where(excess <= REFACTORIZATION_COST, spread(1.0), spread(0.0)),
+                         spare[VALID])
+
+
+@compiled
+def _keep_the_others(system, state, scratch, active):
+    """Let the next step of the active members begin from here; the others have their state back."""
+    for i in range(state.aux.size):
+        state.aux[i] = where(active, state.a[i], state.aux[i])
+    scratch.table[RUNNING] = bits_of(active)
+    set_acting(system, state)
+    for k in range(state.acting.size):
+        state.acting[k] = where(active, state.acting[k], state.acting_old[k])
+    for k in range(state.now.size):
+        state.now[k] = where(active, state.now[k], state.kept[k])
+    for k in range(state.T.size):
+        state.T[k] = where(active, state.T[k], scratch.T[k])
+    for k in range(state.loads.size):
+        state.loads[k] = where(active, state.loads[k], state.loads_old[k])

@@ -1,0 +1,124 @@
+"""Matrices of eight members at once, for large models of bodies that rotate against each other.
+
+Such members want a matrix in nearly every step, and to gather and scatter their numbers for each
+takes longer than to make eight at once: see `sebody.engine.matrix` for what is made.
+"""
+
+import math
+from dataclasses import dataclass
+
+from numpy.typing import NDArray
+
+from sebody.compiler.decorators import compiled, in_lanes_of
+from sebody.compiler.inside.lanes import some, spread, where
+from sebody.contract.counts import LANES
+from sebody.contract.layout import C_MASS, OK, TANGENT
+from sebody.engine import elimination
+from sebody.engine.arrays import Arrays
+from sebody.engine.elimination import BLOCK, SMALL_PIVOT
+from sebody.engine.evaluate import run_kernels, set_tangent_operators
+from sebody.engine.matrix import ROUNDING, THIN, sum_matrices
+from sebody.engine.state import State
+from sebody.kernels.abi import pointer_to
+
+WANTED, EVALUATED, MADE = range(3)      # of `Together.asked`
+
+
+@dataclass(frozen=True, eq=False)
+class Together(Arrays):
+    """What matrices are made in: members that want none keep theirs.
+
+    ==================  ============================================================================
+    routine             (1,) address of `refactorize`; zero where matrices are made one by one
+    state               of the members, but with forces, frames, tangent operators, element matrices
+                        and the sum of these in memory of its own
+    begun               (9 b,) frames before the iterate was evaluated
+    asked               (3,) one of members that want a matrix, of those whose bodies' matrices are
+                        to be new, and of those whose matrix was made; else zero
+    ==================  ============================================================================
+    """
+
+    routine: NDArray
+    state: State
+    begun: NDArray
+    asked: NDArray
+
+
+@compiled
+def refactorize(system, state, together):
+    """Make the matrices that are asked for."""
+    own, asked = together.state, together.asked
+    wanted, evaluated = asked[WANTED] > 0.0, asked[EVALUATED] > 0.0
+    first = system.first_joint[0]
+    if some(evaluated):
+        first = 0
+        set_tangent_operators(system, own)
+        for k in range(own.T.size):
+            own.T[k] = state.T[k] = where(evaluated, own.T[k], state.T[k])
+        for k in range(own.frames.size):
+            own.frames[k] = together.begun[k]
+    run_kernels(TANGENT, first, system.address.size, system, own)
+    if some(evaluated):
+        for k in range(system.at_J[system.first_joint[0]]):
+            own.J[k] = state.J[k] = where(evaluated, own.J[k], state.J[k])
+    for k in range(own.frames.size):
+        own.frames[k] = state.frames[k]
+    sum_matrices(system, own, state.forces)
+    if some(evaluated):
+        _equilibrate(system, own, evaluated)
+    elimination.eliminate_columns(0, system.block_diagonal.size, system, own,
+                                  pointer_to(own.column))
+    made = wanted
+    for j in range(system.block_diagonal.size):
+        made = made & (abs(own.matrix[BLOCK * system.block_diagonal[j]]) < math.inf)
+    for k in range(own.matrix.size):
+        state.matrix[k] = where(wanted, own.matrix[k], state.matrix[k])
+    asked[MADE] = where(made, spread(1.0), spread(0.0))
+    return OK
+
+
+@compiled(forceinline=True)
+def _equilibrate(system, state, evaluated):
+    """Scales of some members, and what rounding leaves of their positions."""
+    n, mass = system.diagonal.size, state.coefficients[C_MASS]
+    sums, zero = state.correction, spread(0.0)
+    for i in range(n):
+        sums[i] = zero
+        if system.is_multiplier[i] == 0.0:
+            diagonal = max(abs(state.matrix[system.diagonal[i]]), THIN * mass * system.inertias[i])
+            state.scale[i] = where(evaluated, 1.0 / math.sqrt(diagonal), state.scale[i])
+    for k in range(system.rows.size):
+        row, column = system.rows[k], system.columns[k]
+        if system.is_multiplier[row] > 0.0 and system.is_multiplier[column] == 0.0:
+            entry = state.matrix[k] * state.scale[column]
+            sums[row] += entry * entry
+    floor = zero
+    for i in range(n):
+        if system.is_multiplier[i] > 0.0:
+            scale = where(sums[i] > 0.0, 1.0 / math.sqrt(sums[i]), spread(1.0))
+            state.scale[i] = where(evaluated, scale, state.scale[i])
+        state.weight[i] = where(evaluated, 1.0 / state.scale[i], state.weight[i])
+        size = max(system.magnitude[i], abs(state.q[i])) * state.weight[i]
+        floor += where(system.magnitude[i] > 0.0, size * size, zero)
+    state.clock.floor = where(evaluated, ROUNDING * math.sqrt(floor), state.clock.floor)
+
+
+@in_lanes_of(elimination.invert_block)
+def invert_block(D, inverse, unknowns, scale):
+    """Invert a block; of members whose pivot is small it becomes no number."""
+    for i in range(BLOCK):
+        inverse[i] = D[i]
+    for k in range(LANES):
+        pivot = inverse[LANES * k + k]
+        size = abs(pivot) * scale[unknowns[k]] * scale[unknowns[k]]
+        r = where(size > SMALL_PIVOT, 1.0 / pivot, spread(math.nan))
+        inverse[LANES * k + k] = spread(1.0)
+        for j in range(LANES):
+            inverse[LANES * j + k] *= r
+        for i in range(LANES):
+            if i != k:
+                f = inverse[LANES * k + i]
+                inverse[LANES * k + i] = spread(0.0)
+                for j in range(LANES):
+                    inverse[LANES * j + i] -= f * inverse[LANES * j + k]
+    return True

@@ -1,0 +1,37 @@
+"""Variable steps of a run: what errors count, and the first step."""
+
+import numpy as np
+
+from sebody.assembly.numbering import Numbering, placed, rotational
+from sebody.engine.state import State
+from sebody.engine.system import System
+from sebody.model.mechanism import Mechanism
+from sebody.runs.tolerance import Tolerance
+
+FIRST_STEP = 1e-3       # of the output grid: first step if nothing is accelerated at the start
+
+
+def begin_steps(model: Mechanism, system: System, numbering: Numbering, state: State, h: float,
+                tolerance: Tolerance) -> bool:
+    """Switch on variable steps; the first step is short against the accelerations.
+
+    Parameters
+    ----------
+    h : float
+        The output grid [time].
+
+    Returns
+    -------
+    bool
+        Whether everything has a size for its error to be relative to; see `tolerance.UNSIZED`.
+    """
+    n = numbering.free
+    coordinates = np.flatnonzero(placed(model, numbering)[:n])
+    sizes = system.magnitude[coordinates]
+    state.error_weights[coordinates] = 1.0 / tolerance.allowed(
+        sizes, rotational(model, numbering)[coordinates])
+    bend = np.abs(state.a[:n] * state.error_weights[:n]).max()
+    state.clock.chosen = min(h, 0.1 / np.sqrt(bend)) if bend > 0 else FIRST_STEP * h
+    state.clock.largest_error = 0.0
+    state.control.adaptive = 1
+    return tolerance.position > 0.0 or bool(np.all(sizes))
