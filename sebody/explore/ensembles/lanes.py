@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.contract.counts import MEMBERS
+from sebody.contract.counts import MEMBERS, whole_vectors
 from sebody.contract.layout import AT_CONSTANTS, RECORD_T
 from sebody.engine.lanes import loop, samples
 from sebody.engine.lanes.apart import GAVE_UP, RUNS
@@ -21,11 +21,16 @@ from sebody.explore.ensembles.shared_constants import (
     own_parts,
     own_places,
     packed_rows,
+    straight_matrices,
     varied_numbers,
 )
 from sebody.explore.ensembles.start_values import Image
 from sebody.kernels.lanes.kernel import address_in_lanes, module_in_lanes
-from sebody.kernels.lanes.straight import write_address, write_shared_address
+from sebody.kernels.lanes.straight import (
+    write_address,
+    write_matrix_address,
+    write_shared_address,
+)
 
 MOST_NUMBERS = 8_000        # of recorded states at a time: they stay in the processor's cache
 MOST_STEPS = 20_000         # until a thread looks whether it is to stop: tenths of a second
@@ -116,6 +121,11 @@ class Lanes:
             elif place.start not in kept:       # bodies that are alike have one row
                 own = numbers_of_all[place.start - first.start:place.stop - first.start]
                 kept[place.start] = write_shared_address(own, *given[1:])
+        for place, rows in straight_matrices(image):
+            if place.start not in kept:
+                own = numbers_of_all[place.start - first.start:place.stop - first.start]
+                kept[place.start] = write_matrix_address(
+                    own.reshape(-1, whole_vectors(rows))[:, :rows].T, own)
         for place in own_places(image):
             numbers_of_all[place.start - first.start:][:1].view(np.int64)[0] = (
                 self._numbers[place].ctypes.data)

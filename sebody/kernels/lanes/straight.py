@@ -29,6 +29,7 @@ MOST_GROUPS = 1 << 20       # of a row; a larger number is an address
 # share it
 Entries = tuple[tuple[int, int, int, int, float | None], ...]
 
+MOST_FACTORS = 24           # that registers hold beside sums
 _NAMES = {"straight": False, "more": True}       # of functions, and whether they add
 _engines = []       # own the code
 
@@ -71,9 +72,10 @@ def _write(module: ir.Module, name: str, shared: _Shared, entries: Entries, adds
     builder = ir.IRBuilder(function.append_basic_block())
     A, *vectors, out, count = function.args
     out.add_attribute("noalias")        # of what is read
-    # read once, before all sums: factors stay in registers, where entries are what is read
+    # few factors are read once, before all sums, and stay in registers: entries are what is read
+    places = sorted({entry[1:3] for entry in entries})
     factors = {one: _read(builder, vectors[one[0]], one[1])
-               for one in sorted({entry[1:3] for entry in entries})}
+               for one in places if len(places) <= MOST_FACTORS}
     first, last, zeros = shared.place(builder), 0, ir.Constant(VECTOR, [0.0] * VECTOR.count)
     for to, terms in groupby(entries, key=lambda entry: entry[3]):
         for unused in range(last, to if not adds else last):
@@ -81,7 +83,8 @@ def _write(module: ir.Module, name: str, shared: _Shared, entries: Entries, adds
         total, last = _read(builder, out, to) if adds else None, to + 1
         for place, vector, column, _, value in terms:
             entry = _read(builder, A, place) if value is None else shared.next(builder, first)
-            product = builder.fmul(entry, factors[vector, column], flags=("contract",))
+            factor = factors.get((vector, column)) or _read(builder, vectors[vector], column)
+            product = builder.fmul(entry, factor, flags=("contract",))
             total = product if total is None else builder.fadd(total, product, flags=("contract",))
         builder.store(total, builder.gep(out, [WORD(to)]))
     if not adds:
@@ -160,4 +163,22 @@ def write_shared_address(row: NDArray, varied: NDArray, lanes: NDArray) -> NDArr
     address, more = addresses_of(entries_of(row, varied))
     found = np.array([own[0], address, lanes.ctypes.data, more])
     own[0] = found.ctypes.data
+    return found
+
+
+def write_matrix_address(matrix: NDArray, shared: NDArray) -> NDArray:
+    """Compile straight code of a matrix that members share, see `constant_products`.
+
+    Parameters
+    ----------
+    matrix : (rows, columns)
+        Its entries.
+    shared : (size,)
+        The matrix among the constants: its first number is replaced by the address of what is
+        returned, and to be kept.
+    """
+    entries = tuple((0, 0, column, row, float(matrix[row, column]))
+                    for row, column in np.argwhere(matrix).tolist())
+    found = np.array(addresses_of(entries))
+    shared.view(np.int64)[0] = found.ctypes.data
     return found
