@@ -87,8 +87,12 @@ class Lanes:
         self._stretch = max(1, min(last // one.every, MOST_NUMBERS // len(columns)))
         rows = (self._stretch + 1, len(columns))
         self._record = Columns(places=columns, rows=empty(*rows), every=np.array([one.every]))
-        self._rows = np.empty(rows)
-        self._last, self._begun = last, {}
+        self._table, self._rows = numbers(self._record.rows), np.empty(rows)
+        self._last, self._every, self._begun = last, one.every, {}
+        # scalars by name: looked up once, since a look-up out of a cold cache takes microseconds
+        self._reason = self.state.control["reason"]
+        self._recorded = _scalar(self.state.control, "recorded")
+        self._time = _scalar(self.state.clock, "time")
         self._changes: NDArray          # of the members that have begun
         self._evaluated = not all(form.kinematic for form in forms.values())
         self._folds = {name: Folds(one, forms[one.quantity].shape,
@@ -165,28 +169,29 @@ class Lanes:
         self._begin_records()
         for folds in self._folds.values():
             folds.begin()
-        self._courses = [Course(self.copies, int(self._record.every[0]), self._others, self._forms)
+        self._courses = [Course(self.copies, self._every, self._others, self._forms)
                          for _ in range(count if self._others else 0)]
         if count < MEMBERS:         # lanes without a member: another one's numbers
             self._numbers[self._places, count:] = self._numbers[self._places, :1]
         self._begin_samples()
-        state.control["reason"] = np.where(np.arange(MEMBERS) < count, RUNS, GAVE_UP)
-        every, reached = int(self._record.every[0]), 0
+        self._reason[:count], self._reason[count:] = RUNS, GAVE_UP
+        every, reached = self._every, 0
         while reached < self._last:
             reached = min(self._last, (reached // every + self._stretch) * every,
                           reached + MOST_STEPS)
-            state.control["recorded"] = 0
+            self._recorded[0] = 0
             loop.advance(self.system, state, self._scratch, self._alone, self._together,
                          self._apart, self._record, self.copies.scheme, reached, self.copies.dense)
-            self._take_outputs(np.flatnonzero(state.control["reason"][:count] != GAVE_UP))
+            gave_up = self._reason[:count] == GAVE_UP
+            self._take_outputs(np.flatnonzero(~gave_up))
             if reached < self._last and stop():
                 break
         self.ended = reached == self._last
-        return state.control["reason"][:count] == GAVE_UP
+        return gave_up
 
     def _take_outputs(self, members: NDArray) -> None:
         """Take in recorded states: folds of all members together, all else of each."""
-        table, rows = numbers(self._record.rows), self._rows[:self.state.control["recorded"]]
+        table, rows = self._table, self._rows[:self._recorded[0]]
         t = table[:len(rows), 0, 0].copy()
         for folds in self._folds.values():
             folds.add(t, table, members)
@@ -231,7 +236,13 @@ class Lanes:
     @property
     def time(self) -> float:
         """Time reached."""
-        return float(self.state.clock["time"])
+        return float(self._time[0])
+
+
+def _scalar(record: np.record, name: str) -> NDArray:
+    """The memory of a scalar that is the same for all members, (1,)."""
+    kind, first = record.dtype.fields[name]
+    return record.base.view(np.uint8)[first:first + kind.itemsize].view(kind)
 
 
 def _columns(forms: Mapping[str, Form], count: int) -> NDArray:

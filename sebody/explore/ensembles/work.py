@@ -132,10 +132,11 @@ class Work:
             return alone
         gave_up = lanes.run(self._stop.is_set)
         members, runs = np.flatnonzero(~gave_up), runs[begun]
-        self.outcome.reached[runs[members]] = lanes.time
-        lanes.write(members, runs[members], self.outcome.values)
+        done = runs[members]
+        self.outcome.reached[done] = lanes.time
+        lanes.write(members, done, self.outcome.values)
         if not lanes.ended:
-            self.outcome.failures |= dict.fromkeys(runs[members].tolist(), INTERRUPTED)
+            self.outcome.failures |= dict.fromkeys(done.tolist(), INTERRUPTED)
         with self._lock:
             self.outcome.in_lanes += len(members)
             self._done += len(members)
