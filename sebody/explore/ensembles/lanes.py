@@ -183,7 +183,7 @@ class Lanes:
             loop.advance(self.system, state, self._scratch, self._alone, self._together,
                          self._apart, self._record, self.copies.scheme, reached, self.copies.dense)
             gave_up = self._reason[:count] == GAVE_UP
-            self._take_outputs(np.flatnonzero(~gave_up))
+            self._take_outputs((~gave_up).nonzero()[0])
             if reached < self._last and stop():
                 break
         self.ended = reached == self._last

@@ -127,7 +127,9 @@ class Room(NamedTuple):
     def of(cls, output: Output, shape: tuple[int, ...], *members: int) -> Room:
         """Room for an output of a quantity of some shape."""
         size = 1 if output.norm else prod(shape)
-        return cls(*np.zeros((3, *members, size)), np.zeros((*members, 4)))
+        sizes = np.cumsum([prod(members) * own for own in (size, size, size, 4)])
+        parts = np.split(np.zeros(sizes[-1]), sizes[:-1])
+        return cls(*(part.reshape(*members, -1) for part in parts))
 
 class Folds:
     """The values of an output of the members of a group, taken in together.
@@ -143,12 +145,12 @@ class Folds:
     def __init__(self, output: Output, shape: tuple[int, ...], columns: NDArray, count: int):
         self._output, self._columns = output, columns
         self._room = Room.of(output, shape, count)
+        self._memory = self._room.kept.base     # of all that is kept
         self._rows = np.empty((0, len(columns)))
 
     def begin(self) -> None:
         """Forget what was taken in."""
-        for one in self._room:
-            one[...] = 0.0
+        self._memory[:] = 0.0
 
     def add(self, t: NDArray, table: NDArray, members: NDArray) -> None:
         """Take in the next recorded states of some members; the table is (states, numbers, all)."""
@@ -160,9 +162,10 @@ class Folds:
     def write(self, members: NDArray, runs: NDArray, values: NDArray) -> None:
         """Write the values of some members, where they have one, to those of their runs."""
         found = self._room.facts[members, FOUND] > 0.0
-        chosen = members if found.all() else members[found]
-        values[runs if found.all() else runs[found]] = _value(self._output, self._room)[
-            chosen].reshape(len(chosen), *values.shape[1:])
+        if not found.all():
+            members, runs = members[found], runs[found]
+        values[runs] = _value(self._output, self._room)[members].reshape(
+            len(members), *values.shape[1:])
 
 
 class Fold:

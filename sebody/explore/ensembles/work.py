@@ -131,7 +131,7 @@ class Work:
         if not begun.any():
             return alone
         gave_up = lanes.run(self._stop.is_set)
-        members, runs = np.flatnonzero(~gave_up), runs[begun]
+        members, runs = (~gave_up).nonzero()[0], runs[begun]
         done = runs[members]
         self.outcome.reached[done] = lanes.time
         lanes.write(members, done, self.outcome.values)
