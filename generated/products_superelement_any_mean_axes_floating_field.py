@@ -61,6 +61,7 @@ ROTATIONS = None      # first rotation among the local coordinates
 MODES = None          # first internal mode
 DAMPED = None        # has structural damping, None where a body tells
 N_MODES = None        # their number, None where it is read at run time
+SECOND_ORDER = None       # slaved coordinates, stress resultants
 WORK_ROWS = 137
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the

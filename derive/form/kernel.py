@@ -29,3 +29,4 @@ class Kernel(NamedTuple):
     residual: Operations
     column: Operations          # of a column of the matrix
     kept: int = 0               # numbers before the scratch memory that stay between two calls
+    sizes_known: bool = False       # of the products that it calls

@@ -8,7 +8,8 @@ from sebody.contract.counts import LETTERS, first_mode, first_rotation, layout_n
 from sebody.contract.names import ANY, layout_variant
 from sebody.contract.traits import FrameTraits, InertiaTraits
 
-PATTERN = re.compile(rf"(planar-)?(?:{ANY}|(?=[ftr])(f\d+)?(t\d+)?(r\d+)?(?:m(\d+))?)(d)?")
+PINNED = r"(?:m(\d+)(?:s(\d+)e(\d+))?)?"
+PATTERN = re.compile(rf"(planar-)?(?:{ANY}|(?=[ftr])(f\d+)?(t\d+)?(r\d+)?{PINNED})(d)?")
 NUMBERS = "no", "one", "two", "three", "four", "five", "six"
 
 
@@ -22,6 +23,7 @@ class Layout(NamedTuple):
     The local coordinates are ordered ``y = (positions, rotations, internal modes)``; a kernel
     therefore depends on the two counts of DOF blocks alone, never on the order of the nodes. The
     number of internal modes is a run-time size, unless a layout pins it: constant sizes are faster.
+    With it, a layout may pin the numbers of slaved coordinates and of stress resultants.
     In a general layout the counts of DOF blocks are run-time sizes, too, and None here.
     """
 
@@ -29,23 +31,31 @@ class Layout(NamedTuple):
     planar: bool = False        # motion in a plane: (x, y) and one angle in place of DOF blocks
     modes: int | None = None    # number of internal modes, where it is pinned
     damped: bool = False        # with structural damping: twice the tangent, so only where wanted
+    # numbers of slaved coordinates and of stress resultants of second order, where they are pinned
+    second_order: tuple[int, int] | None = None
 
     @classmethod
     def parse(cls, name: str) -> "Layout":
-        """Read a name: ``f2``, ``planar-f2``, ``f2t1``, ``f2m4`` (four modes), ``f2d``, ``any``."""
+        """Read a name: ``f2``, ``planar-f2``, ``f2t1``, ``f2m4`` (four modes), ``f2d``, ``any``.
+
+        ``f2m4s2e1`` has two slaved coordinates and one stress resultant, as straight beams do.
+        """
         match = PATTERN.fullmatch(name)
         if not match:
             raise LayoutError(f"layout {name!r} is unknown: write counts of full, translation-only "
                               "and rotation-only nodes, such as f2, f2t1, f2r1, t8 or planar-f2, "
-                              "m with the number of internal modes to pin it, as in f2m4, and d "
-                              f"for structural damping; or {ANY} for any nodes; or the name of a "
+                              "m with the number of internal modes to pin it, as in f2m4, s and "
+                              "e behind it with those of slaved coordinates and stress resultants "
+                              "of second order, as in f2m4s2e1 for straight beams, and d for "
+                              f"structural damping; or {ANY} for any nodes; or the name of a "
                               "joint, rigid body or load, such as distance")
         nodes = []
         for part, kind in zip(match.groups()[1:4], LETTERS, strict=True):
             nodes += [kind] * int(part[1:]) if part else []
-        modes = match.group(5)
+        modes, *second_order = match.group(5, 6, 7)
         layout = cls(tuple(nodes) if any(match.groups()[1:4]) else None, bool(match.group(1)),
-                     None if modes is None else int(modes), bool(match.group(6)))
+                     None if modes is None else int(modes), bool(match.group(8)),
+                     None if None in second_order else tuple(map(int, second_order)))
         if layout.positions == 0:
             raise LayoutError(f"layout {name!r} keeps no position: a superelement needs at least "
                               "one node with translations to place its frame")
@@ -55,7 +65,7 @@ class Layout(NamedTuple):
     def name(self) -> str:
         """Canonical name; the order of the nodes does not enter."""
         nodes = layout_name(self.nodes or (), self.planar) + ANY * (self.nodes is None)
-        return layout_variant(nodes, self.modes, self.damped)
+        return layout_variant(nodes, self.modes, self.damped, self.second_order)
 
     @property
     def positions(self) -> int | None:
@@ -100,13 +110,19 @@ def fits(layout: Layout, frame: FrameTraits) -> bool:
 
 def check_inertia(layout: Layout, frame: str, inertia: str, frames: Mapping[str, FrameTraits],
                   options: Mapping[str, InertiaTraits]) -> None:
-    """Refuse a frame that depends on the last step where rates of the frame are needed.
+    """Refuse a layout or a frame that an inertia option cannot have.
+
+    A frame that depends on the last step, where rates of the frame are needed.
 
     Raises
     ------
     LayoutError
-        With the frames that the option can have, or because all its kernels are damped.
+        With the frames that the option can have, or with what to leave out of the layout.
     """
+    if layout.second_order is not None and not options[inertia].field:
+        raise LayoutError(f"layout {layout.name}: bodies with inertia option {inertia!r} have no "
+                          "slaved coordinates and stress resultants: leave out s and e with their "
+                          "numbers")
     if options[inertia].rates and layout.damped:
         raise LayoutError(f"layout {layout.name}: kernels of inertia option {inertia!r} take "
                           "damped bodies, too: leave out the d")

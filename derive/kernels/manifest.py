@@ -36,7 +36,11 @@ SUPERELEMENTS = (
     ("planar-f2", "positions", "material"),
     ("f2", "converged_mean", "floating_field"),
     ("planar-f2", "converged_mean", "floating_field"),
-    ("planar-f2m2", "converged_mean", "floating_field"),
+    # and numbers of slaved coordinates and stress resultants, which straight beams have
+    ("f2m4s2e1", "converged_mean", "floating_field"),
+    ("f2m8s2e1", "converged_mean", "floating_field"),
+    ("planar-f2m0s2e1", "converged_mean", "floating_field"),
+    ("planar-f2m2s2e1", "converged_mean", "floating_field"),
     # for all other layouts: counts of nodes are read at run time
     ("any", "converged_mean", "material"),
     ("any", "positions", "material"),

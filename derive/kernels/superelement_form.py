@@ -42,6 +42,7 @@ from sebody.derive.kernels.bodies import (
 from sebody.derive.kernels.layouts import Layout
 from sebody.derive.kernels.memory import Memory, chain, row_size
 from sebody.derive.kernels.superelement import Superelement
+from sebody.derive.passes.fold import folded
 from sebody.derive.passes.lower import Lowering
 from sebody.derive.passes.operations import operations
 from sebody.derive.passes.uses import uses
@@ -76,13 +77,22 @@ def superelement_form(kernel: Superelement) -> Kernel:
     body = (Point(arrays.field, ARGUMENTS["coefficients"].at(agreed("FIELD"))),
             *read_counts(layout), For(counts.element, Number(0), counts.count, of_element),
             Return(agreed("OK")))
+    body = folded(body, _second_order(layout))
     return Kernel(kernel.name, body, known_of(layout), memory.rows, memory.squares,
-                  operations(residual), operations(tangent))
+                  operations(residual), operations(tangent),
+                  sizes_known=layout.second_order is not None)
 
 
 def known_of(layout: Layout) -> dict[counts.Count, int]:
     """Counts that are constants of a layout's kernels."""
     return {name: value for name, value in known_counts(layout).items() if value is not None}
+
+
+def _second_order(layout: Layout) -> dict[counts.Count, int]:
+    """Numbers of slaved coordinates and of stress resultants, where a layout pins them."""
+    if layout.second_order is None:
+        return {}
+    return dict(zip((counts.slaved, counts.resultants), layout.second_order, strict=True))
 
 
 def _sizes(kernel: Superelement, memory: Memory) -> tuple[Let, Let]:

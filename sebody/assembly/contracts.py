@@ -28,6 +28,7 @@ from sebody.kernels.loader import find
 from sebody.kernels.packed import move_to_cache_lines
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Superelement
+from sebody.reduction.invariants import InertiaInvariants
 
 REMEDY = "regenerate the kernels with python -m sebody.derive, or reinstall sebody"
 
@@ -104,11 +105,21 @@ def check_superelement(body: Superelement, kernel: ModuleType) -> None:
     if kernel.DAMPED not in (None, reduced.damping is not None):
         wrong.append(f"it has {'no' if kernel.DAMPED else 'a'} damping matrix and the kernel reads "
                      f"{'one' if kernel.DAMPED else 'none'}")
-    if INERTIA_OPTIONS[kernel.INERTIA].field and body.invariants.slaved > MOST_SLAVED:
-        wrong.append(f"it has {body.invariants.slaved} slaved coordinates and the kernel memory "
-                     f"for {MOST_SLAVED}")
+    if INERTIA_OPTIONS[kernel.INERTIA].field:
+        wrong += _of_second_order(body.invariants, kernel)
     if wrong:
         raise _misfit(body.name, kernel, wrong)
+
+
+def _of_second_order(invariants: InertiaInvariants, kernel: ModuleType) -> list[str]:
+    """What is wrong with the numbers of slaved coordinates and of stress resultants."""
+    slaved, resultants = kernel.SECOND_ORDER or (None, None)
+    wrong = _different((("slaved coordinates", invariants.slaved, slaved),
+                        ("stress resultants", invariants.resultants, resultants)))
+    if invariants.slaved > MOST_SLAVED:
+        wrong.append(f"it has {invariants.slaved} slaved coordinates and the kernel memory "
+                     f"for {MOST_SLAVED}")
+    return wrong
 
 
 def constants_row(name: str, kernel: ModuleType, counts: Counts,

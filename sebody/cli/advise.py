@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sebody.cli import interrupts, scene_files
+from sebody.cli.number_arguments import real
 from sebody.cli.scene_arguments import build_scene, check_picture, given_arguments, source
 
 if TYPE_CHECKING:
@@ -35,11 +36,11 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     parser.add_argument("--tolerance", default="1e-3", metavar="E",
                         help="largest error, relative to a quantity's largest change (default "
                              "1e-3), or with a unit, such as 2mm")
-    parser.add_argument("--t-end", type=float, metavar="T", help="end time, the scene's by default")
+    parser.add_argument("--t-end", type=real, metavar="T", help="end time, the scene's by default")
     parser.add_argument("--step", type=_step, metavar="H",
                         help="usual time step, the scene's by default; the reference has a "
                              "quarter; 'auto' begins with a 128th of the time")
-    parser.add_argument("--budget", type=float, default=20.0, metavar="N",
+    parser.add_argument("--budget", type=real, default=20.0, metavar="N",
                         help="work of the search, in runs of the reference model (default 20)")
     parser.add_argument("--start", choices=["equilibrium"],
                         help="start runs from the equilibrium under the loads of t = 0")

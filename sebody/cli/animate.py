@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from sebody.cli.number_arguments import real
 from sebody.cli.scene_arguments import check_distinct
 
 
@@ -15,7 +16,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
                         help="plotted first in the page, written as for 'sebody plot'")
     parser.add_argument("--output", type=Path, metavar="FILE.html", required=True,
                         help="a self-contained page; with the ending gif or mp4 a film")
-    parser.add_argument("--speed", type=float, metavar="S",
+    parser.add_argument("--speed", type=real, metavar="S",
                         help="simulated time per second of playback")
     parser.add_argument("--colour", metavar="QUANTITY",
                         help="initial colours: displacement, von_mises, or body (one colour for "

@@ -4,6 +4,7 @@ import argparse
 from dataclasses import replace
 from pathlib import Path
 
+from sebody.cli.number_arguments import real
 from sebody.cli.scene_arguments import build_scene, check_distinct, check_picture
 
 
@@ -17,10 +18,10 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     parser.add_argument("--quantity", action="append", default=[], metavar="NAME",
                         help="compared quantity, such as tip.position (default: position of the "
                              "scene's tip); may be repeated: a panel each")
-    parser.add_argument("--tolerance", type=float, metavar="E",
+    parser.add_argument("--tolerance", type=real, metavar="E",
                         help="of the model that is advised and marked (default 1e-2)")
-    parser.add_argument("--t-end", type=float, metavar="T", help="end time, the scene's by default")
-    parser.add_argument("--step", type=float, metavar="H", help="time step, the scene's by default")
+    parser.add_argument("--t-end", type=real, metavar="T", help="end time, the scene's by default")
+    parser.add_argument("--step", type=real, metavar="H", help="time step, the scene's by default")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE",
                         dest="changes", help="change a parameter of the scene; may be repeated")
     return parser

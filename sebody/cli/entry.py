@@ -65,7 +65,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: Sequence[str] | None) -> int:
-    options = _parser().parse_args(arguments)
+    options, others = _parser().parse_known_args(arguments)
+    if others:
+        options.parser.error(_unrecognized(options.parser, others))
     try:
         return options.command(options)
     except SebodyError as error:
@@ -116,5 +118,20 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action=_Version, help="show the version and exit")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for command in COMMANDS:
-        command.add(commands).set_defaults(command=command.run)
+        own = command.add(commands)
+        own.set_defaults(command=command.run, parser=own)
     return parser
+
+
+def _unrecognized(parser: argparse.ArgumentParser, others: list[str]) -> str:
+    """The message about arguments that a command does not have."""
+    from difflib import get_close_matches
+
+    known = [word for action in parser._actions for word in action.option_strings]
+    near = [word for one in others for word in get_close_matches(one.partition("=")[0], known, 1)]
+    message = f"unrecognized arguments: {' '.join(others)}"
+    if near:
+        message += f"; did you mean {' or '.join(dict.fromkeys(near))}?"
+    elif "--set" in known and others[0].startswith("--"):
+        message += "; parameters of a scene are given by --set NAME=VALUE"
+    return message

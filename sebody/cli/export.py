@@ -5,6 +5,7 @@ import os
 import sys
 from pathlib import Path
 
+from sebody.cli.number_arguments import real
 from sebody.cli.scene_arguments import build_scene
 
 
@@ -29,8 +30,8 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
                         help="oldest x86 processor it runs on: x86-64, x86-64-v2, x86-64-v3 "
                              "(default), native")
     parser.add_argument("--fmi", default="3.0", metavar="VERSION", help="3.0 (default) or 2.0")
-    parser.add_argument("--step", type=float, metavar="H", help="time step, the scene's by default")
-    parser.add_argument("--tolerance", type=float, metavar="E",
+    parser.add_argument("--step", type=real, metavar="H", help="time step, the scene's by default")
+    parser.add_argument("--tolerance", type=real, metavar="E",
                         help="allowed error of a step, relative to the model's characteristic "
                              "length, and in radians: steps are chosen, --step is the output "
                              "interval")

@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from sebody.cli.number_arguments import real, whole
 from sebody.errors import InputError
 
 if TYPE_CHECKING:
@@ -21,12 +22,12 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
                              "labels 1/2 where rotations are stored at a second node, rbe2:SET or "
                              "rbe3:SET for a node set or surface, or "
                              "'cylinder:x,y,z;axis;radius' for a hole")
-    parser.add_argument("--modes", type=int, metavar="N",
+    parser.add_argument("--modes", type=whole, metavar="N",
                         help="number of internal modes (default 0)")
-    parser.add_argument("--accuracy", type=float, metavar="E",
+    parser.add_argument("--accuracy", type=real, metavar="E",
                         help="instead of --modes: choose the number of modes for this relative "
                              "error up to the frequency --up-to")
-    parser.add_argument("--up-to", type=float, metavar="F",
+    parser.add_argument("--up-to", type=real, metavar="F",
                         help="highest frequency for --accuracy")
     parser.add_argument("--criterion", metavar="NAME",
                         help="error measured by --accuracy: stiffness (dynamic stiffness of the "

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from sebody.cli import interrupts
+from sebody.cli.number_arguments import real, whole
 from sebody.cli.scene_arguments import build_scene, check_distinct, check_picture
 from sebody.errors import InputError, Interrupted, LimitWarning, SebodyError, SimulationError
 
@@ -25,14 +26,14 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     parser.add_argument("--output", type=Path, metavar="FILE.npz",
                         help="save the result: FILE.npz, or FILE.h5 with h5py")
     parser.add_argument("--plot", type=Path, metavar="FILE.png", help="draw the standard plot")
-    parser.add_argument("--t-end", type=float, metavar="T", help="end time, the scene's by default")
-    parser.add_argument("--step", type=float, metavar="H", help="time step, the scene's by default")
-    parser.add_argument("--accuracy", type=float, metavar="E",
+    parser.add_argument("--t-end", type=real, metavar="T", help="end time, the scene's by default")
+    parser.add_argument("--step", type=real, metavar="H", help="time step, the scene's by default")
+    parser.add_argument("--accuracy", type=real, metavar="E",
                         help="allowed error of the run, relative to the model's characteristic "
                              "length, and in radians: steps are chosen, --step is the output "
                              "interval")
-    parser.add_argument("--every", type=int, metavar="N", help="keep every N-th step only")
-    parser.add_argument("--index", type=int, default=None, metavar="I",
+    parser.add_argument("--every", type=whole, metavar="N", help="keep every N-th step only")
+    parser.add_argument("--index", type=whole, default=None, metavar="I",
                         help="index of the constraints; 2: satisfied for velocities as well "
                              "(default 3, with --accuracy 2)")
     parser.add_argument("--equilibrium", action="store_true",
@@ -41,9 +42,9 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
                         help="save the final state for --resume")
     parser.add_argument("--resume", type=Path, metavar="FILE.npz",
                         help="continue from a saved state, with its step, scheme and accuracy")
-    parser.add_argument("--rho", type=float, metavar="R",
+    parser.add_argument("--rho", type=real, metavar="R",
                         help="spectral radius of generalized-alpha at infinity (default 0.9)")
-    parser.add_argument("--threads", type=int, default=1, metavar="N",
+    parser.add_argument("--threads", type=whole, default=1, metavar="N",
                         help="threads that share the steps of a large model (default 1)")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE",
                         dest="changes", help="change a parameter of the scene; may be repeated")

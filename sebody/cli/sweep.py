@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sebody.cli import interrupts
+from sebody.cli.number_arguments import real, whole
 from sebody.cli.scene_arguments import build_scene, check_picture, given_arguments, source
 from sebody.errors import InputError
 
@@ -29,11 +30,11 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     parser.add_argument("--sample", action="append", default=[], metavar="NAME=DISTRIBUTION",
                         help="normal(mean,deviation), uniform(low,high), loguniform(low,high), "
                              "triangular(low,mode,high)")
-    parser.add_argument("--runs", type=int, metavar="N", help="number of random samples")
-    parser.add_argument("--seed", type=int, default=0, metavar="S", help="seed of the samples")
+    parser.add_argument("--runs", type=whole, metavar="N", help="number of random samples")
+    parser.add_argument("--seed", type=whole, default=0, metavar="S", help="seed of the samples")
     parser.add_argument("--sampler", choices=("lhs", "sobol", "random"), default="lhs",
                         help="Latin hypercube (default), Sobol sequence or independent samples")
-    parser.add_argument("--sobol", type=int, metavar="N",
+    parser.add_argument("--sobol", type=whole, metavar="N",
                         help="compute Sobol indices from N (parameters + 2) runs")
     parser.add_argument("--keep", action="append", default=[], metavar="KIND(QUANTITY)",
                         help="output of every run: maximum(tip.position), minimum, rms, integral, "
@@ -41,14 +42,14 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
                              "length")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE",
                         dest="changes", help="a parameter of the scene that does not vary")
-    parser.add_argument("--t-end", type=float, metavar="T", help="end time, the scene's by default")
-    parser.add_argument("--step", type=float, metavar="H", help="time step, the scene's by default")
+    parser.add_argument("--t-end", type=real, metavar="T", help="end time, the scene's by default")
+    parser.add_argument("--step", type=real, metavar="H", help="time step, the scene's by default")
     parser.add_argument("--output", type=Path, metavar="SWEEP",
                         help="write SWEEP.npz, with pandas SWEEP.csv or .parquet, with matplotlib "
                              "SWEEP.png; an interrupted sweep continues from SWEEP.npz")
-    parser.add_argument("--threads", type=int, metavar="N",
+    parser.add_argument("--threads", type=whole, metavar="N",
                         help="number of threads (default: one per processor)")
-    parser.add_argument("--workers", type=int, metavar="N",
+    parser.add_argument("--workers", type=whole, metavar="N",
                         help="number of processes, instead of threads")
     parser.add_argument("--cluster", metavar="ADDRESS", help="address of a Dask scheduler")
     return parser

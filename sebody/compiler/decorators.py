@@ -49,11 +49,18 @@ def in_lanes_of(function: Callable) -> Callable:
     return put
 
 
-def kernel_function(function: Callable) -> Callable:
+def kernel_function(function: Callable | None = None, sizes_known: bool = False) -> Callable:
     """Compile a kernel, a function of the `SIGNATURE`, and keep the compiled code.
 
     The attribute `address` of the result is the address of the machine code.
+
+    With `sizes_known` the sizes of its products are constants, so that the compiler may write small
+    ones where they are called, which makes kernels that read the sizes slower; of the fast way
+    alone.
     """
+    if function is None:
+        return partial(kernel_function, sizes_known=sizes_known)
+    function.sizes_known = sizes_known
     return way().kernel(function, SIGNATURE, OF_KERNELS,
                         kernel_hash(Path(function.__code__.co_filename)))
 

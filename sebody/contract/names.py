@@ -42,6 +42,13 @@ def general_layout(layout: str) -> str:
     return PLANAR * layout.startswith(PLANAR) + ANY
 
 
-def layout_variant(layout: str, modes: int | None = None, damped: bool = False) -> str:
-    """A layout with its number of internal modes pinned (``f2m4``) or with damping (``f2d``)."""
-    return layout + ("" if modes is None else f"m{modes}") + "d" * damped
+def layout_variant(layout: str, modes: int | None = None, damped: bool = False,
+                   second_order: tuple[int, int] | None = None) -> str:
+    """A layout with its number of internal modes pinned (``f2m4``) or with damping (``f2d``).
+
+    With the modes also numbers of slaved coordinates and of stress resultants (``f2m4s2e1``).
+    """
+    pinned = "" if modes is None else f"m{modes}"
+    if second_order is not None:
+        pinned += "s{}e{}".format(*second_order)
+    return layout + pinned + "d" * damped

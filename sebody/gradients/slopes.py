@@ -16,6 +16,7 @@ from warnings import catch_warnings, simplefilter
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody import inputs
 from sebody.errors import InputError, LimitWarning
 from sebody.explore.ensembles.changes import Handle
 from sebody.gradients.course import Course
@@ -31,6 +32,7 @@ LARGE, SHORT = 0.25, 1e-3       # steps of differences, relative to the size of 
 POLYNOMIAL = 1e-8               # differences over one and two steps that agree like this are exact
 SMOOTH = 1e-2                   # that agree worse are no differences of a smooth function
 NOISE = 1e-8                    # of values: velocities of the start have so much
+SOLVED = 1e-6                   # of velocities: difference of what is given from what is solved for
 
 
 class Slope(NamedTuple):
@@ -88,6 +90,8 @@ class Slopes:
             size = abs(base[component]) or float(np.abs(base).max()) or 1.0
         else:
             size = max(float(np.abs(base).max(initial=0.0)), self._least(name))
+        if name.endswith("velocity") and self.history.past is None:
+            self._check_given(column)
         try:
             values = [] if column.design else self._around(handle, component, LARGE * size)
             if values and _agree(values, POLYNOMIAL):
@@ -106,6 +110,19 @@ class Slopes:
                              "places, so there is no derivative: keep more modes, or make the "
                              "frequencies differ")
         return _slope(values, SHORT * size)
+
+    def _check_given(self, column: Column) -> None:
+        """Refuse a velocity that the run solved for: where it is given, the run is another one."""
+        try:
+            given = self._at(column.handle, column.component, 0.0).rates
+        except InputError:      # it contradicts others: refused with the reason where it is changed
+            return
+        solved = fitted_rates(self._made())
+        if np.abs(given - solved).max(initial=0.0) > SOLVED * np.abs(solved).max(initial=0.0):
+            raise InputError(f"parameter {column.label}: this velocity is not given, and the run "
+                             f"begins with another than {inputs.shown(column.handle.base)}, which "
+                             "was solved for as drives and other velocities ask for: give it by "
+                             "model.initial_velocity")
 
     def _least(self, name: str) -> float:
         """Size of a parameter that may be zero."""

@@ -95,12 +95,14 @@ def takes_one_member(name: str) -> bool:
 
 
 def superelement_kernel_name(layout: str, frame: str, inertia: str, modes: int,
-                             damped: bool = False) -> str:
+                             damped: bool = False,
+                             second_order: tuple[int, int] | None = None) -> str:
     """Name of the fastest kernel there is for a layout, frame and inertia option.
 
-    The one for this number of modes comes first, then that for any number, and last the general
-    one, for any numbers of nodes. Structural damping has kernels of its own. Nothing is imported or
-    compiled.
+    The one for this number of modes comes first, with the numbers of slaved coordinates and stress
+    resultants if they are given and then for any; then that for any number of modes, and last the
+    general one, for any numbers of nodes. Structural damping has kernels of its own. Nothing is
+    imported or compiled.
 
     Raises
     ------
@@ -109,7 +111,7 @@ def superelement_kernel_name(layout: str, frame: str, inertia: str, modes: int,
     """
     variants = [layout_variant(nodes, pinned, damped) for nodes, pinned in (
         (layout, modes), (layout, None), (general_layout(layout), None))]
-    for variant in variants:
+    for variant in (layout_variant(layout, modes, damped, second_order), *variants):
         name = superelement_name(variant, frame, inertia)
         if find(name):
             return name
@@ -127,7 +129,8 @@ def products_kernel_name(kernel: str) -> str | None:
         own = products_name(kernel)
         return own if find(own) else None
     module = load(kernel)
-    layout, damped = re.sub(r"m\d+", "", module.LAYOUT).removesuffix("d"), module.DAMPED is True
+    layout = re.sub(r"m\d+(s\d+e\d+)?", "", module.LAYOUT).removesuffix("d")
+    damped = module.DAMPED is True
     for variant in (layout, general_layout(layout)):
         name = products_name(superelement_name(layout_variant(variant, None, damped), module.FRAME,
                                                module.INERTIA))

@@ -16,7 +16,12 @@ from sebody.io.body_file import load_body
 from sebody.kernels.loader import superelement_kernel_name
 from sebody.model.arguments import dof_block, known, refuse_taken, vector
 from sebody.model.frames import check_frame, default_frame, frame_weights, known_frame
-from sebody.model.inertias import chosen_inertia, known_inertia, needs_damped_kernel
+from sebody.model.inertias import (
+    chosen_inertia,
+    known_inertia,
+    needs_damped_kernel,
+    second_order,
+)
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement, positions, rotations
 from sebody.reduction import ReducedBody
@@ -87,7 +92,8 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
     alpha, alpha_r = frame_weights(name, placed, frame, frame_node)
     layout = layout_name(placed.keeps, placed.planar)
     kernel = superelement_kernel_name(layout, own.kernel, inertia, placed.modes,
-                                      needs_damped_kernel(placed, inertia))
+                                      needs_damped_kernel(placed, inertia),
+                                      second_order(placed, inertia, stiffening))
     model.units = model.units or body.units
     model.bodies[name] = Superelement(name, placed, own_nodes, frame, inertia, stiffening, layout,
                                       alpha, alpha_r, kernel, np.zeros(placed.modes))

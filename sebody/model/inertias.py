@@ -63,6 +63,13 @@ def needs_damped_kernel(body: ReducedBody, inertia: str) -> bool:
     return body.damping is not None and not options.INERTIA_OPTIONS[inertia].rates
 
 
+def second_order(body: ReducedBody, inertia: str, stiffening: bool) -> tuple[int, int] | None:
+    """Numbers of slaved coordinates and stress resultants, of options that have them."""
+    if body.invariants is None or not options.INERTIA_OPTIONS[inertia].field:
+        return None
+    return (body.invariants.slaved, body.invariants.resultants) if stiffening else (0, 0)
+
+
 def _check_option(inertia: str, frame: str) -> None:
     if options.INERTIA_OPTIONS[inertia].rates and FRAMES[frame].traits.incremental:
         raise InputError(f"inertia {inertia!r} needs the exact rates of a frame that depends on "

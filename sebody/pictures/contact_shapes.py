@@ -40,27 +40,27 @@ def hatched(base: ArrayLike, along: NDArray, normal: NDArray) -> Shape:
 def ball(radius: float, inside: bool = False) -> Shape:
     """A sphere by three circles; touched from inside its far half is seen."""
     x, y, z = np.eye(3)
-    circles = [_circle(radius, *pair) for pair in ((x, y), (y, z), (z, x))]
+    circles = [circle(radius, *pair) for pair in ((x, y), (y, z), (z, x))]
     height = np.linspace(-np.pi / 2, np.pi / 2, ROWS + 1)
-    skin = joined([_circle(radius * np.cos(h), x, y, radius * np.sin(h) * z) for h in height])
+    skin = joined([circle(radius * np.cos(h), x, y, radius * np.sin(h) * z) for h in height])
     return joined([*circles, Shape(skin.points, skin.lines[:0], _between_rows(ROWS, inside))])
 
 
 def disc(radius: float, inside: bool = False) -> Shape:
     """A circle in the plane of x and y: a disc with a spoke, or from inside a bore."""
     x, y, _ = np.eye(3)
-    circle = _circle(radius, x, y)
+    rim = circle(radius, x, y)
     if inside:
-        return circle
-    points = np.concatenate([circle.points, np.zeros((1, 3))])
+        return rim
+    points = np.concatenate([rim.points, np.zeros((1, 3))])
     fan = np.column_stack([_loop(AROUND), np.full(AROUND, AROUND)])
-    return Shape(points, np.concatenate([circle.lines, [[AROUND, 0]]]), _both_sides(fan))
+    return Shape(points, np.concatenate([rim.lines, [[AROUND, 0]]]), _both_sides(fan))
 
 
 def tube(axis: NDArray, radius: float, low: float, high: float, inside: bool = False) -> Shape:
     """A stretch of a cylinder about an axis through the origin."""
     u, v = across_of(axis)
-    ends = joined([_circle(radius, u, v, at * axis) for at in (low, high)])
+    ends = joined([circle(radius, u, v, at * axis) for at in (low, high)])
     places = np.arange(GENERATORS) * AROUND // GENERATORS
     generators = np.column_stack([places, places + AROUND])
     return Shape(ends.points, np.concatenate([ends.lines, generators]), _between_rows(1, inside))
@@ -99,7 +99,8 @@ def joined(shapes: Sequence[Shape]) -> Shape:
                                  for k, shape in zip(first, shapes, strict=True)]))
 
 
-def _circle(radius: float, u: NDArray, v: NDArray, centre: ArrayLike = (0.0, 0.0, 0.0)) -> Shape:
+def circle(radius: float, u: NDArray, v: NDArray, centre: ArrayLike = (0.0, 0.0, 0.0)) -> Shape:
+    """A circle in the plane of two directions."""
     angle = 2 * np.pi * np.arange(AROUND)[:, None] / AROUND
     return Shape(np.asarray(centre) + radius * (np.cos(angle) * u + np.sin(angle) * v),
                  _loop(AROUND), _none())

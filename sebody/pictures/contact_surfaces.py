@@ -1,4 +1,4 @@
-"""Contact surfaces and stops of a picture: where they are, and which bodies carry them."""
+"""Contact surfaces, stops and gears of a picture: where they are, and what carries them."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -24,6 +24,7 @@ from sebody.pictures.contact_shapes import (
     tube,
 )
 from sebody.pictures.drawn_nodes import DrawnNode
+from sebody.pictures.gear_wheels import belt, gearing, wheel
 from sebody.pictures.surface import spatial
 
 AROUND_CONTACT = 0.3, 0.1       # margin of surfaces of the ground, of bodies; of the extent
@@ -35,10 +36,10 @@ ALIKE = 9               # digits in which planes of several contacts are the sam
 
 
 class ContactSurface(NamedTuple):
-    """A surface that is touched, a ball that touches one, or the limits of a stop."""
+    """A surface that is touched, a ball that touches one, the limits of a stop, or a wheel."""
 
-    name: str               # of the contact or stop
-    kind: str               # plane, sphere, cylinder, ball, limits or pointer
+    name: str               # of the contact, stop or gear
+    kind: str               # plane, sphere, cylinder, ball, limits, pointer, gear, belt
     node: str | None        # that carries it; None on the ground
     shape: Shape            # from this node, in axes that turn with it; on the ground in space
 
@@ -54,7 +55,7 @@ def contact_lines(model: Mechanism, nodes: Mapping[str, DrawnNode], size: float)
 
 def contact_surfaces(model: Mechanism, nodes: Mapping[str, DrawnNode], size: float
                      ) -> list[ContactSurface]:
-    """Surfaces, balls and limits of the contacts and stops whose `nodes` are drawn.
+    """Surfaces, balls, limits and wheels of contacts, stops and gears whose `nodes` are drawn.
 
     Contacts with the same plane share a patch, and those of the same ball this ball.
     """
@@ -243,4 +244,27 @@ def _distance(model: Mechanism, one: Element, size: float) -> list[ContactSurfac
             for shape in (make(end, inside=True) for end in limits)]
 
 
-LIMITS = {"turn_stop": _angle, "slide_stop": _way, "distance_stop": _distance}
+def _gears(model: Mechanism, one: Element, size: float) -> list[ContactSurface]:
+    """The pitch circles of two wheels, each on the shaft that turns in its bearing."""
+    shafts, axes = [], []
+    for k in (0, 1):
+        a, b = (held.node for held in one.attachments[2 * k:2 * k + 2])
+        axis = Z if model.planar else np.cross(one.vector(f"n{k + 1}"), one.vector(f"m{k + 1}"))
+        shafts.append(b if _on_ground(model, a) else a)
+        axes.append(-axis if _on_ground(model, a) else axis)    # angles are those of the first
+    made = gearing(np.array([spatial(node.point) for node in shafts]), np.array(axes),
+                   one.number("ratio"), size)
+    surfaces = []
+    for k, node in enumerate(shafts):
+        shape = wheel(made.wheels[k], made.wheels[1 - k])
+        surfaces.append(ContactSurface(one.name, "gear", _carrier(model, node), shape._replace(
+            points=shape.points - (0.0 if _on_ground(model, node) else spatial(node.point)))))
+    bearings = {_carrier(model, held.node) for held in one.attachments} - {
+        surface.node for surface in surfaces}
+    if made.belt and bearings == {None}:
+        surfaces.append(ContactSurface(one.name, "belt", None, belt(*made.wheels)))
+    return surfaces
+
+
+LIMITS = {"turn_stop": _angle, "slide_stop": _way, "distance_stop": _distance,
+          "gear_play": _gears}

@@ -106,8 +106,8 @@ def seen_places(drawn: Scenery) -> NDArray:
     points = [node.position for node in drawn.nodes.values()]
     frames = np.unique(np.linspace(0, len(drawn.t) - 1, LOOKED_AT[0]).astype(int))
     points += [_stations(body, frames) for body in drawn.bodies]
-    points += [vertices_of(one, drawn.nodes, k) for one in drawn.contacts if one.kind == "ball"
-               for k in frames]
+    points += [vertices_of(one, drawn.nodes, k) for one in drawn.contacts
+               if one.kind in ("ball", "gear") for k in frames]
     return np.concatenate(points)
 
 

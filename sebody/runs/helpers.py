@@ -22,7 +22,8 @@ _SHARE = CFUNCTYPE(c_int64, c_void_p, c_void_p, c_int64, c_int64)   # releases P
 def checked_threads(threads: int) -> int:
     """The number of threads that is asked for."""
     return inputs.integer(threads, "threads", least=1, most=MOST,
-                          remedy="give the number of cores that may share a step")
+                          remedy=f"give a whole number from 1 to {MOST}, of the cores that may "
+                                 "share a step")
 
 
 @contextmanager

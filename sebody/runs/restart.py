@@ -112,7 +112,7 @@ def resume(model: Model, path: str | Path, threads: int = 1) -> Simulation:
 def _settings(file: str, settings: Any, headers: Mapping[str, Header]) -> dict:
     """What the file says of the run, of a version and with the members that are read."""
     if settings["version"] != VERSION:
-        raise InputError(f"{file} is of version {settings['version']}, this program writes "
+        raise InputError(f"{file} is of version {settings['version']}, this program reads "
                          f"{VERSION}: {REPEAT}")
     wanted = {"settings", *OF_START, "rows", *(field.name for field in fields(State))}
     differing = SETTINGS - set(settings) | set(headers) ^ wanted

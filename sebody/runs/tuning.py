@@ -1,8 +1,8 @@
 """Bristles of friction: stiffness from the mass they hold, and the force they carry at the start.
 
 A bristle that is much stiffer than ``m/h^2`` makes steps of the length h fail, one that is much
-softer gives way. Its stiffness is ``m/h^2`` unless it is given, where m is the mass that resists a
-force along it, ``1/(B M^-1 B^T)`` with the joints as they are.
+softer gives way. Its stiffness is ``m/h^2`` unless it is given, where m is the least mass that
+resists a force along it, ``1/(B M^-1 B^T)`` with the joints as they are.
 
 At the start bristles of joints at rest must carry what holds them: unloaded ones would give way.
 Their forces are those at which nothing that they hold is accelerated, found by Newton's iteration,
@@ -55,7 +55,7 @@ def tune(model: Mechanism, system: System, numbering: Numbering, state: State,
     for load in tuned:
         constants = _Constants(load, system, numbering)
         rows = directions(load, numbering, state)
-        mass = 1.0 / max(_mobility(row, solve, system, state, numbering.free) for row in rows)
+        mass = 1.0 / _mobility(rows, solve, system, state, numbering.free)
         natural = mass / state.clock.step**2
         if "teeth" in load.tuned:
             constants["stiffness"] = RESOLVED**2 * natural
@@ -66,19 +66,21 @@ def tune(model: Mechanism, system: System, numbering: Numbering, state: State,
             2.0 * load.tuned["damping"] * np.sqrt(stiffness * mass))
 
 
-def _mobility(row: NDArray, solve: Callable[[NDArray], NDArray], system: System, state: State,
-              free: int) -> float:
-    """Acceleration along a direction by a unit force along it.
+def _mobility(rows: list[NDArray], solve: Callable[[NDArray], NDArray], system: System,
+              state: State, free: int) -> float:
+    """Largest acceleration by a unit force along any sum of directions, along this force.
 
     What a drive moves does not give way: it gets the mobility of its parts alone; what is held, or
     moved as a node, gets that of a typical inertia of the model, as its parts are not known.
     """
-    own = row[:free] != 0.0
-    alone = float((row[:free][own]**2 / np.maximum(system.inertias[:free][own], 1e-300)).sum())
-    mobility = float(response(row, solve, system, state, free) @ row)
+    inertias = np.maximum(system.inertias[:free], 1e-300)
+    alone = max(float((row[:free]**2 / inertias)[row[:free] != 0.0].sum()) for row in rows)
+    answers = np.array([response(row, solve, system, state, free) for row in rows])
+    joint = answers @ np.array(rows).T
+    mobility = float(np.linalg.eigvalsh((joint + joint.T) / 2)[-1])
     if mobility > STILL * alone:
         return mobility
-    return alone if alone > 0.0 else _typical_mobility(row, system, free)
+    return alone or max(_typical_mobility(row, system, free) for row in rows)
 
 
 def _typical_mobility(row: NDArray, system: System, free: int) -> float:

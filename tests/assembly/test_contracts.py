@@ -164,6 +164,19 @@ def test_superelements_that_do_not_fit_their_kernel(kernel, message):
         build(model)
 
 
+def test_a_superelement_with_less_of_second_order_than_its_kernel():
+    """Without stiffening a beam has nothing of second order, and a kernel for any number."""
+    model = Model()
+    ends = model.node("base", (0, 0, 0)), model.node("tip", (1.0, 0, 0))
+    model.beam("beam", ends, SECTION, 4, bodies=1, modes=4, stiffening=False)
+    body = model.element("beam")
+    assert body.kernel == "superelement_f2_converged_mean_floating_field"
+    body.kernel = "superelement_f2m4s2e1_converged_mean_floating_field"
+    with pytest.raises(InputError, match="it has 0 slaved coordinates and the kernel 2; it has 0 "
+                                         "stress resultants and the kernel 1"):
+        build(model)
+
+
 def test_a_superelement_of_more_nodes_than_its_kernel():
     body = craig_bampton(straight_beam((0, 0, 0), (1, 0, 0), SECTION, 2),
                          [(0, "full"), (1, "full"), (2, "full")], modes=0)

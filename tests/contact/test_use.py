@@ -67,6 +67,24 @@ def test_a_held_or_moved_point_has_forces(held):
     assert np.isfinite(result["cut.work"]).all() and result.energy_balance() < 1e-2
 
 
+@pytest.mark.parametrize("bristle", [None, 1e4])
+def test_a_turned_floor_gives_turned_motion(bristle):
+    """Bristles are as stiff and damped for a body that gives way unlike in different directions."""
+    def run(angle):
+        c, s = np.cos(angle), np.sin(angle)
+        turn = np.array([[c, -s], [s, c]])
+        model = Model(planar=True)
+        model.rigid_body("body", model.node("ball", (0.0, 0.101)), 1.0, 0.02, turn @ (0.1, 0.03)
+                         + (0.0, 0.101))
+        model.gravity(turn @ (0.0, -G))
+        model.initial_velocity("ball", linear=turn @ (0.3, -0.5))
+        model.contact("ball", on=plane(turn @ (0.0, 1.0), (0.0, 0.101) - 0.101 * turn[:, 1]),
+                      radius=0.1, stiffness=1e5, friction=0.3, bristle=bristle)
+        return (simulate(model, 1e-3, 0.05)["ball.position"] - (0.0, 0.101)) @ turn
+    # rounding, amplified by the impact; 1e-4 where the damping depends on the axes of space
+    assert np.abs(run(0.6) - run(0.0)).max() < 1e-9
+
+
 def test_equilibrium_sticks_or_slides():
     model = incline(0.4)
     found = equilibrium(model)

@@ -30,6 +30,22 @@ def test_general_layouts_have_no_counts(name, planar, damped):
     assert {layout.positions, layout.rotations, layout.first_rotation, layout.first_mode} == {None}
 
 
+def test_modes_and_what_is_of_second_order_are_pinned():
+    """Slaved coordinates and stress resultants, behind the modes."""
+    layout = Layout.parse("planar-f2m0s2e1")
+    assert layout == Layout(("full", "full"), True, 0, False, (2, 1))
+    assert layout.name == "planar-f2m0s2e1"
+    assert Layout.parse("f2m12s10e0").second_order == (10, 0)
+    assert Layout.parse("f2m4d").second_order is None
+
+
+def test_numbers_of_second_order_where_there_are_none():
+    with pytest.raises(LayoutError, match="layout f2m4s2e1: bodies with inertia option 'material' "
+                                          "have no slaved coordinates and stress resultants: leave "
+                                          "out s and e with their numbers"):
+        superelement(Layout.parse("f2m4s2e1"), "converged_mean", "material")
+
+
 def test_order_of_the_nodes_does_not_enter():
     mixed = Layout(("rotation", "full", "translation", "full"))
     assert mixed.name == "f2t1r1"
@@ -43,7 +59,8 @@ def test_names_are_made_canonical(name, canonical):
 
 @pytest.mark.parametrize("name", ["", "2", "f", "f-1", "x3", "t1f2", "f2 t1", "f2f2", "F2", "f2.5",
                                   "planar", "planar-", "planarf2", "flat-f2", "nonsense", "f2\n",
-                                  "anym4", "anyf2", "many"])
+                                  "anym4", "anyf2", "many", "f2s2e1", "f2m4s2", "f2m4e1",
+                                  "anym4s2e1", "f2m4e1s2", "f2m4ds2e1"])
 def test_unreadable_name(name):
     with pytest.raises(LayoutError, match="is unknown: write counts of full, translation-only and "
                                           "rotation-only nodes, such as f2, f2t1") as caught:

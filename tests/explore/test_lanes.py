@@ -1,5 +1,8 @@
 """Runs eight at a time: each equals a single run, in whatever company it is made."""
 
+import gc
+import weakref
+
 import numpy as np
 import pytest
 from lane_models import linkage, single, turned_beam
@@ -175,6 +178,29 @@ def test_coupled_and_linked_bodies(small):
         assert np.abs(found["end"][run] - result["tip.position"]).max() < 1e-11
         assert found["energy"][run] == pytest.approx(result["energy.strain"][-1], rel=1e-7)
 
+
+def test_straight_code_lives_as_long_as_the_arrays_that_use_it(small, monkeypatch):
+    """Where none is kept for other ensembles."""
+    from sebody.engine.lanes import loop
+    from sebody.kernels.lanes import straight
+
+    made, alive, rows_of = weakref.WeakSet(), [], loop.rows_of
+
+    def code(entries):
+        made.add(own := straight.Straight(entries))
+        return own
+
+    def count(*given):
+        gc.collect()
+        alive.append(len(made))
+        rows_of(*given)
+    four_bar, given = Ensemble(linkage(), 4e-3), {"spring.stiffness": np.linspace(5, 90, 9)}
+    found = four_bar.run(given, 0.04, {"end": "tip.position"}, threads=1)
+    monkeypatch.setattr(straight, "straight_code", code)
+    monkeypatch.setattr(loop, "rows_of", count)
+    assert_same(four_bar.run(given, 0.04, {"end": "tip.position"}, threads=1), found)
+    gc.collect()
+    assert found.in_lanes == 9 and min(alive) == max(alive) > 0 and not made
 
 
 @pytest.mark.parametrize("scene, options, scheme, reason", [

@@ -24,6 +24,13 @@ def turned(angle):
     return m
 
 
+def test_a_velocity_that_was_solved_for_is_refused():
+    """The base starts with a speed: from a tip that is given at rest the run is another one."""
+    with pytest.raises(InputError, match=r"tip.velocity\[0\]: this velocity is not given.*"
+                                         r"initial_velocity"):
+        gradient(turned(1.0), 0.01, 0.02, {"tip": final("tip.position")}, ["tip.velocity"])
+
+
 def apart(model, *run):
     """Largest differences of both recursions from differences of runs, and from each other."""
     one, other = (gradient(model, *run, mode, scheme=EXACT).matrix

@@ -1,5 +1,8 @@
 """Products and maps of rotations in lanes against those of each member's numbers."""
 
+import gc
+import weakref
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -39,6 +42,9 @@ from sebody.kernels.lanes.constant_products import (  # noqa: E402
     straight_times,
 )
 from sebody.kernels.lanes.straight import (  # noqa: E402
+    KEPT,
+    entries_of,
+    straight_code,
     write_address,
     write_matrix_address,
     write_shared_address,
@@ -116,7 +122,7 @@ def test_products_of_shared_matrices(columns):
     A[[0, 7, 11]] = 0.0
     x, begin = rng.normal(size=(columns, MEMBERS)), rng.normal(size=(rows + 1, MEMBERS))
     given, out, more = numbers_of_all(A), Given.of(begin), Given.of(begin)
-    kept = write_matrix_address(A, given.rows[0])
+    kept, _code = write_matrix_address(A, given.rows[0])
     straight_products(given, Given.of(x), out, more, rows)
     assert given.rows[0, :1].view(np.int64) == kept.ctypes.data
     np.testing.assert_allclose(out.values[:rows], A @ x, atol=1e-13)
@@ -150,10 +156,10 @@ def test_packed_products(straight, shared, row_of_all):
     if row_of_all:
         packed = numbers_of_all(row[:, 0].copy())
     if straight and row_of_all:         # entries that members have of their own stay in lanes
-        kept = write_shared_address(packed.rows[0], np.ptp(row, axis=1) > 0.0, lanes.values)
+        kept, _code = write_shared_address(packed.rows[0], np.ptp(row, axis=1) > 0.0, lanes.values)
         assert packed.rows[0, :1].view(np.int64) == kept.ctypes.data
     elif straight:
-        write_address(row[:, 0].copy(), np.ptp(row, axis=1) > 0.0, packed.values)
+        _code = write_address(row[:, 0].copy(), np.ptp(row, axis=1) > 0.0, packed.values)
     height = whole_vectors(rows)
     x = rng.normal(size=(whole_vectors(columns) + LANES, MEMBERS))
     factors = rng.normal(size=(count, MEMBERS))
@@ -167,6 +173,24 @@ def test_packed_products(straight, shared, row_of_all):
         return
     found = total.values.reshape(-1, height, MEMBERS)[:columns, :rows]
     np.testing.assert_allclose(found, np.einsum("mkrc,km->crm", stacks, factors), atol=1e-13)
+
+
+def test_straight_code_is_freed_once_nobody_keeps_it():
+    """Some are kept for the next ensemble; one in use works when it is not among them any more."""
+    rng, shape = np.random.default_rng(5), (1, 4, 4)
+    stack, nothing = rng.normal(size=shape), np.zeros(packed_size(*shape), dtype=bool)
+    row = pack(stack, shape)
+    packed = Given.of(np.tile(row[:, np.newaxis], MEMBERS))
+    used = write_address(row, nothing, packed.values)
+    others = [weakref.ref(straight_code(entries_of(pack(rng.normal(size=shape), shape), nothing)))
+              for _ in range(KEPT + 2)]
+    gc.collect()
+    assert [code() is None for code in others] == [True, True] + [False] * KEPT
+    assert straight_code(entries_of(row, nothing)) is not used
+    x, out = rng.normal(size=(8, MEMBERS)), Given.of(np.full((4, MEMBERS), np.nan))
+    packed_products_of(packed, Given.of(x), out, Given.of(np.zeros((1, MEMBERS))),
+                       Given.of(np.zeros((16, MEMBERS))), 4, 4)
+    np.testing.assert_allclose(out.values, 2.0 * stack[0] @ x[:4], atol=1e-13)
 
 
 @compiled
@@ -188,7 +212,7 @@ def test_couplings(straight):
     row = np.array([pack_couplings(*both) for both in zip(S, C, strict=True)]).T
     packed, height = Given.of(row), whole_vectors(N)
     if straight:
-        write_address(row[:, 0].copy(), np.ptp(row, axis=1) > 0.0, packed.values)
+        _code = write_address(row[:, 0].copy(), np.ptp(row, axis=1) > 0.0, packed.values)
     x, y = rng.normal(size=(2, height + LANES, MEMBERS))
     factors = rng.normal(size=(8, MEMBERS))
     out = Given.of(np.full((8 * height, MEMBERS), np.nan))

@@ -37,6 +37,16 @@ def test_a_kernel_for_the_number_of_modes_or_of_nodes_or_for_any(layout, modes, 
                                            damped) == name
 
 
+@pytest.mark.parametrize("layout, modes, second_order, name", [
+    ("f2", 4, (2, 1), "f2m4s2e1"), ("f2", 4, (2, 3), "f2"), ("f2", 4, None, "f2"),
+    ("f2", 3, (2, 1), "f2"), ("planar-f2", 0, (2, 1), "planar_f2m0s2e1"),
+    ("planar-f3", 2, (2, 1), "planar_any")])
+def test_a_kernel_for_the_numbers_of_second_order(layout, modes, second_order, name):
+    assert loader.superelement_kernel_name(
+        layout, "converged_mean", "floating_field", modes, False, second_order
+    ) == f"superelement_{name}_converged_mean_floating_field"
+
+
 def test_names_are_found_without_import(monkeypatch):
     monkeypatch.setattr(loader, "import_module", None)
     assert loader.superelement_kernel_name("t8", "positions", "material", 0)

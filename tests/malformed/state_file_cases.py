@@ -49,7 +49,7 @@ RESTART = {
     "settings of brackets": Packed("brackets are nested deeper than 100", raw(
         "settings", "[" * 300_000)),
     "settings that are a list": Packed("is damaged or no restart file", raw("settings", "[]")),
-    "another version": Packed("is of version 7, this program writes 6", text(
+    "another version": Packed("is of version 7, this program reads 6", text(
         "settings", lambda said: said.update({"version": 7}))),
     "a negative step at the start": Packed("the time step is -0.05", text(
         "settings", lambda said: said.update({"h": -0.05}))),

@@ -27,10 +27,14 @@ REFUSED = [
     (("run", "broken.py"), "broken.py"), (("run", "empty.py"), "empty.py"),
     (("run", "four-bar", "chain"), "unrecognized arguments: chain"),
     ((*BODY, "--fast"), "unrecognized arguments: --fast"),
-    *(((*BODY, option, value), f"argument {option}: invalid") for option in (
+    *(((*BODY, option, value), f"argument {option}: {value!r} is no number") for option in (
         "--t-end", "--step", "--accuracy", "--rho") for value in ("soon", "", "1,0", "1e", "0x1")),
-    *(((*BODY, option, value), f"argument {option}: invalid int") for option in (
-        "--index", "--every") for value in ("two", "2.5", "")),
+    *(((*BODY, option, value), f"argument {option}: {value!r} is no whole number: give one such as")
+      for option in ("--index", "--every", "--threads") for value in ("two", "2.5", "")),
+    *(((*BODY, "--threads", value), f"threads is {value}: give a whole number from 1 to 64")
+      for value in ("0", "-2", "65")),
+    ((*BODY, "--t_end", "1"), "unrecognized arguments: --t_end 1; did you mean --t-end?"),
+    ((*BODY, "--modes", "3"), "parameters of a scene are given by --set NAME=VALUE"),
     *(((*BODY, option), f"argument {option}: expected one argument") for option in (
         "--t-end", "--step", "--accuracy", "--rho", "--index", "--every", "--output", "--plot",
         "--save", "--resume", "--set")),
@@ -104,7 +108,7 @@ REFUSED = [
       for command, end in (("plot", ".png"), ("animate", ".gif"), ("report", ".html"))
       for path, said in ((f"a{end}x", "must end in ."), (f"none/a{end}", "folder none of the"),
                          (LONG + end, "cannot be a file"), ("broken.npz", "must end in ."))),
-    (("animate", "a.npz", "--output", "a.html", "--speed", "fast"), "invalid float value: 'fast'"),
+    (("animate", "a.npz", "--output", "a.html", "--speed", "fast"), "--speed: 'fast' is no number"),
     (("advise", "hinged-beam"), "required: --quantity"),
     (("advise", "beam", "--quantity", "tip.position"), "scene 'beam' is unknown"),
     *((("advise", "hinged-beam", "--t-end", "0.1", "--quantity", *given), said) for given, said in (

@@ -45,6 +45,8 @@ def superelement_head(given: Superelement, kernel: Kernel) -> Head:
          f"MODES = {layout.first_mode}          # first internal mode",
          f"DAMPED = {damped}        # has structural damping, None where a body tells",
          f"N_MODES = {layout.modes}        # their number, None where it is read at run time",
+         *[f"SECOND_ORDER = {layout.second_order}       # slaved coordinates, stress resultants"
+           ] * inertia.traits.field,
          f"WORK_ROWS = {kernel.rows}", f"WORK_SQUARES = {kernel.squares}",
          "# arithmetic of one evaluation: of the element, of each position and of each rotation; "
          "then the", "# number of products with n x n matrices", *operations(kernel),

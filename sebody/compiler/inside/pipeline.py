@@ -24,7 +24,13 @@ from sebody.compiler.short_loops import mark_short
 
 
 class _ShortLoops(Lowering):
-    """Tells LLVM of every loop that it is short."""
+    """Tells LLVM of every loop that it is short, and of products which it may take in."""
+
+    def lower_normal_function(self, fndesc):
+        super().lower_normal_function(fndesc)
+        if getattr(self.func_ir.func_id.func, "sizes_known", False):
+            for function in self.module.functions:
+                function.attributes.discard("noinline")
 
     def lower_inst(self, inst):
         super().lower_inst(inst)

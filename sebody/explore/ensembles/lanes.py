@@ -103,7 +103,7 @@ class Lanes:
         self._courses: list[Course] = []
         self.ended = False
 
-    def _write_constants(self) -> tuple[NDArray, list[NDArray]]:
+    def _write_constants(self) -> tuple[NDArray, list]:
         """Write straight code of all bodies.
 
         Returns
@@ -111,17 +111,17 @@ class Lanes:
         shared : ndarray
             Constants of the model as built, for bodies whose constants members share.
         pointed : list
-            Arrays that these constants point to.
+            What the addresses among these and other constants lead to.
         """
         image = self.copies.image
         first, shared = image.offsets.of(image.template.system.constants), own_parts(image)
-        varied, kept = varied_numbers(image), {}
+        varied, kept, codes = varied_numbers(image), {}, []
         floats = np.where(varied & (image.floats == 0.0), 1.0, image.floats)    # zero in some alone
         numbers_of_all = floats[first].copy()
         for batch, place in packed_rows(image):
             given = floats[place], varied[place], self._numbers[place]
             if batch not in shared:
-                write_address(*given)
+                codes.append(write_address(*given))
             elif place.start not in kept:       # bodies that are alike have one row
                 own = numbers_of_all[place.start - first.start:place.stop - first.start]
                 kept[place.start] = write_shared_address(own, *given[1:])
@@ -133,7 +133,7 @@ class Lanes:
         for place in own_places(image):
             numbers_of_all[place.start - first.start:][:1].view(np.int64)[0] = (
                 self._numbers[place].ctypes.data)
-        return numbers_of_all, list(kept.values())
+        return numbers_of_all, [*codes, *kept.values()]
 
     def _own_places(self) -> NDArray:
         """Places in the buffer of what members begin with: parameters, and their state."""

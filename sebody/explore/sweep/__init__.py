@@ -16,6 +16,7 @@ import numpy as np
 from sebody import inputs
 from sebody.errors import InputError
 from sebody.explore.ensembles import Output
+from sebody.explore.ensembles.handles import GRAVITY
 from sebody.explore.ensembles.work import processors
 from sebody.explore.sweep import executors as places
 from sebody.explore.sweep import sobol
@@ -25,6 +26,7 @@ from sebody.explore.sweep.table import Table
 from sebody.explore.sweep.variations import Distribution
 from sebody.files import check_target
 from sebody.runs.progress import showing
+from sebody.spelling import unknown
 
 BATCH = 100             # runs of a task
 SAVED = 5.0             # seconds between two savings of the table
@@ -82,7 +84,11 @@ def sweep(build: Callable[..., Any], outputs: Mapping[str, Output],
     if both := sorted(set(fixed) & set(made.columns)):
         raise InputError(f"{both[0]} varies and is set to {fixed[both[0]]}: leave out one of them")
     plan = Plan(uuid4().hex, build, tuple(fixed.items()), tuple(outputs.items()), made.runs)
-    structural = set(made.columns) & {*OF_RUN, *signature(build).parameters}
+    own = *OF_RUN, *signature(build).parameters
+    structural = set(made.columns) & set(own)
+    for name in made.columns:       # all others have an owner, but for one
+        if "." not in name and name not in (*own, GRAVITY):
+            raise unknown("parameter", name, (*own, GRAVITY), "a sweep of this scene has")
     check_plan(plan, made.columns, structural)
     path = None if output is None else check_target(output, "table", (".npz",))
     table = _begun(path, _text(build, fixed, outputs, made), made)

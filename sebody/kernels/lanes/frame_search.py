@@ -14,10 +14,23 @@ from sebody.kernels.rotations import NEAR_PI, relative_log, relative_rotations, 
 @in_lanes_of(frame_search.converged_mean)
 def converged_mean(count, nodes, alpha, R, frame, psi):
     """See `frame_search.converged_mean`; 0 always, no number where there is no frame."""
-    if count == 2:
-        _mean_of_two(nodes, alpha, R, frame, psi)
+    if count != 2:
+        _search_mean(count, nodes, alpha, R, frame, psi, spread(0.0) == 0.0)
         return 0
-    left = spread(0.0) == 0.0
+    sought = _mean_of_two(nodes, alpha, R, frame, psi)
+    if some(sought):
+        a, b, c, d, e, f = psi[0], psi[1], psi[2], psi[3], psi[4], psi[5]
+        _search_mean(2, nodes, alpha, R, frame, psi, sought)
+        psi[0], psi[1], psi[2] = where(sought, psi[0], a), where(sought, psi[1], b), where(
+            sought, psi[2], c)
+        psi[3], psi[4], psi[5] = where(sought, psi[3], d), where(sought, psi[4], e), where(
+            sought, psi[5], f)
+    return 0
+
+
+@compiled
+def _search_mean(count, nodes, alpha, R, frame, psi, left):
+    """Newton's iteration for some members; the others keep their frames."""
     for _ in range(30):
         relative_rotations(count, nodes, R, frame, psi)
         x = y = z = spread(0.0)
@@ -27,14 +40,13 @@ def converged_mean(count, nodes, alpha, R, frame, psi):
             z += alpha[j] * psi[3 * j + 2]
         left = left & ~(x * x + y * y + z * z < 1e-30)
         if not some(left):
-            return 0
+            return
         x, y, z = frame_search.mean_step(count, alpha, psi, x, y, z)
         _rotate_some(left, frame, x, y, z)
         left = left & ~(x * x + y * y + z * z < 1e-16)
     relative_rotations(count, nodes, R, frame, psi)
     for k in range(3 * count):
         psi[k] = where(left, spread(NONE), psi[k])
-    return 0
 
 
 @compiled
@@ -50,21 +62,26 @@ def _rotate_some(chosen, frame, x, y, z):
 
 @compiled
 def _mean_of_two(nodes, alpha, R, frame, psi):
-    """The closed form; no number in lanes where it may not be the mean."""
+    """The closed form; returns the members whose mean it may not be, and which keep their frames.
+
+    Members that have no numbers are not among them.
+    """
     x, y, z, cosine = relative_log(R, 9 * nodes[0], R, 9 * nodes[1])
     p, q, r = alpha[1] * x, alpha[1] * y, alpha[1] * z
     a, b, c, d, e, f, g, h, i = rotated(R, 9 * nodes[0], p, q, r)
     near = a * frame[0] + b * frame[1] + c * frame[2] + d * frame[3] + e * frame[4] + f * frame[5]
     near = near + g * frame[6] + h * frame[7] + i * frame[8]
-    found = (cosine > 0.0) & ~(near < 1.0)
+    psi[0], psi[1], psi[2] = -p, -q, -r
+    psi[3], psi[4], psi[5] = alpha[0] * x, alpha[0] * y, alpha[0] * z
+    sought = (cosine <= 0.0) | (near < 1.0)
+    if some(sought):
+        a, b, c = where(sought, frame[0], a), where(sought, frame[1], b), where(sought, frame[2], c)
+        d, e, f = where(sought, frame[3], d), where(sought, frame[4], e), where(sought, frame[5], f)
+        g, h, i = where(sought, frame[6], g), where(sought, frame[7], h), where(sought, frame[8], i)
     frame[0], frame[1], frame[2] = a, b, c
     frame[3], frame[4], frame[5] = d, e, f
     frame[6], frame[7], frame[8] = g, h, i
-    psi[0], psi[1], psi[2] = -p, -q, -r
-    psi[3], psi[4], psi[5] = alpha[0] * x, alpha[0] * y, alpha[0] * z
-    if not every(found):
-        for k in range(6):
-            psi[k] = where(found, psi[k], spread(NONE))
+    return sought
 
 
 @in_lanes_of(frame_search.best_fit)

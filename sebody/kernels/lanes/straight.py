@@ -3,12 +3,14 @@
 Matrices of option C are mostly zeros. Where the same few bodies serve thousands of runs, code for
 the entries that are there takes a third of the instructions of strips, and no list is read. It is
 compiled for a pattern of zeros, in hundredths of a second, when an ensemble begins. Entries that
-all members share are constants of the code: eight bytes are read in place of 64.
+all members share are constants of the code: eight bytes are read in place of 64. The code of a row
+takes some megabytes: it is freed once nobody keeps it, and the last ones are kept for the next
+ensemble.
 """
 
 from __future__ import annotations
 
-from functools import cache
+from functools import lru_cache
 from itertools import groupby
 
 import numpy as np
@@ -29,9 +31,9 @@ MOST_GROUPS = 1 << 20       # of a row; a larger number is an address
 # share it
 Entries = tuple[tuple[int, int, int, int, float | None], ...]
 
+KEPT = 16           # codes that are kept when their ensembles are gone
 MOST_FACTORS = 24           # that registers hold beside sums
 _NAMES = {"straight": False, "more": True}       # of functions, and whether they add
-_engines = []       # own the code
 
 
 def entries_of(row: NDArray, varied: NDArray) -> Entries:
@@ -51,18 +53,40 @@ def entries_of(row: NDArray, varied: NDArray) -> Entries:
     return tuple(sorted(found, key=lambda entry: entry[3::-1]))
 
 
-@cache
-def addresses_of(entries: Entries) -> tuple[int, int]:
-    """Addresses of functions of a row, two vectors, products, and how many of these there are.
+class Straight:
+    """Straight code: functions of a row, two vectors, products, and how many of these there are.
 
-    The first one writes products, zeros where no entry is; the second one adds to them.
+    Attributes
+    ----------
+    address, more : int
+        Of what writes products, zeros where no entry is, and of what adds to them, for as long as
+        this object lives.
     """
+
+    def __init__(self, entries: Entries):
+        triple, features = binding.get_process_triple(), binding.get_host_cpu_features().flatten()
+        target = binding.Target.from_triple(triple).create_target_machine(
+            cpu=binding.get_host_cpu_name(), features=features, opt=2)
+        module = binding.parse_assembly(str(_functions(entries)))
+        self._engine = binding.create_mcjit_compiler(module, target)
+        self._engine.finalize_object()
+        self.address, self.more = map(self._engine.get_function_address, _NAMES)
+        self._engine.remove_module(module)      # what it was made of takes more than the code
+
+
+@lru_cache(maxsize=KEPT)
+def straight_code(entries: Entries) -> Straight:
+    """The code for some entries, of an earlier ensemble if that is still kept."""
+    return Straight(entries)
+
+
+def _functions(entries: Entries) -> ir.Module:
     module = ir.Module("straight")
     module.triple = binding.get_process_triple()
     shared = _Shared(module, entries)
     for name, adds in _NAMES.items():
         _write(module, name, shared, entries, adds)
-    return _compiled(module)
+    return module
 
 
 def _write(module: ir.Module, name: str, shared: _Shared, entries: Entries, adds: bool) -> None:
@@ -123,17 +147,10 @@ def _read(builder, pointer, place):
     return builder.load(builder.gep(pointer, [WORD(place)]))
 
 
-def _compiled(module: ir.Module) -> tuple[int, int]:
-    target = binding.Target.from_triple(module.triple).create_target_machine(
-        cpu=binding.get_host_cpu_name(), features=binding.get_host_cpu_features().flatten(), opt=2)
-    engine = binding.create_mcjit_compiler(binding.parse_assembly(str(module)), target)
-    engine.finalize_object()
-    _engines.append(engine)
-    return tuple(engine.get_function_address(name) for name in _NAMES)
-
-
-def write_address(row: NDArray, varied: NDArray, lanes: NDArray) -> None:
+def write_address(row: NDArray, varied: NDArray, lanes: NDArray) -> Straight:
     """Compile straight code of a row of packed matrices, and put its addresses into lanes.
+
+    What is returned is to be kept.
 
     Parameters
     ----------
@@ -145,28 +162,30 @@ def write_address(row: NDArray, varied: NDArray, lanes: NDArray) -> None:
         The same in lanes.
     """
     assert lanes.shape == (len(row), MEMBERS)
-    lanes.view(np.int64)[0, [AT_ADDRESS, AT_MORE]] = addresses_of(entries_of(row, varied))
+    code = straight_code(entries_of(row, varied))
+    lanes.view(np.int64)[0, [AT_ADDRESS, AT_MORE]] = code.address, code.more
+    return code
 
 
-def write_shared_address(row: NDArray, varied: NDArray, lanes: NDArray) -> NDArray:
+def write_shared_address(row: NDArray, varied: NDArray, lanes: NDArray
+                         ) -> tuple[NDArray, Straight]:
     """The same of a row that members share but for some entries, which are read from lanes.
 
-    Its first number is replaced by the address of what is returned, and to be kept: the number
-    itself, and addresses of straight code and of the lanes.
+    Its first number is replaced by the address of an array: the number itself, and addresses of
+    straight code and of the lanes. This array and the code are returned, and to be kept.
 
     Parameters
     ----------
     row, varied, lanes : ndarray
         As of `write_address`.
     """
-    own = row.view(np.int64)
-    address, more = addresses_of(entries_of(row, varied))
-    found = np.array([own[0], address, lanes.ctypes.data, more])
+    own, code = row.view(np.int64), straight_code(entries_of(row, varied))
+    found = np.array([own[0], code.address, lanes.ctypes.data, code.more])
     own[0] = found.ctypes.data
-    return found
+    return found, code
 
 
-def write_matrix_address(matrix: NDArray, shared: NDArray) -> NDArray:
+def write_matrix_address(matrix: NDArray, shared: NDArray) -> tuple[NDArray, Straight]:
     """Compile straight code of a matrix that members share, see `constant_products`.
 
     Parameters
@@ -174,11 +193,12 @@ def write_matrix_address(matrix: NDArray, shared: NDArray) -> NDArray:
     matrix : (rows, columns)
         Its entries.
     shared : (size,)
-        The matrix among the constants: its first number is replaced by the address of what is
-        returned, and to be kept.
+        The matrix among the constants: its first number is replaced by the address of an array of
+        addresses. This array and the code are returned, and to be kept.
     """
     entries = tuple((0, 0, column, row, float(matrix[row, column]))
                     for row, column in np.argwhere(matrix).tolist())
-    found = np.array(addresses_of(entries))
+    code = straight_code(entries)
+    found = np.array([code.address, code.more])
     shared.view(np.int64)[0] = found.ctypes.data
-    return found
+    return found, code

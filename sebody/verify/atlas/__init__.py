@@ -46,7 +46,8 @@ KERNELS = tuple(
         ("planar-f2", "converged_mean", "material"), ("planar-f2m2", "converged_mean", "material"),
         ("planar-f2m4", "converged_mean", "material"), ("f2", "converged_mean", "floating_field"),
         ("planar-f2", "converged_mean", "floating_field"),
-        ("planar-f2m2", "converged_mean", "floating_field"),
+        ("f2m4s2e1", "converged_mean", "floating_field"),
+        ("planar-f2m2s2e1", "converged_mean", "floating_field"),
         ("any", "converged_mean", "floating_field"),
         ("any", "positions", "floating_field"))) + tuple(
     element_name(kind) for kind in (

@@ -104,7 +104,7 @@ def superelement_case(module: ModuleType, seed: int, psi: float = 0.3, beta: flo
         values["C"] = damping * M @ M     # any positive matrix
     case = case._replace(field=gravity * random.normal(size=3))
     if is_floating(case):
-        slaved, resultants = FOLLOWING[seed % len(FOLLOWING)]
+        slaved, resultants = module.SECOND_ORDER or FOLLOWING[seed % len(FOLLOWING)]
         case = case._replace(slaved=slaved, resultants=resultants, damped=damping > 0)
         values |= generic_constants(random, case, values, damping)
     elif has_rigid_part(case):

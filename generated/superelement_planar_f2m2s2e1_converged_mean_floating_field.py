@@ -1,4 +1,4 @@
-"""Superelement kernel: layout planar-f2m2, frame converged_mean, inertia option floating_field.
+"""Superelement kernel: layout planar-f2m2s2e1, frame converged_mean, inertia option floating_field.
 
 2 position(s) and 2 rotation(s) of motion in a plane; 2 internal modes.
 Frame: weighted mean of the node rotations, iterated until it is one.
@@ -55,7 +55,7 @@ from sebody.kernels.packed_products import (
     to_free,
 )
 
-LAYOUT = "planar-f2m2"
+LAYOUT = "planar-f2m2s2e1"
 FRAME = "converged_mean"
 INERTIA = "floating_field"
 PLANAR = True
@@ -65,6 +65,7 @@ ROTATIONS = 4      # first rotation among the local coordinates
 MODES = 6          # first internal mode
 DAMPED = None        # has structural damping, None where a body tells
 N_MODES = 2        # their number, None where it is read at run time
+SECOND_ORDER = (2, 1)       # slaved coordinates, stress resultants
 WORK_ROWS = 119
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
@@ -92,7 +93,7 @@ CONSTANTS = SUPERELEMENT_CONSTANTS + (
 )
 
 
-@kernel_function
+@kernel_function(sizes_known=True)
 def kernel(task, count, stride, width, index, constants, q, R, v, a, references, frames, T, loads,
            coefficients, forces, matrices, work, energies):
     field = at(coefficients, FIELD)
@@ -149,9 +150,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         full = at(mc, 2)
         masses = at(full, 1)
         sizes = at(masses, 1)
-        slaved, resultants, damped = int(sizes[0]), int(sizes[1]), int(sizes[2])
+        damped = int(sizes[2])
         free, bound, bound_free = n - 3, MODES, MODES - 3
-        N, stretching = free + slaved, resultants + 1
+        N, stretching = free + 2, 2
         hn, hN, deep = padded(free), padded(N), padded(N + 3)
         turn = at(sizes, 3)
         axes = at(turn, 2)
@@ -165,9 +166,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Mz = at(couplings, packed_room(4, N, N))
         Cz = at(Mz, packed_room(1, N, N))
         followers = at(Cz, packed_room(damped, free, free))
-        lam = at(followers, packed_room(slaved, free, free))
-        E = at(lam, resultants)
-        stretched = at(E, resultants*padded(free))
+        lam = at(followers, packed_room(2, free, free))
+        E = at(lam, 1)
+        stretched = at(E, padded(free))
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
@@ -289,9 +290,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # coordinates that determine the others, and their rates
         all_to_free(y, eta, etad, axes, order, unordered, z, zd, zdd, bound, bound_free, free, hN)
         # Q_b z and Q_b zd, all b
-        packed_times_both(followers, z, zd, Zq, Zd, slaved*hn)
+        packed_times_both(followers, z, zd, Zq, Zd, 2*hn)
         # eta_b = y . Q_b y / 2, their rates and second rates
-        follow(Zq, Zd, z, zd, zdd, free, slaved, hn)
+        follow(Zq, Zd, z, zd, zdd, free, 2, hn)
         # J2_kl z, K_k^T z, K_k^T zdot and K_k zdot
         couplings_times(couplings, z, zd, products, 4*hN)
         # first moments, couplings, inertia at rest, by z
@@ -364,12 +365,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # Ghat_e y of all e, and Sbar y
         packed_times(stretched, z, Gy, stretching*hn)
         # E_e . y
-        rows_times(E, z, along, free, resultants, hn)
+        rows_times(E, z, along, free, 1, hn)
         # y . Ghat_e y
-        rows_times(Gy, z, twice, free, resultants, hn)
+        rows_times(Gy, z, twice, free, 1, hn)
         # stress resultants: factors of their gradients
         stiffened = 0.0
-        for e in range(resultants):
+        for e in range(1):
             lam_e = lam[e]
             along_e = along[e]
             twice_e = twice[e]
@@ -379,11 +380,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             by_Gy[e] = along_e + t5*t6
             stiffened += t5*(along_e + (0.25)*t6*twice_e)
         # and of Sbar y
-        by_Gy[resultants] = 1
+        by_Gy[1] = 1
         # forces of the resultants and their geometric stiffness, with Sbar y
-        add_blocks_times(E, by_E, Gy, by_Gy, local, free, resultants, stretching, hn)
+        add_blocks_times(E, by_E, Gy, by_Gy, local, free, 1, stretching, hn)
         # forces on eta, pulled back
-        add_block_times(Zq, at(local, free), local, free, slaved, hn)
+        add_block_times(Zq, at(local, free), local, free, 2, hn)
         # force and moment on the frame, in axes of the body
         felt_x, felt_y = zdd[N], zdd[N + 1]
         turning_z = zdd[N + 2]
@@ -452,7 +453,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # twice its energy
             rows_times(moved, zd, squares, N, 1, hN)
             # twice that of Sbar y
-            rows_times(at(Gy, resultants*hn), z, at(squares, 1), free, 1, hn)
+            rows_times(at(Gy, hn), z, at(squares, 1), free, 1, hn)
             # damping force, Cbar ydot
             packed_times(Cz, zd, moved, hN)
             # its power
@@ -523,7 +524,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             Lv = at(work, (119 + 2*(n + 18))*row)
             La = at(work, (119 + 3*(n + 18))*row)
             # Q_b zdd, all b
-            packed_times(followers, zdd, Za, slaved*hn)
+            packed_times(followers, zdd, Za, 2*hn)
             # J2_kl zdot, K_k^T zddot and K_k zddot
             couplings_times(couplings, zd, zdd, more, 4*hN)
             # factors of the local tangents
@@ -535,7 +536,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             by_couplings[3] = -spin_z
             ones[0] = 1
             # forces on eta as factors
-            for b in range(slaved):
+            for b in range(2):
                 on_eta = local[free + b]
                 by_followers[b] = c_geo*on_eta
             # local tangents
@@ -557,15 +558,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # changes of the resultants
             for j in range(free):
                 # factors of the column
-                for e in range(resultants):
+                for e in range(1):
                     lam_e = lam[e]
                     E_j = E[e*hn + j]
                     Gy_j = Gy[e*hn + j]
                     of_E[e] = Gy_j
                     of_Gy[e] = E_j + Gy_j/lam_e
                 # their forces
-                add_blocks_times(E, of_E, Gy, of_Gy, at(Lz, j*deep), free, resultants, resultants,
-                                 hn)
+                add_blocks_times(E, of_E, Gy, of_Gy, at(Lz, j*deep), free, 1, 1, hn)
             # local tangents: force and moment on the frame
             for i in range(N):
                 felt_x, felt_y = zdd[N], zdd[N + 1]
@@ -668,7 +668,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 # coordinates that determine the others, of dy
                 to_free(dy, axes, order, unordered, dz, bound, bound_free, free, hN)
                 # differential: eta_b
-                rows_times(Zq, dz, at(dz, free), free, slaved, hn)
+                rows_times(Zq, dz, at(dz, free), free, 2, hn)
                 # differential of the local forces by dz
                 block_times(Lz, dz, dlocal, N + 3, N, deep)
                 # c_geo = 0 leaves the paper's tangents (31), (60)-(63): geometry held fixed here
@@ -781,7 +781,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 # coordinates that determine the others, of detad
                 to_free(detad, axes, order, unordered, dzdd, bound, bound_free, free, hN)
                 # differential: rates of eta, accelerations of eta
-                follow_changes(Zq, Zd, Za, dz, dzd, dzdd, free, slaved, hn)
+                follow_changes(Zq, Zd, Za, dz, dzd, dzdd, free, 2, hn)
                 # differential: motion of the frame in axes of the body, a factor of local
                 # tangents
                 turn_cos, turn_sin = turn[0], turn[1]
@@ -797,7 +797,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 # differential of the local forces by dzdd
                 add_block_times(La, dzdd, dlocal, N + 3, N + 3, deep)
                 # forces on eta, pulled back
-                add_block_times(Zq, at(dlocal, free), dlocal, free, slaved, hn)
+                add_block_times(Zq, at(dlocal, free), dlocal, free, 2, hn)
                 # forces conjugate to y
                 from_free(dlocal, axes_back, order, unordered, ds, bound, bound_free, free)
                 # differential: forces on the frame: elastic (30) and inertia (57)
