@@ -33,7 +33,7 @@ Entries = tuple[tuple[int, int, int, int, float | None], ...]
 
 KEPT = 16           # codes that are kept when their ensembles are gone
 MOST_FACTORS = 24           # that registers hold beside sums
-_NAMES = {"straight": False, "more": True}       # of functions, and whether they add
+_KIND = ir.FunctionType(ir.VoidType(), [*[VECTOR.as_pointer()] * 4, WORD])
 
 
 def entries_of(row: NDArray, varied: NDArray) -> Entries:
@@ -70,7 +70,7 @@ class Straight:
         module = binding.parse_assembly(str(_functions(entries)))
         self._engine = binding.create_mcjit_compiler(module, target)
         self._engine.finalize_object()
-        self.address, self.more = map(self._engine.get_function_address, _NAMES)
+        self.address, self.more = map(self._engine.get_function_address, ("straight", "more"))
         self._engine.remove_module(module)      # what it was made of takes more than the code
 
 
@@ -83,16 +83,13 @@ def straight_code(entries: Entries) -> Straight:
 def _functions(entries: Entries) -> ir.Module:
     module = ir.Module("straight")
     module.triple = binding.get_process_triple()
-    shared = _Shared(module, entries)
-    for name, adds in _NAMES.items():
-        _write(module, name, shared, entries, adds)
+    _write_more(module, *_write(module, entries))
     return module
 
 
-def _write(module: ir.Module, name: str, shared: _Shared, entries: Entries, adds: bool) -> None:
-    pointer = VECTOR.as_pointer()
-    kind = ir.FunctionType(ir.VoidType(), [*[pointer] * 4, WORD])
-    function = ir.Function(module, kind, name)
+def _write(module: ir.Module, entries: Entries) -> tuple[ir.Function, int]:
+    """The function that writes products; returned with how many there are up to the last one."""
+    function = ir.Function(module, _KIND, "straight")
     builder = ir.IRBuilder(function.append_basic_block())
     A, *vectors, out, count = function.args
     out.add_attribute("noalias")        # of what is read
@@ -100,47 +97,57 @@ def _write(module: ir.Module, name: str, shared: _Shared, entries: Entries, adds
     places = sorted({entry[1:3] for entry in entries})
     factors = {one: _read(builder, vectors[one[0]], one[1])
                for one in places if len(places) <= MOST_FACTORS}
-    first, last, zeros = shared.place(builder), 0, ir.Constant(VECTOR, [0.0] * VECTOR.count)
+    shared, last = _Shared(module, builder, entries), 0
+    zeros = ir.Constant(VECTOR, [0.0] * VECTOR.count)
     for to, terms in groupby(entries, key=lambda entry: entry[3]):
-        for unused in range(last, to if not adds else last):
+        for unused in range(last, to):
             builder.store(zeros, builder.gep(out, [WORD(unused)]))
-        total, last = _read(builder, out, to) if adds else None, to + 1
+        total, last = None, to + 1
         for place, vector, column, _, value in terms:
-            entry = _read(builder, A, place) if value is None else shared.next(builder, first)
+            entry = _read(builder, A, place) if value is None else shared.next()
             factor = factors.get((vector, column)) or _read(builder, vectors[vector], column)
             product = builder.fmul(entry, factor, flags=("contract",))
             total = product if total is None else builder.fadd(total, product, flags=("contract",))
         builder.store(total, builder.gep(out, [WORD(to)]))
-    if not adds:
-        with short_loop(builder, WORD(last), count) as place:
-            builder.store(zeros, builder.gep(out, [place]))
+    with short_loop(builder, WORD(last), count) as place:
+        builder.store(zeros, builder.gep(out, [place]))
+    builder.ret_void()
+    return function, last
+
+
+def _write_more(module: ir.Module, products: ir.Function, count: int) -> None:
+    """The function that adds products, which the other one writes: code is compiled once."""
+    function = ir.Function(module, _KIND, "more")
+    builder = ir.IRBuilder(function.append_basic_block())
+    *given, out, _ = function.args
+    made = builder.alloca(VECTOR, WORD(max(count, 1)))
+    builder.call(products, [*given, made, WORD(count)])
+    with short_loop(builder, WORD(0), WORD(count)) as place:
+        old, new = (builder.load(builder.gep(one, [place])) for one in (out, made))
+        builder.store(builder.fadd(old, new), builder.gep(out, [place]))
     builder.ret_void()
 
 
 class _Shared:
     """Values that all members share, one after the other."""
 
-    def __init__(self, module: ir.Module, entries: Entries):
+    def __init__(self, module: ir.Module, builder: ir.IRBuilder, entries: Entries):
         values = [entry[-1] for entry in entries if entry[-1] is not None]
         kind = ir.ArrayType(ir.DoubleType(), len(values))
         self._values = ir.GlobalVariable(module, kind, "shared")
         self._values.initializer = ir.Constant(kind, values)
         self._values.linkage = "internal"       # not a constant: LLVM would write out eight of each
-        self._next = 0
+        # hidden from LLVM, which would write out the whole address of each value
+        address = self._values.type
+        self._first = builder.asm(ir.FunctionType(address, [address]), "", "=r,0", [self._values],
+                                  False)
+        self._builder, self._next = builder, 0
 
-    def place(self, builder: ir.IRBuilder) -> ir.Value:
-        """Where they are in a function that reads all of them.
-
-        Hidden from LLVM, which would write out the whole address of each value.
-        """
-        self._next, address = 0, self._values.type
-        return builder.asm(ir.FunctionType(address, [address]), "", "=r,0", [self._values], False)
-
-    def next(self, builder: ir.IRBuilder, first: ir.Value) -> ir.Value:
+    def next(self) -> ir.Value:
         """The next value, in all lanes."""
-        place = builder.gep(first, [ir.IntType(32)(0), ir.IntType(32)(self._next)])
+        place = self._builder.gep(self._first, [ir.IntType(32)(0), ir.IntType(32)(self._next)])
         self._next += 1
-        return same(builder, builder.load(place))
+        return same(self._builder, self._builder.load(place))
 
 
 def _read(builder, pointer, place):
