@@ -81,6 +81,17 @@ class Image:
         """Whether runs can begin with a copy."""
         return self.lines is not None
 
+    @property
+    def factored(self) -> bool:
+        """Whether the model as built has factors of its masses and constraints.
+
+        Its inverse is that of its start, which is not written where the start needs another way.
+        """
+        one = self.template
+        return (one.dense and not one.begun and one.state.spare.size == 0
+                and one.system.massless[0] == 0 and one.state.control.regularized == 0
+                and bool(one.state.inverse.any()))
+
     def _can_copy(self, handles: Mapping[str, Handle]) -> bool:
         """Whether the start needs accelerations alone: no fitted velocities."""
         one = self.template

@@ -10,7 +10,7 @@ from sebody.contract.counts import LANES
 from sebody.kernels import packed_strips
 from sebody.kernels.instructions import WORD, call, in_lanes, short_loop, whole_vectors
 from sebody.kernels.lanes.products import NOTHING, across, behind, fused, read, write
-from sebody.kernels.lanes.straight import AT_ADDRESS, AT_LANES, MOST_GROUPS
+from sebody.kernels.lanes.straight import AT_ADDRESS, AT_LANES, AT_MORE, MOST_GROUPS
 from sebody.kernels.packed import BEHIND, BOTH, COUPLED, MIRRORED, ONCE, PRODUCTS
 from sebody.kernels.packed_strips import Groups
 
@@ -43,11 +43,11 @@ class _Groups(Groups):
         return self._points(own) if self._shared else builder.icmp_signed(
             "!=", self._word(AT_ADDRESS), own)
 
-    def of_straight(self):
+    def of_straight(self, code):
         """Address of straight code, and of the entries it reads."""
         if not self._shared:
-            return self._word(AT_ADDRESS), self._words
-        return self._word(AT_ADDRESS), self.builder.inttoptr(self._word(AT_LANES),
+            return self._word(code), self._words
+        return self._word(code), self.builder.inttoptr(self._word(AT_LANES),
                                                              VECTOR.as_pointer())
 
     def _word(self, place):
@@ -62,8 +62,7 @@ class _Groups(Groups):
 @in_lanes(packed_strips.write_times)
 def packed(builder, matrices, x, out, count):
     """Of `packed_times`."""
-    _clear(builder, out, count)
-    call(builder, add_packed, (matrices, x, out))
+    _times(builder, matrices, x, x, out, count)
 
 
 @in_lanes(packed_strips.write_times_both)
@@ -76,31 +75,36 @@ def packed_both(builder, matrices, x, y, of_x, of_y, count):
 @in_lanes(packed_strips.write_more_times)
 def add_packed(builder, matrices, x, out):
     """Of `add_packed_times`."""
-    _straight_or(builder, matrices, x, x, out, lambda: _add_strips(builder, matrices, x, x, out))
+    _straight_or(builder, AT_MORE, (matrices, x, x, out, WORD(0)),
+                 lambda: _add_strips(builder, matrices, x, x, out))
 
 
 @in_lanes(packed_strips.write_couplings)
 def couplings(builder, matrices, x, y, out, count):
     """Of `couplings_times`."""
-    _clear(builder, out, count)
-    _straight_or(builder, matrices, x, y, out, lambda: _add_strips(builder, matrices, x, y, out))
+    _times(builder, matrices, x, y, out, count)
 
 
-def _clear(builder, out, count):
-    """Whole vectors, as strips have whole ones."""
-    with short_loop(builder, WORD(0), whole_vectors(builder, count)) as place:
-        write(builder, NOTHING, out, place)
+def _times(builder, matrices, x, y, out, count):
+    """Products in whole vectors, as strips have whole ones."""
+    count = whole_vectors(builder, count)
+
+    def by_strips():
+        with short_loop(builder, WORD(0), count) as place:
+            write(builder, NOTHING, out, place)
+        _add_strips(builder, matrices, x, y, out)
+    _straight_or(builder, AT_ADDRESS, (matrices, x, y, out, count), by_strips)
 
 
-def _straight_or(builder, matrices, x, y, out, by_strips):
+def _straight_or(builder, code, given, by_strips):
     """Straight code if there is some, see `straight`."""
-    groups = _Groups(builder, matrices)
+    groups = _Groups(builder, given[0])
     with builder.if_else(groups.straight()) as (straight, others):
         with straight:
-            kind = ir.FunctionType(ir.VoidType(), [VECTOR.as_pointer()] * 4)
-            address, own = groups.of_straight()
+            kind = ir.FunctionType(ir.VoidType(), [*[VECTOR.as_pointer()] * 4, WORD])
+            address, own = groups.of_straight(code)
             own = builder.bitcast(own, VECTOR.as_pointer())
-            builder.call(builder.inttoptr(address, kind.as_pointer()), (own, x, y, out))
+            builder.call(builder.inttoptr(address, kind.as_pointer()), (own, *given[1:]))
         with others:
             by_strips()
 
