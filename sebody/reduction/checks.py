@@ -145,7 +145,9 @@ def check_mass(mass: NDArray, rigid: NDArray, names: list[str]) -> None:
         )
     translations = rigid[:, : 2 if rigid.shape[1] == 3 else 3]
     total = np.trace(translations.T @ mass @ translations)
-    if total <= 1e-12 * np.max(np.abs(mass)):
+    # of what it is the sum: modal masses are ones in all units
+    added = np.trace(np.abs(translations.T) @ np.abs(mass) @ np.abs(translations))
+    if total <= 1e-12 * added:
         raise InputError("the body has no mass: mass gives no inertia to a rigid translation; "
                          "give the FE model a density")
 

@@ -64,8 +64,8 @@ class ClampedInterior:
         if rigid is not None:
             free = motions_without_strain(stiffness, rigid, lengths, held)
         self._free = free[internal]
-        if lengths is not None:
-            self._free = self._free / lengths[internal, None]
+        self._lengths = (np.ones(size) if lengths is None else lengths)[internal]
+        self._free = self._free / self._lengths[:, None]
         self._check_held(free[internal], name)
         watch.stage(f"factoring the stiffness of {len(internal)} DOFs")
         self._factor = FactoredStiffness(self._stiffness, free[internal],
@@ -182,7 +182,8 @@ class ClampedInterior:
         mass, stiffness = self._mass.toarray(), self._stiffness.toarray()
         count = self._means.shape[0]
         if count:
-            still = linalg.qr(self._inner_means.T.toarray())[0][:, count:]     # their means are 0
+            means = self._inner_means.T.toarray() / self._lengths[:, None]
+            still = linalg.qr(means)[0][:, count:] / self._lengths[:, None]     # their means are 0
             mass, stiffness = still.T @ mass @ still, still.T @ stiffness @ still
         size = len(mass)
         inverse, shapes = linalg.eigh(mass, stiffness, subset_by_index=[size - wanted, size - 1])

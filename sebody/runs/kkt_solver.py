@@ -15,6 +15,7 @@ from sebody.engine.system import System
 SMALL = 100         # unknowns up to which LAPACK takes less time than SciPy to call SuperLU
 SINGULAR = 1e-13    # smallest pivot of a regular matrix, relative to the largest
 SUSPICIOUS = 1e-6   # pivot below which constraints are looked into, relative to the largest
+ROUNDING = 1e-15    # of sums of entries of about one
 REGULARIZATION = 1e-8   # of regularized matrices as in the engine, but never of an older state
 ATTEMPTS = 20       # refinements: each leaves 2 REGULARIZATION / s of a part of strength s
 DAMPED = 1e-8       # parts that are weaker, relative to the largest entry, are none
@@ -153,6 +154,12 @@ def _least_squares(matrix: csc_matrix, right: NDArray) -> NDArray:
     return answer
 
 
+def _symmetric(matrix: csc_matrix) -> SuperLU:
+    """Factors without exchanges of rows."""
+    return splu(csc_matrix(matrix), permc_spec="NATURAL", diag_pivot_thresh=0.0,
+                options={"SymmetricMode": True})
+
+
 class Relaxed:
     """A singular matrix of masses and constraints, by regularized factors.
 
@@ -181,8 +188,11 @@ class Relaxed:
         self.regularization = LIGHT * system.massless_axes[:n]
         self.regularization[multipliers] = -REGULARIZATION * sizes[multipliers]
         scaled = diags(self.scale) @ (self.matrix + diags(self.regularization)) @ diags(self.scale)
-        self.factors = splu(csc_matrix(scaled), permc_spec="NATURAL", diag_pivot_thresh=0.0,
-                            options={"SymmetricMode": True})
+        try:
+            self.factors = _symmetric(scaled)
+        except RuntimeError:    # a motion without mass, whose pivot rounding leaves elsewhere
+            self.factors = _symmetric(scaled + diags(np.where(system.is_multiplier[:n], 0.0,
+                                                              ROUNDING)))
 
     @property
     def pivots(self) -> NDArray:

@@ -257,3 +257,17 @@ def test_summaries_say_what_was_done():
 def test_wrong_options_are_refused(options, words):
     with pytest.raises(InputError, match=words):
         reduce(**{"fe_model": BEAM, "boundary": ENDS, **options})
+
+
+@pytest.mark.parametrize("method", ["rubin", "macneal"])
+@pytest.mark.parametrize("planar", [True, False])
+def test_bodies_of_less_than_a_micrometre(method, planar):
+    """In metres; frequencies go with one over the length. A raw LinAlgError from 1e-6 on."""
+    def squares(length):
+        section = Section(4e-4 * length**2, 1.4e-8 * length**4, 3e-8 * length**4,
+                          2.2e-8 * length**4, 7e10, 0.3, 2700.0)
+        ends = length * np.array([[0.2, -0.3, 0.5], [0.7, 0.1, 0.8]])[:, :2 if planar else 3]
+        fe_model = (planar_beam if planar else straight_beam)(*ends, section, 4)
+        body = reduce(fe_model, [(0, "full"), (4, "full")], 3, method)
+        return np.diag(body.stiffness)[-body.modes:] * length**2
+    assert_allclose(squares(1e-6), squares(1.0), rtol=1e-8)

@@ -1,10 +1,12 @@
 """Least squares of singular sparse systems, against dense algebra."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.sparse import csc_matrix, random_array
 
-from sebody.runs.kkt_solver import SMALL, Scaled
+from sebody.runs.kkt_solver import SMALL, Relaxed, Scaled
 
 
 @pytest.mark.parametrize("consistent", [True, False])
@@ -27,3 +29,11 @@ def test_least_squares_of_least_norm(seed, consistent):
     assert found / scale == pytest.approx(exact, abs=1e-6 * np.abs(exact).max())
     assert left == pytest.approx(np.abs(scaled @ exact - scale * right), abs=1e-7 * np.abs(
         scale * right).max())
+
+
+def test_a_pivot_that_is_exactly_zero_is_one_of_rounding():
+    """Of a body of MacNeal's method in a plane three lengths of 40 had one: a raw RuntimeError."""
+    system = SimpleNamespace(part=np.arange(2), is_multiplier=np.zeros(2),
+                             massless_axes=np.zeros(2))
+    pivots = Relaxed(csc_matrix(np.ones((2, 2))), np.ones(2), system).pivots
+    assert pivots[0] == pytest.approx(1.0) and 0.0 < pivots[1] < 1e-14
