@@ -72,6 +72,12 @@ def test_packed_and_unpacked(shape, filled):
     assert len(row) == packed_size(*shape) == packed_room.py_func(*shape)
 
 
+def test_no_symmetric_matrices():
+    """Bodies without slaved coordinates have none."""
+    none = np.zeros((0, 9, 9))
+    assert unpack(pack(none, none.shape, symmetric=True), none.shape).shape == none.shape
+
+
 def test_matrices_whose_strips_would_not_fit_are_packed_with_zeros():
     """A run for every other entry would need more whole numbers than there are zeros."""
     A = np.zeros((4, 4, 41))
