@@ -16,7 +16,7 @@ from sebody.contract.counts import packed_size, whole_vectors
 from sebody.contract.layout import OK
 from sebody.derive.symbolic.rotations import stumpff_value, tangent_inverse_value
 from sebody.kernels.abi import Arguments
-from sebody.kernels.packed import COUPLED, strips
+from sebody.kernels.packed import strips
 from sebody.verify.check.states import arguments
 
 
@@ -82,14 +82,11 @@ def clear(row, count):
 def _products(matrices):
     """Of packed matrices: vector, place of the sums, matrix, first row and column, entries."""
     for strip in strips(matrices):
-        below, right, entries = strip.row, strip.first, strip.entries
-        if len(strip.places) == 1:
-            yield strip.vector, *strip.places, *strip.matrices, below, right, entries
-            continue
-        coupled = int(strip.kind == COUPLED)
-        for k in range(1 + coupled):
-            yield k, strip.places[k] + below, strip.matrices[k], below, right, entries
-        yield coupled, strip.places[-1] + right, strip.matrices[-1], right, below, entries.T
+        for use in strip.uses:
+            at, entries = (strip.row, strip.first), strip.entries
+            if use.transposed:
+                at, entries = at[::-1], entries.T
+            yield use.vector, use.place, use.matrix, *at, entries
 
 
 def packed_times(matrices, x, out, count):

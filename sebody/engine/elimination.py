@@ -13,7 +13,7 @@ of the blocks; free slots have ones on the diagonal.
 from sebody.compiler.decorators import compiled
 from sebody.contract.counts import LANES
 from sebody.kernels.abi import at, pointer_to
-from sebody.kernels.dense import subtract_block_times, subtract_product
+from sebody.kernels.dense import subtract_blocks_times, subtract_product
 
 BLOCK = LANES * LANES
 SMALL_PIVOT = 1e-11     # relative to the scaled matrix, whose diagonal is one
@@ -87,8 +87,7 @@ def substitute(first, end, ends, rows, diagonal, factors, x):
     `ends` has the end of the blocks of every column that are used.
     """
     for j in range(first, end):
-        for p in range(diagonal[j] + 1, ends[j]):
-            subtract_block_times(at(x, LANES * rows[p]), at(factors, BLOCK * p), at(x, LANES * j))
+        subtract_blocks_times(x, rows, factors, at(x, LANES * j), diagonal[j] + 1, ends[j])
 
 
 @compiled
@@ -100,8 +99,7 @@ def substitute_back(first, end, starts, rows, diagonal, factors, x):
         a, b, c, d = y[0], y[1], y[2], y[3]
         for i in range(LANES):
             y[i] = inverse[i] * a + inverse[4 + i] * b + inverse[8 + i] * c + inverse[12 + i] * d
-        for p in range(starts[j], diagonal[j]):
-            subtract_block_times(at(x, LANES * rows[p]), at(factors, BLOCK * p), y)
+        subtract_blocks_times(x, rows, factors, y, starts[j], diagonal[j])
 
 
 @compiled
@@ -160,9 +158,8 @@ def solve_rest(system, state):
     factors = pointer_to(state.matrix)
     _take(system, state, state.residual, rest, across)
     for j in range(rest):
-        for p in range(system.block_ends[j], starts[j + 1]):
-            subtract_block_times(at(slots, LANES * rows[p]), at(factors, BLOCK * p),
-                                 at(slots, LANES * j))
+        subtract_blocks_times(slots, rows, factors, at(slots, LANES * j), system.block_ends[j],
+                              starts[j + 1])
     substitute(rest, across, at(starts, 1), rows, pointer_to(system.block_diagonal), factors, slots)
     substitute_back(rest, across, starts, rows, pointer_to(system.block_diagonal), factors, slots)
     _put(system, state, state.correction, rest, across)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from sebody.compiler.decorators import compiled
+from sebody.kernels.abi import at, pointer_to
 
 
 @compiled
@@ -28,15 +29,21 @@ def invert(A):
         A[k, k] = 1.0
         for j in range(n):
             A[k, j] *= factor
+        row = at(pointer_to(A), n * k)
         for i in range(n):
             if i != k:
                 factor, A[i, k] = A[i, k], 0.0
-                for j in range(n):
-                    A[i, j] -= factor * A[k, j]
+                _subtract(n, factor, row, at(pointer_to(A), n * i))
     for k in range(n - 1, -1, -1):
         if exchanged[k] != k:
             _exchange(A[:, k], A[:, exchanged[k]])
     return True
+
+
+@compiled(forceinline=True, apart=True)
+def _subtract(n, factor, row, other):
+    for j in range(n):
+        other[j] -= factor * row[j]
 
 
 @compiled

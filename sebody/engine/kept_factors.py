@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sebody.compiler.decorators import compiled
 from sebody.contract.counts import whole_vectors
 from sebody.engine.newton import REFACTORIZATION_COST, SLOWEST
-from sebody.engine.state import EVALUATED, KEPT
+from sebody.engine.state import EVALUATED, FACTORS_KEPT, KEPT
 from sebody.engine.system import System
 
 # State.spare: whether it holds factors of accelerations, and whether those of the steps, which were
@@ -38,7 +38,7 @@ def exchange(system, state, lead):
     """
     control, spare = state.control, state.spare
     wanted = control.wanted
-    control.wanted = EVALUATED
+    control.wanted = KEPT if control.restart == FACTORS_KEPT else EVALUATED
     if (spare.size == 0 or lead != 0.0 or system.massless[0] == 1 or control.regularized == 1
             or system.regularized[0] == 1):
         return

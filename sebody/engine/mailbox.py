@@ -22,8 +22,9 @@ from sebody.engine.arrays import Arrays
 from sebody.engine.offsets import at_cache_lines
 from sebody.kernels.abi import at
 
-# words of the mailbox; what threads write to often is in lines of its own
-OPEN, DONE, FAILED, ENDED, TASK, COUNT, OWNER, YIELD = 0, 16, 32, 48, 64, 65, 66, 67
+# words of the mailbox; what threads write to often is in lines of its own. CALL is the number of
+# the call of the loop that helpers belong to; it changes when the call ends, too
+OPEN, DONE, FAILED, CALL, TASK, COUNT, OWNER, YIELD = 0, 16, 32, 48, 64, 65, 66, 67
 WORDS = 80
 _TAKEN = 32             # bits of OPEN that count the pieces taken, below the number of the task
 _NONE = (1 << _TAKEN) - 1           # where no task is open
@@ -163,12 +164,17 @@ def post(mail, owner, task, count):
 
 
 @compiled
-def take(mail, owner):
-    """Take the next piece of the open task, if it is on the arrays of this owner; or -1."""
+def take(mail, owner, call):
+    """Take the next piece of the open task, if it is on the arrays of this owner; or -1.
+
+    Nor is a piece taken by what belongs to a call of the loop that is over: CALL is read after
+    OPEN, which changes with every task, so the task is of the call that is compared.
+    """
     while True:
         word = load(at(mail, OPEN))
         piece = word & _NONE
-        if piece >= load(at(mail, COUNT)) or load(at(mail, OWNER)) != owner:
+        if (load(at(mail, CALL)) != call or piece >= load(at(mail, COUNT))
+                or load(at(mail, OWNER)) != owner):
             return -1
         if _exchange(at(mail, OPEN), word, word + 1):
             return piece

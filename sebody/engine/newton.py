@@ -33,6 +33,7 @@ BASELINE_STEPS = 3      # steps after a refactorization whose best contraction r
 REFACTORIZATION_COST = 10.0     # of a matrix with new element matrices, in iterations
 ROTATED_COST = 4.0      # of a matrix with the bodies' old element matrices, rotated, in iterations
 LONGEST_BACK_OFF = 32   # at most so many steps refresh the matrix before reuse is tried again
+OLDEST_ROTATED = 24     # steps after which what refreshes a matrix takes new element matrices
 OLDEST = 3000           # steps with the same element matrices: see `watch_age`
 POOR = 0.3              # a contraction rate above this asks for a new matrix at once
 MOST_MATRICES = 4       # factorizations in a step
@@ -217,14 +218,17 @@ def next_matrix(system, state):
 
 @compiled(forceinline=True)
 def begin_with_matrix(state):
-    """Choose whether a step refactorizes before its first iteration, and from which matrices."""
+    """Choose whether a step refactorizes before its first iteration, and from which matrices.
+
+    Where every step takes a matrix, old element matrices cost a chain up to one iteration a step.
+    """
     clock, control = state.clock, state.control
     control.fresh = 0
     if clock.factor_step != clock.current_step:
         control.wanted = EVALUATED
     if control.wanted == KEPT and control.back_off_left > 0:
         control.back_off_left -= 1
-        control.wanted = ROTATED
+        control.wanted = EVALUATED if control.age >= OLDEST_ROTATED else ROTATED
 
 
 @compiled(forceinline=True)

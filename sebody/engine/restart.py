@@ -134,8 +134,8 @@ def _begin(system, state, lead):
     """Set what belongs to accelerations; choose the factors to begin with."""
     control = state.control
     set_masses(system, state)
-    control.restart = ASKED
     exchange(system, state, lead)
+    control.restart = ASKED
     control.fresh = control.iteration = 0
     state.clock.last_norm = 0.0
 

@@ -11,7 +11,7 @@ from sebody.contract.layout import OK, RESIDUAL, TANGENT
 from sebody.engine import elimination
 from sebody.engine.evaluate import SHARE, limit_of_moved, run_moved_share, run_part
 from sebody.engine.mailbox import (
-    ENDED,
+    CALL,
     TASK,
     address_of,
     finish,
@@ -39,13 +39,15 @@ LAST_TRIES = 20000      # looks for work before a helper leaves
 
 @compiled
 def share(system, state, task, thread):
-    """Do a task together with the helpers, or help: thread 0 is that of the loop.
+    """Do a task together with the helpers: thread 0 is that of the loop.
 
-    Returns the status of kernels; of SHARE_FACTORS not OK at a small pivot; of HELP, the task of
-    helpers, whether the run has ended. A helper returns if there was no work for long.
+    Or help, with the task HELP plus the number of the call that the helper belongs to.
+
+    Returns the status of kernels; of SHARE_FACTORS not OK at a small pivot; of helpers, whether
+    their call has ended. A helper returns if there was no work for long.
     """
-    if task == HELP:
-        return _serve(system, state, thread)
+    if task >= HELP:
+        return _serve(system, state, task - HELP, thread)
     status = _do_together(system, state, task)
     rest, across = system.part_blocks[system.part_blocks.size - 1], system.block_diagonal.size
     if task == SHARE_SUM:
@@ -70,28 +72,29 @@ def _do_together(system, state, task):
         for b in range(system.address.size):
             count += (system.count[b] + SHARE - 1) // SHARE
     owner = address_of(pointer_to(state.matrix))
+    call = load(at(mail, CALL))
     post(mail, owner, task, count)
-    piece = take(mail, owner)
+    piece = take(mail, owner, call)
     while piece >= 0:
         finish(mail, piece, _do(system, state, task, piece, 0))
-        piece = take(mail, owner)
+        piece = take(mail, owner, call)
     return wait_for_all(mail)
 
 
 @compiled
-def _serve(system, state, thread):
+def _serve(system, state, call, thread):
     """Do pieces of what the loop posts, not of what is posted on another state meanwhile."""
     mail, owner = pointer_to(system.shared.mail), address_of(pointer_to(state.matrix))
     tries = 0
-    while tries < LAST_TRIES and load(at(mail, ENDED)) == 0:
-        piece = take(mail, owner)
+    while tries < LAST_TRIES and load(at(mail, CALL)) == call:
+        piece = take(mail, owner, call)
         if piece >= 0:
             finish(mail, piece, _do(system, state, mail[TASK], piece, thread))
             tries = 0
         else:
             wait_a_little(mail, tries)
             tries += 1
-    return load(at(mail, ENDED))
+    return 0 if load(at(mail, CALL)) == call else 1
 
 
 @compiled

@@ -39,7 +39,9 @@ REASONS = {
 }
 # what a step ends at; at a sample and at a jump of accelerations is a restart
 NOTHING, BEND, SAMPLED, JUMP = range(4)
-ASKED, AHEAD = 1, 2     # of a restart: to be done; looking ahead, see `engine.restart`
+# of a restart: to be done; looking ahead, see `engine.restart`; to be done with the factors of
+# masses and constraints that are there, as long as corrections converge
+ASKED, AHEAD, FACTORS_KEPT = 1, 2, 3
 FINEST = 4096           # largest number of equal parts that a grid step is cut into
 
 
@@ -278,7 +280,7 @@ CONTROL = np.dtype([(name, np.int64) for name in (
     "meets",                 # what the step under way ends at: NOTHING, BEND or JUMP
     "split",                 # 1 where it ends at a jump within a part of an output step
     "inside",                # 1 where it began at such a jump
-    "restart",               # ASKED or AHEAD where accelerations are to be solved for, else 0
+    "restart",               # ASKED and the like where accelerations are to be solved for, else 0
     "due",                   # 1 where the state is recorded after that
 )])
 

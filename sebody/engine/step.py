@@ -122,19 +122,25 @@ def set_coefficients(state, scheme, h):
 @compiled(forceinline=True)
 def accept(system, state, record):
     """End a converged step: orthogonal rotations, output."""
-    clock, control = state.clock, state.control
-    if control.steps % ORTHOGONAL == 0:
-        for r in range(system.rotation_at.size):
-            orthogonalize(at(pointer_to(state.R), 9 * r))
+    control = state.control
+    settle(system, state, control.steps)
     watch_age(state)
     if control.fresh == 0:
         control.back_off = 0
-    clock.acceleration_norm *= MEMORY
     control.steps += 1
     if control.adaptive == 1:
         go_on(state)
     else:
         go_on_grid(state, record)
+
+
+@compiled(forceinline=True)
+def settle(system, state, steps):
+    """After some steps make rotations orthogonal; forget the norm of accelerations slowly."""
+    if steps % ORTHOGONAL == 0:
+        for r in range(system.rotation_at.size):
+            orthogonalize(at(pointer_to(state.R), 9 * r))
+    state.clock.acceleration_norm *= MEMORY
 
 
 @compiled(forceinline=True)

@@ -17,7 +17,7 @@ from sebody.fem.stress import von_mises
 from sebody.gradients.history import History
 from sebody.gradients.linear import Linear
 from sebody.gradients.sensors import Evaluated, Rows, Sensor
-from sebody.results.field_quantities import FENodes, field_of, number_of
+from sebody.results.field_quantities import FENodes, fe_node
 from sebody.results.naming import NORM, STRESS, look_up, split
 from sebody.results.recording import Recording
 from sebody.runs.simulation import Simulation
@@ -77,12 +77,7 @@ class NodeStress:
         """Histories in all fibres at the node, (states, fibres, 6)."""
         if self.smooth.quantity.endswith(".stress"):
             return np.asarray(look_up(recording, self.smooth.quantity), dtype=float)[:, None]
-        body, _, node = self.whole.rpartition(".")[0].rpartition(".node")
-        recovery = recording.model.bodies[body].reduced.recovery
-        assert recovery is not None         # names of nodes there are not were refused
-        number = number_of(recovery, int(node))
-        assert number is not None
-        return field_of(recording, body).at(number).fibre_stress
+        return fe_node(recording, self.whole.rpartition(".")[0]).fibre_stress
 
     def _by_fibre(self, k: int, fibre: int, rows: Rows) -> Rows:
         by_stress = self._by_stress(self.stresses[k, fibre], k) @ self.operator[fibre]
@@ -118,12 +113,7 @@ def node_stress(run: Simulation, quantity: str, linear: Linear, history: History
     node, _, what = whole.rpartition(".")
     if what not in QUANTITIES or node not in FENodes(recording):
         return None
-    body, _, label = node.rpartition(".node")
-    field, recovery = field_of(recording, body), run.model.bodies[body].reduced.recovery
-    assert recovery is not None
-    number = number_of(recovery, int(label))
-    assert number is not None
-    operator = field.stresses().fibres_by_section_forces(field.node(number))
+    operator = fe_node(recording, node).fibres_by_section_forces
     if operator is None:
         return NodeStress(Evaluated(run, f"{node}.stress", 6, linear, history), np.eye(6)[None],
                           recording, quantity)

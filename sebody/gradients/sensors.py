@@ -126,9 +126,8 @@ class Evaluated:
                 return last
             last = found
         raise InputError(f"quantity {self.quantity!r} has no derivative at t = {t:.6g}: it is not "
-                         "smooth there, as the largest of several stresses is not where another "
-                         "one takes over, or a length where it is zero; give its parts, such as "
-                         "section forces")
+                         "smooth there, as a length is not where it is zero: give its components, "
+                         "or another time")
 
     def _at(self, one: Result, moves: list[NDArray], small: float) -> NDArray:
         count = len(moves[0])

@@ -254,20 +254,27 @@ def write_subtract_product(builder, C, A, B):
 
 
 @intrinsic
-def subtract_block_times(typingctx, y, A, x):
-    """``y -= A x`` of a square block of `LANES` rows, stored by columns."""
-    return inlined(write_subtract_block_times, y, A, x)
+def subtract_blocks_times(typingctx, y, rows, A, x, first, end):
+    """``y_r -= A_p x`` of square blocks of `LANES` rows, p from `first` up to `end`.
+
+    `rows` has the block r of y for each p; blocks are stored by columns. The numbers of x stay in
+    registers, as y does not overlap x.
+    """
+    return inlined(write_subtract_blocks_times, y, rows, A, x, first, end)
 
 
-def write_subtract_block_times(builder, y, A, x):
-    """Instructions of `subtract_block_times`."""
-    total = load_vector(builder, y, WORD(0))
-    for k in range(LANES):
-        number = builder.load(builder.gep(x, [WORD(k)]))
-        product = builder.fmul(load_vector(builder, A, WORD(LANES * k)),
-                               broadcast(builder, number), flags=("contract",))
-        total = builder.fsub(total, product, flags=("contract",))
-    store_vector(builder, total, y, WORD(0))
+def write_subtract_blocks_times(builder, y, rows, A, x, first, end):
+    """Instructions of `subtract_blocks_times`."""
+    numbers = [load_broadcast(builder, x, WORD(k)) for k in range(LANES)]
+    with short_loop(builder, first, end) as p:
+        place = builder.mul(builder.load(builder.gep(rows, [p])), WORD(LANES))
+        begin = builder.mul(p, WORD(LANES * LANES))
+        total = load_vector(builder, y, place)
+        for k, number in enumerate(numbers):
+            column = load_vector(builder, A, builder.add(begin, WORD(LANES * k)))
+            product = builder.fmul(column, number, flags=("contract",))
+            total = builder.fsub(total, product, flags=("contract",))
+        store_vector(builder, total, y, place)
 
 
 @compiled

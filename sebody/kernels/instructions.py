@@ -15,7 +15,8 @@ from numba import types
 from sebody.compiler.short_loops import mark_short
 from sebody.contract.counts import LANES
 
-FLOATS, WORD = types.CPointer(types.float64), ir.IntType(64)
+FLOATS, WORDS = types.CPointer(types.float64), types.CPointer(types.int64)
+WORD = ir.IntType(64)
 VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 POINTER = ir.DoubleType().as_pointer()
 
@@ -34,7 +35,7 @@ def called(write: Callable, *kinds: types.Type) -> tuple:
     """What an intrinsic returns whose instructions are a function of the module: see `call`.
 
     `write` gets a builder and the arguments, whose types are `kinds`: pointers to floats, or to
-    lanes, then whole numbers.
+    lanes, or to whole numbers, then whole numbers.
     """
     return _written(write, kinds, call)
 
@@ -46,7 +47,7 @@ def inlined(write: Callable, *kinds: types.Type) -> tuple:
 
 def _written(write, kinds, put):
     pointers = [kind for kind in kinds if isinstance(kind, types.CPointer)]
-    chosen = write if all(kind == FLOATS for kind in pointers) else _lanes[write]
+    chosen = write if all(kind in (FLOATS, WORDS) for kind in pointers) else _lanes[write]
 
     def codegen(context, builder, sig, args):
         put(builder, chosen, args)

@@ -1,15 +1,16 @@
 """Matrices without most of their zeros, as rows of numbers that compiled code multiplies with.
 
-Constants of option C are mostly zeros in bodies such as beams. A stack of matrices of equal shapes
-is cut into strips: `LANES` rows of one matrix, and four columns or eight, from a multiple of four
-or eight on. Strips of zeros are left out; strips of the same columns are a group, which reads its
-numbers of the vector once. In large bodies reading the entries takes most of the time. Where many
-strips of one matrix have the same columns, they are therefore used twice: as they are, and
-transposed. Kinds of groups:
+Constants of option C are mostly zeros in bodies such as beams, and what is not zero stands in
+blocks. A stack of matrices of equal shapes is cut into strips: `LANES` rows of one matrix, from
+any row on, and four columns or eight, from any column on. Strips of zeros are left out; strips of
+the same columns are a group, which reads its numbers of the vector once. In large bodies reading
+the entries takes most of the time: a matrix that multiplies both vectors is read once, and where
+many strips of one matrix have the same columns, they are used once more, transposed. Groups by
+what their strips are:
 
 ========  ==========================================================================================
-NARROW    strips of any matrices, four columns
-WIDE      the same, eight columns
+ONCE      strips of any matrices
+BOTH      strips of matrices that multiply both vectors
 MIRRORED  strips below the diagonal of a symmetric matrix, which are also those to its right
 COUPLED   strips of a matrix that multiplies both vectors, and whose transpose multiplies the second
 ========  ==========================================================================================
@@ -18,9 +19,12 @@ A row has at most the size that matrices without zeros would take; it begins wit
 the bits of floats:
 
 ========  ==========================================================================================
-4         number of groups of each kind
+6         number of groups of each kind: by use, first narrow ones, then wide ones; those that are
+          used twice are wide
 5 each    first column, vector, number of strips, where their heads and entries begin
 3 each    head of a strip: place of its product in the stack of all products, matrix, first row
+2, 3 ...  heads of BOTH: how far the products of the second vector are behind those of the first
+          one, and their matrices; then as above
 6, 1 ...  heads of a group that is used twice: places of up to three products (of the first vector,
           of the second one, of the transpose), their matrices, and the first row of each strip
 ========  ==========================================================================================
@@ -36,30 +40,39 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody.contract.counts import CACHE_LINE, LANES, packed_size, whole_vectors
 
-NARROW, WIDE, MIRRORED, COUPLED = KINDS = range(4)      # of groups, in the order of a row
-WIDTHS = 4, 8, 8, 8         # columns of a strip
-BEGIN, GROUP, HEAD = 4, 5, 3    # whole numbers of a row, of a group and of a strip
+ONCE, BOTH, MIRRORED, COUPLED = range(4)    # uses of groups
+NARROW, WIDE = 4, 8     # columns of a strip
+KINDS = ((ONCE, NARROW), (ONCE, WIDE), (BOTH, NARROW), (BOTH, WIDE), (MIRRORED, WIDE),
+         (COUPLED, WIDE))
+BEGIN, GROUP, HEAD = len(KINDS), 5, 3   # whole numbers of a row, of a group and of a strip
+BEHIND = 2              # of a group of both vectors
 PRODUCTS = 3            # of a group that is used twice
-MANY = 4        # strips of one matrix: with fewer, sums of transposed products cost more
+MANY = 3        # strips of one matrix: with fewer, sums of transposed products cost more
 
 
 class Group(NamedTuple):
     """Strips of the same columns."""
 
-    kind: int
+    use: int
     first: int                  # column
     vector: int                 # that they multiply: the first one or the second
     heads: tuple[int, ...]
     entries: NDArray            # (strips, columns, LANES)
 
 
+class Use(NamedTuple):
+    """What a strip multiplies."""
+
+    vector: int                 # the first one or the second
+    place: int                  # of its sums in the stack of all products
+    matrix: int                 # number of the product
+    transposed: bool
+
+
 class Strip(NamedTuple):
     """A strip of a row, read back."""
 
-    kind: int
-    vector: int
-    places: tuple[int, ...]     # of products, one or three
-    matrices: tuple[int, ...]   # the same by their numbers
+    uses: tuple[Use, ...]
     row: int
     first: int                  # column
     at: int                     # where its entries begin
@@ -84,9 +97,9 @@ def pack_couplings(squares: NDArray, couplings: NDArray) -> NDArray:
         Matrices C.
     """
     S, C = (_padded(stack, stack.shape) for stack in (squares, couplings))
-    groups = [*_mirrored(S), *_coupled(C, len(S))]
-    groups += _alone(np.concatenate([S, C]))
-    groups += _alone(np.concatenate([C, C.transpose(0, 2, 1)]), len(S) + len(C), 1)
+    groups = [*_mirrored(S), *_coupled(C, len(S)), *_alone(S)]
+    groups += _alone(C, len(S), behind=len(C))
+    groups += _alone(C.transpose(0, 2, 1), len(S) + 2 * len(C), vector=1)
     return _row(groups, packed_size(len(S) + 3 * len(C), *squares.shape[1:]))
 
 
@@ -110,12 +123,11 @@ def unpack(row: NDArray, shape: tuple[int, int, int]) -> NDArray:
     """The matrices of a row, ``(count, rows, columns)``, one for each product."""
     count, rows, columns = shape
     stack = np.zeros((count, whole_vectors(rows), whole_vectors(columns)))
-    for _, _, _, matrices, i, first, _, entries in strips(row):
-        end = first + entries.shape[1]
-        for k in matrices[:-1] or matrices:
-            stack[k, i:i + LANES, first:end] = entries
-        for k in matrices[1:][-1:]:
-            stack[k, first:end, i:i + LANES] = entries.T
+    for uses, i, first, _, entries in strips(row):
+        for use in uses:
+            below, right = (first, i) if use.transposed else (i, first)
+            block = entries.T if use.transposed else entries
+            stack[use.matrix, below:below + block.shape[0], right:right + block.shape[1]] += block
     return stack[:, :rows, :columns]
 
 
@@ -123,21 +135,31 @@ def strips(row: NDArray) -> Iterator[Strip]:
     """The strips of a row, group by group."""
     row = np.ascontiguousarray(row)
     whole = row.view(np.int64)
-    kinds = np.repeat(KINDS, whole[:BEGIN]).tolist()
-    for kind, group in zip(kinds, whole[BEGIN:][:GROUP * len(kinds)].reshape(-1, GROUP).tolist(),
-                           strict=True):
+    kinds = [kind for kind, count in zip(KINDS, whole[:BEGIN].tolist(), strict=True)
+             for _ in range(count)]
+    for (use, width), group in zip(
+            kinds, whole[BEGIN:][:GROUP * len(kinds)].reshape(-1, GROUP).tolist(), strict=True):
         first, vector, count, head, at = group
-        width = WIDTHS[kind]
         for s in range(count):
-            if kind in (NARROW, WIDE):
-                place, k, i = whole[head + HEAD * s:head + HEAD * (s + 1)].tolist()
-                places, matrices = (place,), (k,)
-            else:
-                places, matrices = whole[head:head + 2 * PRODUCTS].reshape(2, -1).tolist()
-                i = int(whole[head + 2 * PRODUCTS + s])
             begin = at + LANES * width * s
             entries = row[begin:begin + LANES * width].reshape(width, LANES).T
-            yield Strip(kind, vector, tuple(places), tuple(matrices), i, first, begin, entries)
+            i, factors = _factors(whole, use, vector, head, s, first)
+            yield Strip(factors, i, first, begin, entries)
+
+
+def _factors(whole: NDArray, use: int, vector: int, head: int, strip: int, first: int
+             ) -> tuple[int, tuple[Use, ...]]:
+    """First row of a strip, and what it multiplies."""
+    if use in (MIRRORED, COUPLED):
+        places, matrices = whole[head:head + 2 * PRODUCTS].reshape(2, -1).tolist()
+        i, vectors = int(whole[head + 2 * PRODUCTS + strip]), 1 + (use == COUPLED)
+        forward = [Use(k, places[k] + i, matrices[k], False) for k in range(vectors)]
+        return i, (*forward, Use(vectors - 1, places[-1] + first, matrices[-1], True))
+    behind = whole[head:head + BEHIND].tolist()
+    head += BEHIND * (use == BOTH)
+    place, k, i = whole[head + HEAD * strip:head + HEAD * (strip + 1)].tolist()
+    forward = Use(vector, place, k, False), Use(1, place + behind[0], k + behind[1], False)
+    return i, forward[:1 + (use == BOTH)]
 
 
 def _padded(matrices: ArrayLike, shape: tuple[int, int, int]) -> NDArray:
@@ -149,12 +171,13 @@ def _padded(matrices: ArrayLike, shape: tuple[int, int, int]) -> NDArray:
 
 def _row(groups: list[Group], size: int) -> NDArray:
     """Groups by their kinds."""
-    groups = sorted(groups, key=lambda group: group.kind)
+    kinds = [KINDS.index((group.use, group.entries.shape[1])) for group in groups]
+    groups = [groups[g] for g in np.argsort(kinds, kind="stable").tolist()]
     row = np.zeros(size)
     head = BEGIN + GROUP * len(groups)
     end = head + sum(len(group.heads) for group in groups)
     whole = row.view(np.int64)
-    whole[:BEGIN] = np.bincount([group.kind for group in groups], minlength=BEGIN)
+    whole[:BEGIN] = np.bincount(kinds, minlength=BEGIN)
     for g, (_, first, vector, heads, entries) in enumerate(groups):
         begin = BEGIN + GROUP * g
         whole[begin:begin + GROUP] = first, vector, len(entries), head, end
@@ -164,64 +187,110 @@ def _row(groups: list[Group], size: int) -> NDArray:
     return row
 
 
-def _alone(stack: NDArray, before: int = 0, vector: int = 0) -> Iterator[Group]:
-    """Groups of strips that are used once; wide ones where both halves have entries.
+def _alone(stack: NDArray, before: int = 0, vector: int = 0, behind: int = 0) -> Iterator[Group]:
+    """Groups of strips that are used as they are.
 
-    `before` is the number of products before those of the stack.
+    `before` is the number of products before those of the stack; those of the second vector are
+    `behind` them.
     """
-    count, rows, columns = stack.shape
-    narrow, wide = WIDTHS[NARROW], WIDTHS[WIDE]
-    filled = (stack.reshape(count, rows // LANES, LANES, columns // narrow, narrow)
-              != 0.0).any(axis=(2, 4))
+    stack = stack.copy()
+    rows = stack.shape[1]
+    for first, width, own in _pieces(stack):
+        columns = stack[:, :, first:first + width]
+        filled: dict[int, list[int]] = {}
+        for k, i in np.argwhere((stack[:, :, own] != 0.0).any(axis=2)).tolist():
+            filled.setdefault(k, []).append(i)
+        begin = [(k, i) for k, of_one in filled.items() for i in _covered(of_one, rows)]
+        heads = [n for k, i in begin for n in ((before + k) * rows + i, before + k, i)]
+        if behind:
+            heads = [behind * rows, behind, *heads]
+        if begin:
+            yield Group(BOTH if behind else ONCE, first, vector, tuple(heads),
+                        _taken(columns, begin))
 
-    def group(kind, first, chosen):
-        heads, entries, width = [], [], WIDTHS[kind]
-        for k, block in np.argwhere(chosen).tolist():
-            i = LANES * block
-            heads += (before + k) * rows + i, before + k, i
-            entries.append(stack[k, i:i + LANES, first:first + width].T)
-        return [Group(kind, first, vector, tuple(heads), np.array(entries))] if heads else []
-    for first in range(0, columns, wide):
-        halves = filled[:, :, first // narrow:(first + wide) // narrow]
-        both = halves.all(axis=2) & (halves.shape[2] == wide // narrow)
-        yield from group(WIDE, first, both)
-        for half in range(halves.shape[2]):
-            yield from group(NARROW, first + half * narrow, halves[:, :, half] & ~both)
+
+def _pieces(stack: NDArray) -> Iterator[tuple[int, int, slice]]:
+    """First columns and widths of groups, which begin where the filled rows change.
+
+    With the columns whose entries all belong to a group: it may reach into those of the next one.
+    """
+    columns = stack.shape[2]
+    filled = (stack != 0.0).reshape(-1, LANES, columns).any(axis=1)
+    common, either = ((one(filled[:, 1:], filled[:, :-1])).sum(axis=0)
+                      for one in (np.logical_and, np.logical_or))
+    changes = [*(1 + np.flatnonzero(2 * common < either)).tolist(), columns]
+    empty, first = ~filled.any(axis=0), 0
+    while first < columns:
+        if empty[first]:
+            first += 1
+            continue
+        end = next(change for change in changes if change >= min(first + NARROW, columns))
+        while first < end:
+            width = WIDE if end - first > NARROW and columns >= WIDE else NARROW
+            own = slice(first, min(first + width, end))
+            yield min(first, columns - width), width, own
+            first = own.stop
+
+
+def _covered(rows: list[int], height: int, first: int = 0) -> list[int]:
+    """Where strips begin, as few as possible, that cover some rows, none before the first.
+
+    At whole vectors if these are not more: numbers are read by whole vectors afterwards, which
+    must not wait for parts that are written last.
+    """
+    found, end, last = [], 0, height - LANES
+    for row in rows if last >= first else ():
+        if row >= end:
+            found.append(min(row, last))
+            end = row + LANES
+    whole = sorted({row - row % LANES for row in rows})
+    return whole if len(whole) <= len(found) and min(whole, default=0) >= first else found
+
+
+def _taken(columns: NDArray, begin: list[tuple[int, int]]) -> NDArray:
+    """Entries of strips, (strips, columns, LANES), which are zero afterwards: strips may overlap.
+
+    Strips are matrices and first rows.
+    """
+    found = np.empty((len(begin), columns.shape[2], LANES))
+    for own, (k, i) in zip(found, begin, strict=True):
+        block = columns[k, i:i + LANES]
+        own[:] = block.T
+        block[:] = 0.0
+    return found
 
 
 def _mirrored(stack: NDArray) -> Iterator[Group]:
     """Takes strips below the diagonal out of symmetric matrices, and what mirrors them."""
-    width = WIDTHS[MIRRORED]
-    for k, first, rows in _runs(stack, width, below=True):
+    for k, first, rows in _runs(stack, below=True):
         yield _used_twice(stack, MIRRORED, k, first, rows, (k, k, k))
-        stack[k, first:first + width].reshape(width, -1, LANES)[:, rows] = 0.0
+        for row in rows:
+            stack[k, first:first + WIDE, row:row + LANES] = 0.0
 
 
 def _coupled(stack: NDArray, before: int) -> Iterator[Group]:
     """Takes strips out of matrices that multiply both vectors, and their transposes the second."""
-    for k, first, rows in _runs(stack, WIDTHS[COUPLED], below=False):
+    for k, first, rows in _runs(stack, below=False):
         products = before + k, before + len(stack) + k, before + 2 * len(stack) + k
         yield _used_twice(stack, COUPLED, k, first, rows, products)
 
 
-def _runs(stack: NDArray, width: int, below: bool) -> Iterator[tuple[int, int, NDArray]]:
-    """Matrix, first column, and blocks of rows, where there are many of these."""
-    count, rows, columns = stack.shape
-    whole = columns // width
-    filled = (stack[:, :, :width * whole].reshape(count, rows // LANES, LANES, whole, width)
-              != 0.0).any(axis=(2, 4))
-    if below:
-        filled &= (LANES * np.arange(rows // LANES)[:, None] >= width * (1 + np.arange(whole)))
-    for k, block in np.argwhere(filled.sum(axis=1) >= MANY).tolist():
-        yield k, width * block, np.flatnonzero(filled[k, :, block])
+def _runs(stack: NDArray, below: bool) -> Iterator[tuple[int, int, list[int]]]:
+    """Matrix, first column, and first rows of wide strips, where there are many of these."""
+    height, columns = stack.shape[1:]
+    filled = (stack != 0.0).reshape(len(stack), -1, LANES, columns).any(axis=2).sum(axis=1)
+    for k in np.flatnonzero((filled >= MANY).any(axis=1)).tolist():
+        for first, width, own in _pieces(stack[k:k + 1]):
+            begin = (first + width) * below
+            found = np.flatnonzero((stack[k, begin:, own] != 0.0).any(axis=1))
+            rows = _covered((begin + found).tolist(), height, begin)
+            if width == WIDE and len(rows) >= MANY:
+                yield k, first, rows
 
 
-def _used_twice(stack: NDArray, kind: int, k: int, first: int, rows: NDArray,
+def _used_twice(stack: NDArray, use: int, k: int, first: int, rows: list[int],
                 products: tuple[int, ...]) -> Group:
     """Takes strips out of a matrix."""
-    height, columns = stack.shape[1:]
-    own = stack[k].reshape(-1, LANES, columns)[:, :, first:first + WIDTHS[kind]]
-    entries = own[rows].transpose(0, 2, 1)
-    own[rows] = 0.0
-    return Group(kind, first, 0, (*(height * p for p in products), *products,
-                                  *(LANES * rows).tolist()), entries)
+    height = stack.shape[1]
+    entries = _taken(stack[:, :, first:first + WIDE], [(k, row) for row in rows])
+    return Group(use, first, 0, (*(height * p for p in products), *products, *rows), entries)

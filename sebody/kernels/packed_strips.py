@@ -23,14 +23,15 @@ from sebody.kernels.instructions import (
 )
 from sebody.kernels.packed import (
     BEGIN,
+    BEHIND,
+    BOTH,
     COUPLED,
     GROUP,
     HEAD,
+    KINDS,
     MIRRORED,
-    NARROW,
+    ONCE,
     PRODUCTS,
-    WIDE,
-    WIDTHS,
 )
 
 _CLEARED = 8        # vectors at a time
@@ -55,16 +56,17 @@ class Groups:
         return self.at(WORD(kind))
 
     def each(self, writers: dict[int, Callable[["Groups"], None]]) -> None:
-        """Go through the groups; in their order, writers of instructions for each kind."""
+        """Go through the groups; in their order, writers of instructions for each use."""
         builder, done = self.builder, WORD(0)
-        for kind, write in writers.items():
-            end = builder.add(done, self.count(kind))
-            with short_loop(builder, done, end) as group:
-                place = builder.add(builder.mul(group, WORD(GROUP)), WORD(BEGIN))
-                self.first, self.vector, self.strips, self.heads, self.begin = (
-                    self.at(builder.add(place, WORD(k))) for k in range(GROUP))
-                write(self)
-            done = end
+        for kind, (use, self.width) in enumerate(KINDS):
+            if use in writers:
+                end = builder.add(done, self.count(kind))
+                with short_loop(builder, done, end) as group:
+                    place = builder.add(builder.mul(group, WORD(GROUP)), WORD(BEGIN))
+                    self.first, self.vector, self.strips, self.heads, self.begin = (
+                        self.at(builder.add(place, WORD(k))) for k in range(GROUP))
+                    writers[use](self)
+                done = end
 
     def head(self, k: int, strip: ir.Value | None = None, size: int = HEAD) -> ir.Value:
         """A whole number of the heads, or of that of a strip."""
@@ -77,10 +79,10 @@ class Groups:
         """First row of a strip of a group that is used twice."""
         return self.head(2 * PRODUCTS, strip, 1)
 
-    def entries(self, strip: ir.Value, kind: int) -> ir.Value:
+    def entries(self, strip: ir.Value) -> ir.Value:
         """Pointer to the entries of a strip."""
         builder = self.builder
-        place = builder.add(self.begin, builder.mul(strip, WORD(LANES * WIDTHS[kind])))
+        place = builder.add(self.begin, builder.mul(strip, WORD(LANES * self.width)))
         return builder.gep(self.matrices, [place])
 
     def chosen(self, first: ir.Value, second: ir.Value) -> ir.Value:
@@ -109,20 +111,17 @@ def write_times_both(builder, matrices, x, y, of_x, of_y, count):
 
 def write_couplings(builder, matrices, x, y, out, count):
     _clear(builder, out, count)
-
-    def once(kind):
-        return lambda groups: _once(groups, kind, [(groups.chosen(x, y), out)])
     Groups(builder, matrices).each({
-        **{kind: once(kind) for kind in (NARROW, WIDE)},
+        ONCE: lambda groups: _once(groups, [(groups.chosen(x, y), out)]),
+        BOTH: lambda groups: _both(groups, x, y, out),
         MIRRORED: lambda groups: _twice(groups, [(0, x, out)], [(x, out)]),
         COUPLED: lambda groups: _twice(groups, [(0, x, out), (1, y, out)], [(y, out)])})
 
 
 def _of_vectors(given):
-    """Kinds of groups that multiply every one of some vectors."""
+    """Uses of groups that multiply every one of some vectors."""
     forward = [(0, x, out) for x, out in given]
-    return {NARROW: lambda groups: _once(groups, NARROW, given),
-            WIDE: lambda groups: _once(groups, WIDE, given),
+    return {ONCE: lambda groups: _once(groups, given),
             MIRRORED: lambda groups: _twice(groups, forward, given)}
 
 
@@ -138,14 +137,26 @@ def _clear(builder, out, count):
         done = end
 
 
-def _once(groups, kind, given):
+def _once(groups, given):
     """The numbers of the vectors stay in registers while strips follow."""
     builder = groups.builder
-    factors = [_factors(groups, x, kind) for x, _ in given]
+    factors = [_factors(groups, x) for x, _ in given]
     with short_loop(builder, WORD(0), groups.strips) as strip:
-        place, columns = groups.head(0, strip), _columns(groups, strip, kind)
+        place, columns = groups.head(0, strip), _columns(groups, strip)
         for (_, out), numbers in zip(given, factors, strict=True):
             _add_times(builder, out, place, columns, numbers)
+
+
+def _both(groups, x, y, out):
+    """Strips of matrices that multiply both vectors."""
+    builder = groups.builder
+    factors = [_factors(groups, vector) for vector in (x, y)]
+    behind = groups.head(0)
+    with short_loop(builder, WORD(0), groups.strips) as strip:
+        place, columns = groups.head(BEHIND, strip), _columns(groups, strip)
+        for numbers in factors:
+            _add_times(builder, out, place, columns, numbers)
+            place = builder.add(place, behind)
 
 
 def _twice(groups, forward, across):
@@ -154,14 +165,14 @@ def _twice(groups, forward, across):
     `forward` are the products of the strips: which one, the vector, what it is added to; `across`
     the same of the transpose, which is always the last product.
     """
-    builder, width = groups.builder, WIDTHS[MIRRORED]
+    builder, width = groups.builder, groups.width
     places = [groups.head(k) for k in range(PRODUCTS)]
-    factors = [_factors(groups, x, MIRRORED) for _, x, _ in forward]
+    factors = [_factors(groups, x) for _, x, _ in forward]
     sums = [totals(builder, width) for _ in across]
     for total in (total for of_one in sums for total in of_one):
         builder.store(no_sum(), total)
     with short_loop(builder, WORD(0), groups.strips) as strip:
-        row, columns = groups.row(strip), _columns(groups, strip, MIRRORED)
+        row, columns = groups.row(strip), _columns(groups, strip)
         for (product, _, out), numbers in zip(forward, factors, strict=True):
             _add_times(builder, out, builder.add(places[product], row), columns, numbers)
         for (x, _), of_one in zip(across, sums, strict=True):
@@ -175,17 +186,17 @@ def _twice(groups, forward, across):
             _add_to(builder, out, place, sums_of_lanes(builder, found[k:k + LANES]))
 
 
-def _columns(groups, strip, kind):
+def _columns(groups, strip):
     """The columns of a strip."""
-    own = groups.entries(strip, kind)
-    return [load_vector(groups.builder, own, WORD(LANES * k)) for k in range(WIDTHS[kind])]
+    own = groups.entries(strip)
+    return [load_vector(groups.builder, own, WORD(LANES * k)) for k in range(groups.width)]
 
 
-def _factors(groups, x, kind):
+def _factors(groups, x):
     """What the columns of the strips of a group are multiplied with."""
     builder = groups.builder
     return [load_broadcast(builder, x, builder.add(groups.first, WORD(k)))
-            for k in range(WIDTHS[kind])]
+            for k in range(groups.width)]
 
 
 def _add_times(builder, out, place, columns, factors):
@@ -212,27 +223,29 @@ def _added(builder, total, a, b):
 
 def write_sum(builder, matrices, factors, out, height):
     Groups(builder, matrices).each({
-        NARROW: lambda groups: _sum_once(groups, NARROW, factors, out, height),
-        WIDE: lambda groups: _sum_once(groups, WIDE, factors, out, height),
+        ONCE: lambda groups: _sum_once(groups, factors, [out], height),
         MIRRORED: lambda groups: _sum_twice(groups, factors, [(0, out)], out, height)})
 
 
 def write_sum_of_couplings(builder, matrices, factors, of_x, of_y, height):
-    def once(kind):
-        return lambda groups: _sum_once(groups, kind, factors, groups.chosen(of_x, of_y), height)
     Groups(builder, matrices).each({
-        **{kind: once(kind) for kind in (NARROW, WIDE)},
+        ONCE: lambda groups: _sum_once(groups, factors, [groups.chosen(of_x, of_y)], height),
+        BOTH: lambda groups: _sum_once(groups, factors, [of_x, of_y], height),
         MIRRORED: lambda groups: _sum_twice(groups, factors, [(0, of_x)], of_x, height),
         COUPLED: lambda groups: _sum_twice(groups, factors, [(0, of_x), (1, of_y)], of_y, height)})
 
 
-def _sum_once(groups, kind, factors, out, height):
-    """Strip by strip."""
+def _sum_once(groups, factors, outs, height):
+    """Strip by strip; of both vectors those of the second one are behind."""
     builder = groups.builder
+    begin, behind = (BEHIND, groups.head(1)) if len(outs) > 1 else (0, WORD(0))
     with short_loop(builder, WORD(0), groups.strips) as strip:
-        scale = load_broadcast(builder, factors, groups.head(1, strip))
-        columns = _columns(groups, strip, kind)
-        _add_columns(builder, columns, scale, out, groups.first, height, groups.head(2, strip))
+        matrix, columns = groups.head(begin + 1, strip), _columns(groups, strip)
+        row = groups.head(begin + 2, strip)
+        for out in outs:
+            scale = load_broadcast(builder, factors, matrix)
+            _add_columns(builder, columns, scale, out, groups.first, height, row)
+            matrix = builder.add(matrix, behind)
 
 
 def _sum_twice(groups, factors, forward, across, height):
@@ -241,10 +254,10 @@ def _sum_twice(groups, factors, forward, across, height):
     *scales, transposed = (load_broadcast(builder, factors, groups.head(PRODUCTS + k))
                            for k in range(PRODUCTS))
     with short_loop(builder, WORD(0), groups.strips) as strip:
-        row, columns = groups.row(strip), _columns(groups, strip, MIRRORED)
+        row, columns = groups.row(strip), _columns(groups, strip)
         for product, out in forward:
             _add_columns(builder, columns, scales[product], out, groups.first, height, row)
-        for k in range(0, WIDTHS[WIDE], LANES):
+        for k in range(0, groups.width, LANES):
             _add_columns(builder, _transposed(builder, columns[k:k + LANES]), transposed, across,
                          row, height, builder.add(groups.first, WORD(k)))
 

@@ -136,9 +136,11 @@ def _steps(run: Recording) -> dict[str, str]:
     cuts = int(run.state.control.cuts - run.state.guard.rejections)
     if cuts <= CUT * steps:
         return {}
-    return {"cuts": f"{cuts} rejected steps, {steps} accepted (limit of the ratio {CUT:g}): "
-            "Newton's iteration does not converge; take a smaller step, or smoother loads and "
-            "softer bodies"}
+    pressing = any("slow" in load.constants for load in run.model.loads)    # see `model.impacts`
+    why = ("contacts, stops or gears meet within steps, or Newton's iteration does not "
+           "converge" if pressing else "Newton's iteration does not converge")
+    return {"cuts": f"{cuts} rejected steps, {steps} accepted (limit of the ratio {CUT:g}): {why}; "
+            "take a smaller step, or smoother loads and softer bodies"}
 
 
 def _constraints(part: Recording) -> dict[str, str]:

@@ -2,6 +2,7 @@
 
 from sebody.contract.names import layout_variant
 from sebody.kernels.loader import derive_command, load
+from sebody.model.inertias import second_order
 from sebody.model.mechanism import Mechanism
 
 # unknowns of a body up to which a kernel with its counts as constants takes a fifth to a half less
@@ -16,7 +17,8 @@ def kernels_that_pay(model: Mechanism) -> dict[str, list[str]]:
         kernel = load(body.kernel)
         assert kernel is not None       # the model was built with it
         if kernel.N_POSITIONS is None and len(body.reduced.stiffness) <= PAYS:
-            variant = layout_variant(body.layout, body.reduced.modes, bool(kernel.DAMPED))
+            variant = layout_variant(body.layout, body.reduced.modes, bool(kernel.DAMPED),
+                                     second_order(body.reduced, body.inertia, body.stiffening))
             command = derive_command(variant, kernel.FRAME, kernel.INERTIA)
             commands.setdefault(command, []).append(body.name)
     return commands

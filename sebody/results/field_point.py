@@ -76,6 +76,11 @@ class FieldPoint:
         return self._stresses.fibres_of_node(self._nodes[0])
 
     @property
+    def fibres_by_section_forces(self) -> NDArray | None:
+        """`fibre_stress` of unit `section_forces`, (fibres, 6, ends * 6); None of solids."""
+        return self._stresses.fibres_by_section_forces(self._nodes[0])
+
+    @property
     def section_forces(self) -> NDArray:
         """Section forces of the ends of beam elements at the node, (n, ends, 6)."""
         return self._stresses.section_forces_of_node(self._nodes[0])

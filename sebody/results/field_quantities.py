@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from sebody.reduction.recovery import Recovery
 from sebody.results.field import Field
+from sebody.results.field_point import FieldPoint
 from sebody.results.recording import Recording
 
 QUANTITIES = ("position", "velocity", "acceleration", "displacement", "stress", "von_mises",
@@ -48,15 +49,20 @@ def field_of(recording: Recording, name: str) -> Field:
     return recording.fields[name]
 
 
-def of_fe_node(quantity: str, recording: Recording, name: str) -> NDArray:
-    """History of a quantity of one FE node."""
+def fe_node(recording: Recording, name: str) -> FieldPoint:
+    """An FE node by its name ``<body>.node<k>``, one that there is."""
     body, _, node = name.rpartition(".node")
     field = field_of(recording, body)
     recovery = recording.model.bodies[body].reduced.recovery
     assert recovery is not None     # see `Field`
     number = number_of(recovery, int(node))
     assert number is not None       # names of nodes there are not were refused
-    return getattr(field.at(number), quantity)
+    return field.at(number)
+
+
+def of_fe_node(quantity: str, recording: Recording, name: str) -> NDArray:
+    """History of a quantity of one FE node."""
+    return getattr(fe_node(recording, name), quantity)
 
 
 def number_of(recovery: Recovery, node: int) -> int | None:

@@ -169,7 +169,8 @@ class Stresses:
         Fibres and ends of elements are in the order of `fibres_of_node` and
         `section_forces_of_node`. None where the stress is that of solid elements.
         """
-        if any((one.nodes == node).any() for one in (*self._solids, *self._modes)):
+        of_solids = [one.nodes for one in self._solids] + [one.nodes for one in self._modes]
+        if any((nodes == node).any() for nodes in of_solids):
             return None
         fibres = [one.fibres[e] for one in self._beams for e in np.nonzero(one.nodes == node)[0]]
         whole = np.zeros((sum(map(len, fibres)), 6, 6 * len(fibres)))

@@ -8,13 +8,14 @@ from ctypes import CFUNCTYPE, c_int64, c_void_p
 
 from sebody import inputs
 from sebody.assembly.independent_parts import FEWEST
-from sebody.engine.mailbox import ENDED
+from sebody.engine.mailbox import CALL
 from sebody.engine.state import HELP, State
 from sebody.engine.system import System
 
 MOST = 64               # threads
 TOO_SMALL = ("threads = {} is not used: threads share the steps of models with "
              f"{FEWEST} unknowns or more, this one has {{}}")
+WORTH_IT = 10_000       # unknowns times steps of a short piece of a run, which takes 2 ms or more
 REST = 1e-4             # seconds after which a helper that found no work looks again
 _SHARE = CFUNCTYPE(c_int64, c_void_p, c_void_p, c_int64, c_int64)   # releases Python's lock
 
@@ -28,13 +29,18 @@ def checked_threads(threads: int) -> int:
 
 @contextmanager
 def helping(system: System, state: State) -> Iterator[None]:
-    """Threads that help whatever calls the loop meanwhile; they end with it, however it ends."""
+    """Threads that help whatever calls the loop meanwhile; they end with it, however it ends.
+
+    Calls are numbered, and helpers take nothing of another call: where a second Ctrl-C keeps this
+    one from ending its helpers, they leave when the next one begins.
+    """
     mail = system.shared.mail
     if not mail.size:
         yield
         return
-    mail[ENDED] = 0
-    threads = [threading.Thread(target=_help, args=(system, state, k), daemon=True)
+    mail[CALL] += 1
+    call = int(mail[CALL])
+    threads = [threading.Thread(target=_help, args=(system, state, k, call), daemon=True)
                for k in range(1, len(system.shared.work))]
     try:
         for thread in threads:
@@ -44,15 +50,20 @@ def helping(system: System, state: State) -> Iterator[None]:
                 break
         yield
     finally:
-        mail[ENDED] = 1
+        mail[CALL] += 1
         for thread in threads:
             if thread.ident is not None:
                 thread.join()
 
 
-def _help(system: System, state: State, thread: int) -> None:
-    """Do pieces of the loop's work until it ends; sleep while there are none."""
+def worth_help(system: System, steps: int) -> bool:
+    """Whether so many steps take longer than helpers do to begin and end."""
+    return bool(system.shared.mail.size) and steps * system.diagonal.size >= WORTH_IT
+
+
+def _help(system: System, state: State, thread: int, call: int) -> None:
+    """Do pieces of the loop's work until its call ends; sleep while there are none."""
     share = _SHARE(int(system.routines[3]))
     groups = (vars(system)["_address"], vars(state)["_address"])    # as compiled code gets them
-    while not share(*groups, HELP, thread):
+    while not share(*groups, HELP + call, thread):
         time.sleep(REST)

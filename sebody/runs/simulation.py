@@ -25,7 +25,7 @@ from sebody.runs import user_faults
 from sebody.runs.failures import explained
 from sebody.runs.first_run import prepare
 from sebody.runs.given_start import take
-from sebody.runs.helpers import TOO_SMALL, checked_threads, helping
+from sebody.runs.helpers import TOO_SMALL, checked_threads, helping, worth_help
 from sebody.runs.initial_state import begin, hold
 from sebody.runs.initial_velocities import refuse_contradicted
 from sebody.runs.progress import showing
@@ -244,8 +244,12 @@ class Simulation:
         if self.sampling.needs_looks or (buffer := self.rows.buffer(count + 1)) is None:
             return False
         self.sampling.stop_at(t_end)
-        return advance(self.system, state, buffer, self.scheme, last, FEW + 1,
-                       self.dense) == DONE
+        if not worth_help(self.system, count):
+            return advance(self.system, state, buffer, self.scheme, last, FEW + 1,
+                           self.dense) == DONE
+        with helping(self.system, state):
+            return advance(self.system, state, buffer, self.scheme, last, FEW + 1,
+                           self.dense) == DONE
 
     def flush(self) -> None:
         """Put what short pieces recorded into `rows`, and look whether limits are exceeded."""

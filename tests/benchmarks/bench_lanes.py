@@ -34,11 +34,16 @@ SCENES = {      # name of a scene, options
     "heavy-top": ("heavy-top", {}),
     "torque-free-body": ("torque-free-body", {}),
     "chain, 3 links": ("chain", {"links": 3}),
+    "chain, 5 links": ("chain", {"links": 5}),
     "chain, 16 links": ("chain", {"links": 16}),
     "hinged-beam, 32 modes": ("hinged-beam", {"modes": 32}),
     "right-angle-frame (best fit)": ("right-angle-frame", {}),
     "hinged-beam, mean axes": ("hinged-beam", {"frame": "mean_axes"}),
-    "imported-link": ("imported-link", {})}
+    "imported-link": ("imported-link", {}),
+    "two-link-arm": ("two-link-arm", {}),
+    "half-car": ("half-car", {}),
+    "flexible-arm": ("flexible-arm", {}),
+    "pole-on-cart": ("pole-on-cart", {})}
 STEP = {"chain": 0.25}      # of a scene's own: members with rejected steps are run alone
 
 

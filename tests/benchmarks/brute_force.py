@@ -30,10 +30,11 @@ import numpy as np
 
 from sebody.errors import InputError, SimulationError
 from sebody.explore.advice.changes import Builder, Choice, Step
+from sebody.explore.advice.first_runs import LONGER
 from sebody.explore.advice.forms import Form, Part, parts_of
 from sebody.explore.advice.judgement import SHORTER
 from sebody.explore.advice.quantities import Quantities, Values, difference, sizes_of
-from sebody.explore.advice.runner import FINER, LONGER
+from sebody.explore.advice.runner import FINER
 from sebody.model.model import Model
 from sebody.runs.simulation import Simulation
 from sebody.runs.tolerance import Tolerance

@@ -15,6 +15,7 @@ from sebody.contract.counts import LANES
 from sebody.contract.layout import RESIDUAL
 from sebody.engine import elimination
 from sebody.engine.evaluate import UNMOVED, assemble, run_moved, sum_forces
+from sebody.engine.newton import OLDEST_ROTATED
 from sebody.kernels.abi import at, pointer_to
 from sebody.scenes import chain
 
@@ -150,3 +151,15 @@ def test_row_exchanges_take_over_at_small_pivots(monkeypatch, index):
     for name in ("tip.position", "energy.strain", "energy.kinetic"):
         a, b = own.result()[name], exchanged.result()[name]
         assert np.abs(a - b).max() < 1e-9 * np.abs(a).max(), name
+
+
+def test_refreshed_matrices_are_of_element_matrices_that_are_not_old():
+    """Steps of a chain that refresh their matrix take new element matrices now and then."""
+    run = Simulation(chain.build(links=100, inertia="material").model, 0.01)
+    refreshed = 0
+    for k in range(1, 76):
+        run.run_to(0.01 * k)
+        if run.state.control.back_off_left > 0 and run.state.control.fresh > 0:
+            assert run.state.control.age <= OLDEST_ROTATED
+            refreshed += 1
+    assert refreshed > 50

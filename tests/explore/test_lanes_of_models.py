@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from lane_models import assert_bits_in_other_company, single
 from scipy.spatial.transform import Rotation
 
 from sebody import Model, generalized_alpha, piecewise, simulate
@@ -144,10 +145,7 @@ def test_members_equal_single_runs(build, index, monkeypatch):
     assert matrices_at_once(many._template) == (build is chain)
     found = many.run(given, STEPS * H, outputs)
     assert found.in_lanes == RUNS and not found.failures
-    for runs in (slice(None, None, -1), slice(4, 5)):
-        other = many.run({name: v[runs] for name, v in given.items()}, STEPS * H, outputs)
-        for name, values in other.values.items():
-            np.testing.assert_array_equal(values, found.values[name][runs])
+    assert_bits_in_other_company(many, given, STEPS * H, outputs, found)
     for run in (0, 8):
         alone = build()
         for name, values in given.items():
@@ -203,15 +201,9 @@ def test_controlled_members_equal_single_runs(build, monkeypatch):
     many = Ensemble(made, H)
     found = many.run(given, STEPS * H, outputs)
     assert found.in_lanes == RUNS and not found.failures
-    for runs in (slice(None, None, -1), slice(4, 5)):
-        other = many.run({name: v[runs] for name, v in given.items()}, STEPS * H, outputs)
-        for name, values in other.values.items():
-            np.testing.assert_array_equal(values, found.values[name][runs])
+    assert_bits_in_other_company(many, given, STEPS * H, outputs, found)
     for run in (0, 8):
-        alone = build()
-        for name, values in given.items():
-            handle(alone, name).set(np.asarray(values[run], dtype=float))
-        result = simulate(alone, H, STEPS * H)
+        result = single(made, {name: v[run] for name, v in given.items()}, H, STEPS * H)
         for name, quantity in (("course", "tip.position"), ("motor", "motor.value")):
             size = np.abs(result[quantity]).max()
             assert size > 0.0

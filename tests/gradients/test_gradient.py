@@ -258,6 +258,13 @@ def test_stresses_without_derivative():
         gradient(*run, {"mean": integral("beam.node0.von_mises")}, ["torque.amplitude"])
 
 
+def test_a_length_that_is_zero_has_no_derivative():
+    with pytest.raises(InputError, match="displacement.norm' has no derivative at t = 0: it is not "
+                       "smooth there, .* give its components"):
+        gradient(scenes.hinged(modes=2), 0.005, 0.05, {
+            "bent": at_time("beam.node0.displacement.norm", 0.0)}, ["beam.mass"])
+
+
 def test_a_sparse_chain():
     """Links in a chain too long for full matrices: adjoint against forward and differences."""
     run = 0.01, 0.05, {"tip": final("tip.position")}, ["torque.amplitude", "link 7.mass"]

@@ -18,6 +18,7 @@ from sebody.kernels.packed import pack, pack_couplings
 from sebody.kernels.packed_products import (
     add_couplings,
     add_packed,
+    add_packed_times,
     couplings_times,
     packed_times,
 )
@@ -36,11 +37,16 @@ if way().__name__.endswith("plain"):
 
 import sebody.engine.lanes  # noqa: E402, F401  puts functions for lanes in place
 from sebody.engine.lanes.arrays import Columns, empty, numbers  # noqa: E402
+from sebody.kernels.lanes.constant_products import (  # noqa: E402
+    add_straight_times,
+    straight_times,
+)
 from sebody.kernels.lanes.straight import (  # noqa: E402
     KEPT,
     entries_of,
     straight_code,
     write_address,
+    write_matrix_address,
     write_shared_address,
 )
 
@@ -103,8 +109,32 @@ def test_dense_products(rows, columns, of_B):
 
 
 @compiled
+def straight_products(A, x, out, more, count):
+    straight_times(pointer_to(A.rows), pointer_to(x.rows), pointer_to(out.rows), count)
+    add_straight_times(pointer_to(A.rows), pointer_to(x.rows), pointer_to(more.rows))
+
+
+@pytest.mark.parametrize("columns", [9, 30])        # factors that stay in registers, and others
+def test_products_of_shared_matrices(columns):
+    """As straight code of what is not zero; nothing is written behind the rows."""
+    rng, rows = np.random.default_rng(columns), 12
+    A = rng.normal(size=(rows, columns)) * (rng.uniform(size=(rows, columns)) < 0.4)
+    A[[0, 7, 11]] = 0.0
+    x, begin = rng.normal(size=(columns, MEMBERS)), rng.normal(size=(rows + 1, MEMBERS))
+    given, out, more = numbers_of_all(A), Given.of(begin), Given.of(begin)
+    kept, _code = write_matrix_address(A, given.rows[0])
+    straight_products(given, Given.of(x), out, more, rows)
+    assert given.rows[0, :1].view(np.int64) == kept.ctypes.data
+    np.testing.assert_allclose(out.values[:rows], A @ x, atol=1e-13)
+    np.testing.assert_allclose(more.values[:rows], begin[:rows] + A @ x, atol=1e-13)
+    for found in out, more:
+        np.testing.assert_array_equal(found.values[rows], begin[rows])
+
+
+@compiled
 def packed_products_of(packed, x, out, factors, total, count, height):
     packed_times(pointer_to(packed.rows), pointer_to(x.rows), pointer_to(out.rows), count)
+    add_packed_times(pointer_to(packed.rows), pointer_to(x.rows), pointer_to(out.rows))
     add_packed(pointer_to(packed.rows), pointer_to(factors.rows), pointer_to(total.rows), height)
 
 
@@ -137,7 +167,8 @@ def test_packed_products(straight, shared, row_of_all):
         np.zeros((whole_vectors(columns) * height, MEMBERS)))
     packed_products_of(packed, Given.of(x), out, Given.of(factors), total, count * height, height)
     found = out.values.reshape(count, height, MEMBERS)[:, :rows]
-    np.testing.assert_allclose(found, np.einsum("mkrc,cm->krm", stacks, x[:columns]), atol=1e-13)
+    expected = 2.0 * np.einsum("mkrc,cm->krm", stacks, x[:columns])     # set, then added once more
+    np.testing.assert_allclose(found, expected, atol=1e-13)
     if row_of_all and shared < 1.0:     # matrices of members are not made from such rows
         return
     found = total.values.reshape(-1, height, MEMBERS)[:columns, :rows]
@@ -159,7 +190,7 @@ def test_straight_code_is_freed_once_nobody_keeps_it():
     x, out = rng.normal(size=(8, MEMBERS)), Given.of(np.full((4, MEMBERS), np.nan))
     packed_products_of(packed, Given.of(x), out, Given.of(np.zeros((1, MEMBERS))),
                        Given.of(np.zeros((16, MEMBERS))), 4, 4)
-    np.testing.assert_allclose(out.values, stack[0] @ x[:4], atol=1e-13)
+    np.testing.assert_allclose(out.values, 2.0 * stack[0] @ x[:4], atol=1e-13)
 
 
 @compiled

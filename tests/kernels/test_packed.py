@@ -6,7 +6,7 @@ import pytest
 from sebody.compiler.decorators import compiled
 from sebody.contract.counts import packed_size, whole_vectors
 from sebody.kernels.abi import pointer_to
-from sebody.kernels.packed import COUPLED, MIRRORED, pack, pack_couplings, strips, unpack
+from sebody.kernels.packed import pack, pack_couplings, strips, unpack
 from sebody.kernels.packed_products import (
     add_couplings,
     add_packed,
@@ -104,19 +104,23 @@ def test_products_and_sums(shape, filled):
     assert not sums[:, height:].any()
 
 
-@pytest.mark.parametrize("N, filled", [(5, 1.0), (18, 0.3), (42, 0.05), (61, 0.9)])
-def test_symmetric_matrices_and_couplings(N, filled):
+@pytest.mark.parametrize("N, filled, zeros, many", [
+    (5, 1.0, 0, False), (18, 0.3, 0, True), (42, 0.05, 0, True), (61, 0.9, 0, True),
+    (42, 0.9, 3, True), (35, 1.0, 6, True)])
+def test_symmetric_matrices_and_couplings(N, filled, zeros, many):
     """Of large matrices strips are used twice; of small ones, and where few have entries, once."""
     random = np.random.default_rng(N)
     S, C = stack((3, N, N), filled, 3), stack((2, N, N), filled, 4)
     S += S.transpose(0, 2, 1)
+    for matrices in (S, C):
+        matrices[:, :zeros] = matrices[:, :, :zeros] = 0.0
     row, couplings = pack(S, S.shape, symmetric=True), pack_couplings(S, C)
     every = np.concatenate([S, C, C, C.transpose(0, 2, 1)])
     for packed, stored in ((row, S), (couplings, every)):
         assert len(packed) == packed_size(*stored.shape)
         assert np.array_equal(unpack(packed, stored.shape), stored)
-    kinds = {strip.kind for strip in strips(couplings)}
-    assert ({MIRRORED, COUPLED} <= kinds) == (N > 20)
+    uses = {(len(strip.uses), strip.uses[-1].transposed) for strip in strips(couplings)}
+    assert ({(2, True), (3, True)} <= uses) == many
     height, width = whole_vectors(N), whole_vectors(N) + 4
     x, y = random.normal(size=(2, width))
     of_x, of_y, out = np.full((3, len(every), height), np.nan)
@@ -131,6 +135,32 @@ def test_symmetric_matrices_and_couplings(N, filled):
     for found, of in zip(sums, (slice(None, first), slice(first, None)), strict=True):
         expected = np.einsum("k,kij->ji", factors[of], every[of])
         np.testing.assert_allclose(found[:N, :N], expected, atol=bound, rtol=0)
+
+
+def test_blocks_anywhere():
+    """Blocks of matrices begin at any row and column: hardly a zero is packed beside them."""
+    N, blocks = 27, [(3, 11), (11, 15), (15, 22), (22, 26)]
+    C = np.zeros((3, N, N))
+    for k, pairs in enumerate(([(0, 1), (1, 0)], [(2, 3)], [(1, 1), (3, 0)])):
+        for i, j in pairs:
+            C[k, slice(*blocks[i]), slice(*blocks[j])] = 1.0 + k
+    S = C + C.transpose(0, 2, 1)
+    every = np.concatenate([S, C, C, C.transpose(0, 2, 1)])
+    couplings = pack_couplings(S, C)
+    assert np.array_equal(unpack(couplings, every.shape), every)
+    taken = list(strips(couplings))
+    assert {len(strip.uses) for strip in taken} == {1, 2}       # C multiplies both vectors
+    packed = sum(strip.entries.size for strip in taken)     # C is packed once for both vectors
+    assert packed < 1.1 * (np.count_nonzero(every) - np.count_nonzero(C))
+    x, y, out = np.ones(32), np.full(32, 2.0), np.full((len(every), 28), np.nan)
+    sums = np.zeros((2, 32, 28))
+    of_two(pack(S, S.shape), couplings, x, y, np.zeros(84), np.zeros(84), out.ravel(), 84,
+           out.size, np.ones(len(every)), sums[0].ravel(), sums[1].ravel(), 28)
+    first = len(S) + len(C)
+    expected = [*every[:first] @ x[:N], *every[first:] @ y[:N]]
+    np.testing.assert_allclose(out[:, :N], expected, atol=1e-13, rtol=0)
+    for found, of in zip(sums, (every[:first], every[first:]), strict=True):
+        np.testing.assert_allclose(found[:N, :N].T, of.sum(axis=0), atol=1e-13, rtol=0)
 
 
 def test_coordinates_that_determine_the_others():

@@ -122,10 +122,13 @@ def test_a_summary_says_once_where_a_kernel_of_its_own_would_pay():
     for k, keeps in enumerate((["full"] * 4, ["full"] * 9, ["full"] * 2)):
         place(model, f"more{k} ", reduced(keeps, 2, line), (0, 100 + 50 * k))
     lines = simulate(model, 0.01, 0.02).summary().splitlines()
+    counts = [(len(body.invariants.Q), len(body.invariants.lam))
+              for body in (model.bodies["long"], model.bodies["mixed"])]
     assert [line for line in lines if line.startswith("general kernel")] == [
-        f"general kernel       used for {bodies}: for a faster, specific kernel run "
-        f"python -m sebody.derive {variant}:converged_mean:floating_field" for bodies, variant in (
-            ("long, more0 ", "planar-f4m2"), ("mixed", "planar-t2r1m0"))]
+        f"general kernel       used for {bodies}: for a faster, specific kernel run python -m "
+        f"sebody.derive {variant}s{slaved}e{resultants}:converged_mean:floating_field"
+        for (bodies, variant), (slaved, resultants) in zip((
+            ("long, more0 ", "planar-f4m2"), ("mixed", "planar-t2r1m0")), counts, strict=True)]
 
 
 def test_bodies_of_equal_width_and_other_counts_have_batches_of_their_own():

@@ -13,10 +13,10 @@ from scipy.sparse.linalg import spsolve
 from sebody import InputError, Interrupted, Model, Simulation, SimulationError
 from sebody.analysis import resume, save_state
 from sebody.assembly.allocation import allocate
-from sebody.engine.mailbox import ENDED
+from sebody.engine.mailbox import CALL
 from sebody.engine.matrix import refactorize, solve, sum_matrices
 from sebody.engine.state import ROTATED
-from sebody.runs import helpers
+from sebody.runs import helpers, simulation
 from sebody.scenes import chain
 
 LINKS = 100     # with 1500 unknowns, two shares of 64 bodies
@@ -68,7 +68,7 @@ def test_any_number_of_threads_gives_the_same_bits(name):
     for threads in (2, 3):
         other, run = rows(model, threads)
         assert np.array_equal(one, other)
-        assert run.system.shared.mail[ENDED] and threading.active_count() == 1
+        assert threading.active_count() == 1
 
 
 def test_parts_do_not_wait_for_each_other():
@@ -155,12 +155,63 @@ def test_helpers_that_never_come_are_not_waited_for(monkeypatch):
     assert np.array_equal(rows(MODELS["chain"](), 2)[0], rows(MODELS["chain"](), 1)[0])
 
 
-def test_a_system_without_more_threads_has_the_loop_do_the_work(monkeypatch):
+@pytest.mark.parametrize("given", [0, 1])
+def test_a_system_without_more_threads_has_the_loop_do_the_work(monkeypatch, given):
+    begin, started = threading.Thread.start, []
+
     def start(thread):
-        raise RuntimeError("can't start new thread")
+        if len(started) == given:
+            raise RuntimeError("can't start new thread")
+        started.append(thread)
+        begin(thread)
     expected = rows(MODELS["chain"](), 1)[0]
     monkeypatch.setattr(threading.Thread, "start", start)
-    assert np.array_equal(rows(MODELS["chain"](), 2)[0], expected)
+    assert np.array_equal(rows(MODELS["chain"](), 3)[0], expected)
+    assert len(started) == given and threading.active_count() == 1
+
+
+def test_helpers_that_a_second_interrupt_left_take_nothing_of_a_later_call(monkeypatch):
+    """A call that is interrupted before it has told its helpers that it ends."""
+    whole, _ = rows(MODELS["chain"](), 1)
+    run, join, left = Simulation(MODELS["chain"](), 0.01, threads=2), threading.Thread.join, []
+    mail = run.system.shared.mail
+
+    def interrupted(thread):
+        left.append(thread)
+        mail[CALL] -= 1                 # as if the end had not been told
+        raise KeyboardInterrupt
+    monkeypatch.setattr(threading.Thread, "join", interrupted)
+    run.run_to(0.05)                    # the interrupt comes when all steps are done
+    monkeypatch.setattr(threading.Thread, "join", join)
+    assert len(left) == 1 and left[0].is_alive()
+    assert np.array_equal(run.run_to(0.1).rows.all(), whole)
+    left[0].join(10.0)
+    assert not left[0].is_alive() and threading.active_count() == 1
+
+
+def test_short_pieces_have_helpers_where_they_take_long(monkeypatch):
+    """A loop in Python that sets an input after every two steps."""
+    used = []
+
+    def counted(*arguments):
+        used.append(arguments)
+        return helpers.helping(*arguments)
+    monkeypatch.setattr(simulation, "helping", counted)
+    model = MODELS["chain"]()
+    model.actuator("push", node=list(model.nodes.values())[-1], direction=(0.0, 1.0, 0.0))
+
+    def run(threads):
+        one = Simulation(model, 0.01, threads=threads)
+        for k in range(1, 5):
+            one.set_input("push", 10.0 * k)
+            one.run_to(0.02 * k)
+        return one.result()["push.force"], one.state.now.copy()
+    expected = run(1)
+    assert not used
+    assert all(map(np.array_equal, run(2), expected)) and not used      # two steps of 1500 unknowns
+    monkeypatch.setattr(helpers, "WORTH_IT", 2000)
+    assert all(map(np.array_equal, run(2), expected)) and len(used) == 4
+    assert threading.active_count() == 1
 
 
 def test_helpers_leave_other_states_alone():

@@ -35,11 +35,10 @@ from sebody.engine.matrix import solve
 from sebody.engine.newton import take_shift
 from sebody.engine.prediction import look_back
 from sebody.engine.state import EVALUATED, KEPT, ROTATED
-from sebody.engine.step import MEMORY, ORTHOGONAL, orthogonalize, predict
+from sebody.engine.step import predict, settle
 from sebody.engine.step_control import NEAR, set_end
 from sebody.engine.vectors import swap
 from sebody.engine.work import add_work
-from sebody.kernels.abi import at, pointer_to
 
 
 @compiled(nogil=True)
@@ -159,14 +158,11 @@ def _evaluate(system, state, scratch, active, moved):
 
 @compiled(forceinline=True)
 def _accept(system, state):
-    """End a step: orthogonal rotations."""
+    """End a step. Members orthogonalize together: they count their steps apart, the grid is one."""
     clock, control = state.clock, state.control
-    if control.grid % ORTHOGONAL == 0:
-        for r in range(system.rotation_at.size):
-            orthogonalize(at(pointer_to(state.R), 9 * r))
+    settle(system, state, control.grid)
     watch_age(state)
     control.back_off = where(control.fresh == 0.0, spread(0.0), control.back_off)
-    clock.acceleration_norm *= MEMORY
     control.steps += 1.0
     control.grid += 1
     clock.time = control.grid * clock.step

@@ -15,6 +15,7 @@ from sebody.engine.newton import (
     MAX_ITERATIONS,
     MOST_MATRICES,
     OLDEST,
+    OLDEST_ROTATED,
     POOR,
     QUICK,
     REFACTORIZATION_COST,
@@ -112,7 +113,9 @@ def begin_with_matrix(state):
         control.wanted = spread(float(EVALUATED))
     rotated = (control.wanted == float(KEPT)) & (control.back_off_left > 0.0)
     control.back_off_left = where(rotated, control.back_off_left - 1.0, control.back_off_left)
-    control.wanted = where(rotated, spread(float(ROTATED)), control.wanted)
+    kind = where(control.age >= float(OLDEST_ROTATED), spread(float(EVALUATED)),
+                 spread(float(ROTATED)))
+    control.wanted = where(rotated, kind, control.wanted)
 
 
 @compiled(forceinline=True)

@@ -11,7 +11,7 @@ from sebody.engine.calls import call_restart
 from sebody.engine.evaluate import move_prescribed, set_loads
 from sebody.engine.kept_factors import VALID
 from sebody.engine.links import place_dependent
-from sebody.engine.state import ASKED, DONE
+from sebody.engine.state import DONE
 from sebody.engine.vectors import copy
 
 
@@ -21,6 +21,8 @@ class Beginning(Arrays):
 
     ==================  ============================================================================
     model, floats       numbers of the model as built, and those of the thread
+    copied              (k, 2) first and last places of those that runs change
+    restart             (1,) how the accelerations are asked for
     slots               (k,) places of the numbers that depend on parameters
     ends                (k + 1,) where the slopes of each begin and end
     components, slopes  by which component of the parameters, and how much
@@ -32,6 +34,8 @@ class Beginning(Arrays):
 
     model: NDArray
     floats: NDArray
+    copied: NDArray
+    restart: NDArray
     slots: NDArray
     ends: NDArray
     components: NDArray
@@ -56,12 +60,14 @@ def begin(system, state, given, change):
     change : (components,)
         Values of the parameters less those of the model as built.
     """
-    copy(given.model, given.floats)
+    for part in range(given.copied.shape[0]):
+        for k in range(given.copied[part, 0], given.copied[part, 1]):
+            given.floats[k] = given.model[k]
     for i in range(given.slots.size):
         total = 0.0
         for k in range(given.ends[i], given.ends[i + 1]):
             total += given.slopes[k] * change[given.components[k]]
-        given.floats[given.slots[i]] += total
+        given.floats[given.slots[i]] = given.model[given.slots[i]] + total
     for i in range(given.control.size):
         given.control[i] = given.control_built[i]
     for i in range(given.moved.size):
@@ -74,7 +80,7 @@ def begin(system, state, given, change):
     copy(state.loads, state.loads_old)
     move_prescribed(system, state)
     place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
-    state.control.restart = ASKED
+    state.control.restart = given.restart[0]
 
 
 @compiled(nogil=True)

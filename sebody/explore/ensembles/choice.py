@@ -4,14 +4,11 @@ The choice depends on the model, its parameters and the number of steps of all r
 runs are asked for together or on what was compiled before: a run has the same bits in both.
 """
 
-from collections.abc import Callable
-from typing import NamedTuple
-
 import numpy as np
 
 from sebody.assembly.equal_bodies import evaluated_together
 from sebody.compiler import choice
-from sebody.explore.ensembles.start_values import Image
+from sebody.explore.ensembles.start_values import OWN_STARTS, Fact, Image
 from sebody.kernels.loader import element_kernel_name, takes_one_member
 from sebody.model.model import Model
 from sebody.runs.simulation import Simulation
@@ -19,24 +16,15 @@ from sebody.runs.simulation import Simulation
 WORTH_IT = 500_000      # steps of all runs together, a second or more one by one
 
 
-class Fact(NamedTuple):
-    """Something that lets runs be made one by one alone."""
-
-    reason: str
-    holds: Callable[[Simulation], bool]
-
-
-FACTS = (
+FACTS = (       # each lets runs be made one by one alone
+    *OWN_STARTS,
     Fact("sensors that Python reads", lambda one: bool(one.system.control.outside[0])),
     Fact("continuous controllers", lambda one: bool(one.system.control.flowing.size)),
     Fact("controllers with index 2 or motions without mass", lambda one: bool(
         one.system.control.periods.size
         and (one.scheme.stabilized or one.system.massless[0]))),
-    Fact("friction that holds something at the start", lambda one: one.held),
     Fact("elements that keep numbers, as contacts and friction, among rigid bodies alone",
          lambda one: not one.model.bodies and bool(one.numbering.memories)),
-    Fact("gears whose teeth are as stiff as the step allows",
-         lambda one: any("teeth" in load.tuned for load in one.model.loads)),
     Fact("equal bodies, of which each run evaluates eight at a time",
          lambda one: bool(evaluated_together(one.model))),
 )

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.contract.counts import MEMBERS
+from sebody.contract.counts import MEMBERS, whole_vectors
 from sebody.contract.layout import AT_CONSTANTS, RECORD_T
 from sebody.engine.lanes import loop, samples
 from sebody.engine.lanes.apart import GAVE_UP, RUNS
@@ -21,11 +21,16 @@ from sebody.explore.ensembles.shared_constants import (
     own_parts,
     own_places,
     packed_rows,
+    straight_matrices,
     varied_numbers,
 )
 from sebody.explore.ensembles.start_values import Image
 from sebody.kernels.lanes.kernel import address_in_lanes, module_in_lanes
-from sebody.kernels.lanes.straight import write_address, write_shared_address
+from sebody.kernels.lanes.straight import (
+    write_address,
+    write_matrix_address,
+    write_shared_address,
+)
 
 MOST_NUMBERS = 8_000        # of recorded states at a time: they stay in the processor's cache
 MOST_STEPS = 20_000         # until a thread looks whether it is to stop: tenths of a second
@@ -47,8 +52,6 @@ class Lanes:
 
     Attributes
     ----------
-    courses : list of Course
-        Outputs of the members that were run last.
     ended : bool
         Whether these were run to their end; False if they were stopped before.
     """
@@ -84,16 +87,21 @@ class Lanes:
         self._stretch = max(1, min(last // one.every, MOST_NUMBERS // len(columns)))
         rows = (self._stretch + 1, len(columns))
         self._record = Columns(places=columns, rows=empty(*rows), every=np.array([one.every]))
-        self._rows = np.empty(rows)
-        self._last, self._begun = last, {}
-        self._outputs = outputs
+        self._table, self._rows = numbers(self._record.rows), np.empty(rows)
+        self._last, self._every, self._begun = last, one.every, {}
+        # scalars by name: looked up once, since a look-up out of a cold cache takes microseconds
+        self._reason = self.state.control["reason"]
+        self._recorded = _scalar(self.state.control, "recorded")
+        self._time = _scalar(self.state.clock, "time")
         self._changes: NDArray          # of the members that have begun
         self._evaluated = not all(form.kinematic for form in forms.values())
         self._folds = {name: Folds(one, forms[one.quantity].shape,
                                    self._forms[one.quantity].columns, MEMBERS)
                        for name, one in outputs.items()
                        if one.kind != "history" and forms[one.quantity].columns is not None}
-        self.courses, self.ended = [], False
+        self._others = {name: one for name, one in outputs.items() if name not in self._folds}
+        self._courses: list[Course] = []
+        self.ended = False
 
     def _write_constants(self) -> tuple[NDArray, list]:
         """Write straight code of all bodies.
@@ -117,6 +125,11 @@ class Lanes:
             elif place.start not in kept:       # bodies that are alike have one row
                 own = numbers_of_all[place.start - first.start:place.stop - first.start]
                 kept[place.start] = write_shared_address(own, *given[1:])
+        for place, rows in straight_matrices(image):
+            if place.start not in kept:
+                own = numbers_of_all[place.start - first.start:place.stop - first.start]
+                kept[place.start] = write_matrix_address(
+                    own.reshape(-1, whole_vectors(rows))[:, :rows].T, own)
         for place in own_places(image):
             numbers_of_all[place.start - first.start:][:1].view(np.int64)[0] = (
                 self._numbers[place].ctypes.data)
@@ -156,38 +169,46 @@ class Lanes:
         self._begin_records()
         for folds in self._folds.values():
             folds.begin()
-        self.courses = [Course(self.copies, int(self._record.every[0]), self._outputs, self._forms,
-                               {name: folds.members[member] for name, folds in self._folds.items()})
-                        for member in range(count)]
+        self._courses = [Course(self.copies, self._every, self._others, self._forms)
+                         for _ in range(count if self._others else 0)]
         if count < MEMBERS:         # lanes without a member: another one's numbers
             self._numbers[self._places, count:] = self._numbers[self._places, :1]
         self._begin_samples()
-        state.control["reason"] = np.where(np.arange(MEMBERS) < count, RUNS, GAVE_UP)
-        every, reached = int(self._record.every[0]), 0
+        self._reason[:count], self._reason[count:] = RUNS, GAVE_UP
+        every, reached = self._every, 0
         while reached < self._last:
             reached = min(self._last, (reached // every + self._stretch) * every,
                           reached + MOST_STEPS)
-            state.control["recorded"] = 0
+            self._recorded[0] = 0
             loop.advance(self.system, state, self._scratch, self._alone, self._together,
                          self._apart, self._record, self.copies.scheme, reached, self.copies.dense)
-            self._take_outputs(np.flatnonzero(state.control["reason"][:count] != GAVE_UP))
+            gave_up = self._reason[:count] == GAVE_UP
+            self._take_outputs((~gave_up).nonzero()[0])
             if reached < self._last and stop():
                 break
         self.ended = reached == self._last
-        return state.control["reason"][:count] == GAVE_UP
+        return gave_up
 
     def _take_outputs(self, members: NDArray) -> None:
         """Take in recorded states: folds of all members together, all else of each."""
-        table, rows = numbers(self._record.rows), self._rows[:self.state.control["recorded"]]
+        table, rows = self._table, self._rows[:self._recorded[0]]
         t = table[:len(rows), 0, 0].copy()
         for folds in self._folds.values():
             folds.add(t, table, members)
-        if len(self._folds) < len(self._outputs):
+        if self._others:
             for member in members:
                 if self._evaluated:         # quantities of elements: with the member's constants
                     self.copies.begin(self._changes[member])
                 loop.rows_of(table, member, rows)
-                self.courses[member].take(rows)
+                self._courses[member].take(rows)
+
+    def write(self, members: NDArray, runs: NDArray, values: Mapping[str, NDArray]) -> None:
+        """Write the outputs of some members that were run last to those of all runs."""
+        for name, folds in self._folds.items():
+            folds.write(members, runs, values[name])
+        if self._others:
+            for member, run in zip(members, runs, strict=True):
+                self._courses[member].write(run, values)
 
     def _keep_begun(self) -> None:
         """Keep the scalars and counters of a member that has begun; failed starts have others."""
@@ -215,7 +236,13 @@ class Lanes:
     @property
     def time(self) -> float:
         """Time reached."""
-        return float(self.state.clock["time"])
+        return float(self._time[0])
+
+
+def _scalar(record: np.record, name: str) -> NDArray:
+    """The memory of a scalar that is the same for all members, (1,)."""
+    kind, first = record.dtype.fields[name]
+    return record.base.view(np.uint8)[first:first + kind.itemsize].view(kind)
 
 
 def _columns(forms: Mapping[str, Form], count: int) -> NDArray:

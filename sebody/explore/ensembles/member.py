@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +12,10 @@ from sebody.engine.loop import advance, lead
 from sebody.engine.offsets import Offsets
 from sebody.engine.scalars import numbers_of, record
 from sebody.engine.state import (
+    ASKED,
     DONE,
     FACTOR,
+    FACTORS_KEPT,
     FAILED,
     READ,
     REASONS,
@@ -137,13 +139,26 @@ class Copies:
         first = self.image.offsets.of(self.image.template.state.frames_old).start
         return first + np.array(places, dtype=np.int64)
 
+    def _copied(self) -> NDArray:
+        """First and last places of the numbers that runs change, in the buffer of all numbers.
+
+        Neither constants nor the scratch memory of kernels, which are the most.
+        """
+        one, offsets = self.image.template, self.image.offsets
+        left = sorted((own.start, own.stop) for own in map(
+            offsets.of, (one.system.constants, one.state.work)))
+        ends = [0, *(end for part in left for end in part), offsets.size]
+        return np.array(ends, dtype=np.int64).reshape(-1, 2)
+
     def _beginning(self) -> beginning.Beginning:
         """What runs begin with; scalars and flags are not in `floats`."""
         lines, state = self.image.lines, self.state
         whole = {name: numbers_of(getattr(state, name)) for name in ("control", "clock", "guard")}
         whole["moved"] = state.moved
         return beginning.Beginning(
-            model=self.image.floats, floats=self.floats, slots=lines.slots.astype(np.int64),
+            model=self.image.floats, floats=self.floats, copied=self._copied(),
+            restart=np.array([FACTORS_KEPT if self.image.factored else ASKED]),
+            slots=lines.slots.astype(np.int64),
             ends=lines.slopes.indptr.astype(np.int64),
             components=lines.slopes.indices.astype(np.int64), slopes=lines.slopes.data,
             kept=self._kept_places(),
@@ -186,16 +201,12 @@ class Course:
         What is kept.
     forms : mapping
         Of every quantity.
-    folds : mapping, optional
-        Of outputs that are taken in with those of other runs.
     """
 
     def __init__(self, run: Copies | Simulation, every: int, outputs: Mapping[str, Output],
-                 forms: Mapping[str, Form], folds: Mapping[str, Fold] | None = None):
+                 forms: Mapping[str, Form]):
         self.run, self.every, self.outputs, self.forms = run, every, outputs, forms
-        self._apart = folds or {}
-        self.folds = {name: self._apart[name] if name in self._apart else
-                      Fold(o, forms[o.quantity].shape) for name, o in outputs.items()
+        self.folds = {name: Fold(o, forms[o.quantity].shape) for name, o in outputs.items()
                       if o.kind != "history"}
         self.histories: dict[str, list[NDArray]] = {name: [] for name, o in outputs.items()
                                                     if o.kind == "history"}
@@ -239,8 +250,6 @@ class Course:
             return
         t, found = rows[:, RECORD_T].copy(), {}
         for name, output in self.outputs.items():
-            if name in self._apart:
-                continue
             quantity = output.quantity
             form = self.forms[quantity]
             if form.columns is not None:
@@ -261,10 +270,14 @@ class Course:
         return Recording(run.model, run.numbering, None if kinematic else run.system,
                          None if kinematic else run.state, rows, 0.0)
 
-    def values(self) -> dict[str, Any]:
-        """What the outputs are; None of those without a value."""
-        return {name: self.folds[name].value() if name in self.folds
-                else np.concatenate(self.histories[name]) for name in self.outputs}
+    def write(self, run: int, values: Mapping[str, NDArray]) -> None:
+        """Write the outputs to those of all runs, where there are values."""
+        for name, fold in self.folds.items():
+            if (value := fold.value()) is not None:
+                values[name][run] = value
+        for name, parts in self.histories.items():
+            history = np.concatenate(parts)
+            values[name][run, :len(history)] = history
 
 
 def forms(simulation: Simulation, outputs: Mapping[str, Output]) -> dict[str, Form]:

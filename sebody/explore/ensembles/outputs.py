@@ -127,12 +127,9 @@ class Room(NamedTuple):
     def of(cls, output: Output, shape: tuple[int, ...], *members: int) -> Room:
         """Room for an output of a quantity of some shape."""
         size = 1 if output.norm else prod(shape)
-        return cls(*np.zeros((3, *members, size)), np.zeros((*members, 4)))
-
-    def member(self, number: int) -> Room:
-        """That of one of the members."""
-        return Room(*(one[number] for one in self))
-
+        sizes = np.cumsum([prod(members) * own for own in (size, size, size, 4)])
+        parts = np.split(np.zeros(sizes[-1]), sizes[:-1])
+        return cls(*(part.reshape(*members, -1) for part in parts))
 
 class Folds:
     """The values of an output of the members of a group, taken in together.
@@ -146,19 +143,29 @@ class Folds:
     """
 
     def __init__(self, output: Output, shape: tuple[int, ...], columns: NDArray, count: int):
-        self._room, self._columns = Room.of(output, shape, count), columns
-        self.members = [Fold(output, shape, self._room.member(k)) for k in range(count)]
-        self._kind = KINDS.index(output.kind), self.members[0]._number, output.norm
+        self._output, self._columns = output, columns
+        self._room = Room.of(output, shape, count)
+        self._memory = self._room.kept.base     # of all that is kept
+        self._rows = np.empty((0, len(columns)))
 
     def begin(self) -> None:
         """Forget what was taken in."""
-        for one in self._room:
-            one[...] = 0.0
+        self._memory[:] = 0.0
 
     def add(self, t: NDArray, table: NDArray, members: NDArray) -> None:
         """Take in the next recorded states of some members; the table is (states, numbers, all)."""
-        fold_members(*self._kind, t, table, self._columns, np.empty((len(t), len(self._columns))),
-                     members, *self._room)
+        if len(self._rows) < len(t):
+            self._rows = np.empty((len(t), len(self._columns)))
+        fold_members(*_asked(self._output), t, table, self._columns, self._rows, members,
+                     *self._room)
+
+    def write(self, members: NDArray, runs: NDArray, values: NDArray) -> None:
+        """Write the values of some members, where they have one, to those of their runs."""
+        found = self._room.facts[members, FOUND] > 0.0
+        if not found.all():
+            members, runs = members[found], runs[found]
+        values[runs] = _value(self._output, self._room)[members].reshape(
+            len(members), *values.shape[1:])
 
 
 class Fold:
@@ -168,16 +175,12 @@ class Fold:
     ----------
     shape : tuple of int
         Of the quantity in a state.
-    room : Room, optional
-        Where its numbers are kept.
     """
 
-    def __init__(self, output: Output, shape: tuple[int, ...], room: Room | None = None):
+    def __init__(self, output: Output, shape: tuple[int, ...]):
         self.output, self.shape = output, () if output.norm else shape
-        self._kind = KINDS.index(output.kind)
-        self._number = output.power if output.time is None else output.time
         self._all = np.arange(prod(shape))
-        self._kept, self._before, self._largest, self._facts = room or Room.of(output, shape)
+        self._room = Room.of(output, shape)
 
     def add(self, t: NDArray, values: NDArray) -> None:
         """Take in the next recorded states, (k,) times and (k, ...) values."""
@@ -185,17 +188,27 @@ class Fold:
 
     def add_columns(self, t: NDArray, table: NDArray, columns: NDArray) -> None:
         """The same of values that are columns of a table, as of recorded rows."""
-        fold(self._kind, self._number, self.output.norm, t, table, columns, self._kept,
-             self._before, self._largest, self._facts)
+        fold(*_asked(self.output), t, table, columns, *self._room)
 
     def value(self) -> NDArray | None:
         """The value; None if there is none, as of a time the run did not reach."""
-        if not self._facts[FOUND]:
+        if not self._room.facts[FOUND]:
             return None
-        found, length = self._kept, self._facts[LENGTH]
-        if self.output.kind == "rms":
-            found = np.sqrt(found / length) if length else np.abs(self._before)
-        if self.output.kind == "soft_maximum":
-            found = (self._largest * (found / length) ** (1 / self.output.power) if length
-                     else np.abs(self._before))
-        return found.reshape(self.shape)
+        return _value(self.output, self._room).reshape(self.shape)
+
+
+def _asked(output: Output) -> tuple[int, float, bool]:
+    """What `fold` is to make."""
+    number = output.power if output.time is None else output.time
+    return KINDS.index(output.kind), number, output.norm
+
+
+def _value(output: Output, room: Room) -> NDArray:
+    """The value of a history, or those of several members."""
+    if output.kind not in ("rms", "soft_maximum"):
+        return room.kept
+    length = room.facts[..., LENGTH:LENGTH + 1]
+    mean = room.kept / np.where(length > 0.0, length, 1.0)
+    found = (np.sqrt(mean) if output.kind == "rms" else
+             room.largest * mean ** (1 / output.power))
+    return np.where(length > 0.0, found, np.abs(room.before))

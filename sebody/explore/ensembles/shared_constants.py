@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.contracts import counts_of
-from sebody.contract.layout import AT_CONSTANTS, AT_FRAME, Row
+from sebody.contract.counts import Counts
+from sebody.contract.layout import AT_CONSTANTS, AT_FRAME, Part, Row
 from sebody.explore.ensembles.choice import kernels_of, matrices_at_once
 from sebody.explore.ensembles.start_values import Image
 from sebody.kernels.loader import load
@@ -50,9 +51,29 @@ def own_parts(image: Image) -> dict[int, Own]:
     for b in range(int(image.template.system.first_joint[0])):
         parts = {name for index in rows_of(image, b) for name, place in _parts(
             image, index, _read_parts).items() if varied[place].any()}
-        if len(parts) <= MOST_PARTS:
-            found[b] = tuple(sorted(parts))
+        own = tuple(sorted(parts))
+        if len(parts) <= MOST_PARTS and all(
+                part.size(counts) for *_, part, counts in _straight_parts(image, b, own)):
+            found[b] = own
     return found
+
+
+def straight_matrices(image: Image) -> Iterator[tuple[slice, int]]:
+    """Where matrices are whose products are straight code, and how many rows they have."""
+    for b, own in own_parts(image).items():
+        for index, part, counts in _straight_parts(image, b, own):
+            place, = _parts(image, index, lambda _, name=part.name: {name}).values()
+            yield place, part.own_shape(counts)[0]
+
+
+def _straight_parts(image: Image, batch: int, own: Own) -> Iterator[tuple[NDArray, Part, Counts]]:
+    """Of every element of a batch, these matrices; index row, part and counts of the body."""
+    from sebody.kernels.lanes.text import straight_parts  # imports the lanes
+
+    for index in rows_of(image, batch):
+        kernel, counts = _kernel_of(image, index)
+        names = straight_parts(kernel, own, matrices_at_once(image.template))
+        yield from ((index, part, counts) for part in kernel.CONSTANTS if part.name in names)
 
 
 def own_places(image: Image) -> Iterator[slice]:
@@ -93,13 +114,18 @@ def _parts(image: Image, index: NDArray, chosen: Callable) -> dict[str, slice]:
     chosen : callable
         Names of the parts, from a kernel's module.
     """
-    body = list(image.template.model.bodies.values())[index[AT_FRAME]]
-    kernel = load(body.kernel)
-    counts, row = counts_of(body), Row("constants", kernel.CONSTANTS)
+    kernel, counts = _kernel_of(image, index)
+    row = Row("constants", kernel.CONSTANTS)
     names, places = chosen(kernel), row.slices(counts)
     first = image.offsets.of(image.template.system.constants).start + int(index[AT_CONSTANTS])
     return {part.name: slice(first + places[part.name].start, first + places[part.name].stop)
             for part in row.parts if part.name in names and part.size(counts)}
+
+
+def _kernel_of(image: Image, index: NDArray) -> tuple[ModuleType, Counts]:
+    """The kernel of a body, and the counts of its constants."""
+    body = list(image.template.model.bodies.values())[index[AT_FRAME]]
+    return load(body.kernel), counts_of(body)
 
 
 def _packed_parts(kernel: ModuleType) -> set[str]:

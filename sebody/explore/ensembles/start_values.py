@@ -6,7 +6,7 @@ building the model with three values of the parameter. Runs then begin with a co
 and additions to a few. Parameters of another kind have the model built anew for each of their runs.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -25,6 +25,21 @@ from sebody.runs.simulation import Simulation
 # what the stiffness of bristles, or that they hold something at the start, may follow from
 OF_BRISTLES = ".bristle", ".radius", ".level", ".size", ".ratio"
 LINEAR = 1e-12      # largest deviation from a line, relative to the largest of the numbers compared
+
+
+class Fact(NamedTuple):
+    """Something that holds of some models, and what is said of it."""
+
+    reason: str
+    holds: Callable[[Simulation], bool]
+
+
+# starts that solve for more than accelerations, and are made anew for each run
+OWN_STARTS = (
+    Fact("friction that holds something at the start", lambda one: one.held),
+    Fact("gears whose teeth are as stiff as the step allows",
+         lambda one: any("teeth" in load.tuned for load in one.model.loads)),
+)
 
 
 class Lines(NamedTuple):
@@ -66,14 +81,25 @@ class Image:
         """Whether runs can begin with a copy."""
         return self.lines is not None
 
+    @property
+    def factored(self) -> bool:
+        """Whether the model as built has factors of its masses and constraints.
+
+        Its inverse is that of its start, which is not written where the start needs another way.
+        """
+        one = self.template
+        return (one.dense and not one.begun and one.state.spare.size == 0
+                and one.system.massless[0] == 0 and one.state.control.regularized == 0
+                and bool(one.state.inverse.any()))
+
     def _can_copy(self, handles: Mapping[str, Handle]) -> bool:
         """Whether the start needs accelerations alone: no fitted velocities."""
         one = self.template
         constrained = bool(one.numbering.multipliers) or bool(one.system.prescribed.size)
         touched = {handle.touches for handle in handles.values()}
-        tuned = [load.tuned for load in one.model.loads if load.tuned]
+        tuned = any(load.tuned for load in one.model.loads)
         return not (any(handle.whole for handle in handles.values())
-                    or one.held or any("teeth" in own for own in tuned)
+                    or any(fact.holds(one) for fact in OWN_STARTS)
                     or (tuned and (touched & {BODIES, MOTION}
                                    or any(name.endswith(OF_BRISTLES) for name in handles)))
                     or (one.system.regularized[0] and one.system.massless_axes.any())

@@ -127,21 +127,20 @@ class Work:
         """Make some runs at a time; returns those that are to be made alone."""
         runs = np.array(group)
         begun = lanes.begin(self._changes[runs])
-        taken, alone = runs[begun].tolist(), runs[~begun].tolist()
-        if not taken:
+        alone = runs[~begun].tolist()
+        if not begun.any():
             return alone
         gave_up = lanes.run(self._stop.is_set)
-        for run, course, failed in zip(taken, lanes.courses, gave_up, strict=True):
-            if failed:
-                alone.append(run)
-            else:
-                if not lanes.ended:
-                    self.outcome.failures[run] = INTERRUPTED
-                self._keep(run, course, lanes.time)
+        members, runs = (~gave_up).nonzero()[0], runs[begun]
+        done = runs[members]
+        self.outcome.reached[done] = lanes.time
+        lanes.write(members, done, self.outcome.values)
+        if not lanes.ended:
+            self.outcome.failures |= dict.fromkeys(done.tolist(), INTERRUPTED)
         with self._lock:
-            self.outcome.in_lanes += int(np.sum(~gave_up))
-        self._done += int(np.sum(~gave_up))
-        return alone
+            self.outcome.in_lanes += len(members)
+            self._done += len(members)
+        return alone + runs[gave_up].tolist()
 
     def _run(self, run: int, copies: Copies | None) -> None:
         try:
@@ -153,19 +152,8 @@ class Work:
             return
         if not ended or course.reason:
             self.outcome.failures[run] = course.reason or INTERRUPTED
-        self._keep(run, course, begun.state.clock.time)
-
-    def _keep(self, run: int, course: Course, reached: float) -> None:
-        """Put what a run gave where it belongs."""
-        self.outcome.reached[run] = reached
-        for name, value in course.values().items():
-            if value is None:
-                continue
-            place = self.outcome.values[name][run]
-            if self.outputs[name].kind == "history":
-                place[:len(value)] = value
-            else:
-                self.outcome.values[name][run] = value
+        self.outcome.reached[run] = begun.state.clock.time
+        course.write(run, self.outcome.values)
 
     def _begun(self, run: int, copies: Copies | None) -> Copies | Simulation:
         """A run at its start: from a copy of all numbers, or of the model built anew."""

@@ -50,7 +50,7 @@ def address_in_lanes(module: ModuleType, own: Own = None, matrices: bool = False
     matrices : bool
         Whether it makes matrices, too, as equal bodies of a model and some ensembles need it.
     """
-    text = module.kernel if module is member_by_member else kernel_text(module, own or (), matrices)
+    text = module.kernel if module is member_by_member else kernel_text(module, own, matrices)
     return kernel_in_lanes(text, _signature(own is not None), OF_KERNELS,
                            kernel_hash(Path(module.__file__)), _kind(own, matrices)).address
 

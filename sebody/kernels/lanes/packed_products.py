@@ -10,8 +10,8 @@ from sebody.contract.counts import LANES
 from sebody.kernels import packed_strips
 from sebody.kernels.instructions import WORD, call, in_lanes, short_loop, whole_vectors
 from sebody.kernels.lanes.products import NOTHING, across, behind, fused, read, write
-from sebody.kernels.lanes.straight import AT_ADDRESS, AT_LANES, MOST_GROUPS
-from sebody.kernels.packed import COUPLED, MIRRORED, NARROW, PRODUCTS, WIDE, WIDTHS
+from sebody.kernels.lanes.straight import AT_ADDRESS, AT_LANES, AT_MORE, MOST_GROUPS
+from sebody.kernels.packed import BEHIND, BOTH, COUPLED, MIRRORED, ONCE, PRODUCTS
 from sebody.kernels.packed_strips import Groups
 
 
@@ -43,11 +43,11 @@ class _Groups(Groups):
         return self._points(own) if self._shared else builder.icmp_signed(
             "!=", self._word(AT_ADDRESS), own)
 
-    def of_straight(self):
+    def of_straight(self, code):
         """Address of straight code, and of the entries it reads."""
         if not self._shared:
-            return self._word(AT_ADDRESS), self._words
-        return self._word(AT_ADDRESS), self.builder.inttoptr(self._word(AT_LANES),
+            return self._word(code), self._words
+        return self._word(code), self.builder.inttoptr(self._word(AT_LANES),
                                                              VECTOR.as_pointer())
 
     def _word(self, place):
@@ -62,8 +62,7 @@ class _Groups(Groups):
 @in_lanes(packed_strips.write_times)
 def packed(builder, matrices, x, out, count):
     """Of `packed_times`."""
-    _clear(builder, out, count)
-    call(builder, add_packed, (matrices, x, out))
+    _times(builder, matrices, x, x, out, count)
 
 
 @in_lanes(packed_strips.write_times_both)
@@ -76,56 +75,80 @@ def packed_both(builder, matrices, x, y, of_x, of_y, count):
 @in_lanes(packed_strips.write_more_times)
 def add_packed(builder, matrices, x, out):
     """Of `add_packed_times`."""
-    _straight_or(builder, matrices, x, x, out, lambda: _add_strips(builder, matrices, x, x, out))
+    _straight_or(builder, AT_MORE, (matrices, x, x, out, WORD(0)),
+                 lambda: _add_strips(builder, matrices, x, x, out))
 
 
 @in_lanes(packed_strips.write_couplings)
 def couplings(builder, matrices, x, y, out, count):
     """Of `couplings_times`."""
-    _clear(builder, out, count)
-    _straight_or(builder, matrices, x, y, out, lambda: _add_strips(builder, matrices, x, y, out))
+    _times(builder, matrices, x, y, out, count)
 
 
-def _clear(builder, out, count):
-    """Whole vectors, as strips have whole ones."""
-    with short_loop(builder, WORD(0), whole_vectors(builder, count)) as place:
-        write(builder, NOTHING, out, place)
+def _times(builder, matrices, x, y, out, count):
+    """Products in whole vectors, as strips have whole ones."""
+    count = whole_vectors(builder, count)
+
+    def by_strips():
+        with short_loop(builder, WORD(0), count) as place:
+            write(builder, NOTHING, out, place)
+        _add_strips(builder, matrices, x, y, out)
+    _straight_or(builder, AT_ADDRESS, (matrices, x, y, out, count), by_strips)
 
 
-def _straight_or(builder, matrices, x, y, out, by_strips):
+def _straight_or(builder, code, given, by_strips):
     """Straight code if there is some, see `straight`."""
-    groups = _Groups(builder, matrices)
+    groups = _Groups(builder, given[0])
     with builder.if_else(groups.straight()) as (straight, others):
         with straight:
-            kind = ir.FunctionType(ir.VoidType(), [VECTOR.as_pointer()] * 4)
-            address, own = groups.of_straight()
+            kind = ir.FunctionType(ir.VoidType(), [*[VECTOR.as_pointer()] * 4, WORD])
+            address, own = groups.of_straight(code)
             own = builder.bitcast(own, VECTOR.as_pointer())
-            builder.call(builder.inttoptr(address, kind.as_pointer()), (own, x, y, out))
+            builder.call(builder.inttoptr(address, kind.as_pointer()), (own, *given[1:]))
         with others:
             by_strips()
 
 
 def _add_strips(builder, matrices, x, y, out):
-    """The numbers of a vector stay in registers while strips follow."""
-    def once(kind):
-        def add(groups):
-            vector = groups.chosen(x, y)
-            factors = [read(builder, vector, behind(builder, groups.first, k))
-                       for k in range(WIDTHS[kind])]
-            with short_loop(builder, WORD(0), groups.strips) as strip:
-                place, own = groups.head(0, strip), groups.entries(strip, kind)
-                for row in range(LANES):
-                    total = read(builder, out, behind(builder, place, row))
-                    for k, factor in enumerate(factors):
-                        total = fused(builder, total,
-                                       read(builder, own, WORD(LANES * k + row)), factor)
-                    write(builder, total, out, behind(builder, place, row))
-        return add
+    """Strip by strip, row by row."""
+    def once(groups):
+        vector = groups.chosen(x, y)
+        with short_loop(builder, WORD(0), groups.strips) as strip:
+            _add_rows(groups, strip, [(vector, groups.head(0, strip))], out)
+
+    def both(groups):
+        behind_x = groups.head(0)
+        with short_loop(builder, WORD(0), groups.strips) as strip:
+            place = groups.head(BEHIND, strip)
+            _add_rows(groups, strip, [(x, place), (y, builder.add(place, behind_x))], out)
 
     def twice(forward):
         return lambda groups: _add_twice(groups, forward, out)
     _Groups(builder, matrices).each({
-        NARROW: once(NARROW), WIDE: once(WIDE), MIRRORED: twice([x]), COUPLED: twice([x, y])})
+        ONCE: once, BOTH: both, MIRRORED: twice([x]), COUPLED: twice([x, y])})
+
+
+def _add_rows(groups, strip, given, out):
+    """Add products of a strip with some vectors to what is kept at some places."""
+    builder, own = groups.builder, groups.entries(strip)
+    with short_loop(builder, WORD(0), WORD(LANES)) as lane:
+        entries = _row(groups, own, lane)
+        for vector, place in given:
+            _add_row(groups, entries, vector, out, builder.add(place, lane))
+
+
+def _row(groups, own, lane):
+    """The entries of a row of a strip."""
+    builder = groups.builder
+    return [read(builder, own, behind(builder, lane, LANES * k)) for k in range(groups.width)]
+
+
+def _add_row(groups, entries, vector, out, place):
+    builder, total = groups.builder, read(groups.builder, out, place)
+    for k, entry in enumerate(entries):
+        total = fused(builder, total, entry,
+                      read(builder, vector, behind(builder, groups.first, k)))
+    write(builder, total, out, place)
 
 
 def _add_twice(groups, forward, out):
@@ -133,16 +156,10 @@ def _add_twice(groups, forward, out):
     builder = groups.builder
     with short_loop(builder, WORD(0), groups.strips) as strip, \
             short_loop(builder, WORD(0), WORD(LANES)) as lane:
-        row, own = builder.add(groups.row(strip), lane), groups.entries(strip, MIRRORED)
-        entries = [read(builder, own, builder.add(lane, WORD(LANES * k)))
-                   for k in range(WIDTHS[MIRRORED])]
+        row, entries = builder.add(groups.row(strip), lane), _row(groups, groups.entries(strip),
+                                                                  lane)
         for product, vector in enumerate(forward):
-            place = builder.add(groups.head(product), row)
-            total = read(builder, out, place)
-            for k, entry in enumerate(entries):
-                total = fused(builder, total, entry,
-                               read(builder, vector, behind(builder, groups.first, k)))
-            write(builder, total, out, place)
+            _add_row(groups, entries, vector, out, builder.add(groups.head(product), row))
         factor = read(builder, forward[-1], row)
         first = builder.add(groups.head(PRODUCTS - 1), groups.first)
         for k, entry in enumerate(entries):
@@ -163,14 +180,21 @@ def sum_couplings(builder, matrices, factors, of_x, of_y, height):
 
 
 def _sum_strips(builder, matrices, factors, of_x, of_y, height):
-    def once(kind):
-        def add(groups):
-            out = groups.chosen(of_x, of_y)
-            with short_loop(builder, WORD(0), groups.strips) as strip:
-                scale = read(builder, factors, groups.head(1, strip))
-                _sum_entries(groups, kind, groups.entries(strip, kind), groups.head(2, strip),
-                             [(scale, out, False)], height)
-        return add
+    def once(groups):
+        out = groups.chosen(of_x, of_y)
+        with short_loop(builder, WORD(0), groups.strips) as strip:
+            scale = read(builder, factors, groups.head(1, strip))
+            _sum_entries(groups, strip, groups.head(2, strip), [(scale, out, False)], height)
+
+    def both(groups):
+        behind_x = groups.head(1)
+        with short_loop(builder, WORD(0), groups.strips) as strip:
+            matrix = groups.head(BEHIND + 1, strip)
+            scales = read(builder, factors, matrix), read(builder, factors,
+                                                          builder.add(matrix, behind_x))
+            _sum_entries(groups, strip, groups.head(BEHIND + 2, strip),
+                         [(scale, out, False) for scale, out in zip(scales, (of_x, of_y),
+                                                                    strict=True)], height)
 
     def twice(forward):
         def add(groups):
@@ -178,18 +202,16 @@ def _sum_strips(builder, matrices, factors, of_x, of_y, height):
             given = [(scales[k], out, False) for k, out in enumerate(forward)]
             across = scales[-1], forward[-1], True
             with short_loop(builder, WORD(0), groups.strips) as strip:
-                _sum_entries(groups, MIRRORED, groups.entries(strip, MIRRORED), groups.row(strip),
-                             [*given, across], height)
+                _sum_entries(groups, strip, groups.row(strip), [*given, across], height)
         return add
     _Groups(builder, matrices).each({
-        NARROW: once(NARROW), WIDE: once(WIDE), MIRRORED: twice([of_x]),
-        COUPLED: twice([of_x, of_y])})
+        ONCE: once, BOTH: both, MIRRORED: twice([of_x]), COUPLED: twice([of_x, of_y])})
 
 
-def _sum_entries(groups, kind, own, row, given, height):
+def _sum_entries(groups, strip, row, given, height):
     """Add a strip to some matrices, times a factor, or its transpose."""
-    builder = groups.builder
-    with short_loop(builder, WORD(0), WORD(WIDTHS[kind])) as k:
+    builder, own = groups.builder, groups.entries(strip)
+    with short_loop(builder, WORD(0), WORD(groups.width)) as k:
         column, begin = builder.add(groups.first, k), builder.mul(k, WORD(LANES))
         for lane in range(LANES):
             entry, at = read(builder, own, behind(builder, begin, lane)), behind(builder, row, lane)

@@ -4,6 +4,8 @@ An operand is a vector of members, so there is nothing to add up across a vector
 neither read nor written. Matrices are lanes as well, since members have constants of their own.
 """
 
+from functools import reduce
+
 from llvmlite import ir
 
 from sebody.compiler.inside.lanes import VECTOR, same
@@ -17,8 +19,7 @@ from sebody.kernels.instructions import (
     whole_vectors,
 )
 
-_ROWS = 8, 4, 2, 1      # of a product at a time: their sums stay in registers
-_COLUMNS = 8, 4, 2, 1   # likewise of a product of columns with a vector
+_SUMS = 8, 4, 2, 1      # of a product at a time: they stay in registers
 _BITS = ir.IntType(VECTOR.count)
 NOTHING = ir.Constant(VECTOR, [0.0] * VECTOR.count)
 
@@ -55,46 +56,74 @@ def _add_to(builder, total, a, b):
     builder.store(fused(builder, builder.load(total), a, b), total)
 
 
+def _each_block(builder, size, write_block):
+    """Instructions for as many sums at a time as there are: the last ones overlap those before.
+
+    One sum after the other, or few at a time, would wait for each other's products.
+
+    Parameters
+    ----------
+    size : value
+        How many sums there are.
+    write_block : callable
+        Writes the instructions, of how many sums, the first one, and the first one that was not
+        written before.
+    """
+    for k, count in enumerate(_SUMS):
+        fits = builder.icmp_signed(">=", size, WORD(count))
+        if k:
+            fits = builder.and_(fits, builder.icmp_signed("<", size, WORD(_SUMS[k - 1])))
+        with builder.if_then(fits):
+            last = builder.sub(size, WORD(count))
+            with short_loop(builder, WORD(0), size, count) as new:
+                first = builder.select(builder.icmp_signed("<", new, last), new, last)
+                write_block(count, first, new)
+
+
+def _begin(builder, sums, out, first, add):
+    for k, total in enumerate(sums):
+        begin = read(builder, out, behind(builder, first, k)) if add else NOTHING
+        builder.store(begin, total)
+
+
+def _end(builder, sums, out, first, new, add):
+    """Write sums; those that add, and were written before, stay."""
+    for k, total in enumerate(sums):
+        place, value = behind(builder, first, k), builder.load(total)
+        if add:
+            is_new = builder.icmp_signed(">=", place, new)
+            value = builder.select(is_new, value, read(builder, out, place))
+        write(builder, value, out, place)
+
+
 def _by_rows(builder, given, out, rows, height, add):
     """``out = A x``, or ``out += A x``, of some matrices, vectors and numbers of columns."""
-    done = WORD(0)
-    for count in _ROWS:
-        end = builder.sub(rows, builder.srem(builder.sub(rows, done), WORD(count)))
-        with short_loop(builder, done, end, count) as row:
-            sums = _sums(builder, count)
-            for k, total in enumerate(sums):
-                begin = read(builder, out, behind(builder, row, k)) if add else NOTHING
-                builder.store(begin, total)
-            for A, x, columns in given:
-                with short_loop(builder, WORD(0), columns) as column:
-                    factor = read(builder, x, column)
-                    own = builder.gep(A, [builder.add(builder.mul(column, height), row)])
-                    for k, total in enumerate(sums):
-                        _add_to(builder, total, read(builder, own, WORD(k)), factor)
-            for k, total in enumerate(sums):
-                write(builder, builder.load(total), out, behind(builder, row, k))
-        done = end
+    def write_block(count, first, new):
+        sums = _sums(builder, count)
+        _begin(builder, sums, out, first, add)
+        for A, x, columns in given:
+            with short_loop(builder, WORD(0), columns) as column:
+                factor = read(builder, x, column)
+                own = builder.gep(A, [builder.add(builder.mul(column, height), first)])
+                for k, total in enumerate(sums):
+                    _add_to(builder, total, read(builder, own, WORD(k)), factor)
+        _end(builder, sums, out, first, new, add)
+    _each_block(builder, rows, write_block)
 
 
 def _by_columns(builder, A, x, out, rows, columns, height, add):
     """``out_k = a_k . x``, or added to that, of columns a_k."""
-    done = WORD(0)
-    for count in _COLUMNS:
-        end = builder.sub(columns, builder.srem(builder.sub(columns, done), WORD(count)))
-        with short_loop(builder, done, end, count) as column:
-            sums = _sums(builder, count)
-            own = [builder.gep(A, [builder.mul(behind(builder, column, k), height)])
-                   for k in range(count)]
-            for k, total in enumerate(sums):
-                begin = read(builder, out, behind(builder, column, k)) if add else NOTHING
-                builder.store(begin, total)
-            with short_loop(builder, WORD(0), rows) as row:
-                factor = read(builder, x, row)
-                for a, total in zip(own, sums, strict=True):
-                    _add_to(builder, total, read(builder, a, row), factor)
-            for k, total in enumerate(sums):
-                write(builder, builder.load(total), out, behind(builder, column, k))
-        done = end
+    def write_block(count, first, new):
+        sums = _sums(builder, count)
+        own = [builder.gep(A, [builder.mul(behind(builder, first, k), height)])
+               for k in range(count)]
+        _begin(builder, sums, out, first, add)
+        with short_loop(builder, WORD(0), rows) as row:
+            factor = read(builder, x, row)
+            for a, total in zip(own, sums, strict=True):
+                _add_to(builder, total, read(builder, a, row), factor)
+        _end(builder, sums, out, first, new, add)
+    _each_block(builder, columns, write_block)
 
 
 @in_lanes(dense.write_columns)
@@ -149,15 +178,19 @@ def subtract_product(builder, C, A, B):
             write(builder, total, C, behind(builder, column, i))
 
 
-@in_lanes(dense.write_subtract_block_times)
-def subtract_block_times(builder, y, A, x):
-    """Of `subtract_block_times`."""
+@in_lanes(dense.write_subtract_blocks_times)
+def subtract_blocks_times(builder, y, rows, A, x, first, end):
+    """Of `subtract_blocks_times`."""
     factors = [read(builder, x, WORD(k)) for k in range(LANES)]
-    for i in range(LANES):
-        total = read(builder, y, WORD(i))
-        for k, factor in enumerate(factors):
-            total = _subtracted(builder, total, read(builder, A, WORD(LANES * k + i)), factor)
-        write(builder, total, y, WORD(i))
+    with short_loop(builder, first, end) as p:
+        place = builder.mul(builder.load(builder.gep(rows, [p])), WORD(LANES))
+        begin = builder.mul(p, WORD(LANES * LANES))
+        for i in range(LANES):
+            total = read(builder, y, behind(builder, place, i))
+            for k, factor in enumerate(factors):
+                entry = read(builder, A, behind(builder, begin, LANES * k + i))
+                total = _subtracted(builder, total, entry, factor)
+            write(builder, total, y, behind(builder, place, i))
 
 
 @in_lanes(dense.write_more_columns)
@@ -206,14 +239,20 @@ def all_to_free(builder, *args):
             write(builder, NOTHING, out, k)
 
 
-def _dot(builder, pairs, count):
-    """Sum of the dot products of some pairs of vectors."""
-    total, = _sums(builder, 1)
-    builder.store(NOTHING, total)
+def _dots(builder, sums_of_pairs, count):
+    """Sums of the dot products of some pairs of vectors, all in one loop.
+
+    Each pair has a sum of its own: one after the other they would wait for each other.
+    """
+    sums = [_sums(builder, len(pairs)) for pairs in sums_of_pairs]
+    for own in sums:
+        for total in own:
+            builder.store(NOTHING, total)
     with short_loop(builder, WORD(0), count) as k:
-        for a, b in pairs:
-            _add_to(builder, total, read(builder, a, k), read(builder, b, k))
-    return builder.load(total)
+        for own, pairs in zip(sums, sums_of_pairs, strict=True):
+            for total, (a, b) in zip(own, pairs, strict=True):
+                _add_to(builder, total, read(builder, a, k), read(builder, b, k))
+    return [reduce(builder.fadd, map(builder.load, own)) for own in sums]
 
 
 @in_lanes(coordinates.write_follow)
@@ -223,9 +262,10 @@ def follow(builder, Zq, Zd, z, zd, zdd, free, slaved, height):
     with short_loop(builder, WORD(0), slaved) as b:
         Zq_b, Zd_b = (builder.gep(row, [builder.mul(b, height)]) for row in (Zq, Zd))
         place = builder.add(free, b)
-        write(builder, builder.fmul(_dot(builder, [(Zq_b, z)], free), half), z, place)
-        second = _dot(builder, [(Zq_b, zdd), (Zd_b, zd)], free)
-        write(builder, _dot(builder, [(Zq_b, zd)], free), zd, place)
+        value, rate, second = _dots(builder, [
+            [(Zq_b, z)], [(Zq_b, zd)], [(Zq_b, zdd), (Zd_b, zd)]], free)
+        write(builder, builder.fmul(value, half), z, place)
+        write(builder, rate, zd, place)
         write(builder, second, zdd, place)
 
 
@@ -235,7 +275,8 @@ def follow_changes(builder, Zq, Zd, Za, dz, dzd, dzdd, free, slaved, height):
     with short_loop(builder, WORD(0), slaved) as b:
         Zq_b, Zd_b, Za_b = (builder.gep(row, [builder.mul(b, height)]) for row in (Zq, Zd, Za))
         place = builder.add(free, b)
-        rate = _dot(builder, [(Zq_b, dzd), (Zd_b, dz)], free)
-        second = _dot(builder, [(Zq_b, dzdd), (Zd_b, dzd), (Zd_b, dzd), (Za_b, dz)], free)
+        rate, second = _dots(builder, [
+            [(Zq_b, dzd), (Zd_b, dz)],
+            [(Zq_b, dzdd), (Zd_b, dzd), (Zd_b, dzd), (Za_b, dz)]], free)
         write(builder, rate, dzd, place)
         write(builder, second, dzdd, place)

@@ -8,6 +8,8 @@ takes some megabytes: it is freed once nobody keeps it, and the last ones are ke
 ensemble.
 """
 
+from __future__ import annotations
+
 from functools import lru_cache
 from itertools import groupby
 
@@ -17,11 +19,12 @@ from numpy.typing import NDArray
 
 from sebody.compiler.inside.lanes import VECTOR, same
 from sebody.contract.counts import LANES, MEMBERS
-from sebody.kernels.packed import COUPLED, NARROW, WIDE, strips
+from sebody.kernels.instructions import WORD, short_loop
+from sebody.kernels.packed import strips
 
-# lane of the first number of a row that has the address of its straight code, where there is some;
-# the number of groups stands in all others
-AT_ADDRESS = 1
+# lanes of the first number of a row that have the addresses of its straight code, where there is
+# some: of what writes products, and of what adds to them; the number of groups stands in all others
+AT_ADDRESS, AT_MORE = 1, 3
 AT_LANES = 2        # of what the first number of a shared row points to: address of its lanes
 MOST_GROUPS = 1 << 20       # of a row; a larger number is an address
 # place of an entry, vector and place of its factor, place of its sum; its value, if all members
@@ -29,42 +32,41 @@ MOST_GROUPS = 1 << 20       # of a row; a larger number is an address
 Entries = tuple[tuple[int, int, int, int, float | None], ...]
 
 KEPT = 16           # codes that are kept when their ensembles are gone
+MOST_FACTORS = 24           # that registers hold beside sums
+_KIND = ir.FunctionType(ir.VoidType(), [*[VECTOR.as_pointer()] * 4, WORD])
 
 
 def entries_of(row: NDArray, varied: NDArray) -> Entries:
     """The entries of a row of packed matrices that are not zero, by their sums."""
     found = []
-    for kind, vector, places, _, below, first, at, entries in strips(row):
+    for uses, below, first, at, entries in strips(row):
         for i, k in np.argwhere(entries).tolist():
             place = at + LANES * k + i
             value = None if varied[place] else float(row[place])
-            if kind in (NARROW, WIDE):
-                found.append((place, vector, first + k, places[0] + i, value))
-                continue
-            coupled = kind == COUPLED
-            found += [(place, y, first + k, places[y] + below + i, value)
-                      for y in range(1 + coupled)]
-            found.append((place, int(coupled), below + i, places[-1] + first + k, value))
+            for use in uses:
+                column, to = (below + i, k) if use.transposed else (first + k, i)
+                found.append((place, use.vector, column, use.place + to, value))
     return tuple(sorted(found, key=lambda entry: entry[3::-1]))
 
 
 class Straight:
-    """Straight code of a row: a function of the row, two vectors and products, to which it adds.
+    """Straight code: functions of a row, two vectors, products, and how many of these there are.
 
     Attributes
     ----------
-    address : int
-        Of the function, for as long as this object lives.
+    address, more : int
+        Of what writes products, zeros where no entry is, and of what adds to them, for as long as
+        this object lives.
     """
 
     def __init__(self, entries: Entries):
         triple, features = binding.get_process_triple(), binding.get_host_cpu_features().flatten()
         target = binding.Target.from_triple(triple).create_target_machine(
             cpu=binding.get_host_cpu_name(), features=features, opt=2)
-        module = binding.parse_assembly(str(_function(entries)))
+        module = binding.parse_assembly(str(_functions(entries)))
         self._engine = binding.create_mcjit_compiler(module, target)
         self._engine.finalize_object()
-        self.address = self._engine.get_function_address("straight")
+        self.address, self.more = map(self._engine.get_function_address, ("straight", "more"))
         self._engine.remove_module(module)      # what it was made of takes more than the code
 
 
@@ -74,25 +76,52 @@ def straight_code(entries: Entries) -> Straight:
     return Straight(entries)
 
 
-def _function(entries: Entries) -> ir.Module:
-    kind = ir.FunctionType(ir.VoidType(), [VECTOR.as_pointer()] * 4)
+def _functions(entries: Entries) -> ir.Module:
     module = ir.Module("straight")
     module.triple = binding.get_process_triple()
-    function = ir.Function(module, kind, "straight")
+    _write_more(module, *_write(module, entries))
+    return module
+
+
+def _write(module: ir.Module, entries: Entries) -> tuple[ir.Function, int]:
+    """The function that writes products; returned with how many there are up to the last one."""
+    function = ir.Function(module, _KIND, "straight")
     builder = ir.IRBuilder(function.append_basic_block())
-    A, *vectors, out = function.args
+    A, *vectors, out, count = function.args
     out.add_attribute("noalias")        # of what is read
-    shared = _Shared(module, builder, entries)
+    # few factors are read once, before all sums, and stay in registers: entries are what is read
+    places = sorted({entry[1:3] for entry in entries})
+    factors = {one: _read(builder, vectors[one[0]], one[1])
+               for one in places if len(places) <= MOST_FACTORS}
+    shared, last = _Shared(module, builder, entries), 0
+    zeros = ir.Constant(VECTOR, [0.0] * VECTOR.count)
     for to, terms in groupby(entries, key=lambda entry: entry[3]):
-        total = _read(builder, out, to)
+        for unused in range(last, to):
+            builder.store(zeros, builder.gep(out, [WORD(unused)]))
+        total, last = None, to + 1
         for place, vector, column, _, value in terms:
             entry = _read(builder, A, place) if value is None else shared.next()
-            product = builder.fmul(entry, _read(builder, vectors[vector], column),
-                                   flags=("contract",))
-            total = builder.fadd(total, product, flags=("contract",))
-        builder.store(total, builder.gep(out, [ir.IntType(64)(to)]))
+            factor = factors.get((vector, column)) or _read(builder, vectors[vector], column)
+            product = builder.fmul(entry, factor, flags=("contract",))
+            total = product if total is None else builder.fadd(total, product, flags=("contract",))
+        builder.store(total, builder.gep(out, [WORD(to)]))
+    with short_loop(builder, WORD(last), count) as place:
+        builder.store(zeros, builder.gep(out, [place]))
     builder.ret_void()
-    return module
+    return function, last
+
+
+def _write_more(module: ir.Module, products: ir.Function, count: int) -> None:
+    """The function that adds products, which the other one writes: code is compiled once."""
+    function = ir.Function(module, _KIND, "more")
+    builder = ir.IRBuilder(function.append_basic_block())
+    *given, out, _ = function.args
+    made = builder.alloca(VECTOR, WORD(max(count, 1)))
+    builder.call(products, [*given, made, WORD(count)])
+    with short_loop(builder, WORD(0), WORD(count)) as place:
+        old, new = (builder.load(builder.gep(one, [place])) for one in (out, made))
+        builder.store(builder.fadd(old, new), builder.gep(out, [place]))
+    builder.ret_void()
 
 
 class _Shared:
@@ -118,11 +147,11 @@ class _Shared:
 
 
 def _read(builder, pointer, place):
-    return builder.load(builder.gep(pointer, [ir.IntType(64)(place)]))
+    return builder.load(builder.gep(pointer, [WORD(place)]))
 
 
 def write_address(row: NDArray, varied: NDArray, lanes: NDArray) -> Straight:
-    """Compile straight code of a row of packed matrices, and put its address into lanes.
+    """Compile straight code of a row of packed matrices, and put its addresses into lanes.
 
     What is returned is to be kept.
 
@@ -137,7 +166,7 @@ def write_address(row: NDArray, varied: NDArray, lanes: NDArray) -> Straight:
     """
     assert lanes.shape == (len(row), MEMBERS)
     code = straight_code(entries_of(row, varied))
-    lanes.view(np.int64)[0, AT_ADDRESS] = code.address
+    lanes.view(np.int64)[0, [AT_ADDRESS, AT_MORE]] = code.address, code.more
     return code
 
 
@@ -154,6 +183,25 @@ def write_shared_address(row: NDArray, varied: NDArray, lanes: NDArray
         As of `write_address`.
     """
     own, code = row.view(np.int64), straight_code(entries_of(row, varied))
-    found = np.array([own[0], code.address, lanes.ctypes.data])
+    found = np.array([own[0], code.address, lanes.ctypes.data, code.more])
     own[0] = found.ctypes.data
+    return found, code
+
+
+def write_matrix_address(matrix: NDArray, shared: NDArray) -> tuple[NDArray, Straight]:
+    """Compile straight code of a matrix that members share, see `constant_products`.
+
+    Parameters
+    ----------
+    matrix : (rows, columns)
+        Its entries.
+    shared : (size,)
+        The matrix among the constants: its first number is replaced by the address of an array of
+        addresses. This array and the code are returned, and to be kept.
+    """
+    entries = tuple((0, 0, column, row, float(matrix[row, column]))
+                    for row, column in np.argwhere(matrix).tolist())
+    code = straight_code(entries)
+    found = np.array([code.address, code.more])
+    shared.view(np.int64)[0] = found.ctypes.data
     return found, code

@@ -5,24 +5,28 @@ out for these. Kernels for matrices of eight members, or of equal bodies of a mo
 """
 
 import ast
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from functools import cache
 from pathlib import Path
 from types import ModuleType
 
 from sebody.compiler.inside.lanes import lanes_at
+from sebody.kernels.dense import add_block_times
+from sebody.kernels.lanes.constant_products import add_straight_times, straight_times
 
 _IN_LANES = "{}_in_lanes"
+# products of constant matrices that straight code makes where all members share them
+_TIMES, _MORE = "columns_times", "add_blocks_times"
 
 
-def kernel_text(module: ModuleType, own: tuple[str, ...], matrices: bool) -> Callable:
+def kernel_text(module: ModuleType, own: tuple[str, ...] | None, matrices: bool) -> Callable:
     """The kernel of a module.
 
     Parameters
     ----------
-    own : tuple of str
+    own : tuple of str or None
         Parts of its constants whose first number is the address of lanes, which are read in place
-        of the part.
+        of the part. None if all constants are lanes.
     matrices : bool
         Whether the kernel keeps what it does for matrices.
     """
@@ -30,8 +34,10 @@ def kernel_text(module: ModuleType, own: tuple[str, ...], matrices: bool) -> Cal
     found = next(one for one in _parsed(path).body
                  if isinstance(one, ast.FunctionDef) and one.name == "kernel")
     found.decorator_list = []
-    text = ast.Module([_InLanes(found, own, matrices, _parts(module)).visit(found)], [])
-    names = {**vars(module), lanes_at.__name__: lanes_at}
+    found = _InLanes(found, own or (), matrices, _parts(module)).visit(found)
+    text = ast.Module([_Straight(straight_parts(module, own, matrices)).visit(found)], [])
+    names = {**vars(module), **{one.__name__: one for one in (
+        lanes_at, straight_times, add_straight_times, add_block_times)}}
     exec(compile(ast.fix_missing_locations(text), str(path), "exec"), names)
     return names["kernel"]
 
@@ -45,6 +51,32 @@ def read_parts(module: ModuleType) -> frozenset[str]:
     found = {name.id for name in names if isinstance(name.ctx, ast.Store)}
     read = {name.id for name in names if isinstance(name.ctx, ast.Load) and id(name) not in passed}
     return frozenset(part for part in parts if part in read or part not in found)
+
+
+@cache
+def straight_parts(module: ModuleType, own: tuple[str, ...] | None, matrices: bool
+                   ) -> frozenset[str]:
+    """Matrices among the constants whose products are straight code; arguments of `kernel_text`.
+
+    Those in padded columns that members share, and that nothing else reads. The first number of
+    such a part is the address of an array of the addresses of its code.
+    """
+    if own is None or matrices:
+        return frozenset()
+    text, columns = _parsed(Path(module.__file__)), {
+        part.name for part in module.CONSTANTS if part.columns} - {*own}
+    text = _InLanes(text, (), matrices, set()).visit(text)
+    passed = {id(name) for name in _followed(text, _parts(module))} | {
+        id(call.args[0]) for call in ast.walk(text) if _is_straight(call, columns)}
+    read = {name.id for name in ast.walk(text) if isinstance(name, ast.Name)
+            and isinstance(name.ctx, ast.Load) and id(name) not in passed}
+    return frozenset(call.args[0].id for call in ast.walk(text)
+                     if _is_straight(call, columns - read))
+
+
+def _is_straight(call: ast.AST, parts: Collection[str]) -> bool:
+    return (isinstance(call, ast.Call) and getattr(call.func, "id", None) in (_TIMES, _MORE)
+            and getattr(call.args[0], "id", None) in parts)
 
 
 def _parts(module: ModuleType) -> set[str]:
@@ -93,3 +125,26 @@ class _InLanes(ast.NodeTransformer):
                 id(name) not in self._followed):
             name.id = _IN_LANES.format(name.id)
         return name
+
+
+class _Straight(ast.NodeTransformer):
+    """Calls straight code for the products of some matrices."""
+
+    def __init__(self, parts: Collection[str]):
+        self._parts = parts
+
+    def visit_Expr(self, one: ast.Expr) -> ast.AST | list[ast.AST]:  # noqa: N802  of Python
+        """A product is a statement; one that adds two products becomes two."""
+        call = one.value
+        if not _is_straight(call, self._parts):
+            return one
+        if call.func.id == _TIMES:
+            return _called(one, straight_times, call.args[:4])
+        A, x, B, y, out, rows, _, columns, height = call.args
+        return [_called(one, add_straight_times, [A, x, out]),
+                _called(one, add_block_times, [B, y, out, rows, columns, height])]
+
+
+def _called(one: ast.Expr, function: Callable, arguments: list[ast.expr]) -> ast.Expr:
+    call = ast.Call(ast.Name(function.__name__, ast.Load()), arguments, [])
+    return ast.copy_location(ast.Expr(call), one)
