@@ -278,7 +278,8 @@ def _coupled(stack: NDArray, before: int) -> Iterator[Group]:
 def _runs(stack: NDArray, below: bool) -> Iterator[tuple[int, int, list[int]]]:
     """Matrix, first column, and first rows of wide strips, where there are many of these."""
     height, columns = stack.shape[1:]
-    filled = (stack != 0.0).reshape(len(stack), -1, LANES, columns).any(axis=2).sum(axis=1)
+    blocks = (stack != 0.0).reshape(len(stack), height // LANES, LANES, columns)
+    filled = blocks.any(axis=2).sum(axis=1)
     for k in np.flatnonzero((filled >= MANY).any(axis=1)).tolist():
         for first, width, own in _pieces(stack[k:k + 1]):
             begin = (first + width) * below

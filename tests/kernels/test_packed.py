@@ -72,6 +72,11 @@ def test_packed_and_unpacked(shape, filled):
     assert len(row) == packed_size(*shape) == packed_room.py_func(*shape)
 
 
+def test_no_matrices_at_all():
+    """Of a body without stiffening: symmetric matrices of second order, none of them."""
+    assert len(pack(np.zeros((0, 6, 6)), (0, 6, 6), symmetric=True)) == packed_size(0, 6, 6)
+
+
 def test_matrices_whose_strips_would_not_fit_are_packed_with_zeros():
     """A run for every other entry would need more whole numbers than there are zeros."""
     A = np.zeros((4, 4, 41))
