@@ -72,15 +72,16 @@ class Scaled:
         Of any units; not changed.
     """
 
-    def __init__(self, matrix: csc_matrix):
+    def __init__(self, matrix: csc_matrix, units: NDArray | None = None):
         if not matrix.has_canonical_format:
             matrix = matrix.copy()
             matrix.sum_duplicates()
         row, across = matrix.indices, matrix.shape[1]
         column = np.repeat(np.arange(across), np.diff(matrix.indptr))
+        units = np.ones(across) if units is None else units
         largest = np.zeros(across)
-        np.maximum.at(largest, column, np.abs(matrix.data))
-        self.scale = 1.0 / np.sqrt(np.maximum(largest, 1e-300))
+        np.maximum.at(largest, column, np.abs(matrix.data) * units[row] * units[column])
+        self.scale = units / np.sqrt(np.maximum(largest, 1e-300))
         # on the entries: for a few bodies SciPy's products take ten times as long as their numbers
         self._entries, self._pattern = matrix.data * self.scale[row] * self.scale[column], matrix
         try:

@@ -57,6 +57,20 @@ def part_sizes(matrix: csc_matrix, system: System) -> NDArray:
     return sizes
 
 
+def units_of_multipliers(matrix: csc_matrix, system: System) -> NDArray:
+    """Units, (n,), in which constraints are of the size of the inertias that they act on.
+
+    Powers of two; ones of unknowns. A body of 1e-14 beside constraints of one is not without mass.
+    """
+    sizes, entries = part_sizes(matrix, system), matrix.tocoo()
+    held = multiplying(system)
+    of = held[entries.col] & ~held[entries.row] & (entries.data != 0.0)
+    least = np.full(len(sizes), np.inf)
+    np.minimum.at(least, entries.col[of], sizes[entries.row[of]] / np.abs(entries.data[of]))
+    return np.where(np.isfinite(least), np.exp2(np.round(np.log2(np.where(
+        np.isfinite(least), least, 1.0)))), 1.0)
+
+
 class Solver:
     """Masses and constraints at the start; finds redundant constraints and missing mass.
 
@@ -79,7 +93,8 @@ class Solver:
     """
 
     def __init__(self, matrix: csc_matrix, system: System, numbering: Numbering):
-        self.system, self.names = Scaled(matrix), numbering.names
+        self.system = Scaled(matrix, units_of_multipliers(matrix, system))
+        self.names = numbering.names
         self.redundant: tuple[str, ...] = ()
         self.shared: tuple[str, ...] = ()
         self.regularized: Relaxed       # where a pivot is suspicious, and nothing else asks
