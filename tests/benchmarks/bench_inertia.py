@@ -10,7 +10,6 @@ stress resultants of second order there are.
 import argparse
 import json
 import time
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -47,21 +46,9 @@ def beam(modes, inertia, planar):
     model = Model(planar=planar)
     ends = [model.node(name, place[:2] if planar else place)
             for name, place in (("a", (0.0, 0.0, 0.0)), ("b", (100.0, 100.0, 30.0)))]
-    model.beam("beam", ends, SECTION, 20, 1, modes,
-               inertia="material" if inertia == "material" else "c")
-    if inertia == "plain c":
-        body = model.bodies["beam"]
-        model.bodies["beam"] = replace(body, reduced=without_stiffening(body.reduced))
+    model.beam("beam", ends, SECTION, 20, 1, modes, inertia=inertia[-1],
+               stiffening=inertia == "c")
     return Simulation(model, 0.01)
-
-
-def without_stiffening(reduced):
-    """The body without what follows from geometric stiffness."""
-    i, n = reduced.invariants, len(reduced.mass)
-    return replace(reduced, recovery=None, invariants=replace(
-        i, S1=i.S1[:, :n], g=i.g[:, :n], h=i.h[..., :n], K=i.K[:, :n, :n],
-        J2=i.J2[:, :, :n, :n], Mbar=i.Mbar[:n, :n], Q=i.Q[:0], lam=i.lam[:0], E=i.E[:, :0],
-        Ghat=i.Ghat[:0]))
 
 
 def arguments(simulation):

@@ -167,6 +167,7 @@ def test_inertia_options_are_compared(capsys):
     assert (name, row["coordinates"], row["resultants"]) == ("planar 8", 8, 1)
     assert all(min(row[what].values()) > 0.0 for what in ("residual", "matrix"))
     assert list(row["residual"]) == ["b", "plain c", "c"]
+    assert row["matrix"]["b"] < row["matrix"]["c"]      # a third: they are different kernels
 
 
 def test_sweeps_are_timed_beside_their_runs(monkeypatch, capsys):
