@@ -140,7 +140,6 @@ def _described(element: Superelement | Element | Joint | Motion) -> str:
         type(element).__name__.lower())
 
 
-
 def known_joint(model: Mechanism, joint: object, what: str) -> Joint:
     """A joint of this model."""
     element = model.element(joint) if isinstance(joint, str) else joint

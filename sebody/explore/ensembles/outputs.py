@@ -131,6 +131,7 @@ class Room(NamedTuple):
         parts = np.split(np.zeros(sizes[-1]), sizes[:-1])
         return cls(*(part.reshape(*members, -1) for part in parts))
 
+
 class Folds:
     """The values of an output of the members of a group, taken in together.
 
