@@ -70,6 +70,8 @@ class Scaled:
     ----------
     matrix : (n, n)
         Of any units; not changed.
+    units : (n,), optional
+        Factors of rows and columns before they are scaled by their largest entries.
     """
 
     def __init__(self, matrix: csc_matrix, units: NDArray | None = None):

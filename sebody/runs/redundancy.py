@@ -58,9 +58,10 @@ def part_sizes(matrix: csc_matrix, system: System) -> NDArray:
 
 
 def units_of_multipliers(matrix: csc_matrix, system: System) -> NDArray:
-    """Units, (n,), in which constraints are of the size of the inertias that they act on.
+    """Units of multipliers, (n,), in which constraints are of the size of the inertias they act on.
 
-    Powers of two; ones of unknowns. A body of 1e-14 beside constraints of one is not without mass.
+    They are powers of two, and one for all other unknowns. Without them a body with a mass of 1e-14
+    beside entries of constraints of one would count as a body without mass.
     """
     sizes, entries = part_sizes(matrix, system), matrix.tocoo()
     held = multiplying(system)

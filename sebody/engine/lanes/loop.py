@@ -158,7 +158,7 @@ def _evaluate(system, state, scratch, active, moved):
 
 @compiled(forceinline=True)
 def _accept(system, state):
-    """End a step. Members orthogonalize together: they count their steps apart, the grid is one."""
+    """End a step. Rotations of all members become orthogonal at the same steps of the grid."""
     clock, control = state.clock, state.control
     settle(system, state, control.grid)
     watch_age(state)

@@ -23,6 +23,8 @@ def alone(copies: Copies, lanes: NDArray) -> Alone:
 
     Parameters
     ----------
+    copies : Copies
+        The single run.
     lanes : (size, members)
         The numbers of all members.
     """

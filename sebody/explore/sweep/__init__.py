@@ -86,7 +86,7 @@ def sweep(build: Callable[..., Any], outputs: Mapping[str, Output],
     plan = Plan(uuid4().hex, build, tuple(fixed.items()), tuple(outputs.items()), made.runs)
     own = *OF_RUN, *signature(build).parameters
     structural = set(made.columns) & set(own)
-    for name in made.columns:       # all others have an owner, but for one
+    for name in made.columns:       # other parameters are <owner>.<name>, but for gravity
         if "." not in name and name not in (*own, GRAVITY):
             raise unknown("parameter", name, (*own, GRAVITY), "a sweep of this scene has")
     check_plan(plan, made.columns, structural)
