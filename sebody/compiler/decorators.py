@@ -55,8 +55,8 @@ def kernel_function(function: Callable | None = None, sizes_known: bool = False)
     The attribute `address` of the result is the address of the machine code.
 
     With `sizes_known` the sizes of its products are constants, so that the compiler may write small
-    ones where they are called, which makes kernels that read the sizes slower; of the fast way
-    alone.
+    products where they are called; of the fast way alone. Kernels that read the sizes at run time
+    become slower by this.
     """
     if function is None:
         return partial(kernel_function, sizes_known=sizes_known)
