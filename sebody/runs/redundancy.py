@@ -66,10 +66,9 @@ def units_of_multipliers(matrix: csc_matrix, system: System) -> NDArray:
     sizes, entries = part_sizes(matrix, system), matrix.tocoo()
     held = multiplying(system)
     of = held[entries.col] & ~held[entries.row] & (entries.data != 0.0)
-    least = np.full(len(sizes), np.inf)
-    np.minimum.at(least, entries.col[of], sizes[entries.row[of]] / np.abs(entries.data[of]))
-    return np.where(np.isfinite(least), np.exp2(np.round(np.log2(np.where(
-        np.isfinite(least), least, 1.0)))), 1.0)
+    smallest = np.full(len(sizes), np.inf)
+    np.minimum.at(smallest, entries.col[of], sizes[entries.row[of]] / np.abs(entries.data[of]))
+    return np.exp2(np.round(np.log2(np.where(np.isfinite(smallest), smallest, 1.0))))
 
 
 class Solver:
