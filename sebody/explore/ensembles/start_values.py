@@ -24,6 +24,7 @@ from sebody.runs.simulation import Simulation
 
 # what the stiffness of bristles, or that they hold something at the start, may follow from
 OF_BRISTLES = ".bristle", ".radius", ".level", ".size", ".ratio"
+OF_MASSES = ".mass", ".position", ".rotation"       # and what masses and constraints follow from
 LINEAR = 1e-12      # largest deviation from a line, relative to the largest of the numbers compared
 
 
@@ -83,14 +84,19 @@ class Image:
 
     @property
     def factored(self) -> bool:
-        """Whether the model as built has factors of its masses and constraints.
+        """Whether runs begin with the factors of masses and constraints of the model as built.
 
         Its inverse is that of its start, which is not written where the start needs another way.
+        Runs have other masses where parameters change them: accelerations would be as good as the
+        criterion of convergence, 1e-10, where new factors leave rounding. Starts of index 2 look
+        ahead by a single correction, which is as good as its factors.
         """
+        if any(name.endswith(OF_MASSES) for name in self.handles):
+            return False
         one = self.template
-        return (one.dense and not one.begun and one.state.spare.size == 0
-                and one.system.massless[0] == 0 and one.state.control.regularized == 0
-                and bool(one.state.inverse.any()))
+        return (one.dense and not one.scheme.stabilized and not one.begun
+                and one.state.spare.size == 0 and one.system.massless[0] == 0
+                and one.state.control.regularized == 0 and bool(one.state.inverse.any()))
 
     def _can_copy(self, handles: Mapping[str, Handle]) -> bool:
         """Whether the start needs accelerations alone: no fitted velocities."""
