@@ -31,8 +31,8 @@ def checked_threads(threads: int) -> int:
 def helping(system: System, state: State) -> Iterator[None]:
     """Threads that help whatever calls the loop meanwhile; they end with it, however it ends.
 
-    Calls are numbered, and helpers take nothing of another call: where a second Ctrl-C keeps this
-    one from ending its helpers, they leave when the next one begins.
+    Calls with helpers are numbered, and helpers take nothing of another one: where a second Ctrl-C
+    keeps this call from ending its helpers, they leave when the next one with helpers begins.
     """
     mail = system.shared.mail
     if not mail.size:
