@@ -57,18 +57,20 @@ def part_sizes(matrix: csc_matrix, system: System) -> NDArray:
     return sizes
 
 
-def units_of_multipliers(matrix: csc_matrix, system: System) -> NDArray:
-    """Units of multipliers, (n,), in which constraints are of the size of the inertias they act on.
+def units(matrix: csc_matrix, system: System) -> NDArray:
+    """Units, (n,), in which inertias are about one and constraints at most about one.
 
-    They are powers of two, and one for all other unknowns. Without them a body with a mass of 1e-14
-    beside entries of constraints of one would count as a body without mass.
+    They are powers of two. Without them a body with a mass of 1e-14 beside entries of constraints,
+    or beside modal masses, of one would count as a body without mass.
     """
-    sizes, entries = part_sizes(matrix, system), matrix.tocoo()
-    held = multiplying(system)
+    entries, held = matrix.tocoo(), multiplying(system)
+    found = 1.0 / np.sqrt(part_sizes(matrix, system))
     of = held[entries.col] & ~held[entries.row] & (entries.data != 0.0)
-    smallest = np.full(len(sizes), np.inf)
-    np.minimum.at(smallest, entries.col[of], sizes[entries.row[of]] / np.abs(entries.data[of]))
-    return np.exp2(np.round(np.log2(np.where(np.isfinite(smallest), smallest, 1.0))))
+    smallest = np.full(len(found), np.inf)
+    np.minimum.at(smallest, entries.col[of],
+                  1.0 / (np.abs(entries.data[of]) * found[entries.row[of]]))
+    found = np.where(held, np.where(np.isfinite(smallest), smallest, 1.0), found)
+    return np.exp2(np.round(np.log2(found)))
 
 
 class Solver:
@@ -93,7 +95,7 @@ class Solver:
     """
 
     def __init__(self, matrix: csc_matrix, system: System, numbering: Numbering):
-        self.system = Scaled(matrix, units_of_multipliers(matrix, system))
+        self.system = Scaled(matrix, units(matrix, system))
         self.names = numbering.names
         self.redundant: tuple[str, ...] = ()
         self.shared: tuple[str, ...] = ()
