@@ -142,7 +142,8 @@ def free_coordinates(conditions: NDArray, counts: Counts, turn: NDArray) -> tupl
     if len(turn) == 3:
         axes[3:, 3:] = turn.T
     conditions = axes @ conditions @ by.T
-    conditions[np.abs(conditions) < 1e-14 * np.abs(conditions).max(axis=1, keepdims=True)] = 0.0
+    for of in np.split(conditions, [counts["bound"]], axis=1):    # modes have units of their own
+        of[np.abs(of) < 1e-14 * np.abs(of).max(axis=1, keepdims=True, initial=0.0)] = 0.0
     free, basis = determining(conditions, counts["bound"])
     bound_free = np.count_nonzero(free < counts["bound"])
     rows = free[:bound_free]

@@ -5,17 +5,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
-from sebody import InputError, Model
+from sebody import InputError, Model, Simulation
 from sebody.assembly import contracts
 from sebody.assembly.body_constants import superelement_constants
 from sebody.assembly.floating import determining, floating_constants, frame_conditions
 from sebody.contract.counts import floating_counts, superelement_counts
 from sebody.contract.layout import ENERGY, KINETIC, RESIDUAL, STRAIN
-from sebody.fem import Section
+from sebody.fem import Section, straight_beam
 from sebody.kernels.loader import load
 from sebody.kernels.packed import unpack
+from sebody.reduction import reduce
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.verify.check import states
 from sebody.verify.check.definitions import local_coordinates
@@ -179,3 +181,19 @@ def test_more_slaved_coordinates_than_a_kernel_has_memory_for():
     with pytest.raises(InputError, match="'beam' .*it has 13 slaved coordinates and the kernel "
                                          "memory for 12"):
         contracts.check_superelement(body, load(body.kernel))
+
+
+def test_mean_axes_of_bodies_of_a_micrometre():
+    """In metres; modal masses are one in all units. A raw LinAlgError before."""
+    def accelerations(length):
+        section = Section(4e-4 * length**2, 1.4e-8 * length**4, 3e-8 * length**4,
+                          2.2e-8 * length**4, 7e10, 0.3, 2700.0)
+        places = length * np.array([[0.2, -0.3, 0.5], [0.7, 0.1, 0.8]])
+        body = reduce(straight_beam(*places, section, 4), [(0, "full"), (4, "full")], 3, "rubin")
+        model = Model()
+        ends = [model.node(*given) for given in zip("ab", places, strict=True)]
+        model.superelement("beam", body, ends, frame="mean_axes", inertia="c")
+        model.spherical("a")
+        model.gravity(length * np.array([1.0, -9.0, 3.0]))
+        return Simulation(model, 1e-3).result()["b.acceleration"][0] / length
+    assert_allclose(accelerations(1e-6), accelerations(1.0), rtol=1e-8)
