@@ -127,9 +127,7 @@ class Room(NamedTuple):
     def of(cls, output: Output, shape: tuple[int, ...], *members: int) -> Room:
         """Room for an output of a quantity of some shape."""
         size = 1 if output.norm else prod(shape)
-        sizes = np.cumsum([prod(members) * own for own in (size, size, size, 4)])
-        parts = np.split(np.zeros(sizes[-1]), sizes[:-1])
-        return cls(*(part.reshape(*members, -1) for part in parts))
+        return cls(*np.zeros((3, *members, size)), np.zeros((*members, 4)))
 
 
 class Folds:
@@ -146,12 +144,13 @@ class Folds:
     def __init__(self, output: Output, shape: tuple[int, ...], columns: NDArray, count: int):
         self._output, self._columns = output, columns
         self._room = Room.of(output, shape, count)
-        self._memory = self._room.kept.base     # of all that is kept
+        self._memory = self._room.kept.base, self._room.facts   # of all that is kept
         self._rows = np.empty((0, len(columns)))
 
     def begin(self) -> None:
         """Forget what was taken in."""
-        self._memory[:] = 0.0
+        for own in self._memory:
+            own[...] = 0.0
 
     def add(self, t: NDArray, table: NDArray, members: NDArray) -> None:
         """Take in the next recorded states of some members; the table is (states, numbers, all)."""
