@@ -31,17 +31,21 @@ def place(*point: float) -> np.ndarray:
     return FOOT + TURN @ point
 
 
-def chain() -> Model:
-    """Three unequal links on hinges about different axes, created from the tip to the root."""
+def chain(**options) -> Model:
+    """Three unequal links on hinges about different axes, created from the tip to the root.
+
+    Their options are those of superelements.
+    """
+    options = options or {"inertia": "material"}
     made, lengths, nodes = Model(), (40.0, 60.0, 50.0), {}
     starts = np.concatenate([[0.0], np.cumsum(lengths)])
     for k in (2, 1, 0):
         ends = place(starts[k], 0, 0), place(starts[k + 1], 0, 0)
         body = craig_bampton(straight_beam(*ends, SECTION, elements=4), [(0, "full"), (4, "full")],
-                             modes=4)
+                             modes=4, loads={"wind": np.arange(30.0) % 7.0 - 2.0})
         nodes[k] = [made.node(f"{name} {k}", point)
                     for name, point in zip(("root", "end"), body.coordinates, strict=True)]
-        made.superelement(f"link {k}", body, nodes[k], inertia="material")
+        made.superelement(f"link {k}", body, nodes[k], **options)
     for k, axis in enumerate(((0, 0, 1), (0, 0.6, 0.8))):
         made.revolute(nodes[k][1], TURN @ axis, nodes[k + 1][0], name=f"hinge {k}")
     made.revolute(nodes[0][0], axis=TURN @ (0, 1, 0), name="foot")
@@ -156,6 +160,40 @@ def test_members_equal_single_runs(build, index, monkeypatch):
         speed = np.abs(result["tip.velocity"]).max()
         assert np.abs(found["most"][run] - result["tip.velocity"].max(axis=0)).max() < 1e-8 * speed
         assert found["energy"][run] == pytest.approx(result["energy.strain"][-1], rel=1e-6)
+
+
+def test_bits_do_not_depend_on_company_where_an_iterate_is_no_number(monkeypatch):
+    """Steps are too long: a member whose iteration gives no numbers has its step made anew.
+
+    What members beside it do until then is nothing to it.
+    """
+    monkeypatch.setattr(ensemble, "WORTH_IT", 0)
+    rng = np.random.default_rng(3)
+    given = {"load.amplitude": 4.0 * rng.uniform(-1, 2, 8),
+             "gravity": rng.uniform(-900, 900, (8, 3))}
+    many, outputs = Ensemble(chain(), 4 * H), {"course": "tip.position"}
+    found = many.run(given, 20 * 4 * H, outputs)
+    alone = many.run({name: v[:1] for name, v in given.items()}, 20 * 4 * H, outputs)
+    assert found.in_lanes == 8 and alone.in_lanes == 1
+    np.testing.assert_array_equal(alone["course"][0], found["course"][0])
+
+
+def test_matrices_at_once_do_not_depend_on_who_wants_new_ones_of_bodies(monkeypatch):
+    """Loads on bodies search for frames where matrices of bodies are rotated, too."""
+    monkeypatch.setattr(ensemble, "WORTH_IT", 0)
+    made = chain(frame="mean_axes")
+    for body in made.bodies:
+        made.body_load(body, "wind", [(0, 0), (0.02, 30.0)])
+    rng = np.random.default_rng(0)
+    given = {"load.amplitude": 0.1 * rng.uniform(-1, 2, 8),
+             "gravity": rng.uniform(-100, 100, (8, 3))}
+    many, outputs = Ensemble(made, 2 * H), {"course": "tip.position"}
+    assert matrices_at_once(many._template)
+    found = many.run(given, 25 * 2 * H, outputs)
+    for run in range(8):
+        alone = many.run({name: v[run:run + 1] for name, v in given.items()}, 25 * 2 * H, outputs)
+        assert alone.in_lanes == 1
+        np.testing.assert_array_equal(alone["course"][0], found["course"][run])
 
 
 def controlled(made: Model, node: str, joint: str, gain: float) -> Model:

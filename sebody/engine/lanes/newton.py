@@ -41,6 +41,10 @@ def correct(system, state, scheme, active, iteration, mixed):
                                  norms(system, state, n))
     none = active & ~(norm < HUGE)
     failed = none
+    if some(none):      # their step is made anew: nothing of them is kept
+        active = active & ~none
+        for i in range(n):
+            state.correction[i] = where(none, spread(0.0), state.correction[i])
     left_norm = accelerate(system, state, active, norm) if mixed else norm
     subtract(system, state, scheme, n)
     accelerations = max(scheme.beta * h * h * accelerations, clock.acceleration_norm)

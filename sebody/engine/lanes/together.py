@@ -19,6 +19,7 @@ from sebody.engine.elimination import BLOCK, SMALL_PIVOT
 from sebody.engine.evaluate import run_kernels, set_tangent_operators
 from sebody.engine.matrix import ROUNDING, THIN, sum_matrices
 from sebody.engine.state import State
+from sebody.engine.vectors import copy
 from sebody.kernels.abi import pointer_to
 
 WANTED, EVALUATED, MADE = range(3)      # of `Together.asked`
@@ -30,8 +31,9 @@ class Together(Arrays):
 
     ==================  ============================================================================
     routine             (1,) address of `refactorize`; zero where matrices are made one by one
-    state               of the members, but with forces, frames, tangent operators, element matrices
-                        and the sum of these in memory of its own
+    state               of the members, but with forces, frames and the sum of the element matrices
+                        in memory of its own
+    T, J                tangent operators and element matrices of members that keep theirs
     begun               (9 b,) frames before the iterate was evaluated
     asked               (3,) one of members that want a matrix, of those whose bodies' matrices are
                         to be new, and of those whose matrix was made; else zero
@@ -40,6 +42,8 @@ class Together(Arrays):
 
     routine: NDArray
     state: State
+    T: NDArray
+    J: NDArray
     begun: NDArray
     asked: NDArray
 
@@ -49,20 +53,10 @@ def refactorize(system, state, together):
     """Make the matrices that are asked for."""
     own, asked = together.state, together.asked
     wanted, evaluated = asked[WANTED] > 0.0, asked[EVALUATED] > 0.0
-    first = system.first_joint[0]
     if some(evaluated):
-        first = 0
-        set_tangent_operators(system, own)
-        for k in range(own.T.size):
-            own.T[k] = state.T[k] = where(evaluated, own.T[k], state.T[k])
-        for k in range(own.frames.size):
-            own.frames[k] = together.begun[k]
-    run_kernels(TANGENT, first, system.address.size, system, own)
-    if some(evaluated):
-        for k in range(system.at_J[system.first_joint[0]]):
-            own.J[k] = state.J[k] = where(evaluated, own.J[k], state.J[k])
-    for k in range(own.frames.size):
-        own.frames[k] = state.frames[k]
+        _evaluate_bodies(system, state, together, evaluated)
+    copy(state.frames, own.frames)
+    run_kernels(TANGENT, system.first_joint[0], system.address.size, system, own)
     sum_matrices(system, own, state.forces)
     if some(evaluated):
         _equilibrate(system, own, evaluated)
@@ -75,6 +69,24 @@ def refactorize(system, state, together):
         state.matrix[k] = where(wanted, own.matrix[k], state.matrix[k])
     asked[MADE] = where(made, spread(1.0), spread(0.0))
     return OK
+
+
+@compiled(forceinline=True)
+def _evaluate_bodies(system, state, together, evaluated):
+    """Evaluate tangent operators and element matrices of bodies; some members keep theirs."""
+    own, T, J = together.state, together.T, together.J
+    bodies = system.first_joint[0]
+    of_bodies = system.at_J[bodies]
+    copy(state.T, T)
+    for k in range(of_bodies):
+        J[k] = state.J[k]
+    copy(together.begun, own.frames)
+    set_tangent_operators(system, own)
+    for k in range(T.size):
+        state.T[k] = where(evaluated, state.T[k], T[k])
+    run_kernels(TANGENT, 0, bodies, system, own)
+    for k in range(of_bodies):
+        state.J[k] = where(evaluated, state.J[k], J[k])
 
 
 @compiled(forceinline=True)

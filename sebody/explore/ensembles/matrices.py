@@ -58,9 +58,9 @@ def together(image: Image, system: System, state: State, begun: NDArray) -> Toge
 
 def new_together(state: State, begun: NDArray) -> Together:
     """The same, of matrices that are made one by one."""
-    own = {name: empty(*getattr(state, name).shape)
-           for name in ("g", "frames", "T", "J", "matrix")}
-    return Together(np.zeros(1, dtype=np.int64), replace(state, **own), begun, empty(3))
+    own = {name: empty(*getattr(state, name).shape) for name in ("g", "frames", "matrix")}
+    return Together(np.zeros(1, dtype=np.int64), replace(state, **own), empty(*state.T.shape),
+                    empty(*state.J.shape), begun, empty(3))
 
 
 def address_together(system: System, state: State, found: Together) -> int:
