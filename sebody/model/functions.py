@@ -9,14 +9,21 @@ import numpy as np
 from numba import njit
 
 from sebody import inputs
-from sebody.compiler.user_functions import (
-    UserFunction,
+from sebody.compiler.user_code import (
+    Source,
     compile_controller,
     compile_force,
     compile_history,
 )
+from sebody.compiler.user_functions import UserFunction
 from sebody.errors import InputError
-from sebody.model.outside import defaults, is_helper, refuse, values_read
+from sebody.model.outside import (
+    compiled_from,
+    defaults,
+    is_helper,
+    refuse,
+    values_read,
+)
 
 # arguments
 OF_TIME, FORCE = ("t",), ("t", "x", "v", "force")
@@ -35,7 +42,7 @@ def compiled_history(function: Callable[[float], float], what: str) -> UserFunct
         begins with `what` it is.
     """
     own = _python(function, what, f"{what} {getattr(function, '__name__', '')!r}", OF_TIME)
-    return _remembered(compile_history(compilable(own), what), own)
+    return _remembered(compile_history(source(own), what), own)
 
 
 def compiled_force(function: Callable[..., None], name: str, coordinates: int) -> UserFunction:
@@ -47,7 +54,7 @@ def compiled_force(function: Callable[..., None], name: str, coordinates: int) -
         As of `compiled_history`.
     """
     own = _python(function, f"user force {name!r}", f"user force {name!r}", FORCE)
-    return _remembered(compile_force(name, compilable(own), coordinates), own)
+    return _remembered(compile_force(name, source(own), coordinates), own)
 
 
 def compiled_controller(function: Callable[..., None], name: str, sizes: tuple[int, int, int, int]
@@ -63,7 +70,7 @@ def compiled_controller(function: Callable[..., None], name: str, sizes: tuple[i
     """
     what = f"controller {name!r}"
     own = _python(function, what, what, CONTROL)
-    return _remembered(compile_controller(name, compilable(own), sizes), own)
+    return _remembered(compile_controller(name, source(own), sizes), own)
 
 
 def compiled_law(function: Callable[..., None], name: str, sizes: tuple[int, int, int, int]
@@ -82,7 +89,7 @@ def compiled_law(function: Callable[..., None], name: str, sizes: tuple[int, int
 
     def law(t, y, x, u, parameters):
         own(t, y, x, u[:states], u[states:], parameters)
-    return _remembered(compile_controller(name, compilable(law),
+    return _remembered(compile_controller(name, source(law),
                                           (inputs, states, states + outputs, count),
                                           ", ".join(LAW), "rates and u"), law)
 
@@ -104,9 +111,14 @@ def compiled_derivatives(function: Callable[..., None], name: str,
 
     def derivatives(t, y, x, u, parameters):
         own(t, y, x, u.reshape(rows, columns), parameters)
-    return _remembered(compile_controller(name, compilable(derivatives),
+    return _remembered(compile_controller(name, source(derivatives),
                                           (inputs, states, rows * columns, count),
                                           ", ".join(DERIVATIVES), "derivatives"), derivatives)
+
+
+def source(function: Callable) -> Source:
+    """What is compiled of a function; functions of the same code and values share machine code."""
+    return Source(compiled_from(function), compilable(function))
 
 
 def compilable(function: Callable) -> Callable:

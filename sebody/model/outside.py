@@ -9,11 +9,12 @@ a loop that took up the last value of the loop's variable.
 import builtins
 import dis
 from collections import ChainMap
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping
 from enum import Enum
 from functools import cache
+from hashlib import sha256
 from itertools import takewhile
-from types import CellType, CodeType, FunctionType, ModuleType
+from types import BuiltinFunctionType, CellType, CodeType, FunctionType, ModuleType
 from typing import Any, NamedTuple, TypeGuard
 
 import numpy as np
@@ -35,6 +36,7 @@ class Read(NamedTuple):
     value: object
     attribute: str      # of the value, where the function reads one
     helper: str         # name of the helper that reads it
+    options: str = ""   # with which Numba compiles it, where the user gave some
 
     @property
     def said(self) -> str:
@@ -65,6 +67,28 @@ def values_read(function: Callable) -> dict[str, object]:
     return read
 
 
+def compiled_from(function: Callable) -> Hashable:
+    """All that the compiled code of a function depends on: its code and the values it reads."""
+    return function.__code__, *[(one.said, one.options, _identity(one.value))
+                                for one in _reads(function)]
+
+
+def _identity(value: object) -> Hashable:
+    """What is equal for values that are compiled to the same code."""
+    if is_helper(value):
+        return value.__code__
+    if isinstance(value, np.ndarray):
+        layout = str(value.dtype), value.shape, value.flags.c_contiguous, value.flags.f_contiguous
+        return *layout, sha256(value.tobytes()).digest()
+    if isinstance(value, tuple):
+        return type(value), *map(_identity, value)
+    if isinstance(value, CONSTANTS):
+        return type(value), repr(value)         # 0.0 equals -0.0, and 1 equals True
+    if isinstance(value, BuiltinFunctionType | FunctionType | np.ufunc | type | Enum):
+        return value
+    return object()         # nothing tells whether another one is the same: it equals none
+
+
 def changed(before: Mapping[str, object], function: Callable) -> str:
     """The first value read that has changed, in words; empty if there is none."""
     now = values_read(function)
@@ -92,7 +116,7 @@ def refuse(function: Callable, what: str) -> None:
         it is in, or reads a name that does not exist.
     """
     for one in _reads(function):
-        name, value, attribute, _ = one
+        name, value, attribute = one.name, one.value, one.attribute
         short = f"{name}.{attribute}" if attribute else name
         if value is ABSENT:
             raise InputError(f"{what} reads {one.said}, which does not exist: define it before")
@@ -124,10 +148,10 @@ def _is_object(value: object) -> bool:
 
 
 def _reads(function: Callable, helper: str = "",
-           known: set[CodeType] | None = None) -> Iterator[Read]:
+           known: set[Callable] | None = None) -> Iterator[Read]:
     """Everything that a function and its helpers read; each helper is examined once."""
     known = set() if known is None else known
-    known.add(function.__code__)
+    known.add(function)
     for name, value in defaults(function).items():
         yield Read(name, value, "", helper)
     enclosing = {name: _content(cell) for name, cell in zip(
@@ -135,11 +159,12 @@ def _reads(function: Callable, helper: str = "",
     names = ChainMap(enclosing, function.__globals__, vars(builtins))
     for path in _lookups(function.__code__):
         name, value, attribute = _resolved(path, names)
+        options = getattr(value, "targetoptions", "")
         value = getattr(value, "py_func", value)        # of what Numba has compiled
-        if isinstance(value, ModuleType) or name in vars(builtins):
+        if isinstance(value, ModuleType) or value is vars(builtins).get(name, names):
             continue
-        yield Read(name, value, attribute, helper)
-        if is_helper(value) and value.__code__ not in known:
+        yield Read(name, value, attribute, helper, str(options))
+        if is_helper(value) and value not in known:
             yield from _reads(value, value.__name__, known)
 
 

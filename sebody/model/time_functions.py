@@ -16,9 +16,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from sebody.compiler.user_functions import UserFunction, compile_history
+from sebody.compiler.user_code import Source, compile_history
+from sebody.compiler.user_functions import UserFunction
 from sebody.contract.layout import CLOCK, INPUT
-from sebody.model.functions import compilable
+from sebody.model.functions import source
 
 LOAD, MOTION = "time function of a load", "motion of a drive"
 COEFFICIENTS = 6        # most of a polynomial
@@ -196,11 +197,12 @@ def same_waves(parts: Sequence[TimeFunction]) -> tuple[tuple[float, float, float
 
 
 def _less(function: UserFunction, value: float) -> UserFunction:
-    inner = njit(compilable(function.function))
+    whole = source(function.function)
+    inner = njit(whole.function)
 
     def less(t):
         return inner(t) - value
-    made = compile_history(less, MOTION)
+    made = compile_history(Source((whole.made_from, value), less), MOTION)
     made.function, made.read = function.function, function.read
     return made
 
