@@ -115,7 +115,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         g[4] = t12*t9
         g[5] = t11*t12
         frames[index[first + AT_FRAME]] = way
-        frames[index[first + AT_FRAME] + 1] = speed_beyond
+        frames[index[first + AT_FRAME] + 1] = way_rate
         frames[index[first + AT_FRAME] + 2] = ((t16 if -slow + t16 > 0.0 else 0.0) if touches -
             0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 3] = beyond

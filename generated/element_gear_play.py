@@ -223,70 +223,73 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t52 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
         t53 = d1_y*t51 - d1_z*t52
         t54 = angle_1_seen_1*n1_x + angle_1_seen_2*n1_y + angle_1_seen_3*n1_z
-        t55 = push*side
-        t56 = t55/(t44*t44 + t54*t54)
-        t57 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-        t58 = -d1_x*t45 + d1_z*t57
-        t59 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-        t60 = -d1_x*t48 + d1_z*t59
-        t61 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-        t62 = -d1_x*t51 + d1_z*t61
-        t63 = d1_x*t46 - d1_y*t57
-        t64 = d1_x*t49 - d1_y*t59
-        t65 = d1_x*t52 - d1_y*t61
-        t66 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
-        t67 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
-        t68 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
-        t69 = d2_y*t67 - d2_z*t68
-        t70 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
-        t71 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
-        t72 = d2_y*t70 - d2_z*t71
-        t73 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
-        t74 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
-        t75 = d2_y*t73 - d2_z*t74
-        t76 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
-        t77 = ratio*t55/(t66*t66 + t76*t76)
-        t78 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
-        t79 = -d2_x*t67 + d2_z*t78
-        t80 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
-        t81 = -d2_x*t70 + d2_z*t80
-        t82 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
-        t83 = -d2_x*t73 + d2_z*t82
-        t84 = d2_x*t68 - d2_y*t78
-        t85 = d2_x*t71 - d2_y*t80
-        t86 = d2_x*t74 - d2_y*t82
-        t87 = atan2(t44, t54)
-        t88 = atan2(t66, t76)
-        t89 = kept_rate if kept_rate > 0.0 else -kept_rate
-        t90 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
-        t91 = t90 if -t89 + t90 > 0.0 else t89
-        t92 = t91 if -kept_impact + t91 > 0.0 else kept_impact
-        g[0] = t56*(-t44*(n1_x*t47 + n1_y*t50 + n1_z*t53) + t54*(m1_x*t47 + m1_y*t50 + m1_z*t53))
-        g[1] = t56*(-t44*(n1_x*t58 + n1_y*t60 + n1_z*t62) + t54*(m1_x*t58 + m1_y*t60 + m1_z*t62))
-        g[2] = t56*(-t44*(n1_x*t63 + n1_y*t64 + n1_z*t65) + t54*(m1_x*t63 + m1_y*t64 + m1_z*t65))
-        g[3] = (t56*(-t44*(-angle_1_seen_2*n1_z + angle_1_seen_3*n1_y) + t54*(-angle_1_seen_2*m1_z
+        t55 = 1/(t44*t44 + t54*t54)
+        t56 = push*side
+        t57 = t55*t56
+        t58 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+        t59 = -d1_x*t45 + d1_z*t58
+        t60 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+        t61 = -d1_x*t48 + d1_z*t60
+        t62 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+        t63 = -d1_x*t51 + d1_z*t62
+        t64 = d1_x*t46 - d1_y*t58
+        t65 = d1_x*t49 - d1_y*t60
+        t66 = d1_x*t52 - d1_y*t62
+        t67 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
+        t68 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
+        t69 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
+        t70 = d2_y*t68 - d2_z*t69
+        t71 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
+        t72 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
+        t73 = d2_y*t71 - d2_z*t72
+        t74 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
+        t75 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
+        t76 = d2_y*t74 - d2_z*t75
+        t77 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
+        t78 = ratio/(t67*t67 + t77*t77)
+        t79 = t56*t78
+        t80 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
+        t81 = -d2_x*t68 + d2_z*t80
+        t82 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
+        t83 = -d2_x*t71 + d2_z*t82
+        t84 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
+        t85 = -d2_x*t74 + d2_z*t84
+        t86 = d2_x*t69 - d2_y*t80
+        t87 = d2_x*t72 - d2_y*t82
+        t88 = d2_x*t75 - d2_y*t84
+        t89 = atan2(t44, t54)
+        t90 = atan2(t67, t77)
+        t91 = kept_rate if kept_rate > 0.0 else -kept_rate
+        t92 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
+        t93 = t92 if -t91 + t92 > 0.0 else t91
+        t94 = t93 if -kept_impact + t93 > 0.0 else kept_impact
+        g[0] = t57*(-t44*(n1_x*t47 + n1_y*t50 + n1_z*t53) + t54*(m1_x*t47 + m1_y*t50 + m1_z*t53))
+        g[1] = t57*(-t44*(n1_x*t59 + n1_y*t61 + n1_z*t63) + t54*(m1_x*t59 + m1_y*t61 + m1_z*t63))
+        g[2] = t57*(-t44*(n1_x*t64 + n1_y*t65 + n1_z*t66) + t54*(m1_x*t64 + m1_y*t65 + m1_z*t66))
+        g[3] = (t57*(-t44*(-angle_1_seen_2*n1_z + angle_1_seen_3*n1_y) + t54*(-angle_1_seen_2*m1_z
             + angle_1_seen_3*m1_y)))
-        g[4] = (t56*(-t44*(angle_1_seen_1*n1_z - angle_1_seen_3*n1_x) + t54*(angle_1_seen_1*m1_z -
+        g[4] = (t57*(-t44*(angle_1_seen_1*n1_z - angle_1_seen_3*n1_x) + t54*(angle_1_seen_1*m1_z -
             angle_1_seen_3*m1_x)))
-        g[5] = (t56*(-t44*(-angle_1_seen_1*n1_y + angle_1_seen_2*n1_x) + t54*(-angle_1_seen_1*m1_y
+        g[5] = (t57*(-t44*(-angle_1_seen_1*n1_y + angle_1_seen_2*n1_x) + t54*(-angle_1_seen_1*m1_y
             + angle_1_seen_2*m1_x)))
-        g[6] = -t77*(-t66*(n2_x*t69 + n2_y*t72 + n2_z*t75) + t76*(m2_x*t69 + m2_y*t72 + m2_z*t75))
-        g[7] = -t77*(-t66*(n2_x*t79 + n2_y*t81 + n2_z*t83) + t76*(m2_x*t79 + m2_y*t81 + m2_z*t83))
-        g[8] = -t77*(-t66*(n2_x*t84 + n2_y*t85 + n2_z*t86) + t76*(m2_x*t84 + m2_y*t85 + m2_z*t86))
-        g[9] = (-t77*(-t66*(-angle_2_seen_2*n2_z + angle_2_seen_3*n2_y) +
-            t76*(-angle_2_seen_2*m2_z + angle_2_seen_3*m2_y)))
-        g[10] = (-t77*(-t66*(angle_2_seen_1*n2_z - angle_2_seen_3*n2_x) + t76*(angle_2_seen_1*m2_z
+        g[6] = -t79*(-t67*(n2_x*t70 + n2_y*t73 + n2_z*t76) + t77*(m2_x*t70 + m2_y*t73 + m2_z*t76))
+        g[7] = -t79*(-t67*(n2_x*t81 + n2_y*t83 + n2_z*t85) + t77*(m2_x*t81 + m2_y*t83 + m2_z*t85))
+        g[8] = -t79*(-t67*(n2_x*t86 + n2_y*t87 + n2_z*t88) + t77*(m2_x*t86 + m2_y*t87 + m2_z*t88))
+        g[9] = (-t79*(-t67*(-angle_2_seen_2*n2_z + angle_2_seen_3*n2_y) +
+            t77*(-angle_2_seen_2*m2_z + angle_2_seen_3*m2_y)))
+        g[10] = (-t79*(-t67*(angle_2_seen_1*n2_z - angle_2_seen_3*n2_x) + t77*(angle_2_seen_1*m2_z
             - angle_2_seen_3*m2_x)))
-        g[11] = (-t77*(-t66*(-angle_2_seen_1*n2_y + angle_2_seen_2*n2_x) +
-            t76*(-angle_2_seen_1*m2_y + angle_2_seen_2*m2_x)))
-        frames[index[first + AT_FRAME]] = (t87 +
-            6.283185307179586*floor(0.15915494309189535*kept_angle_1 - 0.15915494309189535*t87 +
+        g[11] = (-t79*(-t67*(-angle_2_seen_1*n2_y + angle_2_seen_2*n2_x) +
+            t77*(-angle_2_seen_1*m2_y + angle_2_seen_2*m2_x)))
+        frames[index[first + AT_FRAME]] = (t89 +
+            6.283185307179586*floor(0.15915494309189535*kept_angle_1 - 0.15915494309189535*t89 +
             0.5))
-        frames[index[first + AT_FRAME] + 1] = (t88 +
-            6.283185307179586*floor(0.15915494309189535*kept_angle_2 - 0.15915494309189535*t88 +
+        frames[index[first + AT_FRAME] + 1] = (t90 +
+            6.283185307179586*floor(0.15915494309189535*kept_angle_2 - 0.15915494309189535*t90 +
             0.5))
-        frames[index[first + AT_FRAME] + 2] = speed_beyond
-        frames[index[first + AT_FRAME] + 3] = ((t92 if -slow + t92 > 0.0 else 0.0) if touches -
+        frames[index[first + AT_FRAME] + 2] = (t55*(angle_1_along_m*t54 - angle_1_along_n*t44) -
+            t78*(angle_2_along_m*t77 - angle_2_along_n*t67))
+        frames[index[first + AT_FRAME] + 3] = ((t94 if -slow + t94 > 0.0 else 0.0) if touches -
             0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 4] = beyond
         frames[index[first + AT_FRAME] + 5] = push
@@ -400,75 +403,75 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             du = at(work, WIDTH)
-            t93 = angle_1_seen_1*m1_x + angle_1_seen_2*m1_y + angle_1_seen_3*m1_z
-            t94 = angle_1_seen_1*n1_x + angle_1_seen_2*n1_y + angle_1_seen_3*n1_z
-            t95 = 1/(t93*t93 + t94*t94)
-            t96 = t94*t95
-            t97 = -t93*t95
-            t98 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
-            t99 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
-            t100 = 1/(t98*t98 + t99*t99)
-            t101 = t100*t99
-            t102 = -t100*t98
-            dvalue_by_angle_1_seen_1 = m1_x*t96 + n1_x*t97
-            dvalue_by_angle_1_seen_2 = m1_y*t96 + n1_y*t97
-            dvalue_by_angle_1_seen_3 = m1_z*t96 + n1_z*t97
-            dvalue_by_angle_2_seen_1 = -ratio*(m2_x*t101 + n2_x*t102)
-            dvalue_by_angle_2_seen_2 = -ratio*(m2_y*t101 + n2_y*t102)
-            dvalue_by_angle_2_seen_3 = -ratio*(m2_z*t101 + n2_z*t102)
-            t103 = 1 if -lower - upper + 2*value > 0.0 else -1
-            dbeyond_by_angle_1_seen_1 = dvalue_by_angle_1_seen_1*t103
-            dbeyond_by_angle_1_seen_2 = dvalue_by_angle_1_seen_2*t103
-            dbeyond_by_angle_1_seen_3 = dvalue_by_angle_1_seen_3*t103
-            dbeyond_by_angle_2_seen_1 = dvalue_by_angle_2_seen_1*t103
-            dbeyond_by_angle_2_seen_2 = dvalue_by_angle_2_seen_2*t103
-            dbeyond_by_angle_2_seen_3 = dvalue_by_angle_2_seen_3*t103
-            t104 = angle_1_seen_1*m1_x + angle_1_seen_2*m1_y + angle_1_seen_3*m1_z
-            t105 = angle_1_seen_1*n1_x + angle_1_seen_2*n1_y + angle_1_seen_3*n1_z
-            t106 = t104*t104 + t105*t105
-            t107 = 1/t106
-            t108 = 2*t104
-            t109 = 2*t105
-            t110 = (angle_1_along_m*t105 - angle_1_along_n*t104)/(t106*t106)
-            t111 = side*t107
-            t112 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
-            t113 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
-            t114 = t112*t112 + t113*t113
-            t115 = ratio/t114
-            t116 = 2*t112
-            t117 = 2*t113
-            t118 = (ratio*(angle_2_along_m*t113 - angle_2_along_n*t112))/(t114*t114)
-            t119 = side*t115
-            dspeed_beyond_by_angle_1_seen_1 = (side*(t107*(angle_1_along_m*n1_x -
-                angle_1_along_n*m1_x) + t110*(-m1_x*t108 - n1_x*t109)))
-            dspeed_beyond_by_angle_1_seen_2 = (side*(t107*(angle_1_along_m*n1_y -
-                angle_1_along_n*m1_y) + t110*(-m1_y*t108 - n1_y*t109)))
-            dspeed_beyond_by_angle_1_seen_3 = (side*(t107*(angle_1_along_m*n1_z -
-                angle_1_along_n*m1_z) + t110*(-m1_z*t108 - n1_z*t109)))
-            dspeed_beyond_by_angle_1_along_n = -t104*t111
-            dspeed_beyond_by_angle_1_along_m = t105*t111
-            dspeed_beyond_by_angle_2_seen_1 = (side*(-t115*(angle_2_along_m*n2_x -
-                angle_2_along_n*m2_x) - t118*(-m2_x*t116 - n2_x*t117)))
-            dspeed_beyond_by_angle_2_seen_2 = (side*(-t115*(angle_2_along_m*n2_y -
-                angle_2_along_n*m2_y) - t118*(-m2_y*t116 - n2_y*t117)))
-            dspeed_beyond_by_angle_2_seen_3 = (side*(-t115*(angle_2_along_m*n2_z -
-                angle_2_along_n*m2_z) - t118*(-m2_z*t116 - n2_z*t117)))
-            dspeed_beyond_by_angle_2_along_n = t112*t119
-            dspeed_beyond_by_angle_2_along_m = -t113*t119
-            t120 = 1 if beyond > 0.0 else 0
-            ddepth_by_angle_1_seen_1 = dbeyond_by_angle_1_seen_1*t120
-            ddepth_by_angle_1_seen_2 = dbeyond_by_angle_1_seen_2*t120
-            ddepth_by_angle_1_seen_3 = dbeyond_by_angle_1_seen_3*t120
-            ddepth_by_angle_2_seen_1 = dbeyond_by_angle_2_seen_1*t120
-            ddepth_by_angle_2_seen_2 = dbeyond_by_angle_2_seen_2*t120
-            ddepth_by_angle_2_seen_3 = dbeyond_by_angle_2_seen_3*t120
-            t121 = depth**exponent*exponent*stiffness/depth
-            delastic_by_angle_1_seen_1 = ddepth_by_angle_1_seen_1*t121
-            delastic_by_angle_1_seen_2 = ddepth_by_angle_1_seen_2*t121
-            delastic_by_angle_1_seen_3 = ddepth_by_angle_1_seen_3*t121
-            delastic_by_angle_2_seen_1 = ddepth_by_angle_2_seen_1*t121
-            delastic_by_angle_2_seen_2 = ddepth_by_angle_2_seen_2*t121
-            delastic_by_angle_2_seen_3 = ddepth_by_angle_2_seen_3*t121
+            t95 = angle_1_seen_1*m1_x + angle_1_seen_2*m1_y + angle_1_seen_3*m1_z
+            t96 = angle_1_seen_1*n1_x + angle_1_seen_2*n1_y + angle_1_seen_3*n1_z
+            t97 = 1/(t95*t95 + t96*t96)
+            t98 = t96*t97
+            t99 = -t95*t97
+            t100 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
+            t101 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
+            t102 = 1/(t100*t100 + t101*t101)
+            t103 = t101*t102
+            t104 = -t100*t102
+            dvalue_by_angle_1_seen_1 = m1_x*t98 + n1_x*t99
+            dvalue_by_angle_1_seen_2 = m1_y*t98 + n1_y*t99
+            dvalue_by_angle_1_seen_3 = m1_z*t98 + n1_z*t99
+            dvalue_by_angle_2_seen_1 = -ratio*(m2_x*t103 + n2_x*t104)
+            dvalue_by_angle_2_seen_2 = -ratio*(m2_y*t103 + n2_y*t104)
+            dvalue_by_angle_2_seen_3 = -ratio*(m2_z*t103 + n2_z*t104)
+            t105 = 1 if -lower - upper + 2*value > 0.0 else -1
+            dbeyond_by_angle_1_seen_1 = dvalue_by_angle_1_seen_1*t105
+            dbeyond_by_angle_1_seen_2 = dvalue_by_angle_1_seen_2*t105
+            dbeyond_by_angle_1_seen_3 = dvalue_by_angle_1_seen_3*t105
+            dbeyond_by_angle_2_seen_1 = dvalue_by_angle_2_seen_1*t105
+            dbeyond_by_angle_2_seen_2 = dvalue_by_angle_2_seen_2*t105
+            dbeyond_by_angle_2_seen_3 = dvalue_by_angle_2_seen_3*t105
+            t106 = angle_1_seen_1*m1_x + angle_1_seen_2*m1_y + angle_1_seen_3*m1_z
+            t107 = angle_1_seen_1*n1_x + angle_1_seen_2*n1_y + angle_1_seen_3*n1_z
+            t108 = t106*t106 + t107*t107
+            t109 = 1/t108
+            t110 = 2*t106
+            t111 = 2*t107
+            t112 = (angle_1_along_m*t107 - angle_1_along_n*t106)/(t108*t108)
+            t113 = side*t109
+            t114 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
+            t115 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
+            t116 = t114*t114 + t115*t115
+            t117 = ratio/t116
+            t118 = 2*t114
+            t119 = 2*t115
+            t120 = (ratio*(angle_2_along_m*t115 - angle_2_along_n*t114))/(t116*t116)
+            t121 = side*t117
+            dspeed_beyond_by_angle_1_seen_1 = (side*(t109*(angle_1_along_m*n1_x -
+                angle_1_along_n*m1_x) + t112*(-m1_x*t110 - n1_x*t111)))
+            dspeed_beyond_by_angle_1_seen_2 = (side*(t109*(angle_1_along_m*n1_y -
+                angle_1_along_n*m1_y) + t112*(-m1_y*t110 - n1_y*t111)))
+            dspeed_beyond_by_angle_1_seen_3 = (side*(t109*(angle_1_along_m*n1_z -
+                angle_1_along_n*m1_z) + t112*(-m1_z*t110 - n1_z*t111)))
+            dspeed_beyond_by_angle_1_along_n = -t106*t113
+            dspeed_beyond_by_angle_1_along_m = t107*t113
+            dspeed_beyond_by_angle_2_seen_1 = (side*(-t117*(angle_2_along_m*n2_x -
+                angle_2_along_n*m2_x) - t120*(-m2_x*t118 - n2_x*t119)))
+            dspeed_beyond_by_angle_2_seen_2 = (side*(-t117*(angle_2_along_m*n2_y -
+                angle_2_along_n*m2_y) - t120*(-m2_y*t118 - n2_y*t119)))
+            dspeed_beyond_by_angle_2_seen_3 = (side*(-t117*(angle_2_along_m*n2_z -
+                angle_2_along_n*m2_z) - t120*(-m2_z*t118 - n2_z*t119)))
+            dspeed_beyond_by_angle_2_along_n = t114*t121
+            dspeed_beyond_by_angle_2_along_m = -t115*t121
+            t122 = 1 if beyond > 0.0 else 0
+            ddepth_by_angle_1_seen_1 = dbeyond_by_angle_1_seen_1*t122
+            ddepth_by_angle_1_seen_2 = dbeyond_by_angle_1_seen_2*t122
+            ddepth_by_angle_1_seen_3 = dbeyond_by_angle_1_seen_3*t122
+            ddepth_by_angle_2_seen_1 = dbeyond_by_angle_2_seen_1*t122
+            ddepth_by_angle_2_seen_2 = dbeyond_by_angle_2_seen_2*t122
+            ddepth_by_angle_2_seen_3 = dbeyond_by_angle_2_seen_3*t122
+            t123 = depth**exponent*exponent*stiffness/depth
+            delastic_by_angle_1_seen_1 = ddepth_by_angle_1_seen_1*t123
+            delastic_by_angle_1_seen_2 = ddepth_by_angle_1_seen_2*t123
+            delastic_by_angle_1_seen_3 = ddepth_by_angle_1_seen_3*t123
+            delastic_by_angle_2_seen_1 = ddepth_by_angle_2_seen_1*t123
+            delastic_by_angle_2_seen_2 = ddepth_by_angle_2_seen_2*t123
+            delastic_by_angle_2_seen_3 = ddepth_by_angle_2_seen_3*t123
             dfactor_by_angle_1_seen_1 = damping*dspeed_beyond_by_angle_1_seen_1
             dfactor_by_angle_1_seen_2 = damping*dspeed_beyond_by_angle_1_seen_2
             dfactor_by_angle_1_seen_3 = damping*dspeed_beyond_by_angle_1_seen_3
@@ -479,24 +482,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dfactor_by_angle_2_seen_3 = damping*dspeed_beyond_by_angle_2_seen_3
             dfactor_by_angle_2_along_n = damping*dspeed_beyond_by_angle_2_along_n
             dfactor_by_angle_2_along_m = damping*dspeed_beyond_by_angle_2_along_m
-            t122 = factor if factor > 0.0 else 0
-            t123 = elastic if factor > 0.0 else 0
-            dpush_by_angle_1_seen_1 = (delastic_by_angle_1_seen_1*t122 +
-                dfactor_by_angle_1_seen_1*t123)
-            dpush_by_angle_1_seen_2 = (delastic_by_angle_1_seen_2*t122 +
-                dfactor_by_angle_1_seen_2*t123)
-            dpush_by_angle_1_seen_3 = (delastic_by_angle_1_seen_3*t122 +
-                dfactor_by_angle_1_seen_3*t123)
-            dpush_by_angle_1_along_n = dfactor_by_angle_1_along_n*t123
-            dpush_by_angle_1_along_m = dfactor_by_angle_1_along_m*t123
-            dpush_by_angle_2_seen_1 = (delastic_by_angle_2_seen_1*t122 +
-                dfactor_by_angle_2_seen_1*t123)
-            dpush_by_angle_2_seen_2 = (delastic_by_angle_2_seen_2*t122 +
-                dfactor_by_angle_2_seen_2*t123)
-            dpush_by_angle_2_seen_3 = (delastic_by_angle_2_seen_3*t122 +
-                dfactor_by_angle_2_seen_3*t123)
-            dpush_by_angle_2_along_n = dfactor_by_angle_2_along_n*t123
-            dpush_by_angle_2_along_m = dfactor_by_angle_2_along_m*t123
+            t124 = factor if factor > 0.0 else 0
+            t125 = elastic if factor > 0.0 else 0
+            dpush_by_angle_1_seen_1 = (delastic_by_angle_1_seen_1*t124 +
+                dfactor_by_angle_1_seen_1*t125)
+            dpush_by_angle_1_seen_2 = (delastic_by_angle_1_seen_2*t124 +
+                dfactor_by_angle_1_seen_2*t125)
+            dpush_by_angle_1_seen_3 = (delastic_by_angle_1_seen_3*t124 +
+                dfactor_by_angle_1_seen_3*t125)
+            dpush_by_angle_1_along_n = dfactor_by_angle_1_along_n*t125
+            dpush_by_angle_1_along_m = dfactor_by_angle_1_along_m*t125
+            dpush_by_angle_2_seen_1 = (delastic_by_angle_2_seen_1*t124 +
+                dfactor_by_angle_2_seen_1*t125)
+            dpush_by_angle_2_seen_2 = (delastic_by_angle_2_seen_2*t124 +
+                dfactor_by_angle_2_seen_2*t125)
+            dpush_by_angle_2_seen_3 = (delastic_by_angle_2_seen_3*t124 +
+                dfactor_by_angle_2_seen_3*t125)
+            dpush_by_angle_2_along_n = dfactor_by_angle_2_along_n*t125
+            dpush_by_angle_2_along_m = dfactor_by_angle_2_along_m*t125
             for column in range(12):
                 for i in range(12):
                     dq[i] = 0.0
@@ -529,150 +532,150 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthd_x = du[9]
                 uthd_y = du[10]
                 uthd_z = du[11]
-                t124 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t125 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t126 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t127 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t128 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t129 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t130 = Ra_xx*t124 + Ra_yx*t125 + Ra_zx*t126 + Rb_xx*t127 + Rb_yx*t128 + Rb_zx*t129
-                t131 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t132 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t133 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t134 = Ra_xy*t124 + Ra_yy*t125 + Ra_zy*t126 + Rb_xx*t131 + Rb_yx*t132 + Rb_zx*t133
-                t135 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t136 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t137 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t138 = Ra_xz*t124 + Ra_yz*t125 + Ra_zz*t126 + Rb_xx*t135 + Rb_yx*t136 + Rb_zx*t137
-                t139 = d1_x*t130 + d1_y*t134 + d1_z*t138
-                t140 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t141 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t142 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t143 = Ra_xx*t140 + Ra_yx*t141 + Ra_zx*t142 + Rb_xy*t127 + Rb_yy*t128 + Rb_zy*t129
-                t144 = Ra_xy*t140 + Ra_yy*t141 + Ra_zy*t142 + Rb_xy*t131 + Rb_yy*t132 + Rb_zy*t133
-                t145 = Ra_xz*t140 + Ra_yz*t141 + Ra_zz*t142 + Rb_xy*t135 + Rb_yy*t136 + Rb_zy*t137
-                t146 = d1_x*t143 + d1_y*t144 + d1_z*t145
-                t147 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t148 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t149 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t150 = Ra_xx*t147 + Ra_yx*t148 + Ra_zx*t149 + Rb_xz*t127 + Rb_yz*t128 + Rb_zz*t129
-                t151 = Ra_xy*t147 + Ra_yy*t148 + Ra_zy*t149 + Rb_xz*t131 + Rb_yz*t132 + Rb_zz*t133
-                t152 = Ra_xz*t147 + Ra_yz*t148 + Ra_zz*t149 + Rb_xz*t135 + Rb_yz*t136 + Rb_zz*t137
-                t153 = d1_x*t150 + d1_y*t151 + d1_z*t152
-                t154 = Oma_x*d1_y - Oma_y*d1_x
-                t155 = -Oma_x*d1_z + Oma_z*d1_x
-                t156 = Oma_y*d1_z - Oma_z*d1_y
-                t157 = -Omb_y*t153 + Omb_z*t146 + t130*t156 + t134*t155 + t138*t154
-                t158 = Omb_x*t153 - Omb_z*t139 + t143*t156 + t144*t155 + t145*t154
-                t159 = -Omb_x*t146 + Omb_y*t139 + t150*t156 + t151*t155 + t152*t154
-                t160 = -d1_x*utha_y + d1_y*utha_x
-                t161 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t162 = d1_x*utha_z - d1_z*utha_x
-                t163 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t164 = -d1_y*utha_z + d1_z*utha_y
-                t165 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t166 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t167 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t168 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t169 = d1_x*t166 + d1_y*t167 + d1_z*t168
-                t170 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t171 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t172 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t173 = d1_x*t170 + d1_y*t171 + d1_z*t172
-                t174 = t160*t161 + t162*t163 + t164*t165 + t169*uthb_z - t173*uthb_y
-                t175 = d1_x*t165 + d1_y*t163 + d1_z*t161
-                t176 = t160*t168 + t162*t167 + t164*t166 + t173*uthb_x - t175*uthb_z
-                t177 = t160*t172 + t162*t171 + t164*t170 - t169*uthb_x + t175*uthb_y
-                t178 = Rd_xy*dthd_z - Rd_xz*dthd_y
-                t179 = Rd_yy*dthd_z - Rd_yz*dthd_y
-                t180 = Rd_zy*dthd_z - Rd_zz*dthd_y
-                t181 = Rc_xy*dthc_z - Rc_xz*dthc_y
-                t182 = Rc_yy*dthc_z - Rc_yz*dthc_y
-                t183 = Rc_zy*dthc_z - Rc_zz*dthc_y
-                t184 = Rc_xx*t178 + Rc_yx*t179 + Rc_zx*t180 + Rd_xx*t181 + Rd_yx*t182 + Rd_zx*t183
-                t185 = -Rc_xx*dthc_z + Rc_xz*dthc_x
-                t186 = -Rc_yx*dthc_z + Rc_yz*dthc_x
-                t187 = -Rc_zx*dthc_z + Rc_zz*dthc_x
-                t188 = Rc_xy*t178 + Rc_yy*t179 + Rc_zy*t180 + Rd_xx*t185 + Rd_yx*t186 + Rd_zx*t187
-                t189 = Rc_xx*dthc_y - Rc_xy*dthc_x
-                t190 = Rc_yx*dthc_y - Rc_yy*dthc_x
-                t191 = Rc_zx*dthc_y - Rc_zy*dthc_x
-                t192 = Rc_xz*t178 + Rc_yz*t179 + Rc_zz*t180 + Rd_xx*t189 + Rd_yx*t190 + Rd_zx*t191
-                t193 = d2_x*t184 + d2_y*t188 + d2_z*t192
-                t194 = -Rd_xx*dthd_z + Rd_xz*dthd_x
-                t195 = -Rd_yx*dthd_z + Rd_yz*dthd_x
-                t196 = -Rd_zx*dthd_z + Rd_zz*dthd_x
-                t197 = Rc_xx*t194 + Rc_yx*t195 + Rc_zx*t196 + Rd_xy*t181 + Rd_yy*t182 + Rd_zy*t183
-                t198 = Rc_xy*t194 + Rc_yy*t195 + Rc_zy*t196 + Rd_xy*t185 + Rd_yy*t186 + Rd_zy*t187
-                t199 = Rc_xz*t194 + Rc_yz*t195 + Rc_zz*t196 + Rd_xy*t189 + Rd_yy*t190 + Rd_zy*t191
-                t200 = d2_x*t197 + d2_y*t198 + d2_z*t199
-                t201 = Rd_xx*dthd_y - Rd_xy*dthd_x
-                t202 = Rd_yx*dthd_y - Rd_yy*dthd_x
-                t203 = Rd_zx*dthd_y - Rd_zy*dthd_x
-                t204 = Rc_xx*t201 + Rc_yx*t202 + Rc_zx*t203 + Rd_xz*t181 + Rd_yz*t182 + Rd_zz*t183
-                t205 = Rc_xy*t201 + Rc_yy*t202 + Rc_zy*t203 + Rd_xz*t185 + Rd_yz*t186 + Rd_zz*t187
-                t206 = Rc_xz*t201 + Rc_yz*t202 + Rc_zz*t203 + Rd_xz*t189 + Rd_yz*t190 + Rd_zz*t191
-                t207 = d2_x*t204 + d2_y*t205 + d2_z*t206
-                t208 = Omc_x*d2_y - Omc_y*d2_x
-                t209 = -Omc_x*d2_z + Omc_z*d2_x
-                t210 = Omc_y*d2_z - Omc_z*d2_y
-                t211 = -Omd_y*t207 + Omd_z*t200 + t184*t210 + t188*t209 + t192*t208
-                t212 = Omd_x*t207 - Omd_z*t193 + t197*t210 + t198*t209 + t199*t208
-                t213 = -Omd_x*t200 + Omd_y*t193 + t204*t210 + t205*t209 + t206*t208
-                t214 = -d2_x*uthc_y + d2_y*uthc_x
-                t215 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
-                t216 = d2_x*uthc_z - d2_z*uthc_x
-                t217 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
-                t218 = -d2_y*uthc_z + d2_z*uthc_y
-                t219 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
-                t220 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
-                t221 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
-                t222 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
-                t223 = d2_x*t220 + d2_y*t221 + d2_z*t222
-                t224 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
-                t225 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
-                t226 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
-                t227 = d2_x*t224 + d2_y*t225 + d2_z*t226
-                t228 = t214*t215 + t216*t217 + t218*t219 + t223*uthd_z - t227*uthd_y
-                t229 = d2_x*t219 + d2_y*t217 + d2_z*t215
-                t230 = t214*t222 + t216*t221 + t218*t220 + t227*uthd_x - t229*uthd_z
-                t231 = t214*t226 + t216*t225 + t218*t224 - t223*uthd_x + t229*uthd_y
-                dangle_1_seen_1 = t139
-                dangle_1_seen_2 = t146
-                dangle_1_seen_3 = t153
-                dangle_1_along_n = n1_x*t157 + n1_y*t158 + n1_z*t159
-                uangle_1_along_n = n1_x*t174 + n1_y*t176 + n1_z*t177
-                dangle_1_along_m = m1_x*t157 + m1_y*t158 + m1_z*t159
-                uangle_1_along_m = m1_x*t174 + m1_y*t176 + m1_z*t177
-                dangle_2_seen_1 = t193
-                dangle_2_seen_2 = t200
-                dangle_2_seen_3 = t207
-                dangle_2_along_n = n2_x*t211 + n2_y*t212 + n2_z*t213
-                uangle_2_along_n = n2_x*t228 + n2_y*t230 + n2_z*t231
-                dangle_2_along_m = m2_x*t211 + m2_y*t212 + m2_z*t213
-                uangle_2_along_m = m2_x*t228 + m2_y*t230 + m2_z*t231
-                t232 = angle_1_seen_1*m1_x + angle_1_seen_2*m1_y + angle_1_seen_3*m1_z
-                t233 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t234 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t235 = d1_y*t233 - d1_z*t234
-                t236 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t237 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t238 = d1_y*t236 - d1_z*t237
-                t239 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t240 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t241 = d1_y*t239 - d1_z*t240
-                t242 = n1_x*t235 + n1_y*t238 + n1_z*t241
-                t243 = angle_1_seen_1*n1_x + angle_1_seen_2*n1_y + angle_1_seen_3*n1_z
-                t244 = m1_x*t235 + m1_y*t238 + m1_z*t241
-                t245 = -t232*t242 + t243*t244
-                t246 = t232*t232 + t243*t243
-                t247 = side/t246
-                t248 = (c_damping*(dpush_by_angle_1_along_m*uangle_1_along_m +
+                t126 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t127 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t128 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t129 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t130 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t131 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t132 = Ra_xx*t126 + Ra_yx*t127 + Ra_zx*t128 + Rb_xx*t129 + Rb_yx*t130 + Rb_zx*t131
+                t133 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t134 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t135 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t136 = Ra_xy*t126 + Ra_yy*t127 + Ra_zy*t128 + Rb_xx*t133 + Rb_yx*t134 + Rb_zx*t135
+                t137 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t138 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t139 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t140 = Ra_xz*t126 + Ra_yz*t127 + Ra_zz*t128 + Rb_xx*t137 + Rb_yx*t138 + Rb_zx*t139
+                t141 = d1_x*t132 + d1_y*t136 + d1_z*t140
+                t142 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t143 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t144 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t145 = Ra_xx*t142 + Ra_yx*t143 + Ra_zx*t144 + Rb_xy*t129 + Rb_yy*t130 + Rb_zy*t131
+                t146 = Ra_xy*t142 + Ra_yy*t143 + Ra_zy*t144 + Rb_xy*t133 + Rb_yy*t134 + Rb_zy*t135
+                t147 = Ra_xz*t142 + Ra_yz*t143 + Ra_zz*t144 + Rb_xy*t137 + Rb_yy*t138 + Rb_zy*t139
+                t148 = d1_x*t145 + d1_y*t146 + d1_z*t147
+                t149 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t150 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t151 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t152 = Ra_xx*t149 + Ra_yx*t150 + Ra_zx*t151 + Rb_xz*t129 + Rb_yz*t130 + Rb_zz*t131
+                t153 = Ra_xy*t149 + Ra_yy*t150 + Ra_zy*t151 + Rb_xz*t133 + Rb_yz*t134 + Rb_zz*t135
+                t154 = Ra_xz*t149 + Ra_yz*t150 + Ra_zz*t151 + Rb_xz*t137 + Rb_yz*t138 + Rb_zz*t139
+                t155 = d1_x*t152 + d1_y*t153 + d1_z*t154
+                t156 = Oma_x*d1_y - Oma_y*d1_x
+                t157 = -Oma_x*d1_z + Oma_z*d1_x
+                t158 = Oma_y*d1_z - Oma_z*d1_y
+                t159 = -Omb_y*t155 + Omb_z*t148 + t132*t158 + t136*t157 + t140*t156
+                t160 = Omb_x*t155 - Omb_z*t141 + t145*t158 + t146*t157 + t147*t156
+                t161 = -Omb_x*t148 + Omb_y*t141 + t152*t158 + t153*t157 + t154*t156
+                t162 = -d1_x*utha_y + d1_y*utha_x
+                t163 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t164 = d1_x*utha_z - d1_z*utha_x
+                t165 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t166 = -d1_y*utha_z + d1_z*utha_y
+                t167 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t168 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t169 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t170 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t171 = d1_x*t168 + d1_y*t169 + d1_z*t170
+                t172 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t173 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t174 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t175 = d1_x*t172 + d1_y*t173 + d1_z*t174
+                t176 = t162*t163 + t164*t165 + t166*t167 + t171*uthb_z - t175*uthb_y
+                t177 = d1_x*t167 + d1_y*t165 + d1_z*t163
+                t178 = t162*t170 + t164*t169 + t166*t168 + t175*uthb_x - t177*uthb_z
+                t179 = t162*t174 + t164*t173 + t166*t172 - t171*uthb_x + t177*uthb_y
+                t180 = Rd_xy*dthd_z - Rd_xz*dthd_y
+                t181 = Rd_yy*dthd_z - Rd_yz*dthd_y
+                t182 = Rd_zy*dthd_z - Rd_zz*dthd_y
+                t183 = Rc_xy*dthc_z - Rc_xz*dthc_y
+                t184 = Rc_yy*dthc_z - Rc_yz*dthc_y
+                t185 = Rc_zy*dthc_z - Rc_zz*dthc_y
+                t186 = Rc_xx*t180 + Rc_yx*t181 + Rc_zx*t182 + Rd_xx*t183 + Rd_yx*t184 + Rd_zx*t185
+                t187 = -Rc_xx*dthc_z + Rc_xz*dthc_x
+                t188 = -Rc_yx*dthc_z + Rc_yz*dthc_x
+                t189 = -Rc_zx*dthc_z + Rc_zz*dthc_x
+                t190 = Rc_xy*t180 + Rc_yy*t181 + Rc_zy*t182 + Rd_xx*t187 + Rd_yx*t188 + Rd_zx*t189
+                t191 = Rc_xx*dthc_y - Rc_xy*dthc_x
+                t192 = Rc_yx*dthc_y - Rc_yy*dthc_x
+                t193 = Rc_zx*dthc_y - Rc_zy*dthc_x
+                t194 = Rc_xz*t180 + Rc_yz*t181 + Rc_zz*t182 + Rd_xx*t191 + Rd_yx*t192 + Rd_zx*t193
+                t195 = d2_x*t186 + d2_y*t190 + d2_z*t194
+                t196 = -Rd_xx*dthd_z + Rd_xz*dthd_x
+                t197 = -Rd_yx*dthd_z + Rd_yz*dthd_x
+                t198 = -Rd_zx*dthd_z + Rd_zz*dthd_x
+                t199 = Rc_xx*t196 + Rc_yx*t197 + Rc_zx*t198 + Rd_xy*t183 + Rd_yy*t184 + Rd_zy*t185
+                t200 = Rc_xy*t196 + Rc_yy*t197 + Rc_zy*t198 + Rd_xy*t187 + Rd_yy*t188 + Rd_zy*t189
+                t201 = Rc_xz*t196 + Rc_yz*t197 + Rc_zz*t198 + Rd_xy*t191 + Rd_yy*t192 + Rd_zy*t193
+                t202 = d2_x*t199 + d2_y*t200 + d2_z*t201
+                t203 = Rd_xx*dthd_y - Rd_xy*dthd_x
+                t204 = Rd_yx*dthd_y - Rd_yy*dthd_x
+                t205 = Rd_zx*dthd_y - Rd_zy*dthd_x
+                t206 = Rc_xx*t203 + Rc_yx*t204 + Rc_zx*t205 + Rd_xz*t183 + Rd_yz*t184 + Rd_zz*t185
+                t207 = Rc_xy*t203 + Rc_yy*t204 + Rc_zy*t205 + Rd_xz*t187 + Rd_yz*t188 + Rd_zz*t189
+                t208 = Rc_xz*t203 + Rc_yz*t204 + Rc_zz*t205 + Rd_xz*t191 + Rd_yz*t192 + Rd_zz*t193
+                t209 = d2_x*t206 + d2_y*t207 + d2_z*t208
+                t210 = Omc_x*d2_y - Omc_y*d2_x
+                t211 = -Omc_x*d2_z + Omc_z*d2_x
+                t212 = Omc_y*d2_z - Omc_z*d2_y
+                t213 = -Omd_y*t209 + Omd_z*t202 + t186*t212 + t190*t211 + t194*t210
+                t214 = Omd_x*t209 - Omd_z*t195 + t199*t212 + t200*t211 + t201*t210
+                t215 = -Omd_x*t202 + Omd_y*t195 + t206*t212 + t207*t211 + t208*t210
+                t216 = -d2_x*uthc_y + d2_y*uthc_x
+                t217 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
+                t218 = d2_x*uthc_z - d2_z*uthc_x
+                t219 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
+                t220 = -d2_y*uthc_z + d2_z*uthc_y
+                t221 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
+                t222 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
+                t223 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
+                t224 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
+                t225 = d2_x*t222 + d2_y*t223 + d2_z*t224
+                t226 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
+                t227 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
+                t228 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
+                t229 = d2_x*t226 + d2_y*t227 + d2_z*t228
+                t230 = t216*t217 + t218*t219 + t220*t221 + t225*uthd_z - t229*uthd_y
+                t231 = d2_x*t221 + d2_y*t219 + d2_z*t217
+                t232 = t216*t224 + t218*t223 + t220*t222 + t229*uthd_x - t231*uthd_z
+                t233 = t216*t228 + t218*t227 + t220*t226 - t225*uthd_x + t231*uthd_y
+                dangle_1_seen_1 = t141
+                dangle_1_seen_2 = t148
+                dangle_1_seen_3 = t155
+                dangle_1_along_n = n1_x*t159 + n1_y*t160 + n1_z*t161
+                uangle_1_along_n = n1_x*t176 + n1_y*t178 + n1_z*t179
+                dangle_1_along_m = m1_x*t159 + m1_y*t160 + m1_z*t161
+                uangle_1_along_m = m1_x*t176 + m1_y*t178 + m1_z*t179
+                dangle_2_seen_1 = t195
+                dangle_2_seen_2 = t202
+                dangle_2_seen_3 = t209
+                dangle_2_along_n = n2_x*t213 + n2_y*t214 + n2_z*t215
+                uangle_2_along_n = n2_x*t230 + n2_y*t232 + n2_z*t233
+                dangle_2_along_m = m2_x*t213 + m2_y*t214 + m2_z*t215
+                uangle_2_along_m = m2_x*t230 + m2_y*t232 + m2_z*t233
+                t234 = angle_1_seen_1*m1_x + angle_1_seen_2*m1_y + angle_1_seen_3*m1_z
+                t235 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t236 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t237 = d1_y*t235 - d1_z*t236
+                t238 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t239 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t240 = d1_y*t238 - d1_z*t239
+                t241 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t242 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t243 = d1_y*t241 - d1_z*t242
+                t244 = n1_x*t237 + n1_y*t240 + n1_z*t243
+                t245 = angle_1_seen_1*n1_x + angle_1_seen_2*n1_y + angle_1_seen_3*n1_z
+                t246 = m1_x*t237 + m1_y*t240 + m1_z*t243
+                t247 = -t234*t244 + t245*t246
+                t248 = t234*t234 + t245*t245
+                t249 = side/t248
+                t250 = (c_damping*(dpush_by_angle_1_along_m*uangle_1_along_m +
                     dpush_by_angle_1_along_n*uangle_1_along_n +
                     dpush_by_angle_2_along_m*uangle_2_along_m +
                     dpush_by_angle_2_along_n*uangle_2_along_n))
-                t249 = t247*t248
-                t250 = (dangle_1_along_m*dpush_by_angle_1_along_m +
+                t251 = t249*t250
+                t252 = (dangle_1_along_m*dpush_by_angle_1_along_m +
                     dangle_1_along_n*dpush_by_angle_1_along_n +
                     dangle_1_seen_1*dpush_by_angle_1_seen_1 +
                     dangle_1_seen_2*dpush_by_angle_1_seen_2 +
@@ -682,209 +685,209 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dangle_2_seen_1*dpush_by_angle_2_seen_1 +
                     dangle_2_seen_2*dpush_by_angle_2_seen_2 +
                     dangle_2_seen_3*dpush_by_angle_2_seen_3)
-                t251 = t247*t250
-                t252 = dangle_1_seen_1*m1_x
-                t253 = dangle_1_seen_2*m1_y
-                t254 = dangle_1_seen_3*m1_z
-                t255 = dangle_1_seen_1*n1_x
-                t256 = dangle_1_seen_2*n1_y
-                t257 = dangle_1_seen_3*n1_z
-                t258 = push*side
-                t259 = ((t258*(-t232*(2*t252 + 2*t253 + 2*t254) - t243*(2*t255 + 2*t256 +
-                    2*t257)))/(t246*t246))
-                t260 = t252 + t253 + t254
-                t261 = t255 + t256 + t257
-                t262 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t263 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t264 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t265 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t266 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t267 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t268 = Ra_xz*t262 + Ra_yz*t263 + Ra_zz*t264 + Rb_xx*t265 + Rb_yx*t266 + Rb_zx*t267
-                t269 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t270 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t271 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t272 = Ra_xy*t262 + Ra_yy*t263 + Ra_zy*t264 + Rb_xx*t269 + Rb_yx*t270 + Rb_zx*t271
-                t273 = d1_y*t268 - d1_z*t272
-                t274 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t275 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t276 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t277 = Ra_xz*t274 + Ra_yz*t275 + Ra_zz*t276 + Rb_xy*t265 + Rb_yy*t266 + Rb_zy*t267
-                t278 = Ra_xy*t274 + Ra_yy*t275 + Ra_zy*t276 + Rb_xy*t269 + Rb_yy*t270 + Rb_zy*t271
-                t279 = d1_y*t277 - d1_z*t278
-                t280 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t281 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t282 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t283 = Ra_xz*t280 + Ra_yz*t281 + Ra_zz*t282 + Rb_xz*t265 + Rb_yz*t266 + Rb_zz*t267
-                t284 = Ra_xy*t280 + Ra_yy*t281 + Ra_zy*t282 + Rb_xz*t269 + Rb_yz*t270 + Rb_zz*t271
-                t285 = d1_y*t283 - d1_z*t284
-                t286 = push*t247
-                t287 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t288 = -d1_x*t233 + d1_z*t287
-                t289 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t290 = -d1_x*t236 + d1_z*t289
-                t291 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t292 = -d1_x*t239 + d1_z*t291
-                t293 = n1_x*t288 + n1_y*t290 + n1_z*t292
-                t294 = m1_x*t288 + m1_y*t290 + m1_z*t292
-                t295 = -t232*t293 + t243*t294
-                t296 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t297 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t298 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t299 = Ra_xx*t262 + Ra_yx*t263 + Ra_zx*t264 + Rb_xx*t296 + Rb_yx*t297 + Rb_zx*t298
-                t300 = -d1_x*t268 + d1_z*t299
-                t301 = Ra_xx*t274 + Ra_yx*t275 + Ra_zx*t276 + Rb_xy*t296 + Rb_yy*t297 + Rb_zy*t298
-                t302 = -d1_x*t277 + d1_z*t301
-                t303 = Ra_xx*t280 + Ra_yx*t281 + Ra_zx*t282 + Rb_xz*t296 + Rb_yz*t297 + Rb_zz*t298
-                t304 = -d1_x*t283 + d1_z*t303
-                t305 = d1_x*t234 - d1_y*t287
-                t306 = d1_x*t237 - d1_y*t289
-                t307 = d1_x*t240 - d1_y*t291
-                t308 = n1_x*t305 + n1_y*t306 + n1_z*t307
-                t309 = m1_x*t305 + m1_y*t306 + m1_z*t307
-                t310 = -t232*t308 + t243*t309
-                t311 = d1_x*t272 - d1_y*t299
-                t312 = d1_x*t278 - d1_y*t301
-                t313 = d1_x*t284 - d1_y*t303
-                t314 = -angle_1_seen_2*m1_z + angle_1_seen_3*m1_y
-                t315 = -angle_1_seen_2*n1_z + angle_1_seen_3*n1_y
-                t316 = -t232*t315 + t243*t314
-                t317 = angle_1_seen_1*m1_z - angle_1_seen_3*m1_x
-                t318 = angle_1_seen_1*n1_z - angle_1_seen_3*n1_x
-                t319 = -t232*t318 + t243*t317
-                t320 = -angle_1_seen_1*m1_y + angle_1_seen_2*m1_x
-                t321 = -angle_1_seen_1*n1_y + angle_1_seen_2*n1_x
-                t322 = -t232*t321 + t243*t320
-                t323 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
-                t324 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
-                t325 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
-                t326 = d2_y*t324 - d2_z*t325
-                t327 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
-                t328 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
-                t329 = d2_y*t327 - d2_z*t328
-                t330 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
-                t331 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
-                t332 = d2_y*t330 - d2_z*t331
-                t333 = n2_x*t326 + n2_y*t329 + n2_z*t332
-                t334 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
-                t335 = m2_x*t326 + m2_y*t329 + m2_z*t332
-                t336 = -t323*t333 + t334*t335
-                t337 = t323*t323 + t334*t334
-                t338 = ratio/t337
-                t339 = side*t338
-                t340 = t248*t339
-                t341 = t250*t339
-                t342 = dangle_2_seen_1*m2_x
-                t343 = dangle_2_seen_2*m2_y
-                t344 = dangle_2_seen_3*m2_z
-                t345 = dangle_2_seen_1*n2_x
-                t346 = dangle_2_seen_2*n2_y
-                t347 = dangle_2_seen_3*n2_z
-                t348 = ((ratio*t258*(-t323*(2*t342 + 2*t343 + 2*t344) - t334*(2*t345 + 2*t346 +
-                    2*t347)))/(t337*t337))
-                t349 = t342 + t343 + t344
-                t350 = t345 + t346 + t347
-                t351 = Rd_xy*dthd_z - Rd_xz*dthd_y
-                t352 = Rd_yy*dthd_z - Rd_yz*dthd_y
-                t353 = Rd_zy*dthd_z - Rd_zz*dthd_y
-                t354 = Rc_xx*dthc_y - Rc_xy*dthc_x
-                t355 = Rc_yx*dthc_y - Rc_yy*dthc_x
-                t356 = Rc_zx*dthc_y - Rc_zy*dthc_x
-                t357 = Rc_xz*t351 + Rc_yz*t352 + Rc_zz*t353 + Rd_xx*t354 + Rd_yx*t355 + Rd_zx*t356
-                t358 = -Rc_xx*dthc_z + Rc_xz*dthc_x
-                t359 = -Rc_yx*dthc_z + Rc_yz*dthc_x
-                t360 = -Rc_zx*dthc_z + Rc_zz*dthc_x
-                t361 = Rc_xy*t351 + Rc_yy*t352 + Rc_zy*t353 + Rd_xx*t358 + Rd_yx*t359 + Rd_zx*t360
-                t362 = d2_y*t357 - d2_z*t361
-                t363 = -Rd_xx*dthd_z + Rd_xz*dthd_x
-                t364 = -Rd_yx*dthd_z + Rd_yz*dthd_x
-                t365 = -Rd_zx*dthd_z + Rd_zz*dthd_x
-                t366 = Rc_xz*t363 + Rc_yz*t364 + Rc_zz*t365 + Rd_xy*t354 + Rd_yy*t355 + Rd_zy*t356
-                t367 = Rc_xy*t363 + Rc_yy*t364 + Rc_zy*t365 + Rd_xy*t358 + Rd_yy*t359 + Rd_zy*t360
-                t368 = d2_y*t366 - d2_z*t367
-                t369 = Rd_xx*dthd_y - Rd_xy*dthd_x
-                t370 = Rd_yx*dthd_y - Rd_yy*dthd_x
-                t371 = Rd_zx*dthd_y - Rd_zy*dthd_x
-                t372 = Rc_xz*t369 + Rc_yz*t370 + Rc_zz*t371 + Rd_xz*t354 + Rd_yz*t355 + Rd_zz*t356
-                t373 = Rc_xy*t369 + Rc_yy*t370 + Rc_zy*t371 + Rd_xz*t358 + Rd_yz*t359 + Rd_zz*t360
-                t374 = d2_y*t372 - d2_z*t373
-                t375 = t258*t338
-                t376 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
-                t377 = -d2_x*t324 + d2_z*t376
-                t378 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
-                t379 = -d2_x*t327 + d2_z*t378
-                t380 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
-                t381 = -d2_x*t330 + d2_z*t380
-                t382 = n2_x*t377 + n2_y*t379 + n2_z*t381
-                t383 = m2_x*t377 + m2_y*t379 + m2_z*t381
-                t384 = -t323*t382 + t334*t383
-                t385 = Rc_xy*dthc_z - Rc_xz*dthc_y
-                t386 = Rc_yy*dthc_z - Rc_yz*dthc_y
-                t387 = Rc_zy*dthc_z - Rc_zz*dthc_y
-                t388 = Rc_xx*t351 + Rc_yx*t352 + Rc_zx*t353 + Rd_xx*t385 + Rd_yx*t386 + Rd_zx*t387
-                t389 = -d2_x*t357 + d2_z*t388
-                t390 = Rc_xx*t363 + Rc_yx*t364 + Rc_zx*t365 + Rd_xy*t385 + Rd_yy*t386 + Rd_zy*t387
-                t391 = -d2_x*t366 + d2_z*t390
-                t392 = Rc_xx*t369 + Rc_yx*t370 + Rc_zx*t371 + Rd_xz*t385 + Rd_yz*t386 + Rd_zz*t387
-                t393 = -d2_x*t372 + d2_z*t392
-                t394 = d2_x*t325 - d2_y*t376
-                t395 = d2_x*t328 - d2_y*t378
-                t396 = d2_x*t331 - d2_y*t380
-                t397 = n2_x*t394 + n2_y*t395 + n2_z*t396
-                t398 = m2_x*t394 + m2_y*t395 + m2_z*t396
-                t399 = -t323*t397 + t334*t398
-                t400 = d2_x*t361 - d2_y*t388
-                t401 = d2_x*t367 - d2_y*t390
-                t402 = d2_x*t373 - d2_y*t392
-                t403 = -angle_2_seen_2*m2_z + angle_2_seen_3*m2_y
-                t404 = -angle_2_seen_2*n2_z + angle_2_seen_3*n2_y
-                t405 = -t323*t404 + t334*t403
-                t406 = angle_2_seen_1*m2_z - angle_2_seen_3*m2_x
-                t407 = angle_2_seen_1*n2_z - angle_2_seen_3*n2_x
-                t408 = -t323*t407 + t334*t406
-                t409 = -angle_2_seen_1*m2_y + angle_2_seen_2*m2_x
-                t410 = -angle_2_seen_1*n2_y + angle_2_seen_2*n2_x
-                t411 = -t323*t410 + t334*t409
-                J[column] = (c_stiffness*(t245*t251 + t245*t259 + t286*(-t232*(n1_x*t273 +
-                    n1_y*t279 + n1_z*t285) - t242*t260 + t243*(m1_x*t273 + m1_y*t279 + m1_z*t285)
-                    + t244*t261)) + t245*t249)
-                J[12 + column] = (c_stiffness*(t251*t295 + t259*t295 + t286*(-t232*(n1_x*t300 +
-                    n1_y*t302 + n1_z*t304) + t243*(m1_x*t300 + m1_y*t302 + m1_z*t304) - t260*t293
-                    + t261*t294)) + t249*t295)
-                J[24 + column] = (c_stiffness*(t251*t310 + t259*t310 + t286*(-t232*(n1_x*t311 +
-                    n1_y*t312 + n1_z*t313) + t243*(m1_x*t311 + m1_y*t312 + m1_z*t313) - t260*t308
-                    + t261*t309)) + t249*t310)
-                J[36 + column] = (c_stiffness*(t251*t316 + t259*t316 +
-                    t286*(-t232*(-dangle_1_seen_2*n1_z + dangle_1_seen_3*n1_y) +
-                    t243*(-dangle_1_seen_2*m1_z + dangle_1_seen_3*m1_y) - t260*t315 + t261*t314))
-                    + t249*t316)
-                J[48 + column] = (c_stiffness*(t251*t319 + t259*t319 +
-                    t286*(-t232*(dangle_1_seen_1*n1_z - dangle_1_seen_3*n1_x) +
-                    t243*(dangle_1_seen_1*m1_z - dangle_1_seen_3*m1_x) - t260*t318 + t261*t317)) +
-                    t249*t319)
-                J[60 + column] = (c_stiffness*(t251*t322 + t259*t322 +
-                    t286*(-t232*(-dangle_1_seen_1*n1_y + dangle_1_seen_2*n1_x) +
-                    t243*(-dangle_1_seen_1*m1_y + dangle_1_seen_2*m1_x) - t260*t321 + t261*t320))
-                    + t249*t322)
-                J[72 + column] = (c_stiffness*(-t336*t341 - t336*t348 - t375*(-t323*(n2_x*t362 +
-                    n2_y*t368 + n2_z*t374) - t333*t349 + t334*(m2_x*t362 + m2_y*t368 + m2_z*t374)
-                    + t335*t350)) - t336*t340)
-                J[84 + column] = (c_stiffness*(-t341*t384 - t348*t384 - t375*(-t323*(n2_x*t389 +
-                    n2_y*t391 + n2_z*t393) + t334*(m2_x*t389 + m2_y*t391 + m2_z*t393) - t349*t382
-                    + t350*t383)) - t340*t384)
-                J[96 + column] = (c_stiffness*(-t341*t399 - t348*t399 - t375*(-t323*(n2_x*t400 +
-                    n2_y*t401 + n2_z*t402) + t334*(m2_x*t400 + m2_y*t401 + m2_z*t402) - t349*t397
-                    + t350*t398)) - t340*t399)
-                J[108 + column] = (c_stiffness*(-t341*t405 - t348*t405 -
-                    t375*(-t323*(-dangle_2_seen_2*n2_z + dangle_2_seen_3*n2_y) +
-                    t334*(-dangle_2_seen_2*m2_z + dangle_2_seen_3*m2_y) - t349*t404 + t350*t403))
-                    - t340*t405)
-                J[120 + column] = (c_stiffness*(-t341*t408 - t348*t408 -
-                    t375*(-t323*(dangle_2_seen_1*n2_z - dangle_2_seen_3*n2_x) +
-                    t334*(dangle_2_seen_1*m2_z - dangle_2_seen_3*m2_x) - t349*t407 + t350*t406)) -
-                    t340*t408)
-                J[132 + column] = (c_stiffness*(-t341*t411 - t348*t411 -
-                    t375*(-t323*(-dangle_2_seen_1*n2_y + dangle_2_seen_2*n2_x) +
-                    t334*(-dangle_2_seen_1*m2_y + dangle_2_seen_2*m2_x) - t349*t410 + t350*t409))
-                    - t340*t411)
+                t253 = t249*t252
+                t254 = dangle_1_seen_1*m1_x
+                t255 = dangle_1_seen_2*m1_y
+                t256 = dangle_1_seen_3*m1_z
+                t257 = dangle_1_seen_1*n1_x
+                t258 = dangle_1_seen_2*n1_y
+                t259 = dangle_1_seen_3*n1_z
+                t260 = push*side
+                t261 = ((t260*(-t234*(2*t254 + 2*t255 + 2*t256) - t245*(2*t257 + 2*t258 +
+                    2*t259)))/(t248*t248))
+                t262 = t254 + t255 + t256
+                t263 = t257 + t258 + t259
+                t264 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t265 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t266 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t267 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t268 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t269 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t270 = Ra_xz*t264 + Ra_yz*t265 + Ra_zz*t266 + Rb_xx*t267 + Rb_yx*t268 + Rb_zx*t269
+                t271 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t272 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t273 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t274 = Ra_xy*t264 + Ra_yy*t265 + Ra_zy*t266 + Rb_xx*t271 + Rb_yx*t272 + Rb_zx*t273
+                t275 = d1_y*t270 - d1_z*t274
+                t276 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t277 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t278 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t279 = Ra_xz*t276 + Ra_yz*t277 + Ra_zz*t278 + Rb_xy*t267 + Rb_yy*t268 + Rb_zy*t269
+                t280 = Ra_xy*t276 + Ra_yy*t277 + Ra_zy*t278 + Rb_xy*t271 + Rb_yy*t272 + Rb_zy*t273
+                t281 = d1_y*t279 - d1_z*t280
+                t282 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t283 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t284 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t285 = Ra_xz*t282 + Ra_yz*t283 + Ra_zz*t284 + Rb_xz*t267 + Rb_yz*t268 + Rb_zz*t269
+                t286 = Ra_xy*t282 + Ra_yy*t283 + Ra_zy*t284 + Rb_xz*t271 + Rb_yz*t272 + Rb_zz*t273
+                t287 = d1_y*t285 - d1_z*t286
+                t288 = push*t249
+                t289 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t290 = -d1_x*t235 + d1_z*t289
+                t291 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t292 = -d1_x*t238 + d1_z*t291
+                t293 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t294 = -d1_x*t241 + d1_z*t293
+                t295 = n1_x*t290 + n1_y*t292 + n1_z*t294
+                t296 = m1_x*t290 + m1_y*t292 + m1_z*t294
+                t297 = -t234*t295 + t245*t296
+                t298 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t299 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t300 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t301 = Ra_xx*t264 + Ra_yx*t265 + Ra_zx*t266 + Rb_xx*t298 + Rb_yx*t299 + Rb_zx*t300
+                t302 = -d1_x*t270 + d1_z*t301
+                t303 = Ra_xx*t276 + Ra_yx*t277 + Ra_zx*t278 + Rb_xy*t298 + Rb_yy*t299 + Rb_zy*t300
+                t304 = -d1_x*t279 + d1_z*t303
+                t305 = Ra_xx*t282 + Ra_yx*t283 + Ra_zx*t284 + Rb_xz*t298 + Rb_yz*t299 + Rb_zz*t300
+                t306 = -d1_x*t285 + d1_z*t305
+                t307 = d1_x*t236 - d1_y*t289
+                t308 = d1_x*t239 - d1_y*t291
+                t309 = d1_x*t242 - d1_y*t293
+                t310 = n1_x*t307 + n1_y*t308 + n1_z*t309
+                t311 = m1_x*t307 + m1_y*t308 + m1_z*t309
+                t312 = -t234*t310 + t245*t311
+                t313 = d1_x*t274 - d1_y*t301
+                t314 = d1_x*t280 - d1_y*t303
+                t315 = d1_x*t286 - d1_y*t305
+                t316 = -angle_1_seen_2*m1_z + angle_1_seen_3*m1_y
+                t317 = -angle_1_seen_2*n1_z + angle_1_seen_3*n1_y
+                t318 = -t234*t317 + t245*t316
+                t319 = angle_1_seen_1*m1_z - angle_1_seen_3*m1_x
+                t320 = angle_1_seen_1*n1_z - angle_1_seen_3*n1_x
+                t321 = -t234*t320 + t245*t319
+                t322 = -angle_1_seen_1*m1_y + angle_1_seen_2*m1_x
+                t323 = -angle_1_seen_1*n1_y + angle_1_seen_2*n1_x
+                t324 = -t234*t323 + t245*t322
+                t325 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
+                t326 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
+                t327 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
+                t328 = d2_y*t326 - d2_z*t327
+                t329 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
+                t330 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
+                t331 = d2_y*t329 - d2_z*t330
+                t332 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
+                t333 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
+                t334 = d2_y*t332 - d2_z*t333
+                t335 = n2_x*t328 + n2_y*t331 + n2_z*t334
+                t336 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
+                t337 = m2_x*t328 + m2_y*t331 + m2_z*t334
+                t338 = -t325*t335 + t336*t337
+                t339 = t325*t325 + t336*t336
+                t340 = ratio/t339
+                t341 = side*t340
+                t342 = t250*t341
+                t343 = t252*t341
+                t344 = dangle_2_seen_1*m2_x
+                t345 = dangle_2_seen_2*m2_y
+                t346 = dangle_2_seen_3*m2_z
+                t347 = dangle_2_seen_1*n2_x
+                t348 = dangle_2_seen_2*n2_y
+                t349 = dangle_2_seen_3*n2_z
+                t350 = ((ratio*t260*(-t325*(2*t344 + 2*t345 + 2*t346) - t336*(2*t347 + 2*t348 +
+                    2*t349)))/(t339*t339))
+                t351 = t344 + t345 + t346
+                t352 = t347 + t348 + t349
+                t353 = Rd_xy*dthd_z - Rd_xz*dthd_y
+                t354 = Rd_yy*dthd_z - Rd_yz*dthd_y
+                t355 = Rd_zy*dthd_z - Rd_zz*dthd_y
+                t356 = Rc_xx*dthc_y - Rc_xy*dthc_x
+                t357 = Rc_yx*dthc_y - Rc_yy*dthc_x
+                t358 = Rc_zx*dthc_y - Rc_zy*dthc_x
+                t359 = Rc_xz*t353 + Rc_yz*t354 + Rc_zz*t355 + Rd_xx*t356 + Rd_yx*t357 + Rd_zx*t358
+                t360 = -Rc_xx*dthc_z + Rc_xz*dthc_x
+                t361 = -Rc_yx*dthc_z + Rc_yz*dthc_x
+                t362 = -Rc_zx*dthc_z + Rc_zz*dthc_x
+                t363 = Rc_xy*t353 + Rc_yy*t354 + Rc_zy*t355 + Rd_xx*t360 + Rd_yx*t361 + Rd_zx*t362
+                t364 = d2_y*t359 - d2_z*t363
+                t365 = -Rd_xx*dthd_z + Rd_xz*dthd_x
+                t366 = -Rd_yx*dthd_z + Rd_yz*dthd_x
+                t367 = -Rd_zx*dthd_z + Rd_zz*dthd_x
+                t368 = Rc_xz*t365 + Rc_yz*t366 + Rc_zz*t367 + Rd_xy*t356 + Rd_yy*t357 + Rd_zy*t358
+                t369 = Rc_xy*t365 + Rc_yy*t366 + Rc_zy*t367 + Rd_xy*t360 + Rd_yy*t361 + Rd_zy*t362
+                t370 = d2_y*t368 - d2_z*t369
+                t371 = Rd_xx*dthd_y - Rd_xy*dthd_x
+                t372 = Rd_yx*dthd_y - Rd_yy*dthd_x
+                t373 = Rd_zx*dthd_y - Rd_zy*dthd_x
+                t374 = Rc_xz*t371 + Rc_yz*t372 + Rc_zz*t373 + Rd_xz*t356 + Rd_yz*t357 + Rd_zz*t358
+                t375 = Rc_xy*t371 + Rc_yy*t372 + Rc_zy*t373 + Rd_xz*t360 + Rd_yz*t361 + Rd_zz*t362
+                t376 = d2_y*t374 - d2_z*t375
+                t377 = t260*t340
+                t378 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
+                t379 = -d2_x*t326 + d2_z*t378
+                t380 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
+                t381 = -d2_x*t329 + d2_z*t380
+                t382 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
+                t383 = -d2_x*t332 + d2_z*t382
+                t384 = n2_x*t379 + n2_y*t381 + n2_z*t383
+                t385 = m2_x*t379 + m2_y*t381 + m2_z*t383
+                t386 = -t325*t384 + t336*t385
+                t387 = Rc_xy*dthc_z - Rc_xz*dthc_y
+                t388 = Rc_yy*dthc_z - Rc_yz*dthc_y
+                t389 = Rc_zy*dthc_z - Rc_zz*dthc_y
+                t390 = Rc_xx*t353 + Rc_yx*t354 + Rc_zx*t355 + Rd_xx*t387 + Rd_yx*t388 + Rd_zx*t389
+                t391 = -d2_x*t359 + d2_z*t390
+                t392 = Rc_xx*t365 + Rc_yx*t366 + Rc_zx*t367 + Rd_xy*t387 + Rd_yy*t388 + Rd_zy*t389
+                t393 = -d2_x*t368 + d2_z*t392
+                t394 = Rc_xx*t371 + Rc_yx*t372 + Rc_zx*t373 + Rd_xz*t387 + Rd_yz*t388 + Rd_zz*t389
+                t395 = -d2_x*t374 + d2_z*t394
+                t396 = d2_x*t327 - d2_y*t378
+                t397 = d2_x*t330 - d2_y*t380
+                t398 = d2_x*t333 - d2_y*t382
+                t399 = n2_x*t396 + n2_y*t397 + n2_z*t398
+                t400 = m2_x*t396 + m2_y*t397 + m2_z*t398
+                t401 = -t325*t399 + t336*t400
+                t402 = d2_x*t363 - d2_y*t390
+                t403 = d2_x*t369 - d2_y*t392
+                t404 = d2_x*t375 - d2_y*t394
+                t405 = -angle_2_seen_2*m2_z + angle_2_seen_3*m2_y
+                t406 = -angle_2_seen_2*n2_z + angle_2_seen_3*n2_y
+                t407 = -t325*t406 + t336*t405
+                t408 = angle_2_seen_1*m2_z - angle_2_seen_3*m2_x
+                t409 = angle_2_seen_1*n2_z - angle_2_seen_3*n2_x
+                t410 = -t325*t409 + t336*t408
+                t411 = -angle_2_seen_1*m2_y + angle_2_seen_2*m2_x
+                t412 = -angle_2_seen_1*n2_y + angle_2_seen_2*n2_x
+                t413 = -t325*t412 + t336*t411
+                J[column] = (c_stiffness*(t247*t253 + t247*t261 + t288*(-t234*(n1_x*t275 +
+                    n1_y*t281 + n1_z*t287) - t244*t262 + t245*(m1_x*t275 + m1_y*t281 + m1_z*t287)
+                    + t246*t263)) + t247*t251)
+                J[12 + column] = (c_stiffness*(t253*t297 + t261*t297 + t288*(-t234*(n1_x*t302 +
+                    n1_y*t304 + n1_z*t306) + t245*(m1_x*t302 + m1_y*t304 + m1_z*t306) - t262*t295
+                    + t263*t296)) + t251*t297)
+                J[24 + column] = (c_stiffness*(t253*t312 + t261*t312 + t288*(-t234*(n1_x*t313 +
+                    n1_y*t314 + n1_z*t315) + t245*(m1_x*t313 + m1_y*t314 + m1_z*t315) - t262*t310
+                    + t263*t311)) + t251*t312)
+                J[36 + column] = (c_stiffness*(t253*t318 + t261*t318 +
+                    t288*(-t234*(-dangle_1_seen_2*n1_z + dangle_1_seen_3*n1_y) +
+                    t245*(-dangle_1_seen_2*m1_z + dangle_1_seen_3*m1_y) - t262*t317 + t263*t316))
+                    + t251*t318)
+                J[48 + column] = (c_stiffness*(t253*t321 + t261*t321 +
+                    t288*(-t234*(dangle_1_seen_1*n1_z - dangle_1_seen_3*n1_x) +
+                    t245*(dangle_1_seen_1*m1_z - dangle_1_seen_3*m1_x) - t262*t320 + t263*t319)) +
+                    t251*t321)
+                J[60 + column] = (c_stiffness*(t253*t324 + t261*t324 +
+                    t288*(-t234*(-dangle_1_seen_1*n1_y + dangle_1_seen_2*n1_x) +
+                    t245*(-dangle_1_seen_1*m1_y + dangle_1_seen_2*m1_x) - t262*t323 + t263*t322))
+                    + t251*t324)
+                J[72 + column] = (c_stiffness*(-t338*t343 - t338*t350 - t377*(-t325*(n2_x*t364 +
+                    n2_y*t370 + n2_z*t376) - t335*t351 + t336*(m2_x*t364 + m2_y*t370 + m2_z*t376)
+                    + t337*t352)) - t338*t342)
+                J[84 + column] = (c_stiffness*(-t343*t386 - t350*t386 - t377*(-t325*(n2_x*t391 +
+                    n2_y*t393 + n2_z*t395) + t336*(m2_x*t391 + m2_y*t393 + m2_z*t395) - t351*t384
+                    + t352*t385)) - t342*t386)
+                J[96 + column] = (c_stiffness*(-t343*t401 - t350*t401 - t377*(-t325*(n2_x*t402 +
+                    n2_y*t403 + n2_z*t404) + t336*(m2_x*t402 + m2_y*t403 + m2_z*t404) - t351*t399
+                    + t352*t400)) - t342*t401)
+                J[108 + column] = (c_stiffness*(-t343*t407 - t350*t407 -
+                    t377*(-t325*(-dangle_2_seen_2*n2_z + dangle_2_seen_3*n2_y) +
+                    t336*(-dangle_2_seen_2*m2_z + dangle_2_seen_3*m2_y) - t351*t406 + t352*t405))
+                    - t342*t407)
+                J[120 + column] = (c_stiffness*(-t343*t410 - t350*t410 -
+                    t377*(-t325*(dangle_2_seen_1*n2_z - dangle_2_seen_3*n2_x) +
+                    t336*(dangle_2_seen_1*m2_z - dangle_2_seen_3*m2_x) - t351*t409 + t352*t408)) -
+                    t342*t410)
+                J[132 + column] = (c_stiffness*(-t343*t413 - t350*t413 -
+                    t377*(-t325*(-dangle_2_seen_1*n2_y + dangle_2_seen_2*n2_x) +
+                    t336*(-dangle_2_seen_1*m2_y + dangle_2_seen_2*m2_x) - t351*t412 + t352*t411))
+                    - t342*t413)
     return OK

@@ -105,7 +105,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         g[2] = t6*t9
         g[3] = t8*t9
         frames[index[first + AT_FRAME]] = way
-        frames[index[first + AT_FRAME] + 1] = speed_beyond
+        frames[index[first + AT_FRAME] + 1] = way_rate
         frames[index[first + AT_FRAME] + 2] = ((t13 if -slow + t13 > 0.0 else 0.0) if touches -
             0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 3] = beyond

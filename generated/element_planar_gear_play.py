@@ -102,7 +102,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         g[3] = t3
         frames[index[first + AT_FRAME]] = angle_1
         frames[index[first + AT_FRAME] + 1] = angle_2
-        frames[index[first + AT_FRAME] + 2] = speed_beyond
+        frames[index[first + AT_FRAME] + 2] = angle_1_rate - angle_2_rate*ratio
         frames[index[first + AT_FRAME] + 3] = ((t7 if -slow + t7 > 0.0 else 0.0) if touches - 0.5
             > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 4] = beyond

@@ -119,7 +119,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         g[3] = t11*t12
         g[4] = t11*(t10*(-xa_y + xb_y) + t13*(-xa_x + xb_x))
         frames[index[first + AT_FRAME]] = way
-        frames[index[first + AT_FRAME] + 1] = speed_beyond
+        frames[index[first + AT_FRAME] + 1] = way_rate
         frames[index[first + AT_FRAME] + 2] = ((t17 if -slow + t17 > 0.0 else 0.0) if touches -
             0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 3] = beyond

@@ -90,7 +90,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         g[0] = t2
         g[1] = -t2
         frames[index[first + AT_FRAME]] = angle
-        frames[index[first + AT_FRAME] + 1] = speed_beyond
+        frames[index[first + AT_FRAME] + 1] = angle_rate
         frames[index[first + AT_FRAME] + 2] = ((t6 if -slow + t6 > 0.0 else 0.0) if touches - 0.5
             > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 3] = beyond

@@ -142,7 +142,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         g[8] = (t9*(t12*(-Ra_xx*e_y + Ra_xy*e_x) + t13*(-Ra_yx*e_y + Ra_yy*e_x) + t14*(-Ra_zx*e_y
             + Ra_zy*e_x)))
         frames[index[first + AT_FRAME]] = way
-        frames[index[first + AT_FRAME] + 1] = speed_beyond
+        frames[index[first + AT_FRAME] + 1] = way_rate
         frames[index[first + AT_FRAME] + 2] = ((t18 if -slow + t18 > 0.0 else 0.0) if touches -
             0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 3] = beyond

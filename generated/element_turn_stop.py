@@ -154,35 +154,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t31 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
         t32 = d_y*t30 - d_z*t31
         t33 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-        t34 = push*side/(t23*t23 + t33*t33)
-        t35 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-        t36 = -d_x*t24 + d_z*t35
-        t37 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-        t38 = -d_x*t27 + d_z*t37
-        t39 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-        t40 = -d_x*t30 + d_z*t39
-        t41 = d_x*t25 - d_y*t35
-        t42 = d_x*t28 - d_y*t37
-        t43 = d_x*t31 - d_y*t39
-        t44 = atan2(t23, t33)
-        t45 = kept_rate if kept_rate > 0.0 else -kept_rate
-        t46 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
-        t47 = t46 if -t45 + t46 > 0.0 else t45
-        t48 = t47 if -kept_impact + t47 > 0.0 else kept_impact
-        g[0] = t34*(-t23*(n_x*t26 + n_y*t29 + n_z*t32) + t33*(m_x*t26 + m_y*t29 + m_z*t32))
-        g[1] = t34*(-t23*(n_x*t36 + n_y*t38 + n_z*t40) + t33*(m_x*t36 + m_y*t38 + m_z*t40))
-        g[2] = t34*(-t23*(n_x*t41 + n_y*t42 + n_z*t43) + t33*(m_x*t41 + m_y*t42 + m_z*t43))
-        g[3] = (t34*(-t23*(-angle_seen_2*n_z + angle_seen_3*n_y) + t33*(-angle_seen_2*m_z +
+        t34 = 1/(t23*t23 + t33*t33)
+        t35 = push*side*t34
+        t36 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+        t37 = -d_x*t24 + d_z*t36
+        t38 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+        t39 = -d_x*t27 + d_z*t38
+        t40 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+        t41 = -d_x*t30 + d_z*t40
+        t42 = d_x*t25 - d_y*t36
+        t43 = d_x*t28 - d_y*t38
+        t44 = d_x*t31 - d_y*t40
+        t45 = atan2(t23, t33)
+        t46 = kept_rate if kept_rate > 0.0 else -kept_rate
+        t47 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
+        t48 = t47 if -t46 + t47 > 0.0 else t46
+        t49 = t48 if -kept_impact + t48 > 0.0 else kept_impact
+        g[0] = t35*(-t23*(n_x*t26 + n_y*t29 + n_z*t32) + t33*(m_x*t26 + m_y*t29 + m_z*t32))
+        g[1] = t35*(-t23*(n_x*t37 + n_y*t39 + n_z*t41) + t33*(m_x*t37 + m_y*t39 + m_z*t41))
+        g[2] = t35*(-t23*(n_x*t42 + n_y*t43 + n_z*t44) + t33*(m_x*t42 + m_y*t43 + m_z*t44))
+        g[3] = (t35*(-t23*(-angle_seen_2*n_z + angle_seen_3*n_y) + t33*(-angle_seen_2*m_z +
             angle_seen_3*m_y)))
-        g[4] = (t34*(-t23*(angle_seen_1*n_z - angle_seen_3*n_x) + t33*(angle_seen_1*m_z -
+        g[4] = (t35*(-t23*(angle_seen_1*n_z - angle_seen_3*n_x) + t33*(angle_seen_1*m_z -
             angle_seen_3*m_x)))
-        g[5] = (t34*(-t23*(-angle_seen_1*n_y + angle_seen_2*n_x) + t33*(-angle_seen_1*m_y +
+        g[5] = (t35*(-t23*(-angle_seen_1*n_y + angle_seen_2*n_x) + t33*(-angle_seen_1*m_y +
             angle_seen_2*m_x)))
-        frames[index[first + AT_FRAME]] = (t44 +
-            6.283185307179586*floor(0.15915494309189535*kept_angle - 0.15915494309189535*t44 +
+        frames[index[first + AT_FRAME]] = (t45 +
+            6.283185307179586*floor(0.15915494309189535*kept_angle - 0.15915494309189535*t45 +
             0.5))
-        frames[index[first + AT_FRAME] + 1] = speed_beyond
-        frames[index[first + AT_FRAME] + 2] = ((t48 if -slow + t48 > 0.0 else 0.0) if touches -
+        frames[index[first + AT_FRAME] + 1] = t34*(angle_along_m*t33 - angle_along_n*t23)
+        frames[index[first + AT_FRAME] + 2] = ((t49 if -slow + t49 > 0.0 else 0.0) if touches -
             0.5 > 0.0 else 0.0)
         frames[index[first + AT_FRAME] + 3] = beyond
         frames[index[first + AT_FRAME] + 4] = push
@@ -247,53 +248,53 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             du = at(work, WIDTH)
-            t49 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-            t50 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-            t51 = 1/(t49*t49 + t50*t50)
-            t52 = t50*t51
-            t53 = -t49*t51
-            dvalue_by_angle_seen_1 = m_x*t52 + n_x*t53
-            dvalue_by_angle_seen_2 = m_y*t52 + n_y*t53
-            dvalue_by_angle_seen_3 = m_z*t52 + n_z*t53
-            t54 = 1 if -lower - upper + 2*value > 0.0 else -1
-            dbeyond_by_angle_seen_1 = dvalue_by_angle_seen_1*t54
-            dbeyond_by_angle_seen_2 = dvalue_by_angle_seen_2*t54
-            dbeyond_by_angle_seen_3 = dvalue_by_angle_seen_3*t54
-            t55 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-            t56 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-            t57 = t55*t55 + t56*t56
-            t58 = side/t57
-            t59 = 2*t55
+            t50 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+            t51 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+            t52 = 1/(t50*t50 + t51*t51)
+            t53 = t51*t52
+            t54 = -t50*t52
+            dvalue_by_angle_seen_1 = m_x*t53 + n_x*t54
+            dvalue_by_angle_seen_2 = m_y*t53 + n_y*t54
+            dvalue_by_angle_seen_3 = m_z*t53 + n_z*t54
+            t55 = 1 if -lower - upper + 2*value > 0.0 else -1
+            dbeyond_by_angle_seen_1 = dvalue_by_angle_seen_1*t55
+            dbeyond_by_angle_seen_2 = dvalue_by_angle_seen_2*t55
+            dbeyond_by_angle_seen_3 = dvalue_by_angle_seen_3*t55
+            t56 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+            t57 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+            t58 = t56*t56 + t57*t57
+            t59 = side/t58
             t60 = 2*t56
-            t61 = (side*(angle_along_m*t56 - angle_along_n*t55))/(t57*t57)
-            dspeed_beyond_by_angle_seen_1 = (t58*(angle_along_m*n_x - angle_along_n*m_x) +
-                t61*(-m_x*t59 - n_x*t60))
-            dspeed_beyond_by_angle_seen_2 = (t58*(angle_along_m*n_y - angle_along_n*m_y) +
-                t61*(-m_y*t59 - n_y*t60))
-            dspeed_beyond_by_angle_seen_3 = (t58*(angle_along_m*n_z - angle_along_n*m_z) +
-                t61*(-m_z*t59 - n_z*t60))
-            dspeed_beyond_by_angle_along_n = -t55*t58
-            dspeed_beyond_by_angle_along_m = t56*t58
-            t62 = 1 if beyond > 0.0 else 0
-            ddepth_by_angle_seen_1 = dbeyond_by_angle_seen_1*t62
-            ddepth_by_angle_seen_2 = dbeyond_by_angle_seen_2*t62
-            ddepth_by_angle_seen_3 = dbeyond_by_angle_seen_3*t62
-            t63 = depth**exponent*exponent*stiffness/depth
-            delastic_by_angle_seen_1 = ddepth_by_angle_seen_1*t63
-            delastic_by_angle_seen_2 = ddepth_by_angle_seen_2*t63
-            delastic_by_angle_seen_3 = ddepth_by_angle_seen_3*t63
+            t61 = 2*t57
+            t62 = (side*(angle_along_m*t57 - angle_along_n*t56))/(t58*t58)
+            dspeed_beyond_by_angle_seen_1 = (t59*(angle_along_m*n_x - angle_along_n*m_x) +
+                t62*(-m_x*t60 - n_x*t61))
+            dspeed_beyond_by_angle_seen_2 = (t59*(angle_along_m*n_y - angle_along_n*m_y) +
+                t62*(-m_y*t60 - n_y*t61))
+            dspeed_beyond_by_angle_seen_3 = (t59*(angle_along_m*n_z - angle_along_n*m_z) +
+                t62*(-m_z*t60 - n_z*t61))
+            dspeed_beyond_by_angle_along_n = -t56*t59
+            dspeed_beyond_by_angle_along_m = t57*t59
+            t63 = 1 if beyond > 0.0 else 0
+            ddepth_by_angle_seen_1 = dbeyond_by_angle_seen_1*t63
+            ddepth_by_angle_seen_2 = dbeyond_by_angle_seen_2*t63
+            ddepth_by_angle_seen_3 = dbeyond_by_angle_seen_3*t63
+            t64 = depth**exponent*exponent*stiffness/depth
+            delastic_by_angle_seen_1 = ddepth_by_angle_seen_1*t64
+            delastic_by_angle_seen_2 = ddepth_by_angle_seen_2*t64
+            delastic_by_angle_seen_3 = ddepth_by_angle_seen_3*t64
             dfactor_by_angle_seen_1 = damping*dspeed_beyond_by_angle_seen_1
             dfactor_by_angle_seen_2 = damping*dspeed_beyond_by_angle_seen_2
             dfactor_by_angle_seen_3 = damping*dspeed_beyond_by_angle_seen_3
             dfactor_by_angle_along_n = damping*dspeed_beyond_by_angle_along_n
             dfactor_by_angle_along_m = damping*dspeed_beyond_by_angle_along_m
-            t64 = factor if factor > 0.0 else 0
-            t65 = elastic if factor > 0.0 else 0
-            dpush_by_angle_seen_1 = delastic_by_angle_seen_1*t64 + dfactor_by_angle_seen_1*t65
-            dpush_by_angle_seen_2 = delastic_by_angle_seen_2*t64 + dfactor_by_angle_seen_2*t65
-            dpush_by_angle_seen_3 = delastic_by_angle_seen_3*t64 + dfactor_by_angle_seen_3*t65
-            dpush_by_angle_along_n = dfactor_by_angle_along_n*t65
-            dpush_by_angle_along_m = dfactor_by_angle_along_m*t65
+            t65 = factor if factor > 0.0 else 0
+            t66 = elastic if factor > 0.0 else 0
+            dpush_by_angle_seen_1 = delastic_by_angle_seen_1*t65 + dfactor_by_angle_seen_1*t66
+            dpush_by_angle_seen_2 = delastic_by_angle_seen_2*t65 + dfactor_by_angle_seen_2*t66
+            dpush_by_angle_seen_3 = delastic_by_angle_seen_3*t65 + dfactor_by_angle_seen_3*t66
+            dpush_by_angle_along_n = dfactor_by_angle_along_n*t66
+            dpush_by_angle_along_m = dfactor_by_angle_along_m*t66
             for column in range(6):
                 for i in range(6):
                     dq[i] = 0.0
@@ -314,177 +315,177 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = du[3]
                 uthb_y = du[4]
                 uthb_z = du[5]
-                t66 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t67 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t68 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t69 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t70 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t71 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t72 = Ra_xx*t66 + Ra_yx*t67 + Ra_zx*t68 + Rb_xx*t69 + Rb_yx*t70 + Rb_zx*t71
-                t73 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t74 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t75 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t76 = Ra_xy*t66 + Ra_yy*t67 + Ra_zy*t68 + Rb_xx*t73 + Rb_yx*t74 + Rb_zx*t75
-                t77 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t78 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t79 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t80 = Ra_xz*t66 + Ra_yz*t67 + Ra_zz*t68 + Rb_xx*t77 + Rb_yx*t78 + Rb_zx*t79
-                t81 = d_x*t72 + d_y*t76 + d_z*t80
-                t82 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t83 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t84 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t85 = Ra_xx*t82 + Ra_yx*t83 + Ra_zx*t84 + Rb_xy*t69 + Rb_yy*t70 + Rb_zy*t71
-                t86 = Ra_xy*t82 + Ra_yy*t83 + Ra_zy*t84 + Rb_xy*t73 + Rb_yy*t74 + Rb_zy*t75
-                t87 = Ra_xz*t82 + Ra_yz*t83 + Ra_zz*t84 + Rb_xy*t77 + Rb_yy*t78 + Rb_zy*t79
-                t88 = d_x*t85 + d_y*t86 + d_z*t87
-                t89 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t90 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t91 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t92 = Ra_xx*t89 + Ra_yx*t90 + Ra_zx*t91 + Rb_xz*t69 + Rb_yz*t70 + Rb_zz*t71
-                t93 = Ra_xy*t89 + Ra_yy*t90 + Ra_zy*t91 + Rb_xz*t73 + Rb_yz*t74 + Rb_zz*t75
-                t94 = Ra_xz*t89 + Ra_yz*t90 + Ra_zz*t91 + Rb_xz*t77 + Rb_yz*t78 + Rb_zz*t79
-                t95 = d_x*t92 + d_y*t93 + d_z*t94
-                t96 = Oma_x*d_y - Oma_y*d_x
-                t97 = -Oma_x*d_z + Oma_z*d_x
-                t98 = Oma_y*d_z - Oma_z*d_y
-                t99 = -Omb_y*t95 + Omb_z*t88 + t72*t98 + t76*t97 + t80*t96
-                t100 = Omb_x*t95 - Omb_z*t81 + t85*t98 + t86*t97 + t87*t96
-                t101 = -Omb_x*t88 + Omb_y*t81 + t92*t98 + t93*t97 + t94*t96
-                t102 = -d_x*utha_y + d_y*utha_x
-                t103 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t104 = d_x*utha_z - d_z*utha_x
-                t105 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t106 = -d_y*utha_z + d_z*utha_y
-                t107 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t108 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t109 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t110 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t111 = d_x*t108 + d_y*t109 + d_z*t110
-                t112 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t113 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t114 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t115 = d_x*t112 + d_y*t113 + d_z*t114
-                t116 = t102*t103 + t104*t105 + t106*t107 + t111*uthb_z - t115*uthb_y
-                t117 = d_x*t107 + d_y*t105 + d_z*t103
-                t118 = t102*t110 + t104*t109 + t106*t108 + t115*uthb_x - t117*uthb_z
-                t119 = t102*t114 + t104*t113 + t106*t112 - t111*uthb_x + t117*uthb_y
-                dangle_seen_1 = t81
-                dangle_seen_2 = t88
-                dangle_seen_3 = t95
-                dangle_along_n = n_x*t99 + n_y*t100 + n_z*t101
-                uangle_along_n = n_x*t116 + n_y*t118 + n_z*t119
-                dangle_along_m = m_x*t99 + m_y*t100 + m_z*t101
-                uangle_along_m = m_x*t116 + m_y*t118 + m_z*t119
-                t120 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-                t121 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t122 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t123 = d_y*t121 - d_z*t122
-                t124 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t125 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t126 = d_y*t124 - d_z*t125
-                t127 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t128 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t129 = d_y*t127 - d_z*t128
-                t130 = n_x*t123 + n_y*t126 + n_z*t129
-                t131 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-                t132 = m_x*t123 + m_y*t126 + m_z*t129
-                t133 = -t120*t130 + t131*t132
-                t134 = t120*t120 + t131*t131
-                t135 = side/t134
-                t136 = (c_damping*t135*(dpush_by_angle_along_m*uangle_along_m +
+                t67 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t68 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t69 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t70 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t71 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t72 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t73 = Ra_xx*t67 + Ra_yx*t68 + Ra_zx*t69 + Rb_xx*t70 + Rb_yx*t71 + Rb_zx*t72
+                t74 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t75 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t76 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t77 = Ra_xy*t67 + Ra_yy*t68 + Ra_zy*t69 + Rb_xx*t74 + Rb_yx*t75 + Rb_zx*t76
+                t78 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t79 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t80 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t81 = Ra_xz*t67 + Ra_yz*t68 + Ra_zz*t69 + Rb_xx*t78 + Rb_yx*t79 + Rb_zx*t80
+                t82 = d_x*t73 + d_y*t77 + d_z*t81
+                t83 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t84 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t85 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t86 = Ra_xx*t83 + Ra_yx*t84 + Ra_zx*t85 + Rb_xy*t70 + Rb_yy*t71 + Rb_zy*t72
+                t87 = Ra_xy*t83 + Ra_yy*t84 + Ra_zy*t85 + Rb_xy*t74 + Rb_yy*t75 + Rb_zy*t76
+                t88 = Ra_xz*t83 + Ra_yz*t84 + Ra_zz*t85 + Rb_xy*t78 + Rb_yy*t79 + Rb_zy*t80
+                t89 = d_x*t86 + d_y*t87 + d_z*t88
+                t90 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t91 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t92 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t93 = Ra_xx*t90 + Ra_yx*t91 + Ra_zx*t92 + Rb_xz*t70 + Rb_yz*t71 + Rb_zz*t72
+                t94 = Ra_xy*t90 + Ra_yy*t91 + Ra_zy*t92 + Rb_xz*t74 + Rb_yz*t75 + Rb_zz*t76
+                t95 = Ra_xz*t90 + Ra_yz*t91 + Ra_zz*t92 + Rb_xz*t78 + Rb_yz*t79 + Rb_zz*t80
+                t96 = d_x*t93 + d_y*t94 + d_z*t95
+                t97 = Oma_x*d_y - Oma_y*d_x
+                t98 = -Oma_x*d_z + Oma_z*d_x
+                t99 = Oma_y*d_z - Oma_z*d_y
+                t100 = -Omb_y*t96 + Omb_z*t89 + t73*t99 + t77*t98 + t81*t97
+                t101 = Omb_x*t96 - Omb_z*t82 + t86*t99 + t87*t98 + t88*t97
+                t102 = -Omb_x*t89 + Omb_y*t82 + t93*t99 + t94*t98 + t95*t97
+                t103 = -d_x*utha_y + d_y*utha_x
+                t104 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t105 = d_x*utha_z - d_z*utha_x
+                t106 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t107 = -d_y*utha_z + d_z*utha_y
+                t108 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t109 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t110 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t111 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t112 = d_x*t109 + d_y*t110 + d_z*t111
+                t113 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t114 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t115 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t116 = d_x*t113 + d_y*t114 + d_z*t115
+                t117 = t103*t104 + t105*t106 + t107*t108 + t112*uthb_z - t116*uthb_y
+                t118 = d_x*t108 + d_y*t106 + d_z*t104
+                t119 = t103*t111 + t105*t110 + t107*t109 + t116*uthb_x - t118*uthb_z
+                t120 = t103*t115 + t105*t114 + t107*t113 - t112*uthb_x + t118*uthb_y
+                dangle_seen_1 = t82
+                dangle_seen_2 = t89
+                dangle_seen_3 = t96
+                dangle_along_n = n_x*t100 + n_y*t101 + n_z*t102
+                uangle_along_n = n_x*t117 + n_y*t119 + n_z*t120
+                dangle_along_m = m_x*t100 + m_y*t101 + m_z*t102
+                uangle_along_m = m_x*t117 + m_y*t119 + m_z*t120
+                t121 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+                t122 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t123 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t124 = d_y*t122 - d_z*t123
+                t125 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t126 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t127 = d_y*t125 - d_z*t126
+                t128 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t129 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t130 = d_y*t128 - d_z*t129
+                t131 = n_x*t124 + n_y*t127 + n_z*t130
+                t132 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+                t133 = m_x*t124 + m_y*t127 + m_z*t130
+                t134 = -t121*t131 + t132*t133
+                t135 = t121*t121 + t132*t132
+                t136 = side/t135
+                t137 = (c_damping*t136*(dpush_by_angle_along_m*uangle_along_m +
                     dpush_by_angle_along_n*uangle_along_n))
-                t137 = (t135*(dangle_along_m*dpush_by_angle_along_m +
+                t138 = (t136*(dangle_along_m*dpush_by_angle_along_m +
                     dangle_along_n*dpush_by_angle_along_n + dangle_seen_1*dpush_by_angle_seen_1 +
                     dangle_seen_2*dpush_by_angle_seen_2 + dangle_seen_3*dpush_by_angle_seen_3))
-                t138 = dangle_seen_1*m_x
-                t139 = dangle_seen_2*m_y
-                t140 = dangle_seen_3*m_z
-                t141 = dangle_seen_1*n_x
-                t142 = dangle_seen_2*n_y
-                t143 = dangle_seen_3*n_z
-                t144 = ((push*side*(-t120*(2*t138 + 2*t139 + 2*t140) - t131*(2*t141 + 2*t142 +
-                    2*t143)))/(t134*t134))
-                t145 = t138 + t139 + t140
-                t146 = t141 + t142 + t143
-                t147 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t148 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t149 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t150 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t151 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t152 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t153 = Ra_xz*t147 + Ra_yz*t148 + Ra_zz*t149 + Rb_xx*t150 + Rb_yx*t151 + Rb_zx*t152
-                t154 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t155 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t156 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t157 = Ra_xy*t147 + Ra_yy*t148 + Ra_zy*t149 + Rb_xx*t154 + Rb_yx*t155 + Rb_zx*t156
-                t158 = d_y*t153 - d_z*t157
-                t159 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t160 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t161 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t162 = Ra_xz*t159 + Ra_yz*t160 + Ra_zz*t161 + Rb_xy*t150 + Rb_yy*t151 + Rb_zy*t152
-                t163 = Ra_xy*t159 + Ra_yy*t160 + Ra_zy*t161 + Rb_xy*t154 + Rb_yy*t155 + Rb_zy*t156
-                t164 = d_y*t162 - d_z*t163
-                t165 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t166 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t167 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t168 = Ra_xz*t165 + Ra_yz*t166 + Ra_zz*t167 + Rb_xz*t150 + Rb_yz*t151 + Rb_zz*t152
-                t169 = Ra_xy*t165 + Ra_yy*t166 + Ra_zy*t167 + Rb_xz*t154 + Rb_yz*t155 + Rb_zz*t156
-                t170 = d_y*t168 - d_z*t169
-                t171 = push*t135
-                t172 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t173 = -d_x*t121 + d_z*t172
-                t174 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t175 = -d_x*t124 + d_z*t174
-                t176 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t177 = -d_x*t127 + d_z*t176
-                t178 = n_x*t173 + n_y*t175 + n_z*t177
-                t179 = m_x*t173 + m_y*t175 + m_z*t177
-                t180 = -t120*t178 + t131*t179
-                t181 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t182 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t183 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t184 = Ra_xx*t147 + Ra_yx*t148 + Ra_zx*t149 + Rb_xx*t181 + Rb_yx*t182 + Rb_zx*t183
-                t185 = -d_x*t153 + d_z*t184
-                t186 = Ra_xx*t159 + Ra_yx*t160 + Ra_zx*t161 + Rb_xy*t181 + Rb_yy*t182 + Rb_zy*t183
-                t187 = -d_x*t162 + d_z*t186
-                t188 = Ra_xx*t165 + Ra_yx*t166 + Ra_zx*t167 + Rb_xz*t181 + Rb_yz*t182 + Rb_zz*t183
-                t189 = -d_x*t168 + d_z*t188
-                t190 = d_x*t122 - d_y*t172
-                t191 = d_x*t125 - d_y*t174
-                t192 = d_x*t128 - d_y*t176
-                t193 = n_x*t190 + n_y*t191 + n_z*t192
-                t194 = m_x*t190 + m_y*t191 + m_z*t192
-                t195 = -t120*t193 + t131*t194
-                t196 = d_x*t157 - d_y*t184
-                t197 = d_x*t163 - d_y*t186
-                t198 = d_x*t169 - d_y*t188
-                t199 = -angle_seen_2*m_z + angle_seen_3*m_y
-                t200 = -angle_seen_2*n_z + angle_seen_3*n_y
-                t201 = -t120*t200 + t131*t199
-                t202 = angle_seen_1*m_z - angle_seen_3*m_x
-                t203 = angle_seen_1*n_z - angle_seen_3*n_x
-                t204 = -t120*t203 + t131*t202
-                t205 = -angle_seen_1*m_y + angle_seen_2*m_x
-                t206 = -angle_seen_1*n_y + angle_seen_2*n_x
-                t207 = -t120*t206 + t131*t205
-                J[column] = (c_stiffness*(t133*t137 + t133*t144 + t171*(-t120*(n_x*t158 + n_y*t164
-                    + n_z*t170) - t130*t145 + t131*(m_x*t158 + m_y*t164 + m_z*t170) + t132*t146))
-                    + t133*t136)
-                J[6 + column] = (c_stiffness*(t137*t180 + t144*t180 + t171*(-t120*(n_x*t185 +
-                    n_y*t187 + n_z*t189) + t131*(m_x*t185 + m_y*t187 + m_z*t189) - t145*t178 +
-                    t146*t179)) + t136*t180)
-                J[12 + column] = (c_stiffness*(t137*t195 + t144*t195 + t171*(-t120*(n_x*t196 +
-                    n_y*t197 + n_z*t198) + t131*(m_x*t196 + m_y*t197 + m_z*t198) - t145*t193 +
-                    t146*t194)) + t136*t195)
-                J[18 + column] = (c_stiffness*(t137*t201 + t144*t201 +
-                    t171*(-t120*(-dangle_seen_2*n_z + dangle_seen_3*n_y) +
-                    t131*(-dangle_seen_2*m_z + dangle_seen_3*m_y) - t145*t200 + t146*t199)) +
-                    t136*t201)
-                J[24 + column] = (c_stiffness*(t137*t204 + t144*t204 +
-                    t171*(-t120*(dangle_seen_1*n_z - dangle_seen_3*n_x) + t131*(dangle_seen_1*m_z
-                    - dangle_seen_3*m_x) - t145*t203 + t146*t202)) + t136*t204)
-                J[30 + column] = (c_stiffness*(t137*t207 + t144*t207 +
-                    t171*(-t120*(-dangle_seen_1*n_y + dangle_seen_2*n_x) +
-                    t131*(-dangle_seen_1*m_y + dangle_seen_2*m_x) - t145*t206 + t146*t205)) +
-                    t136*t207)
+                t139 = dangle_seen_1*m_x
+                t140 = dangle_seen_2*m_y
+                t141 = dangle_seen_3*m_z
+                t142 = dangle_seen_1*n_x
+                t143 = dangle_seen_2*n_y
+                t144 = dangle_seen_3*n_z
+                t145 = ((push*side*(-t121*(2*t139 + 2*t140 + 2*t141) - t132*(2*t142 + 2*t143 +
+                    2*t144)))/(t135*t135))
+                t146 = t139 + t140 + t141
+                t147 = t142 + t143 + t144
+                t148 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t149 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t150 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t151 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t152 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t153 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t154 = Ra_xz*t148 + Ra_yz*t149 + Ra_zz*t150 + Rb_xx*t151 + Rb_yx*t152 + Rb_zx*t153
+                t155 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t156 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t157 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t158 = Ra_xy*t148 + Ra_yy*t149 + Ra_zy*t150 + Rb_xx*t155 + Rb_yx*t156 + Rb_zx*t157
+                t159 = d_y*t154 - d_z*t158
+                t160 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t161 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t162 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t163 = Ra_xz*t160 + Ra_yz*t161 + Ra_zz*t162 + Rb_xy*t151 + Rb_yy*t152 + Rb_zy*t153
+                t164 = Ra_xy*t160 + Ra_yy*t161 + Ra_zy*t162 + Rb_xy*t155 + Rb_yy*t156 + Rb_zy*t157
+                t165 = d_y*t163 - d_z*t164
+                t166 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t167 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t168 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t169 = Ra_xz*t166 + Ra_yz*t167 + Ra_zz*t168 + Rb_xz*t151 + Rb_yz*t152 + Rb_zz*t153
+                t170 = Ra_xy*t166 + Ra_yy*t167 + Ra_zy*t168 + Rb_xz*t155 + Rb_yz*t156 + Rb_zz*t157
+                t171 = d_y*t169 - d_z*t170
+                t172 = push*t136
+                t173 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t174 = -d_x*t122 + d_z*t173
+                t175 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t176 = -d_x*t125 + d_z*t175
+                t177 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t178 = -d_x*t128 + d_z*t177
+                t179 = n_x*t174 + n_y*t176 + n_z*t178
+                t180 = m_x*t174 + m_y*t176 + m_z*t178
+                t181 = -t121*t179 + t132*t180
+                t182 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t183 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t184 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t185 = Ra_xx*t148 + Ra_yx*t149 + Ra_zx*t150 + Rb_xx*t182 + Rb_yx*t183 + Rb_zx*t184
+                t186 = -d_x*t154 + d_z*t185
+                t187 = Ra_xx*t160 + Ra_yx*t161 + Ra_zx*t162 + Rb_xy*t182 + Rb_yy*t183 + Rb_zy*t184
+                t188 = -d_x*t163 + d_z*t187
+                t189 = Ra_xx*t166 + Ra_yx*t167 + Ra_zx*t168 + Rb_xz*t182 + Rb_yz*t183 + Rb_zz*t184
+                t190 = -d_x*t169 + d_z*t189
+                t191 = d_x*t123 - d_y*t173
+                t192 = d_x*t126 - d_y*t175
+                t193 = d_x*t129 - d_y*t177
+                t194 = n_x*t191 + n_y*t192 + n_z*t193
+                t195 = m_x*t191 + m_y*t192 + m_z*t193
+                t196 = -t121*t194 + t132*t195
+                t197 = d_x*t158 - d_y*t185
+                t198 = d_x*t164 - d_y*t187
+                t199 = d_x*t170 - d_y*t189
+                t200 = -angle_seen_2*m_z + angle_seen_3*m_y
+                t201 = -angle_seen_2*n_z + angle_seen_3*n_y
+                t202 = -t121*t201 + t132*t200
+                t203 = angle_seen_1*m_z - angle_seen_3*m_x
+                t204 = angle_seen_1*n_z - angle_seen_3*n_x
+                t205 = -t121*t204 + t132*t203
+                t206 = -angle_seen_1*m_y + angle_seen_2*m_x
+                t207 = -angle_seen_1*n_y + angle_seen_2*n_x
+                t208 = -t121*t207 + t132*t206
+                J[column] = (c_stiffness*(t134*t138 + t134*t145 + t172*(-t121*(n_x*t159 + n_y*t165
+                    + n_z*t171) - t131*t146 + t132*(m_x*t159 + m_y*t165 + m_z*t171) + t133*t147))
+                    + t134*t137)
+                J[6 + column] = (c_stiffness*(t138*t181 + t145*t181 + t172*(-t121*(n_x*t186 +
+                    n_y*t188 + n_z*t190) + t132*(m_x*t186 + m_y*t188 + m_z*t190) - t146*t179 +
+                    t147*t180)) + t137*t181)
+                J[12 + column] = (c_stiffness*(t138*t196 + t145*t196 + t172*(-t121*(n_x*t197 +
+                    n_y*t198 + n_z*t199) + t132*(m_x*t197 + m_y*t198 + m_z*t199) - t146*t194 +
+                    t147*t195)) + t137*t196)
+                J[18 + column] = (c_stiffness*(t138*t202 + t145*t202 +
+                    t172*(-t121*(-dangle_seen_2*n_z + dangle_seen_3*n_y) +
+                    t132*(-dangle_seen_2*m_z + dangle_seen_3*m_y) - t146*t201 + t147*t200)) +
+                    t137*t202)
+                J[24 + column] = (c_stiffness*(t138*t205 + t145*t205 +
+                    t172*(-t121*(dangle_seen_1*n_z - dangle_seen_3*n_x) + t132*(dangle_seen_1*m_z
+                    - dangle_seen_3*m_x) - t146*t204 + t147*t203)) + t137*t205)
+                J[30 + column] = (c_stiffness*(t138*t208 + t145*t208 +
+                    t172*(-t121*(-dangle_seen_1*n_y + dangle_seen_2*n_x) +
+                    t132*(-dangle_seen_1*m_y + dangle_seen_2*m_x) - t146*t207 + t147*t206)) +
+                    t137*t208)
     return OK

@@ -107,7 +107,9 @@ def _stop(name: str, summary: str, space: Space, measures: Measures, own: Sequen
                (depth, choose(above - below, above, below))), ((speed, side * of.rate),),
               *law.stages)
     push = law.forces[0]
+    # the rate that is kept changes no sign with the side: teeth without play pass from one to the
+    # other in a step, and nothing is struck
     return law_element(
         "planar_" * space.planar + name, summary, space, measures, [*constants, *limits, *own],
         stages, Forces((of.velocity,), (side * push,), (side * (push - law.elastic),)),
-        [*memory, *law.memory, ("normal", push)], law.stored)
+        [*memory, ("rate", of.rate), *law.memory[1:], ("normal", push)], law.stored)

@@ -28,9 +28,9 @@ from sebody.contract.counts import Counts, Size, packed_size, whole_vectors
 RESIDUAL, TANGENT, ENERGY, VELOCITY, ACCELERATION = range(5)
 # tasks of kernels of products: see sebody/derive/kernels/products.py
 PREPARE, ALONG, TRANSPOSED = range(5, 8)
-# numbers that contacts keep beside each other, for the time loop: their rate, and the speed of the
-# impact under way
-AT_RATE, AT_IMPACT = range(2)
+# numbers that contacts keep beside each other, for the time loop: their rate, the speed of the
+# impact under way, and the depth
+AT_RATE, AT_IMPACT, AT_DEPTH = range(3)
 # status that a kernel returns: HALF_TURN if a node is rotated by nearly half a turn against the
 # frame of its body, NO_FRAME if the search for this frame does not converge
 OK, HALF_TURN, NO_FRAME = range(3)

@@ -107,22 +107,46 @@ def _factorize(system, state, exchanges):
 @compiled
 def _of_masses(system, state, exchanges):
     """Factors of masses and constraints; of least squares if these are singular."""
-    n, scale = system.diagonal.size, exchanges.scale
+    n = system.diagonal.size
     sum_matrices(system, state, state.forces)
-    for i in range(n):
-        scale[i] = 0.0
-    for k in range(system.rows.size):
-        j = system.columns[k]
-        if system.rows[k] < n and j < n:
-            scale[j] = max(scale[j], abs(state.matrix[k]))
-    for i in range(n):
-        scale[i] = 1.0 / np.sqrt(max(scale[i], 1e-300))
+    _scale_masses(system, state, exchanges.scale)
     exchanges.kind[0] = OF_MASSES
     outcome = _scaled(system, state, exchanges, False)
     if outcome == SINGULAR:
         outcome = _scaled(system, state, exchanges, True)
         exchanges.kind[0] = LEAST if exchanges.factors.starts[2 * n] > 0 else FAILED
     return outcome
+
+
+@compiled
+def _scale_masses(system, state, scale):
+    """Scale inertias and constraints to about one, so that no norm depends on axes or units.
+
+    The three coordinates of a position, a rotation or an equation share a scale: from the sum of
+    their inertias, or of the squares of their scaled rows.
+    """
+    n = system.diagonal.size
+    for i in range(n):
+        scale[i] = 0.0
+    for i in range(n):
+        if system.is_multiplier[i] == 0.0:
+            scale[system.part[i]] += abs(state.matrix[system.diagonal[i]])
+    _share_scale(system, scale, 0.0)
+    for k in range(system.rows.size):
+        i, j = system.rows[k], system.columns[k]
+        if i < n and j < n and system.is_multiplier[i] > 0.0 and system.is_multiplier[j] == 0.0:
+            entry = state.matrix[k] * scale[j]
+            scale[system.part[i]] += entry * entry
+    _share_scale(system, scale, 1.0)
+
+
+@compiled
+def _share_scale(system, scale, multiplier):
+    """Make scales of the sizes that coordinates, or multipliers, have in the first of a part."""
+    for i in range(system.diagonal.size - 1, -1, -1):
+        if system.is_multiplier[i] == multiplier:
+            size = scale[system.part[i]]
+            scale[i] = 1.0 / np.sqrt(size if size > 0.0 else system.inertias[i])
 
 
 @compiled

@@ -51,15 +51,16 @@ def begin(model: Mechanism, system: System, numbering: Numbering, state: State) 
     _check(residuals, _lengths(model, system, numbering, state)[multipliers], "position",
            multipliers, numbering, "start from a state the joints allow")
     system.inertias[:numbering.free] = part_sizes(masses, system)
-    tune(model, system, numbering, state, masses)
     solver = Solver(masses, system, numbering)
+    system.regularized[0], system.massless[0] = int(bool(solver.redundant)), int(solver.massless)
+    tune(model, system, numbering, state,
+         _resisting(system, state) if solver.massless else masses)
     changed = follow_drives(model, system, numbering, state, masses,
                             _rates(system, state, multipliers))
     changed |= _fit_velocities(model, system, numbering, state, masses, solver, multipliers)
     if solver.redundant:
         _check_accelerations(system, numbering, state, solver)
     state.frames_old[:] = state.frames
-    system.regularized[0], system.massless[0] = int(bool(solver.redundant)), int(solver.massless)
     state.control.restart = ASKED
     return Start(changed, solver.redundant, solver.shared)
 
@@ -67,6 +68,8 @@ def begin(model: Mechanism, system: System, numbering: Numbering, state: State) 
 def hold(model: Mechanism, system: System, numbering: Numbering, state: State,
          solve_again: Callable[[], None]) -> bool:
     """Bend the bristles of joints at rest as far as what they hold needs.
+
+    Where motions have no mass no acceleration says what they need: bristles begin straight.
 
     Parameters
     ----------
@@ -78,6 +81,8 @@ def hold(model: Mechanism, system: System, numbering: Numbering, state: State,
     bool
         Whether there are such joints.
     """
+    if system.massless[0]:
+        return False
     bristles = LoadedBristles(model, system, numbering, state)
     if bristles.held:
         loaded, now = state.coefficients.copy(), state.now.copy()
@@ -102,6 +107,12 @@ def _check_accelerations(system: System, numbering: Numbering, state: State,
 def _masses(system: System, state: State) -> csc_matrix:
     """Matrix of masses and constraints; the forces are left in `state.residual`."""
     return matrix(system, state, WHAT, mass=1.0, damping=0.0, stiffness=0.0, constraint=1.0)
+
+
+def _resisting(system: System, state: State) -> csc_matrix:
+    """Masses with what stiffness adds to them in a step: it resists where mass is missing."""
+    return matrix(system, state, WHAT, mass=1.0, damping=0.0, stiffness=state.clock.step**2,
+                  constraint=1.0)
 
 
 def _refuse_overflow(residual: NDArray, masses: csc_matrix, numbering: Numbering) -> None:

@@ -129,11 +129,11 @@ class Scaled:
         if len(right) <= SMALL:
             answer = np.linalg.lstsq(self.matrix.toarray(), demand, rcond=1e-11)[0]
         else:
-            answer = _least_squares(self.matrix, demand)
+            answer = LeastSquares(self.matrix).solve(demand)
         return self.scale * answer, np.abs(self.matrix @ answer - demand)
 
 
-def _least_squares(matrix: csc_matrix, right: NDArray) -> NDArray:
+class LeastSquares:
     """Least squares of least norm, by factors of a sparse matrix.
 
     ``|A x - b|^2 + DAMPED^2 |x - x_0|^2`` is least where
@@ -145,16 +145,28 @@ def _least_squares(matrix: csc_matrix, right: NDArray) -> NDArray:
     by the factor ``DAMPED^2 / (s^2 + DAMPED^2)`` (K. Riley, Math. Tables and Other Aids to
     Computation 9, 1955, p. 96).
     """
-    n = len(right)
-    damped = DAMPED * eye_array(n)
-    solver = factors(csc_matrix(block_array([[damped, matrix], [matrix.T, -damped]])))
-    answer = np.zeros(n)
-    for _ in range(ATTEMPTS):
-        change = solver.solve(np.append(right - matrix @ answer, np.zeros(n)))[n:]
-        answer += change
-        if np.abs(change).max() <= SETTLED * np.abs(answer).max():
-            break
-    return answer
+
+    def __init__(self, matrix: csc_matrix):
+        self.matrix, damped = matrix, DAMPED * eye_array(matrix.shape[0])
+        self._factors = factors(csc_matrix(block_array([[damped, matrix], [matrix.T, -damped]])))
+
+    def solve(self, right: NDArray) -> NDArray:
+        """The solution, of what A can make of the right side.
+
+        What A cannot make is part of every residual, and what rounding makes of this part grows by
+        1 / DAMPED^2. So it is left out before the right side is solved for.
+        """
+        return self._refined(self.matrix @ self._refined(right))
+
+    def _refined(self, right: NDArray) -> NDArray:
+        n = len(right)
+        answer = np.zeros(n)
+        for _ in range(ATTEMPTS):
+            change = self._factors.solve(np.append(right - self.matrix @ answer, np.zeros(n)))[n:]
+            answer += change
+            if np.abs(change).max() <= SETTLED * np.abs(answer).max():
+                break
+        return answer
 
 
 def _symmetric(matrix: csc_matrix) -> SuperLU:

@@ -4,14 +4,14 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csc_matrix
+from scipy.sparse import csc_matrix, diags
 
 from sebody.assembly.numbering import Numbering
 from sebody.engine.matrix import THIN
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.errors import InputError
-from sebody.runs.kkt_solver import Relaxed, Scaled
+from sebody.runs.kkt_solver import LeastSquares, Relaxed, Scaled
 
 WEAK = 1e-6             # pivot of a redundant constraint; of another one, its strength
 CONTRADICTION = 1e-7    # residual that contradicting constraints leave, relative to the largest
@@ -32,11 +32,24 @@ def least(matrix: csc_matrix, system: System,
     direct : Scaled, optional
         Factors of the matrix, if there are any yet.
     """
-    direct = direct or Scaled(matrix)
+    direct = direct or Scaled(matrix, units(matrix, system))
     if direct.regular:
         return direct.solve
-    regularized = Relaxed(matrix, part_sizes(matrix, system), system)
-    return lambda demand: regularized.least(demand)[0]
+    scale = _scales(matrix, system)
+    squares = LeastSquares(csc_matrix(diags(scale) @ matrix @ diags(scale)))
+    return lambda demand: scale * squares.solve(scale * demand)
+
+
+def _scales(matrix: csc_matrix, system: System) -> NDArray:
+    """Scales, (n,), that make inertias and constraints about one; norms depend on no axes then.
+
+    The engine has the same for its least norms (`sebody.engine.row_exchanges`).
+    """
+    held, part = multiplying(system), system.part[:matrix.shape[0]]
+    sizes = np.bincount(part, np.where(held, 0.0, np.abs(matrix.diagonal())), len(part))
+    sizes = np.where(sizes > 0.0, sizes, part_sizes(matrix, system))[part]
+    strengths = np.where(held, matrix.power(2) @ np.where(held, 0.0, 1.0 / sizes), 0.0)
+    return 1.0 / np.sqrt(np.where(held, np.bincount(part, strengths, len(part))[part], sizes))
 
 
 def part_sizes(matrix: csc_matrix, system: System) -> NDArray:

@@ -40,7 +40,7 @@ REFINED = 6             # corrections of a pass by factors with REGULARIZATION
 SETTLED = 1e-15         # change of the last one, relative to the solution
 SMALL = 1e-8            # change of a velocity, relative, that is none
 HEAVY = 1e20            # added mass, relative, that keeps velocities the user gave
-LEAST = 1e-6            # weight of a coordinate without mass, relative to the body's mean
+LEAST = 1e-6            # weight of a coordinate without mass, relative to the mean of its kind
 
 
 def follow_drives(model: Mechanism, system: System, numbering: Numbering, state: State,
@@ -175,12 +175,21 @@ class _Deformation(NamedTuple):
 
 
 def _weights(masses: NDArray, dof_blocks: tuple[DofBlock, ...]) -> NDArray:
-    """Masses of a body's coordinates, the same for all axes of a position or rotation."""
-    weights, row = np.maximum(masses, LEAST * np.abs(masses).mean()), 0
+    """Masses of a body's coordinates, the same for all axes of a position or rotation.
+
+    What has nearly none gets a part of the mean of its kind: positions, rotations and modes have
+    other units.
+    """
+    kinds = np.full(len(masses), 2)
+    weights, row = masses.copy(), 0
     for dof_block in dof_blocks:
-        size = dof_block.start.size
-        weights[row:row + size] = weights[row:row + size].mean()
-        row += size
+        own = slice(row, row + dof_block.start.size)
+        kinds[own], weights[own] = dof_block.rotational, masses[own].mean()
+        row = own.stop
+    for kind in np.unique(kinds):
+        own = kinds == kind
+        typical = np.abs(weights[own]).mean() or np.abs(masses).mean()
+        weights[own] = np.maximum(weights[own], LEAST * typical)
     return weights
 
 

@@ -2,7 +2,7 @@
 
 from sebody.compiler.decorators import compiled
 from sebody.compiler.inside.lanes import spread, where
-from sebody.contract.layout import AT_IMPACT, AT_RATE
+from sebody.contract.layout import AT_DEPTH, AT_IMPACT, AT_RATE
 from sebody.engine.guard import AT_ENDS, LARGEST
 
 
@@ -10,11 +10,13 @@ from sebody.engine.guard import AT_ENDS, LARGEST
 def contact_too_fast(system, state):
     """For which members the step that has converged is too long for a contact."""
     fast = spread(0.0) > 1.0
+    kept, old = state.frames, state.frames_old
     for k in range(system.guarded.size):
         rate, impact = system.guarded[k] + AT_RATE, system.guarded[k] + AT_IMPACT
-        now, before = state.frames[impact], state.frames_old[impact]
-        allowed = where((now > 0.0) & (before > 0.0), LARGEST * now,
-                        AT_ENDS * max(now, before))
-        change = abs(state.frames[rate] - state.frames_old[rate])
-        fast = fast | ((change > allowed) & (allowed > 0.0))
+        now, before, closed = kept[impact], old[impact], old[system.guarded[k] + AT_DEPTH] >= 0.0
+        pushed = (before == 0.0) & closed & (abs(old[rate]) <= LARGEST * now)
+        within = (now > 0.0) & ((before > 0.0) | closed)
+        allowed = where(within, LARGEST * now, AT_ENDS * max(now, before))
+        change = abs(kept[rate] - old[rate])
+        fast = fast | ((change > allowed) & (allowed > 0.0) & ~pushed)
     return fast

@@ -1,0 +1,97 @@
+"""MacNeal's bodies move parts of themselves without mass: no axes and no units matter to that."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from sebody import Model, generalized_alpha, ramp, simulate
+from sebody.fem import Section, straight_beam
+from sebody.reduction import reduce
+
+TURN = Rotation.from_rotvec((0.4, -1.1, 0.7)).as_matrix()
+AXIS = np.array([0.3, 0.1, 1.0])
+STEP = 1e-3
+# units of length, mass and time, and a rotation of all: none of it changes what is compared
+PLACES = {"turned": (1.0, 1.0, 1.0, TURN), "large": (1e4, 1e12, 1e4, np.eye(3)),
+          "small": (1e-5, 1e-15, 1e-5, TURN)}
+
+
+def bar(length, mass, time, turn, method="macneal"):
+    """A model with a hanging bar, and its first end."""
+    model = Model()
+    points = turn @ (0.0, 0.0, 0.0), turn @ (0.8, 0.4, 0.3)
+    ends = [model.node(name, length * x) for name, x in zip("ab", points, strict=True)]
+    section = Section(area=1.6e-3 * length**2, inertia_y=2e-7 * length**4,
+                      inertia_z=3e-7 * length**4, torsion=4e-7 * length**4,
+                      youngs_modulus=2e9 * mass / length / time**2, poisson_ratio=0.3,
+                      density=4e3 * mass / length**3)
+    model.superelement("bar", reduce(straight_beam(
+        *(end.point for end in ends), section, elements=5, up=turn @ (0.1, 0.3, 1.0)),
+        [(0, "full"), (5, "full")], 2, method), ends, inertia="rigid_part", stiffening=False)
+    model.gravity(turn @ (1.0, -9.0, 3.0) * length / time**2)
+    return model, ends[0]
+
+
+def pushed(length, mass, time, turn):
+    """Clamped, with a load that jumps at its other end."""
+    model, first = bar(length, mass, time, turn)
+    model.fix(first)
+    model.force("b", turn @ (3.0, 1.0, -2.0) * mass * length / time**2,
+                np.array([(0.0, 0.3), (0.02, 1.0), (0.02, -1.0), (0.1, 0.5)]) * (time, 1.0))
+    return model
+
+
+def rubbing(length, mass, time, turn):
+    """On a slide with friction, whose bristles are as stiff as a step resolves."""
+    model, first = bar(length, mass, time, turn)
+    model.prismatic(first, turn @ AXIS, name="slide")
+    model.friction("slide", 0.3, 0.4, preload=3.0 * mass * length / time**2)
+    return model
+
+
+def driven(length, mass, time, turn, method="macneal"):
+    """On a hinge that starts with a speed."""
+    model, first = bar(length, mass, time, turn, method)
+    model.revolute(first, turn @ AXIS, explicit=True)
+    model.drive_angle(first, ramp(3.0 / time), turn @ AXIS)
+    return model
+
+
+def path(build, length=1.0, mass=1.0, time=1.0, turn=None):
+    """Where the free end is, in the first axes and units."""
+    turn = np.eye(3) if turn is None else turn
+    result = simulate(build(length, mass, time, turn), STEP * time, 30 * STEP * time,
+                      generalized_alpha(tolerance=1e-11))
+    return result["b.position"] @ turn / length
+
+
+@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize("build", [pushed, rubbing, driven])
+@pytest.mark.filterwarnings("ignore:vibrations of")
+def test_neither_axes_nor_units_matter(build, place):
+    """Least norms depended on both: 1e-2 of the motion, or no accelerations at all."""
+    expected = path(build)
+    moved = np.abs(expected - expected[0]).max()
+    assert np.abs(path(build, *PLACES[place]) - expected).max() < 1e-8 * moved
+
+
+@pytest.mark.filterwarnings("ignore:vibrations of")
+def test_friction_holds_what_has_no_mass():
+    """It slides as Rubin's body does, whose small masses vibrate with the bristles."""
+    def rubin(length, mass, time, turn):
+        model, first = bar(length, mass, time, turn, "rubin")
+        model.prismatic(first, turn @ AXIS, name="slide")
+        model.friction("slide", 0.3, 0.4, preload=3.0 * mass * length / time**2)
+        return model
+    expected = path(rubin)
+    moved = np.abs(expected - expected[0]).max()
+    assert np.abs(path(rubbing) - expected).max() < 2e-2 * moved
+
+
+@pytest.mark.filterwarnings("ignore:vibrations of")
+def test_small_bodies_of_any_method_follow_drives():
+    """In units in which modal masses exceed all others, positions did not follow."""
+    build = partial(driven, method="craig-bampton")
+    assert path(build, *PLACES["small"]) == pytest.approx(path(build), abs=1e-9)
