@@ -30,13 +30,13 @@ def turned_beam() -> Model:
     return made
 
 
-def single(model: Model, values: dict, h: float, t_end: float):
+def single(model: Model, values: dict, h: float, t_end: float, scheme=None):
     """The run of a model with some quantities set, by `simulate`."""
     handles = [handle(model, name) for name in values]
     for one, value in zip(handles, values.values(), strict=True):
         one.set(np.asarray(value, dtype=float))
     try:
-        return simulate(model, h, t_end)
+        return simulate(model, h, t_end, scheme)
     finally:
         for one in handles:
             one.reset()

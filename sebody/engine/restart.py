@@ -10,6 +10,8 @@ first step on if auxiliary accelerations are those of the later time they belong
 the accelerations come from a look ahead: one more correction, in the state a short time later.
 """
 
+import math
+
 import numpy as np
 
 from sebody.compiler.decorators import compiled
@@ -173,25 +175,31 @@ def _evaluate(system, state, wanted):
 
 
 @compiled
-def _correct(system, state):
-    """Subtract a correction; returns DONE, FAILED or, to go on, SOLVE."""
-    control, clock, n = state.control, state.clock, system.diagonal.size
+def subtract(system, state):
+    """Subtract a correction; returns the norms of it, of the solution and of the residual."""
     norm = size = left = 0.0
-    for i in range(n):
+    for i in range(system.diagonal.size):
         d, r = state.correction[i] * state.weight[i], state.residual[i] * state.scale[i]
         x = (state.q[i] if system.is_multiplier[i] > 0.0 else state.a[i]) * state.weight[i]
         norm += d * d
         size += x * x
         left += r * r
-    norm = np.sqrt(norm)
+    norm = math.sqrt(norm)
     to_body_axes(system, state.frames, state.correction, True)
-    for i in range(n):
+    for i in range(system.diagonal.size):
         if system.is_multiplier[i] > 0.0:
             state.q[i] -= state.correction[i]
         else:
             state.a[i] -= state.correction[i]
     place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
-    size = max(np.sqrt(size), norm)
+    return norm, max(math.sqrt(size), norm), math.sqrt(left)
+
+
+@compiled
+def _correct(system, state):
+    """Subtract a correction; returns DONE, FAILED or, to go on, SOLVE."""
+    control, clock, n = state.control, state.clock, system.diagonal.size
+    norm, size, left = subtract(system, state)
     rate = norm / clock.last_norm if control.iteration > 0 else 0.0
     clock.last_norm = norm
     control.iteration += 1
@@ -205,7 +213,7 @@ def _correct(system, state):
         # what the corrections of a regularized matrix leave is a contradiction, or a force on
         # something without mass
         gap = (control.regularized == 1 and system.massless[0] == 0
-               and np.sqrt(left) > n * norm + CONTRADICTION * size)
+               and left > n * norm + CONTRADICTION * size)
         return FAILED if gap else DONE
     if rate > POOR or (control.fresh == 0 and rate > 0.0 and
                        np.log(none / norm) / np.log(rate) > REFACTORIZATION_COST):

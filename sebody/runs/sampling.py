@@ -39,6 +39,7 @@ class Sampling:
         self._outside = [(COUNTS + system.control.periods.size + k, sensor)
                          for k, sensor in enumerate(numbering.memory.sensors)
                          if kinds[k] == OUTSIDE]
+        self.unsampled: tuple[NDArray, NDArray] | None = None   # by `begin`
         self._readers: dict[str, Callable[[], float | NDArray]] = {}
         # users' functions may change or jump, and short pulses be missed: for each piece to see
         self.needs_looks = any(True for _ in functions(model)) or any(
@@ -103,9 +104,13 @@ class Sampling:
                              f"give one of them, such as {given}")
 
     def begin(self) -> bool:
-        """Ask for the first samples, once accelerations are known; whether there are any."""
+        """Ask for the first samples, once accelerations are known; whether there are any.
+
+        `unsampled` gets `State.frames` and `State.memory` as they are before these.
+        """
         if not self.samples:
             return False
+        self.unsampled = self.state.frames.copy(), self.state.memory.copy()
         set_next(self.system.control, self.state.memory)
         self.state.control.restart, self.state.control.meets = ASKED, SAMPLED
         return True

@@ -7,6 +7,7 @@ from numpy.testing import assert_allclose
 
 from sebody import Model, Simulation, generalized_alpha, harmonic, ramp, simulate
 from sebody.analysis import Ensemble, final
+from sebody.control import pid
 from sebody.explore.ensembles.handles import handle
 
 H, T_END = 2e-3, 0.03
@@ -55,6 +56,21 @@ def test_starts_with_other_masses_are_those_of_single_runs(index):
     for name, quantity in outputs.items():
         assert_allclose(found[name][0], expected[quantity], rtol=0,
                         atol=1e-11 * np.abs(expected[quantity]).max())
+
+
+def test_first_samples_are_made_with_the_parameters_of_the_run():
+    """The first output of a proportional controller is its own gain times the error at the start.
+    """
+    made = linkage()
+    made.actuator("servo", node="crank", direction=1.0, what="torque")
+    made.sensor("place", "tip.position.x")
+    made.controller("loop", pid(kp=2.0, reference=1.0), ["place"], ["servo"], 2 * H)
+    period, kp, *others = handle(made, "loop.parameters").base
+    gains = np.array([0.5, 3.0, 7.0])
+    found = Ensemble(made, H).run({"loop.parameters": [[period, gain, *others] for gain in gains]},
+                                  T_END, {"servo": "servo.value"})
+    error = 1.0 - made.nodes["tip"].point[0]
+    assert_allclose(found["servo"][:, 0], gains * error, rtol=1e-12)
 
 
 @pytest.mark.parametrize("mean", [0.0, 0.3])

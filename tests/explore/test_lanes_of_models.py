@@ -228,20 +228,54 @@ def of_beam() -> Model:
     return controlled(hinged("craig-bampton"), "base", "hinge", 4e3)
 
 
-@pytest.mark.parametrize("build", [of_chain, of_loop, of_beam])
-def test_controlled_members_equal_single_runs(build, monkeypatch):
-    """Gravity and loads vary; alone and backwards the bits are the same."""
+def flowing(made: Model, node: str, joint: str, gain: float, held: bool = True) -> Model:
+    """Continuous controllers: a PID of a joint, and a damper with a lag, which also reads a speed.
+
+    It may be that of a sensor with a rate, `held` between samples.
+    """
+    if held:
+        made.sensor("speed", "tip.velocity.y", rate=1.0 / (2 * H), noise=1e-3, seed=2)
+    made.sensor("biased", f"{joint}.angle", bias=2e-3)
+    made.actuator("motor", joint=joint, limit=2.0 * gain)
+    made.actuator("wheel", node=node, direction=AXIS, what="torque")
+    made.controller("pid", pid(kp=gain, ki=9.0 * gain, kd=0.02 * gain, reference=0.1), ["biased"],
+                    ["motor"])
+
+    def damper(t, y, x, rates, u, parameters):
+        rates[0] = (y[0] - x[0]) / 3e-3
+        u[0] = -parameters[0] * (x[0] + 1e-3 * y[1] * abs(y[1]))
+    read = ["tip.velocity.y", "speed" if held else "tip.velocity.x"]
+    made.controller("damper", damper, read, ["wheel"], states=[0.0], parameters=[5e-5 * gain])
+    made.torque(node, AXIS, piecewise((0.0, 0.4 * gain), (0.0217, -gain)), name="jump")
+    return made
+
+
+def gains(made: Model, rng: np.random.Generator) -> np.ndarray:
+    """Numbers of the PID's law, each of them another one for each run."""
+    numbers = handle(made, "pid.parameters").base
+    factors = rng.uniform(0.7, 1.3, (RUNS, numbers.size))
+    return np.where(numbers == 3 * H, 1.0, factors) * numbers       # but its period
+
+
+@pytest.mark.parametrize(("build", "index"), [
+    (of_chain, 3), (of_loop, 3), (of_beam, 3),
+    (lambda: flowing(chain(), "end 1", "hinge 0", 1e4), 3),
+    (lambda: flowing(redundant(16), "left", "foot 0", 2e6, held=False), 2),
+    (lambda: flowing(hinged("craig-bampton"), "base", "hinge", 4e3), 3)])
+def test_controlled_members_equal_single_runs(build, index, monkeypatch):
+    """Gravity, loads and gains vary; alone and backwards the bits are the same."""
     monkeypatch.setattr(ensemble, "WORTH_IT", 0)
     rng, made = np.random.default_rng(4), build()
-    given = {"load.amplitude": rng.uniform(-1, 2, RUNS), "gravity": rng.uniform(-900, 900,
-                                                                               (RUNS, 3))}
+    given = {"load.amplitude": rng.uniform(-1, 2, RUNS),
+             "gravity": rng.uniform(-900, 900, (RUNS, 3)), "pid.parameters": gains(made, rng)}
     outputs = {"course": "tip.position", "motor": "motor.value", "end": final("tip.velocity")}
-    many = Ensemble(made, H)
+    scheme = generalized_alpha(index=index)
+    many = Ensemble(made, H, scheme)
     found = many.run(given, STEPS * H, outputs)
     assert found.in_lanes == RUNS and not found.failures
     assert_bits_in_other_company(many, given, STEPS * H, outputs, found)
     for run in (0, 8):
-        result = single(made, {name: v[run] for name, v in given.items()}, H, STEPS * H)
+        result = single(made, {name: v[run] for name, v in given.items()}, H, STEPS * H, scheme)
         for name, quantity in (("course", "tip.position"), ("motor", "motor.value")):
             size = np.abs(result[quantity]).max()
             assert size > 0.0

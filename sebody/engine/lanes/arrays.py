@@ -20,7 +20,8 @@ from sebody.engine.system import System
 
 # floats that are the same for all members: times, and what branches are taken by
 SHARED = {"is_multiplier", "table_times", "corners", "prescribed_factor", "memory"}
-OWN_GROUPS = {"control"}        # of a system: the same for all
+OWN_GROUPS = {"control"}        # of a system: read by single runs of the members alone
+SAMPLED = {"periods", "offsets"}        # and what of it is the same for all
 # scalars of all members together; the other ones of the records are lanes
 TIMES = {"time", "step", "current_step", "factor_step", "aux_step", "chosen", "end", "beside",
          "largest_error"}
@@ -132,8 +133,7 @@ def shared_places(system: System, state: State, offsets: Offsets) -> Iterator[sl
             value = getattr(group, one.name)
             if isinstance(value, Arrays):
                 if one.name in OWN_GROUPS:
-                    yield from (offsets.of(getattr(value, own.name)) for own in fields(value)
-                                if getattr(value, own.name).dtype == np.float64)
+                    yield from (offsets.of(getattr(value, name)) for name in SAMPLED)
             elif one.name in SHARED:
                 yield offsets.of(value)
 

@@ -105,7 +105,8 @@ def _iterate(system, state, scratch, alone, together, scheme, active, dense):
     while some(active):
         evaluated = active & (control.wanted == float(EVALUATED))
         wanted = evaluated | (active & (control.wanted == float(ROTATED)))
-        moved = mixed and iteration > 1 and system.links.dependent.shape[0] == 0
+        moved = (mixed and iteration > 1 and system.links.dependent.shape[0] == 0
+                 and system.control.flowing.size == 0)
         if moved:
             find_moved(system, state, scratch, active, wanted)
         _evaluate(system, state, scratch, active, moved)

@@ -4,8 +4,6 @@ The others keep their numbers. Members that would have to ask Python, or find no
 up. Both inverses are kept where single runs keep both, see `sebody.engine.kept_factors`.
 """
 
-import math
-
 from sebody.compiler.decorators import compiled
 from sebody.compiler.inside.lanes import bits_of, some, spread, where
 from sebody.contract.layout import ACCELERATION, RESIDUAL
@@ -14,7 +12,7 @@ from sebody.engine.evaluate import run_kernels, sum_forces, to_body_axes
 from sebody.engine.kept_factors import EXCESS, FEWEST, VALID, swap_factors
 from sebody.engine.lanes.apart import GAVE_UP
 from sebody.engine.lanes.matrix import factorize_masses
-from sebody.engine.links import place_dependent
+from sebody.engine.lanes.newton import HUGE
 from sebody.engine.matrix import solve
 from sebody.engine.newton import FASTEST, REFACTORIZATION_COST, SLOWEST
 from sebody.engine.restart import (
@@ -28,12 +26,11 @@ from sebody.engine.restart import (
     STIFF,
     SUMMANDS,
     set_masses,
+    subtract,
 )
 from sebody.engine.state import EVALUATED, KEPT
 from sebody.engine.vectors import copy
 from sebody.engine.work import set_acting
-
-HUGE = 1e300            # a norm above this is no number, or as good as none
 
 
 @compiled
@@ -98,23 +95,8 @@ def _evaluate(system, state, scratch, going):
 @compiled
 def _correct(system, state, going):
     """Subtract corrections; returns the members that go on."""
-    control, clock, n = state.control, state.clock, system.diagonal.size
-    norm = size = left = speed = spread(0.0)
-    for i in range(n):
-        d, r = state.correction[i] * state.weight[i], state.residual[i] * state.scale[i]
-        x = (state.q[i] if system.is_multiplier[i] > 0.0 else state.a[i]) * state.weight[i]
-        norm += d * d
-        size += x * x
-        left += r * r
-    norm = math.sqrt(norm)
-    to_body_axes(system, state.frames, state.correction, True)
-    for i in range(n):
-        if system.is_multiplier[i] > 0.0:
-            state.q[i] -= state.correction[i]
-        else:
-            state.a[i] -= state.correction[i]
-    place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
-    size = max(math.sqrt(size), norm)
+    control, clock, speed = state.control, state.clock, spread(0.0)
+    norm, size, left = subtract(system, state)
     rate = where(control.iteration > 0.0, norm / clock.last_norm, spread(0.0))
     clock.last_norm = where(going, norm, clock.last_norm)
     control.iteration += where(going, spread(1.0), spread(0.0))
@@ -131,7 +113,8 @@ def _correct(system, state, going):
         max(rate, spread(FASTEST)) / (1.0 - rate) * norm <= none)))
     failed = going & ~(norm < HUGE)
     if control.regularized == 1:
-        failed = failed | (done & (math.sqrt(left) > n * norm + CONTRADICTION * size))
+        n = system.diagonal.size
+        failed = failed | (done & (left > n * norm + CONTRADICTION * size))
     rest = going & ~done & ~failed
     # as many corrections as new factors cost leave more than rounding
     many = norm

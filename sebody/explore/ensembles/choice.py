@@ -18,13 +18,14 @@ WORTH_IT = 500_000      # steps of all runs together, a second or more one by on
 
 FACTS = (       # each lets runs be made one by one alone
     *OWN_STARTS,
-    Fact("sensors that Python reads", lambda one: bool(one.system.control.outside[0])),
-    Fact("continuous controllers", lambda one: bool(one.system.control.flowing.size)),
-    Fact("controllers with index 2 or motions without mass", lambda one: bool(
+    Fact("sensors that Python reads, one run at a time",
+         lambda one: bool(one.system.control.outside[0])),
+    Fact("sampled controllers with index 2 or motions without mass", lambda one: bool(
         one.system.control.periods.size
         and (one.scheme.stabilized or one.system.massless[0]))),
     Fact("elements that keep numbers, as contacts and friction, among rigid bodies alone",
-         lambda one: not one.model.bodies and bool(one.numbering.memories)),
+         lambda one: not one.model.bodies and any(
+             element.law is None for element in one.numbering.memories)),
     Fact("equal bodies, of which each run evaluates eight at a time",
          lambda one: bool(evaluated_together(one.model))),
 )

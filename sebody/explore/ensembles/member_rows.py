@@ -1,15 +1,30 @@
 """Index rows of elements that lanes evaluate member by member: see `contract.member_row`."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.contract.law_row import (
+    FIRST,
+    HELD,
+    INPUTS,
+    KIND,
+    LAW_HEADER,
+    OUTPUT_PLACES,
+    OUTPUTS,
+    PLACE,
+    PORT,
+    READING_PLACES,
+)
 from sebody.contract.layout import AT_CONSTANTS, AT_FRAME, AT_PORT, AT_ROTATIONS, HEADER
 from sebody.contract.member_row import ENERGIES, RUNNING
 from sebody.explore.ensembles.shared_constants import kernels_of_batches, rows_of
 from sebody.explore.ensembles.start_values import Image
-from sebody.kernels.loader import load, takes_one_member
+from sebody.kernels.loader import element_kernel_name, load, takes_one_member
+
+LAW = element_kernel_name("continuous")     # kernel of laws of continuous controllers
 
 
 class Rows(NamedTuple):
@@ -37,12 +52,11 @@ def with_places(image: Image, table: NDArray) -> Rows:
         own = rows_of(image, b)
         if takes_one_member(name):
             kept[b] = len(load(name).MEMORY)
-            places = [_places(image, row, int(system.width[b]), int(kept[b]), starts)
-                      for row in own]
-            most = max(map(len, places))
-            behind = [system.address[b], table.ctypes.data, most, kept[b]]
-            own = np.array([[*row, *one, *[one[-1]] * (most - len(one)), *behind]
-                            for row, one in zip(own, places, strict=True)])
+            places = [_places(image, row, int(system.width[b]), name, starts) for row in own]
+            written, read = (_of_equal_length(one) for one in zip(*places, strict=True))
+            behind = np.tile([system.address[b], table.ctypes.data,
+                              written.shape[1] + read.shape[1], written.shape[1]], (len(own), 1))
+            own = np.hstack([own, written, read, behind])
         rows.append(own)
     sizes = [one.size for one in rows]
     return Rows(np.concatenate([one.ravel() for one in rows]),
@@ -57,24 +71,50 @@ def new_table(in_lanes: NDArray, alone: NDArray, energies: int) -> NDArray:
     return table
 
 
-def _places(image: Image, row: NDArray, width: int, kept: int, starts: NDArray) -> list[int]:
-    """Where what an element reads is in the buffer of all numbers, what it keeps first.
+def _of_equal_length(places: Sequence[list[int]]) -> NDArray:
+    """Rows of places, the last one repeated where a row has fewer."""
+    most = max(map(len, places))
+    return np.array([[*one, *one[-1:] * (most - len(one))] for one in places],
+                    dtype=np.int64).reshape(len(places), most)
+
+
+def _places(image: Image, row: NDArray, width: int, name: str, starts: NDArray
+            ) -> tuple[list[int], list[int]]:
+    """Where what an element keeps or sets, and what it reads, is in the buffer of all numbers.
 
     Kernels that have numbers of their own behind their row read what only they know: they get all
-    coordinates and frames.
+    coordinates and frames, but for laws of controllers.
     """
     system, state, of = image.template.system, image.template.state, image.offsets.of
     behind = HEADER + row[AT_ROTATIONS] + width
     begin, port = row[AT_CONSTANTS], 3 * row[AT_PORT] + np.arange(3)
-    own = row[AT_FRAME] + np.arange(kept)
+    law = row[behind:] if name == LAW else None
+    own = row[AT_FRAME] + np.arange(len(load(name).MEMORY) if law is None else law[INPUTS])
     read = {"q": row[behind - width:behind], "frames": own, "frames_old": own,
             "R": (9 * row[HEADER:behind - width, np.newaxis] + np.arange(9)).ravel(),
             "loads": port[port < state.loads.size],
             "coefficients": np.arange(state.coefficients.size)}
     read |= {"v": read["q"], "a": read["q"], "T": read["R"]}
-    if len(row) > behind:
+    written = {"frames": own}
+    if law is not None:
+        readings, ends = _parts_of_law(law)
+        held = readings[readings[:, KIND] == HELD, FIRST]
+        driving = ends[ends[:, PORT] >= 0]
+        read["frames"] = np.concatenate([own, held])
+        written = {"frames": np.concatenate([own, ends[:, PLACE], driving[:, PLACE] + 2]),
+                   "loads": 3 * driving[:, PORT]}
+    elif len(row) > behind:
         read |= {name: np.arange(getattr(state, name).size) for name in read}
     first = of(system.constants).start
     constants = np.arange(begin, starts[np.searchsorted(starts, begin, side="right")])
-    return np.concatenate([of(state.frames).start + own, first + constants, *(
-        of(getattr(state, name)).start + places for name, places in read.items())]).tolist()
+    written, read = ([of(getattr(state, name)).start + places for name, places in parts.items()]
+                     for parts in (written, read))
+    return np.concatenate(written).tolist(), np.concatenate([first + constants, *read]).tolist()
+
+
+def _parts_of_law(law: NDArray) -> tuple[NDArray, NDArray]:
+    """The readings and outputs of a continuous controller in its row, see `contract.law_row`."""
+    first = LAW_HEADER + READING_PLACES * law[INPUTS]
+    end = first + OUTPUT_PLACES * law[OUTPUTS]
+    return (law[LAW_HEADER:first].reshape(-1, READING_PLACES),
+            law[first:end].reshape(-1, OUTPUT_PLACES))

@@ -75,6 +75,11 @@ class Image:
         self.floats = np.zeros(self.offsets.size)
         self.offsets.packed(template.system, self.floats)
         self.offsets.packed(template.state, self.floats)
+        if template.sampling.unsampled is not None:     # runs make their first samples themselves
+            state = template.state
+            for array, before in zip((state.frames, state.memory), template.sampling.unsampled,
+                                     strict=True):
+                self.floats[self.offsets.of(array)] = before
         self.lines = self._lines(handles) if self._can_copy(handles) else None
 
     @property

@@ -2,9 +2,9 @@
 
 It is called as kernels for lanes are. The numbers of a member that an element reads, whose places
 are behind its index row, are copied to the same places of a buffer of a single run, where the
-element's own kernel finds them. Its forces and kept numbers are put back. Members that
-are not running keep theirs: what they have does not depend on others. If the kernel refuses the
-numbers of a member, the forces of this member become NaN.
+element's own kernel finds them. Its forces, and the numbers that it keeps or sets, are put back.
+Members that are not running keep theirs: what they have does not depend on others. If the kernel
+refuses the numbers of a member, the forces of this member become NaN.
 """
 
 import math
