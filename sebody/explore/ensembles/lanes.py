@@ -190,11 +190,14 @@ class Lanes:
         return gave_up
 
     def _take_outputs(self, members: NDArray) -> None:
-        """Take in recorded states: folds of all members together, all else of each."""
+        """Take in recorded states: folds of all members together, all else of some members each.
+
+        What folds take in of members that have given up is not asked for.
+        """
         table, rows = self._table, self._rows[:self._recorded[0]]
         t = table[:len(rows), 0, 0].copy()
         for folds in self._folds.values():
-            folds.add(t, table, members)
+            folds.add(t, table)
         if self._others:
             for member in members:
                 if self._evaluated:         # quantities of elements: with the member's constants

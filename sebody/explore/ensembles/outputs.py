@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.errors import InputError
-from sebody.explore.ensembles.folding import FOUND, LENGTH, fold, fold_members
+from sebody.explore.ensembles.folding import FOUND, LENGTH, fold
 
 # as of `fold`
 KINDS = ("maximum", "minimum", "rms", "integral", "final", "at", "soft_maximum", "history")
@@ -116,7 +116,7 @@ def outputs_of(given: Mapping[str, Output | str], t_end: float) -> dict[str, Out
 
 
 class Room(NamedTuple):
-    """What `fold` keeps of a history, or of those of several members, (members, ...)."""
+    """What `fold` keeps of the histories of some runs."""
 
     kept: NDArray
     before: NDArray
@@ -124,10 +124,10 @@ class Room(NamedTuple):
     facts: NDArray
 
     @classmethod
-    def of(cls, output: Output, shape: tuple[int, ...], *members: int) -> Room:
+    def of(cls, output: Output, shape: tuple[int, ...], runs: int) -> Room:
         """Room for an output of a quantity of some shape."""
         size = 1 if output.norm else prod(shape)
-        return cls(*np.zeros((3, *members, size)), np.zeros((*members, 4)))
+        return cls(*np.zeros((3, size, runs)), np.zeros(4))
 
 
 class Folds:
@@ -142,30 +142,24 @@ class Folds:
     """
 
     def __init__(self, output: Output, shape: tuple[int, ...], columns: NDArray, count: int):
-        self._output, self._columns = output, columns
-        self._room = Room.of(output, shape, count)
+        self._columns, self._room = columns, Room.of(output, shape, count)
+        self._output, self._asked = output, _asked(output)
         self._memory = self._room.kept.base, self._room.facts   # of all that is kept
-        self._rows = np.empty((0, len(columns)))
 
     def begin(self) -> None:
         """Forget what was taken in."""
         for own in self._memory:
             own[...] = 0.0
 
-    def add(self, t: NDArray, table: NDArray, members: NDArray) -> None:
-        """Take in the next recorded states of some members; the table is (states, numbers, all)."""
-        if len(self._rows) < len(t):
-            self._rows = np.empty((len(t), len(self._columns)))
-        fold_members(*_asked(self._output), t, table, self._columns, self._rows, members,
-                     *self._room)
+    def add(self, t: NDArray, table: NDArray) -> None:
+        """Take in the next recorded states of all members; the table is (states, numbers, all)."""
+        fold(*self._asked, t, table, self._columns, *self._room)
 
     def write(self, members: NDArray, runs: NDArray, values: NDArray) -> None:
-        """Write the values of some members, where they have one, to those of their runs."""
-        found = self._room.facts[members, FOUND] > 0.0
-        if not found.all():
-            members, runs = members[found], runs[found]
-        values[runs] = _value(self._output, self._room)[members].reshape(
-            len(members), *values.shape[1:])
+        """Write the values of some members, if there are any, to those of their runs."""
+        if self._room.facts[FOUND]:
+            values[runs] = _value(self._output, self._room).T[members].reshape(
+                len(members), *values.shape[1:])
 
 
 class Fold:
@@ -180,7 +174,7 @@ class Fold:
     def __init__(self, output: Output, shape: tuple[int, ...]):
         self.output, self.shape = output, () if output.norm else shape
         self._all = np.arange(prod(shape))
-        self._room = Room.of(output, shape)
+        self._room = Room.of(output, shape, 1)
 
     def add(self, t: NDArray, values: NDArray) -> None:
         """Take in the next recorded states, (k,) times and (k, ...) values."""
@@ -188,7 +182,7 @@ class Fold:
 
     def add_columns(self, t: NDArray, table: NDArray, columns: NDArray) -> None:
         """The same of values that are columns of a table, as of recorded rows."""
-        fold(*_asked(self.output), t, table, columns, *self._room)
+        fold(*_asked(self.output), t, table[..., np.newaxis], columns, *self._room)
 
     def value(self) -> NDArray | None:
         """The value; None if there is none, as of a time the run did not reach."""
@@ -204,11 +198,11 @@ def _asked(output: Output) -> tuple[int, float, bool]:
 
 
 def _value(output: Output, room: Room) -> NDArray:
-    """The value of a history, or those of several members."""
+    """The values of histories, (c, runs)."""
     if output.kind not in ("rms", "soft_maximum"):
         return room.kept
-    length = room.facts[..., LENGTH:LENGTH + 1]
-    mean = room.kept / np.where(length > 0.0, length, 1.0)
-    found = (np.sqrt(mean) if output.kind == "rms" else
-             room.largest * mean ** (1 / output.power))
-    return np.where(length > 0.0, found, np.abs(room.before))
+    length = room.facts[LENGTH]
+    if length == 0.0:
+        return np.abs(room.before)
+    mean = room.kept / length
+    return np.sqrt(mean) if output.kind == "rms" else room.largest * mean ** (1 / output.power)
