@@ -117,10 +117,10 @@ class Row(NamedTuple):
 
     def unpack(self, counts: Counts, row: NDArray) -> dict[str, NDArray]:
         """The values of a row by name, in their shapes."""
-        values = {}
+        values, slices = {}, self.slices(counts)
         for part in self.parts:
             shape = part.own_shape(counts)
-            piece = row[self.slices(counts)[part.name]]
+            piece = row[slices[part.name]]
             if part.columns:
                 values[part.name] = piece.reshape(shape[1], whole_vectors(shape[0]))[:, :shape[0]].T
             else:

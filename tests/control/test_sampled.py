@@ -2,42 +2,14 @@
 
 import numpy as np
 import pytest
+from controlled_rotor import GAINS, PERIOD, controlled, rotor
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.linalg import expm
 
-from sebody import InputError, Model, Simulation, SimulationError, Tolerance, generalized_alpha
+from sebody import InputError, Model, Simulation, Tolerance, generalized_alpha
 from sebody.analysis import Ensemble, resume, save_state, state_space
-from sebody.control import computed_torque, discrete, lookup, low_pass, pid, state_feedback
+from sebody.control import computed_torque, pid, state_feedback
 from sebody.control.laws import _pid
-from sebody.fem import StiffnessSection, planar_beam
-from sebody.reduction import craig_bampton
-
-GAINS = {"kp": 2.0, "ki": 0.5, "kd": 0.5, "filter": 50.0, "reference": 1e-4}
-PERIOD = 0.02
-SECTION = StiffnessSection(axial=1e4, bending_y=1.0, bending_z=1.0, torsion=1.0, mass=1.0,
-                           inertia_x=0.0, inertia_y=0.0, inertia_z=0.0)
-BODY = craig_bampton(planar_beam((0, 0), (1, 0), SECTION, elements=20),
-                     [(0, "full"), (20, "full")], modes=4)
-
-
-def rotor(flexible=False, start=0.0, **options):
-    """A rotor on a hinge, perhaps with a beam, and an actuator."""
-    model = Model(planar=True)
-    hub = model.node("hub", (0.0, 0.0))
-    if flexible:
-        model.superelement("beam", BODY, [hub, model.node("tip", (1.0, 0.0))])
-    model.rigid_body("rotor", hub, 1.0, 0.1)
-    model.revolute(hub, name="hinge")
-    if start:
-        model.initial_velocity(hub, angular=start)
-    model.actuator("motor", joint="hinge", **options)
-    return model
-
-
-def controlled(delay=0, flexible=False, **options):
-    model = rotor(flexible, **options)
-    model.controller("pid", pid(**GAINS), ["hub.rotation"], ["motor"], PERIOD, delay)
-    return model
 
 
 def exact(delay, A, B, C, count):
@@ -170,22 +142,6 @@ def test_saved_and_resumed(tmp_path):
     assert 0.5e-5 < np.nanstd(noise) < 2e-5        # of the samples at every second step
 
 
-def test_noise_is_normal_and_independent():
-    model = rotor()
-    model.sensor("angle", "hub.rotation", noise=2.0, bias=0.5, seed=3)
-    model.sensor("other", "hub.rotation", noise=2.0, seed=4)
-    model.controller("none", state_feedback([[0.0, 0.0]]), ["angle", "other"], ["motor"], 0.01)
-    result = Simulation(model, 0.01).run_to(100.0).result()
-    one, other = result["angle.value"] - 0.5, result["other.value"]
-    n = len(one)
-    for values in (one, other):     # five standard deviations of the estimates
-        assert abs(values.mean()) < 5 * 2.0 / np.sqrt(n)
-        assert abs(values.var() / 4.0 - 1) < 5 * np.sqrt(2.0 / n)
-        assert abs((values**4).mean() / 16.0 - 3.0) < 5 * np.sqrt(96.0 / n)
-        assert abs((values[1:] * values[:-1]).mean() / 4.0) < 5 / np.sqrt(n)
-    assert abs((one * other).mean() / 4.0) < 5 / np.sqrt(n)
-
-
 def test_ensembles_carry_controllers():
     """Runs of an ensemble are those of single simulations, bit for bit."""
     def build(speed):
@@ -245,100 +201,6 @@ def test_reactions_stay_clean_and_work_is_counted():
     assert abs(result["motor.work"][-1]) > 0.0
 
 
-def two_rates(model):
-    """A filter, a table and a compensator between sensor and motor, of three periods."""
-    model.controller("filter", low_pass(5.0), ["hub.rotation"], ["smooth"], 0.01)
-    model.controller("table", lookup([-1.0, 0.0, 1.0], [-3.0, 0.0, 1.0]), ["smooth"], ["pull"],
-                     0.02)
-    model.controller("lead", discrete([[0.5]], [[1.0]], [[-0.2]], [[-1.0]]), ["pull"], ["motor"],
-                     0.04)
-
-
-def test_signals_pass_between_controllers():
-    """In the order of the signals, whatever the order of creation; against a loop in Python."""
-    from scipy.signal import butter, tf2ss
-
-    model = rotor(start=0.7)
-    two_rates(model)
-    result = Simulation(model, 0.01).run_to(1.0).result()
-    A, B, C, D = tf2ss(*butter(2, 2 * 5.0 * 0.01))
-    x, z, angle, speed = np.zeros(2), 0.0, 0.0, 0.7
-    smooth = pull = torque = 0.0
-    for k in range(101):
-        smooth = float((C @ x + D[0] * angle)[0])
-        x = A @ x + B[:, 0] * angle
-        if k % 2 == 0:
-            pull = float(np.interp(smooth, [-1.0, 0.0, 1.0], [-3.0, 0.0, 1.0]))
-        if k % 4 == 0:
-            torque = -0.2 * z - pull
-            z = 0.5 * z + pull
-        assert_allclose([result["hub.rotation"][k], result["smooth.value"][k],
-                         result["pull.value"][k], result["motor.value"][k]],
-                        [angle, smooth, pull, torque], rtol=0, atol=1e-13)
-        angle += 0.01 * speed + 0.5e-4 * torque / 0.1
-        speed += 0.01 * torque / 0.1
-
-
-def test_sensors_of_any_quantity():
-    """Compiled channels and those Python reads give what the result has."""
-    model = rotor(True, start=0.3)
-    names = ["tip.position.y", "tip.velocity.x", "hub.angular_velocity", "hinge.angle",
-             "hinge.rate", "beam.modes.1", "beam.mode_rates.0", "energy.kinetic",
-             "hinge.force.x", "tip.position.norm"]
-    model.controller("none", state_feedback(np.zeros((1, len(names)))), names, ["motor"], 0.02)
-    run = Simulation(model, 0.01)
-    run.run_to(0.2)
-    result = run.result()
-    for name in names:
-        assert_allclose(run.read(name), result[name][-1], rtol=1e-14, atol=1e-18)
-        # forces are those before the sample's restart, of the last iterate
-        assert_allclose(result[f"{name}.value"][-1], result[name][-1], rtol=1e-6, atol=1e-9)
-    assert_array_equal(run.read("tip.position"), result["tip.position"][-1])
-
-
-@pytest.mark.parametrize("planar", [False, True])
-def test_sensors_in_axes_of_a_node(planar):
-    """Accelerometer and force sensor that turn with a body, compiled and by Python."""
-    model = Model(planar=planar)
-    size = 2 if planar else 3
-    body = model.node("body", np.array([0.3, 0.1, -0.2])[:size])
-    model.rigid_body("mass", body, 2.0, 0.3 if planar else np.diag([0.3, 0.4, 0.2]))
-    model.attach("tip", np.array([0.8, 0.4, 0.1])[:size], body)
-    model.rigid_velocity(np.array([0.4, -1.0, 0.3])[:size], 3.0 if planar else (2.0, 1.0, -3.0))
-    model.gravity(np.array([0.0, -9.81, 0.0])[:size])
-    model.actuator("push", node=body, direction=np.eye(size)[0])
-    names = []
-    for k, label in enumerate("xyz"[:size]):
-        model.sensor(f"a{k}", f"tip.acceleration.{label}", axes="body")
-        model.sensor(f"f{k}", f"body.position.{label}", axes="tip", rate=50.0)
-        model.sensor(f"p{k}", f"push.force.{label}", axes=body)
-        names += [f"a{k}", f"f{k}", f"p{k}"]
-    model.controller("none", state_feedback(np.zeros((1, len(names))), offset=[1.7]), names,
-                     ["push"], 0.02)
-    result = Simulation(model, 0.01).run_to(0.3).result()
-    R = result["body.rotation"]
-    if planar:
-        R = np.array([[[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]] for a in R])
-    for k in range(size):
-        for sensor, name in (("a", "tip.acceleration"), ("f", "body.position"),
-                             ("p", "push.force")):
-            expected = np.einsum("nji,nj->ni", R, result[name])[1:, k]
-            assert_allclose(result[f"{sensor}{k}.value"][2::2], expected[1::2], rtol=1e-6,
-                            atol=1e-6)
-    with pytest.raises(InputError, match="has axes and measures 'energy.kinetic': name a compon"):
-        model.sensor("e", "energy.kinetic", axes="body")
-
-
-def test_a_model_shows_its_loop():
-    model = controlled(2)
-    model.sensor("angle", "hinge.angle", rate=50.0, noise=1e-3)
-    shown = model.summary().splitlines()
-    assert "pid   hub.rotation  motor    0.02      2       4" in shown
-    assert "angle  hinge.angle             0.02      0  0.001" in shown
-    assert repr(model.controllers["pid"]) == (
-        "<Controller 'pid' from hub.rotation to motor: period 0.02, 4 states>")
-
-
 def arm_dynamics(q, v, mass, bias):
     """Two rods of one metre and one kilogram, absolute angles apart by relative ones."""
     c, s = np.cos(q[1]), np.sin(q[1])
@@ -392,82 +254,3 @@ def test_a_million_samples_add_no_memory():
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert peak < 1e5 and run.state.memory.size < 100      # whatever the number of samples
-
-
-def raising(t, y, x, u, parameters):
-    u[0] = y[0] if t < 0.1 else np.sqrt(y[0] - 10.0)
-
-
-def test_faults_of_a_run(tmp_path):
-    """What was computed is kept; the message names controller, value and time."""
-    model = rotor(start=0.1)
-    model.controller("root", raising, ["hub.rotation"], ["motor"], PERIOD)
-    with pytest.raises(SimulationError, match=r"stopped at t = 0\.1: controller 'root' gave u = "
-                       r".*nan.* at t = 0\.1: correct it; results up to this time") as caught:
-        Simulation(model, 0.01).run_to(1.0)
-    assert caught.value.result["t"][-1] == pytest.approx(0.09, abs=0.011)
-
-    def outside(t, y, x, u, parameters):
-        u[3] = 1.0
-    model = rotor()
-    model.controller("wide", outside, [], ["motor"], PERIOD)
-    with pytest.raises(InputError, match="the run cannot begin: controller 'wide' raised "
-                       "IndexError: index 3 is out of bounds for axis 0 with size 1"):
-        Simulation(model, 0.01)
-
-
-def test_what_is_refused():
-    def add(**given):
-        model = rotor()
-        model.sensor("angle", "hub.rotation")
-        options = {"name": "c", "law": pid(1.0), "inputs": ["angle"], "outputs": ["motor"],
-                   "period": PERIOD}
-        model.controller(**options | given)
-        return Simulation(model, 0.01)
-    add()
-    for given, message in (
-            ({"period": 0.015}, "controller 'c' has the period 0.015, which the step 0.01 does not "
-             "divide: give a step that does, such as 0.0075"),
-            ({"inputs": ["angel"]}, "controller 'c': input 'angel' is unknown: give a sensor"),
-            ({"inputs": ["hub.rotatoin"]}, "sensor 'hub.rotatoin': .*did you mean 'hub.rotation'"),
-            ({"inputs": ["hub.position"]}, "measures 'hub.position', which is several numbers: "
-             "give one of them, such as hub.position.x"),
-            ({"outputs": ["motor", "other"]}, "controller 'c' has 2 outputs, but pid has 1"),
-            ({"inputs": []}, "controller 'c' has 0 inputs, but pid takes 1 or 2"),
-            ({"outputs": ["angle"]}, "output 'angle' is a sensor: name an actuator, or a signal"),
-            ({"inputs": ["echo"], "outputs": ["echo"]},
-             "algebraic loop: controllers c -> c wait for each other's signals"),
-            ({"period": -1.0}, "controller 'c': period is -1"),
-            ({"law": lambda t, y: None}, r"controller 'c' has the arguments \(t, y\): give a "
-             "function of"),
-            ({"law": 3}, "controller 'c' is 3: give a function of"),
-            ({"states": [1.0]}, "is given 1 states, and its law has 4"),
-            ({"name": "angle"}, "the name is taken by a sensor or controller")):
-        with pytest.raises(InputError, match=message):
-            add(**given)
-    model = rotor()
-    model.controller("a", state_feedback([[1.0]]), ["q"], ["p"], PERIOD)
-    with pytest.raises(InputError, match="algebraic loop: controllers a -> b -> a wait for each "
-                       "other's signals in the same sample; give one of them delay=1"):
-        model.controller("b", state_feedback([[1.0]]), ["p"], ["q"], PERIOD)
-    model.controller("b", state_feedback([[1.0]]), ["p"], ["q"], PERIOD, delay=1)
-    model.controller("m", state_feedback([[1.0]]), ["p"], ["motor"], PERIOD)
-    with pytest.raises(InputError, match="controller 'n' sets 'motor', which controller 'm' sets"):
-        model.controller("n", state_feedback([[1.0]]), ["p"], ["motor"], PERIOD)
-    run = Simulation(model, 0.01)
-    for call, message in ((lambda: run.set_input("moter", 1.0), "input 'moter' is unknown: use "
-                           "'motor'"),
-                          (lambda: run.set_input("motor", np.nan), "input 'motor' is nan"),
-                          (lambda: run.read("tip"), "'tip' is unknown")):
-        with pytest.raises(InputError, match=message):
-            call()
-    for given, message in (
-            ({"joint": "hing"}, "joint 'hing' is unknown: did you mean 'hinge'|'hing' is unknown"),
-            ({}, "acts on nothing, or on several things: give joint="),
-            ({"node": "hub"}, "has no direction: give direction="),
-            ({"joint": "hinge", "limit": -1.0}, "limit is -1"),
-            ({"joint": "hinge", "limit": 1.0, "start": 2.0}, "start is 2.*give one from -1 to 1"),
-            ({"between": ("hub", "hub")}, "node 'hub' is joined to itself"),
-            ({"node": "hub", "direction": (1.0, 0.0), "inertia": 1.0}, "no rotor turns with")):
-        with pytest.raises(InputError, match=message):
-            rotor().actuator("a", **given)

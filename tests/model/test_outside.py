@@ -16,6 +16,7 @@ from sebody.runs.fingerprint import described
 gain = 2.0
 pair = (2.0, (3.0, 4))
 field = np.array([2.0, 3.0])
+bin = 2.0       # named like a builtin
 settings = ModuleType("settings")
 settings.gain = 2.0
 
@@ -82,6 +83,8 @@ READERS = {     # a function, how what it reads is changed, what is said
                "reads helper, which has been defined anew since: "),
     "deleted": (lambda t: gain * t, lambda m: m.delitem(globals(), "gain"),
                 "reads gain, which no longer exists: "),
+    "named like a builtin": (lambda t: bin * t, lambda m: m.setitem(globals(), "bin", 5.0),
+                             "reads bin, which was 2.0 then and is 5.0 now: "),
     "enclosing variable": (ENCLOSED, lambda m: CHANGE(),
                            "reads level, which was 2.0 then and is 5.0 now: "),
 }

@@ -1,0 +1,88 @@
+"""Ready laws in continuous time, by transfer functions, SciPy's filters and integration."""
+
+import numpy as np
+import pytest
+from controlled_rotor import rotor
+from numpy.testing import assert_allclose
+from scipy.integrate import solve_ivp
+from scipy.signal import butter, freqs
+
+from sebody import Simulation, simulate
+from sebody.analysis import state_space
+from sebody.control import linear, low_pass, pid, state_feedback
+
+J = 0.1             # of the rotor
+
+
+def test_ready_laws():
+    """Transfer functions of loops by their coefficients; a filter beside that of SciPy."""
+    omega = np.array([0.3, 2.0, 11.0])
+    s = 1j * omega
+
+    def response(law, inputs=("hub.rotation",), signal=False):
+        model = rotor()
+        model.torque("hub", 1.0, 0.0, name="push")
+        model.controller("loop", law, inputs, ["out" if signal else "motor"])
+        outputs = ["hub.rotation", *(["loop.states"] if law.flow.states.size else [])]
+        return state_space(Simulation(model, 0.01), "push", outputs).response(omega)[:, :, 0]
+    C = 2.0 + 0.7 / s + 0.5 * s * 20.0 / (s + 20.0)
+    assert_allclose(response(pid(2.0, 0.7, 0.5, filter=20.0))[:, 0], 1 / (J * s * s + C),
+                    rtol=1e-9)
+    assert_allclose(response(state_feedback([[3.0, 0.4]]), ("hub.rotation", "hinge.rate"))[:, 0],
+                    1 / (J * s * s + 0.4 * s + 3.0), rtol=1e-9)
+    A, B, c, D = [[-2.0, 1.0], [0.0, -3.0]], [[0.5], [1.0]], [[-1.5, 0.8]], [[-2.5]]
+    C = -(np.array([c @ np.linalg.solve(si * np.eye(2) - A, B) + D for si in s])[:, 0, 0])
+    assert_allclose(response(linear(A, B, c, D))[:, 0], 1 / (J * s * s + C), rtol=1e-9)
+    for order in (1, 2, 3, 5):      # in a loop one of them, as each takes a second to compile
+        law = low_pass(0.4, order)
+        exact = freqs(*butter(order, 2 * np.pi * 0.4, analog=True), omega)[1]
+        if order == 5:
+            found = response(law, signal=True)
+            assert_allclose(found[:, -1] / found[:, 0], exact, rtol=1e-9)
+        B, A, D, c = _blocks(law.flow.parameters.reshape(order + 1, order + 1))
+        assert_allclose([(c @ np.linalg.solve(si * np.eye(order) - A, B) + D)[0, 0] for si in s],
+                        exact, rtol=1e-9)
+
+
+def _blocks(whole):
+    """B, A, D and C of a law of one input and output: rates, then outputs, by y, then x."""
+    return whole[:-1, :1], whole[:-1, 1:], whole[-1:, :1], whole[-1:, 1:]
+
+
+@pytest.mark.parametrize("inputs", [1, 2])
+@pytest.mark.parametrize("y", [0.1, 2.0, -2.0])     # within limits; cut off, the integral at rest
+def test_derivatives_of_pid(inputs, y):
+    """Given in closed form, against differences, which are exact as the law is linear."""
+    law = pid(3.0, 0.7, 0.2, filter=20.0, reference=0.4, limit=2.0)
+    flow, _, parameters, derivatives = law.flow
+    point = np.array([y, 0.3, -0.2, 0.1])[[0, 2, 3] if inputs == 1 else [0, 1, 2, 3]]
+
+    def found(z):
+        rates, u = np.zeros(2), np.zeros(1)
+        flow(0.0, z[:inputs], z[inputs:], rates, u, parameters)
+        return np.r_[rates, u]
+    D = np.zeros((3, inputs + 2))
+    derivatives(0.0, point[:inputs], point[inputs:], D, parameters)
+    expected = np.array([found(point + d) - found(point - d)
+                         for d in 1e-3 * np.eye(inputs + 2)]).T / 2e-3
+    assert_allclose(D, expected, atol=1e-10)
+
+
+def test_the_integral_rests_while_the_output_is_cut_off():
+    """Against DOP853 of the same law; without anti-windup the angle overshoots by half."""
+    model = rotor(limit=0.6)
+    model.controller("loop", pid(1.0, 2.0, 0.5, filter=30.0, reference=1.0, limit=0.6),
+                     ["hub.rotation"], ["motor"])
+    result = simulate(model, 2e-3, 4.0)
+
+    def rates(t, z):
+        angle, rate, integral, last = z
+        e, slope = 1.0 - angle, 30.0 * (-angle - last)
+        raw = e + 2.0 * integral + 0.5 * slope
+        u = min(max(raw, -0.6), 0.6)
+        return rate, u / J, e if raw == u or (raw - u) * e <= 0 else 0.0, slope
+    exact = solve_ivp(rates, (0, 4), np.zeros(4), rtol=1e-9, atol=1e-10, max_step=2e-3,
+                      t_eval=result.t).y
+    # the integral stops and goes on within a step: e h of it is left, each time
+    assert_allclose(result["hub.rotation"], exact[0], rtol=0, atol=1e-3)
+    assert np.abs(result["motor.value"]).max() == 0.6
