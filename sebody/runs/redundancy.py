@@ -32,9 +32,12 @@ def least(matrix: csc_matrix, system: System,
     direct : Scaled, optional
         Factors of the matrix, if there are any yet.
     """
-    direct = direct or Scaled(matrix, units(matrix, system))
+    direct = direct or Scaled(matrix)
     if direct.regular:
         return direct.solve
+    if not system.massless[0]:
+        regularized = Relaxed(matrix, part_sizes(matrix, system), system)
+        return lambda demand: regularized.least(demand)[0]
     scale = _scales(matrix, system)
     squares = LeastSquares(csc_matrix(diags(scale) @ matrix @ diags(scale)))
     return lambda demand: scale * squares.solve(scale * demand)
