@@ -8,6 +8,7 @@ from scipy.sparse import csc_matrix, diags
 
 from sebody.assembly.numbering import Numbering
 from sebody.engine.matrix import THIN
+from sebody.engine.regularization import LIGHT
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.errors import InputError
@@ -32,9 +33,12 @@ def least(matrix: csc_matrix, system: System,
     direct : Scaled, optional
         Factors of the matrix, if there are any yet.
     """
-    direct = direct or Scaled(matrix, units(matrix, system))
+    direct = direct or Scaled(matrix)
     if direct.regular:
         return direct.solve
+    if not system.massless[0]:
+        regularized = Relaxed(matrix, part_sizes(matrix, system), system)
+        return lambda demand: regularized.least(demand)[0]
     scale = _scales(matrix, system)
     squares = LeastSquares(csc_matrix(diags(scale) @ matrix @ diags(scale)))
     return lambda demand: scale * squares.solve(scale * demand)
@@ -117,7 +121,7 @@ class Solver:
             system.massless_axes[:matrix.shape[0]] = massless_axes(matrix, system)
             self.regularized = Relaxed(matrix, part_sizes(matrix, system), system)
             self._check_mass(system)
-            self._find_redundant(system)
+            self._find_redundant(matrix, system)
 
     @property
     def massless(self) -> bool:
@@ -144,10 +148,15 @@ class Solver:
                              f"{self.names[int(np.argmax(left))]}: they demand different values "
                              "of the same acceleration; remove a joint or a drive")
 
-    def _find_redundant(self, system: System) -> None:
-        """Joints with constraints whose pivots are those of the regularization."""
-        multipliers = multiplying(system)
-        weak = (self.regularized.pivots < WEAK) & multipliers
+    def _find_redundant(self, matrix: csc_matrix, system: System) -> None:
+        """Joints with constraints whose pivots are those of the regularization.
+
+        Whether constraints contain each other is no matter of masses: where these are missing,
+        pivots are rounding, so all have some more.
+        """
+        multipliers, sizes = multiplying(system), part_sizes(matrix, system)
+        heavier = Relaxed(matrix + diags(np.where(multipliers, 0.0, LIGHT * sizes)), sizes, system)
+        weak = (heavier.pivots < WEAK) & multipliers
         self.redundant = joints(self.names, weak)
         if not self.redundant:
             return
