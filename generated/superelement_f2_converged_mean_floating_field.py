@@ -39,7 +39,7 @@ from sebody.kernels.dense import (
     add_blocks_times,
     block_times,
     clear,
-    columns_times,
+    columns_times_all,
     inverse_3,
     rows_times,
 )
@@ -421,12 +421,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         follow(Zq, Zd, z, zd, zdd, free, slaved, hn)
         # J2_kl z, K_k^T z, K_k^T zdot and K_k zdot
         couplings_times(couplings, z, zd, products, 15*hN)
-        # first moments, couplings, inertia at rest, by z
-        columns_times(moment_rows, z, line0, 12, N)
-        # first moments, couplings, inertia at rest, by zd
-        columns_times(moment_rows, zd, line1, 12, N)
-        # first moments, couplings, inertia at rest, by zdd
-        columns_times(moment_rows, zdd, line2, 12, N)
+        # first moments, couplings, inertia at rest, by z and its rates
+        columns_times_all(moment_rows, z, zd, zdd, line0, line1, line2, 12, N)
         # quadratic parts, by z
         rows_times(products, z, product0, N, 8, hN)
         # quadratic parts, by zd

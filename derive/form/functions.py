@@ -56,6 +56,8 @@ PACKED_ROOM = _function("packed_products", "packed_room", Gives.WHOLE, count=WHO
 
 # products
 COLUMNS_TIMES = _function("dense", "columns_times", A=READ, x=READ, out=WRITE, **_SIZES)
+COLUMNS_TIMES_ALL = _function("dense", "columns_times_all", A=READ, x=READ, y=READ, z=READ,
+                              of_x=WRITE, of_y=WRITE, of_z=WRITE, **_SIZES)
 ARROW_TIMES = _function("dense", "arrow_times", A=READ, x=READ, out=WRITE, n=WHOLE, filled=WHOLE)
 BLOCK_TIMES = _function("dense", "block_times", A=READ, x=READ, out=WRITE, **_SIZES, height=WHOLE)
 ADD_BLOCK_TIMES = _function("dense", "add_block_times", A=READ, x=READ, out=ADD, **_SIZES,
