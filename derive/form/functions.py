@@ -79,7 +79,8 @@ COUPLINGS_TIMES = _function("packed_products", "couplings_times", matrices=READ,
 ADD_PACKED = _function("packed_products", "add_packed", matrices=READ, factors=READ, out=ADD,
                        height=WHOLE)
 ADD_COUPLINGS = _function("packed_products", "add_couplings", matrices=READ, factors=READ,
-                          of_x=ADD, of_y=ADD, height=WHOLE)
+                          scales=SCRATCH, of_x=ADD, of_y=ADD, products=WHOLE, size=WHOLE,
+                          height=WHOLE)
 
 # coordinates that determine the others, and those that follow them
 TO_FREE = _function("packed_products", "to_free", y=READ, axes=READ, order=READ, moved=SCRATCH,

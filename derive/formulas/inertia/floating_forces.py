@@ -103,7 +103,7 @@ def stacked(title: str, matrices: Array, row: Array, out: Array | View, count: i
 
 def coupled(f: FloatingQuantities, title: str, row: Array, rate: Array, out: Array) -> Call:
     """Products of the quadratic constants with a row and its rate."""
-    return call(title, COUPLINGS_TIMES, at.couplings, row, rate, out, (f.pairs + 3 * f.turns) * hN)
+    return call(title, COUPLINGS_TIMES, at.couplings, row, rate, out, f.made * hN)
 
 
 def added(title: str, matrix: Array, row: Array) -> Call:
