@@ -28,36 +28,46 @@ def pack_couplings(squares: NDArray, couplings: NDArray) -> NDArray:
         Matrices C.
     """
     S, C = (padded(stack, stack.shape) for stack in (squares, couplings))
-    first, count = len(S), len(C)
+    first, count, height = len(S), len(C), S.shape[1]
     size = packed_size(first + 3 * count, *squares.shape[1:])
-    of_both, across, multiples = np.zeros_like(S), C.transpose(0, 2, 1).copy(), []
-    scale = np.sqrt(np.abs(np.diagonal(S, axis1=1, axis2=2)).sum(axis=0))
-    for k, (matrix, transpose) in enumerate(zip(C.copy(), across.copy(), strict=True)):
-        of_x, of_y, of_transpose = range(first + k, first + k + 3 * count, count)
-        for q in range(first - count, first):
-            rows, columns = (_factors(A, S[q], scale) for A in (matrix, transpose))
-            if rows is not None and columns is not None:
-                behind = q + 4 * count
-                multiples += [(of_x, q, rows), (of_y, behind, rows),
-                              (of_transpose, behind, columns)]
-                of_both[q], C[k], across[k] = S[q], 0.0, 0.0
-                break
-        else:
-            columns = _factors(transpose, matrix, scale)
-            if columns is not None:
-                multiples.append((of_transpose, of_y, columns))
-                across[k] = 0.0
-    S[of_both.any(axis=(1, 2))] = 0.0
-    alike = ~across.any(axis=(1, 2))
+    across, of_both = C.transpose(0, 2, 1).copy(), np.zeros_like(S)
+    multiples = _take_multiples(S, C, across, of_both)
+    alike = ~across.any(axis=(1, 2))            # their transposes are not needed
     others = np.where(alike[:, np.newaxis, np.newaxis], 0.0, C)
     C[~alike] = 0.0
     groups = [*mirrored(S), *coupled(others, first), *alone(S), *alone(of_both, behind=4 * count)]
     groups += alone(C + others, first, behind=count)
     groups += alone(others.transpose(0, 2, 1), first + 2 * count, vector=1)
-    height = S.shape[1]
     groups += [Group(MULTIPLE, height * place, height * other, (), factors.reshape(-1, 1, LANES))
                for place, other, factors in multiples]
     return row_of(groups, size)
+
+
+def _take_multiples(S: NDArray, C: NDArray, across: NDArray, of_both: NDArray
+                    ) -> list[tuple[int, int, NDArray]]:
+    """Take matrices whose products are multiples out of C and of their transposes.
+
+    And those out of S that multiply both vectors for their sake. Returned are the numbers of each
+    product and of the other one, and the factors.
+    """
+    first, count, found = len(S), len(C), []
+    scale = np.sqrt(np.abs(np.diagonal(S, axis1=1, axis2=2)).sum(axis=0))
+    for k in range(count):
+        of_x, of_y, of_transpose = range(first + k, first + k + 3 * count, count)
+        for q in range(first - count, first):
+            rows, columns = (_factors(A, S[q], scale) for A in (C[k], across[k]))
+            if rows is not None and columns is not None:
+                behind = q + 4 * count
+                found += [(of_x, q, rows), (of_y, behind, rows), (of_transpose, behind, columns)]
+                of_both[q], C[k], across[k] = S[q], 0.0, 0.0
+                break
+        else:
+            columns = _factors(across[k], C[k], scale)
+            if columns is not None:
+                found.append((of_transpose, of_y, columns))
+                across[k] = 0.0
+    S[of_both.any(axis=(1, 2))] = 0.0
+    return found
 
 
 def _factors(matrix: NDArray, other: NDArray, scale: NDArray) -> NDArray | None:

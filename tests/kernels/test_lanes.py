@@ -12,7 +12,12 @@ from sebody.compiler.decorators import compiled
 from sebody.contract.counts import LANES, MEMBERS, packed_size, whole_vectors
 from sebody.fem import Section, straight_beam
 from sebody.kernels.abi import at, pointer_to
-from sebody.kernels.dense import add_blocks_times, add_rows_times, columns_times
+from sebody.kernels.dense import (
+    add_blocks_times,
+    add_rows_times,
+    columns_times,
+    columns_times_all,
+)
 from sebody.kernels.frame_search import best_fit, mean_axes, planar_fit, planar_mean_axes
 from sebody.kernels.packed import multiples, pack
 from sebody.kernels.packed_couplings import pack_couplings
@@ -107,6 +112,25 @@ def test_dense_products(rows, columns, of_B):
     np.testing.assert_allclose(given[5].values[:rows], begin[:rows] + Ax + By, atol=bound, rtol=0)
     np.testing.assert_array_equal(set_to[rows:], begin[rows:])
     np.testing.assert_array_equal(dotted[columns:], begin[columns:])
+
+
+@compiled
+def three(A, x, y, z, of_x, of_y, of_z, rows, columns):
+    columns_times_all(pointer_to(A.rows), pointer_to(x.rows), pointer_to(y.rows),
+                      pointer_to(z.rows), pointer_to(of_x.rows), pointer_to(of_y.rows),
+                      pointer_to(of_z.rows), rows, columns)
+
+
+def test_three_products_at_once():
+    """Of matrices that members have of their own."""
+    rng, rows, columns = np.random.default_rng(6), 6, 5
+    A, given = rng.normal(size=(columns, 8, MEMBERS)), rng.normal(size=(3, columns, MEMBERS))
+    out = [Given.of(np.full((rows + 1, MEMBERS), 5.0)) for _ in range(3)]
+    three(Given.of(A.reshape(-1, MEMBERS)), *map(Given.of, given), *out, rows, columns)
+    for x, found in zip(given, out, strict=True):
+        expected = np.einsum("crm,cm->rm", A[:, :rows], x)
+        np.testing.assert_allclose(found.values[:rows], expected, atol=1e-13)
+        assert (found.values[rows] == 5.0).all()
 
 
 @compiled
