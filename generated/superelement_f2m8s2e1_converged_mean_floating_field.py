@@ -39,7 +39,7 @@ from sebody.kernels.dense import (
     add_blocks_times,
     block_times,
     clear,
-    columns_times,
+    columns_times_all,
     inverse_3,
     rows_times,
 )
@@ -68,7 +68,7 @@ MODES = 12          # first internal mode
 DAMPED = None        # has structural damping, None where a body tells
 N_MODES = 8        # their number, None where it is read at run time
 SECOND_ORDER = (2, 1)       # slaved coordinates, stress resultants
-WORK_ROWS = 122
+WORK_ROWS = 146
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
@@ -137,7 +137,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Zq = at(work, 56*row)
         Zd = at(work, 68*row)
         products = at(work, 80*row)
-        Gy = at(work, 122*row)
+        Gy = at(work, 146*row)
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
@@ -420,13 +420,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # eta_b = y . Q_b y / 2, their rates and second rates
         follow(Zq, Zd, z, zd, zdd, free, 2, hn)
         # J2_kl z, K_k^T z, K_k^T zdot and K_k zdot
-        couplings_times(couplings, z, zd, products, 15*hN)
-        # first moments, couplings, inertia at rest, by z
-        columns_times(moment_rows, z, line0, 12, N)
-        # first moments, couplings, inertia at rest, by zd
-        columns_times(moment_rows, zd, line1, 12, N)
-        # first moments, couplings, inertia at rest, by zdd
-        columns_times(moment_rows, zdd, line2, 12, N)
+        couplings_times(couplings, z, zd, products, 18*hN)
+        # first moments, couplings, inertia at rest, by z and its rates
+        columns_times_all(moment_rows, z, zd, zdd, line0, line1, line2, 12, N)
         # quadratic parts, by z
         rows_times(products, z, product0, N, 8, hN)
         # quadratic parts, by zd
@@ -785,11 +781,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ds = at(work, 50*row)
             dh = at(work, 51*row)
             dg = at(work, 52*row)
-            Za = at(work, 95*row)
-            more = at(work, 107*row)
-            Lz = at(work, (122 + n + 18)*row)
-            Lv = at(work, (122 + 2*(n + 18))*row)
-            La = at(work, (122 + 3*(n + 18))*row)
+            Za = at(work, 98*row)
+            more = at(work, 110*row)
+            scales = at(work, 128*row)
+            Lz = at(work, (146 + n + 18)*row)
+            Lv = at(work, (146 + 2*(n + 18))*row)
+            La = at(work, (146 + 3*(n + 18))*row)
             # Q_b zdd, all b
             packed_times(followers, zdd, Za, 2*hn)
             # second derivative of the coefficients of T^-1
@@ -798,7 +795,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e2s[j] = inverse_tangent_second(psi_x*psi_x + psi_y*psi_y + psi_z*psi_z)
             # J2_kl zdot, K_k^T zddot and K_k zddot
-            couplings_times(couplings, zd, zdd, more, 15*hN)
+            couplings_times(couplings, zd, zdd, more, 18*hN)
             # factors of the local tangents
             turning_x, turning_y, turning_z = zdd[N + 3], zdd[N + 4], zdd[N + 5]
             spin_x, spin_y, spin_z = zd[N], zd[N + 1], zd[N + 2]
@@ -818,6 +815,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             by_couplings[12] = -spin_x
             by_couplings[13] = -spin_y
             by_couplings[14] = -spin_z
+            by_couplings[15] = 0.0
+            by_couplings[16] = 0.0
+            by_couplings[17] = 0.0
             ones[0] = 1
             # forces on eta as factors
             for b in range(2):
@@ -830,7 +830,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # local tangents
             clear(La, N*deep)
             # by z: J2_kl and K_k^T; by zdot: K_k^T and K_k
-            add_couplings(couplings, by_couplings, Lz, Lv, deep)
+            add_couplings(couplings, by_couplings, scales, Lz, Lv, 18, hN, deep)
             # forces on eta
             add_packed(followers, by_followers, Lz, deep)
             # structural damping

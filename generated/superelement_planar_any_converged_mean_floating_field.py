@@ -41,7 +41,7 @@ from sebody.kernels.dense import (
     add_blocks_times,
     block_times,
     clear,
-    columns_times,
+    columns_times_all,
     rows_times,
 )
 from sebody.kernels.frame_search import planar_mean
@@ -68,7 +68,7 @@ MODES = None          # first internal mode
 DAMPED = None        # has structural damping, None where a body tells
 N_MODES = None        # their number, None where it is read at run time
 SECOND_ORDER = None       # slaved coordinates, stress resultants
-WORK_ROWS = 119
+WORK_ROWS = 143
 WORK_SQUARES = 4
 # arithmetic of one evaluation: of the element, of each position and of each rotation; then the
 # number of products with n x n matrices
@@ -139,7 +139,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Zq = at(work, 53*row)
         Zd = at(work, 65*row)
         products = at(work, 77*row)
-        Gy = at(work, 119*row)
+        Gy = at(work, 143*row)
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
@@ -300,13 +300,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         # eta_b = y . Q_b y / 2, their rates and second rates
         follow(Zq, Zd, z, zd, zdd, free, slaved, hn)
         # J2_kl z, K_k^T z, K_k^T zdot and K_k zdot
-        couplings_times(couplings, z, zd, products, 4*hN)
-        # first moments, couplings, inertia at rest, by z
-        columns_times(moment_rows, z, line0, 4, N)
-        # first moments, couplings, inertia at rest, by zd
-        columns_times(moment_rows, zd, line1, 4, N)
-        # first moments, couplings, inertia at rest, by zdd
-        columns_times(moment_rows, zdd, line2, 4, N)
+        couplings_times(couplings, z, zd, products, 5*hN)
+        # first moments, couplings, inertia at rest, by z and its rates
+        columns_times_all(moment_rows, z, zd, zdd, line0, line1, line2, 4, N)
         # quadratic parts, by z
         rows_times(products, z, product0, N, 4, hN)
         # quadratic parts, by zd
@@ -525,15 +521,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             ds = at(work, 47*row)
             dh = at(work, 48*row)
             dg = at(work, 49*row)
-            Za = at(work, 92*row)
-            more = at(work, 104*row)
-            Lz = at(work, (119 + n + 18)*row)
-            Lv = at(work, (119 + 2*(n + 18))*row)
-            La = at(work, (119 + 3*(n + 18))*row)
+            Za = at(work, 95*row)
+            more = at(work, 107*row)
+            scales = at(work, 125*row)
+            Lz = at(work, (143 + n + 18)*row)
+            Lv = at(work, (143 + 2*(n + 18))*row)
+            La = at(work, (143 + 3*(n + 18))*row)
             # Q_b zdd, all b
             packed_times(followers, zdd, Za, slaved*hn)
             # J2_kl zdot, K_k^T zddot and K_k zddot
-            couplings_times(couplings, zd, zdd, more, 4*hN)
+            couplings_times(couplings, zd, zdd, more, 5*hN)
             # factors of the local tangents
             turning_z = zdd[N + 2]
             spin_z = zd[N]
@@ -541,6 +538,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             by_couplings[1] = c_geo*turning_z
             by_couplings[2] = spin_z
             by_couplings[3] = -spin_z
+            by_couplings[4] = 0.0
             ones[0] = 1
             # forces on eta as factors
             for b in range(slaved):
@@ -553,7 +551,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             # local tangents
             clear(La, N*deep)
             # by z: J2_kl and K_k^T; by zdot: K_k^T and K_k
-            add_couplings(couplings, by_couplings, Lz, Lv, deep)
+            add_couplings(couplings, by_couplings, scales, Lz, Lv, 5, hN, deep)
             # forces on eta
             add_packed(followers, by_followers, Lz, deep)
             # structural damping

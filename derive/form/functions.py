@@ -56,6 +56,8 @@ PACKED_ROOM = _function("packed_products", "packed_room", Gives.WHOLE, count=WHO
 
 # products
 COLUMNS_TIMES = _function("dense", "columns_times", A=READ, x=READ, out=WRITE, **_SIZES)
+COLUMNS_TIMES_ALL = _function("dense", "columns_times_all", A=READ, x=READ, y=READ, z=READ,
+                              of_x=WRITE, of_y=WRITE, of_z=WRITE, **_SIZES)
 ARROW_TIMES = _function("dense", "arrow_times", A=READ, x=READ, out=WRITE, n=WHOLE, filled=WHOLE)
 BLOCK_TIMES = _function("dense", "block_times", A=READ, x=READ, out=WRITE, **_SIZES, height=WHOLE)
 ADD_BLOCK_TIMES = _function("dense", "add_block_times", A=READ, x=READ, out=ADD, **_SIZES,
@@ -77,7 +79,8 @@ COUPLINGS_TIMES = _function("packed_products", "couplings_times", matrices=READ,
 ADD_PACKED = _function("packed_products", "add_packed", matrices=READ, factors=READ, out=ADD,
                        height=WHOLE)
 ADD_COUPLINGS = _function("packed_products", "add_couplings", matrices=READ, factors=READ,
-                          of_x=ADD, of_y=ADD, height=WHOLE)
+                          scales=SCRATCH, of_x=ADD, of_y=ADD, products=WHOLE, size=WHOLE,
+                          height=WHOLE)
 
 # coordinates that determine the others, and those that follow them
 TO_FREE = _function("packed_products", "to_free", y=READ, axes=READ, order=READ, moved=SCRATCH,

@@ -17,7 +17,8 @@ from sebody.assembly.body_axes import (
 from sebody.contract.counts import Counts, first_rotation
 from sebody.errors import InputError
 from sebody.generated.options import CONDITIONS
-from sebody.kernels.packed import pack, pack_couplings
+from sebody.kernels.packed import pack
+from sebody.kernels.packed_couplings import pack_couplings
 from sebody.reduction.invariants import InertiaInvariants
 
 TIE = 1e-6      # by how much the coordinates of equal nodes differ in the choice between them

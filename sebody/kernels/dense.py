@@ -24,6 +24,7 @@ from sebody.kernels.instructions import (
 
 _UNROLLED = 2       # sums over alternate columns: hides the latency of additions
 _VECTORS = 4, 2, 1      # vectors of rows at a time: every factor serves for all of them
+_FEW = 3        # the same of three products at once
 
 
 @intrinsic
@@ -35,6 +36,15 @@ def columns_times(typingctx, A, x, out, rows, columns):
     used, since sizes may be constants there.
     """
     return inlined(write_columns, A, x, out, rows, columns)
+
+
+@intrinsic
+def columns_times_all(typingctx, A, x, y, z, of_x, of_y, of_z, rows, columns):
+    """`columns_times` of three vectors, for matrices of few rows.
+
+    Every entry is read once, and no sum waits for its own last product.
+    """
+    return inlined(write_columns_of_all, A, x, y, z, of_x, of_y, of_z, rows, columns)
 
 
 @intrinsic
@@ -187,6 +197,29 @@ def write_more_columns(builder, A, x, out, rows, columns, height):
 def write_columns(builder, A, x, out, rows, columns):
     """Instructions of `columns_times`."""
     _multiply(builder, A, x, out, rows, columns, whole_vectors(builder, rows), False)
+
+
+def write_columns_of_all(builder, A, x, y, z, of_x, of_y, of_z, rows, columns):
+    """Instructions of `columns_times_all`."""
+    first, last = WORD(0), whole_vectors(builder, rows)
+    for vectors in (_FEW, 1):
+        end = builder.sub(last, builder.srem(builder.sub(last, first), WORD(LANES * vectors)))
+        with short_loop(builder, first, end, LANES * vectors) as row:
+            places = [builder.add(row, WORD(LANES * k)) for k in range(vectors)]
+            sums = [totals(builder, vectors) for _ in range(3)]
+            for total in (total for kept in sums for total in kept):
+                builder.store(no_sum(), total)
+            with short_loop(builder, WORD(0), columns) as column:
+                start = builder.gep(A, [builder.mul(column, last)])
+                entries = [load_vector(builder, start, place) for place in places]
+                for given, kept in zip((x, y, z), sums, strict=True):
+                    factor = load_broadcast(builder, given, column)
+                    for total, entry in zip(kept, entries, strict=True):
+                        add_product(builder, total, entry, factor)
+            for out, kept in zip((of_x, of_y, of_z), sums, strict=True):
+                for place, total in zip(places, kept, strict=True):
+                    store_vector(builder, builder.load(total), out, place)
+        first = end
 
 
 def _multiply(builder, A, x, out, rows, columns, height, add):

@@ -5,23 +5,25 @@ blocks. A stack of matrices of equal shapes is cut into strips: `LANES` rows of 
 any row on, and four columns or eight, from any column on. Strips of zeros are left out; strips of
 the same columns are a group, which reads its numbers of the vector once. In large bodies reading
 the entries takes most of the time: a matrix that multiplies both vectors is read once, and where
-many strips of one matrix have the same columns, they are used once more, transposed. Groups by
-what their strips are:
+many strips of one matrix have the same columns, they are used once more, transposed. Products that
+are multiples of others, number by number, are made from these. Groups by what their strips are:
 
 ========  ==========================================================================================
 ONCE      strips of any matrices
 BOTH      strips of matrices that multiply both vectors
 MIRRORED  strips below the diagonal of a symmetric matrix, which are also those to its right
 COUPLED   strips of a matrix that multiplies both vectors, and whose transpose multiplies the second
+MULTIPLE  no strips: vectors of factors, which make a product from another one
 ========  ==========================================================================================
 
 A row has at most the size that matrices without zeros would take; it begins with whole numbers, in
 the bits of floats:
 
 ========  ==========================================================================================
-6         number of groups of each kind: by use, first narrow ones, then wide ones; those that are
+7         number of groups of each kind: by use, first narrow ones, then wide ones; those that are
           used twice are wide
-5 each    first column, vector, number of strips, where their heads and entries begin
+5 each    first column, vector, number of strips, where their heads and entries begin; of MULTIPLE
+          the places of its product and of the other one in the stack, then as above
 3 each    head of a strip: place of its product in the stack of all products, matrix, first row
 2, 3 ...  heads of BOTH: how far the products of the second vector are behind those of the first
           one, and their matrices; then as above
@@ -40,10 +42,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody.contract.counts import CACHE_LINE, LANES, packed_size, whole_vectors
 
-ONCE, BOTH, MIRRORED, COUPLED = range(4)    # uses of groups
+ONCE, BOTH, MIRRORED, COUPLED, MULTIPLE = range(5)      # uses of groups
 NARROW, WIDE = 4, 8     # columns of a strip
 KINDS = ((ONCE, NARROW), (ONCE, WIDE), (BOTH, NARROW), (BOTH, WIDE), (MIRRORED, WIDE),
-         (COUPLED, WIDE))
+         (COUPLED, WIDE), (MULTIPLE, 1))
 BEGIN, GROUP, HEAD = len(KINDS), 5, 3   # whole numbers of a row, of a group and of a strip
 BEHIND = 2              # of a group of both vectors
 PRODUCTS = 3            # of a group that is used twice
@@ -51,13 +53,22 @@ MANY = 3        # strips of one matrix: with fewer, sums of transposed products 
 
 
 class Group(NamedTuple):
-    """Strips of the same columns."""
+    """Strips of the same columns, or what makes a multiple: see the table of whole numbers."""
 
     use: int
     first: int                  # column
     vector: int                 # that they multiply: the first one or the second
     heads: tuple[int, ...]
     entries: NDArray            # (strips, columns, LANES)
+
+
+class Multiple(NamedTuple):
+    """A product that is made from another one, read back."""
+
+    place: int          # in the stack of all products
+    other: int          # place of the other one
+    at: int             # where the factors begin
+    factors: NDArray
 
 
 class Use(NamedTuple):
@@ -81,26 +92,9 @@ class Strip(NamedTuple):
 
 def pack(matrices: ArrayLike, shape: tuple[int, int, int], symmetric: bool = False) -> NDArray:
     """The row of some matrices, ``(count, rows, columns)``."""
-    stack = _padded(matrices, shape)
-    groups = list(_mirrored(stack)) if symmetric else []
-    return _row([*groups, *_alone(stack)], packed_size(*shape))
-
-
-def pack_couplings(squares: NDArray, couplings: NDArray) -> NDArray:
-    """The row of products with two vectors x and y: ``S x``, ``C x``, ``C y``, ``C^T y``.
-
-    Parameters
-    ----------
-    squares : (squares, N, N)
-        Symmetric matrices S.
-    couplings : (couplings, N, N)
-        Matrices C.
-    """
-    S, C = (_padded(stack, stack.shape) for stack in (squares, couplings))
-    groups = [*_mirrored(S), *_coupled(C, len(S)), *_alone(S)]
-    groups += _alone(C, len(S), behind=len(C))
-    groups += _alone(C.transpose(0, 2, 1), len(S) + 2 * len(C), vector=1)
-    return _row(groups, packed_size(len(S) + 3 * len(C), *squares.shape[1:]))
+    stack = padded(matrices, shape)
+    groups = list(mirrored(stack)) if symmetric else []
+    return row_of([*groups, *alone(stack)], packed_size(*shape))
 
 
 def move_to_cache_lines(row: NDArray, first: int) -> None:
@@ -122,29 +116,46 @@ def move_to_cache_lines(row: NDArray, first: int) -> None:
 def unpack(row: NDArray, shape: tuple[int, int, int]) -> NDArray:
     """The matrices of a row, ``(count, rows, columns)``, one for each product."""
     count, rows, columns = shape
-    stack = np.zeros((count, whole_vectors(rows), whole_vectors(columns)))
-    for uses, i, first, _, entries in strips(row):
+    height, found = whole_vectors(rows), list(strips(row))
+    products = 1 + max((use.matrix for strip in found for use in strip.uses), default=0)
+    stack = np.zeros((max(count, products), height, whole_vectors(columns)))
+    for uses, i, first, _, entries in found:
         for use in uses:
             below, right = (first, i) if use.transposed else (i, first)
             block = entries.T if use.transposed else entries
             stack[use.matrix, below:below + block.shape[0], right:right + block.shape[1]] += block
-    return stack[:, :rows, :columns]
+    for place, other, _, factors in multiples(row):
+        stack[place // height] = factors[:, np.newaxis] * stack[other // height]
+    return stack[:count, :rows, :columns]
 
 
 def strips(row: NDArray) -> Iterator[Strip]:
     """The strips of a row, group by group."""
     row = np.ascontiguousarray(row)
+    for use, width, (first, vector, count, head, at) in _groups(row):
+        for s in range(count) if use != MULTIPLE else ():
+            begin = at + LANES * width * s
+            entries = row[begin:begin + LANES * width].reshape(width, LANES).T
+            i, factors = _factors(row.view(np.int64), use, vector, head, s, first)
+            yield Strip(factors, i, first, begin, entries)
+
+
+def multiples(row: NDArray) -> Iterator[Multiple]:
+    """The products of a row that are made from others."""
+    row = np.ascontiguousarray(row)
+    for use, _, (place, other, count, _, at) in _groups(row):
+        if use == MULTIPLE:
+            yield Multiple(place, other, at, row[at:at + LANES * count])
+
+
+def _groups(row: NDArray) -> Iterator[tuple[int, int, list[int]]]:
+    """Use, width and whole numbers of the groups of a row."""
     whole = row.view(np.int64)
     kinds = [kind for kind, count in zip(KINDS, whole[:BEGIN].tolist(), strict=True)
              for _ in range(count)]
-    for (use, width), group in zip(
-            kinds, whole[BEGIN:][:GROUP * len(kinds)].reshape(-1, GROUP).tolist(), strict=True):
-        first, vector, count, head, at = group
-        for s in range(count):
-            begin = at + LANES * width * s
-            entries = row[begin:begin + LANES * width].reshape(width, LANES).T
-            i, factors = _factors(whole, use, vector, head, s, first)
-            yield Strip(factors, i, first, begin, entries)
+    numbers = whole[BEGIN:][:GROUP * len(kinds)].reshape(-1, GROUP).tolist()
+    for (use, width), group in zip(kinds, numbers, strict=True):
+        yield use, width, group
 
 
 def _factors(whole: NDArray, use: int, vector: int, head: int, strip: int, first: int
@@ -162,14 +173,14 @@ def _factors(whole: NDArray, use: int, vector: int, head: int, strip: int, first
     return i, forward[:1 + (use == BOTH)]
 
 
-def _padded(matrices: ArrayLike, shape: tuple[int, int, int]) -> NDArray:
+def padded(matrices: ArrayLike, shape: tuple[int, int, int]) -> NDArray:
     count, rows, columns = shape
     stack = np.zeros((count, whole_vectors(rows), whole_vectors(columns)))
     stack[:, :rows, :columns] = np.asarray(matrices, dtype=float).reshape(shape)
     return stack
 
 
-def _row(groups: list[Group], size: int) -> NDArray:
+def row_of(groups: list[Group], size: int) -> NDArray:
     """Groups by their kinds."""
     kinds = [KINDS.index((group.use, group.entries.shape[1])) for group in groups]
     groups = [groups[g] for g in np.argsort(kinds, kind="stable").tolist()]
@@ -187,7 +198,7 @@ def _row(groups: list[Group], size: int) -> NDArray:
     return row
 
 
-def _alone(stack: NDArray, before: int = 0, vector: int = 0, behind: int = 0) -> Iterator[Group]:
+def alone(stack: NDArray, before: int = 0, vector: int = 0, behind: int = 0) -> Iterator[Group]:
     """Groups of strips that are used as they are.
 
     `before` is the number of products before those of the stack; those of the second vector are
@@ -260,7 +271,7 @@ def _taken(columns: NDArray, begin: list[tuple[int, int]]) -> NDArray:
     return found
 
 
-def _mirrored(stack: NDArray) -> Iterator[Group]:
+def mirrored(stack: NDArray) -> Iterator[Group]:
     """Takes strips below the diagonal out of symmetric matrices, and what mirrors them."""
     for k, first, rows in _runs(stack, below=True):
         yield _used_twice(stack, MIRRORED, k, first, rows, (k, k, k))
@@ -268,7 +279,7 @@ def _mirrored(stack: NDArray) -> Iterator[Group]:
             stack[k, first:first + WIDE, row:row + LANES] = 0.0
 
 
-def _coupled(stack: NDArray, before: int) -> Iterator[Group]:
+def coupled(stack: NDArray, before: int) -> Iterator[Group]:
     """Takes strips out of matrices that multiply both vectors, and their transposes the second."""
     for k, first, rows in _runs(stack, below=False):
         products = before + k, before + len(stack) + k, before + 2 * len(stack) + k

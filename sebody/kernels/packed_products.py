@@ -61,7 +61,7 @@ def packed_times_both(typingctx, matrices, x, y, of_x, of_y, count):
 
 @intrinsic
 def couplings_times(typingctx, matrices, x, y, out, count):
-    """The products of `sebody.kernels.packed.pack_couplings`, `count` numbers in all."""
+    """The products of `packed_couplings.pack_couplings`, `count` numbers in all."""
     return called(packed_strips.write_couplings, matrices, x, y, out, count)
 
 
@@ -75,9 +75,10 @@ def add_packed(typingctx, matrices, factors, out, height):
 
 
 @intrinsic
-def add_couplings(typingctx, matrices, factors, of_x, of_y, height):
+def add_couplings(typingctx, matrices, factors, scales, of_x, of_y, products, size, height):
     """Sums of the matrices that multiply x, and of those that multiply y; see `add_packed`.
 
-    Factors are those of the products.
+    Factors are those of the products, of `size` numbers each; `scales` has room for all of them.
     """
-    return called(packed_strips.write_sum_of_couplings, matrices, factors, of_x, of_y, height)
+    return called(packed_strips.write_sum_of_couplings, matrices, factors, scales, of_x, of_y,
+                  products, size, height)

@@ -4,7 +4,8 @@ Vectors have four numbers: with those of eight everything else became a twentiet
 since the processor lowers its clock.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 from llvmlite import ir
 
@@ -30,6 +31,7 @@ from sebody.kernels.packed import (
     HEAD,
     KINDS,
     MIRRORED,
+    MULTIPLE,
     ONCE,
     PRODUCTS,
 )
@@ -59,14 +61,23 @@ class Groups:
         """Go through the groups; in their order, writers of instructions for each use."""
         builder, done = self.builder, WORD(0)
         for kind, (use, self.width) in enumerate(KINDS):
+            end = builder.add(done, self.count(kind))
             if use in writers:
-                end = builder.add(done, self.count(kind))
                 with short_loop(builder, done, end) as group:
                     place = builder.add(builder.mul(group, WORD(GROUP)), WORD(BEGIN))
                     self.first, self.vector, self.strips, self.heads, self.begin = (
                         self.at(builder.add(place, WORD(k))) for k in range(GROUP))
                     writers[use](self)
-                done = end
+            done = end
+
+    @contextmanager
+    def vectors(self) -> Iterator[tuple[ir.Value, ir.Value, ir.Value]]:
+        """Vectors of a multiple: factors, and places of numbers of its product and of the other."""
+        builder = self.builder
+        with short_loop(builder, WORD(0), self.strips) as k:
+            at = builder.mul(k, WORD(LANES))
+            yield (load_vector(builder, self.matrices, builder.add(self.begin, at)),
+                   builder.add(self.first, at), builder.add(self.vector, at))
 
     def head(self, k: int, strip: ir.Value | None = None, size: int = HEAD) -> ir.Value:
         """A whole number of the heads, or of that of a strip."""
@@ -115,7 +126,8 @@ def write_couplings(builder, matrices, x, y, out, count):
         ONCE: lambda groups: _once(groups, [(groups.chosen(x, y), out)]),
         BOTH: lambda groups: _both(groups, x, y, out),
         MIRRORED: lambda groups: _twice(groups, [(0, x, out)], [(x, out)]),
-        COUPLED: lambda groups: _twice(groups, [(0, x, out), (1, y, out)], [(y, out)])})
+        COUPLED: lambda groups: _twice(groups, [(0, x, out), (1, y, out)], [(y, out)]),
+        MULTIPLE: lambda groups: _multiple(groups, out)})
 
 
 def _of_vectors(given):
@@ -186,6 +198,13 @@ def _twice(groups, forward, across):
             _add_to(builder, out, place, sums_of_lanes(builder, found[k:k + LANES]))
 
 
+def _multiple(groups, out):
+    """A product from another one, number by number."""
+    builder = groups.builder
+    with groups.vectors() as (factors, place, other):
+        store_vector(builder, builder.fmul(factors, load_vector(builder, out, other)), out, place)
+
+
 def _columns(groups, strip):
     """The columns of a strip."""
     own = groups.entries(strip)
@@ -222,44 +241,69 @@ def _added(builder, total, a, b):
 
 
 def write_sum(builder, matrices, factors, out, height):
+    def scale(_, matrix):
+        return load_broadcast(builder, factors, matrix)
     Groups(builder, matrices).each({
-        ONCE: lambda groups: _sum_once(groups, factors, [out], height),
-        MIRRORED: lambda groups: _sum_twice(groups, factors, [(0, out)], out, height)})
+        ONCE: lambda groups: _sum_once(groups, scale, [out], height),
+        MIRRORED: lambda groups: _sum_twice(groups, scale, [out], out, height)})
 
 
-def write_sum_of_couplings(builder, matrices, factors, of_x, of_y, height):
+def write_sum_of_couplings(builder, matrices, factors, scales, of_x, of_y, products, size, height):
+    _write_scales(builder, matrices, factors, scales, products, size)
+
+    def scale(place, _):
+        return load_vector(builder, scales, place)
     Groups(builder, matrices).each({
-        ONCE: lambda groups: _sum_once(groups, factors, [groups.chosen(of_x, of_y)], height),
-        BOTH: lambda groups: _sum_once(groups, factors, [of_x, of_y], height),
-        MIRRORED: lambda groups: _sum_twice(groups, factors, [(0, of_x)], of_x, height),
-        COUPLED: lambda groups: _sum_twice(groups, factors, [(0, of_x), (1, of_y)], of_y, height)})
+        ONCE: lambda groups: _sum_once(groups, scale, [groups.chosen(of_x, of_y)], height),
+        BOTH: lambda groups: _sum_once(groups, scale, [of_x, of_y], height),
+        MIRRORED: lambda groups: _sum_twice(groups, scale, [of_x], of_x, height),
+        COUPLED: lambda groups: _sum_twice(groups, scale, [of_x, of_y], of_y, height)})
 
 
-def _sum_once(groups, factors, outs, height):
+def _write_scales(builder, matrices, factors, scales, products, size):
+    """The factor of every row of every product, with those of what is made from it."""
+    with short_loop(builder, WORD(0), products) as k:
+        factor, first = load_broadcast(builder, factors, k), builder.mul(k, size)
+        with short_loop(builder, WORD(0), size, LANES) as row:
+            store_vector(builder, factor, scales, builder.add(first, row))
+
+    def of_multiple(groups):
+        with groups.vectors() as (multiples, place, other):
+            total = _added(builder, load_vector(builder, scales, other), multiples,
+                           load_vector(builder, scales, place))
+            store_vector(builder, total, scales, other)
+    Groups(builder, matrices).each({MULTIPLE: of_multiple})
+
+
+def _sum_once(groups, scale, outs, height):
     """Strip by strip; of both vectors those of the second one are behind."""
     builder = groups.builder
-    begin, behind = (BEHIND, groups.head(1)) if len(outs) > 1 else (0, WORD(0))
+    begin, behind = ((BEHIND, [groups.head(k) for k in range(2)]) if len(outs) > 1
+                     else (0, [WORD(0)] * 2))
     with short_loop(builder, WORD(0), groups.strips) as strip:
-        matrix, columns = groups.head(begin + 1, strip), _columns(groups, strip)
-        row = groups.head(begin + 2, strip)
+        place, matrix, row = (groups.head(begin + k, strip) for k in range(HEAD))
+        columns = _columns(groups, strip)
         for out in outs:
-            scale = load_broadcast(builder, factors, matrix)
-            _add_columns(builder, columns, scale, out, groups.first, height, row)
-            matrix = builder.add(matrix, behind)
+            _add_columns(builder, columns, scale(place, matrix), out, groups.first, height, row)
+            place, matrix = (builder.add(one, more) for one, more in
+                             zip((place, matrix), behind, strict=True))
 
 
-def _sum_twice(groups, factors, forward, across, height):
+def _sum_twice(groups, scale, outs, across, height):
     """The same of strips of one matrix, and of their transposes."""
     builder = groups.builder
-    *scales, transposed = (load_broadcast(builder, factors, groups.head(PRODUCTS + k))
-                           for k in range(PRODUCTS))
+    places, matrices = ([groups.head(first + k) for k in range(PRODUCTS)]
+                        for first in (0, PRODUCTS))
     with short_loop(builder, WORD(0), groups.strips) as strip:
         row, columns = groups.row(strip), _columns(groups, strip)
-        for product, out in forward:
-            _add_columns(builder, columns, scales[product], out, groups.first, height, row)
+        for k, out in enumerate(outs):
+            by = scale(builder.add(places[k], row), matrices[k])
+            _add_columns(builder, columns, by, out, groups.first, height, row)
         for k in range(0, groups.width, LANES):
-            _add_columns(builder, _transposed(builder, columns[k:k + LANES]), transposed, across,
-                         row, height, builder.add(groups.first, WORD(k)))
+            first = builder.add(groups.first, WORD(k))
+            by = scale(builder.add(places[-1], first), matrices[-1])
+            _add_columns(builder, _transposed(builder, columns[k:k + LANES]), by, across, row,
+                         height, first)
 
 
 def _add_columns(builder, columns, scale, out, first, height, row):

@@ -6,13 +6,14 @@ import pytest
 from sebody.compiler.decorators import compiled
 from sebody.contract.counts import LANES, whole_vectors
 from sebody.contract.layout import padded_columns
-from sebody.kernels.abi import pointer_to
+from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.dense import (
     add_block_times,
     add_blocks_times,
     add_rows_times,
     arrow_times,
     block_times,
+    columns_times_all,
     rows_times,
 )
 
@@ -94,3 +95,24 @@ def test_blocks_of_taller_matrices(rows, columns):
         more = A @ x[:columns] + A[:, :1] @ x[:min(columns, 1)]
         assert np.abs(both[:rows] - out[:rows] - more).max() < 1e-13
         assert np.array_equal(sums[columns:], before[columns:])
+
+
+@compiled
+def three(A, x, out, rows, columns, of, to):
+    a, b = pointer_to(x), pointer_to(out)
+    columns_times_all(pointer_to(A), a, at(a, of), at(a, 2 * of), b, at(b, to), at(b, 2 * to), rows,
+                      columns)
+
+
+@pytest.mark.parametrize("rows", [1, 4, 12, 18])    # one vector, three, and more
+@pytest.mark.parametrize("columns", [0, 1, 7])
+def test_three_products_at_once(rows, columns):
+    """Nothing is written behind the padding of the products."""
+    random, height = np.random.default_rng(rows + columns), whole_vectors(rows)
+    A, x = np.zeros((columns + 1, height)), random.normal(size=(3, columns + 2))
+    A[:columns, :rows] = random.normal(size=(columns, rows))
+    out = np.full((3, height + 3), 5.0)
+    three(A.ravel(), x.ravel(), out.ravel(), rows, columns, columns + 2, height + 3)
+    # sums of seven products of numbers of size one
+    np.testing.assert_allclose(out[:, :height], x[:, :columns] @ A[:columns], atol=1e-14)
+    assert (out[:, height:] == 5.0).all()

@@ -12,9 +12,15 @@ from sebody.compiler.decorators import compiled
 from sebody.contract.counts import LANES, MEMBERS, packed_size, whole_vectors
 from sebody.fem import Section, straight_beam
 from sebody.kernels.abi import at, pointer_to
-from sebody.kernels.dense import add_blocks_times, add_rows_times, columns_times
+from sebody.kernels.dense import (
+    add_blocks_times,
+    add_rows_times,
+    columns_times,
+    columns_times_all,
+)
 from sebody.kernels.frame_search import best_fit, mean_axes, planar_fit, planar_mean_axes
-from sebody.kernels.packed import pack, pack_couplings
+from sebody.kernels.packed import multiples, pack
+from sebody.kernels.packed_couplings import pack_couplings
 from sebody.kernels.packed_products import (
     add_couplings,
     add_packed,
@@ -109,6 +115,25 @@ def test_dense_products(rows, columns, of_B):
 
 
 @compiled
+def three(A, x, y, z, of_x, of_y, of_z, rows, columns):
+    columns_times_all(pointer_to(A.rows), pointer_to(x.rows), pointer_to(y.rows),
+                      pointer_to(z.rows), pointer_to(of_x.rows), pointer_to(of_y.rows),
+                      pointer_to(of_z.rows), rows, columns)
+
+
+def test_three_products_at_once():
+    """Of matrices that members have of their own."""
+    rng, rows, columns = np.random.default_rng(6), 6, 5
+    A, given = rng.normal(size=(columns, 8, MEMBERS)), rng.normal(size=(3, columns, MEMBERS))
+    out = [Given.of(np.full((rows + 1, MEMBERS), 5.0)) for _ in range(3)]
+    three(Given.of(A.reshape(-1, MEMBERS)), *map(Given.of, given), *out, rows, columns)
+    for x, found in zip(given, out, strict=True):
+        expected = np.einsum("crm,cm->rm", A[:, :rows], x)
+        np.testing.assert_allclose(found.values[:rows], expected, atol=1e-13)
+        assert (found.values[rows] == 5.0).all()
+
+
+@compiled
 def straight_products(A, x, out, more, count):
     straight_times(pointer_to(A.rows), pointer_to(x.rows), pointer_to(out.rows), count)
     add_straight_times(pointer_to(A.rows), pointer_to(x.rows), pointer_to(more.rows))
@@ -194,32 +219,36 @@ def test_straight_code_is_freed_once_nobody_keeps_it():
 
 
 @compiled
-def couplings_of(packed, x, y, out, factors, of_x, of_y, count, height):
+def couplings_of(packed, x, y, out, factors, scales, of_x, of_y, products, height):
     couplings_times(pointer_to(packed.rows), pointer_to(x.rows), pointer_to(y.rows),
-                    pointer_to(out.rows), count)
-    add_couplings(pointer_to(packed.rows), pointer_to(factors.rows), pointer_to(of_x.rows),
-                  pointer_to(of_y.rows), height)
+                    pointer_to(out.rows), products * height)
+    add_couplings(pointer_to(packed.rows), pointer_to(factors.rows), pointer_to(scales.rows),
+                  pointer_to(of_x.rows), pointer_to(of_y.rows), products, height, height)
 
 
 @pytest.mark.parametrize("straight", [False, True])
 def test_couplings(straight):
-    """Symmetric matrices and others, large enough to be used twice."""
+    """Symmetric matrices and others, large enough to be used twice, and one made from another."""
     rng, N = np.random.default_rng(4), 33
     S, C = rng.normal(size=(MEMBERS, 2, N, N)), rng.normal(size=(MEMBERS, 2, N, N))
     S[:, 1, 12:], C[:, 1, :, 5:] = 0.0, 0.0
     S += S.swapaxes(2, 3)
+    S[:, 1, :20, :20] = S[:, 1, 20:, 20:] = 0.0
+    C[:, 0] = S[:, 1] * np.where(np.arange(N) < 20, 3.0, -0.7)[:, np.newaxis]
     every = np.concatenate([S, C, C, C.swapaxes(2, 3)], axis=1)
     row = np.array([pack_couplings(*both) for both in zip(S, C, strict=True)]).T
+    assert len(list(multiples(row[:, 0]))) == 3
     packed, height = Given.of(row), whole_vectors(N)
     if straight:
         _code = write_address(row[:, 0].copy(), np.ptp(row, axis=1) > 0.0, packed.values)
     x, y = rng.normal(size=(2, height + LANES, MEMBERS))
-    factors = rng.normal(size=(8, MEMBERS))
-    out = Given.of(np.full((8 * height, MEMBERS), np.nan))
+    factors, products = np.zeros((10, MEMBERS)), 10     # with two that others are made from
+    factors[:8] = rng.normal(size=(8, MEMBERS))
+    out, scales = (Given.of(np.full((products * height, MEMBERS), np.nan)) for _ in range(2))
     of_x, of_y = (Given.of(np.zeros((height * height, MEMBERS))) for _ in range(2))
-    couplings_of(packed, Given.of(x), Given.of(y), out, Given.of(factors), of_x, of_y,
-                 8 * height, height)
-    found = out.values.reshape(8, height, MEMBERS)[:, :N]
+    couplings_of(packed, Given.of(x), Given.of(y), out, Given.of(factors), scales, of_x, of_y,
+                 products, height)
+    found = out.values.reshape(products, height, MEMBERS)[:8, :N]
     expected = [*np.einsum("mkrc,cm->krm", every[:, :4], x[:N]),
                 *np.einsum("mkrc,cm->krm", every[:, 4:], y[:N])]
     np.testing.assert_allclose(found, expected, atol=1e-12)

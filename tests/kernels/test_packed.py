@@ -6,7 +6,8 @@ import pytest
 from sebody.compiler.decorators import compiled
 from sebody.contract.counts import packed_size, whole_vectors
 from sebody.kernels.abi import pointer_to
-from sebody.kernels.packed import pack, pack_couplings, strips, unpack
+from sebody.kernels.packed import multiples, pack, strips, unpack
+from sebody.kernels.packed_couplings import pack_couplings
 from sebody.kernels.packed_products import (
     add_couplings,
     add_packed,
@@ -34,12 +35,17 @@ def summed(row, factors, out, height):
 
 
 @compiled
-def of_two(row, couplings, x, y, of_x, of_y, out, count, size, factors, sum_x, sum_y, height):
+def of_couplings(couplings, x, y, out, factors, scales, sum_x, sum_y, products, size, height):
+    couplings_times(pointer_to(couplings), pointer_to(x), pointer_to(y), pointer_to(out),
+                    products * size)
+    add_couplings(pointer_to(couplings), pointer_to(factors), pointer_to(scales),
+                  pointer_to(sum_x), pointer_to(sum_y), products, size, height)
+
+
+@compiled
+def of_both(row, x, y, of_x, of_y, count):
     packed_times_both(pointer_to(row), pointer_to(x), pointer_to(y), pointer_to(of_x),
                       pointer_to(of_y), count)
-    couplings_times(pointer_to(couplings), pointer_to(x), pointer_to(y), pointer_to(out), size)
-    add_couplings(pointer_to(couplings), pointer_to(factors), pointer_to(sum_x),
-                  pointer_to(sum_y), height)
 
 
 @compiled
@@ -127,29 +133,70 @@ def test_symmetric_matrices_and_couplings(N, filled, zeros, many):
         assert np.array_equal(unpack(packed, stored.shape), stored)
     uses = {(len(strip.uses), strip.uses[-1].transposed) for strip in strips(couplings)}
     assert ({(2, True), (3, True)} <= uses) == many
-    height, width = whole_vectors(N), whole_vectors(N) + 4
+    check_couplings(couplings, every, len(S), len(C), 1e-13 * N)  # sums of N products of size one
+    width, height = whole_vectors(N) + 4, whole_vectors(N)
     x, y = random.normal(size=(2, width))
-    of_x, of_y, out = np.full((3, len(every), height), np.nan)
-    factors, sums = random.normal(size=len(every)), np.zeros((2, width, height))
-    of_two(row, couplings, x, y, of_x.ravel(), of_y.ravel(), out.ravel(), len(S) * height,
-           len(every) * height, factors, sums[0].ravel(), sums[1].ravel(), height)
-    first, bound = len(S) + len(C), 1e-13 * N   # sums of N products of numbers of size one
+    of_x, of_y = np.full((2, len(S), height), np.nan)
+    of_both(row, x, y, of_x.ravel(), of_y.ravel(), len(S) * height)
+    np.testing.assert_allclose(of_x[:, :N], S @ x[:N], atol=1e-13 * N, rtol=0)
+    np.testing.assert_allclose(of_y[:, :N], S @ y[:N], atol=1e-13 * N, rtol=0)
+
+
+def check_couplings(couplings, every, squares, count, bound):
+    """Products of a row, and the sums of its matrices."""
+    random, N = np.random.default_rng(len(couplings)), every.shape[-1]
+    size, products, deep = whole_vectors(N), len(every) + count, whole_vectors(N) + 8
+    x, y = random.normal(size=(2, size + 4))
+    out, scales = np.full((2, products * size), np.nan)
+    factors, sums = random.normal(size=products), np.zeros((2, size + 4, deep))
+    factors[len(every):] = 0.0
+    of_couplings(couplings, x, y, out, factors, scales, sums[0].ravel(), sums[1].ravel(), products,
+                 size, deep)
+    first = squares + count
     expected = [*every[:first] @ x[:N], *every[first:] @ y[:N]]
-    np.testing.assert_allclose(of_x[:3, :N], S @ x[:N], atol=bound, rtol=0)
-    np.testing.assert_allclose(of_y[:3, :N], S @ y[:N], atol=bound, rtol=0)
-    np.testing.assert_allclose(out[:, :N], expected, atol=bound, rtol=0)
-    for found, of in zip(sums, (slice(None, first), slice(first, None)), strict=True):
+    found = out.reshape(products, size)[:len(every), :N]
+    np.testing.assert_allclose(found, expected, atol=bound, rtol=0)
+    for found, of in zip(sums, (slice(None, first), slice(first, len(every))), strict=True):
         expected = np.einsum("k,kij->ji", factors[of], every[of])
         np.testing.assert_allclose(found[:N, :N], expected, atol=bound, rtol=0)
+
+
+@pytest.mark.parametrize("N", [13, 40])
+def test_rows_that_are_multiples(N):
+    """As in beams: rows of C and of its transpose are multiples of rows of S; C is antisymmetric.
+
+    Coordinates have units of their own, in which sums are compared.
+    """
+    random, kind = np.random.default_rng(N), np.arange(N) % 4
+    S, C = random.normal(size=(5, N, N)), random.normal(size=(3, N, N))
+    S += S.transpose(0, 2, 1)
+    S[3, kind[:, np.newaxis] // 2 != kind // 2] = 0.0       # the first kind moves with the second,
+    S[3, kind[:, np.newaxis] == kind] = 0.0                 # the third with the last
+    C[0] = np.array([2.0, -6.0, 0.4, 1.5])[kind][:, np.newaxis] * S[3]
+    C[0] *= 1.0 + 1e-14 * random.normal(size=(N, N))
+    C[1] -= C[1].T
+    every = np.concatenate([S, C, C, C.transpose(0, 2, 1)])
+    row, size = pack_couplings(S, C), whole_vectors(N)
+    made = {(one.place // size, one.other // size) for one in multiples(row)}
+    assert made == {(5, 3), (8, 15), (11, 15), (12, 9)}     # C x of S x; both others of S y; C^T y
+    np.testing.assert_allclose(unpack(row, every.shape), every, rtol=1e-12)
+    check_couplings(row, every, len(S), len(C), 1e-11)
+    units = 10.0**random.uniform(-6, 6, N)
+    scaled = [stack * np.outer(units, units) for stack in (S, C)]
+    assert len(list(multiples(pack_couplings(*scaled)))) == 4
+    C[0, 0, 1] *= 1.0 + 1e-9
+    assert [one.place // size for one in multiples(pack_couplings(S, C))] == [12]
 
 
 def test_blocks_anywhere():
     """Blocks of matrices begin at any row and column: hardly a zero is packed beside them."""
     N, blocks = 27, [(3, 11), (11, 15), (15, 22), (22, 26)]
+    random = np.random.default_rng(0)
     C = np.zeros((3, N, N))
     for k, pairs in enumerate(([(0, 1), (1, 0)], [(2, 3)], [(1, 1), (3, 0)])):
         for i, j in pairs:
-            C[k, slice(*blocks[i]), slice(*blocks[j])] = 1.0 + k
+            block = C[k, slice(*blocks[i]), slice(*blocks[j])]
+            block[:] = random.uniform(1.0, 2.0, block.shape)
     S = C + C.transpose(0, 2, 1)
     every = np.concatenate([S, C, C, C.transpose(0, 2, 1)])
     couplings = pack_couplings(S, C)
@@ -158,15 +205,7 @@ def test_blocks_anywhere():
     assert {len(strip.uses) for strip in taken} == {1, 2}       # C multiplies both vectors
     packed = sum(strip.entries.size for strip in taken)     # C is packed once for both vectors
     assert packed < 1.1 * (np.count_nonzero(every) - np.count_nonzero(C))
-    x, y, out = np.ones(32), np.full(32, 2.0), np.full((len(every), 28), np.nan)
-    sums = np.zeros((2, 32, 28))
-    of_two(pack(S, S.shape), couplings, x, y, np.zeros(84), np.zeros(84), out.ravel(), 84,
-           out.size, np.ones(len(every)), sums[0].ravel(), sums[1].ravel(), 28)
-    first = len(S) + len(C)
-    expected = [*every[:first] @ x[:N], *every[first:] @ y[:N]]
-    np.testing.assert_allclose(out[:, :N], expected, atol=1e-13, rtol=0)
-    for found, of in zip(sums, (every[:first], every[first:]), strict=True):
-        np.testing.assert_allclose(found[:N, :N].T, of.sum(axis=0), atol=1e-13, rtol=0)
+    check_couplings(couplings, every, len(S), len(C), 1e-13 * N)
 
 
 def test_coordinates_that_determine_the_others():

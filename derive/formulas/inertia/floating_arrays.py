@@ -34,7 +34,8 @@ TRANSPOSES = (axes, axes_back), (axes_back, axes)
 z, zd, zdd = map(scratch, ("z", "zd", "zdd"))       # that determine the others, and followers
 unordered = scratch("unordered", 3)                 # the same before they are put in order
 Zq, Zd, Za = (scratch(name, MOST_SLAVED) for name in ("Zq", "Zd", "Za"))    # Q_b times z, zd, zdd
-products, more = scratch("products", 15), scratch("more", 15)       # quadratic constants times z
+PRODUCTS = 18       # with quadratic constants: those asked for, and what some are made from
+products, more = scratch("products", PRODUCTS), scratch("more", PRODUCTS)
 lines = tuple(map(scratch, ("line0", "line1", "line2")))            # integrals: linear parts
 quadratic = tuple(map(scratch, ("product0", "product1", "product2")))   # and quadratic ones
 by_moment_columns, by_products = map(scratch, ("by_moment_columns", "by_products"))
@@ -48,6 +49,7 @@ along, twice, by_E, by_Gy, of_E, of_Gy = map(scratch, (
 # local tangents, and the factors they are made with
 Lz, Lv, La = (scratch(name, counts.n + MARGIN) for name in ("Lz", "Lv", "La"))
 ones, by_couplings, by_followers = map(scratch, ("ones", "by_couplings", "by_followers"))
+scales = scratch("scales", PRODUCTS)        # the factors of each row
 
 
 def counts_of_body(planar: bool) -> dict[Array, tuple[Let, ...]]:

@@ -11,7 +11,7 @@ from sebody.derive.form.functions import (
     ADD_BLOCKS_TIMES,
     ADD_PACKED_TIMES,
     ALL_TO_FREE,
-    COLUMNS_TIMES,
+    COLUMNS_TIMES_ALL,
     COUPLINGS_TIMES,
     FROM_FREE,
     PACKED_TIMES,
@@ -61,17 +61,14 @@ def _contractions(f: FloatingQuantities) -> tuple[Call, ...]:
     """Products of the constants with z and its rates, and of those with them again."""
     pairs, turns, lines = f.pairs, f.turns, f.lines
 
-    def linear(row: Array, out: Array) -> Call:
-        return call(f"first moments, couplings, inertia at rest, by {row.name}", COLUMNS_TIMES,
-                    at.moment_rows, row, out, lines, N)
-
     def dots(first: Whole, row: Array, out: Array, columns: int) -> Call:
         """Some columns more than asked: vectors of `LANES` are added up together."""
         return call(f"quadratic parts, by {row.name}", ROWS_TIMES, at.products.at(first * hN), row,
                     out, N, whole_vectors(columns), hN)
     return (
         coupled(f, "J2_kl z, K_k^T z, K_k^T zdot and K_k zdot", at.z, at.zd, at.products),
-        *map(linear, (at.z, at.zd, at.zdd), at.lines),
+        call("first moments, couplings, inertia at rest, by z and its rates", COLUMNS_TIMES_ALL,
+             at.moment_rows, at.z, at.zd, at.zdd, *at.lines, lines, N),
         *(dots(first, row, out, count)
           for first, row, out, count in zip(
               (0, 0, pairs), (at.z, at.zd, at.zdd), at.quadratic,
@@ -106,7 +103,7 @@ def stacked(title: str, matrices: Array, row: Array, out: Array | View, count: i
 
 def coupled(f: FloatingQuantities, title: str, row: Array, rate: Array, out: Array) -> Call:
     """Products of the quadratic constants with a row and its rate."""
-    return call(title, COUPLINGS_TIMES, at.couplings, row, rate, out, (f.pairs + 3 * f.turns) * hN)
+    return call(title, COUPLINGS_TIMES, at.couplings, row, rate, out, f.made * hN)
 
 
 def added(title: str, matrix: Array, row: Array) -> Call:

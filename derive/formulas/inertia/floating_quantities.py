@@ -29,6 +29,7 @@ class FloatingQuantities:
         counts = axes_of(q.space.planar)
         self.D, self.turns, self.pairs = counts["D"], counts["turns"], counts["pairs"]
         self.lines, self.force_rows = counts["lines"], N + counts["motions"]
+        self.made = counts["coupled"] + self.turns      # with products that others are made from
         behind = Place(N, first=self.D)
         self.turn = self.of_element("turn", "rotation", at.turn).symbols
         self.felt = self.of_element("felt", "vector", at.zdd, BESIDE)

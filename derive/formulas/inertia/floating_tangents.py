@@ -3,7 +3,7 @@
 import sympy as sp
 
 from sebody.derive.form.arrays import Array, Place
-from sebody.derive.form.counts import N, b, deep, free, i
+from sebody.derive.form.counts import N, b, deep, free, hN, i
 from sebody.derive.form.functions import (
     ADD_BLOCK_TIMES,
     ADD_COUPLINGS,
@@ -34,6 +34,7 @@ def prepared(f: FloatingQuantities) -> tuple[Step, ...]:
     """Local tangents, once for all columns."""
     q, row = f.q, f.quantities
     one = f.of_element("one", "scalar", at.ones)
+    not_asked = f.of_element("not_asked", "axial", at.by_couplings, Place(f.made - f.turns))
     followed = q.space.quantity("followed", "scalar", "slaved", at.by_followers)
     on_eta = q.space.quantity("on_eta", "scalar", "slaved", at.local, Place(free + b))
     return (
@@ -41,11 +42,11 @@ def prepared(f: FloatingQuantities) -> tuple[Step, ...]:
         coupled(f, "J2_kl zdot, K_k^T zddot and K_k zddot", at.zd, at.zdd, at.more),
         Stage("factors of the local tangents", "element",
               sets=(*f.factors(at.by_couplings, [row.j, row.u, row.v, row.w], moved=2),
-                    (one, sp.ones(1, 1)))),
+                    (not_asked, sp.zeros(3, 1)), (one, sp.ones(1, 1)))),
         Stage("forces on eta as factors", "slaved", sets=((followed, GEOMETRY * on_eta.symbols),)),
         *(call("local tangents", CLEAR, out, N * deep) for out in (PLACE, RATE, SECOND)),
         call("by z: J2_kl and K_k^T; by zdot: K_k^T and K_k", ADD_COUPLINGS, at.couplings,
-             at.by_couplings, PLACE, RATE, deep),
+             at.by_couplings, at.scales, PLACE, RATE, f.made, hN, deep),
         *(call(title, ADD_PACKED, matrices, factors, out, deep)
           for title, matrices, factors, out in (
               ("forces on eta", at.followers, at.by_followers, PLACE),

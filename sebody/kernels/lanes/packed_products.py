@@ -3,6 +3,8 @@
 The whole numbers of a row are the same in all lanes.
 """
 
+from contextlib import contextmanager
+
 from llvmlite import ir
 
 from sebody.compiler.inside.lanes import VECTOR
@@ -11,7 +13,16 @@ from sebody.kernels import packed_strips
 from sebody.kernels.instructions import WORD, call, in_lanes, short_loop, whole_vectors
 from sebody.kernels.lanes.products import NOTHING, across, behind, fused, read, write
 from sebody.kernels.lanes.straight import AT_ADDRESS, AT_LANES, AT_MORE, MOST_GROUPS
-from sebody.kernels.packed import BEHIND, BOTH, COUPLED, MIRRORED, ONCE, PRODUCTS
+from sebody.kernels.packed import (
+    BEHIND,
+    BOTH,
+    COUPLED,
+    HEAD,
+    MIRRORED,
+    MULTIPLE,
+    ONCE,
+    PRODUCTS,
+)
 from sebody.kernels.packed_strips import Groups
 
 
@@ -36,6 +47,14 @@ class _Groups(Groups):
         builder, own = self.builder, self.builder.load(self._words)
         apart = builder.inttoptr(own, WORD.as_pointer())
         return builder.select(self._points(own), apart, self._words)
+
+    @contextmanager
+    def vectors(self):
+        """Number by number."""
+        builder, own = self.builder, self.entries(WORD(0))
+        with short_loop(builder, WORD(0), builder.mul(self.strips, WORD(LANES))) as k:
+            yield (read(builder, own, k), builder.add(self.first, k),
+                   builder.add(self.vector, k))
 
     def straight(self):
         """Whether there is straight code."""
@@ -124,8 +143,12 @@ def _add_strips(builder, matrices, x, y, out):
 
     def twice(forward):
         return lambda groups: _add_twice(groups, forward, out)
+
+    def multiple(groups):
+        with groups.vectors() as (factor, place, other):
+            write(builder, builder.fmul(factor, read(builder, out, other)), out, place)
     _Groups(builder, matrices).each({
-        ONCE: once, BOTH: both, MIRRORED: twice([x]), COUPLED: twice([x, y])})
+        ONCE: once, BOTH: both, MIRRORED: twice([x]), COUPLED: twice([x, y]), MULTIPLE: multiple})
 
 
 def _add_rows(groups, strip, given, out):
@@ -170,53 +193,72 @@ def _add_twice(groups, forward, out):
 @in_lanes(packed_strips.write_sum)
 def sum_packed(builder, matrices, factors, out, height):
     """Of `add_packed`."""
-    _sum_strips(builder, matrices, factors, out, out, height)
+    _sum_strips(builder, matrices, lambda _, matrix, lane: read(builder, factors, matrix), out, out,
+                height)
 
 
 @in_lanes(packed_strips.write_sum_of_couplings)
-def sum_couplings(builder, matrices, factors, of_x, of_y, height):
+def sum_couplings(builder, matrices, factors, scales, of_x, of_y, products, size, height):
     """Of `add_couplings`."""
-    _sum_strips(builder, matrices, factors, of_x, of_y, height)
+    with short_loop(builder, WORD(0), products) as k:
+        factor, first = read(builder, factors, k), builder.mul(k, size)
+        with short_loop(builder, WORD(0), size) as row:
+            write(builder, factor, scales, builder.add(first, row))
+
+    def of_multiple(groups):
+        with groups.vectors() as (multiple, place, other):
+            total = fused(builder, read(builder, scales, other), multiple,
+                          read(builder, scales, place))
+            write(builder, total, scales, other)
+    _Groups(builder, matrices).each({MULTIPLE: of_multiple})
+    _sum_strips(builder, matrices,
+                lambda place, _, lane: read(builder, scales, builder.add(place, lane)), of_x, of_y,
+                height)
 
 
-def _sum_strips(builder, matrices, factors, of_x, of_y, height):
+def _sum_strips(builder, matrices, scale, of_x, of_y, height):
+    """Of every strip, or what mirrors it, `scale` knows the place, the matrix and the lane."""
     def once(groups):
-        out = groups.chosen(of_x, of_y)
         with short_loop(builder, WORD(0), groups.strips) as strip:
-            scale = read(builder, factors, groups.head(1, strip))
-            _sum_entries(groups, strip, groups.head(2, strip), [(scale, out, False)], height)
+            place, matrix, row = (groups.head(k, strip) for k in range(HEAD))
+            _sum_entries(groups, strip, row, [(scale, place, matrix, groups.chosen(of_x, of_y))],
+                         [], height)
 
     def both(groups):
-        behind_x = groups.head(1)
+        behind = [groups.head(k) for k in range(2)]
         with short_loop(builder, WORD(0), groups.strips) as strip:
-            matrix = groups.head(BEHIND + 1, strip)
-            scales = read(builder, factors, matrix), read(builder, factors,
-                                                          builder.add(matrix, behind_x))
-            _sum_entries(groups, strip, groups.head(BEHIND + 2, strip),
-                         [(scale, out, False) for scale, out in zip(scales, (of_x, of_y),
-                                                                    strict=True)], height)
+            place, matrix, row = (groups.head(BEHIND + k, strip) for k in range(HEAD))
+            _sum_entries(groups, strip, row, [
+                (scale, place, matrix, of_x),
+                (scale, builder.add(place, behind[0]), builder.add(matrix, behind[1]), of_y)],
+                [], height)
 
     def twice(forward):
         def add(groups):
-            scales = [read(builder, factors, groups.head(PRODUCTS + k)) for k in range(PRODUCTS)]
-            given = [(scales[k], out, False) for k, out in enumerate(forward)]
-            across = scales[-1], forward[-1], True
+            places, numbers = ([groups.head(first + k) for k in range(PRODUCTS)]
+                               for first in (0, PRODUCTS))
+            across = [(scale, builder.add(places[-1], groups.first), numbers[-1], forward[-1])]
             with short_loop(builder, WORD(0), groups.strips) as strip:
-                _sum_entries(groups, strip, groups.row(strip), [*given, across], height)
+                row = groups.row(strip)
+                given = [(scale, builder.add(places[k], row), numbers[k], out)
+                         for k, out in enumerate(forward)]
+                _sum_entries(groups, strip, row, given, across, height)
         return add
     _Groups(builder, matrices).each({
         ONCE: once, BOTH: both, MIRRORED: twice([of_x]), COUPLED: twice([of_x, of_y])})
 
 
-def _sum_entries(groups, strip, row, given, height):
-    """Add a strip to some matrices, times a factor, or its transpose."""
+def _sum_entries(groups, strip, row, given, across, height):
+    """Add a strip to some matrices, times a factor, and its transpose to others."""
     builder, own = groups.builder, groups.entries(strip)
     with short_loop(builder, WORD(0), WORD(groups.width)) as k:
         column, begin = builder.add(groups.first, k), builder.mul(k, WORD(LANES))
         for lane in range(LANES):
             entry, at = read(builder, own, behind(builder, begin, lane)), behind(builder, row, lane)
-            for scale, out, transposed in given:
+            for one, transposed in [*((one, False) for one in given),
+                                    *((one, True) for one in across)]:
+                scale, place, matrix, out = one
                 i, j = (column, at) if transposed else (at, column)
-                place = builder.add(builder.mul(j, height), i)
-                write(builder, fused(builder, read(builder, out, place), entry, scale), out,
-                       place)
+                factor = scale(place, matrix, k if transposed else WORD(lane))
+                to = builder.add(builder.mul(j, height), i)
+                write(builder, fused(builder, read(builder, out, to), entry, factor), out, to)

@@ -132,6 +132,13 @@ def multiply(builder, A, x, out, rows, columns):
     _by_rows(builder, [(A, x, columns)], out, rows, whole_vectors(builder, rows), False)
 
 
+@in_lanes(dense.write_columns_of_all)
+def multiply_all(builder, A, x, y, z, of_x, of_y, of_z, rows, columns):
+    """Of `columns_times_all`."""
+    for given, out in ((x, of_x), (y, of_y), (z, of_z)):
+        multiply(builder, A, given, out, rows, columns)
+
+
 @in_lanes(dense.write_block)
 def block(builder, A, x, out, rows, columns, height):
     """Of `block_times`."""

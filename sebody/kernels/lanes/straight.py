@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from sebody.compiler.inside.lanes import VECTOR, same
 from sebody.contract.counts import LANES, MEMBERS
 from sebody.kernels.instructions import WORD, short_loop
-from sebody.kernels.packed import strips
+from sebody.kernels.packed import multiples, strips
 
 # lanes of the first number of a row that have the addresses of its straight code, where there is
 # some: of what writes products, and of what adds to them; the number of groups stands in all others
@@ -30,6 +30,7 @@ MOST_GROUPS = 1 << 20       # of a row; a larger number is an address
 # place of an entry, vector and place of its factor, place of its sum; its value, if all members
 # share it
 Entries = tuple[tuple[int, int, int, int, float | None], ...]
+MADE = 2        # in place of a vector: the factor is another sum, of which this one is a multiple
 
 KEPT = 16           # codes that are kept when their ensembles are gone
 MOST_FACTORS = 24           # that registers hold beside sums
@@ -46,7 +47,21 @@ def entries_of(row: NDArray, varied: NDArray) -> Entries:
             for use in uses:
                 column, to = (below + i, k) if use.transposed else (first + k, i)
                 found.append((place, use.vector, column, use.place + to, value))
-    return tuple(sorted(found, key=lambda entry: entry[3::-1]))
+    sums = {entry[3] for entry in found}
+    for one in multiples(row):
+        for i in np.flatnonzero(one.factors).tolist():
+            if one.other + i not in sums:
+                continue
+            at = one.at + i
+            value = None if varied[at] else float(row[at])
+            found.append((at, MADE, one.other + i, one.place + i, value))
+    return tuple(sorted(found, key=lambda entry: (_sum_of(entry), entry[1] == MADE,
+                                                  *entry[3::-1])))
+
+
+def _sum_of(entry: tuple) -> int:
+    """The sum that an entry belongs to: that of its products, or that which it multiplies."""
+    return entry[2] if entry[1] == MADE else entry[3]
 
 
 class Straight:
@@ -90,21 +105,29 @@ def _write(module: ir.Module, entries: Entries) -> tuple[ir.Function, int]:
     A, *vectors, out, count = function.args
     out.add_attribute("noalias")        # of what is read
     # few factors are read once, before all sums, and stay in registers: entries are what is read
-    places = sorted({entry[1:3] for entry in entries})
+    places = sorted({entry[1:3] for entry in entries if entry[1] != MADE})
     factors = {one: _read(builder, vectors[one[0]], one[1])
                for one in places if len(places) <= MOST_FACTORS}
-    shared, last = _Shared(module, builder, entries), 0
-    zeros = ir.Constant(VECTOR, [0.0] * VECTOR.count)
-    for to, terms in groupby(entries, key=lambda entry: entry[3]):
-        for unused in range(last, to):
-            builder.store(zeros, builder.gep(out, [WORD(unused)]))
-        total, last = None, to + 1
-        for place, vector, column, _, value in terms:
+    shared, written = _Shared(module, builder, entries), set()
+
+    def write(number, to):
+        builder.store(number, builder.gep(out, [WORD(to)]))
+        written.add(to)
+    for place_of_sum, terms in groupby(entries, key=_sum_of):
+        total = None
+        for place, vector, column, to, value in terms:
             entry = _read(builder, A, place) if value is None else shared.next()
+            if vector == MADE:
+                write(builder.fmul(entry, total), to)
+                continue
             factor = factors.get((vector, column)) or _read(builder, vectors[vector], column)
             product = builder.fmul(entry, factor, flags=("contract",))
             total = product if total is None else builder.fadd(total, product, flags=("contract",))
-        builder.store(total, builder.gep(out, [WORD(to)]))
+        write(total, place_of_sum)
+    last = max(written, default=-1) + 1
+    zeros = ir.Constant(VECTOR, [0.0] * VECTOR.count)
+    for unused in set(range(last)) - written:
+        builder.store(zeros, builder.gep(out, [WORD(unused)]))
     with short_loop(builder, WORD(last), count) as place:
         builder.store(zeros, builder.gep(out, [place]))
     builder.ret_void()

@@ -16,7 +16,7 @@ from sebody.kernels.lanes.constant_products import add_straight_times, straight_
 
 _IN_LANES = "{}_in_lanes"
 # products of constant matrices that straight code makes where all members share them
-_TIMES, _MORE = "columns_times", "add_blocks_times"
+_TIMES, _ALL, _MORE = "columns_times", "columns_times_all", "add_blocks_times"
 
 
 def kernel_text(module: ModuleType, own: tuple[str, ...] | None, matrices: bool) -> Callable:
@@ -75,7 +75,7 @@ def straight_parts(module: ModuleType, own: tuple[str, ...] | None, matrices: bo
 
 
 def _is_straight(call: ast.AST, parts: Collection[str]) -> bool:
-    return (isinstance(call, ast.Call) and getattr(call.func, "id", None) in (_TIMES, _MORE)
+    return (isinstance(call, ast.Call) and getattr(call.func, "id", None) in (_TIMES, _ALL, _MORE)
             and getattr(call.args[0], "id", None) in parts)
 
 
@@ -134,12 +134,16 @@ class _Straight(ast.NodeTransformer):
         self._parts = parts
 
     def visit_Expr(self, one: ast.Expr) -> ast.AST | list[ast.AST]:  # noqa: N802  of Python
-        """A product is a statement; one that adds two products becomes two."""
+        """A product is a statement; one of several products becomes several."""
         call = one.value
         if not _is_straight(call, self._parts):
             return one
         if call.func.id == _TIMES:
             return _called(one, straight_times, call.args[:4])
+        if call.func.id == _ALL:
+            A, x, y, z, of_x, of_y, of_z, rows, _ = call.args
+            return [_called(one, straight_times, [A, given, out, rows])
+                    for given, out in ((x, of_x), (y, of_y), (z, of_z))]
         A, x, B, y, out, rows, _, columns, height = call.args
         return [_called(one, add_straight_times, [A, x, out]),
                 _called(one, add_block_times, [B, y, out, rows, columns, height])]
