@@ -260,8 +260,7 @@ def gains(made: Model, rng: np.random.Generator) -> np.ndarray:
 @pytest.mark.parametrize(("build", "index"), [
     (of_chain, 3), (of_loop, 3), (of_beam, 3),
     (lambda: flowing(chain(), "end 1", "hinge 0", 1e4), 3),
-    (lambda: flowing(redundant(16), "left", "foot 0", 2e6, held=False), 2),
-    (lambda: flowing(hinged("craig-bampton"), "base", "hinge", 4e3), 3)])
+    (lambda: flowing(redundant(16), "left", "foot 0", 2e6, held=False), 2)])
 def test_controlled_members_equal_single_runs(build, index, monkeypatch):
     """Gravity, loads and gains vary; alone and backwards the bits are the same."""
     monkeypatch.setattr(ensemble, "WORTH_IT", 0)
