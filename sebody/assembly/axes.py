@@ -65,7 +65,7 @@ def rotated_blocks(shapes: Iterable[Shape],
 
 def summands(shapes: Iterable[Shape], rotated: NDArray, linked: NDArray, kept: NDArray,
              entries: NDArray) -> tuple[NDArray, NDArray, NDArray]:
-    """The members `J_place`, `J_entry` and `summands` of `System`.
+    """The members `J_place`, `J_entry` and `summands` of `System`, without its last two columns.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def summands(shapes: Iterable[Shape], rotated: NDArray, linked: NDArray, kept: N
     """
     width = [s.width for s in shapes for _ in s.unknowns]
     start = starts(w * w for w in width)
-    rows = np.full((len(width), 8), -1)
+    rows = np.full((len(width), 10), -1)
     rows[:, 0], rows[:, 1] = start[:-1], width
     firsts = np.searchsorted(rotated[:, 0], start)
     rows[:, 2], rows[:, 3] = firsts[:-1], firsts[1:]

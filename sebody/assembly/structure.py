@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.axes import rotated_blocks, summands
 from sebody.assembly.batches import Shape, starts
+from sebody.assembly.internal_columns import internal_columns
 from sebody.assembly.links import Ends, link_tables
 from sebody.assembly.scatter import dense_layout, element_scatter, sparse_layout
 from sebody.contract.counts import LANES
@@ -57,6 +58,9 @@ def indices(of: Structure) -> Indices:
     own_entries, linked_entries = entries[:len(own_row)], entries[len(own_row):]
     kept = np.flatnonzero(own_entries < len(matrix["rows"]))
     places, to, table = summands(of.shapes, blocks, links["elements"], kept, own_entries[kept])
+    internal, condensed_ends, firsts = internal_columns(of.shapes, of.first_joint, linked_row,
+                                                        of.free, matrix)
+    table[:, 8], table[:, 9] = firsts[:-1], firsts[1:]
     order, first_summands = _by_parts(of, matrix, links["elements"], table)
     first_load = sum(len(s.unknowns) * s.width ** 2 for s in of.shapes[:of.first_power])
     linked = of.coupling or bool((blocks[:, 0] < first_load).any())
@@ -67,7 +71,7 @@ def indices(of: Structure) -> Indices:
          "constraint_columns": _constraint_columns(matrix, is_multiplier, of.free),
          "rotated": rotated,
          "rotated_blocks": blocks, "summands": table[order], "linked": np.array([int(linked)]),
-         "part_summands": first_summands,
+         "part_summands": first_summands, "internal": internal, "condensed_ends": condensed_ends,
          "first_joint": np.array([of.first_joint]), "first_power": np.array([of.first_power])},
         {**links, "entries": linked_entries[:arms], "arm_entries": linked_entries[arms:]})
 

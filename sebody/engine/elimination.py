@@ -20,14 +20,18 @@ SMALL_PIVOT = 1e-11     # relative to the scaled matrix, whose diagonal is one
 
 
 @compiled
-def eliminate(first_column, end_column, starts, rows, diagonal, unknowns, matrix, column, scale):
+def eliminate(first_column, end_column, starts, rows, diagonal, ends, unknowns, matrix, column,
+              scale):
     """Factorize some columns of blocks in place: L with unit diagonal blocks, U with inverted ones.
 
     All arguments but the first two are pointers; `column` is scratch memory for one column of
-    blocks, `scale` the scales of the unknowns. Returns False at a small pivot.
+    blocks, `scale` the scales of the unknowns. `ends` has the end of the blocks of every column;
+    the beginning of columns that are eliminated already. Returns False at a small pivot.
     """
     for j in range(first_column, end_column):
-        first, middle, end = starts[j], diagonal[j], starts[j + 1]
+        first, middle, end = starts[j], diagonal[j], ends[j]
+        if end == first:
+            continue
         for p in range(first, end):
             source, target = at(matrix, BLOCK * p), at(column, BLOCK * rows[p])
             for i in range(BLOCK):
@@ -37,7 +41,7 @@ def eliminate(first_column, end_column, starts, rows, diagonal, unknowns, matrix
             u, target = at(column, BLOCK * k), at(matrix, BLOCK * p)
             for i in range(BLOCK):
                 target[i] = u[i]
-            for t in range(diagonal[k] + 1, starts[k + 1]):
+            for t in range(diagonal[k] + 1, ends[k]):
                 subtract_product(at(column, BLOCK * rows[t]), at(matrix, BLOCK * t), target)
         inverse = at(matrix, BLOCK * middle)
         if not invert_block(at(column, BLOCK * j), inverse, at(unknowns, LANES * j), scale):
@@ -103,10 +107,15 @@ def substitute_back(first, end, starts, rows, diagonal, factors, x):
 
 
 @compiled
-def eliminate_columns(first, end, system, state, column):
-    """Factorize some columns of blocks of `State.matrix`; `column` is scratch memory."""
-    return eliminate(first, end, pointer_to(system.block_starts), pointer_to(system.block_rows),
-                     pointer_to(system.block_diagonal), pointer_to(system.slot_unknowns),
+def eliminate_columns(first, end, system, state, condensed, column):
+    """Factorize some columns of blocks of `State.matrix`; `column` is scratch memory.
+
+    `condensed` tells whether it is a sum of `State.condensed`.
+    """
+    starts = pointer_to(system.block_starts)
+    ends = pointer_to(system.condensed_ends) if condensed else at(starts, 1)
+    return eliminate(first, end, starts, pointer_to(system.block_rows),
+                     pointer_to(system.block_diagonal), ends, pointer_to(system.slot_unknowns),
                      pointer_to(state.matrix), column, pointer_to(state.scale))
 
 

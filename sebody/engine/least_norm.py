@@ -26,7 +26,7 @@ from sebody.contract.layout import (
 from sebody.engine import elimination
 from sebody.engine.evaluate import run_kernels, set_loads, set_tangent_operators
 from sebody.engine.inverse import invert
-from sebody.engine.matrix import clear_matrix, sum_element
+from sebody.engine.matrix import clear_matrix, element_matrix, sum_element
 from sebody.engine.regularization import REGULARIZATION, spread
 from sebody.engine.vectors import copy
 from sebody.kernels.abi import pointer_to
@@ -73,7 +73,8 @@ def _factorize(system, state, norms, dense):
     clear_matrix(system, state)
     for k in range(system.summands.shape[0]):
         if system.summands[k, 0] >= system.at_J[system.first_joint[0]]:     # no body
-            sum_element(system, state, k, pointer_to(state.rotated_matrix))
+            sum_element(system, state, k, element_matrix(system, state, k),
+                        pointer_to(state.rotated_matrix))
     for i in range(n):
         state.scale[i] = 1.0 / np.sqrt(norms[i])
         state.regularization[i] = -REGULARIZATION * norms[i] * system.is_multiplier[i]
@@ -81,7 +82,7 @@ def _factorize(system, state, norms, dense):
                                              if system.is_multiplier[i] > 0.0
                                              else norms[i])
     if not dense:
-        elimination.eliminate_columns(0, system.block_diagonal.size, system, state,
+        elimination.eliminate_columns(0, system.block_diagonal.size, system, state, False,
                                       pointer_to(state.column))
         return
     scaled = np.empty((n, n))

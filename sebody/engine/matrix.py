@@ -7,6 +7,7 @@ from sebody.contract.counts import LANES
 from sebody.contract.layout import C_MASS, C_STIFFNESS, OK
 from sebody.engine import elimination
 from sebody.engine.calls import call_share
+from sebody.engine.condensation import are_condensed, condensed_matrix, element_matrix
 from sebody.engine.elimination import BLOCK
 from sebody.engine.inverse import invert
 from sebody.engine.links import add_expanded, add_second_order
@@ -19,11 +20,11 @@ from sebody.engine.regularization import (
     regularize,
     spread,
 )
-from sebody.engine.state import EVALUATED, SHARE_FACTORS, SHARE_SOLUTION, SHARE_SUM
+from sebody.engine.state import EVALUATED, ROTATED, SHARE_FACTORS, SHARE_SOLUTION, SHARE_SUM
 from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.dense import columns_times
 
-SUMMAND = 8             # numbers of an element in System.summands
+SUMMAND = 10            # numbers of an element in System.summands
 ROUNDING = 8.0 * 2.2e-16        # left of a position by rounding, relative to its magnitude
 THIN = 1e-6             # smallest moment of inertia that scales its axis, relative to the largest
 
@@ -36,7 +37,27 @@ def sum_matrices(system, state, forces):
     else:
         clear_matrix(system, state)
         for k in range(system.summands.shape[0]):
-            sum_element(system, state, k, pointer_to(state.rotated_matrix))
+            sum_element(system, state, k, element_matrix(system, state, k),
+                        pointer_to(state.rotated_matrix))
+    _add_of_links(system, state, forces)
+
+
+@compiled
+def sum_condensed(system, state, forces):
+    """Sum the element matrices with their internal unknowns eliminated."""
+    if system.routines[3] != 0:
+        call_share(system.routines[3], system, state, SHARE_SUM, 0)
+    else:
+        clear_matrix(system, state)
+        for k in range(system.summands.shape[0]):
+            sum_element(system, state, k, condensed_matrix(system, state, k),
+                        pointer_to(state.rotated_matrix))
+    _add_of_links(system, state, forces)
+
+
+@compiled
+def _add_of_links(system, state, forces):
+    """Add what rigid links add as they rotate."""
     if system.links.elements.shape[0] > 0:
         add_second_order(system.links, state.coefficients[C_STIFFNESS], state.q, state.R, state.T,
                          state.turns, forces, state.matrix)
@@ -52,8 +73,11 @@ def clear_matrix(system, state):
 
 
 @compiled
-def sum_columns(system, state, first, end, part, J):
-    """Some columns of blocks, those of a part of the elimination; J as in `sum_element`."""
+def sum_columns(system, state, first, end, part, condensed, J):
+    """Some columns of blocks, those of a part of the elimination; J as in `sum_element`.
+
+    `condensed` tells whether internal unknowns are to be eliminated.
+    """
     starts, across = pointer_to(system.block_starts), system.block_diagonal.size
     for k in range(BLOCK * starts[first],
                    BLOCK * starts[end] if end < across else state.matrix.size):
@@ -65,20 +89,20 @@ def sum_columns(system, state, first, end, part, J):
     last = system.part_summands.size - 1
     for k in range(system.part_summands[part],
                    system.part_summands[part + 1] if part < last else system.summands.shape[0]):
-        sum_element(system, state, k, J)
+        own = (condensed_matrix(system, state, k) if condensed else
+               element_matrix(system, state, k))
+        sum_element(system, state, k, own, J)
 
 
 @compiled
-def sum_element(system, state, k, J):
-    """Add an element matrix, its positions rotated to the axes they are solved for in.
+def sum_element(system, state, k, own, J):
+    """Add the matrix `own` of an element, its positions rotated to the axes they are solved for in.
 
-    `J` is scratch memory for a matrix of one element, which is number k of `System.summands`.
+    The element is number k of `System.summands`; `J` is scratch memory for a matrix like its own.
     """
     summand = at(pointer_to(system.summands), SUMMAND * k)
-    start, width, first_rotated, end_rotated, linked, first, end, shift = (
-        summand[0], summand[1], summand[2], summand[3], summand[4], summand[5], summand[6],
-        summand[7])
-    own = at(pointer_to(state.J), start)
+    width, first_rotated, end_rotated, linked, first, end, shift = (
+        summand[1], summand[2], summand[3], summand[4], summand[5], summand[6], summand[7])
     if first_rotated < end_rotated or linked >= 0:
         for i in range(width * width):
             J[i] = own[i]
@@ -193,7 +217,12 @@ def refactorize(system, state, wanted, dense):
     those of the last matrix of new element matrices.
     """
     regularized = system.regularized[0] == 1
-    sum_matrices(system, state, state.forces)
+    condensed = wanted == ROTATED and are_condensed(system, state)
+    state.control.condensed = condensed
+    if condensed:
+        sum_condensed(system, state, state.forces)
+    else:
+        sum_matrices(system, state, state.forces)
     if wanted == EVALUATED:
         equilibrate(system, state)
     state.control.regularized = 0
@@ -209,7 +238,8 @@ def refactorize(system, state, wanted, dense):
         done = call_share(system.routines[3], system, state, SHARE_FACTORS, 0) == OK
     else:
         done = elimination.eliminate_columns(0, system.block_diagonal.size, system, state,
-                                             pointer_to(state.column))
+                                             condensed, pointer_to(state.column))
+    state.control.condensed = 0
     state.control.pivoted = 0 if done else 1
     if not done:
         sum_matrices(system, state, state.forces)

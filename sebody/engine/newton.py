@@ -251,7 +251,9 @@ def count_matrix(state, wanted):
     clock, control = state.clock, state.control
     if wanted == EVALUATED:
         control.age, clock.baseline_contraction, clock.excess = 0, 0.5, 0.0
-        clock.factor_step = clock.current_step
+        clock.factor_step, control.refreshed = clock.current_step, 0
+    else:
+        control.refreshed += 1
     control.wanted = KEPT
     control.secant = 0
     control.fresh += 1

@@ -50,11 +50,12 @@ def share(system, state, task, thread):
         return _serve(system, state, task - HELP, thread)
     status = _do_together(system, state, task)
     rest, across = system.part_blocks[system.part_blocks.size - 1], system.block_diagonal.size
+    condensed = state.control.condensed == 1
     if task == SHARE_SUM:
-        sum_columns(system, state, rest, across, system.part_blocks.size - 1,
+        sum_columns(system, state, rest, across, system.part_blocks.size - 1, condensed,
                     pointer_to(state.rotated_matrix))
     elif task == SHARE_FACTORS and status == OK:
-        return 0 if elimination.eliminate_columns(rest, across, system, state,
+        return 0 if elimination.eliminate_columns(rest, across, system, state, condensed,
                                                   pointer_to(state.column)) else 1
     elif task == SHARE_SOLUTION:
         elimination.solve_rest(system, state)
@@ -103,13 +104,14 @@ def _do(system, state, task, piece, thread):
     if task <= SHARE_MOVED:
         return _evaluate(system, state, task, piece, thread)
     first, end = system.part_blocks[piece], system.part_blocks[piece + 1]
+    condensed = state.control.condensed == 1
     if task == SHARE_SUM:
-        sum_columns(system, state, first, end, piece, at(
+        sum_columns(system, state, first, end, piece, condensed, at(
             pointer_to(system.shared.rotated), thread * system.shared.rotated.shape[1]))
     elif task == SHARE_FACTORS:
         column = at(pointer_to(system.shared.columns),
                     thread * system.shared.columns.shape[1])
-        if not elimination.eliminate_columns(first, end, system, state, column):
+        if not elimination.eliminate_columns(first, end, system, state, condensed, column):
             return 1
     elif task == SHARE_SOLUTION:
         elimination.begin_part(system, state, first, end)

@@ -98,6 +98,8 @@ class State(Arrays):
     coefficients          the row `layout.COEFFICIENTS`
     g                     forces of the elements, one after the other
     J                     matrices of the elements; of superelements in the axes of their frame
+    condensed             those of superelements with their internal unknowns eliminated, see
+                          `sebody.engine.condensation`; empty where there are none
     rotated_matrix        one element matrix, positions in the axes they are solved for in
     energy                the row `layout.ENERGIES`
     work                  scratch memory of kernels
@@ -174,6 +176,7 @@ class State(Arrays):
     coefficients: NDArray
     g: NDArray
     J: NDArray
+    condensed: NDArray
     rotated_matrix: NDArray
     residual: NDArray
     forces: NDArray
@@ -269,6 +272,8 @@ CONTROL = np.dtype([(name, np.int64) for name in (
     "recorded",              # rows written to the record
     "age",                   # steps since all element matrices were evaluated
     "pivoted",               # 1 where the matrix needs row exchanges
+    "refreshed",             # matrices with the same matrices of superelements since they were new
+    "condensed",             # 1 while a matrix is made of `State.condensed`
     "back_off",              # steps that begin with a refreshed matrix after reuse failed
     "back_off_left",         # of these, still to come
     "adaptive",              # 1 for variable steps

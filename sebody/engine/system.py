@@ -44,6 +44,7 @@ class System(Arrays):
     part_blocks         (parts + 1,) first column of blocks of every part of the elimination that
                         does not wait for others, then of the rest, see `engine.sharing`
     block_ends          of every column of blocks, the first block that is in a row of the rest
+    condensed_ends      of every column of blocks, where it ends; of those in `internal`, begins
     part_summands       (parts + 1,) first row of `summands` of every part, then of the rest
     constraint_columns  entries in columns of multipliers, without their diagonal
     padding             entries with ones: the diagonal of free slots
@@ -69,9 +70,12 @@ class System(Arrays):
     rotated_blocks      (k, 5) positions in element matrices that are in other axes than they are
                         solved for in: start and width of the matrix, row, axes of the unknown, of
                         the matrix
-    summands            (elements, 8) start and width of the element matrix, first and last + 1 row
+    summands            (elements, 10) start and width of the element matrix, first and last + 1 row
                         of `rotated_blocks`, row of `Links.elements` or -1, first and last + 1 of
-                        `J_place`, first entry of the matrix; by parts of the elimination
+                        `J_place`, first entry of the matrix, first and last + 1 row of `internal`;
+                        by parts of the elimination
+    internal            (k, 5) internal unknowns of superelements that fill a column of blocks: the
+                        column, places of the unknowns in the element, -1 for free slots
     linked              (1,) 1 where bodies that rotate against each other are coupled
     ------------------  ----------------------------------------------------------------------------
     power ports
@@ -127,12 +131,14 @@ class System(Arrays):
     slot_unknowns: NDArray
     part_blocks: NDArray
     block_ends: NDArray
+    condensed_ends: NDArray
     part_summands: NDArray
     is_multiplier: NDArray
     rotation_at: NDArray
     rotated: NDArray
     rotated_blocks: NDArray
     summands: NDArray
+    internal: NDArray
     linked: NDArray
     dimension: NDArray
     part: NDArray

@@ -70,7 +70,7 @@ from sebody.engine.elimination import eliminate
 from sebody.engine.scalars import record
 from sebody.engine.state import CLOCK, CONTROL
 from sebody.engine.step import cut_step
-from sebody.kernels.abi import padded, pointer_to
+from sebody.kernels.abi import at, padded, pointer_to
 from sebody.kernels.frame_search import converged_mean, planar_relative_angles
 
 def turned_by(angle):
@@ -89,8 +89,8 @@ def near_half_a_turn():
 @njit
 def factors(starts, rows, diagonal, unknowns, matrix, column, scale):
     return eliminate(0, 2, pointer_to(starts), pointer_to(rows), pointer_to(diagonal),
-                     pointer_to(unknowns), pointer_to(matrix), pointer_to(column),
-                     pointer_to(scale))
+                     at(pointer_to(starts), 1), pointer_to(unknowns), pointer_to(matrix),
+                     pointer_to(column), pointer_to(scale))
 
 def elimination():
     """The last inverted pivot of [[2, 1], [1, 2]]; each number stands for a diagonal block."""

@@ -25,8 +25,8 @@ def factorized(pattern, matrix, column, scale):
     unknowns = np.arange(LANES * pattern.diagonal.size)
     return elimination.eliminate(
         0, pattern.diagonal.size, pointer_to(pattern.starts), pointer_to(pattern.rows),
-        pointer_to(pattern.diagonal), pointer_to(unknowns), pointer_to(matrix), pointer_to(column),
-        pointer_to(scale))
+        pointer_to(pattern.diagonal), at(pointer_to(pattern.starts), 1), pointer_to(unknowns),
+        pointer_to(matrix), pointer_to(column), pointer_to(scale))
 
 
 @njit

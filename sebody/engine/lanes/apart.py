@@ -66,6 +66,7 @@ def take_apart(state, apart, J):
         _copy_to(state, apart, member)
         for k in range(J.shape[1]):
             own.J[k] = J[member, k]
+        own.control.refreshed = 0
         if reason == JUDGED:
             if not judge(system, own):
                 _give_floats(apart.guard_words, apart.guard[member], apart.guard_in_lanes, member)

@@ -60,7 +60,7 @@ def refactorize(system, state, together):
     sum_matrices(system, own, state.forces)
     if some(evaluated):
         _equilibrate(system, own, evaluated)
-    elimination.eliminate_columns(0, system.block_diagonal.size, system, own,
+    elimination.eliminate_columns(0, system.block_diagonal.size, system, own, False,
                                   pointer_to(own.column))
     made = wanted
     for j in range(system.block_diagonal.size):

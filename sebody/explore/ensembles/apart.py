@@ -68,7 +68,8 @@ def _with(state: State, others: dict[str, np.record]) -> State:
 
 def _places(state: State, offsets: Offsets, slots: NDArray) -> NDArray:
     """Places of what a member takes with it: parameters, and its state without scratch memory."""
-    left = {"J", "g", "changes", "kept", "work", "expansion", "rotated_matrix", "column"} | SHARED
+    left = SHARED | {"J", "condensed", "g", "changes", "kept", "work", "expansion",
+                     "rotated_matrix", "column"}
     parts = [offsets.of(value) for one in fields(State) if one.name not in left
              and isinstance(value := getattr(state, one.name), np.ndarray)
              and value.dtype == np.float64 and value.size]
