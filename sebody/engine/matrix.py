@@ -223,6 +223,8 @@ def refactorize(system, state, wanted, dense):
         sum_condensed(system, state, state.forces)
     else:
         sum_matrices(system, state, state.forces)
+        if wanted == ROTATED:           # the next one condenses
+            state.control.refreshed = 1
     if wanted == EVALUATED:
         equilibrate(system, state)
     state.control.regularized = 0

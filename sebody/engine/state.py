@@ -272,7 +272,7 @@ CONTROL = np.dtype([(name, np.int64) for name in (
     "recorded",              # rows written to the record
     "age",                   # steps since all element matrices were evaluated
     "pivoted",               # 1 where the matrix needs row exchanges
-    "refreshed",             # matrices with the same matrices of superelements since they were new
+    "refreshed",             # refreshed matrices, from the last one that was not condensed
     "condensed",             # 1 while a matrix is made of `State.condensed`
     "back_off",              # steps that begin with a refreshed matrix after reuse failed
     "back_off_left",         # of these, still to come

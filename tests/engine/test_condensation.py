@@ -67,6 +67,18 @@ def test_refreshed_matrices_solve_what_scipy_solves(order):
         assert np.isnan(state.condensed).all() == (refreshed == 1)
 
 
+def test_matrices_are_condensed_after_row_exchanges():
+    """The second refresh comes while factors have row exchanges, so the third one condenses."""
+    run = Simulation(arm(), 0.005).run_to(0.05)
+    run.state.condensed[:] = np.nan
+    run.state.control.pivoted = 1
+    solution(run, 2)
+    assert np.isnan(run.state.condensed).all()
+    found, exact = solution(run, run.state.control.refreshed + 1)
+    assert np.abs(found - exact).max() < 1e-7 * np.abs(exact).max()
+    assert not np.isnan(run.state.condensed).all()
+
+
 def test_columns_with_unknowns_of_others_are_not_internal():
     """Internal modes of a link, and what its free end has, but nothing that joints act on."""
     run = Simulation(arm(), 0.005)
