@@ -16,7 +16,7 @@ from sebody.contract.counts import packed_size, whole_vectors
 from sebody.contract.layout import OK
 from sebody.derive.symbolic.rotations import stumpff_value, tangent_inverse_value
 from sebody.kernels.abi import Arguments
-from sebody.kernels.packed import strips
+from sebody.kernels.packed import multiples, strips
 from sebody.verify.check.states import arguments
 
 
@@ -48,6 +48,11 @@ def columns(A, rows, count, height):
 
 def columns_times(A, x, out, rows, count):
     out[:rows] = columns(A, rows, count, whole_vectors(rows)) @ x[:count]
+
+
+def columns_times_all(A, x, y, z, of_x, of_y, of_z, rows, count):
+    for given, out in ((x, of_x), (y, of_y), (z, of_z)):
+        columns_times(A, given, out, rows, count)
 
 
 def arrow_times(A, x, out, n, filled):
@@ -101,6 +106,8 @@ def packed_times_both(matrices, x, y, of_x, of_y, count):
 def couplings_times(matrices, x, y, out, count):
     out[:count] = 0.0
     _add_products(matrices, x, y, out)
+    for place, other, _, factors in multiples(matrices):
+        out[place:place + len(factors)] = factors * out[other:other + len(factors)]
 
 
 def add_packed_times(matrices, x, out):
@@ -114,14 +121,20 @@ def _add_products(matrices, x, y, out):
 
 
 def add_packed(matrices, factors, out, height):
-    add_couplings(matrices, factors, out, out, height)
-
-
-def add_couplings(matrices, factors, of_x, of_y, height):
-    for vector, _, k, row, first, entries in _products(matrices):
+    for _, _, k, row, first, entries in _products(matrices):
         for c, column in enumerate(entries.T):
             place = (first + c) * height + row
-            (of_x, of_y)[vector][place:place + len(column)] += factors[k] * column
+            out[place:place + len(column)] += factors[k] * column
+
+
+def add_couplings(matrices, factors, scales, of_x, of_y, count, size, height):
+    scales[:count * size] = np.repeat(factors[:count], size)
+    for place, other, _, own in multiples(matrices):
+        scales[other:other + len(own)] += own * scales[place:place + len(own)]
+    for vector, at, _, row, first, entries in _products(matrices):
+        for c, column in enumerate(entries.T):
+            place = (first + c) * height + row
+            (of_x, of_y)[vector][place:place + len(column)] += scales[at:at + len(column)] * column
 
 
 def to_free(y, axes, order, moved, z, bound, bound_free, free, end):

@@ -12,7 +12,7 @@ from sebody.engine.growth import new_guard
 from sebody.engine.kept_factors import spare
 from sebody.engine.newton import SLOWEST
 from sebody.engine.offsets import at_cache_lines
-from sebody.engine.prediction import ROWS, at_start
+from sebody.engine.prediction import FIT, ROWS
 from sebody.engine.scalars import record
 from sebody.engine.state import (
     CLOCK,
@@ -50,7 +50,7 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
     coefficients[FIELD:FIELD + model.dimension] = model.gravity_field
     state = State.of(
         counts,
-        aux=zeros(total), changes=zeros(ROWS * total), fitted=zeros(total), fit=at_start(),
+        aux=zeros(total), changes=zeros(ROWS * total), fitted=zeros(total), fit=zeros(FIT),
         q_start=q.copy(), q_old=q.copy(), R_old=R.copy(), v_old=v.copy(), a_old=zeros(total),
         aux_old=zeros(total), dq=zeros(total), T=_identities(len(R)),
         turns=_turns(system, total),

@@ -11,12 +11,8 @@ ever less (autoregression; four vibrations follow such a rule exactly). A step t
 been best for the step before.
 
 The fit costs as much as a part of a correction. Whether it saves as much is tried: in some periods
-of `PERIOD` steps it is made, in others not, and the mean corrections of both are compared. In the
-first two it is made, since a motion that begins mostly vibrates.
+of `PERIOD` steps it is made, in others not, and the mean corrections of both are compared.
 """
-
-import numpy as np
-from numpy.typing import NDArray
 
 from sebody.compiler.decorators import compiled
 from sebody.kernels.abi import at, pointer_to
@@ -43,13 +39,6 @@ _SOLUTION = _FACTORS + ORDER * ORDER
 LAST, BEFORE, FITTED, ON, AGE, SUM, WITH, WITHOUT = range(
     _SOLUTION + ORDER, _SOLUTION + ORDER + 8)
 FIT = WITHOUT + 1      # its size
-
-
-def at_start() -> NDArray:
-    """`State.fit` of a run that has not begun, which begins with the fit."""
-    fit = np.zeros(FIT)
-    fit[ON] = 1.0
-    return fit
 
 
 @compiled
@@ -135,8 +124,8 @@ def compare_periods(fit, corrections, steps):
         zero = 0.0 * mean
         better = either(fit[WITH] + WORTH < fit[WITHOUT], zero + 1.0, zero)
         period = steps // PERIOD
-        if period < 3:      # the second one with the fit, the third one without it: the first steps
-            better = zero + 2 - period      # of a motion are no measure
+        if period < 3:      # the second one without the fit, the third one with it: the first steps
+            better = zero + period // 2     # of a motion are no measure
         elif period % TRIED_AGAIN == 0:
             better = 1.0 - better
         fit[AGE] = fit[AGE] * better

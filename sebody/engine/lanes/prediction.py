@@ -65,7 +65,7 @@ def compare_periods(fit, corrections, steps):
     fit[WITHOUT] = where(begins & ~on, mean, fit[WITHOUT])
     better, period = where(fit[WITH] + WORTH < fit[WITHOUT], one, zero), steps / PERIOD
     again = _rest(period, float(TRIED_AGAIN)) == 0.0
-    early = where(period < 2.0, one, zero)
+    early = where(period < 2.0, zero, one)
     better = where(period < 3.0, early, where(again, one - better, better))
     fit[AGE] = where(begins, fit[AGE] * better, fit[AGE])
     fit[ON] = where(begins, better, fit[ON])
